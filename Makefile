@@ -1,0 +1,160 @@
+# relume - the whole build. `make` builds, `make demo` and `make test` do all set-up by themselves.
+#
+#   config=release (default, into build/) | debug | asan | tsan   (into build/CONFIG/)
+
+config ?= release
+PREFIX ?= /usr/local
+FUZZ_S ?= 20
+
+B := $(if $(filter release,$(config)),build,build/$(config))
+
+CC       ?= gcc
+CXX      ?= g++
+WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wwrite-strings
+COMMON   := -g -fPIC -fvisibility=hidden -MMD -MP -pthread -ffp-contract=off $(WARNINGS)
+release  := -O3 -DNDEBUG
+debug    := -O0
+asan     := -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+tsan     := -O1 -fsanitize=thread
+MODE     := $($(config))
+ifeq ($(MODE),)
+$(error config=$(config): expected release, debug, asan or tsan)
+endif
+C11      := -std=c11 $(COMMON) $(MODE) -Wstrict-prototypes -Wmissing-prototypes
+CXX17    := -std=c++17 $(COMMON) $(MODE)
+
+# Asked of pkg-config once, after the packages are there.
+once     = $(eval $1 := $$(shell $2))$($1)
+EXR      = $(call once,EXR,pkg-config --cflags OpenEXR)
+OIIO     = $(call once,OIIO,pkg-config --cflags OpenImageIO)
+GLFW     = $(call once,GLFW,pkg-config --cflags glfw3)
+LIBS     = $(call once,LIBS,pkg-config --libs OpenImageIO openblas jansson) -lOpenEXRCore -llapacke -lembree3 -lm
+GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa)
+CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
+
+LIB_C    := $(wildcard src/base/*.c src/math/*.c src/image/*.c src/capture/*.c src/scene/*.c \
+            src/coder/*.c src/pack/*.c src/relight/*.c src/view/*.c src/frame/*.c)
+LIB_CXX  := $(wildcard src/image/*.cpp)
+CLI_C    := $(wildcard src/cli/*.c)
+VIEWER_C := $(wildcard viewer/*.c)
+SHADERS  := $(wildcard viewer/shaders/*.glsl)
+HEADERS  := $(wildcard include/relume/*.h)
+UNIT_C   := $(wildcard tests/unit/*.c tests/props/*.c tests/kernels/*.c tests/threads/*.c)
+GL_C     := $(wildcard tests/gl/*.c)
+BENCH_C  := $(wildcard tests/bench/*.c)
+FUZZ_C   := $(wildcard tests/fuzz/*.c)
+
+LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $(LIB_CXX:%.cpp=$B/obj/%.o)
+CLI_O    := $(CLI_C:%.c=$B/obj/%.o)
+VIEWER_O := $(VIEWER_C:%.c=$B/obj/%.o) $B/obj/viewer/shaders.o
+UNIT     := $(UNIT_C:%.c=$B/%)
+GL       := $(GL_C:%.c=$B/%)
+BENCH    := $(BENCH_C:%.c=$B/%)
+FUZZ     := $(FUZZ_C:%.c=$B/%)
+VIEWER   := $(if $(VIEWER_C),$B/relume-view)
+
+.PHONY: all lib cli viewer deps deps-web demo test check bench fuzz headers layers format install clean
+.DELETE_ON_ERROR:
+all: lib cli viewer
+lib: $B/librelume.a $B/librelume.so
+cli: $B/relume
+viewer: $(VIEWER)
+
+# ---------------------------------------------------------------- set-up
+
+DEPS := build/.deps
+deps: $(DEPS)
+$(DEPS): scripts/deps.sh
+	@mkdir -p $(@D)
+	@scripts/deps.sh
+	@touch $@
+deps-web:
+	@scripts/deps.sh web
+
+# ---------------------------------------------------------------- compiling
+
+$B/obj/src/image/exr.o: own_flags = $(EXR)
+$B/obj/src/image/oiio.o: own_flags = $(OIIO)
+$B/obj/src/relight/kernels_avx2.o: own_flags = -mavx2 -mfma -mf16c
+$B/obj/src/%.o:               own_include = -Isrc
+$B/obj/src/cli/%.o:           own_include = -Isrc/cli
+$B/obj/viewer/%.o:            own_include = -Iviewer
+$B/obj/viewer/context_glfw.o: own_flags = $(GLFW)
+$B/obj/tests/%.o:             own_include = -Isrc -Itests -Iviewer
+
+$B/obj/%.o: %.c | $(DEPS)
+	@mkdir -p $(@D)
+	$(CC) $(C11) -Iinclude $(own_include) $(own_flags) $(CFLAGS) -c -o $@ $<
+$B/obj/%.o: %.cpp | $(DEPS)
+	@mkdir -p $(@D)
+	$(CXX) $(CXX17) -Iinclude $(own_include) $(own_flags) $(CXXFLAGS) -c -o $@ $<
+
+# Shaders are files in the tree and strings in the program.
+$B/obj/viewer/shaders.c: scripts/embed.sh $(SHADERS)
+	@mkdir -p $(@D)
+	scripts/embed.sh $(SHADERS) > $@
+$B/obj/viewer/shaders.o: $B/obj/viewer/shaders.c
+	$(CC) $(C11) -Iviewer -c -o $@ $<
+
+# ---------------------------------------------------------------- linking
+
+$B/librelume.a: $(LIB_O)
+	rm -f $@
+	$(AR) rcs $@ $^
+$B/librelume.so: $(LIB_O)
+	$(CXX) $(MODE) -shared -Wl,-soname,librelume.so -o $@ $^ $(LDFLAGS) $(LIBS)
+$B/relume: $(CLI_O) $B/librelume.a
+	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
+$B/relume-view: $(VIEWER_O) $B/librelume.a
+	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS)
+
+$(UNIT): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
+	@mkdir -p $(@D)
+	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
+$(BENCH) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
+	@mkdir -p $(@D)
+	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
+$(GL): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O)) $B/librelume.a
+	@mkdir -p $(@D)
+	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
+
+-include $(shell find $B/obj -name '*.d' 2>/dev/null)
+
+# ---------------------------------------------------------------- checking
+
+# `make test` is everything; `make check` is the part that one config runs.
+test: all
+	@tests/run.sh $(MAKE)
+check: $(UNIT) $(GL) cli viewer
+	@tests/check.sh $B
+
+headers: $(HEADERS:include/relume/%.h=$B/headers/%.ok)
+$B/headers/%.ok: include/relume/%.h $(HEADERS) | $(DEPS)
+	@mkdir -p $(@D)
+	$(CC) -std=c11 $(WARNINGS) -Werror -Iinclude -fsyntax-only -x c $<
+	$(CXX) -std=c++17 -Wall -Wextra -Wpedantic -Werror -Iinclude -fsyntax-only -x c++ $<
+	@touch $@
+
+layers:
+	@scripts/layers.sh
+
+format:
+	clang-format -i $(LIB_C) $(LIB_CXX) $(CLI_C) $(VIEWER_C) $(HEADERS) $(UNIT_C) $(GL_C) \
+	    $(BENCH_C) $(FUZZ_C) $(wildcard src/*/*.h viewer/*.h tests/*.h samples/*.c)
+
+bench: all $(BENCH)
+	@tests/bench/run.sh $B
+
+fuzz: $(FUZZ)
+	@for f in $(FUZZ); do $$f $(FUZZ_S) || exit 1; done
+
+demo: all
+	@scripts/demo.sh $B build/demo
+
+# ---------------------------------------------------------------- installing
+
+install: all
+	scripts/install.sh $B $(DESTDIR)$(PREFIX) $(PREFIX)
+
+clean:
+	rm -rf build

@@ -1,0 +1,71 @@
+// base.h - what every other header builds on: status, log, limits, CPU features
+#ifndef RELUME_BASE_H
+#define RELUME_BASE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define RELUME_VERSION "0.1.0"
+
+#define RELUME_API __attribute__((visibility("default")))
+// An exported function whose status must be looked at.
+#define RELUME_RESULT RELUME_API __attribute__((warn_unused_result))
+
+typedef enum relume_status {
+    RELUME_OK = 0,
+    RELUME_EINVAL,   // an argument or option is unknown or out of range
+    RELUME_EDATA,    // an input file is missing, broken, foreign, or over the limits
+    RELUME_ENOMEM,   // out of memory
+    RELUME_EIO,      // an output cannot be written
+    RELUME_ESYSTEM,  // the machine lacks something: threads, a GL context
+    RELUME_ECANCEL,  // the progress callback asked to stop
+} relume_status;
+
+// A fixed English text for `status`, never NULL.
+RELUME_API const char *relume_status_text(relume_status status);
+
+enum relume_level { RELUME_ERROR, RELUME_WARNING, RELUME_NOTE };
+
+// Where sentences for people go. Every params struct takes one; NULL is silent.
+// Thread-safety: all calls come from the thread that called the library.
+struct relume_log {
+    // One line without a newline: "FILE: what; expected; found". May be NULL.
+    void (*message)(void *user, enum relume_level level, const char *text);
+    // `done` in [0, 1]; false asks the work to stop with RELUME_ECANCEL. May be NULL.
+    bool (*progress)(void *user, const char *what, double done);
+    void *user;
+};
+
+// Upper bounds for sizes read from files; zero in a field means its default.
+struct relume_limits {
+    int max_side;         // pixels along one side; default 65536
+    uint64_t max_pixels;  // pixels of one image; default 2^30
+    int max_lights;       // default 65536
+    int max_views;        // default 65536
+};
+
+enum relume_cpu {
+    RELUME_CPU_AVX2 = 1 << 0,  // AVX2, FMA and F16C together
+};
+
+// The features this CPU has, as RELUME_CPU_* bits.
+RELUME_API unsigned relume_cpu_features(void);
+
+// The number of cores that this process may use, at least 1.
+RELUME_API int relume_cpu_count(void);
+
+// World axes: right-handed, x right, y up, z towards the viewer.
+// A light direction points from the scene TOWARDS the light.
+struct relume_vec3 {
+    double x, y, z;
+};
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,126 @@
+// capture.h - one scene under many lights: the manifest, its images, the reflectance table
+#ifndef RELUME_CAPTURE_H
+#define RELUME_CAPTURE_H
+
+#include <relume/base.h>
+#include <relume/image.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum relume_projection {
+    RELUME_PLANAR = 0,
+    RELUME_SLAB,
+    RELUME_CYLINDRICAL,
+    RELUME_SPHERICAL,
+    RELUME_CUBE,
+};
+// "planar", "slab", "cylindrical", "spherical", "cube"; NULL when out of range.
+RELUME_API const char *relume_projection_name(enum relume_projection projection);
+// RELUME_EINVAL when `name` is none of these.
+RELUME_RESULT relume_status relume_projection_parse(enum relume_projection *out, const char *name);
+
+// Where the pixels of a view lie in the world. Only the members of `projection` count.
+struct relume_geometry {
+    enum relume_projection projection;
+    // planar: the rectangle of the plane z = 0 that the image shows
+    double window_min[2], window_max[2];
+    bool perspective;  // eye (0, 0, camera_z) through the window; default: orthographic along -z
+    double camera_z;
+    // slab: cameras on the plane z = uv_z look through st_min..st_max on the plane z = st_z
+    double uv_z, st_z;
+    double st_min[2], st_max[2];
+    // cylindrical: the tangents of the lowest and highest elevation
+    double v_min, v_max;
+    // panoramas: the eye
+    struct relume_vec3 center;
+};
+
+// The geometry that a manifest without one implies for images of this size.
+RELUME_API struct relume_geometry relume_geometry_default(enum relume_projection projection,
+                                                          int width, int height);
+
+struct relume_manifest_view {
+    double uv[2];        // slab: where the camera stands on the uv plane
+    const char **images; // [lights], relative to the manifest
+    const char *depth;   // or NULL
+    const char *mask;    // or NULL
+};
+
+// What capture.json says. Everything is borrowed. Thread-safety: plain data.
+struct relume_manifest {
+    struct relume_transfer transfer;
+    struct relume_geometry geometry;
+    int lights;
+    const struct relume_vec3 *directions;   // [lights], unit
+    const struct relume_vec3 *positions;    // [lights], world units, or NULL: distant lights
+    const float (*intensities)[3];          // [lights], or NULL: all 1
+    int views;
+    const struct relume_manifest_view *view;  // [views]
+};
+
+// Write `path` (capture.json) whole or not at all. Returns RELUME_EIO, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_manifest_write(const struct relume_manifest *manifest,
+                                                  const char *path, const struct relume_log *log);
+
+// An opened capture. Never changes after opening. Thread-safety: safe.
+typedef struct relume_capture relume_capture;
+
+struct relume_capture_params {
+    const struct relume_log *log;
+    const struct relume_limits *limits;
+    struct relume_transfer transfer;  // overrides the manifest's; default: the manifest's
+    bool skip_missing;                // drop lights whose image does not exist instead of failing
+};
+#define relume_capture_params(...) (&(const struct relume_capture_params){__VA_ARGS__})
+
+// Open capture.json, a folder that holds one, or a .lp file; every image's header is checked: it
+// exists, can be read and has the common size. Returns RELUME_EDATA, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_capture_open(relume_capture **out, const char *path,
+                                                const struct relume_capture_params *params);
+RELUME_API void relume_capture_destroy(relume_capture **capture);
+
+// The manifest as understood: defaults filled in, vectors normalised, paths made absolute or
+// relative to the working folder.
+RELUME_API const struct relume_manifest *relume_capture_manifest(const relume_capture *capture);
+RELUME_API int relume_capture_width(const relume_capture *capture);
+RELUME_API int relume_capture_height(const relume_capture *capture);
+// No light lies below -0.1 along the pole (planar, slab: z; panoramas: y).
+RELUME_API bool relume_capture_hemispherical(const relume_capture *capture);
+
+// One image, linear, light intensity divided out, three channels.
+RELUME_RESULT relume_status relume_capture_image(struct relume_image *out,
+                                                 const relume_capture *capture, int view, int light,
+                                                 const struct relume_log *log);
+// Depth or mask of a view, one channel; `*out` is empty when the view has none.
+RELUME_RESULT relume_status relume_capture_depth(struct relume_image *out,
+                                                 const relume_capture *capture, int view,
+                                                 const struct relume_log *log);
+RELUME_RESULT relume_status relume_capture_mask(struct relume_image *out,
+                                                const relume_capture *capture, int view,
+                                                const struct relume_log *log);
+
+// The reflectance table of one view, read from the top in bands of rows; memory does not grow with
+// the image's height. Thread-safety: one thread at a time.
+typedef struct relume_table relume_table;
+
+struct relume_table_params {
+    const struct relume_log *log;
+    struct relume_transfer display;  // values are coded by this curve; default: linear light
+    int threads;                     // default: all cores
+};
+#define relume_table_params(...) (&(const struct relume_table_params){__VA_ARGS__})
+
+// `capture` must outlive the table. Returns RELUME_EDATA, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_table_open(relume_table **out, const relume_capture *capture,
+                                              int view, const struct relume_table_params *params);
+// The next `rows` rows of every light: out[light][row][x][rgb], light intensity divided out.
+// Asking for more rows than are left is RELUME_EINVAL.
+RELUME_RESULT relume_status relume_table_read(relume_table *table, int rows, float *out);
+RELUME_API void relume_table_destroy(relume_table **table);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,55 @@
+// frame.h - a file, a camera and lights become one picture
+#ifndef RELUME_FRAME_H
+#define RELUME_FRAME_H
+
+#include <relume/base.h>
+#include <relume/image.h>
+#include <relume/pack.h>
+#include <relume/relight.h>
+#include <relume/view.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum relume_framing {
+    RELUME_FRAME_DEFAULT = 0,  // slab: EYE at the middle of the uv grid; else VIEW 0
+    RELUME_FRAME_VIEW,         // a captured view at its own size (panoramas: unfolded)
+    RELUME_FRAME_EYE,          // slab: the window from `eye`
+    RELUME_FRAME_LOOK,         // panorama: a perspective frame
+};
+
+struct relume_camera {
+    enum relume_framing framing;
+    int view;
+    struct relume_vec3 eye;
+    struct relume_look look;
+    int width, height;  // default: the view's own size; LOOK: 1024 x 512
+};
+
+struct relume_frame_params {
+    const struct relume_log *log;
+    unsigned cpu_off;  // as relume_relight_params
+    int threads;       // default: all cores
+    bool constant;     // slab: nearest view
+};
+#define relume_frame_params(...) (&(const struct relume_frame_params){__VA_ARGS__})
+
+// Create `*out`, linear, three channels. Only the views that the frame touches are read and relit.
+// Returns RELUME_EINVAL (camera does not fit the file), RELUME_EDATA, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_frame(struct relume_image *out, relume_pack *pack,
+                                         const struct relume_camera *camera,
+                                         const struct relume_light *lights, int n,
+                                         const struct relume_frame_params *params);
+
+// The value seen from `eye` along `direction` (into the scene): the plenoptic-illumination function
+// (Wong 1998, 6.4). RELUME_EDATA when the file holds no such ray.
+RELUME_RESULT relume_status relume_query(float rgb[3], relume_pack *pack, struct relume_vec3 eye,
+                                         struct relume_vec3 direction,
+                                         const struct relume_light *lights, int n,
+                                         const struct relume_frame_params *params);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,90 @@
+// image.h - float images, their files, and how far apart two of them are
+#ifndef RELUME_IMAGE_H
+#define RELUME_IMAGE_H
+
+#include <relume/base.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Interleaved float samples, row 0 at the top, no padding. Colour is linear with sRGB primaries
+// unless a name says otherwise. Thread-safety: plain data.
+struct relume_image {
+    int width, height;
+    int channels;  // 1: grey, depth or mask; 3: red, green, blue
+    float *data;   // [height][width][channels], from malloc
+};
+
+// Zero-filled; `*out` is empty on failure. RELUME_EINVAL for sizes below 1, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_image_create(struct relume_image *out, int width, int height,
+                                                int channels);
+RELUME_API void relume_image_destroy(struct relume_image *image);
+
+// How code values in a file relate to linear light.
+enum relume_curve {
+    RELUME_CURVE_AUTO = 0,  // float files linear, integer files sRGB unless they say otherwise
+    RELUME_CURVE_LINEAR,
+    RELUME_CURVE_SRGB,   // IEC 61966-2-1, continued above 1 and mirrored below 0
+    RELUME_CURVE_GAMMA,  // code = linear^(1/gamma)
+};
+struct relume_transfer {
+    enum relume_curve curve;
+    float gamma;  // only for RELUME_CURVE_GAMMA, (0.1, 10]
+};
+
+// "linear", "srgb" or "gamma:2.2". RELUME_EINVAL when `text` is none of these.
+RELUME_RESULT relume_status relume_transfer_parse(struct relume_transfer *out, const char *text);
+// The inverse; writes at most `size` bytes, always terminated.
+RELUME_API void relume_transfer_text(struct relume_transfer transfer, char *text, size_t size);
+// Code value -> linear light and back. AUTO behaves as SRGB.
+RELUME_API float relume_transfer_decode(struct relume_transfer transfer, float code);
+RELUME_API float relume_transfer_encode(struct relume_transfer transfer, float linear);
+
+struct relume_image_params {
+    const struct relume_log *log;
+    struct relume_transfer transfer;  // loading: overrides what the file's type implies
+    const struct relume_limits *limits;
+    int channels;  // loading: 1 or 3, converted to; default 3. Alpha is dropped, grey is spread
+    bool half;     // saving EXR: half instead of float samples
+};
+#define relume_image_params(...) (&(const struct relume_image_params){__VA_ARGS__})
+
+// Read `path` (any format OpenImageIO knows) as linear light. Returns RELUME_EDATA, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_image_load(struct relume_image *out, const char *path,
+                                              const struct relume_image_params *params);
+// Write linear `image` in the format of the file name's extension: EXR, HDR, PFM linear, every other
+// sRGB-coded and clipped to [0, 1]; 8 bits (TIFF and PNG of 1 channel: 8 bits as well).
+// The file appears under its name whole or not at all. Returns RELUME_EINVAL for an unknown
+// extension, RELUME_EIO.
+RELUME_RESULT relume_status relume_image_save(const struct relume_image *image, const char *path,
+                                              const struct relume_image_params *params);
+
+// How far `image` is from `reference`. All but rms and max_abs are of display values:
+// coded by `display`, clipped to [0, 1].
+struct relume_difference {
+    double rms;           // linear, all channels
+    double max_abs;       // linear
+    double psnr_db;       // of the RGB MSE with both sides rounded to 8 bits; at most 200
+    double mse;           // display, unrounded
+    double ssim;          // Wang et al. 2004: luma, 11x11 Gaussian, sigma 1.5
+    double delta_e;       // mean CIEDE2000 (Sharma, Wu, Dalal 2005), D65
+    size_t pixels;        // pixels compared
+};
+struct relume_compare_params {
+    const struct relume_image *mask;  // one channel, compare where > 0.5; NULL: everywhere
+    struct relume_transfer display;   // default sRGB
+    int threads;                      // default: all cores
+};
+#define relume_compare_params(...) (&(const struct relume_compare_params){__VA_ARGS__})
+
+// Both images must have 3 channels and equal sizes, else RELUME_EINVAL. RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_image_compare(struct relume_difference *out,
+                                                 const struct relume_image *image,
+                                                 const struct relume_image *reference,
+                                                 const struct relume_compare_params *params);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

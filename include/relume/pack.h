@@ -1,0 +1,107 @@
+// pack.h - the relume file: a multi-part OpenEXR file of coefficients (docs/format.md)
+#ifndef RELUME_PACK_H
+#define RELUME_PACK_H
+
+#include <relume/base.h>
+#include <relume/capture.h>
+#include <relume/coder.h>
+#include <relume/image.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum relume_compression {
+    RELUME_COMPRESS_DEFAULT = 0,  // PIZ
+    RELUME_COMPRESS_NONE,
+    RELUME_COMPRESS_RLE,
+    RELUME_COMPRESS_ZIP,
+    RELUME_COMPRESS_PIZ,
+};
+// "none", "rle", "zip", "piz". RELUME_EINVAL when `name` is none of these.
+RELUME_RESULT relume_status relume_compression_parse(enum relume_compression *out,
+                                                     const char *name);
+
+// What goes into a file beside the coefficients. Borrowed.
+struct relume_pack_view {
+    const relume_coefficients *coefficients;
+    double uv[2];                      // slab: where the camera stands
+    const struct relume_image *depth;  // one channel, or NULL
+    const struct relume_image *mask;   // one channel, or NULL
+};
+struct relume_pack_contents {
+    const relume_coder *coder;
+    enum relume_domain domain;
+    struct relume_transfer display;  // the curve of DOMAIN_DISPLAY
+    struct relume_geometry geometry;
+    int views;
+    const struct relume_pack_view *view;  // [views]
+    const struct relume_image *preview;   // linear, 3 channels: the first part of the file
+};
+struct relume_pack_params {
+    const struct relume_log *log;
+    const struct relume_limits *limits;  // reading
+    enum relume_compression compression; // writing
+    int threads;                         // default: all cores
+};
+#define relume_pack_params(...) (&(const struct relume_pack_params){__VA_ARGS__})
+
+// Write `path` whole or not at all. Returns RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_pack_write(const struct relume_pack_contents *contents,
+                                              const char *path,
+                                              const struct relume_pack_params *params);
+
+// Encode every view of `capture` by `coder` and write the file `path`: relume_encode and
+// relume_pack_write in one call, temporary data beside `path`'s folder. `report` may be NULL.
+struct relume_pack_encode_params {
+    const struct relume_log *log;
+    enum relume_domain domain;
+    enum relume_storage storage;
+    enum relume_compression compression;
+    int threads;
+};
+#define relume_pack_encode_params(...) (&(const struct relume_pack_encode_params){__VA_ARGS__})
+RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,
+                                               const relume_coder *coder, const char *path,
+                                               struct relume_encode_report *report,
+                                               const struct relume_pack_encode_params *params);
+
+// An open relume file. Views are read when first asked for and stay until dropped.
+// Thread-safety: one thread at a time.
+typedef struct relume_pack relume_pack;
+
+// Everything in a file is checked before it is used. Returns RELUME_EDATA, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_pack_open(relume_pack **out, const char *path,
+                                             const struct relume_pack_params *params);
+RELUME_API void relume_pack_destroy(relume_pack **pack);
+
+struct relume_pack_info {
+    int version;
+    const relume_coder *coder;
+    enum relume_domain domain;
+    struct relume_transfer display;
+    enum relume_storage storage;
+    const char *compression;  // of the coefficients: "piz", ...
+    struct relume_geometry geometry;
+    int width, height;  // of each view
+    int views;
+    const double (*uv)[2];  // [views]; slab: camera places
+    bool has_depth, has_mask;
+    uint64_t file_bytes;
+};
+RELUME_API const struct relume_pack_info *relume_pack_info(const relume_pack *pack);
+
+// The codes of one view; they belong to the pack and stay valid until relume_pack_drop or destroy.
+RELUME_RESULT relume_status relume_pack_codes(const struct relume_codes **out, relume_pack *pack,
+                                              int view);
+// Forget the codes of one view to save memory.
+RELUME_API void relume_pack_drop(relume_pack *pack, int view);
+// Depth or mask of a view, one channel; empty when it has none. The caller destroys it.
+RELUME_RESULT relume_status relume_pack_depth(struct relume_image *out, relume_pack *pack,
+                                              int view);
+RELUME_RESULT relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,53 @@
+// relight.h - lights become weights, weights and codes become a linear image (Wong 1998, Eq. 7.6)
+#ifndef RELUME_RELIGHT_H
+#define RELUME_RELIGHT_H
+
+#include <relume/base.h>
+#include <relume/coder.h>
+#include <relume/image.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum relume_light_kind {
+    RELUME_LIGHT_DIRECTIONAL = 0,
+};
+
+// A light of value 1 gives a white Lambertian surface facing it the value 1.
+struct relume_light {
+    enum relume_light_kind kind;
+    struct relume_vec3 direction;  // directional: towards the light; any length but 0
+    float rgb[3];                  // linear value of the light
+};
+
+// Read a SPEC: "dir x y z [rgb r g b]". RELUME_EINVAL with a sentence in `log`.
+RELUME_RESULT relume_status relume_light_parse(struct relume_light *out, const char *spec,
+                                               const struct relume_log *log);
+
+struct relume_relight_params {
+    const struct relume_log *log;
+    unsigned cpu_off;  // RELUME_CPU_* features not to use; ~0u runs the plain C reference
+    int threads;       // default: all cores
+};
+#define relume_relight_params(...) (&(const struct relume_relight_params){__VA_ARGS__})
+
+// The value of every pixel under the sum of `n` lights, linear, three channels; values below zero
+// (ringing of the basis) are kept. Linear-domain codes fold all lights into one weight vector;
+// display-domain codes are decoded light by light, linearised, then summed.
+// A light below the horizon of a hemispherical capture is a warning (once) in the log.
+// `out` is created when its data is NULL, else it must have the size of `codes`.
+// Returns RELUME_EINVAL, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_relight(struct relume_image *out,
+                                           const struct relume_codes *codes,
+                                           const struct relume_light *lights, int n,
+                                           const struct relume_relight_params *params);
+
+// The same at one pixel, in double precision: the slow reference.
+RELUME_API void relume_relight_pixel(double rgb[3], const struct relume_codes *codes, int x, int y,
+                                     const struct relume_light *lights, int n);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,16 @@
+// relume.h - the whole public API
+#ifndef RELUME_H
+#define RELUME_H
+
+#include <relume/base.h>
+#include <relume/capture.h>
+#include <relume/coder.h>
+#include <relume/frame.h>
+#include <relume/image.h>
+#include <relume/lights.h>
+#include <relume/pack.h>
+#include <relume/relight.h>
+#include <relume/scene.h>
+#include <relume/view.h>
+
+#endif

@@ -1,0 +1,71 @@
+// scene.h - the virtual light stage: built-in scenes rendered under many lights
+#ifndef RELUME_SCENE_H
+#define RELUME_SCENE_H
+
+#include <relume/base.h>
+#include <relume/capture.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// A built-in scene. Constant; a NULL-terminated list of all is relume_scenes.
+struct relume_scene_kind {
+    const char *name;
+    const char *summary;                   // one line for help texts
+    enum relume_projection projection;     // how it is seen when nothing else is asked
+    // Adds meshes and materials; see src/scene/build.h.
+    relume_status (*build)(void *builder, const char *mesh, const struct relume_log *log);
+};
+extern RELUME_API const struct relume_scene_kind *const relume_scenes[];
+// NULL when there is none of that name.
+RELUME_API const struct relume_scene_kind *relume_scene_find(const char *name);
+
+// Geometry and materials ready for tracing. Never changes. Thread-safety: safe.
+typedef struct relume_scene relume_scene;
+
+struct relume_scene_params {
+    const struct relume_log *log;
+    const char *mesh;  // OBJ or PLY for scenes that take one (`bust`); NULL: the procedural default
+};
+#define relume_scene_params(...) (&(const struct relume_scene_params){__VA_ARGS__})
+
+// Returns RELUME_EDATA for a mesh that cannot be used, RELUME_EINVAL for a mesh where none is
+// taken, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_scene_create(relume_scene **out,
+                                                const struct relume_scene_kind *kind,
+                                                const struct relume_scene_params *params);
+RELUME_API void relume_scene_destroy(relume_scene **scene);
+
+struct relume_synth_params {
+    const struct relume_log *log;
+    enum relume_projection projection;  // used only when `projection_set`
+    bool projection_set;                // default: the scene's own projection
+    int size;                // pixels: width of planar and slab images and of a cube face,
+                             // height of other panoramas (cylindrical: 4:1, spherical: 2:1);
+                             // default 256
+    int grid[2];             // slab: cameras along u and v; default 5 x 5
+    const struct relume_vec3 *eyes;  // slab: cameras instead of the grid, all of one z;
+                                     // panorama: its one centre; planar: (0, 0, z) perspective
+    int eye_count;
+    const struct relume_vec3 *lights;  // unit directions; light_count of them, at least 1
+    int light_count;
+    int samples;   // camera rays per pixel (stratified); default 16
+    int bounces;   // indirect bounces of light; default 0: direct light and mirrors only
+    uint64_t seed;
+    int threads;   // default: all cores
+    bool force;    // replace an existing folder
+};
+#define relume_synth_params(...) (&(const struct relume_synth_params){__VA_ARGS__})
+
+// Render every view under every light into the new folder `dir`: half-float EXR images, depth,
+// capture.json. The folder appears whole or not at all. Same seed, same bytes for any number of
+// threads; the geometry does not depend on the lights.
+// Returns RELUME_EINVAL, RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_scene_capture(const relume_scene *scene, const char *dir,
+                                                 const struct relume_synth_params *params);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,25 @@
+#!/bin/sh
+# Make sure the packages that relume is built from are there; on Debian and Ubuntu install what is
+# missing. Usage: deps.sh [web]   (web: the browser for the tests of exported pages)
+set -eu
+
+packages="gcc g++ make pkg-config libc6-dev libopenexr-dev libopenimageio-dev libembree-dev
+libopenblas-dev liblapacke-dev libjansson-dev libcmocka-dev libglfw3-dev libosmesa6-dev"
+[ "${1:-}" = web ] && packages="chromium"
+
+missing=
+for p in $packages; do
+    state=$(dpkg-query -W -f '${Status}' "$p" 2>/dev/null || true)
+    [ "$state" = "install ok installed" ] || missing="$missing $p"
+done
+[ -z "$missing" ] && exit 0
+
+if ! command -v apt-get >/dev/null 2>&1; then
+    echo "relume needs these Debian packages or their equivalents:" $packages >&2
+    exit 1
+fi
+as_root=
+[ "$(id -u)" = 0 ] || as_root=sudo
+echo "installing:$missing"
+$as_root apt-get update -q
+DEBIAN_FRONTEND=noninteractive $as_root apt-get install -q -y --no-install-recommends $missing

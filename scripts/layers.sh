@@ -1,0 +1,60 @@
+#!/bin/sh
+# Who may use whom (docs/architecture.md): every quoted include of a folder must name a folder it
+# may use, public headers of working folders only where allowed, and external libraries one file each.
+set -eu
+cd "$(dirname "$0")/.."
+bad=0
+
+# folder: private folders it may include | public headers it may include (* = all)
+rules="base::base
+math:base:base
+image:base math:base image
+capture:base math image:base image lights capture
+coder:base math image:base image capture coder
+pack:base image:base image capture coder view pack
+relight:base math image:base image coder relight
+view:base math image:base image relight view capture
+frame:base math:base image capture coder pack relight view frame
+scene:base math image:base image lights capture scene
+cli:cli:*
+viewer:viewer:*"
+
+folder_files() {
+    case $1 in viewer) find viewer -name '*.c' -o -name '*.h' -o -name '*.cpp' ;;
+    *) find "src/$1" -name '*.c' -o -name '*.h' -o -name '*.cpp' ;; esac
+}
+
+complain() { echo "layers: $*" >&2; bad=1; }
+
+while IFS=: read -r folder private public; do
+    for f in $(folder_files "$folder" 2>/dev/null); do
+        for inc in $(sed -n 's/^#include "\([^"]*\)".*/\1/p' "$f"); do
+            case $inc in */*) dir=${inc%%/*} ;; *) dir=$folder ;; esac
+            [ "$dir" = "$folder" ] && continue
+            case " $private " in *" $dir "*) ;; *) complain "$f includes $inc" ;; esac
+        done
+        [ "$public" = '*' ] && continue
+        for inc in $(sed -n 's/^#include <relume\/\([^.>]*\)\.h>.*/\1/p' "$f"); do
+            case " $public " in *" $inc "*) ;; *) complain "$f includes <relume/$inc.h>" ;; esac
+        done
+    done
+done <<RULES
+$rules
+RULES
+
+only_in() { # pattern file...: an external header appears in these files only
+    pattern=$1; shift
+    for f in $(grep -rlE "#include <$pattern" src viewer tests samples 2>/dev/null || true); do
+        case " $* " in *" $f "*) ;; *) complain "$f includes <$pattern...>; belongs to $*" ;; esac
+    done
+}
+only_in 'openexr' src/image/exr.c
+only_in 'OpenImageIO' src/image/oiio.cpp
+only_in 'embree' src/scene/trace.c
+only_in '(cblas|lapacke)' src/math/lsq.c
+only_in 'jansson' src/capture/manifest.c src/base/json.c
+only_in 'GLFW' viewer/context_glfw.c
+only_in 'GL/osmesa' viewer/context_osmesa.c
+only_in 'immintrin' src/relight/kernels_avx2.c
+[ $bad = 0 ] && echo "layers: fine"
+exit $bad

@@ -1,0 +1,25 @@
+// memory.h - allocation with checked sizes, and the limits of sizes read from files
+#ifndef BASE_MEMORY_H
+#define BASE_MEMORY_H
+
+#include <relume/base.h>
+#include <stdlib.h>
+
+// count * size bytes, NULL when that overflows or memory is short. Free with free().
+// Never returns NULL for a count of 0.
+void *mem_array(size_t count, size_t size);
+void *mem_zeroed(size_t count, size_t size);
+void *mem_copy(const void *from, size_t count, size_t size);
+char *mem_text(const char *text);
+// A new string like printf's, NULL when memory is short.
+__attribute__((format(printf, 1, 2))) char *mem_format(const char *format, ...);
+
+// For tests: let the n-th allocation from now on fail (0 switches that off).
+void mem_fail_after(long n);
+
+// `limits` with defaults filled in; NULL gives all defaults.
+struct relume_limits limits_or_default(const struct relume_limits *limits);
+// Whether an image of that size is allowed.
+bool limits_allow(const struct relume_limits *limits, int64_t width, int64_t height);
+
+#endif

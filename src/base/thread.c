@@ -1,0 +1,65 @@
+#define _GNU_SOURCE
+#include "base/thread.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+
+enum { MAX_THREADS = 256 };
+
+struct loop {
+    atomic_size_t next;
+    size_t items;
+    void (*body)(void *, size_t, int);
+    void *context;
+};
+
+struct worker {
+    struct loop *loop;
+    int index;
+};
+
+int relume_cpu_count(void)
+{
+    cpu_set_t set;
+    const int n = sched_getaffinity(0, sizeof set, &set) ? 1 : CPU_COUNT(&set);
+    return n < 1 ? 1 : n;
+}
+
+int thread_count(int threads)
+{
+    const int n = threads > 0 ? threads : relume_cpu_count();
+    return n > MAX_THREADS ? MAX_THREADS : n;
+}
+
+static void *run(void *argument)
+{
+    const struct worker *w = argument;
+    struct loop *loop = w->loop;
+    size_t item;
+    while ((item = atomic_fetch_add(&loop->next, 1)) < loop->items)
+        loop->body(loop->context, item, w->index);
+    return NULL;
+}
+
+void thread_for(int threads, size_t items, void (*body)(void *, size_t, int), void *context)
+{
+    struct loop loop = {.items = items, .body = body, .context = context};
+    struct worker workers[MAX_THREADS];
+    pthread_t ids[MAX_THREADS];
+    int count = thread_count(threads);
+    if ((size_t)count > items)
+        count = items ? (int)items : 1;
+
+    int started = 1;
+    while (started < count) {
+        workers[started] = (struct worker){&loop, started};
+        if (pthread_create(&ids[started], NULL, run, &workers[started]))
+            break;
+        started++;
+    }
+    workers[0] = (struct worker){&loop, 0};
+    run(&workers[0]);
+    for (int i = 1; i < started; i++)
+        pthread_join(ids[i], NULL);
+}

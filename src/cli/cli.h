@@ -1,0 +1,59 @@
+// cli.h - what the commands of the tool share: options, messages, exit status
+#ifndef CLI_H
+#define CLI_H
+
+#include <relume/relume.h>
+#include <stdio.h>
+
+enum option_kind { OPTION_FLAG, OPTION_INT, OPTION_NUMBER, OPTION_TEXT };
+
+struct option {
+    const char *name;  // "--size" or "-o"
+    enum option_kind kind;
+    const char *argument;  // how help calls the value: "N"
+    const char *help;
+    double min, max;  // range of numbers; both 0: any
+};
+
+struct args;
+
+// One command, one cmd_*.c file, one entry in commands[] (main.c). Help is made from it.
+struct command {
+    const char *name;
+    const char *usage;    // what follows the name: "CAPTURE -o FILE.exr"
+    const char *summary;  // one line
+    const char *example;  // complete command line
+    int min_inputs, max_inputs;
+    const struct option *options;  // ends with a NULL name; common options are added
+    relume_status (*run)(const struct args *args);
+};
+extern const struct command *const commands[];
+
+// Parsed options; the name must be in the command's table or among the common ones.
+bool args_has(const struct args *args, const char *name);
+int args_int(const struct args *args, const char *name, int otherwise);
+double args_number(const struct args *args, const char *name, double otherwise);
+const char *args_text(const struct args *args, const char *name, const char *otherwise);
+int args_count(const struct args *args, const char *name);  // how often a text option was given
+const char *args_nth(const struct args *args, const char *name, int n);
+int args_inputs(const struct args *args);
+const char *args_input(const struct args *args, int n);
+
+int args_threads(const struct args *args);              // --threads, 0: all
+const struct relume_log *args_log(const struct args *args);  // messages and progress to stderr
+
+// "relume: ..." on stderr; returns RELUME_EINVAL, so that a command may return it.
+__attribute__((format(printf, 1, 2))) relume_status usage_error(const char *format, ...);
+// The name nearest to `given` in a NULL-terminated list, NULL when none is near.
+const char *nearest_name(const char *given, const char *const *names);
+// RELUME_EINVAL and "unknown WHAT 'given'; did you mean ...; expected one of ...".
+relume_status unknown_name(const char *what, const char *given, const char *const *names);
+// `count` numbers separated by commas or blanks, nothing else.
+bool parse_numbers(const char *text, double *out, int count);
+// "x,y,z" of an option; RELUME_EINVAL with a sentence.
+relume_status args_vec3(struct relume_vec3 *out, const char *option, const char *text);
+
+// A number for JSON output: never NaN or Inf (null instead).
+void json_number(FILE *out, double value);
+
+#endif

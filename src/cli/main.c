@@ -1,0 +1,485 @@
+// main.c - the relume tool: finds the command, parses its options, turns statuses into exit codes
+#define _GNU_SOURCE
+#include "cli.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <math.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+extern const struct command command_synth, command_lights, command_encode, command_info,
+    command_relight, command_query, command_eval, command_compare;
+
+const struct command *const commands[] = {
+    &command_synth,   &command_lights, &command_encode, &command_info, &command_relight,
+    &command_query,   &command_eval,   &command_compare, NULL,
+};
+
+static const struct option common[] = {
+    {"--threads", OPTION_INT, "N", "worker threads; default: all cores", 0, 256},
+    {"-q", OPTION_FLAG, NULL, "no progress bar and no remarks", 0, 0},
+    {"--help", OPTION_FLAG, NULL, "this text", 0, 0},
+    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+};
+
+enum { MAX_ARGS = 4096 };
+
+struct given {
+    const struct option *option;
+    const char *text;
+    double number;
+};
+
+struct args {
+    const struct command *command;
+    int given_count, input_count;
+    struct given given[MAX_ARGS];
+    const char *inputs[MAX_ARGS];
+    struct relume_log log;
+    bool quiet;
+};
+
+// ---------------------------------------------------------------- messages and progress
+
+static volatile sig_atomic_t interrupted;
+static bool bar_drawn;
+
+static void on_interrupt(int signal_number)
+{
+    (void)signal_number;
+    interrupted = 1;
+}
+
+static void clear_bar(void)
+{
+    if (bar_drawn)
+        fputs("\r\033[K", stderr);
+    bar_drawn = false;
+}
+
+static void on_message(void *user, enum relume_level level, const char *text)
+{
+    const struct args *args = user;
+    if (level == RELUME_NOTE && args->quiet)
+        return;
+    clear_bar();
+    fprintf(stderr, "relume: %s%s\n", level == RELUME_WARNING ? "warning: " : "", text);
+}
+
+static double now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void draw_bar(const char *what, double done)
+{
+    enum { CELLS = 30 };
+    static double start, last;
+    static const char *task;
+    const double now = now_s();
+    if (what != task) {
+        task = what;
+        start = now;
+    } else if (now - last < 0.1 && done < 1.0) {
+        return;
+    }
+    last = now;
+    char bar[CELLS + 1];
+    for (int i = 0; i < CELLS; i++)
+        bar[i] = i < done * CELLS ? '#' : '.';
+    bar[CELLS] = '\0';
+    const double left = done > 0.0 ? (now - start) * (1.0 - done) / done : 0.0;
+    fprintf(stderr, "\r\033[K%-12s [%s] %3.0f %%", what, bar, 100.0 * done);
+    if (done > 0.0 && done < 1.0)
+        fprintf(stderr, "  %.0f s left", left);
+    fflush(stderr);
+    bar_drawn = true;
+    if (done >= 1.0)
+        clear_bar();
+}
+
+static bool on_progress(void *user, const char *what, double done)
+{
+    const struct args *args = user;
+    if (!args->quiet && isatty(STDERR_FILENO))
+        draw_bar(what, done);
+    return !interrupted;
+}
+
+relume_status usage_error(const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    fputs("relume: ", stderr);
+    vfprintf(stderr, format, list);
+    fputc('\n', stderr);
+    va_end(list);
+    return RELUME_EINVAL;
+}
+
+// ---------------------------------------------------------------- names
+
+static int edit_distance(const char *a, const char *b)
+{
+    enum { LIMIT = 64 };
+    const size_t m = strlen(b);
+    int row[LIMIT + 1];
+    if (m > LIMIT)
+        return LIMIT;
+    for (size_t j = 0; j <= m; j++)
+        row[j] = (int)j;
+    for (size_t i = 0; a[i]; i++) {
+        int diagonal = row[0];
+        row[0] = (int)i + 1;
+        for (size_t j = 1; j <= m; j++) {
+            const int replace = diagonal + (a[i] != b[j - 1]);
+            const int other = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
+            diagonal = row[j];
+            row[j] = replace < other ? replace : other;
+        }
+    }
+    return row[m];
+}
+
+const char *nearest_name(const char *given, const char *const *names)
+{
+    const char *best = NULL;
+    int best_distance = 1 + (int)strlen(given) / 2;
+    for (; *names; names++) {
+        const int d = edit_distance(given, *names);
+        if (d < best_distance) {
+            best_distance = d;
+            best = *names;
+        }
+    }
+    return best;
+}
+
+relume_status unknown_name(const char *what, const char *given, const char *const *names)
+{
+    const char *near = nearest_name(given, names);
+    fprintf(stderr, "relume: unknown %s '%s'", what, given);
+    if (near)
+        fprintf(stderr, "; did you mean '%s'?", near);
+    fputs("; expected one of:", stderr);
+    for (; *names; names++)
+        fprintf(stderr, " %s", *names);
+    fputc('\n', stderr);
+    return RELUME_EINVAL;
+}
+
+static relume_status unknown_option(const struct command *command, const char *given)
+{
+    const char *names[64];
+    int n = 0;
+    for (const struct option *o = command->options; o->name && n < 56; o++)
+        names[n++] = o->name;
+    for (const struct option *o = common; o->name; o++)
+        names[n++] = o->name;
+    names[n] = NULL;
+    const char *near = nearest_name(given, names);
+    if (near)
+        return usage_error("%s: unknown option '%s'; did you mean '%s'?", command->name, given,
+                           near);
+    return usage_error("%s: unknown option '%s'; see 'relume %s --help'", command->name, given,
+                       command->name);
+}
+
+// ---------------------------------------------------------------- options
+
+static const struct option *find_option(const struct command *command, const char *name)
+{
+    for (const struct option *o = command->options; o->name; o++)
+        if (!strcmp(o->name, name))
+            return o;
+    for (const struct option *o = common; o->name; o++)
+        if (!strcmp(o->name, name))
+            return o;
+    return NULL;
+}
+
+static const struct given *find_given(const struct args *args, const char *name)
+{
+    assert(find_option(args->command, name));
+    for (int i = args->given_count - 1; i >= 0; i--)
+        if (!strcmp(args->given[i].option->name, name))
+            return &args->given[i];
+    return NULL;
+}
+
+bool args_has(const struct args *args, const char *name)
+{
+    return find_given(args, name) != NULL;
+}
+
+int args_int(const struct args *args, const char *name, int otherwise)
+{
+    const struct given *g = find_given(args, name);
+    return g ? (int)g->number : otherwise;
+}
+
+double args_number(const struct args *args, const char *name, double otherwise)
+{
+    const struct given *g = find_given(args, name);
+    return g ? g->number : otherwise;
+}
+
+const char *args_text(const struct args *args, const char *name, const char *otherwise)
+{
+    const struct given *g = find_given(args, name);
+    return g ? g->text : otherwise;
+}
+
+int args_count(const struct args *args, const char *name)
+{
+    int n = 0;
+    for (int i = 0; i < args->given_count; i++)
+        n += !strcmp(args->given[i].option->name, name);
+    return n;
+}
+
+const char *args_nth(const struct args *args, const char *name, int n)
+{
+    for (int i = 0; i < args->given_count; i++)
+        if (!strcmp(args->given[i].option->name, name) && n-- == 0)
+            return args->given[i].text;
+    return NULL;
+}
+
+int args_inputs(const struct args *args)
+{
+    return args->input_count;
+}
+
+const char *args_input(const struct args *args, int n)
+{
+    return args->inputs[n];
+}
+
+int args_threads(const struct args *args)
+{
+    return args_int(args, "--threads", 0);
+}
+
+const struct relume_log *args_log(const struct args *args)
+{
+    return &args->log;
+}
+
+bool parse_numbers(const char *text, double *out, int count)
+{
+    for (int i = 0; i < count; i++) {
+        text += strspn(text, i ? ", \t" : " \t");
+        char *end;
+        out[i] = strtod(text, &end);
+        if (end == text || !isfinite(out[i]))
+            return false;
+        text = end;
+    }
+    return text[strspn(text, " \t")] == '\0';
+}
+
+relume_status args_vec3(struct relume_vec3 *out, const char *option, const char *text)
+{
+    double v[3];
+    if (!parse_numbers(text, v, 3))
+        return usage_error("%s: expected three numbers x,y,z; found '%s'", option, text);
+    *out = (struct relume_vec3){v[0], v[1], v[2]};
+    return RELUME_OK;
+}
+
+static relume_status check_value(struct given *g)
+{
+    const struct option *o = g->option;
+    if (o->kind == OPTION_TEXT)
+        return RELUME_OK;
+    char *end;
+    errno = 0;
+    g->number = strtod(g->text, &end);
+    const bool whole = o->kind == OPTION_NUMBER || g->number == floor(g->number);
+    if (end == g->text || *end || !isfinite(g->number) || !whole)
+        return usage_error("%s: expected %s; found '%s'", o->name,
+                           o->kind == OPTION_INT ? "a whole number" : "a number", g->text);
+    if ((o->min != 0.0 || o->max != 0.0) && (g->number < o->min || g->number > o->max))
+        return usage_error("%s: expected a number from %g to %g; found %s", o->name, o->min, o->max,
+                           g->text);
+    return RELUME_OK;
+}
+
+// "-5" and "-.5" are values, "-o" is an option.
+static bool is_option(const char *text)
+{
+    return text[0] == '-' && text[1] && !(text[1] >= '0' && text[1] <= '9') && text[1] != '.';
+}
+
+static relume_status parse(struct args *args, int argc, char **argv)
+{
+    bool only_inputs = false;
+    for (int i = 0; i < argc; i++) {
+        if (args->given_count == MAX_ARGS || args->input_count == MAX_ARGS)
+            return usage_error("too many arguments");
+        if (!only_inputs && !strcmp(argv[i], "--")) {
+            only_inputs = true;
+            continue;
+        }
+        if (only_inputs || !is_option(argv[i])) {
+            args->inputs[args->input_count++] = argv[i];
+            continue;
+        }
+        char name[64];
+        const char *equals = strncmp(argv[i], "--", 2) ? NULL : strchr(argv[i], '=');
+        snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - argv[i]) : 63, argv[i]);
+        const struct option *o = find_option(args->command, name);
+        if (!o)
+            return unknown_option(args->command, name);
+        struct given *g = &args->given[args->given_count++];
+        g->option = o;
+        if (o->kind == OPTION_FLAG) {
+            if (equals)
+                return usage_error("%s: takes no value; found '%s'", o->name, equals + 1);
+            continue;
+        }
+        if (!equals && i + 1 >= argc)
+            return usage_error("%s: expected a value (%s); found the end of the line", o->name,
+                               o->argument);
+        g->text = equals ? equals + 1 : argv[++i];
+        const relume_status status = check_value(g);
+        if (status)
+            return status;
+    }
+    return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- help
+
+static void print_options(const struct option *options)
+{
+    for (const struct option *o = options; o->name; o++) {
+        char left[64];
+        snprintf(left, sizeof left, "%s%s%s", o->name, o->argument ? " " : "",
+                 o->argument ? o->argument : "");
+        printf("  %-28s %s\n", left, o->help);
+    }
+}
+
+static void print_help(const struct command *command)
+{
+    printf("usage: relume %s %s\n\n%s\n\noptions:\n", command->name, command->usage,
+           command->summary);
+    print_options(command->options);
+    print_options(common);
+    printf("\nexample:\n  %s\n", command->example);
+}
+
+static void print_overview(void)
+{
+    printf("relume %s - image-based relighting\n\nusage: relume COMMAND [OPTION ...]\n\n",
+           RELUME_VERSION);
+    for (const struct command *const *c = commands; *c; c++)
+        printf("  %-10s %s\n", (*c)->name, (*c)->summary);
+    printf("\n'relume COMMAND --help' explains a command and gives an example.\n");
+}
+
+static relume_status unknown_command(const char *given)
+{
+    const char *names[32];
+    int n = 0;
+    for (const struct command *const *c = commands; *c; c++)
+        names[n++] = (*c)->name;
+    names[n] = NULL;
+    return unknown_name("command", given, names);
+}
+
+// ---------------------------------------------------------------- main
+
+static int exit_code(relume_status status)
+{
+    switch (status) {
+    case RELUME_OK: return 0;
+    case RELUME_EDATA: return 1;
+    case RELUME_EINVAL: return 2;
+    case RELUME_ENOMEM:
+        fputs("relume: out of memory\n", stderr);
+        return 3;
+    case RELUME_EIO:
+    case RELUME_ESYSTEM: return 3;
+    case RELUME_ECANCEL:
+        fputs("relume: interrupted; nothing was written\n", stderr);
+        signal(SIGINT, SIG_DFL);
+        raise(SIGINT);
+        return 130;
+    }
+    return 3;
+}
+
+static relume_status run_command(struct args *args, int argc, char **argv)
+{
+    const struct command *c = args->command;
+    const relume_status status = parse(args, argc, argv);
+    if (status)
+        return status;
+    if (args_has(args, "--help")) {
+        print_help(c);
+        return RELUME_OK;
+    }
+    args->quiet = args_has(args, "-q");
+    if (args->input_count < c->min_inputs || args->input_count > c->max_inputs)
+        return usage_error("%s: expected 'relume %s %s'; found %d input%s", c->name, c->name,
+                           c->usage, args->input_count, args->input_count == 1 ? "" : "s");
+    return c->run(args);
+}
+
+static bool flush_stdout(void)
+{
+    if (!fflush(stdout) && !ferror(stdout))
+        return true;
+    fprintf(stderr, "relume: standard output: writing failed; %s\n", strerror(errno));
+    return false;
+}
+
+int main(int argc, char **argv)
+{
+    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = SA_RESETHAND};
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);  // a file size limit is a write error, not a death
+
+    if (argc < 2 || !strcmp(argv[1], "--help") || !strcmp(argv[1], "help")) {
+        print_overview();
+        return argc < 2 ? 2 : 0;
+    }
+    if (!strcmp(argv[1], "--version")) {
+        printf("relume %s\n", RELUME_VERSION);
+        return 0;
+    }
+    struct args *args = calloc(1, sizeof *args);
+    if (!args)
+        return exit_code(RELUME_ENOMEM);
+    args->log = (struct relume_log){on_message, on_progress, args};
+    for (const struct command *const *c = commands; *c; c++)
+        if (!strcmp((*c)->name, argv[1]))
+            args->command = *c;
+    relume_status status =
+        args->command ? run_command(args, argc - 2, argv + 2) : unknown_command(argv[1]);
+    clear_bar();
+    if (!flush_stdout() && !status)
+        status = RELUME_EIO;
+    free(args);
+    return exit_code(status);
+}
+
+void json_number(FILE *out, double value)
+{
+    if (isfinite(value))
+        fprintf(out, "%.9g", value);
+    else
+        fputs("null", out);
+}

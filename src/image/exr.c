@@ -1,0 +1,476 @@
+// exr.c - the one file that knows OpenEXR (its C core)
+#include "image/exr.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/outfile.h"
+#include "base/thread.h"
+
+#include <openexr.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "EXR samples are little endian");
+
+size_t exr_sample_bytes(enum exr_sample sample)
+{
+    return sample == EXR_SAMPLE_HALF ? 2 : 4;
+}
+
+static const struct {
+    exr_compression_t exr;
+    const char *name;
+    int rows;  // per block
+} codecs[] = {
+    [EXR_CODEC_NONE] = {EXR_COMPRESSION_NONE, "none", 1},
+    [EXR_CODEC_RLE] = {EXR_COMPRESSION_RLE, "rle", 1},
+    [EXR_CODEC_ZIP] = {EXR_COMPRESSION_ZIP, "zip", 16},
+    [EXR_CODEC_PIZ] = {EXR_COMPRESSION_PIZ, "piz", 32},
+};
+
+static const exr_pixel_type_t pixel_types[] = {
+    [EXR_SAMPLE_UINT] = EXR_PIXEL_UINT,
+    [EXR_SAMPLE_HALF] = EXR_PIXEL_HALF,
+    [EXR_SAMPLE_FLOAT] = EXR_PIXEL_FLOAT,
+};
+
+// The core prints errors itself unless a handler takes them; the sentences are ours.
+static void ignore_error(exr_const_context_t context, exr_result_t code, const char *message)
+{
+    (void)context, (void)code, (void)message;
+}
+
+// ---------------------------------------------------------------- writing
+
+struct writing {
+    exr_context_t exr;
+    outfile *file;
+    relume_status io;  // what the stream saw
+    const struct exr_part *part;
+    int index, block_rows;
+    pthread_mutex_t lock;
+    pthread_cond_t turn;
+    int next_block;
+    relume_status status;  // the first failure of any block
+    exr_encode_pipeline_t *pipelines;  // one a worker
+};
+
+static int64_t write_stream(exr_const_context_t context, void *user, const void *buffer,
+                            uint64_t size, uint64_t offset, exr_stream_error_func_ptr_t error)
+{
+    (void)context, (void)error;
+    struct writing *w = user;
+    if (!w->io)
+        w->io = outfile_write(w->file, buffer, size, (off_t)offset);
+    return w->io ? -1 : (int64_t)size;
+}
+
+static exr_result_t set_attribute(exr_context_t exr, int part, const struct exr_attribute *a)
+{
+    switch (a->kind) {
+    case EXR_INT: return exr_attr_set_int(exr, part, a->name, a->integer);
+    case EXR_TEXT: return exr_attr_set_string(exr, part, a->name, a->text);
+    case EXR_FLOATS: return exr_attr_set_float_vector(exr, part, a->name, a->count, a->floats);
+    }
+    return EXR_ERR_INVALID_ARGUMENT;
+}
+
+static exr_result_t declare_part(exr_context_t exr, const struct exr_part *p)
+{
+    int index;
+    exr_result_t r = exr_add_part(exr, p->name, EXR_STORAGE_SCANLINE, &index);
+    if (!r)
+        r = exr_initialize_required_attr_simple(exr, index, p->width, p->height,
+                                                codecs[p->codec].exr);
+    for (int i = 0; !r && i < p->channels; i++)
+        r = exr_add_channel(exr, index, p->channel[i], pixel_types[p->sample],
+                            EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    for (int i = 0; !r && i < p->attributes; i++)
+        r = set_attribute(exr, index, &p->attribute[i]);
+    return r;
+}
+
+// Our samples are in file order already: this stage has nothing to convert.
+static exr_result_t already_packed(exr_encode_pipeline_t *pipeline)
+{
+    pipeline->packed_bytes = pipeline->chunk.unpacked_size;
+    return EXR_ERR_SUCCESS;
+}
+
+struct block_turn {
+    struct writing *w;
+    int block;
+};
+
+// Blocks are compressed in parallel and must be written in order.
+static exr_result_t await_turn(exr_encode_pipeline_t *pipeline)
+{
+    const struct block_turn *t = pipeline->encoding_user_data;
+    pthread_mutex_lock(&t->w->lock);
+    while (t->w->next_block != t->block)
+        pthread_cond_wait(&t->w->turn, &t->w->lock);
+    const bool failed = t->w->status != RELUME_OK;
+    pthread_mutex_unlock(&t->w->lock);
+    return failed ? EXR_ERR_UNKNOWN : EXR_ERR_SUCCESS;
+}
+
+static void end_turn(struct writing *w, int block, relume_status status)
+{
+    pthread_mutex_lock(&w->lock);
+    while (w->next_block != block)
+        pthread_cond_wait(&w->turn, &w->lock);
+    if (!w->status)
+        w->status = status;
+    w->next_block++;
+    pthread_cond_broadcast(&w->turn);
+    pthread_mutex_unlock(&w->lock);
+}
+
+static relume_status prepare_pipeline(struct writing *w, exr_encode_pipeline_t *pipeline, int row,
+                                      void *turn)
+{
+    exr_chunk_info_t chunk;
+    if (exr_write_scanline_chunk_info(w->exr, w->index, row, &chunk))
+        return RELUME_EIO;
+    if (pipeline->channels) {
+        if (exr_encoding_update(w->exr, w->index, &chunk, pipeline))
+            return RELUME_EIO;
+    } else {
+        static const uint8_t placeholder;  // the core wants pointers that our packing never reads
+        if (exr_encoding_initialize(w->exr, w->index, &chunk, pipeline))
+            return RELUME_ENOMEM;
+        for (int i = 0; i < pipeline->channel_count; i++) {
+            exr_coding_channel_info_t *c = &pipeline->channels[i];
+            c->encode_from_ptr = &placeholder;
+            c->user_bytes_per_element = (int16_t)exr_sample_bytes(w->part->sample);
+            c->user_data_type = (uint16_t)pixel_types[w->part->sample];
+            c->user_pixel_stride = c->user_bytes_per_element;
+            c->user_line_stride = c->user_pixel_stride * w->part->width;
+        }
+        if (exr_encoding_choose_default_routines(w->exr, w->index, pipeline))
+            return RELUME_EIO;
+        pipeline->convert_and_pack_fn = already_packed;
+        pipeline->yield_until_ready_fn = await_turn;
+    }
+    pipeline->encoding_user_data = turn;
+    const size_t size = chunk.unpacked_size;
+    if (pipeline->packed_alloc_size < size) {
+        free(pipeline->packed_buffer);
+        pipeline->packed_buffer = malloc(size);
+        pipeline->packed_alloc_size = pipeline->packed_buffer ? size : 0;
+    }
+    return pipeline->packed_buffer ? RELUME_OK : RELUME_ENOMEM;
+}
+
+static void write_block(void *context, size_t item, int worker)
+{
+    struct writing *w = context;
+    const int row = (int)item * w->block_rows;
+    const int left = w->part->height - row;
+    const int rows = left < w->block_rows ? left : w->block_rows;
+    exr_encode_pipeline_t *pipeline = &w->pipelines[worker];
+    struct block_turn turn = {w, (int)item};
+
+    relume_status status = prepare_pipeline(w, pipeline, row, &turn);
+    if (!status)
+        status = w->part->rows(w->part->context, row, rows, pipeline->packed_buffer);
+    if (!status && exr_encoding_run(w->exr, w->index, pipeline))
+        status = w->io ? w->io : RELUME_EIO;
+    end_turn(w, (int)item, status);
+}
+
+static relume_status write_part(struct writing *w, const struct exr_part *part, int index,
+                                int threads)
+{
+    w->part = part;
+    w->index = index;
+    w->block_rows = codecs[part->codec].rows;
+    w->next_block = 0;
+    w->pipelines = mem_zeroed((size_t)threads, sizeof *w->pipelines);
+    if (!w->pipelines)
+        return RELUME_ENOMEM;
+    const size_t blocks = ((size_t)part->height + (size_t)w->block_rows - 1) / (size_t)w->block_rows;
+    thread_for(threads, blocks, write_block, w);
+    for (int i = 0; i < threads; i++)
+        exr_encoding_destroy(w->exr, &w->pipelines[i]);
+    free(w->pipelines);
+    return w->status;
+}
+
+relume_status exr_write(const char *path, const struct exr_part *parts, int count, int threads,
+                        const struct relume_log *log)
+{
+    threads = thread_count(threads);
+    struct writing w = {.lock = PTHREAD_MUTEX_INITIALIZER, .turn = PTHREAD_COND_INITIALIZER};
+    relume_status status = outfile_open(&w.file, path, log);
+    if (status)
+        return status;
+
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    init.error_handler_fn = ignore_error;
+    init.user_data = &w;
+    init.write_fn = write_stream;
+    exr_result_t r = exr_start_write(&w.exr, path, EXR_WRITE_FILE_DIRECTLY, &init);
+    for (int i = 0; !r && i < count; i++)
+        r = declare_part(w.exr, &parts[i]);
+    if (!r)
+        r = exr_write_header(w.exr);
+    if (r)
+        status = w.io                       ? w.io
+                 : r == EXR_ERR_OUT_OF_MEMORY ? RELUME_ENOMEM
+                                              : log_fail(log, RELUME_EIO, "%s: header refused; %s",
+                                                         path, exr_get_default_error_message(r));
+    for (int i = 0; !status && i < count; i++) {
+        status = write_part(&w, &parts[i], i, threads);
+        if (!status && !log_progress(log, "writing", (i + 1.0) / count))
+            status = RELUME_ECANCEL;
+    }
+    if (w.exr && exr_finish(&w.exr) && !status)
+        status = w.io ? w.io : RELUME_EIO;
+    if (!status)
+        return outfile_commit(&w.file);
+    outfile_abort(&w.file);
+    return status;
+}
+
+// ---------------------------------------------------------------- reading
+
+struct exr_file {
+    exr_context_t exr;
+    char *path;
+};
+
+void exr_close(exr_file **file)
+{
+    if (!*file)
+        return;
+    if ((*file)->exr)
+        exr_finish(&(*file)->exr);
+    free((*file)->path);
+    free(*file);
+    *file = NULL;
+}
+
+// Everything later code relies on: scanlines, channels, a size within the limits.
+static relume_status check_parts(const exr_file *file, const struct relume_limits *limits,
+                                 const struct relume_log *log)
+{
+    const int count = exr_part_count(file);
+    if (count < 1)
+        return log_fail(log, RELUME_EDATA, "%s: no parts; expected an EXR image", file->path);
+    for (int i = 0; i < count; i++) {
+        exr_storage_t storage;
+        const exr_attr_chlist_t *channels;
+        exr_attr_box2i_t box;
+        if (exr_get_storage(file->exr, i, &storage) || storage != EXR_STORAGE_SCANLINE)
+            return log_fail(log, RELUME_EDATA, "%s: part %d is tiled or deep; expected scanlines",
+                            file->path, i);
+        if (exr_get_channels(file->exr, i, &channels) || channels->num_channels < 1)
+            return log_fail(log, RELUME_EDATA, "%s: part %d has no channels", file->path, i);
+        if (exr_get_data_window(file->exr, i, &box))
+            return log_fail(log, RELUME_EDATA, "%s: part %d has no data window", file->path, i);
+        const int64_t width = (int64_t)box.max.x - box.min.x + 1;
+        const int64_t height = (int64_t)box.max.y - box.min.y + 1;
+        if (!limits_allow(limits, width, height))
+            return log_fail(log, RELUME_EDATA,
+                            "%s: part %d is %lld x %lld pixels; expected sizes within the limits",
+                            file->path, i, (long long)width, (long long)height);
+    }
+    return RELUME_OK;
+}
+
+relume_status exr_open(exr_file **out, const char *path, const struct relume_limits *limits,
+                       const struct relume_log *log)
+{
+    *out = NULL;
+    exr_file *file = mem_zeroed(1, sizeof *file);
+    if (!file || !(file->path = mem_text(path))) {
+        free(file);
+        return RELUME_ENOMEM;
+    }
+    const struct relume_limits l = limits_or_default(limits);
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    init.error_handler_fn = ignore_error;
+    init.max_image_width = l.max_side;
+    init.max_image_height = l.max_side;
+    const exr_result_t r = exr_start_read(&file->exr, path, &init);
+    relume_status status;
+    if (r == EXR_ERR_OUT_OF_MEMORY)
+        status = RELUME_ENOMEM;
+    else if (r)
+        status = log_fail(log, RELUME_EDATA, "%s: cannot be read as OpenEXR; %s", path,
+                          exr_get_default_error_message(r));
+    else
+        status = check_parts(file, limits, log);
+    if (status)
+        exr_close(&file);
+    *out = file;
+    return status;
+}
+
+int exr_part_count(const exr_file *file)
+{
+    int count;
+    return exr_get_count(file->exr, &count) ? 0 : count;
+}
+
+static const exr_attr_chlist_t *channel_list(const exr_file *file, int part)
+{
+    const exr_attr_chlist_t *list = NULL;
+    (void)!exr_get_channels(file->exr, part, &list);  // there are some: exr_open has looked
+    return list;
+}
+
+static const char *codec_name(const exr_file *file, int part)
+{
+    exr_compression_t compression;
+    if (!exr_get_compression(file->exr, part, &compression))
+        for (size_t i = 0; i < sizeof codecs / sizeof *codecs; i++)
+            if (codecs[i].exr == compression)
+                return codecs[i].name;
+    return "other";
+}
+
+struct exr_part_info exr_part_info(const exr_file *file, int part)
+{
+    const exr_attr_chlist_t *list = channel_list(file, part);
+    exr_attr_box2i_t box;
+    memset(&box, 0, sizeof box);
+    (void)!exr_get_data_window(file->exr, part, &box);
+    const char *name = NULL;
+    if (exr_get_name(file->exr, part, &name) || !name)
+        name = "";
+    struct exr_part_info info = {
+        .name = name,
+        .width = box.max.x - box.min.x + 1,
+        .height = box.max.y - box.min.y + 1,
+        .sample = (enum exr_sample)list->entries[0].pixel_type,
+        .uniform = true,
+        .channels = list->num_channels,
+        .codec = codec_name(file, part),
+    };
+    for (int i = 0; i < list->num_channels; i++) {
+        const exr_attr_chlist_entry_t *e = &list->entries[i];
+        info.uniform &= e->pixel_type == list->entries[0].pixel_type && e->x_sampling == 1 &&
+                        e->y_sampling == 1;
+    }
+    return info;
+}
+
+const char *exr_channel_name(const exr_file *file, int part, int channel)
+{
+    return channel_list(file, part)->entries[channel].name.str;
+}
+
+bool exr_get_int(const exr_file *file, int part, const char *name, int *value)
+{
+    int32_t v;
+    if (exr_attr_get_int(file->exr, part, name, &v))
+        return false;
+    *value = v;
+    return true;
+}
+
+const char *exr_get_text(const exr_file *file, int part, const char *name)
+{
+    int32_t length;
+    const char *text;
+    return exr_attr_get_string(file->exr, part, name, &length, &text) ? NULL : text;
+}
+
+const float *exr_get_floats(const exr_file *file, int part, const char *name, int *count)
+{
+    int32_t n;
+    const float *floats;
+    if (exr_attr_get_float_vector(file->exr, part, name, &n, &floats))
+        return NULL;
+    *count = n;
+    return floats;
+}
+
+struct reading {
+    const exr_file *file;
+    int part, first_row, height, block_rows;
+    void (*sink)(void *, int, int, const void *);
+    void *context;
+    exr_decode_pipeline_t *pipelines;  // one a worker
+    atomic_bool failed;
+};
+
+// Hands the decompressed rows on as they are.
+static exr_result_t deliver(exr_decode_pipeline_t *pipeline)
+{
+    const struct reading *r = pipeline->decoding_user_data;
+    const void *samples =
+        pipeline->unpacked_buffer ? pipeline->unpacked_buffer : pipeline->packed_buffer;
+    const uint64_t size = pipeline->unpacked_buffer && pipeline->decompress_fn
+                              ? pipeline->chunk.unpacked_size
+                              : pipeline->chunk.packed_size;
+    if (!samples || size < pipeline->chunk.unpacked_size)
+        return EXR_ERR_CORRUPT_CHUNK;
+    r->sink(r->context, pipeline->chunk.start_y - r->first_row, pipeline->chunk.height, samples);
+    return EXR_ERR_SUCCESS;
+}
+
+static void read_block(void *context, size_t item, int worker)
+{
+    struct reading *r = context;
+    const exr_const_context_t exr = r->file->exr;
+    exr_decode_pipeline_t *pipeline = &r->pipelines[worker];
+    if (atomic_load(&r->failed))
+        return;
+
+    exr_chunk_info_t chunk;
+    const int y = r->first_row + (int)item * r->block_rows;
+    exr_result_t e = exr_read_scanline_chunk_info(exr, r->part, y, &chunk);
+    if (!e && pipeline->channels) {
+        e = exr_decoding_update(exr, r->part, &chunk, pipeline);
+    } else if (!e) {
+        e = exr_decoding_initialize(exr, r->part, &chunk, pipeline);
+        if (!e)
+            e = exr_decoding_choose_default_routines(exr, r->part, pipeline);
+    }
+    pipeline->decoding_user_data = r;
+    pipeline->unpack_and_convert_fn = deliver;
+    if (!e)
+        e = exr_decoding_run(exr, r->part, pipeline);
+    if (e)
+        atomic_store(&r->failed, true);
+}
+
+relume_status exr_read(const exr_file *file, int part, int threads,
+                       void (*sink)(void *, int, int, const void *), void *context,
+                       const struct relume_log *log)
+{
+    threads = thread_count(threads);
+    const struct exr_part_info info = exr_part_info(file, part);
+    exr_attr_box2i_t box;
+    int32_t block_rows;
+    if (exr_get_data_window(file->exr, part, &box) ||
+        exr_get_scanlines_per_chunk(file->exr, part, &block_rows) || block_rows < 1)
+        return log_fail(log, RELUME_EDATA, "%s: part %d is broken", file->path, part);
+
+    struct reading r = {
+        .file = file,
+        .part = part,
+        .first_row = box.min.y,
+        .height = info.height,
+        .block_rows = block_rows,
+        .sink = sink,
+        .context = context,
+        .pipelines = mem_zeroed((size_t)threads, sizeof *r.pipelines),
+    };
+    if (!r.pipelines)
+        return RELUME_ENOMEM;
+    const size_t blocks = ((size_t)info.height + (size_t)block_rows - 1) / (size_t)block_rows;
+    thread_for(threads, blocks, read_block, &r);
+    for (int i = 0; i < threads; i++)
+        exr_decoding_destroy(file->exr, &r.pipelines[i]);
+    free(r.pipelines);
+    if (atomic_load(&r.failed))
+        return log_fail(log, RELUME_EDATA, "%s: truncated or damaged in part '%s'; expected %d rows",
+                        file->path, info.name, info.height);
+    return RELUME_OK;
+}

@@ -1,0 +1,74 @@
+// exr.h - multi-part scanline OpenEXR files: the container under relume files and EXR images
+//
+// Samples travel in the file's own order, [row][channel][x] with channels sorted by name, so that
+// nothing is shuffled on the way.
+#ifndef IMAGE_EXR_H
+#define IMAGE_EXR_H
+
+#include <relume/base.h>
+
+enum exr_sample { EXR_SAMPLE_UINT, EXR_SAMPLE_HALF, EXR_SAMPLE_FLOAT };  // as in the format
+enum exr_codec { EXR_CODEC_NONE, EXR_CODEC_RLE, EXR_CODEC_ZIP, EXR_CODEC_PIZ };
+
+size_t exr_sample_bytes(enum exr_sample sample);
+
+struct exr_attribute {
+    const char *name;                                // at most 31 characters
+    enum { EXR_INT, EXR_TEXT, EXR_FLOATS } kind;
+    int integer;
+    const char *text;
+    const float *floats;
+    int count;  // of floats
+};
+
+struct exr_part {
+    const char *name;
+    int width, height;
+    enum exr_sample sample;  // of every channel
+    enum exr_codec codec;
+    int channels;
+    const char *const *channel;  // [channels], sorted by strcmp
+    int attributes;
+    const struct exr_attribute *attribute;
+    // Fill samples[row][channel][x] for `rows` rows from `row` on. Called from several threads.
+    relume_status (*rows)(void *context, int row, int rows, void *samples);
+    void *context;
+};
+
+// Write all parts into `path`, whole or not at all. RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL or
+// what a `rows` function returned.
+relume_status exr_write(const char *path, const struct exr_part *parts, int count, int threads,
+                        const struct relume_log *log);
+
+// An open file. Thread-safety: reading is safe.
+typedef struct exr_file exr_file;
+
+// RELUME_EDATA with a sentence when it is not a readable scanline EXR within the limits.
+relume_status exr_open(exr_file **out, const char *path, const struct relume_limits *limits,
+                       const struct relume_log *log);
+void exr_close(exr_file **file);
+int exr_part_count(const exr_file *file);
+
+struct exr_part_info {
+    const char *name;  // "" when the part has none
+    int width, height;
+    enum exr_sample sample;  // of the first channel
+    bool uniform;            // all channels have that type and full resolution
+    int channels;
+    const char *codec;
+};
+struct exr_part_info exr_part_info(const exr_file *file, int part);
+const char *exr_channel_name(const exr_file *file, int part, int channel);
+
+// Attributes of a part; false or NULL when absent or of another type.
+bool exr_get_int(const exr_file *file, int part, const char *name, int *value);
+const char *exr_get_text(const exr_file *file, int part, const char *name);
+const float *exr_get_floats(const exr_file *file, int part, const char *name, int *count);
+
+// Hand every block of rows of a part to `sink` (from several threads, any order).
+// RELUME_EDATA when the file is truncated or broken.
+relume_status exr_read(const exr_file *file, int part, int threads,
+                       void (*sink)(void *context, int row, int rows, const void *samples),
+                       void *context, const struct relume_log *log);
+
+#endif

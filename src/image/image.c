@@ -1,0 +1,231 @@
+#include "image/image.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "image/exr.h"
+#include "math/half.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+relume_status relume_image_create(struct relume_image *out, int width, int height, int channels)
+{
+    *out = (struct relume_image){0};
+    if (width < 1 || height < 1 || channels < 1)
+        return RELUME_EINVAL;
+    float *data = mem_zeroed((size_t)width * (size_t)height, (size_t)channels * sizeof *data);
+    if (!data)
+        return RELUME_ENOMEM;
+    *out = (struct relume_image){width, height, channels, data};
+    return RELUME_OK;
+}
+
+void relume_image_destroy(struct relume_image *image)
+{
+    free(image->data);
+    *image = (struct relume_image){0};
+}
+
+// ---------------------------------------------------------------- streams
+
+struct relume_transfer image_transfer(struct relume_transfer transfer, const struct oiio_info *info)
+{
+    if (transfer.curve == RELUME_CURVE_AUTO)
+        transfer.curve = info->linear ? RELUME_CURVE_LINEAR : RELUME_CURVE_SRGB;
+    return transfer;
+}
+
+static bool is_same(struct relume_transfer a, struct relume_transfer b)
+{
+    return a.curve == b.curve && (a.curve != RELUME_CURVE_GAMMA || a.gamma == b.gamma);
+}
+
+static float recode(const struct image_stream *s, int channel, float code)
+{
+    if (s->gain[channel] == 1.0f && is_same(s->from, s->to))
+        return code;
+    const float linear = relume_transfer_decode(s->from, code) / s->gain[channel];
+    return relume_transfer_encode(s->to, linear);
+}
+
+relume_status image_stream_open(struct image_stream *stream, oiio_reader *reader, int channels,
+                                struct relume_transfer from, struct relume_transfer to,
+                                const float gain[3])
+{
+    const struct oiio_info *info = oiio_info_of(reader);
+    *stream = (struct image_stream){
+        .reader = reader,
+        .channels = channels,
+        .from = from,
+        .to = to,
+        .gain = {gain[0], gain[1], gain[2]},
+        .scratch = mem_array((size_t)info->width * (size_t)info->channels, sizeof(float)),
+    };
+    if (!stream->scratch) {
+        image_stream_close(stream);
+        return RELUME_ENOMEM;
+    }
+    for (int c = 0; c < 3; c++)
+        for (int v = 0; v < 256; v++)
+            stream->table[c][v] = recode(stream, c, (float)v / 255.0f);
+    return RELUME_OK;
+}
+
+void image_stream_close(struct image_stream *stream)
+{
+    oiio_close(&stream->reader);
+    free(stream->scratch);
+    stream->scratch = NULL;
+}
+
+static void convert_bytes(const struct image_stream *s, const struct oiio_info *info, float *out)
+{
+    const uint8_t *in = s->scratch;
+    for (int x = 0; x < info->width; x++, in += info->channels)
+        for (int c = 0; c < s->channels; c++)
+            *out++ = s->table[c][in[info->rgb[c]]];
+}
+
+static void convert_floats(const struct image_stream *s, const struct oiio_info *info, float *out)
+{
+    const float *in = s->scratch;
+    for (int x = 0; x < info->width; x++, in += info->channels)
+        for (int c = 0; c < s->channels; c++)
+            *out++ = recode(s, c, in[info->rgb[c]]);
+}
+
+relume_status image_stream_read(struct image_stream *stream, int row, int rows, float *out)
+{
+    const struct oiio_info *info = oiio_info_of(stream->reader);
+    for (int y = row; y < row + rows; y++) {
+        const relume_status status = info->bytes
+                                         ? oiio_read_bytes(stream->reader, y, 1, stream->scratch)
+                                         : oiio_read_floats(stream->reader, y, 1, stream->scratch);
+        if (status)
+            return status;
+        if (info->bytes)
+            convert_bytes(stream, info, out);
+        else
+            convert_floats(stream, info, out);
+        out += (size_t)info->width * (size_t)stream->channels;
+    }
+    return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- files
+
+relume_status relume_image_load(struct relume_image *out, const char *path,
+                                const struct relume_image_params *params)
+{
+    const struct relume_image_params p = params ? *params : (struct relume_image_params){0};
+    const int channels = p.channels == 1 ? 1 : 3;
+    static const float no_gain[3] = {1.0f, 1.0f, 1.0f};
+    *out = (struct relume_image){0};
+
+    oiio_reader *reader;
+    relume_status status = oiio_open(&reader, path, p.limits, p.log);
+    if (status)
+        return status;
+    const struct oiio_info info = *oiio_info_of(reader);
+    struct image_stream stream;
+    status = image_stream_open(&stream, reader, channels, image_transfer(p.transfer, &info),
+                               (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f}, no_gain);
+    if (status)
+        return status;
+    status = relume_image_create(out, info.width, info.height, channels);
+    if (!status)
+        status = image_stream_read(&stream, 0, info.height, out->data);
+    if (status == RELUME_EDATA)
+        (void)log_fail(p.log, status, "%s: %s", path, oiio_error(stream.reader));
+    if (status)
+        relume_image_destroy(out);
+    image_stream_close(&stream);
+    return status;
+}
+
+struct exr_source {
+    const struct relume_image *image;
+    bool half;
+};
+
+// Channels sort as B, G, R: the reverse of memory order.
+static relume_status exr_rows(void *context, int row, int rows, void *samples)
+{
+    const struct exr_source *s = context;
+    const int n = s->image->channels;
+    const size_t width = (size_t)s->image->width;
+    uint16_t *halves = samples;
+    float *floats = samples;
+    for (int y = row; y < row + rows; y++)
+        for (int c = n - 1; c >= 0; c--) {
+            const float *in = s->image->data + (size_t)y * width * (size_t)n + c;
+            for (size_t x = 0; x < width; x++)
+                if (s->half)
+                    *halves++ = half_from_float(in[x * (size_t)n]);
+                else
+                    *floats++ = in[x * (size_t)n];
+        }
+    return RELUME_OK;
+}
+
+static relume_status save_exr(const struct relume_image *image, const char *path,
+                              const struct relume_image_params *p)
+{
+    static const char *const rgb[] = {"B", "G", "R"};
+    static const char *const grey[] = {"Y"};
+    struct exr_source source = {image, p->half};
+    const struct exr_part part = {
+        .name = "image",
+        .width = image->width,
+        .height = image->height,
+        .sample = p->half ? EXR_SAMPLE_HALF : EXR_SAMPLE_FLOAT,
+        .codec = EXR_CODEC_ZIP,
+        .channels = image->channels,
+        .channel = image->channels == 3 ? rgb : grey,
+        .rows = exr_rows,
+        .context = &source,
+    };
+    struct relume_log quiet = p->log ? *p->log : (struct relume_log){0};
+    quiet.progress = NULL;  // one image is not long work
+    return exr_write(path, &part, 1, 1, &quiet);
+}
+
+static relume_status save_bytes(const struct relume_image *image, const char *path,
+                                const struct relume_image_params *p)
+{
+    const size_t n = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    uint8_t *bytes = mem_array(n, 1);
+    if (!bytes)
+        return RELUME_ENOMEM;
+    for (size_t i = 0; i < n; i++) {
+        const float v = relume_transfer_encode(srgb, image->data[i]);
+        bytes[i] = (uint8_t)(v >= 1.0f ? 255 : v > 0.0f ? (int)(v * 255.0f + 0.5f) : 0);
+    }
+    const relume_status status =
+        oiio_write_bytes(path, image->width, image->height, image->channels, bytes, p->log);
+    free(bytes);
+    return status;
+}
+
+static bool has_extension(const char *path, const char *extension)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && !strcasecmp(dot, extension);
+}
+
+relume_status relume_image_save(const struct relume_image *image, const char *path,
+                                const struct relume_image_params *params)
+{
+    const struct relume_image_params p = params ? *params : (struct relume_image_params){0};
+    if (image->channels != 1 && image->channels != 3)
+        return RELUME_EINVAL;
+    if (has_extension(path, ".exr"))
+        return save_exr(image, path, &p);
+    if (oiio_writes_floats(path))
+        return oiio_write_floats(path, image->width, image->height, image->channels, image->data,
+                                 p.log);
+    return save_bytes(image, path, &p);
+}

@@ -1,0 +1,31 @@
+// image.h - how code values of a file become linear light, for whole images and for streams
+#ifndef IMAGE_IMAGE_H
+#define IMAGE_IMAGE_H
+
+#include "image/oiio.h"
+
+#include <relume/image.h>
+
+// What `transfer` AUTO means for an open file.
+struct relume_transfer image_transfer(struct relume_transfer transfer, const struct oiio_info *info);
+
+// Reads rows of one file as 1 or 3 channels after a per-value function: decode by `from`, divide
+// by gain[channel], encode by `to`. Bytes go through tables.
+struct image_stream {
+    oiio_reader *reader;
+    int channels;
+    struct relume_transfer from, to;
+    float gain[3];
+    float table[3][256];  // per channel, for 8-bit files
+    void *scratch;        // one row of the file
+};
+
+// Takes over `reader`, also on failure. RELUME_ENOMEM.
+relume_status image_stream_open(struct image_stream *stream, oiio_reader *reader, int channels,
+                                struct relume_transfer from, struct relume_transfer to,
+                                const float gain[3]);
+// out[row][x][channel]; rows must be asked for from the top on. RELUME_EDATA: oiio_error tells.
+relume_status image_stream_read(struct image_stream *stream, int row, int rows, float *out);
+void image_stream_close(struct image_stream *stream);
+
+#endif

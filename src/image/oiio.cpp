@@ -1,0 +1,274 @@
+// oiio.cpp - the one file that knows OpenImageIO; nothing C++ leaves it
+#include "image/oiio.h"
+
+extern "C" {
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/outfile.h"
+}
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <OpenImageIO/strutil.h>
+
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <new>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+using namespace OIIO;
+
+struct oiio_reader {
+    std::unique_ptr<ImageInput> input;
+    oiio_info info;
+    std::string path, error;
+    std::vector<float> whole;  // tiled files have no scanlines to stream: read at once
+};
+
+namespace {
+
+// One line without the library's trailing newline and without "(" file ")" noise.
+std::string one_line(std::string text)
+{
+    for (char &c : text)
+        if (c == '\n' || c == '\r')
+            c = ' ';
+    while (!text.empty() && text.back() == ' ')
+        text.pop_back();
+    return text.empty() ? "unknown error" : text;
+}
+
+relume_status broken(oiio_reader *r, const std::string &what)
+{
+    r->error = one_line(what);
+    return RELUME_EDATA;
+}
+
+// libjpeg fills what a truncated file lacks with grey and calls it a warning. A whole JPEG ends
+// with the marker FF D9, but for trailing bytes that some cameras add.
+bool jpeg_is_truncated(const std::string &path)
+{
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    const std::streamoff size = file.tellg();
+    const std::streamoff tail = size < 65536 ? size : 65536;
+    if (size <= 0)
+        return true;
+    std::string bytes(size_t(tail), '\0');
+    file.seekg(size - tail);
+    file.read(&bytes[0], tail);
+    return bytes.rfind("\xff\xd9") == std::string::npos;
+}
+
+void find_colour(const ImageSpec &spec, oiio_info &info)
+{
+    const int last = spec.nchannels >= 3 ? 2 : 0;
+    static const char *const names[] = {"R", "G", "B"};
+    for (int c = 0; c < 3; c++) {
+        const int named = spec.channelindex(names[c]);
+        info.rgb[c] = named >= 0 ? named : c < last ? c : last;
+    }
+}
+
+bool says_linear(const ImageSpec &spec, const std::string &format)
+{
+    const std::string space = spec.get_string_attribute("oiio:ColorSpace");
+    return spec.format.is_floating_point() || format == "raw" ||
+           Strutil::iequals(space, "linear") || Strutil::istarts_with(space, "lin_") ||
+           Strutil::iequals(space, "scene_linear");
+}
+
+relume_status open_input(oiio_reader *r, const relume_limits *limits)
+{
+    OIIO::attribute("exr_threads", -1);  // our own threads work on many files at once
+    if (!Filesystem::exists(r->path))
+        return broken(r, "no such file; expected an image");
+    if (Filesystem::is_directory(r->path) || Filesystem::file_size(r->path) == 0)
+        return broken(r, "empty file or folder; expected an image");
+    ImageSpec hints;
+    hints["oiio:UnassociatedAlpha"] = 1;
+    hints["raw:ColorSpace"] = "Linear";
+    r->input = ImageInput::open(r->path, &hints);
+    if (!r->input)
+        return broken(r, "not a readable image; " + one_line(OIIO::geterror()));
+    const ImageSpec &spec = r->input->spec();
+    if (spec.depth > 1 || spec.deep || spec.nchannels < 1)
+        return broken(r, "expected a flat image with colour channels");
+    if (!limits_allow(limits, spec.width, spec.height))
+        return broken(r, "size " + std::to_string(spec.width) + " x " +
+                             std::to_string(spec.height) + "; expected sizes within the limits");
+    const std::string format = r->input->format_name();
+    if (format == "jpeg" && jpeg_is_truncated(r->path))
+        return broken(r, "truncated JPEG; expected an end marker");
+    r->info.width = spec.width;
+    r->info.height = spec.height;
+    r->info.channels = spec.nchannels;
+    r->info.bytes = spec.format == TypeUInt8 && spec.channelformats.empty();
+    r->info.linear = says_linear(spec, format);
+    find_colour(spec, r->info);
+    return RELUME_OK;
+}
+
+bool read_tiled_rows(oiio_reader *r, int row, int rows, TypeDesc type, void *out)
+{
+    const ImageSpec &spec = r->input->spec();
+    const size_t stride = size_t(spec.width) * spec.nchannels;
+    if (r->whole.empty()) {
+        r->whole.resize(stride * spec.height);
+        if (!r->input->read_image(0, 0, 0, -1, TypeFloat, r->whole.data()))
+            return false;
+    }
+    return convert_pixel_values(TypeFloat, &r->whole[stride * row], type, out, int(stride * rows));
+}
+
+relume_status read_rows(oiio_reader *r, int row, int rows, TypeDesc type, void *out)
+{
+    try {
+        const ImageSpec &spec = r->input->spec();
+        const int y = spec.y + row;
+        const bool good = spec.tile_width
+                              ? read_tiled_rows(r, row, rows, type, out)
+                              : r->input->read_scanlines(0, 0, y, y + rows, spec.z, 0,
+                                                         spec.nchannels, type, out);
+        if (good && !r->input->has_error())
+            return RELUME_OK;
+        return broken(r, "truncated or damaged; " + one_line(r->input->geterror()));
+    } catch (const std::bad_alloc &) {
+        return RELUME_ENOMEM;
+    } catch (const std::exception &e) {
+        return broken(r, std::string("damaged; ") + e.what());
+    }
+}
+
+std::unique_ptr<ImageOutput> writer_for(const char *path)
+{
+    auto output = ImageOutput::create(path);
+    if (!output)
+        (void)OIIO::geterror();
+    return output;
+}
+
+// Through memory where the format can, so that a full disk is noticed by our own writes.
+relume_status write_in_memory(ImageOutput &output, const char *path, const ImageSpec &spec,
+                              TypeDesc type, const void *samples, const relume_log *log)
+{
+    std::vector<unsigned char> bytes;
+    Filesystem::IOVecOutput proxy(bytes);
+    output.set_ioproxy(&proxy);
+    if (!output.open(path, spec) || !output.write_image(type, samples) || !output.close())
+        return log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path,
+                        one_line(output.geterror()).c_str());
+    return outfile_save(path, bytes.data(), bytes.size(), log);
+}
+
+relume_status write_beside(ImageOutput &output, const char *path, const ImageSpec &spec,
+                           TypeDesc type, const void *samples, const relume_log *log)
+{
+    const std::string beside =
+        std::string(path) + ".part-" + std::to_string(getpid()) + Filesystem::extension(path);
+    bool good = output.open(beside, spec) && output.write_image(type, samples) && output.close();
+    std::string why = good ? "" : one_line(output.geterror());
+    std::string bytes;
+    if (good) {  // read it back: a full disk is not always reported
+        std::vector<float> row(size_t(spec.width) * spec.nchannels);
+        auto check = ImageInput::open(beside);
+        good = check && check->read_scanlines(0, 0, spec.height - 1, spec.height, 0, 0,
+                                              spec.nchannels, TypeFloat, row.data());
+        why = good ? "" : "incomplete; no space left?";
+        check.reset();
+        good = good && Filesystem::read_text_file(beside, bytes);
+    }
+    std::remove(beside.c_str());
+    if (!good)
+        return log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path, why.c_str());
+    return outfile_save(path, bytes.data(), bytes.size(), log);
+}
+
+relume_status write_image(const char *path, int width, int height, int channels, TypeDesc type,
+                          const void *samples, const relume_log *log)
+{
+    try {
+        auto output = writer_for(path);
+        if (!output)
+            return log_fail(log, RELUME_EINVAL,
+                            "%s: unknown image extension; expected .exr, .png, .jpg, .tif, .hdr, ...",
+                            path);
+        ImageSpec spec(width, height, channels, type);
+        spec["CompressionQuality"] = 95;
+        spec["oiio:ColorSpace"] = type == TypeUInt8 ? "sRGB" : "Linear";
+        return output->supports("ioproxy")
+                   ? write_in_memory(*output, path, spec, type, samples, log)
+                   : write_beside(*output, path, spec, type, samples, log);
+    } catch (const std::bad_alloc &) {
+        return RELUME_ENOMEM;
+    } catch (const std::exception &e) {
+        return log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path, e.what());
+    }
+}
+
+} // namespace
+
+relume_status oiio_open(oiio_reader **out, const char *path, const relume_limits *limits,
+                        const relume_log *log)
+{
+    *out = nullptr;
+    try {
+        std::unique_ptr<oiio_reader> r(new oiio_reader());
+        r->path = path;
+        const relume_status status = open_input(r.get(), limits);
+        if (status)
+            return log_fail(log, status, "%s: %s", path, r->error.c_str());
+        *out = r.release();
+        return RELUME_OK;
+    } catch (const std::bad_alloc &) {
+        return RELUME_ENOMEM;
+    } catch (const std::exception &e) {
+        return log_fail(log, RELUME_EDATA, "%s: not a readable image; %s", path, e.what());
+    }
+}
+
+const oiio_info *oiio_info_of(const oiio_reader *reader)
+{
+    return &reader->info;
+}
+
+relume_status oiio_read_floats(oiio_reader *reader, int row, int rows, float *out)
+{
+    return read_rows(reader, row, rows, TypeFloat, out);
+}
+
+relume_status oiio_read_bytes(oiio_reader *reader, int row, int rows, uint8_t *out)
+{
+    return read_rows(reader, row, rows, TypeUInt8, out);
+}
+
+const char *oiio_error(const oiio_reader *reader)
+{
+    return reader->error.c_str();
+}
+
+void oiio_close(oiio_reader **reader)
+{
+    delete *reader;
+    *reader = nullptr;
+}
+
+bool oiio_writes_floats(const char *path)
+{
+    const std::string ext = Filesystem::extension(path);
+    return Strutil::iequals(ext, ".hdr") || Strutil::iequals(ext, ".pfm");
+}
+
+relume_status oiio_write_bytes(const char *path, int width, int height, int channels,
+                               const uint8_t *samples, const relume_log *log)
+{
+    return write_image(path, width, height, channels, TypeUInt8, samples, log);
+}
+
+relume_status oiio_write_floats(const char *path, int width, int height, int channels,
+                                const float *samples, const relume_log *log)
+{
+    return write_image(path, width, height, channels, TypeFloat, samples, log);
+}

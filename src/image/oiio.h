@@ -1,0 +1,45 @@
+// oiio.h - every image format but EXR output, through OpenImageIO (C++ sealed in oiio.cpp)
+#ifndef IMAGE_OIIO_H
+#define IMAGE_OIIO_H
+
+#include <relume/base.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// An open image file. Thread-safety: one thread at a time.
+typedef struct oiio_reader oiio_reader;
+
+struct oiio_info {
+    int width, height;
+    int channels;  // as read_* delivers them
+    int rgb[3];    // which channel is red, green, blue; all equal for grey
+    bool bytes;    // 8-bit integers: oiio_read_bytes works
+    bool linear;   // float samples, or an integer file that says it is linear
+};
+
+// RELUME_EDATA with a sentence that names the file.
+relume_status oiio_open(oiio_reader **out, const char *path, const struct relume_limits *limits,
+                        const struct relume_log *log);
+const struct oiio_info *oiio_info_of(const oiio_reader *reader);
+// Code values of `rows` rows from `row` on, out[row][x][channel]; integers map to [0, 1].
+// The log may be NULL where threads must not speak; oiio_error then tells.
+relume_status oiio_read_floats(oiio_reader *reader, int row, int rows, float *out);
+relume_status oiio_read_bytes(oiio_reader *reader, int row, int rows, uint8_t *out);
+// What went wrong last, for a sentence; "" when nothing did. Belongs to the reader.
+const char *oiio_error(const oiio_reader *reader);
+void oiio_close(oiio_reader **reader);
+
+// Write interleaved samples, whole or not at all: floats for formats that hold them, else bytes.
+// RELUME_EINVAL for an extension that nobody writes, RELUME_EIO.
+bool oiio_writes_floats(const char *path);
+relume_status oiio_write_bytes(const char *path, int width, int height, int channels,
+                               const uint8_t *samples, const struct relume_log *log);
+relume_status oiio_write_floats(const char *path, int width, int height, int channels,
+                                const float *samples, const struct relume_log *log);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

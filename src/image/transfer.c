@@ -1,0 +1,65 @@
+// transfer.c - code values and linear light (IEC 61966-2-1 for sRGB)
+#include <relume/image.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+relume_status relume_transfer_parse(struct relume_transfer *out, const char *text)
+{
+    *out = (struct relume_transfer){RELUME_CURVE_AUTO, 0.0f};
+    if (!strcmp(text, "linear")) {
+        out->curve = RELUME_CURVE_LINEAR;
+    } else if (!strcmp(text, "srgb")) {
+        out->curve = RELUME_CURVE_SRGB;
+    } else if (!strncmp(text, "gamma:", 6)) {
+        char *end;
+        const float gamma = strtof(text + 6, &end);
+        if (end == text + 6 || *end || !(gamma > 0.1f && gamma <= 10.0f))
+            return RELUME_EINVAL;
+        *out = (struct relume_transfer){RELUME_CURVE_GAMMA, gamma};
+    } else {
+        return RELUME_EINVAL;
+    }
+    return RELUME_OK;
+}
+
+void relume_transfer_text(struct relume_transfer transfer, char *text, size_t size)
+{
+    if (transfer.curve == RELUME_CURVE_GAMMA)
+        snprintf(text, size, "gamma:%.7g", (double)transfer.gamma);
+    else
+        snprintf(text, size, "%s", transfer.curve == RELUME_CURVE_LINEAR ? "linear" : "srgb");
+}
+
+static float srgb_decode(float v)
+{
+    return v <= 0.04045f ? v / 12.92f : powf((v + 0.055f) / 1.055f, 2.4f);
+}
+
+static float srgb_encode(float v)
+{
+    return v <= 0.0031308f ? v * 12.92f : 1.055f * powf(v, 1.0f / 2.4f) - 0.055f;
+}
+
+// Negative values are mirrored, so that ringing of a basis stays odd and continuous.
+float relume_transfer_decode(struct relume_transfer transfer, float code)
+{
+    if (transfer.curve == RELUME_CURVE_LINEAR)
+        return code;
+    const float v = fabsf(code);
+    const float linear =
+        transfer.curve == RELUME_CURVE_GAMMA ? powf(v, transfer.gamma) : srgb_decode(v);
+    return copysignf(linear, code);
+}
+
+float relume_transfer_encode(struct relume_transfer transfer, float linear)
+{
+    if (transfer.curve == RELUME_CURVE_LINEAR)
+        return linear;
+    const float v = fabsf(linear);
+    const float code =
+        transfer.curve == RELUME_CURVE_GAMMA ? powf(v, 1.0f / transfer.gamma) : srgb_encode(v);
+    return copysignf(code, linear);
+}

@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 #include "base/outfile.h"
 
 #include "base/log.h"

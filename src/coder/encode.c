@@ -9,7 +9,7 @@
 #include "base/outfile.h"
 #include "base/thread.h"
 #include "coder/basis.h"
-#include "math/half.h"
+#include "image/half.h"
 #include "math/lsq.h"
 
 #include <errno.h>
@@ -172,7 +172,8 @@ static relume_status encode_band(struct encoder *e, relume_table *table,
     thread_for(e->threads, (size_t)e->planes, pack_plane, e);
     const size_t bytes = columns / 3 * (size_t)e->planes * sizeof *e->packed;
     if (!scratch_write(e->out->fd, e->packed, bytes, band_offset(e->out, e->row)))
-        return log_fail(p->log, RELUME_EIO, "temporary file: writing failed; %s", strerror(errno));
+        return log_fail(p->log, RELUME_EIO, "%s: writing its temporary file failed; %s",
+                        p->scratch ? p->scratch : "$TMPDIR", strerror(errno));
     return RELUME_OK;
 }
 
@@ -370,8 +371,8 @@ static relume_status alloc_coefficients(relume_coefficients **out, const relume_
         .offset = c->offset,
     };
     if (c->fd < 0)
-        return log_fail(p->log, RELUME_EIO, "temporary file: cannot be created; %s",
-                        strerror(errno));
+        return log_fail(p->log, RELUME_EIO, "%s: no temporary file can be made in its folder; %s",
+                        p->scratch ? p->scratch : "$TMPDIR", strerror(errno));
     return c->scale && c->offset && c->band ? RELUME_OK : RELUME_ENOMEM;
 }
 

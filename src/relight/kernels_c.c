@@ -1,7 +1,7 @@
 // kernels_c.c - plain C, the reference for every other set
 #include "relight/kernels.h"
 
-#include "math/half.h"
+#include "image/half.h"
 
 static void fill(float *out, size_t n, float bias)
 {

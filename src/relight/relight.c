@@ -8,7 +8,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
-#include "math/half.h"
+#include "image/half.h"
 #include "math/vec.h"
 #include "relight/kernels.h"
 
@@ -113,33 +113,45 @@ static float linearise(const struct job *job, float code)
     return job->curve[i] + (x - (float)i) * (job->curve[i + 1] - job->curve[i]);
 }
 
+enum { GROUP = 64 };  // planes handed to a kernel at once
+
+static void dot_group(const struct job *job, float *out, size_t n, float bias,
+                      const void *const *planes, const float *weights, int count)
+{
+    const void *p = planes;
+    if (job->codes->storage == RELUME_STORE_8)
+        job->kernels->dot_bytes(out, n, bias, p, weights, count);
+    else if (job->codes->storage == RELUME_STORE_16)
+        job->kernels->dot_words(out, n, bias, p, weights, count);
+    else
+        job->kernels->dot_halves(out, n, bias, p, weights, count);
+}
+
 static void dot_channel(const struct job *job, const struct pass *pass, int channel, size_t first,
                         size_t n, float *out)
 {
     const struct relume_codes *codes = job->codes;
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
-    const int k = info->coefficients;
-    const float *w = pass->weights + channel * k;
-    enum { GROUP = 64 };
+    const size_t offset = first * (codes->storage == RELUME_STORE_8 ? 1 : 2);
+    const float *w = pass->weights + channel * info->coefficients;
     const void *planes[GROUP];
-    float part[CHUNK];
-    for (int from = 0; from < k; from += GROUP) {
-        const int count = k - from < GROUP ? k - from : GROUP;
-        const size_t bytes = codes->storage == RELUME_STORE_8 ? 1 : 2;
-        for (int i = 0; i < count; i++)
-            planes[i] = (const char *)codes->plane[plane_of(info, from + i, channel)] +
-                        first * bytes;
-        float *to = from ? part : out;
-        const float bias = from ? 0.0f : pass->bias[channel];
-        const void *p = planes;
-        if (codes->storage == RELUME_STORE_8)
-            job->kernels->dot_bytes(to, n, bias, p, w + from, count);
-        else if (codes->storage == RELUME_STORE_16)
-            job->kernels->dot_words(to, n, bias, p, w + from, count);
-        else
-            job->kernels->dot_halves(to, n, bias, p, w + from, count);
-        for (size_t i = 0; from && i < n; i++)
+    float weights[GROUP], part[CHUNK];
+    int count = 0;
+    bool begun = false;
+    for (int k = 0; k < info->coefficients || !begun; k++) {
+        const bool last = k + 1 >= info->coefficients;
+        if (k < info->coefficients && w[k] != 0.0f) {  // interpolation leaves most lights out
+            planes[count] = (const char *)codes->plane[plane_of(info, k, channel)] + offset;
+            weights[count++] = w[k];
+        }
+        if (count < GROUP && !last)
+            continue;
+        dot_group(job, begun ? part : out, n, begun ? 0.0f : pass->bias[channel], planes, weights,
+                  count);
+        for (size_t i = 0; begun && i < n; i++)
             out[i] += part[i];
+        begun = true;
+        count = 0;
     }
 }
 

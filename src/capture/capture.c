@@ -1,0 +1,273 @@
+// capture.c - an opened capture: every promise of the manifest checked against the files
+#include "capture/capture.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "math/vec.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+void relume_capture_destroy(relume_capture **capture)
+{
+    if (!*capture)
+        return;
+    draft_free(&(*capture)->draft);
+    free(*capture);
+    *capture = NULL;
+}
+
+const struct relume_manifest *relume_capture_manifest(const relume_capture *capture)
+{
+    return &capture->draft.m;
+}
+
+int relume_capture_width(const relume_capture *capture)
+{
+    return capture->width;
+}
+
+int relume_capture_height(const relume_capture *capture)
+{
+    return capture->height;
+}
+
+bool relume_capture_hemispherical(const relume_capture *capture)
+{
+    const struct relume_manifest *m = &capture->draft.m;
+    const bool pole_y = m->geometry.projection >= RELUME_CYLINDRICAL;
+    for (int i = 0; i < m->lights; i++)
+        if (pole_from_world(m->directions[i], pole_y).z < -0.1)
+            return false;
+    return true;
+}
+
+static bool has_extension(const char *path, const char *extension)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && !strcasecmp(dot, extension);
+}
+
+static relume_status read_description(relume_capture *c, const char *path,
+                                      const struct relume_capture_params *p)
+{
+    struct stat s;
+    char *inside = NULL;
+    if (!stat(path, &s) && S_ISDIR(s.st_mode)) {
+        inside = mem_format("%s/capture.json", path);
+        if (!inside)
+            return RELUME_ENOMEM;
+        if (access(inside, F_OK)) {
+            free(inside);
+            return log_fail(p->log, RELUME_EDATA,
+                            "%s: no capture.json in this folder; expected one, or a .lp file", path);
+        }
+        path = inside;
+    }
+    c->path = mem_text(path);
+    relume_status status = RELUME_ENOMEM;
+    if (!c->path) {
+    } else if (has_extension(path, ".lp")) {
+        status = lp_read(&c->draft, path, p->limits, p->log);
+        if (!status)
+            status = lp_resolve(&c->draft, path, p->skip_missing, p->log);
+    } else {
+        status = manifest_read(&c->draft, path, p->limits, p->log);
+    }
+    free(inside);
+    return status;
+}
+
+// Keep only the lights for which `keep` holds, in every array that is indexed by light.
+static void keep_lights(struct draft *d, const bool *keep)
+{
+    int n = 0;
+    for (int i = 0; i < d->m.lights; i++) {
+        if (!keep[i])
+            continue;
+        d->directions[n] = d->directions[i];
+        if (d->positions)
+            d->positions[n] = d->positions[i];
+        if (d->intensities)
+            memcpy(d->intensities[n], d->intensities[i], sizeof *d->intensities);
+        for (int v = 0; v < d->m.views; v++)
+            d->view[v].images[n] = d->view[v].images[i];
+        n++;
+    }
+    d->m.lights = n;
+}
+
+static relume_status skip_missing(relume_capture *c, const struct relume_log *log)
+{
+    struct draft *d = &c->draft;
+    const int before = d->m.lights;
+    bool *keep = mem_array((size_t)before, sizeof *keep);
+    if (!keep)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < before; i++) {
+        keep[i] = true;
+        for (int v = 0; v < d->m.views && keep[i]; v++) {
+            keep[i] = !access(d->view[v].images[i], F_OK);
+            if (!keep[i])
+                log_line(log, RELUME_WARNING, "%s: image '%s' does not exist; light %d is skipped",
+                         c->path, d->view[v].images[i], i);
+        }
+    }
+    keep_lights(d, keep);
+    free(keep);
+    if (d->m.lights == 0)
+        return log_fail(log, RELUME_EDATA, "%s: no image exists; expected %d", c->path, before);
+    return RELUME_OK;
+}
+
+static relume_status check_image(relume_capture *c, const char *path,
+                                 const struct relume_capture_params *p)
+{
+    oiio_reader *reader;
+    const relume_status status = oiio_open(&reader, path, p->limits, p->log);
+    if (status)
+        return status;
+    const struct oiio_info info = *oiio_info_of(reader);
+    oiio_close(&reader);
+    if (c->width == 0) {
+        c->width = info.width;
+        c->height = info.height;
+        c->transfer = image_transfer(c->draft.m.transfer, &info);
+        return RELUME_OK;
+    }
+    if (info.width == c->width && info.height == c->height)
+        return RELUME_OK;
+    return log_fail(p->log, RELUME_EDATA,
+                    "%s: %d x %d pixels; expected %d x %d as in the other images", path, info.width,
+                    info.height, c->width, c->height);
+}
+
+static relume_status check_images(relume_capture *c, const struct relume_capture_params *p)
+{
+    const struct relume_manifest *m = &c->draft.m;
+    for (int v = 0; v < m->views; v++)
+        for (int i = 0; i < m->lights; i++) {
+            const relume_status status = check_image(c, m->view[v].images[i], p);
+            if (status)
+                return status;
+            if (!log_progress(p->log, "checking",
+                              (v + (i + 1.0) / m->lights) / (double)m->views))
+                return RELUME_ECANCEL;
+        }
+    return RELUME_OK;
+}
+
+relume_status relume_capture_open(relume_capture **out, const char *path,
+                                  const struct relume_capture_params *params)
+{
+    const struct relume_capture_params p = params ? *params : (struct relume_capture_params){0};
+    *out = NULL;
+    relume_capture *c = mem_zeroed(1, sizeof *c);
+    if (!c)
+        return RELUME_ENOMEM;
+    relume_status status = read_description(c, path, &p);
+    if (!status && p.skip_missing)
+        status = skip_missing(c, p.log);
+    if (!status && p.transfer.curve != RELUME_CURVE_AUTO)
+        c->draft.m.transfer = p.transfer;
+    if (!status)
+        status = check_images(c, &p);
+    if (status) {
+        relume_capture_destroy(&c);
+        return status;
+    }
+    struct relume_geometry *g = &c->draft.m.geometry;
+    if (g->projection == RELUME_PLANAR && !c->draft.has_window) {
+        const struct relume_geometry d = relume_geometry_default(RELUME_PLANAR, c->width, c->height);
+        memcpy(g->window_min, d.window_min, sizeof g->window_min);
+        memcpy(g->window_max, d.window_max, sizeof g->window_max);
+    }
+    c->draft.m.transfer = c->transfer;
+    *out = c;
+    return RELUME_OK;
+}
+
+relume_status capture_stream(struct image_stream *out, const relume_capture *capture, int view,
+                             int light, struct relume_transfer to, const struct relume_log *log)
+{
+    const struct relume_manifest *m = &capture->draft.m;
+    static const float no_gain[3] = {1.0f, 1.0f, 1.0f};
+    const char *path = m->view[view].images[light];
+    oiio_reader *reader;
+    const relume_status status = oiio_open(&reader, path, NULL, log);
+    if (status)
+        return status;
+    const struct oiio_info *info = oiio_info_of(reader);
+    if (info->width != capture->width || info->height != capture->height) {
+        oiio_close(&reader);
+        return log_fail(log, RELUME_EDATA, "%s: changed while it was being read", path);
+    }
+    return image_stream_open(out, reader, 3, m->transfer, to,
+                             m->intensities ? m->intensities[light] : no_gain);
+}
+
+relume_status relume_capture_image(struct relume_image *out, const relume_capture *capture,
+                                   int view, int light, const struct relume_log *log)
+{
+    const struct relume_transfer linear = {RELUME_CURVE_LINEAR, 0.0f};
+    *out = (struct relume_image){0};
+    struct image_stream stream;
+    relume_status status = capture_stream(&stream, capture, view, light, linear, log);
+    if (status)
+        return status;
+    status = relume_image_create(out, capture->width, capture->height, 3);
+    if (!status)
+        status = image_stream_read(&stream, 0, capture->height, out->data);
+    if (status == RELUME_EDATA)
+        (void)log_fail(log, status, "%s: %s", capture->draft.m.view[view].images[light],
+                       oiio_error(stream.reader));
+    if (status)
+        relume_image_destroy(out);
+    image_stream_close(&stream);
+    return status;
+}
+
+static relume_status load_plane(struct relume_image *out, const relume_capture *capture,
+                                const char *path, const struct relume_log *log)
+{
+    *out = (struct relume_image){0};
+    if (!path)
+        return RELUME_OK;
+    const struct relume_transfer as_stored = {RELUME_CURVE_LINEAR, 0.0f};
+    const relume_status status = relume_image_load(
+        out, path, relume_image_params(.log = log, .channels = 1, .transfer = as_stored));
+    if (status || (out->width == capture->width && out->height == capture->height))
+        return status;
+    const int width = out->width, height = out->height;
+    relume_image_destroy(out);
+    return log_fail(log, RELUME_EDATA, "%s: %d x %d pixels; expected %d x %d as in the images", path,
+                    width, height, capture->width, capture->height);
+}
+
+relume_status relume_capture_depth(struct relume_image *out, const relume_capture *capture,
+                                   int view, const struct relume_log *log)
+{
+    const char *path = capture->draft.m.view[view].depth;
+    const relume_status status = load_plane(out, capture, path, log);
+    if (status || !out->data)
+        return status;
+    const size_t n = (size_t)out->width * (size_t)out->height;
+    for (size_t i = 0; i < n; i++)
+        if (!(out->data[i] >= 0.0f)) {
+            const float found = out->data[i];
+            relume_image_destroy(out);
+            return log_fail(log, RELUME_EDATA,
+                            "%s: depth %g at pixel (%zu, %zu); expected 0 or more", path,
+                            (double)found, i % (size_t)capture->width,
+                            i / (size_t)capture->width);
+        }
+    return RELUME_OK;
+}
+
+relume_status relume_capture_mask(struct relume_image *out, const relume_capture *capture, int view,
+                                  const struct relume_log *log)
+{
+    return load_plane(out, capture, capture->draft.m.view[view].mask, log);
+}

@@ -1,0 +1,19 @@
+// capture.h - the inside of an opened capture
+#ifndef CAPTURE_CAPTURE_H
+#define CAPTURE_CAPTURE_H
+
+#include "capture/manifest.h"
+#include "image/image.h"
+
+struct relume_capture {
+    struct draft draft;
+    char *path;
+    int width, height;
+    struct relume_transfer transfer;  // of the images, never AUTO
+};
+
+// The rows of one image, light intensity divided out, coded by `to`.
+relume_status capture_stream(struct image_stream *out, const relume_capture *capture, int view,
+                             int light, struct relume_transfer to, const struct relume_log *log);
+
+#endif

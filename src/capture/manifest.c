@@ -1,0 +1,433 @@
+// manifest.c - capture.json, read and written; the one file that knows jansson
+#include "capture/manifest.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/outfile.h"
+#include "math/vec.h"
+
+#include <jansson.h>
+#include <libgen.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { VERSION = 1 };
+
+// ---------------------------------------------------------------- reading
+
+struct parser {
+    struct draft *d;
+    const char *path;
+    char *folder;
+    struct relume_limits limits;
+    const struct relume_log *log;
+};
+
+static relume_status wrong(const struct parser *p, const char *where, const char *expected)
+{
+    return log_fail(p->log, RELUME_EDATA, "%s: %s; expected %s", p->path, where, expected);
+}
+
+static bool numbers(const json_t *value, double *out, size_t count)
+{
+    if (!json_is_array(value) || json_array_size(value) != count)
+        return false;
+    for (size_t i = 0; i < count; i++) {
+        const json_t *v = json_array_get(value, i);
+        if (!json_is_number(v) || !isfinite(json_number_value(v)))
+            return false;
+        out[i] = json_number_value(v);
+    }
+    return true;
+}
+
+// An optional member: absent leaves `out` as it is.
+static relume_status get_numbers(const struct parser *p, const json_t *object, const char *key,
+                                 double *out, size_t count)
+{
+    const json_t *value = json_object_get(object, key);
+    if (!value)
+        return RELUME_OK;
+    if (count == 1 && json_is_number(value)) {
+        out[0] = json_number_value(value);
+        return RELUME_OK;
+    }
+    char expected[32];
+    snprintf(expected, sizeof expected, "%zu number%s", count, count == 1 ? "" : "s");
+    return numbers(value, out, count) ? RELUME_OK : wrong(p, key, expected);
+}
+
+static const char *get_path(const struct parser *p, const json_t *value)
+{
+    const char *text = json_string_value(value);
+    if (!text || !*text)
+        return NULL;
+    return text[0] == '/' ? arena_text(&p->d->arena, text)
+                          : arena_format(&p->d->arena, "%s/%s", p->folder, text);
+}
+
+static relume_status read_vectors(const struct parser *p, const json_t *array, const char *what,
+                                  bool unit, struct relume_vec3 **out, int *count)
+{
+    char where[64];
+    const size_t n = json_array_size(array);
+    if (n < 1 || n > (size_t)p->limits.max_lights)
+        return wrong(p, what, "an array of [x, y, z], not empty and within the limits");
+    struct relume_vec3 *v = arena_array(&p->d->arena, n, sizeof *v);
+    if (!v)
+        return RELUME_ENOMEM;
+    for (size_t i = 0; i < n; i++) {
+        double xyz[3];
+        snprintf(where, sizeof where, "%s[%zu]", what, i);
+        if (!numbers(json_array_get(array, i), xyz, 3))
+            return wrong(p, where, "three finite numbers");
+        v[i] = vec3_of(xyz[0], xyz[1], xyz[2]);
+        if (unit && !direction_normalise(&v[i]))
+            return wrong(p, where, "a direction; found a zero vector");
+    }
+    *out = v;
+    *count = (int)n;
+    return RELUME_OK;
+}
+
+static relume_status read_intensities(const struct parser *p, const json_t *array, int lights)
+{
+    if (json_array_size(array) != (size_t)lights)
+        return wrong(p, "lights.intensities", "one [r, g, b] for every light");
+    struct draft *d = p->d;
+    d->intensities = arena_array(&d->arena, (size_t)lights, sizeof *d->intensities);
+    if (!d->intensities)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < lights; i++) {
+        double rgb[3];
+        if (!numbers(json_array_get(array, (size_t)i), rgb, 3) ||
+            !(rgb[0] > 0.0 && rgb[1] > 0.0 && rgb[2] > 0.0))
+            return wrong(p, "lights.intensities", "three numbers above 0 for every light");
+        for (int c = 0; c < 3; c++)
+            d->intensities[i][c] = (float)rgb[c];
+    }
+    return RELUME_OK;
+}
+
+static relume_status read_lights(const struct parser *p, const json_t *lights)
+{
+    struct draft *d = p->d;
+    const json_t *directions = json_object_get(lights, "directions");
+    const json_t *positions = json_object_get(lights, "positions");
+    const json_t *intensities = json_object_get(lights, "intensities");
+    relume_status status = RELUME_OK;
+    int n = 0;
+    if (!directions && !positions)
+        return wrong(p, "lights", "directions or positions");
+    if (positions)
+        status = read_vectors(p, positions, "lights.positions", false, &d->positions, &n);
+    if (!status) {
+        int m;
+        status = read_vectors(p, directions ? directions : positions,
+                              directions ? "lights.directions" : "lights.positions", true,
+                              &d->directions, &m);
+        if (!status && positions && m != n)
+            return wrong(p, "lights", "as many positions as directions");
+        n = m;
+    }
+    if (!status && intensities && !json_is_null(intensities))
+        status = read_intensities(p, intensities, n);
+    d->m.lights = n;
+    return status;
+}
+
+static relume_status read_geometry(const struct parser *p, const json_t *root)
+{
+    struct relume_geometry *g = &p->d->m.geometry;
+    const char *projection = "planar";
+    const json_t *value = json_object_get(root, "projection");
+    if (value)
+        projection = json_string_value(value);
+    enum relume_projection kind;
+    if (!projection || relume_projection_parse(&kind, projection))
+        return wrong(p, "projection", "planar, slab, cylindrical, spherical or cube");
+    *g = relume_geometry_default(kind, 1, 1);
+
+    const json_t *window = json_object_get(root, "window");
+    const json_t *slab = json_object_get(root, "slab");
+    const json_t *panorama = json_object_get(root, "panorama");
+    const char *camera = json_string_value(json_object_get(window, "camera"));
+    if (camera && strcmp(camera, "orthographic") && strcmp(camera, "perspective"))
+        return wrong(p, "window.camera", "orthographic or perspective");
+    g->perspective = camera && !strcmp(camera, "perspective");
+    p->d->has_window = json_object_get(window, "min") && json_object_get(window, "max");
+    if (kind == RELUME_SLAB && !slab)
+        return wrong(p, "slab", "an object with uv_plane_z, st_plane_z, st_min, st_max");
+
+    double center[3] = {0.0, 0.0, 0.0};
+    relume_status status = get_numbers(p, window, "min", g->window_min, 2);
+    const struct {
+        const json_t *object;
+        const char *key;
+        double *out;
+        size_t count;
+    } members[] = {
+        {window, "max", g->window_max, 2},    {window, "camera_z", &g->camera_z, 1},
+        {slab, "uv_plane_z", &g->uv_z, 1},    {slab, "st_plane_z", &g->st_z, 1},
+        {slab, "st_min", g->st_min, 2},       {slab, "st_max", g->st_max, 2},
+        {panorama, "v_min", &g->v_min, 1},    {panorama, "v_max", &g->v_max, 1},
+        {panorama, "center", center, 3},
+    };
+    for (size_t i = 0; !status && i < sizeof members / sizeof *members; i++)
+        status = get_numbers(p, members[i].object, members[i].key, members[i].out,
+                             members[i].count);
+    g->center = vec3_of(center[0], center[1], center[2]);
+    if (status)
+        return status;
+    for (int i = 0; i < 2; i++)
+        if (!(g->st_min[i] < g->st_max[i]) || !(g->window_min[i] < g->window_max[i]))
+            return wrong(p, "window", "min below max");
+    if (!(g->v_min < g->v_max))
+        return wrong(p, "panorama", "v_min below v_max");
+    if (g->uv_z == g->st_z)
+        return wrong(p, "slab", "two different planes");
+    return RELUME_OK;
+}
+
+static relume_status read_view(const struct parser *p, const json_t *object, int index)
+{
+    struct draft *d = p->d;
+    struct relume_manifest_view *v = &d->view[index];
+    char where[48];
+    snprintf(where, sizeof where, "views[%d].images", index);
+    const json_t *images = json_object_get(object, "images");
+    if (!json_is_array(images))
+        return wrong(p, where, "an array of file names");
+    if (json_array_size(images) != (size_t)d->m.lights)
+        return log_fail(p->log, RELUME_EDATA, "%s: %s; expected %d images for %d lights, found %zu",
+                        p->path, where, d->m.lights, d->m.lights, json_array_size(images));
+    v->images = arena_array(&d->arena, (size_t)d->m.lights, sizeof *v->images);
+    if (!v->images)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < d->m.lights; i++)
+        if (!(v->images[i] = get_path(p, json_array_get(images, (size_t)i))))
+            return wrong(p, where, "file names");
+    const json_t *depth = json_object_get(object, "depth");
+    const json_t *mask = json_object_get(object, "mask");
+    if (depth && !json_is_null(depth) && !(v->depth = get_path(p, depth)))
+        return wrong(p, "depth", "a file name");
+    if (mask && !json_is_null(mask) && !(v->mask = get_path(p, mask)))
+        return wrong(p, "mask", "a file name");
+    if (d->m.geometry.projection == RELUME_SLAB && !json_object_get(object, "uv"))
+        return wrong(p, "views[].uv", "two numbers for every view of a slab");
+    return get_numbers(p, object, "uv", v->uv, 2);
+}
+
+static relume_status read_views(const struct parser *p, const json_t *views)
+{
+    struct draft *d = p->d;
+    const size_t n = json_array_size(views);
+    if (n < 1 || n > (size_t)p->limits.max_views)
+        return wrong(p, "views", "an array of views, not empty and within the limits");
+    d->view = arena_array(&d->arena, n, sizeof *d->view);
+    if (!d->view)
+        return RELUME_ENOMEM;
+    d->m.views = (int)n;
+    relume_status status = RELUME_OK;
+    for (size_t i = 0; !status && i < n; i++)
+        status = read_view(p, json_array_get(views, i), (int)i);
+    return status;
+}
+
+static relume_status read_root(const struct parser *p, const json_t *root)
+{
+    const char *format = json_string_value(json_object_get(root, "format"));
+    if (!format || strcmp(format, "relume-capture"))
+        return wrong(p, "format", "\"relume-capture\"");
+    const json_t *version = json_object_get(root, "version");
+    if (!json_is_integer(version) || json_integer_value(version) < 1)
+        return wrong(p, "version", "1");
+    if (json_integer_value(version) > VERSION)
+        return log_fail(p->log, RELUME_EDATA,
+                        "%s: version %lld is newer than this program; expected %d", p->path,
+                        (long long)json_integer_value(version), VERSION);
+    struct draft *d = p->d;
+    const json_t *transfer = json_object_get(root, "transfer");
+    if (transfer && !json_is_null(transfer)) {
+        const char *text = json_string_value(transfer);
+        if (!text || relume_transfer_parse(&d->m.transfer, text))
+            return wrong(p, "transfer", "linear, srgb or gamma:NUMBER");
+    }
+    relume_status status = read_geometry(p, root);
+    if (!status)
+        status = read_lights(p, json_object_get(root, "lights"));
+    if (!status)
+        status = read_views(p, json_object_get(root, "views"));
+    d->m.directions = d->directions;
+    d->m.positions = d->positions;
+    d->m.intensities = (const float(*)[3])d->intensities;
+    d->m.view = d->view;
+    return status;
+}
+
+static relume_status load_json(json_t **root, const char *path, const struct relume_log *log)
+{
+    json_error_t error;
+    *root = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
+    if (*root)
+        return RELUME_OK;
+    if (error.line < 0)
+        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, error.text);
+    return log_fail(log, RELUME_EDATA, "%s: line %d; expected JSON, %s", path, error.line,
+                    error.text);
+}
+
+relume_status manifest_read(struct draft *out, const char *path, const struct relume_limits *limits,
+                            const struct relume_log *log)
+{
+    *out = (struct draft){0};
+    json_t *root;
+    relume_status status = load_json(&root, path, log);
+    if (status)
+        return status;
+    char *copy = mem_text(path);
+    if (copy) {
+        const struct parser p = {out, path, dirname(copy), limits_or_default(limits), log};
+        status = read_root(&p, root);
+    } else {
+        status = RELUME_ENOMEM;
+    }
+    free(copy);
+    json_decref(root);
+    if (status)
+        draft_free(out);
+    return status;
+}
+
+relume_status manifest_directions(const char *path, struct relume_vec3 **out, int *n,
+                                  const struct relume_log *log)
+{
+    *out = NULL;
+    *n = 0;
+    json_t *root;
+    relume_status status = load_json(&root, path, log);
+    if (status)
+        return status;
+    struct draft draft = {0};
+    char no_folder[] = ".";
+    const struct parser p = {&draft, path, no_folder, limits_or_default(NULL), log};
+    const json_t *lights = json_object_get(root, "lights");
+    // The output of `relume lights --json` has the directions at its top.
+    status = read_lights(&p, lights ? lights : root);
+    if (!status) {
+        *n = draft.m.lights;
+        *out = mem_copy(draft.directions, (size_t)*n, sizeof **out);
+        status = *out ? RELUME_OK : RELUME_ENOMEM;
+    }
+    draft_free(&draft);
+    json_decref(root);
+    return status;
+}
+
+// ---------------------------------------------------------------- writing
+
+static void put_text(FILE *f, const char *text)
+{
+    json_t *string = json_string(text);
+    char *quoted = string ? json_dumps(string, JSON_ENCODE_ANY) : NULL;
+    fputs(quoted ? quoted : "\"\"", f);
+    free(quoted);
+    json_decref(string);
+}
+
+static void put_vectors(FILE *f, const char *key, const struct relume_vec3 *v, int n)
+{
+    fprintf(f, "    \"%s\": [", key);
+    for (int i = 0; i < n; i++)
+        fprintf(f, "%s\n      [%.9g, %.9g, %.9g]", i ? "," : "", v[i].x, v[i].y, v[i].z);
+    fputs("\n    ]", f);
+}
+
+static void put_lights(FILE *f, const struct relume_manifest *m)
+{
+    fputs("  \"lights\": {\n", f);
+    put_vectors(f, "directions", m->directions, m->lights);
+    if (m->intensities) {
+        fputs(",\n    \"intensities\": [", f);
+        for (int i = 0; i < m->lights; i++)
+            fprintf(f, "%s\n      [%.9g, %.9g, %.9g]", i ? "," : "", (double)m->intensities[i][0],
+                    (double)m->intensities[i][1], (double)m->intensities[i][2]);
+        fputs("\n    ]", f);
+    }
+    if (m->positions) {
+        fputs(",\n", f);
+        put_vectors(f, "positions", m->positions, m->lights);
+    }
+    fputs("\n  },\n", f);
+}
+
+static void put_geometry(FILE *f, const struct relume_geometry *g)
+{
+    fprintf(f, "  \"projection\": \"%s\",\n", relume_projection_name(g->projection));
+    if (g->projection == RELUME_PLANAR)
+        fprintf(f,
+                "  \"window\": {\"min\": [%.9g, %.9g], \"max\": [%.9g, %.9g], \"camera\": \"%s\", "
+                "\"camera_z\": %.9g},\n",
+                g->window_min[0], g->window_min[1], g->window_max[0], g->window_max[1],
+                g->perspective ? "perspective" : "orthographic", g->camera_z);
+    else if (g->projection == RELUME_SLAB)
+        fprintf(f,
+                "  \"slab\": {\"uv_plane_z\": %.9g, \"st_plane_z\": %.9g, \"st_min\": [%.9g, %.9g], "
+                "\"st_max\": [%.9g, %.9g]},\n",
+                g->uv_z, g->st_z, g->st_min[0], g->st_min[1], g->st_max[0], g->st_max[1]);
+    else
+        fprintf(f,
+                "  \"panorama\": {\"v_min\": %.9g, \"v_max\": %.9g, \"center\": [%.9g, %.9g, "
+                "%.9g]},\n",
+                g->v_min, g->v_max, g->center.x, g->center.y, g->center.z);
+}
+
+static void put_view(FILE *f, const struct relume_manifest *m, const struct relume_manifest_view *v)
+{
+    fputs("    {", f);
+    if (m->geometry.projection == RELUME_SLAB)
+        fprintf(f, "\"uv\": [%.9g, %.9g], ", v->uv[0], v->uv[1]);
+    if (v->depth) {
+        fputs("\"depth\": ", f);
+        put_text(f, v->depth);
+        fputs(", ", f);
+    }
+    if (v->mask) {
+        fputs("\"mask\": ", f);
+        put_text(f, v->mask);
+        fputs(", ", f);
+    }
+    fputs("\"images\": [", f);
+    for (int i = 0; i < m->lights; i++) {
+        fputs(i ? ", " : "", f);
+        put_text(f, v->images[i]);
+    }
+    fputs("]}", f);
+}
+
+relume_status relume_manifest_write(const struct relume_manifest *manifest, const char *path,
+                                    const struct relume_log *log)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *f = open_memstream(&text, &size);
+    if (!f)
+        return RELUME_ENOMEM;
+    char transfer[32];
+    relume_transfer_text(manifest->transfer, transfer, sizeof transfer);
+    fprintf(f, "{\n  \"format\": \"relume-capture\",\n  \"version\": %d,\n", VERSION);
+    if (manifest->transfer.curve != RELUME_CURVE_AUTO)
+        fprintf(f, "  \"transfer\": \"%s\",\n", transfer);
+    put_geometry(f, &manifest->geometry);
+    put_lights(f, manifest);
+    fputs("  \"views\": [\n", f);
+    for (int i = 0; i < manifest->views; i++) {
+        put_view(f, manifest, &manifest->view[i]);
+        fputs(i + 1 < manifest->views ? ",\n" : "\n", f);
+    }
+    fputs("  ]\n}\n", f);
+    const bool failed = fclose(f) != 0;
+    const relume_status status = failed ? RELUME_ENOMEM : outfile_save(path, text, size, log);
+    free(text);
+    return status;
+}

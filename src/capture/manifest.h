@@ -1,0 +1,39 @@
+// manifest.h - reading what describes a capture into one form; images are not touched here
+#ifndef CAPTURE_MANIFEST_H
+#define CAPTURE_MANIFEST_H
+
+#include "base/arena.h"
+
+#include <relume/capture.h>
+
+// A manifest whose arrays live in `arena` and may still be changed.
+struct draft {
+    struct arena arena;
+    struct relume_manifest m;
+    struct relume_vec3 *directions, *positions;
+    float (*intensities)[3];
+    struct relume_manifest_view *view;
+    bool has_window;  // the manifest states it, else it follows from the image size
+};
+void draft_free(struct draft *draft);
+
+// A .lp file. Image names are as written; lp_resolve finds the files.
+relume_status lp_read(struct draft *out, const char *path, const struct relume_limits *limits,
+                      const struct relume_log *log);
+// Replace the names by existing paths (docs/user-guide: "Names decide"); missing files stay as
+// they are when `skip_missing`.
+relume_status lp_resolve(struct draft *draft, const char *path, bool skip_missing,
+                         const struct relume_log *log);
+
+// A capture.json; paths are made relative to the working folder.
+relume_status manifest_read(struct draft *out, const char *path, const struct relume_limits *limits,
+                            const struct relume_log *log);
+
+// Only the light directions of a capture.json; `*out` is to be freed.
+relume_status manifest_directions(const char *path, struct relume_vec3 **out, int *n,
+                                  const struct relume_log *log);
+
+// Normalise; false for a vector that is zero, infinite or NaN.
+bool direction_normalise(struct relume_vec3 *v);
+
+#endif

@@ -2,10 +2,21 @@
 
 static const float PI_F = 3.14159265358979f;
 
+// fminf and fmaxf are calls in this build; these are one instruction.
+static inline float smaller(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static inline float larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+
 // Grazing eyes on smooth normals may look slightly from behind; the formulas stay finite.
 static float eye_cosine(const struct surface *s)
 {
-    return fmaxf(dot3(s->n, s->wo), 1e-3f);
+    return larger(dot3(s->n, s->wo), 1e-3f);
 }
 
 static float fifth_power(float x)
@@ -37,7 +48,7 @@ static float halfway(const float a[3], const float b[3], float h[3])
 {
     for (int c = 0; c < 3; c++)
         h[c] = a[c] + b[c];
-    const float length = sqrtf(fmaxf(dot3(h, h), 1e-20f));
+    const float length = sqrtf(larger(dot3(h, h), 1e-20f));
     for (int c = 0; c < 3; c++)
         h[c] /= length;
     return length;
@@ -56,9 +67,9 @@ bool surface_lit(const struct surface *s, const float wi[3], float out[3])
     const float nv = eye_cosine(s);
     float h[3];
     halfway(wi, s->wo, h);
-    const float at_half = fifth_power(1.0f - fminf(dot3(wi, h), 1.0f));
-    const float into = fifth_power(1.0f - fminf(nl, 1.0f)), leave = fifth_power(1.0f - fminf(nv, 1.0f));
-    const float lobe = PI_F * nl * s->gloss * distribution(s->alpha, fminf(dot3(s->n, h), 1.0f)) *
+    const float at_half = fifth_power(1.0f - smaller(dot3(wi, h), 1.0f));
+    const float into = fifth_power(1.0f - smaller(nl, 1.0f)), leave = fifth_power(1.0f - smaller(nv, 1.0f));
+    const float lobe = PI_F * nl * s->gloss * distribution(s->alpha, smaller(dot3(s->n, h), 1.0f)) *
                        visibility(s->alpha, nl, nv);
     for (int c = 0; c < 3; c++) {
         const float rest = 1.0f - s->f0[c];  // 1 - F = (1 - f0) (1 - fifth power)
@@ -70,7 +81,7 @@ bool surface_lit(const struct surface *s, const float wi[3], float out[3])
 
 void surface_mirror(const struct surface *s, float out[3])
 {
-    const float grazing = has_coat(s) ? fifth_power(1.0f - fminf(eye_cosine(s), 1.0f)) : 0.0f;
+    const float grazing = has_coat(s) ? fifth_power(1.0f - smaller(eye_cosine(s), 1.0f)) : 0.0f;
     for (int c = 0; c < 3; c++)
         out[c] = (1.0f - s->gloss) * (s->f0[c] + (1.0f - s->f0[c]) * grazing);
 }
@@ -90,7 +101,7 @@ static void around(const float n[3], float z, float u, float out[3])
 {
     float t[3], b[3];
     tangents(n, t, b);
-    const float r = sqrtf(fmaxf(0.0f, 1.0f - z * z));
+    const float r = sqrtf(larger(0.0f, 1.0f - z * z));
     const float x = r * cosf(2.0f * PI_F * u), y = r * sinf(2.0f * PI_F * u);
     for (int c = 0; c < 3; c++)
         out[c] = x * t[c] + y * b[c] + z * n[c];
@@ -110,8 +121,8 @@ static float lobe_density(const struct surface *s, const float wi[3])
 {
     float h[3];
     halfway(wi, s->wo, h);
-    const float nh = fmaxf(dot3(s->n, h), 0.0f);
-    return distribution(s->alpha, nh) * nh / (4.0f * fmaxf(dot3(s->wo, h), 1e-4f));
+    const float nh = larger(dot3(s->n, h), 0.0f);
+    return distribution(s->alpha, nh) * nh / (4.0f * larger(dot3(s->wo, h), 1e-4f));
 }
 
 // How often the lobe rather than the base is asked, by their rough shares of the light.

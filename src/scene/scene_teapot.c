@@ -3,7 +3,7 @@
 // The board leans so far that every camera of the slab, down to v = -1, looks at it from above.
 #include "scene/scene.h"
 
-static const double TILT_RAD = 0.52;
+static const double TILT_RAD = 0.60;
 
 static void add_board(struct relume_scene_builder *b)
 {
@@ -32,14 +32,15 @@ static void add_board(struct relume_scene_builder *b)
 static relume_status build(struct relume_scene_builder *b)
 {
     struct mesh part = {0};
-    const struct frame tilt = frame_compose(frame_move(0, -0.52, 0), frame_turn_x(TILT_RAD));
-    b->frame = frame_compose(tilt, frame_scale(0.29, 0.29, 0.29));
+    const struct frame tilt = frame_compose(frame_move(0.04, -0.42, 0), frame_turn_x(TILT_RAD));
+    b->frame = frame_compose(tilt, frame_scale(0.25, 0.25, 0.25));
     add_board(b);
 
     const struct material glaze = {
-        .texture = {.color = texture_plain, .a = {0.62f, 0.16f, 0.05f}},
-        .f0 = {0.06f, 0.06f, 0.06f},
+        .texture = {.color = texture_plain, .a = {0.05f, 0.30f, 0.33f}},
+        .f0 = {0.07f, 0.07f, 0.07f},
         .alpha = 0.12f,
+        .mirror = 0.4f,
     };
     b->frame = frame_compose(b->frame, frame_turn_y(0.45));
     shape_teapot(&part, 24);

@@ -92,7 +92,7 @@ bool trace_closest(const tracer *t, const float origin[3], const float direction
     return true;
 }
 
-enum { PACKET = 8 };
+enum { PACKET = 16 };
 
 static void packet_unblocked(const tracer *t, float (*origins)[3], int count,
                              const float direction[3], bool *seen)
@@ -100,8 +100,8 @@ static void packet_unblocked(const tracer *t, float (*origins)[3], int count,
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    struct RTCRay8 ray;
-    _Alignas(32) int valid[PACKET];
+    struct RTCRay16 ray;
+    _Alignas(64) int valid[PACKET];
     for (int i = 0; i < PACKET; i++) {
         const float *origin = origins[i < count ? i : 0];
         valid[i] = i < count ? -1 : 0;
@@ -110,7 +110,7 @@ static void packet_unblocked(const tracer *t, float (*origins)[3], int count,
         ray.tnear[i] = 0.0f, ray.tfar[i] = INFINITY;
         ray.time[i] = 0.0f, ray.mask[i] = ~0u, ray.id[i] = 0, ray.flags[i] = 0;
     }
-    rtcOccluded8(valid, t->scene, &context, &ray);
+    rtcOccluded16(valid, t->scene, &context, &ray);
     for (int i = 0; i < count; i++)
         seen[i] = ray.tfar[i] >= 0.0f;  // Embree marks a blocked ray by -inf
 }

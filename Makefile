@@ -20,7 +20,7 @@ MODE     := $($(config))
 ifeq ($(MODE),)
 $(error config=$(config): expected release, debug, asan or tsan)
 endif
-C11      := -std=c11 $(COMMON) $(MODE) -Wstrict-prototypes -Wmissing-prototypes
+C11      := -std=c11 -D_GNU_SOURCE $(COMMON) $(MODE) -Wstrict-prototypes -Wmissing-prototypes
 CXX17    := -std=c++17 $(COMMON) $(MODE)
 
 # Asked of pkg-config once, after the packages are there.

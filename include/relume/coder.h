@@ -44,9 +44,9 @@ struct relume_coder_params {
     bool hemispherical;  // the lights cover only the pole's hemisphere
     bool pole_y;         // theta is measured from +y (panoramas); default +z
     double ridge;        // Tikhonov weight relative to the data, [0, 1]; default: the basis's own
-    // Decoding only: K x K, row by row; stored functions = transform x basis functions.
-    // Default: made while encoding.
-    const float *transform;
+    bool decode;             // only weights will be asked for: no encoding map is made
+    const float *transform;  // decoding: K x K, row by row; stored functions = transform x basis
+                             // functions. Default: the identity
 };
 #define relume_coder_params(...) (&(const struct relume_coder_params){__VA_ARGS__})
 
@@ -92,12 +92,15 @@ struct relume_encode_params {
     enum relume_domain domain;     // default: display for captures that are not linear, else linear
     enum relume_storage storage;   // default 8 bits
     int threads;                   // default: all cores
+    const char *scratch;           // temporary data goes beside this path; default: $TMPDIR
 };
 #define relume_encode_params(...) (&(const struct relume_encode_params){__VA_ARGS__})
 
 // The domain that DOMAIN_AUTO means for `capture`.
 RELUME_API enum relume_domain relume_encode_domain(const relume_capture *capture,
                                                    enum relume_domain domain);
+// The curve of the display domain: the capture's own gamma, else sRGB.
+RELUME_API struct relume_transfer relume_encode_display(const relume_capture *capture);
 
 // Run `coder` over one view of `capture`. Pixels outside the view's mask become 0.
 // Returns RELUME_EDATA, RELUME_EIO (temporary file), RELUME_ENOMEM, RELUME_ECANCEL.
@@ -124,7 +127,7 @@ struct relume_coefficients_info {
 RELUME_API const struct relume_coefficients_info *
 relume_coefficients_info(const relume_coefficients *coefficients);
 
-// Codes of `rows` rows from `row` on of every plane: out[plane][row][x], uint8_t, uint16_t or half
+// Codes of `rows` rows from `row` on of every plane: out[row][plane][x], uint8_t, uint16_t or half
 // bits by the storage. RELUME_EIO when the temporary file cannot be read back.
 RELUME_RESULT relume_status relume_coefficients_read(const relume_coefficients *coefficients,
                                                      int row, int rows, void *out);

@@ -36,7 +36,6 @@ struct relume_pack_contents {
     struct relume_geometry geometry;
     int views;
     const struct relume_pack_view *view;  // [views]
-    const struct relume_image *preview;   // linear, 3 channels: the first part of the file
 };
 struct relume_pack_params {
     const struct relume_log *log;
@@ -46,7 +45,8 @@ struct relume_pack_params {
 };
 #define relume_pack_params(...) (&(const struct relume_pack_params){__VA_ARGS__})
 
-// Write `path` whole or not at all. Returns RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
+// Write `path` whole or not at all; the first part is a preview of the middle view, relit from the
+// front, for ordinary EXR viewers. Returns RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_pack_write(const struct relume_pack_contents *contents,
                                               const char *path,
                                               const struct relume_pack_params *params);

@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 #include "base/outfile.h"
 
 #include "base/log.h"
@@ -67,8 +66,16 @@ bool scratch_read(int fd, void *bytes, size_t size, off_t offset)
     return true;
 }
 
+static bool is_device(const char *path)
+{
+    struct stat s;
+    return !stat(path, &s) && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode);
+}
+
 int scratch_open(const char *near)
 {
+    if (near && is_device(near))
+        near = NULL;
     const char *temp = getenv("TMPDIR");
     char *copy = near ? mem_text(near) : NULL;
     const char *folder = copy ? dirname(copy) : temp && *temp ? temp : "/tmp";
@@ -84,12 +91,6 @@ int scratch_open(const char *near)
     free(name);
     free(copy);
     return fd;
-}
-
-static bool is_device(const char *path)
-{
-    struct stat s;
-    return !stat(path, &s) && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode);
 }
 
 relume_status outfile_open(outfile **out, const char *path, const struct relume_log *log)

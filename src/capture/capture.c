@@ -1,5 +1,4 @@
 // capture.c - an opened capture: every promise of the manifest checked against the files
-#define _GNU_SOURCE
 #include "capture/capture.h"
 
 #include "base/log.h"

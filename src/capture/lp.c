@@ -1,5 +1,4 @@
 // lp.c - the light position files of RTI: a count, then "name x y z" a line
-#define _GNU_SOURCE
 #include "base/log.h"
 #include "base/memory.h"
 #include "capture/manifest.h"

@@ -1,5 +1,4 @@
 // manifest.c - capture.json, read and written; the one file that knows jansson
-#define _GNU_SOURCE
 #include "capture/manifest.h"
 
 #include "base/log.h"

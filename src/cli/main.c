@@ -1,5 +1,4 @@
 // main.c - the relume tool: finds the command, parses its options, turns statuses into exit codes
-#define _GNU_SOURCE
 #include "cli.h"
 
 #include <assert.h>

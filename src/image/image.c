@@ -3,7 +3,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/exr.h"
-#include "math/half.h"
+#include "image/half.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,0 +1,48 @@
+// basis.h - the inside of a coder, for the files basis_*.c
+//
+// A basis fills in three functions (struct relume_basis): evaluate gives its K functions at a
+// direction; prepare builds private data and, when encoding, the map from the N captured samples
+// to the K coefficients. Least-squares bases call fit_map for that.
+#ifndef CODER_BASIS_H
+#define CODER_BASIS_H
+
+#include "math/vec.h"
+
+#include <relume/coder.h>
+
+enum { CODER_MAX_COEFFICIENTS = 4096 };
+
+struct relume_coder {
+    struct relume_coder_info info;
+    vec3 *world;       // [lights]
+    vec3 *frame;       // [lights], in the pole's frame
+    float *transform;  // [K][K] or NULL
+    float *map;        // [K][lights]: coefficients = map x samples; NULL when only decoding
+    bool decode;
+    void *data;        // the basis's own
+};
+
+// Regularised least squares on the captured directions, for bases with smooth functions:
+// fills coder->map and coder->transform. `roughness[K]` is what the ridge multiplies.
+relume_status fit_map(relume_coder *coder, const double *roughness, const struct relume_log *log);
+
+// Interpolation weights of the captured lights, at most three.
+struct blend {
+    int count;
+    int light[3];
+    double weight[3];
+};
+
+// Spherical triangulation of the captured lights (basis_table.c).
+typedef struct mesh mesh;
+relume_status mesh_create(mesh **out, const vec3 *lights, int n);
+void mesh_destroy(mesh **m);
+// `d` unit, in the frame of the lights. Always sums to 1; outside the captured region the weights
+// are those of its border.
+struct blend mesh_blend(const mesh *m, vec3 d);
+
+// The direction at which the basis is really evaluated: below the horizon of a hemispherical
+// capture that is the horizon at the same azimuth.
+vec3 clamp_to_captured(bool hemispherical, vec3 d);
+
+#endif

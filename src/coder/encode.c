@@ -1,0 +1,469 @@
+// encode.c - one view becomes coefficient planes
+//
+// The images are read in bands of rows. A band is a matrix T[lights][pixels x 3]; its coefficients
+// are map x T, one matrix product per chunk of columns. Ranges for quantising are known only after
+// the last band, so coefficients wait in a scratch file as 16-bit numbers with a scale of their own
+// per band and plane (finer than any code that follows); halves wait as they are.
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/outfile.h"
+#include "base/thread.h"
+#include "coder/basis.h"
+#include "image/half.h"
+#include "math/lsq.h"
+
+#include <errno.h>
+#include <float.h>
+#include <string.h>
+#include <unistd.h>
+
+enum {
+    BAND_ROWS = 16,
+    CHUNK = 3 * 1024,  // columns of one product: pixels x channels, fixed for equal bits
+};
+
+struct range {
+    float min, max;
+};
+
+struct relume_coefficients {
+    struct relume_coefficients_info info;
+    float *scale, *offset;  // [planes]
+    struct range *band;     // [bands][planes]: 65535 steps each; unused for halves
+    int bands;
+    int fd;
+    struct relume_encode_report report;
+};
+
+// ---------------------------------------------------------------- encoding
+
+struct encoder {
+    const relume_coder *coder;
+    relume_coefficients *out;
+    int lights, width, height, planes;
+    int row, rows;     // of the band in progress
+    float *samples;    // [lights][rows][x][3]
+    float *values;     // [K][rows][x][3]
+    uint16_t *packed;  // [rows][planes][x]
+    const struct relume_image *mask;
+    struct range *total;  // [planes], over unmasked pixels
+    float *basis;         // [lights][K], stored functions at the captured lights
+    double error_sum;
+    size_t error_count;
+    int threads;
+};
+
+static bool is_inside(const struct relume_image *mask, size_t pixel)
+{
+    return !mask->data || mask->data[pixel] > 0.5f;
+}
+
+static void multiply_chunk(void *context, size_t item, int worker)
+{
+    (void)worker;
+    struct encoder *e = context;
+    const int columns = e->rows * e->width * 3;
+    const int from = (int)item * CHUNK;
+    const int n = columns - from < CHUNK ? columns - from : CHUNK;
+    lsq_multiply(e->coder->info.coefficients, n, e->lights, e->coder->map, e->lights,
+                 e->samples + from, columns, e->values + from, columns);
+}
+
+// Pixels outside the mask are 0 and do not count for the range.
+static void apply_mask(struct encoder *e)
+{
+    const size_t pixels = (size_t)e->rows * (size_t)e->width;
+    const size_t first = (size_t)e->row * (size_t)e->width;
+    for (size_t x = 0; e->mask->data && x < pixels; x++)
+        if (!is_inside(e->mask, first + x))
+            for (int k = 0; k < e->coder->info.coefficients; k++)
+                memset(&e->values[((size_t)k * pixels + x) * 3], 0, 3 * sizeof *e->values);
+}
+
+static struct range find_range(const float *v, size_t pixels)
+{
+    struct range r = {FLT_MAX, -FLT_MAX};
+    for (size_t x = 0; x < pixels; x++) {
+        const float f = v[3 * x];
+        r.min = f < r.min ? f : r.min;
+        r.max = f > r.max ? f : r.max;
+    }
+    return r;
+}
+
+static void pack_plane(void *context, size_t plane, int worker)
+{
+    (void)worker;
+    struct encoder *e = context;
+    const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
+    const float *v = e->values + plane / 3 * pixels * 3 + plane % 3;
+    const bool half = e->out->info.storage == RELUME_STORE_HALF;
+    const struct range r = find_range(v, pixels);
+    const float scale = r.max > r.min ? 65535.0f / (r.max - r.min) : 0.0f;
+    e->out->band[(size_t)(e->row / BAND_ROWS) * (size_t)e->planes + plane] = r;
+    e->total[plane].min = r.min < e->total[plane].min ? r.min : e->total[plane].min;
+    e->total[plane].max = r.max > e->total[plane].max ? r.max : e->total[plane].max;
+    for (int y = 0; y < e->rows; y++) {
+        uint16_t *to = e->packed + ((size_t)y * (size_t)e->planes + plane) * width;
+        const float *from = v + (size_t)y * width * 3;
+        if (half)
+            for (size_t x = 0; x < width; x++)
+                to[x] = half_from_float(from[3 * x]);
+        else
+            for (size_t x = 0; x < width; x++)
+                to[x] = (uint16_t)(int)((from[3 * x] - r.min) * scale + 0.5f);
+    }
+}
+
+// What the basis cannot express, on the first row of the band.
+static relume_status measure_fit(struct encoder *e)
+{
+    const int k = e->coder->info.coefficients, columns = e->width * 3;
+    float *again = mem_array((size_t)columns, sizeof *again);
+    if (!again)
+        return RELUME_ENOMEM;
+    const size_t stride = (size_t)e->rows * (size_t)columns;
+    for (int i = 0; i < e->lights; i++) {
+        const float *sample = e->samples + (size_t)i * stride;
+        lsq_multiply(1, columns, k, e->basis + (size_t)i * (size_t)k, k, e->values, (int)stride,
+                     again, columns);
+        for (int x = 0; x < columns; x++)
+            if (is_inside(e->mask, (size_t)e->row * (size_t)e->width + (size_t)x / 3)) {
+                const double d = (double)sample[x] - (double)again[x];
+                e->error_sum += d * d;
+                e->error_count++;
+            }
+    }
+    free(again);
+    return RELUME_OK;
+}
+
+static off_t band_offset(const relume_coefficients *c, int row)
+{
+    return (off_t)row * c->info.planes * c->info.width * (off_t)sizeof(uint16_t);
+}
+
+static bool all_finite(const float *v, size_t n)
+{
+    float sum = 0.0f;  // 0 x finite is 0, 0 x anything else is NaN
+    for (size_t i = 0; i < n; i++)
+        sum += v[i] * 0.0f;
+    return sum == 0.0f;
+}
+
+static relume_status encode_band(struct encoder *e, relume_table *table,
+                                 const struct relume_encode_params *p)
+{
+    const size_t columns = (size_t)e->rows * (size_t)e->width * 3;
+    relume_status status = relume_table_read(table, e->rows, e->samples);
+    if (status)
+        return status;
+    for (int i = 0; i < e->lights; i++)
+        if (!all_finite(e->samples + (size_t)i * columns, columns))
+            return log_fail(p->log, RELUME_EDATA,
+                            "image %d: holds NaN or infinite values in rows %d to %d; expected "
+                            "finite radiance",
+                            i, e->row, e->row + e->rows - 1);
+    thread_for(e->threads, (columns + CHUNK - 1) / CHUNK, multiply_chunk, e);
+    status = measure_fit(e);
+    if (status)
+        return status;
+    apply_mask(e);
+    thread_for(e->threads, (size_t)e->planes, pack_plane, e);
+    const size_t bytes = columns / 3 * (size_t)e->planes * sizeof *e->packed;
+    if (!scratch_write(e->out->fd, e->packed, bytes, band_offset(e->out, e->row)))
+        return log_fail(p->log, RELUME_EIO, "%s: writing its temporary file failed; %s",
+                        p->scratch ? p->scratch : "$TMPDIR", strerror(errno));
+    return RELUME_OK;
+}
+
+static relume_status encode_bands(struct encoder *e, const relume_capture *capture, int view,
+                                  struct relume_transfer display,
+                                  const struct relume_encode_params *p)
+{
+    relume_table *table;
+    relume_status status = relume_table_open(
+        &table, capture, view,
+        relume_table_params(.log = p->log, .display = display, .threads = p->threads));
+    for (e->row = 0; !status && e->row < e->height; e->row += BAND_ROWS) {
+        e->rows = e->height - e->row < BAND_ROWS ? e->height - e->row : BAND_ROWS;
+        status = encode_band(e, table, p);
+        const int views = relume_capture_manifest(capture)->views;
+        const double done = (view + (e->row + e->rows) / (double)e->height) / views;
+        if (!status && !log_progress(p->log, "encoding", done))
+            status = RELUME_ECANCEL;
+    }
+    relume_table_destroy(&table);
+    return status;
+}
+
+// ---------------------------------------------------------------- quantising
+
+// Codes 0..levels span the plane's range. With a mask 0 must be a code, so that the outside stays black.
+static void choose_steps(relume_coefficients *c, const struct range *total, bool keep_zero)
+{
+    const float levels = c->info.storage == RELUME_STORE_8 ? 255.0f : 65535.0f;
+    for (int p = 0; p < c->info.planes; p++) {
+        struct range r = total[p];
+        if (c->info.storage == RELUME_STORE_HALF) {
+            c->scale[p] = 1.0f;
+            c->offset[p] = 0.0f;
+            continue;
+        }
+        if (!(r.min <= r.max))
+            r = (struct range){0.0f, 0.0f};  // everything is masked
+        if (keep_zero) {
+            r.min = r.min < 0.0f ? r.min : 0.0f;
+            r.max = r.max > 0.0f ? r.max : 0.0f;
+        }
+        c->scale[p] = r.max > r.min ? (r.max - r.min) / levels : 1.0f;
+        c->offset[p] = r.min;
+        if (keep_zero) {
+            const float zero = floorf(-r.min / c->scale[p] + 0.5f);
+            c->offset[p] = -zero * c->scale[p];
+        }
+    }
+}
+
+// The value that a number waiting in the scratch file stands for is min + step * number.
+static float band_step(struct range r)
+{
+    return r.max > r.min ? (r.max - r.min) / 65535.0f : 0.0f;
+}
+
+static void quantise_row(const relume_coefficients *c, int plane, int row, const uint16_t *from,
+                         void *to)
+{
+    const struct range r = c->band[(row / BAND_ROWS) * c->info.planes + plane];
+    const float a = band_step(r) / c->scale[plane];
+    const float b = (r.min - c->offset[plane]) / c->scale[plane] + 0.5f;
+    const float top = c->info.storage == RELUME_STORE_8 ? 255.0f : 65535.0f;
+    uint8_t *bytes = to;
+    uint16_t *words = to;
+    for (int x = 0; x < c->info.width; x++) {
+        float v = (float)from[x] * a + b;
+        v = v < 0.0f ? 0.0f : v > top ? top : v;
+        if (c->info.storage == RELUME_STORE_8)
+            bytes[x] = (uint8_t)(int)v;
+        else
+            words[x] = (uint16_t)(int)v;
+    }
+}
+
+relume_status relume_coefficients_read(const relume_coefficients *coefficients, int row, int rows,
+                                       void *out)
+{
+    const relume_coefficients *c = coefficients;
+    const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
+    const size_t n = (size_t)rows * planes * width;
+    if (c->info.storage == RELUME_STORE_HALF)
+        return scratch_read(c->fd, out, n * 2, band_offset(c, row)) ? RELUME_OK : RELUME_EIO;
+    uint16_t *packed = mem_array(n, sizeof *packed);
+    if (!packed)
+        return RELUME_ENOMEM;
+    const bool good = scratch_read(c->fd, packed, n * sizeof *packed, band_offset(c, row));
+    const size_t bytes = c->info.storage == RELUME_STORE_8 ? 1 : 2;
+    for (size_t i = 0; good && i < (size_t)rows * planes; i++)
+        quantise_row(c, (int)(i % planes), row + (int)(i / planes), packed + i * width,
+                     (uint8_t *)out + i * width * bytes);
+    free(packed);
+    return good ? RELUME_OK : RELUME_EIO;
+}
+
+// What storing cost, over the captured lights, on the first row of every band.
+static relume_status measure_storage(relume_coefficients *c, const struct encoder *e)
+{
+    const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
+    const int k = e->coder->info.coefficients, columns = (int)width * 3;
+    const size_t bytes = c->info.storage == RELUME_STORE_8 ? 1 : 2;
+    uint16_t *waiting = mem_array(planes * width, sizeof *waiting);
+    uint16_t *codes = mem_array(planes * width, sizeof *codes);
+    float *difference = mem_array(planes * width, sizeof *difference);  // [k][x][3]
+    float *effect = mem_array((size_t)columns, sizeof *effect);
+    relume_status status = waiting && codes && difference && effect ? RELUME_OK : RELUME_ENOMEM;
+    double sum = 0.0;
+    size_t count = 0;
+    for (int row = 0; !status && row < e->height; row += BAND_ROWS) {
+        if (!scratch_read(c->fd, waiting, planes * width * 2, band_offset(c, row))) {
+            status = RELUME_EIO;
+            break;
+        }
+        for (size_t p = 0; p < planes; p++) {
+            const struct range r = c->band[(size_t)(row / BAND_ROWS) * planes + p];
+            const uint16_t *in = waiting + p * width;
+            uint16_t *code = codes + p * width;
+            quantise_row(c, (int)p, row, in, code);
+            for (size_t x = 0; x < width; x++) {
+                const float stored = bytes == 1 ? ((const uint8_t *)code)[x] : code[x];
+                difference[(p / 3 * width + x) * 3 + p % 3] =
+                    r.min + band_step(r) * (float)in[x] - (stored * c->scale[p] + c->offset[p]);
+            }
+        }
+        for (int i = 0; i < e->lights; i++) {
+            lsq_multiply(1, columns, k, e->basis + (size_t)i * (size_t)k, k, difference, columns,
+                         effect, columns);
+            for (int x = 0; x < columns; x++)
+                sum += (double)effect[x] * (double)effect[x];
+            count += (size_t)columns;
+        }
+    }
+    c->report.store_rms = count ? sqrt(sum / (double)count) : 0.0;
+    free(waiting);
+    free(codes);
+    free(difference);
+    free(effect);
+    return status;
+}
+
+// ---------------------------------------------------------------- public
+
+enum relume_domain relume_encode_domain(const relume_capture *capture, enum relume_domain domain)
+{
+    if (domain != RELUME_DOMAIN_AUTO)
+        return domain;
+    return relume_capture_manifest(capture)->transfer.curve == RELUME_CURVE_LINEAR
+               ? RELUME_DOMAIN_LINEAR
+               : RELUME_DOMAIN_DISPLAY;
+}
+
+struct relume_transfer relume_encode_display(const relume_capture *capture)
+{
+    const struct relume_transfer t = relume_capture_manifest(capture)->transfer;
+    return t.curve == RELUME_CURVE_GAMMA ? t
+                                         : (struct relume_transfer){RELUME_CURVE_SRGB, 0.0f};
+}
+
+void relume_coefficients_destroy(relume_coefficients **coefficients)
+{
+    relume_coefficients *c = *coefficients;
+    *coefficients = NULL;
+    if (!c)
+        return;
+    if (c->fd >= 0)
+        close(c->fd);
+    free(c->scale);
+    free(c->offset);
+    free(c->band);
+    free(c);
+}
+
+static relume_status alloc_coefficients(relume_coefficients **out, const relume_coder *coder,
+                                        const relume_capture *capture,
+                                        const struct relume_encode_params *p)
+{
+    const size_t planes = (size_t)coder->info.planes;
+    relume_coefficients *c = *out = mem_zeroed(1, sizeof *c);
+    if (!c)
+        return RELUME_ENOMEM;
+    const int height = relume_capture_height(capture);
+    c->bands = (height + BAND_ROWS - 1) / BAND_ROWS;
+    c->scale = mem_zeroed(planes, sizeof *c->scale);
+    c->offset = mem_zeroed(planes, sizeof *c->offset);
+    c->band = mem_zeroed((size_t)c->bands * planes, sizeof *c->band);
+    c->fd = scratch_open(p->scratch);
+    c->info = (struct relume_coefficients_info){
+        .coder = coder,
+        .width = relume_capture_width(capture),
+        .height = height,
+        .planes = coder->info.planes,
+        .storage = p->storage ? p->storage : RELUME_STORE_8,
+        .scale = c->scale,
+        .offset = c->offset,
+    };
+    if (c->fd < 0)
+        return log_fail(p->log, RELUME_EIO, "%s: no temporary file can be made in its folder; %s",
+                        p->scratch ? p->scratch : "$TMPDIR", strerror(errno));
+    return c->scale && c->offset && c->band ? RELUME_OK : RELUME_ENOMEM;
+}
+
+static relume_status alloc_encoder(struct encoder *e)
+{
+    const size_t k = (size_t)e->coder->info.coefficients, lights = (size_t)e->lights;
+    const size_t band = (size_t)BAND_ROWS * (size_t)e->width * 3;
+    float constant[3];
+    float *weights = mem_array(3 * k, sizeof *weights);
+    e->samples = mem_array(lights * band, sizeof *e->samples);
+    e->values = mem_array(k * band, sizeof *e->values);
+    e->packed = mem_array(k * band, sizeof *e->packed);
+    e->total = mem_array((size_t)e->planes, sizeof *e->total);
+    e->basis = mem_array(lights * k, sizeof *e->basis);
+    const bool good =
+        weights && e->samples && e->values && e->packed && e->total && e->basis;
+    for (int p = 0; good && p < e->planes; p++)
+        e->total[p] = (struct range){FLT_MAX, -FLT_MAX};
+    for (size_t i = 0; good && i < lights; i++) {
+        relume_coder_weights(e->coder, e->coder->world[i], weights, constant);
+        memcpy(e->basis + i * k, weights, k * sizeof *weights);
+    }
+    free(weights);
+    return good ? RELUME_OK : RELUME_ENOMEM;
+}
+
+static void free_encoder(struct encoder *e)
+{
+    free(e->samples);
+    free(e->values);
+    free(e->packed);
+    free(e->total);
+    free(e->basis);
+}
+
+relume_status relume_encode(relume_coefficients **out, const relume_coder *coder,
+                            const relume_capture *capture, int view,
+                            const struct relume_encode_params *params)
+{
+    const struct relume_encode_params p = params ? *params : (struct relume_encode_params){0};
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    *out = NULL;
+    if (!coder->map || m->lights != coder->info.lights || view < 0 || view >= m->views)
+        return RELUME_EINVAL;
+
+    struct relume_image mask;
+    relume_status status = relume_capture_mask(&mask, capture, view, p.log);
+    if (status)
+        return status;
+    relume_coefficients *c = NULL;
+    struct encoder e = {
+        .coder = coder,
+        .lights = m->lights,
+        .width = relume_capture_width(capture),
+        .height = relume_capture_height(capture),
+        .planes = coder->info.planes,
+        .mask = &mask,
+        .threads = p.threads,
+    };
+    status = alloc_coefficients(&c, coder, capture, &p);
+    e.out = c;
+    if (!status)
+        status = alloc_encoder(&e);
+    if (!status) {
+        struct relume_transfer display = {RELUME_CURVE_LINEAR, 0.0f};
+        if (relume_encode_domain(capture, p.domain) == RELUME_DOMAIN_DISPLAY)
+            display = relume_encode_display(capture);
+        status = encode_bands(&e, capture, view, display, &p);
+    }
+    if (!status) {
+        c->report.fit_rms = e.error_count ? sqrt(e.error_sum / (double)e.error_count) : 0.0;
+        choose_steps(c, e.total, mask.data != NULL);
+        if (c->info.storage != RELUME_STORE_HALF)
+            status = measure_storage(c, &e);
+    }
+    free_encoder(&e);
+    relume_image_destroy(&mask);
+    if (status)
+        relume_coefficients_destroy(&c);
+    *out = c;
+    return status;
+}
+
+struct relume_encode_report
+relume_coefficients_report(const relume_coefficients *coefficients)
+{
+    return coefficients->report;
+}
+
+const struct relume_coefficients_info *
+relume_coefficients_info(const relume_coefficients *coefficients)
+{
+    return &coefficients->info;
+}

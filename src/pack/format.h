@@ -1,0 +1,36 @@
+// format.h - names in a relume file, shared by writer and reader (docs/format.md)
+#ifndef PACK_FORMAT_H
+#define PACK_FORMAT_H
+
+#define FORMAT_NAME "relume"
+
+enum { FORMAT_VERSION = 1 };
+
+// Attributes of the first part
+#define ATTR_FORMAT        "relume.format"
+#define ATTR_VERSION       "relume.version"
+#define ATTR_CREATOR       "relume.creator"
+#define ATTR_DOMAIN        "relume.domain"
+#define ATTR_DISPLAY       "relume.display"
+#define ATTR_STORAGE       "relume.storage"
+#define ATTR_PROJECTION    "relume.projection"
+#define ATTR_VIEWS         "relume.views"
+#define ATTR_UV            "relume.uv"
+#define ATTR_WINDOW        "relume.window"
+#define ATTR_CAMERA        "relume.camera"
+#define ATTR_SLAB          "relume.slab"
+#define ATTR_PANORAMA      "relume.panorama"
+#define ATTR_BASIS         "relume.basis"
+#define ATTR_COEFFICIENTS  "relume.coefficients"
+#define ATTR_POLE          "relume.pole"
+#define ATTR_HEMISPHERICAL "relume.hemispherical"
+#define ATTR_RIDGE         "relume.ridge"
+#define ATTR_LIGHTS        "relume.lights"
+#define ATTR_TRANSFORM     "relume.transform"
+
+// Attributes of a view's part
+#define ATTR_VIEW   "relume.view"
+#define ATTR_SCALE  "relume.scale"
+#define ATTR_OFFSET "relume.offset"
+
+#endif

@@ -1,0 +1,528 @@
+// reader.c - a relume file, of which nothing is believed before it has been checked
+#include <relume/pack.h>
+
+#include "base/arena.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "image/exr.h"
+#include "image/half.h"
+#include "pack/format.h"
+
+#include <math.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+struct loaded {
+    struct relume_codes codes;
+    const void **plane;
+    void *data;  // [planes][height][width]
+};
+
+struct view_parts {
+    int codes, depth, mask;  // part numbers, -1 when absent
+};
+
+struct relume_pack {
+    struct relume_pack_info info;
+    struct arena arena;
+    exr_file *file;
+    char *path;
+    relume_coder *coder;
+    struct view_parts *parts;  // [views]
+    struct loaded *loaded;     // [views]
+    uint16_t *code_of_half;    // [65536], NOT_A_CODE where a half is no 8-bit code
+    int threads;
+    const struct relume_log *log;
+    struct relume_limits limits;
+};
+
+enum { NOT_A_CODE = 0xffff };
+
+static relume_status bad(const relume_pack *p, const char *what, const char *expected)
+{
+    return log_fail(p->log, RELUME_EDATA, "%s: %s; expected %s", p->path, what, expected);
+}
+
+static bool all_finite(const float *v, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (!isfinite(v[i]))
+            return false;
+    return true;
+}
+
+// `count` finite numbers, or NULL.
+static const float *get_floats(const relume_pack *p, int part, const char *name, int count)
+{
+    int found;
+    const float *v = exr_get_floats(p->file, part, name, &found);
+    return v && found == count && all_finite(v, count) ? v : NULL;
+}
+
+// ---------------------------------------------------------------- header
+
+static relume_status check_format(relume_pack *p)
+{
+    const char *format = exr_get_text(p->file, 0, ATTR_FORMAT);
+    if (!format || strcmp(format, FORMAT_NAME))
+        return log_fail(p->log, RELUME_EDATA,
+                        "%s: an OpenEXR file, but not a relume file; expected one made by 'relume "
+                        "encode'",
+                        p->path);
+    if (!exr_get_int(p->file, 0, ATTR_VERSION, &p->info.version) || p->info.version < 1)
+        return bad(p, "no version", "1");
+    if (p->info.version > FORMAT_VERSION)
+        return log_fail(p->log, RELUME_EDATA,
+                        "%s: version %d is newer than this program; expected at most %d", p->path,
+                        p->info.version, FORMAT_VERSION);
+    return RELUME_OK;
+}
+
+static relume_status read_kinds(relume_pack *p)
+{
+    const char *domain = exr_get_text(p->file, 0, ATTR_DOMAIN);
+    const char *display = exr_get_text(p->file, 0, ATTR_DISPLAY);
+    const char *storage = exr_get_text(p->file, 0, ATTR_STORAGE);
+    if (!domain || (strcmp(domain, "linear") && strcmp(domain, "display")))
+        return bad(p, ATTR_DOMAIN, "linear or display");
+    if (!display || relume_transfer_parse(&p->info.display, display))
+        return bad(p, ATTR_DISPLAY, "srgb or gamma:NUMBER");
+    p->info.domain = strcmp(domain, "linear") ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR;
+    if (storage && !strcmp(storage, "8"))
+        p->info.storage = RELUME_STORE_8;
+    else if (storage && !strcmp(storage, "16"))
+        p->info.storage = RELUME_STORE_16;
+    else if (storage && !strcmp(storage, "half"))
+        p->info.storage = RELUME_STORE_HALF;
+    else
+        return bad(p, ATTR_STORAGE, "8, 16 or half");
+    return RELUME_OK;
+}
+
+static relume_status read_uv(relume_pack *p)
+{
+    const int n = p->info.views;
+    double(*uv)[2] = arena_array(&p->arena, (size_t)n, sizeof *uv);
+    if (!uv)
+        return RELUME_ENOMEM;
+    p->info.uv = (const double(*)[2])uv;
+    if (p->info.geometry.projection != RELUME_SLAB)
+        return RELUME_OK;
+    const float *v = get_floats(p, 0, ATTR_UV, 2 * n);
+    if (!v)
+        return bad(p, ATTR_UV, "two finite numbers for every view");
+    for (int i = 0; i < n; i++) {
+        uv[i][0] = (double)v[2 * i];
+        uv[i][1] = (double)v[2 * i + 1];
+    }
+    return RELUME_OK;
+}
+
+static relume_status read_geometry(relume_pack *p)
+{
+    struct relume_geometry *g = &p->info.geometry;
+    const char *name = exr_get_text(p->file, 0, ATTR_PROJECTION);
+    enum relume_projection projection;
+    if (!name || relume_projection_parse(&projection, name))
+        return bad(p, ATTR_PROJECTION, "planar, slab, cylindrical, spherical or cube");
+    const struct exr_part_info part = exr_part_info(p->file, 0);
+    *g = relume_geometry_default(projection, part.width, part.height);
+    if (projection == RELUME_PLANAR) {
+        const float *v = get_floats(p, 0, ATTR_WINDOW, 5);
+        const char *camera = exr_get_text(p->file, 0, ATTR_CAMERA);
+        if (!v || !(v[0] < v[2] && v[1] < v[3]) || !camera)
+            return bad(p, ATTR_WINDOW, "min x y, max x y, camera z");
+        for (int i = 0; i < 2; i++) {
+            g->window_min[i] = (double)v[i];
+            g->window_max[i] = (double)v[2 + i];
+        }
+        g->camera_z = (double)v[4];
+        g->perspective = !strcmp(camera, "perspective");
+    } else if (projection == RELUME_SLAB) {
+        const float *v = get_floats(p, 0, ATTR_SLAB, 6);
+        if (!v || v[0] == v[1] || !(v[2] < v[4] && v[3] < v[5]))
+            return bad(p, ATTR_SLAB, "uv z, st z, st min, st max");
+        g->uv_z = (double)v[0];
+        g->st_z = (double)v[1];
+        for (int i = 0; i < 2; i++) {
+            g->st_min[i] = (double)v[2 + i];
+            g->st_max[i] = (double)v[4 + i];
+        }
+    } else {
+        const float *v = get_floats(p, 0, ATTR_PANORAMA, 5);
+        if (!v || !(v[0] < v[1]))
+            return bad(p, ATTR_PANORAMA, "v min, v max, center");
+        g->v_min = (double)v[0];
+        g->v_max = (double)v[1];
+        g->center = (struct relume_vec3){(double)v[2], (double)v[3], (double)v[4]};
+        if (projection == RELUME_CUBE && part.width != 6 * part.height)
+            return bad(p, "size", "six square faces side by side");
+    }
+    return read_uv(p);
+}
+
+static relume_status read_coder(relume_pack *p)
+{
+    const char *name = exr_get_text(p->file, 0, ATTR_BASIS);
+    const char *pole = exr_get_text(p->file, 0, ATTR_POLE);
+    const struct relume_basis *basis = name ? relume_basis_find(name) : NULL;
+    int k, hemispherical, n = 0;
+    if (!basis)
+        return log_fail(p->log, RELUME_EDATA, "%s: unknown basis '%.40s'; expected one of this "
+                                              "program's",
+                        p->path, name ? name : "");
+    if (!exr_get_int(p->file, 0, ATTR_COEFFICIENTS, &k) || !basis->has_count(k))
+        return bad(p, ATTR_COEFFICIENTS, "a number that the basis has");
+    if (!exr_get_int(p->file, 0, ATTR_HEMISPHERICAL, &hemispherical) || !pole)
+        return bad(p, ATTR_POLE, "y or z, with " ATTR_HEMISPHERICAL);
+    const float *lights = exr_get_floats(p->file, 0, ATTR_LIGHTS, &n);
+    if (!lights || n < 3 || n % 3 || n / 3 > p->limits.max_lights || !all_finite(lights, n))
+        return bad(p, ATTR_LIGHTS, "x y z of every light, within the limits");
+    int size = 0;
+    const float *transform = exr_get_floats(p->file, 0, ATTR_TRANSFORM, &size);
+    if (transform && (size != k * k || !all_finite(transform, size)))
+        return bad(p, ATTR_TRANSFORM, "coefficients x coefficients finite numbers");
+    const float *ridge = get_floats(p, 0, ATTR_RIDGE, 1);
+
+    struct relume_vec3 *directions =
+        arena_array(&p->arena, (size_t)n / 3, sizeof *directions);
+    if (!directions)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < n / 3; i++) {
+        const double x = (double)lights[3 * i], y = (double)lights[3 * i + 1],
+                     z = (double)lights[3 * i + 2];
+        const double length = sqrt(x * x + y * y + z * z);
+        if (!(fabs(length - 1.0) < 1e-3))
+            return bad(p, ATTR_LIGHTS, "unit vectors");
+        directions[i] = (struct relume_vec3){x / length, y / length, z / length};
+    }
+    const relume_status status = relume_coder_create(
+        &p->coder, basis, directions, n / 3,
+        relume_coder_params(.log = p->log, .coefficients = k, .decode = true,
+                            .hemispherical = hemispherical != 0, .pole_y = pole[0] == 'y',
+                            .ridge = ridge && *ridge >= 0.0f && *ridge <= 1.0f ? (double)*ridge
+                                                                                : 0.0,
+                            .transform = transform));
+    p->info.coder = p->coder;
+    return status == RELUME_EINVAL ? RELUME_EDATA : status;
+}
+
+// ---------------------------------------------------------------- parts
+
+static relume_status check_view_part(relume_pack *p, int part, int view)
+{
+    const struct exr_part_info i = exr_part_info(p->file, part);
+    const int planes = relume_coder_info(p->coder)->planes;
+    const enum exr_sample sample =
+        p->info.storage == RELUME_STORE_16 ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF;
+    char where[32];
+    snprintf(where, sizeof where, "view %d", view);
+    if (i.width != p->info.width || i.height != p->info.height)
+        return bad(p, where, "the size of the other parts");
+    if (i.channels != planes || !i.uniform || i.sample != sample)
+        return bad(p, where, "one channel of the stored type for every plane");
+    if (!get_floats(p, part, ATTR_SCALE, planes) || !get_floats(p, part, ATTR_OFFSET, planes))
+        return bad(p, where, "a finite scale and offset for every plane");
+    return RELUME_OK;
+}
+
+static bool is_plane(const relume_pack *p, int part, enum exr_sample sample)
+{
+    const struct exr_part_info i = exr_part_info(p->file, part);
+    return i.width == p->info.width && i.height == p->info.height && i.channels == 1 &&
+           i.uniform && i.sample == sample;
+}
+
+static relume_status find_parts(relume_pack *p)
+{
+    const int count = exr_part_count(p->file);
+    int part = 1;
+    for (int v = 0; v < p->info.views; v++) {
+        char name[48];
+        struct view_parts *parts = &p->parts[v];
+        *parts = (struct view_parts){-1, -1, -1};
+        snprintf(name, sizeof name, "view%04d", v);
+        if (part >= count || strcmp(exr_part_info(p->file, part).name, name))
+            return bad(p, name, "a part of that name");
+        const relume_status status = check_view_part(p, part, v);
+        if (status)
+            return status;
+        parts->codes = part++;
+        snprintf(name, sizeof name, "view%04d.depth", v);
+        if (part < count && !strcmp(exr_part_info(p->file, part).name, name)) {
+            if (!is_plane(p, part, EXR_SAMPLE_FLOAT))
+                return bad(p, name, "one float channel of the views' size");
+            parts->depth = part++;
+            p->info.has_depth = true;
+        }
+        snprintf(name, sizeof name, "view%04d.mask", v);
+        if (part < count && !strcmp(exr_part_info(p->file, part).name, name)) {
+            if (!is_plane(p, part, EXR_SAMPLE_HALF))
+                return bad(p, name, "one half channel of the views' size");
+            parts->mask = part++;
+            p->info.has_mask = true;
+        }
+    }
+    p->info.compression = exr_part_info(p->file, p->parts[0].codes).codec;
+    return RELUME_OK;
+}
+
+static relume_status make_code_table(relume_pack *p)
+{
+    p->code_of_half = arena_array(&p->arena, 65536, sizeof *p->code_of_half);
+    if (!p->code_of_half)
+        return RELUME_ENOMEM;
+    for (int h = 0; h < 65536; h++)
+        p->code_of_half[h] = NOT_A_CODE;
+    for (int code = 0; code < 256; code++)
+        p->code_of_half[half_from_float((float)code)] = (uint16_t)code;
+    return RELUME_OK;
+}
+
+static relume_status read_header(relume_pack *p)
+{
+    relume_status status = check_format(p);
+    if (!status)
+        status = read_kinds(p);
+    if (status)
+        return status;
+    const struct exr_part_info first = exr_part_info(p->file, 0);
+    p->info.width = first.width;
+    p->info.height = first.height;
+    if (!exr_get_int(p->file, 0, ATTR_VIEWS, &p->info.views) || p->info.views < 1 ||
+        p->info.views > p->limits.max_views || p->info.views >= exr_part_count(p->file))
+        return bad(p, ATTR_VIEWS, "a part for every view, within the limits");
+    p->parts = arena_array(&p->arena, (size_t)p->info.views, sizeof *p->parts);
+    p->loaded = arena_array(&p->arena, (size_t)p->info.views, sizeof *p->loaded);
+    if (!p->parts || !p->loaded)
+        return RELUME_ENOMEM;
+    status = read_geometry(p);
+    if (!status)
+        status = read_coder(p);
+    if (!status)
+        status = find_parts(p);
+    if (!status)
+        status = make_code_table(p);
+    return status;
+}
+
+relume_status relume_pack_open(relume_pack **out, const char *path,
+                               const struct relume_pack_params *params)
+{
+    const struct relume_pack_params params_ = params ? *params : (struct relume_pack_params){0};
+    *out = NULL;
+    relume_pack *p = mem_zeroed(1, sizeof *p);
+    if (!p)
+        return RELUME_ENOMEM;
+    p->log = params_.log;
+    p->threads = params_.threads;
+    p->limits = limits_or_default(params_.limits);
+    p->path = mem_text(path);
+    relume_status status = p->path ? RELUME_OK : RELUME_ENOMEM;
+    struct stat s;
+    if (!status && (stat(path, &s) || !S_ISREG(s.st_mode)))
+        status = log_fail(p->log, RELUME_EDATA, "%s: no such file; expected a relume file", path);
+    if (!status) {
+        p->info.file_bytes = (uint64_t)s.st_size;
+        status = exr_open(&p->file, path, &p->limits, p->log);
+    }
+    if (!status)
+        status = read_header(p);
+    if (status)
+        relume_pack_destroy(&p);
+    *out = p;
+    return status;
+}
+
+void relume_pack_destroy(relume_pack **pack)
+{
+    relume_pack *p = *pack;
+    *pack = NULL;
+    if (!p)
+        return;
+    for (int v = 0; p->loaded && v < p->info.views; v++)
+        relume_pack_drop(p, v);
+    relume_coder_destroy(&p->coder);
+    exr_close(&p->file);
+    arena_free(&p->arena);
+    free(p->path);
+    free(p);
+}
+
+const struct relume_pack_info *relume_pack_info(const relume_pack *pack)
+{
+    return &pack->info;
+}
+
+// ---------------------------------------------------------------- samples
+
+struct loading {
+    const relume_pack *pack;
+    const struct relume_coder_info *coder;
+    void *data;
+    size_t width, height, planes;
+    atomic_bool wrong;
+};
+
+// Plane order is R, G, B; the file sorts B, G, R.
+static size_t plane_of_channel(const struct relume_coder_info *info, size_t channel)
+{
+    return info->joint ? channel : channel / 3 * 3 + 2 - channel % 3;
+}
+
+static bool load_row(const struct loading *l, const void *samples, size_t i, void *to, size_t at)
+{
+    const uint16_t *halves = (const uint16_t *)samples + i;
+    const uint32_t *uints = (const uint32_t *)samples + i;
+    uint8_t *bytes = (uint8_t *)to + at;
+    uint16_t *words = (uint16_t *)to + at;
+    unsigned wrong = 0;
+    for (size_t x = 0; x < l->width; x++)
+        switch (l->pack->info.storage) {
+        case RELUME_STORE_16:
+            words[x] = (uint16_t)uints[x];
+            wrong |= uints[x] > 0xffff;
+            break;
+        case RELUME_STORE_HALF:
+            words[x] = halves[x];
+            wrong |= (halves[x] & 0x7c00) == 0x7c00;
+            break;
+        default: {
+            const uint16_t code = l->pack->code_of_half[halves[x]];
+            bytes[x] = (uint8_t)code;
+            wrong |= code == NOT_A_CODE;
+        }
+        }
+    return !wrong;
+}
+
+static void load_rows(void *context, int row, int rows, const void *samples)
+{
+    struct loading *l = context;
+    for (size_t y = 0; y < (size_t)rows; y++)
+        for (size_t c = 0; c < l->planes; c++) {
+            const size_t plane = plane_of_channel(l->coder, c);
+            const size_t at = (plane * l->height + (size_t)row + y) * l->width;
+            if (!load_row(l, samples, (y * l->planes + c) * l->width, l->data, at))
+                atomic_store(&l->wrong, true);
+        }
+}
+
+static relume_status load_view(relume_pack *p, int view)
+{
+    struct loaded *to = &p->loaded[view];
+    const struct relume_coder_info *coder = relume_coder_info(p->coder);
+    const size_t planes = (size_t)coder->planes;
+    const size_t plane_bytes = (size_t)p->info.width * (size_t)p->info.height *
+                               (p->info.storage == RELUME_STORE_8 ? 1 : 2);
+    to->plane = mem_array(planes, sizeof *to->plane);
+    to->data = mem_array(planes, plane_bytes);
+    if (!to->plane || !to->data)
+        return RELUME_ENOMEM;
+    for (size_t i = 0; i < planes; i++)
+        to->plane[i] = (const char *)to->data + i * plane_bytes;
+
+    struct loading l = {
+        .pack = p,
+        .coder = coder,
+        .data = to->data,
+        .width = (size_t)p->info.width,
+        .height = (size_t)p->info.height,
+        .planes = planes,
+    };
+    const int part = p->parts[view].codes;
+    const relume_status status = exr_read(p->file, part, p->threads, load_rows, &l, p->log);
+    if (status)
+        return status;
+    if (atomic_load(&l.wrong))
+        return bad(p, "stored codes", "finite codes of the stated type");
+    to->codes = (struct relume_codes){
+        .coder = p->coder,
+        .domain = p->info.domain,
+        .display = p->info.display,
+        .width = p->info.width,
+        .height = p->info.height,
+        .planes = coder->planes,
+        .storage = p->info.storage,
+        .plane = to->plane,
+        .scale = get_floats(p, part, ATTR_SCALE, coder->planes),
+        .offset = get_floats(p, part, ATTR_OFFSET, coder->planes),
+    };
+    return RELUME_OK;
+}
+
+relume_status relume_pack_codes(const struct relume_codes **out, relume_pack *pack, int view)
+{
+    *out = NULL;
+    if (view < 0 || view >= pack->info.views)
+        return RELUME_EINVAL;
+    if (!pack->loaded[view].data) {
+        const relume_status status = load_view(pack, view);
+        if (status) {
+            relume_pack_drop(pack, view);
+            return status;
+        }
+    }
+    *out = &pack->loaded[view].codes;
+    return RELUME_OK;
+}
+
+void relume_pack_drop(relume_pack *pack, int view)
+{
+    struct loaded *l = &pack->loaded[view];
+    free(l->plane);
+    free(l->data);
+    *l = (struct loaded){0};
+}
+
+struct plane_sink {
+    struct relume_image *image;
+    bool half;
+};
+
+static void plane_rows(void *context, int row, int rows, const void *samples)
+{
+    const struct plane_sink *s = context;
+    const size_t n = (size_t)rows * (size_t)s->image->width;
+    float *out = s->image->data + (size_t)row * (size_t)s->image->width;
+    for (size_t i = 0; i < n; i++)
+        out[i] = s->half ? float_from_half(((const uint16_t *)samples)[i])
+                         : ((const float *)samples)[i];
+}
+
+static relume_status read_plane(struct relume_image *out, relume_pack *pack, int part, bool half)
+{
+    *out = (struct relume_image){0};
+    if (part < 0)
+        return RELUME_OK;
+    relume_status status = relume_image_create(out, pack->info.width, pack->info.height, 1);
+    if (status)
+        return status;
+    struct plane_sink sink = {out, half};
+    status = exr_read(pack->file, part, pack->threads, plane_rows, &sink, pack->log);
+    const size_t n = (size_t)out->width * (size_t)out->height;
+    for (size_t i = 0; !status && i < n; i++)
+        if (!(out->data[i] >= 0.0f))
+            status = bad(pack, "depth or mask", "values of 0 or more");
+    if (status)
+        relume_image_destroy(out);
+    return status;
+}
+
+relume_status relume_pack_depth(struct relume_image *out, relume_pack *pack, int view)
+{
+    *out = (struct relume_image){0};
+    if (view < 0 || view >= pack->info.views)
+        return RELUME_EINVAL;
+    return read_plane(out, pack, pack->parts[view].depth, false);
+}
+
+relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view)
+{
+    *out = (struct relume_image){0};
+    if (view < 0 || view >= pack->info.views)
+        return RELUME_EINVAL;
+    return read_plane(out, pack, pack->parts[view].mask, true);
+}

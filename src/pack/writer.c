@@ -1,0 +1,376 @@
+// writer.c - coefficients become a relume file
+#include <relume/pack.h>
+
+#include "base/arena.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "image/exr.h"
+#include "image/half.h"
+#include "pack/format.h"
+
+#include <string.h>
+
+enum { MOST_ATTRIBUTES = 20, MOST_WEIGHTS = 3 * 4096 };
+
+relume_status relume_compression_parse(enum relume_compression *out, const char *name)
+{
+    static const struct {
+        const char *name;
+        enum relume_compression value;
+    } table[] = {{"none", RELUME_COMPRESS_NONE},
+                 {"rle", RELUME_COMPRESS_RLE},
+                 {"zip", RELUME_COMPRESS_ZIP},
+                 {"piz", RELUME_COMPRESS_PIZ}};
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+        if (!strcmp(name, table[i].name)) {
+            *out = table[i].value;
+            return RELUME_OK;
+        }
+    return RELUME_EINVAL;
+}
+
+static enum exr_codec codec_of(enum relume_compression compression)
+{
+    switch (compression) {
+    case RELUME_COMPRESS_NONE: return EXR_CODEC_NONE;
+    case RELUME_COMPRESS_RLE: return EXR_CODEC_RLE;
+    case RELUME_COMPRESS_ZIP: return EXR_CODEC_ZIP;
+    case RELUME_COMPRESS_PIZ:
+    case RELUME_COMPRESS_DEFAULT: break;
+    }
+    return EXR_CODEC_PIZ;
+}
+
+// ---------------------------------------------------------------- sample sources
+
+// Channels sort by name, so B, G, R within a coefficient: the reverse of plane order.
+static int file_channel(const struct relume_coder_info *info, int plane)
+{
+    return info->joint ? plane : plane / 3 * 3 + 2 - plane % 3;
+}
+
+static void store_row(enum relume_storage storage, const void *codes, size_t width, void *samples)
+{
+    const uint8_t *bytes = codes;
+    const uint16_t *words = codes;
+    uint16_t *halves = samples;
+    uint32_t *uints = samples;
+    if (storage == RELUME_STORE_HALF)
+        memcpy(halves, words, width * sizeof *halves);
+    else if (storage == RELUME_STORE_16)
+        for (size_t x = 0; x < width; x++)
+            uints[x] = words[x];
+    else
+        for (size_t x = 0; x < width; x++)
+            halves[x] = half_from_float((float)bytes[x]);
+}
+
+static relume_status view_rows(void *context, int row, int rows, void *samples)
+{
+    const relume_coefficients *c = context;
+    const struct relume_coefficients_info *info = relume_coefficients_info(c);
+    const size_t width = (size_t)info->width, planes = (size_t)info->planes;
+    const size_t code = info->storage == RELUME_STORE_8 ? 1 : 2;
+    const size_t sample = info->storage == RELUME_STORE_16 ? 4 : 2;
+    char *codes = mem_array((size_t)rows * planes * width, code);
+    if (!codes)
+        return RELUME_ENOMEM;
+    const relume_status status = relume_coefficients_read(c, row, rows, codes);
+    for (size_t y = 0; !status && y < (size_t)rows; y++)
+        for (size_t p = 0; p < planes; p++) {
+            const size_t channel = (size_t)file_channel(relume_coder_info(info->coder), (int)p);
+            store_row(info->storage, codes + (y * planes + p) * width * code, width,
+                      (char *)samples + (y * planes + channel) * width * sample);
+        }
+    free(codes);
+    return status;
+}
+
+struct preview {
+    const relume_coefficients *coefficients;
+    struct relume_transfer curve;  // of the coefficients
+    float weights[MOST_WEIGHTS], constant[3];
+};
+
+static float code_value(const struct relume_coefficients_info *info, const void *codes, size_t i,
+                        int plane)
+{
+    const uint16_t *words = codes;
+    if (info->storage == RELUME_STORE_HALF)
+        return float_from_half(words[i]);
+    const float code = info->storage == RELUME_STORE_8 ? ((const uint8_t *)codes)[i] : words[i];
+    return code * info->scale[plane] + info->offset[plane];
+}
+
+static void preview_row(const struct preview *p, const void *codes, size_t row, uint16_t *out)
+{
+    const struct relume_coefficients_info *info = relume_coefficients_info(p->coefficients);
+    const struct relume_coder_info *coder = relume_coder_info(info->coder);
+    const size_t width = (size_t)info->width;
+    for (int c = 0; c < 3; c++)
+        for (size_t x = 0; x < width; x++) {
+            float v = p->constant[c];
+            for (int k = 0; k < coder->coefficients; k++) {
+                const float w = p->weights[c * coder->coefficients + k];
+                const int plane = coder->joint ? k : 3 * k + c;
+                if (w != 0.0f)
+                    v += w * code_value(info, codes,
+                                        (row * (size_t)info->planes + (size_t)plane) * width + x,
+                                        plane);
+            }
+            out[(size_t)(2 - c) * width + x] =
+                half_from_float(relume_transfer_decode(p->curve, v));
+        }
+}
+
+static relume_status preview_rows(void *context, int row, int rows, void *samples)
+{
+    const struct preview *p = context;
+    const struct relume_coefficients_info *info = relume_coefficients_info(p->coefficients);
+    const size_t width = (size_t)info->width;
+    void *codes = mem_array((size_t)rows * (size_t)info->planes * width, 2);
+    if (!codes)
+        return RELUME_ENOMEM;
+    const relume_status status = relume_coefficients_read(p->coefficients, row, rows, codes);
+    for (int y = 0; !status && y < rows; y++)
+        preview_row(p, codes, (size_t)y, (uint16_t *)samples + (size_t)y * 3 * width);
+    free(codes);
+    return status;
+}
+
+static relume_status plane_rows(void *context, int row, int rows, void *samples)
+{
+    const struct relume_image *image = context;
+    const size_t width = (size_t)image->width;
+    memcpy(samples, image->data + (size_t)row * width, (size_t)rows * width * sizeof(float));
+    return RELUME_OK;
+}
+
+static relume_status mask_rows(void *context, int row, int rows, void *samples)
+{
+    const struct relume_image *image = context;
+    const size_t width = (size_t)image->width;
+    uint16_t *halves = samples;
+    for (size_t i = 0; i < (size_t)rows * width; i++)
+        halves[i] = half_from_float(image->data[(size_t)row * width + i] > 0.5f ? 1.0f : 0.0f);
+    return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- parts
+
+struct builder {
+    struct arena arena;
+    struct exr_part *parts;
+    int count;
+    struct preview *preview;
+};
+
+static void add_int(struct exr_part *part, struct exr_attribute *list, const char *name, int value)
+{
+    list[part->attributes++] =
+        (struct exr_attribute){.name = name, .kind = EXR_INT, .integer = value};
+}
+
+static void add_text(struct exr_part *part, struct exr_attribute *list, const char *name,
+                     const char *text)
+{
+    list[part->attributes++] = (struct exr_attribute){.name = name, .kind = EXR_TEXT, .text = text};
+}
+
+static void add_floats(struct exr_part *part, struct exr_attribute *list, const char *name,
+                       const float *floats, int count)
+{
+    list[part->attributes++] = (struct exr_attribute){
+        .name = name, .kind = EXR_FLOATS, .floats = floats, .count = count};
+}
+
+static float *copy_doubles(struct arena *arena, const double *from, size_t n)
+{
+    float *to = arena_array(arena, n, sizeof *to);
+    for (size_t i = 0; to && i < n; i++)
+        to[i] = (float)from[i];
+    return to;
+}
+
+static bool describe_geometry(struct builder *b, struct exr_part *part, struct exr_attribute *list,
+                              const struct relume_pack_contents *c)
+{
+    const struct relume_geometry *g = &c->geometry;
+    add_text(part, list, ATTR_PROJECTION, relume_projection_name(g->projection));
+    float *v;
+    if (g->projection == RELUME_PLANAR) {
+        const double window[] = {g->window_min[0], g->window_min[1], g->window_max[0],
+                                 g->window_max[1], g->camera_z};
+        v = copy_doubles(&b->arena, window, 5);
+        add_floats(part, list, ATTR_WINDOW, v, 5);
+        add_text(part, list, ATTR_CAMERA, g->perspective ? "perspective" : "orthographic");
+    } else if (g->projection == RELUME_SLAB) {
+        const double slab[] = {g->uv_z,      g->st_z,      g->st_min[0],
+                               g->st_min[1], g->st_max[0], g->st_max[1]};
+        v = copy_doubles(&b->arena, slab, 6);
+        add_floats(part, list, ATTR_SLAB, v, 6);
+        float *uv = arena_array(&b->arena, 2 * (size_t)c->views, sizeof *uv);
+        for (int i = 0; uv && i < 2 * c->views; i++)
+            uv[i] = (float)c->view[i / 2].uv[i % 2];
+        add_floats(part, list, ATTR_UV, uv, 2 * c->views);
+        return v && uv;
+    } else {
+        const double panorama[] = {g->v_min, g->v_max, g->center.x, g->center.y, g->center.z};
+        v = copy_doubles(&b->arena, panorama, 5);
+        add_floats(part, list, ATTR_PANORAMA, v, 5);
+    }
+    return v != NULL;
+}
+
+static bool describe_coder(struct builder *b, struct exr_part *part, struct exr_attribute *list,
+                           const relume_coder *coder)
+{
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    const size_t n = (size_t)info->lights;
+    float *lights = arena_array(&b->arena, 3 * n, sizeof *lights);
+    float *ridge = arena_array(&b->arena, 1, sizeof *ridge);
+    if (!lights || !ridge)
+        return false;
+    *ridge = (float)info->ridge;
+    for (size_t i = 0; i < n; i++) {
+        lights[3 * i] = (float)info->directions[i].x;
+        lights[3 * i + 1] = (float)info->directions[i].y;
+        lights[3 * i + 2] = (float)info->directions[i].z;
+    }
+    add_text(part, list, ATTR_BASIS, info->basis->name);
+    add_int(part, list, ATTR_COEFFICIENTS, info->coefficients);
+    add_text(part, list, ATTR_POLE, info->pole_y ? "y" : "z");
+    add_int(part, list, ATTR_HEMISPHERICAL, info->hemispherical);
+    add_floats(part, list, ATTR_RIDGE, ridge, 1);
+    add_floats(part, list, ATTR_LIGHTS, lights, 3 * info->lights);
+    if (info->transform)
+        add_floats(part, list, ATTR_TRANSFORM, info->transform,
+                   info->coefficients * info->coefficients);
+    return true;
+}
+
+static const char *storage_name(enum relume_storage storage)
+{
+    return storage == RELUME_STORE_8 ? "8" : storage == RELUME_STORE_16 ? "16" : "half";
+}
+
+// The middle view under a light from the viewer, panoramas from above.
+static bool add_preview(struct builder *b, const struct relume_pack_contents *c)
+{
+    static const char *const channels[] = {"B", "G", "R"};
+    const relume_coefficients *middle = c->view[c->views / 2].coefficients;
+    const struct relume_coefficients_info *info = relume_coefficients_info(middle);
+    struct exr_part *part = &b->parts[b->count++];
+    struct exr_attribute *list = arena_array(&b->arena, MOST_ATTRIBUTES, sizeof *list);
+    struct preview *p = arena_array(&b->arena, 1, sizeof *p);
+    char *display = arena_array(&b->arena, 32, 1);
+    if (!list || !p || !display)
+        return false;
+    const bool pole_y = relume_coder_info(c->coder)->pole_y;
+    const struct relume_vec3 front = {0.0, pole_y, !pole_y};
+    const bool is_display = c->domain == RELUME_DOMAIN_DISPLAY;
+    p->coefficients = middle;
+    p->curve = is_display ? c->display : (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f};
+    relume_coder_weights(c->coder, front, p->weights, p->constant);
+    relume_transfer_text(c->display, display, 32);
+    *part = (struct exr_part){
+        .name = "preview",
+        .width = info->width,
+        .height = info->height,
+        .sample = EXR_SAMPLE_HALF,
+        .codec = EXR_CODEC_ZIP,
+        .channels = 3,
+        .channel = channels,
+        .attribute = list,
+        .rows = preview_rows,
+        .context = p,
+    };
+    add_text(part, list, ATTR_FORMAT, FORMAT_NAME);
+    add_int(part, list, ATTR_VERSION, FORMAT_VERSION);
+    add_text(part, list, ATTR_CREATOR, "relume " RELUME_VERSION);
+    add_text(part, list, ATTR_DOMAIN, is_display ? "display" : "linear");
+    add_text(part, list, ATTR_DISPLAY, display);
+    add_text(part, list, ATTR_STORAGE, storage_name(info->storage));
+    add_int(part, list, ATTR_VIEWS, c->views);
+    return describe_coder(b, part, list, c->coder) && describe_geometry(b, part, list, c);
+}
+
+// "c007.R" and so on, in the order in which the file sorts them.
+static const char **channel_names(struct builder *b, const struct relume_coder_info *info)
+{
+    const char **names = arena_array(&b->arena, (size_t)info->planes, sizeof *names);
+    for (int p = 0; names && p < info->planes; p++) {
+        const char *name = info->joint
+                               ? arena_format(&b->arena, "c%04d", p)
+                               : arena_format(&b->arena, "c%04d.%c", p / 3, "RGB"[p % 3]);
+        if (!name)
+            return NULL;
+        names[file_channel(info, p)] = name;
+    }
+    return names;
+}
+
+static bool add_view(struct builder *b, const struct relume_pack_contents *c, int index,
+                     const char *const *channels, enum exr_codec codec)
+{
+    static const char *const depth_channel[] = {"Z"}, *const mask_channel[] = {"A"};
+    const struct relume_pack_view *view = &c->view[index];
+    const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
+    struct exr_attribute *list = arena_array(&b->arena, 3, sizeof *list);
+    const char *name = arena_format(&b->arena, "view%04d", index);
+    const char *depth = arena_format(&b->arena, "view%04d.depth", index);
+    const char *mask = arena_format(&b->arena, "view%04d.mask", index);
+    if (!list || !name || !depth || !mask)
+        return false;
+    struct exr_part *part = &b->parts[b->count++];
+    *part = (struct exr_part){
+        .name = name,
+        .width = info->width,
+        .height = info->height,
+        .sample = info->storage == RELUME_STORE_16 ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF,
+        .codec = codec,
+        .channels = info->planes,
+        .channel = channels,
+        .attribute = list,
+        .rows = view_rows,
+        .context = (void *)(uintptr_t)view->coefficients,
+    };
+    add_int(part, list, ATTR_VIEW, index);
+    add_floats(part, list, ATTR_SCALE, info->scale, info->planes);
+    add_floats(part, list, ATTR_OFFSET, info->offset, info->planes);
+    struct exr_part plane = {
+        .width = info->width, .height = info->height, .codec = EXR_CODEC_ZIP, .channels = 1};
+    if (view->depth) {
+        plane.name = depth;
+        plane.sample = EXR_SAMPLE_FLOAT;
+        plane.channel = depth_channel;
+        plane.rows = plane_rows;
+        plane.context = (void *)(uintptr_t)view->depth;
+        b->parts[b->count++] = plane;
+    }
+    if (view->mask) {
+        plane.name = mask;
+        plane.sample = EXR_SAMPLE_HALF;
+        plane.channel = mask_channel;
+        plane.rows = mask_rows;
+        plane.context = (void *)(uintptr_t)view->mask;
+        b->parts[b->count++] = plane;
+    }
+    return true;
+}
+
+relume_status relume_pack_write(const struct relume_pack_contents *contents, const char *path,
+                                const struct relume_pack_params *params)
+{
+    const struct relume_pack_params p = params ? *params : (struct relume_pack_params){0};
+    struct builder b = {0};
+    b.parts = arena_array(&b.arena, 1 + 3 * (size_t)contents->views, sizeof *b.parts);
+    const char **channels = channel_names(&b, relume_coder_info(contents->coder));
+    bool good = b.parts && channels && add_preview(&b, contents);
+    for (int i = 0; good && i < contents->views; i++)
+        good = add_view(&b, contents, i, channels, codec_of(p.compression));
+    const relume_status status =
+        good ? exr_write(path, b.parts, b.count, p.threads, p.log) : RELUME_ENOMEM;
+    arena_free(&b.arena);
+    return status;
+}

@@ -1,0 +1,45 @@
+// kernels_c.c - plain C, the reference for every other set
+#include "relight/kernels.h"
+
+#include "image/half.h"
+
+static void fill(float *out, size_t n, float bias)
+{
+    for (size_t i = 0; i < n; i++)
+        out[i] = bias;
+}
+
+static void dot_bytes(float *out, size_t n, float bias, const uint8_t *const *planes,
+                      const float *weights, int count)
+{
+    fill(out, n, bias);
+    for (int k = 0; k < count; k++)
+        for (size_t i = 0; i < n; i++)
+            out[i] += weights[k] * (float)planes[k][i];
+}
+
+static void dot_words(float *out, size_t n, float bias, const uint16_t *const *planes,
+                      const float *weights, int count)
+{
+    fill(out, n, bias);
+    for (int k = 0; k < count; k++)
+        for (size_t i = 0; i < n; i++)
+            out[i] += weights[k] * (float)planes[k][i];
+}
+
+static void dot_halves(float *out, size_t n, float bias, const uint16_t *const *planes,
+                       const float *weights, int count)
+{
+    fill(out, n, bias);
+    for (int k = 0; k < count; k++)
+        for (size_t i = 0; i < n; i++)
+            out[i] += weights[k] * float_from_half(planes[k][i]);
+}
+
+const struct kernels kernels_c = {"c", dot_bytes, dot_words, dot_halves};
+
+const struct kernels *kernels_choose(unsigned cpu_off)
+{
+    const unsigned features = relume_cpu_features() & ~cpu_off;
+    return features & RELUME_CPU_AVX2 ? &kernels_avx2 : &kernels_c;
+}

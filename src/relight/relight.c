@@ -1,0 +1,273 @@
+// relight.c - superposition (Wong 1998, Eq. 7.6): the value of a pixel is the sum over lights of
+// reflectance x radiance. In the linear domain the sum over lights moves inside the dot product:
+//     sum_i E_i sum_k c_k b_k(L_i) = sum_k c_k w_k     with w_k = sum_i E_i b_k(L_i),
+// so any number of lights costs one pass. In the display domain each light is decoded on its own,
+// made linear, then added.
+#include <relume/relight.h>
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/thread.h"
+#include "image/half.h"
+#include "math/vec.h"
+#include "relight/kernels.h"
+
+#include <string.h>
+
+enum { CHUNK = 2048, CURVE = 4096 };
+
+// One dot product per channel: quantiser steps and constants folded in.
+struct pass {
+    float *weights;  // [3][coefficients]
+    float bias[3];
+    float rgb[3];  // display domain: colour of the light, applied after linearising
+};
+
+struct job {
+    const struct relume_codes *codes;
+    const struct kernels *kernels;
+    struct relume_image *out;
+    struct pass *passes;
+    int count;
+    bool display;
+    float *curve;  // [CURVE + 2]: display code in [0, 1] -> linear
+};
+
+static int plane_of(const struct relume_coder_info *info, int k, int channel)
+{
+    return info->joint ? k : 3 * k + channel;
+}
+
+static void fold_quantiser(struct pass *pass, const struct relume_codes *codes)
+{
+    const struct relume_coder_info *info = relume_coder_info(codes->coder);
+    for (int c = 0; c < 3; c++) {
+        double bias = (double)pass->bias[c];
+        for (int k = 0; k < info->coefficients; k++) {
+            float *w = &pass->weights[c * info->coefficients + k];
+            const int p = plane_of(info, k, c);
+            bias += (double)*w * (double)codes->offset[p];
+            *w *= codes->scale[p];
+        }
+        pass->bias[c] = (float)bias;
+    }
+}
+
+// Linear domain: all lights into one pass. `one` has room for one light's weights.
+static void add_light(struct pass *pass, const relume_coder *coder,
+                      const struct relume_light *light, float *one)
+{
+    const int k = relume_coder_info(coder)->coefficients;
+    float constant[3];
+    relume_coder_weights(coder, vec3_unit(light->direction), one, constant);
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < k; i++)
+            pass->weights[c * k + i] += light->rgb[c] * one[c * k + i];
+        pass->bias[c] += light->rgb[c] * constant[c];
+    }
+}
+
+static relume_status make_passes(struct job *job, const struct relume_light *lights, int n)
+{
+    const size_t size = 3 * (size_t)relume_coder_info(job->codes->coder)->coefficients;
+    job->count = job->display ? n : 1;
+    job->passes = mem_zeroed((size_t)job->count, sizeof *job->passes);
+    float *one = mem_array(size, sizeof *one);
+    bool good = job->passes && one;
+    for (int i = 0; good && i < job->count; i++)
+        good = (job->passes[i].weights = mem_zeroed(size, sizeof(float))) != NULL;
+    for (int i = 0; good && i < n; i++) {
+        struct relume_light light = lights[i];
+        struct pass *pass = &job->passes[job->display ? i : 0];
+        if (job->display) {
+            memcpy(pass->rgb, light.rgb, sizeof pass->rgb);
+            light.rgb[0] = light.rgb[1] = light.rgb[2] = 1.0f;
+        }
+        add_light(pass, job->codes->coder, &light, one);
+    }
+    for (int i = 0; good && i < job->count; i++)
+        fold_quantiser(&job->passes[i], job->codes);
+    free(one);
+    return good ? RELUME_OK : RELUME_ENOMEM;
+}
+
+// The curve as a table: straight pieces of 1/4096 are closer than 1e-7 to it on [0, 1].
+static relume_status make_curve(struct job *job)
+{
+    job->curve = mem_array(CURVE + 2, sizeof *job->curve);
+    if (!job->curve)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < CURVE + 2; i++)
+        job->curve[i] = relume_transfer_decode(job->codes->display, (float)i / CURVE);
+    return RELUME_OK;
+}
+
+static float linearise(const struct job *job, float code)
+{
+    // Gamma curves below 1 start steeply, where straight pieces fail.
+    const struct relume_transfer t = job->codes->display;
+    if (!(code >= 0.0f && code <= 1.0f) || (t.curve == RELUME_CURVE_GAMMA && t.gamma < 1.0f))
+        return relume_transfer_decode(t, code);
+    const float x = code * CURVE;
+    const int i = (int)x;
+    return job->curve[i] + (x - (float)i) * (job->curve[i + 1] - job->curve[i]);
+}
+
+enum { GROUP = 64 };  // planes handed to a kernel at once
+
+static void dot_group(const struct job *job, float *out, size_t n, float bias,
+                      const void *const *planes, const float *weights, int count)
+{
+    const void *p = planes;
+    if (job->codes->storage == RELUME_STORE_8)
+        job->kernels->dot_bytes(out, n, bias, p, weights, count);
+    else if (job->codes->storage == RELUME_STORE_16)
+        job->kernels->dot_words(out, n, bias, p, weights, count);
+    else
+        job->kernels->dot_halves(out, n, bias, p, weights, count);
+}
+
+static void dot_channel(const struct job *job, const struct pass *pass, int channel, size_t first,
+                        size_t n, float *out)
+{
+    const struct relume_codes *codes = job->codes;
+    const struct relume_coder_info *info = relume_coder_info(codes->coder);
+    const size_t offset = first * (codes->storage == RELUME_STORE_8 ? 1 : 2);
+    const float *w = pass->weights + channel * info->coefficients;
+    const void *planes[GROUP];
+    float weights[GROUP], part[CHUNK];
+    int count = 0;
+    bool begun = false;
+    for (int k = 0; k < info->coefficients || !begun; k++) {
+        const bool last = k + 1 >= info->coefficients;
+        if (k < info->coefficients && w[k] != 0.0f) {  // interpolation leaves most lights out
+            planes[count] = (const char *)codes->plane[plane_of(info, k, channel)] + offset;
+            weights[count++] = w[k];
+        }
+        if (count < GROUP && !last)
+            continue;
+        dot_group(job, begun ? part : out, n, begun ? 0.0f : pass->bias[channel], planes, weights,
+                  count);
+        for (size_t i = 0; begun && i < n; i++)
+            out[i] += part[i];
+        begun = true;
+        count = 0;
+    }
+}
+
+static void relight_chunk(void *context, size_t item, int worker)
+{
+    (void)worker;
+    const struct job *job = context;
+    const size_t pixels = (size_t)job->out->width * (size_t)job->out->height;
+    const size_t first = item * CHUNK;
+    const size_t n = pixels - first < CHUNK ? pixels - first : CHUNK;
+    float values[CHUNK];
+    float *out = job->out->data + first * 3;
+    for (int c = 0; c < 3; c++) {
+        for (int p = 0; p < job->count; p++) {
+            const struct pass *pass = &job->passes[p];
+            dot_channel(job, pass, c, first, n, values);
+            if (!job->display)
+                for (size_t i = 0; i < n; i++)
+                    out[3 * i + (size_t)c] = values[i];
+            else
+                for (size_t i = 0; i < n; i++)
+                    out[3 * i + (size_t)c] =
+                        (p ? out[3 * i + (size_t)c] : 0.0f) +
+                        pass->rgb[c] * linearise(job, values[i]);
+        }
+    }
+}
+
+static void warn_below_horizon(const struct relume_codes *codes, const struct relume_light *lights,
+                               int n, const struct relume_log *log)
+{
+    const struct relume_coder_info *info = relume_coder_info(codes->coder);
+    for (int i = 0; info->hemispherical && i < n; i++)
+        if (pole_from_world(vec3_unit(lights[i].direction), info->pole_y).z < -1e-9) {
+            log_line(log, RELUME_WARNING,
+                     "light %d lies below the horizon, where nothing was captured; the value at the "
+                     "horizon is shown",
+                     i + 1);
+            return;
+        }
+}
+
+relume_status relume_relight(struct relume_image *out, const struct relume_codes *codes,
+                             const struct relume_light *lights, int n,
+                             const struct relume_relight_params *params)
+{
+    const struct relume_relight_params p = params ? *params : (struct relume_relight_params){0};
+    if (n < 0)
+        return RELUME_EINVAL;
+    for (int i = 0; i < n; i++)
+        if (!(vec3_length(lights[i].direction) > 0.0))
+            return log_fail(p.log, RELUME_EINVAL, "light %d: expected a direction, found zero",
+                            i + 1);
+    const bool create = !out->data;
+    relume_status status = RELUME_OK;
+    if (create)
+        status = relume_image_create(out, codes->width, codes->height, 3);
+    else if (out->width != codes->width || out->height != codes->height || out->channels != 3)
+        return RELUME_EINVAL;
+    if (status)
+        return status;
+    warn_below_horizon(codes, lights, n, p.log);
+
+    struct job job = {
+        .codes = codes,
+        .kernels = kernels_choose(p.cpu_off),
+        .out = out,
+        .display = codes->domain == RELUME_DOMAIN_DISPLAY,
+    };
+    status = make_passes(&job, lights, n);
+    if (!status && job.display)
+        status = make_curve(&job);
+    if (!status) {
+        const size_t pixels = (size_t)codes->width * (size_t)codes->height;
+        if (job.count == 0)
+            memset(out->data, 0, pixels * 3 * sizeof *out->data);
+        thread_for(p.threads, (pixels + CHUNK - 1) / CHUNK, relight_chunk, &job);
+    } else if (create) {
+        relume_image_destroy(out);
+    }
+    for (int i = 0; job.passes && i < job.count; i++)
+        free(job.passes[i].weights);
+    free(job.passes);
+    free(job.curve);
+    return status;
+}
+
+static double code_at(const struct relume_codes *codes, int plane, size_t pixel)
+{
+    if (codes->storage == RELUME_STORE_8)
+        return ((const uint8_t *)codes->plane[plane])[pixel];
+    const uint16_t word = ((const uint16_t *)codes->plane[plane])[pixel];
+    return codes->storage == RELUME_STORE_16 ? (double)word : (double)float_from_half(word);
+}
+
+void relume_relight_pixel(double rgb[3], const struct relume_codes *codes, int x, int y,
+                          const struct relume_light *lights, int n)
+{
+    enum { MOST = 3 * 4096 };
+    const struct relume_coder_info *info = relume_coder_info(codes->coder);
+    const size_t pixel = (size_t)y * (size_t)codes->width + (size_t)x;
+    float weights[MOST], constant[3];
+    rgb[0] = rgb[1] = rgb[2] = 0.0;
+    for (int i = 0; i < n; i++) {
+        relume_coder_weights(codes->coder, vec3_unit(lights[i].direction), weights, constant);
+        for (int c = 0; c < 3; c++) {
+            double v = (double)constant[c];
+            for (int k = 0; k < info->coefficients; k++) {
+                const int p = plane_of(info, k, c);
+                v += (double)weights[c * info->coefficients + k] *
+                     (code_at(codes, p, pixel) * (double)codes->scale[p] +
+                      (double)codes->offset[p]);
+            }
+            if (codes->domain == RELUME_DOMAIN_DISPLAY)
+                v = (double)relume_transfer_decode(codes->display, (float)v);
+            rgb[c] += (double)lights[i].rgb[c] * v;
+        }
+    }
+}

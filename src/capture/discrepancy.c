@@ -2,7 +2,6 @@
 //
 // For a centre c, sort the directions by their cosine to c; between two of them the share of
 // directions in the cap stays and its area grows, so the extremes lie just at the directions.
-#define _GNU_SOURCE
 #include "base/memory.h"
 #include "math/vec.h"
 

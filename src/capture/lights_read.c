@@ -1,5 +1,4 @@
 // lights_read.c - light directions from whatever file holds some
-#define _GNU_SOURCE
 #include "base/log.h"
 #include "base/memory.h"
 #include "capture/manifest.h"

@@ -2,7 +2,6 @@
 //
 // Every pattern fills the unit square (phi / 2 pi, t) with t the height along the pole: Archimedes'
 // cylinder map keeps areas, so what is even in the square is even on the sphere.
-#define _GNU_SOURCE
 #include "base/memory.h"
 #include "math/random.h"
 #include "math/vec.h"

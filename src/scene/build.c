@@ -27,13 +27,13 @@ static vec3 random_place(struct relume_scene_builder *b)
 void build_put(struct relume_scene_builder *b, struct mesh *part, uint32_t material)
 {
     mesh_append(&b->mesh, part, &b->frame, material, random_place(b));
-    mesh_destroy(part);
+    mesh_free(part);
 }
 
 void build_put_exact(struct relume_scene_builder *b, struct mesh *part, uint32_t material)
 {
     mesh_append(&b->mesh, part, &b->frame, material, vec3_of(0, 0, 0));
-    mesh_destroy(part);
+    mesh_free(part);
 }
 
 void build_box(struct relume_scene_builder *b, vec3 min, vec3 max, double edge, uint32_t material)

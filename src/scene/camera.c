@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 #include "scene/camera.h"
 
 static double mix(double a, double b, double t)

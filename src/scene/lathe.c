@@ -2,7 +2,6 @@
 //
 // Stretches between creases are uniform Catmull-Rom splines (Catmull and Rom
 // 1974): they pass through every listed point, so a profile can be read off a drawing.
-#define _GNU_SOURCE
 #include "scene/shapes.h"
 
 struct ring {

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-void mesh_destroy(struct mesh *mesh)
+void mesh_free(struct mesh *mesh)
 {
     free(mesh->vertices);
     free(mesh->triangles);

@@ -25,7 +25,7 @@ struct mesh {
     bool failed;
 };
 
-void mesh_destroy(struct mesh *mesh);
+void mesh_free(struct mesh *mesh);
 
 // The new vertex's number (0 when memory ran out).
 uint32_t mesh_vertex(struct mesh *mesh, vec3 position, vec3 normal, vec3 texture);

@@ -2,7 +2,6 @@
 //
 // Within a tile the loop runs over lights outside and places inside: the shadow rays of one light
 // are parallel and start close together, which is what ray packets are good at.
-#define _GNU_SOURCE
 #include "scene/render.h"
 
 #include "base/memory.h"

@@ -6,7 +6,7 @@
 #include <string.h>
 
 const struct relume_scene_kind *const relume_scenes[] = {
-    &scene_box, &scene_teapot, NULL,
+    &scene_box, &scene_teapot, &scene_bust, NULL,
 };
 
 const struct relume_scene_kind *relume_scene_find(const char *name)
@@ -62,7 +62,7 @@ void relume_scene_destroy(relume_scene **scene)
     if (!s)
         return;
     trace_destroy(&s->tracer);
-    mesh_destroy(&s->stage.mesh);
+    mesh_free(&s->stage.mesh);
     for (int i = 0; i < s->stage.picture_count; i++)
         relume_image_destroy(&s->stage.pictures[i]);
     free(s);

@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 #include "scene/shapes.h"
 
 static vec3 corner_of(vec3 min, vec3 max, int corner)

@@ -27,4 +27,8 @@ void shape_lathe(struct mesh *out, const struct lathe_point *profile, int points
 // spout towards +x; each of the 32 patches in `steps` x `steps` pieces.
 void shape_teapot(struct mesh *out, int steps);
 
+// A stylised head, about 1.3 high around the origin, looking along +z; its normals are made from
+// the whole mesh, so `out` must be empty.
+void shape_head(struct mesh *out, int steps);
+
 #endif

@@ -1,5 +1,4 @@
 // synth.c - relume_scene_capture: every view under every light into a capture folder
-#define _GNU_SOURCE
 #include "base/arena.h"
 #include "base/log.h"
 #include "base/memory.h"

@@ -3,7 +3,6 @@
 // Body, rim, lid, knob and bottom are profiles turned about the axis in quarter turns whose inner
 // control points lie 0.56 of the radius off the axis planes; handle and spout are half patches
 // mirrored in the plane of symmetry. Newell's axis is z; here it becomes y.
-#define _GNU_SOURCE
 #include "scene/shapes.h"
 
 #include <string.h>

@@ -36,11 +36,17 @@ RELUME_RESULT relume_status relume_lights_make(struct relume_vec3 *out, int n,
 
 // Spherical cap discrepancy: the largest difference, over caps, between the share of directions in
 // a cap and the share of area; in [0, 1], smaller is more even. The maximum is taken over caps of
-// every radius around the directions, their antipodes and 1024 spiral points, so it is a close
-// lower bound. With `hemisphere` areas are shares of the pole's hemisphere.
+// every radius around the directions (1024 of them when there are more), their antipodes and 1024
+// spiral points, so it is a close lower bound. With `hemisphere` areas are shares of the pole's hemisphere.
 RELUME_RESULT relume_status relume_lights_discrepancy(double *out, const struct relume_vec3 *lights,
                                                       int n,
                                                       const struct relume_lights_params *params);
+
+// Read unit directions from a capture.json or the JSON of `relume lights`, from a .lp file, or from
+// lines `x y z` ('#' starts a comment). The images that a file names need not exist. `*out` is to
+// be freed with free(). Returns RELUME_EDATA, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_lights_read(struct relume_vec3 **out, int *n, const char *path,
+                                               const struct relume_log *log);
 
 #ifdef __cplusplus
 }

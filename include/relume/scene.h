@@ -9,13 +9,15 @@
 extern "C" {
 #endif
 
+struct relume_scene_builder;  // what a scene puts its things into; private
+
 // A built-in scene. Constant; a NULL-terminated list of all is relume_scenes.
 struct relume_scene_kind {
     const char *name;
     const char *summary;                   // one line for help texts
     enum relume_projection projection;     // how it is seen when nothing else is asked
-    // Adds meshes and materials; see src/scene/build.h.
-    relume_status (*build)(void *builder, const char *mesh, const struct relume_log *log);
+    bool takes_mesh;                       // --mesh replaces its own model
+    relume_status (*build)(struct relume_scene_builder *builder);  // adds meshes and materials
 };
 extern RELUME_API const struct relume_scene_kind *const relume_scenes[];
 // NULL when there is none of that name.
@@ -44,7 +46,7 @@ struct relume_synth_params {
     int size;                // pixels: width of planar and slab images and of a cube face,
                              // height of other panoramas (cylindrical: 4:1, spherical: 2:1);
                              // default 256
-    int grid[2];             // slab: cameras along u and v; default 5 x 5
+    int grid[2];             // slab: cameras along u and v, spread over [-1, 1]; default 5 x 5
     const struct relume_vec3 *eyes;  // slab: cameras instead of the grid, all of one z;
                                      // panorama: its one centre; planar: (0, 0, z) perspective
     int eye_count;

@@ -1,0 +1,69 @@
+#include "scene/camera.h"
+
+static double mix(double a, double b, double t)
+{
+    return a + (b - a) * t;
+}
+
+static struct camera_ray towards(vec3 eye, vec3 target)
+{
+    return (struct camera_ray){eye, vec3_unit(vec3_sub(target, eye))};
+}
+
+// From the centre at azimuth phi (0 is -z, growing towards +x) and height h per unit of radius.
+static struct camera_ray around(const struct relume_geometry *g, double phi_rad, double h)
+{
+    return (struct camera_ray){g->center, vec3_unit(vec3_of(sin(phi_rad), h, -cos(phi_rad)))};
+}
+
+static struct camera_ray planar(const struct relume_geometry *g, double across, double down)
+{
+    const vec3 window = vec3_of(mix(g->window_min[0], g->window_max[0], across),
+                                mix(g->window_max[1], g->window_min[1], down), 0.0);
+    if (g->perspective)
+        return towards(vec3_of(0, 0, g->camera_z), window);
+    return (struct camera_ray){vec3_of(window.x, window.y, g->camera_z), vec3_of(0, 0, -1)};
+}
+
+static struct camera_ray slab(const struct camera *c, double across, double down)
+{
+    const struct relume_geometry *g = &c->geometry;
+    return towards(vec3_of(c->uv[0], c->uv[1], g->uv_z),
+                   vec3_of(mix(g->st_min[0], g->st_max[0], across),
+                           mix(g->st_max[1], g->st_min[1], down), g->st_z));
+}
+
+// Faces +x -x +y -y +z -z side by side; right = direction x up.
+static struct camera_ray cube(const struct camera *c, double x, double down)
+{
+    static const vec3 direction[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0},
+                                      {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    static const vec3 up[6] = {{0, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, {0, 1, 0}};
+    const double faces = 6.0 * x / c->width;
+    const int face = faces >= 6.0 ? 5 : (int)faces;
+    const vec3 right = vec3_cross(direction[face], up[face]);
+    const vec3 sideways = vec3_scale(right, 2.0 * (faces - face) - 1.0);
+    const vec3 upwards = vec3_scale(up[face], 1.0 - 2.0 * down);
+    return (struct camera_ray){c->geometry.center,
+                               vec3_unit(vec3_add(direction[face], vec3_add(sideways, upwards)))};
+}
+
+struct camera_ray camera_ray_at(const struct camera *camera, double x, double y)
+{
+    const struct relume_geometry *g = &camera->geometry;
+    const double across = x / camera->width, down = y / camera->height;
+    const double phi_rad = 2.0 * M_PI * across - M_PI;
+    switch (g->projection) {
+    case RELUME_SLAB: return slab(camera, across, down);
+    case RELUME_CYLINDRICAL: return around(g, phi_rad, mix(g->v_max, g->v_min, down));
+    case RELUME_SPHERICAL: {
+        const double elevation_rad = M_PI * (0.5 - down);
+        const double r = cos(elevation_rad);
+        return (struct camera_ray){
+            g->center, vec3_of(r * sin(phi_rad), sin(elevation_rad), -r * cos(phi_rad))};
+    }
+    case RELUME_CUBE: return cube(camera, x, down);
+    case RELUME_PLANAR: break;
+    }
+    return planar(g, across, down);
+}

@@ -1,0 +1,116 @@
+#include "scene/mesh_read.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static const off_t MAX_BYTES = (off_t)1 << 31;
+
+void mesh_file_free(struct mesh_file *file)
+{
+    mesh_free(&file->mesh);
+    free(file->picture);
+    *file = (struct mesh_file){0};
+}
+
+char *mesh_beside(const char *path, const char *name)
+{
+    const char *slash = strrchr(path, '/');
+    if (name[0] == '/' || !slash)
+        return mem_text(name);
+    return mem_format("%.*s%s", (int)(slash - path) + 1, path, name);
+}
+
+relume_status mesh_load_text(char **out, size_t *size, const char *path,
+                             const struct relume_log *log)
+{
+    *out = NULL;
+    FILE *file = fopen(path, "rb");
+    struct stat s;
+    if (!file || fstat(fileno(file), &s)) {
+        const int error = errno;
+        if (file)
+            fclose(file);
+        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(error));
+    }
+    if (!S_ISREG(s.st_mode) || s.st_size > MAX_BYTES) {
+        fclose(file);
+        return log_fail(log, RELUME_EDATA, "%s: expected a regular file of at most 2 GiB", path);
+    }
+    char *text = mem_array((size_t)s.st_size + 1, 1);
+    if (text) {
+        *size = fread(text, 1, (size_t)s.st_size, file);
+        text[*size] = '\0';
+    }
+    fclose(file);
+    *out = text;
+    return text ? RELUME_OK : RELUME_ENOMEM;
+}
+
+// Beside model.obj: model.png, model.jpg.
+static char *picture_beside(const char *path)
+{
+    static const char *const extensions[] = {"png", "jpg", "jpeg", "PNG", "JPG", NULL};
+    const char *dot = strrchr(path, '.');
+    for (const char *const *e = extensions; *e; e++) {
+        char *name = mem_format("%.*s.%s", (int)(dot - path), path, *e);
+        if (!name || !access(name, R_OK))
+            return name;
+        free(name);
+    }
+    return NULL;
+}
+
+// Rounding keeps a float32 finite; anything larger is a broken file.
+static bool is_sane(const struct mesh *mesh)
+{
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        for (int c = 0; c < 3; c++)
+            if (!(fabsf(mesh->vertices[i].position[c]) < 1e30f) ||
+                !isfinite(mesh->vertices[i].texture[c]))
+                return false;
+    return true;
+}
+
+static relume_status check(struct mesh_file *out, const char *path, const struct relume_log *log)
+{
+    if (out->mesh.failed)
+        return RELUME_ENOMEM;
+    if (!out->mesh.triangle_count)
+        return log_fail(log, RELUME_EDATA, "%s: no faces; expected a surface model", path);
+    if (!is_sane(&out->mesh))
+        return log_fail(log, RELUME_EDATA, "%s: a vertex is not a finite number", path);
+    const struct bounds b = mesh_bounds(&out->mesh);
+    if (!(vec3_length(vec3_sub(b.max, b.min)) > 0.0))
+        return log_fail(log, RELUME_EDATA, "%s: all vertices are one point", path);
+    return RELUME_OK;
+}
+
+relume_status mesh_read(struct mesh_file *out, const char *path, const struct relume_log *log)
+{
+    *out = (struct mesh_file){.has_uv = false};
+    const char *dot = strrchr(path, '.');
+    const bool obj = dot && !strcasecmp(dot, ".obj"), ply = dot && !strcasecmp(dot, ".ply");
+    if (!obj && !ply)
+        return log_fail(log, RELUME_EDATA, "%s: unknown kind of model; expected .obj or .ply", path);
+    char *text;
+    size_t size;
+    relume_status status = mesh_load_text(&text, &size, path, log);
+    if (status)
+        return status;
+    status = (obj ? mesh_read_obj : mesh_read_ply)(out, text, size, path, log);
+    free(text);
+    if (!status)
+        status = check(out, path, log);
+    if (!status && out->has_uv && !out->picture)
+        out->picture = picture_beside(path);
+    if (status)
+        mesh_file_free(out);
+    return status;
+}

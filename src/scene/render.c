@@ -1,0 +1,211 @@
+// render.c - the stage itself: places are found once per tile, then lit by every light
+//
+// Within a tile the loop runs over lights outside and places inside: the shadow rays of one light
+// are parallel and start close together, which is what ray packets are good at.
+#include "scene/render.h"
+
+#include "base/memory.h"
+#include "base/thread.h"
+
+#include <string.h>
+
+enum { TILE = 16, TILE_PIXELS = TILE * TILE, BATCH = 64 };
+
+// What one worker reuses from tile to tile.
+struct scratch {
+    struct places places;
+    float sum[TILE_PIXELS][3];
+};
+
+struct render {
+    const struct render_job *job;
+    struct relume_image *out;
+    struct scratch *scratch;  // [threads]
+    int tiles_across;
+    size_t first_tile;
+};
+
+struct tile {
+    int x, y, width, height;
+};
+
+static struct tile tile_of(const struct render *r, size_t index)
+{
+    const struct camera *c = &r->job->camera;
+    const int x = (int)(index % (size_t)r->tiles_across) * TILE;
+    const int y = (int)(index / (size_t)r->tiles_across) * TILE;
+    return (struct tile){x, y, c->width - x < TILE ? c->width - x : TILE,
+                         c->height - y < TILE ? c->height - y : TILE};
+}
+
+static double radical_inverse_2(uint32_t k)
+{
+    k = k >> 16 | k << 16;
+    k = (k & 0x00ff00ffu) << 8 | (k & 0xff00ff00u) >> 8;
+    k = (k & 0x0f0f0f0fu) << 4 | (k & 0xf0f0f0f0u) >> 4;
+    k = (k & 0x33333333u) << 2 | (k & 0xccccccccu) >> 2;
+    k = (k & 0x55555555u) << 1 | (k & 0xaaaaaaaau) >> 1;
+    return k * 0x1p-32;
+}
+
+static double wrapped(double x)
+{
+    return x - floor(x);
+}
+
+// A Hammersley set per pixel, shifted around by a random amount of the pixel's own (Cranley and
+// Patterson 1976): stratified for every number of samples.
+static void walk_pixel(const struct render_job *job, struct places *places, int x, int y,
+                       uint32_t pixel)
+{
+    const uint64_t number = (uint64_t)y << 32 | (uint64_t)x;
+    struct random shift = random_stream(job->seed, number, UINT64_MAX);
+    const double shift_x = random_next(&shift), shift_y = random_next(&shift);
+    for (int i = 0; i < job->samples; i++) {
+        const double sx = wrapped((double)i / job->samples + shift_x);
+        const double sy = wrapped(radical_inverse_2((uint32_t)i) + shift_y);
+        struct walk walk = {
+            .scene = job->scene,
+            .bounces = job->bounces,
+            .random = random_stream(job->seed, number, (uint64_t)i),
+            .places = places,
+            .pixel = pixel,
+        };
+        walk_from_eye(&walk, camera_ray_at(&job->camera, x + sx, y + sy));
+    }
+}
+
+// Lit places that wait for their shadow rays.
+struct batch {
+    int count;
+    float origin[BATCH][3];
+    float value[BATCH][3];
+    uint32_t pixel[BATCH];
+};
+
+static void flush(struct batch *b, const tracer *rays, const float light[3], float (*sum)[3])
+{
+    bool seen[BATCH];
+    trace_unblocked(rays, b->origin, b->count, light, seen);
+    for (int i = 0; i < b->count; i++)
+        for (int c = 0; seen[i] && c < 3; c++)
+            sum[b->pixel[i]][c] += b->value[i][c];
+    b->count = 0;
+}
+
+static void light_tile(const tracer *rays, const struct places *places, const float light[3],
+                       float (*sum)[3])
+{
+    struct batch b = {.count = 0};
+    for (size_t i = 0; i < places->count; i++) {
+        const struct place *p = &places->at[i];
+        float value[3];
+        if (!surface_lit(&p->surface, light, value))
+            continue;
+        for (int c = 0; c < 3; c++) {
+            b.value[b.count][c] = value[c] * p->weight[c];
+            b.origin[b.count][c] = p->origin[c];
+        }
+        b.pixel[b.count] = p->pixel;
+        if (++b.count == BATCH)
+            flush(&b, rays, light, sum);
+    }
+    flush(&b, rays, light, sum);
+}
+
+static void store_tile(const struct tile *t, float (*sum)[3], float scale, struct relume_image *out)
+{
+    for (int y = 0; y < t->height; y++) {
+        const size_t first = (size_t)(t->y + y) * (size_t)out->width + (size_t)t->x;
+        float *row = out->data + first * 3;
+        for (int x = 0; x < t->width; x++)
+            for (int c = 0; c < 3; c++)
+                row[3 * x + c] = sum[y * TILE + x][c] * scale;
+    }
+}
+
+static void render_tile(void *context, size_t item, int worker)
+{
+    const struct render *r = context;
+    const struct render_job *job = r->job;
+    struct scratch *s = &r->scratch[worker];
+    const struct tile t = tile_of(r, r->first_tile + item);
+    s->places.count = 0;
+    for (int y = 0; y < t.height; y++)
+        for (int x = 0; x < t.width; x++)
+            walk_pixel(job, &s->places, t.x + x, t.y + y, (uint32_t)(y * TILE + x));
+    for (int l = 0; l < job->light_count && !s->places.failed; l++) {
+        const vec3 d = job->lights[l];
+        const float light[3] = {(float)d.x, (float)d.y, (float)d.z};
+        memset(s->sum, 0, sizeof s->sum);
+        light_tile(job->scene->tracer, &s->places, light, s->sum);
+        store_tile(&t, s->sum, 1.0f / (float)job->samples, &r->out[l]);
+    }
+}
+
+static bool any_failed(const struct scratch *scratch, int threads)
+{
+    for (int i = 0; i < threads; i++)
+        if (scratch[i].places.failed)
+            return true;
+    return false;
+}
+
+relume_status render_lights(const struct render_job *job, struct relume_image *out,
+                            render_progress *progress, void *user)
+{
+    const int threads = thread_count(job->threads);
+    struct render r = {
+        .job = job,
+        .out = out,
+        .scratch = mem_zeroed((size_t)threads, sizeof *r.scratch),
+        .tiles_across = (job->camera.width + TILE - 1) / TILE,
+    };
+    if (!r.scratch)
+        return RELUME_ENOMEM;
+    const size_t tiles =
+        (size_t)r.tiles_across * (size_t)((job->camera.height + TILE - 1) / TILE);
+    // In groups, so that progress is told and cancelling heard from this thread.
+    const size_t group = (size_t)threads * 8;
+    relume_status status = RELUME_OK;
+    for (size_t done = 0; done < tiles && !status; done += group) {
+        r.first_tile = done;
+        thread_for(threads, tiles - done < group ? tiles - done : group, render_tile, &r);
+        if (any_failed(r.scratch, threads))
+            status = RELUME_ENOMEM;
+        else if (!progress(user, fmin((double)(done + group) / (double)tiles, 1.0)))
+            status = RELUME_ECANCEL;
+    }
+    for (int i = 0; i < threads; i++)
+        places_destroy(&r.scratch[i].places);
+    free(r.scratch);
+    return status;
+}
+
+struct depth {
+    const struct render_job *job;
+    struct relume_image *out;
+};
+
+static void depth_row(void *context, size_t item, int worker)
+{
+    (void)worker;
+    const struct depth *d = context;
+    float *row = d->out->data + item * (size_t)d->out->width;
+    for (int x = 0; x < d->out->width; x++) {
+        const struct camera_ray ray =
+            camera_ray_at(&d->job->camera, x + 0.5, (double)item + 0.5);
+        const float origin[3] = {(float)ray.origin.x, (float)ray.origin.y, (float)ray.origin.z};
+        const float direction[3] = {(float)ray.direction.x, (float)ray.direction.y,
+                                    (float)ray.direction.z};
+        struct trace_hit hit;
+        row[x] = trace_closest(d->job->scene->tracer, origin, direction, &hit) ? hit.distance
+                                                                               : INFINITY;
+    }
+}
+
+void render_depth(const struct render_job *job, struct relume_image *out)
+{
+    struct depth d = {job, out};
+    thread_for(job->threads, (size_t)out->height, depth_row, &d);
+}

@@ -1,0 +1,17 @@
+// scene.h - the inside of a relume_scene
+#ifndef SCENE_SCENE_H
+#define SCENE_SCENE_H
+
+#include "scene/build.h"
+#include "scene/trace.h"
+
+struct relume_scene {
+    const struct relume_scene_kind *kind;
+    struct relume_scene_builder stage;
+    tracer *tracer;
+};
+
+extern const struct relume_scene_kind scene_box, scene_teapot, scene_bust, scene_attic,
+    scene_chessboard;
+
+#endif

@@ -1,0 +1,347 @@
+// synth.c - relume_scene_capture: every view under every light into a capture folder
+#include "base/arena.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/outfile.h"
+#include "base/thread.h"
+#include "scene/render.h"
+
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+
+// Images of as many lights as fit here are held at once; beyond that a view is walked again.
+static const size_t HELD_BYTES = (size_t)512 << 20;
+
+struct synth {
+    const relume_scene *scene;
+    struct relume_synth_params p;  // defaults filled in
+    enum relume_projection projection;
+    int width, height;
+    struct relume_geometry geometry;
+    int views;
+    double (*uv)[2];  // [views]
+    struct arena arena;
+    struct relume_manifest_view *view;
+    const char *folder;
+    int view_now, lights_before;  // for progress
+};
+
+static int or_default(int value, int otherwise)
+{
+    return value ? value : otherwise;
+}
+
+// `size` is within the limits of a side, so nothing overflows.
+static void choose_size(struct synth *s)
+{
+    const int size = s->p.size;
+    s->width = size;
+    s->height = size;
+    if (s->projection == RELUME_CYLINDRICAL)
+        s->width = 4 * size;
+    if (s->projection == RELUME_SPHERICAL)
+        s->width = 2 * size;
+    if (s->projection == RELUME_CUBE)
+        s->width = 6 * size;
+}
+
+static relume_status check(const struct synth *s)
+{
+    const struct relume_synth_params *p = &s->p;
+    const struct relume_limits limits = limits_or_default(NULL);
+    const char *wrong = NULL;
+    if (!relume_projection_name(s->projection))
+        wrong = "projection: expected planar, slab, cylindrical, spherical or cube";
+    else if (!limits_allow(&limits, s->width, s->height))
+        wrong = "size: expected at least 1 pixel and less than the limits";
+    else if (p->light_count < 1 || p->light_count > limits.max_lights)
+        wrong = "lights: expected at least 1 and less than the limits";
+    else if (p->samples < 1 || p->samples > 65536)
+        wrong = "samples: expected 1 to 65536";
+    else if (p->bounces < 0 || p->bounces > 64)
+        wrong = "bounces: expected 0 to 64";
+    else if (s->projection == RELUME_SLAB && (p->grid[0] < 1 || p->grid[1] < 1 ||
+                                              p->grid[0] > 256 || p->grid[1] > 256))
+        wrong = "views: expected a grid from 1x1 to 256x256";
+    if (wrong)
+        return log_fail(p->log, RELUME_EINVAL, "%s", wrong);
+    return RELUME_OK;
+}
+
+static relume_status one_eye_at_most(const struct synth *s)
+{
+    if (s->p.eye_count <= 1)
+        return RELUME_OK;
+    return log_fail(s->p.log, RELUME_EINVAL, "eyes: expected one for a %s capture; found %d",
+                    relume_projection_name(s->projection), s->p.eye_count);
+}
+
+static relume_status place_planar(struct synth *s)
+{
+    if (!s->p.eye_count)
+        return RELUME_OK;
+    const vec3 eye = s->p.eyes[0];
+    if (eye.x != 0.0 || eye.y != 0.0 || !(eye.z > 0.0))
+        return log_fail(s->p.log, RELUME_EINVAL,
+                        "eye: expected 0,0,z with z > 0 for a planar capture; found %g,%g,%g",
+                        eye.x, eye.y, eye.z);
+    s->geometry.perspective = true;
+    s->geometry.camera_z = eye.z;
+    return RELUME_OK;
+}
+
+static relume_status place_eyes(struct synth *s)
+{
+    s->geometry.uv_z = s->p.eyes[0].z;
+    for (int i = 0; i < s->views; i++) {
+        const vec3 eye = s->p.eyes[i];
+        if (eye.z != s->geometry.uv_z || !(eye.z > s->geometry.st_z))
+            return log_fail(s->p.log, RELUME_EINVAL,
+                            "eyes: expected all on one plane z > %g for a slab; found z = %g",
+                            s->geometry.st_z, eye.z);
+        s->uv[i][0] = eye.x;
+        s->uv[i][1] = eye.y;
+    }
+    return RELUME_OK;
+}
+
+// Rows from the top, as images are read.
+static void place_grid(struct synth *s)
+{
+    const int columns = s->p.grid[0], rows = s->p.grid[1];
+    for (int i = 0; i < s->views; i++) {
+        const int column = i % columns, row = i / columns;
+        s->uv[i][0] = columns > 1 ? 2.0 * column / (columns - 1) - 1.0 : 0.0;
+        s->uv[i][1] = rows > 1 ? 1.0 - 2.0 * row / (rows - 1) : 0.0;
+    }
+}
+
+static relume_status place_views(struct synth *s)
+{
+    const bool slab = s->projection == RELUME_SLAB;
+    s->geometry = relume_geometry_default(s->projection, s->width, s->height);
+    s->views = !slab ? 1 : s->p.eye_count ? s->p.eye_count : s->p.grid[0] * s->p.grid[1];
+    s->uv = arena_array(&s->arena, (size_t)s->views, sizeof *s->uv);
+    if (!s->uv)
+        return RELUME_ENOMEM;
+    if (slab && s->p.eye_count)
+        return place_eyes(s);
+    if (slab) {
+        place_grid(s);
+        return RELUME_OK;
+    }
+    const relume_status status = one_eye_at_most(s);
+    if (status || s->projection == RELUME_PLANAR)
+        return status ? status : place_planar(s);
+    if (s->p.eye_count)
+        s->geometry.center = s->p.eyes[0];
+    return RELUME_OK;
+}
+
+static relume_status name_files(struct synth *s)
+{
+    s->view = arena_array(&s->arena, (size_t)s->views, sizeof *s->view);
+    if (!s->view)
+        return RELUME_ENOMEM;
+    for (int v = 0; v < s->views; v++) {
+        struct relume_manifest_view *view = &s->view[v];
+        view->uv[0] = s->uv[v][0];
+        view->uv[1] = s->uv[v][1];
+        view->depth = arena_format(&s->arena, "view%02d/depth.exr", v);
+        view->images = arena_array(&s->arena, (size_t)s->p.light_count, sizeof *view->images);
+        if (!view->depth || !view->images)
+            return RELUME_ENOMEM;
+        for (int l = 0; l < s->p.light_count; l++)
+            if (!(view->images[l] = arena_format(&s->arena, "view%02d/light%04d.exr", v, l)))
+                return RELUME_ENOMEM;
+    }
+    return RELUME_OK;
+}
+
+static relume_status save(const struct synth *s, const struct relume_image *image, const char *name,
+                          bool half, const struct relume_log *log)
+{
+    char *path = mem_format("%s/%s", s->folder, name);
+    if (!path)
+        return RELUME_ENOMEM;
+    const relume_status status =
+        relume_image_save(image, path, relume_image_params(.log = log, .half = half));
+    free(path);
+    return status;
+}
+
+struct saving {
+    const struct synth *synth;
+    const struct relume_image *images;
+    const char **names;
+    relume_status *status;  // [lights]
+};
+
+static void save_one(void *context, size_t item, int worker)
+{
+    (void)worker;
+    struct saving *s = context;
+    s->status[item] = save(s->synth, &s->images[item], s->names[item], true, NULL);
+}
+
+// The log may only be called from here, so what failed silently is tried once more aloud.
+static relume_status save_lights(struct synth *s, const struct relume_image *images, int first,
+                                 int count)
+{
+    const char **names = s->view[s->view_now].images + first;
+    relume_status *each = mem_zeroed((size_t)count, sizeof *each);
+    if (!each)
+        return RELUME_ENOMEM;
+    struct saving saving = {s, images, names, each};
+    thread_for(s->p.threads, (size_t)count, save_one, &saving);
+    relume_status status = RELUME_OK;
+    for (int i = 0; i < count && !status; i++)
+        if (each[i])
+            status = save(s, &images[i], names[i], true, s->p.log);
+    free(each);
+    return status;
+}
+
+static bool tell(void *user, double done)
+{
+    const struct synth *s = user;
+    const double lights = s->lights_before + done * s->p.light_count;
+    const double views = s->view_now + fmin(lights / s->p.light_count, 1.0);
+    return log_progress(s->p.log, "rendering", views / s->views);
+}
+
+static struct render_job job_of(const struct synth *s)
+{
+    return (struct render_job){
+        .scene = s->scene,
+        .camera = {.geometry = s->geometry, .width = s->width, .height = s->height,
+                   .uv = {s->uv[s->view_now][0], s->uv[s->view_now][1]}},
+        .samples = s->p.samples,
+        .bounces = s->p.bounces,
+        .seed = s->p.seed,
+        .threads = s->p.threads,
+    };
+}
+
+static relume_status write_depth(const struct synth *s)
+{
+    struct relume_image depth;
+    relume_status status = relume_image_create(&depth, s->width, s->height, 1);
+    if (status)
+        return status;
+    const struct render_job job = job_of(s);
+    render_depth(&job, &depth);
+    status = save(s, &depth, s->view[s->view_now].depth, false, s->p.log);
+    relume_image_destroy(&depth);
+    return status;
+}
+
+static relume_status write_view(struct synth *s, struct relume_image *held, int held_count)
+{
+    relume_status status = write_depth(s);
+    for (int first = 0; first < s->p.light_count && !status; first += held_count) {
+        const int left = s->p.light_count - first;
+        struct render_job job = job_of(s);
+        job.lights = s->p.lights + first;
+        job.light_count = left < held_count ? left : held_count;
+        s->lights_before = first;
+        status = render_lights(&job, held, tell, s);
+        if (!status)
+            status = save_lights(s, held, first, job.light_count);
+    }
+    return status;
+}
+
+static relume_status make_view_folder(const struct synth *s)
+{
+    char *path = mem_format("%s/view%02d", s->folder, s->view_now);
+    relume_status status = path ? RELUME_OK : RELUME_ENOMEM;
+    if (path && mkdir(path, 0777))
+        status = log_fail(s->p.log, RELUME_EIO, "%s: cannot be created; %s", path, strerror(errno));
+    free(path);
+    return status;
+}
+
+static int held_lights(const struct synth *s)
+{
+    const size_t bytes = (size_t)s->width * (size_t)s->height * 3 * sizeof(float);
+    const size_t fit = HELD_BYTES / bytes;
+    const size_t most = (size_t)s->p.light_count;
+    return (int)(fit < 1 ? 1 : fit < most ? fit : most);
+}
+
+static relume_status write_views(struct synth *s)
+{
+    const int held_count = held_lights(s);
+    struct relume_image *held = arena_array(&s->arena, (size_t)held_count, sizeof *held);
+    relume_status status = held ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; i < held_count && !status; i++)
+        status = relume_image_create(&held[i], s->width, s->height, 3);
+    for (s->view_now = 0; s->view_now < s->views && !status; s->view_now++) {
+        status = make_view_folder(s);
+        if (!status)
+            status = write_view(s, held, held_count);
+    }
+    for (int i = 0; held && i < held_count; i++)
+        relume_image_destroy(&held[i]);
+    return status;
+}
+
+static relume_status write_manifest(const struct synth *s)
+{
+    char *path = mem_format("%s/capture.json", s->folder);
+    if (!path)
+        return RELUME_ENOMEM;
+    const struct relume_manifest manifest = {
+        .transfer = {.curve = RELUME_CURVE_LINEAR},
+        .geometry = s->geometry,
+        .lights = s->p.light_count,
+        .directions = s->p.lights,
+        .views = s->views,
+        .view = s->view,
+    };
+    const relume_status status = relume_manifest_write(&manifest, path, s->p.log);
+    free(path);
+    return status;
+}
+
+static relume_status write_folder(struct synth *s, const char *path)
+{
+    outdir *dir;
+    relume_status status = outdir_open(&dir, path, s->p.force, s->p.log);
+    if (status)
+        return status;
+    s->folder = outdir_path(dir);
+    status = write_views(s);
+    if (!status)
+        status = write_manifest(s);
+    if (!status)
+        return outdir_commit(&dir);
+    outdir_abort(&dir);
+    return status;
+}
+
+relume_status relume_scene_capture(const relume_scene *scene, const char *dir,
+                                   const struct relume_synth_params *params)
+{
+    struct synth s = {.scene = scene};
+    if (params)
+        s.p = *params;
+    s.projection = s.p.projection_set ? s.p.projection : scene->kind->projection;
+    s.p.size = or_default(s.p.size, 256);
+    s.p.samples = or_default(s.p.samples, 16);
+    s.p.grid[0] = or_default(s.p.grid[0], 5);
+    s.p.grid[1] = or_default(s.p.grid[1], s.p.grid[0]);
+    if (s.p.size > 0 && s.p.size <= limits_or_default(NULL).max_side)
+        choose_size(&s);
+    relume_status status = check(&s);
+    if (!status)
+        status = place_views(&s);
+    if (!status)
+        status = name_files(&s);
+    if (!status)
+        status = write_folder(&s, dir);
+    arena_free(&s.arena);
+    return status;
+}

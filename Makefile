@@ -53,7 +53,7 @@ BENCH    := $(BENCH_C:%.c=$B/%)
 FUZZ     := $(FUZZ_C:%.c=$B/%)
 VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 
-.PHONY: all lib cli viewer deps deps-web demo test check bench fuzz headers layers format install clean
+.PHONY: all lib cli viewer deps deps-web demo test check check-threads bench fuzz headers layers format install clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
 lib: $B/librelume.a $B/librelume.so
@@ -127,6 +127,8 @@ test: all
 	@tests/run.sh $(MAKE)
 check: $(UNIT) $(GL) cli viewer
 	@tests/check.sh $B
+check-threads: $(filter $B/tests/threads/%,$(UNIT))
+	@ONLY_BINARIES=1 tests/check.sh $B
 
 headers: $(HEADERS:include/relume/%.h=$B/headers/%.ok)
 $B/headers/%.ok: include/relume/%.h $(HEADERS) | $(DEPS)

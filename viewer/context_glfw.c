@@ -78,8 +78,11 @@ static void on_wheel(GLFWwindow *handle, double dx, double dy)
 static int key_letter(int key, int scancode)
 {
     static const int special[][2] = {
-        {GLFW_KEY_ESCAPE, APP_KEY_ESCAPE}, {GLFW_KEY_KP_ADD, '+'},   {GLFW_KEY_KP_SUBTRACT, '-'},
-        {GLFW_KEY_EQUAL, '+'},             {GLFW_KEY_MINUS, '-'},
+        {GLFW_KEY_ESCAPE, APP_KEY_ESCAPE},
+        {GLFW_KEY_KP_ADD, '+'},
+        {GLFW_KEY_KP_SUBTRACT, '-'},
+        {GLFW_KEY_EQUAL, '+'},
+        {GLFW_KEY_MINUS, '-'},
     };
     for (size_t i = 0; i < sizeof special / sizeof *special; i++)
         if (special[i][0] == key)

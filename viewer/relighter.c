@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum { LANES = 4 };                           // planes in a texel
-static const size_t budget = (size_t)1 << 30;  // graphics memory to fill with views
+static const size_t budget = (size_t)1 << 30; // graphics memory to fill with views
 
 // How GL stores the codes of each kind; `unit` turns its normalised values back into codes.
 struct code_format {
@@ -22,11 +22,28 @@ static const struct code_format formats[] = {
     [RELUME_STORE_HALF] = {GL_RGBA16F, GL_HALF_FLOAT, 2, 1.0},
 };
 
-enum dot_uniform { DOT_RECTANGLE, DOT_SIZE, DOT_CODES, DOT_WEIGHTS, DOT_FIRST, DOT_LAYERS, DOT_CONSTANT, DOT_COUNT };
+enum dot_uniform {
+    DOT_RECTANGLE,
+    DOT_SIZE,
+    DOT_CODES,
+    DOT_WEIGHTS,
+    DOT_FIRST,
+    DOT_LAYERS,
+    DOT_CONSTANT,
+    DOT_COUNT
+};
 static const char *const dot_uniforms[] = {
     "rectangle", "frame_size", "codes", "weights", "first_layer", "layers", "constant",
 };
-enum develop_uniform { DEVELOP_RECTANGLE, DEVELOP_SIZE, DEVELOP_CODED, DEVELOP_CURVE, DEVELOP_GAMMA, DEVELOP_LIGHT, DEVELOP_COUNT };
+enum develop_uniform {
+    DEVELOP_RECTANGLE,
+    DEVELOP_SIZE,
+    DEVELOP_CODED,
+    DEVELOP_CURVE,
+    DEVELOP_GAMMA,
+    DEVELOP_LIGHT,
+    DEVELOP_COUNT
+};
 static const char *const develop_uniforms[] = {
     "rectangle", "frame_size", "coded", "display.curve", "display.gamma", "light",
 };

@@ -74,6 +74,24 @@ static void set_name(struct viewer *v, const char *path)
     snprintf(v->name, sizeof v->name, "%s", slash ? slash + 1 : path);
 }
 
+// As relume_relight says it; only for lights that were asked for, not for each one dragged there.
+static void warn_below_horizon(const struct viewer *v)
+{
+    const struct relume_coder_info *info = relume_coder_info(relume_pack_info(v->pack)->coder);
+    for (int i = 0; info->hemispherical && i < v->app.start.lights; i++) {
+        const struct relume_vec3 d = v->app.start.light[i].direction;
+        char text[128];
+        if ((info->pole_y ? d.y : d.z) >= 0.0)
+            continue;
+        snprintf(text, sizeof text,
+                 "light %d lies below the horizon, where nothing was captured; the value at the "
+                 "horizon is shown",
+                 i + 1);
+        v->log->message(v->log->user, RELUME_WARNING, text);
+        return;
+    }
+}
+
 // Open `path` and start the app; `v` is untouched when that fails.
 static relume_status open_file(struct viewer *v, const char *path, const struct app_state *start,
                                bool look_ahead)
@@ -93,6 +111,7 @@ static relume_status open_file(struct viewer *v, const char *path, const struct 
     v->pack = pack;
     v->app = app;
     set_name(v, path);
+    warn_below_horizon(v);
     return RELUME_OK;
 }
 
@@ -240,7 +259,7 @@ static relume_status run_window(struct viewer *v, const struct options *o)
     bool changed = true;
     while (!status && !v->app.quit) {
         struct context_event event;
-        while (!status && v->backend->next(v->context, &event, !changed))
+        while (!status && !v->app.quit && v->backend->next(v->context, &event, !changed))
             status = take_event(v, &event, &changed);
         if (!status && changed && !v->app.quit)
             status = show_frame(v);

@@ -296,6 +296,37 @@ static void the_ball_is_bright_where_the_light_comes_from(void **state)
     fixture_free(&f);
 }
 
+// ---------------------------------------------------------------- screen
+
+// The screen of an OSMesa context is the one pixel it was opened with.
+static void the_screen_shows_srgb(void **state)
+{
+    (void)state;
+    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0};
+    struct program present;
+    struct target frame;
+    assert_int_equal(draw_present_create(&present, &fixture_gl, &fixture_log), RELUME_OK);
+    assert_int_equal(target_create(&frame, &fixture_gl, 1, 1, &fixture_log), RELUME_OK);
+    GLuint vertices;
+    fixture_gl.GenVertexArrays(1, &vertices);
+    fixture_gl.BindVertexArray(vertices);
+    static const float values[] = {-0.5f, 0, 0.001f, 0.0031308f, 0.02f, 0.18f, 0.5f, 1, 7};
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+        unsigned char shown[4];
+        target_begin(&frame, &fixture_gl);
+        fixture_gl.ClearColor(values[i], 0.25f, 0, 1);
+        fixture_gl.Clear(GL_COLOR_BUFFER_BIT);
+        draw_present(&present, &fixture_gl, &frame);
+        fixture_gl.ReadPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, shown);
+        const float code = relume_transfer_encode(srgb, fminf(fmaxf(values[i], 0), 1));
+        assert_true(abs(shown[0] - (int)lroundf(255 * code)) <= 1);
+        assert_int_equal(shown[2], 0);
+    }
+    fixture_gl.DeleteVertexArrays(1, &vertices);
+    target_destroy(&frame, &fixture_gl);
+    program_destroy(&present, &fixture_gl);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -307,6 +338,7 @@ int main(void)
         cmocka_unit_test(cameras_without_a_grid_are_refused),
         cmocka_unit_test(panorama_frames_are_the_library_s),
         cmocka_unit_test(the_ball_is_bright_where_the_light_comes_from),
+        cmocka_unit_test(the_screen_shows_srgb),
     };
     return cmocka_run_group_tests_name("frames", tests, fixture_open, fixture_close);
 }

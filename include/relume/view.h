@@ -39,12 +39,13 @@ RELUME_API struct relume_slab_grid relume_slab_grid(const relume_slab *slab);
 RELUME_API struct relume_vec3 relume_slab_middle(const relume_slab *slab);
 
 // Where the ray from `eye` through (s, t) on the st plane meets the uv plane. An eye on the uv
-// plane meets it in itself. An eye on the st plane, or a ray parallel to the planes, is false.
+// plane meets it in itself. The eye may stand before, on or behind the uv plane; on the st plane or
+// beyond it there is no light that a camera has seen, and the answer is false.
 RELUME_API bool relume_slab_uv(double uv[2], const relume_slab *slab, struct relume_vec3 eye,
                                double s, double t);
 
 // The up to four views and weights (summing to 1) for a point of the uv plane; returns how many,
-// 0 outside the grid. Views of weight 0 are left out.
+// 0 outside the grid (1e-9 of its size beside it is still inside). Views of weight 0 are left out.
 RELUME_API int relume_slab_blend(int view[4], double weight[4], const relume_slab *slab,
                                  const double uv[2], const struct relume_view_params *params);
 
@@ -55,7 +56,8 @@ RELUME_API int relume_slab_needs(bool *needed, const relume_slab *slab, struct r
 
 // The window st_min..st_max as seen from `eye`. `views` are the relit images by view number, read
 // where needed; a pixel whose ray misses the uv grid is black. `out` has the wanted size already.
-// RELUME_EINVAL for an eye that sees nothing.
+// A captured eye and size give back that view bit by bit. RELUME_EINVAL for an eye that sees nothing
+// or a needed view that is missing or of another size; RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_slab_frame(struct relume_image *out, const relume_slab *slab,
                                               struct relume_vec3 eye,
                                               const struct relume_image *views,
@@ -68,14 +70,17 @@ struct relume_look {
     double pan_deg, tilt_deg, zoom;  // zoom 0 means 1
 };
 
-// Unit direction through the centre of pixel (x, y) of a width x height frame.
+// Unit direction through the (fractional) position (x, y) of a width x height frame; pixel centres
+// are at +0.5.
 RELUME_API struct relume_vec3 relume_look_ray(struct relume_look look, int width, int height,
                                               double x, double y);
 
-// Unit direction at the (fractional) pixel position (x, y) of a panorama image; centres are +0.5.
+// Unit direction at the (fractional) position (x, y) of a panorama image; pixel centres are at +0.5.
+// A cube's faces lie side by side, its width is 6 x its height. Zero for other projections.
 RELUME_API struct relume_vec3 relume_panorama_ray(const struct relume_geometry *geometry, int width,
                                                   int height, double x, double y);
-// The inverse: false when the panorama does not show that direction (cylinder).
+// The inverse: false when the panorama does not show that direction (above and below a cylinder) or
+// the direction is zero. x is in [0, width), for a cube on the face that shows it.
 RELUME_API bool relume_panorama_pixel(double xy[2], const struct relume_geometry *geometry,
                                       int width, int height, struct relume_vec3 direction);
 
@@ -85,7 +90,8 @@ RELUME_API bool relume_panorama_sample(float rgb[3], const struct relume_geometr
                                        const struct relume_image *image,
                                        struct relume_vec3 direction);
 
-// A perspective frame; `out` has the wanted size already.
+// A perspective frame; `out` has the wanted size already. RELUME_EINVAL when `image` is no panorama
+// of three channels or `look` is not finite.
 RELUME_RESULT relume_status relume_panorama_frame(struct relume_image *out,
                                                   const struct relume_geometry *geometry,
                                                   const struct relume_image *image,

@@ -1,0 +1,40 @@
+#!/bin/sh
+# Turn shader files into one C file: embed.sh FILE.glsl... > shaders.c
+# A line `#include "other.glsl"` is replaced by that file of the same folder, so that every text in
+# the program is complete. Strings are split by lines: a compiler promises only 4095 characters each.
+set -eu
+
+expand() {
+    awk -v folder="$(dirname "$1")" '
+        /^#include "/ {
+            file = $0
+            sub(/^#include "/, "", file)
+            sub(/".*/, "", file)
+            file = folder "/" file
+            while ((got = (getline line < file)) > 0) print line
+            if (got < 0) { print "embed.sh: cannot read " file > "/dev/stderr"; exit 1 }
+            close(file)
+            next
+        }
+        { print }' "$1"
+}
+
+echo '#include "shaders.h"'
+names=
+for file in "$@"; do
+    case $file in *.frag.glsl | *.vert.glsl) ;; *) continue ;; esac
+    name=$(basename "$file" .glsl)
+    symbol=$(echo "$name" | tr -c 'A-Za-z0-9\n' '_')
+    names="$names $name:$symbol"
+    text=$(expand "$file")
+    echo "static const char *const ${symbol}_lines[] = {"
+    printf '%s\n' "$text" | sed -e 's/\\/\\\\/g' -e 's/"/\\"/g' -e 's/^/    "/' -e 's/$/\\n",/'
+    echo '};'
+done
+echo 'const struct shader_source shader_sources[] = {'
+for pair in $names; do
+    echo "    {\"${pair%%:*}\", ${pair#*:}_lines,"
+    echo "     sizeof ${pair#*:}_lines / sizeof *${pair#*:}_lines},"
+done
+echo '    {0, 0, 0},'
+echo '};'

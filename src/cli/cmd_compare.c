@@ -1,0 +1,63 @@
+#include "cli.h"
+
+static const struct option options[] = {
+    {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
+    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+};
+
+static void print(const struct args *args, const struct relume_difference *d)
+{
+    const struct {
+        const char *name;
+        double value;
+    } rows[] = {{"rms", d->rms},
+                {"psnr_db", d->psnr_db},
+                {"ssim", d->ssim},
+                {"delta_e", d->delta_e},
+                {"max_abs", d->max_abs}};
+    const bool json = args_has(args, "--json");
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (!json) {
+            printf("%-8s %.6g\n", rows[i].name, rows[i].value);
+            continue;
+        }
+        printf("%s\"%s\": ", i ? ", " : "{", rows[i].name);
+        json_number(stdout, rows[i].value);
+    }
+    if (json)
+        puts("}");
+}
+
+static relume_status run(const struct args *args)
+{
+    struct relume_image a = {0}, b = {0};
+    struct relume_difference difference;
+    const struct relume_image_params *load = relume_image_params(.log = args_log(args));
+    relume_status status = relume_image_load(&a, args_input(args, 0), load);
+    if (!status)
+        status = relume_image_load(&b, args_input(args, 1), load);
+    if (!status && (a.width != b.width || a.height != b.height)) {
+        (void)usage_error("%s: %d x %d pixels; expected %d x %d as in %s", args_input(args, 1),
+                          b.width, b.height, a.width, a.height, args_input(args, 0));
+        status = RELUME_EDATA;
+    }
+    if (!status)
+        status = relume_image_compare(&difference, &a, &b,
+                                      relume_compare_params(.threads = args_threads(args)));
+    if (!status)
+        print(args, &difference);
+    relume_image_destroy(&a);
+    relume_image_destroy(&b);
+    return status;
+}
+
+const struct command command_compare = {
+    .name = "compare",
+    .usage = "A B [--json]",
+    .summary = "measure how far two pictures are apart",
+    .example = "relume compare relit.exr photograph.jpg --json",
+    .min_inputs = 2,
+    .max_inputs = 2,
+    .options = options,
+    .run = run,
+};

@@ -1,0 +1,146 @@
+#include "cli.h"
+
+#include <math.h>
+#include <string.h>
+
+static const struct option options[] = {
+    {"-o", OPTION_TEXT, "FILE.exr", "the relume file to write", 0, 0},
+    {"--basis", OPTION_TEXT, "NAME", "auto, table or sh; default: auto", 0, 0},
+    {"--coefficients", OPTION_INT, "K", "coefficients per colour channel; default: by the lights", 1,
+     4096},
+    {"--bits", OPTION_TEXT, "B", "8, 16 or half; default: 8", 0, 0},
+    {"--domain", OPTION_TEXT, "D", "linear or display; default: by the capture's transfer", 0, 0},
+    {"--compression", OPTION_TEXT, "C", "none, rle, zip or piz (all lossless); default: piz", 0, 0},
+    {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
+    {"--ridge", OPTION_NUMBER, "R", "smoothing of the fit, 0 to 1; default: 1e-6", 0, 1},
+    {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
+    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+};
+
+static relume_status parse_basis(const char *name, const struct relume_basis **out)
+{
+    const char *names[32] = {"auto"};
+    int n = 1;
+    for (const struct relume_basis *const *b = relume_bases; *b; b++)
+        names[n++] = (*b)->name;
+    *out = strcmp(name, "auto") ? relume_basis_find(name) : &relume_basis_sh;
+    return *out ? RELUME_OK : unknown_name("basis", name, names);
+}
+
+static relume_status parse_bits(const char *text, enum relume_storage *out)
+{
+    static const char *const names[] = {"8", "16", "half", NULL};
+    static const enum relume_storage values[] = {RELUME_STORE_8, RELUME_STORE_16,
+                                                 RELUME_STORE_HALF};
+    for (int i = 0; names[i]; i++)
+        if (!strcmp(text, names[i])) {
+            *out = values[i];
+            return RELUME_OK;
+        }
+    return unknown_name("--bits", text, names);
+}
+
+static relume_status parse_domain(const char *text, enum relume_domain *out)
+{
+    static const char *const names[] = {"auto", "linear", "display", NULL};
+    for (int i = 0; names[i]; i++)
+        if (!strcmp(text, names[i])) {
+            *out = (enum relume_domain)i;
+            return RELUME_OK;
+        }
+    return unknown_name("--domain", text, names);
+}
+
+static relume_status parse_compression(const char *text, enum relume_compression *out)
+{
+    static const char *const names[] = {"none", "rle", "zip", "piz", NULL};
+    return relume_compression_parse(out, text) ? unknown_name("--compression", text, names)
+                                               : RELUME_OK;
+}
+
+static relume_status parse_transfer(const char *text, struct relume_transfer *out)
+{
+    if (!text || !relume_transfer_parse(out, text))
+        return RELUME_OK;
+    return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", text);
+}
+
+static void say_result(const struct args *args, const relume_coder *coder,
+                       const struct relume_encode_report *report, const char *path)
+{
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    const double fit = report->fit_rms * report->fit_rms;
+    const double store = report->store_rms * report->store_rms;
+    char text[256];
+    snprintf(text, sizeof text,
+             "%s: %s with %d coefficients; captured lights are met to %.2f dB, storing costs %.3f dB",
+             path, info->basis->name, info->coefficients,
+             fmin(200.0, -10.0 * log10(fit + store + 1e-20)),
+             fit > 0.0 ? 10.0 * log10(1.0 + store / fit) : 0.0);
+    args_log(args)->message(args_log(args)->user, RELUME_NOTE, text);
+}
+
+static relume_status encode(const struct args *args, const struct relume_basis *basis,
+                            const struct relume_pack_encode_params *params,
+                            struct relume_transfer transfer)
+{
+    const char *path = args_text(args, "-o", NULL);
+    relume_capture *capture;
+    relume_coder *coder = NULL;
+    relume_status status = relume_capture_open(
+        &capture, args_input(args, 0),
+        relume_capture_params(.log = args_log(args), .transfer = transfer,
+                              .skip_missing = args_has(args, "--skip-missing")));
+    if (status)
+        return status;
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    if (m->positions)
+        args_log(args)->message(args_log(args)->user, RELUME_WARNING,
+                                "the lights are near; they are taken as distant ones");
+    status = relume_coder_create(
+        &coder, basis, m->directions, m->lights,
+        relume_coder_params(.log = args_log(args),
+                            .coefficients = args_int(args, "--coefficients", 0),
+                            .hemispherical = relume_capture_hemispherical(capture),
+                            .pole_y = m->geometry.projection >= RELUME_CYLINDRICAL,
+                            .ridge = args_number(args, "--ridge", 0.0)));
+    struct relume_encode_report report;
+    if (!status)
+        status = relume_pack_encode(capture, coder, path, &report, params);
+    if (!status)
+        say_result(args, coder, &report, path);
+    relume_coder_destroy(&coder);
+    relume_capture_destroy(&capture);
+    return status;
+}
+
+static relume_status run(const struct args *args)
+{
+    const struct relume_basis *basis;
+    struct relume_transfer transfer = {RELUME_CURVE_AUTO, 0.0f};
+    struct relume_pack_encode_params params = {.log = args_log(args),
+                                               .threads = args_threads(args)};
+    if (!args_has(args, "-o"))
+        return usage_error("encode: expected -o FILE.exr");
+    relume_status status = parse_basis(args_text(args, "--basis", "auto"), &basis);
+    if (!status)
+        status = parse_bits(args_text(args, "--bits", "8"), &params.storage);
+    if (!status)
+        status = parse_domain(args_text(args, "--domain", "auto"), &params.domain);
+    if (!status)
+        status = parse_compression(args_text(args, "--compression", "piz"), &params.compression);
+    if (!status)
+        status = parse_transfer(args_text(args, "--transfer", NULL), &transfer);
+    return status ? status : encode(args, basis, &params, transfer);
+}
+
+const struct command command_encode = {
+    .name = "encode",
+    .usage = "CAPTURE -o FILE.exr [OPTION ...]",
+    .summary = "compress a capture (capture.json, its folder, or a .lp file) into one relume file",
+    .example = "relume encode photos/dirs.lp -o statue.exr --basis sh --coefficients 16",
+    .min_inputs = 1,
+    .max_inputs = 1,
+    .options = options,
+    .run = run,
+};

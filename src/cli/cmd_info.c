@@ -1,0 +1,84 @@
+#include "cli.h"
+
+static const struct option options[] = {
+    {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
+    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+};
+
+static const char *storage_name(enum relume_storage storage)
+{
+    return storage == RELUME_STORE_8 ? "8" : storage == RELUME_STORE_16 ? "16" : "half";
+}
+
+static double bits_per_pixel(const struct relume_pack_info *i)
+{
+    return 8.0 * (double)i->file_bytes /
+           ((double)i->views * (double)i->width * (double)i->height);
+}
+
+static void print_json(const struct relume_pack_info *i, const struct relume_coder_info *c,
+                       const char *display)
+{
+    printf("{\"format\": \"relume\", \"version\": %d, \"projection\": \"%s\", \"views\": %d, "
+           "\"width\": %d, \"height\": %d, \"lights\": %d, \"hemispherical\": %s, ",
+           i->version, relume_projection_name(i->geometry.projection), i->views, i->width,
+           i->height, c->lights, c->hemispherical ? "true" : "false");
+    printf("\"basis\": \"%s\", \"coefficients\": %d, \"planes\": %d, \"domain\": \"%s\", "
+           "\"display\": \"%s\", \"bits\": \"%s\", \"compression\": \"%s\", ",
+           c->basis->name, c->coefficients, c->planes,
+           i->domain == RELUME_DOMAIN_LINEAR ? "linear" : "display", display,
+           storage_name(i->storage), i->compression);
+    printf("\"depth\": %s, \"mask\": %s, \"file_bytes\": %llu, \"bits_per_pixel\": ",
+           i->has_depth ? "true" : "false", i->has_mask ? "true" : "false",
+           (unsigned long long)i->file_bytes);
+    json_number(stdout, bits_per_pixel(i));
+    printf("}\n");
+}
+
+static void print_text(const struct relume_pack_info *i, const struct relume_coder_info *c,
+                       const char *display)
+{
+    printf("projection    %s\n", relume_projection_name(i->geometry.projection));
+    printf("views         %d of %d x %d pixels\n", i->views, i->width, i->height);
+    printf("lights        %d, %s\n", c->lights,
+           c->hemispherical ? "one hemisphere" : "whole sphere");
+    printf("basis         %s, %d coefficients per channel\n", c->basis->name, c->coefficients);
+    if (i->domain == RELUME_DOMAIN_LINEAR)
+        printf("domain        linear\n");
+    else
+        printf("domain        display (%s)\n", display);
+    printf("storage       %s%s, %s\n", storage_name(i->storage),
+           i->storage == RELUME_STORE_HALF ? "" : " bits", i->compression);
+    printf("with          %s%s%s\n", i->has_depth ? "depth" : "",
+           i->has_depth && i->has_mask ? ", " : "",
+           i->has_mask ? "mask" : i->has_depth ? "" : "colour only");
+    printf("file          %llu bytes, %.3f bits per pixel and view\n",
+           (unsigned long long)i->file_bytes, bits_per_pixel(i));
+}
+
+static relume_status run(const struct args *args)
+{
+    relume_pack *pack;
+    const relume_status status = relume_pack_open(
+        &pack, args_input(args, 0), relume_pack_params(.log = args_log(args)));
+    if (status)
+        return status;
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    char display[32];
+    relume_transfer_text(info->display, display, sizeof display);
+    (args_has(args, "--json") ? print_json : print_text)(info, relume_coder_info(info->coder),
+                                                         display);
+    relume_pack_destroy(&pack);
+    return RELUME_OK;
+}
+
+const struct command command_info = {
+    .name = "info",
+    .usage = "FILE [--json]",
+    .summary = "say what a relume file holds",
+    .example = "relume info statue.exr --json",
+    .min_inputs = 1,
+    .max_inputs = 1,
+    .options = options,
+    .run = run,
+};

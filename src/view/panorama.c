@@ -1,0 +1,343 @@
+// panorama.c - all directions around one eye in one image: cylinder, sphere, cube (Wong 1998, 8.2)
+//
+// Layouts are those of docs/conventions.md: azimuth phi = x/W*360-180 looks along
+// (sin phi, ., -cos phi); the cylinder's rows are tangents of elevation, the sphere's are
+// elevations; a cube is six faces side by side. Texels beyond a border are the ones that lie there
+// on the sphere, so that a bilinear value is continuous over the wrap, the poles and the cube's
+// edges.
+#include <relume/view.h>
+
+#include "base/thread.h"
+#include "math/vec.h"
+
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+// The face of a cube: looking along `ahead`, with `right` = ahead x up.
+struct face {
+    vec3 ahead, right, up;
+};
+static const struct face faces[6] = {
+    {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},   // +x
+    {{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}}, // -x
+    {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},   // +y
+    {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}}, // -y
+    {{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}},  // +z
+    {{0, 0, -1}, {1, 0, 0}, {0, 1, 0}},  // -z
+};
+
+// An image seen as a panorama.
+struct panorama {
+    const struct relume_geometry *geometry;
+    int width, height;
+    const float *data; // three channels; NULL when only the geometry is asked for
+};
+
+// What differs from layout to layout.
+struct layout {
+    vec3 (*ray)(const struct panorama *p, double x, double y);
+    bool (*pixel)(double xy[2], const struct panorama *p, vec3 direction);
+    // Texel (x, y), which may lie one step outside the image or, for a cube, outside `face`.
+    void (*texel)(float rgb[3], const struct panorama *p, int face, int x, int y);
+};
+
+// ---------------------------------------------------------------- shared
+
+static void fetch(float rgb[3], const struct panorama *p, int x, int y)
+{
+    const float *from = p->data + 3 * ((size_t)y * (size_t)p->width + (size_t)x);
+    memcpy(rgb, from, 3 * sizeof *rgb);
+}
+
+static int clamp_index(int i, int n)
+{
+    return i < 0 ? 0 : i >= n ? n - 1 : i;
+}
+
+static int wrap_index(int i, int n)
+{
+    return ((i % n) + n) % n;
+}
+
+static vec3 azimuth_ray(const struct panorama *p, double x, double across, double up)
+{
+    const double phi = x / p->width * 2.0 * PI - PI;
+    return vec3_of(across * sin(phi), up, -across * cos(phi));
+}
+
+// In [0, W): azimuth 180 is column 0.
+static double azimuth_column(const struct panorama *p, vec3 d)
+{
+    const double x = (atan2(d.x, -d.z) + PI) / (2.0 * PI) * p->width;
+    return x < p->width ? x : 0.0;
+}
+
+// ---------------------------------------------------------------- cylinder
+
+static vec3 cylinder_ray(const struct panorama *p, double x, double y)
+{
+    const struct relume_geometry *g = p->geometry;
+    const double h = g->v_max - y / p->height * (g->v_max - g->v_min);
+    return vec3_unit(azimuth_ray(p, x, 1.0, h));
+}
+
+static bool cylinder_pixel(double xy[2], const struct panorama *p, vec3 d)
+{
+    const struct relume_geometry *g = p->geometry;
+    const double h = d.y / hypot(d.x, d.z);
+    const double slack = 1e-9 * (g->v_max - g->v_min); // computed directions on the rim
+    if (!(h >= g->v_min - slack && h <= g->v_max + slack))
+        return false;
+    xy[0] = azimuth_column(p, d);
+    xy[1] = fmin(fmax((g->v_max - h) / (g->v_max - g->v_min), 0.0), 1.0) * p->height;
+    return true;
+}
+
+static void cylinder_texel(float rgb[3], const struct panorama *p, int face, int x, int y)
+{
+    (void)face;
+    fetch(rgb, p, wrap_index(x, p->width), clamp_index(y, p->height));
+}
+
+// ---------------------------------------------------------------- sphere
+
+static vec3 sphere_ray(const struct panorama *p, double x, double y)
+{
+    const double elevation = 0.5 * PI - y / p->height * PI;
+    return azimuth_ray(p, x, cos(elevation), sin(elevation));
+}
+
+static bool sphere_pixel(double xy[2], const struct panorama *p, vec3 d)
+{
+    xy[0] = azimuth_column(p, d);
+    xy[1] = (0.5 - atan2(d.y, hypot(d.x, d.z)) / PI) * p->height;
+    return true;
+}
+
+// Beyond a pole lies the same row half a turn away; of an odd width that falls between two columns
+// (and is blurred by half a column: a step at the pole that smooth pictures do not show).
+static void sphere_texel(float rgb[3], const struct panorama *p, int face, int x, int y)
+{
+    (void)face;
+    if (y >= 0 && y < p->height) {
+        fetch(rgb, p, wrap_index(x, p->width), y);
+        return;
+    }
+    const int row = clamp_index(y, p->height);
+    float other[3];
+    fetch(rgb, p, wrap_index(x + p->width / 2, p->width), row);
+    fetch(other, p, wrap_index(x + (p->width + 1) / 2, p->width), row);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = 0.5f * (rgb[c] + other[c]);
+}
+
+// ---------------------------------------------------------------- cube
+
+static int cube_face_of(vec3 d)
+{
+    const double x = fabs(d.x);
+    const double y = fabs(d.y);
+    const double z = fabs(d.z);
+    if (x >= y && x >= z)
+        return d.x >= 0.0 ? 0 : 1;
+    if (y >= z)
+        return d.y >= 0.0 ? 2 : 3;
+    return d.z >= 0.0 ? 4 : 5;
+}
+
+// Direction at (x, y) in pixels from the corner of a face; beyond its rim too. Not of unit length.
+static vec3 face_ray(const struct panorama *p, int face, double x, double y)
+{
+    const struct face *f = &faces[face];
+    const double a = 2.0 * x / (p->width / 6) - 1.0;
+    const double b = 1.0 - 2.0 * y / p->height;
+    return vec3_add(f->ahead, vec3_add(vec3_scale(f->right, a), vec3_scale(f->up, b)));
+}
+
+static vec3 cube_ray(const struct panorama *p, double x, double y)
+{
+    const int side = p->width / 6;
+    const int face = clamp_index((int)floor(x / side), 6);
+    return vec3_unit(face_ray(p, face, x - face * side, y));
+}
+
+// A position on the right rim stays below the first column of the next face.
+static bool cube_pixel(double xy[2], const struct panorama *p, vec3 d)
+{
+    const int side = p->width / 6;
+    const int face = cube_face_of(d);
+    const struct face *f = &faces[face];
+    const double ahead = vec3_dot(d, f->ahead);
+    const double x = (0.5 + 0.5 * vec3_dot(d, f->right) / ahead + face) * side;
+    xy[0] = fmin(fmax(x, face * side), nextafter((face + 1.0) * side, 0.0));
+    xy[1] = (0.5 - 0.5 * vec3_dot(d, f->up) / ahead) * p->height;
+    return true;
+}
+
+// The texel of the neighbouring face that lies where (x, y) beyond the rim of `face` points.
+static void across_edge(float rgb[3], const struct panorama *p, int face, int x, int y)
+{
+    double xy[2];
+    cube_pixel(xy, p, face_ray(p, face, x + 0.5, y + 0.5));
+    fetch(rgb, p, (int)xy[0], clamp_index((int)xy[1], p->height));
+}
+
+// At a corner three faces meet: the missing fourth texel is the mean of their corner texels, which
+// is the same seen from each of them.
+static void cube_texel(float rgb[3], const struct panorama *p, int face, int x, int y)
+{
+    const int side = p->width / 6;
+    const int inner_x = clamp_index(x, side);
+    const int inner_y = clamp_index(y, p->height);
+    if (x == inner_x && y == inner_y) {
+        fetch(rgb, p, face * side + x, y);
+        return;
+    }
+    if (x == inner_x || y == inner_y) {
+        across_edge(rgb, p, face, x, y);
+        return;
+    }
+    float beside[3], above[3];
+    fetch(rgb, p, face * side + inner_x, inner_y);
+    across_edge(beside, p, face, x, inner_y);
+    across_edge(above, p, face, inner_x, y);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = (rgb[c] + beside[c] + above[c]) / 3.0f;
+}
+
+// ---------------------------------------------------------------- public
+
+static const struct layout layouts[] = {
+    [RELUME_CYLINDRICAL] = {cylinder_ray, cylinder_pixel, cylinder_texel},
+    [RELUME_SPHERICAL] = {sphere_ray, sphere_pixel, sphere_texel},
+    [RELUME_CUBE] = {cube_ray, cube_pixel, cube_texel},
+};
+
+static const struct layout *layout_of(const struct relume_geometry *geometry)
+{
+    const size_t n = sizeof layouts / sizeof *layouts;
+    const size_t i = (size_t)geometry->projection;
+    return i < n && layouts[i].ray ? &layouts[i] : NULL;
+}
+
+static bool has_direction(vec3 d)
+{
+    return isfinite(d.x) && isfinite(d.y) && isfinite(d.z) && (d.x != 0 || d.y != 0 || d.z != 0);
+}
+
+struct relume_vec3 relume_look_ray(struct relume_look look, int width, int height, double x,
+                                   double y)
+{
+    const double reach = look.zoom > 0.0 ? 1.0 / look.zoom : 1.0;
+    const double a = (2.0 * x / width - 1.0) * reach;
+    const double b = (height - 2.0 * y) / width * reach;
+    const double tilt = look.tilt_deg * PI / 180.0;
+    const double pan = look.pan_deg * PI / 180.0;
+    const double up = b * cos(tilt) + sin(tilt);
+    const double ahead = cos(tilt) - b * sin(tilt);
+    return vec3_unit(vec3_of(a * cos(pan) + ahead * sin(pan), up, a * sin(pan) - ahead * cos(pan)));
+}
+
+struct relume_vec3 relume_panorama_ray(const struct relume_geometry *geometry, int width,
+                                       int height, double x, double y)
+{
+    const struct panorama p = {geometry, width, height, NULL};
+    const struct layout *layout = layout_of(geometry);
+    return layout ? layout->ray(&p, x, y) : (vec3){0};
+}
+
+bool relume_panorama_pixel(double xy[2], const struct relume_geometry *geometry, int width,
+                           int height, struct relume_vec3 direction)
+{
+    const struct panorama p = {geometry, width, height, NULL};
+    const struct layout *layout = layout_of(geometry);
+    return layout && has_direction(direction) && layout->pixel(xy, &p, direction);
+}
+
+static bool sample(float rgb[3], const struct panorama *p, const struct layout *layout,
+                   vec3 direction)
+{
+    double xy[2];
+    rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    if (!has_direction(direction) || !layout->pixel(xy, p, direction))
+        return false;
+    const int side = p->geometry->projection == RELUME_CUBE ? p->width / 6 : p->width;
+    const int face = clamp_index((int)(xy[0] / side), 6);
+    const double x = xy[0] - face * side - 0.5;
+    const double y = xy[1] - 0.5;
+    const int left = (int)floor(x);
+    const int top = (int)floor(y);
+    for (int j = 0; j < 2; j++)
+        for (int i = 0; i < 2; i++) {
+            const double wx = i ? x - left : 1.0 - (x - left);
+            const double wy = j ? y - top : 1.0 - (y - top);
+            const float w = (float)(wx * wy);
+            float t[3];
+            if (w == 0.0f)
+                continue;
+            layout->texel(t, p, face, left + i, top + j);
+            for (int c = 0; c < 3; c++)
+                rgb[c] += w * t[c];
+        }
+    return true;
+}
+
+// Three channels, and for a cube six square faces.
+static const struct layout *usable_layout(const struct relume_geometry *geometry,
+                                          const struct relume_image *image)
+{
+    const bool cube = geometry->projection == RELUME_CUBE;
+    if (!image->data || image->channels != 3 || (cube && image->width != 6 * image->height))
+        return NULL;
+    return layout_of(geometry);
+}
+
+bool relume_panorama_sample(float rgb[3], const struct relume_geometry *geometry,
+                            const struct relume_image *image, struct relume_vec3 direction)
+{
+    const struct panorama p = {geometry, image->width, image->height, image->data};
+    const struct layout *layout = usable_layout(geometry, image);
+    if (layout)
+        return sample(rgb, &p, layout, direction);
+    rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    return false;
+}
+
+struct frame {
+    const struct relume_image *out;
+    struct relume_look look;
+    struct panorama panorama;
+    const struct layout *layout;
+};
+
+static void draw_row(void *context, size_t row, int worker)
+{
+    const struct frame *f = context;
+    (void)worker;
+    float *rgb = f->out->data + 3 * row * (size_t)f->out->width;
+    for (int x = 0; x < f->out->width; x++, rgb += 3) {
+        const vec3 ray =
+            relume_look_ray(f->look, f->out->width, f->out->height, x + 0.5, (double)row + 0.5);
+        sample(rgb, &f->panorama, f->layout, ray);
+    }
+}
+
+relume_status relume_panorama_frame(struct relume_image *out,
+                                    const struct relume_geometry *geometry,
+                                    const struct relume_image *image, struct relume_look look,
+                                    const struct relume_view_params *params)
+{
+    const struct layout *layout = usable_layout(geometry, image);
+    const bool finite = isfinite(look.pan_deg) && isfinite(look.tilt_deg) && isfinite(look.zoom);
+    if (!layout || !finite || look.zoom < 0.0 || !out->data || out->channels != 3)
+        return RELUME_EINVAL;
+    struct frame frame = {
+        .out = out,
+        .look = look,
+        .panorama = {geometry, image->width, image->height, image->data},
+        .layout = layout,
+    };
+    thread_for(params ? params->threads : 0, (size_t)out->height, draw_row, &frame);
+    return RELUME_OK;
+}

@@ -1,0 +1,32 @@
+// context.h - where OpenGL comes from: a window, or memory alone
+#ifndef VIEWER_CONTEXT_H
+#define VIEWER_CONTEXT_H
+
+#include "app.h"
+#include "gl.h"
+
+// What the user did; `dropped` is a file put onto the window, valid until the next call.
+struct context_event {
+    enum { CONTEXT_INPUT, CONTEXT_DROP, CONTEXT_CLOSE } kind;
+    struct app_event input;
+    const char *dropped;
+};
+
+// A source of contexts. Thread-safety: main thread only; one open context at a time.
+struct context_backend {
+    const char *name;
+    // Make a context of OpenGL 3.3 core and make it current. RELUME_ESYSTEM says what to install.
+    relume_status (*open)(void **out, int width, int height, const char *title,
+                          const struct relume_log *log);
+    void (*close)(void *context);
+    gl_proc (*get_proc)(const char *name);
+    // Pixels of the picture that `show` shows.
+    void (*size)(void *context, int *width, int *height);
+    void (*show)(void *context, const char *title);
+    // The next event; false when there is none (with `wait` only after sleeping for one).
+    bool (*next)(void *context, struct context_event *event, bool wait);
+};
+extern const struct context_backend context_glfw;    // a window
+extern const struct context_backend context_osmesa;  // no display needed; draw into targets
+
+#endif

@@ -1,0 +1,57 @@
+// draw.h - one function for each thing that can be drawn; each is a program and can be called alone
+//
+// All draw linear light into the target in use (present: onto the screen).
+#ifndef VIEWER_DRAW_H
+#define VIEWER_DRAW_H
+
+#include "app.h"
+#include "program.h"
+#include "target.h"
+
+#include <relume/view.h>
+
+// Where and how bright; pixels from the frame's top left corner.
+struct place {
+    int width, height;             // of the frame
+    struct app_rectangle picture;  // the whole picture, which may reach beyond the frame
+    float exposure;                // factor
+};
+
+// The first two uniforms of every program.
+enum { DRAW_RECTANGLE, DRAW_SIZE, DRAW_OWN };
+// Draw with the program in use, only within `rectangle`.
+void draw_rectangle(const struct gl *gl, const struct program *program, const struct place *place,
+                    struct app_rectangle rectangle);
+
+// A view as it was captured.
+relume_status draw_picture_create(struct program *program, const struct gl *gl,
+                                  const struct relume_log *log);
+void draw_picture(const struct program *program, const struct gl *gl, const struct place *place,
+                  const struct target *view);
+
+// A slab from `eye`. `views` are relit textures by view number; those without weight may be NULL.
+relume_status draw_slab_create(struct program *program, const struct gl *gl,
+                               const struct relume_log *log);
+void draw_slab(const struct program *program, const struct gl *gl, const struct place *place,
+               const relume_slab *slab, const struct relume_geometry *geometry,
+               struct relume_vec3 eye, const struct target *const *views);
+
+// A perspective look into a panorama.
+relume_status draw_panorama_create(struct program *program, const struct gl *gl,
+                                   const struct relume_log *log);
+void draw_panorama(const struct program *program, const struct gl *gl, const struct place *place,
+                   const struct relume_geometry *geometry, struct relume_look look,
+                   const struct target *view);
+
+// The ball in the lower right corner, lit from `light` (as the viewer sees it).
+relume_status draw_ball_create(struct program *program, const struct gl *gl,
+                               const struct relume_log *log);
+void draw_ball(const struct program *program, const struct gl *gl, const struct place *place,
+               struct relume_vec3 light, const float rgb[3]);
+
+// A linear frame onto the screen, coded as sRGB.
+relume_status draw_present_create(struct program *program, const struct gl *gl,
+                                  const struct relume_log *log);
+void draw_present(const struct program *program, const struct gl *gl, const struct target *frame);
+
+#endif

@@ -1,0 +1,22 @@
+#include "draw.h"
+
+enum { FRAME = DRAW_OWN, COUNT };
+static const char *const uniforms[] = {"rectangle", "frame_size", "frame"};
+
+relume_status draw_present_create(struct program *program, const struct gl *gl,
+                                  const struct relume_log *log)
+{
+    return program_create(program, gl, "present.frag", uniforms, COUNT, log);
+}
+
+void draw_present(const struct program *program, const struct gl *gl, const struct target *frame)
+{
+    const struct place place = {.width = frame->width, .height = frame->height};
+    gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+    gl->Viewport(0, 0, frame->width, frame->height);
+    texture_use(gl, 0, GL_TEXTURE_2D, frame->texture);
+    gl->UseProgram(program->id);
+    gl->Uniform1i(program->at[FRAME], 0);
+    draw_rectangle(gl, program, &place,
+                   (struct app_rectangle){0, 0, frame->width, frame->height});
+}

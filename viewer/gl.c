@@ -1,0 +1,27 @@
+#include "gl.h"
+
+#include "say.h"
+
+relume_status gl_load(struct gl *gl, gl_proc (*get_proc)(const char *name),
+                      const struct relume_log *log)
+{
+#define GL_LOAD(type, name)                                                                        \
+    gl->name = (type)get_proc("gl" #name);                                                         \
+    if (!gl->name)                                                                                 \
+        return say(log, RELUME_ESYSTEM, "OpenGL: expected version 3.3; gl" #name " is missing");
+    GL_FUNCTIONS(GL_LOAD)
+#undef GL_LOAD
+    gl->GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &gl->max_layers);
+    gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &gl->max_texture);
+    return RELUME_OK;
+}
+
+relume_status gl_check(const struct gl *gl, const char *doing, const struct relume_log *log)
+{
+    const GLenum error = gl->GetError();
+    if (error == GL_NO_ERROR)
+        return RELUME_OK;
+    if (error == GL_OUT_OF_MEMORY)
+        return say(log, RELUME_ESYSTEM, "%s: the graphics memory is full", doing);
+    return say(log, RELUME_ESYSTEM, "%s: OpenGL error 0x%04x", doing, error);
+}

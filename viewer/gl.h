@@ -1,0 +1,77 @@
+// gl.h - the functions of OpenGL 3.3 core that the viewer uses, loaded from the context
+//
+// No loader library: libepoxy and its kin do not see an OSMesa context. The list below is the whole
+// of OpenGL here; a call is gl->DrawArrays(...).
+#ifndef VIEWER_GL_H
+#define VIEWER_GL_H
+
+#include <GL/glcorearb.h>
+#include <relume/base.h>
+
+#define GL_FUNCTIONS(X)                                                                            \
+    X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                                                       \
+    X(PFNGLATTACHSHADERPROC, AttachShader)                                                         \
+    X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                                                   \
+    X(PFNGLBINDTEXTUREPROC, BindTexture)                                                           \
+    X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                                                   \
+    X(PFNGLBLENDFUNCPROC, BlendFunc)                                                               \
+    X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)                                     \
+    X(PFNGLCLEARPROC, Clear)                                                                       \
+    X(PFNGLCLEARCOLORPROC, ClearColor)                                                             \
+    X(PFNGLCOMPILESHADERPROC, CompileShader)                                                       \
+    X(PFNGLCREATEPROGRAMPROC, CreateProgram)                                                       \
+    X(PFNGLCREATESHADERPROC, CreateShader)                                                         \
+    X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)                                             \
+    X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                                                       \
+    X(PFNGLDELETESHADERPROC, DeleteShader)                                                         \
+    X(PFNGLDELETETEXTURESPROC, DeleteTextures)                                                     \
+    X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)                                             \
+    X(PFNGLDISABLEPROC, Disable)                                                                   \
+    X(PFNGLDRAWARRAYSPROC, DrawArrays)                                                             \
+    X(PFNGLENABLEPROC, Enable)                                                                     \
+    X(PFNGLFINISHPROC, Finish)                                                                     \
+    X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)                                         \
+    X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                                                   \
+    X(PFNGLGENTEXTURESPROC, GenTextures)                                                           \
+    X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                                                   \
+    X(PFNGLGETERRORPROC, GetError)                                                                 \
+    X(PFNGLGETINTEGERVPROC, GetIntegerv)                                                           \
+    X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                                               \
+    X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                                         \
+    X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                                                 \
+    X(PFNGLGETSHADERIVPROC, GetShaderiv)                                                           \
+    X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                                             \
+    X(PFNGLLINKPROGRAMPROC, LinkProgram)                                                           \
+    X(PFNGLPIXELSTOREIPROC, PixelStorei)                                                           \
+    X(PFNGLREADPIXELSPROC, ReadPixels)                                                             \
+    X(PFNGLSHADERSOURCEPROC, ShaderSource)                                                         \
+    X(PFNGLTEXIMAGE2DPROC, TexImage2D)                                                             \
+    X(PFNGLTEXIMAGE3DPROC, TexImage3D)                                                             \
+    X(PFNGLTEXPARAMETERIPROC, TexParameteri)                                                       \
+    X(PFNGLTEXSUBIMAGE3DPROC, TexSubImage3D)                                                       \
+    X(PFNGLUNIFORM1FPROC, Uniform1f)                                                               \
+    X(PFNGLUNIFORM1IPROC, Uniform1i)                                                               \
+    X(PFNGLUNIFORM2FPROC, Uniform2f)                                                               \
+    X(PFNGLUNIFORM3FPROC, Uniform3f)                                                               \
+    X(PFNGLUNIFORM4FPROC, Uniform4f)                                                               \
+    X(PFNGLUSEPROGRAMPROC, UseProgram)                                                             \
+    X(PFNGLVIEWPORTPROC, Viewport)
+
+struct gl {
+#define GL_MEMBER(type, name) type name;
+    GL_FUNCTIONS(GL_MEMBER)
+#undef GL_MEMBER
+    int max_layers;   // of an array texture, at least 256
+    int max_texture;  // pixels along one side
+};
+
+typedef void (*gl_proc)(void);
+
+// Fill `gl` from the current context; RELUME_ESYSTEM names the first function that is missing.
+relume_status gl_load(struct gl *gl, gl_proc (*get_proc)(const char *name),
+                      const struct relume_log *log);
+
+// RELUME_OK, or what glGetError has to say since it was last asked.
+relume_status gl_check(const struct gl *gl, const char *doing, const struct relume_log *log);
+
+#endif

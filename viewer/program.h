@@ -1,0 +1,21 @@
+// program.h - shaders from the tree, linked, with their uniforms found once by name
+#ifndef VIEWER_PROGRAM_H
+#define VIEWER_PROGRAM_H
+
+#include "gl.h"
+#include "shaders.h"
+
+enum { PROGRAM_UNIFORMS = 16 };
+
+struct program {
+    GLuint id;
+    GLint at[PROGRAM_UNIFORMS];  // by the caller's enum; -1 when the shader does not use it
+};
+
+// Link rectangle.vert with `fragment` ("slab.frag"). `uniforms` is a list of `n` names in the order
+// of the caller's enum. RELUME_ESYSTEM with the compiler's words.
+relume_status program_create(struct program *program, const struct gl *gl, const char *fragment,
+                             const char *const *uniforms, int n, const struct relume_log *log);
+void program_destroy(struct program *program, const struct gl *gl);
+
+#endif

@@ -2,6 +2,7 @@
 #ifndef SCENE_BUILD_H
 #define SCENE_BUILD_H
 
+#include "math/random.h"
 #include "scene/material.h"
 #include "scene/shapes.h"
 

@@ -133,15 +133,14 @@ static float lobe_chance(const struct surface *s)
     return lobe > 0.0f ? lobe / (lobe + base) : 0.0f;
 }
 
-bool surface_sample(const struct surface *s, struct random *random, float wi[3], float out[3])
+bool surface_sample(const struct surface *s, float pick, const float u[2], float wi[3],
+                    float out[3])
 {
     const float chance = lobe_chance(s);
-    const float pick = (float)random_next(random);
-    const float u1 = (float)random_next(random), u2 = (float)random_next(random);
     if (pick < chance)
-        sample_lobe(s, u1, u2, wi);
+        sample_lobe(s, u[0], u[1], wi);
     else
-        around(s->n, sqrtf(1.0f - u1), u2, wi);
+        around(s->n, sqrtf(1.0f - u[0]), u[1], wi);
     if (!surface_lit(s, wi, out))
         return false;
     const float density = (1.0f - chance) * dot3(s->n, wi) / PI_F +

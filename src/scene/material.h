@@ -6,7 +6,6 @@
 #ifndef SCENE_MATERIAL_H
 #define SCENE_MATERIAL_H
 
-#include "math/random.h"
 #include "scene/texture.h"
 
 #include <math.h>
@@ -42,8 +41,9 @@ bool surface_lit(const struct surface *s, const float wi[3], float out[3]);
 // Fresnel reflectance of the mirror's share.
 void surface_mirror(const struct surface *s, float out[3]);
 
-// Choose where to look for indirect light. `out` is brdf * cos / density; false when the drawn
-// direction carries nothing.
-bool surface_sample(const struct surface *s, struct random *random, float wi[3], float out[3]);
+// Choose where to look for indirect light: `pick` chooses the layer, `u` the direction, all uniform
+// in [0, 1). `out` is brdf * cos / density; false when the direction carries nothing.
+bool surface_sample(const struct surface *s, float pick, const float u[2], float wi[3],
+                    float out[3]);
 
 #endif

@@ -38,14 +38,12 @@ static struct tile tile_of(const struct render *r, size_t index)
                          c->height - y < TILE ? c->height - y : TILE};
 }
 
-static double radical_inverse_2(uint32_t k)
+static double radical_inverse(int base, int k)
 {
-    k = k >> 16 | k << 16;
-    k = (k & 0x00ff00ffu) << 8 | (k & 0xff00ff00u) >> 8;
-    k = (k & 0x0f0f0f0fu) << 4 | (k & 0xf0f0f0f0u) >> 4;
-    k = (k & 0x33333333u) << 2 | (k & 0xccccccccu) >> 2;
-    k = (k & 0x55555555u) << 1 | (k & 0xaaaaaaaau) >> 1;
-    return k * 0x1p-32;
+    double inverse = 0.0;
+    for (double digit = 1.0 / base; k; k /= base, digit /= base)
+        inverse += (k % base) * digit;
+    return inverse;
 }
 
 static double wrapped(double x)
@@ -53,21 +51,31 @@ static double wrapped(double x)
     return x - floor(x);
 }
 
-// A Hammersley set per pixel, shifted around by a random amount of the pixel's own (Cranley and
-// Patterson 1976): stratified for every number of samples.
+// Rounding to float must not reach 1.
+static float unit_float(double x)
+{
+    return fminf((float)wrapped(x), 0x1.fffffep-1f);
+}
+
+// A Hammersley set per pixel and first bounce, shifted around by a random amount of the pixel's own
+// (Cranley and Patterson 1976): stratified for every number of samples.
 static void walk_pixel(const struct render_job *job, struct places *places, int x, int y,
                        uint32_t pixel)
 {
     const uint64_t number = (uint64_t)y << 32 | (uint64_t)x;
     struct random shift = random_stream(job->seed, number, UINT64_MAX);
-    const double shift_x = random_next(&shift), shift_y = random_next(&shift);
+    double by[4];
+    for (int d = 0; d < 4; d++)
+        by[d] = random_next(&shift);
     for (int i = 0; i < job->samples; i++) {
-        const double sx = wrapped((double)i / job->samples + shift_x);
-        const double sy = wrapped(radical_inverse_2((uint32_t)i) + shift_y);
+        const double sx = wrapped((double)i / job->samples + by[0]);
+        const double sy = wrapped(radical_inverse(2, i) + by[1]);
         struct walk walk = {
             .scene = job->scene,
             .bounces = job->bounces,
             .random = random_stream(job->seed, number, (uint64_t)i),
+            .first_bounce = {unit_float(radical_inverse(3, i) + by[2]),
+                             unit_float(radical_inverse(5, i) + by[3])},
             .places = places,
             .pixel = pixel,
         };

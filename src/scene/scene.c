@@ -6,7 +6,7 @@
 #include <string.h>
 
 const struct relume_scene_kind *const relume_scenes[] = {
-    &scene_box, &scene_teapot, &scene_bust, NULL,
+    &scene_box, &scene_teapot, &scene_bust, &scene_attic, &scene_chessboard, NULL,
 };
 
 const struct relume_scene_kind *relume_scene_find(const char *name)

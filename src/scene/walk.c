@@ -157,8 +157,11 @@ static void follow_bounce(struct walk *walk, const struct step *step, const stru
     if (step->bounces == walk->bounces)
         return;
     struct step next = {.mirrors = step->mirrors, .bounces = step->bounces + 1};
-    float share[3];
-    if (!surface_sample(s, &walk->random, next.direction, share) || !make_unit(next.direction))
+    float share[3], u[2];
+    const float pick = (float)random_next(&walk->random);
+    for (int i = 0; i < 2; i++)
+        u[i] = step->bounces ? (float)random_next(&walk->random) : walk->first_bounce[i];
+    if (!surface_sample(s, pick, u, next.direction, share) || !make_unit(next.direction))
         return;
     for (int c = 0; c < 3; c++) {
         next.weight[c] = step->weight[c] * share[c];

@@ -29,6 +29,7 @@ struct walk {
     const relume_scene *scene;
     int bounces;
     struct random random;
+    float first_bounce[2];  // uniform; spread evenly over the samples of a pixel
     struct places *places;
     uint32_t pixel;
 };

@@ -28,7 +28,8 @@ once     = $(eval $1 := $$(shell $2))$($1)
 EXR      = $(call once,EXR,pkg-config --cflags OpenEXR)
 OIIO     = $(call once,OIIO,pkg-config --cflags OpenImageIO)
 GLFW     = $(call once,GLFW,pkg-config --cflags glfw3)
-LIBS     = -Wl,--as-needed $(call once,LIBS,pkg-config --libs OpenImageIO OpenEXR openblas jansson) -llapacke -lembree3 -lm
+PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenImageIO OpenEXR openblas jansson)
+LIBS     = -Wl,--as-needed $(PKG_LIBS) -llapacke -lembree3 -lm
 GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 

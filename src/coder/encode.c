@@ -14,6 +14,7 @@
 
 #include <errno.h>
 #include <float.h>
+#include <math.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -46,6 +47,7 @@ struct encoder {
     float *values;     // [K][rows][x][3]
     uint16_t *packed;  // [rows][planes][x]
     const struct relume_image *mask;
+    const char *const *images;  // [lights], for messages
     struct range *total;  // [planes], over unmasked pixels
     float *basis;         // [lights][K], stored functions at the captured lights
     double error_sum;
@@ -151,6 +153,23 @@ static bool all_finite(const float *v, size_t n)
     return sum == 0.0f;
 }
 
+// Ranges and steps are differences of coefficients, which must not overflow; halves end at 65504.
+static relume_status check_size(const struct encoder *e, const struct relume_encode_params *p)
+{
+    const bool half = e->out->info.storage == RELUME_STORE_HALF;
+    const float most = half ? 65504.0f : FLT_MAX / 4.0f;
+    const size_t n = (size_t)e->coder->info.coefficients * (size_t)e->rows * (size_t)e->width * 3;
+    unsigned wrong = 0;
+    for (size_t i = 0; i < n; i++)
+        wrong |= !(fabsf(e->values[i]) <= most);
+    if (!wrong)
+        return RELUME_OK;
+    return log_fail(p->log, RELUME_EDATA,
+                    "%s: coefficients in rows %d to %d are too large for %s; expected at most %g",
+                    e->images[0], e->row, e->row + e->rows - 1,
+                    half ? "half storage" : "single precision", (double)most);
+}
+
 static relume_status encode_band(struct encoder *e, relume_table *table,
                                  const struct relume_encode_params *p)
 {
@@ -161,14 +180,17 @@ static relume_status encode_band(struct encoder *e, relume_table *table,
     for (int i = 0; i < e->lights; i++)
         if (!all_finite(e->samples + (size_t)i * columns, columns))
             return log_fail(p->log, RELUME_EDATA,
-                            "image %d: holds NaN or infinite values in rows %d to %d; expected "
+                            "%s: holds NaN or infinite values in rows %d to %d; expected "
                             "finite radiance",
-                            i, e->row, e->row + e->rows - 1);
+                            e->images[i], e->row, e->row + e->rows - 1);
     thread_for(e->threads, (columns + CHUNK - 1) / CHUNK, multiply_chunk, e);
     status = measure_fit(e);
     if (status)
         return status;
     apply_mask(e);
+    status = check_size(e, p);
+    if (status)
+        return status;
     thread_for(e->threads, (size_t)e->planes, pack_plane, e);
     const size_t bytes = columns / 3 * (size_t)e->planes * sizeof *e->packed;
     if (!scratch_write(e->out->fd, e->packed, bytes, band_offset(e->out, e->row)))
@@ -430,6 +452,7 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
         .height = relume_capture_height(capture),
         .planes = coder->info.planes,
         .mask = &mask,
+        .images = m->view[view].images,
         .threads = p.threads,
     };
     status = alloc_coefficients(&c, coder, capture, &p);

@@ -8,6 +8,7 @@
 #include "image/half.h"
 #include "pack/format.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { MOST_ATTRIBUTES = 20, MOST_WEIGHTS = 3 * 4096 };
@@ -119,7 +120,7 @@ static void preview_row(const struct preview *p, const void *codes, size_t row, 
                                         plane);
             }
             out[(size_t)(2 - c) * width + x] =
-                half_from_float(relume_transfer_decode(p->curve, v));
+                half_from_float(fminf(relume_transfer_decode(p->curve, v), 65504.0f));
         }
 }
 

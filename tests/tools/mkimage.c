@@ -1,7 +1,8 @@
 // mkimage.c - images that no ordinary program writes, for tests of bad and odd input
 //
-//   mkimage png  IN OUT DEPTH CHANNELS     PNG of 8 or 16 bits; 1 grey, 2 + alpha, 3 RGB, 4 + alpha
-//   mkimage tiff IN OUT DEPTH CHANNELS     TIFF of 8, 16 or 32 (float) bits; 1, 3 or 4 channels
+//   mkimage png  DEPTH CHANNELS DIR IN...  PNG of 8 or 16 bits; 1 grey, 2 + alpha, 3 RGB, 4 + alpha
+//   mkimage tiff DEPTH CHANNELS DIR IN...  TIFF of 8, 16 or 32 (float) bits; 1, 3 or 4 channels;
+//                                          both write DIR/NAME under each input's own name
 //   mkimage poke IN OUT X Y VALUE          all channels of one pixel, as float EXR ("nan", "inf", ...)
 //   mkimage gain IN OUT FACTOR             every value times FACTOR, as float EXR
 //   mkimage plane IN OUT VALUE             one channel of VALUE of the size of IN, as float EXR
@@ -336,13 +337,21 @@ static void print_pixel(const char *path, int x, int y)
     relume_image_destroy(&image);
 }
 
+static void convert(void (*write)(const char *, const char *, int, int), int argc, char **argv)
+{
+    for (int i = 5; i < argc; i++) {
+        char to[4096];
+        const char *slash = strrchr(argv[i], '/');
+        snprintf(to, sizeof to, "%s/%s", argv[4], slash ? slash + 1 : argv[i]);
+        write(argv[i], to, atoi(argv[2]), atoi(argv[3]));
+    }
+}
+
 int main(int argc, char **argv)
 {
     const char *what = argc > 1 ? argv[1] : "";
-    if (!strcmp(what, "png") && argc == 6)
-        write_png(argv[2], argv[3], atoi(argv[4]), atoi(argv[5]));
-    else if (!strcmp(what, "tiff") && argc == 6)
-        write_tiff(argv[2], argv[3], atoi(argv[4]), atoi(argv[5]));
+    if ((!strcmp(what, "png") || !strcmp(what, "tiff")) && argc > 5)
+        convert(what[0] == 'p' ? write_png : write_tiff, argc, argv);
     else if (!strcmp(what, "poke") && argc == 7)
         poke(argv[2], argv[3], atoi(argv[4]), atoi(argv[5]), strtof(argv[6], NULL));
     else if (!strcmp(what, "gain") && argc == 5)

@@ -9,6 +9,8 @@
 // What `transfer` AUTO means for an open file.
 struct relume_transfer image_transfer(struct relume_transfer transfer, const struct oiio_info *info);
 
+enum { IMAGE_STREAM_ROWS = 16 };
+
 // Reads rows of one file as 1 or 3 channels after a per-value function: decode by `from`, divide
 // by gain[channel], encode by `to`. Bytes go through tables.
 struct image_stream {
@@ -17,7 +19,7 @@ struct image_stream {
     struct relume_transfer from, to;
     float gain[3];
     float table[3][256];  // per channel, for 8-bit files
-    void *scratch;        // one row of the file
+    void *scratch;        // IMAGE_STREAM_ROWS rows of the file
 };
 
 // Takes over `reader`, also on failure. RELUME_ENOMEM.

@@ -5,7 +5,8 @@
 #include <string.h>
 
 static const struct option options[] = {
-    {"--pattern", OPTION_TEXT, "P", "hammersley (default), grid, random, jittered, poisson, spiral", 0, 0},
+    {"--pattern", OPTION_TEXT, "P", "hammersley (default), grid, random, jittered, poisson, spiral",
+     0, 0},
     {"-n", OPTION_INT, "N", "number of directions; default 100", 1, 65536},
     {"--hemisphere", OPTION_FLAG, NULL, "only directions on the pole's side", 0, 0},
     {"--pole", OPTION_TEXT, "z|y", "the pole: z (planar, slab; default) or y (panoramas)", 0, 0},

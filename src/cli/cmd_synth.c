@@ -5,13 +5,18 @@
 
 static const struct option options[] = {
     {"-o", OPTION_TEXT, "DIR", "the capture folder to make", 0, 0},
-    {"--size", OPTION_INT, "N", "width (planar, slab, cube face) or height (panoramas); default 256", 1, 65536},
+    {"--size", OPTION_INT, "N",
+     "width (planar, slab, cube face) or height (panoramas); default 256", 1, 65536},
     {"--views", OPTION_TEXT, "GxG", "slab: grid of cameras; default 5x5", 0, 0},
     {"--lights", OPTION_INT, "N", "number of light directions; default 100", 1, 65536},
-    {"--pattern", OPTION_TEXT, "P", "hammersley (default), grid, random, jittered, poisson, spiral", 0, 0},
-    {"--hemisphere", OPTION_FLAG, NULL, "lights on the viewer's (panoramas: upper) side only", 0, 0},
-    {"--lights-from", OPTION_TEXT, "FILE", "directions of a capture.json, a .lp file or lines x y z", 0, 0},
-    {"--projection", OPTION_TEXT, "P", "planar, slab, cylindrical, spherical, cube; default: the scene's own", 0, 0},
+    {"--pattern", OPTION_TEXT, "P", "hammersley (default), grid, random, jittered, poisson, spiral",
+     0, 0},
+    {"--hemisphere", OPTION_FLAG, NULL, "lights on the viewer's (panoramas: upper) side only", 0,
+     0},
+    {"--lights-from", OPTION_TEXT, "FILE",
+     "directions of a capture.json, a .lp file or lines x y z", 0, 0},
+    {"--projection", OPTION_TEXT, "P",
+     "planar, slab, cylindrical, spherical, cube; default: the scene's own", 0, 0},
     {"--eye", OPTION_TEXT, "x,y,z", "where the eye is; may be repeated for a slab", 0, 0},
     {"--samples", OPTION_INT, "N", "camera rays per pixel; default 16", 1, 65536},
     {"--bounces", OPTION_INT, "N", "bounces of indirect light; default 0", 0, 64},
@@ -105,10 +110,9 @@ static relume_status capture(const struct relume_scene_kind *kind,
                              const struct relume_synth_params *params, const struct args *args)
 {
     relume_scene *scene;
-    relume_status status =
-        relume_scene_create(&scene, kind,
-                            relume_scene_params(.log = args_log(args),
-                                                .mesh = args_text(args, "--mesh", NULL)));
+    relume_status status = relume_scene_create(
+        &scene, kind,
+        relume_scene_params(.log = args_log(args), .mesh = args_text(args, "--mesh", NULL)));
     if (!status)
         status = relume_scene_capture(scene, args_text(args, "-o", NULL), params);
     relume_scene_destroy(&scene);

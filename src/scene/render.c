@@ -228,8 +228,7 @@ relume_status render_lights(const struct render_job *job, struct relume_image *o
     };
     if (!r.scratch)
         return RELUME_ENOMEM;
-    const size_t tiles =
-        (size_t)r.tiles_across * (size_t)((job->camera.height + TILE - 1) / TILE);
+    const size_t tiles = (size_t)r.tiles_across * (size_t)((job->camera.height + TILE - 1) / TILE);
     // In groups, so that progress is told and cancelling heard from this thread.
     const size_t group = (size_t)threads * 8;
     relume_status status = RELUME_OK;
@@ -260,14 +259,13 @@ static void depth_row(void *context, size_t item, int worker)
     const struct depth *d = context;
     float *row = d->out->data + item * (size_t)d->out->width;
     for (int x = 0; x < d->out->width; x++) {
-        const struct camera_ray ray =
-            camera_ray_at(&d->job->camera, x + 0.5, (double)item + 0.5);
+        const struct camera_ray ray = camera_ray_at(&d->job->camera, x + 0.5, (double)item + 0.5);
         const float origin[3] = {(float)ray.origin.x, (float)ray.origin.y, (float)ray.origin.z};
         const float direction[3] = {(float)ray.direction.x, (float)ray.direction.y,
                                     (float)ray.direction.z};
         struct trace_hit hit;
-        row[x] = trace_closest(d->job->scene->tracer, origin, direction, &hit) ? hit.distance
-                                                                               : INFINITY;
+        row[x] =
+            trace_closest(d->job->scene->tracer, origin, direction, &hit) ? hit.distance : INFINITY;
     }
 }
 

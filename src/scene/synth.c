@@ -61,8 +61,8 @@ static relume_status check(const struct synth *s)
         wrong = "samples: expected 1 to 65536";
     else if (p->bounces < 0 || p->bounces > 64)
         wrong = "bounces: expected 0 to 64";
-    else if (s->projection == RELUME_SLAB && (p->grid[0] < 1 || p->grid[1] < 1 ||
-                                              p->grid[0] > 256 || p->grid[1] > 256))
+    else if (s->projection == RELUME_SLAB &&
+             (p->grid[0] < 1 || p->grid[1] < 1 || p->grid[0] > 256 || p->grid[1] > 256))
         wrong = "views: expected a grid from 1x1 to 256x256";
     if (wrong)
         return log_fail(p->log, RELUME_EINVAL, "%s", wrong);
@@ -215,7 +215,9 @@ static struct render_job job_of(const struct synth *s)
 {
     return (struct render_job){
         .scene = s->scene,
-        .camera = {.geometry = s->geometry, .width = s->width, .height = s->height,
+        .camera = {.geometry = s->geometry,
+                   .width = s->width,
+                   .height = s->height,
                    .uv = {s->uv[s->view_now][0], s->uv[s->view_now][1]}},
         .samples = s->p.samples,
         .bounces = s->p.bounces,

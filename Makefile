@@ -28,7 +28,8 @@ once     = $(eval $1 := $$(shell $2))$($1)
 EXR      = $(call once,EXR,pkg-config --cflags OpenEXR)
 OIIO     = $(call once,OIIO,pkg-config --cflags OpenImageIO)
 GLFW     = $(call once,GLFW,pkg-config --cflags glfw3)
-LIBS     = -Wl,--as-needed $(call once,LIBS,pkg-config --libs OpenImageIO OpenEXR openblas jansson) -llapacke -lembree3 -lm
+PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenImageIO OpenEXR openblas jansson)
+LIBS     = -Wl,--as-needed $(PKG_LIBS) -llapacke -lembree3 -lm
 GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 
@@ -53,7 +54,7 @@ BENCH    := $(BENCH_C:%.c=$B/%)
 FUZZ     := $(FUZZ_C:%.c=$B/%)
 VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 
-.PHONY: all lib cli viewer deps deps-web demo test check bench fuzz headers layers format install clean
+.PHONY: all lib cli viewer deps deps-web demo test check check-threads bench fuzz headers layers format install clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
 lib: $B/librelume.a $B/librelume.so
@@ -127,6 +128,8 @@ test: all
 	@tests/run.sh $(MAKE)
 check: $(UNIT) $(GL) cli viewer
 	@tests/check.sh $B
+check-threads: $(filter $B/tests/threads/%,$(UNIT))
+	@ONLY_BINARIES=1 tests/check.sh $B
 
 headers: $(HEADERS:include/relume/%.h=$B/headers/%.ok)
 $B/headers/%.ok: include/relume/%.h $(HEADERS) | $(DEPS)

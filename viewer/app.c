@@ -7,11 +7,11 @@
 
 #define PI 3.14159265358979323846
 
-static const double wheel_factor = 1.1;  // of the zoom, per step
+static const double wheel_factor = 1.1; // of the zoom, per step
 static const double zoom_least = 0.1;
 static const double zoom_most = 64.0;
-static const double exposure_step = 0.25;  // EV per key
-static const double dolly_factor = 1.05;   // of the eye's distance, per key
+static const double exposure_step = 0.25; // EV per key
+static const double dolly_factor = 1.05;  // of the eye's distance, per key
 
 static double clamp(double x, double low, double high)
 {
@@ -51,8 +51,8 @@ static relume_status check_camera(const struct relume_camera *camera, const stru
     if (camera->framing == RELUME_FRAME_EYE && file->geometry.projection != RELUME_SLAB)
         return say(log, RELUME_EINVAL, "--eye: expected a slab; found a %s file", is);
     if (camera->framing == RELUME_FRAME_LOOK && !panoramic(file))
-        return say(log, RELUME_EINVAL, "--pan, --tilt, --zoom: expected a panorama; found a %s file",
-                   is);
+        return say(log, RELUME_EINVAL,
+                   "--pan, --tilt, --zoom: expected a panorama; found a %s file", is);
     if (camera->framing == RELUME_FRAME_VIEW && (camera->view < 0 || camera->view >= file->views))
         return say(log, RELUME_EINVAL, "--view: expected a number from 0 to %d; found %d",
                    file->views - 1, camera->view);
@@ -152,8 +152,8 @@ struct relume_vec3 app_seen_light(const struct app *app, int light)
                                 dot(d, a.back) * scale};
 }
 
-// As if the front of a ball half as wide as the frame were dragged: right turns it about the frame's
-// up, down about its right.
+// As if the front of a ball half as wide as the frame were dragged: right turns it about the
+// frame's up, down about its right.
 static void turn_light(struct app *app, double dx, double dy)
 {
     const double per_pixel = PI / fmin(app->width, app->height);
@@ -294,8 +294,8 @@ static bool on_size(struct app *app, const struct app_event *e)
 }
 
 static bool (*const handlers[])(struct app *, const struct app_event *) = {
-    [APP_PRESS] = on_press,       [APP_RELEASE] = on_release,     [APP_MOVE] = on_move,
-    [APP_WHEEL] = on_wheel,       [APP_KEY_DOWN] = on_key_down,   [APP_KEY_UP] = on_key_up,
+    [APP_PRESS] = on_press, [APP_RELEASE] = on_release,   [APP_MOVE] = on_move,
+    [APP_WHEEL] = on_wheel, [APP_KEY_DOWN] = on_key_down, [APP_KEY_UP] = on_key_up,
     [APP_SIZE] = on_size,
 };
 

@@ -1,45 +1,53 @@
 // app.h - the state of the viewer: file, camera, lights, drags. Events go in, state comes out
 //
-// Nothing here knows OpenGL or windows, so that all interaction can be tested alone. Positions are in
-// pixels of the frame, y down.
+// Nothing here knows OpenGL or windows, so that all interaction can be tested alone. Positions are
+// in pixels of the frame, y down.
 #ifndef VIEWER_APP_H
 #define VIEWER_APP_H
 
 #include <relume/frame.h>
 #include <relume/relight.h>
 
-enum { APP_LIGHTS = 64 };  // lights at once; display-domain files pay for each
+enum { APP_LIGHTS = 64 }; // lights at once; display-domain files pay for each
 
-enum app_event_kind { APP_PRESS, APP_RELEASE, APP_MOVE, APP_WHEEL, APP_KEY_DOWN, APP_KEY_UP, APP_SIZE };
+enum app_event_kind {
+    APP_PRESS,
+    APP_RELEASE,
+    APP_MOVE,
+    APP_WHEEL,
+    APP_KEY_DOWN,
+    APP_KEY_UP,
+    APP_SIZE
+};
 enum app_button { APP_LEFT, APP_RIGHT };
 enum { APP_KEY_ESCAPE = 27 };
 
 struct app_event {
     enum app_event_kind kind;
-    enum app_button button;  // PRESS, RELEASE
-    double x, y;             // PRESS, RELEASE, MOVE, WHEEL
-    double wheel;            // WHEEL: steps, > 0 away from the user
-    int key;                 // KEY_*: a lower-case letter, a sign, or APP_KEY_*
-    int width, height;       // SIZE
+    enum app_button button; // PRESS, RELEASE
+    double x, y;            // PRESS, RELEASE, MOVE, WHEEL
+    double wheel;           // WHEEL: steps, > 0 away from the user
+    int key;                // KEY_*: a lower-case letter, a sign, or APP_KEY_*
+    int width, height;      // SIZE
 };
 
 // What the app must know of the file it shows.
 struct app_file {
     struct relume_geometry geometry;
-    int width, height;            // of a view
+    int width, height; // of a view
     int views;
-    double uv_min[2], uv_max[2];  // slab: where cameras stand
+    double uv_min[2], uv_max[2]; // slab: where cameras stand
 };
 
 // What can be reset.
 struct app_state {
-    struct relume_camera camera;  // framing is never DEFAULT
-    double zoom;                  // of the picture; 1 fits the frame
-    double shift[2];              // of the picture's middle from the frame's, pixels
+    struct relume_camera camera; // framing is never DEFAULT
+    double zoom;                 // of the picture; 1 fits the frame
+    double shift[2];             // of the picture's middle from the frame's, pixels
     double exposure_ev;
     struct relume_light light[APP_LIGHTS];
     int lights;
-    bool ball;  // show the light's direction on a ball in the corner
+    bool ball; // show the light's direction on a ball in the corner
 };
 
 enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT };
@@ -48,18 +56,18 @@ enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT };
 struct app {
     struct app_file file;
     struct app_state start, now;
-    int width, height;  // of the frame
-    bool letterbox;     // keep the picture's proportions; else it fills the frame
+    int width, height; // of the frame
+    bool letterbox;    // keep the picture's proportions; else it fills the frame
     enum app_drag drag;
     double cursor[2];
-    bool light_key;  // L is held
+    bool light_key; // L is held
     bool quit;
 };
 
-// A file seen as `start` says; a DEFAULT framing becomes what suits the file: the eye in the middle of
-// a slab, a look ahead in a panorama when `look_ahead`, else view 0. Without lights there is one from
-// the front. The frame is as large as `camera` says, else as the file implies.
-// RELUME_EINVAL when the camera does not fit the file, with a sentence in `log`.
+// A file seen as `start` says; a DEFAULT framing becomes what suits the file: the eye in the middle
+// of a slab, a look ahead in a panorama when `look_ahead`, else view 0. Without lights there is one
+// from the front. The frame is as large as `camera` says, else as the file implies. RELUME_EINVAL
+// when the camera does not fit the file, with a sentence in `log`.
 relume_status app_start(struct app *app, const struct app_file *file, const struct app_state *start,
                         bool look_ahead, const struct relume_log *log);
 

@@ -15,6 +15,7 @@ struct window {
     GLFWwindow *handle;
     struct context_event queue[QUEUE];
     int first, count;
+    double cursor[2]; // window units, as of the last event: GLFW itself answers for right now
     char dropped[4096];
 };
 
@@ -44,15 +45,16 @@ static double pixels_per_unit(GLFWwindow *handle)
 
 static struct app_event at_cursor(GLFWwindow *handle, enum app_event_kind kind)
 {
+    const struct window *w = glfwGetWindowUserPointer(handle);
     const double scale = pixels_per_unit(handle);
-    double x, y;
-    glfwGetCursorPos(handle, &x, &y);
-    return (struct app_event){.kind = kind, .x = x * scale, .y = y * scale};
+    return (struct app_event){.kind = kind, .x = w->cursor[0] * scale, .y = w->cursor[1] * scale};
 }
 
 static void on_move(GLFWwindow *handle, double x, double y)
 {
-    (void)x, (void)y;
+    struct window *w = glfwGetWindowUserPointer(handle);
+    w->cursor[0] = x;
+    w->cursor[1] = y;
     push_input(handle, at_cursor(handle, APP_MOVE));
 }
 
@@ -78,8 +80,11 @@ static void on_wheel(GLFWwindow *handle, double dx, double dy)
 static int key_letter(int key, int scancode)
 {
     static const int special[][2] = {
-        {GLFW_KEY_ESCAPE, APP_KEY_ESCAPE}, {GLFW_KEY_KP_ADD, '+'},   {GLFW_KEY_KP_SUBTRACT, '-'},
-        {GLFW_KEY_EQUAL, '+'},             {GLFW_KEY_MINUS, '-'},
+        {GLFW_KEY_ESCAPE, APP_KEY_ESCAPE},
+        {GLFW_KEY_KP_ADD, '+'},
+        {GLFW_KEY_KP_SUBTRACT, '-'},
+        {GLFW_KEY_EQUAL, '+'},
+        {GLFW_KEY_MINUS, '-'},
     };
     for (size_t i = 0; i < sizeof special / sizeof *special; i++)
         if (special[i][0] == key)
@@ -180,6 +185,7 @@ static relume_status open_window(void **out, int width, int height, const char *
     glfwMakeContextCurrent(w->handle);
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(w->handle, w);
+    glfwGetCursorPos(w->handle, &w->cursor[0], &w->cursor[1]);
     listen(w->handle);
     *out = w;
     return RELUME_OK;

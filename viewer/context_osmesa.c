@@ -8,7 +8,7 @@
 
 struct offscreen {
     OSMesaContext context;
-    unsigned char pixel[4];  // OSMesa wants a buffer; all drawing goes into targets
+    unsigned char pixel[4]; // OSMesa wants a buffer; all drawing goes into targets
 };
 
 static void close_offscreen(void *context)
@@ -23,8 +23,15 @@ static relume_status open_offscreen(void **out, int width, int height, const cha
                                     const struct relume_log *log)
 {
     static const int wanted[] = {
-        OSMESA_FORMAT, OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE, OSMESA_CONTEXT_MAJOR_VERSION,
-        3, OSMESA_CONTEXT_MINOR_VERSION, 3, 0,
+        OSMESA_FORMAT,
+        OSMESA_RGBA,
+        OSMESA_PROFILE,
+        OSMESA_CORE_PROFILE,
+        OSMESA_CONTEXT_MAJOR_VERSION,
+        3,
+        OSMESA_CONTEXT_MINOR_VERSION,
+        3,
+        0,
     };
     (void)width, (void)height, (void)title;
     *out = NULL;

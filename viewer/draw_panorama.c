@@ -27,6 +27,5 @@ void draw_panorama(const struct program *program, const struct gl *gl, const str
                   (float)(1.0 / look.zoom));
     gl->Uniform2f(at[LOOK_SIZE], (float)place->width, (float)place->height);
     gl->Uniform1f(at[EXPOSURE], place->exposure);
-    draw_rectangle(gl, program, place,
-                   (struct app_rectangle){0, 0, place->width, place->height});
+    draw_rectangle(gl, program, place, (struct app_rectangle){0, 0, place->width, place->height});
 }

@@ -17,6 +17,5 @@ void draw_present(const struct program *program, const struct gl *gl, const stru
     texture_use(gl, 0, GL_TEXTURE_2D, frame->texture);
     gl->UseProgram(program->id);
     gl->Uniform1i(program->at[FRAME], 0);
-    draw_rectangle(gl, program, &place,
-                   (struct app_rectangle){0, 0, frame->width, frame->height});
+    draw_rectangle(gl, program, &place, (struct app_rectangle){0, 0, frame->width, frame->height});
 }

@@ -1,14 +1,15 @@
-// draw_slab.c - each cell between four cameras is a rectangle of the frame (Wong 1998, 8.1, Fig 8-13)
+// draw_slab.c - each cell between four cameras is a rectangle of the frame (Wong 1998, 8.1, Fig
+// 8-13)
 //
-// u depends on s alone and v on t alone, so the part of the window that looks through one cell of the
-// uv plane is a rectangle; a cell needs only its own four views, however large the slab is.
+// u depends on s alone and v on t alone, so the part of the window that looks through one cell of
+// the uv plane is a rectangle; a cell needs only its own four views, however large the slab is.
 #include "draw.h"
 
 #include <math.h>
 
 enum { VIEW_00 = DRAW_OWN, VIEW_10, VIEW_01, VIEW_11, PICTURE, ST, CELL, EYE, EXPOSURE, COUNT };
 static const char *const uniforms[] = {
-    "rectangle", "frame_size", "view00", "view10", "view01", "view11",
+    "rectangle", "frame_size", "view00", "view10", "view01",   "view11",
     "picture",   "st",         "cell",   "eye",    "exposure",
 };
 
@@ -21,7 +22,7 @@ relume_status draw_slab_create(struct program *program, const struct gl *gl,
 // Along one axis: the cameras on both sides of a cell and the part of the window seen through it.
 struct strip {
     int low, high;   // lines of the grid
-    double from, to;  // of the window, st units, from < to
+    double from, to; // of the window, st units, from < to
 };
 
 static bool clip(struct strip *strip, double from, double to, const double window[2])
@@ -31,8 +32,8 @@ static bool clip(struct strip *strip, double from, double to, const double windo
     return strip->from < strip->to;
 }
 
-// The strip of cell `i` of `n` lines, as seen from `eye` with the uv plane `reach` on the way to st.
-// Cells at the border are open a hair wider, as relume_slab_blend has it.
+// The strip of cell `i` of `n` lines, as seen from `eye` with the uv plane `reach` on the way to
+// st. Cells at the border are open a hair wider, as relume_slab_blend has it.
 static bool find_strip(struct strip *strip, const double *lines, int n, int i, double eye,
                        double reach, const double window[2])
 {

@@ -9,7 +9,7 @@
 
 struct option {
     const char *name;
-    const char *argument;  // NULL: takes none
+    const char *argument; // NULL: takes none
     const char *help;
     relume_status (*take)(struct options *o, const char *name, const char *text,
                           const struct relume_log *log);
@@ -65,8 +65,9 @@ static relume_status take_view(struct options *o, const char *name, const char *
     double n;
     const relume_status status = take_number(&n, name, text, 0, 65535, log);
     if (status || n != floor(n))
-        return status ? status
-                      : say(log, RELUME_EINVAL, "--view: expected a whole number; found '%s'", text);
+        return status
+                   ? status
+                   : say(log, RELUME_EINVAL, "--view: expected a whole number; found '%s'", text);
     o->start.camera.view = (int)n;
     return take_framing(o, name, RELUME_FRAME_VIEW, log);
 }
@@ -161,7 +162,8 @@ static const struct option options[] = {
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},
     {"--script", "EVENTS", "play a text file of events without a window", take_script},
-    {"--ball", NULL, "offscreen: draw the ball that shows the light, as the window does", take_ball},
+    {"--ball", NULL, "offscreen: draw the ball that shows the light, as the window does",
+     take_ball},
     {"--help", NULL, "this text", NULL},
 };
 enum { OPTIONS = sizeof options / sizeof *options };
@@ -184,8 +186,10 @@ void options_help(void)
          "keys:   + -          exposure          [ ]   slab: nearer, farther\n"
          "        B            light ball        R     reset           Esc   quit\n"
          "        A relume file dropped onto the window is opened.\n\n"
-         "A window shows a panorama as a perspective look ahead. --offscreen without a framing option\n"
-         "shows what `relume relight` shows: planar files and panoramas their view 0, slabs the middle\n"
+         "A window shows a panorama as a perspective look ahead. --offscreen without a framing "
+         "option\n"
+         "shows what `relume relight` shows: planar files and panoramas their view 0, slabs the "
+         "middle\n"
          "eye. Its picture fills --size; a window keeps the proportions.\n\n"
          "script: one event a line, # begins a comment:\n"
          "        size 800 600             drag left|right x0 y0 x1 y1      wheel STEPS [x y]\n"
@@ -230,7 +234,8 @@ static relume_status unknown(const char *given, const struct relume_log *log)
         }
     }
     if (best)
-        return say(log, RELUME_EINVAL, "unknown option '%s'; did you mean '%s'?", given, best->name);
+        return say(log, RELUME_EINVAL, "unknown option '%s'; did you mean '%s'?", given,
+                   best->name);
     return say(log, RELUME_EINVAL, "unknown option '%s'; see 'relume-view --help'", given);
 }
 
@@ -274,8 +279,8 @@ relume_status options_parse(struct options *o, int argc, char **argv, const stru
         if (argv[i][0] == '-' && argv[i][1])
             status = take_option(o, &i, argc, argv, log);
         else if (o->file)
-            status = say(log, RELUME_EINVAL, "expected one FILE; found '%s' and '%s'", o->file,
-                         argv[i]);
+            status =
+                say(log, RELUME_EINVAL, "expected one FILE; found '%s' and '%s'", o->file, argv[i]);
         else
             o->file = argv[i];
         if (status)

@@ -1,13 +1,12 @@
 #include "relighter.h"
 
 #include "say.h"
+#include "weights.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { LANES = 4 };                           // planes in a texel
-static const size_t budget = (size_t)1 << 30;  // graphics memory to fill with views
+static const size_t budget = (size_t)1 << 30; // graphics memory to fill with views
 
 // How GL stores the codes of each kind; `unit` turns its normalised values back into codes.
 struct code_format {
@@ -22,11 +21,28 @@ static const struct code_format formats[] = {
     [RELUME_STORE_HALF] = {GL_RGBA16F, GL_HALF_FLOAT, 2, 1.0},
 };
 
-enum dot_uniform { DOT_RECTANGLE, DOT_SIZE, DOT_CODES, DOT_WEIGHTS, DOT_FIRST, DOT_LAYERS, DOT_CONSTANT, DOT_COUNT };
+enum dot_uniform {
+    DOT_RECTANGLE,
+    DOT_SIZE,
+    DOT_CODES,
+    DOT_WEIGHTS,
+    DOT_FIRST,
+    DOT_LAYERS,
+    DOT_CONSTANT,
+    DOT_COUNT
+};
 static const char *const dot_uniforms[] = {
     "rectangle", "frame_size", "codes", "weights", "first_layer", "layers", "constant",
 };
-enum develop_uniform { DEVELOP_RECTANGLE, DEVELOP_SIZE, DEVELOP_CODED, DEVELOP_CURVE, DEVELOP_GAMMA, DEVELOP_LIGHT, DEVELOP_COUNT };
+enum develop_uniform {
+    DEVELOP_RECTANGLE,
+    DEVELOP_SIZE,
+    DEVELOP_CODED,
+    DEVELOP_CURVE,
+    DEVELOP_GAMMA,
+    DEVELOP_LIGHT,
+    DEVELOP_COUNT
+};
 static const char *const develop_uniforms[] = {
     "rectangle", "frame_size", "coded", "display.curve", "display.gamma", "light",
 };
@@ -150,44 +166,6 @@ static relume_status load(struct relighter *r, int view)
     return status;
 }
 
-// ---------------------------------------------------------------- weights
-
-// Weights of all planes for the three channels, laid out as the texture: [layer][channel][lane].
-struct weights {
-    float *plane;
-    float constant[3];
-};
-
-static float *weight_of(const struct weights *w, int plane, int channel)
-{
-    return &w->plane[(plane / LANES * 3 + channel) * LANES + plane % LANES];
-}
-
-// Add one directional light of value `rgb`; `basis` has room for 3 K floats.
-static void add_light(struct weights *w, const struct relit_view *v, struct relume_vec3 direction,
-                      const float rgb[3], float *basis)
-{
-    const struct relume_codes *codes = &v->codes;
-    const struct relume_coder_info *info = relume_coder_info(codes->coder);
-    const double unit = formats[codes->storage].unit;
-    const double length =
-        sqrt(direction.x * direction.x + direction.y * direction.y + direction.z * direction.z);
-    const struct relume_vec3 towards = {direction.x / length, direction.y / length,
-                                        direction.z / length};
-    float constant[3];
-    relume_coder_weights(codes->coder, towards, basis, constant);
-    for (int c = 0; c < 3; c++) {
-        double sum = constant[c];
-        for (int k = 0; k < info->coefficients; k++) {
-            const int plane = info->joint ? k : 3 * k + c;
-            const double b = basis[c * info->coefficients + k];
-            *weight_of(w, plane, c) += (float)(rgb[c] * b * codes->scale[plane] * unit);
-            sum += b * codes->offset[plane];
-        }
-        w->constant[c] += (float)(rgb[c] * sum);
-    }
-}
-
 // ---------------------------------------------------------------- passes
 
 static void draw_all(const struct gl *gl, const struct program *p, const struct target *into)
@@ -234,39 +212,18 @@ static void pass_develop(const struct relighter *r, const struct relit_view *v, 
     draw_all(gl, &r->develop, &v->relit);
 }
 
-static void resume(const struct gl *gl, const struct target *target)
+static void add_light(struct weights *w, const struct relit_view *v,
+                      const struct relume_light *light, const float rgb[3])
 {
-    gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
-    gl->Viewport(0, 0, target->width, target->height);
+    weights_add(w, &v->codes, formats[v->codes.storage].unit, light->direction, rgb);
 }
 
-static void clear_weights(struct weights *w, const struct relit_view *v)
+static relume_status relight_linear(struct relighter *r, struct relit_view *v, struct weights *w)
 {
-    memset(w->plane, 0, (size_t)v->layers * 3 * LANES * sizeof *w->plane);
-    memset(w->constant, 0, sizeof w->constant);
-}
-
-static void relight_linear(struct relighter *r, struct relit_view *v, struct weights *w,
-                           float *basis)
-{
-    clear_weights(w, v);
     for (int i = 0; i < r->lights; i++)
-        add_light(w, v, r->light[i].direction, r->light[i].rgb, basis);
+        add_light(w, v, &r->light[i], r->light[i].rgb);
     pass_dot(r, v, w, &v->relit);
-}
-
-static void relight_display(struct relighter *r, struct relit_view *v, struct weights *w,
-                            float *basis)
-{
-    static const float one[3] = {1, 1, 1};
-    for (int i = 0; i < r->lights; i++) {
-        clear_weights(w, v);
-        add_light(w, v, r->light[i].direction, one, basis);
-        target_begin(&r->coded, r->gl);
-        pass_dot(r, v, w, &r->coded);
-        resume(r->gl, &v->relit);
-        pass_develop(r, v, r->light[i].rgb);
-    }
+    return RELUME_OK;
 }
 
 static relume_status prepare_coded(struct relighter *r, const struct relit_view *v)
@@ -277,28 +234,40 @@ static relume_status prepare_coded(struct relighter *r, const struct relit_view 
     return target_create(&r->coded, r->gl, v->relit.width, v->relit.height, r->log);
 }
 
+static relume_status relight_display(struct relighter *r, struct relit_view *v, struct weights *w)
+{
+    static const float one[3] = {1, 1, 1};
+    const relume_status status = prepare_coded(r, v);
+    for (int i = 0; !status && i < r->lights; i++) {
+        weights_clear(w);
+        add_light(w, v, &r->light[i], one);
+        target_begin(&r->coded, r->gl);
+        pass_dot(r, v, w, &r->coded);
+        target_resume(&v->relit, r->gl);
+        pass_develop(r, v, r->light[i].rgb);
+    }
+    return status;
+}
+
 static relume_status relight(struct relighter *r, struct relit_view *v)
 {
     const struct gl *gl = r->gl;
     const bool display = v->codes.domain == RELUME_DOMAIN_DISPLAY;
-    const int k = relume_coder_info(v->codes.coder)->coefficients;
-    const relume_status status = display ? prepare_coded(r, v) : RELUME_OK;
+    struct weights w;
+    relume_status status = weights_create(&w, v->codes.coder, v->codes.planes);
     if (status)
         return status;
-    float *basis = malloc(3 * (size_t)k * sizeof *basis);
-    struct weights w = {malloc((size_t)v->layers * 3 * LANES * sizeof *w.plane), {0}};
-    if (basis && w.plane) {
-        gl->BindVertexArray(r->vertices);
-        target_begin(&v->relit, gl);
-        gl->Enable(GL_BLEND);
-        gl->BlendFunc(GL_ONE, GL_ONE);
-        (display ? relight_display : relight_linear)(r, v, &w, basis);
-        gl->Disable(GL_BLEND);
-    }
-    v->fresh = basis && w.plane;
-    free(basis);
-    free(w.plane);
-    return v->fresh ? gl_check(gl, "relighting", r->log) : RELUME_ENOMEM;
+    gl->BindVertexArray(r->vertices);
+    target_begin(&v->relit, gl);
+    gl->Enable(GL_BLEND);
+    gl->BlendFunc(GL_ONE, GL_ONE);
+    status = (display ? relight_display : relight_linear)(r, v, &w);
+    gl->Disable(GL_BLEND);
+    weights_destroy(&w);
+    if (!status)
+        status = gl_check(gl, "relighting", r->log);
+    v->fresh = !status;
+    return status;
 }
 
 // ---------------------------------------------------------------- interface

@@ -48,10 +48,15 @@ void target_destroy(struct target *target, const struct gl *gl)
     *target = (struct target){0};
 }
 
-void target_begin(const struct target *target, const struct gl *gl)
+void target_resume(const struct target *target, const struct gl *gl)
 {
     gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);
     gl->Viewport(0, 0, target->width, target->height);
+}
+
+void target_begin(const struct target *target, const struct gl *gl)
+{
+    target_resume(target, gl);
     gl->ClearColor(0, 0, 0, 0);
     gl->Clear(GL_COLOR_BUFFER_BIT);
 }

@@ -8,7 +8,7 @@
 
 struct target {
     int width, height;
-    GLuint texture;  // RGBA32F
+    GLuint texture; // RGBA32F
     GLuint framebuffer;
 };
 
@@ -19,6 +19,8 @@ void target_destroy(struct target *target, const struct gl *gl);
 
 // Later draws go into all of it, black to begin with.
 void target_begin(const struct target *target, const struct gl *gl);
+// The same on top of what it holds.
+void target_resume(const struct target *target, const struct gl *gl);
 // Its first three channels as a new image. RELUME_ENOMEM.
 relume_status target_read(struct relume_image *out, const struct target *target,
                           const struct gl *gl);

@@ -1,14 +1,12 @@
 // slab.c - the light slab: a grid of cameras on the plane uv looking through one window on st
 //
-// Levoy and Hanrahan 1996, Gortler et al. 1996; with illumination: Wong 1998, 8.1. A frame shows
-// the window from the eye, so a pixel fixes (s, t); its ray meets the uv plane in (u, v). The value
-// is bilinear in (u, v) over the four cameras around, times bilinear in (s, t) over the four texels
-// around: Gortler's quadralinear basis. Since u depends on s alone and v on t alone, every weight
-// of a frame is the product of one factor per column and one per row.
-#include <relume/view.h>
+// Levoy and Hanrahan 1996, Gortler et al. 1996; with illumination: Wong 1998, 8.1. A point of the
+// uv plane is seen by the four cameras around it, with bilinear weights. A frame fixes (s, t) in
+// every pixel, and u depends on s alone, v on t alone: the views it needs are a rectangle of the
+// grid.
+#include "view/slab.h"
 
 #include "base/memory.h"
-#include "base/thread.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,22 +15,6 @@
 #define SAME_LINE 1e-6
 // A point this far (relative) outside the grid is on its border: eyes there are computed.
 #define BORDER_SLACK 1e-9
-
-struct relume_slab {
-    struct relume_geometry geometry;
-    int columns, rows;
-    double slack; // BORDER_SLACK in world units
-    double *u;
-    double *v;
-    int *view;
-};
-
-// Up to two neighbours on a line with their weights, none of them 0.
-struct neighbours {
-    int count;
-    int index[2];
-    double weight[2];
-};
 
 // ---------------------------------------------------------------- grid
 
@@ -169,8 +151,7 @@ struct relume_vec3 relume_slab_middle(const relume_slab *slab)
 
 // ---------------------------------------------------------------- rays
 
-// How far along the way from the eye (0) to the st plane (1) the uv plane lies.
-static bool uv_reach(double *reach, const relume_slab *slab, struct relume_vec3 eye)
+bool slab_reach(double *reach, const relume_slab *slab, struct relume_vec3 eye)
 {
     const struct relume_geometry *g = &slab->geometry;
     const bool finite = isfinite(eye.x) && isfinite(eye.y) && isfinite(eye.z);
@@ -180,8 +161,7 @@ static bool uv_reach(double *reach, const relume_slab *slab, struct relume_vec3 
     return true;
 }
 
-// Exact for a reach of 0; never decreases nor increases twice as `st` grows, rounding included.
-static double uv_hit(double eye, double st, double reach)
+double slab_hit(double eye, double st, double reach)
 {
     return eye + reach * (st - eye);
 }
@@ -190,19 +170,14 @@ bool relume_slab_uv(double uv[2], const relume_slab *slab, struct relume_vec3 ey
                     double t)
 {
     double reach;
-    if (!uv_reach(&reach, slab, eye))
+    if (!slab_reach(&reach, slab, eye))
         return false;
-    uv[0] = uv_hit(eye.x, s, reach);
-    uv[1] = uv_hit(eye.y, t, reach);
+    uv[0] = slab_hit(eye.x, s, reach);
+    uv[1] = slab_hit(eye.y, t, reach);
     return true;
 }
 
 // ---------------------------------------------------------------- weights
-
-static struct neighbours one_neighbour(int index)
-{
-    return (struct neighbours){1, {index, index}, {1.0, 0.0}};
-}
 
 static struct neighbours find_neighbours(const double *lines, int n, double slack, bool constant,
                                          double at)
@@ -218,12 +193,12 @@ static struct neighbours find_neighbours(const double *lines, int n, double slac
     return (struct neighbours){2, {low, low + 1}, {1.0 - part, part}};
 }
 
-static struct neighbours column_neighbours(const relume_slab *slab, bool constant, double u)
+struct neighbours slab_columns_at(const relume_slab *slab, bool constant, double u)
 {
     return find_neighbours(slab->u, slab->columns, slab->slack, constant, u);
 }
 
-static struct neighbours row_neighbours(const relume_slab *slab, bool constant, double v)
+struct neighbours slab_rows_at(const relume_slab *slab, bool constant, double v)
 {
     return find_neighbours(slab->v, slab->rows, slab->slack, constant, v);
 }
@@ -232,8 +207,8 @@ int relume_slab_blend(int view[4], double weight[4], const relume_slab *slab, co
                       const struct relume_view_params *params)
 {
     const bool constant = params && params->constant;
-    const struct neighbours across = column_neighbours(slab, constant, uv[0]);
-    const struct neighbours down = row_neighbours(slab, constant, uv[1]);
+    const struct neighbours across = slab_columns_at(slab, constant, uv[0]);
+    const struct neighbours down = slab_rows_at(slab, constant, uv[1]);
     int n = 0;
     for (int j = 0; j < down.count; j++)
         for (int i = 0; i < across.count; i++, n++) {
@@ -279,155 +254,4 @@ int relume_slab_needs(bool *needed, const relume_slab *slab, struct relume_vec3 
         for (int column = across[0]; column <= across[1]; column++)
             needed[slab->view[(size_t)row * columns + (size_t)column]] = true;
     return (down[1] - down[0] + 1) * (across[1] - across[0] + 1);
-}
-
-// ---------------------------------------------------------------- frame
-
-// One factor of a pixel's weights: up to two camera lines times up to two texels of the view.
-struct taps {
-    int count;
-    int line[4];
-    int texel[4];
-    float weight[4];
-};
-
-// Pixel `i` of `pixels` lies at this place between the texel centres of a view of `texels`; a frame
-// of the view's own size hits them exactly.
-static struct neighbours texel_neighbours(int i, int pixels, int texels)
-{
-    const double at = ((2.0 * i + 1.0) * texels) / (2.0 * pixels) - 0.5;
-    if (at <= 0.0)
-        return one_neighbour(0);
-    if (at >= texels - 1)
-        return one_neighbour(texels - 1);
-    const int low = (int)at;
-    if (at == low)
-        return one_neighbour(low);
-    return (struct neighbours){2, {low, low + 1}, {1.0 - (at - low), at - low}};
-}
-
-static struct taps combine(struct neighbours lines, struct neighbours texels)
-{
-    struct taps taps = {0};
-    for (int i = 0; i < lines.count; i++)
-        for (int k = 0; k < texels.count; k++) {
-            const int n = taps.count++;
-            taps.line[n] = lines.index[i];
-            taps.texel[n] = texels.index[k];
-            taps.weight[n] = (float)(lines.weight[i] * texels.weight[k]);
-        }
-    return taps;
-}
-
-struct frame {
-    const relume_slab *slab;
-    const struct relume_image *out;
-    const struct relume_image *views;
-    const struct taps *across; // [width]
-    const struct taps *down;   // [height]
-};
-
-static const float *texel(const struct frame *f, const struct taps *across, int i,
-                          const struct taps *down, int j)
-{
-    const int columns = f->slab->columns;
-    const int view =
-        f->slab->view[(size_t)down->line[j] * (size_t)columns + (size_t)across->line[i]];
-    const struct relume_image *image = &f->views[view];
-    return image->data +
-           3 * ((size_t)down->texel[j] * (size_t)image->width + (size_t)across->texel[i]);
-}
-
-static void draw_pixel(float *rgb, const struct frame *f, const struct taps *across,
-                       const struct taps *down)
-{
-    const bool inside = across->count && down->count;
-    // -0 + x is x for every x, 0 included: a single texel of weight 1 arrives bit by bit.
-    rgb[0] = rgb[1] = rgb[2] = inside ? -0.0f : 0.0f;
-    for (int j = 0; j < down->count; j++)
-        for (int i = 0; i < across->count; i++) {
-            const float w = down->weight[j] * across->weight[i];
-            const float *from = texel(f, across, i, down, j);
-            for (int c = 0; c < 3; c++)
-                rgb[c] += w * from[c];
-        }
-}
-
-static void draw_row(void *context, size_t row, int worker)
-{
-    const struct frame *f = context;
-    (void)worker;
-    float *rgb = f->out->data + 3 * row * (size_t)f->out->width;
-    for (int x = 0; x < f->out->width; x++, rgb += 3)
-        draw_pixel(rgb, f, &f->across[x], &f->down[row]);
-}
-
-// Column c looks at s = st_min + (c+.5)/W * extent; row 0 is at the top, where t is largest.
-static void prepare_taps(struct taps *across, struct taps *down, const struct frame *f,
-                         struct relume_vec3 eye, double reach, bool constant,
-                         const struct relume_image *view)
-{
-    const struct relume_geometry *g = &f->slab->geometry;
-    const int width = f->out->width;
-    const int height = f->out->height;
-    for (int x = 0; x < width; x++) {
-        const double s = g->st_min[0] + (x + 0.5) / width * (g->st_max[0] - g->st_min[0]);
-        const double u = uv_hit(eye.x, s, reach);
-        across[x] = combine(column_neighbours(f->slab, constant, u),
-                            texel_neighbours(x, width, view->width));
-    }
-    for (int y = 0; y < height; y++) {
-        const double t = g->st_max[1] - (y + 0.5) / height * (g->st_max[1] - g->st_min[1]);
-        const double v = uv_hit(eye.y, t, reach);
-        down[y] = combine(row_neighbours(f->slab, constant, v),
-                          texel_neighbours(y, height, view->height));
-    }
-}
-
-// The first needed view when all needed ones are there, of one size and of three channels.
-static const struct relume_image *check_views(const bool *needed, const struct relume_image *views,
-                                              int n)
-{
-    const struct relume_image *first = NULL;
-    for (int i = 0; i < n; i++) {
-        if (!needed[i])
-            continue;
-        if (!first)
-            first = &views[i];
-        if (!views[i].data || views[i].channels != 3 || views[i].width != first->width ||
-            views[i].height != first->height)
-            return NULL;
-    }
-    return first;
-}
-
-relume_status relume_slab_frame(struct relume_image *out, const relume_slab *slab,
-                                struct relume_vec3 eye, const struct relume_image *views,
-                                const struct relume_view_params *params)
-{
-    const int cameras = slab->columns * slab->rows;
-    double reach;
-    if (!out->data || out->channels != 3 || !uv_reach(&reach, slab, eye))
-        return RELUME_EINVAL;
-    bool *needed = mem_zeroed((size_t)cameras, sizeof *needed);
-    struct taps *across = mem_array((size_t)out->width, sizeof *across);
-    struct taps *down = mem_array((size_t)out->height, sizeof *down);
-    relume_status status = RELUME_ENOMEM;
-    if (!needed || !across || !down)
-        goto done;
-    status = RELUME_EINVAL;
-    if (!relume_slab_needs(needed, slab, eye, params))
-        goto done;
-    const struct relume_image *view = check_views(needed, views, cameras);
-    if (!view)
-        goto done;
-    struct frame frame = {slab, out, views, across, down};
-    prepare_taps(across, down, &frame, eye, reach, params && params->constant, view);
-    thread_for(params ? params->threads : 0, (size_t)out->height, draw_row, &frame);
-    status = RELUME_OK;
-done:
-    free(needed);
-    free(across);
-    free(down);
-    return status;
 }

@@ -1,0 +1,60 @@
+#include "weights.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+relume_status weights_create(struct weights *w, const relume_coder *coder, int planes)
+{
+    const size_t k = (size_t)relume_coder_info(coder)->coefficients;
+    *w = (struct weights){.layers = (planes + LANES - 1) / LANES};
+    w->plane = calloc((size_t)w->layers * 3 * LANES, sizeof *w->plane);
+    w->basis = calloc(3 * k, sizeof *w->basis);
+    if (w->plane && w->basis)
+        return RELUME_OK;
+    weights_destroy(w);
+    return RELUME_ENOMEM;
+}
+
+void weights_destroy(struct weights *w)
+{
+    free(w->plane);
+    free(w->basis);
+    *w = (struct weights){0};
+}
+
+void weights_clear(struct weights *w)
+{
+    memset(w->plane, 0, (size_t)w->layers * 3 * LANES * sizeof *w->plane);
+    memset(w->constant, 0, sizeof w->constant);
+}
+
+static float *weight_of(const struct weights *w, int plane, int channel)
+{
+    return &w->plane[(plane / LANES * 3 + channel) * LANES + plane % LANES];
+}
+
+static struct relume_vec3 unit_vector(struct relume_vec3 v)
+{
+    const double length = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    return (struct relume_vec3){v.x / length, v.y / length, v.z / length};
+}
+
+void weights_add(struct weights *w, const struct relume_codes *codes, double unit,
+                 struct relume_vec3 direction, const float rgb[3])
+{
+    const struct relume_coder_info *info = relume_coder_info(codes->coder);
+    const int coefficients = info->coefficients;
+    float constant[3];
+    relume_coder_weights(codes->coder, unit_vector(direction), w->basis, constant);
+    for (int c = 0; c < 3; c++) {
+        double sum = constant[c];
+        for (int k = 0; k < coefficients; k++) {
+            const int plane = info->joint ? k : 3 * k + c;
+            const double b = w->basis[c * coefficients + k];
+            *weight_of(w, plane, c) += (float)(rgb[c] * b * codes->scale[plane] * unit);
+            sum += b * codes->offset[plane];
+        }
+        w->constant[c] += (float)(rgb[c] * sum);
+    }
+}

@@ -1,0 +1,28 @@
+// weights.h - lights folded into one number for each plane and channel (Wong 1998, Eq. 7.6)
+//
+// The layout is that of the texture which relight.frag reads: [layer][channel][lane], where a layer
+// holds LANES planes of the view side by side in one texel.
+#ifndef VIEWER_WEIGHTS_H
+#define VIEWER_WEIGHTS_H
+
+#include <relume/relight.h>
+
+enum { LANES = 4 };
+
+struct weights {
+    int layers;
+    float *plane;      // [layers][3][LANES]
+    float constant[3]; // added to the dot product
+    float *basis;      // scratch: 3 K values of the coder
+};
+
+// Room for `planes` planes of codes by `coder`, all 0. RELUME_ENOMEM.
+relume_status weights_create(struct weights *weights, const relume_coder *coder, int planes);
+void weights_destroy(struct weights *weights);
+void weights_clear(struct weights *weights);
+// Add a light of value `rgb` in `direction` (any length but 0). The shader sees a code divided by
+// `unit`; scale and offset of `codes` are folded in, its planes are not looked at.
+void weights_add(struct weights *weights, const struct relume_codes *codes, double unit,
+                 struct relume_vec3 direction, const float rgb[3]);
+
+#endif

@@ -1,4 +1,5 @@
 // The virtual light stage: cameras, radiometry, shadows, depth, indirect light, capture folders.
+#include "base/memory.h"
 #include "scene/render.h"
 
 #include <relume/capture.h>
@@ -489,6 +490,34 @@ static void cancelling_and_failing_leave_nothing(void **state)
     relume_scene_destroy(&scene);
 }
 
+// Whichever allocation fails, the status says so and nothing is left behind (or leaks, under asan).
+static void short_memory_is_survived(void **state)
+{
+    (void)state;
+    const struct relume_synth_params p = {.size = 4,
+                                          .lights = two_lights,
+                                          .light_count = 2,
+                                          .samples = 1,
+                                          .threads = 2,
+                                          .bounces = 1};
+    int failures = 0;
+    for (long n = 1;; n++) {
+        relume_scene *scene = NULL;
+        mem_fail_after(n);
+        relume_status status = relume_scene_create(&scene, relume_scene_find("box"), NULL);
+        if (!status)
+            status = capture(scene, "short", &p);
+        mem_fail_after(0);
+        relume_scene_destroy(&scene);
+        if (!status)
+            break;
+        failures++;
+        assert_true(status == RELUME_ENOMEM || status == RELUME_EIO);
+        assert_false(exists("short") || exists("short.part"));
+    }
+    assert_true(failures > 20 && exists("short"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -504,6 +533,7 @@ int main(void)
         cmocka_unit_test(every_scene_shows_something),
         cmocka_unit_test_setup_teardown(a_capture_reads_back, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(wrong_requests_are_refused, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(short_memory_is_survived, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(cancelling_and_failing_leave_nothing, make_folder,
                                         remove_folder),
     };

@@ -36,8 +36,8 @@ static void add_board(struct relume_scene_builder *b)
 static relume_status build(struct relume_scene_builder *b)
 {
     struct mesh part = {0};
-    const struct frame tilt = frame_compose(frame_move(0.04, -0.42, 0), frame_turn_x(TILT_RAD));
-    b->frame = frame_compose(tilt, frame_scale(0.25, 0.25, 0.25));
+    const struct frame tilt = frame_compose(frame_move(0.04, -0.30, 0), frame_turn_x(TILT_RAD));
+    b->frame = frame_compose(tilt, frame_scale(0.262, 0.262, 0.262));
     add_board(b);
 
     const struct material glaze = {
@@ -47,7 +47,7 @@ static relume_status build(struct relume_scene_builder *b)
         .mirror = 0.4f,
     };
     b->frame = frame_compose(b->frame, frame_turn_y(0.45));
-    shape_teapot(&part, 24);
+    shape_teapot(&part, 16);
     build_put(b, &part, build_material(b, glaze));
     return RELUME_OK;
 }

@@ -100,8 +100,8 @@ static void smooth_position(const struct inside *in, float side, float out[3])
 }
 
 // Both normals, turned towards the viewer: every surface has two equal sides. The vertex normals
-// say which side is outside, the eye says which side is seen. `*side` is -1 when that is the inside;
-// false for a triangle without area.
+// say which side is outside, the eye says which side is seen. `*side` is -1 when that is the
+// inside; false for a triangle without area.
 static bool set_normals(struct surface *s, const struct inside *in, float *side)
 {
     float e1[3], e2[3];

@@ -95,13 +95,19 @@ static void convert_bytes(const struct image_stream *s, const struct oiio_info *
                 *out++ = s->table[c][in[info->rgb[c]]];
 }
 
-static void convert_floats(const struct image_stream *s, const struct oiio_info *info,
+// False when a sample is NaN or infinite.
+static bool convert_floats(const struct image_stream *s, const struct oiio_info *info,
                            size_t pixels, float *out)
 {
     const float *in = s->scratch;
+    float sum = 0.0f;  // 0 x finite is 0, 0 x anything else is NaN
     for (size_t x = 0; x < pixels; x++, in += info->channels)
-        for (int c = 0; c < s->channels; c++)
-            *out++ = recode(s, c, in[info->rgb[c]]);
+        for (int c = 0; c < s->channels; c++) {
+            const float v = in[info->rgb[c]];
+            sum += 0.0f * v;
+            *out++ = recode(s, c, v);
+        }
+    return sum == 0.0f;
 }
 
 relume_status image_stream_read(struct image_stream *stream, int row, int rows, float *out)
@@ -115,10 +121,19 @@ relume_status image_stream_read(struct image_stream *stream, int row, int rows, 
                                          : oiio_read_floats(stream->reader, row, n, stream->scratch);
         if (status)
             return status;
-        (info->bytes ? convert_bytes : convert_floats)(stream, info, pixels, out);
+        if (info->bytes)
+            convert_bytes(stream, info, pixels, out);
+        else if (!convert_floats(stream, info, pixels, out) && stream->finite_only)
+            return RELUME_EDATA;
         out += pixels * (size_t)stream->channels;
     }
     return RELUME_OK;
+}
+
+const char *image_stream_error(const struct image_stream *stream)
+{
+    const char *said = oiio_error(stream->reader);
+    return *said ? said : "holds NaN or infinite values; expected finite radiance";
 }
 
 // ---------------------------------------------------------------- files
@@ -145,7 +160,7 @@ relume_status relume_image_load(struct relume_image *out, const char *path,
     if (!status)
         status = image_stream_read(&stream, 0, info.height, out->data);
     if (status == RELUME_EDATA)
-        (void)log_fail(p.log, status, "%s: %s", path, oiio_error(stream.reader));
+        (void)log_fail(p.log, status, "%s: %s", path, image_stream_error(&stream));
     if (status)
         relume_image_destroy(out);
     image_stream_close(&stream);

@@ -44,6 +44,9 @@ UNIT_C   := $(wildcard tests/unit/*.c tests/props/*.c tests/kernels/*.c tests/th
 GL_C     := $(wildcard tests/gl/*.c)
 BENCH_C  := $(wildcard tests/bench/*.c)
 FUZZ_C   := $(wildcard tests/fuzz/*.c)
+TOOLS_C  := $(wildcard tests/tools/*.c)
+# minimal.c is built against the installed library instead (scripts/test_install.sh)
+SAMPLES_C := samples/sphere.c
 
 LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $(LIB_CXX:%.cpp=$B/obj/%.o)
 CLI_O    := $(CLI_C:%.c=$B/obj/%.o)
@@ -52,6 +55,7 @@ UNIT     := $(UNIT_C:%.c=$B/%)
 GL       := $(GL_C:%.c=$B/%)
 BENCH    := $(BENCH_C:%.c=$B/%)
 FUZZ     := $(FUZZ_C:%.c=$B/%)
+TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 
 .PHONY: all lib cli viewer deps deps-web demo test check check-threads bench fuzz headers layers format install clean
@@ -115,6 +119,9 @@ $(UNIT): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 $(BENCH) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
+$(TOOLS): $B/%: $B/obj/%.o $B/librelume.a
+	@mkdir -p $(@D)
+	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
 $(GL): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O)) $B/librelume.a
 	@mkdir -p $(@D)
 	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
@@ -126,7 +133,7 @@ $(GL): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O)) $B/librel
 # `make test` is everything; `make check` is the part that one config runs.
 test: all
 	@tests/run.sh $(MAKE)
-check: $(UNIT) $(GL) cli viewer
+check: $(UNIT) $(GL) $(TOOLS) cli viewer
 	@tests/check.sh $B
 check-threads: $(filter $B/tests/threads/%,$(UNIT))
 	@ONLY_BINARIES=1 tests/check.sh $B
@@ -143,7 +150,7 @@ layers:
 
 format:
 	clang-format -i $(LIB_C) $(LIB_CXX) $(CLI_C) $(VIEWER_C) $(HEADERS) $(UNIT_C) $(GL_C) \
-	    $(BENCH_C) $(FUZZ_C) $(wildcard src/*/*.h viewer/*.h tests/*.h samples/*.c)
+	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*.h viewer/*.h tests/*.h samples/*.c)
 
 bench: all $(BENCH)
 	@tests/bench/run.sh $B

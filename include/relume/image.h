@@ -55,6 +55,7 @@ RELUME_RESULT relume_status relume_image_load(struct relume_image *out, const ch
                                               const struct relume_image_params *params);
 // Write linear `image` in the format of the file name's extension: EXR, HDR, PFM linear, every other
 // sRGB-coded and clipped to [0, 1]; 8 bits (TIFF and PNG of 1 channel: 8 bits as well).
+// A device or pipe without an extension gets EXR.
 // The file appears under its name whole or not at all. Returns RELUME_EINVAL for an unknown
 // extension, RELUME_EIO.
 RELUME_RESULT relume_status relume_image_save(const struct relume_image *image, const char *path,

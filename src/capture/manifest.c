@@ -90,6 +90,12 @@ static relume_status read_vectors(const struct parser *p, const json_t *array, c
     return RELUME_OK;
 }
 
+// Pixels are divided by it in single precision.
+static bool is_intensity(double v)
+{
+    return v >= 1e-30 && v <= 1e30;
+}
+
 static relume_status read_intensities(const struct parser *p, const json_t *array, int lights)
 {
     if (json_array_size(array) != (size_t)lights)
@@ -101,8 +107,9 @@ static relume_status read_intensities(const struct parser *p, const json_t *arra
     for (int i = 0; i < lights; i++) {
         double rgb[3];
         if (!numbers(json_array_get(array, (size_t)i), rgb, 3) ||
-            !(rgb[0] > 0.0 && rgb[1] > 0.0 && rgb[2] > 0.0))
-            return wrong(p, "lights.intensities", "three numbers above 0 for every light");
+            !is_intensity(rgb[0]) || !is_intensity(rgb[1]) || !is_intensity(rgb[2]))
+            return wrong(p, "lights.intensities",
+                         "three numbers from 1e-30 to 1e30 for every light");
         for (int c = 0; c < 3; c++)
             d->intensities[i][c] = (float)rgb[c];
     }

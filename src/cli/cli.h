@@ -42,6 +42,15 @@ const char *args_input(const struct args *args, int n);
 int args_threads(const struct args *args);              // --threads, 0: all
 const struct relume_log *args_log(const struct args *args);  // messages and progress to stderr
 
+// A log that says which file its sentences are about: "PREFIX: ...".
+struct prefix_log {
+    struct relume_log log;
+    const struct relume_log *to;
+    const char *prefix;
+};
+const struct relume_log *prefix_log(struct prefix_log *p, const struct relume_log *to,
+                                    const char *prefix);
+
 // "relume: ..." on stderr; returns RELUME_EINVAL, so that a command may return it.
 __attribute__((format(printf, 1, 2))) relume_status usage_error(const char *format, ...);
 // The name nearest to `given` in a NULL-terminated list, NULL when none is near.

@@ -87,6 +87,7 @@ static relume_status encode(const struct args *args, const struct relume_basis *
     const char *path = args_text(args, "-o", NULL);
     relume_capture *capture;
     relume_coder *coder = NULL;
+    struct prefix_log about;
     relume_status status = relume_capture_open(
         &capture, args_input(args, 0),
         relume_capture_params(.log = args_log(args), .transfer = transfer,
@@ -95,11 +96,12 @@ static relume_status encode(const struct args *args, const struct relume_basis *
         return status;
     const struct relume_manifest *m = relume_capture_manifest(capture);
     if (m->positions)
-        args_log(args)->message(args_log(args)->user, RELUME_WARNING,
-                                "the lights are near; they are taken as distant ones");
+        prefix_log(&about, args_log(args), args_input(args, 0))
+            ->message(&about, RELUME_WARNING,
+                      "the lights are near; they are taken as distant ones");
     status = relume_coder_create(
         &coder, basis, m->directions, m->lights,
-        relume_coder_params(.log = args_log(args),
+        relume_coder_params(.log = prefix_log(&about, args_log(args), args_input(args, 0)),
                             .coefficients = args_int(args, "--coefficients", 0),
                             .hemispherical = relume_capture_hemispherical(capture),
                             .pole_y = m->geometry.projection >= RELUME_CYLINDRICAL,

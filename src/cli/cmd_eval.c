@@ -79,11 +79,13 @@ static relume_status evaluate_image(struct evaluation *e, int view, int light,
     const struct relume_light lamp = {.direction = d, .rgb = {1.0f, 1.0f, 1.0f}};
     struct relume_image captured = {0}, relit = {0};
     struct relume_difference difference;
+    struct prefix_log about;
     relume_status status =
         relume_capture_image(&captured, e->capture, view, light, args_log(e->args));
     if (!status)
         status = relume_frame(&relit, e->pack, camera, &lamp, 1,
-                              relume_frame_params(.log = args_log(e->args),
+                              relume_frame_params(.log = prefix_log(&about, args_log(e->args),
+                                                                args_input(e->args, 0)),
                                                   .threads = args_threads(e->args)));
     if (!status)
         status = relume_image_compare(&difference, &relit, &captured,

@@ -27,9 +27,9 @@ static relume_status parse_size(const char *text, struct relume_camera *camera)
         return RELUME_OK;
     if (sscanf(text, "%dx%d%c", &camera->width, &camera->height, &rest) == 2 &&
         camera->width >= 1 && camera->width <= 65536 && camera->height >= 1 &&
-        camera->height <= 65536)
+        camera->height <= 65536 && (int64_t)camera->width * camera->height <= 1 << 30)
         return RELUME_OK;
-    return usage_error("--size: expected WIDTHxHEIGHT in pixels; found '%s'", text);
+    return usage_error("--size: expected WIDTHxHEIGHT, at most 65536 a side and 2^30 pixels; found '%s'", text);
 }
 
 static relume_status parse_camera(const struct args *args, struct relume_camera *camera)
@@ -61,13 +61,15 @@ static relume_status render(const struct args *args, const struct relume_camera 
                             const struct relume_light *lights, int count)
 {
     relume_pack *pack;
+    struct prefix_log about;
     struct relume_image frame = {0};
     relume_status status = relume_pack_open(
         &pack, args_input(args, 0),
         relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
     if (!status)
         status = relume_frame(&frame, pack, camera, lights, count,
-                              relume_frame_params(.log = args_log(args),
+                              relume_frame_params(.log = prefix_log(&about, args_log(args),
+                                                                    args_input(args, 0)),
                                                   .cpu_off = parse_cpu_off(args),
                                                   .threads = args_threads(args),
                                                   .constant = args_has(args, "--nearest")));

@@ -3,11 +3,13 @@
 
 #include <assert.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -45,6 +47,7 @@ struct args {
 
 // ---------------------------------------------------------------- messages and progress
 
+static FILE *people;  // standard error
 static volatile sig_atomic_t interrupted;
 static bool bar_drawn;
 
@@ -57,17 +60,46 @@ static void on_interrupt(int signal_number)
 static void clear_bar(void)
 {
     if (bar_drawn)
-        fputs("\r\033[K", stderr);
+        fputs("\r\033[K", people);
     bar_drawn = false;
+}
+
+// One line, whatever bytes file names and library messages hold.
+static void print_line(const char *prefix, const char *text)
+{
+    clear_bar();
+    fprintf(people, "relume: %s", prefix);
+    for (; *text; text++)
+        fputc((unsigned char)*text < ' ' || *text == 127 ? '?' : *text, people);
+    fputc('\n', people);
 }
 
 static void on_message(void *user, enum relume_level level, const char *text)
 {
     const struct args *args = user;
-    if (level == RELUME_NOTE && args->quiet)
-        return;
-    clear_bar();
-    fprintf(stderr, "relume: %s%s\n", level == RELUME_WARNING ? "warning: " : "", text);
+    if (level != RELUME_NOTE || !args->quiet)
+        print_line(level == RELUME_WARNING ? "warning: " : "", text);
+}
+
+static void on_prefixed(void *user, enum relume_level level, const char *text)
+{
+    const struct prefix_log *p = user;
+    char line[2048];
+    snprintf(line, sizeof line, "%s: %s", p->prefix, text);
+    p->to->message(p->to->user, level, line);
+}
+
+static bool on_prefixed_progress(void *user, const char *what, double done)
+{
+    const struct prefix_log *p = user;
+    return p->to->progress(p->to->user, what, done);
+}
+
+const struct relume_log *prefix_log(struct prefix_log *p, const struct relume_log *to,
+                                    const char *prefix)
+{
+    *p = (struct prefix_log){{on_prefixed, on_prefixed_progress, p}, to, prefix};
+    return &p->log;
 }
 
 static double now_s(void)
@@ -95,10 +127,10 @@ static void draw_bar(const char *what, double done)
         bar[i] = i < done * CELLS ? '#' : '.';
     bar[CELLS] = '\0';
     const double left = done > 0.0 ? (now - start) * (1.0 - done) / done : 0.0;
-    fprintf(stderr, "\r\033[K%-12s [%s] %3.0f %%", what, bar, 100.0 * done);
+    fprintf(people, "\r\033[K%-12s [%s] %3.0f %%", what, bar, 100.0 * done);
     if (done > 0.0 && done < 1.0)
-        fprintf(stderr, "  %.0f s left", left);
-    fflush(stderr);
+        fprintf(people, "  %.0f s left", left);
+    fflush(people);
     bar_drawn = true;
     if (done >= 1.0)
         clear_bar();
@@ -114,12 +146,12 @@ static bool on_progress(void *user, const char *what, double done)
 
 relume_status usage_error(const char *format, ...)
 {
+    char text[2048];
     va_list list;
     va_start(list, format);
-    fputs("relume: ", stderr);
-    vfprintf(stderr, format, list);
-    fputc('\n', stderr);
+    vsnprintf(text, sizeof text, format, list);
     va_end(list);
+    print_line("", text);
     return RELUME_EINVAL;
 }
 
@@ -164,14 +196,13 @@ const char *nearest_name(const char *given, const char *const *names)
 relume_status unknown_name(const char *what, const char *given, const char *const *names)
 {
     const char *near = nearest_name(given, names);
-    fprintf(stderr, "relume: unknown %s '%s'", what, given);
+    char list[1024] = "";
+    for (size_t n = 0; *names && n < sizeof list; names++)
+        n += (size_t)snprintf(list + n, sizeof list - n, " %s", *names);
     if (near)
-        fprintf(stderr, "; did you mean '%s'?", near);
-    fputs("; expected one of:", stderr);
-    for (; *names; names++)
-        fprintf(stderr, " %s", *names);
-    fputc('\n', stderr);
-    return RELUME_EINVAL;
+        return usage_error("unknown %s '%.200s'; did you mean '%s'?; expected one of:%s", what,
+                           given, near, list);
+    return usage_error("unknown %s '%.200s'; expected one of:%s", what, given, list);
 }
 
 static relume_status unknown_option(const struct command *command, const char *given)
@@ -405,12 +436,12 @@ static int exit_code(relume_status status)
     case RELUME_EDATA: return 1;
     case RELUME_EINVAL: return 2;
     case RELUME_ENOMEM:
-        fputs("relume: out of memory\n", stderr);
+        fputs("relume: out of memory\n", people);
         return 3;
     case RELUME_EIO:
     case RELUME_ESYSTEM: return 3;
     case RELUME_ECANCEL:
-        fputs("relume: interrupted; nothing was written\n", stderr);
+        fputs("relume: interrupted; nothing was written\n", people);
         signal(SIGINT, SIG_DFL);
         raise(SIGINT);
         return 130;
@@ -439,12 +470,47 @@ static bool flush_stdout(void)
 {
     if (!fflush(stdout) && !ferror(stdout))
         return true;
-    fprintf(stderr, "relume: standard output: writing failed; %s\n", strerror(errno));
+    fprintf(people, "relume: standard output: writing failed; %s\n", strerror(errno));
     return false;
+}
+
+// Closed standard streams are opened, unwritable, so that no output file takes their number.
+static void occupy_standard_streams(void)
+{
+    for (int fd = open("/dev/null", O_RDONLY); fd >= 0; fd = open("/dev/null", O_RDONLY))
+        if (fd > STDERR_FILENO) {
+            close(fd);
+            return;
+        }
+}
+
+// libpng, libtiff and others print errors of their own; what there is to say comes as a status, and
+// one sentence is ours.
+static void keep_stderr_for_people(void)
+{
+    people = stderr;
+#ifdef __GLIBC__
+    FILE *nowhere = fopen("/dev/null", "we");
+    if (nowhere)
+        stderr = nowhere;
+#endif
+}
+
+// An encoder holds one file open for every light.
+static void allow_many_files(void)
+{
+    struct rlimit limit;
+    if (!getrlimit(RLIMIT_NOFILE, &limit)) {
+        limit.rlim_cur = limit.rlim_max;
+        setrlimit(RLIMIT_NOFILE, &limit);
+    }
 }
 
 int main(int argc, char **argv)
 {
+    occupy_standard_streams();
+    keep_stderr_for_people();
+    allow_many_files();
     struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = SA_RESETHAND};
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);

@@ -52,6 +52,9 @@ static relume_status choose_count(const struct relume_basis *basis, int want, in
         return log_fail(log, RELUME_EDATA,
                         "%d coefficients of basis %s need at least %d lights; found %d", want,
                         basis->name, want, lights);
+    if (want && *count != want)
+        return log_fail(log, RELUME_EDATA, "basis %s takes %d coefficients for %d lights; found %d",
+                        basis->name, *count, lights, want);
     if (*count < 1)
         return log_fail(log, RELUME_EDATA, "basis %s cannot be fitted to %d lights", basis->name,
                         lights);

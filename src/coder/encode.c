@@ -14,6 +14,7 @@
 
 #include <errno.h>
 #include <float.h>
+#include <math.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -46,6 +47,7 @@ struct encoder {
     float *values;     // [K][rows][x][3]
     uint16_t *packed;  // [rows][planes][x]
     const struct relume_image *mask;
+    const char *const *images;  // [lights], for messages
     struct range *total;  // [planes], over unmasked pixels
     float *basis;         // [lights][K], stored functions at the captured lights
     double error_sum;
@@ -149,6 +151,24 @@ static off_t band_offset(const relume_coefficients *c, int row)
     return (off_t)row * c->info.planes * c->info.width * (off_t)sizeof(uint16_t);
 }
 
+// Ranges and steps are differences of coefficients, which must not overflow; halves end at 65504.
+static relume_status check_size(const struct encoder *e, const struct relume_encode_params *p)
+{
+    const bool half = e->out->info.storage == RELUME_STORE_HALF;
+    const float most = half ? 65504.0f : FLT_MAX / 4.0f;
+    const struct range *r =
+        e->out->band + (size_t)(e->row / BAND_ROWS) * (size_t)e->planes;
+    bool fits = true;
+    for (int i = 0; i < e->planes; i++)
+        fits &= r[i].min >= -most && r[i].min <= r[i].max && r[i].max <= most;
+    if (fits)
+        return RELUME_OK;
+    return log_fail(p->log, RELUME_EDATA,
+                    "%s: coefficients in rows %d to %d are too large for %s; expected at most %g",
+                    e->images[0], e->row, e->row + e->rows - 1,
+                    half ? "half storage" : "single precision", (double)most);
+}
+
 static relume_status encode_band(struct encoder *e, relume_table *table,
                                  const struct relume_encode_params *p)
 {
@@ -163,6 +183,9 @@ static relume_status encode_band(struct encoder *e, relume_table *table,
         return status;
     apply_mask(e);
     thread_for(e->threads, (size_t)e->planes, pack_plane, e);
+    status = check_size(e, p);
+    if (status)
+        return status;
     const size_t bytes = columns / 3 * (size_t)e->planes * sizeof *e->packed;
     if (!scratch_write(e->out->fd, e->packed, bytes, band_offset(e->out, e->row)))
         return log_fail(p->log, RELUME_EIO, "%s: writing its temporary file failed; %s",
@@ -427,6 +450,7 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
         .height = relume_capture_height(capture),
         .planes = coder->info.planes,
         .mask = &mask,
+        .images = m->view[view].images,
         .threads = p.threads,
     };
     status = alloc_coefficients(&c, coder, capture, &p);

@@ -11,6 +11,7 @@
 #include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "EXR samples are little endian");
 
@@ -281,6 +282,27 @@ static relume_status check_parts(const exr_file *file, const struct relume_limit
     return RELUME_OK;
 }
 
+// Parts are written one after the other, so a file cut anywhere lacks the last block of some part.
+static relume_status check_ends(const exr_file *file, const struct relume_log *log)
+{
+    struct stat s;
+    const int count = exr_part_count(file);
+    if (stat(file->path, &s))
+        return log_fail(log, RELUME_EDATA, "%s: vanished", file->path);
+    for (int i = 0; i < count; i++) {
+        exr_attr_box2i_t box;
+        exr_chunk_info_t last;
+        if (exr_get_data_window(file->exr, i, &box) ||
+            exr_read_scanline_chunk_info(file->exr, i, box.max.y, &last) ||
+            last.data_offset > (uint64_t)s.st_size ||
+            last.packed_size > (uint64_t)s.st_size - last.data_offset)
+            return log_fail(log, RELUME_EDATA,
+                            "%s: truncated or damaged in part %d; expected %d rows", file->path, i,
+                            box.max.y - box.min.y + 1);
+    }
+    return RELUME_OK;
+}
+
 relume_status exr_open(exr_file **out, const char *path, const struct relume_limits *limits,
                        const struct relume_log *log)
 {
@@ -304,6 +326,8 @@ relume_status exr_open(exr_file **out, const char *path, const struct relume_lim
                           exr_get_default_error_message(r));
     else
         status = check_parts(file, limits, log);
+    if (!status)
+        status = check_ends(file, log);
     if (status)
         exr_close(&file);
     *out = file;

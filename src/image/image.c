@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 
 relume_status relume_image_create(struct relume_image *out, int width, int height, int channels)
 {
@@ -238,13 +239,22 @@ static bool has_extension(const char *path, const char *extension)
     return dot && !strcasecmp(dot, extension);
 }
 
+// /dev/stdout and the like have no extension to tell the format.
+static bool is_device(const char *path)
+{
+    struct stat s;
+    const char *slash = strrchr(path, '/');
+    return !strchr(slash ? slash : path, '.') && !stat(path, &s) && !S_ISREG(s.st_mode) &&
+           !S_ISDIR(s.st_mode);
+}
+
 relume_status relume_image_save(const struct relume_image *image, const char *path,
                                 const struct relume_image_params *params)
 {
     const struct relume_image_params p = params ? *params : (struct relume_image_params){0};
     if (image->channels != 1 && image->channels != 3)
         return RELUME_EINVAL;
-    if (has_extension(path, ".exr"))
+    if (has_extension(path, ".exr") || is_device(path))
         return save_exr(image, path, &p);
     if (oiio_writes_floats(path))
         return oiio_write_floats(path, image->width, image->height, image->channels, image->data,

@@ -13,6 +13,7 @@ extern "C" {
 
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <memory>
 #include <new>
 #include <string>
@@ -47,19 +48,31 @@ relume_status broken(oiio_reader *r, const std::string &what)
     return RELUME_EDATA;
 }
 
-// libjpeg fills what a truncated file lacks with grey and calls it a warning. A whole JPEG ends
-// with the marker FF D9, but for trailing bytes that some cameras add.
+// libjpeg fills what a truncated file lacks with grey and calls it a warning. Here the segments are
+// walked (ITU T.81, B.1): thumbnails inside a segment are skipped over with it, and only an end
+// marker in the coded data itself ends the picture. Bytes after it are some cameras' habit.
 bool jpeg_is_truncated(const std::string &path)
 {
-    std::ifstream file(path, std::ios::binary | std::ios::ate);
-    const std::streamoff size = file.tellg();
-    const std::streamoff tail = size < 65536 ? size : 65536;
-    if (size <= 0)
-        return true;
-    std::string bytes(size_t(tail), '\0');
-    file.seekg(size - tail);
-    file.read(&bytes[0], tail);
-    return bytes.rfind("\xff\xd9") == std::string::npos;
+    std::ifstream file(path, std::ios::binary);
+    const std::string b((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    const auto at = [&b](size_t i) { return (unsigned char)b[i]; };
+    size_t i = 2;
+    while (i + 4 <= b.size()) {
+        if (at(i) != 0xff) {  // coded data, up to the next marker
+            i = b.find('\xff', i);
+            if (i == std::string::npos)
+                return true;
+        } else if (at(i + 1) == 0xd9) {
+            return false;
+        } else if (at(i + 1) == 0xff) {  // padding
+            i++;
+        } else if (at(i + 1) == 0 || at(i + 1) == 1 || (at(i + 1) >= 0xd0 && at(i + 1) <= 0xd7)) {
+            i += 2;  // a coded FF, or a marker without a length
+        } else {
+            i += 2 + size_t(at(i + 2)) * 256 + at(i + 3);
+        }
+    }
+    return !(i + 2 <= b.size() && at(i) == 0xff && at(i + 1) == 0xd9);
 }
 
 void find_colour(const ImageSpec &spec, oiio_info &info)
@@ -203,7 +216,10 @@ relume_status write_image(const char *path, int width, int height, int channels,
         ImageSpec spec(width, height, channels, type);
         spec["CompressionQuality"] = 95;
         spec["oiio:ColorSpace"] = type == TypeUInt8 ? "sRGB" : "Linear";
-        return output->supports("ioproxy")
+        // OpenImageIO 2.4 writes unreadable TIFF files through a memory proxy.
+        const bool in_memory = output->supports("ioproxy") &&
+                               std::string(output->format_name()) != "tiff";
+        return in_memory
                    ? write_in_memory(*output, path, spec, type, samples, log)
                    : write_beside(*output, path, spec, type, samples, log);
     } catch (const std::bad_alloc &) {

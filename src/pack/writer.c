@@ -9,6 +9,7 @@
 #include "image/half.h"
 #include "pack/format.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { MOST_ATTRIBUTES = 20, MOST_WEIGHTS = 3 * 4096 };
@@ -130,7 +131,8 @@ static void preview_row(const struct preview *p, const void *codes, size_t row, 
                           w, sum);
         }
         for (size_t x = 0; x < width; x++)
-            out[(size_t)(2 - c) * width + x] = half_from_float(curve_decode(&p->curve, sum[x]));
+            out[(size_t)(2 - c) *.width + x] =
+                half_from_float(fminf(curve_decode(&p->curve, sum[x]), 65504.0f));
     }
 }
 

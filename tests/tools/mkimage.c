@@ -1,0 +1,374 @@
+// mkimage.c - images that no ordinary program writes, for tests of bad and odd input
+//
+//   mkimage png  DEPTH CHANNELS DIR IN...  PNG of 8 or 16 bits; 1 grey, 2 + alpha, 3 RGB, 4 + alpha
+//   mkimage tiff DEPTH CHANNELS DIR IN...  TIFF of 8, 16 or 32 (float) bits; 1, 3 or 4 channels;
+//                                          both write DIR/NAME under each input's own name
+//   mkimage poke IN OUT X Y VALUE          all channels of one pixel, as float EXR ("nan", "inf", ...)
+//   mkimage gain IN OUT FACTOR             every value times FACTOR, as float EXR
+//   mkimage plane IN OUT VALUE             one channel of VALUE of the size of IN, as float EXR
+//   mkimage bigpng OUT W H | bigexr OUT W H    a few bytes that claim a size
+//   mkimage read IMAGE X Y                 the linear value of a pixel
+//   mkimage maxdiff A B                    the largest difference, linear
+//   mkimage sum OUT A B                    A + B, as float EXR
+#include <relume/relume.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct buffer {
+    uint8_t *data;
+    size_t size;
+};
+
+static void put(struct buffer *b, const void *bytes, size_t n)
+{
+    b->data = realloc(b->data, b->size + n);
+    if (!b->data)
+        exit(3);
+    memcpy(b->data + b->size, bytes, n);
+    b->size += n;
+}
+
+static void put_byte(struct buffer *b, unsigned v)
+{
+    const uint8_t byte = (uint8_t)v;
+    put(b, &byte, 1);
+}
+
+static void put_big(struct buffer *b, uint32_t v, int bytes)
+{
+    for (int i = bytes - 1; i >= 0; i--)
+        put_byte(b, v >> (8 * i) & 255);
+}
+
+static void put_little(struct buffer *b, uint32_t v, int bytes)
+{
+    for (int i = 0; i < bytes; i++)
+        put_byte(b, v >> (8 * i) & 255);
+}
+
+static void save(const struct buffer *b, const char *path)
+{
+    FILE *f = fopen(path, "wb");
+    if (!f || fwrite(b->data, 1, b->size, f) != b->size || fclose(f)) {
+        perror(path);
+        exit(3);
+    }
+    free(b->data);
+}
+
+static struct relume_image load(const char *path)
+{
+    struct relume_image image;
+    if (relume_image_load(&image, path, NULL)) {
+        fprintf(stderr, "mkimage: %s cannot be read\n", path);
+        exit(1);
+    }
+    return image;
+}
+
+static void save_float(const struct relume_image *image, const char *path)
+{
+    if (relume_image_save(image, path, NULL))
+        exit(3);
+}
+
+// sRGB code of channel c of a pixel; alpha runs over the image, so that using it would show.
+static unsigned code(const struct relume_image *image, size_t pixel, int c, int channels,
+                     unsigned top)
+{
+    const bool alpha = channels == 2 ? c == 1 : c == 3;
+    if (alpha)
+        return (unsigned)(pixel * 37 % 200) * (top / 255) + top / 8;
+    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    const float v = relume_transfer_encode(srgb, image->data[3 * pixel + (size_t)c]);
+    // 8-bit codes in 16 bits, so that both depths mean the same picture
+    const unsigned byte = (unsigned)(fminf(fmaxf(v, 0.0f), 1.0f) * 255.0f + 0.5f);
+    return byte * (top / 255);
+}
+
+// ---------------------------------------------------------------- PNG (stored, not deflated)
+
+static uint32_t crc(const uint8_t *p, size_t n)
+{
+    uint32_t c = ~0u;
+    for (size_t i = 0; i < n; i++) {
+        c ^= p[i];
+        for (int k = 0; k < 8; k++)
+            c = c & 1 ? 0xedb88320u ^ (c >> 1) : c >> 1;
+    }
+    return ~c;
+}
+
+static void put_chunk(struct buffer *b, const char *type, const struct buffer *body)
+{
+    put_big(b, (uint32_t)body->size, 4);
+    const size_t from = b->size;
+    put(b, type, 4);
+    put(b, body->data, body->size);
+    put_big(b, crc(b->data + from, b->size - from), 4);
+}
+
+static void deflate_stored(struct buffer *out, const struct buffer *raw)
+{
+    uint32_t a = 1, c = 0;
+    put_big(out, 0x7801, 2);
+    for (size_t at = 0; at < raw->size;) {
+        const size_t n = raw->size - at < 65535 ? raw->size - at : 65535;
+        put_byte(out, at + n == raw->size);
+        put_little(out, (uint32_t)n, 2);
+        put_little(out, ~(uint32_t)n & 0xffff, 2);
+        put(out, raw->data + at, n);
+        at += n;
+    }
+    for (size_t i = 0; i < raw->size; i++) {
+        a = (a + raw->data[i]) % 65521;
+        c = (c + a) % 65521;
+    }
+    put_big(out, c << 16 | a, 4);
+}
+
+static void put_png(struct buffer *b, uint32_t width, uint32_t height, int depth, int channels,
+                    const struct buffer *raw)
+{
+    static const uint8_t colour_type[] = {0, 0, 4, 2, 6};
+    struct buffer header = {0}, data = {0}, none = {0};
+    put(b, "\x89PNG\r\n\x1a\n", 8);
+    put_big(&header, width, 4);
+    put_big(&header, height, 4);
+    put_byte(&header, (unsigned)depth);
+    put_byte(&header, colour_type[channels]);
+    put(&header, "\0\0\0", 3);
+    put_chunk(b, "IHDR", &header);
+    deflate_stored(&data, raw);
+    put_chunk(b, "IDAT", &data);
+    put(&none, "", 0);
+    put_chunk(b, "IEND", &none);
+    free(header.data);
+    free(data.data);
+    free(none.data);
+}
+
+static void write_png(const char *from, const char *to, int depth, int channels)
+{
+    struct relume_image image = load(from);
+    struct buffer raw = {0}, file = {0};
+    for (size_t p = 0; p < (size_t)image.width * (size_t)image.height; p++) {
+        if (p % (size_t)image.width == 0)
+            put_byte(&raw, 0);
+        for (int c = 0; c < channels; c++)
+            put_big(&raw, code(&image, p, c, channels, depth == 8 ? 255 : 65535), depth / 8);
+    }
+    put_png(&file, (uint32_t)image.width, (uint32_t)image.height, depth, channels, &raw);
+    free(raw.data);
+    save(&file, to);
+    relume_image_destroy(&image);
+}
+
+// ---------------------------------------------------------------- TIFF (uncompressed)
+
+static void write_tiff(const char *from, const char *to, int depth, int channels)
+{
+    struct relume_image image = load(from);
+    const uint32_t width = (uint32_t)image.width, height = (uint32_t)image.height;
+    const uint32_t bytes = width * height * (uint32_t)(channels * depth / 8);
+    struct buffer b = {0};
+    put(&b, "II*\0", 4);
+    put_little(&b, 8 + bytes + 8, 4);
+    for (size_t p = 0; p < (size_t)width * height; p++)
+        for (int c = 0; c < channels; c++)
+            if (depth == 32)
+                put(&b, &image.data[3 * p + (size_t)c], 4);
+            else
+                put_little(&b, code(&image, p, c, channels, depth == 8 ? 255 : 65535), depth / 8);
+    for (int c = 0; c < 4; c++)  // bits of each sample
+        put_little(&b, (uint32_t)depth, 2);
+    const uint32_t entries[][4] = {
+        {256, 4, 1, width},
+        {257, 4, 1, height},
+        {258, 3, (uint32_t)channels, channels > 2 ? 8 + bytes : (uint32_t)depth},
+        {259, 3, 1, 1},
+        {262, 3, 1, channels < 3 ? 1 : 2},
+        {273, 4, 1, 8},
+        {277, 3, 1, (uint32_t)channels},
+        {278, 4, 1, height},
+        {279, 4, 1, bytes},
+        {338, 3, 1, 2},                                 // alpha, unassociated
+        {339, 3, 1, depth == 32 ? 3 : 1},
+    };
+    const int count = (int)(sizeof entries / sizeof *entries);
+    const bool alpha = channels == 4 || channels == 2;
+    put_little(&b, (uint32_t)(alpha ? count : count - 1), 2);
+    for (int i = 0; i < count; i++) {
+        if (entries[i][0] == 338 && !alpha)
+            continue;
+        put_little(&b, entries[i][0], 2);
+        put_little(&b, entries[i][1], 2);
+        put_little(&b, entries[i][2], 4);
+        put_little(&b, entries[i][3], 4);
+    }
+    put_little(&b, 0, 4);
+    save(&b, to);
+    relume_image_destroy(&image);
+}
+
+// ---------------------------------------------------------------- headers that promise too much
+
+static void write_big_png(const char *to, uint32_t width, uint32_t height)
+{
+    struct buffer raw = {0}, file = {0};
+    put_byte(&raw, 0);
+    put_png(&file, width, height, 8, 3, &raw);
+    free(raw.data);
+    save(&file, to);
+}
+
+static void attribute(struct buffer *b, const char *name, const char *type, uint32_t size)
+{
+    put(b, name, strlen(name) + 1);
+    put(b, type, strlen(type) + 1);
+    put_little(b, size, 4);
+}
+
+static void write_big_exr(const char *to, uint32_t width, uint32_t height)
+{
+    struct buffer b = {0};
+    const float one = 1.0f;
+    put_little(&b, 20000630, 4);
+    put_little(&b, 2, 4);
+    attribute(&b, "channels", "chlist", 3 * 18 + 1);
+    for (int c = 0; c < 3; c++) {
+        put_byte(&b, (unsigned)"BGR"[c]);
+        put_byte(&b, 0);
+        put_little(&b, 1, 4);
+        put_little(&b, 0, 4);
+        put_little(&b, 1, 4);
+        put_little(&b, 1, 4);
+    }
+    put_byte(&b, 0);
+    attribute(&b, "compression", "compression", 1);
+    put_byte(&b, 0);
+    for (int i = 0; i < 2; i++) {
+        attribute(&b, i ? "displayWindow" : "dataWindow", "box2i", 16);
+        put_little(&b, 0, 4);
+        put_little(&b, 0, 4);
+        put_little(&b, width - 1, 4);
+        put_little(&b, height - 1, 4);
+    }
+    attribute(&b, "lineOrder", "lineOrder", 1);
+    put_byte(&b, 0);
+    attribute(&b, "pixelAspectRatio", "float", 4);
+    put(&b, &one, 4);
+    attribute(&b, "screenWindowCenter", "v2f", 8);
+    put_little(&b, 0, 4);
+    put_little(&b, 0, 4);
+    attribute(&b, "screenWindowWidth", "float", 4);
+    put(&b, &one, 4);
+    put_byte(&b, 0);
+    save(&b, to);
+}
+
+// ---------------------------------------------------------------- values
+
+static size_t samples(const struct relume_image *image)
+{
+    return (size_t)image->width * (size_t)image->height * (size_t)image->channels;
+}
+
+static void poke(const char *from, const char *to, int x, int y, float value)
+{
+    struct relume_image image = load(from);
+    for (int c = 0; c < 3; c++)
+        image.data[3 * ((size_t)y * (size_t)image.width + (size_t)x) + (size_t)c] = value;
+    save_float(&image, to);
+    relume_image_destroy(&image);
+}
+
+static void gain(const char *from, const char *to, float factor)
+{
+    struct relume_image image = load(from);
+    for (size_t i = 0; i < samples(&image); i++)
+        image.data[i] *= factor;
+    save_float(&image, to);
+    relume_image_destroy(&image);
+}
+
+static void plane(const char *from, const char *to, float value)
+{
+    struct relume_image image = load(from);
+    image.channels = 1;
+    for (size_t i = 0; i < samples(&image); i++)
+        image.data[i] = value;
+    save_float(&image, to);
+    relume_image_destroy(&image);
+}
+
+static int max_difference(const char *a, const char *b)
+{
+    struct relume_image x = load(a), y = load(b);
+    double most = x.width == y.width && x.height == y.height ? 0.0 : 1e30;
+    for (size_t i = 0; most < 1e30 && i < samples(&x); i++) {
+        const double d = fabs((double)x.data[i] - (double)y.data[i]);
+        most = d <= most ? most : d;
+    }
+    printf("%.9g\n", most);
+    relume_image_destroy(&x);
+    relume_image_destroy(&y);
+    return 0;
+}
+
+static void sum(const char *to, const char *a, const char *b)
+{
+    struct relume_image x = load(a), y = load(b);
+    for (size_t i = 0; i < samples(&x); i++)
+        x.data[i] += y.data[i];
+    save_float(&x, to);
+    relume_image_destroy(&x);
+    relume_image_destroy(&y);
+}
+
+static void print_pixel(const char *path, int x, int y)
+{
+    struct relume_image image = load(path);
+    const float *p = image.data + 3 * ((size_t)y * (size_t)image.width + (size_t)x);
+    printf("%.9g %.9g %.9g\n", (double)p[0], (double)p[1], (double)p[2]);
+    relume_image_destroy(&image);
+}
+
+static void convert(void (*write)(const char *, const char *, int, int), int argc, char **argv)
+{
+    for (int i = 5; i < argc; i++) {
+        char to[4096];
+        const char *slash = strrchr(argv[i], '/');
+        snprintf(to, sizeof to, "%s/%s", argv[4], slash ? slash + 1 : argv[i]);
+        write(argv[i], to, atoi(argv[2]), atoi(argv[3]));
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const char *what = argc > 1 ? argv[1] : "";
+    if ((!strcmp(what, "png") || !strcmp(what, "tiff")) && argc > 5)
+        convert(what[0] == 'p' ? write_png : write_tiff, argc, argv);
+    else if (!strcmp(what, "poke") && argc == 7)
+        poke(argv[2], argv[3], atoi(argv[4]), atoi(argv[5]), strtof(argv[6], NULL));
+    else if (!strcmp(what, "gain") && argc == 5)
+        gain(argv[2], argv[3], strtof(argv[4], NULL));
+    else if (!strcmp(what, "plane") && argc == 5)
+        plane(argv[2], argv[3], strtof(argv[4], NULL));
+    else if (!strcmp(what, "bigpng") && argc == 5)
+        write_big_png(argv[2], (uint32_t)atol(argv[3]), (uint32_t)atol(argv[4]));
+    else if (!strcmp(what, "bigexr") && argc == 5)
+        write_big_exr(argv[2], (uint32_t)atol(argv[3]), (uint32_t)atol(argv[4]));
+    else if (!strcmp(what, "read") && argc == 5)
+        print_pixel(argv[2], atoi(argv[3]), atoi(argv[4]));
+    else if (!strcmp(what, "maxdiff") && argc == 4)
+        return max_difference(argv[2], argv[3]);
+    else if (!strcmp(what, "sum") && argc == 5)
+        sum(argv[2], argv[3], argv[4]);
+    else
+        return fprintf(stderr, "mkimage: see the head of tests/tools/mkimage.c\n"), 2;
+    return 0;
+}

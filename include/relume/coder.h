@@ -110,7 +110,7 @@ RELUME_RESULT relume_status relume_encode(relume_coefficients **out, const relum
 RELUME_API void relume_coefficients_destroy(relume_coefficients **coefficients);
 
 // How well a view was encoded, in the coefficients' own domain over the captured lights, in units
-// where 1 is white; measured on every 16th row.
+// where 1 is white; measured on every 16th or 64th row.
 struct relume_encode_report {
     double fit_rms;    // captured samples against unquantised coefficients
     double store_rms;  // unquantised against stored coefficients

@@ -37,7 +37,8 @@ RELUME_RESULT relume_status relume_lights_make(struct relume_vec3 *out, int n,
 // Spherical cap discrepancy: the largest difference, over caps, between the share of directions in
 // a cap and the share of area; in [0, 1], smaller is more even. The maximum is taken over caps of
 // every radius around the directions (1024 of them when there are more), their antipodes and 1024
-// spiral points, so it is a close lower bound. With `hemisphere` areas are shares of the pole's hemisphere.
+// spiral points, so it is a close lower bound. With `hemisphere` areas are shares of the pole's
+// hemisphere.
 RELUME_RESULT relume_status relume_lights_discrepancy(double *out, const struct relume_vec3 *lights,
                                                       int n,
                                                       const struct relume_lights_params *params);

@@ -15,6 +15,7 @@ void relume_capture_destroy(relume_capture **capture)
     if (!*capture)
         return;
     draft_free(&(*capture)->draft);
+    free((*capture)->path);
     free(*capture);
     *capture = NULL;
 }
@@ -204,8 +205,10 @@ relume_status capture_stream(struct image_stream *out, const relume_capture *cap
         oiio_close(&reader);
         return log_fail(log, RELUME_EDATA, "%s: changed while it was being read", path);
     }
-    return image_stream_open(out, reader, 3, m->transfer, to,
-                             m->intensities ? m->intensities[light] : no_gain);
+    const relume_status opened = image_stream_open(
+        out, reader, 3, m->transfer, to, m->intensities ? m->intensities[light] : no_gain);
+    out->finite_only = true;
+    return opened;
 }
 
 relume_status relume_capture_image(struct relume_image *out, const relume_capture *capture,
@@ -222,7 +225,7 @@ relume_status relume_capture_image(struct relume_image *out, const relume_captur
         status = image_stream_read(&stream, 0, capture->height, out->data);
     if (status == RELUME_EDATA)
         (void)log_fail(log, status, "%s: %s", capture->draft.m.view[view].images[light],
-                       oiio_error(stream.reader));
+                       image_stream_error(&stream));
     if (status)
         relume_image_destroy(out);
     image_stream_close(&stream);

@@ -26,7 +26,8 @@ static double hemisphere_share(double z, double h)
 {
     const double sine = sqrt(fmax(0.0, 1.0 - h * h)), side = sqrt(fmax(0.0, 1.0 - z * z));
     if (sine > fabs(z)) {
-        const double lens = M_PI - clamped_acos(z / sine) - clamped_acos(-z * h / (side * sine)) * h;
+        const double lens =
+            M_PI - clamped_acos(z / sine) - clamped_acos(-z * h / (side * sine)) * h;
         return lens / M_PI;
     }
     // The cap's rim does not cross the horizon.

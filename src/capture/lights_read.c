@@ -78,11 +78,13 @@ static relume_status read_lines(struct relume_vec3 **out, int *n, FILE *file, co
         struct relume_vec3 one;
         const int found = parse_line(line, &one);
         if (found < 0)
-            status = log_fail(log, RELUME_EDATA, "%s: line %d; expected three numbers x y z, not "
-                              "all 0; found '%.40s'", path, number, line);
+            status = log_fail(log, RELUME_EDATA,
+                              "%s: line %d; expected three numbers x y z, not "
+                              "all 0; found '%.40s'",
+                              path, number, line);
         else if (found && *n == most)
-            status = log_fail(log, RELUME_EDATA, "%s: too many lights; expected at most %d", path,
-                              most);
+            status =
+                log_fail(log, RELUME_EDATA, "%s: too many lights; expected at most %d", path, most);
         else if (found)
             v[(*n)++] = one;
     }

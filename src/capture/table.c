@@ -83,7 +83,7 @@ relume_status relume_table_read(relume_table *table, int rows, float *out)
         if (table->status[i] == RELUME_EDATA)
             return log_fail(table->log, RELUME_EDATA, "%s: %s",
                             table->capture->draft.m.view[table->view].images[i],
-                            oiio_error(table->stream[i].reader));
+                            image_stream_error(&table->stream[i]));
         if (table->status[i])
             return table->status[i];
     }

@@ -1,11 +1,11 @@
 // cmd_lights.c - relume lights: a pattern of directions and how even it is
-#include "cli.h"
+#include "pattern_option.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 static const struct option options[] = {
-    {"--pattern", OPTION_TEXT, "P", "hammersley (default), grid, random, jittered, poisson, spiral", 0, 0},
+    PATTERN_OPTION,
     {"-n", OPTION_INT, "N", "number of directions; default 100", 1, 65536},
     {"--hemisphere", OPTION_FLAG, NULL, "only directions on the pole's side", 0, 0},
     {"--pole", OPTION_TEXT, "z|y", "the pole: z (planar, slab; default) or y (panoramas)", 0, 0},
@@ -13,17 +13,6 @@ static const struct option options[] = {
     {"--json", OPTION_FLAG, NULL, "print one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
-
-static relume_status choose_pattern(const struct relume_pattern **out, const char *name)
-{
-    const char *names[16];
-    int n = 0;
-    for (const struct relume_pattern *const *p = relume_patterns; *p && n < 15; p++)
-        names[n++] = (*p)->name;
-    names[n] = NULL;
-    *out = relume_pattern_find(name);
-    return *out ? RELUME_OK : unknown_name("pattern", name, names);
-}
 
 static relume_status choose_pole(bool *pole_y, const char *name)
 {
@@ -59,7 +48,7 @@ static relume_status run(const struct args *args)
         .seed = (uint64_t)args_int(args, "--seed", 0),
         .hemisphere = args_has(args, "--hemisphere"),
     };
-    relume_status status = choose_pattern(&pattern, args_text(args, "--pattern", "hammersley"));
+    relume_status status = args_pattern(&pattern, args);
     if (!status)
         status = choose_pole(&params.pole_y, args_text(args, "--pole", "z"));
     if (status)

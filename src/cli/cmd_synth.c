@@ -1,17 +1,21 @@
 // cmd_synth.c - relume synth: a built-in scene on the virtual light stage
-#include "cli.h"
+#include "pattern_option.h"
 
 #include <stdlib.h>
 
 static const struct option options[] = {
     {"-o", OPTION_TEXT, "DIR", "the capture folder to make", 0, 0},
-    {"--size", OPTION_INT, "N", "width (planar, slab, cube face) or height (panoramas); default 256", 1, 65536},
+    {"--size", OPTION_INT, "N",
+     "width (planar, slab, cube face) or height (panoramas); default 256", 1, 65536},
     {"--views", OPTION_TEXT, "GxG", "slab: grid of cameras; default 5x5", 0, 0},
     {"--lights", OPTION_INT, "N", "number of light directions; default 100", 1, 65536},
-    {"--pattern", OPTION_TEXT, "P", "hammersley (default), grid, random, jittered, poisson, spiral", 0, 0},
-    {"--hemisphere", OPTION_FLAG, NULL, "lights on the viewer's (panoramas: upper) side only", 0, 0},
-    {"--lights-from", OPTION_TEXT, "FILE", "directions of a capture.json, a .lp file or lines x y z", 0, 0},
-    {"--projection", OPTION_TEXT, "P", "planar, slab, cylindrical, spherical, cube; default: the scene's own", 0, 0},
+    PATTERN_OPTION,
+    {"--hemisphere", OPTION_FLAG, NULL, "lights on the viewer's (panoramas: upper) side only", 0,
+     0},
+    {"--lights-from", OPTION_TEXT, "FILE",
+     "directions of a capture.json, a .lp file or lines x y z", 0, 0},
+    {"--projection", OPTION_TEXT, "P",
+     "planar, slab, cylindrical, spherical, cube; default: the scene's own", 0, 0},
     {"--eye", OPTION_TEXT, "x,y,z", "where the eye is; may be repeated for a slab", 0, 0},
     {"--samples", OPTION_INT, "N", "camera rays per pixel; default 16", 1, 65536},
     {"--bounces", OPTION_INT, "N", "bounces of indirect light; default 0", 0, 64},
@@ -20,8 +24,6 @@ static const struct option options[] = {
     {"--force", OPTION_FLAG, NULL, "replace an existing folder", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
-
-enum { MAX_EYES = 4096 };
 
 static relume_status choose_scene(const struct relume_scene_kind **out, const char *name)
 {
@@ -32,17 +34,6 @@ static relume_status choose_scene(const struct relume_scene_kind **out, const ch
     names[n] = NULL;
     *out = relume_scene_find(name);
     return *out ? RELUME_OK : unknown_name("scene", name, names);
-}
-
-static relume_status choose_pattern(const struct relume_pattern **out, const char *name)
-{
-    const char *names[16];
-    int n = 0;
-    for (const struct relume_pattern *const *p = relume_patterns; *p && n < 15; p++)
-        names[n++] = (*p)->name;
-    names[n] = NULL;
-    *out = relume_pattern_find(name);
-    return *out ? RELUME_OK : unknown_name("pattern", name, names);
 }
 
 static relume_status choose_projection(struct relume_synth_params *p, const char *name)
@@ -63,14 +54,17 @@ static relume_status choose_views(struct relume_synth_params *p, const char *tex
     return usage_error("--views: expected a grid like 5x5; found '%s'", text);
 }
 
-static relume_status choose_eyes(struct relume_vec3 *eyes, const struct args *args)
+static relume_status choose_eyes(struct relume_vec3 **eyes, int *count, const struct args *args)
 {
     relume_status status = RELUME_OK;
-    const int n = args_count(args, "--eye");
-    if (n > MAX_EYES)
-        return usage_error("--eye: expected at most %d; found %d", MAX_EYES, n);
-    for (int i = 0; i < n && !status; i++)
-        status = args_vec3(&eyes[i], "--eye", args_nth(args, "--eye", i));
+    *count = args_count(args, "--eye");
+    if (!*count)
+        return RELUME_OK;
+    *eyes = malloc((size_t)*count * sizeof **eyes);
+    if (!*eyes)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < *count && !status; i++)
+        status = args_vec3(&(*eyes)[i], "--eye", args_nth(args, "--eye", i));
     return status;
 }
 
@@ -86,8 +80,7 @@ static relume_status make_lights(struct relume_vec3 **out, int *n,
     if (file)
         return relume_lights_read(out, n, file, args_log(args));
     const struct relume_pattern *pattern;
-    const relume_status status =
-        choose_pattern(&pattern, args_text(args, "--pattern", "hammersley"));
+    const relume_status status = args_pattern(&pattern, args);
     if (status)
         return status;
     *n = args_int(args, "--lights", 100);
@@ -105,10 +98,9 @@ static relume_status capture(const struct relume_scene_kind *kind,
                              const struct relume_synth_params *params, const struct args *args)
 {
     relume_scene *scene;
-    relume_status status =
-        relume_scene_create(&scene, kind,
-                            relume_scene_params(.log = args_log(args),
-                                                .mesh = args_text(args, "--mesh", NULL)));
+    relume_status status = relume_scene_create(
+        &scene, kind,
+        relume_scene_params(.log = args_log(args), .mesh = args_text(args, "--mesh", NULL)));
     if (!status)
         status = relume_scene_capture(scene, args_text(args, "-o", NULL), params);
     relume_scene_destroy(&scene);
@@ -117,14 +109,11 @@ static relume_status capture(const struct relume_scene_kind *kind,
 
 static relume_status run(const struct args *args)
 {
-    static struct relume_vec3 eyes[MAX_EYES];
     const struct relume_scene_kind *kind;
-    struct relume_vec3 *lights = NULL;
+    struct relume_vec3 *lights = NULL, *eyes = NULL;
     struct relume_synth_params p = {
         .log = args_log(args),
         .size = args_int(args, "--size", 0),
-        .eyes = eyes,
-        .eye_count = args_count(args, "--eye"),
         .samples = args_int(args, "--samples", 0),
         .bounces = args_int(args, "--bounces", 0),
         .seed = (uint64_t)args_int(args, "--seed", 0),
@@ -139,14 +128,16 @@ static relume_status run(const struct args *args)
     if (!status)
         status = choose_views(&p, args_text(args, "--views", NULL));
     if (!status)
-        status = choose_eyes(eyes, args);
+        status = choose_eyes(&eyes, &p.eye_count, args);
     if (!status)
         status = make_lights(&lights, &p.light_count,
                              p.projection_set ? p.projection : kind->projection, args);
     p.lights = lights;
+    p.eyes = eyes;
     if (!status)
         status = capture(kind, &p, args);
     free(lights);
+    free(eyes);
     return status;
 }
 

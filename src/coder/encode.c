@@ -117,6 +117,12 @@ static void pack_plane(void *context, size_t plane, int worker)
     }
 }
 
+// The report looks at the first row of every fourth band, of every band in small images.
+static bool is_measured(const relume_coefficients *c, int row)
+{
+    return row % (c->bands < 64 ? BAND_ROWS : 4 * BAND_ROWS) == 0;
+}
+
 // What the basis cannot express, on the first row of the band.
 static relume_status measure_fit(struct encoder *e)
 {
@@ -145,24 +151,17 @@ static off_t band_offset(const relume_coefficients *c, int row)
     return (off_t)row * c->info.planes * c->info.width * (off_t)sizeof(uint16_t);
 }
 
-static bool all_finite(const float *v, size_t n)
-{
-    float sum = 0.0f;  // 0 x finite is 0, 0 x anything else is NaN
-    for (size_t i = 0; i < n; i++)
-        sum += v[i] * 0.0f;
-    return sum == 0.0f;
-}
-
 // Ranges and steps are differences of coefficients, which must not overflow; halves end at 65504.
 static relume_status check_size(const struct encoder *e, const struct relume_encode_params *p)
 {
     const bool half = e->out->info.storage == RELUME_STORE_HALF;
     const float most = half ? 65504.0f : FLT_MAX / 4.0f;
-    const size_t n = (size_t)e->coder->info.coefficients * (size_t)e->rows * (size_t)e->width * 3;
-    unsigned wrong = 0;
-    for (size_t i = 0; i < n; i++)
-        wrong |= !(fabsf(e->values[i]) <= most);
-    if (!wrong)
+    const struct range *r =
+        e->out->band + (size_t)(e->row / BAND_ROWS) * (size_t)e->planes;
+    bool fits = true;
+    for (int i = 0; i < e->planes; i++)
+        fits &= r[i].min >= -most && r[i].min <= r[i].max && r[i].max <= most;
+    if (fits)
         return RELUME_OK;
     return log_fail(p->log, RELUME_EDATA,
                     "%s: coefficients in rows %d to %d are too large for %s; expected at most %g",
@@ -177,21 +176,16 @@ static relume_status encode_band(struct encoder *e, relume_table *table,
     relume_status status = relume_table_read(table, e->rows, e->samples);
     if (status)
         return status;
-    for (int i = 0; i < e->lights; i++)
-        if (!all_finite(e->samples + (size_t)i * columns, columns))
-            return log_fail(p->log, RELUME_EDATA,
-                            "%s: holds NaN or infinite values in rows %d to %d; expected "
-                            "finite radiance",
-                            e->images[i], e->row, e->row + e->rows - 1);
     thread_for(e->threads, (columns + CHUNK - 1) / CHUNK, multiply_chunk, e);
-    status = measure_fit(e);
+    if (is_measured(e->out, e->row))
+        status = measure_fit(e);
     if (status)
         return status;
     apply_mask(e);
+    thread_for(e->threads, (size_t)e->planes, pack_plane, e);
     status = check_size(e, p);
     if (status)
         return status;
-    thread_for(e->threads, (size_t)e->planes, pack_plane, e);
     const size_t bytes = columns / 3 * (size_t)e->planes * sizeof *e->packed;
     if (!scratch_write(e->out->fd, e->packed, bytes, band_offset(e->out, e->row)))
         return log_fail(p->log, RELUME_EIO, "%s: writing its temporary file failed; %s",
@@ -253,23 +247,25 @@ static float band_step(struct range r)
     return r.max > r.min ? (r.max - r.min) / 65535.0f : 0.0f;
 }
 
+static inline float clamp(float v, float top)
+{
+    return v < 0.0f ? 0.0f : v > top ? top : v;
+}
+
 static void quantise_row(const relume_coefficients *c, int plane, int row, const uint16_t *from,
                          void *to)
 {
     const struct range r = c->band[(row / BAND_ROWS) * c->info.planes + plane];
     const float a = band_step(r) / c->scale[plane];
     const float b = (r.min - c->offset[plane]) / c->scale[plane] + 0.5f;
-    const float top = c->info.storage == RELUME_STORE_8 ? 255.0f : 65535.0f;
     uint8_t *bytes = to;
     uint16_t *words = to;
-    for (int x = 0; x < c->info.width; x++) {
-        float v = (float)from[x] * a + b;
-        v = v < 0.0f ? 0.0f : v > top ? top : v;
-        if (c->info.storage == RELUME_STORE_8)
-            bytes[x] = (uint8_t)(int)v;
-        else
-            words[x] = (uint16_t)(int)v;
-    }
+    if (c->info.storage == RELUME_STORE_8)
+        for (int x = 0; x < c->info.width; x++)
+            bytes[x] = (uint8_t)(int)clamp((float)from[x] * a + b, 255.0f);
+    else
+        for (int x = 0; x < c->info.width; x++)
+            words[x] = (uint16_t)(int)clamp((float)from[x] * a + b, 65535.0f);
 }
 
 relume_status relume_coefficients_read(const relume_coefficients *coefficients, int row, int rows,
@@ -292,7 +288,7 @@ relume_status relume_coefficients_read(const relume_coefficients *coefficients, 
     return good ? RELUME_OK : RELUME_EIO;
 }
 
-// What storing cost, over the captured lights, on the first row of every band.
+// What storing cost, over the captured lights, on the same rows.
 static relume_status measure_storage(relume_coefficients *c, const struct encoder *e)
 {
     const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
@@ -306,6 +302,8 @@ static relume_status measure_storage(relume_coefficients *c, const struct encode
     double sum = 0.0;
     size_t count = 0;
     for (int row = 0; !status && row < e->height; row += BAND_ROWS) {
+        if (!is_measured(c, row))
+            continue;
         if (!scratch_read(c->fd, waiting, planes * width * 2, band_offset(c, row))) {
             status = RELUME_EIO;
             break;

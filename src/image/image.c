@@ -62,7 +62,8 @@ relume_status image_stream_open(struct image_stream *stream, oiio_reader *reader
         .from = from,
         .to = to,
         .gain = {gain[0], gain[1], gain[2]},
-        .scratch = mem_array((size_t)info->width * (size_t)info->channels, sizeof(float)),
+        .scratch = mem_array((size_t)info->width * (size_t)info->channels,
+                             IMAGE_STREAM_ROWS * (info->bytes ? 1 : sizeof(float))),
     };
     if (!stream->scratch) {
         image_stream_close(stream);
@@ -81,38 +82,59 @@ void image_stream_close(struct image_stream *stream)
     stream->scratch = NULL;
 }
 
-static void convert_bytes(const struct image_stream *s, const struct oiio_info *info, float *out)
+static void convert_bytes(const struct image_stream *s, const struct oiio_info *info, size_t pixels,
+                          float *out)
 {
     const uint8_t *in = s->scratch;
-    for (int x = 0; x < info->width; x++, in += info->channels)
-        for (int c = 0; c < s->channels; c++)
-            *out++ = s->table[c][in[info->rgb[c]]];
+    if (s->channels == 3 && info->channels == 3)
+        for (size_t x = 0; x < pixels; x++, in += 3, out += 3)
+            for (int c = 0; c < 3; c++)
+                out[c] = s->table[c][in[info->rgb[c]]];
+    else
+        for (size_t x = 0; x < pixels; x++, in += info->channels)
+            for (int c = 0; c < s->channels; c++)
+                *out++ = s->table[c][in[info->rgb[c]]];
 }
 
-static void convert_floats(const struct image_stream *s, const struct oiio_info *info, float *out)
+// False when a sample is NaN or infinite.
+static bool convert_floats(const struct image_stream *s, const struct oiio_info *info,
+                           size_t pixels, float *out)
 {
     const float *in = s->scratch;
-    for (int x = 0; x < info->width; x++, in += info->channels)
-        for (int c = 0; c < s->channels; c++)
-            *out++ = recode(s, c, in[info->rgb[c]]);
+    float sum = 0.0f;  // 0 x finite is 0, 0 x anything else is NaN
+    for (size_t x = 0; x < pixels; x++, in += info->channels)
+        for (int c = 0; c < s->channels; c++) {
+            const float v = in[info->rgb[c]];
+            sum += 0.0f * v;
+            *out++ = recode(s, c, v);
+        }
+    return sum == 0.0f;
 }
 
 relume_status image_stream_read(struct image_stream *stream, int row, int rows, float *out)
 {
     const struct oiio_info *info = oiio_info_of(stream->reader);
-    for (int y = row; y < row + rows; y++) {
+    for (int end = row + rows; row < end; row += IMAGE_STREAM_ROWS) {
+        const int n = end - row < IMAGE_STREAM_ROWS ? end - row : IMAGE_STREAM_ROWS;
+        const size_t pixels = (size_t)n * (size_t)info->width;
         const relume_status status = info->bytes
-                                         ? oiio_read_bytes(stream->reader, y, 1, stream->scratch)
-                                         : oiio_read_floats(stream->reader, y, 1, stream->scratch);
+                                         ? oiio_read_bytes(stream->reader, row, n, stream->scratch)
+                                         : oiio_read_floats(stream->reader, row, n, stream->scratch);
         if (status)
             return status;
         if (info->bytes)
-            convert_bytes(stream, info, out);
-        else
-            convert_floats(stream, info, out);
-        out += (size_t)info->width * (size_t)stream->channels;
+            convert_bytes(stream, info, pixels, out);
+        else if (!convert_floats(stream, info, pixels, out) && stream->finite_only)
+            return RELUME_EDATA;
+        out += pixels * (size_t)stream->channels;
     }
     return RELUME_OK;
+}
+
+const char *image_stream_error(const struct image_stream *stream)
+{
+    const char *said = oiio_error(stream->reader);
+    return *said ? said : "holds NaN or infinite values; expected finite radiance";
 }
 
 // ---------------------------------------------------------------- files
@@ -139,7 +161,7 @@ relume_status relume_image_load(struct relume_image *out, const char *path,
     if (!status)
         status = image_stream_read(&stream, 0, info.height, out->data);
     if (status == RELUME_EDATA)
-        (void)log_fail(p.log, status, "%s: %s", path, oiio_error(stream.reader));
+        (void)log_fail(p.log, status, "%s: %s", path, image_stream_error(&stream));
     if (status)
         relume_image_destroy(out);
     image_stream_close(&stream);

@@ -9,6 +9,8 @@
 // What `transfer` AUTO means for an open file.
 struct relume_transfer image_transfer(struct relume_transfer transfer, const struct oiio_info *info);
 
+enum { IMAGE_STREAM_ROWS = 16 };
+
 // Reads rows of one file as 1 or 3 channels after a per-value function: decode by `from`, divide
 // by gain[channel], encode by `to`. Bytes go through tables.
 struct image_stream {
@@ -16,16 +18,19 @@ struct image_stream {
     int channels;
     struct relume_transfer from, to;
     float gain[3];
+    bool finite_only;       // NaN and infinity are errors; to be set after opening
     float table[3][256];  // per channel, for 8-bit files
-    void *scratch;        // one row of the file
+    void *scratch;        // IMAGE_STREAM_ROWS rows of the file
 };
 
 // Takes over `reader`, also on failure. RELUME_ENOMEM.
 relume_status image_stream_open(struct image_stream *stream, oiio_reader *reader, int channels,
                                 struct relume_transfer from, struct relume_transfer to,
                                 const float gain[3]);
-// out[row][x][channel]; rows must be asked for from the top on. RELUME_EDATA: oiio_error tells.
+// out[row][x][channel]; rows must be asked for from the top on. RELUME_EDATA: the error tells.
 relume_status image_stream_read(struct image_stream *stream, int row, int rows, float *out);
+// What went wrong, for a sentence; belongs to the stream.
+const char *image_stream_error(const struct image_stream *stream);
 void image_stream_close(struct image_stream *stream);
 
 #endif

@@ -141,10 +141,15 @@ relume_status read_rows(oiio_reader *r, int row, int rows, TypeDesc type, void *
     try {
         const ImageSpec &spec = r->input->spec();
         const int y = spec.y + row;
-        const bool good = spec.tile_width
-                              ? read_tiled_rows(r, row, rows, type, out)
-                              : r->input->read_scanlines(0, 0, y, y + rows, spec.z, 0,
-                                                         spec.nchannels, type, out);
+        const size_t stride = size_t(spec.width) * spec.nchannels * type.size();
+        bool good = true;
+        if (spec.tile_width)
+            good = read_tiled_rows(r, row, rows, type, out);
+        else if (type == spec.format && spec.channelformats.empty())
+            good = r->input->read_native_scanlines(0, 0, y, y + rows, spec.z, out);
+        else  // one by one: the call for many rows sets aside 64 MB at every call
+            for (int i = 0; good && i < rows; i++)
+                good = r->input->read_scanline(y + i, spec.z, type, (char *)out + i * stride);
         if (good && !r->input->has_error())
             return RELUME_OK;
         return broken(r, "truncated or damaged; " + one_line(r->input->geterror()));

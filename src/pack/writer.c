@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/exr.h"
+#include "image/curve.h"
 #include "image/half.h"
 #include "pack/format.h"
 
@@ -50,7 +51,13 @@ static int file_channel(const struct relume_coder_info *info, int plane)
     return info->joint ? plane : plane / 3 * 3 + 2 - plane % 3;
 }
 
-static void store_row(enum relume_storage storage, const void *codes, size_t width, void *samples)
+struct view_source {
+    const relume_coefficients *coefficients;
+    const uint16_t *half_of_byte;  // [256]
+};
+
+static void store_row(enum relume_storage storage, const uint16_t *half_of_byte, const void *codes,
+                      size_t width, void *samples)
 {
     const uint8_t *bytes = codes;
     const uint16_t *words = codes;
@@ -63,25 +70,25 @@ static void store_row(enum relume_storage storage, const void *codes, size_t wid
             uints[x] = words[x];
     else
         for (size_t x = 0; x < width; x++)
-            halves[x] = half_from_float((float)bytes[x]);
+            halves[x] = half_of_byte[bytes[x]];
 }
 
 static relume_status view_rows(void *context, int row, int rows, void *samples)
 {
-    const relume_coefficients *c = context;
-    const struct relume_coefficients_info *info = relume_coefficients_info(c);
+    const struct view_source *source = context;
+    const struct relume_coefficients_info *info = relume_coefficients_info(source->coefficients);
     const size_t width = (size_t)info->width, planes = (size_t)info->planes;
     const size_t code = info->storage == RELUME_STORE_8 ? 1 : 2;
     const size_t sample = info->storage == RELUME_STORE_16 ? 4 : 2;
     char *codes = mem_array((size_t)rows * planes * width, code);
     if (!codes)
         return RELUME_ENOMEM;
-    const relume_status status = relume_coefficients_read(c, row, rows, codes);
+    const relume_status status = relume_coefficients_read(source->coefficients, row, rows, codes);
     for (size_t y = 0; !status && y < (size_t)rows; y++)
         for (size_t p = 0; p < planes; p++) {
             const size_t channel = (size_t)file_channel(relume_coder_info(info->coder), (int)p);
-            store_row(info->storage, codes + (y * planes + p) * width * code, width,
-                      (char *)samples + (y * planes + channel) * width * sample);
+            store_row(info->storage, source->half_of_byte, codes + (y * planes + p) * width * code,
+                      width, (char *)samples + (y * planes + channel) * width * sample);
         }
     free(codes);
     return status;
@@ -89,39 +96,44 @@ static relume_status view_rows(void *context, int row, int rows, void *samples)
 
 struct preview {
     const relume_coefficients *coefficients;
-    struct relume_transfer curve;  // of the coefficients
+    struct curve curve;  // of the coefficients
     float weights[MOST_WEIGHTS], constant[3];
 };
 
-static float code_value(const struct relume_coefficients_info *info, const void *codes, size_t i,
-                        int plane)
+// sum[x] += weight * coefficient
+static void add_plane(const struct relume_coefficients_info *info, const void *codes, size_t at,
+                      int plane, float weight, float *sum)
 {
-    const uint16_t *words = codes;
-    if (info->storage == RELUME_STORE_HALF)
-        return float_from_half(words[i]);
-    const float code = info->storage == RELUME_STORE_8 ? ((const uint8_t *)codes)[i] : words[i];
-    return code * info->scale[plane] + info->offset[plane];
+    const uint8_t *bytes = (const uint8_t *)codes + at;
+    const uint16_t *words = (const uint16_t *)codes + at;
+    const size_t width = (size_t)info->width;
+    const float step = weight * info->scale[plane], base = weight * info->offset[plane];
+    for (size_t x = 0; x < width; x++)
+        sum[x] += info->storage == RELUME_STORE_8    ? step * (float)bytes[x] + base
+                  : info->storage == RELUME_STORE_16 ? step * (float)words[x] + base
+                                                     : weight * float_from_half(words[x]);
 }
 
-static void preview_row(const struct preview *p, const void *codes, size_t row, uint16_t *out)
+static void preview_row(const struct preview *p, const void *codes, size_t row, float *sum,
+                        uint16_t *out)
 {
     const struct relume_coefficients_info *info = relume_coefficients_info(p->coefficients);
     const struct relume_coder_info *coder = relume_coder_info(info->coder);
     const size_t width = (size_t)info->width;
-    for (int c = 0; c < 3; c++)
-        for (size_t x = 0; x < width; x++) {
-            float v = p->constant[c];
-            for (int k = 0; k < coder->coefficients; k++) {
-                const float w = p->weights[c * coder->coefficients + k];
-                const int plane = coder->joint ? k : 3 * k + c;
-                if (w != 0.0f)
-                    v += w * code_value(info, codes,
-                                        (row * (size_t)info->planes + (size_t)plane) * width + x,
-                                        plane);
-            }
-            out[(size_t)(2 - c) * width + x] =
-                half_from_float(fminf(relume_transfer_decode(p->curve, v), 65504.0f));
+    for (int c = 0; c < 3; c++) {
+        for (size_t x = 0; x < width; x++)
+            sum[x] = p->constant[c];
+        for (int k = 0; k < coder->coefficients; k++) {
+            const float w = p->weights[c * coder->coefficients + k];
+            const int plane = coder->joint ? k : 3 * k + c;
+            if (w != 0.0f)
+                add_plane(info, codes, (row * (size_t)info->planes + (size_t)plane) * width, plane,
+                          w, sum);
         }
+        for (size_t x = 0; x < width; x++)
+            out[(size_t)(2 - c) *.width + x] =
+                half_from_float(fminf(curve_decode(&p->curve, sum[x]), 65504.0f));
+    }
 }
 
 static relume_status preview_rows(void *context, int row, int rows, void *samples)
@@ -130,12 +142,14 @@ static relume_status preview_rows(void *context, int row, int rows, void *sample
     const struct relume_coefficients_info *info = relume_coefficients_info(p->coefficients);
     const size_t width = (size_t)info->width;
     void *codes = mem_array((size_t)rows * (size_t)info->planes * width, 2);
-    if (!codes)
-        return RELUME_ENOMEM;
-    const relume_status status = relume_coefficients_read(p->coefficients, row, rows, codes);
+    float *sum = mem_array(width, sizeof *sum);
+    relume_status status = codes && sum ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        status = relume_coefficients_read(p->coefficients, row, rows, codes);
     for (int y = 0; !status && y < rows; y++)
-        preview_row(p, codes, (size_t)y, (uint16_t *)samples + (size_t)y * 3 * width);
+        preview_row(p, codes, (size_t)y, sum, (uint16_t *)samples + (size_t)y * 3 * width);
     free(codes);
+    free(sum);
     return status;
 }
 
@@ -163,7 +177,8 @@ struct builder {
     struct arena arena;
     struct exr_part *parts;
     int count;
-    struct preview *preview;
+    const char **channels;   // [planes], as the file sorts them
+    uint16_t *half_of_byte;  // [256]
 };
 
 static void add_int(struct exr_part *part, struct exr_attribute *list, const char *name, int value)
@@ -256,7 +271,8 @@ static const char *storage_name(enum relume_storage storage)
 }
 
 // The middle view under a light from the viewer, panoramas from above.
-static bool add_preview(struct builder *b, const struct relume_pack_contents *c)
+static bool add_preview(struct builder *b, const struct relume_pack_contents *c,
+                        enum exr_codec codec)
 {
     static const char *const channels[] = {"B", "G", "R"};
     const relume_coefficients *middle = c->view[c->views / 2].coefficients;
@@ -271,7 +287,8 @@ static bool add_preview(struct builder *b, const struct relume_pack_contents *c)
     const struct relume_vec3 front = {0.0, pole_y, !pole_y};
     const bool is_display = c->domain == RELUME_DOMAIN_DISPLAY;
     p->coefficients = middle;
-    p->curve = is_display ? c->display : (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f};
+    curve_init(&p->curve, is_display ? c->display
+                                     : (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f});
     relume_coder_weights(c->coder, front, p->weights, p->constant);
     relume_transfer_text(c->display, display, 32);
     *part = (struct exr_part){
@@ -279,7 +296,7 @@ static bool add_preview(struct builder *b, const struct relume_pack_contents *c)
         .width = info->width,
         .height = info->height,
         .sample = EXR_SAMPLE_HALF,
-        .codec = EXR_CODEC_ZIP,
+        .codec = codec,
         .channels = 3,
         .channel = channels,
         .attribute = list,
@@ -312,7 +329,7 @@ static const char **channel_names(struct builder *b, const struct relume_coder_i
 }
 
 static bool add_view(struct builder *b, const struct relume_pack_contents *c, int index,
-                     const char *const *channels, enum exr_codec codec)
+                     enum exr_codec codec)
 {
     static const char *const depth_channel[] = {"Z"}, *const mask_channel[] = {"A"};
     const struct relume_pack_view *view = &c->view[index];
@@ -321,8 +338,10 @@ static bool add_view(struct builder *b, const struct relume_pack_contents *c, in
     const char *name = arena_format(&b->arena, "view%04d", index);
     const char *depth = arena_format(&b->arena, "view%04d.depth", index);
     const char *mask = arena_format(&b->arena, "view%04d.mask", index);
-    if (!list || !name || !depth || !mask)
+    struct view_source *source = arena_array(&b->arena, 1, sizeof *source);
+    if (!list || !name || !depth || !mask || !source)
         return false;
+    *source = (struct view_source){view->coefficients, b->half_of_byte};
     struct exr_part *part = &b->parts[b->count++];
     *part = (struct exr_part){
         .name = name,
@@ -331,10 +350,10 @@ static bool add_view(struct builder *b, const struct relume_pack_contents *c, in
         .sample = info->storage == RELUME_STORE_16 ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF,
         .codec = codec,
         .channels = info->planes,
-        .channel = channels,
+        .channel = b->channels,
         .attribute = list,
         .rows = view_rows,
-        .context = (void *)(uintptr_t)view->coefficients,
+        .context = source,
     };
     add_int(part, list, ATTR_VIEW, index);
     add_floats(part, list, ATTR_SCALE, info->scale, info->planes);
@@ -366,10 +385,14 @@ relume_status relume_pack_write(const struct relume_pack_contents *contents, con
     const struct relume_pack_params p = params ? *params : (struct relume_pack_params){0};
     struct builder b = {0};
     b.parts = arena_array(&b.arena, 1 + 3 * (size_t)contents->views, sizeof *b.parts);
-    const char **channels = channel_names(&b, relume_coder_info(contents->coder));
-    bool good = b.parts && channels && add_preview(&b, contents);
+    b.channels = channel_names(&b, relume_coder_info(contents->coder));
+    b.half_of_byte = arena_array(&b.arena, 256, sizeof *b.half_of_byte);
+    for (int i = 0; b.half_of_byte && i < 256; i++)
+        b.half_of_byte[i] = half_from_float((float)i);
+    const enum exr_codec codec = codec_of(p.compression);
+    bool good = b.parts && b.channels && b.half_of_byte && add_preview(&b, contents, codec);
     for (int i = 0; good && i < contents->views; i++)
-        good = add_view(&b, contents, i, channels, codec_of(p.compression));
+        good = add_view(&b, contents, i, codec);
     const relume_status status =
         good ? exr_write(path, b.parts, b.count, p.threads, p.log) : RELUME_ENOMEM;
     arena_free(&b.arena);

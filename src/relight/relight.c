@@ -8,13 +8,14 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
+#include "image/curve.h"
 #include "image/half.h"
 #include "math/vec.h"
 #include "relight/kernels.h"
 
 #include <string.h>
 
-enum { CHUNK = 2048, CURVE = 4096 };
+enum { CHUNK = 2048 };
 
 // One dot product per channel: quantiser steps and constants folded in.
 struct pass {
@@ -30,7 +31,7 @@ struct job {
     struct pass *passes;
     int count;
     bool display;
-    float *curve;  // [CURVE + 2]: display code in [0, 1] -> linear
+    struct curve curve;
 };
 
 static int plane_of(const struct relume_coder_info *info, int k, int channel)
@@ -89,28 +90,6 @@ static relume_status make_passes(struct job *job, const struct relume_light *lig
         fold_quantiser(&job->passes[i], job->codes);
     free(one);
     return good ? RELUME_OK : RELUME_ENOMEM;
-}
-
-// The curve as a table: straight pieces of 1/4096 are closer than 1e-7 to it on [0, 1].
-static relume_status make_curve(struct job *job)
-{
-    job->curve = mem_array(CURVE + 2, sizeof *job->curve);
-    if (!job->curve)
-        return RELUME_ENOMEM;
-    for (int i = 0; i < CURVE + 2; i++)
-        job->curve[i] = relume_transfer_decode(job->codes->display, (float)i / CURVE);
-    return RELUME_OK;
-}
-
-static float linearise(const struct job *job, float code)
-{
-    // Gamma curves below 1 start steeply, where straight pieces fail.
-    const struct relume_transfer t = job->codes->display;
-    if (!(code >= 0.0f && code <= 1.0f) || (t.curve == RELUME_CURVE_GAMMA && t.gamma < 1.0f))
-        return relume_transfer_decode(t, code);
-    const float x = code * CURVE;
-    const int i = (int)x;
-    return job->curve[i] + (x - (float)i) * (job->curve[i + 1] - job->curve[i]);
 }
 
 enum { GROUP = 64 };  // planes handed to a kernel at once
@@ -175,7 +154,7 @@ static void relight_chunk(void *context, size_t item, int worker)
                 for (size_t i = 0; i < n; i++)
                     out[3 * i + (size_t)c] =
                         (p ? out[3 * i + (size_t)c] : 0.0f) +
-                        pass->rgb[c] * linearise(job, values[i]);
+                        pass->rgb[c] * curve_decode(&job->curve, values[i]);
         }
     }
 }
@@ -223,7 +202,7 @@ relume_status relume_relight(struct relume_image *out, const struct relume_codes
     };
     status = make_passes(&job, lights, n);
     if (!status && job.display)
-        status = make_curve(&job);
+        curve_init(&job.curve, codes->display);
     if (!status) {
         const size_t pixels = (size_t)codes->width * (size_t)codes->height;
         if (job.count == 0)
@@ -235,7 +214,6 @@ relume_status relume_relight(struct relume_image *out, const struct relume_codes
     for (int i = 0; job.passes && i < job.count; i++)
         free(job.passes[i].weights);
     free(job.passes);
-    free(job.curve);
     return status;
 }
 

@@ -54,7 +54,7 @@ void build_beam(struct relume_scene_builder *b, vec3 from, vec3 to, double width
     const vec3 z = vec3_unit(vec3_cross(x, up));
     b->frame = frame_compose(outer, (struct frame){x, vec3_cross(z, x), z, from});
     const double edge = 0.06 * fmin(width, height);
-    build_box(b, vec3_of(0, -0.5 * height, -0.5 * width), vec3_of(length, 0.5 * height, 0.5 * width),
-              edge, material);
+    build_box(b, vec3_of(0, -0.5 * height, -0.5 * width),
+              vec3_of(length, 0.5 * height, 0.5 * width), edge, material);
     b->frame = outer;
 }

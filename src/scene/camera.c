@@ -36,8 +36,8 @@ static struct camera_ray slab(const struct camera *c, double across, double down
 // Faces +x -x +y -y +z -z side by side; right = direction x up.
 static struct camera_ray cube(const struct camera *c, double x, double down)
 {
-    static const vec3 direction[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0},
-                                      {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    static const vec3 direction[6] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                                      {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
     static const vec3 up[6] = {{0, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, {0, 1, 0}};
     const double faces = 6.0 * x / c->width;
     const int face = faces >= 6.0 ? 5 : (int)faces;

@@ -21,12 +21,13 @@ static inline vec3 frame_point(const struct frame *f, vec3 p)
     return vec3_add(frame_vector(f, p), f->origin);
 }
 
-// Normals go with the cofactors, so that uneven scaling keeps them upright and mirroring turns them.
+// Normals go with the cofactors, so that uneven scaling keeps them upright and mirroring turns
+// them.
 static inline vec3 frame_normal(const struct frame *f, vec3 n)
 {
-    const vec3 v = vec3_add(vec3_add(vec3_scale(vec3_cross(f->y, f->z), n.x),
-                                     vec3_scale(vec3_cross(f->z, f->x), n.y)),
-                            vec3_scale(vec3_cross(f->x, f->y), n.z));
+    const vec3 v = vec3_add(
+        vec3_add(vec3_scale(vec3_cross(f->y, f->z), n.x), vec3_scale(vec3_cross(f->z, f->x), n.y)),
+        vec3_scale(vec3_cross(f->x, f->y), n.z));
     return vec3_length(v) > 0.0 ? vec3_unit(v) : n;
 }
 

@@ -49,7 +49,7 @@ static double relief(vec3 p)
 static vec3 egg(vec3 d)
 {
     const double jaw = ramp(0.05, -0.75, d.y);
-    return vec3_of(d.x * (0.50 - 0.17 * jaw), d.y * 0.66, d.z * (0.58 - 0.09 * jaw) + 0.05 * jaw);
+    return vec3_of(d.x * (0.50 - 0.13 * jaw), d.y * 0.66, d.z * (0.58 - 0.09 * jaw) + 0.05 * jaw);
 }
 
 // Waves of hair over the skull, combed back from a hairline above the brow.
@@ -72,7 +72,7 @@ static vec3 head_at(vec3 d)
     // Ears: a rim with a hollow at the sides.
     const double ear = exp(-(pow((p.y - 0.02) / 0.12, 2) + pow((p.z + 0.02) / 0.065, 2)));
     const double hollow = exp(-(pow((p.y - 0.03) / 0.065, 2) + pow((p.z - 0.005) / 0.03, 2)));
-    out.x += copysign(0.085 * ear - 0.06 * hollow, d.x) * ramp(0.5, 0.85, fabs(d.x));
+    out.x += copysign(0.06 * ear - 0.045 * hollow, d.x) * ramp(0.5, 0.85, fabs(d.x));
     return out;
 }
 

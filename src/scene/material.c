@@ -68,7 +68,8 @@ bool surface_lit(const struct surface *s, const float wi[3], float out[3])
     float h[3];
     halfway(wi, s->wo, h);
     const float at_half = fifth_power(1.0f - smaller(dot3(wi, h), 1.0f));
-    const float into = fifth_power(1.0f - smaller(nl, 1.0f)), leave = fifth_power(1.0f - smaller(nv, 1.0f));
+    const float into = fifth_power(1.0f - smaller(nl, 1.0f)),
+                leave = fifth_power(1.0f - smaller(nv, 1.0f));
     const float lobe = PI_F * nl * s->gloss * distribution(s->alpha, smaller(dot3(s->n, h), 1.0f)) *
                        visibility(s->alpha, nl, nv);
     for (int c = 0; c < 3; c++) {

@@ -36,9 +36,10 @@ static void put(float out[3], vec3 v)
 
 uint32_t mesh_vertex(struct mesh *mesh, vec3 position, vec3 normal, vec3 texture)
 {
-    struct vertex *v = mesh->failed || mesh->vertex_count >= UINT32_MAX
-                           ? NULL
-                           : grown(mesh->vertices, &mesh->vertex_room, mesh->vertex_count, sizeof *v);
+    struct vertex *v =
+        mesh->failed || mesh->vertex_count >= UINT32_MAX
+            ? NULL
+            : grown(mesh->vertices, &mesh->vertex_room, mesh->vertex_count, sizeof *v);
     if (!v) {
         mesh->failed = true;
         return 0;
@@ -53,10 +54,10 @@ uint32_t mesh_vertex(struct mesh *mesh, vec3 position, vec3 normal, vec3 texture
 
 void mesh_triangle(struct mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t material)
 {
-    struct triangle *t = mesh->failed || mesh->triangle_count >= UINT32_MAX
-                             ? NULL
-                             : grown(mesh->triangles, &mesh->triangle_room, mesh->triangle_count,
-                                     sizeof *t);
+    struct triangle *t =
+        mesh->failed || mesh->triangle_count >= UINT32_MAX
+            ? NULL
+            : grown(mesh->triangles, &mesh->triangle_room, mesh->triangle_count, sizeof *t);
     if (!t) {
         mesh->failed = true;
         return;

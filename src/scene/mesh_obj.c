@@ -109,9 +109,9 @@ static uint32_t add_corner(struct obj *o, struct corner c)
     const vec3 normal = c.vn ? o->vn.at[c.vn - 1] : zero;
     o->own_normals &= vec3_length(normal) > 0.0;
     o->out->has_uv |= c.vt != 0;
-    const uint32_t vertex = mesh_vertex(
-        mesh, o->v.at[c.v - 1], vec3_length(normal) > 0.0 ? vec3_unit(normal) : normal,
-        c.vt ? o->vt.at[c.vt - 1] : zero);
+    const uint32_t vertex =
+        mesh_vertex(mesh, o->v.at[c.v - 1], vec3_length(normal) > 0.0 ? vec3_unit(normal) : normal,
+                    c.vt ? o->vt.at[c.vt - 1] : zero);
     if (mesh->vertex_room > o->smooth_room) {
         uint32_t *bigger = realloc(o->smooth_of, mesh->vertex_room * sizeof *bigger);
         if (!bigger) {

@@ -51,9 +51,9 @@ static enum type type_named(const char *name)
     static const struct {
         const char *name, *alias;
     } types[] = {
-        [INT8] = {"char", "int8"},     [UINT8] = {"uchar", "uint8"},
-        [INT16] = {"short", "int16"},  [UINT16] = {"ushort", "uint16"},
-        [INT32] = {"int", "int32"},    [UINT32] = {"uint", "uint32"},
+        [INT8] = {"char", "int8"},        [UINT8] = {"uchar", "uint8"},
+        [INT16] = {"short", "int16"},     [UINT16] = {"ushort", "uint16"},
+        [INT32] = {"int", "int32"},       [UINT32] = {"uint", "uint32"},
         [FLOAT32] = {"float", "float32"}, [FLOAT64] = {"double", "float64"},
     };
     for (int t = INT8; t <= FLOAT64; t++)
@@ -68,9 +68,20 @@ static enum use use_named(const char *name)
         const char *name;
         enum use use;
     } uses[] = {
-        {"x", USE_X}, {"y", USE_Y}, {"z", USE_Z}, {"nx", USE_NX}, {"ny", USE_NY}, {"nz", USE_NZ},
-        {"u", USE_U}, {"v", USE_V}, {"s", USE_U}, {"t", USE_V}, {"texture_u", USE_U},
-        {"texture_v", USE_V}, {"vertex_indices", USE_CORNERS}, {"vertex_index", USE_CORNERS},
+        {"x", USE_X},
+        {"y", USE_Y},
+        {"z", USE_Z},
+        {"nx", USE_NX},
+        {"ny", USE_NY},
+        {"nz", USE_NZ},
+        {"u", USE_U},
+        {"v", USE_V},
+        {"s", USE_U},
+        {"t", USE_V},
+        {"texture_u", USE_U},
+        {"texture_v", USE_V},
+        {"vertex_indices", USE_CORNERS},
+        {"vertex_index", USE_CORNERS},
     };
     for (size_t i = 0; i < sizeof uses / sizeof *uses; i++)
         if (!strcmp(name, uses[i].name))
@@ -190,7 +201,7 @@ static double value_of(uint64_t bits, enum type type)
 
 static bool read_value(struct ply *p, enum type type, double *out)
 {
-    static const size_t sizes[] = {[INT8] = 1, [UINT8] = 1, [INT16] = 2, [UINT16] = 2,
+    static const size_t sizes[] = {[INT8] = 1,  [UINT8] = 1,  [INT16] = 2,   [UINT16] = 2,
                                    [INT32] = 4, [UINT32] = 4, [FLOAT32] = 4, [FLOAT64] = 8};
     if (p->form == FORM_ASCII)
         return read_ascii(p, out);

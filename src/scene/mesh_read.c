@@ -98,7 +98,8 @@ relume_status mesh_read(struct mesh_file *out, const char *path, const struct re
     const char *dot = strrchr(path, '.');
     const bool obj = dot && !strcasecmp(dot, ".obj"), ply = dot && !strcasecmp(dot, ".ply");
     if (!obj && !ply)
-        return log_fail(log, RELUME_EDATA, "%s: unknown kind of model; expected .obj or .ply", path);
+        return log_fail(log, RELUME_EDATA, "%s: unknown kind of model; expected .obj or .ply",
+                        path);
     char *text;
     size_t size;
     relume_status status = mesh_load_text(&text, &size, path, log);

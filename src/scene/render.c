@@ -1,7 +1,8 @@
 // render.c - the stage itself: places are found once per tile, then lit by every light
 //
-// Within a tile the loop runs over lights outside and places inside: the shadow rays of one light
-// are parallel and start close together, which is what ray packets are good at.
+// Within a tile the loop runs over lights outside and places inside. The shadow rays of one light
+// are parallel; places are put in Morton order (Morton 1966) first, so that rays of one packet also
+// start close together, even from places that indirect light has found all over the scene.
 #include "scene/render.h"
 
 #include "base/memory.h"
@@ -11,9 +12,17 @@
 
 enum { TILE = 16, TILE_PIXELS = TILE * TILE, BATCH = 64 };
 
+// Where a place stands along the Morton curve.
+struct key {
+    uint64_t morton;
+    uint32_t index;
+};
+
 // What one worker reuses from tile to tile.
 struct scratch {
     struct places places;
+    struct key *keys;  // [key_room]
+    size_t key_room;
     float sum[TILE_PIXELS][3];
 };
 
@@ -83,6 +92,54 @@ static void walk_pixel(const struct render_job *job, struct places *places, int 
     }
 }
 
+// Every third bit of the result is one of the low 21 bits of x.
+static uint64_t spread_bits(uint64_t x)
+{
+    x &= 0x1fffff;
+    x = (x | x << 32) & 0x1f00000000ffffu;
+    x = (x | x << 16) & 0x1f0000ff0000ffu;
+    x = (x | x << 8) & 0x100f00f00f00f00fu;
+    x = (x | x << 4) & 0x10c30c30c30c30c3u;
+    return (x | x << 2) & 0x1249249249249249u;
+}
+
+static uint64_t morton(const float p[3], const struct bounds *b)
+{
+    const double low[3] = {b->min.x, b->min.y, b->min.z}, high[3] = {b->max.x, b->max.y, b->max.z};
+    uint64_t code = 0;
+    for (int c = 0; c < 3; c++) {
+        const double t = (p[c] - low[c]) / fmax(high[c] - low[c], 1e-30);
+        code |= spread_bits((uint64_t)(fmin(fmax(t, 0.0), 1.0) * 0x1fffff)) << c;
+    }
+    return code;
+}
+
+static int by_key(const void *a, const void *b)
+{
+    const struct key *x = a, *y = b;
+    if (x->morton != y->morton)
+        return x->morton < y->morton ? -1 : 1;
+    return x->index < y->index ? -1 : x->index > y->index;
+}
+
+// Order `places` into s->keys; false when memory runs out.
+static bool sort_places(struct scratch *s, const struct bounds *bounds)
+{
+    const size_t n = s->places.count;
+    if (n > s->key_room) {
+        free(s->keys);
+        s->keys = mem_array(s->places.room, sizeof *s->keys);
+        s->key_room = s->keys ? s->places.room : 0;
+        if (!s->keys)
+            return false;
+    }
+    for (size_t i = 0; i < n; i++)
+        s->keys[i] = (struct key){morton(s->places.at[i].origin, bounds), (uint32_t)i};
+    if (n)
+        qsort(s->keys, n, sizeof *s->keys, by_key);
+    return true;
+}
+
 // Lit places that wait for their shadow rays.
 struct batch {
     int count;
@@ -101,12 +158,12 @@ static void flush(struct batch *b, const tracer *rays, const float light[3], flo
     b->count = 0;
 }
 
-static void light_tile(const tracer *rays, const struct places *places, const float light[3],
-                       float (*sum)[3])
+static void light_tile(const tracer *rays, struct scratch *s, const float light[3])
 {
     struct batch b = {.count = 0};
-    for (size_t i = 0; i < places->count; i++) {
-        const struct place *p = &places->at[i];
+    memset(s->sum, 0, sizeof s->sum);
+    for (size_t i = 0; i < s->places.count; i++) {
+        const struct place *p = &s->places.at[s->keys[i].index];
         float value[3];
         if (!surface_lit(&p->surface, light, value))
             continue;
@@ -116,9 +173,9 @@ static void light_tile(const tracer *rays, const struct places *places, const fl
         }
         b.pixel[b.count] = p->pixel;
         if (++b.count == BATCH)
-            flush(&b, rays, light, sum);
+            flush(&b, rays, light, s->sum);
     }
-    flush(&b, rays, light, sum);
+    flush(&b, rays, light, s->sum);
 }
 
 static void store_tile(const struct tile *t, float (*sum)[3], float scale, struct relume_image *out)
@@ -142,11 +199,11 @@ static void render_tile(void *context, size_t item, int worker)
     for (int y = 0; y < t.height; y++)
         for (int x = 0; x < t.width; x++)
             walk_pixel(job, &s->places, t.x + x, t.y + y, (uint32_t)(y * TILE + x));
+    s->places.failed |= !sort_places(s, &job->scene->bounds);
     for (int l = 0; l < job->light_count && !s->places.failed; l++) {
         const vec3 d = job->lights[l];
         const float light[3] = {(float)d.x, (float)d.y, (float)d.z};
-        memset(s->sum, 0, sizeof s->sum);
-        light_tile(job->scene->tracer, &s->places, light, s->sum);
+        light_tile(job->scene->tracer, s, light);
         store_tile(&t, s->sum, 1.0f / (float)job->samples, &r->out[l]);
     }
 }
@@ -171,8 +228,7 @@ relume_status render_lights(const struct render_job *job, struct relume_image *o
     };
     if (!r.scratch)
         return RELUME_ENOMEM;
-    const size_t tiles =
-        (size_t)r.tiles_across * (size_t)((job->camera.height + TILE - 1) / TILE);
+    const size_t tiles = (size_t)r.tiles_across * (size_t)((job->camera.height + TILE - 1) / TILE);
     // In groups, so that progress is told and cancelling heard from this thread.
     const size_t group = (size_t)threads * 8;
     relume_status status = RELUME_OK;
@@ -184,8 +240,10 @@ relume_status render_lights(const struct render_job *job, struct relume_image *o
         else if (!progress(user, fmin((double)(done + group) / (double)tiles, 1.0)))
             status = RELUME_ECANCEL;
     }
-    for (int i = 0; i < threads; i++)
+    for (int i = 0; i < threads; i++) {
         places_destroy(&r.scratch[i].places);
+        free(r.scratch[i].keys);
+    }
     free(r.scratch);
     return status;
 }
@@ -201,14 +259,13 @@ static void depth_row(void *context, size_t item, int worker)
     const struct depth *d = context;
     float *row = d->out->data + item * (size_t)d->out->width;
     for (int x = 0; x < d->out->width; x++) {
-        const struct camera_ray ray =
-            camera_ray_at(&d->job->camera, x + 0.5, (double)item + 0.5);
+        const struct camera_ray ray = camera_ray_at(&d->job->camera, x + 0.5, (double)item + 0.5);
         const float origin[3] = {(float)ray.origin.x, (float)ray.origin.y, (float)ray.origin.z};
         const float direction[3] = {(float)ray.direction.x, (float)ray.direction.y,
                                     (float)ray.direction.z};
         struct trace_hit hit;
-        row[x] = trace_closest(d->job->scene->tracer, origin, direction, &hit) ? hit.distance
-                                                                               : INFINITY;
+        row[x] =
+            trace_closest(d->job->scene->tracer, origin, direction, &hit) ? hit.distance : INFINITY;
     }
 }
 

@@ -24,6 +24,7 @@ static relume_status build(relume_scene *scene, const struct relume_log *log)
         return status;
     if (scene->stage.mesh.failed)
         return RELUME_ENOMEM;
+    scene->bounds = mesh_bounds(&scene->stage.mesh);
     return trace_create(&scene->tracer, &scene->stage.mesh, log);
 }
 

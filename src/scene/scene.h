@@ -8,6 +8,7 @@
 struct relume_scene {
     const struct relume_scene_kind *kind;
     struct relume_scene_builder stage;
+    struct bounds bounds;  // of the mesh
     tracer *tracer;
 };
 

@@ -16,7 +16,9 @@ struct wood {
 static struct material wood(float r, float g, float b, float scale, float alpha)
 {
     return (struct material){
-        .texture = {.color = texture_wood, .a = {r, g, b}, .b = {0.52f * r, 0.46f * g, 0.42f * b},
+        .texture = {.color = texture_wood,
+                    .a = {r, g, b},
+                    .b = {0.52f * r, 0.46f * g, 0.42f * b},
                     .scale = scale},
         .f0 = {0.035f, 0.035f, 0.035f},
         .alpha = alpha,
@@ -64,8 +66,11 @@ struct hole {
 };
 
 static const struct hole holes[] = {
-    {-1, 1.10, 2.25, -2.25, -0.85}, {-1, 1.10, 2.25, 0.75, 2.15}, {-1, 0.40, 0.58, 1.3, 3.2},
-    {-1, 0.60, 0.77, -0.4, 0.5},    {0, 0, 0, 0, 0},
+    {-1, 1.10, 2.25, -2.25, -0.85},
+    {-1, 1.10, 2.25, 0.75, 2.15},
+    {-1, 0.40, 0.58, 1.3, 3.2},
+    {-1, 0.60, 0.77, -0.4, 0.5},
+    {0, 0, 0, 0, 0},
 };
 
 // The frame of a slope: x towards the ridge, y outwards, z along the ridge; origin at the eave.
@@ -86,8 +91,8 @@ static void add_board(struct relume_scene_builder *b, double low, double high, d
                       uint32_t material)
 {
     if (z1 - z0 > 0.02)
-        build_beam(b, vec3_of(0.5 * (low + high), 0.015, z0), vec3_of(0.5 * (low + high), 0.015, z1),
-                   high - low, 0.03, material);
+        build_beam(b, vec3_of(0.5 * (low + high), 0.015, z0),
+                   vec3_of(0.5 * (low + high), 0.015, z1), high - low, 0.03, material);
 }
 
 // One row of boards, cut where holes are; the holes of a side are listed by growing z.
@@ -189,7 +194,8 @@ static void add_gable(struct relume_scene_builder *b, double z, struct opening o
     }
 }
 
-static void add_window(struct relume_scene_builder *b, double z, struct opening o, uint32_t material)
+static void add_window(struct relume_scene_builder *b, double z, struct opening o,
+                       uint32_t material)
 {
     const double middle_y = o.y0 + 0.64 * (o.y1 - o.y0);
     for (int i = 0; i <= 3; i++) {
@@ -202,18 +208,22 @@ static void add_window(struct relume_scene_builder *b, double z, struct opening 
         const double thick = i % 3 ? 0.045 : 0.09;
         build_beam(b, vec3_of(o.x0, bars[i], z), vec3_of(o.x1, bars[i], z), thick, thick, material);
     }
-    build_beam(b, vec3_of(o.x0 - 0.12, o.y0 - 0.03, z + 0.2), vec3_of(o.x1 + 0.12, o.y0 - 0.03, z + 0.2),
-               0.3, 0.05, material);
+    build_beam(b, vec3_of(o.x0 - 0.12, o.y0 - 0.03, z + 0.2),
+               vec3_of(o.x1 + 0.12, o.y0 - 0.03, z + 0.2), 0.3, 0.05, material);
 }
 
 static void add_walls(struct relume_scene_builder *b, const struct wood *w)
 {
     struct material plaster = build_matte(0.74f, 0.70f, 0.62f);
-    plaster.texture = (struct texture){.color = texture_plaster, .a = {0.76f, 0.72f, 0.64f},
-                                       .b = {0.62f, 0.56f, 0.47f}, .scale = 1.6f};
+    plaster.texture = (struct texture){.color = texture_plaster,
+                                       .a = {0.76f, 0.72f, 0.64f},
+                                       .b = {0.62f, 0.56f, 0.47f},
+                                       .scale = 1.6f};
     struct material brick = build_matte(0.5f, 0.25f, 0.2f);
-    brick.texture = (struct texture){.color = texture_bricks, .a = {0.55f, 0.52f, 0.47f},
-                                     .b = {0.50f, 0.22f, 0.15f}, .scale = 3.6f};
+    brick.texture = (struct texture){.color = texture_bricks,
+                                     .a = {0.55f, 0.52f, 0.47f},
+                                     .b = {0.50f, 0.22f, 0.15f},
+                                     .scale = 3.6f};
     const struct opening window = {-1.05, 1.05, -0.72, 0.80}, door = {-1.25, -0.25, FLOOR, 0.42};
     add_gable(b, -LENGTH - 0.2, window, RIDGE_Y + 1.0, build_material(b, plaster));
     add_window(b, -LENGTH - 0.1, window, w->pale);
@@ -227,8 +237,8 @@ static void add_walls(struct relume_scene_builder *b, const struct wood *w)
     // The door leaf stands open inwards.
     b->frame = frame_compose(frame_move(-0.25, FLOOR, LENGTH), frame_turn_y(-1.9));
     for (int i = 0; i < 5; i++)
-        build_beam(b, vec3_of(-0.1 - 0.2 * i, 0.02, 0), vec3_of(-0.1 - 0.2 * i, 1.9, 0), 0.03, 0.195,
-                   w->beam);
+        build_beam(b, vec3_of(-0.1 - 0.2 * i, 0.02, 0), vec3_of(-0.1 - 0.2 * i, 1.9, 0), 0.03,
+                   0.195, w->beam);
     b->frame = frame_world;
 }
 
@@ -245,8 +255,8 @@ static void put_lathe(struct relume_scene_builder *b, const struct lathe_point *
 static void add_table(struct relume_scene_builder *b, uint32_t material)
 {
     static const struct lathe_point leg[] = {
-        {0.0, 0.0, true}, {0.025, 0.0, true}, {0.035, 0.05, false}, {0.022, 0.12, false},
-        {0.045, 0.28, false}, {0.03, 0.45, false}, {0.045, 0.52, true}, {0.045, 0.70, true},
+        {0.0, 0.0, true},     {0.025, 0.0, true},  {0.035, 0.05, false}, {0.022, 0.12, false},
+        {0.045, 0.28, false}, {0.03, 0.45, false}, {0.045, 0.52, true},  {0.045, 0.70, true},
     };
     const struct frame place = b->frame;
     for (int i = 0; i < 4; i++) {
@@ -261,8 +271,8 @@ static void add_table(struct relume_scene_builder *b, uint32_t material)
 static void add_globe(struct relume_scene_builder *b, uint32_t material, uint32_t brass)
 {
     static const struct lathe_point foot[] = {
-        {0.0, 0.0, true}, {0.10, 0.0, true}, {0.10, 0.015, true}, {0.03, 0.04, false},
-        {0.015, 0.08, true}, {0.0, 0.09, true},
+        {0.0, 0.0, true},    {0.10, 0.0, true},   {0.10, 0.015, true},
+        {0.03, 0.04, false}, {0.015, 0.08, true}, {0.0, 0.09, true},
     };
     struct mesh part = {0};
     put_lathe(b, foot, sizeof foot / sizeof *foot, brass);
@@ -273,9 +283,9 @@ static void add_globe(struct relume_scene_builder *b, uint32_t material, uint32_
 static void add_vase(struct relume_scene_builder *b, uint32_t material)
 {
     static const struct lathe_point vase[] = {
-        {0.0, 0.0, true}, {0.07, 0.0, true}, {0.11, 0.10, false}, {0.12, 0.18, false},
-        {0.06, 0.30, false}, {0.045, 0.36, false}, {0.075, 0.40, true}, {0.065, 0.40, true},
-        {0.035, 0.35, true},
+        {0.0, 0.0, true},    {0.07, 0.0, true},   {0.11, 0.10, false},
+        {0.12, 0.18, false}, {0.06, 0.30, false}, {0.045, 0.36, false},
+        {0.075, 0.40, true}, {0.065, 0.40, true}, {0.035, 0.35, true},
     };
     put_lathe(b, vase, sizeof vase / sizeof *vase, material);
 }
@@ -288,8 +298,8 @@ static void add_books(struct relume_scene_builder *b, const uint32_t *covers, in
         const double high = random_range(&b->random, 0.19, 0.29);
         const double deep = random_range(&b->random, 0.15, 0.19);
         const int cover = (int)random_range(&b->random, 0.0, count);
-        build_box(b, vec3_of(x, 0, -0.5 * deep), vec3_of(x + thick - 0.002, high, 0.5 * deep), 0.004,
-                  covers[cover]);
+        build_box(b, vec3_of(x, 0, -0.5 * deep), vec3_of(x + thick - 0.002, high, 0.5 * deep),
+                  0.004, covers[cover]);
         x += thick;
     }
 }
@@ -318,28 +328,31 @@ static void add_trunk(struct relume_scene_builder *b, uint32_t body, uint32_t ba
     const struct frame place = b->frame;
     static const struct lathe_point lid[] = {
         {0.0, -0.5, true}, {0.3, -0.5, true}, {0.3, 0.5, true}, {0.0, 0.5, true}};
-    b->frame = frame_compose(place, frame_compose(frame_move(0, 0.36, 0),
+    b->frame = frame_compose(
+        place, frame_compose(frame_move(0, 0.36, 0),
                              frame_compose(frame_scale(1, 0.55, 1), frame_turn_z(0.5 * M_PI))));
     put_lathe(b, lid, 4, body);
     b->frame = place;
     for (int i = -1; i <= 1; i++)
-        build_box(b, vec3_of(0.4 * i - 0.03, 0, -0.315), vec3_of(0.4 * i + 0.03, 0.37, 0.315), 0.004,
-                  bands);
+        build_box(b, vec3_of(0.4 * i - 0.03, 0, -0.315), vec3_of(0.4 * i + 0.03, 0.37, 0.315),
+                  0.004, bands);
 }
 
 static void add_barrel(struct relume_scene_builder *b, uint32_t material, uint32_t iron)
 {
     static const struct lathe_point barrel[] = {
-        {0.0, 0.0, true}, {0.26, 0.0, true}, {0.33, 0.22, false}, {0.35, 0.42, false},
-        {0.33, 0.62, false}, {0.26, 0.84, true}, {0.24, 0.84, true}, {0.24, 0.80, true},
-        {0.0, 0.80, true},
+        {0.0, 0.0, true},    {0.26, 0.0, true},   {0.33, 0.22, false},
+        {0.35, 0.42, false}, {0.33, 0.62, false}, {0.26, 0.84, true},
+        {0.24, 0.84, true},  {0.24, 0.80, true},  {0.0, 0.80, true},
     };
     static const double hoops[4][2] = {{0.06, 0.288}, {0.25, 0.339}, {0.58, 0.341}, {0.76, 0.294}};
     put_lathe(b, barrel, sizeof barrel / sizeof *barrel, material);
     for (int i = 0; i < 4; i++) {
         const double y = hoops[i][0], r = hoops[i][1];
-        const struct lathe_point hoop[] = {{r, y - 0.02, true}, {r + 0.006, y - 0.02, true},
-                                           {r + 0.006, y + 0.02, true}, {r, y + 0.02, true}};
+        const struct lathe_point hoop[] = {{r, y - 0.02, true},
+                                           {r + 0.006, y - 0.02, true},
+                                           {r + 0.006, y + 0.02, true},
+                                           {r, y + 0.02, true}};
         put_lathe(b, hoop, 4, iron);
     }
 }
@@ -374,14 +387,17 @@ static void add_looking_glass(struct relume_scene_builder *b, uint32_t material)
     build_beam(b, vec3_of(-0.44, 0.04, 0), vec3_of(0.44, 0.04, 0), 0.07, 0.08, material);
     build_beam(b, vec3_of(-0.44, 1.36, 0), vec3_of(0.44, 1.36, 0), 0.07, 0.08, material);
     for (int side = -1; side <= 1; side += 2)
-        build_beam(b, vec3_of(0.39 * side, 0.0, 0), vec3_of(0.39 * side, 1.4, 0), 0.08, 0.07, material);
+        build_beam(b, vec3_of(0.39 * side, 0.0, 0), vec3_of(0.39 * side, 1.4, 0), 0.08, 0.07,
+                   material);
 }
 
 static void add_rug(struct relume_scene_builder *b)
 {
     struct material m = build_matte(0.4f, 0.06f, 0.05f);
-    m.texture = (struct texture){.color = texture_checker, .a = {0.42f, 0.06f, 0.05f},
-                                 .b = {0.60f, 0.42f, 0.18f}, .scale = 9.0f};
+    m.texture = (struct texture){.color = texture_checker,
+                                 .a = {0.42f, 0.06f, 0.05f},
+                                 .b = {0.60f, 0.42f, 0.18f},
+                                 .scale = 9.0f};
     struct mesh part = {0};
     shape_quad(&part, vec3_of(-1.0, 0.012, 0.7), vec3_of(2.0, 0, 0), vec3_of(0, 0, -1.4));
     build_put_exact(b, &part, build_material(b, m));
@@ -401,13 +417,17 @@ static void furnish(struct relume_scene_builder *b, const struct wood *w)
         build_material(b, glossy(0.50f, 0.36f, 0.14f, 0.4f)),
         build_material(b, glossy(0.62f, 0.56f, 0.44f, 0.5f)),
     };
-    const uint32_t brass = build_material(b, (struct material){
-        .texture = {.color = texture_plain}, .f0 = {0.80f, 0.58f, 0.25f}, .alpha = 0.25f});
+    const uint32_t brass = build_material(b, (struct material){.texture = {.color = texture_plain},
+                                                               .f0 = {0.80f, 0.58f, 0.25f},
+                                                               .alpha = 0.25f});
     const uint32_t iron = build_material(b, glossy(0.12f, 0.11f, 0.11f, 0.3f));
-    const uint32_t blue = build_material(b, (struct material){
-        .texture = {.color = texture_plaster, .a = {0.10f, 0.28f, 0.48f}, .b = {0.55f, 0.45f, 0.24f},
-                    .scale = 9.0f},
-        .f0 = {0.05f, 0.05f, 0.05f}, .alpha = 0.12f});
+    const uint32_t blue =
+        build_material(b, (struct material){.texture = {.color = texture_plaster,
+                                                        .a = {0.10f, 0.28f, 0.48f},
+                                                        .b = {0.55f, 0.45f, 0.24f},
+                                                        .scale = 9.0f},
+                                            .f0 = {0.05f, 0.05f, 0.05f},
+                                            .alpha = 0.12f});
     const uint32_t carton = build_material(b, build_matte(0.50f, 0.36f, 0.22f));
     const uint32_t china = build_material(b, glossy(0.70f, 0.72f, 0.74f, 0.08f));
 

@@ -8,7 +8,9 @@ static const double REACH = 0.93;  // of the window's half width
 static struct material stone(void)
 {
     return (struct material){
-        .texture = {.color = texture_marble, .a = {0.80f, 0.76f, 0.69f}, .b = {0.50f, 0.46f, 0.43f},
+        .texture = {.color = texture_marble,
+                    .a = {0.80f, 0.76f, 0.69f},
+                    .b = {0.50f, 0.46f, 0.43f},
                     .scale = 1.1f},
         .f0 = {0.04f, 0.04f, 0.04f},
         .alpha = 0.3f,
@@ -18,17 +20,19 @@ static struct material stone(void)
 static void add_head(struct relume_scene_builder *b)
 {
     static const struct lathe_point chest[] = {
-        {0.34, -1.40, true}, {0.40, -1.32, false}, {0.52, -1.12, false}, {0.50, -0.96, false},
-        {0.34, -0.84, false}, {0.235, -0.72, false}, {0.215, -0.56, false}, {0.24, -0.40, false},
-        {0.20, -0.25, true},
+        {0.34, -1.40, true},   {0.40, -1.32, false}, {0.52, -1.12, false},
+        {0.50, -0.96, false},  {0.34, -0.84, false}, {0.27, -0.72, false},
+        {0.25, -0.56, false}, {0.27, -0.40, false}, {0.20, -0.25, true},
     };
     static const struct lathe_point foot[] = {
-        {0.42, -1.80, true}, {0.42, -1.72, true}, {0.37, -1.70, true}, {0.39, -1.66, false},
+        {0.42, -1.80, true},  {0.42, -1.72, true},  {0.37, -1.70, true}, {0.39, -1.66, false},
         {0.26, -1.58, false}, {0.24, -1.46, false}, {0.34, -1.40, true}, {0.0, -1.40, true},
     };
     const uint32_t marble = build_material(b, stone());
     const struct material black = {
-        .texture = {.color = texture_marble, .a = {0.045f, 0.05f, 0.055f}, .b = {0.30f, 0.28f, 0.25f},
+        .texture = {.color = texture_marble,
+                    .a = {0.045f, 0.05f, 0.055f},
+                    .b = {0.30f, 0.28f, 0.25f},
                     .scale = 2.0f},
         .f0 = {0.05f, 0.05f, 0.05f},
         .alpha = 0.12f,
@@ -39,7 +43,8 @@ static void add_head(struct relume_scene_builder *b)
     shape_head(&part, 480);
     build_put_exact(b, &part, marble);
     // Shoulders are wider than deep; the neck above them stays about round.
-    b->frame = frame_compose(place, frame_compose(frame_move(0, 0, -0.06), frame_scale(1.18, 1, 0.85)));
+    b->frame =
+        frame_compose(place, frame_compose(frame_move(0, 0, -0.06), frame_scale(1.18, 1, 0.85)));
     shape_lathe(&part, chest, sizeof chest / sizeof *chest, 10, 160);
     build_put_exact(b, &part, marble);
     b->frame = frame_compose(place, frame_move(0, 0, -0.06));

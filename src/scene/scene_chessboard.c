@@ -7,54 +7,54 @@
 static const double BOARD = -1.15;
 
 static const struct lathe_point pawn[] = {
-    {0.0, 0.0, true}, {0.30, 0.0, true}, {0.30, 0.05, true}, {0.285, 0.10, false},
-    {0.30, 0.14, false}, {0.25, 0.20, true}, {0.23, 0.22, true}, {0.17, 0.30, false},
-    {0.115, 0.48, false}, {0.10, 0.62, true}, {0.17, 0.645, false}, {0.17, 0.67, false},
-    {0.10, 0.70, true}, {0.155, 0.76, false}, {0.175, 0.84, false}, {0.155, 0.93, false},
-    {0.09, 0.99, false}, {0.0, 1.01, false},
+    {0.0, 0.0, true},     {0.30, 0.0, true},    {0.30, 0.05, true},   {0.285, 0.10, false},
+    {0.30, 0.14, false},  {0.25, 0.20, true},   {0.23, 0.22, true},   {0.17, 0.30, false},
+    {0.115, 0.48, false}, {0.10, 0.62, true},   {0.17, 0.645, false}, {0.17, 0.67, false},
+    {0.10, 0.70, true},   {0.155, 0.76, false}, {0.175, 0.84, false}, {0.155, 0.93, false},
+    {0.09, 0.99, false},  {0.0, 1.01, false},
 };
 static const struct lathe_point rook[] = {
-    {0.0, 0.0, true}, {0.34, 0.0, true}, {0.34, 0.06, true}, {0.32, 0.12, false},
-    {0.335, 0.17, false}, {0.28, 0.24, true}, {0.26, 0.26, true}, {0.20, 0.38, false},
-    {0.17, 0.62, false}, {0.18, 0.80, true}, {0.25, 0.84, false}, {0.25, 0.88, true},
-    {0.24, 0.90, true}, {0.25, 1.15, true}, {0.18, 1.15, true}, {0.18, 1.02, true},
+    {0.0, 0.0, true},     {0.34, 0.0, true},  {0.34, 0.06, true},  {0.32, 0.12, false},
+    {0.335, 0.17, false}, {0.28, 0.24, true}, {0.26, 0.26, true},  {0.20, 0.38, false},
+    {0.17, 0.62, false},  {0.18, 0.80, true}, {0.25, 0.84, false}, {0.25, 0.88, true},
+    {0.24, 0.90, true},   {0.25, 1.15, true}, {0.18, 1.15, true},  {0.18, 1.02, true},
     {0.0, 1.02, true},
 };
 static const struct lathe_point bishop[] = {
-    {0.0, 0.0, true}, {0.33, 0.0, true}, {0.33, 0.06, true}, {0.31, 0.12, false},
-    {0.325, 0.17, false}, {0.27, 0.24, true}, {0.25, 0.26, true}, {0.17, 0.42, false},
+    {0.0, 0.0, true},     {0.33, 0.0, true},   {0.33, 0.06, true},  {0.31, 0.12, false},
+    {0.325, 0.17, false}, {0.27, 0.24, true},  {0.25, 0.26, true},  {0.17, 0.42, false},
     {0.115, 0.70, false}, {0.105, 0.95, true}, {0.21, 0.98, false}, {0.21, 1.01, false},
-    {0.11, 1.04, true}, {0.15, 1.06, true}, {0.14, 1.09, true}, {0.185, 1.18, false},
-    {0.18, 1.29, false}, {0.12, 1.43, false}, {0.045, 1.53, true}, {0.065, 1.56, false},
+    {0.11, 1.04, true},   {0.15, 1.06, true},  {0.14, 1.09, true},  {0.185, 1.18, false},
+    {0.18, 1.29, false},  {0.12, 1.43, false}, {0.045, 1.53, true}, {0.065, 1.56, false},
     {0.065, 1.60, false}, {0.0, 1.635, false},
 };
 static const struct lathe_point queen[] = {
-    {0.0, 0.0, true}, {0.37, 0.0, true}, {0.37, 0.07, true}, {0.35, 0.14, false},
-    {0.365, 0.20, false}, {0.30, 0.28, true}, {0.28, 0.30, true}, {0.19, 0.50, false},
-    {0.13, 0.85, false}, {0.12, 1.20, true}, {0.24, 1.23, false}, {0.24, 1.27, false},
-    {0.13, 1.30, true}, {0.17, 1.32, true}, {0.15, 1.35, true}, {0.17, 1.50, false},
-    {0.25, 1.74, true}, {0.21, 1.76, true}, {0.17, 1.72, true}, {0.10, 1.80, false},
-    {0.05, 1.83, true}, {0.075, 1.87, false}, {0.06, 1.93, false}, {0.0, 1.95, false},
+    {0.0, 0.0, true},     {0.37, 0.0, true},    {0.37, 0.07, true},  {0.35, 0.14, false},
+    {0.365, 0.20, false}, {0.30, 0.28, true},   {0.28, 0.30, true},  {0.19, 0.50, false},
+    {0.13, 0.85, false},  {0.12, 1.20, true},   {0.24, 1.23, false}, {0.24, 1.27, false},
+    {0.13, 1.30, true},   {0.17, 1.32, true},   {0.15, 1.35, true},  {0.17, 1.50, false},
+    {0.25, 1.74, true},   {0.21, 1.76, true},   {0.17, 1.72, true},  {0.10, 1.80, false},
+    {0.05, 1.83, true},   {0.075, 1.87, false}, {0.06, 1.93, false}, {0.0, 1.95, false},
 };
 static const struct lathe_point king[] = {
-    {0.0, 0.0, true}, {0.38, 0.0, true}, {0.38, 0.07, true}, {0.36, 0.14, false},
-    {0.375, 0.20, false}, {0.31, 0.28, true}, {0.29, 0.30, true}, {0.20, 0.52, false},
-    {0.14, 0.90, false}, {0.13, 1.30, true}, {0.25, 1.33, false}, {0.25, 1.38, false},
-    {0.14, 1.41, true}, {0.18, 1.43, true}, {0.16, 1.46, true}, {0.18, 1.62, false},
-    {0.25, 1.86, true}, {0.23, 1.90, true}, {0.12, 1.96, false}, {0.0, 1.98, false},
+    {0.0, 0.0, true},     {0.38, 0.0, true},  {0.38, 0.07, true},  {0.36, 0.14, false},
+    {0.375, 0.20, false}, {0.31, 0.28, true}, {0.29, 0.30, true},  {0.20, 0.52, false},
+    {0.14, 0.90, false},  {0.13, 1.30, true}, {0.25, 1.33, false}, {0.25, 1.38, false},
+    {0.14, 1.41, true},   {0.18, 1.43, true}, {0.16, 1.46, true},  {0.18, 1.62, false},
+    {0.25, 1.86, true},   {0.23, 1.90, true}, {0.12, 1.96, false}, {0.0, 1.98, false},
 };
 static const struct lathe_point knight_foot[] = {
-    {0.0, 0.0, true}, {0.34, 0.0, true}, {0.34, 0.06, true}, {0.32, 0.12, false},
+    {0.0, 0.0, true},     {0.34, 0.0, true},  {0.34, 0.06, true}, {0.32, 0.12, false},
     {0.335, 0.17, false}, {0.28, 0.24, true}, {0.26, 0.26, true}, {0.23, 0.36, false},
-    {0.25, 0.42, true}, {0.0, 0.44, true},
+    {0.25, 0.42, true},   {0.0, 0.44, true},
 };
 
 // The horse's head from the side, looking along +x; counterclockwise from the front of the neck.
 static const double knight_side[][2] = {
-    {0.20, 0.42}, {0.19, 0.55}, {0.12, 0.68}, {0.10, 0.80}, {0.17, 0.84}, {0.28, 0.78},
-    {0.37, 0.80}, {0.40, 0.90}, {0.33, 1.02}, {0.22, 1.13}, {0.13, 1.24}, {0.10, 1.36},
-    {0.03, 1.27}, {-0.08, 1.24}, {-0.20, 1.12}, {-0.27, 0.94}, {-0.28, 0.74}, {-0.25, 0.56},
-    {-0.22, 0.42},
+    {0.20, 0.42},  {0.19, 0.55},  {0.12, 0.68},  {0.10, 0.80},  {0.17, 0.84},
+    {0.28, 0.78},  {0.37, 0.80},  {0.40, 0.90},  {0.33, 1.02},  {0.22, 1.13},
+    {0.13, 1.24},  {0.10, 1.36},  {0.03, 1.27},  {-0.08, 1.24}, {-0.20, 1.12},
+    {-0.27, 0.94}, {-0.28, 0.74}, {-0.25, 0.56}, {-0.22, 0.42},
 };
 enum { KNIGHT_POINTS = sizeof knight_side / sizeof *knight_side };
 
@@ -75,7 +75,7 @@ static void put_lathe(struct relume_scene_builder *b, const struct lathe_point *
 static void add_knight_head(struct relume_scene_builder *b, uint32_t material)
 {
     static const double layers[7][2] = {{-0.16, 0.55}, {-0.145, 0.80}, {-0.10, 0.94}, {0.0, 1.0},
-                                        {0.10, 0.94}, {0.145, 0.80}, {0.16, 0.55}};
+                                        {0.10, 0.94},  {0.145, 0.80},  {0.16, 0.55}};
     struct mesh part = {0};
     const vec3 zero = vec3_of(0, 0, 0);
     for (int k = 0; k < 7; k++)
@@ -150,14 +150,7 @@ static void add_piece(struct relume_scene_builder *b, char kind, uint32_t materi
 // Capitals are White, small letters Black; the first row is Black's own. The four squares around
 // the eye stay empty.
 static const char position[8][9] = {
-    "r..qkb.r",
-    "pp.n.pp.",
-    "..p..n.p",
-    "b....p..",
-    ".P....B.",
-    "..N..N.P",
-    "P.PQ.PP.",
-    "R...KB.R",
+    "r..qkb.r", "pp.n.pp.", "..p..n.p", "b....p..", ".P....B.", "..N..N.P", "P.PQ.PP.", "R...KB.R",
 };
 
 static void add_pieces(struct relume_scene_builder *b, uint32_t white, uint32_t black)
@@ -167,8 +160,9 @@ static void add_pieces(struct relume_scene_builder *b, uint32_t white, uint32_t 
             const char letter = position[row][column];
             const bool small = letter >= 'a' && letter <= 'z';
             const double turn_rad = small ? -0.5 * M_PI : 0.5 * M_PI;
-            b->frame = frame_compose(frame_move(column - 3.5, BOARD, row - 3.5),
-                                     frame_turn_y(turn_rad + random_range(&b->random, -0.25, 0.25)));
+            b->frame =
+                frame_compose(frame_move(column - 3.5, BOARD, row - 3.5),
+                              frame_turn_y(turn_rad + random_range(&b->random, -0.25, 0.25)));
             add_piece(b, small ? (char)(letter - 'a' + 'A') : letter, small ? black : white);
         }
     b->frame = frame_world;
@@ -177,7 +171,9 @@ static void add_pieces(struct relume_scene_builder *b, uint32_t white, uint32_t 
 static struct material stone(float r, float g, float b, float vein, float scale, float mirror)
 {
     return (struct material){
-        .texture = {.color = texture_marble, .a = {r, g, b}, .b = {vein * r, vein * g, vein * b},
+        .texture = {.color = texture_marble,
+                    .a = {r, g, b},
+                    .b = {vein * r, vein * g, vein * b},
                     .scale = scale},
         .f0 = {0.045f, 0.045f, 0.045f},
         .alpha = 0.12f,
@@ -204,15 +200,15 @@ static void add_board(struct relume_scene_builder *b, uint32_t rim)
 static void add_columns(struct relume_scene_builder *b, uint32_t material)
 {
     static const struct lathe_point column[] = {
-        {0.62, 0.0, true}, {0.62, 0.18, true}, {0.60, 0.20, true}, {0.64, 0.28, false},
-        {0.58, 0.36, true}, {0.50, 0.40, true}, {0.51, 1.2, false}, {0.47, 2.6, false},
-        {0.41, 3.8, true}, {0.47, 3.84, false}, {0.47, 3.92, false}, {0.41, 3.96, true},
-        {0.42, 4.05, true}, {0.60, 4.25, true}, {0.60, 4.32, true},
+        {0.62, 0.0, true},  {0.62, 0.18, true},  {0.60, 0.20, true},  {0.64, 0.28, false},
+        {0.58, 0.36, true}, {0.50, 0.40, true},  {0.51, 1.2, false},  {0.47, 2.6, false},
+        {0.41, 3.8, true},  {0.47, 3.84, false}, {0.47, 3.92, false}, {0.41, 3.96, true},
+        {0.42, 4.05, true}, {0.60, 4.25, true},  {0.60, 4.32, true},
     };
     static const struct lathe_point ring[] = {
-        {7.95, 4.32, true}, {9.05, 4.32, true}, {9.05, 4.62, true}, {9.25, 4.72, true},
-        {9.25, 4.86, true}, {7.75, 4.86, true}, {7.75, 4.72, true}, {7.95, 4.62, true},
-        {7.95, 4.32, true},
+        {7.95, 4.32, true}, {9.05, 4.32, true}, {9.05, 4.62, true},
+        {9.25, 4.72, true}, {9.25, 4.86, true}, {7.75, 4.86, true},
+        {7.75, 4.72, true}, {7.95, 4.62, true}, {7.95, 4.32, true},
     };
     struct mesh part = {0};
     for (int i = 0; i < 16; i++) {
@@ -229,15 +225,19 @@ static void add_columns(struct relume_scene_builder *b, uint32_t material)
 static relume_status build(struct relume_scene_builder *b)
 {
     const struct material walnut = {
-        .texture = {.color = texture_wood, .a = {0.30f, 0.15f, 0.07f}, .b = {0.12f, 0.055f, 0.03f},
+        .texture = {.color = texture_wood,
+                    .a = {0.30f, 0.15f, 0.07f},
+                    .b = {0.12f, 0.055f, 0.03f},
                     .scale = 1.5f},
         .f0 = {0.04f, 0.04f, 0.04f},
         .alpha = 0.15f,
         .mirror = 0.3f,
     };
     struct material sandstone = build_matte(0.7f, 0.6f, 0.45f);
-    sandstone.texture = (struct texture){.color = texture_plaster, .a = {0.74f, 0.64f, 0.50f},
-                                         .b = {0.62f, 0.50f, 0.36f}, .scale = 1.3f};
+    sandstone.texture = (struct texture){.color = texture_plaster,
+                                         .a = {0.74f, 0.64f, 0.50f},
+                                         .b = {0.62f, 0.50f, 0.36f},
+                                         .scale = 1.3f};
     struct material paving = sandstone;
     paving.texture.color = texture_checker;
     paving.texture.scale = 0.8f;

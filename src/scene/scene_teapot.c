@@ -9,7 +9,9 @@ static void add_board(struct relume_scene_builder *b)
 {
     struct mesh part = {0};
     const struct material rim = {
-        .texture = {.color = texture_wood, .a = {0.30f, 0.14f, 0.06f}, .b = {0.11f, 0.04f, 0.02f},
+        .texture = {.color = texture_wood,
+                    .a = {0.30f, 0.14f, 0.06f},
+                    .b = {0.11f, 0.04f, 0.02f},
                     .scale = 2.0f},
         .f0 = {0.04f, 0.04f, 0.04f},
         .alpha = 0.2f,
@@ -17,7 +19,9 @@ static void add_board(struct relume_scene_builder *b)
     build_box(b, vec3_of(-4.35, -0.4, -4.35), vec3_of(4.35, -0.04, 4.35), 0.06,
               build_material(b, rim));
     const struct material squares = {
-        .texture = {.color = texture_checker, .a = {0.78f, 0.74f, 0.66f}, .b = {0.10f, 0.13f, 0.16f},
+        .texture = {.color = texture_checker,
+                    .a = {0.78f, 0.74f, 0.66f},
+                    .b = {0.10f, 0.13f, 0.16f},
                     .scale = 1.0f},
         .f0 = {0.04f, 0.04f, 0.04f},
         .alpha = 0.25f,
@@ -32,8 +36,8 @@ static void add_board(struct relume_scene_builder *b)
 static relume_status build(struct relume_scene_builder *b)
 {
     struct mesh part = {0};
-    const struct frame tilt = frame_compose(frame_move(0.04, -0.42, 0), frame_turn_x(TILT_RAD));
-    b->frame = frame_compose(tilt, frame_scale(0.25, 0.25, 0.25));
+    const struct frame tilt = frame_compose(frame_move(0.04, -0.30, 0), frame_turn_x(TILT_RAD));
+    b->frame = frame_compose(tilt, frame_scale(0.262, 0.262, 0.262));
     add_board(b);
 
     const struct material glaze = {
@@ -43,7 +47,7 @@ static relume_status build(struct relume_scene_builder *b)
         .mirror = 0.4f,
     };
     b->frame = frame_compose(b->frame, frame_turn_y(0.45));
-    shape_teapot(&part, 24);
+    shape_teapot(&part, 16);
     build_put(b, &part, build_material(b, glaze));
     return RELUME_OK;
 }

@@ -46,26 +46,29 @@ static void choose_size(struct synth *s)
         s->width = 6 * size;
 }
 
+static relume_status expected(const struct synth *s, const char *what, const char *range, int found)
+{
+    return log_fail(s->p.log, RELUME_EINVAL, "%s: expected %s; found %d", what, range, found);
+}
+
 static relume_status check(const struct synth *s)
 {
     const struct relume_synth_params *p = &s->p;
     const struct relume_limits limits = limits_or_default(NULL);
-    const char *wrong = NULL;
     if (!relume_projection_name(s->projection))
-        wrong = "projection: expected planar, slab, cylindrical, spherical or cube";
-    else if (!limits_allow(&limits, s->width, s->height))
-        wrong = "size: expected at least 1 pixel and less than the limits";
-    else if (p->light_count < 1 || p->light_count > limits.max_lights)
-        wrong = "lights: expected at least 1 and less than the limits";
-    else if (p->samples < 1 || p->samples > 65536)
-        wrong = "samples: expected 1 to 65536";
-    else if (p->bounces < 0 || p->bounces > 64)
-        wrong = "bounces: expected 0 to 64";
-    else if (s->projection == RELUME_SLAB && (p->grid[0] < 1 || p->grid[1] < 1 ||
-                                              p->grid[0] > 256 || p->grid[1] > 256))
-        wrong = "views: expected a grid from 1x1 to 256x256";
-    if (wrong)
-        return log_fail(p->log, RELUME_EINVAL, "%s", wrong);
+        return expected(s, "projection", "planar, slab, cylindrical, spherical or cube",
+                        (int)s->projection);
+    if (!limits_allow(&limits, s->width, s->height))
+        return expected(s, "size", "1 or more, and an image of at most 2^30 pixels", p->size);
+    if (p->light_count < 1 || p->light_count > limits.max_lights)
+        return expected(s, "lights", "1 to 65536", p->light_count);
+    if (p->samples < 1 || p->samples > 65536)
+        return expected(s, "samples", "1 to 65536", p->samples);
+    if (p->bounces < 0 || p->bounces > 64)
+        return expected(s, "bounces", "0 to 64", p->bounces);
+    for (int i = 0; i < 2; i++)
+        if (s->projection == RELUME_SLAB && (p->grid[i] < 1 || p->grid[i] > 256))
+            return expected(s, "views", "a grid of 1 to 256 by 1 to 256", p->grid[i]);
     return RELUME_OK;
 }
 
@@ -215,7 +218,9 @@ static struct render_job job_of(const struct synth *s)
 {
     return (struct render_job){
         .scene = s->scene,
-        .camera = {.geometry = s->geometry, .width = s->width, .height = s->height,
+        .camera = {.geometry = s->geometry,
+                   .width = s->width,
+                   .height = s->height,
                    .uv = {s->uv[s->view_now][0], s->uv[s->view_now][1]}},
         .samples = s->p.samples,
         .bounces = s->p.bounces,

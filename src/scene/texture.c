@@ -63,10 +63,10 @@ float noise_at(float x, float y, float z)
     float row[2][2];
     for (int k = 0; k < 2; k++)
         for (int j = 0; j < 2; j++)
-            row[k][j] = mixed(
-                gradient_dot(ix, iy + j, iz + k, dx, dy - (float)j, dz - (float)k),
-                gradient_dot(ix + 1, iy + j, iz + k, dx - 1.0f, dy - (float)j, dz - (float)k),
-                fade(dx));
+            row[k][j] =
+                mixed(gradient_dot(ix, iy + j, iz + k, dx, dy - (float)j, dz - (float)k),
+                      gradient_dot(ix + 1, iy + j, iz + k, dx - 1.0f, dy - (float)j, dz - (float)k),
+                      fade(dx));
     return mixed(mixed(row[0][0], row[0][1], fade(dy)), mixed(row[1][0], row[1][1], fade(dy)),
                  fade(dz));
 }
@@ -112,8 +112,9 @@ void texture_marble(const struct texture *t, const float at[3], float out[3])
     const float x = at[0] * t->scale, y = at[1] * t->scale, z = at[2] * t->scale;
     const float wave = sinf(2.2f * (x + 0.6f * y + 0.8f * z) + 4.5f * noise_sum(x, y, z, 5));
     const float vein = 1.0f - fabsf(wave);
-    mix_color(t, clamp01(0.12f + 0.1f * noise_sum(3.0f * x, 3.0f * y, 3.0f * z, 3) +
-                         0.9f * vein * vein * vein * vein * vein),
+    mix_color(t,
+              clamp01(0.12f + 0.1f * noise_sum(3.0f * x, 3.0f * y, 3.0f * z, 3) +
+                      0.9f * vein * vein * vein * vein * vein),
               out);
 }
 

@@ -9,9 +9,9 @@ struct texture;
 typedef void texture_color(const struct texture *texture, const float at[3], float out[3]);
 
 struct texture {
-    texture_color *color;  // one of the functions below
-    float a[3], b[3];      // its two colours
-    float scale;           // features per unit of texture place
+    texture_color *color;              // one of the functions below
+    float a[3], b[3];                  // its two colours
+    float scale;                       // features per unit of texture place
     const struct relume_image *image;  // only texture_image
 };
 

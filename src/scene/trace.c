@@ -80,9 +80,14 @@ bool trace_closest(const tracer *t, const float origin[3], const float direction
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     struct RTCRayHit r = {
-        .ray = {.org_x = origin[0], .org_y = origin[1], .org_z = origin[2],
-                .dir_x = direction[0], .dir_y = direction[1], .dir_z = direction[2],
-                .tfar = INFINITY, .mask = ~0u},
+        .ray = {.org_x = origin[0],
+                .org_y = origin[1],
+                .org_z = origin[2],
+                .dir_x = direction[0],
+                .dir_y = direction[1],
+                .dir_z = direction[2],
+                .tfar = INFINITY,
+                .mask = ~0u},
         .hit = {.geomID = RTC_INVALID_GEOMETRY_ID},
     };
     rtcIntersect1(t->scene, &context, &r);
@@ -115,8 +120,8 @@ static void packet_unblocked(const tracer *t, float (*origins)[3], int count,
         seen[i] = ray.tfar[i] >= 0.0f;  // Embree marks a blocked ray by -inf
 }
 
-void trace_unblocked(const tracer *t, float (*origins)[3], int count,
-                     const float direction[3], bool *seen)
+void trace_unblocked(const tracer *t, float (*origins)[3], int count, const float direction[3],
+                     bool *seen)
 {
     for (int i = 0; i < count; i += PACKET)
         packet_unblocked(t, origins + i, count - i < PACKET ? count - i : PACKET, direction,
@@ -125,7 +130,7 @@ void trace_unblocked(const tracer *t, float (*origins)[3], int count,
 
 void trace_leave(const float p[3], const float normal[3], float out[3])
 {
-    const float near_zero = 1.0f / 32.0f;     // where steps of the own spacing get too short
+    const float near_zero = 1.0f / 32.0f;  // where steps of the own spacing get too short
     const float fixed_step = 1.0f / 65536.0f;
     const float spacings = 256.0f;
     for (int c = 0; c < 3; c++) {

@@ -63,65 +63,91 @@ static void cross(const float a[3], const float b[3], float out[3])
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+// What the corners of a triangle give at a point inside it.
+struct inside {
+    const struct vertex *corner[3];
+    float weight[3];
+    float position[3], texture[3];
+};
+
+static struct inside inside_of(const struct mesh *mesh, const struct trace_hit *hit)
+{
+    const struct triangle *t = &mesh->triangles[hit->triangle];
+    struct inside in = {.weight = {1.0f - hit->u - hit->v, hit->u, hit->v}};
+    for (int i = 0; i < 3; i++) {
+        const struct vertex *v = in.corner[i] = &mesh->vertices[t->vertex[i]];
+        for (int c = 0; c < 3; c++) {
+            in.position[c] += in.weight[i] * v->position[c];
+            in.texture[c] += in.weight[i] * v->texture[c];
+        }
+    }
+    return in;
+}
+
 // Shadow rays from a coarsely tessellated curve start on the curve rather than on its chord, else
 // every triangle's terminator shows (Hanika 2021). Flat and concave places stay where they are.
-static void smooth_position(const struct vertex *const v[3], const float w[3], float side,
-                            const float flat[3], float out[3])
+static void smooth_position(const struct inside *in, float side, float out[3])
 {
-    for (int c = 0; c < 3; c++)
-        out[c] = flat[c];
+    memcpy(out, in->position, sizeof in->position);
     for (int i = 0; i < 3; i++) {
+        const struct vertex *v = in->corner[i];
         float below = 0.0f;
         for (int c = 0; c < 3; c++)
-            below += (flat[c] - v[i]->position[c]) * v[i]->normal[c] * side;
+            below += (in->position[c] - v->position[c]) * v->normal[c] * side;
         for (int c = 0; c < 3 && below < 0.0f; c++)
-            out[c] -= w[i] * below * v[i]->normal[c] * side;
+            out[c] -= in->weight[i] * below * v->normal[c] * side;
     }
 }
 
-// The surface at a hit, turned towards the viewer: every surface has two equal sides.
-static bool surface_at(const relume_scene *scene, const struct trace_hit *hit,
-                       const float direction[3], struct surface *s, float origin[3])
+// Both normals, turned towards the viewer: every surface has two equal sides. The vertex normals
+// say which side is outside, the eye says which side is seen. `*side` is -1 when that is the
+// inside; false for a triangle without area.
+static bool set_normals(struct surface *s, const struct inside *in, float *side)
 {
-    const struct mesh *mesh = &scene->stage.mesh;
-    const struct triangle *t = &mesh->triangles[hit->triangle];
-    const struct vertex *v[3];
-    for (int i = 0; i < 3; i++)
-        v[i] = &mesh->vertices[t->vertex[i]];
-    const float w[3] = {1.0f - hit->u - hit->v, hit->u, hit->v};
-    float flat[3] = {0}, place[3] = {0}, e1[3], e2[3];
+    float e1[3], e2[3];
     memset(s->n, 0, sizeof s->n);
     for (int c = 0; c < 3; c++) {
-        for (int i = 0; i < 3; i++) {
-            flat[c] += w[i] * v[i]->position[c];
-            s->n[c] += w[i] * v[i]->normal[c];
-            place[c] += w[i] * v[i]->texture[c];
-        }
-        e1[c] = v[1]->position[c] - v[0]->position[c];
-        e2[c] = v[2]->position[c] - v[0]->position[c];
-        s->wo[c] = -direction[c];
+        for (int i = 0; i < 3; i++)
+            s->n[c] += in->weight[i] * in->corner[i]->normal[c];
+        e1[c] = in->corner[1]->position[c] - in->corner[0]->position[c];
+        e2[c] = in->corner[2]->position[c] - in->corner[0]->position[c];
     }
     cross(e1, e2, s->ng);
     if (!make_unit(s->ng))
         return false;
     if (!make_unit(s->n))
         memcpy(s->n, s->ng, sizeof s->n);
-    // The vertex normals say which side is outside, the eye says which side is seen.
     const bool agree = dot3(s->n, s->ng) >= 0.0f;
     const bool back = dot3(s->ng, s->wo) < 0.0f;
+    *side = back == agree ? -1.0f : 1.0f;
     if (back)
         flip(s->ng);
     if (back == agree)
         flip(s->n);
-    float lifted[3];
-    smooth_position(v, w, back == agree ? -1.0f : 1.0f, flat, lifted);
-    trace_leave(lifted, s->ng, origin);
+    return true;
+}
 
-    const struct material *m = &scene->stage.materials[t->material];
-    m->texture.color(&m->texture, place, s->diffuse);
+static void set_material(struct surface *s, const struct material *m, const float texture[3])
+{
+    m->texture.color(&m->texture, texture, s->diffuse);
     memcpy(s->f0, m->f0, sizeof s->f0);
     s->alpha = m->alpha;
     s->gloss = 1.0f - m->mirror;
+}
+
+static bool surface_at(const relume_scene *scene, const struct trace_hit *hit,
+                       const float direction[3], struct surface *s, float origin[3])
+{
+    const struct mesh *mesh = &scene->stage.mesh;
+    const struct inside in = inside_of(mesh, hit);
+    float side, lifted[3];
+    for (int c = 0; c < 3; c++)
+        s->wo[c] = -direction[c];
+    if (!set_normals(s, &in, &side))
+        return false;
+    smooth_position(&in, side, lifted);
+    trace_leave(lifted, s->ng, origin);
+    set_material(s, &scene->stage.materials[mesh->triangles[hit->triangle].material], in.texture);
     return true;
 }
 

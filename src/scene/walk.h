@@ -14,7 +14,7 @@ struct place {
     struct surface surface;
     float origin[3];  // where shadow rays start: just off the surface
     float weight[3];
-    uint32_t pixel;   // of the walk
+    uint32_t pixel;  // of the walk
 };
 
 // Zero-filled is empty. `failed` is set when memory runs out.

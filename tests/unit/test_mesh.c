@@ -70,8 +70,8 @@ static double least_agreement(const struct mesh *m)
             p[k] = vertex_position(&m->vertices[m->triangles[i].vertex[k]]);
         const vec3 n = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]));
         for (int k = 0; k < 3 && vec3_length(n) > 1e-9; k++)
-            least = fmin(least, vec3_dot(vec3_unit(n), vertex_normal(
-                                         &m->vertices[m->triangles[i].vertex[k]])));
+            least = fmin(least, vec3_dot(vec3_unit(n),
+                                         vertex_normal(&m->vertices[m->triangles[i].vertex[k]])));
     }
     return least;
 }
@@ -113,13 +113,24 @@ static void broken_obj_files_are_refused(void **state)
 {
     (void)state;
     static const char *const texts[] = {
-        "", "hello\n", "v 0 0 0\n", "v 0 0\nf 1 1 1\n", "v 0 0 nan\n", "v inf 0 0\n",
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n",
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n",
+        "",
+        "hello\n",
+        "v 0 0 0\n",
+        "v 0 0\nf 1 1 1\n",
+        "v 0 0 nan\n",
+        "v inf 0 0\n",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 0\n",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4\n",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999999999999999999\n",
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3x\n", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n",
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//1 3//1\n", "v 1e39 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
-        "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", "vt nan 0\n", "v 0 0 0\nf\n",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3x\n",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1 2/1 3/1\n",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1//1 2//1 3//1\n",
+        "v 1e39 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+        "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n",
+        "vt nan 0\n",
+        "v 0 0 0\nf\n",
     };
     struct mesh_file f;
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
@@ -146,8 +157,8 @@ static void put(unsigned char **at, const void *bytes, size_t size, bool big)
 
 static size_t binary_ply(unsigned char *out, size_t room, bool big)
 {
-    int used = snprintf((char *)out, room, ply_header,
-                        big ? "binary_big_endian" : "binary_little_endian");
+    int used =
+        snprintf((char *)out, room, ply_header, big ? "binary_big_endian" : "binary_little_endian");
     unsigned char *at = out + used;
     for (int i = 0; i < 4; i++) {
         for (int c = 0; c < 3; c++)
@@ -195,7 +206,11 @@ static void broken_ply_files_are_refused(void **state)
 {
     (void)state;
     static const char *const texts[] = {
-        "", "plyx\n", "ply\n", "ply\nend_header\n", "ply\nformat weird 1.0\nend_header\n",
+        "",
+        "plyx\n",
+        "ply\n",
+        "ply\nend_header\n",
+        "ply\nformat weird 1.0\nend_header\n",
         "ply\nformat ascii 1.0\nelement vertex 99999999999999999999\nend_header\n",
         "ply\nformat ascii 1.0\nproperty float x\nend_header\n",
         "ply\nformat ascii 1.0\nelement vertex 1\nproperty blob x\nend_header\n0\n",
@@ -203,8 +218,8 @@ static void broken_ply_files_are_refused(void **state)
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nend_header\n0 1 2\n",
         "ply\nformat ascii 1.0\nelement face 4000000000\nend_header\n",
     };
-    static const char *const faces[] = {"3 0 1 4", "3 0 1 -1", "3 0 1 nan", "-1", "5000", "3 0 1",
-                                        "3 0 1 x", ""};
+    static const char *const faces[] = {"3 0 1 4", "3 0 1 -1", "3 0 1 nan", "-1",
+                                        "5000",    "3 0 1",    "3 0 1 x",   ""};
     struct mesh_file f;
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
         assert_int_equal(read_text(&f, ".ply", texts[i]), RELUME_EDATA);

@@ -22,9 +22,9 @@ enum { MOST = 1024 };
 static double discrepancy(const vec3 *v, int n, bool hemisphere)
 {
     double d = -1.0;
-    assert_int_equal(relume_lights_discrepancy(&d, v, n,
-                                               relume_lights_params(.hemisphere = hemisphere)),
-                     RELUME_OK);
+    assert_int_equal(
+        relume_lights_discrepancy(&d, v, n, relume_lights_params(.hemisphere = hemisphere)),
+        RELUME_OK);
     return d;
 }
 
@@ -161,7 +161,8 @@ static void directions_are_read_and_normalised(void **state)
         "# a comment\n\n0 0 2\n3 0 4 # another\n",
         "2\na b.png 0 0 1\nc.png 0.6 0 0.8\n",
         "{\"pattern\":\"x\",\"n\":2,\"directions\":[[0,0,1],[3,0,4]],\"discrepancy\":1}",
-        "{\"format\":\"relume-capture\",\"version\":1,\"lights\":{\"directions\":[[0,0,1],[3,0,4]]}}",
+        "{\"format\":\"relume-capture\",\"version\":1,\"lights\":{\"directions\":[[0,0,1],[3,0,4]]}"
+        "}",
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         vec3 *v;
@@ -178,8 +179,19 @@ static void broken_direction_files_are_refused(void **state)
 {
     (void)state;
     static const char *const texts[] = {
-        "", "\n\n", "# only words\n", "1 2\n", "0 0 0\n", "nan 0 1\n", "inf 0 1\n", "1 2 3 4\n",
-        "x y z\n", "{", "{}", "{\"directions\":[[0,0,0]]}", "{\"directions\":[]}",
+        "",
+        "\n\n",
+        "# only words\n",
+        "1 2\n",
+        "0 0 0\n",
+        "nan 0 1\n",
+        "inf 0 1\n",
+        "1 2 3 4\n",
+        "x y z\n",
+        "{",
+        "{}",
+        "{\"directions\":[[0,0,0]]}",
+        "{\"directions\":[]}",
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         vec3 *v;

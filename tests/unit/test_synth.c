@@ -1,4 +1,5 @@
 // The virtual light stage: cameras, radiometry, shadows, depth, indirect light, capture folders.
+#include "base/memory.h"
 #include "scene/render.h"
 
 #include <relume/capture.h>
@@ -38,7 +39,8 @@ static struct render_job job_for(const relume_scene *scene, enum relume_projecti
     return (struct render_job){
         .scene = scene,
         .camera = {.geometry = relume_geometry_default(projection, width, height),
-                   .width = width, .height = height},
+                   .width = width,
+                   .height = height},
         .samples = 4,
         .threads = 1,
     };
@@ -47,7 +49,8 @@ static struct render_job job_for(const relume_scene *scene, enum relume_projecti
 static struct relume_image render(struct render_job job, vec3 light)
 {
     struct relume_image image;
-    assert_int_equal(relume_image_create(&image, job.camera.width, job.camera.height, 3), RELUME_OK);
+    assert_int_equal(relume_image_create(&image, job.camera.width, job.camera.height, 3),
+                     RELUME_OK);
     job.lights = &light;
     job.light_count = 1;
     assert_int_equal(render_lights(&job, &image, go_on, NULL), RELUME_OK);
@@ -145,8 +148,10 @@ static void check_direction(struct camera_ray ray, double x, double y, double z)
 static void slab_rays_pass_their_window_points(void **state)
 {
     (void)state;
-    struct camera c = {.geometry = relume_geometry_default(RELUME_SLAB, 8, 4), .width = 8,
-                       .height = 4, .uv = {0.5, -0.25}};
+    struct camera c = {.geometry = relume_geometry_default(RELUME_SLAB, 8, 4),
+                       .width = 8,
+                       .height = 4,
+                       .uv = {0.5, -0.25}};
     // Row 0 is the top, column 0 the left.
     const struct camera_ray r = camera_ray_at(&c, 0.5, 0.5);
     const vec3 target = vec3_of(-1.0 + 2.0 * 0.5 / 8, 1.0 - 2.0 * 0.5 / 4, 0.0);
@@ -171,14 +176,14 @@ static void panorama_rays_follow_the_contract(void **state)
     check_direction(camera_ray_at(&c, 4, 0), 0, 1, 0);
     c.geometry = relume_geometry_default(RELUME_CUBE, 24, 4);
     c.width = 24;
-    static const double axes[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0},
-                                      {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    static const double axes[6][3] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                                      {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
     for (int f = 0; f < 6; f++)
         check_direction(camera_ray_at(&c, 4 * f + 2, 2), axes[f][0], axes[f][1], axes[f][2]);
-    check_direction(camera_ray_at(&c, 3, 2), 1, 0, 0.5);    // +x: right is direction x up = +z
-    check_direction(camera_ray_at(&c, 23, 2), 0.5, 0, -1);  // -z: right is +x
-    check_direction(camera_ray_at(&c, 2, 1), 1, 0.5, 0);    // up is +y
-    check_direction(camera_ray_at(&c, 10, 1), 0, 1, 0.5);   // +y: up is +z
+    check_direction(camera_ray_at(&c, 3, 2), 1, 0, 0.5);     // +x: right is direction x up = +z
+    check_direction(camera_ray_at(&c, 23, 2), 0.5, 0, -1);   // -z: right is +x
+    check_direction(camera_ray_at(&c, 2, 1), 1, 0.5, 0);     // up is +y
+    check_direction(camera_ray_at(&c, 10, 1), 0, 1, 0.5);    // +y: up is +z
     check_direction(camera_ray_at(&c, 14, 1), 0, -1, -0.5);  // -y: up is -z
 }
 
@@ -209,7 +214,8 @@ static void light_comes_from_its_own_side(void **state)
     static const enum relume_projection projections[] = {RELUME_PLANAR, RELUME_SLAB};
     for (int i = 0; i < 2; i++) {
         const struct render_job job = job_for(scene, projections[i], 32, 32);
-        struct relume_image right = render(job, vec3_of(1, 0, 0)), up = render(job, vec3_of(0, 1, 0));
+        struct relume_image right = render(job, vec3_of(1, 0, 0)),
+                            up = render(job, vec3_of(0, 1, 0));
         assert_true(*at(&right, 26, 16) > 0.5f && *at(&right, 5, 16) == 0.0f);
         assert_true(*at(&up, 16, 5) > 0.5f && *at(&up, 16, 26) == 0.0f);
         relume_image_destroy(&right);
@@ -398,9 +404,14 @@ static void a_capture_reads_back(void **state)
     (void)state;
     relume_scene *scene = make_scene(relume_scene_find("box"));
     const vec3 eyes[2] = {{0.5, 0.25, 2.5}, {-1, 0, 2.5}};
-    const struct relume_synth_params p = {
-        .projection = RELUME_SLAB, .projection_set = true, .size = 24, .eyes = eyes,
-        .eye_count = 2, .lights = two_lights, .light_count = 2, .samples = 1};
+    const struct relume_synth_params p = {.projection = RELUME_SLAB,
+                                          .projection_set = true,
+                                          .size = 24,
+                                          .eyes = eyes,
+                                          .eye_count = 2,
+                                          .lights = two_lights,
+                                          .light_count = 2,
+                                          .samples = 1};
     assert_int_equal(capture(scene, "slab", &p), RELUME_OK);
     assert_false(exists("slab.part"));
     char path[128];
@@ -430,8 +441,8 @@ static void wrong_requests_are_refused(void **state)
     (void)state;
     relume_scene *scene = make_scene(relume_scene_find("box"));
     const vec3 beside = {1, 0, 4}, uneven[2] = {{0, 0, 3}, {0, 0, 2}};
-    const struct relume_synth_params good = {.size = 4, .lights = two_lights, .light_count = 2,
-                                             .samples = 1};
+    const struct relume_synth_params good = {
+        .size = 4, .lights = two_lights, .light_count = 2, .samples = 1};
     struct relume_synth_params p[8];
     for (int i = 0; i < 8; i++)
         p[i] = good;
@@ -466,8 +477,8 @@ static void cancelling_and_failing_leave_nothing(void **state)
     (void)state;
     relume_scene *scene = make_scene(relume_scene_find("box"));
     const struct relume_log stopping = {.progress = stop};
-    struct relume_synth_params p = {.log = &stopping, .size = 8, .lights = two_lights,
-                                    .light_count = 2, .samples = 1};
+    struct relume_synth_params p = {
+        .log = &stopping, .size = 8, .lights = two_lights, .light_count = 2, .samples = 1};
     assert_int_equal(capture(scene, "stopped", &p), RELUME_ECANCEL);
     assert_false(exists("stopped") || exists("stopped.part"));
     p.log = NULL;
@@ -477,6 +488,34 @@ static void cancelling_and_failing_leave_nothing(void **state)
     p.force = true;
     assert_int_equal(capture(scene, "twice", &p), RELUME_OK);
     relume_scene_destroy(&scene);
+}
+
+// Whichever allocation fails, the status says so and nothing is left behind (or leaks, under asan).
+static void short_memory_is_survived(void **state)
+{
+    (void)state;
+    const struct relume_synth_params p = {.size = 4,
+                                          .lights = two_lights,
+                                          .light_count = 2,
+                                          .samples = 1,
+                                          .threads = 2,
+                                          .bounces = 1};
+    int failures = 0;
+    for (long n = 1;; n++) {
+        relume_scene *scene = NULL;
+        mem_fail_after(n);
+        relume_status status = relume_scene_create(&scene, relume_scene_find("box"), NULL);
+        if (!status)
+            status = capture(scene, "short", &p);
+        mem_fail_after(0);
+        relume_scene_destroy(&scene);
+        if (!status)
+            break;
+        failures++;
+        assert_true(status == RELUME_ENOMEM || status == RELUME_EIO);
+        assert_false(exists("short") || exists("short.part"));
+    }
+    assert_true(failures > 20 && exists("short"));
 }
 
 int main(void)
@@ -494,6 +533,7 @@ int main(void)
         cmocka_unit_test(every_scene_shows_something),
         cmocka_unit_test_setup_teardown(a_capture_reads_back, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(wrong_requests_are_refused, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(short_memory_is_survived, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(cancelling_and_failing_leave_nothing, make_folder,
                                         remove_folder),
     };

@@ -1,0 +1,13 @@
+#include "pattern_option.h"
+
+relume_status args_pattern(const struct relume_pattern **out, const struct args *args)
+{
+    const char *name = args_text(args, "--pattern", "hammersley");
+    const char *names[16];
+    int n = 0;
+    for (const struct relume_pattern *const *p = relume_patterns; *p && n < 15; p++)
+        names[n++] = (*p)->name;
+    names[n] = NULL;
+    *out = relume_pattern_find(name);
+    return *out ? RELUME_OK : unknown_name("pattern", name, names);
+}

@@ -1,0 +1,146 @@
+// bench_encode.c - encoding 49 JPEG photographs against only decoding them with OpenImageIO on the
+// same threads. Usage: bench_encode [SIDE]; default 2048. Prints peak memory as well.
+#include "bench.h"
+
+#include "base/thread.h"
+#include "image/oiio.h"
+
+#include <sys/wait.h>
+
+enum { LIGHTS = 49, RUNS = 3 };
+
+static float noise(uint32_t *state)
+{
+    *state = *state * 1664525u + 1013904223u;
+    return (float)(*state >> 8) / 16777216.0f;
+}
+
+// A bumpy, speckled, slightly noisy surface, so that the JPEGs are as large as photographs are.
+static void photograph(struct relume_image *image, struct relume_vec3 l, uint32_t seed)
+{
+    uint32_t state = seed;
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++) {
+            const double nx = 0.4 * sin(0.11 * x + 0.03 * y), ny = 0.4 * cos(0.07 * y - 0.05 * x);
+            const double nz = sqrt(1.0 - nx * nx - ny * ny);
+            const double lit = fmax(0.0, nx * l.x + ny * l.y + nz * l.z);
+            const double albedo = 0.3 + 0.2 * sin(0.9 * x) * sin(0.7 * y) + 0.2 * ((x / 37 + y / 23) & 1);
+            float *p = image->data + ((size_t)y * (size_t)image->width + (size_t)x) * 3;
+            for (int c = 0; c < 3; c++)
+                p[c] = (float)(lit * albedo * (1.0 - 0.2 * c)) + 0.02f * noise(&state);
+        }
+}
+
+static void make_capture(const char *folder, int side)
+{
+    struct relume_vec3 lights[LIGHTS];
+    struct relume_image image;
+    char path[256];
+    bench_check(relume_lights_make(lights, LIGHTS, relume_pattern_find("hammersley"),
+                                   relume_lights_params(.hemisphere = true)));
+    bench_check(relume_image_create(&image, side, side, 3));
+    snprintf(path, sizeof path, "%s/dirs.lp", folder);
+    FILE *lp = fopen(path, "w");
+    fprintf(lp, "%d\n", LIGHTS);
+    for (int i = 0; i < LIGHTS; i++) {
+        photograph(&image, lights[i], (uint32_t)i + 1);
+        snprintf(path, sizeof path, "%s/photo%02d.jpg", folder, i);
+        bench_check(relume_image_save(&image, path, NULL));
+        fprintf(lp, "photo%02d.jpg %f %f %f\n", i, lights[i].x, lights[i].y, lights[i].z);
+    }
+    fclose(lp);
+    relume_image_destroy(&image);
+}
+
+static void decode_one(void *context, size_t item, int worker)
+{
+    (void)worker;
+    char path[256];
+    oiio_reader *reader;
+    snprintf(path, sizeof path, "%s/photo%02zu.jpg", (const char *)context, item);
+    bench_check(oiio_open(&reader, path, NULL, NULL));
+    const struct oiio_info *info = oiio_info_of(reader);
+    uint8_t *pixels = malloc((size_t)info->width * (size_t)info->height * 3);
+    bench_check(oiio_read_bytes(reader, 0, info->height, pixels));
+    free(pixels);
+    oiio_close(&reader);
+}
+
+static void decode(const char *folder)
+{
+    char copy[256];
+    snprintf(copy, sizeof copy, "%s", folder);
+    thread_for(0, LIGHTS, decode_one, copy);
+}
+
+static void encode(const char *folder, enum relume_compression compression)
+{
+    char lp[256], out[256];
+    relume_capture *capture;
+    relume_coder *coder;
+    snprintf(lp, sizeof lp, "%s/dirs.lp", folder);
+    snprintf(out, sizeof out, "%s/out.exr", folder);
+    bench_check(relume_capture_open(&capture, lp, NULL));
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    bench_check(relume_coder_create(&coder, &relume_basis_sh, m->directions, m->lights,
+                                    relume_coder_params(.coefficients = 16,
+                                                        .hemispherical = true)));
+    bench_check(relume_pack_encode(capture, coder, out, NULL,
+                                   relume_pack_encode_params(.compression = compression)));
+    relume_coder_destroy(&coder);
+    relume_capture_destroy(&capture);
+}
+
+// Peak memory of one encoding, in a process of its own.
+static long peak_mb(const char *folder)
+{
+    fflush(stdout);
+    const pid_t child = fork();
+    if (child == 0) {
+        encode(folder, RELUME_COMPRESS_DEFAULT);
+        _exit(0);
+    }
+    struct rusage usage;
+    int status;
+    if (wait4(child, &status, 0, &usage) != child)
+        return -1;
+    return usage.ru_maxrss / 1024;
+}
+
+int main(int argc, char **argv)
+{
+    static const struct {
+        const char *name;
+        enum relume_compression value;
+    } kinds[] = {{"none", RELUME_COMPRESS_NONE},
+                 {"rle", RELUME_COMPRESS_RLE},
+                 {"zip", RELUME_COMPRESS_ZIP},
+                 {"piz (default)", RELUME_COMPRESS_PIZ}};
+    const int side = argc > 1 ? atoi(argv[1]) : 2048;
+    char folder[] = "/tmp/relume-bench-XXXXXX";
+    if (side < 16 || !mkdtemp(folder))
+        return 1;
+    make_capture(folder, side);
+    printf("encode: %d JPEG photographs of %d x %d, sh 16, 8 bits, %d threads\n", LIGHTS, side, side,
+           relume_cpu_count());
+    printf("  peak memory %ld MB (target at 4096: 600)\n", peak_mb(folder));
+    struct bench read = {.runs = 0}, write[4] = {{.runs = 0}};
+    for (int run = 0; run < RUNS; run++) {
+        double t = bench_now_s();
+        decode(folder);
+        bench_add(&read, bench_now_s() - t);
+        for (int k = 0; k < 4; k++) {
+            t = bench_now_s();
+            encode(folder, kinds[k].value);
+            bench_add(&write[k], bench_now_s() - t);
+        }
+    }
+    bench_print("decode only", &read);
+    for (int k = 0; k < 4; k++) {
+        bench_print(kinds[k].name, &write[k]);
+        printf("    encode / decode: %.2f\n", bench_median(&write[k]) / bench_median(&read));
+    }
+    char command[300];
+    snprintf(command, sizeof command, "rm -rf %s", folder);
+    return system(command) != 0;
+}

@@ -12,6 +12,11 @@ void mem_fail_after(long n)
     atomic_store(&countdown, n);
 }
 
+bool mem_fail_pending(void)
+{
+    return atomic_load(&countdown) > 0;
+}
+
 static bool refuse(void)
 {
     return atomic_load_explicit(&countdown, memory_order_relaxed) > 0 &&

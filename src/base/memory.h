@@ -16,6 +16,8 @@ __attribute__((format(printf, 1, 2))) char *mem_format(const char *format, ...);
 
 // For tests: let the n-th allocation from now on fail (0 switches that off).
 void mem_fail_after(long n);
+// Whether that failure is still to come.
+bool mem_fail_pending(void);
 
 // `limits` with defaults filled in; NULL gives all defaults.
 struct relume_limits limits_or_default(const struct relume_limits *limits);

@@ -79,7 +79,7 @@ int scratch_open(const char *near)
     const char *temp = getenv("TMPDIR");
     char *copy = near ? mem_text(near) : NULL;
     const char *folder = copy ? dirname(copy) : temp && *temp ? temp : "/tmp";
-    char *name = mem_format("%s/.relume-XXXXXX", folder);
+    char *name = near && !copy ? NULL : mem_format("%s/.relume-XXXXXX", folder);
     int fd = -1;
     if (name) {
         fd = mkostemp(name, O_CLOEXEC);

@@ -57,13 +57,24 @@ static relume_status get_numbers(const struct parser *p, const json_t *object, c
     return numbers(value, out, count) ? RELUME_OK : wrong(p, key, expected);
 }
 
-static const char *get_path(const struct parser *p, const json_t *value)
+// A file name as a path from the working folder.
+static relume_status get_path(const struct parser *p, const json_t *value, const char *where,
+                              const char **out)
 {
     const char *text = json_string_value(value);
     if (!text || !*text)
-        return NULL;
-    return text[0] == '/' ? arena_text(&p->d->arena, text)
+        return wrong(p, where, "a file name");
+    *out = text[0] == '/' ? arena_text(&p->d->arena, text)
                           : arena_format(&p->d->arena, "%s/%s", p->folder, text);
+    return *out ? RELUME_OK : RELUME_ENOMEM;
+}
+
+// The same for a member that may be absent or null.
+static relume_status get_plane(const struct parser *p, const json_t *object, const char *key,
+                               const char **out)
+{
+    const json_t *value = json_object_get(object, key);
+    return !value || json_is_null(value) ? RELUME_OK : get_path(p, value, key, out);
 }
 
 static relume_status read_vectors(const struct parser *p, const json_t *array, const char *what,
@@ -211,15 +222,15 @@ static relume_status read_view(const struct parser *p, const json_t *object, int
     v->images = arena_array(&d->arena, (size_t)d->m.lights, sizeof *v->images);
     if (!v->images)
         return RELUME_ENOMEM;
-    for (int i = 0; i < d->m.lights; i++)
-        if (!(v->images[i] = get_path(p, json_array_get(images, (size_t)i))))
-            return wrong(p, where, "file names");
-    const json_t *depth = json_object_get(object, "depth");
-    const json_t *mask = json_object_get(object, "mask");
-    if (depth && !json_is_null(depth) && !(v->depth = get_path(p, depth)))
-        return wrong(p, "depth", "a file name");
-    if (mask && !json_is_null(mask) && !(v->mask = get_path(p, mask)))
-        return wrong(p, "mask", "a file name");
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < d->m.lights; i++)
+        status = get_path(p, json_array_get(images, (size_t)i), where, &v->images[i]);
+    if (!status)
+        status = get_plane(p, object, "depth", &v->depth);
+    if (!status)
+        status = get_plane(p, object, "mask", &v->mask);
+    if (status)
+        return status;
     if (d->m.geometry.projection == RELUME_SLAB && !json_object_get(object, "uv"))
         return wrong(p, "views[].uv", "two numbers for every view of a slab");
     return get_numbers(p, object, "uv", v->uv, 2);

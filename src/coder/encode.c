@@ -390,6 +390,8 @@ static relume_status alloc_coefficients(relume_coefficients **out, const relume_
         .scale = c->scale,
         .offset = c->offset,
     };
+    if (c->fd < 0 && errno == ENOMEM)
+        return RELUME_ENOMEM;
     if (c->fd < 0)
         return log_fail(p->log, RELUME_EIO, "%s: no temporary file can be made in its folder; %s",
                         p->scratch ? p->scratch : "$TMPDIR", strerror(errno));

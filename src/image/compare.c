@@ -22,6 +22,7 @@ struct job {
     struct relume_transfer display;
     float *luma[2];  // display luma of both images
     struct sums *block;
+    double *products;  // [threads][width][5], see filter_columns
 };
 
 static bool is_inside(const struct job *j, size_t pixel)
@@ -112,14 +113,13 @@ static void make_kernel(double kernel[2 * RADIUS + 1])
 // Windows that lie wholly inside the image, as in the paper's own program.
 static void compare_structure(void *context, size_t item, int worker)
 {
-    (void)worker;
     struct job *j = context;
     const int width = j->a->width, height = j->a->height;
     double kernel[2 * RADIUS + 1];
     make_kernel(kernel);
-    double *products = malloc(5 * (size_t)width * sizeof *products);
+    double *products = j->products + 5 * (size_t)worker * (size_t)width;
     struct sums *s = &j->block[item];
-    for (int y = (int)item * ROWS; products && y < ((int)item + 1) * ROWS; y++) {
+    for (int y = (int)item * ROWS; y < ((int)item + 1) * ROWS; y++) {
         if (y < RADIUS || y >= height - RADIUS)
             continue;
         filter_columns(j, y, kernel, products);
@@ -134,7 +134,6 @@ static void compare_structure(void *context, size_t item, int worker)
             s->windows++;
         }
     }
-    free(products);
 }
 
 static double psnr(double mse)
@@ -189,8 +188,10 @@ relume_status relume_image_compare(struct relume_difference *out, const struct r
         .display = p.display,
         .luma = {mem_array(pixels, sizeof(float)), mem_array(pixels, sizeof(float))},
         .block = mem_zeroed(blocks, sizeof *job.block),
+        .products = mem_array((size_t)thread_count(p.threads) * (size_t)image->width,
+                              5 * sizeof *job.products),
     };
-    const bool good = job.luma[0] && job.luma[1] && job.block;
+    const bool good = job.luma[0] && job.luma[1] && job.block && job.products;
     if (good) {
         thread_for(p.threads, blocks, measure_rows, &job);
         thread_for(p.threads, blocks, compare_structure, &job);
@@ -199,5 +200,6 @@ relume_status relume_image_compare(struct relume_difference *out, const struct r
     free(job.luma[0]);
     free(job.luma[1]);
     free(job.block);
+    free(job.products);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }

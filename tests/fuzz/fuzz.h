@@ -1,0 +1,181 @@
+// fuzz.h - a small deterministic fuzzer: seeds made at the start, mutated bytes, a time limit
+//
+// `fuzz_X SECONDS [SEED]`: one input an iteration, written to a file whose name is printed, so that
+// the input of a crash is what lies there. Every eighth iteration an allocation fails as well.
+#ifndef FUZZ_H
+#define FUZZ_H
+
+#include "base/memory.h"
+#include "capture_fixture.h"
+
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+struct bytes {
+    uint8_t *data;
+    size_t size;
+};
+
+struct fuzz {
+    char folder[64], path[96];
+    uint64_t state;
+    long iterations, accepted;
+    struct bytes seed[16];
+    int seeds;
+    const char *const *words;  // NULL-terminated: text and names that mutations know
+};
+
+static inline uint32_t fuzz_random(struct fuzz *f)
+{
+    f->state = f->state * 6364136223846793005u + 1442695040888963407u;
+    return (uint32_t)(f->state >> 33);
+}
+
+static inline size_t fuzz_below(struct fuzz *f, size_t n)
+{
+    return n ? fuzz_random(f) % n : 0;
+}
+
+static inline struct bytes fuzz_load(const char *path)
+{
+    struct bytes b = {0};
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        abort();
+    fseek(file, 0, SEEK_END);
+    b.size = (size_t)ftell(file);
+    rewind(file);
+    b.data = malloc(b.size + 1);
+    if (!b.data || fread(b.data, 1, b.size, file) != b.size)
+        abort();
+    fclose(file);
+    return b;
+}
+
+static inline void fuzz_add(struct fuzz *f, struct bytes b)
+{
+    f->seed[f->seeds++] = b;
+}
+
+static inline void fuzz_store(const char *path, struct bytes b)
+{
+    FILE *file = fopen(path, "wb");
+    if (!file || fwrite(b.data, 1, b.size, file) != b.size || fclose(file))
+        abort();
+}
+
+static inline void fuzz_mutate_bytes(struct fuzz *f, struct bytes *b)
+{
+    static const uint32_t edges[] = {0,       1,          0x7f,       0x80,       0xff,   0x100,
+                                     0x7fff,  0x8000,     0xffff,     0x10000,    0x7fffffff,
+                                     0x80000000, 0xffffffff, 0x7f800000, 0x7fc00000, 0x40000000};
+    // headers decide more than pixels
+    const size_t reach = fuzz_random(f) % 3 ? (b->size < 3000 ? b->size : 3000) : b->size;
+    const size_t at = fuzz_below(f, reach);
+    const uint32_t edge = edges[fuzz_below(f, sizeof edges / sizeof *edges)];
+    switch (fuzz_random(f) % 6) {
+    case 0: b->data[at] ^= (uint8_t)(1u << fuzz_below(f, 8)); break;
+    case 1: b->data[at] = (uint8_t)fuzz_random(f); break;
+    case 2: memcpy(b->data + at, &edge, b->size - at < 4 ? b->size - at : 4); break;
+    case 3: b->size = fuzz_below(f, b->size) + 1; break;  // cut
+    case 4: {                                             // move a piece
+        const size_t to = fuzz_below(f, b->size), n = fuzz_below(f, 64);
+        const size_t room = b->size - (at > to ? at : to);
+        memmove(b->data + to, b->data + at, n < room ? n : room);
+        break;
+    }
+    default: {  // remove a piece
+        const size_t n = fuzz_below(f, b->size - at < 40 ? b->size - at : 40);
+        memmove(b->data + at, b->data + at + n, b->size - at - n);
+        b->size -= n;
+    }
+    }
+    if (b->size == 0)
+        b->size = 1;
+}
+
+// Change something close behind a known word, or put another word in its place.
+static inline void fuzz_mutate_word(struct fuzz *f, struct bytes *b)
+{
+    size_t count = 0;
+    while (f->words[count])
+        count++;
+    const char *word = f->words[fuzz_below(f, count)], *other = f->words[fuzz_below(f, count)];
+    const uint8_t *hit = memmem(b->data, b->size, word, strlen(word));
+    if (!hit)
+        return;
+    const size_t at = (size_t)(hit - b->data) + strlen(word);
+    if (fuzz_random(f) % 4 == 0) {
+        const size_t n = strlen(other) < b->size - (at - strlen(word)) ? strlen(other)
+                                                                       : b->size - at + strlen(word);
+        memcpy(b->data + at - strlen(word), other, n);
+        return;
+    }
+    const size_t to = at + fuzz_below(f, 48);
+    if (to < b->size)
+        b->data[to] = (uint8_t)(fuzz_random(f) % 2 ? fuzz_random(f) : fuzz_random(f) % 8);
+}
+
+static inline struct bytes fuzz_next(struct fuzz *f)
+{
+    const struct bytes seed = f->seed[fuzz_below(f, (size_t)f->seeds)];
+    struct bytes b = {malloc(seed.size + 8), seed.size};
+    if (!b.data)
+        abort();
+    memcpy(b.data, seed.data, seed.size);
+    for (size_t n = 1 + fuzz_below(f, 4); n; n--)
+        if (f->words && fuzz_random(f) % 2)
+            fuzz_mutate_word(f, &b);
+        else
+            fuzz_mutate_bytes(f, &b);
+    return b;
+}
+
+static inline double fuzz_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static inline void fuzz_begin(struct fuzz *f, const char *name, int argc, char **argv)
+{
+    f->state = argc > 2 ? strtoull(argv[2], NULL, 10) : 1;
+    snprintf(f->folder, sizeof f->folder, "/tmp/relume-fuzz-XXXXXX");
+    if (!mkdtemp(f->folder))
+        abort();
+    snprintf(f->path, sizeof f->path, "%s/input", f->folder);
+    printf("%s: seed %llu, input %s\n", name, (unsigned long long)f->state, f->path);
+    fflush(stdout);
+}
+
+// `one` returns true when the input was accepted.
+static inline int fuzz_run(struct fuzz *f, int argc, char **argv,
+                           bool (*one)(struct fuzz *, struct bytes))
+{
+    const double end = fuzz_now() + (argc > 1 ? atof(argv[1]) : 1.0);
+    double slowest = 0.0;
+    while (fuzz_now() < end) {
+        struct bytes b = fuzz_next(f);
+        const double start = fuzz_now();
+        mem_fail_after(f->iterations % 8 == 7 ? 1 + (long)fuzz_below(f, 80) : 0);
+        f->accepted += one(f, b);
+        mem_fail_after(0);
+        slowest = fuzz_now() - start > slowest ? fuzz_now() - start : slowest;
+        f->iterations++;
+        free(b.data);
+        if (slowest > 20.0) {
+            printf("an input took %.1f s: %s\n", slowest, f->path);
+            return 1;
+        }
+    }
+    printf("%ld inputs, %ld accepted, slowest %.2f s\n", f->iterations, f->accepted, slowest);
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf '%s'", f->folder);
+    for (int i = 0; i < f->seeds; i++)
+        free(f->seed[i].data);
+    return system(command) != 0 || f->iterations == 0;
+}
+
+#endif

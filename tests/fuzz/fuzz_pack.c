@@ -1,0 +1,84 @@
+// fuzz_pack.c - relume files made of noise: opened, read, relit, looked at from everywhere
+#include "fuzz.h"
+
+static const struct relume_limits limits = {
+    .max_side = 256, .max_pixels = 1 << 14, .max_lights = 200, .max_views = 16};
+
+static const char *const words[] = {
+    "relume.format",       "relume.version",     "relume.domain",  "relume.display",
+    "relume.storage",      "relume.projection",  "relume.views",   "relume.uv",
+    "relume.window",       "relume.slab",        "relume.basis",   "relume.coefficients",
+    "relume.hemispherical", "relume.ridge",      "relume.lights",  "relume.transform",
+    "relume.scale",        "relume.offset",      "channels",       "dataWindow",
+    "displayWindow",       "chunkCount",         "compression",    "view0000",
+    "view0001.depth",      "type",               "lineOrder",      "floatvector",
+    "planar",              "slab",               "cube",           "spherical",
+    "display",             "linear",             "table",          "scanlineimage",
+    "c0000.R",             NULL};
+
+static void use(relume_pack *pack)
+{
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    const struct relume_light lights[2] = {{.direction = {0.1, 0.2, -0.9}, .rgb = {1, 1, 1}},
+                                           {.direction = {0, 1, 0}, .rgb = {1, 0, 2}}};
+    const struct relume_camera cameras[] = {
+        {.framing = RELUME_FRAME_DEFAULT},
+        {.framing = RELUME_FRAME_EYE, .eye = {0.5, 0.1, 3.0}, .width = 7, .height = 5},
+        {.framing = RELUME_FRAME_LOOK, .width = 9, .height = 4, .look = {30.0, 20.0, 1.5}},
+    };
+    for (int v = 0; v < info->views; v++) {
+        struct relume_image plane;
+        if (!relume_pack_depth(&plane, pack, v))
+            relume_image_destroy(&plane);
+        if (!relume_pack_mask(&plane, pack, v))
+            relume_image_destroy(&plane);
+        const struct relume_codes *codes;
+        double rgb[3];
+        if (!relume_pack_codes(&codes, pack, v))
+            relume_relight_pixel(rgb, codes, codes->width - 1, codes->height - 1, lights, 2);
+    }
+    for (size_t i = 0; i < sizeof cameras / sizeof *cameras; i++) {
+        struct relume_image frame;
+        if (!relume_frame(&frame, pack, &cameras[i], lights, 2, relume_frame_params(.threads = 1)))
+            relume_image_destroy(&frame);
+    }
+    float rgb[3];
+    (void)!relume_query(rgb, pack, (struct relume_vec3){0.2, 0.1, 3.0},
+                        (struct relume_vec3){0.0, 0.1, -1.0}, lights, 1, NULL);
+}
+
+static bool one(struct fuzz *f, struct bytes b)
+{
+    fuzz_store(f->path, b);
+    relume_pack *pack;
+    if (relume_pack_open(&pack, f->path, relume_pack_params(.limits = &limits, .threads = 1)))
+        return false;
+    use(pack);
+    relume_pack_destroy(&pack);
+    return true;
+}
+
+static void add(struct fuzz *f, const struct fixture *fixture, const struct relume_basis *basis,
+                int coefficients, enum relume_storage storage, enum relume_compression compression)
+{
+    fixture_write(fixture, f->folder);
+    fixture_must(fixture_encode(f->folder, f->path, basis, coefficients,
+                                relume_pack_encode_params(.storage = storage,
+                                                          .compression = compression)),
+                 "encode");
+    fuzz_add(f, fuzz_load(f->path));
+}
+
+int main(int argc, char **argv)
+{
+    struct fuzz f = {.words = words};
+    const struct fixture plain = {.width = 9, .height = 40, .lights = 6, .views = 1};
+    const struct fixture slab = {.width = 8, .height = 5, .lights = 5, .views = 3,
+                                 .hemisphere = true, .depth = true, .mask = true};
+    fuzz_begin(&f, "fuzz_pack", argc, argv);
+    add(&f, &plain, &relume_basis_sh, 4, RELUME_STORE_8, RELUME_COMPRESS_PIZ);
+    add(&f, &plain, &relume_basis_table, 0, RELUME_STORE_16, RELUME_COMPRESS_ZIP);
+    add(&f, &slab, &relume_basis_sh, 4, RELUME_STORE_HALF, RELUME_COMPRESS_RLE);
+    add(&f, &slab, &relume_basis_table, 0, RELUME_STORE_8, RELUME_COMPRESS_NONE);
+    return fuzz_run(&f, argc, argv, one);
+}

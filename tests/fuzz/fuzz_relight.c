@@ -1,0 +1,103 @@
+// fuzz_relight.c - codes, steps and lights taken from bytes: both kernels must survive and agree
+#include "fuzz.h"
+
+struct reader {
+    const uint8_t *at, *end;
+};
+
+static uint32_t take(struct reader *r, int bytes)
+{
+    uint32_t v = 0;
+    for (int i = 0; i < bytes; i++)
+        v = v << 8 | (r->at < r->end ? *r->at++ : 0u);
+    return v;
+}
+
+static float take_float(struct reader *r)
+{
+    const uint32_t bits = take(r, 4);
+    float f;
+    memcpy(&f, &bits, 4);
+    return isfinite(f) ? f : 0.0f;  // files with others are refused
+}
+
+static bool one(struct fuzz *f, struct bytes b)
+{
+    enum { MOST = 64 };
+    (void)f;
+    struct reader r = {b.data, b.data + b.size};
+    const int width = 1 + (int)(take(&r, 1) % 70), height = 1 + (int)(take(&r, 1) % 5);
+    const int n = 1 + (int)(take(&r, 1) % 16), count = (int)(take(&r, 1) % 4);
+    const enum relume_storage storage = (enum relume_storage)(1 + take(&r, 1) % 3);
+    const bool table = take(&r, 1) % 2;
+    struct relume_vec3 lights[16];
+    for (int i = 0; i < n; i++) {
+        const double x = (int)take(&r, 1) - 128, y = (int)take(&r, 1) - 128, z = take(&r, 1);
+        const double length = sqrt(x * x + y * y + z * z) + 1e-9;
+        lights[i] = (struct relume_vec3){x / length, y / length, (z + 1e-9) / length};
+    }
+    relume_coder *coder;
+    if (relume_coder_create(&coder, table ? &relume_basis_table : &relume_basis_sh, lights, n,
+                            relume_coder_params(.hemispherical = take(&r, 1) % 2,
+                                                .pole_y = take(&r, 1) % 2, .decode = true)))
+        return false;
+    const int planes = relume_coder_info(coder)->planes;
+    const size_t pixels = (size_t)width * (size_t)height, size = storage == RELUME_STORE_8 ? 1 : 2;
+    uint8_t *data = malloc((size_t)planes * pixels * size);
+    const void *plane[MOST];
+    float scale[MOST], offset[MOST];
+    for (int p = 0; p < planes; p++) {
+        plane[p] = data + (size_t)p * pixels * size;
+        scale[p] = ldexpf((float)(int8_t)take(&r, 1), -8);
+        offset[p] = ldexpf((float)(int8_t)take(&r, 1), -4);
+    }
+    for (size_t i = 0; i < (size_t)planes * pixels * size; i++)
+        data[i] = (uint8_t)take(&r, 1) & (storage == RELUME_STORE_HALF ? 0xbb : 0xff);
+    // Sums in another order: every term may be rounded once more, at the size of the largest sum.
+    double largest = 0.0;
+    const double top = storage == RELUME_STORE_8 ? 255.0 : 65535.0;  // halves here end at 60000
+    for (int p = 0; p < planes; p++)
+        largest += fabs((double)scale[p]) * top + fabs((double)offset[p]);
+    const struct relume_codes codes = {
+        .coder = coder, .domain = 1 + take(&r, 1) % 2, .display = {RELUME_CURVE_GAMMA, 0.5f},
+        .width = width, .height = height, .planes = planes, .storage = storage,
+        .plane = plane, .scale = scale, .offset = offset};
+    struct relume_light lamp[4];
+    for (int i = 0; i < count; i++)
+        lamp[i] = (struct relume_light){.direction = {take_float(&r), take_float(&r), 1.0},
+                                        .rgb = {1.0f, ldexpf((float)take(&r, 1), -7), 0.0f}};
+    struct relume_image fast = {0}, plain = {0};
+    double rgb = 0.0;
+    for (int i = 0; i < count; i++)
+        rgb += (double)fmaxf(lamp[i].rgb[0], lamp[i].rgb[1]);
+    const double tolerance = 1e-6 * largest * rgb;  // 2^-24 x 16 terms; |basis| stays below 1.1
+    const relume_status a = relume_relight(&fast, &codes, lamp, count, NULL);
+    const relume_status c =
+        relume_relight(&plain, &codes, lamp, count,
+                       relume_relight_params(.cpu_off = ~0u, .threads = 1));
+    if (!a && !c && codes.domain == RELUME_DOMAIN_LINEAR)
+        for (size_t i = 0; i < 3 * pixels; i++)
+            if (!(fabs((double)fast.data[i] - (double)plain.data[i]) <= tolerance)) {
+                printf("sample %zu: %.9g and %.9g\n", i, (double)fast.data[i],
+                       (double)plain.data[i]);
+                abort();
+            }
+    relume_image_destroy(&fast);
+    relume_image_destroy(&plain);
+    relume_coder_destroy(&coder);
+    free(data);
+    return !a;
+}
+
+int main(int argc, char **argv)
+{
+    struct fuzz f = {0};
+    fuzz_begin(&f, "fuzz_relight", argc, argv);
+    for (int s = 0; s < 6; s++) {
+        struct bytes b = {malloc(4000), 4000};
+        for (size_t i = 0; i < b.size; i++)
+            b.data[i] = (uint8_t)fuzz_random(&f);
+        fuzz_add(&f, b);
+    }
+    return fuzz_run(&f, argc, argv, one);
+}

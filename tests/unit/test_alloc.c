@@ -1,0 +1,189 @@
+// test_alloc.c - every allocation fails once: no crash, no leak (under ASan), no half-made output
+#include "test.h"
+
+#include "base/memory.h"
+#include "capture_fixture.h"
+
+#include <dirent.h>
+
+static char folder[64], capture_path[96], lp_path[96], pack_path[96], out_path[96];
+
+static int setup(void **state)
+{
+    (void)state;
+    const struct fixture f = {.width = 9, .height = 20, .lights = 6, .views = 2, .hemisphere = true,
+                              .depth = true, .mask = true};
+    test_folder(folder);
+    fixture_write(&f, folder);
+    snprintf(capture_path, sizeof capture_path, "%s/capture.json", folder);
+    snprintf(lp_path, sizeof lp_path, "%s/dirs.lp", folder);
+    snprintf(pack_path, sizeof pack_path, "%s/pack.exr", folder);
+    snprintf(out_path, sizeof out_path, "%s/out.exr", folder);
+    static const char lp[] = "3\nv0-0.exr 0 0 1\nV0-1.EXR 1 0 1\n\nC:\\x\\v0-2.exr 0 1 1\n";
+    test_write(lp_path, lp, sizeof lp - 1);
+    return fixture_encode(folder, pack_path, &relume_basis_sh, 4, NULL) != RELUME_OK;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    test_folder_remove(folder);
+    return 0;
+}
+
+// Let the 1st, 2nd, ... allocation of `work` fail until it succeeds; returns how many there were.
+static int sweep(relume_status (*work)(void))
+{
+    enum { MOST = 20000 };
+    for (int n = 1; n < MOST; n++) {
+        mem_fail_after(n);
+        const relume_status status = work();
+        const bool all_done = mem_fail_pending();
+        mem_fail_after(0);
+        if (all_done) {  // fewer than n allocations: none has failed
+            CHECK_OK(status);
+            return n - 1;
+        }
+        assert_int_equal(status, RELUME_ENOMEM);
+    }
+    fail_msg("never succeeds");
+    return 0;
+}
+
+static relume_status open_capture(void)
+{
+    relume_capture *c = (void *)1;
+    const relume_status status = relume_capture_open(&c, capture_path, NULL);
+    assert_true(status ? c == NULL : c != NULL);
+    relume_capture_destroy(&c);
+    return status;
+}
+
+static relume_status open_lp(void)
+{
+    relume_capture *c = (void *)1;
+    const relume_status status =
+        relume_capture_open(&c, lp_path, relume_capture_params(.skip_missing = true));
+    assert_true(status ? c == NULL : c != NULL);
+    relume_capture_destroy(&c);
+    return status;
+}
+
+static relume_status read_table(void)
+{
+    static float rows[6 * 20 * 9 * 3];
+    relume_capture *c;
+    relume_table *table = NULL;
+    relume_status status = relume_capture_open(&c, capture_path, NULL);
+    if (!status)
+        status = relume_table_open(&table, c, 1, relume_table_params(.threads = 1));
+    if (!status)
+        status = relume_table_read(table, 20, rows);
+    relume_table_destroy(&table);
+    relume_capture_destroy(&c);
+    return status;
+}
+
+static relume_status encode_pack(void)
+{
+    unlink(out_path);
+    const relume_status status =
+        fixture_encode(folder, out_path, &relume_basis_sh, 4,
+                       relume_pack_encode_params(.threads = 1));
+    assert_true((access(out_path, F_OK) == 0) == (status == RELUME_OK));
+    return status;
+}
+
+static relume_status encode_table(void)
+{
+    return fixture_encode(folder, out_path, &relume_basis_table, 0,
+                          relume_pack_encode_params(.threads = 1, .storage = RELUME_STORE_HALF));
+}
+
+static relume_status read_pack(void)
+{
+    relume_pack *pack = (void *)1;
+    const struct relume_codes *codes;
+    struct relume_image depth = {0}, mask = {0}, frame = {0};
+    relume_status status = relume_pack_open(&pack, pack_path, relume_pack_params(.threads = 1));
+    assert_true(status ? pack == NULL : pack != NULL);
+    if (!status)
+        status = relume_pack_codes(&codes, pack, 0);
+    if (!status)
+        status = relume_pack_depth(&depth, pack, 0);
+    if (!status)
+        status = relume_pack_mask(&mask, pack, 1);
+    const struct relume_light light = {.direction = {0, 1, 1}, .rgb = {1, 1, 1}};
+    const struct relume_camera camera = {.framing = RELUME_FRAME_EYE, .eye = {0.5, 0, 3}};
+    if (!status)
+        status = relume_frame(&frame, pack, &camera, &light, 1, relume_frame_params(.threads = 1));
+    assert_true((frame.data != NULL) == (status == RELUME_OK));
+    relume_image_destroy(&frame);
+    relume_image_destroy(&depth);
+    relume_image_destroy(&mask);
+    relume_pack_destroy(&pack);
+    return status;
+}
+
+static relume_status compare_images(void)
+{
+    struct relume_image a = {0};
+    struct relume_difference d;
+    char path[96];
+    snprintf(path, sizeof path, "%s/v0-0.exr", folder);
+    relume_status status = relume_image_load(&a, path, NULL);
+    assert_true((a.data != NULL) == (status == RELUME_OK));
+    if (!status)
+        status = relume_image_compare(&d, &a, &a, relume_compare_params(.threads = 1));
+    relume_image_destroy(&a);
+    return status;
+}
+
+static relume_status save_png(void)
+{
+    struct relume_image a = {0};
+    char path[96];
+    snprintf(path, sizeof path, "%s/v0-0.exr", folder);
+    relume_status status = relume_image_load(&a, path, NULL);
+    snprintf(path, sizeof path, "%s/saved.png", folder);
+    if (!status)
+        status = relume_image_save(&a, path, NULL);
+    relume_image_destroy(&a);
+    return status;
+}
+
+#define SWEEP(name, least)                                                                         \
+    static void test_##name(void **state)                                                          \
+    {                                                                                              \
+        (void)state;                                                                               \
+        assert_true(sweep(name) >= (least));                                                       \
+    }
+SWEEP(open_capture, 20)
+SWEEP(open_lp, 10)
+SWEEP(read_table, 20)
+SWEEP(encode_pack, 60)
+SWEEP(encode_table, 60)
+SWEEP(read_pack, 30)
+SWEEP(compare_images, 5)
+SWEEP(save_png, 4)
+
+static void test_nothing_is_left(void **state)
+{
+    (void)state;
+    DIR *dir = opendir(folder);
+    for (struct dirent *e; (e = readdir(dir));)
+        assert_true(!strstr(e->d_name, ".part") && strncmp(e->d_name, ".relume", 7));
+    closedir(dir);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_open_capture), cmocka_unit_test(test_open_lp),
+        cmocka_unit_test(test_read_table),   cmocka_unit_test(test_encode_pack),
+        cmocka_unit_test(test_encode_table), cmocka_unit_test(test_read_pack),
+        cmocka_unit_test(test_compare_images), cmocka_unit_test(test_save_png),
+        cmocka_unit_test(test_nothing_is_left),
+    };
+    return cmocka_run_group_tests(tests, setup, teardown);
+}

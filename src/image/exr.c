@@ -45,6 +45,11 @@ static void ignore_error(exr_const_context_t context, exr_result_t code, const c
 
 // ---------------------------------------------------------------- writing
 
+struct pipeline {
+    exr_encode_pipeline_t exr;  // first: the core hands back a pointer to it
+    exr_result_t (*compress)(exr_encode_pipeline_t *pipeline);
+};
+
 struct writing {
     exr_context_t exr;
     outfile *file;
@@ -55,7 +60,7 @@ struct writing {
     pthread_cond_t turn;
     int next_block;
     relume_status status;  // the first failure of any block
-    exr_encode_pipeline_t *pipelines;  // one a worker
+    struct pipeline *pipelines;  // one a worker
 };
 
 static int64_t write_stream(exr_const_context_t context, void *user, const void *buffer,
@@ -100,6 +105,19 @@ static exr_result_t already_packed(exr_encode_pipeline_t *pipeline)
     return EXR_ERR_SUCCESS;
 }
 
+// A block whose compressed size equals its plain size means "stored plain" to every reader, but
+// OpenEXR 3.1 stores the compressed bytes then; only larger ones it replaces.
+static exr_result_t compress(exr_encode_pipeline_t *pipeline)
+{
+    const exr_result_t r = ((const struct pipeline *)pipeline)->compress(pipeline);
+    const size_t plain = pipeline->packed_bytes;
+    if (r || pipeline->compressed_bytes < plain || pipeline->compressed_alloc_size < plain)
+        return r;
+    memcpy(pipeline->compressed_buffer, pipeline->packed_buffer, plain);
+    pipeline->compressed_bytes = plain;
+    return r;
+}
+
 struct block_turn {
     struct writing *w;
     int block;
@@ -129,9 +147,9 @@ static void end_turn(struct writing *w, int block, relume_status status)
     pthread_mutex_unlock(&w->lock);
 }
 
-static relume_status prepare_pipeline(struct writing *w, exr_encode_pipeline_t *pipeline, int row,
-                                      void *turn)
+static relume_status prepare_pipeline(struct writing *w, struct pipeline *p, int row, void *turn)
 {
+    exr_encode_pipeline_t *pipeline = &p->exr;
     exr_chunk_info_t chunk;
     if (exr_write_scanline_chunk_info(w->exr, w->index, row, &chunk))
         return RELUME_EIO;
@@ -152,6 +170,9 @@ static relume_status prepare_pipeline(struct writing *w, exr_encode_pipeline_t *
         }
         if (exr_encoding_choose_default_routines(w->exr, w->index, pipeline))
             return RELUME_EIO;
+        p->compress = pipeline->compress_fn;
+        if (p->compress)
+            pipeline->compress_fn = compress;
         pipeline->convert_and_pack_fn = already_packed;
         pipeline->yield_until_ready_fn = await_turn;
     }
@@ -171,13 +192,13 @@ static void write_block(void *context, size_t item, int worker)
     const int row = (int)item * w->block_rows;
     const int left = w->part->height - row;
     const int rows = left < w->block_rows ? left : w->block_rows;
-    exr_encode_pipeline_t *pipeline = &w->pipelines[worker];
+    struct pipeline *pipeline = &w->pipelines[worker];
     struct block_turn turn = {w, (int)item};
 
     relume_status status = prepare_pipeline(w, pipeline, row, &turn);
     if (!status)
-        status = w->part->rows(w->part->context, row, rows, pipeline->packed_buffer);
-    if (!status && exr_encoding_run(w->exr, w->index, pipeline))
+        status = w->part->rows(w->part->context, row, rows, pipeline->exr.packed_buffer);
+    if (!status && exr_encoding_run(w->exr, w->index, &pipeline->exr))
         status = w->io ? w->io : RELUME_EIO;
     end_turn(w, (int)item, status);
 }
@@ -195,7 +216,7 @@ static relume_status write_part(struct writing *w, const struct exr_part *part, 
     const size_t blocks = ((size_t)part->height + (size_t)w->block_rows - 1) / (size_t)w->block_rows;
     thread_for(threads, blocks, write_block, w);
     for (int i = 0; i < threads; i++)
-        exr_encoding_destroy(w->exr, &w->pipelines[i]);
+        exr_encoding_destroy(w->exr, &w->pipelines[i].exr);
     free(w->pipelines);
     return w->status;
 }

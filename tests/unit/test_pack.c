@@ -1,0 +1,172 @@
+// test_pack.c - a relume file, written and read: everything that went in comes out
+#include "test.h"
+
+#include "capture_fixture.h"
+
+static char folder[64], path[96];
+
+static int setup(void **state)
+{
+    (void)state;
+    test_folder(folder);
+    snprintf(path, sizeof path, "%s/pack.exr", folder);
+    return 0;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    test_folder_remove(folder);
+    return 0;
+}
+
+static void check_planes(relume_pack *pack, const struct fixture *f, int view)
+{
+    struct relume_image depth, mask;
+    CHECK_OK(relume_pack_depth(&depth, pack, view));
+    CHECK_OK(relume_pack_mask(&mask, pack, view));
+    assert_true((depth.data != NULL) == f->depth && (mask.data != NULL) == f->mask);
+    for (int i = 0; depth.data && i < f->width * f->height; i++)
+        assert_true(depth.data[i] == (i % 3 ? 2.5f : INFINITY));
+    for (int i = 0; mask.data && i < f->width * f->height; i++)
+        assert_true(mask.data[i] == (i % 5 > 0));
+    relume_image_destroy(&depth);
+    relume_image_destroy(&mask);
+}
+
+// The table keeps the captured samples: at a captured light the value is that of the fixture, half a
+// step away at most.
+static void check_values(relume_pack *pack, const struct fixture *f, int view)
+{
+    const struct relume_codes *codes;
+    CHECK_OK(relume_pack_codes(&codes, pack, view));
+    const struct relume_coder_info *info = relume_coder_info(codes->coder);
+    for (int i = 0; i < f->lights; i++) {
+        const struct relume_light light = {.direction = info->directions[i], .rgb = {1, 1, 1}};
+        struct relume_image image = {0};
+        CHECK_OK(relume_relight(&image, codes, &light, 1, NULL));
+        for (int p = 0; p < f->width * f->height; p++)
+            for (int c = 0; c < 3; c++) {
+                const bool inside = !f->mask || p % 5 > 0;
+                const double want =
+                    inside ? fixture_value(f, view, light.direction, p % f->width, p / f->width, c)
+                           : 0.0;
+                const double step = codes->storage == RELUME_STORE_HALF
+                                        ? 0x1p-10 * (want + 0x1p-14)  // 11 bits, half a step
+                                        : (double)codes->scale[3 * i + c];
+                // with a mask 0 must be a code, which may move the others by half a step
+                // the scratch file's 16 bits a band, and directions in single precision
+                CHECK_NEAR(image.data[3 * p + c], want, step * (f->mask ? 1.01 : 0.51) + 2e-5);
+            }
+        double rgb[3];
+        relume_relight_pixel(rgb, codes, f->width - 1, 0, &light, 1);
+        CHECK_NEAR(image.data[3 * (f->width - 1)], rgb[0], 1e-6);
+        relume_image_destroy(&image);
+    }
+}
+
+static void test_round_trips(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"", "none", "rle", "zip", "piz"};
+    const struct fixture fixtures[] = {
+        {.width = 11, .height = 37, .lights = 7, .views = 1, .hemisphere = true},
+        {.width = 8, .height = 5, .lights = 9, .views = 3, .depth = true, .mask = true},
+        {.width = 1, .height = 1, .lights = 1, .views = 1, .depth = true},
+    };
+    for (size_t i = 0; i < sizeof fixtures / sizeof *fixtures; i++) {
+        const struct fixture *f = &fixtures[i];
+        fixture_write(f, folder);
+        for (int storage = RELUME_STORE_8; storage <= RELUME_STORE_HALF; storage++)
+            for (int c = RELUME_COMPRESS_NONE; c <= RELUME_COMPRESS_PIZ; c++) {
+                relume_pack *pack;
+                CHECK_OK(fixture_encode(
+                    folder, path, &relume_basis_table, 0,
+                    relume_pack_encode_params(.storage = (enum relume_storage)storage,
+                                              .compression = (enum relume_compression)c)));
+                CHECK_OK(relume_pack_open(&pack, path, NULL));
+                const struct relume_pack_info *info = relume_pack_info(pack);
+                assert_int_equal(info->version, 1);
+                assert_int_equal(info->width, f->width);
+                assert_int_equal(info->height, f->height);
+                assert_int_equal(info->views, f->views);
+                assert_int_equal(info->storage, storage);
+                assert_string_equal(info->compression, names[c]);
+                assert_int_equal(info->domain, RELUME_DOMAIN_LINEAR);
+                assert_true(info->has_depth == f->depth && info->has_mask == f->mask);
+                assert_int_equal(info->geometry.projection,
+                                 f->views > 1 ? RELUME_SLAB : RELUME_PLANAR);
+                assert_int_equal(relume_coder_info(info->coder)->hemispherical, f->hemisphere);
+                for (int v = 0; v < f->views; v++) {
+                    if (f->views > 1)
+                        CHECK_NEAR(info->uv[v][0], v, 0.0);
+                    check_planes(pack, f, v);
+                    check_values(pack, f, v);
+                    relume_pack_drop(pack, v);
+                }
+                const struct relume_codes *codes;
+                assert_int_equal(relume_pack_codes(&codes, pack, f->views), RELUME_EINVAL);
+                assert_int_equal(relume_pack_codes(&codes, pack, -1), RELUME_EINVAL);
+                assert_null(codes);
+                relume_pack_destroy(&pack);
+            }
+    }
+}
+
+static void test_limits(void **state)
+{
+    (void)state;
+    fixture_write(&(struct fixture){.width = 8, .height = 5, .lights = 9, .views = 3}, folder);
+    CHECK_OK(fixture_encode(folder, path, &relume_basis_sh, 4, NULL));
+    const struct relume_limits limits[] = {
+        {.max_side = 7}, {.max_pixels = 39}, {.max_lights = 8}, {.max_views = 2}};
+    for (size_t i = 0; i < sizeof limits / sizeof *limits; i++) {
+        relume_pack *pack = (void *)1;
+        struct test_log log;
+        test_log_init(&log);
+        assert_int_equal(relume_pack_open(&pack, path,
+                                          relume_pack_params(.limits = &limits[i],
+                                                             .log = &log.log)),
+                         RELUME_EDATA);
+        assert_null(pack);
+        assert_int_equal(log.lines, 1);
+        assert_non_null(strstr(log.text, path));
+    }
+}
+
+static bool stop(void *user, const char *what, double done)
+{
+    int *left = user;
+    (void)what, (void)done;
+    return (*left)-- > 0;
+}
+
+static void test_cancel(void **state)
+{
+    (void)state;
+    fixture_write(&(struct fixture){.width = 8, .height = 50, .lights = 4, .views = 2}, folder);
+    for (int after = 0; after < 100; after++) {
+        int left = after;
+        const struct relume_log log = {.progress = stop, .user = &left};
+        unlink(path);
+        const relume_status status = fixture_encode(folder, path, &relume_basis_sh, 4,
+                                                    relume_pack_encode_params(.log = &log));
+        assert_true((access(path, F_OK) == 0) == (status == RELUME_OK));
+        if (!status) {
+            assert_true(after >= 6);  // some bands, some parts
+            return;
+        }
+        assert_int_equal(status, RELUME_ECANCEL);
+    }
+    fail_msg("never done");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_round_trips),
+        cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_cancel),
+    };
+    return cmocka_run_group_tests(tests, setup, teardown);
+}

@@ -87,6 +87,7 @@ $B/obj/src/%.o:               own_include = -Isrc
 $B/obj/src/cli/%.o:           own_include = -Isrc/cli
 $B/obj/viewer/%.o:            own_include = -Iviewer
 $B/obj/viewer/context_glfw.o: own_flags = $(GLFW)
+$B/obj/tests/tools/decode.o: own_flags = $(EXR)
 $B/obj/tests/%.o:             own_include = -Isrc -Itests -Iviewer
 
 $B/obj/%.o: %.c | $(DEPS)

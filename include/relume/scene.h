@@ -46,7 +46,8 @@ struct relume_synth_params {
     int size;                // pixels: width of planar and slab images and of a cube face,
                              // height of other panoramas (cylindrical: 4:1, spherical: 2:1);
                              // default 256
-    int grid[2];             // slab: cameras along u and v, spread over [-1, 1]; default 5 x 5
+    int grid[2];             // slab: cameras along u and v; default 5 x 5
+    double spread;           // slab: the grid reaches from -spread to spread; default 0.5
     const struct relume_vec3 *eyes;  // slab: cameras instead of the grid, all of one z;
                                      // panorama: its one centre; planar: (0, 0, z) perspective
     int eye_count;

@@ -215,29 +215,30 @@ static relume_status encode_bands(struct encoder *e, const relume_capture *captu
 
 // ---------------------------------------------------------------- quantising
 
-// Codes 0..levels span the plane's range. With a mask 0 must be a code, so that the outside stays black.
-static void choose_steps(relume_coefficients *c, const struct range *total, bool keep_zero)
+// Codes 0..levels span the plane's range. Where the range holds 0, 0 is a code of its own, so that
+// black stays black whatever is added up; a mask makes every range hold it.
+static void choose_step(struct range r, float levels, bool masked, float *scale, float *offset)
 {
-    const float levels = c->info.storage == RELUME_STORE_8 ? 255.0f : 65535.0f;
+    if (!(r.min <= r.max))
+        r = (struct range){0.0f, 0.0f};  // everything is masked
+    if (masked) {
+        r.min = r.min < 0.0f ? r.min : 0.0f;
+        r.max = r.max > 0.0f ? r.max : 0.0f;
+    }
+    const bool holds_zero = r.min <= 0.0f && r.max >= 0.0f;
+    const float steps = holds_zero ? levels - 1.0f : levels;  // room for moving the range
+    *scale = r.max > r.min ? (r.max - r.min) / steps : 1.0f;
+    *offset = holds_zero ? -ceilf(-r.min / *scale) * *scale : r.min;
+}
+
+static void choose_steps(relume_coefficients *c, const struct range *total, bool masked)
+{
     for (int p = 0; p < c->info.planes; p++) {
-        struct range r = total[p];
-        if (c->info.storage == RELUME_STORE_HALF) {
-            c->scale[p] = 1.0f;
-            c->offset[p] = 0.0f;
-            continue;
-        }
-        if (!(r.min <= r.max))
-            r = (struct range){0.0f, 0.0f};  // everything is masked
-        if (keep_zero) {
-            r.min = r.min < 0.0f ? r.min : 0.0f;
-            r.max = r.max > 0.0f ? r.max : 0.0f;
-        }
-        c->scale[p] = r.max > r.min ? (r.max - r.min) / levels : 1.0f;
-        c->offset[p] = r.min;
-        if (keep_zero) {
-            const float zero = floorf(-r.min / c->scale[p] + 0.5f);
-            c->offset[p] = -zero * c->scale[p];
-        }
+        c->scale[p] = 1.0f;
+        c->offset[p] = 0.0f;
+        if (c->info.storage != RELUME_STORE_HALF)
+            choose_step(total[p], c->info.storage == RELUME_STORE_8 ? 255.0f : 65535.0f, masked,
+                        &c->scale[p], &c->offset[p]);
     }
 }
 

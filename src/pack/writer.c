@@ -131,7 +131,7 @@ static void preview_row(const struct preview *p, const void *codes, size_t row, 
                           w, sum);
         }
         for (size_t x = 0; x < width; x++)
-            out[(size_t)(2 - c) *.width + x] =
+            out[(size_t)(2 - c) * width + x] =
                 half_from_float(fminf(curve_decode(&p->curve, sum[x]), 65504.0f));
     }
 }

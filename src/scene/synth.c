@@ -69,6 +69,8 @@ static relume_status check(const struct synth *s)
     for (int i = 0; i < 2; i++)
         if (s->projection == RELUME_SLAB && (p->grid[i] < 1 || p->grid[i] > 256))
             return expected(s, "views", "a grid of 1 to 256 by 1 to 256", p->grid[i]);
+    if (!(p->spread >= 0.0 && p->spread <= 1000.0))
+        return log_fail(p->log, RELUME_EINVAL, "spread: expected 0 to 1000; found %g", p->spread);
     return RELUME_OK;
 }
 
@@ -113,10 +115,11 @@ static relume_status place_eyes(struct synth *s)
 static void place_grid(struct synth *s)
 {
     const int columns = s->p.grid[0], rows = s->p.grid[1];
+    const double spread = s->p.spread != 0.0 ? s->p.spread : 0.5;
     for (int i = 0; i < s->views; i++) {
         const int column = i % columns, row = i / columns;
-        s->uv[i][0] = columns > 1 ? 2.0 * column / (columns - 1) - 1.0 : 0.0;
-        s->uv[i][1] = rows > 1 ? 1.0 - 2.0 * row / (rows - 1) : 0.0;
+        s->uv[i][0] = columns > 1 ? spread * (2.0 * column / (columns - 1) - 1.0) : 0.0;
+        s->uv[i][1] = rows > 1 ? spread * (1.0 - 2.0 * row / (rows - 1)) : 0.0;
     }
 }
 

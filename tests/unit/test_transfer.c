@@ -1,0 +1,71 @@
+#include "test.h"
+
+static const struct relume_transfer linear = {RELUME_CURVE_LINEAR, 0.0f};
+static const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+
+static void test_srgb_known_values(void **state)
+{
+    (void)state;
+    // IEC 61966-2-1: 18 % grey and both ends; code 128 of 255 is 0.21586 linear
+    CHECK_NEAR(relume_transfer_encode(srgb, 0.18f), 0.46135613, 1e-6);
+    CHECK_NEAR(relume_transfer_decode(srgb, 128.0f / 255.0f), 0.2158605, 1e-6);
+    CHECK_NEAR(relume_transfer_decode(srgb, 0.0f), 0.0, 0.0);
+    CHECK_NEAR(relume_transfer_decode(srgb, 1.0f), 1.0, 1e-7);
+    // the linear piece, and its joint: both sides agree to 1e-7 in the standard's own numbers
+    CHECK_NEAR(relume_transfer_decode(srgb, 0.02f), 0.02 / 12.92, 1e-9);
+    CHECK_NEAR(relume_transfer_decode(srgb, 0.04045f), relume_transfer_decode(srgb, 0.040451f), 2e-7);
+}
+
+static void test_round_trips(void **state)
+{
+    (void)state;
+    const struct relume_transfer curves[] = {
+        linear, srgb, {RELUME_CURVE_GAMMA, 2.2f}, {RELUME_CURVE_GAMMA, 0.5f}};
+    for (size_t i = 0; i < sizeof curves / sizeof *curves; i++)
+        for (int v = -300; v <= 300; v++) {
+            const float code = (float)v / 100.0f;
+            const float again =
+                relume_transfer_encode(curves[i], relume_transfer_decode(curves[i], code));
+            // powf is exact to a few units in the last place; the exponents multiply that by < 3
+            CHECK_NEAR(again, code, 1e-5 * (1.0 + fabs(code)));
+        }
+}
+
+static void test_curves_are_odd(void **state)
+{
+    (void)state;
+    for (int v = 0; v <= 200; v++)
+        assert_true(relume_transfer_decode(srgb, -(float)v / 100) ==
+                    -relume_transfer_decode(srgb, (float)v / 100));
+}
+
+static void test_parse_and_text(void **state)
+{
+    (void)state;
+    struct relume_transfer t;
+    char text[32];
+    static const char *const good[] = {"linear", "srgb", "gamma:2.2", "gamma:1", "gamma:0.45"};
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+        CHECK_OK(relume_transfer_parse(&t, good[i]));
+        relume_transfer_text(t, text, sizeof text);
+        assert_string_equal(text, good[i]);
+    }
+    static const char *const bad[] = {"",           "SRGB",      "gamma",    "gamma:",
+                                      "gamma:0",    "gamma:-1",  "gamma:11", "gamma:nan",
+                                      "gamma:2.2x", "gamma:inf", "linear "};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_int_equal(relume_transfer_parse(&t, bad[i]), RELUME_EINVAL);
+    relume_transfer_text(srgb, text, 3);
+    assert_string_equal(text, "sr");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_srgb_known_values),
+        cmocka_unit_test(test_round_trips),
+        cmocka_unit_test(test_curves_are_odd),
+        cmocka_unit_test(test_parse_and_text),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -88,4 +88,13 @@ attic_ray() { awk -v x="$1" -v y="$2" -v w="$width" -v n=$size -v lo="$v_min" -v
     phi = ((x + .5) / w * 2 - 1) * 3.14159265358979
     printf "--direction %.12f,%.12f,%.12f", sin(phi), hi - (y + .5) / n * (hi - lo), -cos(phi) }'; }
 agree "a panorama" attic.exr 0 "--eye $x,$y,$z $(attic_ray 31 12)" 31 12
+
+# The worked example says what happens. Rays and fits may differ a little between CPU types.
+"$RELUME" synth box -o ex --size 16 --lights 9 --hemisphere --samples 4 -q
+"$RELUME" encode ex -o ex.exr --basis sh --coefficients 4 -q
+said=$(sed -n '/query ex.exr/,$s/^ *\([0-9.]* [0-9.]* [0-9.]*\)$/\1/p' "$TOP/docs/format.md")
+tolerance=2e-3
+check "the worked example of format.md" near \
+    "$("$RELUME" query ex.exr --eye -0.0625,-0.1875,4 --direction 0,0,-1 --light "dir 0 0 1")" "$said"
+agree "the worked example decoded" ex.exr 0 "--eye -0.0625,-0.1875,4 --direction 0,0,-1" 7 9
 finish

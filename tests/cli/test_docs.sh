@@ -1,0 +1,32 @@
+#!/bin/sh
+# What docs/ promises exists: every option it names, every file it links to, every relume.* attribute
+# that the code writes and no other.
+. "$(dirname "$0")/lib.sh"
+docs="$TOP/docs"
+
+{
+    "$VIEWER" --help
+    for c in $("$RELUME" --help | sed -n 's/^  \([a-z]*\) .*/\1/p'); do "$RELUME" "$c" --help; done
+} | grep -o -e '--[a-z-]*' | sort -u >known.txt
+# options of other programs that the texts use
+printf '%s\n' --cflags --libs --static --info --version >>known.txt
+for page in "$docs"/*.md; do
+    name=$(basename "$page")
+    unknown=$(grep -o -e '\(^\|[^a-z-]\)--[a-z][a-z-]*' "$page" | sed 's/^[^-]*//' | sort -u |
+        grep -vxF -f known.txt | tr '\n' ' ')
+    if [ -z "$unknown" ]; then ok "$name names options that exist"; else
+        not_ok "$name names options that exist" "unknown: $unknown"
+    fi
+    for target in $(grep -o ']([^)#]*' "$page" | sed 's/^](//' | grep -v '^http' | sort -u); do
+        check "$name links to $target" test -e "$docs/$target"
+    done
+done
+
+grep -o '"relume\.[a-z]*"' "$TOP/src/pack/format.h" | tr -d '"' | sort -u >written.txt
+grep -o '^| `relume\.[a-z]*`' "$docs/format.md" | tr -d '|` ' | sort -u >documented.txt
+same "format.md has every attribute and no other" written.txt documented.txt
+
+folders=$(sed -n '/^## Layout/,/^## Who/p' "$docs/architecture.md" | sed -n 's|^  \([a-z]*\)/ .*|\1|p' | sort)
+check "architecture.md has every folder of src" \
+    test "$folders" = "$(cd "$TOP/src" && ls -d -- */ | tr -d / | sort)"
+finish

@@ -111,6 +111,7 @@ $B/librelume.a: $(LIB_O)
 	$(AR) rcs $@ $^
 $B/librelume.so: $(LIB_O)
 	$(CXX) $(MODE) -shared -Wl,-soname,librelume.so.$(MAJOR) -o $@ $^ $(LDFLAGS) $(LIBS)
+	ln -sfn $(@F) $@.$(MAJOR)
 $B/relume: $(CLI_O) $B/librelume.a
 	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
 $B/relume-view: $(VIEWER_O) $B/librelume.a

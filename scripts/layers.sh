@@ -17,10 +17,11 @@ view:base math image:base image relight view capture
 frame:base math:base image capture coder pack relight view frame
 scene:base math image:base image lights capture scene
 cli:cli:*
-viewer:viewer:*"
+viewer:viewer:*
+samples::*"
 
 folder_files() {
-    case $1 in viewer) find viewer -name '*.c' -o -name '*.h' -o -name '*.cpp' ;;
+    case $1 in viewer | samples) find "$1" -name '*.c' -o -name '*.h' -o -name '*.cpp' ;;
     *) find "src/$1" -name '*.c' -o -name '*.h' -o -name '*.cpp' ;; esac
 }
 

@@ -49,6 +49,7 @@ plant() {
 plant "a private header of a neighbour" src/math/sh.c '#include "image/image.h"' image/image.h
 plant "a private header of a stranger" src/cli/cmd_info.c '#include "pack/format.h"' pack/format.h
 plant "a private header in the viewer" viewer/app.c '#include "base/log.h"' base/log.h
+plant "a private header in a sample" samples/minimal.c '#include "base/log.h"' base/log.h
 plant "a public header from above" src/coder/fit.c '#include <relume/pack.h>' '<relume/pack.h>'
 plant "an external library out of place" src/pack/reader.c '#include <openexr.h>' '<openexr'
 plant "BLAS out of place" src/coder/encode.c '#include <cblas.h>' '<\(cblas'

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Run every test of one build: check.sh BUILD_FOLDER. Each on its own, under a time limit. Prints
-# what failed and, last, "N passed, N failed, N skipped". Test scripts print one line a case:
+# Run every test of one build: check.sh BUILD_FOLDER. Each on its own, under a time limit, as many at
+# once as there are cores: most of a script's time is the tool's start. Prints what failed and, last, "N passed, N failed, N skipped". Test scripts print one line a case:
 # "ok NAME", "not ok NAME: why" or "skipped: why".
 set -u
 build=$1
@@ -9,31 +9,43 @@ export RELUME="$PWD/$build/relume" VIEWER="$PWD/$build/relume-view" TOP="$PWD" B
 export ASAN_OPTIONS="detect_leaks=1:allocator_may_return_null=1"
 export LSAN_OPTIONS="suppressions=$here/gl/lsan.supp:print_suppressions=0"
 export TSAN_OPTIONS="suppressions=$here/threads/tsan.supp"
-log=$(mktemp) || exit 1
-trap 'rm -f "$log"' EXIT
+logs=$(mktemp -d) || exit 1
+trap 'rm -rf "$logs"' EXIT
 passed=0 failed=0 skipped=0
+
+tests() {
+    for t in "$build"/tests/unit/* "$build"/tests/props/* "$build"/tests/kernels/* \
+        "$build"/tests/threads/* "$build"/tests/gl/*; do
+        [ -x "$t" ] && [ -f "$t" ] && echo "$t"
+    done
+    [ "${ONLY_BINARIES:-}" ] || for t in "$here"/cli/test_*.sh; do
+        [ -x "$t" ] && echo "$t"
+    done
+}
+
+# name of the log of a test: its folder and its own name
+log_of() { echo "$logs/$(basename "$(dirname "$1")").$(basename "$1")"; }
 
 count() { grep -cE "$1" "$log" || true; }
 
-run() { # name, command
-    timeout "${TEST_LIMIT_S:-300}" "$2" >"$log" 2>&1
-    status=$?
+report() { # test
+    log=$(log_of "$1")
+    name=$(basename "$(dirname "$1")")/$(basename "$1")
+    status=$(cat "$log.status")
     p=$(count '^(ok |\[       OK \])')
     f=$(count '^(not ok |\[  FAILED  \] [a-zA-Z])')
     s=$(count '^(skipped:|\[  SKIPPED \] [a-zA-Z])')
     [ "$status" -ne 0 ] && [ "$f" -eq 0 ] && f=1
-    [ "$f" -ne 0 ] && { echo "---- $1 (status $status)"; cat "$log"; }
-    grep -E '^skipped:' "$log" | sed "s|^|$1: |"
+    [ "$f" -ne 0 ] && { echo "---- $name (status $status)"; cat "$log"; }
+    grep -E '^skipped:' "$log" | sed "s|^|$name: |"
     passed=$((passed + p)) failed=$((failed + f)) skipped=$((skipped + s))
-    printf '%-28s %3d passed %d failed %d skipped\n' "$1" "$p" "$f" "$s"
+    printf '%-28s %3d passed %d failed %d skipped\n' "$name" "$p" "$f" "$s"
 }
 
-for t in "$build"/tests/unit/* "$build"/tests/props/* "$build"/tests/kernels/* \
-    "$build"/tests/threads/* "$build"/tests/gl/*; do
-    [ -x "$t" ] && [ -f "$t" ] && run "${t#"$build"/tests/}" "$t"
-done
-[ "${ONLY_BINARIES:-}" ] || for t in "$here"/cli/*.sh; do
-    [ -x "$t" ] && run "cli/$(basename "$t")" "$t"
-done
+tests >"$logs/list"
+while read -r t; do printf '%s\n%s\n' "$t" "$(log_of "$t")"; done <"$logs/list" |
+    xargs -n 2 -P "$(nproc)" sh -c \
+        'timeout "${TEST_LIMIT_S:-300}" "$0" >"$1" 2>&1; echo $? >"$1.status"'
+while read -r t; do report "$t"; done <"$logs/list"
 echo "$passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ]

@@ -8,17 +8,17 @@ docs="$TOP/docs"
     "$VIEWER" --help
     for c in $("$RELUME" --help | sed -n 's/^  \([a-z]*\) .*/\1/p'); do "$RELUME" "$c" --help; done
 } | grep -o -e '--[a-z-]*' | sort -u >known.txt
-# options of other programs that the texts use
-printf '%s\n' --cflags --libs --static --info --version >>known.txt
+# options of other programs that the texts use, and a mistake that they show
+printf '%s\n' --cflags --libs --static --info --version --lihgt >>known.txt
 for page in "$docs"/*.md; do
-    name=$(basename "$page")
+    text=$(basename "$page")
     unknown=$(grep -o -e '\(^\|[^a-z-]\)--[a-z][a-z-]*' "$page" | sed 's/^[^-]*//' | sort -u |
-        grep -vxF -f known.txt | tr '\n' ' ')
-    if [ -z "$unknown" ]; then ok "$name names options that exist"; else
-        not_ok "$name names options that exist" "unknown: $unknown"
+        grep -v -e '-$' | grep -vxF -f known.txt | tr '\n' ' ')
+    if [ -z "$unknown" ]; then ok "$text names options that exist"; else
+        not_ok "$text names options that exist" "unknown: $unknown"
     fi
     for target in $(grep -o ']([^)#]*' "$page" | sed 's/^](//' | grep -v '^http' | sort -u); do
-        check "$name links to $target" test -e "$docs/$target"
+        check "$text links to $target" test -e "$docs/$target"
     done
 done
 

@@ -7,6 +7,8 @@ PREFIX ?= /usr/local
 FUZZ_S ?= 20
 
 B := $(if $(filter release,$(config)),build,build/$(config))
+# The first number of the version names the shared library: librelume.so.0
+MAJOR := $(shell sed -n 's/^.define RELUME_VERSION "\([0-9]*\)\..*/\1/p' include/relume/base.h)
 
 CC       ?= gcc
 CXX      ?= g++
@@ -45,7 +47,7 @@ GL_C     := $(wildcard tests/gl/*.c)
 BENCH_C  := $(wildcard tests/bench/*.c)
 FUZZ_C   := $(wildcard tests/fuzz/*.c)
 TOOLS_C  := $(wildcard tests/tools/*.c)
-# minimal.c is built against the installed library instead (scripts/test_install.sh)
+# minimal.c is built against the installed library instead (tests/cli/test_install.sh)
 SAMPLES_C := samples/sphere.c
 
 LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $(LIB_CXX:%.cpp=$B/obj/%.o)
@@ -85,6 +87,7 @@ $B/obj/src/%.o:               own_include = -Isrc
 $B/obj/src/cli/%.o:           own_include = -Isrc/cli
 $B/obj/viewer/%.o:            own_include = -Iviewer
 $B/obj/viewer/context_glfw.o: own_flags = $(GLFW)
+$B/obj/tests/tools/decode.o: own_flags = $(EXR)
 $B/obj/tests/%.o:             own_include = -Isrc -Itests -Iviewer
 
 $B/obj/%.o: %.c | $(DEPS)
@@ -107,7 +110,8 @@ $B/librelume.a: $(LIB_O)
 	rm -f $@
 	$(AR) rcs $@ $^
 $B/librelume.so: $(LIB_O)
-	$(CXX) $(MODE) -shared -Wl,-soname,librelume.so -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(CXX) $(MODE) -shared -Wl,-soname,librelume.so.$(MAJOR) -o $@ $^ $(LDFLAGS) $(LIBS)
+	ln -sfn $(@F) $@.$(MAJOR)
 $B/relume: $(CLI_O) $B/librelume.a
 	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
 $B/relume-view: $(VIEWER_O) $B/librelume.a
@@ -133,7 +137,7 @@ $(GL): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O)) $B/librel
 # `make test` is everything; `make check` is the part that one config runs.
 test: all
 	@tests/run.sh $(MAKE)
-check: $(UNIT) $(GL) $(TOOLS) cli viewer
+check: all $(UNIT) $(GL) $(TOOLS)
 	@tests/check.sh $B
 check-threads: $(filter $B/tests/threads/%,$(UNIT))
 	@ONLY_BINARIES=1 tests/check.sh $B

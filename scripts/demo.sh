@@ -32,7 +32,7 @@ echo "  $out/teapot-viewer.png  the viewer's own frame, rendered without a displ
 
 echo "An attic from its middle: a panorama under 144 lights"
 "$relume" synth attic -o "$out/attic" --lights 144 --hemisphere --size 384 --samples 6
-"$relume" encode "$out/attic" -o "$out/attic.exr" --basis sh --coefficients 64
+"$relume" encode "$out/attic" -o "$out/attic.exr" --basis table
 
 # A sun among six weak lights that stand for the sky: any number of lights costs one pass.
 attic() { # what, file, sun, options...

@@ -17,10 +17,11 @@ view:base math image:base image relight view capture
 frame:base math:base image capture coder pack relight view frame
 scene:base math image:base image lights capture scene
 cli:cli:*
-viewer:viewer:*"
+viewer:viewer:*
+samples::*"
 
 folder_files() {
-    case $1 in viewer) find viewer -name '*.c' -o -name '*.h' -o -name '*.cpp' ;;
+    case $1 in viewer | samples) find "$1" -name '*.c' -o -name '*.h' -o -name '*.cpp' ;;
     *) find "src/$1" -name '*.c' -o -name '*.h' -o -name '*.cpp' ;; esac
 }
 
@@ -44,11 +45,11 @@ RULES
 
 only_in() { # pattern file...: an external header appears in these files only
     pattern=$1; shift
-    for f in $(grep -rlE "#include <$pattern" src viewer tests samples 2>/dev/null || true); do
+    for f in $(grep -rlE "^#include <$pattern" src viewer tests samples 2>/dev/null || true); do
         case " $* " in *" $f "*) ;; *) complain "$f includes <$pattern...>; belongs to $*" ;; esac
     done
 }
-only_in 'openexr' src/image/exr.c
+only_in 'openexr' src/image/exr.c tests/tools/decode.c
 only_in 'OpenImageIO' src/image/oiio.cpp
 only_in 'embree' src/scene/trace.c
 only_in '(cblas|lapacke)' src/math/lsq.c

@@ -65,6 +65,11 @@ static relume_status parse_transfer(const char *text, struct relume_transfer *ou
     return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", text);
 }
 
+static double decibel(double mse)
+{
+    return mse > 1e-20 ? -10.0 * log10(mse) : 200.0;
+}
+
 static void say_result(const struct args *args, const relume_coder *coder,
                        const struct relume_encode_report *report, const char *path)
 {
@@ -73,10 +78,9 @@ static void say_result(const struct args *args, const relume_coder *coder,
     const double store = report->store_rms * report->store_rms;
     char text[256];
     snprintf(text, sizeof text,
-             "%s: %s with %d coefficients; captured lights are met to %.2f dB, storing costs %.3f dB",
-             path, info->basis->name, info->coefficients,
-             fmin(200.0, -10.0 * log10(fit + store + 1e-20)),
-             fit > 0.0 ? 10.0 * log10(1.0 + store / fit) : 0.0);
+             "%s: %s with %d coefficients; captured lights are met to %.2f dB (%.2f dB before "
+             "storing)",
+             path, info->basis->name, info->coefficients, decibel(fit + store), decibel(fit));
     args_log(args)->message(args_log(args)->user, RELUME_NOTE, text);
 }
 

@@ -15,7 +15,9 @@
 
 #include <string.h>
 
-enum { CHUNK = 2048 };
+// Pixels a worker takes at once: each plane is then read in runs of 8 kB, long enough for the CPU to
+// fetch ahead, and the sums still fit the first-level cache.
+enum { CHUNK = 8192 };
 
 // One dot product per channel: quantiser steps and constants folded in.
 struct pass {

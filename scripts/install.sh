@@ -1,0 +1,55 @@
+#!/bin/sh
+# Install a build: install.sh BUILD DESTPREFIX PREFIX. Files go below DESTPREFIX; PREFIX is where
+# they will be found later (different when a package is made).
+set -eu
+build=$1 dest=$2 prefix=$3
+here=$(cd "$(dirname "$0")/.." && pwd)
+version=$(sed -n 's/^#define RELUME_VERSION "\(.*\)"/\1/p' "$here/include/relume/base.h")
+major=${version%%.*}
+
+put() { # mode, file, folder
+    install -d "$3"
+    install -m "$1" "$2" "$3/"
+}
+link() { ln -sfn "$1" "$2"; }
+
+put 755 "$build/relume" "$dest/bin"
+put 755 "$build/relume-view" "$dest/bin"
+put 644 "$build/librelume.a" "$dest/lib"
+install -m 755 "$build/librelume.so" "$dest/lib/librelume.so.$version"
+link "librelume.so.$version" "$dest/lib/librelume.so.$major"
+link "librelume.so.$major" "$dest/lib/librelume.so"
+for header in "$here"/include/relume/*.h; do
+    put 644 "$header" "$dest/include/relume"
+done
+put 644 "$here/LICENSE" "$dest/share/doc/relume"
+
+# Private: what librelume.so has inside itself, and who links librelume.a must name. openblas is
+# named by hand: its own .pc file adds the Fortran library, which a C program need not have.
+install -d "$dest/lib/pkgconfig"
+cat >"$dest/lib/pkgconfig/relume.pc" <<PC
+prefix=$prefix
+includedir=\${prefix}/include
+libdir=\${prefix}/lib
+
+Name: relume
+Description: image-based relighting
+Version: $version
+Requires.private: OpenImageIO OpenEXR jansson
+Libs: -L\${libdir} -lrelume
+Libs.private: $(pkg-config --libs openblas) -llapacke -lembree3 -lstdc++ -lm -pthread
+Cflags: -I\${includedir}
+PC
+
+# From here on the programs speak for themselves.
+man=$dest/share/man/man1
+install -d "$man"
+"$here/scripts/man.sh" "$build/relume" >"$man/relume.1"
+"$here/scripts/man.sh" "$build/relume-view" >"$man/relume-view.1"
+for command in $("$build/relume" --help | sed -n 's/^  \([a-z]*\) .*/\1/p'); do
+    "$here/scripts/man.sh" "$build/relume" "$command" >"$man/relume-$command.1"
+done
+completions=$dest/share/bash-completion/completions
+install -d "$completions"
+"$here/scripts/completion.sh" "$build/relume" "$build/relume-view" >"$completions/relume"
+link relume "$completions/relume-view"

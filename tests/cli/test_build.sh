@@ -1,0 +1,58 @@
+#!/bin/sh
+# The build itself: nothing is rebuilt when nothing changed, a touched header rebuilds, and the
+# layer rules hold for this tree and would notice if they did not.
+. "$(dirname "$0")/lib.sh"
+case $BUILD in
+*/build) config=release ;;
+*) config=$(basename "$BUILD") ;;
+esac
+
+make -s -C "$TOP" config=$config all >make.txt 2>&1 || not_ok "make" "$(tail -n 5 make.txt)"
+if make -q -C "$TOP" config=$config all >make.txt 2>&1; then
+    ok "nothing is rebuilt when nothing changed"
+else
+    not_ok "nothing is rebuilt when nothing changed" \
+        "$(make -n -C "$TOP" config=$config all 2>&1 | head -n 5)"
+fi
+# -W: as if the file had just changed
+if make -q -W include/relume/pack.h -C "$TOP" config=$config all >make.txt 2>&1; then
+    not_ok "a changed header is noticed" "make -q says that all is up to date"
+else
+    ok "a changed header is noticed"
+fi
+if make -C "$TOP" config=fast all >make.txt 2>&1; then
+    not_ok "an unknown config is refused" "status 0"
+else
+    check "an unknown config is refused" grep -q "expected release, debug, asan or tsan" make.txt
+fi
+
+# ---------------------------------------------------------------- layers
+check "layers hold" "$TOP/scripts/layers.sh"
+mkdir tree
+(cd "$TOP" && tar cf - --exclude=__pycache__ src include viewer scripts samples tests Makefile) |
+    (cd tree && tar xf -)
+check "layers hold in a copy" tree/scripts/layers.sh
+
+# plant NAME FILE LINE PATTERN: with LINE added to FILE, layers fails and names the file
+plant() {
+    cp "tree/$2" before
+    echo "$3" >>"tree/$2"
+    if tree/scripts/layers.sh >layers.txt 2>&1; then
+        not_ok "$1" "'$3' in $2 passes"
+    elif grep -qE "layers: $2 includes $4" layers.txt; then
+        ok "$1"
+    else
+        not_ok "$1" "layers says: $(head -n 3 layers.txt)"
+    fi
+    cp before "tree/$2"
+}
+plant "a private header of a neighbour" src/math/sh.c '#include "image/image.h"' image/image.h
+plant "a private header of a stranger" src/cli/cmd_info.c '#include "pack/format.h"' pack/format.h
+plant "a private header in the viewer" viewer/app.c '#include "base/log.h"' base/log.h
+plant "a private header in a sample" samples/minimal.c '#include "base/log.h"' base/log.h
+plant "a public header from above" src/coder/fit.c '#include <relume/pack.h>' '<relume/pack.h>'
+plant "an external library out of place" src/pack/reader.c '#include <openexr.h>' '<openexr'
+plant "BLAS out of place" src/coder/encode.c '#include <cblas.h>' '<\(cblas'
+plant "intrinsics out of place" src/relight/relight.c '#include <immintrin.h>' '<immintrin'
+check "layers hold again" tree/scripts/layers.sh
+finish

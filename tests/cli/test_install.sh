@@ -1,0 +1,115 @@
+#!/bin/sh
+# What `make install` leaves is complete: a program builds against it by pkg-config and runs, every
+# header stands alone, every command has a manual page and an example.
+. "$(dirname "$0")/lib.sh"
+prefix=$work/prefix
+case $BUILD in
+*/build) config=release sanitizer= ;;
+*/asan) config=asan sanitizer=-fsanitize=address,undefined ;;
+*/tsan) config=tsan sanitizer=-fsanitize=thread ;;
+*) config=$(basename "$BUILD") sanitizer= ;;
+esac
+CC=${CC:-gcc} CXX=${CXX:-g++}
+
+if ! make -s -C "$TOP" config=$config install PREFIX="$prefix" >install.txt 2>&1; then
+    not_ok install "$(tail -n 5 install.txt)"
+    exit 1
+fi
+version=$(sed -n 's/^#define RELUME_VERSION "\(.*\)"/\1/p' "$TOP/include/relume/base.h")
+for file in bin/relume bin/relume-view lib/librelume.a lib/librelume.so lib/librelume.so.${version%%.*} \
+    lib/pkgconfig/relume.pc share/doc/relume/LICENSE share/bash-completion/completions/relume; do
+    check "installs $file" test -s "$prefix/$file"
+done
+export PKG_CONFIG_PATH="$prefix/lib/pkgconfig"
+check "pkg-config knows the version" test "$(pkg-config --modversion relume)" = "$version"
+check "the installed tool runs" test "$("$prefix/bin/relume" --version)" = "relume $version"
+
+# ---------------------------------------------------------------- a program of the library's user
+"$RELUME" synth box -o box --size 32 --lights 9 --samples 1 -q &&
+    "$RELUME" encode box -o box.exr -q || not_ok "a small file" "cannot be made"
+
+build_and_run() { # name, libraries
+    if why=$($CC -std=c11 -Wall -Wextra -Werror $sanitizer "$TOP/samples/minimal.c" \
+        $(pkg-config --cflags relume) $2 -o "$1" 2>&1); then
+        ok "minimal.c builds, $1"
+        check "minimal.c runs, $1" env LD_LIBRARY_PATH="$prefix/lib" "./$1" box.exr "$1.png"
+        check "minimal.c writes its picture, $1" test -s "$1.png"
+    else
+        not_ok "minimal.c builds, $1" "$why"
+    fi
+}
+build_and_run shared "$(pkg-config --libs relume)"
+build_and_run static "$(pkg-config --static --libs relume | sed 's/-lrelume/-l:librelume.a/')"
+same "shared and static give one picture" shared.png static.png
+"$RELUME" relight box.exr -o tool.png --light "dir 1 0.5 1" -q
+same "minimal.c does what relight does" shared.png tool.png
+if ldd shared | grep -q "librelume.so.${version%%.*} =>"; then
+    ok "programs ask for the versioned library"
+else
+    not_ok "programs ask for the versioned library" "$(ldd shared | grep relume)"
+fi
+if LD_LIBRARY_PATH="$prefix/lib" ./shared nothing.exr out.png 2>err.txt; then
+    not_ok "minimal.c says what is wrong" "status 0"
+else
+    check "minimal.c says what is wrong" grep -q "nothing.exr: no such file" err.txt
+fi
+
+# ---------------------------------------------------------------- headers
+for header in "$prefix"/include/relume/*.h; do
+    name=$(basename "$header")
+    echo "#include <relume/$name>" >alone.c
+    cp alone.c alone.cpp
+    check "$name alone, C11" $CC -std=c11 -Wall -Wextra -Wpedantic -Werror -fsyntax-only \
+        "-I$prefix/include" alone.c
+    check "$name alone, C++17" $CXX -std=c++17 -Wall -Wextra -Wpedantic -Werror -fsyntax-only \
+        "-I$prefix/include" alone.cpp
+done
+
+# ---------------------------------------------------------------- manual pages, help, completion
+man=$prefix/share/man/man1
+commands=$("$RELUME" --help | sed -n 's/^  \([a-z]*\) .*/\1/p')
+[ "$(echo "$commands" | wc -w)" -ge 8 ] || not_ok "the overview lists commands" "$commands"
+has_sections() { # page
+    for section in NAME SYNOPSIS DESCRIPTION OPTIONS EXAMPLE "EXIT STATUS"; do
+        grep -q "^.SH $section" "$1" || { echo "no $section"; return 1; }
+    done
+}
+has_example() { "$@" --help | sed -n '/^example:/,$p' | grep -q "^  relume"; }
+for page in relume relume-view $(for c in $commands; do echo "relume-$c"; done); do
+    check "$page.1 has every section" has_sections "$man/$page.1"
+done
+for c in $commands; do
+    check "$c --help has an example" has_example "$RELUME" "$c"
+done
+check "relume-view --help has an example" has_example "$VIEWER"
+for option in $("$RELUME" encode --help | sed -n 's/^  \(--[a-z-]*\).*/\1/p'); do
+    check "relume-encode.1 has $option" grep -q -- "$(echo "$option" | sed 's/-/\\\\-/g')" \
+        "$man/relume-encode.1"
+done
+if command -v mandoc >/dev/null; then
+    check "manual pages are well formed" mandoc -Tlint -W warning "$man"/*.1
+else
+    skip "manual pages are well formed" "mandoc is not installed"
+fi
+
+complete_words() { # words...: what completion offers after them
+    bash -c '. "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1))
+        "$(complete -p "$1" | sed "s/.*-F \([^ ]*\).*/\1/")"; echo "${COMPREPLY[*]}"' \
+        bash "$prefix/share/bash-completion/completions/relume" "$@"
+}
+offers() { # expected, words...
+    expected=$1
+    shift
+    found=$(complete_words "$@")
+    [ "$found" = "$expected" ] || { echo "offers '$found', expected '$expected'"; return 1; }
+}
+if command -v bash >/dev/null; then
+    check "completion of commands" offers "encode eval" relume e
+    check "completion of options" offers "--coefficients --compression" relume encode --co
+    check "completion of values" offers "8 16 half" relume encode --bits ""
+    check "completion of scenes" offers "teapot" relume synth te
+    check "completion of the viewer" offers "--offscreen" relume-view --off
+else
+    skip completion "bash is not installed"
+fi
+finish

@@ -12,12 +12,14 @@ extern "C" {
 
 enum relume_light_kind {
     RELUME_LIGHT_DIRECTIONAL = 0,
+    RELUME_LIGHT_POINT,  // the direction differs from pixel to pixel: needs `surface`
 };
 
 // A light of value 1 gives a white Lambertian surface facing it the value 1.
 struct relume_light {
     enum relume_light_kind kind;
     struct relume_vec3 direction;  // directional: towards the light; any length but 0
+    struct relume_vec3 position;   // point: world units; the same value at every distance
     float rgb[3];                  // linear value of the light
 };
 
@@ -29,6 +31,9 @@ struct relume_relight_params {
     const struct relume_log *log;
     unsigned cpu_off;  // RELUME_CPU_* features not to use; ~0u runs the plain C reference
     int threads;       // default: all cores
+    // Three channels of the size of the codes: the world position that each pixel sees, not
+    // finite for background. Only point lights read it (Wong 1998, Eq. 7.7 with its sign corrected).
+    const struct relume_image *surface;
 };
 #define relume_relight_params(...) (&(const struct relume_relight_params){__VA_ARGS__})
 
@@ -37,13 +42,14 @@ struct relume_relight_params {
 // display-domain codes are decoded light by light, linearised, then summed.
 // A light below the horizon of a hemispherical capture is a warning (once) in the log.
 // `out` is created when its data is NULL, else it must have the size of `codes`.
-// Returns RELUME_EINVAL, RELUME_ENOMEM.
+// Point lights evaluate the basis at every pixel's own direction and add nothing to background.
+// Returns RELUME_EINVAL (a zero direction, a point light without a surface), RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_relight(struct relume_image *out,
                                            const struct relume_codes *codes,
                                            const struct relume_light *lights, int n,
                                            const struct relume_relight_params *params);
 
-// The same at one pixel, in double precision: the slow reference.
+// The same at one pixel under directional lights, in double precision: the slow reference.
 RELUME_API void relume_relight_pixel(double rgb[3], const struct relume_codes *codes, int x, int y,
                                      const struct relume_light *lights, int n);
 

@@ -75,8 +75,12 @@ static relume_status evaluate_image(struct evaluation *e, int view, int light,
                                     const struct relume_camera *camera,
                                     const struct relume_image *mask)
 {
-    const struct relume_vec3 d = e->manifest->directions[light];
-    const struct relume_light lamp = {.direction = d, .rgb = {1.0f, 1.0f, 1.0f}};
+    struct relume_light lamp = {.direction = e->manifest->directions[light],
+                                .rgb = {1.0f, 1.0f, 1.0f}};
+    if (e->manifest->positions) {
+        lamp.kind = RELUME_LIGHT_POINT;
+        lamp.position = e->manifest->positions[light];
+    }
     struct relume_image captured = {0}, relit = {0};
     struct relume_difference difference;
     struct prefix_log about;

@@ -27,15 +27,44 @@ static struct renderer renderer_of(relume_pack *pack, const struct relume_light 
     };
 }
 
+static bool has_point_light(const struct renderer *r)
+{
+    for (int i = 0; i < r->light_count; i++)
+        if (r->lights[i].kind == RELUME_LIGHT_POINT)
+            return true;
+    return false;
+}
+
+static relume_status find_surface(const struct renderer *r, int view, struct relume_image *out)
+{
+    struct relume_image depth;
+    relume_status status = relume_pack_depth(&depth, r->pack, view);
+    if (status)
+        return status;
+    status = relume_surface(out, &r->info->geometry, r->info->uv[view],
+                            depth.data ? &depth : NULL, r->info->width, r->info->height);
+    if (status == RELUME_EINVAL)
+        (void)log_fail(r->params.log, status,
+                       "a point light needs to know where the surface is; the file has no depth");
+    relume_image_destroy(&depth);
+    return status;
+}
+
 static relume_status relight_view(const struct renderer *r, int view, struct relume_image *out)
 {
     const struct relume_codes *codes;
-    const relume_status status = relume_pack_codes(&codes, r->pack, view);
-    if (status)
-        return status;
-    return relume_relight(out, codes, r->lights, r->light_count,
-                          relume_relight_params(.log = r->params.log, .cpu_off = r->params.cpu_off,
-                                                .threads = r->params.threads));
+    struct relume_image surface = {0};
+    relume_status status = relume_pack_codes(&codes, r->pack, view);
+    if (!status && has_point_light(r))
+        status = find_surface(r, view, &surface);
+    if (!status)
+        status = relume_relight(out, codes, r->lights, r->light_count,
+                                relume_relight_params(.log = r->params.log,
+                                                      .cpu_off = r->params.cpu_off,
+                                                      .threads = r->params.threads,
+                                                      .surface = &surface));
+    relume_image_destroy(&surface);
+    return status;
 }
 
 // ---------------------------------------------------------------- framings

@@ -13,7 +13,6 @@ extern "C" {
 
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <new>
 #include <string>
@@ -53,8 +52,12 @@ relume_status broken(oiio_reader *r, const std::string &what)
 // marker in the coded data itself ends the picture. Bytes after it are some cameras' habit.
 bool jpeg_is_truncated(const std::string &path)
 {
-    std::ifstream file(path, std::ios::binary);
-    const std::string b((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    const std::streamoff size = file.tellg();
+    std::string b(size > 0 ? size_t(size) : 0, '\0');
+    file.seekg(0);
+    if (!file.read(&b[0], std::streamsize(b.size())))
+        return true;
     const auto at = [&b](size_t i) { return (unsigned char)b[i]; };
     size_t i = 2;
     while (i + 4 <= b.size()) {

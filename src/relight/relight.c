@@ -34,6 +34,9 @@ struct job {
     int count;
     bool display;
     struct curve curve;
+    const struct relume_light *lights;  // all of them, for those that differ from pixel to pixel
+    int light_count;
+    const struct relume_image *surface;
 };
 
 static int plane_of(const struct relume_coder_info *info, int k, int channel)
@@ -70,18 +73,28 @@ static void add_light(struct pass *pass, const relume_coder *coder,
     }
 }
 
+static int count_kind(const struct relume_light *lights, int n, enum relume_light_kind kind)
+{
+    int count = 0;
+    for (int i = 0; i < n; i++)
+        count += lights[i].kind == kind;
+    return count;
+}
+
 static relume_status make_passes(struct job *job, const struct relume_light *lights, int n)
 {
     const size_t size = 3 * (size_t)relume_coder_info(job->codes->coder)->coefficients;
-    job->count = job->display ? n : 1;
+    job->count = job->display ? count_kind(lights, n, RELUME_LIGHT_DIRECTIONAL) : 1;
     job->passes = mem_zeroed((size_t)job->count, sizeof *job->passes);
     float *one = mem_array(size, sizeof *one);
     bool good = job->passes && one;
     for (int i = 0; good && i < job->count; i++)
         good = (job->passes[i].weights = mem_zeroed(size, sizeof(float))) != NULL;
-    for (int i = 0; good && i < n; i++) {
+    for (int i = 0, next = 0; good && i < n; i++) {
         struct relume_light light = lights[i];
-        struct pass *pass = &job->passes[job->display ? i : 0];
+        if (light.kind != RELUME_LIGHT_DIRECTIONAL)
+            continue;
+        struct pass *pass = &job->passes[job->display ? next++ : 0];
         if (job->display) {
             memcpy(pass->rgb, light.rgb, sizeof pass->rgb);
             light.rgb[0] = light.rgb[1] = light.rgb[2] = 1.0f;
@@ -136,6 +149,51 @@ static void dot_channel(const struct job *job, const struct pass *pass, int chan
     }
 }
 
+static double code_at(const struct relume_codes *codes, int plane, size_t pixel)
+{
+    if (codes->storage == RELUME_STORE_8)
+        return ((const uint8_t *)codes->plane[plane])[pixel];
+    const uint16_t word = ((const uint16_t *)codes->plane[plane])[pixel];
+    return codes->storage == RELUME_STORE_16 ? (double)word : (double)float_from_half(word);
+}
+
+enum { MOST_WEIGHTS = 3 * 4096 };
+
+// The value of one pixel under light of value 1 from a unit direction, linear.
+static void value_from(const struct job *job, size_t pixel, vec3 direction, float rgb[3])
+{
+    const struct relume_codes *codes = job->codes;
+    const struct relume_coder_info *info = relume_coder_info(codes->coder);
+    float weights[MOST_WEIGHTS], constant[3];
+    relume_coder_weights(codes->coder, direction, weights, constant);
+    for (int c = 0; c < 3; c++) {
+        double v = (double)constant[c];
+        for (int k = 0; k < info->coefficients; k++) {
+            const int p = plane_of(info, k, c);
+            v += (double)weights[c * info->coefficients + k] *
+                 (code_at(codes, p, pixel) * (double)codes->scale[p] + (double)codes->offset[p]);
+        }
+        rgb[c] = job->display ? curve_decode(&job->curve, (float)v) : (float)v;
+    }
+}
+
+static void add_point_lights(const struct job *job, size_t pixel, float *out)
+{
+    const float *p = job->surface->data + 3 * pixel;
+    const vec3 seen = vec3_of((double)p[0], (double)p[1], (double)p[2]);
+    for (int i = 0; i < job->light_count; i++) {
+        const struct relume_light *light = &job->lights[i];
+        const vec3 towards = vec3_sub(light->position, seen);
+        const double distance = vec3_length(towards);
+        float rgb[3];
+        if (light->kind != RELUME_LIGHT_POINT || !(distance > 0.0) || !isfinite(distance))
+            continue;
+        value_from(job, pixel, vec3_scale(towards, 1.0 / distance), rgb);
+        for (int c = 0; c < 3; c++)
+            out[c] += light->rgb[c] * rgb[c];
+    }
+}
+
 static void relight_chunk(void *context, size_t item, int worker)
 {
     (void)worker;
@@ -145,6 +203,8 @@ static void relight_chunk(void *context, size_t item, int worker)
     const size_t n = pixels - first < CHUNK ? pixels - first : CHUNK;
     float values[CHUNK];
     float *out = job->out->data + first * 3;
+    if (job->count == 0)
+        memset(out, 0, 3 * n * sizeof *out);
     for (int c = 0; c < 3; c++) {
         for (int p = 0; p < job->count; p++) {
             const struct pass *pass = &job->passes[p];
@@ -159,6 +219,8 @@ static void relight_chunk(void *context, size_t item, int worker)
                         pass->rgb[c] * curve_decode(&job->curve, values[i]);
         }
     }
+    for (size_t i = 0; job->surface && i < n; i++)
+        add_point_lights(job, first + i, out + 3 * i);
 }
 
 static void warn_below_horizon(const struct relume_codes *codes, const struct relume_light *lights,
@@ -166,13 +228,31 @@ static void warn_below_horizon(const struct relume_codes *codes, const struct re
 {
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     for (int i = 0; info->hemispherical && i < n; i++)
-        if (pole_from_world(vec3_unit(lights[i].direction), info->pole_y).z < -1e-9) {
+        if (lights[i].kind == RELUME_LIGHT_DIRECTIONAL &&
+            pole_from_world(vec3_unit(lights[i].direction), info->pole_y).z < -1e-9) {
             log_line(log, RELUME_WARNING,
                      "light %d lies below the horizon, where nothing was captured; the value at the "
                      "horizon is shown",
                      i + 1);
             return;
         }
+}
+
+static relume_status check_lights(const struct relume_codes *codes,
+                                  const struct relume_light *lights, int n,
+                                  const struct relume_relight_params *p)
+{
+    const struct relume_image *s = p->surface;
+    for (int i = 0; i < n; i++)
+        if (lights[i].kind == RELUME_LIGHT_DIRECTIONAL && !(vec3_length(lights[i].direction) > 0.0))
+            return log_fail(p->log, RELUME_EINVAL,
+                            "light %d: expected a direction, found zero", i + 1);
+    if (count_kind(lights, n, RELUME_LIGHT_POINT) == 0)
+        return RELUME_OK;
+    if (!s || s->width != codes->width || s->height != codes->height || s->channels != 3)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "a point light needs to know where the surface is; expected depth");
+    return RELUME_OK;
 }
 
 relume_status relume_relight(struct relume_image *out, const struct relume_codes *codes,
@@ -182,12 +262,10 @@ relume_status relume_relight(struct relume_image *out, const struct relume_codes
     const struct relume_relight_params p = params ? *params : (struct relume_relight_params){0};
     if (n < 0)
         return RELUME_EINVAL;
-    for (int i = 0; i < n; i++)
-        if (!(vec3_length(lights[i].direction) > 0.0))
-            return log_fail(p.log, RELUME_EINVAL, "light %d: expected a direction, found zero",
-                            i + 1);
+    relume_status status = check_lights(codes, lights, n, &p);
+    if (status)
+        return status;
     const bool create = !out->data;
-    relume_status status = RELUME_OK;
     if (create)
         status = relume_image_create(out, codes->width, codes->height, 3);
     else if (out->width != codes->width || out->height != codes->height || out->channels != 3)
@@ -201,14 +279,15 @@ relume_status relume_relight(struct relume_image *out, const struct relume_codes
         .kernels = kernels_choose(p.cpu_off),
         .out = out,
         .display = codes->domain == RELUME_DOMAIN_DISPLAY,
+        .lights = lights,
+        .light_count = n,
+        .surface = count_kind(lights, n, RELUME_LIGHT_POINT) ? p.surface : NULL,
     };
     status = make_passes(&job, lights, n);
     if (!status && job.display)
         curve_init(&job.curve, codes->display);
     if (!status) {
         const size_t pixels = (size_t)codes->width * (size_t)codes->height;
-        if (job.count == 0)
-            memset(out->data, 0, pixels * 3 * sizeof *out->data);
         thread_for(p.threads, (pixels + CHUNK - 1) / CHUNK, relight_chunk, &job);
     } else if (create) {
         relume_image_destroy(out);
@@ -219,21 +298,12 @@ relume_status relume_relight(struct relume_image *out, const struct relume_codes
     return status;
 }
 
-static double code_at(const struct relume_codes *codes, int plane, size_t pixel)
-{
-    if (codes->storage == RELUME_STORE_8)
-        return ((const uint8_t *)codes->plane[plane])[pixel];
-    const uint16_t word = ((const uint16_t *)codes->plane[plane])[pixel];
-    return codes->storage == RELUME_STORE_16 ? (double)word : (double)float_from_half(word);
-}
-
 void relume_relight_pixel(double rgb[3], const struct relume_codes *codes, int x, int y,
                           const struct relume_light *lights, int n)
 {
-    enum { MOST = 3 * 4096 };
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     const size_t pixel = (size_t)y * (size_t)codes->width + (size_t)x;
-    float weights[MOST], constant[3];
+    float weights[MOST_WEIGHTS], constant[3];
     rgb[0] = rgb[1] = rgb[2] = 0.0;
     for (int i = 0; i < n; i++) {
         relume_coder_weights(codes->coder, vec3_unit(lights[i].direction), weights, constant);

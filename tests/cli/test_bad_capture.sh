@@ -119,6 +119,15 @@ sed 's/\(light[0-9]*\)\.png/\1.jpg/g' wrap/capture.json >c/capture.json
 fine png-named-jpg - c $L
 fine png-named-png - wrap $L
 same 'PNG data in .jpg files' png-named-jpg.exr png-named-png.exr
+# CMYK: no black, half cyan, no magenta, full yellow is rgb codes 128 255 0, linear .216 1 0
+fresh good c; "$mkimage" cmyk c/view00/light0003.jpg 24 24 127 0 255 0
+fine cmyk - c $L
+"$mkimage" read c/view00/light0003.jpg 5 5 >cmyk.txt
+above 'CMYK: half of red' "$(cut -d' ' -f1 cmyk.txt)" 0.20
+below 'CMYK: not more' "$(cut -d' ' -f1 cmyk.txt)" 0.23
+above 'CMYK: all green' "$(cut -d' ' -f2 cmyk.txt)" 0.98
+below 'CMYK: no blue' "$(cut -d' ' -f3 cmyk.txt)" 0.001
+
 # ---- .lp files
 lp() { fresh good c; cat >c/dirs.lp; }
 body() { tail -n +2 good/dirs.lp; }

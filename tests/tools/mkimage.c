@@ -7,6 +7,7 @@
 //   mkimage gain IN OUT FACTOR             every value times FACTOR, as float EXR
 //   mkimage plane IN OUT VALUE             one channel of VALUE of the size of IN, as float EXR
 //   mkimage bigpng OUT W H | bigexr OUT W H    a few bytes that claim a size
+//   mkimage cmyk OUT W H C M Y K           CMYK JPEG of one colour, inks 0 to 255, as Adobe writes it
 //   mkimage read IMAGE X Y                 the linear value of a pixel
 //   mkimage maxdiff A B                    the largest difference, linear
 //   mkimage sum OUT A B                    A + B, as float EXR
@@ -270,6 +271,65 @@ static void write_big_exr(const char *to, uint32_t width, uint32_t height)
     save(&b, to);
 }
 
+// ---------------------------------------------------------------- CMYK JPEG
+// Baseline, four components, no coefficients but DC: code of category n is n in 4 bits, "end of
+// block" is one bit 0.
+
+struct bits {
+    struct buffer *out;
+    uint32_t held;
+    int count;
+};
+
+static void put_bits(struct bits *b, uint32_t value, int count)
+{
+    for (int i = count - 1; i >= 0; i--) {
+        b->held = b->held << 1 | (value >> i & 1);
+        if (++b->count == 8) {
+            put_byte(b->out, b->held & 255);
+            if ((b->held & 255) == 255)
+                put_byte(b->out, 0);
+            b->count = 0;
+        }
+    }
+}
+
+static void put_block(struct bits *b, int difference)
+{
+    int category = 0;
+    for (int v = abs(difference); v; v >>= 1)
+        category++;
+    put_bits(b, (uint32_t)category, 4);
+    const int code = difference < 0 ? difference + (1 << category) - 1 : difference;
+    put_bits(b, (uint32_t)code, category);
+    put_bits(b, 0, 1);
+}
+
+static void write_cmyk(const char *to, int width, int height, char **inks)
+{
+    struct buffer b = {0};
+    put(&b, "\xff\xd8\xff\xee\0\x0e" "Adobe\0\x64\0\0\0\0\0", 18);
+    put(&b, "\xff\xdb\0\x43\0", 5);
+    for (int i = 0; i < 64; i++)
+        put_byte(&b, 8);  // DC is 8 times the mean
+    put(&b, "\xff\xc0\0\x14\x08", 5);
+    put_big(&b, (uint32_t)height, 2);
+    put_big(&b, (uint32_t)width, 2);
+    put(&b, "\x04\x01\x11\0\x02\x11\0\x03\x11\0\x04\x11\0", 13);
+    put(&b, "\xff\xc4\0\x1c\0\0\0\0\x09\0\0\0\0\0\0\0\0\0\0\0\0", 21);
+    for (int i = 0; i < 9; i++)
+        put_byte(&b, (unsigned)i);
+    put(&b, "\xff\xc4\0\x14\x10\x01\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 22);
+    put(&b, "\xff\xda\0\x0e\x04\x01\0\x02\0\x03\0\x04\0\0\x3f\0", 16);
+    struct bits bits = {.out = &b};
+    for (int block = 0; block < (width + 7) / 8 * ((height + 7) / 8); block++)
+        for (int c = 0; c < 4; c++)  // inks are stored inverted
+            put_block(&bits, block ? 0 : 255 - atoi(inks[c]) - 128);
+    put_bits(&bits, 0x7f, 7);  // fill the last byte
+    put(&b, "\xff\xd9", 2);
+    save(&b, to);
+}
+
 // ---------------------------------------------------------------- values
 
 static size_t samples(const struct relume_image *image)
@@ -362,6 +422,8 @@ int main(int argc, char **argv)
         write_big_png(argv[2], (uint32_t)atol(argv[3]), (uint32_t)atol(argv[4]));
     else if (!strcmp(what, "bigexr") && argc == 5)
         write_big_exr(argv[2], (uint32_t)atol(argv[3]), (uint32_t)atol(argv[4]));
+    else if (!strcmp(what, "cmyk") && argc == 9)
+        write_cmyk(argv[2], atoi(argv[3]), atoi(argv[4]), argv + 5);
     else if (!strcmp(what, "read") && argc == 5)
         print_pixel(argv[2], atoi(argv[3]), atoi(argv[4]));
     else if (!strcmp(what, "maxdiff") && argc == 4)

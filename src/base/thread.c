@@ -1,6 +1,5 @@
 #include "base/thread.h"
 
-#include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
 
@@ -61,4 +60,27 @@ void thread_for(int threads, size_t items, void (*body)(void *, size_t, int), vo
     run(&workers[0]);
     for (int i = 1; i < started; i++)
         pthread_join(ids[i], NULL);
+}
+
+static void *run_task(void *argument)
+{
+    const struct thread_task *task = argument;
+    task->body(task->context);
+    return NULL;
+}
+
+void thread_start(struct thread_task *task, void (*body)(void *context), void *context)
+{
+    task->body = body;
+    task->context = context;
+    task->running = !pthread_create(&task->id, NULL, run_task, task);
+    if (!task->running)
+        body(context);
+}
+
+void thread_wait(struct thread_task *task)
+{
+    if (task->running)
+        pthread_join(task->id, NULL);
+    task->running = false;
 }

@@ -4,6 +4,8 @@
 
 #include <relume/base.h>
 
+#include <pthread.h>
+
 // `threads` <= 0 means all cores; never more than 256.
 int thread_count(int threads);
 
@@ -12,5 +14,16 @@ int thread_count(int threads);
 // A machine that starts fewer threads is merely slower.
 void thread_for(int threads, size_t items, void (*body)(void *context, size_t item, int worker),
                 void *context);
+
+// One piece of work beside the caller's; runs at once where no thread can be had. A zeroed task is
+// idle; start only idle tasks.
+struct thread_task {
+    void (*body)(void *context);
+    void *context;
+    pthread_t id;
+    bool running;
+};
+void thread_start(struct thread_task *task, void (*body)(void *context), void *context);
+void thread_wait(struct thread_task *task);
 
 #endif

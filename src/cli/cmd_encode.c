@@ -12,7 +12,7 @@ static const struct option options[] = {
     {"--domain", OPTION_TEXT, "D", "linear or display; default: by the capture's transfer", 0, 0},
     {"--compression", OPTION_TEXT, "C", "none, rle, zip or piz (all lossless); default: piz", 0, 0},
     {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
-    {"--ridge", OPTION_NUMBER, "R", "smoothing of the fit, 0 to 1; default: 1e-7", 0, 1},
+    {"--ridge", OPTION_NUMBER, "R", "smoothing of the fit, 0 to 1; default: 1e-6", 0, 1},
     {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };

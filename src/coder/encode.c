@@ -45,7 +45,13 @@ struct encoder {
     int row, rows;     // of the band in progress
     float *samples;    // [lights][rows][x][3]
     float *values;     // [K][rows][x][3]
-    uint16_t *packed;  // [rows][planes][x]
+    uint16_t *packed[2];  // [rows][planes][x]: one is filled while the other is written
+    int filling;
+    struct thread_task writing;
+    const uint16_t *write_from;
+    size_t write_bytes;
+    off_t write_at;
+    int write_error;  // errno of a write that failed
     const struct relume_image *mask;
     const char *const *images;  // [lights], for messages
     struct range *total;  // [planes], over unmasked pixels
@@ -82,13 +88,25 @@ static void apply_mask(struct encoder *e)
                 memset(&e->values[((size_t)k * pixels + x) * 3], 0, 3 * sizeof *e->values);
 }
 
+// Eight running extremes side by side: compilers keep them in vector registers.
 static struct range find_range(const float *v, size_t pixels)
 {
-    struct range r = {FLT_MAX, -FLT_MAX};
+    enum { LANES = 8 };
+    float min[LANES], max[LANES];
+    for (int i = 0; i < LANES; i++) {
+        min[i] = FLT_MAX;
+        max[i] = -FLT_MAX;
+    }
     for (size_t x = 0; x < pixels; x++) {
         const float f = v[3 * x];
-        r.min = f < r.min ? f : r.min;
-        r.max = f > r.max ? f : r.max;
+        const size_t i = x % LANES;
+        min[i] = f < min[i] ? f : min[i];
+        max[i] = f > max[i] ? f : max[i];
+    }
+    struct range r = {FLT_MAX, -FLT_MAX};
+    for (int i = 0; i < LANES; i++) {
+        r.min = min[i] < r.min ? min[i] : r.min;
+        r.max = max[i] > r.max ? max[i] : r.max;
     }
     return r;
 }
@@ -106,7 +124,7 @@ static void pack_plane(void *context, size_t plane, int worker)
     e->total[plane].min = r.min < e->total[plane].min ? r.min : e->total[plane].min;
     e->total[plane].max = r.max > e->total[plane].max ? r.max : e->total[plane].max;
     for (int y = 0; y < e->rows; y++) {
-        uint16_t *to = e->packed + ((size_t)y * (size_t)e->planes + plane) * width;
+        uint16_t *to = e->packed[e->filling] + ((size_t)y * (size_t)e->planes + plane) * width;
         const float *from = v + (size_t)y * width * 3;
         if (half)
             for (size_t x = 0; x < width; x++)
@@ -127,17 +145,17 @@ static bool is_measured(const relume_coefficients *c, int row)
 static relume_status measure_fit(struct encoder *e)
 {
     const int k = e->coder->info.coefficients, columns = e->width * 3;
-    float *again = mem_array((size_t)columns, sizeof *again);
+    float *again = mem_array((size_t)e->lights * (size_t)columns, sizeof *again);
     if (!again)
         return RELUME_ENOMEM;
     const size_t stride = (size_t)e->rows * (size_t)columns;
+    lsq_multiply(e->lights, columns, k, e->basis, k, e->values, (int)stride, again, columns);
     for (int i = 0; i < e->lights; i++) {
         const float *sample = e->samples + (size_t)i * stride;
-        lsq_multiply(1, columns, k, e->basis + (size_t)i * (size_t)k, k, e->values, (int)stride,
-                     again, columns);
+        const float *fitted = again + (size_t)i * (size_t)columns;
         for (int x = 0; x < columns; x++)
             if (is_inside(e->mask, (size_t)e->row * (size_t)e->width + (size_t)x / 3)) {
-                const double d = (double)sample[x] - (double)again[x];
+                const double d = (double)sample[x] - (double)fitted[x];
                 e->error_sum += d * d;
                 e->error_count++;
             }
@@ -169,6 +187,37 @@ static relume_status check_size(const struct encoder *e, const struct relume_enc
                     half ? "half storage" : "single precision", (double)most);
 }
 
+static void write_packed(void *context)
+{
+    struct encoder *e = context;
+    if (!scratch_write(e->out->fd, e->write_from, e->write_bytes, e->write_at))
+        e->write_error = errno;
+}
+
+static relume_status finish_writing(struct encoder *e, const struct relume_encode_params *p)
+{
+    thread_wait(&e->writing);
+    if (!e->write_error)
+        return RELUME_OK;
+    return log_fail(p->log, RELUME_EIO, "%s: writing its temporary file failed; %s",
+                    p->scratch ? p->scratch : "$TMPDIR", strerror(e->write_error));
+}
+
+// Send the band just packed to the scratch file while the next one is read.
+static relume_status write_band(struct encoder *e, size_t pixels,
+                                const struct relume_encode_params *p)
+{
+    const relume_status status = finish_writing(e, p);
+    if (status)
+        return status;
+    e->write_from = e->packed[e->filling];
+    e->write_bytes = pixels * (size_t)e->planes * sizeof *e->write_from;
+    e->write_at = band_offset(e->out, e->row);
+    e->filling ^= 1;
+    thread_start(&e->writing, write_packed, e);
+    return RELUME_OK;
+}
+
 static relume_status encode_band(struct encoder *e, relume_table *table,
                                  const struct relume_encode_params *p)
 {
@@ -186,11 +235,7 @@ static relume_status encode_band(struct encoder *e, relume_table *table,
     status = check_size(e, p);
     if (status)
         return status;
-    const size_t bytes = columns / 3 * (size_t)e->planes * sizeof *e->packed;
-    if (!scratch_write(e->out->fd, e->packed, bytes, band_offset(e->out, e->row)))
-        return log_fail(p->log, RELUME_EIO, "%s: writing its temporary file failed; %s",
-                        p->scratch ? p->scratch : "$TMPDIR", strerror(errno));
-    return RELUME_OK;
+    return write_band(e, columns / 3, p);
 }
 
 static relume_status encode_bands(struct encoder *e, const relume_capture *capture, int view,
@@ -210,6 +255,9 @@ static relume_status encode_bands(struct encoder *e, const relume_capture *captu
             status = RELUME_ECANCEL;
     }
     relume_table_destroy(&table);
+    if (!status)
+        return finish_writing(e, p);
+    thread_wait(&e->writing);
     return status;
 }
 
@@ -298,7 +346,7 @@ static relume_status measure_storage(relume_coefficients *c, const struct encode
     uint16_t *waiting = mem_array(planes * width, sizeof *waiting);
     uint16_t *codes = mem_array(planes * width, sizeof *codes);
     float *difference = mem_array(planes * width, sizeof *difference);  // [k][x][3]
-    float *effect = mem_array((size_t)columns, sizeof *effect);
+    float *effect = mem_array((size_t)e->lights * (size_t)columns, sizeof *effect);
     relume_status status = waiting && codes && difference && effect ? RELUME_OK : RELUME_ENOMEM;
     double sum = 0.0;
     size_t count = 0;
@@ -320,13 +368,11 @@ static relume_status measure_storage(relume_coefficients *c, const struct encode
                     r.min + band_step(r) * (float)in[x] - (stored * c->scale[p] + c->offset[p]);
             }
         }
-        for (int i = 0; i < e->lights; i++) {
-            lsq_multiply(1, columns, k, e->basis + (size_t)i * (size_t)k, k, difference, columns,
-                         effect, columns);
-            for (int x = 0; x < columns; x++)
-                sum += (double)effect[x] * (double)effect[x];
-            count += (size_t)columns;
-        }
+        lsq_multiply(e->lights, columns, k, e->basis, k, difference, columns, effect, columns);
+        const size_t n = (size_t)e->lights * (size_t)columns;
+        for (size_t i = 0; i < n; i++)
+            sum += (double)effect[i] * (double)effect[i];
+        count += n;
     }
     c->report.store_rms = count ? sqrt(sum / (double)count) : 0.0;
     free(waiting);
@@ -407,11 +453,12 @@ static relume_status alloc_encoder(struct encoder *e)
     float *weights = mem_array(3 * k, sizeof *weights);
     e->samples = mem_array(lights * band, sizeof *e->samples);
     e->values = mem_array(k * band, sizeof *e->values);
-    e->packed = mem_array(k * band, sizeof *e->packed);
+    for (int i = 0; i < 2; i++)
+        e->packed[i] = mem_array(k * band, sizeof *e->packed[i]);
     e->total = mem_array((size_t)e->planes, sizeof *e->total);
     e->basis = mem_array(lights * k, sizeof *e->basis);
     const bool good =
-        weights && e->samples && e->values && e->packed && e->total && e->basis;
+        weights && e->samples && e->values && e->packed[0] && e->packed[1] && e->total && e->basis;
     for (int p = 0; good && p < e->planes; p++)
         e->total[p] = (struct range){FLT_MAX, -FLT_MAX};
     for (size_t i = 0; good && i < lights; i++) {
@@ -426,7 +473,8 @@ static void free_encoder(struct encoder *e)
 {
     free(e->samples);
     free(e->values);
-    free(e->packed);
+    free(e->packed[0]);
+    free(e->packed[1]);
     free(e->total);
     free(e->basis);
 }

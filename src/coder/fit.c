@@ -21,7 +21,7 @@
 
 enum { FILL_SAMPLES = 256, EQUATOR_SAMPLES = 64 };
 static const double FILL_WEIGHT = 1e-4;
-static const double DEFAULT_RIDGE = 1e-7;
+static const double DEFAULT_RIDGE = 1e-6;
 // Eigenvalues of Yt Y / N below this part of the largest mean that the lights say nothing at all.
 static const double RANK_TOLERANCE = 1e-13;
 

@@ -218,6 +218,7 @@ relume_status write_image(const char *path, int width, int height, int channels,
                             path);
         ImageSpec spec(width, height, channels, type);
         spec["CompressionQuality"] = 95;
+        spec["jpeg:subsampling"] = "4:4:4";  // colour edges of paintings survive
         spec["oiio:ColorSpace"] = type == TypeUInt8 ? "sRGB" : "Linear";
         // OpenImageIO 2.4 writes unreadable TIFF files through a memory proxy.
         const bool in_memory = output->supports("ioproxy") &&

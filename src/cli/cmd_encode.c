@@ -9,7 +9,7 @@ static const struct option options[] = {
     {"--coefficients", OPTION_INT, "K", "coefficients per colour channel; default: by the lights", 1,
      4096},
     {"--bits", OPTION_TEXT, "B", "8, 16 or half; default: 8", 0, 0},
-    {"--domain", OPTION_TEXT, "D", "linear or display; default: by the capture's transfer", 0, 0},
+    {"--domain", OPTION_TEXT, "D", "auto, linear or display; default: auto, by the capture's transfer", 0, 0},
     {"--compression", OPTION_TEXT, "C", "none, rle, zip or piz (all lossless); default: piz", 0, 0},
     {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
     {"--ridge", OPTION_NUMBER, "R", "smoothing of the fit, 0 to 1; default: 1e-6", 0, 1},

@@ -52,11 +52,17 @@ static double mean_hue(double h1, double h2, double chroma_product)
     return h1 + h2 < 360.0 ? 0.5 * (h1 + h2 + 360.0) : 0.5 * (h1 + h2 - 360.0);
 }
 
+static double power7(double v)
+{
+    const double v3 = v * v * v;
+    return v3 * v3 * v;
+}
+
 // Names and equation numbers as in the paper.
 double ciede2000(const double lab1[3], const double lab2[3])
 {
     const double c_mean = 0.5 * (hypot(lab1[1], lab1[2]) + hypot(lab2[1], lab2[2]));
-    const double c7 = pow(c_mean, 7.0), seven = pow(25.0, 7.0);
+    const double c7 = power7(c_mean), seven = power7(25.0);
     const double g = 0.5 * (1.0 - sqrt(c7 / (c7 + seven)));             // (4)
     const double a1 = (1.0 + g) * lab1[1], a2 = (1.0 + g) * lab2[1];    // (5)
     const double c1 = hypot(a1, lab1[2]), c2 = hypot(a2, lab2[2]);      // (6)
@@ -71,7 +77,7 @@ double ciede2000(const double lab1[3], const double lab2[3])
                      0.32 * cosine(3.0 * h + 6.0) - 0.20 * cosine(4.0 * h - 63.0);  // (15)
     const double turn = (h - 275.0) / 25.0;
     const double theta = 30.0 * exp(-turn * turn);                      // (16)
-    const double rc = 2.0 * sqrt(pow(c, 7.0) / (pow(c, 7.0) + seven));  // (17)
+    const double rc = 2.0 * sqrt(power7(c) / (power7(c) + seven));  // (17)
     const double l50 = (l - 50.0) * (l - 50.0);
     const double sl = 1.0 + 0.015 * l50 / sqrt(20.0 + l50);             // (18)
     const double sc = 1.0 + 0.045 * c, sh = 1.0 + 0.015 * c * t;        // (19), (20)

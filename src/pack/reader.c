@@ -132,8 +132,10 @@ static relume_status read_geometry(relume_pack *p)
     if (projection == RELUME_PLANAR) {
         const float *v = get_floats(p, 0, ATTR_WINDOW, 5);
         const char *camera = exr_get_text(p->file, 0, ATTR_CAMERA);
-        if (!v || !(v[0] < v[2] && v[1] < v[3]) || !camera)
+        if (!v || !(v[0] < v[2] && v[1] < v[3]))
             return bad(p, ATTR_WINDOW, "min x y, max x y, camera z");
+        if (!camera || (strcmp(camera, "orthographic") && strcmp(camera, "perspective")))
+            return bad(p, ATTR_CAMERA, "orthographic or perspective");
         for (int i = 0; i < 2; i++) {
             g->window_min[i] = (double)v[i];
             g->window_max[i] = (double)v[2 + i];
@@ -175,7 +177,8 @@ static relume_status read_coder(relume_pack *p)
                         p->path, name ? name : "");
     if (!exr_get_int(p->file, 0, ATTR_COEFFICIENTS, &k) || !basis->has_count(k))
         return bad(p, ATTR_COEFFICIENTS, "a number that the basis has");
-    if (!exr_get_int(p->file, 0, ATTR_HEMISPHERICAL, &hemispherical) || !pole)
+    if (!exr_get_int(p->file, 0, ATTR_HEMISPHERICAL, &hemispherical) || !pole ||
+        (strcmp(pole, "y") && strcmp(pole, "z")))
         return bad(p, ATTR_POLE, "y or z, with " ATTR_HEMISPHERICAL);
     const float *lights = exr_get_floats(p->file, 0, ATTR_LIGHTS, &n);
     if (!lights || n < 3 || n % 3 || n / 3 > p->limits.max_lights || !all_finite(lights, n))

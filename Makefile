@@ -101,7 +101,7 @@ $B/obj/%.o: %.cpp | $(DEPS)
 $B/obj/viewer/shaders.c: scripts/embed.sh $(SHADERS)
 	@mkdir -p $(@D)
 	scripts/embed.sh $(SHADERS) > $@
-$B/obj/viewer/shaders.o: $B/obj/viewer/shaders.c
+$B/obj/viewer/shaders.o: $B/obj/viewer/shaders.c | $(DEPS)
 	$(CC) $(C11) -Iviewer -c -o $@ $<
 
 # ---------------------------------------------------------------- linking

@@ -79,7 +79,8 @@ static void shade(const struct options *o, const struct hit *h, vec3 view, vec3 
     if (o->shade == FULL && !h->sphere && hit_sphere(h->at, light) > 0.0)
         diffuse = 0.0;
     if (o->shade == FULL && h->sphere && n_l > 0.0) {
-        const vec3 mirrored = along(along((vec3){0.0, 0.0, 0.0}, light, -1.0), h->normal, 2.0 * n_l);
+        const vec3 mirrored =
+            along(along((vec3){0.0, 0.0, 0.0}, light, -1.0), h->normal, 2.0 * n_l);
         lobe = 0.5 * pow(fmax(-dot(mirrored, view), 0.0), 20.0);
     }
     for (int c = 0; c < 3; c++) {
@@ -244,9 +245,9 @@ int main(int argc, char **argv)
     struct relume_manifest_view *view = calloc((size_t)views, sizeof *view);
     const struct relume_pattern *pattern = relume_pattern_find(o.pattern);
     if (!directions || !intensities || !view || !pattern ||
-        relume_lights_make(directions, o.lights, pattern,
-                           relume_lights_params(.seed = (uint64_t)o.seed,
-                                                .hemisphere = o.hemisphere)))
+        relume_lights_make(
+            directions, o.lights, pattern,
+            relume_lights_params(.seed = (uint64_t)o.seed, .hemisphere = o.hemisphere)))
         fail("no such lights", o.pattern);
     for (int i = 0; i < o.lights; i++)
         for (int c = 0; c < 3; c++)

@@ -7,11 +7,11 @@
 
 #define PI 3.14159265358979323846
 
-static const double wheel_factor = 1.1; // of the zoom, per step
+static const double wheel_factor = 1.1;  // of the zoom, per step
 static const double zoom_least = 0.1;
 static const double zoom_most = 64.0;
-static const double exposure_step = 0.25; // EV per key
-static const double dolly_factor = 1.05;  // of the eye's distance, per key
+static const double exposure_step = 0.25;  // EV per key
+static const double dolly_factor = 1.05;   // of the eye's distance, per key
 
 static double clamp(double x, double low, double high)
 {

@@ -8,7 +8,7 @@
 #include <relume/frame.h>
 #include <relume/relight.h>
 
-enum { APP_LIGHTS = 64 }; // lights at once; display-domain files pay for each
+enum { APP_LIGHTS = 64 };  // lights at once; display-domain files pay for each
 
 enum app_event_kind {
     APP_PRESS,
@@ -24,30 +24,30 @@ enum { APP_KEY_ESCAPE = 27 };
 
 struct app_event {
     enum app_event_kind kind;
-    enum app_button button; // PRESS, RELEASE
-    double x, y;            // PRESS, RELEASE, MOVE, WHEEL
-    double wheel;           // WHEEL: steps, > 0 away from the user
-    int key;                // KEY_*: a lower-case letter, a sign, or APP_KEY_*
-    int width, height;      // SIZE
+    enum app_button button;  // PRESS, RELEASE
+    double x, y;             // PRESS, RELEASE, MOVE, WHEEL
+    double wheel;            // WHEEL: steps, > 0 away from the user
+    int key;                 // KEY_*: a lower-case letter, a sign, or APP_KEY_*
+    int width, height;       // SIZE
 };
 
 // What the app must know of the file it shows.
 struct app_file {
     struct relume_geometry geometry;
-    int width, height; // of a view
+    int width, height;  // of a view
     int views;
-    double uv_min[2], uv_max[2]; // slab: where cameras stand
+    double uv_min[2], uv_max[2];  // slab: where cameras stand
 };
 
 // What can be reset.
 struct app_state {
-    struct relume_camera camera; // framing is never DEFAULT
-    double zoom;                 // of the picture; 1 fits the frame
-    double shift[2];             // of the picture's middle from the frame's, pixels
+    struct relume_camera camera;  // framing is never DEFAULT
+    double zoom;                  // of the picture; 1 fits the frame
+    double shift[2];              // of the picture's middle from the frame's, pixels
     double exposure_ev;
     struct relume_light light[APP_LIGHTS];
     int lights;
-    bool ball; // show the light's direction on a ball in the corner
+    bool ball;  // show the light's direction on a ball in the corner
 };
 
 enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT };
@@ -56,11 +56,11 @@ enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT };
 struct app {
     struct app_file file;
     struct app_state start, now;
-    int width, height; // of the frame
-    bool letterbox;    // keep the picture's proportions; else it fills the frame
+    int width, height;  // of the frame
+    bool letterbox;     // keep the picture's proportions; else it fills the frame
     enum app_drag drag;
     double cursor[2];
-    bool light_key; // L is held
+    bool light_key;  // L is held
     bool quit;
 };
 

@@ -26,7 +26,7 @@ struct context_backend {
     // The next event; false when there is none (with `wait` only after sleeping for one).
     bool (*next)(void *context, struct context_event *event, bool wait);
 };
-extern const struct context_backend context_glfw;   // a window
-extern const struct context_backend context_osmesa; // no display needed; draw into targets
+extern const struct context_backend context_glfw;    // a window
+extern const struct context_backend context_osmesa;  // no display needed; draw into targets
 
 #endif

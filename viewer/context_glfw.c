@@ -15,7 +15,7 @@ struct window {
     GLFWwindow *handle;
     struct context_event queue[QUEUE];
     int first, count;
-    double cursor[2]; // window units, as of the last event: GLFW itself answers for right now
+    double cursor[2];  // window units, as of the last event: GLFW itself answers for right now
     char dropped[4096];
 };
 

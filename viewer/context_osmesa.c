@@ -8,7 +8,7 @@
 
 struct offscreen {
     OSMesaContext context;
-    unsigned char pixel[4]; // OSMesa wants a buffer; all drawing goes into targets
+    unsigned char pixel[4];  // OSMesa wants a buffer; all drawing goes into targets
 };
 
 static void close_offscreen(void *context)

@@ -12,9 +12,9 @@
 
 // Where and how bright; pixels from the frame's top left corner.
 struct place {
-    int width, height;            // of the frame
-    struct app_rectangle picture; // the whole picture, which may reach beyond the frame
-    float exposure;               // factor
+    int width, height;             // of the frame
+    struct app_rectangle picture;  // the whole picture, which may reach beyond the frame
+    float exposure;                // factor
 };
 
 // The first two uniforms of every program.

@@ -21,8 +21,8 @@ relume_status draw_slab_create(struct program *program, const struct gl *gl,
 
 // Along one axis: the cameras on both sides of a cell and the part of the window seen through it.
 struct strip {
-    int low, high;   // lines of the grid
-    double from, to; // of the window, st units, from < to
+    int low, high;    // lines of the grid
+    double from, to;  // of the window, st units, from < to
 };
 
 static bool clip(struct strip *strip, double from, double to, const double window[2])
@@ -37,7 +37,7 @@ static bool clip(struct strip *strip, double from, double to, const double windo
 static bool find_strip(struct strip *strip, const double *lines, int n, int i, double eye,
                        double reach, const double window[2])
 {
-    const double slack = 1e-9 * (1.0 + fabs(lines[0]) + fabs(lines[n - 1]));
+    const double slack = 1e-6 * (1.0 + fabs(lines[0]) + fabs(lines[n - 1]));
     const int high = n > 1 ? i + 1 : i;
     const double low_u = lines[i] - (i == 0 ? slack : 0.0);
     const double high_u = lines[high] + (high == n - 1 ? slack : 0.0);

@@ -61,8 +61,8 @@ struct gl {
 #define GL_MEMBER(type, name) type name;
     GL_FUNCTIONS(GL_MEMBER)
 #undef GL_MEMBER
-    int max_layers;  // of an array texture, at least 256
-    int max_texture; // pixels along one side
+    int max_layers;   // of an array texture, at least 256
+    int max_texture;  // pixels along one side
 };
 
 typedef void (*gl_proc)(void);

@@ -21,7 +21,8 @@ struct viewer {
     relume_pack *pack;
     struct app app;
     struct renderer renderer;
-    char name[256]; // of the file, for the title
+    char name[256];  // of the file, for the title
+    int threads;     // that read files
     const struct relume_log *log;
 };
 
@@ -98,7 +99,8 @@ static relume_status open_file(struct viewer *v, const char *path, const struct 
 {
     relume_pack *pack;
     struct app app;
-    relume_status status = relume_pack_open(&pack, path, relume_pack_params(.log = v->log));
+    relume_status status =
+        relume_pack_open(&pack, path, relume_pack_params(.log = v->log, .threads = v->threads));
     if (status)
         return status;
     const struct app_file file = describe(pack);
@@ -273,9 +275,10 @@ int main(int argc, char **argv)
     static const struct relume_log log = {.message = on_message};
     struct options options;
     struct viewer viewer = {.log = &log};
-    signal(SIGXFSZ, SIG_IGN); // a file size limit is a write error, not a death
+    signal(SIGXFSZ, SIG_IGN);  // a file size limit is a write error, not a death
     signal(SIGPIPE, SIG_IGN);
     relume_status status = options_parse(&options, argc, argv, &log);
+    viewer.threads = options.threads;
     if (!status && !options.file)
         options_help();
     else if (!status)

@@ -9,7 +9,7 @@
 
 struct option {
     const char *name;
-    const char *argument; // NULL: takes none
+    const char *argument;  // NULL: takes none
     const char *help;
     relume_status (*take)(struct options *o, const char *name, const char *text,
                           const struct relume_log *log);
@@ -119,6 +119,15 @@ static relume_status take_size(struct options *o, const char *name, const char *
     return RELUME_OK;
 }
 
+static relume_status take_threads(struct options *o, const char *name, const char *text,
+                                  const struct relume_log *log)
+{
+    double n;
+    const relume_status status = take_number(&n, name, text, 0, 256, log);
+    o->threads = status ? 0 : (int)n;
+    return status;
+}
+
 static relume_status take_exposure(struct options *o, const char *name, const char *text,
                                    const struct relume_log *log)
 {
@@ -159,6 +168,7 @@ static const struct option options[] = {
     {"--zoom", "F", "panorama: 1 shows 90 degrees", take_zoom},
     {"--size", "WxH", "pixels of the window or picture", take_size},
     {"--exposure", "EV", "brighter by 2^EV", take_exposure},
+    {"--threads", "N", "threads that read files; default: all cores", take_threads},
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},
     {"--script", "EVENTS", "play a text file of events without a window", take_script},
@@ -200,42 +210,14 @@ void options_help(void)
 
 // ---------------------------------------------------------------- parsing
 
-static int edit_distance(const char *a, const char *b)
-{
-    enum { LIMIT = 32 };
-    const size_t n = strlen(b);
-    int row[LIMIT + 1];
-    if (n > LIMIT)
-        return LIMIT;
-    for (size_t j = 0; j <= n; j++)
-        row[j] = (int)j;
-    for (size_t i = 0; a[i]; i++) {
-        int diagonal = row[0];
-        row[0] = (int)i + 1;
-        for (size_t j = 1; j <= n; j++) {
-            const int replaced = diagonal + (a[i] != b[j - 1]);
-            const int shifted = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
-            diagonal = row[j];
-            row[j] = replaced < shifted ? replaced : shifted;
-        }
-    }
-    return row[n];
-}
-
 static relume_status unknown(const char *given, const struct relume_log *log)
 {
-    const struct option *best = NULL;
-    int least = 1 + (int)strlen(given) / 2;
-    for (int i = 0; i < OPTIONS; i++) {
-        const int d = edit_distance(given, options[i].name);
-        if (d < least) {
-            least = d;
-            best = &options[i];
-        }
-    }
-    if (best)
-        return say(log, RELUME_EINVAL, "unknown option '%s'; did you mean '%s'?", given,
-                   best->name);
+    const char *names[OPTIONS + 1] = {NULL};
+    for (int i = 0; i < OPTIONS; i++)
+        names[i] = options[i].name;
+    const char *near = relume_name_nearest(given, names);
+    if (near)
+        return say(log, RELUME_EINVAL, "unknown option '%s'; did you mean '%s'?", given, near);
     return say(log, RELUME_EINVAL, "unknown option '%s'; see 'relume-view --help'", given);
 }
 

@@ -5,11 +5,12 @@
 #include "app.h"
 
 struct options {
-    const char *file;      // NULL: only help was asked for
-    const char *offscreen; // picture to write without a window, or NULL
-    const char *script;    // events to play without a window, or NULL
+    const char *file;       // NULL: only help was asked for
+    const char *offscreen;  // picture to write without a window, or NULL
+    const char *script;     // events to play without a window, or NULL
     struct app_state start;
-    bool sized; // --size was given
+    bool sized;   // --size was given
+    int threads;  // that read files; 0: all cores
 };
 
 // RELUME_EINVAL with a sentence in `log`: unknown options, wrong values, no FILE.

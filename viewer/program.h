@@ -9,7 +9,7 @@ enum { PROGRAM_UNIFORMS = 16 };
 
 struct program {
     GLuint id;
-    GLint at[PROGRAM_UNIFORMS]; // by the caller's enum; -1 when the shader does not use it
+    GLint at[PROGRAM_UNIFORMS];  // by the caller's enum; -1 when the shader does not use it
 };
 
 // Link rectangle.vert with `fragment` ("slab.frag"). `uniforms` is a list of `n` names in the order

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const size_t budget = (size_t)1 << 30; // graphics memory to fill with views
+static const size_t budget = (size_t)1 << 30;  // graphics memory to fill with views
 
 // How GL stores the codes of each kind; `unit` turns its normalised values back into codes.
 struct code_format {

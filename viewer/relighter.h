@@ -19,14 +19,14 @@ struct code_source {
 };
 
 struct relit_view {
-    GLuint *array; // [arrays]: array textures of codes, four planes a texel; NULL: not uploaded
+    GLuint *array;  // [arrays]: array textures of codes, four planes a texel; NULL: not uploaded
     int arrays;
-    int layers; // of all arrays together
+    int layers;  // of all arrays together
     size_t bytes;
-    uint64_t used; // the frame that last asked for it
-    bool fresh;    // `relit` shows the present lights
+    uint64_t used;  // the frame that last asked for it
+    bool fresh;     // `relit` shows the present lights
     struct target relit;
-    struct relume_codes codes; // its planes are gone; scale and offset are ours
+    struct relume_codes codes;  // its planes are gone; scale and offset are ours
     float *scale;
 };
 
@@ -36,13 +36,13 @@ struct relighter {
     struct code_source source;
     struct program dot, develop;
     GLuint vertices;
-    GLuint weights;      // texture [layers][3]
-    struct target coded; // display domain: sum of one light, still coded
+    GLuint weights;       // texture [layers][3]
+    struct target coded;  // display domain: sum of one light, still coded
     struct relit_view *view;
     int views;
     struct relume_light *light;
     int lights;
-    size_t budget, bytes; // of graphics memory for codes and relit views
+    size_t budget, bytes;  // of graphics memory for codes and relit views
     uint64_t frame;
 };
 

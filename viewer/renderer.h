@@ -13,11 +13,11 @@ struct renderer {
     struct program picture, slab, panorama, ball, present;
     GLuint vertices;
     struct target frame;
-    relume_slab *grid; // NULL: not a slab
+    relume_slab *grid;  // NULL: not a slab
     struct relume_geometry geometry;
     int views;
-    bool *needed;                // [views]
-    const struct target **relit; // [views]; NULL where not needed
+    bool *needed;                 // [views]
+    const struct target **relit;  // [views]; NULL where not needed
 };
 
 // `uv` [views] places the cameras of a slab. RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EDATA.

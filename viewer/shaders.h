@@ -5,7 +5,7 @@
 #include <stddef.h>
 
 struct shader_source {
-    const char *name; // "slab.frag"
+    const char *name;  // "slab.frag"
     const char *const *line;
     size_t lines;
 };

@@ -8,7 +8,7 @@
 
 struct target {
     int width, height;
-    GLuint texture; // RGBA32F
+    GLuint texture;  // RGBA32F
     GLuint framebuffer;
 };
 

@@ -11,9 +11,9 @@ enum { LANES = 4 };
 
 struct weights {
     int layers;
-    float *plane;      // [layers][3][LANES]
-    float constant[3]; // added to the dot product
-    float *basis;      // scratch: 3 K values of the coder
+    float *plane;       // [layers][3][LANES]
+    float constant[3];  // added to the dot product
+    float *basis;       // scratch: 3 K values of the coder
 };
 
 // Room for `planes` planes of codes by `coder`, all 0. RELUME_ENOMEM.

@@ -31,6 +31,10 @@ RELUME_API const char *relume_status_text(relume_status status);
 
 enum relume_level { RELUME_ERROR, RELUME_WARNING, RELUME_NOTE };
 
+// The name in a NULL-terminated list that somebody most likely meant who typed `given`; NULL when
+// none is near.
+RELUME_API const char *relume_name_nearest(const char *given, const char *const *names);
+
 // Where sentences for people go. Every params struct takes one; NULL is silent.
 // Thread-safety: all calls come from the thread that called the library.
 struct relume_log {

@@ -42,10 +42,10 @@ RELUME_API struct relume_geometry relume_geometry_default(enum relume_projection
                                                           int width, int height);
 
 struct relume_manifest_view {
-    double uv[2];        // slab: where the camera stands on the uv plane
-    const char **images; // [lights], relative to the manifest
-    const char *depth;   // or NULL
-    const char *mask;    // or NULL
+    double uv[2];         // slab: where the camera stands on the uv plane
+    const char **images;  // [lights], relative to the manifest
+    const char *depth;    // or NULL
+    const char *mask;     // or NULL
 };
 
 // What capture.json says. Everything is borrowed. Thread-safety: plain data.
@@ -53,9 +53,9 @@ struct relume_manifest {
     struct relume_transfer transfer;
     struct relume_geometry geometry;
     int lights;
-    const struct relume_vec3 *directions;   // [lights], unit
-    const struct relume_vec3 *positions;    // [lights], world units, or NULL: distant lights
-    const float (*intensities)[3];          // [lights], or NULL: all 1
+    const struct relume_vec3 *directions;  // [lights], unit
+    const struct relume_vec3 *positions;   // [lights], world units, or NULL: distant lights
+    const float (*intensities)[3];         // [lights], or NULL: all 1
     int views;
     const struct relume_manifest_view *view;  // [views]
 };

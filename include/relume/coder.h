@@ -44,14 +44,14 @@ struct relume_coder_params {
     bool hemispherical;  // the lights cover only the pole's hemisphere
     bool pole_y;         // theta is measured from +y (panoramas); default +z
     double ridge;        // Tikhonov weight relative to the data, [0, 1]; default: the basis's own
-    bool decode;             // only weights will be asked for: no encoding map is made
+    bool decode;         // only weights will be asked for: no encoding map is made
     const float *transform;  // decoding: K x K, row by row; stored functions = transform x basis
                              // functions. Default: the identity
 };
 #define relume_coder_params(...) (&(const struct relume_coder_params){__VA_ARGS__})
 
-// Prepare `basis` for `n` unit directions `lights`. Returns RELUME_EINVAL when the basis has no such
-// K, RELUME_EDATA when the lights cannot determine it (too few, or degenerate), RELUME_ENOMEM.
+// Prepare `basis` for `n` unit directions `lights`. Returns RELUME_EINVAL when the basis has no
+// such K, RELUME_EDATA when the lights cannot determine it (too few, or degenerate), RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_coder_create(relume_coder **out,
                                                 const struct relume_basis *basis,
                                                 const struct relume_vec3 *lights, int n,
@@ -61,9 +61,9 @@ RELUME_API void relume_coder_destroy(relume_coder **coder);
 // What a coder is made of; pointers belong to the coder.
 struct relume_coder_info {
     const struct relume_basis *basis;
-    int coefficients;                  // K
-    bool joint;                        // one set of K planes for R, G, B together; else 3 K planes
-    int planes;                        // K or 3 K; plane of (k, channel c) = joint ? k : 3 k + c
+    int coefficients;  // K
+    bool joint;        // one set of K planes for R, G, B together; else 3 K planes
+    int planes;        // K or 3 K; plane of (k, channel c) = joint ? k : 3 k + c
     bool hemispherical, pole_y;
     double ridge;
     int lights;
@@ -81,7 +81,12 @@ RELUME_API void relume_coder_weights(const relume_coder *coder, struct relume_ve
 // In which light the coefficients live (architecture: "Domain").
 enum relume_domain { RELUME_DOMAIN_AUTO = 0, RELUME_DOMAIN_LINEAR, RELUME_DOMAIN_DISPLAY };
 
-enum relume_storage { RELUME_STORE_DEFAULT = 0, RELUME_STORE_8, RELUME_STORE_16, RELUME_STORE_HALF };
+enum relume_storage {
+    RELUME_STORE_DEFAULT = 0,
+    RELUME_STORE_8,
+    RELUME_STORE_16,
+    RELUME_STORE_HALF
+};
 
 // Coefficient planes of one view, computed and waiting in an unlinked temporary file, with what is
 // needed to quantise them. Thread-safety: reading is safe.
@@ -89,10 +94,10 @@ typedef struct relume_coefficients relume_coefficients;
 
 struct relume_encode_params {
     const struct relume_log *log;
-    enum relume_domain domain;     // default: display for captures that are not linear, else linear
-    enum relume_storage storage;   // default 8 bits
-    int threads;                   // default: all cores
-    const char *scratch;           // temporary data goes beside this path; default: $TMPDIR
+    enum relume_domain domain;    // default: display for captures that are not linear, else linear
+    enum relume_storage storage;  // default 8 bits
+    int threads;                  // default: all cores
+    const char *scratch;          // temporary data goes beside this path; default: $TMPDIR
 };
 #define relume_encode_params(...) (&(const struct relume_encode_params){__VA_ARGS__})
 
@@ -115,8 +120,8 @@ struct relume_encode_report {
     double fit_rms;    // captured samples against unquantised coefficients
     double store_rms;  // unquantised against stored coefficients
 };
-RELUME_API struct relume_encode_report
-relume_coefficients_report(const relume_coefficients *coefficients);
+RELUME_API struct relume_encode_report relume_coefficients_report(
+    const relume_coefficients *coefficients);
 
 struct relume_coefficients_info {
     const relume_coder *coder;
@@ -124,8 +129,8 @@ struct relume_coefficients_info {
     enum relume_storage storage;
     const float *scale, *offset;  // [planes]: coefficient = code * scale + offset
 };
-RELUME_API const struct relume_coefficients_info *
-relume_coefficients_info(const relume_coefficients *coefficients);
+RELUME_API const struct relume_coefficients_info *relume_coefficients_info(
+    const relume_coefficients *coefficients);
 
 // Codes of `rows` rows from `row` on of every plane: out[row][plane][x], uint8_t, uint16_t or half
 // bits by the storage. RELUME_EIO when the temporary file cannot be read back.

@@ -53,24 +53,23 @@ struct relume_image_params {
 // Read `path` (any format OpenImageIO knows) as linear light. Returns RELUME_EDATA, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_image_load(struct relume_image *out, const char *path,
                                               const struct relume_image_params *params);
-// Write linear `image` in the format of the file name's extension: EXR, HDR, PFM linear, every other
-// sRGB-coded and clipped to [0, 1]; 8 bits (TIFF and PNG of 1 channel: 8 bits as well).
-// A device or pipe without an extension gets EXR.
-// The file appears under its name whole or not at all. Returns RELUME_EINVAL for an unknown
-// extension, RELUME_EIO.
+// Write linear `image` in the format of the file name's extension: EXR, HDR, PFM linear, every
+// other sRGB-coded and clipped to [0, 1]; 8 bits (TIFF and PNG of 1 channel: 8 bits as well). A
+// device or pipe without an extension gets EXR. The file appears under its name whole or not at
+// all. Returns RELUME_EINVAL for an unknown extension, RELUME_EIO.
 RELUME_RESULT relume_status relume_image_save(const struct relume_image *image, const char *path,
                                               const struct relume_image_params *params);
 
 // How far `image` is from `reference`. All but rms and max_abs are of display values:
 // coded by `display`, clipped to [0, 1].
 struct relume_difference {
-    double rms;           // linear, all channels
-    double max_abs;       // linear
-    double psnr_db;       // of the RGB MSE with both sides rounded to 8 bits; at most 200
-    double mse;           // display, unrounded
-    double ssim;          // Wang et al. 2004: luma, 11x11 Gaussian, sigma 1.5
-    double delta_e;       // mean CIEDE2000 (Sharma, Wu, Dalal 2005), D65
-    size_t pixels;        // pixels compared
+    double rms;      // linear, all channels
+    double max_abs;  // linear
+    double psnr_db;  // of the RGB MSE with both sides rounded to 8 bits; at most 200
+    double mse;      // display, unrounded
+    double ssim;     // Wang et al. 2004: luma, 11x11 Gaussian, sigma 1.5
+    double delta_e;  // mean CIEDE2000 (Sharma, Wu, Dalal 2005), D65
+    size_t pixels;   // pixels compared
 };
 struct relume_compare_params {
     const struct relume_image *mask;  // one channel, compare where > 0.5; NULL: everywhere

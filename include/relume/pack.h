@@ -39,9 +39,9 @@ struct relume_pack_contents {
 };
 struct relume_pack_params {
     const struct relume_log *log;
-    const struct relume_limits *limits;  // reading
-    enum relume_compression compression; // writing
-    int threads;                         // default: all cores
+    const struct relume_limits *limits;   // reading
+    enum relume_compression compression;  // writing
+    int threads;                          // default: all cores
 };
 #define relume_pack_params(...) (&(const struct relume_pack_params){__VA_ARGS__})
 

@@ -32,7 +32,8 @@ struct relume_relight_params {
     unsigned cpu_off;  // RELUME_CPU_* features not to use; ~0u runs the plain C reference
     int threads;       // default: all cores
     // Three channels of the size of the codes: the world position that each pixel sees, not
-    // finite for background. Only point lights read it (Wong 1998, Eq. 7.7 with its sign corrected).
+    // finite for background. Only point lights read it (Wong 1998, Eq. 7.7 with its sign
+    // corrected).
     const struct relume_image *surface;
 };
 #define relume_relight_params(...) (&(const struct relume_relight_params){__VA_ARGS__})

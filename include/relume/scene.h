@@ -14,9 +14,9 @@ struct relume_scene_builder;  // what a scene puts its things into; private
 // A built-in scene. Constant; a NULL-terminated list of all is relume_scenes.
 struct relume_scene_kind {
     const char *name;
-    const char *summary;                   // one line for help texts
-    enum relume_projection projection;     // how it is seen when nothing else is asked
-    bool takes_mesh;                       // --mesh replaces its own model
+    const char *summary;                // one line for help texts
+    enum relume_projection projection;  // how it is seen when nothing else is asked
+    bool takes_mesh;                    // --mesh replaces its own model
     relume_status (*build)(struct relume_scene_builder *builder);  // adds meshes and materials
 };
 extern RELUME_API const struct relume_scene_kind *const relume_scenes[];
@@ -43,21 +43,21 @@ struct relume_synth_params {
     const struct relume_log *log;
     enum relume_projection projection;  // used only when `projection_set`
     bool projection_set;                // default: the scene's own projection
-    int size;                // pixels: width of planar and slab images and of a cube face,
-                             // height of other panoramas (cylindrical: 4:1, spherical: 2:1);
-                             // default 256
-    int grid[2];             // slab: cameras along u and v; default 5 x 5
-    double spread;           // slab: the grid reaches from -spread to spread; default 0.5
+    int size;       // pixels: width of planar and slab images and of a cube face,
+                    // height of other panoramas (cylindrical: 4:1, spherical: 2:1);
+                    // default 256
+    int grid[2];    // slab: cameras along u and v; default 5 x 5
+    double spread;  // slab: the grid reaches from -spread to spread; default 0.5
     const struct relume_vec3 *eyes;  // slab: cameras instead of the grid, all of one z;
                                      // panorama: its one centre; planar: (0, 0, z) perspective
     int eye_count;
     const struct relume_vec3 *lights;  // unit directions; light_count of them, at least 1
     int light_count;
-    int samples;   // camera rays per pixel (stratified); default 16
-    int bounces;   // indirect bounces of light; default 0: direct light and mirrors only
+    int samples;  // camera rays per pixel (stratified); default 16
+    int bounces;  // indirect bounces of light; default 0: direct light and mirrors only
     uint64_t seed;
-    int threads;   // default: all cores
-    bool force;    // replace an existing folder
+    int threads;  // default: all cores
+    bool force;   // replace an existing folder
 };
 #define relume_synth_params(...) (&(const struct relume_synth_params){__VA_ARGS__})
 

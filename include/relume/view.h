@@ -17,8 +17,9 @@ struct relume_view_params {
 #define relume_view_params(...) (&(const struct relume_view_params){__VA_ARGS__})
 
 // Where the pixels of a view lie: create `*out` with three channels, the world position that each
-// pixel centre sees, not finite where `depth` is infinite. `uv` is the camera's place in a slab; `depth` (one
-// channel) may be NULL for planar views, which then lie on z = 0. RELUME_EINVAL, RELUME_ENOMEM.
+// pixel centre sees, not finite where `depth` is infinite. `uv` is the camera's place in a slab;
+// `depth` (one channel) may be NULL for planar views, which then lie on z = 0. RELUME_EINVAL,
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_surface(struct relume_image *out,
                                            const struct relume_geometry *geometry,
                                            const double uv[2], const struct relume_image *depth,
@@ -64,8 +65,8 @@ RELUME_API int relume_slab_needs(bool *needed, const relume_slab *slab, struct r
 
 // The window st_min..st_max as seen from `eye`. `views` are the relit images by view number, read
 // where needed; a pixel whose ray misses the uv grid is black. `out` has the wanted size already.
-// A captured eye and size give back that view bit by bit. RELUME_EINVAL for an eye that sees nothing
-// or a needed view that is missing or of another size; RELUME_ENOMEM.
+// A captured eye and size give back that view bit by bit. RELUME_EINVAL for an eye that sees
+// nothing or a needed view that is missing or of another size; RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_slab_frame(struct relume_image *out, const relume_slab *slab,
                                               struct relume_vec3 eye,
                                               const struct relume_image *views,
@@ -83,8 +84,8 @@ struct relume_look {
 RELUME_API struct relume_vec3 relume_look_ray(struct relume_look look, int width, int height,
                                               double x, double y);
 
-// Unit direction at the (fractional) position (x, y) of a panorama image; pixel centres are at +0.5.
-// A cube's faces lie side by side, its width is 6 x its height. Zero for other projections.
+// Unit direction at the (fractional) position (x, y) of a panorama image; pixel centres are at
+// +0.5. A cube's faces lie side by side, its width is 6 x its height. Zero for other projections.
 RELUME_API struct relume_vec3 relume_panorama_ray(const struct relume_geometry *geometry, int width,
                                                   int height, double x, double y);
 // The inverse: false when the panorama does not show that direction (above and below a cylinder) or

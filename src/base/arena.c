@@ -15,7 +15,8 @@ struct arena_block {
 void *arena_array(struct arena *arena, size_t count, size_t size)
 {
     size_t bytes;
-    if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX - sizeof(struct arena_block))
+    if (__builtin_mul_overflow(count, size, &bytes) ||
+        bytes > SIZE_MAX - sizeof(struct arena_block))
         return NULL;
     struct arena_block *block = mem_zeroed(1, sizeof *block + bytes);
     if (!block)

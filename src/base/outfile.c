@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 struct outfile {
@@ -93,6 +94,24 @@ int scratch_open(const char *near)
     return fd;
 }
 
+// A new file with the permissions that the user's mask leaves; mkstemp would make it private.
+static relume_status open_beside(outfile *file)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    unsigned tag = (unsigned)t.tv_nsec ^ ((unsigned)getpid() << 12);
+    for (int tries = 0; tries < 100; tries++, tag = tag * 1664525u + 1013904223u) {
+        free(file->beside);
+        file->beside = mem_format("%s.part-%06x", file->path, tag & 0xffffff);
+        if (!file->beside)
+            return RELUME_ENOMEM;
+        file->fd = open(file->beside, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file->fd >= 0 || errno != EEXIST)
+            break;
+    }
+    return RELUME_OK;
+}
+
 relume_status outfile_open(outfile **out, const char *path, const struct relume_log *log)
 {
     *out = NULL;
@@ -115,10 +134,9 @@ relume_status outfile_open(outfile **out, const char *path, const struct relume_
     if (is_device(path)) {
         file->fd = scratch_open(NULL);
     } else {
-        file->beside = mem_format("%s.part-XXXXXX", path);
-        if (!file->beside)
+        status = open_beside(file);
+        if (status)
             goto fail;
-        file->fd = mkostemp(file->beside, O_CLOEXEC);
     }
     if (file->fd < 0) {
         free(file->beside);
@@ -168,10 +186,7 @@ static relume_status copy_to_device(outfile *file)
 
 static relume_status publish(outfile *file)
 {
-    // mkstemp makes files private; the final one gets what open() would have given.
-    const mode_t mask = umask(0);
-    umask(mask);
-    if (fchmod(file->fd, 0666 & ~mask) || fsync(file->fd))
+    if (fsync(file->fd))
         return fail(file->path, "writing failed", file->log);
     const int fd = file->fd;
     file->fd = -1;

@@ -63,7 +63,8 @@ static relume_status read_description(relume_capture *c, const char *path,
         if (access(inside, F_OK)) {
             free(inside);
             return log_fail(p->log, RELUME_EDATA,
-                            "%s: no capture.json in this folder; expected one, or a .lp file", path);
+                            "%s: no capture.json in this folder; expected one, or a .lp file",
+                            path);
         }
         path = inside;
     }
@@ -135,14 +136,22 @@ static relume_status check_image(relume_capture *c, const char *path,
     if (c->width == 0) {
         c->width = info.width;
         c->height = info.height;
+        c->x = info.x;
+        c->y = info.y;
+        c->stated = c->draft.m.transfer;
         c->transfer = image_transfer(c->draft.m.transfer, &info);
         return RELUME_OK;
     }
-    if (info.width == c->width && info.height == c->height)
-        return RELUME_OK;
-    return log_fail(p->log, RELUME_EDATA,
-                    "%s: %d x %d pixels; expected %d x %d as in the other images", path, info.width,
-                    info.height, c->width, c->height);
+    if (info.width != c->width || info.height != c->height)
+        return log_fail(p->log, RELUME_EDATA,
+                        "%s: %d x %d pixels; expected %d x %d as in the other images", path,
+                        info.width, info.height, c->width, c->height);
+    if (info.x != c->x || info.y != c->y)
+        return log_fail(p->log, RELUME_EDATA,
+                        "%s: its data window begins at (%d, %d); expected (%d, %d) as in the other "
+                        "images",
+                        path, info.x, info.y, c->x, c->y);
+    return RELUME_OK;
 }
 
 static relume_status check_images(relume_capture *c, const struct relume_capture_params *p)
@@ -153,8 +162,7 @@ static relume_status check_images(relume_capture *c, const struct relume_capture
             const relume_status status = check_image(c, m->view[v].images[i], p);
             if (status)
                 return status;
-            if (!log_progress(p->log, "checking",
-                              (v + (i + 1.0) / m->lights) / (double)m->views))
+            if (!log_progress(p->log, "checking", (v + (i + 1.0) / m->lights) / (double)m->views))
                 return RELUME_ECANCEL;
         }
     return RELUME_OK;
@@ -181,7 +189,8 @@ relume_status relume_capture_open(relume_capture **out, const char *path,
     }
     struct relume_geometry *g = &c->draft.m.geometry;
     if (g->projection == RELUME_PLANAR && !c->draft.has_window) {
-        const struct relume_geometry d = relume_geometry_default(RELUME_PLANAR, c->width, c->height);
+        const struct relume_geometry d =
+            relume_geometry_default(RELUME_PLANAR, c->width, c->height);
         memcpy(g->window_min, d.window_min, sizeof g->window_min);
         memcpy(g->window_max, d.window_max, sizeof g->window_max);
     }
@@ -205,8 +214,9 @@ relume_status capture_stream(struct image_stream *out, const relume_capture *cap
         oiio_close(&reader);
         return log_fail(log, RELUME_EDATA, "%s: changed while it was being read", path);
     }
-    const relume_status opened = image_stream_open(
-        out, reader, 3, m->transfer, to, m->intensities ? m->intensities[light] : no_gain);
+    const relume_status opened =
+        image_stream_open(out, reader, 3, image_transfer(capture->stated, info), to,
+                          m->intensities ? m->intensities[light] : no_gain);
     out->finite_only = true;
     return opened;
 }
@@ -245,8 +255,8 @@ static relume_status load_plane(struct relume_image *out, const relume_capture *
         return status;
     const int width = out->width, height = out->height;
     relume_image_destroy(out);
-    return log_fail(log, RELUME_EDATA, "%s: %d x %d pixels; expected %d x %d as in the images", path,
-                    width, height, capture->width, capture->height);
+    return log_fail(log, RELUME_EDATA, "%s: %d x %d pixels; expected %d x %d as in the images",
+                    path, width, height, capture->width, capture->height);
 }
 
 relume_status relume_capture_depth(struct relume_image *out, const relume_capture *capture,
@@ -263,8 +273,7 @@ relume_status relume_capture_depth(struct relume_image *out, const relume_captur
             relume_image_destroy(out);
             return log_fail(log, RELUME_EDATA,
                             "%s: depth %g at pixel (%zu, %zu); expected 0 or more", path,
-                            (double)found, i % (size_t)capture->width,
-                            i / (size_t)capture->width);
+                            (double)found, i % (size_t)capture->width, i / (size_t)capture->width);
         }
     return RELUME_OK;
 }

@@ -9,7 +9,9 @@ struct relume_capture {
     struct draft draft;
     char *path;
     int width, height;
-    struct relume_transfer transfer;  // of the images, never AUTO
+    int x, y;                         // origin of the images' data windows
+    struct relume_transfer stated;    // for all images; AUTO: each file's own
+    struct relume_transfer transfer;  // of the first image, never AUTO
 };
 
 // The rows of one image, light intensity divided out, coded by `to`.

@@ -164,8 +164,8 @@ static relume_status parse_lines(struct draft *d, char *text, const char *path,
             return RELUME_ENOMEM;
     }
     if (n == 0)
-        return log_fail(log, RELUME_EDATA, "%s: no lights; expected a count and 'image x y z' lines",
-                        path);
+        return log_fail(log, RELUME_EDATA,
+                        "%s: no lights; expected a count and 'image x y z' lines", path);
     if (n > limits_or_default(limits).max_lights)
         return log_fail(log, RELUME_EDATA, "%s: %d lights; expected at most %d", path, n,
                         limits_or_default(limits).max_lights);
@@ -283,8 +283,7 @@ relume_status lp_resolve(struct draft *draft, const char *path, bool skip_missin
     struct dirent **files = NULL;
     const int found = scandir(folder, &files, is_image, by_name);
     const int file_count = found > 0 ? found : 0;
-    const relume_status status =
-        resolve(draft, path, folder, files, file_count, skip_missing, log);
+    const relume_status status = resolve(draft, path, folder, files, file_count, skip_missing, log);
     for (int i = 0; i < file_count; i++)
         free(files[i]);
     free(files);

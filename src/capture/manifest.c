@@ -117,8 +117,8 @@ static relume_status read_intensities(const struct parser *p, const json_t *arra
         return RELUME_ENOMEM;
     for (int i = 0; i < lights; i++) {
         double rgb[3];
-        if (!numbers(json_array_get(array, (size_t)i), rgb, 3) ||
-            !is_intensity(rgb[0]) || !is_intensity(rgb[1]) || !is_intensity(rgb[2]))
+        if (!numbers(json_array_get(array, (size_t)i), rgb, 3) || !is_intensity(rgb[0]) ||
+            !is_intensity(rgb[1]) || !is_intensity(rgb[2]))
             return wrong(p, "lights.intensities",
                          "three numbers from 1e-30 to 1e30 for every light");
         for (int c = 0; c < 3; c++)
@@ -132,6 +132,8 @@ static relume_status read_lights(const struct parser *p, const json_t *lights)
     struct draft *d = p->d;
     const json_t *directions = json_object_get(lights, "directions");
     const json_t *positions = json_object_get(lights, "positions");
+    if (json_is_null(positions))
+        positions = NULL;
     const json_t *intensities = json_object_get(lights, "intensities");
     relume_status status = RELUME_OK;
     int n = 0;
@@ -185,15 +187,15 @@ static relume_status read_geometry(const struct parser *p, const json_t *root)
         double *out;
         size_t count;
     } members[] = {
-        {window, "max", g->window_max, 2},    {window, "camera_z", &g->camera_z, 1},
-        {slab, "uv_plane_z", &g->uv_z, 1},    {slab, "st_plane_z", &g->st_z, 1},
-        {slab, "st_min", g->st_min, 2},       {slab, "st_max", g->st_max, 2},
-        {panorama, "v_min", &g->v_min, 1},    {panorama, "v_max", &g->v_max, 1},
+        {window, "max", g->window_max, 2}, {window, "camera_z", &g->camera_z, 1},
+        {slab, "uv_plane_z", &g->uv_z, 1}, {slab, "st_plane_z", &g->st_z, 1},
+        {slab, "st_min", g->st_min, 2},    {slab, "st_max", g->st_max, 2},
+        {panorama, "v_min", &g->v_min, 1}, {panorama, "v_max", &g->v_max, 1},
         {panorama, "center", center, 3},
     };
     for (size_t i = 0; !status && i < sizeof members / sizeof *members; i++)
-        status = get_numbers(p, members[i].object, members[i].key, members[i].out,
-                             members[i].count);
+        status =
+            get_numbers(p, members[i].object, members[i].key, members[i].out, members[i].count);
     g->center = vec3_of(center[0], center[1], center[2]);
     if (status)
         return status;
@@ -389,10 +391,11 @@ static void put_geometry(FILE *f, const struct relume_geometry *g)
                 g->window_min[0], g->window_min[1], g->window_max[0], g->window_max[1],
                 g->perspective ? "perspective" : "orthographic", g->camera_z);
     else if (g->projection == RELUME_SLAB)
-        fprintf(f,
-                "  \"slab\": {\"uv_plane_z\": %.9g, \"st_plane_z\": %.9g, \"st_min\": [%.9g, %.9g], "
-                "\"st_max\": [%.9g, %.9g]},\n",
-                g->uv_z, g->st_z, g->st_min[0], g->st_min[1], g->st_max[0], g->st_max[1]);
+        fprintf(
+            f,
+            "  \"slab\": {\"uv_plane_z\": %.9g, \"st_plane_z\": %.9g, \"st_min\": [%.9g, %.9g], "
+            "\"st_max\": [%.9g, %.9g]},\n",
+            g->uv_z, g->st_z, g->st_min[0], g->st_min[1], g->st_max[0], g->st_max[1]);
     else
         fprintf(f,
                 "  \"panorama\": {\"v_min\": %.9g, \"v_max\": %.9g, \"center\": [%.9g, %.9g, "

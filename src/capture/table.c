@@ -66,8 +66,7 @@ static void read_light(void *context, size_t item, int worker)
     (void)worker;
     relume_table *t = context;
     const size_t band = (size_t)t->rows * (size_t)t->capture->width * 3;
-    t->status[item] =
-        image_stream_read(&t->stream[item], t->row, t->rows, t->out + item * band);
+    t->status[item] = image_stream_read(&t->stream[item], t->row, t->rows, t->out + item * band);
 }
 
 relume_status relume_table_read(relume_table *table, int rows, float *out)

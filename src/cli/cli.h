@@ -39,7 +39,7 @@ const char *args_nth(const struct args *args, const char *name, int n);
 int args_inputs(const struct args *args);
 const char *args_input(const struct args *args, int n);
 
-int args_threads(const struct args *args);              // --threads, 0: all
+int args_threads(const struct args *args);                   // --threads, 0: all
 const struct relume_log *args_log(const struct args *args);  // messages and progress to stderr
 
 // A log that says which file its sentences are about: "PREFIX: ...".
@@ -53,8 +53,6 @@ const struct relume_log *prefix_log(struct prefix_log *p, const struct relume_lo
 
 // "relume: ..." on stderr; returns RELUME_EINVAL, so that a command may return it.
 __attribute__((format(printf, 1, 2))) relume_status usage_error(const char *format, ...);
-// The name nearest to `given` in a NULL-terminated list, NULL when none is near.
-const char *nearest_name(const char *given, const char *const *names);
 // RELUME_EINVAL and "unknown WHAT 'given'; did you mean ...; expected one of ...".
 relume_status unknown_name(const char *what, const char *given, const char *const *names);
 // `count` numbers separated by commas or blanks, nothing else.

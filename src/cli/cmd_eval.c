@@ -13,7 +13,7 @@ static const struct option options[] = {
 // Sums over the views of one light.
 struct light_sums {
     double square, psnr;  // linear squared error x pixels; sum of dB
-    size_t pixels;
+    size_t pixels, images;
 };
 
 struct evaluation {
@@ -59,6 +59,7 @@ static void add(struct evaluation *e, int light, const struct relume_difference 
     s->square += square;
     s->psnr += d->psnr_db;
     s->pixels += d->pixels;
+    s->images++;
     e->square += square;
     e->mse += d->mse * (double)d->pixels;
     e->psnr += d->psnr_db;
@@ -89,7 +90,7 @@ static relume_status evaluate_image(struct evaluation *e, int view, int light,
     if (!status)
         status = relume_frame(&relit, e->pack, camera, &lamp, 1,
                               relume_frame_params(.log = prefix_log(&about, args_log(e->args),
-                                                                args_input(e->args, 0)),
+                                                                    args_input(e->args, 0)),
                                                   .threads = args_threads(e->args)));
     if (!status)
         status = relume_image_compare(&difference, &relit, &captured,
@@ -156,7 +157,9 @@ static void print_json(const struct evaluation *e)
     } rows[] = {
         {"rms", sqrt(ratio(e->square, (double)e->pixels))},
         {"psnr_db", ratio(e->psnr, (double)e->images)},
-        {"psnr_pooled_db", mse > 1e-20 ? -10.0 * log10(mse) : mse >= 0.0 ? 200.0 : mse},
+        {"psnr_pooled_db", mse > 1e-20  ? -10.0 * log10(mse)
+                           : mse >= 0.0 ? 200.0
+                                        : mse},
         {"ssim", ratio(e->ssim, (double)e->structured)},
         {"delta_e", ratio(e->delta_e, (double)e->images)},
         {"file_bytes", (double)e->info->file_bytes},
@@ -179,7 +182,7 @@ static void print_json(const struct evaluation *e)
         printf("%s{\"rms\": ", i ? ", " : "");
         json_number(stdout, sqrt(ratio(s->square, (double)s->pixels)));
         printf(", \"psnr_db\": ");
-        json_number(stdout, ratio(s->psnr, (double)e->manifest->views));
+        json_number(stdout, ratio(s->psnr, (double)s->images));
         putchar('}');
     }
     puts("]}");
@@ -225,9 +228,9 @@ static relume_status run(const struct args *args)
     if (text && relume_transfer_parse(&transfer, text))
         return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", text);
     struct evaluation e = {.args = args};
-    relume_status status = relume_pack_open(
-        &e.pack, args_input(args, 0),
-        relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
+    relume_status status =
+        relume_pack_open(&e.pack, args_input(args, 0),
+                         relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
     if (!status)
         status = relume_capture_open(
             &e.capture, args_input(args, 1),

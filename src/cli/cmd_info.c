@@ -12,8 +12,7 @@ static const char *storage_name(enum relume_storage storage)
 
 static double bits_per_pixel(const struct relume_pack_info *i)
 {
-    return 8.0 * (double)i->file_bytes /
-           ((double)i->views * (double)i->width * (double)i->height);
+    return 8.0 * (double)i->file_bytes / ((double)i->views * (double)i->width * (double)i->height);
 }
 
 static void print_json(const struct relume_pack_info *i, const struct relume_coder_info *c,
@@ -51,7 +50,9 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
            i->storage == RELUME_STORE_HALF ? "" : " bits", i->compression);
     printf("with          %s%s%s\n", i->has_depth ? "depth" : "",
            i->has_depth && i->has_mask ? ", " : "",
-           i->has_mask ? "mask" : i->has_depth ? "" : "colour only");
+           i->has_mask    ? "mask"
+           : i->has_depth ? ""
+                          : "colour only");
     printf("file          %llu bytes, %.3f bits per pixel and view\n",
            (unsigned long long)i->file_bytes, bits_per_pixel(i));
 }
@@ -59,8 +60,8 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
 static relume_status run(const struct args *args)
 {
     relume_pack *pack;
-    const relume_status status = relume_pack_open(
-        &pack, args_input(args, 0), relume_pack_params(.log = args_log(args)));
+    const relume_status status =
+        relume_pack_open(&pack, args_input(args, 0), relume_pack_params(.log = args_log(args)));
     if (status)
         return status;
     const struct relume_pack_info *info = relume_pack_info(pack);

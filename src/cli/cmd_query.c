@@ -37,16 +37,15 @@ static relume_status query(const struct args *args, const struct relume_light *l
     relume_pack *pack;
     struct prefix_log about;
     float rgb[3];
-    status = relume_pack_open(&pack, args_input(args, 0),
-                              relume_pack_params(.log = args_log(args),
-                                                 .threads = args_threads(args)));
+    status =
+        relume_pack_open(&pack, args_input(args, 0),
+                         relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
     if (!status)
-        status = relume_query(rgb, pack, eye, direction, lights, count,
-                              relume_frame_params(.log = prefix_log(&about, args_log(args),
-                                                                    args_input(args, 0)),
-                                                  .cpu_off = parse_cpu_off(args),
-                                                  .threads = args_threads(args),
-                                                  .constant = args_has(args, "--nearest")));
+        status = relume_query(
+            rgb, pack, eye, direction, lights, count,
+            relume_frame_params(.log = prefix_log(&about, args_log(args), args_input(args, 0)),
+                                .cpu_off = parse_cpu_off(args), .threads = args_threads(args),
+                                .constant = args_has(args, "--nearest")));
     if (!status)
         print(args, rgb);
     relume_pack_destroy(&pack);

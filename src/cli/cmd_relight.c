@@ -5,7 +5,8 @@
 #include <stdlib.h>
 
 static const struct option options[] = {
-    {"-o", OPTION_TEXT, "OUT", "picture to write: .exr (linear), .png, .jpg, .tif, .hdr, ...", 0, 0},
+    {"-o", OPTION_TEXT, "OUT", "picture to write: .exr (linear), .png, .jpg, .tif, .hdr, ...", 0,
+     0},
     LIGHT_OPTION,
     {"--view", OPTION_INT, "N", "a captured view at its own size (panoramas: unfolded)", 0, 65535},
     {"--eye", OPTION_TEXT, "x,y,z", "slab: the window as seen from there; default: the middle", 0,
@@ -29,13 +30,14 @@ static relume_status parse_size(const char *text, struct relume_camera *camera)
         camera->width >= 1 && camera->width <= 65536 && camera->height >= 1 &&
         camera->height <= 65536 && (int64_t)camera->width * camera->height <= 1 << 30)
         return RELUME_OK;
-    return usage_error("--size: expected WIDTHxHEIGHT, at most 65536 a side and 2^30 pixels; found '%s'", text);
+    return usage_error(
+        "--size: expected WIDTHxHEIGHT, at most 65536 a side and 2^30 pixels; found '%s'", text);
 }
 
 static relume_status parse_camera(const struct args *args, struct relume_camera *camera)
 {
-    const bool look = args_has(args, "--pan") || args_has(args, "--tilt") ||
-                      args_has(args, "--zoom");
+    const bool look =
+        args_has(args, "--pan") || args_has(args, "--tilt") || args_has(args, "--zoom");
     *camera = (struct relume_camera){0};
     if (args_has(args, "--view") + args_has(args, "--eye") + look > 1)
         return usage_error("relight: expected one of --view, --eye, --pan/--tilt/--zoom");
@@ -63,16 +65,15 @@ static relume_status render(const struct args *args, const struct relume_camera 
     relume_pack *pack;
     struct prefix_log about;
     struct relume_image frame = {0};
-    relume_status status = relume_pack_open(
-        &pack, args_input(args, 0),
-        relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
+    relume_status status =
+        relume_pack_open(&pack, args_input(args, 0),
+                         relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
     if (!status)
-        status = relume_frame(&frame, pack, camera, lights, count,
-                              relume_frame_params(.log = prefix_log(&about, args_log(args),
-                                                                    args_input(args, 0)),
-                                                  .cpu_off = parse_cpu_off(args),
-                                                  .threads = args_threads(args),
-                                                  .constant = args_has(args, "--nearest")));
+        status = relume_frame(
+            &frame, pack, camera, lights, count,
+            relume_frame_params(.log = prefix_log(&about, args_log(args), args_input(args, 0)),
+                                .cpu_off = parse_cpu_off(args), .threads = args_threads(args),
+                                .constant = args_has(args, "--nearest")));
     const float gain = exp2f((float)args_number(args, "--exposure", 0.0));
     const size_t samples = (size_t)frame.width * (size_t)frame.height * 3;
     for (size_t i = 0; !status && i < samples; i++)

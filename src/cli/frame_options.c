@@ -9,9 +9,8 @@ relume_status parse_lights(const struct args *args, struct relume_light **lights
     *lights = calloc((size_t)*count, sizeof **lights);
     relume_status status = *lights ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; !status && i < *count; i++)
-        status = relume_light_parse(&(*lights)[i],
-                                    given ? args_nth(args, "--light", i) : "dir 0 0 1",
-                                    args_log(args));
+        status = relume_light_parse(
+            &(*lights)[i], given ? args_nth(args, "--light", i) : "dir 0 0 1", args_log(args));
     if (status) {
         free(*lights);
         *lights = NULL;

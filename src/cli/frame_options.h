@@ -6,10 +6,14 @@
 
 // Table rows for a command's options.
 #define LIGHT_OPTION                                                                               \
-    {"--light", OPTION_TEXT, "SPEC", "\"dir x y z [rgb r g b]\"; repeats; default: \"dir 0 0 1\"", \
-     0, 0}
+    {                                                                                              \
+        "--light", OPTION_TEXT, "SPEC",                                                            \
+            "\"dir x y z [rgb r g b]\"; repeats; default: \"dir 0 0 1\"", 0, 0                     \
+    }
 #define CPU_OPTION                                                                                 \
-    {"--cpu-mask", OPTION_INT, "M", "CPU features to use, 0: plain C; default: all", 0, 65535}
+    {                                                                                              \
+        "--cpu-mask", OPTION_INT, "M", "CPU features to use, 0: plain C; default: all", 0, 65535   \
+    }
 
 // `*lights` is to be freed.
 relume_status parse_lights(const struct args *args, struct relume_light **lights, int *count);

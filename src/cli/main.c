@@ -17,8 +17,8 @@ extern const struct command command_synth, command_lights, command_encode, comma
     command_relight, command_query, command_eval, command_compare;
 
 const struct command *const commands[] = {
-    &command_synth,   &command_lights, &command_encode, &command_info, &command_relight,
-    &command_query,   &command_eval,   &command_compare, NULL,
+    &command_synth, &command_lights, &command_encode,  &command_info, &command_relight,
+    &command_query, &command_eval,   &command_compare, NULL,
 };
 
 static const struct option common[] = {
@@ -157,45 +157,9 @@ relume_status usage_error(const char *format, ...)
 
 // ---------------------------------------------------------------- names
 
-static int edit_distance(const char *a, const char *b)
-{
-    enum { LIMIT = 64 };
-    const size_t m = strlen(b);
-    int row[LIMIT + 1];
-    if (m > LIMIT)
-        return LIMIT;
-    for (size_t j = 0; j <= m; j++)
-        row[j] = (int)j;
-    for (size_t i = 0; a[i]; i++) {
-        int diagonal = row[0];
-        row[0] = (int)i + 1;
-        for (size_t j = 1; j <= m; j++) {
-            const int replace = diagonal + (a[i] != b[j - 1]);
-            const int other = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
-            diagonal = row[j];
-            row[j] = replace < other ? replace : other;
-        }
-    }
-    return row[m];
-}
-
-const char *nearest_name(const char *given, const char *const *names)
-{
-    const char *best = NULL;
-    int best_distance = 1 + (int)strlen(given) / 2;
-    for (; *names; names++) {
-        const int d = edit_distance(given, *names);
-        if (d < best_distance) {
-            best_distance = d;
-            best = *names;
-        }
-    }
-    return best;
-}
-
 relume_status unknown_name(const char *what, const char *given, const char *const *names)
 {
-    const char *near = nearest_name(given, names);
+    const char *near = relume_name_nearest(given, names);
     char list[1024] = "";
     for (size_t n = 0; *names && n < sizeof list; names++)
         n += (size_t)snprintf(list + n, sizeof list - n, " %s", *names);
@@ -214,7 +178,7 @@ static relume_status unknown_option(const struct command *command, const char *g
     for (const struct option *o = common; o->name; o++)
         names[n++] = o->name;
     names[n] = NULL;
-    const char *near = nearest_name(given, names);
+    const char *near = relume_name_nearest(given, names);
     if (near)
         return usage_error("%s: unknown option '%s'; did you mean '%s'?", command->name, given,
                            near);
@@ -435,9 +399,7 @@ static int exit_code(relume_status status)
     case RELUME_OK: return 0;
     case RELUME_EDATA: return 1;
     case RELUME_EINVAL: return 2;
-    case RELUME_ENOMEM:
-        fputs("relume: out of memory\n", people);
-        return 3;
+    case RELUME_ENOMEM: fputs("relume: out of memory\n", people); return 3;
     case RELUME_EIO:
     case RELUME_ESYSTEM: return 3;
     case RELUME_ECANCEL:

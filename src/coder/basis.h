@@ -19,7 +19,7 @@ struct relume_coder {
     float *transform;  // [K][K] or NULL
     float *map;        // [K][lights]: coefficients = map x samples; NULL when only decoding
     bool decode;
-    void *data;        // the basis's own
+    void *data;  // the basis's own
 };
 
 // Regularised least squares on the captured directions, for bases with smooth functions:

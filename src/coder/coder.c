@@ -45,8 +45,9 @@ static relume_status choose_count(const struct relume_basis *basis, int want, in
                                   const struct relume_log *log, int *count)
 {
     if (want && !basis->has_count(want))
-        return log_fail(log, RELUME_EINVAL, "basis %s has no form with %d coefficients; nearest: %d",
-                        basis->name, want, basis->fit_count(want, want));
+        return log_fail(log, RELUME_EINVAL,
+                        "basis %s has no form with %d coefficients; nearest: %d", basis->name, want,
+                        basis->fit_count(want, want));
     *count = basis->fit_count(want, lights);
     if (want && *count < want)
         return log_fail(log, RELUME_EDATA,
@@ -126,8 +127,8 @@ void relume_coder_weights(const relume_coder *coder, struct relume_vec3 light, f
                           float constant[3])
 {
     const int k = coder->info.coefficients;
-    const vec3 d = clamp_to_captured(coder->info.hemispherical,
-                                     pole_from_world(light, coder->info.pole_y));
+    const vec3 d =
+        clamp_to_captured(coder->info.hemispherical, pole_from_world(light, coder->info.pole_y));
     double values[CODER_MAX_COEFFICIENTS];
     coder->info.basis->evaluate(coder, d, values);
     for (int i = 0; i < k; i++) {

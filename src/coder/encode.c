@@ -42,9 +42,9 @@ struct encoder {
     const relume_coder *coder;
     relume_coefficients *out;
     int lights, width, height, planes;
-    int row, rows;     // of the band in progress
-    float *samples;    // [lights][rows][x][3]
-    float *values;     // [K][rows][x][3]
+    int row, rows;        // of the band in progress
+    float *samples;       // [lights][rows][x][3]
+    float *values;        // [K][rows][x][3]
     uint16_t *packed[2];  // [rows][planes][x]: one is filled while the other is written
     int filling;
     struct thread_task writing;
@@ -54,12 +54,15 @@ struct encoder {
     int write_error;  // errno of a write that failed
     const struct relume_image *mask;
     const char *const *images;  // [lights], for messages
-    struct range *total;  // [planes], over unmasked pixels
-    float *basis;         // [lights][K], stored functions at the captured lights
+    struct range *total;        // [planes], masked pixels being 0
+    float *basis;               // [lights][K], stored functions at the captured lights
     double error_sum;
     size_t error_count;
     int threads;
 };
+
+// Ranges below this are one value: their steps would leave single precision.
+static const float TINY_RANGE = 1e-30f;
 
 static bool is_inside(const struct relume_image *mask, size_t pixel)
 {
@@ -108,6 +111,8 @@ static struct range find_range(const float *v, size_t pixels)
         r.min = min[i] < r.min ? min[i] : r.min;
         r.max = max[i] > r.max ? max[i] : r.max;
     }
+    if (r.max - r.min < TINY_RANGE)
+        r.min = r.max = fabsf(r.max) < TINY_RANGE ? 0.0f : r.max;
     return r;
 }
 
@@ -174,8 +179,7 @@ static relume_status check_size(const struct encoder *e, const struct relume_enc
 {
     const bool half = e->out->info.storage == RELUME_STORE_HALF;
     const float most = half ? 65504.0f : FLT_MAX / 4.0f;
-    const struct range *r =
-        e->out->band + (size_t)(e->row / BAND_ROWS) * (size_t)e->planes;
+    const struct range *r = e->out->band + (size_t)(e->row / BAND_ROWS) * (size_t)e->planes;
     bool fits = true;
     for (int i = 0; i < e->planes; i++)
         fits &= r[i].min >= -most && r[i].min <= r[i].max && r[i].max <= most;
@@ -275,7 +279,7 @@ static void choose_step(struct range r, float levels, bool masked, float *scale,
     }
     const bool holds_zero = r.min <= 0.0f && r.max >= 0.0f;
     const float steps = holds_zero ? levels - 1.0f : levels;  // room for moving the range
-    *scale = r.max > r.min ? (r.max - r.min) / steps : 1.0f;
+    *scale = r.max - r.min > TINY_RANGE ? (r.max - r.min) / steps : 1.0f;
     *offset = holds_zero ? -ceilf(-r.min / *scale) * *scale : r.min;
 }
 
@@ -369,10 +373,14 @@ static relume_status measure_storage(relume_coefficients *c, const struct encode
             }
         }
         lsq_multiply(e->lights, columns, k, e->basis, k, difference, columns, effect, columns);
-        const size_t n = (size_t)e->lights * (size_t)columns;
-        for (size_t i = 0; i < n; i++)
-            sum += (double)effect[i] * (double)effect[i];
-        count += n;
+        const size_t first = (size_t)row * width;
+        for (int i = 0; i < e->lights; i++)
+            for (size_t x = 0; x < (size_t)columns; x++)
+                if (is_inside(e->mask, first + x / 3)) {
+                    const double d = (double)effect[(size_t)i * (size_t)columns + x];
+                    sum += d * d;
+                    count++;
+                }
     }
     c->report.store_rms = count ? sqrt(sum / (double)count) : 0.0;
     free(waiting);
@@ -396,8 +404,7 @@ enum relume_domain relume_encode_domain(const relume_capture *capture, enum relu
 struct relume_transfer relume_encode_display(const relume_capture *capture)
 {
     const struct relume_transfer t = relume_capture_manifest(capture)->transfer;
-    return t.curve == RELUME_CURVE_GAMMA ? t
-                                         : (struct relume_transfer){RELUME_CURVE_SRGB, 0.0f};
+    return t.curve == RELUME_CURVE_GAMMA ? t : (struct relume_transfer){RELUME_CURVE_SRGB, 0.0f};
 }
 
 void relume_coefficients_destroy(relume_coefficients **coefficients)
@@ -528,14 +535,13 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
     return status;
 }
 
-struct relume_encode_report
-relume_coefficients_report(const relume_coefficients *coefficients)
+struct relume_encode_report relume_coefficients_report(const relume_coefficients *coefficients)
 {
     return coefficients->report;
 }
 
-const struct relume_coefficients_info *
-relume_coefficients_info(const relume_coefficients *coefficients)
+const struct relume_coefficients_info *relume_coefficients_info(
+    const relume_coefficients *coefficients)
 {
     return &coefficients->info;
 }

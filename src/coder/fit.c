@@ -2,15 +2,15 @@
 //
 // Coefficients c of a pixel with samples t at the captured directions minimise
 //     |Y c - t|^2 / N  +  fill |V c - F t|^2 / M  +  ridge sum_k roughness_k c_k^2
-// Y: basis at the N captured directions. V: basis at M directions where nothing was captured, F: what
-// is assumed there. Wong 1998, 9.1.4: only a hemisphere is usually captured and zeros below it ring,
-// so the values run linearly from the equator to a constant at the far pole; the constant here is
-// the mean over the equator. The assumed samples weigh little: they decide what the captured ones
-// leave open, and they keep the system well conditioned.
+// Y: basis at the N captured directions. V: basis at M directions where nothing was captured, F:
+// what is assumed there. Wong 1998, 9.1.4: only a hemisphere is usually captured and zeros below it
+// ring, so the values run linearly from the equator to a constant at the far pole; the constant
+// here is the mean over the equator. The assumed samples weigh little: they decide what the
+// captured ones leave open, and they keep the system well conditioned.
 //
 // With H the matrix of that quadratic form and H = L Lt, the stored functions are b' = L^-1 b and
-// the stored coefficients c' = Lt c: orthonormal over the captured directions, so that an error in any
-// stored coefficient costs equally much and 8 bits suffice.
+// the stored coefficients c' = Lt c: orthonormal over the captured directions, so that an error in
+// any stored coefficient costs equally much and 8 bits suffice.
 #include "coder/basis.h"
 
 #include "base/log.h"

@@ -41,11 +41,12 @@ static relume_status find_surface(const struct renderer *r, int view, struct rel
     relume_status status = relume_pack_depth(&depth, r->pack, view);
     if (status)
         return status;
-    status = relume_surface(out, &r->info->geometry, r->info->uv[view],
-                            depth.data ? &depth : NULL, r->info->width, r->info->height);
+    status = relume_surface(out, &r->info->geometry, r->info->uv[view], depth.data ? &depth : NULL,
+                            r->info->width, r->info->height);
     if (status == RELUME_EINVAL)
-        (void)log_fail(r->params.log, status,
-                       "a point light needs to know where the surface is; the file has no depth");
+        status = log_fail(r->params.log, RELUME_EDATA,
+                          "a point light needs to know where the surface is; expected a file with "
+                          "depth");
     relume_image_destroy(&depth);
     return status;
 }
@@ -58,12 +59,13 @@ static relume_status relight_view(const struct renderer *r, int view, struct rel
     if (!status && has_point_light(r))
         status = find_surface(r, view, &surface);
     if (!status)
-        status = relume_relight(out, codes, r->lights, r->light_count,
-                                relume_relight_params(.log = r->params.log,
-                                                      .cpu_off = r->params.cpu_off,
-                                                      .threads = r->params.threads,
-                                                      .surface = &surface));
+        status = relume_relight(
+            out, codes, r->lights, r->light_count,
+            relume_relight_params(.log = r->params.log, .cpu_off = r->params.cpu_off,
+                                  .threads = r->params.threads, .surface = &surface));
     relume_image_destroy(&surface);
+    if (!status && !log_progress(r->params.log, "relighting", 1.0))
+        return RELUME_ECANCEL;
     return status;
 }
 
@@ -92,7 +94,6 @@ static relume_status relight_needed(const struct renderer *r, const bool *needed
         if (!needed[v])
             continue;
         status = relight_view(&quiet, v, &images[v]);
-        relume_pack_drop(r->pack, v);
         quiet.params.log = NULL;  // what there is to say of the lights has been said
     }
     return status;
@@ -202,7 +203,7 @@ static relume_status no_ray(const struct renderer *r, const char *why)
     return log_fail(r->params.log, RELUME_EDATA, "the file holds no such ray; %s", why);
 }
 
-// Where the ray meets the plane z; false when it never does.
+// Where the line of the ray meets the plane z; false when it never does.
 static bool meet_plane(vec3 eye, vec3 direction, double z, double xy[2])
 {
     if (fabs(direction.z) < 1e-12)
@@ -222,11 +223,16 @@ static bool window_pixel(const double min[2], const double max[2], int width, in
     return xy[0] >= 0.0 && xy[0] <= width && xy[1] >= 0.0 && xy[1] <= height;
 }
 
+static bool goes_towards(vec3 eye, vec3 direction, double z)
+{
+    return (z - eye.z) * direction.z >= 0.0;
+}
+
 static relume_status query_planar(const struct renderer *r, vec3 eye, vec3 direction, float rgb[3])
 {
     const struct relume_geometry *g = &r->info->geometry;
     double at[2], xy[2];
-    if (!meet_plane(eye, direction, 0.0, at) ||
+    if (!goes_towards(eye, direction, 0.0) || !meet_plane(eye, direction, 0.0, at) ||
         !window_pixel(g->window_min, g->window_max, r->info->width, r->info->height, at, xy))
         return no_ray(r, "it misses the window");
     struct relume_image view = {0};
@@ -241,7 +247,8 @@ static relume_status query_slab(const struct renderer *r, vec3 eye, vec3 directi
 {
     const struct relume_geometry *g = &r->info->geometry;
     double st[2], uv[2], xy[2];
-    if (!meet_plane(eye, direction, g->st_z, st) || !meet_plane(eye, direction, g->uv_z, uv) ||
+    if ((eye.z - g->st_z) * (g->uv_z - g->st_z) <= 0.0 || !goes_towards(eye, direction, g->st_z) ||
+        !meet_plane(eye, direction, g->st_z, st) || !meet_plane(eye, direction, g->uv_z, uv) ||
         !window_pixel(g->st_min, g->st_max, r->info->width, r->info->height, st, xy))
         return no_ray(r, "it misses the window");
     relume_slab *slab;
@@ -265,7 +272,6 @@ static relume_status query_slab(const struct renderer *r, vec3 eye, vec3 directi
                 rgb[c] += (float)weight[i] * value[c];
         }
         relume_image_destroy(&image);
-        relume_pack_drop(r->pack, view[i]);
     }
     relume_slab_destroy(&slab);
     return status;
@@ -275,7 +281,8 @@ static relume_status query_panorama(const struct renderer *r, vec3 eye, vec3 dir
                                     float rgb[3])
 {
     const struct relume_geometry *g = &r->info->geometry;
-    if (vec3_length(vec3_sub(eye, g->center)) > 1e-6)
+    // files keep the centre in single precision
+    if (vec3_length(vec3_sub(eye, g->center)) > 1e-6 * (1.0 + vec3_length(g->center)))
         return no_ray(r, "a panorama has one eye, its centre");
     struct relume_image view = {0};
     relume_status status = relight_view(r, 0, &view);
@@ -291,7 +298,8 @@ relume_status relume_query(float rgb[3], relume_pack *pack, struct relume_vec3 e
 {
     const struct renderer r = renderer_of(pack, lights, n, params);
     if (!(vec3_length(direction) > 0.0))
-        return log_fail(r.params.log, RELUME_EINVAL, "direction: expected three numbers, not all 0");
+        return log_fail(r.params.log, RELUME_EINVAL,
+                        "direction: expected three numbers, not all 0");
     switch (r.info->geometry.projection) {
     case RELUME_PLANAR: return query_planar(&r, eye, direction, rgb);
     case RELUME_SLAB: return query_slab(&r, eye, direction, rgb);

@@ -63,27 +63,27 @@ double ciede2000(const double lab1[3], const double lab2[3])
 {
     const double c_mean = 0.5 * (hypot(lab1[1], lab1[2]) + hypot(lab2[1], lab2[2]));
     const double c7 = power7(c_mean), seven = power7(25.0);
-    const double g = 0.5 * (1.0 - sqrt(c7 / (c7 + seven)));             // (4)
-    const double a1 = (1.0 + g) * lab1[1], a2 = (1.0 + g) * lab2[1];    // (5)
-    const double c1 = hypot(a1, lab1[2]), c2 = hypot(a2, lab2[2]);      // (6)
-    const double h1 = hue(a1, lab1[2]), h2 = hue(a2, lab2[2]);          // (7)
-    double dh = c1 * c2 == 0.0 ? 0.0 : h2 - h1;                         // (10)
+    const double g = 0.5 * (1.0 - sqrt(c7 / (c7 + seven)));           // (4)
+    const double a1 = (1.0 + g) * lab1[1], a2 = (1.0 + g) * lab2[1];  // (5)
+    const double c1 = hypot(a1, lab1[2]), c2 = hypot(a2, lab2[2]);    // (6)
+    const double h1 = hue(a1, lab1[2]), h2 = hue(a2, lab2[2]);        // (7)
+    double dh = c1 * c2 == 0.0 ? 0.0 : h2 - h1;                       // (10)
     dh += dh > 180.0 ? -360.0 : dh < -180.0 ? 360.0 : 0.0;
-    const double dl = lab2[0] - lab1[0], dc = c2 - c1;                  // (8), (9)
+    const double dl = lab2[0] - lab1[0], dc = c2 - c1;                      // (8), (9)
     const double dhh = 2.0 * sqrt(c1 * c2) * sin(0.5 * dh * M_PI / 180.0);  // (11)
-    const double l = 0.5 * (lab1[0] + lab2[0]), c = 0.5 * (c1 + c2);    // (12), (13)
-    const double h = mean_hue(h1, h2, c1 * c2);                         // (14)
+    const double l = 0.5 * (lab1[0] + lab2[0]), c = 0.5 * (c1 + c2);        // (12), (13)
+    const double h = mean_hue(h1, h2, c1 * c2);                             // (14)
     const double t = 1.0 - 0.17 * cosine(h - 30.0) + 0.24 * cosine(2.0 * h) +
                      0.32 * cosine(3.0 * h + 6.0) - 0.20 * cosine(4.0 * h - 63.0);  // (15)
     const double turn = (h - 275.0) / 25.0;
-    const double theta = 30.0 * exp(-turn * turn);                      // (16)
+    const double theta = 30.0 * exp(-turn * turn);                  // (16)
     const double rc = 2.0 * sqrt(power7(c) / (power7(c) + seven));  // (17)
     const double l50 = (l - 50.0) * (l - 50.0);
-    const double sl = 1.0 + 0.015 * l50 / sqrt(20.0 + l50);             // (18)
-    const double sc = 1.0 + 0.045 * c, sh = 1.0 + 0.015 * c * t;        // (19), (20)
-    const double rt = -sin(2.0 * theta * M_PI / 180.0) * rc;            // (21)
+    const double sl = 1.0 + 0.015 * l50 / sqrt(20.0 + l50);       // (18)
+    const double sc = 1.0 + 0.045 * c, sh = 1.0 + 0.015 * c * t;  // (19), (20)
+    const double rt = -sin(2.0 * theta * M_PI / 180.0) * rc;      // (21)
     const double x = dl / sl, y = dc / sc, z = dhh / sh;
-    return sqrt(x * x + y * y + z * z + rt * y * z);                    // (22)
+    return sqrt(x * x + y * y + z * z + rt * y * z);  // (22)
 }
 
 double ciede2000_srgb(const float a[3], const float b[3])

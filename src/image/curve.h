@@ -6,7 +6,8 @@
 
 enum { CURVE_STEPS = 4096 };
 
-// The curve on [0, 1] as straight pieces, closer than 1e-7 to it; elsewhere the curve itself.
+// The curve on [0, 1] as straight pieces, closer than 1e-7 to sRGB and gammas from 2 on (1e-5 for
+// gammas near 1); elsewhere the curve itself.
 struct curve {
     struct relume_transfer transfer;
     bool exact;  // steep at 0, where straight pieces fail: gamma below 1

@@ -59,7 +59,7 @@ struct writing {
     pthread_mutex_t lock;
     pthread_cond_t turn;
     int next_block;
-    relume_status status;  // the first failure of any block
+    relume_status status;        // the first failure of any block
     struct pipeline *pipelines;  // one a worker
 };
 
@@ -213,7 +213,8 @@ static relume_status write_part(struct writing *w, const struct exr_part *part, 
     w->pipelines = mem_zeroed((size_t)threads, sizeof *w->pipelines);
     if (!w->pipelines)
         return RELUME_ENOMEM;
-    const size_t blocks = ((size_t)part->height + (size_t)w->block_rows - 1) / (size_t)w->block_rows;
+    const size_t blocks =
+        ((size_t)part->height + (size_t)w->block_rows - 1) / (size_t)w->block_rows;
     thread_for(threads, blocks, write_block, w);
     for (int i = 0; i < threads; i++)
         exr_encoding_destroy(w->exr, &w->pipelines[i].exr);
@@ -240,7 +241,7 @@ relume_status exr_write(const char *path, const struct exr_part *parts, int coun
     if (!r)
         r = exr_write_header(w.exr);
     if (r)
-        status = w.io                       ? w.io
+        status = w.io                         ? w.io
                  : r == EXR_ERR_OUT_OF_MEMORY ? RELUME_ENOMEM
                                               : log_fail(log, RELUME_EIO, "%s: header refused; %s",
                                                          path, exr_get_default_error_message(r));
@@ -404,11 +405,6 @@ struct exr_part_info exr_part_info(const exr_file *file, int part)
     return info;
 }
 
-const char *exr_channel_name(const exr_file *file, int part, int channel)
-{
-    return channel_list(file, part)->entries[channel].name.str;
-}
-
 bool exr_get_int(const exr_file *file, int part, const char *name, int *value)
 {
     int32_t v;
@@ -515,7 +511,8 @@ relume_status exr_read(const exr_file *file, int part, int threads,
         exr_decoding_destroy(file->exr, &r.pipelines[i]);
     free(r.pipelines);
     if (atomic_load(&r.failed))
-        return log_fail(log, RELUME_EDATA, "%s: truncated or damaged in part '%s'; expected %d rows",
-                        file->path, info.name, info.height);
+        return log_fail(log, RELUME_EDATA,
+                        "%s: truncated or damaged in part '%s'; expected %d rows", file->path,
+                        info.name, info.height);
     return RELUME_OK;
 }

@@ -13,7 +13,7 @@ enum exr_codec { EXR_CODEC_NONE, EXR_CODEC_RLE, EXR_CODEC_ZIP, EXR_CODEC_PIZ };
 size_t exr_sample_bytes(enum exr_sample sample);
 
 struct exr_attribute {
-    const char *name;                                // at most 31 characters
+    const char *name;  // at most 31 characters
     enum { EXR_INT, EXR_TEXT, EXR_FLOATS } kind;
     int integer;
     const char *text;
@@ -58,7 +58,6 @@ struct exr_part_info {
     const char *codec;
 };
 struct exr_part_info exr_part_info(const exr_file *file, int part);
-const char *exr_channel_name(const exr_file *file, int part, int channel);
 
 // Attributes of a part; false or NULL when absent or of another type.
 bool exr_get_int(const exr_file *file, int part, const char *name, int *value);

@@ -117,9 +117,9 @@ relume_status image_stream_read(struct image_stream *stream, int row, int rows, 
     for (int end = row + rows; row < end; row += IMAGE_STREAM_ROWS) {
         const int n = end - row < IMAGE_STREAM_ROWS ? end - row : IMAGE_STREAM_ROWS;
         const size_t pixels = (size_t)n * (size_t)info->width;
-        const relume_status status = info->bytes
-                                         ? oiio_read_bytes(stream->reader, row, n, stream->scratch)
-                                         : oiio_read_floats(stream->reader, row, n, stream->scratch);
+        const relume_status status =
+            info->bytes ? oiio_read_bytes(stream->reader, row, n, stream->scratch)
+                        : oiio_read_floats(stream->reader, row, n, stream->scratch);
         if (status)
             return status;
         if (info->bytes)

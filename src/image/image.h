@@ -7,7 +7,8 @@
 #include <relume/image.h>
 
 // What `transfer` AUTO means for an open file.
-struct relume_transfer image_transfer(struct relume_transfer transfer, const struct oiio_info *info);
+struct relume_transfer image_transfer(struct relume_transfer transfer,
+                                      const struct oiio_info *info);
 
 enum { IMAGE_STREAM_ROWS = 16 };
 
@@ -18,7 +19,7 @@ struct image_stream {
     int channels;
     struct relume_transfer from, to;
     float gain[3];
-    bool finite_only;       // NaN and infinity are errors; to be set after opening
+    bool finite_only;     // NaN and infinity are errors; to be set after opening
     float table[3][256];  // per channel, for 8-bit files
     void *scratch;        // IMAGE_STREAM_ROWS rows of the file
 };

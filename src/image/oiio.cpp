@@ -28,7 +28,8 @@ struct oiio_reader {
     std::vector<float> whole;  // tiled files have no scanlines to stream: read at once
 };
 
-namespace {
+namespace
+{
 
 // One line without the library's trailing newline and without "(" file ")" noise.
 std::string one_line(std::string text)
@@ -120,6 +121,8 @@ relume_status open_input(oiio_reader *r, const relume_limits *limits)
         return broken(r, "truncated JPEG; expected an end marker");
     r->info.width = spec.width;
     r->info.height = spec.height;
+    r->info.x = spec.x;
+    r->info.y = spec.y;
     r->info.channels = spec.nchannels;
     r->info.bytes = spec.format == TypeUInt8 && spec.channelformats.empty();
     r->info.linear = says_linear(spec, format);
@@ -213,19 +216,18 @@ relume_status write_image(const char *path, int width, int height, int channels,
     try {
         auto output = writer_for(path);
         if (!output)
-            return log_fail(log, RELUME_EINVAL,
-                            "%s: unknown image extension; expected .exr, .png, .jpg, .tif, .hdr, ...",
-                            path);
+            return log_fail(
+                log, RELUME_EINVAL,
+                "%s: unknown image extension; expected .exr, .png, .jpg, .tif, .hdr, ...", path);
         ImageSpec spec(width, height, channels, type);
         spec["CompressionQuality"] = 95;
         spec["jpeg:subsampling"] = "4:4:4";  // colour edges of paintings survive
         spec["oiio:ColorSpace"] = type == TypeUInt8 ? "sRGB" : "Linear";
         // OpenImageIO 2.4 writes unreadable TIFF files through a memory proxy.
-        const bool in_memory = output->supports("ioproxy") &&
-                               std::string(output->format_name()) != "tiff";
-        return in_memory
-                   ? write_in_memory(*output, path, spec, type, samples, log)
-                   : write_beside(*output, path, spec, type, samples, log);
+        const bool in_memory =
+            output->supports("ioproxy") && std::string(output->format_name()) != "tiff";
+        return in_memory ? write_in_memory(*output, path, spec, type, samples, log)
+                         : write_beside(*output, path, spec, type, samples, log);
     } catch (const std::bad_alloc &) {
         return RELUME_ENOMEM;
     } catch (const std::exception &e) {
@@ -233,7 +235,7 @@ relume_status write_image(const char *path, int width, int height, int channels,
     }
 }
 
-} // namespace
+}  // namespace
 
 relume_status oiio_open(oiio_reader **out, const char *path, const relume_limits *limits,
                         const relume_log *log)

@@ -13,6 +13,7 @@ typedef struct oiio_reader oiio_reader;
 
 struct oiio_info {
     int width, height;
+    int x, y;      // where the data window begins
     int channels;  // as read_* delivers them
     int rgb[3];    // which channel is red, green, blue; all equal for grey
     bool bytes;    // 8-bit integers: oiio_read_bytes works

@@ -21,7 +21,7 @@ struct builder {
     int count, capacity;
     struct edge {
         int from, to;
-    } *horizon;
+    } * horizon;
     int horizon_count, horizon_capacity;
 };
 
@@ -67,8 +67,7 @@ static bool toggle_edge(struct builder *b, int from, int to)
             b->horizon[i] = b->horizon[--b->horizon_count];
             return true;
         }
-    if (!grow((void **)&b->horizon, &b->horizon_capacity, b->horizon_count + 1,
-              sizeof *b->horizon))
+    if (!grow((void **)&b->horizon, &b->horizon_capacity, b->horizon_count + 1, sizeof *b->horizon))
         return false;
     b->horizon[b->horizon_count++] = (struct edge){from, to};
     return true;
@@ -114,8 +113,7 @@ static bool find_seed(const struct builder *b, int seed[4])
     const vec3 axis = vec3_sub(b->original[seed[1]], b->original[0]);
     best = 0.0;
     for (int i = 1; i < b->n; i++) {
-        const double a =
-            vec3_length(vec3_cross(axis, vec3_sub(b->original[i], b->original[0])));
+        const double a = vec3_length(vec3_cross(axis, vec3_sub(b->original[i], b->original[0])));
         if (a > best) {
             best = a;
             seed[2] = i;
@@ -179,8 +177,8 @@ relume_status hull_build(const struct relume_vec3 *points, int n, struct hull_tr
     if (!status && !(*triangles = mem_array((size_t)b.count, sizeof **triangles)))
         status = RELUME_ENOMEM;
     for (int f = 0; !status && f < b.count; f++)
-        (*triangles)[f] =
-            (struct hull_triangle){{b.faces[f].corner[0], b.faces[f].corner[1], b.faces[f].corner[2]}};
+        (*triangles)[f] = (struct hull_triangle){
+            {b.faces[f].corner[0], b.faces[f].corner[1], b.faces[f].corner[2]}};
     *count = status ? 0 : b.count;
     free(b.p);
     free(b.faces);

@@ -32,15 +32,6 @@ bool lsq_cholesky(double *matrix, int n)
     return true;
 }
 
-void lsq_solve(const double *factor, int n, double *b, int columns)
-{
-    prepare();
-    cblas_dtrsm(CblasRowMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, n, columns, 1.0,
-                factor, n, b, columns);
-    cblas_dtrsm(CblasRowMajor, CblasLeft, CblasLower, CblasTrans, CblasNonUnit, n, columns, 1.0,
-                factor, n, b, columns);
-}
-
 bool lsq_invert_lower(double *factor, int n)
 {
     prepare();

@@ -14,9 +14,6 @@ bool lsq_eigenvalues(double *matrix, int n, double *values);
 // rest by zeros. False when it is not positive definite.
 bool lsq_cholesky(double *matrix, int n);
 
-// Solve L Lt x = b for `columns` right-hand sides b[n][columns], in place.
-void lsq_solve(const double *factor, int n, double *b, int columns);
-
 // The inverse of a lower triangular matrix, in place.
 bool lsq_invert_lower(double *factor, int n);
 

@@ -34,8 +34,7 @@ void sh_evaluate(int degree, struct relume_vec3 d, double *values)
                 values[l * (l + 1) + m] = n * cosine;
                 values[l * (l + 1) - m] = n * sine;
             }
-            const double next =
-                (d.z * (2 * l + 1) * p - (l + m) * before) / (l + 1 - m);
+            const double next = (d.z * (2 * l + 1) * p - (l + m) * before) / (l + 1 - m);
             before = p;
             p = next;
         }

@@ -67,8 +67,7 @@ static struct relume_encode_report mean_report(const struct material *m)
         sum.fit_rms += r.fit_rms * r.fit_rms / m->views;
         sum.store_rms += r.store_rms * r.store_rms / m->views;
     }
-    return (struct relume_encode_report){sqrt(sum.fit_rms),
-                                         sqrt(sum.store_rms)};
+    return (struct relume_encode_report){sqrt(sum.fit_rms), sqrt(sum.store_rms)};
 }
 
 relume_status relume_pack_encode(const relume_capture *capture, const relume_coder *coder,

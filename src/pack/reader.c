@@ -172,8 +172,9 @@ static relume_status read_coder(relume_pack *p)
     const struct relume_basis *basis = name ? relume_basis_find(name) : NULL;
     int k, hemispherical, n = 0;
     if (!basis)
-        return log_fail(p->log, RELUME_EDATA, "%s: unknown basis '%.40s'; expected one of this "
-                                              "program's",
+        return log_fail(p->log, RELUME_EDATA,
+                        "%s: unknown basis '%.40s'; expected one of this "
+                        "program's",
                         p->path, name ? name : "");
     if (!exr_get_int(p->file, 0, ATTR_COEFFICIENTS, &k) || !basis->has_count(k))
         return bad(p, ATTR_COEFFICIENTS, "a number that the basis has");
@@ -189,8 +190,7 @@ static relume_status read_coder(relume_pack *p)
         return bad(p, ATTR_TRANSFORM, "coefficients x coefficients finite numbers");
     const float *ridge = get_floats(p, 0, ATTR_RIDGE, 1);
 
-    struct relume_vec3 *directions =
-        arena_array(&p->arena, (size_t)n / 3, sizeof *directions);
+    struct relume_vec3 *directions = arena_array(&p->arena, (size_t)n / 3, sizeof *directions);
     if (!directions)
         return RELUME_ENOMEM;
     for (int i = 0; i < n / 3; i++) {
@@ -205,8 +205,8 @@ static relume_status read_coder(relume_pack *p)
         &p->coder, basis, directions, n / 3,
         relume_coder_params(.log = p->log, .coefficients = k, .decode = true,
                             .hemispherical = hemispherical != 0, .pole_y = pole[0] == 'y',
-                            .ridge = ridge && *ridge >= 0.0f && *ridge <= 1.0f ? (double)*ridge
-                                                                                : 0.0,
+                            .ridge =
+                                ridge && *ridge >= 0.0f && *ridge <= 1.0f ? (double)*ridge : 0.0,
                             .transform = transform));
     p->info.coder = p->coder;
     return status == RELUME_EINVAL ? RELUME_EDATA : status;
@@ -234,8 +234,8 @@ static relume_status check_view_part(relume_pack *p, int part, int view)
 static bool is_plane(const relume_pack *p, int part, enum exr_sample sample)
 {
     const struct exr_part_info i = exr_part_info(p->file, part);
-    return i.width == p->info.width && i.height == p->info.height && i.channels == 1 &&
-           i.uniform && i.sample == sample;
+    return i.width == p->info.width && i.height == p->info.height && i.channels == 1 && i.uniform &&
+           i.sample == sample;
 }
 
 static relume_status find_parts(relume_pack *p)
@@ -491,8 +491,8 @@ static void plane_rows(void *context, int row, int rows, const void *samples)
     const size_t n = (size_t)rows * (size_t)s->image->width;
     float *out = s->image->data + (size_t)row * (size_t)s->image->width;
     for (size_t i = 0; i < n; i++)
-        out[i] = s->half ? float_from_half(((const uint16_t *)samples)[i])
-                         : ((const float *)samples)[i];
+        out[i] =
+            s->half ? float_from_half(((const uint16_t *)samples)[i]) : ((const float *)samples)[i];
 }
 
 static relume_status read_plane(struct relume_image *out, relume_pack *pack, int part, bool half)

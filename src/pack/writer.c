@@ -196,8 +196,8 @@ static void add_text(struct exr_part *part, struct exr_attribute *list, const ch
 static void add_floats(struct exr_part *part, struct exr_attribute *list, const char *name,
                        const float *floats, int count)
 {
-    list[part->attributes++] = (struct exr_attribute){
-        .name = name, .kind = EXR_FLOATS, .floats = floats, .count = count};
+    list[part->attributes++] =
+        (struct exr_attribute){.name = name, .kind = EXR_FLOATS, .floats = floats, .count = count};
 }
 
 static float *copy_doubles(struct arena *arena, const double *from, size_t n)
@@ -287,8 +287,8 @@ static bool add_preview(struct builder *b, const struct relume_pack_contents *c,
     const struct relume_vec3 front = {0.0, pole_y, !pole_y};
     const bool is_display = c->domain == RELUME_DOMAIN_DISPLAY;
     p->coefficients = middle;
-    curve_init(&p->curve, is_display ? c->display
-                                     : (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f});
+    curve_init(&p->curve,
+               is_display ? c->display : (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f});
     relume_coder_weights(c->coder, front, p->weights, p->constant);
     relume_transfer_text(c->display, display, 32);
     *part = (struct exr_part){
@@ -318,9 +318,8 @@ static const char **channel_names(struct builder *b, const struct relume_coder_i
 {
     const char **names = arena_array(&b->arena, (size_t)info->planes, sizeof *names);
     for (int p = 0; names && p < info->planes; p++) {
-        const char *name = info->joint
-                               ? arena_format(&b->arena, "c%04d", p)
-                               : arena_format(&b->arena, "c%04d.%c", p / 3, "RGB"[p % 3]);
+        const char *name = info->joint ? arena_format(&b->arena, "c%04d", p)
+                                       : arena_format(&b->arena, "c%04d.%c", p / 3, "RGB"[p % 3]);
         if (!name)
             return NULL;
         names[file_channel(info, p)] = name;

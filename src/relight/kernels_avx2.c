@@ -36,12 +36,14 @@ static inline float half_value(const void *p)
     return _cvtsh_ss(*(const uint16_t *)p);
 }
 
-// One sweep over up to 4 planes. `load`, `value` and `size` are constants at each call, so that this
-// becomes one tight loop per sample type. Head and tail sum in the same order with the same
+// One sweep over up to 4 planes. `load`, `value` and `size` are constants at each call, so that
+// this becomes one tight loop per sample type. Head and tail sum in the same order with the same
 // rounding: a pixel's bits do not depend on where a tile begins.
-static inline __attribute__((always_inline)) void
-sweep(float *out, size_t n, const char *const *planes, const float *w, int count, size_t size,
-      __m256 (*load)(const void *), float (*value)(const void *))
+static inline __attribute__((always_inline)) void sweep(float *out, size_t n,
+                                                        const char *const *planes, const float *w,
+                                                        int count, size_t size,
+                                                        __m256 (*load)(const void *),
+                                                        float (*value)(const void *))
 {
     __m256 weight[4];
     for (int k = 0; k < count; k++)
@@ -58,9 +60,10 @@ sweep(float *out, size_t n, const char *const *planes, const float *w, int count
             out[i] = fmaf(w[k], value(planes[k] + i * size), out[i]);
 }
 
-static inline __attribute__((always_inline)) void
-dot(float *out, size_t n, float bias, const void *planes, const float *w, int count, size_t size,
-    __m256 (*load)(const void *), float (*value)(const void *))
+static inline __attribute__((always_inline)) void dot(float *out, size_t n, float bias,
+                                                      const void *planes, const float *w, int count,
+                                                      size_t size, __m256 (*load)(const void *),
+                                                      float (*value)(const void *))
 {
     const char *const *p = planes;
     for (size_t i = 0; i < n; i++)

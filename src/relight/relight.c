@@ -15,8 +15,8 @@
 
 #include <string.h>
 
-// Pixels a worker takes at once: each plane is then read in runs of 8 kB, long enough for the CPU to
-// fetch ahead, and the sums still fit the first-level cache.
+// Pixels a worker takes at once: each plane is then read in runs of 8 kB, long enough for the CPU
+// to fetch ahead, and the sums still fit the first-level cache.
 enum { CHUNK = 8192 };
 
 // One dot product per channel: quantiser steps and constants folded in.
@@ -214,9 +214,8 @@ static void relight_chunk(void *context, size_t item, int worker)
                     out[3 * i + (size_t)c] = values[i];
             else
                 for (size_t i = 0; i < n; i++)
-                    out[3 * i + (size_t)c] =
-                        (p ? out[3 * i + (size_t)c] : 0.0f) +
-                        pass->rgb[c] * curve_decode(&job->curve, values[i]);
+                    out[3 * i + (size_t)c] = (p ? out[3 * i + (size_t)c] : 0.0f) +
+                                             pass->rgb[c] * curve_decode(&job->curve, values[i]);
         }
     }
     for (size_t i = 0; job->surface && i < n; i++)
@@ -230,10 +229,11 @@ static void warn_below_horizon(const struct relume_codes *codes, const struct re
     for (int i = 0; info->hemispherical && i < n; i++)
         if (lights[i].kind == RELUME_LIGHT_DIRECTIONAL &&
             pole_from_world(vec3_unit(lights[i].direction), info->pole_y).z < -1e-9) {
-            log_line(log, RELUME_WARNING,
-                     "light %d lies below the horizon, where nothing was captured; the value at the "
-                     "horizon is shown",
-                     i + 1);
+            log_line(
+                log, RELUME_WARNING,
+                "light %d lies below the horizon, where nothing was captured; the value at the "
+                "horizon is shown",
+                i + 1);
             return;
         }
 }
@@ -245,8 +245,8 @@ static relume_status check_lights(const struct relume_codes *codes,
     const struct relume_image *s = p->surface;
     for (int i = 0; i < n; i++)
         if (lights[i].kind == RELUME_LIGHT_DIRECTIONAL && !(vec3_length(lights[i].direction) > 0.0))
-            return log_fail(p->log, RELUME_EINVAL,
-                            "light %d: expected a direction, found zero", i + 1);
+            return log_fail(p->log, RELUME_EINVAL, "light %d: expected a direction, found zero",
+                            i + 1);
     if (count_kind(lights, n, RELUME_LIGHT_POINT) == 0)
         return RELUME_OK;
     if (!s || s->width != codes->width || s->height != codes->height || s->channels != 3)
@@ -311,9 +311,9 @@ void relume_relight_pixel(double rgb[3], const struct relume_codes *codes, int x
             double v = (double)constant[c];
             for (int k = 0; k < info->coefficients; k++) {
                 const int p = plane_of(info, k, c);
-                v += (double)weights[c * info->coefficients + k] *
-                     (code_at(codes, p, pixel) * (double)codes->scale[p] +
-                      (double)codes->offset[p]);
+                v +=
+                    (double)weights[c * info->coefficients + k] *
+                    (code_at(codes, p, pixel) * (double)codes->scale[p] + (double)codes->offset[p]);
             }
             if (codes->domain == RELUME_DOMAIN_DISPLAY)
                 v = (double)relume_transfer_decode(codes->display, (float)v);

@@ -20,8 +20,8 @@ static struct material stone(void)
 static void add_head(struct relume_scene_builder *b)
 {
     static const struct lathe_point chest[] = {
-        {0.34, -1.40, true},   {0.40, -1.32, false}, {0.52, -1.12, false},
-        {0.50, -0.96, false},  {0.34, -0.84, false}, {0.27, -0.72, false},
+        {0.34, -1.40, true},  {0.40, -1.32, false}, {0.52, -1.12, false},
+        {0.50, -0.96, false}, {0.34, -0.84, false}, {0.27, -0.72, false},
         {0.25, -0.56, false}, {0.27, -0.40, false}, {0.20, -0.25, true},
     };
     static const struct lathe_point foot[] = {

@@ -19,19 +19,19 @@ struct face {
     vec3 ahead, right, up;
 };
 static const struct face faces[6] = {
-    {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},   // +x
-    {{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}}, // -x
-    {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},   // +y
-    {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}}, // -y
-    {{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}},  // +z
-    {{0, 0, -1}, {1, 0, 0}, {0, 1, 0}},  // -z
+    {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},    // +x
+    {{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}},  // -x
+    {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},    // +y
+    {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}},  // -y
+    {{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}},   // +z
+    {{0, 0, -1}, {1, 0, 0}, {0, 1, 0}},   // -z
 };
 
 // An image seen as a panorama.
 struct panorama {
     const struct relume_geometry *geometry;
     int width, height;
-    const float *data; // three channels; NULL when only the geometry is asked for
+    const float *data;  // three channels; NULL when only the geometry is asked for
 };
 
 // What differs from layout to layout.
@@ -86,7 +86,7 @@ static bool cylinder_pixel(double xy[2], const struct panorama *p, vec3 d)
 {
     const struct relume_geometry *g = p->geometry;
     const double h = d.y / hypot(d.x, d.z);
-    const double slack = 1e-9 * (g->v_max - g->v_min); // computed directions on the rim
+    const double slack = 1e-9 * (g->v_max - g->v_min);  // computed directions on the rim
     if (!(h >= g->v_min - slack && h <= g->v_max + slack))
         return false;
     xy[0] = azimuth_column(p, d);

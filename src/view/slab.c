@@ -13,8 +13,9 @@
 
 // Camera coordinates closer than this (relative to the grid) are the same row or column.
 #define SAME_LINE 1e-6
-// A point this far (relative) outside the grid is on its border: eyes there are computed.
-#define BORDER_SLACK 1e-9
+// A point this close (relative) to a row or column is on it: eyes are computed, and files keep
+// camera places in single precision.
+#define ON_LINE 1e-6
 
 // ---------------------------------------------------------------- grid
 
@@ -66,7 +67,10 @@ static relume_status find_grid(relume_slab *slab, const double (*uv)[2], int vie
 {
     const double size = fmax(extent(uv, views, 0), extent(uv, views, 1));
     const double depth = fabs(slab->geometry.uv_z - slab->geometry.st_z);
-    slab->slack = BORDER_SLACK * fmax(size, depth);
+    double scale = fmax(size, depth);
+    for (int i = 0; i < views; i++)
+        scale = fmax(scale, fmax(fabs(uv[i][0]), fabs(uv[i][1])));
+    slab->slack = ON_LINE * scale;
     for (int i = 0; i < views; i++) {
         slab->u[i] = uv[i][0];
         slab->v[i] = uv[i][1];
@@ -185,8 +189,10 @@ static struct neighbours find_neighbours(const double *lines, int n, double slac
     if (!(at >= lines[0] - slack && at <= lines[n - 1] + slack))
         return (struct neighbours){0};
     const int low = line_below(lines, n, at);
-    if (low == n - 1 || at <= lines[low])
+    if (low == n - 1 || at <= lines[low] + slack)
         return one_neighbour(low);
+    if (at >= lines[low + 1] - slack)
+        return one_neighbour(low + 1);
     const double part = (at - lines[low]) / (lines[low + 1] - lines[low]);
     if (constant)
         return one_neighbour(part < 0.5 ? low : low + 1);

@@ -7,7 +7,7 @@
 struct relume_slab {
     struct relume_geometry geometry;
     int columns, rows;
-    double slack; // BORDER_SLACK in world units
+    double slack;  // ON_LINE in world units
     double *u;
     double *v;
     int *view;

@@ -47,8 +47,8 @@ struct frame {
     const relume_slab *slab;
     const struct relume_image *out;
     const struct relume_image *views;
-    const struct taps *across; // [width]
-    const struct taps *down;   // [height]
+    const struct taps *across;  // [width]
+    const struct taps *down;    // [height]
 };
 
 static const float *texel(const struct frame *f, const struct taps *across, int i,

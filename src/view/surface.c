@@ -1,4 +1,5 @@
-// surface.c - pixel, eye and depth become a point of the world: P = E + d V / |V| (Wong 1998, 7.5.5)
+// surface.c - pixel, eye and depth become a point of the world: P = E + d V / |V| (Wong
+// 1998, 7.5.5)
 #include <relume/view.h>
 
 #include "math/vec.h"
@@ -40,8 +41,9 @@ relume_status relume_surface(struct relume_image *out, const struct relume_geome
         for (int column = 0; column < width; column++, to += 3) {
             vec3 eye, v;
             pixel_ray(geometry, uv, width, height, column, row, &eye, &v);
-            const double d = depth ? (double)depth->data[(size_t)row * (size_t)width + (size_t)column]
-                                   : -eye.z / v.z;  // to the plane z = 0
+            const double d = depth
+                                 ? (double)depth->data[(size_t)row * (size_t)width + (size_t)column]
+                                 : -eye.z / v.z;  // to the plane z = 0
             to[0] = (float)(eye.x + d * v.x);
             to[1] = (float)(eye.y + d * v.y);
             to[2] = (float)(eye.z + d * v.z);

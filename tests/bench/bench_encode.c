@@ -24,7 +24,8 @@ static void photograph(struct relume_image *image, struct relume_vec3 l, uint32_
             const double nx = 0.4 * sin(0.11 * x + 0.03 * y), ny = 0.4 * cos(0.07 * y - 0.05 * x);
             const double nz = sqrt(1.0 - nx * nx - ny * ny);
             const double lit = fmax(0.0, nx * l.x + ny * l.y + nz * l.z);
-            const double albedo = 0.3 + 0.2 * sin(0.9 * x) * sin(0.7 * y) + 0.2 * ((x / 37 + y / 23) & 1);
+            const double albedo =
+                0.3 + 0.2 * sin(0.9 * x) * sin(0.7 * y) + 0.2 * ((x / 37 + y / 23) & 1);
             float *p = image->data + ((size_t)y * (size_t)image->width + (size_t)x) * 3;
             for (int c = 0; c < 3; c++)
                 p[c] = (float)(lit * albedo * (1.0 - 0.2 * c)) + 0.02f * noise(&state);
@@ -82,9 +83,9 @@ static void encode(const char *folder, enum relume_compression compression)
     snprintf(out, sizeof out, "%s/out.exr", folder);
     bench_check(relume_capture_open(&capture, lp, NULL));
     const struct relume_manifest *m = relume_capture_manifest(capture);
-    bench_check(relume_coder_create(&coder, &relume_basis_sh, m->directions, m->lights,
-                                    relume_coder_params(.coefficients = 16,
-                                                        .hemispherical = true)));
+    bench_check(
+        relume_coder_create(&coder, &relume_basis_sh, m->directions, m->lights,
+                            relume_coder_params(.coefficients = 16, .hemispherical = true)));
     bench_check(relume_pack_encode(capture, coder, out, NULL,
                                    relume_pack_encode_params(.compression = compression)));
     relume_coder_destroy(&coder);
@@ -121,8 +122,8 @@ int main(int argc, char **argv)
     if (side < 16 || !mkdtemp(folder))
         return 1;
     make_capture(folder, side);
-    printf("encode: %d JPEG photographs of %d x %d, sh 16, 8 bits, %d threads\n", LIGHTS, side, side,
-           relume_cpu_count());
+    printf("encode: %d JPEG photographs of %d x %d, sh 16, 8 bits, %d threads\n", LIGHTS, side,
+           side, relume_cpu_count());
     printf("  peak memory %ld MB (target at 4096: 600)\n", peak_mb(folder));
     struct bench read = {.runs = 0}, write[4] = {{.runs = 0}};
     for (int run = 0; run < RUNS; run++) {

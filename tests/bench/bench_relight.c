@@ -45,13 +45,12 @@ static void compare(const struct relume_codes *codes, const uint8_t *bytes, int 
     struct bench read = {.runs = 0}, fast = {.runs = 0}, plain = {.runs = 0};
     for (int i = 0; i < RUNS; i++) {
         double t = bench_now_s();
-        thread_for(threads, BLOCKS, read_block,
-                   &(struct read_job){bytes, size / BLOCKS, sums});
+        thread_for(threads, BLOCKS, read_block, &(struct read_job){bytes, size / BLOCKS, sums});
         bench_add(&read, bench_now_s() - t);
         check += sums[i];
         t = bench_now_s();
-        bench_check(relume_relight(&out, codes, &light, 1,
-                                   relume_relight_params(.threads = threads)));
+        bench_check(
+            relume_relight(&out, codes, &light, 1, relume_relight_params(.threads = threads)));
         bench_add(&fast, bench_now_s() - t);
         t = bench_now_s();
         bench_check(relume_relight(&out, codes, &light, 1,

@@ -4,17 +4,44 @@
 static const struct relume_limits limits = {
     .max_side = 256, .max_pixels = 1 << 14, .max_lights = 200, .max_views = 16};
 
-static const char *const words[] = {
-    "relume.format",       "relume.version",     "relume.domain",  "relume.display",
-    "relume.storage",      "relume.projection",  "relume.views",   "relume.uv",
-    "relume.window",       "relume.slab",        "relume.basis",   "relume.coefficients",
-    "relume.hemispherical", "relume.ridge",      "relume.lights",  "relume.transform",
-    "relume.scale",        "relume.offset",      "channels",       "dataWindow",
-    "displayWindow",       "chunkCount",         "compression",    "view0000",
-    "view0001.depth",      "type",               "lineOrder",      "floatvector",
-    "planar",              "slab",               "cube",           "spherical",
-    "display",             "linear",             "table",          "scanlineimage",
-    "c0000.R",             NULL};
+static const char *const words[] = {"relume.format",
+                                    "relume.version",
+                                    "relume.domain",
+                                    "relume.display",
+                                    "relume.storage",
+                                    "relume.projection",
+                                    "relume.views",
+                                    "relume.uv",
+                                    "relume.window",
+                                    "relume.slab",
+                                    "relume.basis",
+                                    "relume.coefficients",
+                                    "relume.hemispherical",
+                                    "relume.ridge",
+                                    "relume.lights",
+                                    "relume.transform",
+                                    "relume.scale",
+                                    "relume.offset",
+                                    "channels",
+                                    "dataWindow",
+                                    "displayWindow",
+                                    "chunkCount",
+                                    "compression",
+                                    "view0000",
+                                    "view0001.depth",
+                                    "type",
+                                    "lineOrder",
+                                    "floatvector",
+                                    "planar",
+                                    "slab",
+                                    "cube",
+                                    "spherical",
+                                    "display",
+                                    "linear",
+                                    "table",
+                                    "scanlineimage",
+                                    "c0000.R",
+                                    NULL};
 
 static void use(relume_pack *pack)
 {
@@ -62,10 +89,10 @@ static void add(struct fuzz *f, const struct fixture *fixture, const struct relu
                 int coefficients, enum relume_storage storage, enum relume_compression compression)
 {
     fixture_write(fixture, f->folder);
-    fixture_must(fixture_encode(f->folder, f->path, basis, coefficients,
-                                relume_pack_encode_params(.storage = storage,
-                                                          .compression = compression)),
-                 "encode");
+    fixture_must(
+        fixture_encode(f->folder, f->path, basis, coefficients,
+                       relume_pack_encode_params(.storage = storage, .compression = compression)),
+        "encode");
     fuzz_add(f, fuzz_load(f->path));
 }
 
@@ -73,8 +100,13 @@ int main(int argc, char **argv)
 {
     struct fuzz f = {.words = words};
     const struct fixture plain = {.width = 9, .height = 40, .lights = 6, .views = 1};
-    const struct fixture slab = {.width = 8, .height = 5, .lights = 5, .views = 3,
-                                 .hemisphere = true, .depth = true, .mask = true};
+    const struct fixture slab = {.width = 8,
+                                 .height = 5,
+                                 .lights = 5,
+                                 .views = 3,
+                                 .hemisphere = true,
+                                 .depth = true,
+                                 .mask = true};
     fuzz_begin(&f, "fuzz_pack", argc, argv);
     add(&f, &plain, &relume_basis_sh, 4, RELUME_STORE_8, RELUME_COMPRESS_PIZ);
     add(&f, &plain, &relume_basis_table, 0, RELUME_STORE_16, RELUME_COMPRESS_ZIP);

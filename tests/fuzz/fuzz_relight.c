@@ -58,10 +58,16 @@ static bool one(struct fuzz *f, struct bytes b)
     const double top = storage == RELUME_STORE_8 ? 255.0 : 65535.0;  // halves here end at 60000
     for (int p = 0; p < planes; p++)
         largest += fabs((double)scale[p]) * top + fabs((double)offset[p]);
-    const struct relume_codes codes = {
-        .coder = coder, .domain = 1 + take(&r, 1) % 2, .display = {RELUME_CURVE_GAMMA, 0.5f},
-        .width = width, .height = height, .planes = planes, .storage = storage,
-        .plane = plane, .scale = scale, .offset = offset};
+    const struct relume_codes codes = {.coder = coder,
+                                       .domain = 1 + take(&r, 1) % 2,
+                                       .display = {RELUME_CURVE_GAMMA, 0.5f},
+                                       .width = width,
+                                       .height = height,
+                                       .planes = planes,
+                                       .storage = storage,
+                                       .plane = plane,
+                                       .scale = scale,
+                                       .offset = offset};
     struct relume_light lamp[4];
     for (int i = 0; i < count; i++)
         lamp[i] = (struct relume_light){.direction = {take_float(&r), take_float(&r), 1.0},
@@ -72,9 +78,8 @@ static bool one(struct fuzz *f, struct bytes b)
         rgb += (double)fmaxf(lamp[i].rgb[0], lamp[i].rgb[1]);
     const double tolerance = 1e-6 * largest * rgb;  // 2^-24 x 16 terms; |basis| stays below 1.1
     const relume_status a = relume_relight(&fast, &codes, lamp, count, NULL);
-    const relume_status c =
-        relume_relight(&plain, &codes, lamp, count,
-                       relume_relight_params(.cpu_off = ~0u, .threads = 1));
+    const relume_status c = relume_relight(&plain, &codes, lamp, count,
+                                           relume_relight_params(.cpu_off = ~0u, .threads = 1));
     if (!a && !c && codes.domain == RELUME_DOMAIN_LINEAR)
         for (size_t i = 0; i < 3 * pixels; i++)
             if (!(fabs((double)fast.data[i] - (double)plain.data[i]) <= tolerance)) {

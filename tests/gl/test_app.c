@@ -108,9 +108,9 @@ static void the_slab_turns_with_the_cursor(void **state)
 {
     (void)state;
     struct app app = make_app(RELUME_SLAB, true);
-    drag(&app, APP_LEFT, 100, 0); // a quarter of the frame: a quarter of the cameras' width
+    drag(&app, APP_LEFT, 100, 0);  // a quarter of the frame: a quarter of the cameras' width
     assert_float_equal(app.now.camera.eye.x, -0.5, 1e-12);
-    drag(&app, APP_LEFT, 0, 50); // the object's front goes down: the eye sees it from above
+    drag(&app, APP_LEFT, 0, 50);  // the object's front goes down: the eye sees it from above
     assert_float_equal(app.now.camera.eye.y, 0.25, 1e-12);
     drag(&app, APP_LEFT, 5000, -5000);
     assert_true(app.now.camera.eye.x == -1 && app.now.camera.eye.y == -0.5);
@@ -125,7 +125,7 @@ static void the_panorama_follows_the_cursor(void **state)
 {
     (void)state;
     struct app app = make_app(RELUME_SPHERICAL, true);
-    drag(&app, APP_LEFT, -512, 0); // half a frame of 90 degrees
+    drag(&app, APP_LEFT, -512, 0);  // half a frame of 90 degrees
     assert_float_equal(app.now.camera.look.pan_deg, 45, 1e-9);
     drag(&app, APP_LEFT, 0, 256);
     assert_float_equal(app.now.camera.look.tilt_deg, 22.5, 1e-9);
@@ -173,12 +173,12 @@ static void the_light_turns_like_a_ball(void **state)
 {
     (void)state;
     struct app app = make_app(RELUME_PLANAR, true);
-    drag(&app, APP_RIGHT, 100, 0); // half the frame's shorter side: a quarter turn to the right
+    drag(&app, APP_RIGHT, 100, 0);  // half the frame's shorter side: a quarter turn to the right
     struct relume_vec3 d = app.now.light[0].direction;
     assert_float_equal(d.x, 1, 1e-12);
     assert_float_equal(d.z, 0, 1e-12);
     key(&app, 'r');
-    drag(&app, APP_RIGHT, 0, -50); // up
+    drag(&app, APP_RIGHT, 0, -50);  // up
     d = app.now.light[0].direction;
     assert_float_equal(d.y, sqrt(0.5), 1e-12);
     assert_float_equal(d.z, sqrt(0.5), 1e-12);
@@ -203,8 +203,8 @@ static void the_light_turns_as_seen_in_a_panorama(void **state)
     struct app app = make_app(RELUME_SPHERICAL, true);
     app.now.camera.look = (struct relume_look){90, 30, 1};
     const struct relume_vec3 before = app_seen_light(&app, 0);
-    assert_float_equal(before.x, 1, 1e-12); // looking to +x, the light at +z is on the right
-    drag(&app, APP_RIGHT, -256, 0);         // a quarter turn to the left: now behind the viewer
+    assert_float_equal(before.x, 1, 1e-12);  // looking to +x, the light at +z is on the right
+    drag(&app, APP_RIGHT, -256, 0);          // a quarter turn to the left: now behind the viewer
     const struct relume_vec3 after = app_seen_light(&app, 0);
     assert_float_equal(after.x, 0, 1e-12);
     assert_float_equal(after.y, 0, 1e-12);
@@ -222,7 +222,7 @@ static void keys(void **state)
     assert_float_equal(app.now.exposure_ev, 0.25, 1e-12);
     assert_true(key(&app, 'b'));
     assert_true(app.now.ball);
-    assert_false(key(&app, '[')); // only a slab has an eye to move
+    assert_false(key(&app, '['));  // only a slab has an eye to move
     assert_false(key(&app, 'x'));
     assert_true(key(&app, 'r'));
     assert_true(app.now.exposure_ev == 0 && !app.now.ball);

@@ -38,7 +38,9 @@ static void fill(const struct pattern *p, float *weights)
 
 static double code(int kind, int k, size_t i)
 {
-    return kind == 0 ? bytes[k][i] : kind == 1 ? words[k][i] : (double)float_from_half(halves[k][i]);
+    return kind == 0   ? bytes[k][i]
+           : kind == 1 ? words[k][i]
+                       : (double)float_from_half(halves[k][i]);
 }
 
 static void run(const struct kernels *kernels, int kind, size_t offset, size_t n, float bias,

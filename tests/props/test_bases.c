@@ -29,9 +29,9 @@ static int counts_of(const struct relume_basis *b, int *counts)
 static relume_coder *create(const struct relume_basis *b, int k, bool hemispherical, double ridge)
 {
     relume_coder *c;
-    CHECK_OK(relume_coder_create(&c, b, lights, LIGHTS,
-                                 relume_coder_params(.coefficients = k, .ridge = ridge,
-                                                     .hemispherical = hemispherical)));
+    CHECK_OK(relume_coder_create(
+        &c, b, lights, LIGHTS,
+        relume_coder_params(.coefficients = k, .ridge = ridge, .hemispherical = hemispherical)));
     assert_int_equal(relume_coder_info(c)->coefficients, k);
     return c;
 }
@@ -203,9 +203,10 @@ static void test_eight_bits_are_enough(void **state)
     test_folder(folder);
     snprintf(path, sizeof path, "%s/pack.exr", folder);
     for (int hemisphere = 0; hemisphere < 2; hemisphere++) {
-        fixture_write(&(struct fixture){.width = 40, .height = 33, .lights = 60, .views = 1,
-                                        .hemisphere = hemisphere},
-                      folder);
+        fixture_write(
+            &(struct fixture){
+                .width = 40, .height = 33, .lights = 60, .views = 1, .hemisphere = hemisphere},
+            folder);
         FOR_EACH_BASIS(b)
         {
             if ((*b)->fit_count(9, 60) > 9)
@@ -223,7 +224,8 @@ static void test_eight_bits_are_enough(void **state)
             if (relume_pack_encode(capture, coder, path, &r,
                                    relume_pack_encode_params(.log = &log.log)))
                 fail_msg("%s", log.text);
-            const double cost_db = 10.0 * log10(1.0 + r.store_rms * r.store_rms / r.fit_rms / r.fit_rms);
+            const double cost_db =
+                10.0 * log10(1.0 + r.store_rms * r.store_rms / r.fit_rms / r.fit_rms);
             assert_true(r.fit_rms > 1e-3 && r.store_rms > 1e-6);  // both are really measured
             assert_true(cost_db < 0.1);
             relume_coder_destroy(&coder);

@@ -12,9 +12,10 @@ static int setup(void **state)
 {
     (void)state;
     test_folder(folder);
-    fixture_write(&(struct fixture){.width = 67, .height = 50, .lights = 12, .views = 2,
-                                    .depth = true, .mask = true},
-                  folder);
+    fixture_write(
+        &(struct fixture){
+            .width = 67, .height = 50, .lights = 12, .views = 2, .depth = true, .mask = true},
+        folder);
     return 0;
 }
 
@@ -60,10 +61,10 @@ static void test_encode(void **state)
         size_t first_size = 0;
         for (size_t t = 0; t < 3; t++) {
             size_t size;
-            CHECK_OK(fixture_encode(folder, path, kinds[k].basis, kinds[k].coefficients,
-                                    relume_pack_encode_params(.threads = threads[t],
-                                                              .storage = kinds[k].storage,
-                                                              .compression = kinds[k].compression)));
+            CHECK_OK(fixture_encode(
+                folder, path, kinds[k].basis, kinds[k].coefficients,
+                relume_pack_encode_params(.threads = threads[t], .storage = kinds[k].storage,
+                                          .compression = kinds[k].compression)));
             char *bytes = whole_file(path, &size);
             if (!first) {
                 first = bytes;
@@ -85,8 +86,8 @@ static void test_frames(void **state)
     snprintf(path, sizeof path, "%s/pack.exr", folder);
     const struct relume_light lights[2] = {{.direction = {0.1, 0.2, 0.9}, .rgb = {1, 1, 1}},
                                            {.direction = {0.8, 0.2, 0.1}, .rgb = {1, 2, 3}}};
-    const struct relume_camera camera = {.framing = RELUME_FRAME_EYE, .eye = {0.4, 0.0, 3.0},
-                                         .width = 81, .height = 43};
+    const struct relume_camera camera = {
+        .framing = RELUME_FRAME_EYE, .eye = {0.4, 0.0, 3.0}, .width = 81, .height = 43};
     for (int domain = RELUME_DOMAIN_LINEAR; domain <= RELUME_DOMAIN_DISPLAY; domain++) {
         CHECK_OK(fixture_encode(folder, path, &relume_basis_sh, 9,
                                 relume_pack_encode_params(.domain = (enum relume_domain)domain)));

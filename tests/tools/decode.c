@@ -175,10 +175,11 @@ static void sh(int count, struct vector d, double *value)
     for (int l = 0, k = 0; k < count; l++)
         for (int m = -l; m <= l; m++, k++) {
             const int a = abs(m);
-            const double n =
-                sqrt((2 * l + 1) / (2 * PI) * factorial(l - a) / factorial(l + a));
+            const double n = sqrt((2 * l + 1) / (2 * PI) * factorial(l - a) / factorial(l + a));
             value[k] = n * legendre(l, a, d.z) *
-                       (m > 0 ? cos(m * phi) : m < 0 ? sin(a * phi) : sqrt(0.5));
+                       (m > 0   ? cos(m * phi)
+                        : m < 0 ? sin(a * phi)
+                                : sqrt(0.5));
         }
 }
 
@@ -283,9 +284,8 @@ static void basis(int k, struct vector light, double *stored)
     } else if (!strcmp(name, "table") && n == 3 * k && k <= MOST_POINTS) {
         struct vector light_of[MOST_POINTS];
         for (int i = 0; i < k; i++)
-            light_of[i] = pole_frame(
-                unit((struct vector){(double)xyz[3 * i], (double)xyz[3 * i + 1],
-                                     (double)xyz[3 * i + 2]}));
+            light_of[i] = pole_frame(unit((struct vector){
+                (double)xyz[3 * i], (double)xyz[3 * i + 1], (double)xyz[3 * i + 2]}));
         table(light_of, k, d, value);
     } else {
         fail("basis %s with %d coefficients", name, k);
@@ -339,8 +339,7 @@ int main(int argc, char **argv)
             fail("channel %s", name[i]);
         const int c = letter == 'R' ? 0 : letter == 'G' ? 1 : 2;
         const int plane = 3 * number + c;
-        rgb[c] += weight[number] *
-                  ((double)code[i] * (double)scale[plane] + (double)offset[plane]);
+        rgb[c] += weight[number] * ((double)code[i] * (double)scale[plane] + (double)offset[plane]);
     }
     printf("%.9g %.9g %.9g\n", linearised(rgb[0]), linearised(rgb[1]), linearised(rgb[2]));
     free(weight);

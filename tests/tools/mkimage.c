@@ -3,14 +3,13 @@
 //   mkimage png  DEPTH CHANNELS DIR IN...  PNG of 8 or 16 bits; 1 grey, 2 + alpha, 3 RGB, 4 + alpha
 //   mkimage tiff DEPTH CHANNELS DIR IN...  TIFF of 8, 16 or 32 (float) bits; 1, 3 or 4 channels;
 //                                          both write DIR/NAME under each input's own name
-//   mkimage poke IN OUT X Y VALUE          all channels of one pixel, as float EXR ("nan", "inf", ...)
-//   mkimage gain IN OUT FACTOR             every value times FACTOR, as float EXR
-//   mkimage plane IN OUT VALUE             one channel of VALUE of the size of IN, as float EXR
-//   mkimage bigpng OUT W H | bigexr OUT W H    a few bytes that claim a size
-//   mkimage cmyk OUT W H C M Y K           CMYK JPEG of one colour, inks 0 to 255, as Adobe writes it
-//   mkimage read IMAGE X Y                 the linear value of a pixel
-//   mkimage maxdiff A B                    the largest difference, linear
-//   mkimage sum OUT A B                    A + B, as float EXR
+//   mkimage poke IN OUT X Y VALUE          all channels of one pixel, as float EXR ("nan", "inf",
+//   ...) mkimage gain IN OUT FACTOR             every value times FACTOR, as float EXR mkimage
+//   plane IN OUT VALUE             one channel of VALUE of the size of IN, as float EXR mkimage
+//   bigpng OUT W H | bigexr OUT W H    a few bytes that claim a size mkimage cmyk OUT W H C M Y K
+//   CMYK JPEG of one colour, inks 0 to 255, as Adobe writes it mkimage read IMAGE X Y the linear
+//   value of a pixel mkimage maxdiff A B                    the largest difference, linear mkimage
+//   sum OUT A B                    A + B, as float EXR
 #include <relume/relume.h>
 
 #include <math.h>
@@ -196,7 +195,7 @@ static void write_tiff(const char *from, const char *to, int depth, int channels
         {277, 3, 1, (uint32_t)channels},
         {278, 4, 1, height},
         {279, 4, 1, bytes},
-        {338, 3, 1, 2},                                 // alpha, unassociated
+        {338, 3, 1, 2},  // alpha, unassociated
         {339, 3, 1, depth == 32 ? 3 : 1},
     };
     const int count = (int)(sizeof entries / sizeof *entries);
@@ -308,7 +307,10 @@ static void put_block(struct bits *b, int difference)
 static void write_cmyk(const char *to, int width, int height, char **inks)
 {
     struct buffer b = {0};
-    put(&b, "\xff\xd8\xff\xee\0\x0e" "Adobe\0\x64\0\0\0\0\0", 18);
+    put(&b,
+        "\xff\xd8\xff\xee\0\x0e"
+        "Adobe\0\x64\0\0\0\0\0",
+        18);
     put(&b, "\xff\xdb\0\x43\0", 5);
     for (int i = 0; i < 64; i++)
         put_byte(&b, 8);  // DC is 8 times the mean

@@ -11,8 +11,13 @@ static char folder[64], capture_path[96], lp_path[96], pack_path[96], out_path[9
 static int setup(void **state)
 {
     (void)state;
-    const struct fixture f = {.width = 9, .height = 20, .lights = 6, .views = 2, .hemisphere = true,
-                              .depth = true, .mask = true};
+    const struct fixture f = {.width = 9,
+                              .height = 20,
+                              .lights = 6,
+                              .views = 2,
+                              .hemisphere = true,
+                              .depth = true,
+                              .mask = true};
     test_folder(folder);
     fixture_write(&f, folder);
     snprintf(capture_path, sizeof capture_path, "%s/capture.json", folder);
@@ -87,9 +92,8 @@ static relume_status read_table(void)
 static relume_status encode_pack(void)
 {
     unlink(out_path);
-    const relume_status status =
-        fixture_encode(folder, out_path, &relume_basis_sh, 4,
-                       relume_pack_encode_params(.threads = 1));
+    const relume_status status = fixture_encode(folder, out_path, &relume_basis_sh, 4,
+                                                relume_pack_encode_params(.threads = 1));
     assert_true((access(out_path, F_OK) == 0) == (status == RELUME_OK));
     return status;
 }
@@ -179,10 +183,10 @@ static void test_nothing_is_left(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_open_capture), cmocka_unit_test(test_open_lp),
-        cmocka_unit_test(test_read_table),   cmocka_unit_test(test_encode_pack),
-        cmocka_unit_test(test_encode_table), cmocka_unit_test(test_read_pack),
-        cmocka_unit_test(test_compare_images), cmocka_unit_test(test_save_png),
+        cmocka_unit_test(test_open_capture),    cmocka_unit_test(test_open_lp),
+        cmocka_unit_test(test_read_table),      cmocka_unit_test(test_encode_pack),
+        cmocka_unit_test(test_encode_table),    cmocka_unit_test(test_read_pack),
+        cmocka_unit_test(test_compare_images),  cmocka_unit_test(test_save_png),
         cmocka_unit_test(test_nothing_is_left),
     };
     return cmocka_run_group_tests(tests, setup, teardown);

@@ -69,11 +69,17 @@ static void round_trip(enum exr_codec codec, enum exr_sample sample, int width, 
     };
     struct exr_part parts[2];
     for (int i = 0; i < 2; i++)
-        parts[i] = (struct exr_part){.name = i ? "second" : "first", .width = width,
-                                     .height = height, .sample = sample, .codec = codec,
-                                     .channels = channels, .channel = names,
-                                     .attributes = i ? 3 : 0, .attribute = attributes,
-                                     .rows = source, .context = &b};
+        parts[i] = (struct exr_part){.name = i ? "second" : "first",
+                                     .width = width,
+                                     .height = height,
+                                     .sample = sample,
+                                     .codec = codec,
+                                     .channels = channels,
+                                     .channel = names,
+                                     .attributes = i ? 3 : 0,
+                                     .attribute = attributes,
+                                     .rows = source,
+                                     .context = &b};
     exr_file *file;
     CHECK_OK(exr_write(path, parts, 2, threads, NULL));
     CHECK_OK(exr_open(&file, path, NULL, NULL));
@@ -115,8 +121,8 @@ static void test_round_trips(void **state)
                            heights[h], 1 + (int)h % 4, &seed, 1 + (int)h % 3);
 }
 
-// OpenEXR 3.1 stored a block wrongly when its compressed size equalled the plain one: about one in a
-// hundred blocks of such data.
+// OpenEXR 3.1 stored a block wrongly when its compressed size equalled the plain one: about one in
+// a hundred blocks of such data.
 static void test_blocks_that_do_not_shrink(void **state)
 {
     (void)state;
@@ -138,9 +144,14 @@ static relume_status refuse(void *context, int row, int rows, void *samples)
 static void test_failing_source(void **state)
 {
     (void)state;
-    const struct exr_part part = {.name = "p", .width = 1, .height = 200,
-                                  .sample = EXR_SAMPLE_FLOAT, .codec = EXR_CODEC_ZIP,
-                                  .channels = 1, .channel = names, .rows = refuse};
+    const struct exr_part part = {.name = "p",
+                                  .width = 1,
+                                  .height = 200,
+                                  .sample = EXR_SAMPLE_FLOAT,
+                                  .codec = EXR_CODEC_ZIP,
+                                  .channels = 1,
+                                  .channel = names,
+                                  .rows = refuse};
     unlink(path);
     for (int threads = 1; threads <= 4; threads += 3) {
         assert_int_equal(exr_write(path, &part, 1, threads, NULL), RELUME_EDATA);

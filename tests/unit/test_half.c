@@ -21,8 +21,8 @@ static void test_known_values(void **state)
     static const struct {
         uint16_t half;
         float value;
-    } known[] = {{0x3c00, 1.0f},     {0xc000, -2.0f},         {0x7bff, 65504.0f},
-                 {0x0400, 0x1p-14f}, {0x0001, 0x1p-24f},      {0x3555, 0.333251953125f},
+    } known[] = {{0x3c00, 1.0f},     {0xc000, -2.0f},    {0x7bff, 65504.0f},
+                 {0x0400, 0x1p-14f}, {0x0001, 0x1p-24f}, {0x3555, 0.333251953125f},
                  {0x7c00, INFINITY}, {0x8000, -0.0f}};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         assert_int_equal(half_from_float(known[i].value), known[i].half);
@@ -58,8 +58,8 @@ static void test_edges(void **state)
     assert_int_equal(half_from_float(65519.99f), 0x7bff);
     assert_int_equal(half_from_float(65520.0f), 0x7c00);
     assert_int_equal(half_from_float(-1e30f), 0xfc00);
-    assert_int_equal(half_from_float(0x1p-25f), 0);           // a tie, to even
-    assert_int_equal(half_from_float(0x1.000002p-25f), 1);    // just above it
+    assert_int_equal(half_from_float(0x1p-25f), 0);         // a tie, to even
+    assert_int_equal(half_from_float(0x1.000002p-25f), 1);  // just above it
     assert_int_equal(half_from_float(1e-45f), 0);
     assert_true((half_from_float(NAN) & 0x7fff) > 0x7c00);
 }

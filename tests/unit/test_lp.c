@@ -33,7 +33,8 @@ static void test_good(void **state)
     static const char *const texts[] = {
         "2\na b.jpg 0 0 2\nC:\\x\\c.jpg 3 0 0\n",
         "2\r\na b.jpg 0 0 2\r\nC:\\x\\c.jpg 3 0 0",
-        "\xef\xbb\xbf" "2\na b.jpg 0 0 2 \t\nC:\\x\\c.jpg 3 0 0  \r\n",
+        "\xef\xbb\xbf"
+        "2\na b.jpg 0 0 2 \t\nC:\\x\\c.jpg 3 0 0  \r\n",
         "\n\n  2  \n\n a b.jpg\t0\t0\t2\n\nC:\\x\\c.jpg 3e0 0,0 0\n\n",
         "2\na b.jpg 0, 0, 2,\nC:\\x\\c.jpg 3, 0, 0,\n",
         "2\na b.jpg 0,0 0,0 2,0\nC:\\x\\c.jpg 3 -0 +0\n",

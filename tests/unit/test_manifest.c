@@ -27,13 +27,17 @@ static void test_round_trip(void **state)
     const float intensities[2][3] = {{1, 2, 0.5f}, {0.125f, 3, 1}};
     const char *images[2] = {"a \"b\".exr", "c/\xc3\xa9\\.png"};
     for (int p = RELUME_PLANAR; p <= RELUME_CUBE; p++) {
-        const struct relume_manifest_view view = {.uv = {0.25, -0.5}, .images = images,
-                                                  .depth = "d.exr", .mask = p ? "m.png" : NULL};
-        struct relume_manifest m = {
-            .transfer = {RELUME_CURVE_GAMMA, 2.2f},
-            .geometry = relume_geometry_default((enum relume_projection)p, 4, 3),
-            .lights = 2, .directions = directions, .positions = p % 2 ? positions : NULL,
-            .intensities = p > 1 ? intensities : NULL, .views = 1, .view = &view};
+        const struct relume_manifest_view view = {
+            .uv = {0.25, -0.5}, .images = images, .depth = "d.exr", .mask = p ? "m.png" : NULL};
+        struct relume_manifest m = {.transfer = {RELUME_CURVE_GAMMA, 2.2f},
+                                    .geometry =
+                                        relume_geometry_default((enum relume_projection)p, 4, 3),
+                                    .lights = 2,
+                                    .directions = directions,
+                                    .positions = p % 2 ? positions : NULL,
+                                    .intensities = p > 1 ? intensities : NULL,
+                                    .views = 1,
+                                    .view = &view};
         m.geometry.perspective = true;
         m.geometry.camera_z = 7.5;
         m.geometry.uv_z = 2.5;
@@ -113,7 +117,8 @@ static void test_bad(void **state)
     expect("\"projection\": 1, ", "", "", "", "projection");
     expect("\"projection\": \"slab\", ", "", "", "", "slab");
     expect("\"projection\": \"slab\", \"slab\": {}, ", "", "", "", "uv");
-    expect("\"projection\": \"slab\", \"slab\": {\"uv_plane_z\": 0}, ", "", "", "", "two different");
+    expect("\"projection\": \"slab\", \"slab\": {\"uv_plane_z\": 0}, ", "", "", "",
+           "two different");
     expect("\"window\": {\"min\": [1, 1], \"max\": [0, 0]}, ", "", "", "", "below");
     expect("\"window\": {\"min\": [1]}, ", "", "", "", "min; expected 2 numbers");
     expect("\"window\": {\"camera\": \"fish\"}, ", "", "", "", "camera");

@@ -179,8 +179,10 @@ static void test_scratch(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_whole_or_not_at_all), cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_size_limit),          cmocka_unit_test(test_scratch),
+        cmocka_unit_test(test_whole_or_not_at_all),
+        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_size_limit),
+        cmocka_unit_test(test_scratch),
         cmocka_unit_test(test_folders),
     };
     return cmocka_run_group_tests(tests, setup, teardown);

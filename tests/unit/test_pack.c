@@ -34,8 +34,8 @@ static void check_planes(relume_pack *pack, const struct fixture *f, int view)
     relume_image_destroy(&mask);
 }
 
-// The table keeps the captured samples: at a captured light the value is that of the fixture, half a
-// step away at most.
+// The table keeps the captured samples: at a captured light the value is that of the fixture, half
+// a step away at most.
 static void check_values(relume_pack *pack, const struct fixture *f, int view)
 {
     const struct relume_codes *codes;
@@ -124,10 +124,10 @@ static void test_limits(void **state)
         relume_pack *pack = (void *)1;
         struct test_log log;
         test_log_init(&log);
-        assert_int_equal(relume_pack_open(&pack, path,
-                                          relume_pack_params(.limits = &limits[i],
-                                                             .log = &log.log)),
-                         RELUME_EDATA);
+        assert_int_equal(
+            relume_pack_open(&pack, path,
+                             relume_pack_params(.limits = &limits[i], .log = &log.log)),
+            RELUME_EDATA);
         assert_null(pack);
         assert_int_equal(log.lines, 1);
         assert_non_null(strstr(log.text, path));

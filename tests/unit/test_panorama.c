@@ -334,7 +334,7 @@ static void no_seam_at_the_edges_of_a_cube(void **state)
         const double s = k & 1 ? 1 : -1;
         const double t = k & 2 ? 1 : -1;
         double along = 2 * uniform(&random) - 1;
-        if (k & 4) // most trouble is at the corners
+        if (k & 4)  // most trouble is at the corners
             along = (along < 0 ? -1 : 1) * (1 - 1e-3 * fabs(along));
         const vec3 near[3] = {unit(s, t * (1 - e), along), unit(s, along, t * (1 - e)),
                               unit(along, s, t * (1 - e))};

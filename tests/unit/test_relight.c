@@ -100,15 +100,14 @@ static void test_point_light(void **state)
         surface.data[0] = INFINITY;  // one background pixel
         const struct relume_light light = {
             .kind = RELUME_LIGHT_POINT, .position = {0.4, -0.2, 0.6}, .rgb = {1, 2, 3}};
-        CHECK_OK(relume_relight(&out, &s.codes, &light, 1,
-                                relume_relight_params(.surface = &surface)));
+        CHECK_OK(
+            relume_relight(&out, &s.codes, &light, 1, relume_relight_params(.surface = &surface)));
         for (int i = 1; i < SIDE * SIDE; i++) {
             const double x = -1.0 + (i % SIDE + 0.5) * 2.0 / SIDE;
             const double y = 1.0 - (i / SIDE + 0.5) * 2.0 / SIDE;
             const struct relume_vec3 l = unit(0.4 - x, -0.2 - y, 0.6);
             for (int c = 0; c < 3; c++)
-                CHECK_NEAR(out.data[3 * i + c], (c + 1) * closed_form(&s, i, c, l),
-                           3 * TOLERANCE);
+                CHECK_NEAR(out.data[3 * i + c], (c + 1) * closed_form(&s, i, c, l), 3 * TOLERANCE);
         }
         assert_true(out.data[0] == 0.0f && out.data[1] == 0.0f && out.data[2] == 0.0f);
         relume_image_destroy(&surface);
@@ -126,9 +125,9 @@ static void test_point_light_needs_surface(void **state)
     make(&s, RELUME_DOMAIN_LINEAR);
     test_log_init(&log);
     const struct relume_light light = {.kind = RELUME_LIGHT_POINT, .rgb = {1, 1, 1}};
-    assert_int_equal(relume_relight(&out, &s.codes, &light, 1,
-                                    relume_relight_params(.log = &log.log)),
-                     RELUME_EINVAL);
+    assert_int_equal(
+        relume_relight(&out, &s.codes, &light, 1, relume_relight_params(.log = &log.log)),
+        RELUME_EINVAL);
     assert_null(out.data);
     assert_non_null(strstr(log.text, "depth"));
     relume_coder_destroy(&s.coder);

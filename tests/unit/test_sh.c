@@ -15,8 +15,14 @@ static void test_closed_forms(void **state)
         sh_evaluate(2, d, v);
         // signs as in the source: P_mm carries (-1)^m (Condon-Shortley)
         const double a = sqrt(3.0 / (4.0 * pi)), b = sqrt(15.0 / (4.0 * pi));
-        const double want[9] = {0.5 / sqrt(pi), -a * y,  a * z, -a * x, b * x * y, -b * y * z,
-                                sqrt(5.0 / (16.0 * pi)) * (3.0 * z * z - 1.0), -b * x * z,
+        const double want[9] = {0.5 / sqrt(pi),
+                                -a * y,
+                                a * z,
+                                -a * x,
+                                b * x * y,
+                                -b * y * z,
+                                sqrt(5.0 / (16.0 * pi)) * (3.0 * z * z - 1.0),
+                                -b * x * z,
                                 0.5 * b * (x * x - y * y)};
         for (int k = 0; k < 9; k++)
             CHECK_NEAR(v[k], want[k], 1e-13);
@@ -24,7 +30,8 @@ static void test_closed_forms(void **state)
 }
 
 // Gauss-Legendre would be exact; the midpoint rule in phi is for |m| < points, and Simpson-free
-// midpoints in z converge as 1/n^2, so nodes and weights come from Newton on the Legendre polynomial.
+// midpoints in z converge as 1/n^2, so nodes and weights come from Newton on the Legendre
+// polynomial.
 static void legendre_nodes(int n, double *node, double *weight)
 {
     for (int i = 0; i < n; i++) {
@@ -54,7 +61,8 @@ static void test_orthonormal(void **state)
     for (int i = 0; i < Z; i++)
         for (int j = 0; j < PHI; j++) {
             const double r = sqrt(1.0 - node[i] * node[i]), phi = 6.283185307179586 * j / PHI;
-            sh_evaluate(SH_MAX_DEGREE, (struct relume_vec3){r * cos(phi), r * sin(phi), node[i]}, v);
+            sh_evaluate(SH_MAX_DEGREE, (struct relume_vec3){r * cos(phi), r * sin(phi), node[i]},
+                        v);
             for (int a = 0; a < COUNT; a++)
                 for (int b = 0; b <= a; b++)
                     gram[a][b] += v[a] * v[b] * weight[i] * 6.283185307179586 / PHI;
@@ -96,7 +104,11 @@ static void test_poles(void **state)
         for (int l = 0; l <= SH_MAX_DEGREE; l++)
             for (int m = -l; m <= l; m++) {
                 const double top = sqrt((2 * l + 1) / 12.566370614359172);
-                CHECK_NEAR(v[l * (l + 1) + m], m ? 0.0 : sign > 0 || l % 2 == 0 ? top : -top, 1e-12);
+                CHECK_NEAR(v[l * (l + 1) + m],
+                           m                        ? 0.0
+                           : sign > 0 || l % 2 == 0 ? top
+                                                    : -top,
+                           1e-12);
             }
     }
 }

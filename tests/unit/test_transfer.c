@@ -13,7 +13,8 @@ static void test_srgb_known_values(void **state)
     CHECK_NEAR(relume_transfer_decode(srgb, 1.0f), 1.0, 1e-7);
     // the linear piece, and its joint: both sides agree to 1e-7 in the standard's own numbers
     CHECK_NEAR(relume_transfer_decode(srgb, 0.02f), 0.02 / 12.92, 1e-9);
-    CHECK_NEAR(relume_transfer_decode(srgb, 0.04045f), relume_transfer_decode(srgb, 0.040451f), 2e-7);
+    CHECK_NEAR(relume_transfer_decode(srgb, 0.04045f), relume_transfer_decode(srgb, 0.040451f),
+               2e-7);
 }
 
 static void test_round_trips(void **state)
@@ -50,9 +51,9 @@ static void test_parse_and_text(void **state)
         relume_transfer_text(t, text, sizeof text);
         assert_string_equal(text, good[i]);
     }
-    static const char *const bad[] = {"",           "SRGB",      "gamma",    "gamma:",
-                                      "gamma:0",    "gamma:-1",  "gamma:11", "gamma:nan",
-                                      "gamma:2.2x", "gamma:inf", "linear "};
+    static const char *const bad[] = {
+        "",         "SRGB",      "gamma",      "gamma:",    "gamma:0", "gamma:-1",
+        "gamma:11", "gamma:nan", "gamma:2.2x", "gamma:inf", "linear "};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         assert_int_equal(relume_transfer_parse(&t, bad[i]), RELUME_EINVAL);
     relume_transfer_text(srgb, text, 3);

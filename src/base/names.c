@@ -1,0 +1,40 @@
+// names.c - what somebody meant who mistyped: the smallest edit distance (Levenshtein 1966)
+#include <relume/base.h>
+
+#include <string.h>
+
+static int edit_distance(const char *a, const char *b)
+{
+    enum { LIMIT = 64 };
+    const size_t m = strlen(b);
+    int row[LIMIT + 1];
+    if (m > LIMIT)
+        return LIMIT;
+    for (size_t j = 0; j <= m; j++)
+        row[j] = (int)j;
+    for (size_t i = 0; a[i]; i++) {
+        int diagonal = row[0];
+        row[0] = (int)i + 1;
+        for (size_t j = 1; j <= m; j++) {
+            const int replace = diagonal + (a[i] != b[j - 1]);
+            const int other = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
+            diagonal = row[j];
+            row[j] = replace < other ? replace : other;
+        }
+    }
+    return row[m];
+}
+
+const char *relume_name_nearest(const char *given, const char *const *names)
+{
+    const char *best = NULL;
+    int best_distance = 1 + (int)strlen(given) / 2;
+    for (; *names; names++) {
+        const int d = edit_distance(given, *names);
+        if (d < best_distance) {
+            best_distance = d;
+            best = *names;
+        }
+    }
+    return best;
+}

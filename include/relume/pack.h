@@ -36,6 +36,7 @@ struct relume_pack_contents {
     struct relume_geometry geometry;
     int views;
     const struct relume_pack_view *view;  // [views]
+    struct relume_encode_report report;   // over all views
 };
 struct relume_pack_params {
     const struct relume_log *log;
@@ -87,6 +88,7 @@ struct relume_pack_info {
     int views;
     const double (*uv)[2];  // [views]; slab: camera places
     bool has_depth, has_mask;
+    struct relume_encode_report report;  // NaN where the file does not say
     uint64_t file_bytes;
 };
 RELUME_API const struct relume_pack_info *relume_pack_info(const relume_pack *pack);

@@ -1,5 +1,7 @@
 #include "cli.h"
 
+#include <math.h>
+
 static const struct option options[] = {
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
@@ -27,7 +29,11 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
            c->basis->name, c->coefficients, c->planes,
            i->domain == RELUME_DOMAIN_LINEAR ? "linear" : "display", display,
            storage_name(i->storage), i->compression);
-    printf("\"depth\": %s, \"mask\": %s, \"file_bytes\": %llu, \"bits_per_pixel\": ",
+    printf("\"fit_rms\": ");
+    json_number(stdout, i->report.fit_rms);
+    printf(", \"store_rms\": ");
+    json_number(stdout, i->report.store_rms);
+    printf(", \"depth\": %s, \"mask\": %s, \"file_bytes\": %llu, \"bits_per_pixel\": ",
            i->has_depth ? "true" : "false", i->has_mask ? "true" : "false",
            (unsigned long long)i->file_bytes);
     json_number(stdout, bits_per_pixel(i));
@@ -48,6 +54,9 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
         printf("domain        display (%s)\n", display);
     printf("storage       %s%s, %s\n", storage_name(i->storage),
            i->storage == RELUME_STORE_HALF ? "" : " bits", i->compression);
+    if (isfinite(i->report.fit_rms))
+        printf("error         %.5f RMS by the basis, %.5f by storing, over the captured lights\n",
+               i->report.fit_rms, i->report.store_rms);
     printf("with          %s%s%s\n", i->has_depth ? "depth" : "",
            i->has_depth && i->has_mask ? ", " : "",
            i->has_mask    ? "mask"

@@ -96,9 +96,10 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
             .geometry = manifest->geometry,
             .views = manifest->views,
             .view = m.view,
+            .report = mean_report(&m),
         };
         if (report)
-            *report = mean_report(&m);
+            *report = contents.report;
         status = relume_pack_write(
             &contents, path,
             relume_pack_params(.log = p.log, .compression = p.compression, .threads = p.threads));

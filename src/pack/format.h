@@ -27,6 +27,7 @@ enum { FORMAT_VERSION = 1 };
 #define ATTR_RIDGE         "relume.ridge"
 #define ATTR_LIGHTS        "relume.lights"
 #define ATTR_TRANSFORM     "relume.transform"
+#define ATTR_REPORT        "relume.report"
 
 // Attributes of a view's part
 #define ATTR_VIEW   "relume.view"

@@ -101,6 +101,14 @@ static relume_status read_kinds(relume_pack *p)
     return RELUME_OK;
 }
 
+// How well the file was encoded: for people, so a file without it is as good.
+static void read_report(relume_pack *p)
+{
+    const float *v = get_floats(p, 0, ATTR_REPORT, 2);
+    p->info.report = (struct relume_encode_report){v ? (double)v[0] : (double)NAN,
+                                                   v ? (double)v[1] : (double)NAN};
+}
+
 static relume_status read_uv(relume_pack *p)
 {
     const int n = p->info.views;
@@ -292,6 +300,7 @@ static relume_status read_header(relume_pack *p)
     if (status)
         return status;
     const struct exr_part_info first = exr_part_info(p->file, 0);
+    read_report(p);
     p->info.width = first.width;
     p->info.height = first.height;
     if (!exr_get_int(p->file, 0, ATTR_VIEWS, &p->info.views) || p->info.views < 1 ||

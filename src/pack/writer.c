@@ -281,7 +281,8 @@ static bool add_preview(struct builder *b, const struct relume_pack_contents *c,
     struct exr_attribute *list = arena_array(&b->arena, MOST_ATTRIBUTES, sizeof *list);
     struct preview *p = arena_array(&b->arena, 1, sizeof *p);
     char *display = arena_array(&b->arena, 32, 1);
-    if (!list || !p || !display)
+    float *report = arena_array(&b->arena, 2, sizeof *report);
+    if (!list || !p || !display || !report)
         return false;
     const bool pole_y = relume_coder_info(c->coder)->pole_y;
     const struct relume_vec3 front = {0.0, pole_y, !pole_y};
@@ -310,6 +311,9 @@ static bool add_preview(struct builder *b, const struct relume_pack_contents *c,
     add_text(part, list, ATTR_DISPLAY, display);
     add_text(part, list, ATTR_STORAGE, storage_name(info->storage));
     add_int(part, list, ATTR_VIEWS, c->views);
+    report[0] = (float)c->report.fit_rms;
+    report[1] = (float)c->report.store_rms;
+    add_floats(part, list, ATTR_REPORT, report, 2);
     return describe_coder(b, part, list, c->coder) && describe_geometry(b, part, list, c);
 }
 

@@ -2,13 +2,13 @@
 //
 // The images are read in bands of rows. A band is a matrix T[lights][pixels x 3]; its coefficients
 // are map x T, one matrix product per chunk of columns. Ranges for quantising are known only after
-// the last band, so coefficients wait in a scratch file as 16-bit numbers with a scale of their own
-// per band and plane (finer than any code that follows); halves wait as they are.
+// the last band, so coefficients wait in a scratch file (coefficients.h).
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"
 #include "base/thread.h"
 #include "coder/basis.h"
+#include "coder/coefficients.h"
 #include "image/half.h"
 #include "math/lsq.h"
 
@@ -16,27 +16,9 @@
 #include <float.h>
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
-enum {
-    BAND_ROWS = 16,
-    CHUNK = 3 * 1024,  // columns of one product: pixels x channels, fixed for equal bits
-};
-
-struct range {
-    float min, max;
-};
-
-struct relume_coefficients {
-    struct relume_coefficients_info info;
-    float *scale, *offset;  // [planes]
-    struct range *band;     // [bands][planes]: 65535 steps each; unused for halves
-    int bands;
-    int fd;
-    struct relume_encode_report report;
-};
-
-// ---------------------------------------------------------------- encoding
+// Columns of one product: pixels x channels, fixed for equal bits.
+enum { CHUNK = 3 * 1024 };
 
 struct encoder {
     const relume_coder *coder;
@@ -60,9 +42,6 @@ struct encoder {
     size_t error_count;
     int threads;
 };
-
-// Ranges below this are one value: their steps would leave single precision.
-static const float TINY_RANGE = 1e-30f;
 
 static bool is_inside(const struct relume_image *mask, size_t pixel)
 {
@@ -169,11 +148,6 @@ static relume_status measure_fit(struct encoder *e)
     return RELUME_OK;
 }
 
-static off_t band_offset(const relume_coefficients *c, int row)
-{
-    return (off_t)row * c->info.planes * c->info.width * (off_t)sizeof(uint16_t);
-}
-
 // Ranges and steps are differences of coefficients, which must not overflow; halves end at 65504.
 static relume_status check_size(const struct encoder *e, const struct relume_encode_params *p)
 {
@@ -216,7 +190,7 @@ static relume_status write_band(struct encoder *e, size_t pixels,
         return status;
     e->write_from = e->packed[e->filling];
     e->write_bytes = pixels * (size_t)e->planes * sizeof *e->write_from;
-    e->write_at = band_offset(e->out, e->row);
+    e->write_at = coefficients_offset(e->out, e->row);
     e->filling ^= 1;
     thread_start(&e->writing, write_packed, e);
     return RELUME_OK;
@@ -265,82 +239,6 @@ static relume_status encode_bands(struct encoder *e, const relume_capture *captu
     return status;
 }
 
-// ---------------------------------------------------------------- quantising
-
-// Codes 0..levels span the plane's range. Where the range holds 0, 0 is a code of its own, so that
-// black stays black whatever is added up; a mask makes every range hold it.
-static void choose_step(struct range r, float levels, bool masked, float *scale, float *offset)
-{
-    if (!(r.min <= r.max))
-        r = (struct range){0.0f, 0.0f};  // everything is masked
-    if (masked) {
-        r.min = r.min < 0.0f ? r.min : 0.0f;
-        r.max = r.max > 0.0f ? r.max : 0.0f;
-    }
-    const bool holds_zero = r.min <= 0.0f && r.max >= 0.0f;
-    const float steps = holds_zero ? levels - 1.0f : levels;  // room for moving the range
-    *scale = r.max - r.min > TINY_RANGE ? (r.max - r.min) / steps : 1.0f;
-    *offset = holds_zero ? -ceilf(-r.min / *scale) * *scale : r.min;
-}
-
-static void choose_steps(relume_coefficients *c, const struct range *total, bool masked)
-{
-    for (int p = 0; p < c->info.planes; p++) {
-        c->scale[p] = 1.0f;
-        c->offset[p] = 0.0f;
-        if (c->info.storage != RELUME_STORE_HALF)
-            choose_step(total[p], c->info.storage == RELUME_STORE_8 ? 255.0f : 65535.0f, masked,
-                        &c->scale[p], &c->offset[p]);
-    }
-}
-
-// The value that a number waiting in the scratch file stands for is min + step * number.
-static float band_step(struct range r)
-{
-    return r.max > r.min ? (r.max - r.min) / 65535.0f : 0.0f;
-}
-
-static inline float clamp(float v, float top)
-{
-    return v < 0.0f ? 0.0f : v > top ? top : v;
-}
-
-static void quantise_row(const relume_coefficients *c, int plane, int row, const uint16_t *from,
-                         void *to)
-{
-    const struct range r = c->band[(row / BAND_ROWS) * c->info.planes + plane];
-    const float a = band_step(r) / c->scale[plane];
-    const float b = (r.min - c->offset[plane]) / c->scale[plane] + 0.5f;
-    uint8_t *bytes = to;
-    uint16_t *words = to;
-    if (c->info.storage == RELUME_STORE_8)
-        for (int x = 0; x < c->info.width; x++)
-            bytes[x] = (uint8_t)(int)clamp((float)from[x] * a + b, 255.0f);
-    else
-        for (int x = 0; x < c->info.width; x++)
-            words[x] = (uint16_t)(int)clamp((float)from[x] * a + b, 65535.0f);
-}
-
-relume_status relume_coefficients_read(const relume_coefficients *coefficients, int row, int rows,
-                                       void *out)
-{
-    const relume_coefficients *c = coefficients;
-    const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
-    const size_t n = (size_t)rows * planes * width;
-    if (c->info.storage == RELUME_STORE_HALF)
-        return scratch_read(c->fd, out, n * 2, band_offset(c, row)) ? RELUME_OK : RELUME_EIO;
-    uint16_t *packed = mem_array(n, sizeof *packed);
-    if (!packed)
-        return RELUME_ENOMEM;
-    const bool good = scratch_read(c->fd, packed, n * sizeof *packed, band_offset(c, row));
-    const size_t bytes = c->info.storage == RELUME_STORE_8 ? 1 : 2;
-    for (size_t i = 0; good && i < (size_t)rows * planes; i++)
-        quantise_row(c, (int)(i % planes), row + (int)(i / planes), packed + i * width,
-                     (uint8_t *)out + i * width * bytes);
-    free(packed);
-    return good ? RELUME_OK : RELUME_EIO;
-}
-
 // What storing cost, over the captured lights, on the same rows.
 static relume_status measure_storage(relume_coefficients *c, const struct encoder *e)
 {
@@ -357,7 +255,7 @@ static relume_status measure_storage(relume_coefficients *c, const struct encode
     for (int row = 0; !status && row < e->height; row += BAND_ROWS) {
         if (!is_measured(c, row))
             continue;
-        if (!scratch_read(c->fd, waiting, planes * width * 2, band_offset(c, row))) {
+        if (!scratch_read(c->fd, waiting, planes * width * 2, coefficients_offset(c, row))) {
             status = RELUME_EIO;
             break;
         }
@@ -365,11 +263,12 @@ static relume_status measure_storage(relume_coefficients *c, const struct encode
             const struct range r = c->band[(size_t)(row / BAND_ROWS) * planes + p];
             const uint16_t *in = waiting + p * width;
             uint16_t *code = codes + p * width;
-            quantise_row(c, (int)p, row, in, code);
+            coefficients_quantise(c, (int)p, row, in, code);
             for (size_t x = 0; x < width; x++) {
                 const float stored = bytes == 1 ? ((const uint8_t *)code)[x] : code[x];
                 difference[(p / 3 * width + x) * 3 + p % 3] =
-                    r.min + band_step(r) * (float)in[x] - (stored * c->scale[p] + c->offset[p]);
+                    r.min + coefficients_band_step(r) * (float)in[x] -
+                    (stored * c->scale[p] + c->offset[p]);
             }
         }
         lsq_multiply(e->lights, columns, k, e->basis, k, difference, columns, effect, columns);
@@ -390,8 +289,6 @@ static relume_status measure_storage(relume_coefficients *c, const struct encode
     return status;
 }
 
-// ---------------------------------------------------------------- public
-
 enum relume_domain relume_encode_domain(const relume_capture *capture, enum relume_domain domain)
 {
     if (domain != RELUME_DOMAIN_AUTO)
@@ -405,51 +302,6 @@ struct relume_transfer relume_encode_display(const relume_capture *capture)
 {
     const struct relume_transfer t = relume_capture_manifest(capture)->transfer;
     return t.curve == RELUME_CURVE_GAMMA ? t : (struct relume_transfer){RELUME_CURVE_SRGB, 0.0f};
-}
-
-void relume_coefficients_destroy(relume_coefficients **coefficients)
-{
-    relume_coefficients *c = *coefficients;
-    *coefficients = NULL;
-    if (!c)
-        return;
-    if (c->fd >= 0)
-        close(c->fd);
-    free(c->scale);
-    free(c->offset);
-    free(c->band);
-    free(c);
-}
-
-static relume_status alloc_coefficients(relume_coefficients **out, const relume_coder *coder,
-                                        const relume_capture *capture,
-                                        const struct relume_encode_params *p)
-{
-    const size_t planes = (size_t)coder->info.planes;
-    relume_coefficients *c = *out = mem_zeroed(1, sizeof *c);
-    if (!c)
-        return RELUME_ENOMEM;
-    const int height = relume_capture_height(capture);
-    c->bands = (height + BAND_ROWS - 1) / BAND_ROWS;
-    c->scale = mem_zeroed(planes, sizeof *c->scale);
-    c->offset = mem_zeroed(planes, sizeof *c->offset);
-    c->band = mem_zeroed((size_t)c->bands * planes, sizeof *c->band);
-    c->fd = scratch_open(p->scratch);
-    c->info = (struct relume_coefficients_info){
-        .coder = coder,
-        .width = relume_capture_width(capture),
-        .height = height,
-        .planes = coder->info.planes,
-        .storage = p->storage ? p->storage : RELUME_STORE_8,
-        .scale = c->scale,
-        .offset = c->offset,
-    };
-    if (c->fd < 0 && errno == ENOMEM)
-        return RELUME_ENOMEM;
-    if (c->fd < 0)
-        return log_fail(p->log, RELUME_EIO, "%s: no temporary file can be made in its folder; %s",
-                        p->scratch ? p->scratch : "$TMPDIR", strerror(errno));
-    return c->scale && c->offset && c->band ? RELUME_OK : RELUME_ENOMEM;
 }
 
 static relume_status alloc_encoder(struct encoder *e)
@@ -511,7 +363,7 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
         .images = m->view[view].images,
         .threads = p.threads,
     };
-    status = alloc_coefficients(&c, coder, capture, &p);
+    status = coefficients_create(&c, coder, capture, &p);
     e.out = c;
     if (!status)
         status = alloc_encoder(&e);
@@ -523,7 +375,7 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
     }
     if (!status) {
         c->report.fit_rms = e.error_count ? sqrt(e.error_sum / (double)e.error_count) : 0.0;
-        choose_steps(c, e.total, mask.data != NULL);
+        coefficients_choose_steps(c, e.total, mask.data != NULL);
         if (c->info.storage != RELUME_STORE_HALF)
             status = measure_storage(c, &e);
     }
@@ -533,15 +385,4 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
         relume_coefficients_destroy(&c);
     *out = c;
     return status;
-}
-
-struct relume_encode_report relume_coefficients_report(const relume_coefficients *coefficients)
-{
-    return coefficients->report;
-}
-
-const struct relume_coefficients_info *relume_coefficients_info(
-    const relume_coefficients *coefficients)
-{
-    return &coefficients->info;
 }

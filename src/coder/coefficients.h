@@ -1,0 +1,41 @@
+// coefficients.h - coefficient planes that wait in a scratch file until their ranges are known
+#ifndef CODER_COEFFICIENTS_H
+#define CODER_COEFFICIENTS_H
+
+#include <relume/coder.h>
+#include <sys/types.h>
+
+enum { BAND_ROWS = 16 };
+
+struct range {
+    float min, max;
+};
+
+// Ranges below this are one value: their steps would leave single precision.
+#define TINY_RANGE 1e-30f
+
+// 8- and 16-bit planes wait as 16-bit numbers with a scale of their own per band of rows, finer
+// than any code that follows; halves wait as they are. The file's order is [row][plane][x].
+struct relume_coefficients {
+    struct relume_coefficients_info info;
+    float *scale, *offset;  // [planes]
+    struct range *band;     // [bands][planes]: 65535 steps each; unused for halves
+    int bands;
+    int fd;
+    struct relume_encode_report report;
+};
+
+relume_status coefficients_create(relume_coefficients **out, const relume_coder *coder,
+                                  const relume_capture *capture,
+                                  const struct relume_encode_params *p);
+// Where the rows from `row` on lie in the scratch file.
+off_t coefficients_offset(const relume_coefficients *c, int row);
+// The value that a waiting number stands for is min + step * number.
+float coefficients_band_step(struct range r);
+// Fix scale and offset of every plane for the range that it has in the whole view.
+void coefficients_choose_steps(relume_coefficients *c, const struct range *total, bool masked);
+// One row of one plane: waiting numbers -> codes (uint8_t or uint16_t by the storage).
+void coefficients_quantise(const relume_coefficients *c, int plane, int row, const uint16_t *from,
+                           void *to);
+
+#endif

@@ -194,6 +194,19 @@ static void add_point_lights(const struct job *job, size_t pixel, float *out)
     }
 }
 
+// Display domain: every light is decoded and made linear before it is added.
+static void sum_displayed(const struct job *job, int channel, size_t first, size_t n, float *sum)
+{
+    float codes[CHUNK];
+    memset(sum, 0, n * sizeof *sum);
+    for (int p = 0; p < job->count; p++) {
+        const struct pass *pass = &job->passes[p];
+        dot_channel(job, pass, channel, first, n, codes);
+        for (size_t i = 0; i < n; i++)
+            sum[i] += pass->rgb[channel] * curve_decode(&job->curve, codes[i]);
+    }
+}
+
 static void relight_chunk(void *context, size_t item, int worker)
 {
     (void)worker;
@@ -201,23 +214,17 @@ static void relight_chunk(void *context, size_t item, int worker)
     const size_t pixels = (size_t)job->out->width * (size_t)job->out->height;
     const size_t first = item * CHUNK;
     const size_t n = pixels - first < CHUNK ? pixels - first : CHUNK;
-    float values[CHUNK];
-    float *out = job->out->data + first * 3;
-    if (job->count == 0)
-        memset(out, 0, 3 * n * sizeof *out);
+    float sum[3][CHUNK];  // by channel, so that the kernels write in a row
     for (int c = 0; c < 3; c++) {
-        for (int p = 0; p < job->count; p++) {
-            const struct pass *pass = &job->passes[p];
-            dot_channel(job, pass, c, first, n, values);
-            if (!job->display)
-                for (size_t i = 0; i < n; i++)
-                    out[3 * i + (size_t)c] = values[i];
-            else
-                for (size_t i = 0; i < n; i++)
-                    out[3 * i + (size_t)c] = (p ? out[3 * i + (size_t)c] : 0.0f) +
-                                             pass->rgb[c] * curve_decode(&job->curve, values[i]);
-        }
+        if (job->display)
+            sum_displayed(job, c, first, n, sum[c]);
+        else
+            dot_channel(job, &job->passes[0], c, first, n, sum[c]);
     }
+    float *out = job->out->data + first * 3;
+    for (size_t i = 0; i < n; i++)
+        for (size_t c = 0; c < 3; c++)
+            out[3 * i + c] = sum[c][i];
     for (size_t i = 0; job->surface && i < n; i++)
         add_point_lights(job, first + i, out + 3 * i);
 }

@@ -5,6 +5,9 @@
 config ?= release
 PREFIX ?= /usr/local
 FUZZ_S ?= 20
+# make V=1 shows whole commands
+Q := $(if $(V),,@)
+say = $(if $(V),,@echo '  $1 $@')
 
 B := $(if $(filter release,$(config)),build,build/$(config))
 # The first number of the version names the shared library: librelume.so.0
@@ -92,43 +95,55 @@ $B/obj/tests/%.o:             own_include = -Isrc -Itests -Iviewer
 
 $B/obj/%.o: %.c | $(DEPS)
 	@mkdir -p $(@D)
-	$(CC) $(C11) -Iinclude $(own_include) $(own_flags) $(CFLAGS) -c -o $@ $<
+	$(call say,CC)
+	$(Q)$(CC) $(C11) -Iinclude $(own_include) $(own_flags) $(CFLAGS) -c -o $@ $<
 $B/obj/%.o: %.cpp | $(DEPS)
 	@mkdir -p $(@D)
-	$(CXX) $(CXX17) -Iinclude $(own_include) $(own_flags) $(CXXFLAGS) -c -o $@ $<
+	$(call say,CXX)
+	$(Q)$(CXX) $(CXX17) -Iinclude $(own_include) $(own_flags) $(CXXFLAGS) -c -o $@ $<
 
 # Shaders are files in the tree and strings in the program.
 $B/obj/viewer/shaders.c: scripts/embed.sh $(SHADERS)
 	@mkdir -p $(@D)
-	scripts/embed.sh $(SHADERS) > $@
+	$(call say,GEN)
+	$(Q)scripts/embed.sh $(SHADERS) > $@
 $B/obj/viewer/shaders.o: $B/obj/viewer/shaders.c | $(DEPS)
-	$(CC) $(C11) -Iviewer -c -o $@ $<
+	$(call say,CC)
+	$(Q)$(CC) $(C11) -Iviewer -c -o $@ $<
 
 # ---------------------------------------------------------------- linking
 
 $B/librelume.a: $(LIB_O)
-	rm -f $@
-	$(AR) rcs $@ $^
+	$(Q)rm -f $@
+	$(call say,AR)
+	$(Q)$(AR) rcs $@ $^
 $B/librelume.so: $(LIB_O)
-	$(CXX) $(MODE) -shared -Wl,-soname,librelume.so.$(MAJOR) -o $@ $^ $(LDFLAGS) $(LIBS)
-	ln -sfn $(@F) $@.$(MAJOR)
+	$(call say,LD)
+	$(Q)$(CXX) $(MODE) -shared -Wl,-soname,librelume.so.$(MAJOR) -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(Q)ln -sfn $(@F) $@.$(MAJOR)
 $B/relume: $(CLI_O) $B/librelume.a
-	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(call say,LD)
+	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
 $B/relume-view: $(VIEWER_O) $B/librelume.a
-	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS)
+	$(call say,LD)
+	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS)
 
 $(UNIT): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
-	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
+	$(call say,LD)
+	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
 $(BENCH) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
-	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(call say,LD)
+	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
 $(TOOLS): $B/%: $B/obj/%.o $B/librelume.a
 	@mkdir -p $(@D)
-	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(call say,LD)
+	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
 $(GL): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O)) $B/librelume.a
 	@mkdir -p $(@D)
-	$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
+	$(call say,LD)
+	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
 
 -include $(shell find $B/obj -name '*.d' 2>/dev/null)
 

@@ -36,11 +36,9 @@ static relume_status run(const struct args *args)
     relume_status status = relume_image_load(&a, args_input(args, 0), load);
     if (!status)
         status = relume_image_load(&b, args_input(args, 1), load);
-    if (!status && (a.width != b.width || a.height != b.height)) {
-        (void)usage_error("%s: %d x %d pixels; expected %d x %d as in %s", args_input(args, 1),
-                          b.width, b.height, a.width, a.height, args_input(args, 0));
-        status = RELUME_EDATA;
-    }
+    if (!status && (a.width != b.width || a.height != b.height))
+        status = data_error("%s: %d x %d pixels; expected %d x %d as in %s", args_input(args, 1),
+                            b.width, b.height, a.width, a.height, args_input(args, 0));
     if (!status)
         status = relume_image_compare(&difference, &a, &b,
                                       relume_compare_params(.threads = args_threads(args)));

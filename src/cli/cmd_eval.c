@@ -127,17 +127,15 @@ static relume_status check_fit(const struct evaluation *e, const char *path)
     const enum relume_projection theirs = e->manifest->geometry.projection;
     const enum relume_projection ours = e->info->geometry.projection;
     if (width != e->info->width || height != e->info->height)
-        (void)usage_error("%s: %d x %d pixels; expected %d x %d as in the file", path, width,
+        return data_error("%s: %d x %d pixels; expected %d x %d as in the file", path, width,
                           height, e->info->width, e->info->height);
-    else if (theirs != ours)
-        (void)usage_error("%s: a %s capture; expected %s as in the file", path,
+    if (theirs != ours)
+        return data_error("%s: a %s capture; expected %s as in the file", path,
                           relume_projection_name(theirs), relume_projection_name(ours));
-    else if (ours != RELUME_SLAB && e->manifest->views > e->info->views)
-        (void)usage_error("%s: %d views; expected at most %d as in the file", path,
+    if (ours != RELUME_SLAB && e->manifest->views > e->info->views)
+        return data_error("%s: %d views; expected at most %d as in the file", path,
                           e->manifest->views, e->info->views);
-    else
-        return RELUME_OK;
-    return RELUME_EDATA;
+    return RELUME_OK;
 }
 
 static double ratio(double a, double b)

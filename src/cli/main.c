@@ -144,15 +144,29 @@ static bool on_progress(void *user, const char *what, double done)
     return !interrupted;
 }
 
-relume_status usage_error(const char *format, ...)
+static void say_error(const char *format, va_list list)
 {
     char text[2048];
+    vsnprintf(text, sizeof text, format, list);
+    print_line("", text);
+}
+
+relume_status usage_error(const char *format, ...)
+{
     va_list list;
     va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
+    say_error(format, list);
     va_end(list);
-    print_line("", text);
     return RELUME_EINVAL;
+}
+
+relume_status data_error(const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    say_error(format, list);
+    va_end(list);
+    return RELUME_EDATA;
 }
 
 // ---------------------------------------------------------------- names

@@ -159,21 +159,21 @@ static double code_at(const struct relume_codes *codes, int plane, size_t pixel)
 
 enum { MOST_WEIGHTS = 3 * 4096 };
 
-// The value of one pixel under light of value 1 from a unit direction, linear.
-static void value_from(const struct job *job, size_t pixel, vec3 direction, float rgb[3])
+// What one pixel's coefficients say for a unit direction, in their own domain.
+static void decode_pixel(double value[3], const struct relume_codes *codes, size_t pixel,
+                         vec3 direction)
 {
-    const struct relume_codes *codes = job->codes;
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     float weights[MOST_WEIGHTS], constant[3];
     relume_coder_weights(codes->coder, direction, weights, constant);
     for (int c = 0; c < 3; c++) {
-        double v = (double)constant[c];
+        value[c] = (double)constant[c];
         for (int k = 0; k < info->coefficients; k++) {
             const int p = plane_of(info, k, c);
-            v += (double)weights[c * info->coefficients + k] *
-                 (code_at(codes, p, pixel) * (double)codes->scale[p] + (double)codes->offset[p]);
+            value[c] +=
+                (double)weights[c * info->coefficients + k] *
+                (code_at(codes, p, pixel) * (double)codes->scale[p] + (double)codes->offset[p]);
         }
-        rgb[c] = job->display ? curve_decode(&job->curve, (float)v) : (float)v;
     }
 }
 
@@ -185,12 +185,14 @@ static void add_point_lights(const struct job *job, size_t pixel, float *out)
         const struct relume_light *light = &job->lights[i];
         const vec3 towards = vec3_sub(light->position, seen);
         const double distance = vec3_length(towards);
-        float rgb[3];
+        double value[3];
         if (light->kind != RELUME_LIGHT_POINT || !(distance > 0.0) || !isfinite(distance))
             continue;
-        value_from(job, pixel, vec3_scale(towards, 1.0 / distance), rgb);
-        for (int c = 0; c < 3; c++)
-            out[c] += light->rgb[c] * rgb[c];
+        decode_pixel(value, job->codes, pixel, vec3_scale(towards, 1.0 / distance));
+        for (int c = 0; c < 3; c++) {
+            const float v = (float)value[c];
+            out[c] += light->rgb[c] * (job->display ? curve_decode(&job->curve, v) : v);
+        }
     }
 }
 
@@ -308,23 +310,15 @@ relume_status relume_relight(struct relume_image *out, const struct relume_codes
 void relume_relight_pixel(double rgb[3], const struct relume_codes *codes, int x, int y,
                           const struct relume_light *lights, int n)
 {
-    const struct relume_coder_info *info = relume_coder_info(codes->coder);
     const size_t pixel = (size_t)y * (size_t)codes->width + (size_t)x;
-    float weights[MOST_WEIGHTS], constant[3];
+    const bool display = codes->domain == RELUME_DOMAIN_DISPLAY;
     rgb[0] = rgb[1] = rgb[2] = 0.0;
     for (int i = 0; i < n; i++) {
-        relume_coder_weights(codes->coder, vec3_unit(lights[i].direction), weights, constant);
-        for (int c = 0; c < 3; c++) {
-            double v = (double)constant[c];
-            for (int k = 0; k < info->coefficients; k++) {
-                const int p = plane_of(info, k, c);
-                v +=
-                    (double)weights[c * info->coefficients + k] *
-                    (code_at(codes, p, pixel) * (double)codes->scale[p] + (double)codes->offset[p]);
-            }
-            if (codes->domain == RELUME_DOMAIN_DISPLAY)
-                v = (double)relume_transfer_decode(codes->display, (float)v);
-            rgb[c] += (double)lights[i].rgb[c] * v;
-        }
+        double value[3];
+        decode_pixel(value, codes, pixel, vec3_unit(lights[i].direction));
+        for (int c = 0; c < 3; c++)
+            rgb[c] += (double)lights[i].rgb[c] *
+                      (display ? (double)relume_transfer_decode(codes->display, (float)value[c])
+                               : value[c]);
     }
 }

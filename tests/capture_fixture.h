@@ -98,13 +98,9 @@ static inline relume_status fixture_encode(const char *folder, const char *path,
     relume_capture *capture = NULL;
     relume_coder *coder = NULL;
     relume_status status = relume_capture_open(&capture, folder, NULL);
-    if (!status) {
-        const struct relume_manifest *m = relume_capture_manifest(capture);
-        status = relume_coder_create(
-            &coder, basis, m->directions, m->lights,
-            relume_coder_params(.coefficients = coefficients,
-                                .hemispherical = relume_capture_hemispherical(capture)));
-    }
+    if (!status)
+        status = relume_coder_learn(&coder, basis, capture,
+                                    relume_coder_params(.coefficients = coefficients), NULL);
     if (!status)
         status = relume_pack_encode(capture, coder, path, NULL, params);
     relume_coder_destroy(&coder);

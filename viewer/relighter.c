@@ -17,6 +17,8 @@ struct code_format {
 };
 static const struct code_format formats[] = {
     [RELUME_STORE_8] = {GL_RGBA8, GL_UNSIGNED_BYTE, 1, 255.0},
+    [RELUME_STORE_10] = {GL_RGBA16, GL_UNSIGNED_SHORT, 2, 65535.0},
+    [RELUME_STORE_12] = {GL_RGBA16, GL_UNSIGNED_SHORT, 2, 65535.0},
     [RELUME_STORE_16] = {GL_RGBA16, GL_UNSIGNED_SHORT, 2, 65535.0},
     [RELUME_STORE_HALF] = {GL_RGBA16F, GL_HALF_FLOAT, 2, 1.0},
 };
@@ -29,10 +31,13 @@ enum dot_uniform {
     DOT_FIRST,
     DOT_LAYERS,
     DOT_CONSTANT,
+    DOT_COLOURED,
+    DOT_COLOUR,
     DOT_COUNT
 };
 static const char *const dot_uniforms[] = {
-    "rectangle", "frame_size", "codes", "weights", "first_layer", "layers", "constant",
+    "rectangle", "frame_size", "codes",    "weights",         "first_layer",
+    "layers",    "constant",   "coloured", "colour_constant",
 };
 enum develop_uniform {
     DEVELOP_RECTANGLE,
@@ -181,7 +186,8 @@ static void pass_dot(const struct relighter *r, const struct relit_view *v, cons
 {
     const struct gl *gl = r->gl;
     texture_use(gl, 1, GL_TEXTURE_2D, r->weights);
-    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 3, v->layers, 0, GL_RGBA, GL_FLOAT, w->plane);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, CHANNELS, v->layers, 0, GL_RGBA, GL_FLOAT,
+                   w->plane);
     texture_settings(gl, GL_TEXTURE_2D);
     gl->UseProgram(r->dot.id);
     gl->Uniform1i(r->dot.at[DOT_CODES], 0);
@@ -195,6 +201,8 @@ static void pass_dot(const struct relighter *r, const struct relit_view *v, cons
         gl->Uniform1i(r->dot.at[DOT_LAYERS], left < gl->max_layers ? left : gl->max_layers);
         gl->Uniform3f(r->dot.at[DOT_CONSTANT], with * w->constant[0], with * w->constant[1],
                       with * w->constant[2]);
+        gl->Uniform1i(r->dot.at[DOT_COLOURED], relume_coder_info(v->codes.coder)->luminance);
+        gl->Uniform3f(r->dot.at[DOT_COLOUR], w->colour[0], w->colour[1], w->colour[2]);
         draw_all(gl, &r->dot, into);
     }
 }

@@ -8,10 +8,12 @@ relume_status weights_create(struct weights *w, const relume_coder *coder, int p
 {
     const size_t k = (size_t)relume_coder_info(coder)->coefficients;
     *w = (struct weights){.layers = (planes + LANES - 1) / LANES};
-    w->plane = calloc((size_t)w->layers * 3 * LANES, sizeof *w->plane);
+    w->plane = calloc((size_t)w->layers * CHANNELS * LANES, sizeof *w->plane);
     w->basis = calloc(3 * k, sizeof *w->basis);
-    if (w->plane && w->basis)
+    if (w->plane && w->basis) {
+        weights_clear(w);
         return RELUME_OK;
+    }
     weights_destroy(w);
     return RELUME_ENOMEM;
 }
@@ -25,13 +27,15 @@ void weights_destroy(struct weights *w)
 
 void weights_clear(struct weights *w)
 {
-    memset(w->plane, 0, (size_t)w->layers * 3 * LANES * sizeof *w->plane);
+    memset(w->plane, 0, (size_t)w->layers * CHANNELS * LANES * sizeof *w->plane);
     memset(w->constant, 0, sizeof w->constant);
+    for (int c = 0; c < 3; c++)
+        w->colour[c] = 1.0f;
 }
 
 static float *weight_of(const struct weights *w, int plane, int channel)
 {
-    return &w->plane[(plane / LANES * 3 + channel) * LANES + plane % LANES];
+    return &w->plane[(plane / LANES * CHANNELS + channel) * LANES + plane % LANES];
 }
 
 static struct relume_vec3 unit_vector(struct relume_vec3 v)
@@ -50,11 +54,16 @@ void weights_add(struct weights *w, const struct relume_codes *codes, double uni
     for (int c = 0; c < 3; c++) {
         double sum = constant[c];
         for (int k = 0; k < coefficients; k++) {
-            const int plane = info->joint ? k : 3 * k + c;
+            const int plane = relume_coder_plane(info, k, c);
             const double b = w->basis[c * coefficients + k];
             *weight_of(w, plane, c) += (float)(rgb[c] * b * codes->scale[plane] * unit);
             sum += b * codes->offset[plane];
         }
         w->constant[c] += (float)(rgb[c] * sum);
+        if (info->luminance) {
+            const int plane = coefficients + c;
+            *weight_of(w, plane, 3 + c) = (float)(codes->scale[plane] * unit);
+            w->colour[c] = codes->offset[plane];
+        }
     }
 }

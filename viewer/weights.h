@@ -1,18 +1,20 @@
 // weights.h - lights folded into one number for each plane and channel (Wong 1998, Eq. 7.6)
 //
 // The layout is that of the texture which relight.frag reads: [layer][channel][lane], where a layer
-// holds LANES planes of the view side by side in one texel.
+// holds LANES planes of the view side by side in one texel. Three more channels give the pixel's
+// colour where the coder is a luminance coder.
 #ifndef VIEWER_WEIGHTS_H
 #define VIEWER_WEIGHTS_H
 
 #include <relume/relight.h>
 
-enum { LANES = 4 };
+enum { LANES = 4, CHANNELS = 6 };
 
 struct weights {
     int layers;
-    float *plane;       // [layers][3][LANES]
+    float *plane;       // [layers][CHANNELS][LANES]
     float constant[3];  // added to the dot product
+    float colour[3];    // added to the colour's; 1 where there is none
     float *basis;       // scratch: 3 K values of the coder
 };
 

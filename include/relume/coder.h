@@ -21,6 +21,10 @@ typedef struct relume_coder relume_coder;
 struct relume_basis {
     const char *name;
     const char *summary;  // one line for help texts
+    bool interpolates;    // its raw functions are the weights of an interpolant, one per light
+    bool learned;         // joint functions of R, G, B, found from samples of the capture
+    bool upper_only;      // its functions exist only on the pole's hemisphere
+    bool halves;          // no function reaches across the horizon
     // The largest number of coefficients <= `want` that the basis has and `lights` can determine;
     // 0 when there is none. `want` 0 asks for the basis's own choice.
     int (*fit_count)(int want, int lights);
@@ -28,15 +32,44 @@ struct relume_basis {
     bool (*has_count)(int count);
     // Build the private data and the encoding map of `coder`; see src/coder/basis.h.
     relume_status (*prepare)(relume_coder *coder, const struct relume_log *log);
-    // The K values at a unit direction in the pole's frame (pole = third axis).
+    // The raw functions at a unit direction in the pole's frame (pole = third axis): K values, or
+    // one per light where the basis interpolates.
     void (*evaluate)(const relume_coder *coder, struct relume_vec3 light, double *values);
     void (*release)(relume_coder *coder);
 };
 extern RELUME_API const struct relume_basis relume_basis_table;
+extern RELUME_API const struct relume_basis relume_basis_ptm;
+extern RELUME_API const struct relume_basis relume_basis_hsh;
 extern RELUME_API const struct relume_basis relume_basis_sh;
+extern RELUME_API const struct relume_basis relume_basis_dct;
+extern RELUME_API const struct relume_basis relume_basis_dct_resampled;
+extern RELUME_API const struct relume_basis relume_basis_pca;
 extern RELUME_API const struct relume_basis *const relume_bases[];
 // NULL when there is none of that name.
 RELUME_API const struct relume_basis *relume_basis_find(const char *name);
+
+// How values between the captured lights follow from those at them: one weight per light.
+// Constant; a NULL-terminated list of all is relume_interpolants.
+struct relume_interpolant {
+    const char *name;
+    const char *summary;  // one line for help texts
+    // `lights` in the pole's frame; `parameter[4]` as in struct relume_coder_params.
+    relume_status (*prepare)(void **data, const struct relume_vec3 *lights, int n,
+                             const double *parameter, const struct relume_log *log);
+    void (*evaluate)(const void *data, struct relume_vec3 light, double *weights);
+    void (*release)(void *data);
+};
+extern RELUME_API const struct relume_interpolant *const relume_interpolants[];
+// NULL when there is none of that name.
+RELUME_API const struct relume_interpolant *relume_interpolant_find(const char *name);
+
+// Samples of some pixels under every light of a capture: what a learned basis learns from.
+// Thread-safety: plain data.
+struct relume_samples {
+    int lights;
+    size_t pixels;
+    float *data;  // [lights][pixels][rgb], in the domain of the coefficients
+};
 
 struct relume_coder_params {
     const struct relume_log *log;
@@ -44,9 +77,16 @@ struct relume_coder_params {
     bool hemispherical;  // the lights cover only the pole's hemisphere
     bool pole_y;         // theta is measured from +y (panoramas); default +z
     double ridge;        // Tikhonov weight relative to the data, [0, 1]; default: the basis's own
-    bool decode;         // only weights will be asked for: no encoding map is made
-    const float *transform;  // decoding: K x K, row by row; stored functions = transform x basis
-                             // functions. Default: the identity
+    bool luminance;      // one set of coefficients for the luminance and one colour per pixel
+                         // (LRGB); not for learned bases
+    bool force;          // more coefficients than the lights determine are a warning, not an error
+    const struct relume_interpolant *interpolant;  // table and pca; default: the basis's own
+    double parameter[4];                           // of the interpolant; 0 means its default
+    const struct relume_samples *samples;          // what a learned basis learns from
+    bool decode;             // only weights will be asked for: no encoding map is made
+    const float *transform;  // decoding: stored functions = transform x raw functions, [K][raw], or
+                             // [3][K][raw] for learned bases. Default: the identity
+    const float *mean;       // decoding, learned bases: [3][raw]. Default: zero
 };
 #define relume_coder_params(...) (&(const struct relume_coder_params){__VA_ARGS__})
 
@@ -62,31 +102,62 @@ RELUME_API void relume_coder_destroy(relume_coder **coder);
 struct relume_coder_info {
     const struct relume_basis *basis;
     int coefficients;  // K
-    bool joint;        // one set of K planes for R, G, B together; else 3 K planes
-    int planes;        // K or 3 K; plane of (k, channel c) = joint ? k : 3 k + c
+    bool joint;        // one set of K planes for R, G, B together (learned bases, luminance)
+    bool luminance;    // planes K, K + 1, K + 2 are the pixel's colour, which multiplies the sum
+    int planes;        // 3 K; joint K; luminance K + 3
+    int functions;     // raw functions of the basis: K, or the lights where it interpolates
     bool hemispherical, pole_y;
     double ridge;
     int lights;
     const struct relume_vec3 *directions;  // [lights], world
-    const float *transform;                // [K][K], or NULL: identity
+    const float *transform;                // [K][functions], learned [3][K][functions], or NULL
+    const float *mean;                     // learned: [3][functions], or NULL
+    const struct relume_interpolant *interpolant;  // or NULL
+    double parameter[4];
 };
 RELUME_API const struct relume_coder_info *relume_coder_info(const relume_coder *coder);
 
+// The plane that holds coefficient k of channel c.
+static inline int relume_coder_plane(const struct relume_coder_info *info, int k, int c)
+{
+    return info->joint ? k : 3 * k + c;
+}
+
 // The 3 x K basis values and three constants at unit direction `light` (world):
-// channel c = constant[c] + sum_k weights[c * K + k] * coefficient(k, c). Below the horizon of a
-// hemispherical capture the value is that at the horizon of the same azimuth.
+// channel c = constant[c] + sum_k weights[c * K + k] * coefficient(k, c), times the pixel's colour
+// where the coder is a luminance coder. Below the horizon of a hemispherical capture the value is
+// that at the horizon of the same azimuth.
 RELUME_API void relume_coder_weights(const relume_coder *coder, struct relume_vec3 light,
                                      float *weights, float constant[3]);
+
+// Coefficients of `n` pixels: samples[light * stride + 3 * pixel + channel], read only, become
+// planes[plane * plane_stride + pixel]. RELUME_EINVAL for a coder that only decodes, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_coder_apply(const relume_coder *coder, const float *samples,
+                                               size_t stride, size_t n, float *planes,
+                                               size_t plane_stride);
 
 // In which light the coefficients live (architecture: "Domain").
 enum relume_domain { RELUME_DOMAIN_AUTO = 0, RELUME_DOMAIN_LINEAR, RELUME_DOMAIN_DISPLAY };
 
+// In memory codes of 8 bits are uint8_t, all others 16-bit words.
 enum relume_storage {
     RELUME_STORE_DEFAULT = 0,
     RELUME_STORE_8,
     RELUME_STORE_16,
-    RELUME_STORE_HALF
+    RELUME_STORE_HALF,
+    RELUME_STORE_10,
+    RELUME_STORE_12,
 };
+// "8", "10", "12", "16", "half".
+RELUME_API const char *relume_storage_name(enum relume_storage storage);
+// RELUME_EINVAL when `name` is none of these.
+RELUME_RESULT relume_status relume_storage_parse(enum relume_storage *out, const char *name);
+// The largest code: 255, 1023, 4095, 65535; 0 for half.
+RELUME_API int relume_storage_top(enum relume_storage storage);
+
+// The quantiser's step: every plane's own range over all codes, or one step for all planes, which
+// is the rate-distortion optimum where the functions are orthonormal.
+enum relume_step { RELUME_STEP_DEFAULT = 0, RELUME_STEP_PLANE, RELUME_STEP_COMMON };
 
 // Coefficient planes of one view, computed and waiting in an unlinked temporary file, with what is
 // needed to quantise them. Thread-safety: reading is safe.
@@ -96,6 +167,7 @@ struct relume_encode_params {
     const struct relume_log *log;
     enum relume_domain domain;    // default: display for captures that are not linear, else linear
     enum relume_storage storage;  // default 8 bits
+    enum relume_step step;        // default: a step per plane
     int threads;                  // default: all cores
     const char *scratch;          // temporary data goes beside this path; default: $TMPDIR
 };
@@ -106,6 +178,22 @@ RELUME_API enum relume_domain relume_encode_domain(const relume_capture *capture
                                                    enum relume_domain domain);
 // The curve of the display domain: the capture's own gamma, else sRGB.
 RELUME_API struct relume_transfer relume_encode_display(const relume_capture *capture);
+
+// At most `pixels` (default 65536) pixels of all views, spread evenly and by no regular pattern;
+// masked ones are left out. The caller destroys `out`. `params` as for relume_encode (log, domain,
+// threads). Returns RELUME_EDATA, RELUME_ENOMEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_samples_read(struct relume_samples *out,
+                                                const relume_capture *capture, size_t pixels,
+                                                const struct relume_encode_params *params);
+RELUME_API void relume_samples_destroy(struct relume_samples *samples);
+
+// Prepare `basis` for the lights of `capture`: relume_coder_create with its directions, hemisphere
+// and pole, and with samples where the basis is learned. Errors of both, and of
+// relume_samples_read.
+RELUME_RESULT relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *basis,
+                                               const relume_capture *capture,
+                                               const struct relume_coder_params *coder,
+                                               const struct relume_encode_params *encode);
 
 // Run `coder` over one view of `capture`. Pixels outside the view's mask become 0.
 // Returns RELUME_EDATA, RELUME_EIO (temporary file), RELUME_ENOMEM, RELUME_ECANCEL.

@@ -58,6 +58,7 @@ struct relume_pack_encode_params {
     const struct relume_log *log;
     enum relume_domain domain;
     enum relume_storage storage;
+    enum relume_step step;
     enum relume_compression compression;
     int threads;
 };

@@ -5,10 +5,18 @@
 
 static const struct option options[] = {
     {"-o", OPTION_TEXT, "FILE.exr", "the relume file to write", 0, 0},
-    {"--basis", OPTION_TEXT, "NAME", "auto, table or sh; default: auto", 0, 0},
-    {"--coefficients", OPTION_INT, "K", "coefficients per colour channel; default: by the lights",
-     1, 4096},
-    {"--bits", OPTION_TEXT, "B", "8, 16 or half; default: 8", 0, 0},
+    {"--basis", OPTION_TEXT, "NAME", "auto, pca, table, sh, hsh, ptm, dct, dct-resampled", 0, 0},
+    {"--coefficients", OPTION_INT, "K",
+     "coefficients per colour channel (pca: for all three); default: by the basis", 1, 4096},
+    {"--interpolant", OPTION_TEXT, "NAME",
+     "pca, table: angular, tps, rbf, natural, hsh, delaunay; default: angular, table delaunay", 0,
+     0},
+    {"--colour", OPTION_TEXT, "C",
+     "rgb, or luminance: one set of coefficients and a colour per pixel; default: rgb", 0, 0},
+    {"--bits", OPTION_TEXT, "B", "8, 10, 12, 16 or half; default: 8", 0, 0},
+    {"--step", OPTION_TEXT, "S", "plane: each its own range; common: one step; default: plane", 0,
+     0},
+    {"--force", OPTION_FLAG, NULL, "allow more coefficients than the lights determine", 0, 0},
     {"--domain", OPTION_TEXT, "D",
      "auto, linear or display; default: auto, by the capture's transfer", 0, 0},
     {"--compression", OPTION_TEXT, "C", "none, rle, zip or piz (all lossless); default: piz", 0, 0},
@@ -28,17 +36,31 @@ static relume_status parse_basis(const char *name, const struct relume_basis **o
     return *out ? RELUME_OK : unknown_name("basis", name, names);
 }
 
+static relume_status parse_interpolant(const char *name, const struct relume_interpolant **out)
+{
+    const char *names[32] = {NULL};
+    int n = 0;
+    for (const struct relume_interpolant *const *i = relume_interpolants; *i; i++)
+        names[n++] = (*i)->name;
+    *out = name ? relume_interpolant_find(name) : NULL;
+    return !name || *out ? RELUME_OK : unknown_name("--interpolant", name, names);
+}
+
 static relume_status parse_bits(const char *text, enum relume_storage *out)
 {
-    static const char *const names[] = {"8", "16", "half", NULL};
-    static const enum relume_storage values[] = {RELUME_STORE_8, RELUME_STORE_16,
-                                                 RELUME_STORE_HALF};
-    for (int i = 0; names[i]; i++)
-        if (!strcmp(text, names[i])) {
-            *out = values[i];
+    static const char *const names[] = {"8", "10", "12", "16", "half", NULL};
+    return relume_storage_parse(out, text) ? unknown_name("--bits", text, names) : RELUME_OK;
+}
+
+// One of a NULL-terminated list of names; *out is its place.
+static relume_status parse_choice(const struct args *args, const char *option,
+                                  const char *const *names, int *out)
+{
+    const char *text = args_text(args, option, names[0]);
+    for (*out = 0; names[*out]; ++*out)
+        if (!strcmp(text, names[*out]))
             return RELUME_OK;
-        }
-    return unknown_name("--bits", text, names);
+    return unknown_name(option, text, names);
 }
 
 static relume_status parse_domain(const char *text, enum relume_domain *out)
@@ -85,9 +107,14 @@ static void say_result(const struct args *args, const relume_coder *coder,
     args_log(args)->message(args_log(args)->user, RELUME_NOTE, text);
 }
 
-static relume_status encode(const struct args *args, const struct relume_basis *basis,
-                            const struct relume_pack_encode_params *params,
-                            struct relume_transfer transfer)
+struct request {
+    const struct relume_basis *basis;
+    struct relume_transfer transfer;
+    struct relume_coder_params coder;
+    struct relume_pack_encode_params pack;
+};
+
+static relume_status encode(const struct args *args, struct request *r)
 {
     const char *path = args_text(args, "-o", NULL);
     relume_capture *capture;
@@ -95,25 +122,20 @@ static relume_status encode(const struct args *args, const struct relume_basis *
     struct prefix_log about;
     relume_status status = relume_capture_open(
         &capture, args_input(args, 0),
-        relume_capture_params(.log = args_log(args), .transfer = transfer,
+        relume_capture_params(.log = args_log(args), .transfer = r->transfer,
                               .skip_missing = args_has(args, "--skip-missing")));
     if (status)
         return status;
-    const struct relume_manifest *m = relume_capture_manifest(capture);
-    if (m->positions)
-        prefix_log(&about, args_log(args), args_input(args, 0))
-            ->message(&about, RELUME_WARNING,
-                      "the lights are near; they are taken as distant ones");
-    status = relume_coder_create(
-        &coder, basis, m->directions, m->lights,
-        relume_coder_params(.log = prefix_log(&about, args_log(args), args_input(args, 0)),
-                            .coefficients = args_int(args, "--coefficients", 0),
-                            .hemispherical = relume_capture_hemispherical(capture),
-                            .pole_y = m->geometry.projection >= RELUME_CYLINDRICAL,
-                            .ridge = args_number(args, "--ridge", 0.0)));
+    r->coder.log = prefix_log(&about, args_log(args), args_input(args, 0));
+    if (relume_capture_manifest(capture)->positions)
+        about.log.message(about.log.user, RELUME_WARNING,
+                          "the lights are near; they are taken as distant ones");
+    status = relume_coder_learn(&coder, r->basis, capture, &r->coder,
+                                relume_encode_params(.log = r->pack.log, .domain = r->pack.domain,
+                                                     .threads = r->pack.threads));
     struct relume_encode_report report;
     if (!status)
-        status = relume_pack_encode(capture, coder, path, &report, params);
+        status = relume_pack_encode(capture, coder, path, &report, &r->pack);
     if (!status)
         say_result(args, coder, &report, path);
     relume_coder_destroy(&coder);
@@ -121,24 +143,44 @@ static relume_status encode(const struct args *args, const struct relume_basis *
     return status;
 }
 
-static relume_status run(const struct args *args)
+static relume_status parse(const struct args *args, struct request *r)
 {
-    const struct relume_basis *basis;
-    struct relume_transfer transfer = {RELUME_CURVE_AUTO, 0.0f};
-    struct relume_pack_encode_params params = {.log = args_log(args),
-                                               .threads = args_threads(args)};
+    static const char *const steps[] = {"plane", "common", NULL};
+    static const char *const colours[] = {"rgb", "luminance", NULL};
+    int step = 0, colour = 0;
+    *r = (struct request){
+        .coder = {.coefficients = args_int(args, "--coefficients", 0),
+                  .ridge = args_number(args, "--ridge", 0.0),
+                  .force = args_has(args, "--force")},
+        .pack = {.log = args_log(args), .threads = args_threads(args)},
+    };
     if (!args_has(args, "-o"))
         return usage_error("encode: expected -o FILE.exr");
-    relume_status status = parse_basis(args_text(args, "--basis", "auto"), &basis);
+    relume_status status = parse_basis(args_text(args, "--basis", "auto"), &r->basis);
     if (!status)
-        status = parse_bits(args_text(args, "--bits", "8"), &params.storage);
+        status = parse_interpolant(args_text(args, "--interpolant", NULL), &r->coder.interpolant);
     if (!status)
-        status = parse_domain(args_text(args, "--domain", "auto"), &params.domain);
+        status = parse_bits(args_text(args, "--bits", "8"), &r->pack.storage);
     if (!status)
-        status = parse_compression(args_text(args, "--compression", "piz"), &params.compression);
+        status = parse_choice(args, "--step", steps, &step);
     if (!status)
-        status = parse_transfer(args_text(args, "--transfer", NULL), &transfer);
-    return status ? status : encode(args, basis, &params, transfer);
+        status = parse_choice(args, "--colour", colours, &colour);
+    if (!status)
+        status = parse_domain(args_text(args, "--domain", "auto"), &r->pack.domain);
+    if (!status)
+        status = parse_compression(args_text(args, "--compression", "piz"), &r->pack.compression);
+    if (!status)
+        status = parse_transfer(args_text(args, "--transfer", NULL), &r->transfer);
+    r->pack.step = step ? RELUME_STEP_COMMON : RELUME_STEP_PLANE;
+    r->coder.luminance = colour;
+    return status;
+}
+
+static relume_status run(const struct args *args)
+{
+    struct request r;
+    const relume_status status = parse(args, &r);
+    return status ? status : encode(args, &r);
 }
 
 const struct command command_encode = {

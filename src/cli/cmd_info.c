@@ -7,11 +7,6 @@ static const struct option options[] = {
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
 
-static const char *storage_name(enum relume_storage storage)
-{
-    return storage == RELUME_STORE_8 ? "8" : storage == RELUME_STORE_16 ? "16" : "half";
-}
-
 static double bits_per_pixel(const struct relume_pack_info *i)
 {
     return 8.0 * (double)i->file_bytes / ((double)i->views * (double)i->width * (double)i->height);
@@ -24,11 +19,13 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
            "\"width\": %d, \"height\": %d, \"lights\": %d, \"hemispherical\": %s, ",
            i->version, relume_projection_name(i->geometry.projection), i->views, i->width,
            i->height, c->lights, c->hemispherical ? "true" : "false");
-    printf("\"basis\": \"%s\", \"coefficients\": %d, \"planes\": %d, \"domain\": \"%s\", "
+    printf("\"basis\": \"%s\", \"coefficients\": %d, \"planes\": %d, \"interpolant\": %s%s%s, "
+           "\"domain\": \"%s\", "
            "\"display\": \"%s\", \"bits\": \"%s\", \"compression\": \"%s\", ",
-           c->basis->name, c->coefficients, c->planes,
+           c->basis->name, c->coefficients, c->planes, c->interpolant ? "\"" : "",
+           c->interpolant ? c->interpolant->name : "null", c->interpolant ? "\"" : "",
            i->domain == RELUME_DOMAIN_LINEAR ? "linear" : "display", display,
-           storage_name(i->storage), i->compression);
+           relume_storage_name(i->storage), i->compression);
     printf("\"fit_rms\": ");
     json_number(stdout, i->report.fit_rms);
     printf(", \"store_rms\": ");
@@ -47,12 +44,17 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
     printf("views         %d of %d x %d pixels\n", i->views, i->width, i->height);
     printf("lights        %d, %s\n", c->lights,
            c->hemispherical ? "one hemisphere" : "whole sphere");
-    printf("basis         %s, %d coefficients per channel\n", c->basis->name, c->coefficients);
+    printf("basis         %s, %d coefficients %s\n", c->basis->name, c->coefficients,
+           c->luminance ? "and a colour"
+           : c->joint   ? "for all channels"
+                        : "per channel");
+    if (c->interpolant)
+        printf("interpolant   %s\n", c->interpolant->name);
     if (i->domain == RELUME_DOMAIN_LINEAR)
         printf("domain        linear\n");
     else
         printf("domain        display (%s)\n", display);
-    printf("storage       %s%s, %s\n", storage_name(i->storage),
+    printf("storage       %s%s, %s\n", relume_storage_name(i->storage),
            i->storage == RELUME_STORE_HALF ? "" : " bits", i->compression);
     if (isfinite(i->report.fit_rms))
         printf("error         %.5f RMS by the basis, %.5f by storing, over the captured lights\n",

@@ -16,11 +16,36 @@ struct relume_coder {
     struct relume_coder_info info;
     vec3 *world;       // [lights]
     vec3 *frame;       // [lights], in the pole's frame
-    float *transform;  // [K][K] or NULL
-    float *map;        // [K][lights]: coefficients = map x samples; NULL when only decoding
-    bool decode;
-    void *data;  // the basis's own
+    float *transform;  // [K][functions], learned [3][K][functions], or NULL
+    float *mean;       // learned: [3][functions], or NULL
+    float *map;        // coefficients = map x samples + base; [K][lights], learned [K][3][lights];
+                       // NULL when only decoding
+    float *base;       // learned: [K]
+    const struct relume_samples *samples;  // while being prepared
+    bool decode, force;
+    void *interpolant;  // data of info.interpolant
+    void *data;         // the basis's own
 };
+
+// The functions of a basis that interpolates.
+void coder_interpolate(const relume_coder *coder, struct relume_vec3 light, double *values);
+
+// Pixels that are multiplied by the map at once.
+enum { CODER_CHUNK = 1024 };
+// As relume_coder_apply for at most CODER_CHUNK pixels, with room for coder_work floats at `work`.
+size_t coder_work(const relume_coder *coder);
+void coder_apply(const relume_coder *coder, const float *samples, size_t stride, size_t n,
+                 float *planes, size_t plane_stride, float *work);
+
+// The stored functions at the captured lights: basis[3][lights][K] and constant[3][lights].
+struct captured {
+    float *basis, *constant;
+};
+relume_status captured_create(struct captured *out, const relume_coder *coder);
+void captured_destroy(struct captured *c);
+// What `n` pixels of coefficients say for the captured lights, one channel: out[light * n + pixel].
+void captured_predict(const struct captured *c, const relume_coder *coder, int channel,
+                      const float *planes, size_t plane_stride, size_t n, float *out);
 
 // Regularised least squares on the captured directions, for bases with smooth functions:
 // fills coder->map and coder->transform. `roughness[K]` is what the ridge multiplies.

@@ -2,13 +2,13 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "coder/interpolant.h"
 
 #include <string.h>
 
 const struct relume_basis *const relume_bases[] = {
-    &relume_basis_table,
-    &relume_basis_sh,
-    NULL,
+    &relume_basis_table, &relume_basis_ptm,           &relume_basis_hsh, &relume_basis_sh,
+    &relume_basis_dct,   &relume_basis_dct_resampled, &relume_basis_pca, NULL,
 };
 
 const struct relume_basis *relume_basis_find(const char *name)
@@ -26,10 +26,14 @@ void relume_coder_destroy(relume_coder **coder)
     if (!c)
         return;
     c->info.basis->release(c);
+    if (c->info.interpolant)
+        c->info.interpolant->release(c->interpolant);
     free(c->world);
     free(c->frame);
     free(c->transform);
+    free(c->mean);
     free(c->map);
+    free(c->base);
     free(c);
 }
 
@@ -41,26 +45,37 @@ vec3 clamp_to_captured(bool hemispherical, vec3 d)
     return r > 0.0 ? vec3_of(d.x / r, d.y / r, 0.0) : vec3_of(1.0, 0.0, 0.0);
 }
 
-static relume_status choose_count(const struct relume_basis *basis, int want, int lights,
-                                  const struct relume_log *log, int *count)
+static relume_status choose_count(const struct relume_basis *basis, int lights,
+                                  const struct relume_coder_params *p, int *count)
 {
+    const int want = p->coefficients;
     if (want && !basis->has_count(want))
-        return log_fail(log, RELUME_EINVAL,
+        return log_fail(p->log, RELUME_EINVAL,
                         "basis %s has no form with %d coefficients; nearest: %d", basis->name, want,
                         basis->fit_count(want, want));
     *count = basis->fit_count(want, lights);
-    if (want && *count < want)
-        return log_fail(log, RELUME_EDATA,
+    if (want > *count && p->force && !basis->interpolates) {
+        log_line(
+            p->log, RELUME_WARNING,
+            "%d lights do not determine %d coefficients of basis %s; smoothing decides the rest",
+            lights, want, basis->name);
+        *count = want;
+    }
+    if (want && *count < want && !basis->interpolates)
+        return log_fail(p->log, RELUME_EDATA,
                         "%d coefficients of basis %s need at least %d lights; found %d", want,
                         basis->name, want, lights);
     if (want && *count != want)
-        return log_fail(log, RELUME_EDATA, "basis %s takes %d coefficients for %d lights; found %d",
-                        basis->name, *count, lights, want);
+        return log_fail(p->log, RELUME_EDATA,
+                        "basis %s takes %d coefficients for %d lights; found %d", basis->name,
+                        *count, lights, want);
     if (*count < 1)
-        return log_fail(log, RELUME_EDATA, "basis %s cannot be fitted to %d lights", basis->name,
+        return log_fail(p->log, RELUME_EDATA, "basis %s cannot be fitted to %d lights", basis->name,
                         lights);
     return RELUME_OK;
 }
+
+enum { MOST_LUMINANCE = 256 };
 
 static relume_status copy_lights(relume_coder *c, const struct relume_vec3 *lights)
 {
@@ -76,6 +91,35 @@ static relume_status copy_lights(relume_coder *c, const struct relume_vec3 *ligh
     return RELUME_OK;
 }
 
+static relume_status copy_functions(relume_coder *c, const struct relume_coder_params *p)
+{
+    const size_t raw = (size_t)c->info.functions, k = (size_t)c->info.coefficients;
+    const size_t channels = c->info.basis->learned ? 3 : 1;
+    if (p->transform) {
+        c->transform = mem_copy(p->transform, channels * k * raw, sizeof *c->transform);
+        if (!c->transform)
+            return RELUME_ENOMEM;
+    }
+    if (p->mean && c->info.basis->learned) {
+        c->mean = mem_copy(p->mean, 3 * raw, sizeof *c->mean);
+        if (!c->mean)
+            return RELUME_ENOMEM;
+    }
+    return RELUME_OK;
+}
+
+static relume_status prepare_interpolant(relume_coder *c, const struct relume_coder_params *p)
+{
+    const struct relume_interpolant *i = p->interpolant           ? p->interpolant
+                                         : c->info.basis->learned ? &interpolant_angular
+                                                                  : &interpolant_delaunay;
+    const relume_status status =
+        i->prepare(&c->interpolant, c->frame, c->info.lights, p->parameter, p->log);
+    if (!status)
+        c->info.interpolant = i;
+    return status;
+}
+
 relume_status relume_coder_create(relume_coder **out, const struct relume_basis *basis,
                                   const struct relume_vec3 *lights, int n,
                                   const struct relume_coder_params *params)
@@ -84,8 +128,18 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
     *out = NULL;
     if (n < 1 || p.ridge < 0.0 || p.ridge > 1.0)
         return RELUME_EINVAL;
+    if (p.luminance && (basis->learned || p.coefficients > MOST_LUMINANCE))
+        return log_fail(p.log, RELUME_EINVAL, "basis %s has no luminance form with %d coefficients",
+                        basis->name, p.coefficients);
+    if (basis->interpolates && n > CODER_MAX_COEFFICIENTS)
+        return log_fail(p.log, RELUME_EDATA, "basis %s takes at most %d lights; found %d",
+                        basis->name, CODER_MAX_COEFFICIENTS, n);
+    if (basis->upper_only && !p.hemispherical)
+        return log_fail(p.log, RELUME_EDATA,
+                        "basis %s knows one hemisphere of lights; found lights on both",
+                        basis->name);
     int count = 0;
-    relume_status status = choose_count(basis, p.coefficients, n, p.log, &count);
+    relume_status status = choose_count(basis, n, &p, &count);
     if (status)
         return status;
     relume_coder *c = mem_zeroed(1, sizeof *c);
@@ -94,26 +148,36 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
     c->info = (struct relume_coder_info){
         .basis = basis,
         .coefficients = count,
-        .planes = 3 * count,
+        .joint = basis->learned || p.luminance,
+        .luminance = p.luminance,
+        .planes = basis->learned ? count
+                  : p.luminance  ? count + 3
+                                 : 3 * count,
+        .functions = basis->interpolates ? n : count,
         .hemispherical = p.hemispherical,
         .pole_y = p.pole_y,
         .ridge = p.ridge,
         .lights = n,
     };
+    memcpy(c->info.parameter, p.parameter, sizeof p.parameter);
     c->decode = p.decode;
+    c->force = p.force;
+    c->samples = p.samples;
     status = copy_lights(c, lights);
-    if (!status && p.transform) {
-        c->transform = mem_copy(p.transform, (size_t)count * (size_t)count, sizeof *c->transform);
-        status = c->transform ? RELUME_OK : RELUME_ENOMEM;
-    }
+    if (!status)
+        status = copy_functions(c, &p);
+    if (!status && basis->interpolates)
+        status = prepare_interpolant(c, &p);
     if (!status)
         status = basis->prepare(c, p.log);
+    c->samples = NULL;
     if (status) {
         relume_coder_destroy(&c);
         return status;
     }
     c->info.directions = c->world;
     c->info.transform = c->transform;
+    c->info.mean = c->mean;
     *out = c;
     return RELUME_OK;
 }
@@ -123,22 +187,38 @@ const struct relume_coder_info *relume_coder_info(const relume_coder *coder)
     return &coder->info;
 }
 
+void coder_interpolate(const relume_coder *coder, struct relume_vec3 light, double *values)
+{
+    coder->info.interpolant->evaluate(coder->interpolant, light, values);
+}
+
+static double dot(const float *a, const double *b, int n)
+{
+    double sum = 0.0;
+    for (int i = 0; i < n; i++)
+        sum += (double)a[i] * b[i];
+    return sum;
+}
+
 void relume_coder_weights(const relume_coder *coder, struct relume_vec3 light, float *weights,
                           float constant[3])
 {
-    const int k = coder->info.coefficients;
+    const int k = coder->info.coefficients, raw = coder->info.functions;
+    const size_t size = (size_t)k * (size_t)raw;
     const vec3 d =
         clamp_to_captured(coder->info.hemispherical, pole_from_world(light, coder->info.pole_y));
     double values[CODER_MAX_COEFFICIENTS];
     coder->info.basis->evaluate(coder, d, values);
-    for (int i = 0; i < k; i++) {
-        double w = 0.0;
-        if (coder->transform)
-            for (int j = 0; j < k; j++)
-                w += (double)coder->transform[i * k + j] * values[j];
-        else
-            w = values[i];
-        weights[i] = weights[k + i] = weights[2 * k + i] = (float)w;
-    }
-    constant[0] = constant[1] = constant[2] = 0.0f;
+    const int channels = coder->info.basis->learned ? 3 : 1;
+    for (int c = 0; c < channels; c++)
+        for (int i = 0; i < k; i++)
+            weights[c * k + i] =
+                (float)(coder->transform
+                            ? dot(coder->transform + (size_t)c * size + (size_t)i * (size_t)raw,
+                                  values, raw)
+                            : values[i]);
+    for (int c = channels; c < 3; c++)
+        memcpy(weights + c * k, weights, (size_t)k * sizeof *weights);
+    for (int c = 0; c < 3; c++)
+        constant[c] = coder->mean ? (float)dot(coder->mean + c * raw, values, raw) : 0.0f;
 }

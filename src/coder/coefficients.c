@@ -59,30 +59,51 @@ off_t coefficients_offset(const relume_coefficients *c, int row)
     return (off_t)row * c->info.planes * c->info.width * (off_t)sizeof(uint16_t);
 }
 
-// Codes 0..levels span the plane's range. Where the range holds 0, 0 is a code of its own, so that
-// black stays black whatever is added up; a mask makes every range hold it.
-static void choose_step(struct range r, float levels, bool masked, float *scale, float *offset)
+// What a plane's codes must span. A mask makes it hold 0.
+static struct range whole_range(struct range r, bool masked)
 {
     if (!(r.min <= r.max))
-        r = (struct range){0.0f, 0.0f};  // everything is masked
+        return (struct range){0.0f, 0.0f};  // everything is masked
     if (masked) {
         r.min = r.min < 0.0f ? r.min : 0.0f;
         r.max = r.max > 0.0f ? r.max : 0.0f;
     }
-    const bool holds_zero = r.min <= 0.0f && r.max >= 0.0f;
-    const float steps = holds_zero ? levels - 1.0f : levels;  // room for moving the range
-    *scale = r.max - r.min > TINY_RANGE ? (r.max - r.min) / steps : 1.0f;
-    *offset = holds_zero ? -ceilf(-r.min / *scale) * *scale : r.min;
+    return r;
 }
 
-void coefficients_choose_steps(relume_coefficients *c, const struct range *total, bool masked)
+// Where the range holds 0, 0 is a code of its own, so that black stays black whatever is added up.
+static bool holds_zero(struct range r)
 {
+    return r.min <= 0.0f && r.max >= 0.0f;
+}
+
+// The smallest step with which codes 0..top span the range.
+static float least_step(struct range r, int top)
+{
+    const int steps = holds_zero(r) ? top - 1 : top;  // room for moving the range
+    return r.max - r.min > TINY_RANGE ? (r.max - r.min) / (float)steps : 0.0f;
+}
+
+void coefficients_choose_steps(relume_coefficients *c, const struct range *total, bool masked,
+                               enum relume_step step)
+{
+    const struct relume_coder_info *coder = relume_coder_info(c->info.coder);
+    const int top = relume_storage_top(c->info.storage);
+    float common = 0.0f;
     for (int p = 0; p < c->info.planes; p++) {
-        c->scale[p] = 1.0f;
-        c->offset[p] = 0.0f;
-        if (c->info.storage != RELUME_STORE_HALF)
-            choose_step(total[p], c->info.storage == RELUME_STORE_8 ? 255.0f : 65535.0f, masked,
-                        &c->scale[p], &c->offset[p]);
+        const bool colour = coder->luminance && p >= coder->coefficients;
+        c->scale[p] = top ? least_step(whole_range(total[p], masked), top) : 1.0f;
+        common = !colour && c->scale[p] > common ? c->scale[p] : common;
+    }
+    for (int p = 0; p < c->info.planes; p++) {
+        const struct range r = whole_range(total[p], masked);
+        const bool colour = coder->luminance && p >= coder->coefficients;
+        if (step == RELUME_STEP_COMMON && !colour)
+            c->scale[p] = common;
+        c->scale[p] = c->scale[p] > 0.0f ? c->scale[p] : 1.0f;
+        c->offset[p] = !top            ? 0.0f
+                       : holds_zero(r) ? -ceilf(-r.min / c->scale[p]) * c->scale[p]
+                                       : r.min;
     }
 }
 
@@ -104,12 +125,13 @@ void coefficients_quantise(const relume_coefficients *c, int plane, int row, con
     const float b = (r.min - c->offset[plane]) / c->scale[plane] + 0.5f;
     uint8_t *bytes = to;
     uint16_t *words = to;
+    const float top = (float)relume_storage_top(c->info.storage);
     if (c->info.storage == RELUME_STORE_8)
         for (int x = 0; x < c->info.width; x++)
             bytes[x] = (uint8_t)(int)clamp((float)from[x] * a + b, 255.0f);
     else
         for (int x = 0; x < c->info.width; x++)
-            words[x] = (uint16_t)(int)clamp((float)from[x] * a + b, 65535.0f);
+            words[x] = (uint16_t)(int)clamp((float)from[x] * a + b, top);
 }
 
 relume_status relume_coefficients_read(const relume_coefficients *coefficients, int row, int rows,

@@ -14,7 +14,7 @@ struct range {
 // Ranges below this are one value: their steps would leave single precision.
 #define TINY_RANGE 1e-30f
 
-// 8- and 16-bit planes wait as 16-bit numbers with a scale of their own per band of rows, finer
+// Planes of integer codes wait as 16-bit numbers with a scale of their own per band of rows, finer
 // than any code that follows; halves wait as they are. The file's order is [row][plane][x].
 struct relume_coefficients {
     struct relume_coefficients_info info;
@@ -33,7 +33,8 @@ off_t coefficients_offset(const relume_coefficients *c, int row);
 // The value that a waiting number stands for is min + step * number.
 float coefficients_band_step(struct range r);
 // Fix scale and offset of every plane for the range that it has in the whole view.
-void coefficients_choose_steps(relume_coefficients *c, const struct range *total, bool masked);
+void coefficients_choose_steps(relume_coefficients *c, const struct range *total, bool masked,
+                               enum relume_step step);
 // One row of one plane: waiting numbers -> codes (uint8_t or uint16_t by the storage).
 void coefficients_quantise(const relume_coefficients *c, int plane, int row, const uint16_t *from,
                            void *to);

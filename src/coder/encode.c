@@ -1,8 +1,8 @@
 // encode.c - one view becomes coefficient planes
 //
-// The images are read in bands of rows. A band is a matrix T[lights][pixels x 3]; its coefficients
-// are map x T, one matrix product per chunk of columns. Ranges for quantising are known only after
-// the last band, so coefficients wait in a scratch file (coefficients.h).
+// The images are read in bands of rows, whose pixels become coefficients chunk by chunk (apply.c).
+// Ranges for quantising are known only after the last band, so coefficients wait in a scratch file
+// (coefficients.h).
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"
@@ -10,15 +10,11 @@
 #include "coder/basis.h"
 #include "coder/coefficients.h"
 #include "image/half.h"
-#include "math/lsq.h"
 
 #include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
-
-// Columns of one product: pixels x channels, fixed for equal bits.
-enum { CHUNK = 3 * 1024 };
 
 struct encoder {
     const relume_coder *coder;
@@ -26,7 +22,8 @@ struct encoder {
     int lights, width, height, planes;
     int row, rows;        // of the band in progress
     float *samples;       // [lights][rows][x][3]
-    float *values;        // [K][rows][x][3]
+    float *values;        // [planes][rows][x]
+    float *work;          // [workers][coder_work]
     uint16_t *packed[2];  // [rows][planes][x]: one is filled while the other is written
     int filling;
     struct thread_task writing;
@@ -37,7 +34,7 @@ struct encoder {
     const struct relume_image *mask;
     const char *const *images;  // [lights], for messages
     struct range *total;        // [planes], masked pixels being 0
-    float *basis;               // [lights][K], stored functions at the captured lights
+    struct captured captured;
     double error_sum;
     size_t error_count;
     int threads;
@@ -48,15 +45,13 @@ static bool is_inside(const struct relume_image *mask, size_t pixel)
     return !mask->data || mask->data[pixel] > 0.5f;
 }
 
-static void multiply_chunk(void *context, size_t item, int worker)
+static void apply_chunk(void *context, size_t item, int worker)
 {
-    (void)worker;
     struct encoder *e = context;
-    const int columns = e->rows * e->width * 3;
-    const int from = (int)item * CHUNK;
-    const int n = columns - from < CHUNK ? columns - from : CHUNK;
-    lsq_multiply(e->coder->info.coefficients, n, e->lights, e->coder->map, e->lights,
-                 e->samples + from, columns, e->values + from, columns);
+    const size_t pixels = (size_t)e->rows * (size_t)e->width, first = item * CODER_CHUNK;
+    const size_t n = pixels - first < CODER_CHUNK ? pixels - first : CODER_CHUNK;
+    coder_apply(e->coder, e->samples + 3 * first, 3 * pixels, n, e->values + first, pixels,
+                e->work + (size_t)worker * coder_work(e->coder));
 }
 
 // Pixels outside the mask are 0 and do not count for the range.
@@ -66,8 +61,8 @@ static void apply_mask(struct encoder *e)
     const size_t first = (size_t)e->row * (size_t)e->width;
     for (size_t x = 0; e->mask->data && x < pixels; x++)
         if (!is_inside(e->mask, first + x))
-            for (int k = 0; k < e->coder->info.coefficients; k++)
-                memset(&e->values[((size_t)k * pixels + x) * 3], 0, 3 * sizeof *e->values);
+            for (size_t p = 0; p < (size_t)e->planes; p++)
+                e->values[p * pixels + x] = 0.0f;
 }
 
 // Eight running extremes side by side: compilers keep them in vector registers.
@@ -80,7 +75,7 @@ static struct range find_range(const float *v, size_t pixels)
         max[i] = -FLT_MAX;
     }
     for (size_t x = 0; x < pixels; x++) {
-        const float f = v[3 * x];
+        const float f = v[x];
         const size_t i = x % LANES;
         min[i] = f < min[i] ? f : min[i];
         max[i] = f > max[i] ? f : max[i];
@@ -100,7 +95,7 @@ static void pack_plane(void *context, size_t plane, int worker)
     (void)worker;
     struct encoder *e = context;
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
-    const float *v = e->values + plane / 3 * pixels * 3 + plane % 3;
+    const float *v = e->values + plane * pixels;
     const bool half = e->out->info.storage == RELUME_STORE_HALF;
     const struct range r = find_range(v, pixels);
     const float scale = r.max > r.min ? 65535.0f / (r.max - r.min) : 0.0f;
@@ -109,13 +104,13 @@ static void pack_plane(void *context, size_t plane, int worker)
     e->total[plane].max = r.max > e->total[plane].max ? r.max : e->total[plane].max;
     for (int y = 0; y < e->rows; y++) {
         uint16_t *to = e->packed[e->filling] + ((size_t)y * (size_t)e->planes + plane) * width;
-        const float *from = v + (size_t)y * width * 3;
+        const float *from = v + (size_t)y * width;
         if (half)
             for (size_t x = 0; x < width; x++)
-                to[x] = half_from_float(from[3 * x]);
+                to[x] = half_from_float(from[x]);
         else
             for (size_t x = 0; x < width; x++)
-                to[x] = (uint16_t)(int)((from[3 * x] - r.min) * scale + 0.5f);
+                to[x] = (uint16_t)(int)((from[x] - r.min) * scale + 0.5f);
     }
 }
 
@@ -128,21 +123,20 @@ static bool is_measured(const relume_coefficients *c, int row)
 // What the basis cannot express, on the first row of the band.
 static relume_status measure_fit(struct encoder *e)
 {
-    const int k = e->coder->info.coefficients, columns = e->width * 3;
-    float *again = mem_array((size_t)e->lights * (size_t)columns, sizeof *again);
+    const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
+    float *again = mem_array((size_t)e->lights * width, sizeof *again);
     if (!again)
         return RELUME_ENOMEM;
-    const size_t stride = (size_t)e->rows * (size_t)columns;
-    lsq_multiply(e->lights, columns, k, e->basis, k, e->values, (int)stride, again, columns);
-    for (int i = 0; i < e->lights; i++) {
-        const float *sample = e->samples + (size_t)i * stride;
-        const float *fitted = again + (size_t)i * (size_t)columns;
-        for (int x = 0; x < columns; x++)
-            if (is_inside(e->mask, (size_t)e->row * (size_t)e->width + (size_t)x / 3)) {
-                const double d = (double)sample[x] - (double)fitted[x];
-                e->error_sum += d * d;
-                e->error_count++;
-            }
+    for (int c = 0; c < 3; c++) {
+        captured_predict(&e->captured, e->coder, c, e->values, pixels, width, again);
+        for (size_t i = 0; i < (size_t)e->lights; i++)
+            for (size_t x = 0; x < width; x++)
+                if (is_inside(e->mask, (size_t)e->row * width + x)) {
+                    const double sample = (double)e->samples[(i * pixels + x) * 3 + (size_t)c];
+                    const double d = sample - (double)again[i * width + x];
+                    e->error_sum += d * d;
+                    e->error_count++;
+                }
     }
     free(again);
     return RELUME_OK;
@@ -199,11 +193,11 @@ static relume_status write_band(struct encoder *e, size_t pixels,
 static relume_status encode_band(struct encoder *e, relume_table *table,
                                  const struct relume_encode_params *p)
 {
-    const size_t columns = (size_t)e->rows * (size_t)e->width * 3;
+    const size_t pixels = (size_t)e->rows * (size_t)e->width;
     relume_status status = relume_table_read(table, e->rows, e->samples);
     if (status)
         return status;
-    thread_for(e->threads, (columns + CHUNK - 1) / CHUNK, multiply_chunk, e);
+    thread_for(e->threads, (pixels + CODER_CHUNK - 1) / CODER_CHUNK, apply_chunk, e);
     if (is_measured(e->out, e->row))
         status = measure_fit(e);
     if (status)
@@ -213,7 +207,7 @@ static relume_status encode_band(struct encoder *e, relume_table *table,
     status = check_size(e, p);
     if (status)
         return status;
-    return write_band(e, columns / 3, p);
+    return write_band(e, pixels, p);
 }
 
 static relume_status encode_bands(struct encoder *e, const relume_capture *capture, int view,
@@ -239,53 +233,63 @@ static relume_status encode_bands(struct encoder *e, const relume_capture *captu
     return status;
 }
 
+// One row of all planes as it waits and as it will be stored.
+static relume_status read_row(const relume_coefficients *c, int row, uint16_t *waiting,
+                              uint16_t *codes, float *before, float *after)
+{
+    const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
+    if (!scratch_read(c->fd, waiting, planes * width * 2, coefficients_offset(c, row)))
+        return RELUME_EIO;
+    for (size_t p = 0; p < planes; p++) {
+        const struct range r = c->band[(size_t)(row / BAND_ROWS) * planes + p];
+        coefficients_quantise(c, (int)p, row, waiting + p * width, codes);
+        for (size_t x = 0; x < width; x++) {
+            const float code =
+                c->info.storage == RELUME_STORE_8 ? ((const uint8_t *)codes)[x] : codes[x];
+            before[p * width + x] =
+                r.min + coefficients_band_step(r) * (float)waiting[p * width + x];
+            after[p * width + x] = code * c->scale[p] + c->offset[p];
+        }
+    }
+    return RELUME_OK;
+}
+
 // What storing cost, over the captured lights, on the same rows.
 static relume_status measure_storage(relume_coefficients *c, const struct encoder *e)
 {
     const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
-    const int k = e->coder->info.coefficients, columns = (int)width * 3;
-    const size_t bytes = c->info.storage == RELUME_STORE_8 ? 1 : 2;
+    const size_t size = (size_t)e->lights * width;
     uint16_t *waiting = mem_array(planes * width, sizeof *waiting);
-    uint16_t *codes = mem_array(planes * width, sizeof *codes);
-    float *difference = mem_array(planes * width, sizeof *difference);  // [k][x][3]
-    float *effect = mem_array((size_t)e->lights * (size_t)columns, sizeof *effect);
-    relume_status status = waiting && codes && difference && effect ? RELUME_OK : RELUME_ENOMEM;
+    uint16_t *codes = mem_array(width, sizeof *codes);
+    float *before = mem_array(planes * width, sizeof *before);
+    float *after = mem_array(planes * width, sizeof *after);
+    float *wanted = mem_array(size, sizeof *wanted), *stored = mem_array(size, sizeof *stored);
+    relume_status status =
+        waiting && codes && before && after && wanted && stored ? RELUME_OK : RELUME_ENOMEM;
     double sum = 0.0;
     size_t count = 0;
     for (int row = 0; !status && row < e->height; row += BAND_ROWS) {
         if (!is_measured(c, row))
             continue;
-        if (!scratch_read(c->fd, waiting, planes * width * 2, coefficients_offset(c, row))) {
-            status = RELUME_EIO;
-            break;
-        }
-        for (size_t p = 0; p < planes; p++) {
-            const struct range r = c->band[(size_t)(row / BAND_ROWS) * planes + p];
-            const uint16_t *in = waiting + p * width;
-            uint16_t *code = codes + p * width;
-            coefficients_quantise(c, (int)p, row, in, code);
-            for (size_t x = 0; x < width; x++) {
-                const float stored = bytes == 1 ? ((const uint8_t *)code)[x] : code[x];
-                difference[(p / 3 * width + x) * 3 + p % 3] =
-                    r.min + coefficients_band_step(r) * (float)in[x] -
-                    (stored * c->scale[p] + c->offset[p]);
-            }
-        }
-        lsq_multiply(e->lights, columns, k, e->basis, k, difference, columns, effect, columns);
-        const size_t first = (size_t)row * width;
-        for (int i = 0; i < e->lights; i++)
-            for (size_t x = 0; x < (size_t)columns; x++)
-                if (is_inside(e->mask, first + x / 3)) {
-                    const double d = (double)effect[(size_t)i * (size_t)columns + x];
+        status = read_row(c, row, waiting, codes, before, after);
+        for (int channel = 0; !status && channel < 3; channel++) {
+            captured_predict(&e->captured, e->coder, channel, before, width, width, wanted);
+            captured_predict(&e->captured, e->coder, channel, after, width, width, stored);
+            for (size_t i = 0; i < size; i++)
+                if (is_inside(e->mask, (size_t)row * width + i % width)) {
+                    const double d = (double)wanted[i] - (double)stored[i];
                     sum += d * d;
                     count++;
                 }
+        }
     }
     c->report.store_rms = count ? sqrt(sum / (double)count) : 0.0;
     free(waiting);
     free(codes);
-    free(difference);
-    free(effect);
+    free(before);
+    free(after);
+    free(wanted);
+    free(stored);
     return status;
 }
 
@@ -306,36 +310,29 @@ struct relume_transfer relume_encode_display(const relume_capture *capture)
 
 static relume_status alloc_encoder(struct encoder *e)
 {
-    const size_t k = (size_t)e->coder->info.coefficients, lights = (size_t)e->lights;
-    const size_t band = (size_t)BAND_ROWS * (size_t)e->width * 3;
-    float constant[3];
-    float *weights = mem_array(3 * k, sizeof *weights);
-    e->samples = mem_array(lights * band, sizeof *e->samples);
-    e->values = mem_array(k * band, sizeof *e->values);
+    const size_t band = (size_t)BAND_ROWS * (size_t)e->width, planes = (size_t)e->planes;
+    e->samples = mem_array((size_t)e->lights * band * 3, sizeof *e->samples);
+    e->values = mem_array(planes * band, sizeof *e->values);
+    e->work = mem_array((size_t)thread_count(e->threads) * coder_work(e->coder), sizeof *e->work);
     for (int i = 0; i < 2; i++)
-        e->packed[i] = mem_array(k * band, sizeof *e->packed[i]);
-    e->total = mem_array((size_t)e->planes, sizeof *e->total);
-    e->basis = mem_array(lights * k, sizeof *e->basis);
-    const bool good =
-        weights && e->samples && e->values && e->packed[0] && e->packed[1] && e->total && e->basis;
-    for (int p = 0; good && p < e->planes; p++)
+        e->packed[i] = mem_array(planes * band, sizeof *e->packed[i]);
+    e->total = mem_array(planes, sizeof *e->total);
+    if (!e->samples || !e->values || !e->work || !e->packed[0] || !e->packed[1] || !e->total)
+        return RELUME_ENOMEM;
+    for (size_t p = 0; p < planes; p++)
         e->total[p] = (struct range){FLT_MAX, -FLT_MAX};
-    for (size_t i = 0; good && i < lights; i++) {
-        relume_coder_weights(e->coder, e->coder->world[i], weights, constant);
-        memcpy(e->basis + i * k, weights, k * sizeof *weights);
-    }
-    free(weights);
-    return good ? RELUME_OK : RELUME_ENOMEM;
+    return captured_create(&e->captured, e->coder);
 }
 
 static void free_encoder(struct encoder *e)
 {
     free(e->samples);
     free(e->values);
+    free(e->work);
     free(e->packed[0]);
     free(e->packed[1]);
     free(e->total);
-    free(e->basis);
+    captured_destroy(&e->captured);
 }
 
 relume_status relume_encode(relume_coefficients **out, const relume_coder *coder,
@@ -375,7 +372,7 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
     }
     if (!status) {
         c->report.fit_rms = e.error_count ? sqrt(e.error_sum / (double)e.error_count) : 0.0;
-        coefficients_choose_steps(c, e.total, mask.data != NULL);
+        coefficients_choose_steps(c, e.total, mask.data != NULL, p.step);
         if (c->info.storage != RELUME_STORE_HALF)
             status = measure_storage(c, &e);
     }

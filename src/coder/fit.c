@@ -63,7 +63,7 @@ static void add_gram(double *a, int k, const double *rows, int count, double wei
                 a[i * k + j] += weight * rows[r * k + i] * rows[r * k + j];
 }
 
-static relume_status check_rank(const struct system *s, const struct relume_log *log)
+static relume_status check_rank(const struct system *s, bool force, const struct relume_log *log)
 {
     const size_t k = (size_t)s->k;
     double *gram = mem_zeroed(k * k, sizeof *gram), *values = mem_array(k, sizeof *values);
@@ -76,7 +76,10 @@ static relume_status check_rank(const struct system *s, const struct relume_log 
     int rank = 0;
     for (int i = 0; !status && i < s->k; i++)
         rank += values[i] > RANK_TOLERANCE * values[s->k - 1];
-    if (!status && rank < s->k)
+    if (!status && rank < s->k && force)
+        log_line(log, RELUME_WARNING,
+                 "the %d light directions determine only %d of %d coefficients", s->n, rank, s->k);
+    else if (!status && rank < s->k)
         status = log_fail(log, RELUME_EDATA,
                           "the %d light directions determine only %d of %d coefficients; expected "
                           "lights spread in both angles, or at most %d coefficients",
@@ -86,7 +89,8 @@ static relume_status check_rank(const struct system *s, const struct relume_log 
     return status;
 }
 
-// Directions of the uncaptured hemisphere (equal areas) and the captured samples that stand there.
+// Directions of the uncaptured hemisphere (equal areas) and the captured samples that stand there;
+// for bases whose functions end at the horizon, directions on it.
 static relume_status assume_far_side(struct system *s, const relume_coder *coder)
 {
     mesh *lights;
@@ -106,7 +110,8 @@ static relume_status assume_far_side(struct system *s, const relume_coder *coder
             mean[b.light[j]] += b.weight[j] / EQUATOR_SAMPLES;
     }
     for (int i = 0; i < s->m; i++) {
-        const double z = -(i + 0.5) / s->m, r = sqrt(1.0 - z * z);
+        const double z = coder->info.basis->halves ? 0.0 : -(i + 0.5) / s->m;
+        const double r = sqrt(1.0 - z * z);
         const double phi = i * (M_PI * (3.0 - sqrt(5.0)));
         const vec3 d = vec3_of(r * cos(phi), r * sin(phi), z);
         const double towards_pole = acos(r) / (M_PI / 2.0);
@@ -175,7 +180,7 @@ relume_status fit_map(relume_coder *coder, const double *roughness, const struct
     if (!status) {
         for (int i = 0; i < s.n; i++)
             coder->info.basis->evaluate(coder, coder->frame[i], s.y + (size_t)i * (size_t)s.k);
-        status = check_rank(&s, log);
+        status = check_rank(&s, coder->force, log);
     }
     if (!status && s.m)
         status = assume_far_side(&s, coder);

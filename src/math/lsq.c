@@ -1,7 +1,10 @@
 #include "math/lsq.h"
 
+#include "base/memory.h"
+
 #include <cblas.h>
 #include <lapacke.h>
+#include <math.h>
 #include <pthread.h>
 
 static void one_thread(void)
@@ -19,6 +22,54 @@ bool lsq_eigenvalues(double *matrix, int n, double *values)
 {
     prepare();
     return LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'L', n, matrix, n, values) == 0;
+}
+
+bool lsq_eigenvectors(double *matrix, int n, int count, double *values, double *vectors)
+{
+    prepare();
+    const size_t size = (size_t)n;
+    double *all = mem_array(size, sizeof *all);
+    double *columns = mem_array(size * (size_t)count, sizeof *columns);  // [n][count], ascending
+    lapack_int *support = mem_array(2 * (size_t)count, sizeof *support);
+    lapack_int found = 0;
+    const bool good = all && columns && support &&
+                      !LAPACKE_dsyevr(LAPACK_ROW_MAJOR, 'V', 'I', 'L', n, matrix, n, 0.0, 0.0,
+                                      n - count + 1, n, 0.0, &found, all, columns, count, support);
+    for (int i = 0; good && i < count; i++) {
+        double *v = vectors + (size_t)i * size;
+        size_t top = 0;
+        values[i] = all[count - 1 - i];
+        for (size_t j = 0; j < size; j++) {
+            v[j] = columns[j * (size_t)count + (size_t)(count - 1 - i)];
+            top = fabs(v[j]) > fabs(v[top]) ? j : top;
+        }
+        const double sign = v[top] < 0.0 ? -1.0 : 1.0;
+        for (size_t j = 0; j < size; j++)
+            v[j] *= sign;
+    }
+    free(all);
+    free(columns);
+    free(support);
+    return good && found == count;
+}
+
+bool lsq_invert(double *matrix, int n)
+{
+    prepare();
+    lapack_int *pivots = mem_array((size_t)n, sizeof *pivots);
+    const bool good = pivots && !LAPACKE_dgetrf(LAPACK_ROW_MAJOR, n, n, matrix, n, pivots) &&
+                      !LAPACKE_dgetri(LAPACK_ROW_MAJOR, n, matrix, n, pivots);
+    free(pivots);
+    return good;
+}
+
+void lsq_add_gram(double *gram, int n, const double *rows, int count)
+{
+    prepare();
+    cblas_dsyrk(CblasRowMajor, CblasLower, CblasTrans, n, count, 1.0, rows, n, 1.0, gram, n);
+    for (size_t i = 0; i < (size_t)n; i++)
+        for (size_t j = 0; j < i; j++)
+            gram[j * (size_t)n + i] = gram[i * (size_t)n + j];
 }
 
 bool lsq_cholesky(double *matrix, int n)

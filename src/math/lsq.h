@@ -10,6 +10,16 @@
 // Eigenvalues of the symmetric n x n matrix, ascending; the matrix is destroyed. False: no memory.
 bool lsq_eigenvalues(double *matrix, int n, double *values);
 
+// The `count` largest eigenvalues, descending, and their unit eigenvectors vectors[count][n] of the
+// symmetric n x n matrix; the matrix is destroyed. The sign makes the largest component positive.
+bool lsq_eigenvectors(double *matrix, int n, int count, double *values, double *vectors);
+
+// The inverse of a square matrix, in place. False when it is singular, or no memory.
+bool lsq_invert(double *matrix, int n);
+
+// gram[n][n] += rows^T rows for rows[count][n]; both triangles.
+void lsq_add_gram(double *gram, int n, const double *rows, int count);
+
 // Replace the lower triangle of a symmetric positive definite matrix by its Cholesky factor, the
 // rest by zeros. False when it is not positive definite.
 bool lsq_cholesky(double *matrix, int n);

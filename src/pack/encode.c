@@ -80,6 +80,7 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
         .log = p.log,
         .domain = relume_encode_domain(capture, p.domain),
         .storage = p.storage,
+        .step = p.step,
         .threads = p.threads,
         .scratch = path,
     };

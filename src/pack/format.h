@@ -27,6 +27,10 @@ enum { FORMAT_VERSION = 1 };
 #define ATTR_RIDGE         "relume.ridge"
 #define ATTR_LIGHTS        "relume.lights"
 #define ATTR_TRANSFORM     "relume.transform"
+#define ATTR_MEAN          "relume.mean"
+#define ATTR_COLOUR        "relume.colour"
+#define ATTR_INTERPOLANT   "relume.interpolant"
+#define ATTR_PARAMETER     "relume.parameter"
 #define ATTR_REPORT        "relume.report"
 
 // Attributes of a view's part

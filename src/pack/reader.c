@@ -32,7 +32,7 @@ struct relume_pack {
     relume_coder *coder;
     struct view_parts *parts;  // [views]
     struct loaded *loaded;     // [views]
-    uint16_t *code_of_half;    // [65536], NOT_A_CODE where a half is no 8-bit code
+    uint16_t *code_of_half;    // [65536], NOT_A_CODE where a half is no code
     int threads;
     const struct relume_log *log;
     struct relume_limits limits;
@@ -59,6 +59,15 @@ static const float *get_floats(const relume_pack *p, int part, const char *name,
     int found;
     const float *v = exr_get_floats(p->file, part, name, &found);
     return v && found == count && all_finite(v, count) ? v : NULL;
+}
+
+// `*out` is NULL when there is no such attribute; false when it is not `count` finite numbers.
+static bool optional_floats(const relume_pack *p, const char *name, long long count,
+                            const float **out)
+{
+    int found;
+    *out = exr_get_floats(p->file, 0, name, &found);
+    return !*out || (found == count && all_finite(*out, found));
 }
 
 // ---------------------------------------------------------------- header
@@ -90,14 +99,8 @@ static relume_status read_kinds(relume_pack *p)
     if (!display || relume_transfer_parse(&p->info.display, display))
         return bad(p, ATTR_DISPLAY, "srgb or gamma:NUMBER");
     p->info.domain = strcmp(domain, "linear") ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR;
-    if (storage && !strcmp(storage, "8"))
-        p->info.storage = RELUME_STORE_8;
-    else if (storage && !strcmp(storage, "16"))
-        p->info.storage = RELUME_STORE_16;
-    else if (storage && !strcmp(storage, "half"))
-        p->info.storage = RELUME_STORE_HALF;
-    else
-        return bad(p, ATTR_STORAGE, "8, 16 or half");
+    if (!storage || relume_storage_parse(&p->info.storage, storage))
+        return bad(p, ATTR_STORAGE, "8, 10, 12, 16 or half");
     return RELUME_OK;
 }
 
@@ -192,10 +195,19 @@ static relume_status read_coder(relume_pack *p)
     const float *lights = exr_get_floats(p->file, 0, ATTR_LIGHTS, &n);
     if (!lights || n < 3 || n % 3 || n / 3 > p->limits.max_lights || !all_finite(lights, n))
         return bad(p, ATTR_LIGHTS, "x y z of every light, within the limits");
-    int size = 0;
-    const float *transform = exr_get_floats(p->file, 0, ATTR_TRANSFORM, &size);
-    if (transform && (size != k * k || !all_finite(transform, size)))
-        return bad(p, ATTR_TRANSFORM, "coefficients x coefficients finite numbers");
+    const int raw = basis->interpolates ? n / 3 : k;
+    const float *transform, *mean;
+    if (!optional_floats(p, ATTR_TRANSFORM, (basis->learned ? 3LL : 1LL) * k * raw, &transform))
+        return bad(p, ATTR_TRANSFORM, "coefficients x functions finite numbers");
+    if (!optional_floats(p, ATTR_MEAN, 3LL * raw, &mean))
+        return bad(p, ATTR_MEAN, "a finite number for every colour and light");
+    const char *colour = exr_get_text(p->file, 0, ATTR_COLOUR);
+    if (colour && strcmp(colour, "luminance"))
+        return bad(p, ATTR_COLOUR, "luminance or nothing");
+    const char *interpolant = exr_get_text(p->file, 0, ATTR_INTERPOLANT);
+    if (interpolant && !relume_interpolant_find(interpolant))
+        return bad(p, ATTR_INTERPOLANT, "an interpolant of this program");
+    const float *parameter = get_floats(p, 0, ATTR_PARAMETER, 4);
     const float *ridge = get_floats(p, 0, ATTR_RIDGE, 1);
 
     struct relume_vec3 *directions = arena_array(&p->arena, (size_t)n / 3, sizeof *directions);
@@ -209,13 +221,22 @@ static relume_status read_coder(relume_pack *p)
             return bad(p, ATTR_LIGHTS, "unit vectors");
         directions[i] = (struct relume_vec3){x / length, y / length, z / length};
     }
-    const relume_status status = relume_coder_create(
-        &p->coder, basis, directions, n / 3,
-        relume_coder_params(.log = p->log, .coefficients = k, .decode = true,
-                            .hemispherical = hemispherical != 0, .pole_y = pole[0] == 'y',
-                            .ridge =
-                                ridge && *ridge >= 0.0f && *ridge <= 1.0f ? (double)*ridge : 0.0,
-                            .transform = transform));
+    struct relume_coder_params params = {
+        .log = p->log,
+        .coefficients = k,
+        .decode = true,
+        .force = true,
+        .hemispherical = hemispherical != 0,
+        .pole_y = pole[0] == 'y',
+        .ridge = ridge && *ridge >= 0.0f && *ridge <= 1.0f ? (double)*ridge : 0.0,
+        .luminance = colour != NULL,
+        .interpolant = interpolant ? relume_interpolant_find(interpolant) : NULL,
+        .transform = transform,
+        .mean = mean,
+    };
+    for (int i = 0; parameter && i < 4; i++)
+        params.parameter[i] = (double)parameter[i];
+    const relume_status status = relume_coder_create(&p->coder, basis, directions, n / 3, &params);
     p->info.coder = p->coder;
     return status == RELUME_EINVAL ? RELUME_EDATA : status;
 }
@@ -227,7 +248,7 @@ static relume_status check_view_part(relume_pack *p, int part, int view)
     const struct exr_part_info i = exr_part_info(p->file, part);
     const int planes = relume_coder_info(p->coder)->planes;
     const enum exr_sample sample =
-        p->info.storage == RELUME_STORE_16 ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF;
+        relume_storage_top(p->info.storage) > 2047 ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF;
     char where[32];
     snprintf(where, sizeof where, "view %d", view);
     if (i.width != p->info.width || i.height != p->info.height)
@@ -287,7 +308,7 @@ static relume_status make_code_table(relume_pack *p)
         return RELUME_ENOMEM;
     for (int h = 0; h < 65536; h++)
         p->code_of_half[h] = NOT_A_CODE;
-    for (int code = 0; code < 256; code++)
+    for (int code = 0; code < 1024; code++)
         p->code_of_half[half_from_float((float)code)] = (uint16_t)code;
     return RELUME_OK;
 }
@@ -381,6 +402,8 @@ struct loading {
 // Plane order is R, G, B; the file sorts B, G, R.
 static size_t plane_of_channel(const struct relume_coder_info *info, size_t channel)
 {
+    if (info->luminance && channel >= (size_t)info->coefficients)
+        return 2 * (size_t)info->coefficients + 2 - channel;
     return info->joint ? channel : channel / 3 * 3 + 2 - channel % 3;
 }
 
@@ -390,21 +413,27 @@ static bool load_row(const struct loading *l, const void *samples, size_t i, voi
     const uint32_t *uints = (const uint32_t *)samples + i;
     uint8_t *bytes = (uint8_t *)to + at;
     uint16_t *words = (uint16_t *)to + at;
+    const uint16_t top = (uint16_t)relume_storage_top(l->pack->info.storage);
     unsigned wrong = 0;
     for (size_t x = 0; x < l->width; x++)
         switch (l->pack->info.storage) {
+        case RELUME_STORE_12:
         case RELUME_STORE_16:
             words[x] = (uint16_t)uints[x];
-            wrong |= uints[x] > 0xffff;
+            wrong |= uints[x] > top;
             break;
         case RELUME_STORE_HALF:
             words[x] = halves[x];
             wrong |= (halves[x] & 0x7c00) == 0x7c00;
             break;
+        case RELUME_STORE_10:
+            words[x] = l->pack->code_of_half[halves[x]];
+            wrong |= words[x] > top;
+            break;
         default: {
             const uint16_t code = l->pack->code_of_half[halves[x]];
             bytes[x] = (uint8_t)code;
-            wrong |= code == NOT_A_CODE;
+            wrong |= code > top;
         }
         }
     return !wrong;

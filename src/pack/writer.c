@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_ATTRIBUTES = 20, MOST_WEIGHTS = 3 * 4096 };
+enum { MOST_ATTRIBUTES = 24, MOST_WEIGHTS = 3 * 4096, HALF_CODES = 1024 };
 
 relume_status relume_compression_parse(enum relume_compression *out, const char *name)
 {
@@ -48,15 +48,23 @@ static enum exr_codec codec_of(enum relume_compression compression)
 // Channels sort by name, so B, G, R within a coefficient: the reverse of plane order.
 static int file_channel(const struct relume_coder_info *info, int plane)
 {
+    if (info->luminance && plane >= info->coefficients)
+        return 2 * info->coefficients + 2 - plane;
     return info->joint ? plane : plane / 3 * 3 + 2 - plane % 3;
+}
+
+// Codes beyond halves' whole numbers are UINT.
+static bool is_wide(enum relume_storage storage)
+{
+    return relume_storage_top(storage) > 2047;
 }
 
 struct view_source {
     const relume_coefficients *coefficients;
-    const uint16_t *half_of_byte;  // [256]
+    const uint16_t *half_of_code;  // [HALF_CODES]
 };
 
-static void store_row(enum relume_storage storage, const uint16_t *half_of_byte, const void *codes,
+static void store_row(enum relume_storage storage, const uint16_t *half_of_code, const void *codes,
                       size_t width, void *samples)
 {
     const uint8_t *bytes = codes;
@@ -65,12 +73,12 @@ static void store_row(enum relume_storage storage, const uint16_t *half_of_byte,
     uint32_t *uints = samples;
     if (storage == RELUME_STORE_HALF)
         memcpy(halves, words, width * sizeof *halves);
-    else if (storage == RELUME_STORE_16)
+    else if (is_wide(storage))
         for (size_t x = 0; x < width; x++)
             uints[x] = words[x];
     else
         for (size_t x = 0; x < width; x++)
-            halves[x] = half_of_byte[bytes[x]];
+            halves[x] = half_of_code[storage == RELUME_STORE_8 ? bytes[x] : words[x]];
 }
 
 static relume_status view_rows(void *context, int row, int rows, void *samples)
@@ -79,7 +87,7 @@ static relume_status view_rows(void *context, int row, int rows, void *samples)
     const struct relume_coefficients_info *info = relume_coefficients_info(source->coefficients);
     const size_t width = (size_t)info->width, planes = (size_t)info->planes;
     const size_t code = info->storage == RELUME_STORE_8 ? 1 : 2;
-    const size_t sample = info->storage == RELUME_STORE_16 ? 4 : 2;
+    const size_t sample = is_wide(info->storage) ? 4 : 2;
     char *codes = mem_array((size_t)rows * planes * width, code);
     if (!codes)
         return RELUME_ENOMEM;
@@ -87,7 +95,7 @@ static relume_status view_rows(void *context, int row, int rows, void *samples)
     for (size_t y = 0; !status && y < (size_t)rows; y++)
         for (size_t p = 0; p < planes; p++) {
             const size_t channel = (size_t)file_channel(relume_coder_info(info->coder), (int)p);
-            store_row(info->storage, source->half_of_byte, codes + (y * planes + p) * width * code,
+            store_row(info->storage, source->half_of_code, codes + (y * planes + p) * width * code,
                       width, (char *)samples + (y * planes + channel) * width * sample);
         }
     free(codes);
@@ -109,11 +117,23 @@ static void add_plane(const struct relume_coefficients_info *info, const void *c
     const size_t width = (size_t)info->width;
     const float step = weight * info->scale[plane], base = weight * info->offset[plane];
     for (size_t x = 0; x < width; x++)
-        sum[x] += info->storage == RELUME_STORE_8    ? step * (float)bytes[x] + base
-                  : info->storage == RELUME_STORE_16 ? step * (float)words[x] + base
-                                                     : weight * float_from_half(words[x]);
+        sum[x] += info->storage == RELUME_STORE_8      ? step * (float)bytes[x] + base
+                  : info->storage == RELUME_STORE_HALF ? weight * float_from_half(words[x])
+                                                       : step * (float)words[x] + base;
 }
 
+// sum[x] *= the pixel's colour
+static void multiply_colour(const struct relume_coefficients_info *info, const void *codes,
+                            size_t at, int plane, float *colour, float *sum)
+{
+    const size_t width = (size_t)info->width;
+    memset(colour, 0, width * sizeof *colour);
+    add_plane(info, codes, at, plane, 1.0f, colour);
+    for (size_t x = 0; x < width; x++)
+        sum[x] *= colour[x];
+}
+
+// `sum` has room for two rows.
 static void preview_row(const struct preview *p, const void *codes, size_t row, float *sum,
                         uint16_t *out)
 {
@@ -125,11 +145,15 @@ static void preview_row(const struct preview *p, const void *codes, size_t row, 
             sum[x] = p->constant[c];
         for (int k = 0; k < coder->coefficients; k++) {
             const float w = p->weights[c * coder->coefficients + k];
-            const int plane = coder->joint ? k : 3 * k + c;
+            const int plane = relume_coder_plane(coder, k, c);
             if (w != 0.0f)
                 add_plane(info, codes, (row * (size_t)info->planes + (size_t)plane) * width, plane,
                           w, sum);
         }
+        const int colour = coder->coefficients + c;
+        if (coder->luminance)
+            multiply_colour(info, codes, (row * (size_t)info->planes + (size_t)colour) * width,
+                            colour, sum + width, sum);
         for (size_t x = 0; x < width; x++)
             out[(size_t)(2 - c) * width + x] =
                 half_from_float(fminf(curve_decode(&p->curve, sum[x]), 65504.0f));
@@ -142,7 +166,7 @@ static relume_status preview_rows(void *context, int row, int rows, void *sample
     const struct relume_coefficients_info *info = relume_coefficients_info(p->coefficients);
     const size_t width = (size_t)info->width;
     void *codes = mem_array((size_t)rows * (size_t)info->planes * width, 2);
-    float *sum = mem_array(width, sizeof *sum);
+    float *sum = mem_array(2 * width, sizeof *sum);
     relume_status status = codes && sum ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = relume_coefficients_read(p->coefficients, row, rows, codes);
@@ -178,7 +202,7 @@ struct builder {
     struct exr_part *parts;
     int count;
     const char **channels;   // [planes], as the file sorts them
-    uint16_t *half_of_byte;  // [256]
+    uint16_t *half_of_code;  // [HALF_CODES]
 };
 
 static void add_int(struct exr_part *part, struct exr_attribute *list, const char *name, int value)
@@ -261,13 +285,19 @@ static bool describe_coder(struct builder *b, struct exr_part *part, struct exr_
     add_floats(part, list, ATTR_LIGHTS, lights, 3 * info->lights);
     if (info->transform)
         add_floats(part, list, ATTR_TRANSFORM, info->transform,
-                   info->coefficients * info->coefficients);
+                   (info->basis->learned ? 3 : 1) * info->coefficients * info->functions);
+    if (info->mean)
+        add_floats(part, list, ATTR_MEAN, info->mean, 3 * info->functions);
+    if (info->luminance)
+        add_text(part, list, ATTR_COLOUR, "luminance");
+    if (info->interpolant) {
+        float *parameter = copy_doubles(&b->arena, info->parameter, 4);
+        if (!parameter)
+            return false;
+        add_text(part, list, ATTR_INTERPOLANT, info->interpolant->name);
+        add_floats(part, list, ATTR_PARAMETER, parameter, 4);
+    }
     return true;
-}
-
-static const char *storage_name(enum relume_storage storage)
-{
-    return storage == RELUME_STORE_8 ? "8" : storage == RELUME_STORE_16 ? "16" : "half";
 }
 
 // The middle view under a light from the viewer, panoramas from above.
@@ -309,7 +339,7 @@ static bool add_preview(struct builder *b, const struct relume_pack_contents *c,
     add_text(part, list, ATTR_CREATOR, "relume " RELUME_VERSION);
     add_text(part, list, ATTR_DOMAIN, is_display ? "display" : "linear");
     add_text(part, list, ATTR_DISPLAY, display);
-    add_text(part, list, ATTR_STORAGE, storage_name(info->storage));
+    add_text(part, list, ATTR_STORAGE, relume_storage_name(info->storage));
     add_int(part, list, ATTR_VIEWS, c->views);
     report[0] = (float)c->report.fit_rms;
     report[1] = (float)c->report.store_rms;
@@ -322,8 +352,11 @@ static const char **channel_names(struct builder *b, const struct relume_coder_i
 {
     const char **names = arena_array(&b->arena, (size_t)info->planes, sizeof *names);
     for (int p = 0; names && p < info->planes; p++) {
-        const char *name = info->joint ? arena_format(&b->arena, "c%04d", p)
-                                       : arena_format(&b->arena, "c%04d.%c", p / 3, "RGB"[p % 3]);
+        const bool colour = info->luminance && p >= info->coefficients;
+        const char *name = colour
+                               ? arena_format(&b->arena, "colour.%c", "RGB"[p - info->coefficients])
+                           : info->joint ? arena_format(&b->arena, "c%04d", p)
+                                         : arena_format(&b->arena, "c%04d.%c", p / 3, "RGB"[p % 3]);
         if (!name)
             return NULL;
         names[file_channel(info, p)] = name;
@@ -344,13 +377,13 @@ static bool add_view(struct builder *b, const struct relume_pack_contents *c, in
     struct view_source *source = arena_array(&b->arena, 1, sizeof *source);
     if (!list || !name || !depth || !mask || !source)
         return false;
-    *source = (struct view_source){view->coefficients, b->half_of_byte};
+    *source = (struct view_source){view->coefficients, b->half_of_code};
     struct exr_part *part = &b->parts[b->count++];
     *part = (struct exr_part){
         .name = name,
         .width = info->width,
         .height = info->height,
-        .sample = info->storage == RELUME_STORE_16 ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF,
+        .sample = is_wide(info->storage) ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF,
         .codec = codec,
         .channels = info->planes,
         .channel = b->channels,
@@ -389,11 +422,11 @@ relume_status relume_pack_write(const struct relume_pack_contents *contents, con
     struct builder b = {0};
     b.parts = arena_array(&b.arena, 1 + 3 * (size_t)contents->views, sizeof *b.parts);
     b.channels = channel_names(&b, relume_coder_info(contents->coder));
-    b.half_of_byte = arena_array(&b.arena, 256, sizeof *b.half_of_byte);
-    for (int i = 0; b.half_of_byte && i < 256; i++)
-        b.half_of_byte[i] = half_from_float((float)i);
+    b.half_of_code = arena_array(&b.arena, HALF_CODES, sizeof *b.half_of_code);
+    for (int i = 0; b.half_of_code && i < HALF_CODES; i++)
+        b.half_of_code[i] = half_from_float((float)i);
     const enum exr_codec codec = codec_of(p.compression);
-    bool good = b.parts && b.channels && b.half_of_byte && add_preview(&b, contents, codec);
+    bool good = b.parts && b.channels && b.half_of_code && add_preview(&b, contents, codec);
     for (int i = 0; good && i < contents->views; i++)
         good = add_view(&b, contents, i, codec);
     const relume_status status =

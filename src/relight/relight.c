@@ -39,11 +39,6 @@ struct job {
     const struct relume_image *surface;
 };
 
-static int plane_of(const struct relume_coder_info *info, int k, int channel)
-{
-    return info->joint ? k : 3 * k + channel;
-}
-
 static void fold_quantiser(struct pass *pass, const struct relume_codes *codes)
 {
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
@@ -51,7 +46,7 @@ static void fold_quantiser(struct pass *pass, const struct relume_codes *codes)
         double bias = (double)pass->bias[c];
         for (int k = 0; k < info->coefficients; k++) {
             float *w = &pass->weights[c * info->coefficients + k];
-            const int p = plane_of(info, k, c);
+            const int p = relume_coder_plane(info, k, c);
             bias += (double)*w * (double)codes->offset[p];
             *w *= codes->scale[p];
         }
@@ -115,10 +110,20 @@ static void dot_group(const struct job *job, float *out, size_t n, float bias,
     const void *p = planes;
     if (job->codes->storage == RELUME_STORE_8)
         job->kernels->dot_bytes(out, n, bias, p, weights, count);
-    else if (job->codes->storage == RELUME_STORE_16)
-        job->kernels->dot_words(out, n, bias, p, weights, count);
-    else
+    else if (job->codes->storage == RELUME_STORE_HALF)
         job->kernels->dot_halves(out, n, bias, p, weights, count);
+    else
+        job->kernels->dot_words(out, n, bias, p, weights, count);
+}
+
+// out *= the pixels' colour
+static void multiply_colour(const struct job *job, int plane, size_t offset, size_t n, float *out)
+{
+    float colour[CHUNK];
+    const void *from = (const char *)job->codes->plane[plane] + offset;
+    dot_group(job, colour, n, job->codes->offset[plane], &from, &job->codes->scale[plane], 1);
+    for (size_t i = 0; i < n; i++)
+        out[i] *= colour[i];
 }
 
 static void dot_channel(const struct job *job, const struct pass *pass, int channel, size_t first,
@@ -135,7 +140,8 @@ static void dot_channel(const struct job *job, const struct pass *pass, int chan
     for (int k = 0; k < info->coefficients || !begun; k++) {
         const bool last = k + 1 >= info->coefficients;
         if (k < info->coefficients && w[k] != 0.0f) {  // interpolation leaves most lights out
-            planes[count] = (const char *)codes->plane[plane_of(info, k, channel)] + offset;
+            planes[count] =
+                (const char *)codes->plane[relume_coder_plane(info, k, channel)] + offset;
             weights[count++] = w[k];
         }
         if (count < GROUP && !last)
@@ -147,6 +153,8 @@ static void dot_channel(const struct job *job, const struct pass *pass, int chan
         begun = true;
         count = 0;
     }
+    if (info->luminance)
+        multiply_colour(job, info->coefficients + channel, offset, n, out);
 }
 
 static double code_at(const struct relume_codes *codes, int plane, size_t pixel)
@@ -154,7 +162,13 @@ static double code_at(const struct relume_codes *codes, int plane, size_t pixel)
     if (codes->storage == RELUME_STORE_8)
         return ((const uint8_t *)codes->plane[plane])[pixel];
     const uint16_t word = ((const uint16_t *)codes->plane[plane])[pixel];
-    return codes->storage == RELUME_STORE_16 ? (double)word : (double)float_from_half(word);
+    return codes->storage == RELUME_STORE_HALF ? (double)float_from_half(word) : (double)word;
+}
+
+static double coefficient_at(const struct relume_codes *codes, int plane, size_t pixel)
+{
+    return code_at(codes, plane, pixel) * (double)codes->scale[plane] +
+           (double)codes->offset[plane];
 }
 
 enum { MOST_WEIGHTS = 3 * 4096 };
@@ -169,11 +183,12 @@ static void decode_pixel(double value[3], const struct relume_codes *codes, size
     for (int c = 0; c < 3; c++) {
         value[c] = (double)constant[c];
         for (int k = 0; k < info->coefficients; k++) {
-            const int p = plane_of(info, k, c);
+            const int p = relume_coder_plane(info, k, c);
             value[c] +=
-                (double)weights[c * info->coefficients + k] *
-                (code_at(codes, p, pixel) * (double)codes->scale[p] + (double)codes->offset[p]);
+                (double)weights[c * info->coefficients + k] * coefficient_at(codes, p, pixel);
         }
+        if (info->luminance)
+            value[c] *= coefficient_at(codes, info->coefficients + c, pixel);
     }
 }
 

@@ -4,14 +4,19 @@
 #include "capture_fixture.h"
 #include "coder/basis.h"
 
-enum { LIGHTS = 60 };
+enum { LIGHTS = 60, MOST_PLANES = 3 * 4096 };
 
 static struct relume_vec3 lights[LIGHTS];
+static struct relume_vec3 dome[LIGHTS];  // the same above the horizon
 
 static int setup(void **state)
 {
     (void)state;
-    return relume_lights_make(lights, LIGHTS, relume_pattern_find("hammersley"), NULL) != RELUME_OK;
+    if (relume_lights_make(lights, LIGHTS, relume_pattern_find("hammersley"), NULL))
+        return 1;
+    for (int i = 0; i < LIGHTS; i++)
+        dome[i] = (struct relume_vec3){lights[i].x, lights[i].y, fabs(lights[i].z)};
+    return 0;
 }
 
 #define FOR_EACH_BASIS(b) for (const struct relume_basis *const *b = relume_bases; *b; b++)
@@ -26,12 +31,37 @@ static int counts_of(const struct relume_basis *b, int *counts)
     return n;
 }
 
+// What a pixel is under the lights of `c`: samples[light][channel].
+static void reflectance(uint32_t *seed, const struct relume_vec3 *l, float (*samples)[3])
+{
+    const struct relume_vec3 n = test_direction(seed), m = test_direction(seed);
+    for (int i = 0; i < LIGHTS; i++)
+        for (int c = 0; c < 3; c++)
+            samples[i][c] =
+                (float)((0.5 + 0.2 * c) * fmax(n.x * l[i].x + n.y * l[i].y + n.z * l[i].z, 0.0) +
+                        pow(fmax(m.x * l[i].x + m.y * l[i].y + m.z * l[i].z, 0.0), 30.0) +
+                        0.05 * test_uniform(seed));
+}
+
 static relume_coder *create(const struct relume_basis *b, int k, bool hemispherical, double ridge)
 {
+    enum { PIXELS = 400 };
     relume_coder *c;
-    CHECK_OK(relume_coder_create(
-        &c, b, lights, LIGHTS,
-        relume_coder_params(.coefficients = k, .ridge = ridge, .hemispherical = hemispherical)));
+    const bool above = hemispherical || b->upper_only;
+    const struct relume_vec3 *l = above ? dome : lights;
+    struct relume_samples s = {.lights = LIGHTS, .pixels = PIXELS};
+    s.data = malloc(sizeof(float) * 3 * LIGHTS * PIXELS);
+    uint32_t seed = 77;
+    for (size_t x = 0; x < PIXELS; x++) {
+        float one[LIGHTS][3];
+        reflectance(&seed, l, one);
+        for (size_t i = 0; i < LIGHTS; i++)
+            memcpy(s.data + (i * PIXELS + x) * 3, one[i], sizeof one[i]);
+    }
+    CHECK_OK(relume_coder_create(&c, b, l, LIGHTS,
+                                 relume_coder_params(.coefficients = k, .ridge = ridge,
+                                                     .hemispherical = above, .samples = &s)));
+    free(s.data);
     assert_int_equal(relume_coder_info(c)->coefficients, k);
     return c;
 }
@@ -39,54 +69,51 @@ static relume_coder *create(const struct relume_basis *b, int k, bool hemispheri
 // Stored functions at a direction, first channel.
 static void functions(const relume_coder *c, struct relume_vec3 d, float *values)
 {
-    float weights[3 * 4096], constant[3];
+    float weights[MOST_PLANES], constant[3];
     relume_coder_weights(c, d, weights, constant);
     memcpy(values, weights, (size_t)relume_coder_info(c)->coefficients * sizeof *values);
 }
 
-static void encode(const relume_coder *c, const double *samples, double *coefficients)
+static void encode(const relume_coder *c, float (*samples)[3], float *planes)
 {
-    for (int k = 0; k < relume_coder_info(c)->coefficients; k++) {
-        coefficients[k] = 0.0;
-        for (int i = 0; i < LIGHTS; i++)
-            coefficients[k] += (double)c->map[k * LIGHTS + i] * samples[i];
-    }
+    CHECK_OK(relume_coder_apply(c, &samples[0][0], 3, 1, planes, 1));
 }
 
-static void decode(const relume_coder *c, const double *coefficients, double *samples)
+static void decode(const relume_coder *c, const float *planes, float (*samples)[3])
 {
-    float values[4096];
+    const struct relume_coder_info *info = relume_coder_info(c);
+    float weights[MOST_PLANES], constant[3];
     for (int i = 0; i < LIGHTS; i++) {
-        functions(c, lights[i], values);
-        samples[i] = 0.0;
-        for (int k = 0; k < relume_coder_info(c)->coefficients; k++)
-            samples[i] += (double)values[k] * coefficients[k];
+        relume_coder_weights(c, info->directions[i], weights, constant);
+        for (int channel = 0; channel < 3; channel++) {
+            double sum = (double)constant[channel];
+            for (int k = 0; k < info->coefficients; k++)
+                sum += (double)weights[channel * info->coefficients + k] *
+                       (double)planes[relume_coder_plane(info, k, channel)];
+            samples[i][channel] = (float)sum;
+        }
     }
 }
 
-static double rms(const double *a, const double *b)
+static double rms(float (*a)[3], float (*b)[3])
 {
     double sum = 0.0;
-    for (int i = 0; i < LIGHTS; i++)
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return sqrt(sum / LIGHTS);
-}
-
-static void reflectance(uint32_t *seed, double *samples)
-{
-    const struct relume_vec3 n = test_direction(seed), m = test_direction(seed);
-    for (int i = 0; i < LIGHTS; i++) {
-        const struct relume_vec3 l = lights[i];
-        samples[i] = fmax(n.x * l.x + n.y * l.y + n.z * l.z, 0.0) +
-                     pow(fmax(m.x * l.x + m.y * l.y + m.z * l.z, 0.0), 30.0) +
-                     0.05 * test_uniform(seed);
+    for (int i = 0; i < 3 * LIGHTS; i++) {
+        const double d = (double)a[i / 3][i % 3] - (double)b[i / 3][i % 3];
+        sum += d * d;
     }
+    return sqrt(sum / (3 * LIGHTS));
 }
 
 // Single precision maps: 60 terms of 2^-24 each, times the condition of the light set, below 30 for
 // counts up to half the lights; the ridge of 1e-12 is far below that.
 static const double EXACT = 2e-4, RIDGE = 1e-12;
+// On one hemisphere values are assumed at the horizon, with the weight 1e-4, against coefficients
+// that differ from them by some units.
+static const double FILLED = 2e-3;
 
+// What its own functions make of coefficients comes back as these coefficients. Not where the map
+// is no fit (dct-resampled) or the interpolant does not meet the captured lights.
 static void test_exact_on_own_span(void **state)
 {
     (void)state;
@@ -96,17 +123,18 @@ static void test_exact_on_own_span(void **state)
         int counts[LIGHTS];
         const int n = counts_of(*b, counts);
         assert_true(n >= 1);
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < n && *b != &relume_basis_dct_resampled; i++) {
             if (counts[i] > LIGHTS / 2 && (*b)->fit_count(0, LIGHTS) != counts[i])
                 continue;
             relume_coder *c = create(*b, counts[i], false, RIDGE);
-            double in[4096], samples[LIGHTS], out[4096];
-            for (int k = 0; k < counts[i]; k++)
-                in[k] = 2.0 * test_uniform(&seed) - 1.0;
+            const int planes = relume_coder_info(c)->planes;
+            float in[MOST_PLANES], samples[LIGHTS][3], out[MOST_PLANES];
+            for (int k = 0; k < planes; k++)
+                in[k] = (float)(2.0 * test_uniform(&seed) - 1.0);
             decode(c, in, samples);
             encode(c, samples, out);
-            for (int k = 0; k < counts[i]; k++)
-                CHECK_NEAR(out[k], in[k], EXACT);
+            for (int k = 0; k < planes; k++)
+                CHECK_NEAR(out[k], in[k], (*b)->upper_only ? FILLED : EXACT);
             relume_coder_destroy(&c);
         }
     }
@@ -118,14 +146,16 @@ static void test_projection_is_idempotent(void **state)
     uint32_t seed = 2;
     FOR_EACH_BASIS(b)
     {
+        if (*b == &relume_basis_dct_resampled)
+            continue;
         const int k = (*b)->fit_count(0, LIGHTS);
         relume_coder *c = create(*b, k, false, RIDGE);
-        double samples[LIGHTS], coefficients[4096], once[LIGHTS], twice[LIGHTS];
-        reflectance(&seed, samples);
-        encode(c, samples, coefficients);
-        decode(c, coefficients, once);
-        encode(c, once, coefficients);
-        decode(c, coefficients, twice);
+        float samples[LIGHTS][3], planes[MOST_PLANES], once[LIGHTS][3], twice[LIGHTS][3];
+        reflectance(&seed, relume_coder_info(c)->directions, samples);
+        encode(c, samples, planes);
+        decode(c, planes, once);
+        encode(c, once, planes);
+        decode(c, planes, twice);
         CHECK_NEAR(rms(once, twice), 0.0, EXACT);
         relume_coder_destroy(&c);
     }
@@ -135,25 +165,28 @@ static void test_longer_never_fits_worse(void **state)
 {
     (void)state;
     uint32_t seed = 3;
-    double samples[LIGHTS], coefficients[4096], out[LIGHTS];
-    for (int round = 0; round < 5; round++) {
-        reflectance(&seed, samples);
+    for (int round = 0; round < 5; round++)
         FOR_EACH_BASIS(b)
         {
+            if (*b == &relume_basis_dct_resampled)
+                continue;
             int counts[LIGHTS];
             const int n = counts_of(*b, counts);
+            const uint32_t same = seed + (uint32_t)round;
             double before = 1e30;
             for (int i = 0; i < n; i++) {
                 relume_coder *c = create(*b, counts[i], false, RIDGE);
-                encode(c, samples, coefficients);
-                decode(c, coefficients, out);
+                float samples[LIGHTS][3], planes[MOST_PLANES], out[LIGHTS][3];
+                uint32_t again = same;
+                reflectance(&again, relume_coder_info(c)->directions, samples);
+                encode(c, samples, planes);
+                decode(c, planes, out);
                 const double error = rms(samples, out);
                 assert_true(error <= before + EXACT);
                 before = error;
                 relume_coder_destroy(&c);
             }
         }
-    }
 }
 
 // The weights of two lights are added before decoding; that must be the sum of both pictures.
@@ -163,9 +196,12 @@ static void test_decode_is_linear_in_the_light(void **state)
     char folder[64], path[96];
     test_folder(folder);
     snprintf(path, sizeof path, "%s/pack.exr", folder);
-    fixture_write(&(struct fixture){.width = 7, .height = 5, .lights = 30, .views = 1}, folder);
     FOR_EACH_BASIS(b)
     {
+        fixture_write(
+            &(struct fixture){
+                .width = 7, .height = 5, .lights = 30, .views = 1, .hemisphere = (*b)->upper_only},
+            folder);
         relume_pack *pack;
         const struct relume_codes *codes;
         CHECK_OK(fixture_encode(folder, path, *b, 0, NULL));
@@ -209,16 +245,15 @@ static void test_eight_bits_are_enough(void **state)
             folder);
         FOR_EACH_BASIS(b)
         {
-            if ((*b)->fit_count(9, 60) > 9)
+            if ((*b)->fit_count(9, 60) > 9 || ((*b)->upper_only && !hemisphere))
                 continue;  // the table has no residual of its own
             relume_capture *capture;
             relume_coder *coder;
             struct relume_encode_report r;
             CHECK_OK(relume_capture_open(&capture, folder, NULL));
-            const struct relume_manifest *m = relume_capture_manifest(capture);
-            CHECK_OK(relume_coder_create(
-                &coder, *b, m->directions, m->lights,
-                relume_coder_params(.coefficients = 9, .hemispherical = hemisphere)));
+            CHECK_OK(relume_coder_learn(&coder, *b, capture,
+                                        relume_coder_params(.coefficients = (*b)->fit_count(9, 60)),
+                                        NULL));
             struct test_log log;
             test_log_init(&log);
             if (relume_pack_encode(capture, coder, path, &r,
@@ -227,7 +262,10 @@ static void test_eight_bits_are_enough(void **state)
             const double cost_db =
                 10.0 * log10(1.0 + r.store_rms * r.store_rms / r.fit_rms / r.fit_rms);
             assert_true(r.fit_rms > 1e-3 && r.store_rms > 1e-6);  // both are really measured
-            assert_true(cost_db < 0.1);
+            // principal components leave little of this fixture: there, a code of the eye's scale
+            if (!(cost_db < 0.1 || ((*b)->learned && r.store_rms < 0.25 / 255)))
+                fail_msg("%s: 8 bits cost %.3f dB (%g, %g)", (*b)->name, cost_db, r.fit_rms,
+                         r.store_rms);
             relume_coder_destroy(&coder);
             relume_capture_destroy(&capture);
         }

@@ -1,0 +1,88 @@
+// interpolant_natural.c - natural neighbours: a light weighs by what the query takes from its
+// Voronoi cell (Sibson 1981), integrated over points s of the sphere (Park et al. 2006). Where
+// Sibson counts area, max(s.d - s.l, 0) is summed, l being the nearest light: the weights are then
+// smooth in the number of points, and differentiable in d (Hiyoshi and Sugihara 2000).
+#include "base/memory.h"
+#include "coder/basis.h"
+#include "coder/interpolant.h"
+
+#include <string.h>
+
+enum { POINTS = 8192 };
+
+struct cells {
+    int lights;
+    vec3 *light;
+    vec3 point[POINTS];
+    int owner[POINTS];
+    double nearest[POINTS];  // cosine of the angle to the owner
+};
+
+static void release(void *data)
+{
+    struct cells *c = data;
+    free(c->light);
+    free(c);
+}
+
+static int nearest_light(const struct cells *c, vec3 d)
+{
+    int best = 0;
+    for (int i = 1; i < c->lights; i++)
+        if (vec3_dot(d, c->light[i]) > vec3_dot(d, c->light[best]))
+            best = i;
+    return best;
+}
+
+static relume_status prepare(void **data, const struct relume_vec3 *lights, int n,
+                             const double *parameter, const struct relume_log *log)
+{
+    (void)parameter;
+    (void)log;
+    struct cells *c = *data = mem_zeroed(1, sizeof *c);
+    if (!c)
+        return RELUME_ENOMEM;
+    c->lights = n;
+    c->light = mem_copy(lights, (size_t)n, sizeof *lights);
+    if (!c->light) {
+        release(c);
+        *data = NULL;
+        return RELUME_ENOMEM;
+    }
+    for (int i = 0; i < POINTS; i++) {
+        const double z = 1.0 - (2.0 * i + 1.0) / POINTS, r = sqrt(1.0 - z * z);
+        const double phi = i * (M_PI * (3.0 - sqrt(5.0)));
+        c->point[i] = vec3_of(r * cos(phi), r * sin(phi), z);
+        c->owner[i] = nearest_light(c, c->point[i]);
+        c->nearest[i] = vec3_dot(c->point[i], c->light[c->owner[i]]);
+    }
+    return RELUME_OK;
+}
+
+static void evaluate(const void *data, struct relume_vec3 light, double *weights)
+{
+    const struct cells *c = data;
+    double sum = 0.0;
+    memset(weights, 0, (size_t)c->lights * sizeof *weights);
+    for (int i = 0; i < POINTS; i++) {
+        const double gain = vec3_dot(c->point[i], light) - c->nearest[i];
+        if (gain > 0.0) {
+            weights[c->owner[i]] += gain;
+            sum += gain;
+        }
+    }
+    if (sum < 1e-9) {  // on a light
+        weights[nearest_light(c, light)] = 1.0;
+        return;
+    }
+    for (int i = 0; i < c->lights; i++)
+        weights[i] /= sum;
+}
+
+const struct relume_interpolant interpolant_natural = {
+    .name = "natural",
+    .summary = "natural neighbours; smooth, never leaves the range of the captured values",
+    .prepare = prepare,
+    .evaluate = evaluate,
+    .release = release,
+};

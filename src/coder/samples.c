@@ -1,0 +1,140 @@
+// samples.c - pixels of a capture from which a learned basis learns
+#include "base/log.h"
+#include "base/memory.h"
+#include "coder/coefficients.h"
+#include "math/random.h"
+
+#include <string.h>
+
+enum { DEFAULT_PIXELS = 65536 };
+
+struct sampler {
+    struct relume_samples *out;
+    size_t *chosen;  // pixel numbers over all views, ascending
+    size_t count, next;
+    size_t kept;
+};
+
+// One pixel from each of `count` equal runs, at a place that no pattern of the image can follow.
+static void choose(struct sampler *s, size_t pixels)
+{
+    struct random random = random_stream(1, pixels, s->count);
+    for (size_t i = 0; i < s->count; i++) {
+        const double at = ((double)i + random_next(&random)) * (double)pixels / (double)s->count;
+        s->chosen[i] = at < (double)pixels ? (size_t)at : pixels - 1;
+    }
+}
+
+// Copy the chosen pixels of a band whose first pixel has the number `first`.
+static void take(struct sampler *s, const struct relume_image *mask, const float *band, size_t n,
+                 size_t first, size_t view_first)
+{
+    const size_t lights = (size_t)s->out->lights;
+    for (; s->next < s->count && s->chosen[s->next] < first + n; s->next++) {
+        const size_t x = s->chosen[s->next] - first;
+        if (mask->data && mask->data[first - view_first + x] <= 0.5f)
+            continue;
+        for (size_t i = 0; i < lights; i++)
+            memcpy(s->out->data + (i * s->count + s->kept) * 3, band + (i * n + x) * 3,
+                   3 * sizeof *band);
+        s->kept++;
+    }
+}
+
+static relume_status sample_view(struct sampler *s, const relume_capture *capture, int view,
+                                 struct relume_transfer display,
+                                 const struct relume_encode_params *p)
+{
+    const size_t width = (size_t)relume_capture_width(capture);
+    const int height = relume_capture_height(capture);
+    const size_t view_first = (size_t)view * width * (size_t)height;
+    struct relume_image mask;
+    relume_table *table = NULL;
+    float *band = mem_array((size_t)s->out->lights * BAND_ROWS * width * 3, sizeof *band);
+    relume_status status = relume_capture_mask(&mask, capture, view, p->log);
+    if (!status && !band)
+        status = RELUME_ENOMEM;
+    if (!status)
+        status = relume_table_open(
+            &table, capture, view,
+            relume_table_params(.log = p->log, .display = display, .threads = p->threads));
+    for (int row = 0; !status && row < height; row += BAND_ROWS) {
+        const int rows = height - row < BAND_ROWS ? height - row : BAND_ROWS;
+        status = relume_table_read(table, rows, band);
+        if (status)
+            break;
+        take(s, &mask, band, (size_t)rows * width, view_first + (size_t)row * width, view_first);
+        const int views = relume_capture_manifest(capture)->views;
+        if (!log_progress(p->log, "sampling", (view + (row + rows) / (double)height) / views))
+            status = RELUME_ECANCEL;
+    }
+    relume_table_destroy(&table);
+    relume_image_destroy(&mask);
+    free(band);
+    return status;
+}
+
+// Masked pixels left gaps at the end of every light's row.
+static void close_gaps(struct sampler *s)
+{
+    for (size_t i = 1; i < (size_t)s->out->lights; i++)
+        memmove(s->out->data + i * s->kept * 3, s->out->data + i * s->count * 3,
+                s->kept * 3 * sizeof *s->out->data);
+    s->out->pixels = s->kept;
+}
+
+relume_status relume_samples_read(struct relume_samples *out, const relume_capture *capture,
+                                  size_t pixels, const struct relume_encode_params *params)
+{
+    const struct relume_encode_params p = params ? *params : (struct relume_encode_params){0};
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    const size_t all = (size_t)m->views * (size_t)relume_capture_width(capture) *
+                       (size_t)relume_capture_height(capture);
+    const size_t want = pixels ? pixels : DEFAULT_PIXELS;
+    *out = (struct relume_samples){.lights = m->lights};
+    struct sampler s = {.out = out, .count = want < all ? want : all};
+    s.chosen = mem_array(s.count, sizeof *s.chosen);
+    out->data = mem_array((size_t)m->lights * s.count * 3, sizeof *out->data);
+    relume_status status = s.chosen && out->data ? RELUME_OK : RELUME_ENOMEM;
+    struct relume_transfer display = {RELUME_CURVE_LINEAR, 0.0f};
+    if (relume_encode_domain(capture, p.domain) == RELUME_DOMAIN_DISPLAY)
+        display = relume_encode_display(capture);
+    if (!status)
+        choose(&s, all);
+    for (int v = 0; !status && v < m->views; v++)
+        status = sample_view(&s, capture, v, display, &p);
+    free(s.chosen);
+    if (status)
+        relume_samples_destroy(out);
+    else
+        close_gaps(&s);
+    return status;
+}
+
+void relume_samples_destroy(struct relume_samples *samples)
+{
+    free(samples->data);
+    *samples = (struct relume_samples){0};
+}
+
+relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *basis,
+                                 const relume_capture *capture,
+                                 const struct relume_coder_params *coder,
+                                 const struct relume_encode_params *encode)
+{
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    struct relume_coder_params p = coder ? *coder : (struct relume_coder_params){0};
+    struct relume_samples samples = {0};
+    p.hemispherical = relume_capture_hemispherical(capture);
+    p.pole_y = m->geometry.projection >= RELUME_CYLINDRICAL;
+    relume_status status = RELUME_OK;
+    *out = NULL;
+    if (basis->learned) {
+        status = relume_samples_read(&samples, capture, 0, encode);
+        p.samples = &samples;
+    }
+    if (!status)
+        status = relume_coder_create(out, basis, m->directions, m->lights, &p);
+    relume_samples_destroy(&samples);
+    return status;
+}

@@ -81,8 +81,10 @@ struct relume_coder_params {
                          // (LRGB); not for learned bases
     bool force;          // more coefficients than the lights determine are a warning, not an error
     const struct relume_interpolant *interpolant;  // table and pca; default: the basis's own
-    double parameter[4];                           // of the interpolant; 0 means its default
-    const struct relume_samples *samples;          // what a learned basis learns from
+    bool choose;  // the interpolant is `chord`, its parameters those with which the lights of
+                  // `samples` predict each other best
+    double parameter[4];                   // of the interpolant; 0 means its default
+    const struct relume_samples *samples;  // what a learned basis and `choose` learn from
     bool decode;             // only weights will be asked for: no encoding map is made
     const float *transform;  // decoding: stored functions = transform x raw functions, [K][raw], or
                              // [3][K][raw] for learned bases. Default: the identity
@@ -114,6 +116,8 @@ struct relume_coder_info {
     const float *mean;                     // learned: [3][functions], or NULL
     const struct relume_interpolant *interpolant;  // or NULL
     double parameter[4];
+    double predicted_rms;  // after `choose`: how lights left out are predicted, geometric mean over
+                           // lights, 1 = white; else 0
 };
 RELUME_API const struct relume_coder_info *relume_coder_info(const relume_coder *coder);
 
@@ -188,7 +192,7 @@ RELUME_RESULT relume_status relume_samples_read(struct relume_samples *out,
 RELUME_API void relume_samples_destroy(struct relume_samples *samples);
 
 // Prepare `basis` for the lights of `capture`: relume_coder_create with its directions, hemisphere
-// and pole, and with samples where the basis is learned. Errors of both, and of
+// and pole, and with samples where they are needed. Errors of both, and of
 // relume_samples_read.
 RELUME_RESULT relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *basis,
                                                const relume_capture *capture,

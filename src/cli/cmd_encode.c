@@ -9,8 +9,7 @@ static const struct option options[] = {
     {"--coefficients", OPTION_INT, "K",
      "coefficients per colour channel (pca: for all three); default: by the basis", 1, 4096},
     {"--interpolant", OPTION_TEXT, "NAME",
-     "pca, table: angular, tps, rbf, natural, hsh, delaunay; default: angular, table delaunay", 0,
-     0},
+     "pca, table: auto, chord, angular, tps, rbf, natural, hsh, delaunay", 0, 0},
     {"--colour", OPTION_TEXT, "C",
      "rgb, or luminance: one set of coefficients and a colour per pixel; default: rgb", 0, 0},
     {"--bits", OPTION_TEXT, "B", "8, 10, 12, 16 or half; default: 8", 0, 0},
@@ -32,18 +31,20 @@ static relume_status parse_basis(const char *name, const struct relume_basis **o
     int n = 1;
     for (const struct relume_basis *const *b = relume_bases; *b; b++)
         names[n++] = (*b)->name;
-    *out = strcmp(name, "auto") ? relume_basis_find(name) : &relume_basis_sh;
+    *out = strcmp(name, "auto") ? relume_basis_find(name) : &relume_basis_pca;
     return *out ? RELUME_OK : unknown_name("basis", name, names);
 }
 
-static relume_status parse_interpolant(const char *name, const struct relume_interpolant **out)
+static relume_status parse_interpolant(const char *name, struct relume_coder_params *p)
 {
-    const char *names[32] = {NULL};
-    int n = 0;
+    const char *names[32] = {"auto"};
+    int n = 1;
     for (const struct relume_interpolant *const *i = relume_interpolants; *i; i++)
         names[n++] = (*i)->name;
-    *out = name ? relume_interpolant_find(name) : NULL;
-    return !name || *out ? RELUME_OK : unknown_name("--interpolant", name, names);
+    p->choose = name && !strcmp(name, "auto");
+    p->interpolant = name ? relume_interpolant_find(name) : NULL;
+    return !name || p->choose || p->interpolant ? RELUME_OK
+                                                : unknown_name("--interpolant", name, names);
 }
 
 static relume_status parse_bits(const char *text, enum relume_storage *out)
@@ -99,11 +100,17 @@ static void say_result(const struct args *args, const relume_coder *coder,
     const struct relume_coder_info *info = relume_coder_info(coder);
     const double fit = report->fit_rms * report->fit_rms;
     const double store = report->store_rms * report->store_rms;
-    char text[256];
+    char text[512], chosen[192] = "";
+    if (info->predicted_rms > 0.0)
+        snprintf(chosen, sizeof chosen, "; %s %g %g %g %g predicts lights left out to %.2f dB",
+                 info->interpolant->name, info->parameter[0], info->parameter[1],
+                 info->parameter[2], info->parameter[3],
+                 decibel(info->predicted_rms * info->predicted_rms));
     snprintf(text, sizeof text,
              "%s: %s with %d coefficients; captured lights are met to %.2f dB (%.2f dB before "
-             "storing)",
-             path, info->basis->name, info->coefficients, decibel(fit + store), decibel(fit));
+             "storing)%s",
+             path, info->basis->name, info->coefficients, decibel(fit + store), decibel(fit),
+             chosen);
     args_log(args)->message(args_log(args)->user, RELUME_NOTE, text);
 }
 
@@ -156,9 +163,11 @@ static relume_status parse(const struct args *args, struct request *r)
     };
     if (!args_has(args, "-o"))
         return usage_error("encode: expected -o FILE.exr");
-    relume_status status = parse_basis(args_text(args, "--basis", "auto"), &r->basis);
+    const char *basis = args_text(args, "--basis", "auto");
+    relume_status status = parse_basis(basis, &r->basis);
     if (!status)
-        status = parse_interpolant(args_text(args, "--interpolant", NULL), &r->coder.interpolant);
+        status = parse_interpolant(
+            args_text(args, "--interpolant", strcmp(basis, "auto") ? NULL : "auto"), &r->coder);
     if (!status)
         status = parse_bits(args_text(args, "--bits", "8"), &r->pack.storage);
     if (!status)

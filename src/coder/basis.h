@@ -47,6 +47,11 @@ void captured_destroy(struct captured *c);
 void captured_predict(const struct captured *c, const relume_coder *coder, int channel,
                       const float *planes, size_t plane_stride, size_t n, float *out);
 
+// The Gram matrix [lights][lights] of the images, mean over pixels and channels.
+relume_status samples_gram(double *gram, const struct relume_samples *s);
+// Mean squared error of each light predicted from the others, never 0 (choose.c).
+void predict_errors(double *error, const double *b, const double *gram, int lights);
+
 // Regularised least squares on the captured directions, for bases with smooth functions:
 // fills coder->map and coder->transform. `roughness[K]` is what the ridge multiplies.
 relume_status fit_map(relume_coder *coder, const double *roughness, const struct relume_log *log);

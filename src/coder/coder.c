@@ -110,11 +110,19 @@ static relume_status copy_functions(relume_coder *c, const struct relume_coder_p
 
 static relume_status prepare_interpolant(relume_coder *c, const struct relume_coder_params *p)
 {
-    const struct relume_interpolant *i = p->interpolant           ? p->interpolant
-                                         : c->info.basis->learned ? &interpolant_angular
-                                                                  : &interpolant_delaunay;
-    const relume_status status =
-        i->prepare(&c->interpolant, c->frame, c->info.lights, p->parameter, p->log);
+    const struct relume_interpolant *own =
+        c->info.basis->learned ? &interpolant_chord : &interpolant_delaunay;
+    const struct relume_interpolant *i = p->choose        ? &interpolant_chord
+                                         : p->interpolant ? p->interpolant
+                                                          : own;
+    relume_status status = RELUME_OK;
+    if (p->choose && (!p->samples || p->samples->lights != c->info.lights || !p->samples->pixels))
+        return log_fail(p->log, RELUME_EINVAL, "choosing an interpolant needs samples");
+    if (p->choose)
+        status =
+            interpolant_choose(c->info.parameter, &c->info.predicted_rms, c->frame, p->samples);
+    if (!status)
+        status = i->prepare(&c->interpolant, c->frame, c->info.lights, c->info.parameter, p->log);
     if (!status)
         c->info.interpolant = i;
     return status;

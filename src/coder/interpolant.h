@@ -4,11 +4,22 @@
 
 #include <relume/coder.h>
 
+extern const struct relume_interpolant interpolant_chord;
 extern const struct relume_interpolant interpolant_delaunay;
 extern const struct relume_interpolant interpolant_angular;
 extern const struct relume_interpolant interpolant_tps;
 extern const struct relume_interpolant interpolant_rbf;
 extern const struct relume_interpolant interpolant_hsh;
 extern const struct relume_interpolant interpolant_natural;
+
+// For the kernels (chord, angular, tps): the N x N matrix B by which light i, predicted from all
+// others, is missed by (B t)_i / B_ii (Dubrule 1983). False for the others.
+bool interpolant_predictor(const struct relume_interpolant *interpolant, const void *data,
+                           double *b);
+
+// The parameters of `chord` with which the lights of `samples` predict each other best, and with
+// what error: the geometric mean over lights of each one's RMS.
+relume_status interpolant_choose(double *parameter, double *rms, const struct relume_vec3 *lights,
+                                 const struct relume_samples *samples);
 
 #endif

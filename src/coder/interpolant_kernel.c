@@ -1,50 +1,105 @@
-// interpolant_kernel.c - radial kernels with a linear trend, met exactly at the lights
+// interpolant_kernel.c - radial kernels with a trend
 //
-// With the kernel phi of the angle or chord between directions and the trend p = (1, x, y[, z]),
-// the value at d is sum_i a_i phi(l_i, d) + sum_t b_t p_t(d), where
-//     [ Phi  P ] [a]   [t]
-//     [ Pt   0 ] [b] = [0]            t: the captured samples
+// With the kernel phi of two directions and the trend p, the value at d is
+// sum_i a_i phi(l_i, d) + sum_t b_t p_t(d), where
+//     [ Phi + nugget I   P ] [a]   [t]
+//     [ Pt               0 ] [b] = [0]            t: the captured samples
 // so that the weights of the samples at d are the first N rows of the inverse times (phi(d), p(d)).
-// z joins the trend when there are lights on both hemispheres; on one it follows from x and y
-// nearly.
+// Without a nugget the captured samples are met exactly; a nugget smooths. B, the first N x N block
+// of the inverse, also tells how badly light i is predicted by all others: (B t)_i / B_ii (Dubrule
+// 1983), without solving again.
 #include "base/log.h"
 #include "base/memory.h"
 #include "coder/basis.h"
 #include "coder/interpolant.h"
 #include "math/lsq.h"
 
+#include <string.h>
+
 enum { MAX_TREND = 4 };
-// Relative to the largest kernel value: keeps coinciding lights and degenerate trends solvable.
-static const double NUGGET = 1e-9;
 
 struct kernel {
-    double (*phi)(vec3 a, vec3 b);
+    double (*phi)(const double *parameter, vec3 a, vec3 b);
+    double parameter[4];
     int lights, trend;
     vec3 *light;
-    double *inverse;  // [lights][lights + trend]
+    double *inverse;  // [lights + trend][lights + trend]
 };
 
+// ---------------------------------------------------------------- kernels
+
 // The linear kernel on the angle.
-static double angular(vec3 a, vec3 b)
+static double angular(const double *parameter, vec3 a, vec3 b)
 {
+    (void)parameter;
     return -vec3_angle(a, b);
 }
 
 // The thin plate spline on the chord.
-static double thin_plate(vec3 a, vec3 b)
+static double thin_plate(const double *parameter, vec3 a, vec3 b)
 {
+    (void)parameter;
     const vec3 d = vec3_sub(a, b);
     const double square = vec3_dot(d, d);
     return square > 0.0 ? 0.5 * square * log(square) : 0.0;
 }
 
+// The five harmonics of degree 2, without their common factor.
+static void second_degree(vec3 d, double *q)
+{
+    q[0] = d.x * d.y;
+    q[1] = d.y * d.z;
+    q[2] = d.x * d.z;
+    q[3] = (d.x * d.x - d.y * d.y) / 2.0;
+    q[4] = (3.0 * d.z * d.z - 1.0) / sqrt(12.0);
+}
+
+enum { POWER, STRETCH, NUGGET, SECOND_DEGREE };
+
+// A power of the chord, the pole's axis stretched, with a trend of first degree (a wide prior) and
+// one of second degree (a prior of the given strength).
+static double chord(const double *parameter, vec3 a, vec3 b)
+{
+    static const double FIRST_DEGREE = 30.0;
+    const vec3 d = vec3_sub(a, b);
+    const double z = parameter[STRETCH] * d.z;
+    double value =
+        FIRST_DEGREE * vec3_dot(a, b) - pow(d.x * d.x + d.y * d.y + z * z, parameter[POWER] / 2.0);
+    if (parameter[SECOND_DEGREE] > 0.0) {
+        double p[5], q[5];
+        second_degree(a, p);
+        second_degree(b, q);
+        for (int i = 0; i < 5; i++)
+            value += parameter[SECOND_DEGREE] * p[i] * q[i];
+    }
+    return value;
+}
+
+// ---------------------------------------------------------------- the system
+
 static void fill_row(const struct kernel *k, vec3 d, double *row)
 {
     const double trend[MAX_TREND] = {1.0, d.x, d.y, d.z};
     for (int i = 0; i < k->lights; i++)
-        row[i] = k->phi(k->light[i], d);
+        row[i] = k->phi(k->parameter, k->light[i], d);
     for (int i = 0; i < k->trend; i++)
         row[k->lights + i] = trend[i];
+}
+
+// Coinciding lights and degenerate trends stay solvable by `least` on the diagonal.
+static bool invert(struct kernel *k, double least)
+{
+    const size_t n = (size_t)k->lights, size = n + (size_t)k->trend;
+    for (size_t i = 0; i < n; i++) {
+        fill_row(k, k->light[i], k->inverse + i * size);
+        k->inverse[i * size + i] += least + k->parameter[NUGGET];
+        for (size_t j = n; j < size; j++)
+            k->inverse[j * size + i] = k->inverse[i * size + j];
+    }
+    for (size_t i = n; i < size; i++)
+        for (size_t j = n; j < size; j++)
+            k->inverse[i * size + j] = i == j ? -1e-9 : 0.0;
+    return lsq_invert(k->inverse, (int)size);
 }
 
 static void release(void *data)
@@ -55,41 +110,18 @@ static void release(void *data)
     free(k);
 }
 
-static bool invert(struct kernel *k)
+static relume_status prepare(void **data, struct kernel kind, double least,
+                             const struct relume_vec3 *lights, int n, const struct relume_log *log)
 {
-    const size_t n = (size_t)k->lights, size = n + (size_t)k->trend;
-    double largest = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        fill_row(k, k->light[i], k->inverse + i * size);
-        for (size_t j = 0; j < n; j++)
-            largest = fmax(largest, fabs(k->inverse[i * size + j]));
-    }
-    for (size_t i = 0; i < n; i++) {
-        k->inverse[i * size + i] += NUGGET * largest;
-        for (size_t j = n; j < size; j++)
-            k->inverse[j * size + i] = k->inverse[i * size + j];
-    }
-    for (size_t i = n; i < size; i++)
-        for (size_t j = n; j < size; j++)
-            k->inverse[i * size + j] = i == j ? -NUGGET : 0.0;
-    return lsq_invert(k->inverse, (int)size);
-}
-
-static relume_status prepare(void **data, const struct relume_vec3 *lights, int n,
-                             double (*phi)(vec3, vec3), const struct relume_log *log)
-{
-    struct kernel *k = *data = mem_zeroed(1, sizeof *k);
+    struct kernel *k = *data = mem_copy(&kind, 1, sizeof kind);
     if (!k)
         return RELUME_ENOMEM;
-    double lowest = 1.0;
-    for (int i = 0; i < n; i++)
-        lowest = fmin(lowest, lights[i].z);
-    *k = (struct kernel){.phi = phi, .lights = n, .trend = lowest < -0.1 ? 4 : 3};
     const size_t size = (size_t)n + (size_t)k->trend;
+    k->lights = n;
     k->light = mem_copy(lights, (size_t)n, sizeof *lights);
     k->inverse = mem_array(size * size, sizeof *k->inverse);
     relume_status status = k->light && k->inverse ? RELUME_OK : RELUME_ENOMEM;
-    if (!status && !invert(k))
+    if (!status && !invert(k, least))
         status =
             log_fail(log, RELUME_EDATA, "the %d light directions leave the interpolant open", n);
     if (status) {
@@ -97,20 +129,6 @@ static relume_status prepare(void **data, const struct relume_vec3 *lights, int 
         *data = NULL;
     }
     return status;
-}
-
-static relume_status prepare_angular(void **data, const struct relume_vec3 *lights, int n,
-                                     const double *parameter, const struct relume_log *log)
-{
-    (void)parameter;
-    return prepare(data, lights, n, angular, log);
-}
-
-static relume_status prepare_thin_plate(void **data, const struct relume_vec3 *lights, int n,
-                                        const double *parameter, const struct relume_log *log)
-{
-    (void)parameter;
-    return prepare(data, lights, n, thin_plate, log);
 }
 
 static void evaluate(const void *data, struct relume_vec3 light, double *weights)
@@ -126,6 +144,72 @@ static void evaluate(const void *data, struct relume_vec3 light, double *weights
         weights[i] = sum;
     }
 }
+
+// ---------------------------------------------------------------- the interpolants
+
+static bool spans_both(const struct relume_vec3 *lights, int n)
+{
+    double lowest = 1.0;
+    for (int i = 0; i < n; i++)
+        lowest = fmin(lowest, lights[i].z);
+    return lowest < -0.1;
+}
+
+// z joins the trend when there are lights on both hemispheres; on one it nearly follows from x and
+// y.
+static int linear_trend(const struct relume_vec3 *lights, int n)
+{
+    return spans_both(lights, n) ? 4 : 3;
+}
+
+static relume_status prepare_angular(void **data, const struct relume_vec3 *lights, int n,
+                                     const double *parameter, const struct relume_log *log)
+{
+    (void)parameter;
+    const struct kernel kind = {.phi = angular, .trend = linear_trend(lights, n)};
+    return prepare(data, kind, 1e-9, lights, n, log);
+}
+
+static relume_status prepare_thin_plate(void **data, const struct relume_vec3 *lights, int n,
+                                        const double *parameter, const struct relume_log *log)
+{
+    (void)parameter;
+    const struct kernel kind = {.phi = thin_plate, .trend = linear_trend(lights, n)};
+    return prepare(data, kind, 1e-9, lights, n, log);
+}
+
+static relume_status prepare_chord(void **data, const struct relume_vec3 *lights, int n,
+                                   const double *parameter, const struct relume_log *log)
+{
+    struct kernel kind = {.phi = chord, .trend = 1};
+    memcpy(kind.parameter, parameter, sizeof kind.parameter);
+    if (!(kind.parameter[POWER] > 0.0))
+        kind.parameter[POWER] = 1.5;
+    if (!(kind.parameter[STRETCH] > 0.0))
+        kind.parameter[STRETCH] = spans_both(lights, n) ? 1.0 : 1.5;
+    return prepare(data, kind, 1e-5, lights, n, log);
+}
+
+bool interpolant_predictor(const struct relume_interpolant *interpolant, const void *data,
+                           double *b)
+{
+    if (interpolant->evaluate != evaluate)
+        return false;
+    const struct kernel *k = data;
+    const size_t n = (size_t)k->lights, size = n + (size_t)k->trend;
+    for (size_t i = 0; i < n; i++)
+        memcpy(b + i * n, k->inverse + i * size, n * sizeof *b);
+    return true;
+}
+
+const struct relume_interpolant interpolant_chord = {
+    .name = "chord",
+    .summary =
+        "kernel of a power of the chord between lights, with a trend; the best on most captures",
+    .prepare = prepare_chord,
+    .evaluate = evaluate,
+    .release = release,
+};
 
 const struct relume_interpolant interpolant_angular = {
     .name = "angular",

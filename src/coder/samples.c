@@ -129,7 +129,7 @@ relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *
     p.pole_y = m->geometry.projection >= RELUME_CYLINDRICAL;
     relume_status status = RELUME_OK;
     *out = NULL;
-    if (basis->learned) {
+    if (basis->learned || p.choose) {
         status = relume_samples_read(&samples, capture, 0, encode);
         p.samples = &samples;
     }

@@ -89,6 +89,37 @@ bool lsq_invert_lower(double *factor, int n)
     return LAPACKE_dtrtri(LAPACK_ROW_MAJOR, 'L', 'N', n, factor, n) == 0;
 }
 
+bool lsq_roots(double *matrix, int n, double *root, double *inverse)
+{
+    const size_t size = (size_t)n;
+    double *values = mem_array(size, sizeof *values);
+    double *vectors = mem_array(size * size, sizeof *vectors);  // [n][n], a row each
+    double *scaled = mem_array(size * size, sizeof *scaled);
+    double *columns = mem_array(size * size, sizeof *columns);
+    const bool good = values && vectors && scaled && columns &&
+                      lsq_eigenvectors(matrix, n, n, values, vectors) && values[n - 1] > 0.0;
+    for (int side = 0; good && side < 2; side++) {
+        for (size_t i = 0; i < size; i++)
+            for (size_t j = 0; j < size; j++) {
+                const double s = side ? 1.0 / sqrt(values[i]) : sqrt(values[i]);
+                columns[j * size + i] = vectors[i * size + j];
+                scaled[i * size + j] = s * vectors[i * size + j];
+            }
+        lsq_multiply_double(n, n, n, columns, scaled, side ? inverse : root);
+    }
+    free(values);
+    free(vectors);
+    free(scaled);
+    free(columns);
+    return good;
+}
+
+void lsq_multiply_double(int m, int n, int k, const double *a, const double *b, double *c)
+{
+    prepare();
+    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, n, k, 1.0, a, k, b, n, 0.0, c, n);
+}
+
 void lsq_multiply(int m, int n, int k, const float *a, int lda, const float *b, int ldb, float *c,
                   int ldc)
 {

@@ -27,6 +27,12 @@ bool lsq_cholesky(double *matrix, int n);
 // The inverse of a lower triangular matrix, in place.
 bool lsq_invert_lower(double *factor, int n);
 
+// The symmetric square root of a positive definite matrix and its inverse; the matrix is destroyed.
+bool lsq_roots(double *matrix, int n, double *root, double *inverse);
+
+// c[m][n] = a[m][k] b[k][n] in double precision.
+void lsq_multiply_double(int m, int n, int k, const double *a, const double *b, double *c);
+
 // c[m][n] = a[m][k] b[k][n]; row strides are lda, ldb, ldc.
 void lsq_multiply(int m, int n, int k, const float *a, int lda, const float *b, int ldb, float *c,
                   int ldc);

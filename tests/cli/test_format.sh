@@ -58,7 +58,7 @@ both "photos --basis sh" "9 8"
 both "photos --basis table --compression zip" "9 8"
 both "photos --basis sh --domain linear --compression none" "9 8"
 
-"$RELUME" encode photos -o gamma.exr --transfer gamma:2.2 -q
+"$RELUME" encode photos -o gamma.exr --basis sh --transfer gamma:2.2 -q
 agree "a gamma of 2.2" gamma.exr 0 "$(planar 12 5)" 12 5
 
 # A grid of lights has four of them on every circle: the shifts decide.
@@ -69,7 +69,7 @@ agree "lights on common circles" grid.exr 0 "$(planar 10 11)" 10 11
 
 # A slab: the ray from a camera through the middle of a pixel of its window [-1, 1].
 "$RELUME" synth teapot -o slab --size $size --views 2x2 --lights 20 --samples 1 -q
-"$RELUME" encode slab -o slab.exr -q
+"$RELUME" encode slab -o slab.exr --basis sh -q
 slab_ray() { awk -v u="$1" -v v="$2" -v x="$3" -v y="$4" -v n=$size 'BEGIN {
     s = -1 + 2 * (x + .5) / n; t = 1 - 2 * (y + .5) / n
     printf "--eye %g,%g,3 --direction %.9f,%.9f,-3", u, v, s - u, t - v }'; }
@@ -78,7 +78,7 @@ agree "view 2 of a slab" slab.exr 2 "$(slab_ray $uv 14 13)" 14 13
 
 # A panorama: pole +y.
 "$RELUME" synth attic -o attic --size $size --lights 20 --samples 1 -q
-"$RELUME" encode attic -o attic.exr -q
+"$RELUME" encode attic -o attic.exr --basis sh -q
 width=$("$RELUME" info attic.exr --json | sed 's/.*"width": \([0-9]*\).*/\1/')
 read -r v_min v_max x y z <<CENTER
 $(sed -n 's/.*"v_min": \([^,]*\), "v_max": \([^,]*\), "center": \[\([^]]*\)\].*/\1 \2 \3/p' \

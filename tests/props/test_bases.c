@@ -161,6 +161,7 @@ static void test_projection_is_idempotent(void **state)
     }
 }
 
+// Learned bases look at the lights between the captured ones instead.
 static void test_longer_never_fits_worse(void **state)
 {
     (void)state;
@@ -168,7 +169,7 @@ static void test_longer_never_fits_worse(void **state)
     for (int round = 0; round < 5; round++)
         FOR_EACH_BASIS(b)
         {
-            if (*b == &relume_basis_dct_resampled)
+            if (*b == &relume_basis_dct_resampled || (*b)->learned)
                 continue;
             int counts[LIGHTS];
             const int n = counts_of(*b, counts);

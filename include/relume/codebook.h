@@ -13,7 +13,8 @@ extern "C" {
 typedef struct relume_codebook relume_codebook;
 
 enum relume_codebook_start {
-    RELUME_START_RANDOM = 0,  // different vectors of the data, drawn by the seed (Wong 1998, Fig 9-10)
+    RELUME_START_RANDOM =
+        0,               // different vectors of the data, drawn by the seed (Wong 1998, Fig 9-10)
     RELUME_START_SPLIT,  // one code, split again and again along its cell's principal axis; no seed
 };
 

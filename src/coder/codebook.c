@@ -21,37 +21,65 @@ static const double DEFAULT_GAIN = 1e-4;
 
 struct search {
     const struct nearest *nearest;
-    const float *vectors;
+    const float *vectors, *codes;
     size_t n;
     uint16_t *index;
     double *distance;
-    float *scratch;  // [workers][...]
+    float *apart;
+    const double *drift, *furthest;  // NULL: every vector is looked at
+    float *scratch;                  // [workers][...]
     atomic_bool changed;
 };
+
+static double squared_distance(const float *a, const float *b, size_t dim)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < dim; i++) {
+        const double d = (double)a[i] - (double)b[i];
+        sum += d * d;
+    }
+    return sum;
+}
+
+// Whether vector i keeps its code: no other has come near enough (Hamerly 2010). The margin is far
+// above the rounding of double precision.
+static bool keeps_code(struct search *s, size_t i)
+{
+    const size_t dim = (size_t)s->nearest->dim, code = s->index[i];
+    const double drift = s->furthest[s->drift[code] == s->furthest[0]];
+    const double apart = 0.999999 * ((double)s->apart[i] - drift);
+    s->apart[i] = apart > 0.0 ? (float)apart : 0.0f;
+    s->distance[i] = squared_distance(s->vectors + i * dim, s->codes + code * dim, dim);
+    return sqrt(s->distance[i]) * (1.0 + 1e-6) < (double)s->apart[i];
+}
 
 static void search_chunk(void *context, size_t item, int worker)
 {
     struct search *s = context;
-    const size_t first = item * CHUNK, left = s->n - first;
-    const size_t n = left < CHUNK ? left : CHUNK;
+    const size_t first = item * CHUNK, last = first + CHUNK < s->n ? first + CHUNK : s->n;
     uint16_t before[CHUNK];
-    memcpy(before, s->index + first, n * sizeof *before);
-    nearest_find(s->nearest, s->vectors + first * (size_t)s->nearest->dim, n, s->index + first,
-                 s->distance + first, s->scratch + (size_t)worker * nearest_scratch(s->nearest));
-    if (memcmp(before, s->index + first, n * sizeof *before))
+    uint32_t which[CHUNK];
+    size_t count = 0;
+    memcpy(before, s->index + first, (last - first) * sizeof *before);
+    for (size_t i = first; i < last; i++)
+        if (!s->drift || !keeps_code(s, i))
+            which[count++] = (uint32_t)i;
+    nearest_find(s->nearest, s->vectors, which, count, s->index, s->distance, s->apart,
+                 s->scratch + (size_t)worker * nearest_scratch(s->nearest));
+    if (memcmp(before, s->index + first, (last - first) * sizeof *before))
         atomic_store(&s->changed, true);
 }
 
-static relume_status search(struct search *s, const float *codes, int count, int dim, int threads,
-                            unsigned cpu_off)
+static relume_status search(struct search *s, int codes, int dim, int threads, unsigned cpu_off)
 {
     struct nearest nearest;
-    relume_status status = nearest_create(&nearest, count, dim, cpu_off);
+    relume_status status = nearest_create(&nearest, codes, dim, cpu_off);
     if (status)
         return status;
-    nearest_set(&nearest, codes);
+    nearest_set(&nearest, s->codes);
     s->nearest = &nearest;
-    s->scratch = mem_array((size_t)thread_count(threads) * nearest_scratch(&nearest), sizeof(float));
+    s->scratch =
+        mem_array((size_t)thread_count(threads) * nearest_scratch(&nearest), sizeof(float));
     if (s->scratch)
         thread_for(threads, (s->n + CHUNK - 1) / CHUNK, search_chunk, s);
     else
@@ -79,10 +107,19 @@ static void sort_into_cells(struct training *t)
 relume_status training_assign(struct training *t)
 {
     struct search s = {
-        .vectors = t->vectors, .n = t->n, .index = t->index, .distance = t->distance};
-    const relume_status status = search(&s, t->code, t->codes, t->dim, t->threads, t->cpu_off);
+        .vectors = t->vectors,
+        .codes = t->code,
+        .n = t->n,
+        .index = t->index,
+        .distance = t->distance,
+        .apart = t->apart,
+        .drift = t->bounded ? t->drift : NULL,
+        .furthest = t->furthest,
+    };
+    const relume_status status = search(&s, t->codes, t->dim, t->threads, t->cpu_off);
     if (status)
         return status;
+    t->bounded = true;
     t->changed = atomic_load(&s.changed);
     sort_into_cells(t);
     t->total = 0.0;
@@ -144,13 +181,32 @@ static bool fill_empty(struct training *t, int empty)
     return true;
 }
 
+static void measure_drift(struct training *t)
+{
+    const size_t dim = (size_t)t->dim;
+    t->furthest[0] = t->furthest[1] = 0.0;
+    for (int c = 0; c < t->codes; c++) {
+        const double d =
+            sqrt(squared_distance(t->code + (size_t)c * dim, t->before + (size_t)c * dim, dim));
+        t->drift[c] = d * (1.0 + 1e-6);
+        if (t->drift[c] > t->furthest[0]) {
+            t->furthest[1] = t->furthest[0];
+            t->furthest[0] = t->drift[c];
+        } else if (t->drift[c] > t->furthest[1]) {
+            t->furthest[1] = t->drift[c];
+        }
+    }
+}
+
 void training_move(struct training *t)
 {
+    memcpy(t->before, t->code, (size_t)t->codes * (size_t)t->dim * sizeof *t->code);
     thread_for(t->threads, (size_t)t->codes, move_to_mean, t);
     bool more = true;
     for (int c = 0; more && c < t->codes; c++)
         if (t->begin[c] == t->begin[c + 1])
             more = fill_empty(t, c);
+    measure_drift(t);
 }
 
 relume_status training_run(struct training *t, int max_rounds, double min_gain)
@@ -229,10 +285,14 @@ static bool alloc_training(struct training *t)
     t->code = mem_zeroed(codes * (size_t)t->dim, sizeof *t->code);
     t->index = mem_zeroed(t->n, sizeof *t->index);
     t->distance = mem_array(t->n, sizeof *t->distance);
+    t->apart = mem_array(t->n, sizeof *t->apart);
     t->order = mem_array(t->n, sizeof *t->order);
     t->begin = mem_array(codes + 1, sizeof *t->begin);
     t->error = mem_array(codes, sizeof *t->error);
-    return t->code && t->index && t->distance && t->order && t->begin && t->error;
+    t->before = mem_array(codes * (size_t)t->dim, sizeof *t->before);
+    t->drift = mem_array(codes, sizeof *t->drift);
+    return t->code && t->index && t->distance && t->apart && t->order && t->begin && t->error &&
+           t->before && t->drift;
 }
 
 static void free_training(struct training *t)
@@ -243,6 +303,9 @@ static void free_training(struct training *t)
     free(t->order);
     free(t->begin);
     free(t->error);
+    free(t->apart);
+    free(t->before);
+    free(t->drift);
 }
 
 static relume_status train(struct training *t, const struct relume_codebook_params *p)
@@ -339,18 +402,19 @@ relume_status relume_codebook_assign(const relume_codebook *book, const float *v
         return log_fail(p.log, RELUME_EINVAL,
                         "vector %zu holds %g; expected finite numbers in every vector",
                         where / (size_t)book->info.dim, (double)vectors[where]);
-    struct search s = {.vectors = vectors, .n = n, .index = index};
+    struct search s = {.vectors = vectors, .codes = book->vectors, .n = n, .index = index};
     s.distance = mem_array(n, sizeof *s.distance);
-    if (!s.distance)
-        return RELUME_ENOMEM;
+    s.apart = mem_array(n, sizeof *s.apart);
     memset(index, 0, n * sizeof *index);
     const relume_status status =
-        search(&s, book->vectors, book->info.codes, book->info.dim, p.threads, p.cpu_off);
+        s.distance && s.apart ? search(&s, book->info.codes, book->info.dim, p.threads, p.cpu_off)
+                              : RELUME_ENOMEM;
     double sum = 0.0;
     for (size_t i = 0; !status && i < n; i++)
         sum += s.distance[i];
     if (squared_error)
         *squared_error = sum;
     free(s.distance);
+    free(s.apart);
     return status;
 }

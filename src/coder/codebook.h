@@ -11,21 +11,26 @@ struct relume_codebook {
     float *vectors;
 };
 
-// A training in progress: cells[code] are the vectors order[begin[code]] ... order[begin[code + 1]),
-// ascending.
+// A training in progress: cells[code] are the vectors order[begin[code]] ... order[begin[code +
+// 1]), ascending.
 struct training {
     const struct relume_log *log;
     const float *vectors;  // [n][dim]
     size_t n;
     int dim, codes, most_codes;
     float *code;       // [most_codes][dim]
+    float *before;     // [most_codes][dim]: the codes before they moved last
     uint16_t *index;   // [n]
     double *distance;  // [n], squared
+    float *apart;      // [n]: at most the distance to any code but index[i]
     uint32_t *order;   // [n]
     size_t *begin;     // [most_codes + 1]
     double *error;     // [most_codes]: squared error of each cell
     double total;
-    bool changed;  // by the last assignment
+    double *drift;       // [most_codes]: how far each code has moved since `apart` was true
+    double furthest[2];  // the two largest of these
+    bool bounded;        // `apart` and `drift` belong to the present codes
+    bool changed;        // by the last assignment
     int rounds, moved, threads;
     unsigned cpu_off;
 };

@@ -71,8 +71,8 @@ static void begin_axis(const struct training *t, int cell, double *axis)
             far = t->order[i];
     double length = 0.0;
     for (size_t k = 0; k < dim; k++) {
-        axis[k] = (double)t->vectors[(size_t)far * dim + k] -
-                  (double)t->code[(size_t)cell * dim + k];
+        axis[k] =
+            (double)t->vectors[(size_t)far * dim + k] - (double)t->code[(size_t)cell * dim + k];
         length += axis[k] * axis[k];
     }
     length = sqrt(length);
@@ -121,8 +121,7 @@ static void order_cells(const struct training *t, struct cell_error *cells)
 relume_status start_split(struct training *t)
 {
     struct cell_error *cells = mem_array((size_t)t->most_codes, sizeof *cells);
-    double *axis =
-        mem_array((size_t)thread_count(t->threads) * 2 * (size_t)t->dim, sizeof *axis);
+    double *axis = mem_array((size_t)thread_count(t->threads) * 2 * (size_t)t->dim, sizeof *axis);
     struct split s = {t, cells, axis};
     relume_status status = cells && axis ? RELUME_OK : RELUME_ENOMEM;
     t->codes = 1;
@@ -136,6 +135,7 @@ relume_status start_split(struct training *t)
         order_cells(t, cells);
         thread_for(t->threads, (size_t)split, split_cell, &s);
         t->codes += split;
+        t->bounded = false;
     }
     free(cells);
     free(axis);

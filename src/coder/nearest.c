@@ -5,7 +5,8 @@
 // both to a common centre first adds u (|x| + |c|)^2. Neither the nearest code nor the one found
 // lies farther from the origin than |x| + D, D the distance found, so with M = |x|^2 + D^2 both
 // errors stay below E = 3 u (d + 8) M. Every code whose score is within 2 E of the lowest could be
-// the nearest; only these are measured in double precision.
+// the nearest; only these are measured in double precision. In the same way the second score bounds
+// the distance of all other codes from below (Hamerly 2010): D2^2 >= |x|^2 + 2 s2 - 2 E2.
 #include "coder/nearest.h"
 
 #include "base/memory.h"
@@ -85,16 +86,22 @@ void nearest_set(struct nearest *n, const float *codes)
     }
 }
 
-// The lowest code of the smallest distance among those of tile `t`.
-static void measure_tile(const struct nearest *n, const float *vector, int t, uint16_t *index,
-                         double *distance)
+struct found {
+    double first, second;  // squared distances
+    uint16_t code;
+};
+
+static void measure_tile(const struct nearest *n, const float *vector, int t, struct found *f)
 {
     double d[TILE];
     n->kernels->measure(d, vector, n->exact + (size_t)t * (size_t)n->dim * TILE, n->dim);
     for (int l = 0; l < TILE && t * TILE + l < n->codes; l++)
-        if (d[l] < *distance) {
-            *distance = d[l];
-            *index = (uint16_t)(t * TILE + l);
+        if (d[l] < f->first) {
+            f->second = f->first;
+            f->first = d[l];
+            f->code = (uint16_t)(t * TILE + l);
+        } else if (d[l] < f->second) {
+            f->second = d[l];
         }
 }
 
@@ -118,47 +125,76 @@ size_t nearest_scratch(const struct nearest *n)
     return (size_t)n->dim * BLOCK;
 }
 
-static void pack_block(const struct nearest *n, const float *vectors, size_t count, float *points)
+// What is known of a block after the scan.
+struct block {
+    float square[BLOCK], best[BLOCK], second[BLOCK];
+    int32_t tile[BLOCK];
+};
+
+// Behind the last vector the first is repeated.
+static void pack_block(const struct nearest *n, const float *vectors, const uint32_t *which,
+                       size_t count, float *points, float square[BLOCK])
 {
     const size_t dim = (size_t)n->dim;
-    for (size_t i = 0; i < dim; i++) {
-        const float center = n->center[i], scale = n->scale;
-        for (size_t p = 0; p < BLOCK; p++)
-            points[i * BLOCK + p] = (vectors[(p < count ? p : 0) * dim + i] - center) * scale;
+    for (size_t p = 0; p < BLOCK; p++) {
+        const float *v = vectors + (size_t)which[p < count ? p : 0] * dim;
+        for (size_t i = 0; i < dim; i++)
+            points[i * BLOCK + p] = (v[i] - n->center[i]) * n->scale;
     }
-}
-
-static void find_windows(const struct nearest *n, const float *points, const float best[BLOCK],
-                         float window[BLOCK])
-{
-    const float unit = 0x1p-24f * 6.0f * (float)(n->dim + 8);  // 2 E = unit * M
-    float square[BLOCK] = {0.0f};
-    for (int i = 0; i < n->dim; i++)
-        for (int p = 0; p < BLOCK; p++)
+    memset(square, 0, BLOCK * sizeof *square);
+    for (size_t i = 0; i < dim; i++)
+        for (size_t p = 0; p < BLOCK; p++)
             square[p] += points[i * BLOCK + p] * points[i * BLOCK + p];
-    for (int p = 0; p < BLOCK; p++)
-        window[p] = unit * (square[p] + fmaxf(square[p] + 2.0f * best[p], 0.0f)) + FLT_MIN;
 }
 
-void nearest_find(const struct nearest *n, const float *vectors, size_t count, uint16_t *index,
-                  double *distance, float *scratch)
+// 2 E for a code of score `score`.
+static inline float window(const struct nearest *n, float square, float score)
 {
-    float best[BLOCK], second[BLOCK], window[BLOCK];
-    int32_t tile[BLOCK];
-    for (size_t first = 0; first < count; first += BLOCK) {
-        const size_t left = count - first < BLOCK ? count - first : BLOCK;
-        const float *block = vectors + first * (size_t)n->dim;
-        pack_block(n, block, left, scratch);
-        n->kernels->scan(scratch, n->packed, n->half, n->tiles, n->dim, best, second, tile);
-        find_windows(n, scratch, best, window);
-        for (size_t p = 0; p < left; p++) {
-            const float *vector = block + p * (size_t)n->dim;
-            const bool clear = second[p] - best[p] > window[p];
-            distance[first + p] = INFINITY;
-            index[first + p] = 0;
-            for (int t = clear ? tile[p] : 0; t < (clear ? tile[p] + 1 : n->tiles); t++)
-                if (clear || is_candidate(n, scratch + p, t, best[p] + window[p]))
-                    measure_tile(n, vector, t, &index[first + p], &distance[first + p]);
+    const float d2 = square + 2.0f * score;
+    return 0x1p-24f * 6.0f * (float)(n->dim + 8) * (square + (d2 > 0.0f ? d2 : 0.0f)) + FLT_MIN;
+}
+
+// Below the distance to any code but the one found; 0 says nothing.
+static float distance_of_others(const struct nearest *n, const struct block *b, size_t p,
+                                const struct found *f)
+{
+    const double square =
+        (double)(b->square[p] + 2.0f * b->second[p] - window(n, b->square[p], b->second[p]));
+    const double other = square > 0.0 ? sqrt(square) / (double)n->scale : 0.0;
+    const double same = sqrt(f->second);
+    return (float)(0.999999 * fmin(fmin(same, other), (double)FLT_MAX));
+}
+
+static struct found decide(const struct nearest *n, const float *vector, const float *point,
+                           float best, float range)
+{
+    struct found f = {INFINITY, INFINITY, 0};
+    for (int t = 0; t < n->tiles; t++)
+        if (is_candidate(n, point, t, best + range))
+            measure_tile(n, vector, t, &f);
+    return f;
+}
+
+void nearest_find(const struct nearest *n, const float *vectors, const uint32_t *which,
+                  size_t count, uint16_t *index, double *distance, float *apart, float *scratch)
+{
+    struct block b;
+    for (; count > 0; which += BLOCK, count -= count < BLOCK ? count : BLOCK) {
+        pack_block(n, vectors, which, count, scratch, b.square);
+        n->kernels->scan(scratch, n->packed, n->half, n->tiles, n->dim, b.best, b.second, b.tile);
+        for (size_t p = 0; p < BLOCK && p < count; p++) {
+            const size_t i = which[p];
+            const float *vector = vectors + i * (size_t)n->dim;
+            const float range = window(n, b.square[p], b.best[p]);
+            struct found f = {INFINITY, INFINITY, 0};
+            const bool clear = b.second[p] - b.best[p] > range;
+            if (clear)
+                measure_tile(n, vector, b.tile[p], &f);
+            else
+                f = decide(n, vector, scratch + p, b.best[p], range);
+            index[i] = f.code;
+            distance[i] = f.first;
+            apart[i] = clear ? distance_of_others(n, &b, p, &f) : 0.0f;
         }
     }
 }

@@ -19,10 +19,11 @@ relume_status nearest_create(struct nearest *out, int codes, int dim, unsigned c
 void nearest_destroy(struct nearest *n);
 void nearest_set(struct nearest *n, const float *codes);
 
-// index[i] and the squared distance of every vector of vectors[count][dim]; `scratch` has
-// nearest_scratch() floats. The lowest code of the smallest double distance.
-void nearest_find(const struct nearest *n, const float *vectors, size_t count, uint16_t *index,
-                  double *distance, float *scratch);
+// For the vectors which[0 .. count) of vectors[][dim]: index[i], the lowest code of the smallest
+// squared distance, and that distance; apart[i] is no more than the distance (not squared) to any
+// other code. `scratch` has nearest_scratch() floats.
+void nearest_find(const struct nearest *n, const float *vectors, const uint32_t *which,
+                  size_t count, uint16_t *index, double *distance, float *apart, float *scratch);
 size_t nearest_scratch(const struct nearest *n);
 
 #endif

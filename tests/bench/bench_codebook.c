@@ -1,6 +1,6 @@
-// bench_codebook.c - training a codebook, one thread. Without arguments: k = 256 on 302,778 x 18 and
-// k = 4096 on 1 M x 27. For bench_codebook.py, which holds other programs against it on the same
-// files of floats: `make FILE N DIM`, `train VECTORS DIM START CODES ROUNDS OUT [split]`.
+// bench_codebook.c - training a codebook, one thread. Without arguments: k = 256 on 302,778 x 18
+// and k = 4096 on 1 M x 27. For bench_codebook.py, which holds other programs against it on the
+// same files of floats: `make FILE N DIM`, `train VECTORS DIM START CODES ROUNDS OUT [split]`.
 #include "bench.h"
 
 static float noise(uint32_t *state)
@@ -26,7 +26,8 @@ static float *make_vectors(size_t n, int dim)
             const double wave =
                 cos(order * (1.3 * nx + 0.4) + 0.7 * c * gloss) * sin(1.0 + order * 1.1 * ny);
             v[i * (size_t)dim + (size_t)k] =
-                (float)((albedo - 0.1 * c) * wave * (order == 0 ? 3.0 : 1.0)) + 0.1f * noise(&state);
+                (float)((albedo - 0.1 * c) * wave * (order == 0 ? 3.0 : 1.0)) +
+                0.1f * noise(&state);
         }
     }
     return v;
@@ -72,9 +73,8 @@ static int train_file(char **a)
     size_t floats, start_floats;
     float *vectors = load(a[0], &floats), *start = load(a[2], &start_floats);
     const double begin = bench_now_s();
-    relume_codebook *book =
-        train(vectors, floats / (size_t)dim, dim, split ? NULL : start,
-              split ? RELUME_START_SPLIT : RELUME_START_RANDOM, codes, rounds);
+    relume_codebook *book = train(vectors, floats / (size_t)dim, dim, split ? NULL : start,
+                                  split ? RELUME_START_SPLIT : RELUME_START_RANDOM, codes, rounds);
     printf("%.6f\n", bench_now_s() - begin);
     save(a[5], relume_codebook_info(book)->vectors, (size_t)codes * (size_t)dim);
     relume_codebook_destroy(&book);
@@ -91,8 +91,8 @@ static void time_training(size_t n, int dim, int codes, int rounds, int runs)
     for (int i = 0; i < runs; i++)
         for (int kind = 0; kind < 2; kind++) {
             const double t = bench_now_s();
-            relume_codebook *book = train(vectors, n, dim, NULL, (enum relume_codebook_start)kind,
-                                          codes, rounds);
+            relume_codebook *book =
+                train(vectors, n, dim, NULL, (enum relume_codebook_start)kind, codes, rounds);
             bench_add(kind ? &split : &random, bench_now_s() - t);
             errors[kind] = relume_codebook_info(book)->squared_error;
             relume_codebook_destroy(&book);

@@ -11,7 +11,7 @@ math:base:base
 image:base math:base image
 capture:base math image:base image lights capture
 coder:base math image:base image capture codebook coder
-pack:base image:base image capture coder view pack
+pack:base image:base image capture codebook coder view pack
 relight:base math image:base image coder relight
 view:base math image:base image relight view capture
 frame:base math:base image capture coder pack relight view frame

@@ -85,7 +85,7 @@ deps-web:
 
 $B/obj/src/image/exr.o: own_flags = $(EXR)
 $B/obj/src/image/oiio.o: own_flags = $(OIIO)
-$B/obj/src/relight/kernels_avx2.o: own_flags = -mavx2 -mfma -mf16c
+$B/obj/src/coder/kernels_avx2.o $B/obj/src/relight/kernels_avx2.o: own_flags = -mavx2 -mfma -mf16c
 $B/obj/src/%.o:               own_include = -Isrc
 $B/obj/src/cli/%.o:           own_include = -Isrc/cli
 $B/obj/viewer/%.o:            own_include = -Iviewer

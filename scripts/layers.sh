@@ -10,8 +10,8 @@ rules="base::base
 math:base:base
 image:base math:base image
 capture:base math image:base image lights capture
-coder:base math image:base image capture coder
-pack:base image:base image capture coder view pack
+coder:base math image:base image capture codebook coder
+pack:base image:base image capture codebook coder view pack
 relight:base math image:base image coder relight
 view:base math image:base image relight view capture
 frame:base math:base image capture coder pack relight view frame
@@ -56,6 +56,6 @@ only_in '(cblas|lapacke)' src/math/lsq.c
 only_in 'jansson' src/capture/manifest.c
 only_in 'GLFW' viewer/context_glfw.c
 only_in 'GL/osmesa' viewer/context_osmesa.c
-only_in 'immintrin' src/relight/kernels_avx2.c
+only_in 'immintrin' src/relight/kernels_avx2.c src/coder/kernels_avx2.c
 [ $bad = 0 ] && echo "layers: fine"
 exit $bad

@@ -1,5 +1,6 @@
 #include "relighter.h"
 
+#include "books.h"
 #include "say.h"
 #include "weights.h"
 
@@ -38,6 +39,17 @@ enum dot_uniform {
 static const char *const dot_uniforms[] = {
     "rectangle", "frame_size", "codes",    "weights",         "first_layer",
     "layers",    "constant",   "coloured", "colour_constant",
+};
+enum lookup_uniform {
+    LOOKUP_RECTANGLE,
+    LOOKUP_SIZE,
+    LOOKUP_INDICES,
+    LOOKUP_TABLE,
+    LOOKUP_BOOKS,
+    LOOKUP_COUNT
+};
+static const char *const lookup_uniforms[] = {
+    "rectangle", "frame_size", "indices", "table", "books",
 };
 enum develop_uniform {
     DEVELOP_RECTANGLE,
@@ -95,6 +107,8 @@ static void release(struct relighter *r, struct relit_view *v)
     r->bytes -= v->bytes;
     free(v->array);
     free(v->scale);
+    if (v->codes.books)
+        books_forget(&v->codes);
     *v = (struct relit_view){0};
 }
 
@@ -128,14 +142,35 @@ static relume_status keep_scales(struct relit_view *v, const struct relume_codes
     return RELUME_OK;
 }
 
+static relume_status upload_planes(struct relighter *r, struct relit_view *v,
+                                   const struct relume_codes *codes)
+{
+    const size_t pixels = (size_t)codes->width * (size_t)codes->height;
+    unsigned char *texels = malloc(pixels * LANES * formats[codes->storage].bytes);
+    const relume_status status = texels ? keep_scales(v, codes) : RELUME_ENOMEM;
+    for (int i = 0; !status && i < v->arrays; i++)
+        upload_array(r, v, i, codes, texels);
+    free(texels);
+    return status;
+}
+
+static relume_status upload_indices(struct relighter *r, struct relit_view *v,
+                                    const struct relume_codes *codes)
+{
+    texture_use(r->gl, 0, GL_TEXTURE_2D_ARRAY, v->array[0]);
+    books_upload(r->gl, codes);
+    return books_keep(&v->codes, codes);
+}
+
 static relume_status upload(struct relighter *r, struct relit_view *v,
                             const struct relume_codes *codes)
 {
     const struct gl *gl = r->gl;
     const size_t pixels = (size_t)codes->width * (size_t)codes->height;
     const size_t texel = LANES * formats[codes->storage].bytes;
-    const int layers = (codes->planes + LANES - 1) / LANES;
-    const size_t bytes = pixels * (texel * (size_t)layers + LANES * sizeof(float));
+    const int layers = codes->books ? 1 : (codes->planes + LANES - 1) / LANES;
+    const size_t bytes = pixels * LANES * sizeof(float) +
+                         (codes->books ? books_bytes(codes) : pixels * texel * (size_t)layers);
     make_room(r, bytes);
     relume_status status = target_create(&v->relit, gl, codes->width, codes->height, r->log);
     if (status)
@@ -145,16 +180,11 @@ static relume_status upload(struct relighter *r, struct relit_view *v,
     v->array = calloc((size_t)v->arrays, sizeof *v->array);
     v->bytes = bytes;
     r->bytes += bytes;
-    unsigned char *texels = malloc(pixels * texel);
-    status = v->array && texels ? keep_scales(v, codes) : RELUME_ENOMEM;
-    if (!status) {
-        gl->GenTextures(v->arrays, v->array);
-        for (int i = 0; i < v->arrays; i++)
-            upload_array(r, v, i, codes, texels);
-        status = gl_check(gl, "uploading a view", r->log);
-    }
-    free(texels);
-    return status;
+    if (!v->array)
+        return RELUME_ENOMEM;
+    gl->GenTextures(v->arrays, v->array);
+    status = (codes->books ? upload_indices : upload_planes)(r, v, codes);
+    return status ? status : gl_check(gl, "uploading a view", r->log);
 }
 
 static relume_status load(struct relighter *r, int view)
@@ -207,6 +237,25 @@ static void pass_dot(const struct relighter *r, const struct relit_view *v, cons
     }
 }
 
+// The look-up of all codebooks under `n` lights, added to what `into` holds.
+static relume_status pass_lookup(const struct relighter *r, const struct relit_view *v,
+                                 const struct relume_light *lights, int n,
+                                 const struct target *into)
+{
+    const struct gl *gl = r->gl;
+    texture_use(gl, 1, GL_TEXTURE_2D_ARRAY, r->table);
+    const relume_status status = books_relight(gl, &v->codes, lights, n);
+    if (status)
+        return status;
+    texture_use(gl, 0, GL_TEXTURE_2D_ARRAY, v->array[0]);
+    gl->UseProgram(r->lookup.id);
+    gl->Uniform1i(r->lookup.at[LOOKUP_INDICES], 0);
+    gl->Uniform1i(r->lookup.at[LOOKUP_TABLE], 1);
+    gl->Uniform1i(r->lookup.at[LOOKUP_BOOKS], v->codes.books);
+    draw_all(gl, &r->lookup, into);
+    return RELUME_OK;
+}
+
 // `coded` decoded by the file's curve, times the light, added to what the target in use holds.
 static void pass_develop(const struct relighter *r, const struct relit_view *v, const float rgb[3])
 {
@@ -245,16 +294,26 @@ static relume_status prepare_coded(struct relighter *r, const struct relit_view 
 static relume_status relight_display(struct relighter *r, struct relit_view *v, struct weights *w)
 {
     static const float one[3] = {1, 1, 1};
-    const relume_status status = prepare_coded(r, v);
+    relume_status status = prepare_coded(r, v);
     for (int i = 0; !status && i < r->lights; i++) {
-        weights_clear(w);
-        add_light(w, v, &r->light[i], one);
         target_begin(&r->coded, r->gl);
-        pass_dot(r, v, w, &r->coded);
+        if (v->codes.books) {
+            status = pass_lookup(r, v, &r->light[i], 1, &r->coded);
+        } else {
+            weights_clear(w);
+            add_light(w, v, &r->light[i], one);
+            pass_dot(r, v, w, &r->coded);
+        }
         target_resume(&v->relit, r->gl);
         pass_develop(r, v, r->light[i].rgb);
     }
     return status;
+}
+
+// All lights at once: sums in linear light, or one codebook that is linear when relit.
+static relume_status relight_books(struct relighter *r, struct relit_view *v)
+{
+    return pass_lookup(r, v, r->light, r->lights, &v->relit);
 }
 
 static relume_status relight(struct relighter *r, struct relit_view *v)
@@ -269,7 +328,10 @@ static relume_status relight(struct relighter *r, struct relit_view *v)
     target_begin(&v->relit, gl);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
-    status = (display ? relight_display : relight_linear)(r, v, &w);
+    if (v->codes.books && (!display || v->codes.books == 1))
+        status = relight_books(r, v);
+    else
+        status = (display ? relight_display : relight_linear)(r, v, &w);
     gl->Disable(GL_BLEND);
     weights_destroy(&w);
     if (!status)
@@ -293,7 +355,10 @@ relume_status relighter_create(struct relighter *r, const struct gl *gl,
     if (!status)
         status =
             program_create(&r->develop, gl, "develop.frag", develop_uniforms, DEVELOP_COUNT, log);
+    if (!status)
+        status = program_create(&r->lookup, gl, "lookup.frag", lookup_uniforms, LOOKUP_COUNT, log);
     gl->GenVertexArrays(1, &r->vertices);
+    gl->GenTextures(1, &r->table);
     gl->GenTextures(1, &r->weights);
     if (status)
         relighter_destroy(r);
@@ -309,6 +374,8 @@ void relighter_destroy(struct relighter *r)
     target_destroy(&r->coded, r->gl);
     program_destroy(&r->dot, r->gl);
     program_destroy(&r->develop, r->gl);
+    program_destroy(&r->lookup, r->gl);
+    r->gl->DeleteTextures(1, &r->table);
     r->gl->DeleteTextures(1, &r->weights);
     r->gl->DeleteVertexArrays(1, &r->vertices);
     free(r->view);

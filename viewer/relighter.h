@@ -19,14 +19,15 @@ struct code_source {
 };
 
 struct relit_view {
-    GLuint *array;  // [arrays]: array textures of codes, four planes a texel; NULL: not uploaded
+    GLuint *array;  // [arrays]: array textures of codes, four planes a texel, or one of indices,
+                    // a layer for each codebook; NULL: not uploaded
     int arrays;
     int layers;  // of all arrays together
     size_t bytes;
     uint64_t used;  // the frame that last asked for it
     bool fresh;     // `relit` shows the present lights
     struct target relit;
-    struct relume_codes codes;  // its planes are gone; scale and offset are ours
+    struct relume_codes codes;  // planes and indices are gone; the rest is ours
     float *scale;
 };
 
@@ -34,9 +35,10 @@ struct relighter {
     const struct gl *gl;
     const struct relume_log *log;
     struct code_source source;
-    struct program dot, develop;
+    struct program dot, develop, lookup;
     GLuint vertices;
     GLuint weights;       // texture [layers][3]
+    GLuint table;         // array texture [books] of relit code vectors
     struct target coded;  // display domain: sum of one light, still coded
     struct relit_view *view;
     int views;

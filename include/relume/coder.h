@@ -238,6 +238,12 @@ struct relume_codes {
     enum relume_storage storage;
     const void *const *plane;     // [planes] -> [height][width] of uint8_t, uint16_t or half bits
     const float *scale, *offset;  // [planes]: coefficient = code * scale + offset
+    // With codebooks there are no planes: storage is 0, plane, scale and offset are NULL, and the
+    // coefficients of a pixel are the sum over books b of vectors[b][index[b][pixel]].
+    int books;
+    const uint16_t *const *index;  // [books] -> [height][width], below codes[b]
+    const float *const *vectors;   // [books] -> [codes][planes]
+    const int *book_codes;         // [books]
 };
 
 #ifdef __cplusplus

@@ -4,6 +4,7 @@
 
 #include <relume/base.h>
 #include <relume/capture.h>
+#include <relume/codebook.h>
 #include <relume/coder.h>
 #include <relume/image.h>
 
@@ -28,6 +29,10 @@ struct relume_pack_view {
     double uv[2];                      // slab: where the camera stands
     const struct relume_image *depth;  // one channel, or NULL
     const struct relume_image *mask;   // one channel, or NULL
+    // Codebooks instead of planes: all views or none, as many books in each. Views that have the
+    // same ones share them in the file when all do.
+    const relume_books *books;
+    const uint16_t *const *index;  // [books] -> [height][width], as relume_books_assign
 };
 struct relume_pack_contents {
     const relume_coder *coder;
@@ -61,6 +66,9 @@ struct relume_pack_encode_params {
     enum relume_step step;
     enum relume_compression compression;
     int threads;
+    const struct relume_books_params *books;  // codebooks instead of planes; threads are
+                                              // those of this struct
+    bool share;                               // one set of codebooks for all views
 };
 #define relume_pack_encode_params(...) (&(const struct relume_pack_encode_params){__VA_ARGS__})
 RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,
@@ -89,6 +97,9 @@ struct relume_pack_info {
     int views;
     const double (*uv)[2];  // [views]; slab: camera places
     bool has_depth, has_mask;
+    int books;                           // codebooks for each pixel, 0: planes
+    int codes;                           // vectors of the first book
+    bool shared;                         // all views have the same codebooks
     struct relume_encode_report report;  // NaN where the file does not say
     uint64_t file_bytes;
 };

@@ -35,6 +35,7 @@ struct relume_relight_params {
     // finite for background. Only point lights read it (Wong 1998, Eq. 7.7 with its sign
     // corrected).
     const struct relume_image *surface;
+    float exposure_ev;  // relume_relight_rgba8: multiply by 2^EV before coding
 };
 #define relume_relight_params(...) (&(const struct relume_relight_params){__VA_ARGS__})
 
@@ -49,6 +50,22 @@ RELUME_RESULT relume_status relume_relight(struct relume_image *out,
                                            const struct relume_codes *codes,
                                            const struct relume_light *lights, int n,
                                            const struct relume_relight_params *params);
+
+// The same as a picture for the screen: out[height][width][4], sRGB-coded, clipped, alpha 255;
+// aligned to 4 bytes.
+// Codes of one codebook are relit and coded once, and a pixel is one look-up. Same errors.
+RELUME_RESULT relume_status relume_relight_rgba8(uint8_t *out, const struct relume_codes *codes,
+                                                 const struct relume_light *lights, int n,
+                                                 const struct relume_relight_params *params);
+
+// What code vector v of codebook `book` adds to a pixel: rgb[v][3], for clients that look up pixels
+// themselves. Sums over books are in the file's domain: linear under all `n` lights, or display
+// under one light whose colour is left out. A single codebook gives linear values under all lights
+// in either domain. Directional lights only, others are left out. RELUME_EINVAL when there is no
+// such book or when several books in the display domain meet any number of lights but one;
+// RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_relight_book(float *rgb, const struct relume_codes *codes,
+                                                int book, const struct relume_light *lights, int n);
 
 // The same at one pixel under directional lights, in double precision: the slow reference.
 RELUME_API void relume_relight_pixel(double rgb[3], const struct relume_codes *codes, int x, int y,

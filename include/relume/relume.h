@@ -4,6 +4,7 @@
 
 #include <relume/base.h>
 #include <relume/capture.h>
+#include <relume/codebook.h>
 #include <relume/coder.h>
 #include <relume/frame.h>
 #include <relume/image.h>

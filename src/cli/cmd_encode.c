@@ -1,3 +1,4 @@
+#include "book_options.h"
 #include "cli.h"
 
 #include <math.h>
@@ -21,6 +22,7 @@ static const struct option options[] = {
     {"--compression", OPTION_TEXT, "C", "none, rle, zip or piz (all lossless); default: piz", 0, 0},
     {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
     {"--ridge", OPTION_NUMBER, "R", "smoothing of the fit, 0 to 1; default: 1e-6", 0, 1},
+    BOOK_OPTIONS,
     {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
@@ -119,6 +121,7 @@ struct request {
     struct relume_transfer transfer;
     struct relume_coder_params coder;
     struct relume_pack_encode_params pack;
+    struct relume_books_params books;
 };
 
 static relume_status encode(const struct args *args, struct request *r)
@@ -134,6 +137,7 @@ static relume_status encode(const struct args *args, struct request *r)
     if (status)
         return status;
     r->coder.log = prefix_log(&about, args_log(args), args_input(args, 0));
+    r->books.log = r->coder.log;
     if (relume_capture_manifest(capture)->positions)
         about.log.message(about.log.user, RELUME_WARNING,
                           "the lights are near; they are taken as distant ones");
@@ -180,6 +184,11 @@ static relume_status parse(const struct args *args, struct request *r)
         status = parse_compression(args_text(args, "--compression", "piz"), &r->pack.compression);
     if (!status)
         status = parse_transfer(args_text(args, "--transfer", NULL), &r->transfer);
+    bool books = false;
+    if (!status)
+        status = parse_books(args, &r->books, &books);
+    r->pack.books = books ? &r->books : NULL;
+    r->pack.share = args_has(args, "--share");
     r->pack.step = step ? RELUME_STEP_COMMON : RELUME_STEP_PLANE;
     r->coder.luminance = colour;
     return status;

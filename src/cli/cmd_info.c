@@ -26,6 +26,8 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
            c->interpolant ? c->interpolant->name : "null", c->interpolant ? "\"" : "",
            i->domain == RELUME_DOMAIN_LINEAR ? "linear" : "display", display,
            relume_storage_name(i->storage), i->compression);
+    printf("\"books\": %d, \"codes\": %d, \"shared\": %s, ", i->books, i->codes,
+           i->shared ? "true" : "false");
     printf("\"fit_rms\": ");
     json_number(stdout, i->report.fit_rms);
     printf(", \"store_rms\": ");
@@ -56,6 +58,9 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
         printf("domain        display (%s)\n", display);
     printf("storage       %s%s, %s\n", relume_storage_name(i->storage),
            i->storage == RELUME_STORE_HALF ? "" : " bits", i->compression);
+    if (i->books)
+        printf("codebooks     %d of %d vectors, %s\n", i->books, i->codes,
+               i->shared ? "for all views" : "for each view");
     if (isfinite(i->report.fit_rms))
         printf("error         %.5f RMS by the basis, %.5f by storing, over the captured lights\n",
                i->report.fit_rms, i->report.store_rms);

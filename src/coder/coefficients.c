@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"
+#include "image/half.h"
 
 #include <errno.h>
 #include <math.h>
@@ -132,6 +133,22 @@ void coefficients_quantise(const relume_coefficients *c, int plane, int row, con
     else
         for (int x = 0; x < c->info.width; x++)
             words[x] = (uint16_t)(int)clamp((float)from[x] * a + b, top);
+}
+
+relume_status coefficients_values(const relume_coefficients *c, int row, uint16_t *waiting,
+                                  float *out)
+{
+    const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
+    if (!scratch_read(c->fd, waiting, planes * width * 2, coefficients_offset(c, row)))
+        return RELUME_EIO;
+    for (size_t p = 0; p < planes; p++) {
+        const struct range r = c->band[(size_t)(row / BAND_ROWS) * planes + p];
+        const float step = coefficients_band_step(r);
+        const bool half = c->info.storage == RELUME_STORE_HALF;
+        for (size_t x = p * width; x < (p + 1) * width; x++)
+            out[x] = half ? float_from_half(waiting[x]) : r.min + step * (float)waiting[x];
+    }
+    return RELUME_OK;
 }
 
 relume_status relume_coefficients_read(const relume_coefficients *coefficients, int row, int rows,

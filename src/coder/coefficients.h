@@ -39,4 +39,9 @@ void coefficients_choose_steps(relume_coefficients *c, const struct range *total
 void coefficients_quantise(const relume_coefficients *c, int plane, int row, const uint16_t *from,
                            void *to);
 
+// One row as it waits, unquantised: out[plane][x]; `waiting` has room for as many numbers.
+// RELUME_EIO.
+relume_status coefficients_values(const relume_coefficients *c, int row, uint16_t *waiting,
+                                  float *out);
+
 #endif

@@ -9,6 +9,8 @@ struct material {
     struct relume_pack_view *view;
     relume_coefficients **coefficients;
     struct relume_image *depth, *mask;  // [views]
+    relume_books **books;               // [views], or the first for all
+    uint16_t **index;                   // [views][RELUME_MOST_BOOKS]
     int views;
 };
 
@@ -21,7 +23,13 @@ static void destroy(struct material *m)
             relume_image_destroy(&m->depth[i]);
         if (m->mask)
             relume_image_destroy(&m->mask[i]);
+        if (m->books)
+            relume_books_destroy(&m->books[i]);
+        for (int b = 0; m->index && b < RELUME_MOST_BOOKS; b++)
+            free(m->index[i * RELUME_MOST_BOOKS + b]);
     }
+    free(m->books);
+    free(m->index);
     free(m->view);
     free(m->coefficients);
     free(m->depth);
@@ -36,7 +44,9 @@ static bool create(struct material *m, int views)
     m->coefficients = mem_zeroed(n, sizeof *m->coefficients);
     m->depth = mem_zeroed(n, sizeof *m->depth);
     m->mask = mem_zeroed(n, sizeof *m->mask);
-    return m->view && m->coefficients && m->depth && m->mask;
+    m->books = mem_zeroed(n, sizeof *m->books);
+    m->index = mem_zeroed(n * RELUME_MOST_BOOKS, sizeof *m->index);
+    return m->view && m->coefficients && m->depth && m->mask && m->books && m->index;
 }
 
 static relume_status encode_view(struct material *m, int i, const relume_coder *coder,
@@ -70,6 +80,44 @@ static struct relume_encode_report mean_report(const struct material *m)
     return (struct relume_encode_report){sqrt(sum.fit_rms), sqrt(sum.store_rms)};
 }
 
+// Indices into the books of view `set`; what they cost joins `square`.
+static relume_status assign_view(struct material *m, int i, int set,
+                                 const struct relume_books_params *p, double *square)
+{
+    const struct relume_coefficients_info *info = relume_coefficients_info(m->coefficients[i]);
+    uint16_t **index = m->index + i * RELUME_MOST_BOOKS;
+    double store_rms = 0.0;
+    for (int b = 0; b < relume_books_info(m->books[set])->books; b++)
+        if (!(index[b] = mem_array((size_t)info->width * (size_t)info->height, sizeof **index)))
+            return RELUME_ENOMEM;
+    const relume_status status =
+        relume_books_assign(index, &store_rms, m->books[set], m->coefficients[i], p);
+    m->view[i].books = m->books[set];
+    m->view[i].index = (const uint16_t *const *)index;
+    *square += store_rms * store_rms / m->views;
+    return status;
+}
+
+static relume_status make_books(struct material *m, const struct relume_pack_encode_params *p,
+                                double *store_rms)
+{
+    struct relume_books_params books = *p->books;
+    relume_status status = RELUME_OK;
+    double square = 0.0;
+    books.threads = p->threads;
+    for (int i = 0; !status && i < m->views; i++) {
+        const int set = p->share ? 0 : i;
+        if (set == i)
+            status = relume_books_train(&m->books[i],
+                                        (const relume_coefficients *const *)m->coefficients + i,
+                                        p->share ? m->views : 1, &books);
+        if (!status)
+            status = assign_view(m, i, set, &books, &square);
+    }
+    *store_rms = sqrt(square);
+    return status;
+}
+
 relume_status relume_pack_encode(const relume_capture *capture, const relume_coder *coder,
                                  const char *path, struct relume_encode_report *report,
                                  const struct relume_pack_encode_params *params)
@@ -89,6 +137,11 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
     relume_status status = create(&m, manifest->views) ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; !status && i < manifest->views; i++)
         status = encode_view(&m, i, coder, capture, &encode);
+    struct relume_encode_report total = {0.0, 0.0};
+    if (!status)
+        total = mean_report(&m);
+    if (!status && p.books)
+        status = make_books(&m, &p, &total.store_rms);
     if (!status) {
         const struct relume_pack_contents contents = {
             .coder = coder,
@@ -97,7 +150,7 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
             .geometry = manifest->geometry,
             .views = manifest->views,
             .view = m.view,
-            .report = mean_report(&m),
+            .report = total,
         };
         if (report)
             *report = contents.report;

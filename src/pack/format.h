@@ -32,10 +32,16 @@ enum { FORMAT_VERSION = 1 };
 #define ATTR_INTERPOLANT   "relume.interpolant"
 #define ATTR_PARAMETER     "relume.parameter"
 #define ATTR_REPORT        "relume.report"
+#define ATTR_BOOKS         "relume.books"
 
 // Attributes of a view's part
 #define ATTR_VIEW   "relume.view"
 #define ATTR_SCALE  "relume.scale"
 #define ATTR_OFFSET "relume.offset"
+
+// Attributes of a codebook's part, beside scale and offset
+#define ATTR_BOOK  "relume.book"
+#define ATTR_FIRST "relume.first"
+#define ATTR_LAST  "relume.last"
 
 #endif

@@ -4,43 +4,18 @@
 #include "base/arena.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "image/exr.h"
 #include "image/half.h"
 #include "pack/format.h"
+#include "pack/reader.h"
 
 #include <math.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
-struct loaded {
-    struct relume_codes codes;
-    const void **plane;
-    void *data;  // [planes][height][width]
-};
-
-struct view_parts {
-    int codes, depth, mask;  // part numbers, -1 when absent
-};
-
-struct relume_pack {
-    struct relume_pack_info info;
-    struct arena arena;
-    exr_file *file;
-    char *path;
-    relume_coder *coder;
-    struct view_parts *parts;  // [views]
-    struct loaded *loaded;     // [views]
-    uint16_t *code_of_half;    // [65536], NOT_A_CODE where a half is no code
-    int threads;
-    const struct relume_log *log;
-    struct relume_limits limits;
-};
-
 enum { NOT_A_CODE = 0xffff };
 
-static relume_status bad(const relume_pack *p, const char *what, const char *expected)
+relume_status reader_bad(const relume_pack *p, const char *what, const char *expected)
 {
     return log_fail(p->log, RELUME_EDATA, "%s: %s; expected %s", p->path, what, expected);
 }
@@ -53,8 +28,7 @@ static bool all_finite(const float *v, int n)
     return true;
 }
 
-// `count` finite numbers, or NULL.
-static const float *get_floats(const relume_pack *p, int part, const char *name, int count)
+const float *reader_floats(const relume_pack *p, int part, const char *name, int count)
 {
     int found;
     const float *v = exr_get_floats(p->file, part, name, &found);
@@ -81,7 +55,7 @@ static relume_status check_format(relume_pack *p)
                         "encode'",
                         p->path);
     if (!exr_get_int(p->file, 0, ATTR_VERSION, &p->info.version) || p->info.version < 1)
-        return bad(p, "no version", "1");
+        return reader_bad(p, "no version", "1");
     if (p->info.version > FORMAT_VERSION)
         return log_fail(p->log, RELUME_EDATA,
                         "%s: version %d is newer than this program; expected at most %d", p->path,
@@ -95,19 +69,28 @@ static relume_status read_kinds(relume_pack *p)
     const char *display = exr_get_text(p->file, 0, ATTR_DISPLAY);
     const char *storage = exr_get_text(p->file, 0, ATTR_STORAGE);
     if (!domain || (strcmp(domain, "linear") && strcmp(domain, "display")))
-        return bad(p, ATTR_DOMAIN, "linear or display");
+        return reader_bad(p, ATTR_DOMAIN, "linear or display");
     if (!display || relume_transfer_parse(&p->info.display, display))
-        return bad(p, ATTR_DISPLAY, "srgb or gamma:NUMBER");
+        return reader_bad(p, ATTR_DISPLAY, "srgb or gamma:NUMBER");
     p->info.domain = strcmp(domain, "linear") ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR;
     if (!storage || relume_storage_parse(&p->info.storage, storage))
-        return bad(p, ATTR_STORAGE, "8, 10, 12, 16 or half");
+        return reader_bad(p, ATTR_STORAGE, "8, 10, 12, 16 or half");
+    return RELUME_OK;
+}
+
+static relume_status read_book_count(relume_pack *p)
+{
+    if (!exr_get_int(p->file, 0, ATTR_BOOKS, &p->info.books))
+        p->info.books = 0;
+    if (p->info.books < 0 || p->info.books > RELUME_MOST_BOOKS)
+        return reader_bad(p, ATTR_BOOKS, "0 to 8");
     return RELUME_OK;
 }
 
 // How well the file was encoded: for people, so a file without it is as good.
 static void read_report(relume_pack *p)
 {
-    const float *v = get_floats(p, 0, ATTR_REPORT, 2);
+    const float *v = reader_floats(p, 0, ATTR_REPORT, 2);
     p->info.report = (struct relume_encode_report){v ? (double)v[0] : (double)NAN,
                                                    v ? (double)v[1] : (double)NAN};
 }
@@ -121,9 +104,9 @@ static relume_status read_uv(relume_pack *p)
     p->info.uv = (const double(*)[2])uv;
     if (p->info.geometry.projection != RELUME_SLAB)
         return RELUME_OK;
-    const float *v = get_floats(p, 0, ATTR_UV, 2 * n);
+    const float *v = reader_floats(p, 0, ATTR_UV, 2 * n);
     if (!v)
-        return bad(p, ATTR_UV, "two finite numbers for every view");
+        return reader_bad(p, ATTR_UV, "two finite numbers for every view");
     for (int i = 0; i < n; i++) {
         uv[i][0] = (double)v[2 * i];
         uv[i][1] = (double)v[2 * i + 1];
@@ -137,16 +120,16 @@ static relume_status read_geometry(relume_pack *p)
     const char *name = exr_get_text(p->file, 0, ATTR_PROJECTION);
     enum relume_projection projection;
     if (!name || relume_projection_parse(&projection, name))
-        return bad(p, ATTR_PROJECTION, "planar, slab, cylindrical, spherical or cube");
+        return reader_bad(p, ATTR_PROJECTION, "planar, slab, cylindrical, spherical or cube");
     const struct exr_part_info part = exr_part_info(p->file, 0);
     *g = relume_geometry_default(projection, part.width, part.height);
     if (projection == RELUME_PLANAR) {
-        const float *v = get_floats(p, 0, ATTR_WINDOW, 5);
+        const float *v = reader_floats(p, 0, ATTR_WINDOW, 5);
         const char *camera = exr_get_text(p->file, 0, ATTR_CAMERA);
         if (!v || !(v[0] < v[2] && v[1] < v[3]))
-            return bad(p, ATTR_WINDOW, "min x y, max x y, camera z");
+            return reader_bad(p, ATTR_WINDOW, "min x y, max x y, camera z");
         if (!camera || (strcmp(camera, "orthographic") && strcmp(camera, "perspective")))
-            return bad(p, ATTR_CAMERA, "orthographic or perspective");
+            return reader_bad(p, ATTR_CAMERA, "orthographic or perspective");
         for (int i = 0; i < 2; i++) {
             g->window_min[i] = (double)v[i];
             g->window_max[i] = (double)v[2 + i];
@@ -154,9 +137,9 @@ static relume_status read_geometry(relume_pack *p)
         g->camera_z = (double)v[4];
         g->perspective = !strcmp(camera, "perspective");
     } else if (projection == RELUME_SLAB) {
-        const float *v = get_floats(p, 0, ATTR_SLAB, 6);
+        const float *v = reader_floats(p, 0, ATTR_SLAB, 6);
         if (!v || v[0] == v[1] || !(v[2] < v[4] && v[3] < v[5]))
-            return bad(p, ATTR_SLAB, "uv z, st z, st min, st max");
+            return reader_bad(p, ATTR_SLAB, "uv z, st z, st min, st max");
         g->uv_z = (double)v[0];
         g->st_z = (double)v[1];
         for (int i = 0; i < 2; i++) {
@@ -164,14 +147,14 @@ static relume_status read_geometry(relume_pack *p)
             g->st_max[i] = (double)v[4 + i];
         }
     } else {
-        const float *v = get_floats(p, 0, ATTR_PANORAMA, 5);
+        const float *v = reader_floats(p, 0, ATTR_PANORAMA, 5);
         if (!v || !(v[0] < v[1]))
-            return bad(p, ATTR_PANORAMA, "v min, v max, center");
+            return reader_bad(p, ATTR_PANORAMA, "v min, v max, center");
         g->v_min = (double)v[0];
         g->v_max = (double)v[1];
         g->center = (struct relume_vec3){(double)v[2], (double)v[3], (double)v[4]};
         if (projection == RELUME_CUBE && part.width != 6 * part.height)
-            return bad(p, "size", "six square faces side by side");
+            return reader_bad(p, "size", "six square faces side by side");
     }
     return read_uv(p);
 }
@@ -188,27 +171,27 @@ static relume_status read_coder(relume_pack *p)
                         "program's",
                         p->path, name ? name : "");
     if (!exr_get_int(p->file, 0, ATTR_COEFFICIENTS, &k) || !basis->has_count(k))
-        return bad(p, ATTR_COEFFICIENTS, "a number that the basis has");
+        return reader_bad(p, ATTR_COEFFICIENTS, "a number that the basis has");
     if (!exr_get_int(p->file, 0, ATTR_HEMISPHERICAL, &hemispherical) || !pole ||
         (strcmp(pole, "y") && strcmp(pole, "z")))
-        return bad(p, ATTR_POLE, "y or z, with " ATTR_HEMISPHERICAL);
+        return reader_bad(p, ATTR_POLE, "y or z, with " ATTR_HEMISPHERICAL);
     const float *lights = exr_get_floats(p->file, 0, ATTR_LIGHTS, &n);
     if (!lights || n < 3 || n % 3 || n / 3 > p->limits.max_lights || !all_finite(lights, n))
-        return bad(p, ATTR_LIGHTS, "x y z of every light, within the limits");
+        return reader_bad(p, ATTR_LIGHTS, "x y z of every light, within the limits");
     const int raw = basis->interpolates ? n / 3 : k;
     const float *transform, *mean;
     if (!optional_floats(p, ATTR_TRANSFORM, (basis->learned ? 3LL : 1LL) * k * raw, &transform))
-        return bad(p, ATTR_TRANSFORM, "coefficients x functions finite numbers");
+        return reader_bad(p, ATTR_TRANSFORM, "coefficients x functions finite numbers");
     if (!optional_floats(p, ATTR_MEAN, 3LL * raw, &mean))
-        return bad(p, ATTR_MEAN, "a finite number for every colour and light");
+        return reader_bad(p, ATTR_MEAN, "a finite number for every colour and light");
     const char *colour = exr_get_text(p->file, 0, ATTR_COLOUR);
     if (colour && strcmp(colour, "luminance"))
-        return bad(p, ATTR_COLOUR, "luminance or nothing");
+        return reader_bad(p, ATTR_COLOUR, "luminance or nothing");
     const char *interpolant = exr_get_text(p->file, 0, ATTR_INTERPOLANT);
     if (interpolant && !relume_interpolant_find(interpolant))
-        return bad(p, ATTR_INTERPOLANT, "an interpolant of this program");
-    const float *parameter = get_floats(p, 0, ATTR_PARAMETER, 4);
-    const float *ridge = get_floats(p, 0, ATTR_RIDGE, 1);
+        return reader_bad(p, ATTR_INTERPOLANT, "an interpolant of this program");
+    const float *parameter = reader_floats(p, 0, ATTR_PARAMETER, 4);
+    const float *ridge = reader_floats(p, 0, ATTR_RIDGE, 1);
 
     struct relume_vec3 *directions = arena_array(&p->arena, (size_t)n / 3, sizeof *directions);
     if (!directions)
@@ -218,7 +201,7 @@ static relume_status read_coder(relume_pack *p)
                      z = (double)lights[3 * i + 2];
         const double length = sqrt(x * x + y * y + z * z);
         if (!(fabs(length - 1.0) < 1e-3))
-            return bad(p, ATTR_LIGHTS, "unit vectors");
+            return reader_bad(p, ATTR_LIGHTS, "unit vectors");
         directions[i] = (struct relume_vec3){x / length, y / length, z / length};
     }
     struct relume_coder_params params = {
@@ -247,16 +230,19 @@ static relume_status check_view_part(relume_pack *p, int part, int view)
 {
     const struct exr_part_info i = exr_part_info(p->file, part);
     const int planes = relume_coder_info(p->coder)->planes;
-    const enum exr_sample sample =
-        relume_storage_top(p->info.storage) > 2047 ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF;
     char where[32];
     snprintf(where, sizeof where, "view %d", view);
     if (i.width != p->info.width || i.height != p->info.height)
-        return bad(p, where, "the size of the other parts");
-    if (i.channels != planes || !i.uniform || i.sample != sample)
-        return bad(p, where, "one channel of the stored type for every plane");
-    if (!get_floats(p, part, ATTR_SCALE, planes) || !get_floats(p, part, ATTR_OFFSET, planes))
-        return bad(p, where, "a finite scale and offset for every plane");
+        return reader_bad(p, where, "the size of the other parts");
+    if (p->info.books) {
+        if (i.channels != p->info.books || !i.uniform || i.sample != EXR_SAMPLE_UINT)
+            return reader_bad(p, where, "one channel of whole numbers for every codebook");
+        return RELUME_OK;
+    }
+    if (i.channels != planes || !i.uniform || i.sample != reader_sample(p))
+        return reader_bad(p, where, "one channel of the stored type for every plane");
+    if (!reader_floats(p, part, ATTR_SCALE, planes) || !reader_floats(p, part, ATTR_OFFSET, planes))
+        return reader_bad(p, where, "a finite scale and offset for every plane");
     return RELUME_OK;
 }
 
@@ -271,28 +257,33 @@ static relume_status find_parts(relume_pack *p)
 {
     const int count = exr_part_count(p->file);
     int part = 1;
+    relume_status found = reader_find_books(p, -1, &part);
+    if (found)
+        return found;
     for (int v = 0; v < p->info.views; v++) {
         char name[48];
         struct view_parts *parts = &p->parts[v];
         *parts = (struct view_parts){-1, -1, -1};
         snprintf(name, sizeof name, "view%04d", v);
         if (part >= count || strcmp(exr_part_info(p->file, part).name, name))
-            return bad(p, name, "a part of that name");
+            return reader_bad(p, name, "a part of that name");
         const relume_status status = check_view_part(p, part, v);
         if (status)
             return status;
         parts->codes = part++;
+        if (!p->info.shared && (found = reader_find_books(p, v, &part)))
+            return found;
         snprintf(name, sizeof name, "view%04d.depth", v);
         if (part < count && !strcmp(exr_part_info(p->file, part).name, name)) {
             if (!is_plane(p, part, EXR_SAMPLE_FLOAT))
-                return bad(p, name, "one float channel of the views' size");
+                return reader_bad(p, name, "one float channel of the views' size");
             parts->depth = part++;
             p->info.has_depth = true;
         }
         snprintf(name, sizeof name, "view%04d.mask", v);
         if (part < count && !strcmp(exr_part_info(p->file, part).name, name)) {
             if (!is_plane(p, part, EXR_SAMPLE_HALF))
-                return bad(p, name, "one half channel of the views' size");
+                return reader_bad(p, name, "one half channel of the views' size");
             parts->mask = part++;
             p->info.has_mask = true;
         }
@@ -318,6 +309,8 @@ static relume_status read_header(relume_pack *p)
     relume_status status = check_format(p);
     if (!status)
         status = read_kinds(p);
+    if (!status)
+        status = read_book_count(p);
     if (status)
         return status;
     const struct exr_part_info first = exr_part_info(p->file, 0);
@@ -326,10 +319,11 @@ static relume_status read_header(relume_pack *p)
     p->info.height = first.height;
     if (!exr_get_int(p->file, 0, ATTR_VIEWS, &p->info.views) || p->info.views < 1 ||
         p->info.views > p->limits.max_views || p->info.views >= exr_part_count(p->file))
-        return bad(p, ATTR_VIEWS, "a part for every view, within the limits");
+        return reader_bad(p, ATTR_VIEWS, "a part for every view, within the limits");
     p->parts = arena_array(&p->arena, (size_t)p->info.views, sizeof *p->parts);
     p->loaded = arena_array(&p->arena, (size_t)p->info.views, sizeof *p->loaded);
-    if (!p->parts || !p->loaded)
+    p->books = arena_array(&p->arena, (size_t)p->info.views, sizeof *p->books);
+    if (!p->parts || !p->loaded || !p->books)
         return RELUME_ENOMEM;
     status = read_geometry(p);
     if (!status)
@@ -377,6 +371,8 @@ void relume_pack_destroy(relume_pack **pack)
         return;
     for (int v = 0; p->loaded && v < p->info.views; v++)
         relume_pack_drop(p, v);
+    if (p->books && p->info.shared)
+        reader_drop_books(&p->books[0]);
     relume_coder_destroy(&p->coder);
     exr_close(&p->file);
     arena_free(&p->arena);
@@ -391,16 +387,8 @@ const struct relume_pack_info *relume_pack_info(const relume_pack *pack)
 
 // ---------------------------------------------------------------- samples
 
-struct loading {
-    const relume_pack *pack;
-    const struct relume_coder_info *coder;
-    void *data;
-    size_t width, height, planes;
-    atomic_bool wrong;
-};
-
 // Plane order is R, G, B; the file sorts B, G, R.
-static size_t plane_of_channel(const struct relume_coder_info *info, size_t channel)
+size_t reader_plane(const struct relume_coder_info *info, size_t channel)
 {
     if (info->luminance && channel >= (size_t)info->coefficients)
         return 2 * (size_t)info->coefficients + 2 - channel;
@@ -409,14 +397,15 @@ static size_t plane_of_channel(const struct relume_coder_info *info, size_t chan
 
 static bool load_row(const struct loading *l, const void *samples, size_t i, void *to, size_t at)
 {
+    const enum relume_storage storage = l->pack->info.storage;
     const uint16_t *halves = (const uint16_t *)samples + i;
     const uint32_t *uints = (const uint32_t *)samples + i;
     uint8_t *bytes = (uint8_t *)to + at;
     uint16_t *words = (uint16_t *)to + at;
-    const uint16_t top = (uint16_t)relume_storage_top(l->pack->info.storage);
+    const uint16_t top = (uint16_t)relume_storage_top(storage);
     unsigned wrong = 0;
     for (size_t x = 0; x < l->width; x++)
-        switch (l->pack->info.storage) {
+        switch (storage) {
         case RELUME_STORE_12:
         case RELUME_STORE_16:
             words[x] = (uint16_t)uints[x];
@@ -444,54 +433,53 @@ static void load_rows(void *context, int row, int rows, const void *samples)
     struct loading *l = context;
     for (size_t y = 0; y < (size_t)rows; y++)
         for (size_t c = 0; c < l->planes; c++) {
-            const size_t plane = plane_of_channel(l->coder, c);
-            const size_t at = (plane * l->height + (size_t)row + y) * l->width;
+            const size_t at = (l->place[c] * l->height + (size_t)row + y) * l->width;
             if (!load_row(l, samples, (y * l->planes + c) * l->width, l->data, at))
                 atomic_store(&l->wrong, true);
         }
 }
 
-static relume_status load_view(relume_pack *p, int view)
+relume_status reader_load(relume_pack *p, int part, void *data, size_t planes, const size_t *place)
+{
+    const struct exr_part_info info = exr_part_info(p->file, part);
+    struct loading l = {
+        .pack = p,
+        .place = place,
+        .data = data,
+        .width = (size_t)info.width,
+        .height = (size_t)info.height,
+        .planes = planes,
+    };
+    const relume_status status = exr_read(p->file, part, p->threads, load_rows, &l, p->log);
+    if (!status && atomic_load(&l.wrong))
+        return reader_bad(p, "stored codes", "finite codes of the stated type");
+    return status;
+}
+
+static relume_status load_planes(relume_pack *p, int view)
 {
     struct loaded *to = &p->loaded[view];
     const struct relume_coder_info *coder = relume_coder_info(p->coder);
     const size_t planes = (size_t)coder->planes;
     const size_t plane_bytes = (size_t)p->info.width * (size_t)p->info.height *
                                (p->info.storage == RELUME_STORE_8 ? 1 : 2);
+    const int part = p->parts[view].codes;
+    size_t *place = mem_array(planes, sizeof *place);
     to->plane = mem_array(planes, sizeof *to->plane);
     to->data = mem_array(planes, plane_bytes);
-    if (!to->plane || !to->data)
-        return RELUME_ENOMEM;
-    for (size_t i = 0; i < planes; i++)
+    relume_status status = place && to->plane && to->data ? RELUME_OK : RELUME_ENOMEM;
+    for (size_t i = 0; !status && i < planes; i++) {
         to->plane[i] = (const char *)to->data + i * plane_bytes;
-
-    struct loading l = {
-        .pack = p,
-        .coder = coder,
-        .data = to->data,
-        .width = (size_t)p->info.width,
-        .height = (size_t)p->info.height,
-        .planes = planes,
-    };
-    const int part = p->parts[view].codes;
-    const relume_status status = exr_read(p->file, part, p->threads, load_rows, &l, p->log);
-    if (status)
-        return status;
-    if (atomic_load(&l.wrong))
-        return bad(p, "stored codes", "finite codes of the stated type");
-    to->codes = (struct relume_codes){
-        .coder = p->coder,
-        .domain = p->info.domain,
-        .display = p->info.display,
-        .width = p->info.width,
-        .height = p->info.height,
-        .planes = coder->planes,
-        .storage = p->info.storage,
-        .plane = to->plane,
-        .scale = get_floats(p, part, ATTR_SCALE, coder->planes),
-        .offset = get_floats(p, part, ATTR_OFFSET, coder->planes),
-    };
-    return RELUME_OK;
+        place[i] = reader_plane(coder, i);
+    }
+    if (!status)
+        status = reader_load(p, part, to->data, planes, place);
+    free(place);
+    to->codes.storage = p->info.storage;
+    to->codes.plane = to->plane;
+    to->codes.scale = reader_floats(p, part, ATTR_SCALE, coder->planes);
+    to->codes.offset = reader_floats(p, part, ATTR_OFFSET, coder->planes);
+    return status;
 }
 
 relume_status relume_pack_codes(const struct relume_codes **out, relume_pack *pack, int view)
@@ -499,14 +487,24 @@ relume_status relume_pack_codes(const struct relume_codes **out, relume_pack *pa
     *out = NULL;
     if (view < 0 || view >= pack->info.views)
         return RELUME_EINVAL;
-    if (!pack->loaded[view].data) {
-        const relume_status status = load_view(pack, view);
+    struct loaded *to = &pack->loaded[view];
+    if (!to->data) {
+        to->codes = (struct relume_codes){
+            .coder = pack->coder,
+            .domain = pack->info.domain,
+            .display = pack->info.display,
+            .width = pack->info.width,
+            .height = pack->info.height,
+            .planes = relume_coder_info(pack->coder)->planes,
+        };
+        const relume_status status =
+            pack->info.books ? reader_load_indices(pack, view) : load_planes(pack, view);
         if (status) {
             relume_pack_drop(pack, view);
             return status;
         }
     }
-    *out = &pack->loaded[view].codes;
+    *out = &to->codes;
     return RELUME_OK;
 }
 
@@ -516,6 +514,8 @@ void relume_pack_drop(relume_pack *pack, int view)
     free(l->plane);
     free(l->data);
     *l = (struct loaded){0};
+    if (!pack->info.shared)
+        reader_drop_books(&pack->books[view]);
 }
 
 struct plane_sink {
@@ -546,7 +546,7 @@ static relume_status read_plane(struct relume_image *out, relume_pack *pack, int
     const size_t n = (size_t)out->width * (size_t)out->height;
     for (size_t i = 0; !status && i < n; i++)
         if (!(out->data[i] >= 0.0f))
-            status = bad(pack, "depth or mask", "values of 0 or more");
+            status = reader_bad(pack, "depth or mask", "values of 0 or more");
     if (status)
         relume_image_destroy(out);
     return status;

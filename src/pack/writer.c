@@ -102,8 +102,46 @@ static relume_status view_rows(void *context, int row, int rows, void *samples)
     return status;
 }
 
+static relume_status index_rows(void *context, int row, int rows, void *samples)
+{
+    const struct relume_pack_view *view = context;
+    const size_t width = (size_t)relume_coefficients_info(view->coefficients)->width;
+    const int books = relume_books_info(view->books)->books;
+    uint32_t *out = samples;
+    for (size_t y = (size_t)row; y < (size_t)(row + rows); y++)
+        for (int b = 0; b < books; b++)
+            for (size_t x = 0; x < width; x++)
+                *out++ = view->index[b][y * width + x];
+    return RELUME_OK;
+}
+
+struct book_source {
+    const struct relume_book *book;
+    const struct relume_coder_info *coder;
+    const uint16_t *half_of_code;  // [HALF_CODES]
+};
+
+static relume_status book_row(void *context, int row, int rows, void *samples)
+{
+    const struct book_source *s = context;
+    const struct relume_book *b = s->book;
+    const size_t codes = (size_t)b->codes;
+    (void)row, (void)rows;
+    for (int d = 0; d < b->dim; d++) {
+        const int channel =
+            b->kind == RELUME_BOOK_PLANES ? file_channel(s->coder, b->first + d) - b->first : d;
+        const size_t number = b->storage == RELUME_STORE_8 ? 1 : 2;
+        store_row(b->storage, s->half_of_code,
+                  (const char *)b->numbers + (size_t)d * codes * number, codes,
+                  (char *)samples + (size_t)channel * codes * (is_wide(b->storage) ? 4 : 2));
+    }
+    return RELUME_OK;
+}
+
 struct preview {
     const relume_coefficients *coefficients;
+    const struct relume_pack_view *view;
+    float **relit;       // [books] -> [codes][3]: with codebooks, what their vectors add
     struct curve curve;  // of the coefficients
     float weights[MOST_WEIGHTS], constant[3];
 };
@@ -160,9 +198,28 @@ static void preview_row(const struct preview *p, const void *codes, size_t row, 
     }
 }
 
+static relume_status preview_indices(const struct preview *p, int row, int rows, uint16_t *out)
+{
+    const struct relume_coefficients_info *info = relume_coefficients_info(p->coefficients);
+    const size_t width = (size_t)info->width;
+    const int books = relume_books_info(p->view->books)->books;
+    for (size_t y = 0; y < (size_t)rows; y++)
+        for (size_t c = 0; c < 3; c++, out += width)
+            for (size_t x = 0; x < width; x++) {
+                const size_t pixel = ((size_t)row + y) * width + x;
+                float sum = 0.0f;
+                for (int b = 0; b < books; b++)
+                    sum += p->relit[b][3 * (size_t)p->view->index[b][pixel] + 2 - c];
+                out[x] = half_from_float(fminf(curve_decode(&p->curve, sum), 65504.0f));
+            }
+    return RELUME_OK;
+}
+
 static relume_status preview_rows(void *context, int row, int rows, void *samples)
 {
     const struct preview *p = context;
+    if (p->relit)
+        return preview_indices(p, row, rows, samples);
     const struct relume_coefficients_info *info = relume_coefficients_info(p->coefficients);
     const size_t width = (size_t)info->width;
     void *codes = mem_array((size_t)rows * (size_t)info->planes * width, 2);
@@ -201,6 +258,7 @@ struct builder {
     struct arena arena;
     struct exr_part *parts;
     int count;
+    const struct relume_coder_info *coder;
     const char **channels;   // [planes], as the file sorts them
     uint16_t *half_of_code;  // [HALF_CODES]
 };
@@ -300,6 +358,29 @@ static bool describe_coder(struct builder *b, struct exr_part *part, struct exr_
     return true;
 }
 
+// What every code vector says for the preview's light.
+static bool relight_books(struct builder *b, struct preview *p, const relume_books *books)
+{
+    const struct relume_books_info *info = relume_books_info(books);
+    const struct relume_coder_info *coder =
+        relume_coder_info(relume_coefficients_info(p->coefficients)->coder);
+    p->relit = arena_array(&b->arena, (size_t)info->books, sizeof *p->relit);
+    for (int i = 0; p->relit && i < info->books; i++) {
+        p->relit[i] = arena_array(&b->arena, (size_t)info->codes[i], 3 * sizeof(float));
+        for (int v = 0; p->relit[i] && v < 3 * info->codes[i]; v++) {
+            const float *vector = info->vectors[i] + (size_t)(v / 3) * (size_t)info->planes;
+            const int c = v % 3, k = coder->coefficients;
+            float sum = i ? 0.0f : p->constant[c];
+            for (int j = 0; j < k; j++)
+                sum += p->weights[c * k + j] * vector[relume_coder_plane(coder, j, c)];
+            p->relit[i][v] = coder->luminance ? sum * vector[k + c] : sum;
+        }
+        if (!p->relit[i])
+            return false;
+    }
+    return p->relit != NULL;
+}
+
 // The middle view under a light from the viewer, panoramas from above.
 static bool add_preview(struct builder *b, const struct relume_pack_contents *c,
                         enum exr_codec codec)
@@ -321,6 +402,9 @@ static bool add_preview(struct builder *b, const struct relume_pack_contents *c,
     curve_init(&p->curve,
                is_display ? c->display : (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f});
     relume_coder_weights(c->coder, front, p->weights, p->constant);
+    p->view = &c->view[c->views / 2];
+    if (p->view->books && !relight_books(b, p, p->view->books))
+        return false;
     relume_transfer_text(c->display, display, 32);
     *part = (struct exr_part){
         .name = "preview",
@@ -344,6 +428,8 @@ static bool add_preview(struct builder *b, const struct relume_pack_contents *c,
     report[0] = (float)c->report.fit_rms;
     report[1] = (float)c->report.store_rms;
     add_floats(part, list, ATTR_REPORT, report, 2);
+    if (p->view->books)
+        add_int(part, list, ATTR_BOOKS, relume_books_info(p->view->books)->books);
     return describe_coder(b, part, list, c->coder) && describe_geometry(b, part, list, c);
 }
 
@@ -364,6 +450,104 @@ static const char **channel_names(struct builder *b, const struct relume_coder_i
     return names;
 }
 
+static bool fill_with_planes(struct builder *b, struct exr_part *part, struct exr_attribute *list,
+                             const struct relume_pack_view *view)
+{
+    const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
+    struct view_source *source = arena_array(&b->arena, 1, sizeof *source);
+    if (!source)
+        return false;
+    *source = (struct view_source){view->coefficients, b->half_of_code};
+    part->sample = is_wide(info->storage) ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF;
+    part->channels = info->planes;
+    part->channel = b->channels;
+    part->rows = view_rows;
+    part->context = source;
+    add_floats(part, list, ATTR_SCALE, info->scale, info->planes);
+    add_floats(part, list, ATTR_OFFSET, info->offset, info->planes);
+    return true;
+}
+
+static bool fill_with_indices(struct exr_part *part, const struct relume_pack_view *view)
+{
+    static const char *const names[RELUME_MOST_BOOKS] = {"i0", "i1", "i2", "i3",
+                                                         "i4", "i5", "i6", "i7"};
+    part->sample = EXR_SAMPLE_UINT;
+    part->channels = relume_books_info(view->books)->books;
+    part->channel = names;
+    part->rows = index_rows;
+    part->context = (void *)(uintptr_t)view;
+    return true;
+}
+
+// Channels of a codebook: those of its planes, or c0000.Y, or c0000.U, c0000.V, ...
+static const char *const *book_channels(struct builder *b, const struct relume_book *book)
+{
+    if (book->kind == RELUME_BOOK_PLANES)
+        return b->channels + book->first;
+    const char **names = arena_array(&b->arena, (size_t)book->dim, sizeof *names);
+    const bool luma = book->kind == RELUME_BOOK_LUMA;
+    for (int d = 0; names && d < book->dim; d++) {
+        names[d] = arena_format(&b->arena, "c%04d.%c", book->first / 3 + (luma ? d : d / 2),
+                                luma ? 'Y' : "UV"[d % 2]);
+        if (!names[d])
+            return NULL;
+    }
+    return names;
+}
+
+static bool add_book(struct builder *b, const char *name, const struct relume_coder_info *coder,
+                     const struct relume_book *book, enum exr_codec codec)
+{
+    static const char *const kinds[] = {"planes", "luma", "chroma"};
+    struct exr_attribute *list = arena_array(&b->arena, 5, sizeof *list);
+    struct book_source *source = arena_array(&b->arena, 1, sizeof *source);
+    const char *const *channels = book_channels(b, book);
+    if (!name || !list || !source || !channels)
+        return false;
+    *source = (struct book_source){book, coder, b->half_of_code};
+    struct exr_part *part = &b->parts[b->count++];
+    *part = (struct exr_part){
+        .name = name,
+        .width = book->codes,
+        .height = 1,
+        .sample = is_wide(book->storage) ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF,
+        .codec = codec,
+        .channels = book->dim,
+        .channel = channels,
+        .attribute = list,
+        .rows = book_row,
+        .context = source,
+    };
+    add_text(part, list, ATTR_BOOK, kinds[book->kind]);
+    add_int(part, list, ATTR_FIRST, book->first);
+    add_int(part, list, ATTR_LAST, book->last);
+    add_floats(part, list, ATTR_SCALE, book->scale, book->dim);
+    add_floats(part, list, ATTR_OFFSET, book->offset, book->dim);
+    return true;
+}
+
+// The codebooks of a view, or of all of them (-1).
+static bool add_books(struct builder *b, const relume_books *books, int view, enum exr_codec codec)
+{
+    const struct relume_books_info *info = relume_books_info(books);
+    for (int i = 0; i < info->books; i++) {
+        const char *name = view < 0 ? arena_format(&b->arena, "book%d", i)
+                                    : arena_format(&b->arena, "view%04d.book%d", view, i);
+        if (!add_book(b, name, b->coder, &info->book[i], codec))
+            return false;
+    }
+    return true;
+}
+
+static bool shares_books(const struct relume_pack_contents *c)
+{
+    for (int i = 0; i < c->views; i++)
+        if (!c->view[i].books || c->view[i].books != c->view[0].books)
+            return false;
+    return true;
+}
+
 static bool add_view(struct builder *b, const struct relume_pack_contents *c, int index,
                      enum exr_codec codec)
 {
@@ -374,26 +558,21 @@ static bool add_view(struct builder *b, const struct relume_pack_contents *c, in
     const char *name = arena_format(&b->arena, "view%04d", index);
     const char *depth = arena_format(&b->arena, "view%04d.depth", index);
     const char *mask = arena_format(&b->arena, "view%04d.mask", index);
-    struct view_source *source = arena_array(&b->arena, 1, sizeof *source);
-    if (!list || !name || !depth || !mask || !source)
+    if (!list || !name || !depth || !mask)
         return false;
-    *source = (struct view_source){view->coefficients, b->half_of_code};
     struct exr_part *part = &b->parts[b->count++];
     *part = (struct exr_part){
         .name = name,
         .width = info->width,
         .height = info->height,
-        .sample = is_wide(info->storage) ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF,
         .codec = codec,
-        .channels = info->planes,
-        .channel = b->channels,
         .attribute = list,
-        .rows = view_rows,
-        .context = source,
     };
     add_int(part, list, ATTR_VIEW, index);
-    add_floats(part, list, ATTR_SCALE, info->scale, info->planes);
-    add_floats(part, list, ATTR_OFFSET, info->offset, info->planes);
+    if (!(view->books ? fill_with_indices(part, view) : fill_with_planes(b, part, list, view)))
+        return false;
+    if (view->books && !shares_books(c) && !add_books(b, view->books, index, codec))
+        return false;
     struct exr_part plane = {
         .width = info->width, .height = info->height, .codec = EXR_CODEC_ZIP, .channels = 1};
     if (view->depth) {
@@ -420,13 +599,17 @@ relume_status relume_pack_write(const struct relume_pack_contents *contents, con
 {
     const struct relume_pack_params p = params ? *params : (struct relume_pack_params){0};
     struct builder b = {0};
-    b.parts = arena_array(&b.arena, 1 + 3 * (size_t)contents->views, sizeof *b.parts);
-    b.channels = channel_names(&b, relume_coder_info(contents->coder));
+    const size_t most_parts = 1 + (3 + RELUME_MOST_BOOKS) * (size_t)contents->views;
+    b.coder = relume_coder_info(contents->coder);
+    b.parts = arena_array(&b.arena, most_parts, sizeof *b.parts);
+    b.channels = channel_names(&b, b.coder);
     b.half_of_code = arena_array(&b.arena, HALF_CODES, sizeof *b.half_of_code);
     for (int i = 0; b.half_of_code && i < HALF_CODES; i++)
         b.half_of_code[i] = half_from_float((float)i);
     const enum exr_codec codec = codec_of(p.compression);
     bool good = b.parts && b.channels && b.half_of_code && add_preview(&b, contents, codec);
+    if (good && shares_books(contents))
+        good = add_books(&b, contents->view[0].books, -1, codec);
     for (int i = 0; good && i < contents->views; i++)
         good = add_view(&b, contents, i, codec);
     const relume_status status =

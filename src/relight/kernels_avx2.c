@@ -93,7 +93,19 @@ static void dot_halves(float *out, size_t n, float bias, const uint16_t *const *
     dot(out, n, bias, planes, weights, count, 2, load_halves, half_value);
 }
 
-const struct kernels kernels_avx2 = {"avx2", dot_bytes, dot_words, dot_halves};
+static void look_up(uint32_t *out, size_t n, const uint16_t *index, const uint32_t *table)
+{
+    size_t i = 0;
+    for (; i + 8 <= n; i += 8) {
+        const __m256i at = _mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)(index + i)));
+        _mm256_storeu_si256((__m256i *)(out + i),
+                            _mm256_i32gather_epi32((const int *)table, at, 4));
+    }
+    for (; i < n; i++)
+        out[i] = table[index[i]];
+}
+
+const struct kernels kernels_avx2 = {"avx2", dot_bytes, dot_words, dot_halves, look_up};
 #else
 const struct kernels kernels_avx2;  // never chosen: relume_cpu_features has no such bit here
 #endif

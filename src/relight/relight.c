@@ -11,6 +11,8 @@
 #include "image/curve.h"
 #include "image/half.h"
 #include "math/vec.h"
+#include "relight/books.h"
+#include "relight/bytes.h"
 #include "relight/kernels.h"
 
 #include <string.h>
@@ -24,15 +26,20 @@ struct pass {
     float *weights;  // [3][coefficients]
     float bias[3];
     float rgb[3];  // display domain: colour of the light, applied after linearising
+    float **book;  // [books] -> [codes][3]: with codebooks, what their vectors add
 };
 
 struct job {
     const struct relume_codes *codes;
     const struct kernels *kernels;
-    struct relume_image *out;
+    float *out;           // [pixels][3], or
+    uint32_t *out_rgba8;  // [pixels]
+    struct byte_coder *coder;
+    uint32_t *words;  // [codes]: of a single codebook, coded for the screen
     struct pass *passes;
     int count;
     bool display;
+    bool linear;  // passes give linear light; else they are to be made linear, then added
     struct curve curve;
     const struct relume_light *lights;  // all of them, for those that differ from pixel to pixel
     int light_count;
@@ -97,9 +104,48 @@ static relume_status make_passes(struct job *job, const struct relume_light *lig
         add_light(pass, job->codes->coder, &light, one);
     }
     for (int i = 0; good && i < job->count; i++)
-        fold_quantiser(&job->passes[i], job->codes);
+        if (!job->codes->books)
+            fold_quantiser(&job->passes[i], job->codes);
     free(one);
     return good ? RELUME_OK : RELUME_ENOMEM;
+}
+
+static bool relight_books(struct job *job, struct pass *pass)
+{
+    static const float nothing[3] = {0.0f, 0.0f, 0.0f};
+    const struct relume_codes *codes = job->codes;
+    pass->book = mem_zeroed((size_t)codes->books, sizeof *pass->book);
+    for (int b = 0; pass->book && b < codes->books; b++) {
+        pass->book[b] = mem_array((size_t)codes->book_codes[b], 3 * sizeof(float));
+        if (!pass->book[b])
+            return false;
+        book_relight(pass->book[b], codes, b, pass->weights, b ? nothing : pass->bias);
+    }
+    return pass->book != NULL;
+}
+
+// With one codebook all lights come together in its vectors, linear: one pass is left.
+static void sum_single_book(struct job *job)
+{
+    const size_t n = 3 * (size_t)job->codes->book_codes[0];
+    for (int p = 0; p < job->count; p++) {
+        const struct pass *pass = &job->passes[p];
+        for (size_t i = 0; i < n; i++) {
+            const float v = pass->rgb[i % 3] * curve_decode(&job->curve, pass->book[0][i]);
+            job->passes[0].book[0][i] = v + (p ? job->passes[0].book[0][i] : 0.0f);
+        }
+    }
+    job->linear = true;
+}
+
+static relume_status relight_vectors(struct job *job)
+{
+    for (int p = 0; p < job->count; p++)
+        if (!relight_books(job, &job->passes[p]))
+            return RELUME_ENOMEM;
+    if (job->display && job->codes->books == 1 && job->count > 0)
+        sum_single_book(job);
+    return RELUME_OK;
 }
 
 enum { GROUP = 64 };  // planes handed to a kernel at once
@@ -126,8 +172,8 @@ static void multiply_colour(const struct job *job, int plane, size_t offset, siz
         out[i] *= colour[i];
 }
 
-static void dot_channel(const struct job *job, const struct pass *pass, int channel, size_t first,
-                        size_t n, float *out)
+static void dot_planes(const struct job *job, const struct pass *pass, int channel, size_t first,
+                       size_t n, float *out)
 {
     const struct relume_codes *codes = job->codes;
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
@@ -157,6 +203,17 @@ static void dot_channel(const struct job *job, const struct pass *pass, int chan
         multiply_colour(job, info->coefficients + channel, offset, n, out);
 }
 
+static void look_up_channel(const struct job *job, const struct pass *pass, size_t channel,
+                            size_t first, size_t n, float *out)
+{
+    for (int b = 0; b < job->codes->books; b++) {
+        const uint16_t *index = job->codes->index[b] + first;
+        const float *add = pass->book[b] + channel;
+        for (size_t i = 0; i < n; i++)
+            out[i] = (b ? out[i] : 0.0f) + add[3 * (size_t)index[i]];
+    }
+}
+
 static double code_at(const struct relume_codes *codes, int plane, size_t pixel)
 {
     if (codes->storage == RELUME_STORE_8)
@@ -167,8 +224,14 @@ static double code_at(const struct relume_codes *codes, int plane, size_t pixel)
 
 static double coefficient_at(const struct relume_codes *codes, int plane, size_t pixel)
 {
-    return code_at(codes, plane, pixel) * (double)codes->scale[plane] +
-           (double)codes->offset[plane];
+    if (!codes->books)
+        return code_at(codes, plane, pixel) * (double)codes->scale[plane] +
+               (double)codes->offset[plane];
+    double sum = 0.0;
+    for (int b = 0; b < codes->books; b++)
+        sum += (double)codes->vectors[b][(size_t)codes->index[b][pixel] * (size_t)codes->planes +
+                                         (size_t)plane];
+    return sum;
 }
 
 enum { MOST_WEIGHTS = 3 * 4096 };
@@ -211,6 +274,15 @@ static void add_point_lights(const struct job *job, size_t pixel, float *out)
     }
 }
 
+static void dot_channel(const struct job *job, const struct pass *pass, int channel, size_t first,
+                        size_t n, float *out)
+{
+    if (job->codes->books)
+        look_up_channel(job, pass, (size_t)channel, first, n, out);
+    else
+        dot_planes(job, pass, channel, first, n, out);
+}
+
 // Display domain: every light is decoded and made linear before it is added.
 static void sum_displayed(const struct job *job, int channel, size_t first, size_t n, float *sum)
 {
@@ -224,26 +296,49 @@ static void sum_displayed(const struct job *job, int channel, size_t first, size
     }
 }
 
-static void relight_chunk(void *context, size_t item, int worker)
+static size_t chunk_size(const struct job *job, size_t first)
 {
-    (void)worker;
-    const struct job *job = context;
-    const size_t pixels = (size_t)job->out->width * (size_t)job->out->height;
-    const size_t first = item * CHUNK;
-    const size_t n = pixels - first < CHUNK ? pixels - first : CHUNK;
+    const size_t pixels = (size_t)job->codes->width * (size_t)job->codes->height;
+    return pixels - first < CHUNK ? pixels - first : CHUNK;
+}
+
+// out[n][3]: linear values of the pixels from `first` on.
+static void relight_pixels(const struct job *job, size_t first, size_t n, float *out)
+{
     float sum[3][CHUNK];  // by channel, so that the kernels write in a row
     for (int c = 0; c < 3; c++) {
-        if (job->display)
-            sum_displayed(job, c, first, n, sum[c]);
-        else
+        if (job->linear)
             dot_channel(job, &job->passes[0], c, first, n, sum[c]);
+        else
+            sum_displayed(job, c, first, n, sum[c]);
     }
-    float *out = job->out->data + first * 3;
     for (size_t i = 0; i < n; i++)
         for (size_t c = 0; c < 3; c++)
             out[3 * i + c] = sum[c][i];
     for (size_t i = 0; job->surface && i < n; i++)
         add_point_lights(job, first + i, out + 3 * i);
+}
+
+static void relight_chunk(void *context, size_t item, int worker)
+{
+    (void)worker;
+    const struct job *job = context;
+    const size_t first = item * CHUNK;
+    relight_pixels(job, first, chunk_size(job, first), job->out + first * 3);
+}
+
+static void relight_chunk_rgba8(void *context, size_t item, int worker)
+{
+    (void)worker;
+    const struct job *job = context;
+    const size_t first = item * CHUNK, n = chunk_size(job, first);
+    float rgb[3 * CHUNK];
+    if (job->words) {
+        job->kernels->look_up(job->out_rgba8 + first, n, job->codes->index[0] + first, job->words);
+        return;
+    }
+    relight_pixels(job, first, n, rgb);
+    byte_code(job->out_rgba8 + first, rgb, n, job->coder);
 }
 
 static void warn_below_horizon(const struct relume_codes *codes, const struct relume_light *lights,
@@ -262,21 +357,70 @@ static void warn_below_horizon(const struct relume_codes *codes, const struct re
         }
 }
 
+static relume_status check_directions(const struct relume_light *lights, int n,
+                                      const struct relume_log *log)
+{
+    for (int i = 0; i < n; i++)
+        if (lights[i].kind == RELUME_LIGHT_DIRECTIONAL && !(vec3_length(lights[i].direction) > 0.0))
+            return log_fail(log, RELUME_EINVAL, "light %d: expected a direction, found zero",
+                            i + 1);
+    return RELUME_OK;
+}
+
 static relume_status check_lights(const struct relume_codes *codes,
                                   const struct relume_light *lights, int n,
                                   const struct relume_relight_params *p)
 {
     const struct relume_image *s = p->surface;
-    for (int i = 0; i < n; i++)
-        if (lights[i].kind == RELUME_LIGHT_DIRECTIONAL && !(vec3_length(lights[i].direction) > 0.0))
-            return log_fail(p->log, RELUME_EINVAL, "light %d: expected a direction, found zero",
-                            i + 1);
+    const relume_status status = check_directions(lights, n, p->log);
+    if (status)
+        return status;
     if (count_kind(lights, n, RELUME_LIGHT_POINT) == 0)
         return RELUME_OK;
     if (!s || s->width != codes->width || s->height != codes->height || s->channels != 3)
         return log_fail(p->log, RELUME_EINVAL,
                         "a point light needs to know where the surface is; expected depth");
     return RELUME_OK;
+}
+
+static relume_status begin_job(struct job *job, const struct relume_codes *codes,
+                               const struct relume_light *lights, int n,
+                               const struct relume_relight_params *p)
+{
+    *job = (struct job){
+        .codes = codes,
+        .kernels = kernels_choose(p->cpu_off),
+        .display = codes->domain == RELUME_DOMAIN_DISPLAY,
+        .linear = codes->domain != RELUME_DOMAIN_DISPLAY,
+        .lights = lights,
+        .light_count = n,
+        .surface = count_kind(lights, n, RELUME_LIGHT_POINT) ? p->surface : NULL,
+    };
+    relume_status status = make_passes(job, lights, n);
+    if (!status && job->display)
+        curve_init(&job->curve, codes->display);
+    if (!status && codes->books)
+        status = relight_vectors(job);
+    return status;
+}
+
+static void end_job(struct job *job)
+{
+    for (int i = 0; job->passes && i < job->count; i++) {
+        for (int b = 0; job->passes[i].book && b < job->codes->books; b++)
+            free(job->passes[i].book[b]);
+        free(job->passes[i].book);
+        free(job->passes[i].weights);
+    }
+    free(job->passes);
+    free(job->coder);
+    free(job->words);
+}
+
+static void run_job(struct job *job, int threads, void (*chunk)(void *, size_t, int))
+{
+    const size_t pixels = (size_t)job->codes->width * (size_t)job->codes->height;
+    thread_for(threads, (pixels + CHUNK - 1) / CHUNK, chunk, job);
 }
 
 relume_status relume_relight(struct relume_image *out, const struct relume_codes *codes,
@@ -298,27 +442,71 @@ relume_status relume_relight(struct relume_image *out, const struct relume_codes
         return status;
     warn_below_horizon(codes, lights, n, p.log);
 
-    struct job job = {
-        .codes = codes,
-        .kernels = kernels_choose(p.cpu_off),
-        .out = out,
-        .display = codes->domain == RELUME_DOMAIN_DISPLAY,
-        .lights = lights,
-        .light_count = n,
-        .surface = count_kind(lights, n, RELUME_LIGHT_POINT) ? p.surface : NULL,
-    };
-    status = make_passes(&job, lights, n);
-    if (!status && job.display)
-        curve_init(&job.curve, codes->display);
-    if (!status) {
-        const size_t pixels = (size_t)codes->width * (size_t)codes->height;
-        thread_for(p.threads, (pixels + CHUNK - 1) / CHUNK, relight_chunk, &job);
-    } else if (create) {
+    struct job job;
+    status = begin_job(&job, codes, lights, n, &p);
+    job.out = out->data;
+    if (!status)
+        run_job(&job, p.threads, relight_chunk);
+    else if (create)
         relume_image_destroy(out);
+    end_job(&job);
+    return status;
+}
+
+// Everything that a pixel of a single codebook can become, ready to be copied.
+static relume_status code_vectors(struct job *job)
+{
+    const size_t n = (size_t)job->codes->book_codes[0];
+    job->words = mem_array(n, sizeof *job->words);
+    if (!job->words)
+        return RELUME_ENOMEM;
+    byte_code(job->words, job->passes[0].book[0], n, job->coder);
+    return RELUME_OK;
+}
+
+relume_status relume_relight_rgba8(uint8_t *out, const struct relume_codes *codes,
+                                   const struct relume_light *lights, int n,
+                                   const struct relume_relight_params *params)
+{
+    const struct relume_relight_params p = params ? *params : (struct relume_relight_params){0};
+    if (n < 0)
+        return RELUME_EINVAL;
+    relume_status status = check_lights(codes, lights, n, &p);
+    if (status)
+        return status;
+    warn_below_horizon(codes, lights, n, p.log);
+    struct job job;
+    status = begin_job(&job, codes, lights, n, &p);
+    job.out_rgba8 = (uint32_t *)(void *)out;
+    if (!status && !(job.coder = mem_array(1, sizeof *job.coder)))
+        status = RELUME_ENOMEM;
+    if (!status) {
+        byte_coder_init(job.coder, exp2f(p.exposure_ev));
+        if (codes->books == 1 && job.linear && !job.surface)
+            status = code_vectors(&job);
     }
-    for (int i = 0; job.passes && i < job.count; i++)
-        free(job.passes[i].weights);
-    free(job.passes);
+    if (!status)
+        run_job(&job, p.threads, relight_chunk_rgba8);
+    end_job(&job);
+    return status;
+}
+
+relume_status relume_relight_book(float *rgb, const struct relume_codes *codes, int book,
+                                  const struct relume_light *lights, int n)
+{
+    const struct relume_relight_params none = {0};
+    struct job job;
+    if (n < 0 || book < 0 || book >= codes->books || check_directions(lights, n, NULL))
+        return RELUME_EINVAL;
+    relume_status status = begin_job(&job, codes, lights, n, &none);
+    if (!status && codes->books > 1 && !job.linear && job.count != 1)
+        status = RELUME_EINVAL;
+    const size_t bytes = 3 * (size_t)codes->book_codes[book] * sizeof *rgb;
+    if (!status && job.count > 0)
+        memcpy(rgb, job.passes[0].book[book], bytes);
+    else if (!status)
+        memset(rgb, 0, bytes);
+    end_job(&job);
     return status;
 }
 

@@ -102,7 +102,7 @@ static void fill_codes(void *memory, size_t n, enum relume_storage storage, uint
 }
 
 // Values under a light of 1 lie around [-0.5, 2]: the first harmonic lifts them, the rest vary.
-static struct fixture_file fixture_make(int views, int width, int height,
+static inline struct fixture_file fixture_make(int views, int width, int height,
                                         enum relume_storage storage, enum relume_domain domain,
                                         bool pole_y)
 {
@@ -150,7 +150,7 @@ static relume_status fixture_fetch(const struct relume_codes **out, void *user, 
     return RELUME_OK;
 }
 
-static void fixture_free(struct fixture_file *f)
+static inline void fixture_free(struct fixture_file *f)
 {
     for (int i = 0; i < f->views; i++)
         free(f->memory[i]);
@@ -160,7 +160,7 @@ static void fixture_free(struct fixture_file *f)
     relume_coder_destroy(&f->coder);
 }
 
-static struct relume_image fixture_relight(struct fixture_file *f, int view,
+static inline struct relume_image fixture_relight(struct fixture_file *f, int view,
                                            const struct relume_light *lights, int n)
 {
     struct relume_image image = {0};

@@ -1,0 +1,188 @@
+// read_books.c - codebooks and the indices into them
+#include "pack/reader.h"
+
+#include "base/memory.h"
+#include "pack/format.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum exr_sample reader_sample(const relume_pack *p)
+{
+    return relume_storage_top(p->info.storage) > 2047 ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF;
+}
+
+static void book_name(char name[48], int view, int book)
+{
+    if (view < 0)
+        snprintf(name, 48, "book%d", book);
+    else
+        snprintf(name, 48, "view%04d.book%d", view, book);
+}
+
+static bool parse_kind(const char *text, enum relume_book_kind *kind)
+{
+    static const char *const names[] = {"planes", "luma", "chroma"};
+    for (int i = 0; text && i < 3; i++)
+        if (!strcmp(text, names[i])) {
+            *kind = (enum relume_book_kind)i;
+            return true;
+        }
+    return false;
+}
+
+static relume_status check_book(relume_pack *p, int part, const char *name, struct relume_book *b)
+{
+    const struct relume_coder_info *coder = relume_coder_info(p->coder);
+    const struct exr_part_info i = exr_part_info(p->file, part);
+    if (!parse_kind(exr_get_text(p->file, part, ATTR_BOOK), &b->kind) ||
+        !exr_get_int(p->file, part, ATTR_FIRST, &b->first) ||
+        !exr_get_int(p->file, part, ATTR_LAST, &b->last) || b->last > coder->planes)
+        return reader_bad(p, name, "planes, luma or chroma, and a range of planes");
+    b->dim = relume_book_dim(b->kind, b->first, b->last);
+    b->codes = i.width;
+    b->storage = p->info.storage;
+    if (b->dim < 1 || (coder->joint && b->kind != RELUME_BOOK_PLANES))
+        return reader_bad(p, name, "planes that the basis has");
+    if (i.height != 1 || i.width > 65536 ||
+        (uint64_t)i.width * (uint64_t)coder->planes > p->limits.max_pixels)
+        return reader_bad(p, name, "one row of at most 65536 vectors, within the limits");
+    if (i.channels != b->dim || !i.uniform || i.sample != reader_sample(p))
+        return reader_bad(p, name, "one channel of the stored type for every number of a vector");
+    b->scale = reader_floats(p, part, ATTR_SCALE, b->dim);
+    b->offset = reader_floats(p, part, ATTR_OFFSET, b->dim);
+    if (!b->scale || !b->offset)
+        return reader_bad(p, name, "a finite scale and offset for every number of a vector");
+    return RELUME_OK;
+}
+
+relume_status reader_find_books(relume_pack *p, int view, int *part)
+{
+    struct read_books *set = &p->books[view < 0 ? 0 : view];
+    char name[48];
+    if (!p->info.books)
+        return RELUME_OK;
+    if (relume_coder_info(p->coder)->luminance && p->info.books > 1)
+        return reader_bad(p, ATTR_BOOKS, "one book for luminance coefficients");
+    for (int b = 0; b < p->info.books; b++, ++*part) {
+        book_name(name, view, b);
+        const bool there =
+            *part < exr_part_count(p->file) && !strcmp(exr_part_info(p->file, *part).name, name);
+        if (!there && view < 0 && b == 0)
+            return RELUME_OK;
+        if (!there)
+            return reader_bad(p, name, "a part of that name");
+        const relume_status status = check_book(p, *part, name, &set->book[b]);
+        if (status)
+            return status;
+        set->part[b] = *part;
+        set->codes[b] = set->book[b].codes;
+    }
+    p->info.shared = view < 0;
+    p->info.codes = set->codes[0];
+    return RELUME_OK;
+}
+
+// Which number of a vector each channel is; the file sorts B, G, R.
+static size_t number_of_channel(const relume_pack *p, const struct relume_book *b, size_t channel)
+{
+    if (b->kind != RELUME_BOOK_PLANES)
+        return channel;
+    const size_t first = (size_t)b->first;
+    return reader_plane(relume_coder_info(p->coder), first + channel) - first;
+}
+
+static relume_status load_book(relume_pack *p, int part, const struct relume_book *b,
+                               float **vectors)
+{
+    struct relume_book book = *b;
+    const size_t dim = (size_t)b->dim, codes = (size_t)b->codes;
+    const int planes = relume_coder_info(p->coder)->planes;
+    void *numbers = mem_array(dim * codes, b->storage == RELUME_STORE_8 ? 1 : 2);
+    size_t *place = mem_array(dim, sizeof *place);
+    float *out = mem_array(codes * (size_t)planes, sizeof *out);
+    relume_status status = numbers && place && out ? RELUME_OK : RELUME_ENOMEM;
+    bool valid = true;
+    for (size_t c = 0; !status && c < dim; c++) {
+        place[c] = number_of_channel(p, b, c);
+        valid &= place[c] < dim;
+    }
+    if (!valid)
+        status = reader_bad(p, "a codebook", "whole coefficients");
+    if (!status)
+        status = reader_load(p, part, numbers, dim, place);
+    if (!status) {
+        book.numbers = numbers;
+        relume_book_expand(out, &book, planes);
+        *vectors = out;
+        out = NULL;
+    }
+    free(numbers);
+    free(place);
+    free(out);
+    return status;
+}
+
+struct index_sink {
+    const int *codes;  // [books]
+    uint16_t *index;   // [books][height][width]
+    size_t books, width, height;
+    atomic_bool wrong;
+};
+
+static void index_rows(void *context, int row, int rows, const void *samples)
+{
+    struct index_sink *s = context;
+    const uint32_t *from = samples;
+    for (size_t y = 0; y < (size_t)rows; y++)
+        for (size_t b = 0; b < s->books; b++) {
+            uint16_t *to = s->index + (b * s->height + (size_t)row + y) * s->width;
+            unsigned wrong = 0;
+            for (size_t x = 0; x < s->width; x++, from++) {
+                wrong |= *from >= (uint32_t)s->codes[b];
+                to[x] = (uint16_t)*from;
+            }
+            if (wrong)
+                atomic_store(&s->wrong, true);
+        }
+}
+
+relume_status reader_load_indices(relume_pack *p, int view)
+{
+    struct loaded *to = &p->loaded[view];
+    struct read_books *set = &p->books[p->info.shared ? 0 : view];
+    const size_t books = (size_t)p->info.books;
+    relume_status status = RELUME_OK;
+    for (size_t b = 0; !status && b < books; b++)
+        if (!set->vectors[b])
+            status = load_book(p, set->part[b], &set->book[b], &set->vectors[b]);
+    if (status)
+        return status;
+    struct index_sink sink = {.codes = set->codes,
+                              .books = books,
+                              .width = (size_t)p->info.width,
+                              .height = (size_t)p->info.height};
+    const size_t pixels = sink.width * sink.height;
+    to->plane = mem_array(books, sizeof *to->plane);
+    to->data = sink.index = mem_array(books * pixels, sizeof *sink.index);
+    if (!to->plane || !to->data)
+        return RELUME_ENOMEM;
+    status = exr_read(p->file, p->parts[view].codes, p->threads, index_rows, &sink, p->log);
+    if (!status && atomic_load(&sink.wrong))
+        return reader_bad(p, "an index", "indices below the number of code vectors");
+    for (size_t b = 0; b < books; b++)
+        to->plane[b] = sink.index + b * pixels;
+    to->codes.books = p->info.books;
+    to->codes.index = (const uint16_t *const *)(const void *)to->plane;
+    to->codes.vectors = (const float *const *)set->vectors;
+    to->codes.book_codes = set->codes;
+    return status;
+}
+
+void reader_drop_books(struct read_books *books)
+{
+    for (int b = 0; b < RELUME_MOST_BOOKS; b++) {
+        free(books->vectors[b]);
+        books->vectors[b] = NULL;
+    }
+}

@@ -33,7 +33,7 @@ once     = $(eval $1 := $$(shell $2))$($1)
 EXR      = $(call once,EXR,pkg-config --cflags OpenEXR)
 OIIO     = $(call once,OIIO,pkg-config --cflags OpenImageIO)
 GLFW     = $(call once,GLFW,pkg-config --cflags glfw3)
-PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenImageIO OpenEXR openblas jansson)
+PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenImageIO OpenEXR openblas jansson libjpeg)
 LIBS     = -Wl,--as-needed $(PKG_LIBS) -llapacke -lembree3 -lm
 GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)

@@ -53,7 +53,8 @@ only_in 'openexr' src/image/exr.c tests/tools/decode.c
 only_in 'OpenImageIO' src/image/oiio.cpp
 only_in 'embree' src/scene/trace.c
 only_in '(cblas|lapacke)' src/math/lsq.c
-only_in 'jansson' src/capture/manifest.c
+only_in 'jansson' src/base/json.c
+only_in 'jpeglib' src/image/jpeg.c
 only_in 'GLFW' viewer/context_glfw.c
 only_in 'GL/osmesa' viewer/context_osmesa.c
 only_in 'immintrin' src/relight/kernels_avx2.c

@@ -12,7 +12,7 @@ image:base math:base image
 capture:base math image:base image lights capture
 coder:base math image:base image capture coder
 pack:base image:base image capture coder view pack
-exchange:base math image:base image coder capture pack relight exchange
+exchange:base math image:base image lights coder capture pack relight exchange
 relight:base math image:base image coder relight
 view:base math image:base image relight view capture
 frame:base math:base image capture coder pack relight view frame

@@ -37,35 +37,37 @@ static double coefficient(const struct foreign *f, int plane, size_t pixel)
            (double)f->offset[plane];
 }
 
-// Row `row` of the transform times the functions.
-static double weight(const struct foreign *f, int row, const double *values)
-{
-    const int n = f->functions.count;
-    double sum = 0.0;
-    if (!f->transform)
-        return values[row];
-    for (int j = 0; j < n; j++)
-        sum += f->transform[row * n + j] * values[j];
-    return sum;
-}
-
-void foreign_pixel(const struct foreign *f, size_t pixel, struct relume_vec3 light, double rgb[3])
+void foreign_weights(const struct foreign *f, struct relume_vec3 light, double *weights,
+                     double constant[3])
 {
     double values[FUNCTIONS_MOST];
     const int k = f->terms, n = f->functions.count;
+    const bool joint = f->form == FOREIGN_JOINT;
     functions_at(&f->functions, light, values);
     for (int c = 0; c < 3; c++) {
-        rgb[c] = 0.0;
+        constant[c] = 0.0;
+        for (int j = 0; joint && j < n; j++)
+            constant[c] += f->mean[c * n + j] * values[j];
+        for (int i = 0; i < k; i++) {
+            const size_t row = (size_t)((joint ? c * k : 0) + i) * (size_t)n;
+            double sum = f->transform ? 0.0 : values[i];
+            for (int j = 0; f->transform && j < n; j++)
+                sum += f->transform[row + (size_t)j] * values[j];
+            weights[c * k + i] = sum;
+        }
+    }
+}
+
+void foreign_pixel(const struct foreign *f, size_t pixel, const double *weights,
+                   const double constant[3], double rgb[3])
+{
+    const int k = f->terms;
+    for (int c = 0; c < 3; c++) {
+        const double *w = weights + (size_t)c * (size_t)k;
+        rgb[c] = constant[c];
         for (int i = 0; i < k; i++)
-            if (f->form == FOREIGN_JOINT)
-                rgb[c] += coefficient(f, i, pixel) * weight(f, c * k + i, values);
-            else if (f->form == FOREIGN_LUMINANCE)
-                rgb[c] += coefficient(f, i, pixel) * weight(f, i, values);
-            else
-                rgb[c] += coefficient(f, 3 * i + c, pixel) * weight(f, i, values);
+            rgb[c] += w[i] * coefficient(f, f->form == FOREIGN_CHANNELS ? 3 * i + c : i, pixel);
         if (f->form == FOREIGN_LUMINANCE)
             rgb[c] *= coefficient(f, k + c, pixel);
-        for (int j = 0; f->form == FOREIGN_JOINT && j < n; j++)
-            rgb[c] += f->mean[c * n + j] * values[j];
     }
 }

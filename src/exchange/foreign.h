@@ -40,7 +40,12 @@ static inline size_t foreign_pixels(const struct foreign *f)
     return (size_t)f->width * (size_t)f->height;
 }
 
-// The value of a pixel under a unit direction, in double precision: the slow reference.
-void foreign_pixel(const struct foreign *f, size_t pixel, struct relume_vec3 light, double rgb[3]);
+// Row c of weights[3][K] and constant[c] at a unit direction: what the transform and the mean give.
+// Forms without joint planes have three equal rows.
+void foreign_weights(const struct foreign *f, struct relume_vec3 light, double *weights,
+                     double constant[3]);
+// The value of a pixel for such weights.
+void foreign_pixel(const struct foreign *f, size_t pixel, const double *weights,
+                   const double constant[3], double rgb[3]);
 
 #endif

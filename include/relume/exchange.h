@@ -10,6 +10,20 @@
 extern "C" {
 #endif
 
+struct relume_import_params {
+    const struct relume_log *log;
+    const struct relume_limits *limits;
+    enum relume_compression compression;
+    int threads;  // default: all cores
+};
+#define relume_import_params(...) (&(const struct relume_import_params){__VA_ARGS__})
+
+// Turn `path` (.ptm, .rti, .hsh, a relight folder or its info.json) into the relume file `out` that
+// relights as the format says. Codes stay as they are, but for those in YCC, which become 16-bit
+// RGB. Returns RELUME_EDATA, RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_import(const char *path, const char *out,
+                                          const struct relume_import_params *params);
+
 enum relume_exchange {
     RELUME_EXCHANGE_RELIGHT = 0,  // info.json and plane JPEGs, for OpenLIME and relight
     RELUME_EXCHANGE_PTM,          // .ptm, PTM_FORMAT_RGB

@@ -10,5 +10,6 @@ extern const struct relume_interpolant interpolant_tps;
 extern const struct relume_interpolant interpolant_rbf;
 extern const struct relume_interpolant interpolant_hsh;
 extern const struct relume_interpolant interpolant_natural;
+extern const struct relume_interpolant interpolant_octahedral;
 
 #endif

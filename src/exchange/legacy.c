@@ -33,7 +33,7 @@ static bool same_functions(const struct export *e, const struct target *t)
     const struct relume_coder_info *info = relume_coder_info(e->source->codes->coder);
     const int k = t->functions.count;
     float w[3 * 9], constant[3];
-    if (info->joint || info->coefficients != k)
+    if (info->basis->learned || info->luminance != t->luminance || info->coefficients != k)
         return false;
     for (int i = 0; i < 40; i++) {
         const double z = 0.1 + 0.9 * (i + 0.5) / 40, r = sqrt(1.0 - z * z), phi = 2.4 * i;
@@ -56,9 +56,14 @@ static bool near(double a, double b)
 // Whether the file's quantisers are of the kind that the format holds.
 static bool same_quantisers(const struct relume_codes *codes, const struct target *t)
 {
-    for (int k = 0; k < t->functions.count; k++) {
-        const float *scale = codes->scale + 3 * k, *offset = codes->offset + 3 * k;
-        for (int c = 1; c < 3; c++)
+    const int copies = t->luminance ? 1 : 3, terms = t->functions.count;
+    for (int c = 0; t->luminance && c < 3; c++)
+        if (!near((double)codes->scale[terms + c], 1.0 / 255.0) ||
+            !near((double)codes->offset[terms + c], 0.0))
+            return false;
+    for (int k = 0; k < terms; k++) {
+        const float *scale = codes->scale + copies * k, *offset = codes->offset + copies * k;
+        for (int c = 1; c < copies; c++)
             if (!near((double)scale[c], (double)scale[0]) ||
                 !near((double)offset[c], (double)offset[0]))
                 return false;
@@ -149,7 +154,7 @@ relume_status export_legacy(const struct export *e, const char *path, enum relum
                         t.functions.count);
     relume_status status = foreign_create(&f, path, codes->width, codes->height,
                                           t.luminance ? f.terms + 3 : 3 * f.terms, NULL, e->log);
-    report->exact = !e->source->between && codes->storage == RELUME_STORE_8 && !t.luminance &&
+    report->exact = !e->source->between && codes->storage == RELUME_STORE_8 &&
                     same_functions(e, &t) && same_quantisers(codes, &t);
     if (!status)
         status = report->exact ? take_codes(&f, e) : fit(&f, e, &t, path);

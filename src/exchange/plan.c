@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { SPIRAL = 640 };
+enum { SPIRAL = 2048 };
 
 // Pull towards the nodes' own values, relative to the mean diagonal of the normal equations.
 #define NODE_PULL 1e-3
@@ -189,46 +189,68 @@ static relume_status measure_loss(struct view *v, const double *mean, const doub
 
 // ---------------------------------------------------------------- principal components
 
-// roots = Q diag(value^power), the eigenvectors being the columns of q; tiny values give zero.
-static double *scaled_columns(const double *q, const double *values, int n, double power)
+// Q diag(value^power), Q's columns being the eigenvectors; tiny values give zero.
+static double *scaled_columns(const double *vectors, const double *values, int n, double power)
 {
     double *out = mem_array((size_t)n * (size_t)n, sizeof *out);
-    const double least = 1e-12 * values[n - 1];
+    const double least = 1e-12 * values[0];
     for (int i = 0; out && i < n; i++)
         for (int j = 0; j < n; j++)
-            out[i * n + j] = values[j] > least ? q[i * n + j] * pow(values[j], power) : 0.0;
+            out[i * n + j] = values[j] > least ? vectors[j * n + i] * pow(values[j], power) : 0.0;
     return out;
 }
 
-// `metric` and `covariance` [P][P] -> forward [P][P] and back [P][P], components in the columns,
-// the largest last; values[P] are their variances.
-static relume_status components(double *metric, const double *covariance, int n, double *values,
-                                double *forward, double *back)
+// Principal components in a metric, the largest first.
+struct components {
+    int count;
+    double total;            // variance of all
+    double *value;           // [count] variances
+    double *forward, *back;  // [count][P]: c = forward (x - mean), x = mean + back^T c
+};
+
+static void free_components(struct components *c)
 {
-    const size_t size = (size_t)n * (size_t)n;
-    double *scratch = mem_array(size, sizeof *scratch), *z = mem_array(size, sizeof *z);
+    free(c->value);
+    free(c->forward);
+    free(c->back);
+}
+
+// `metric` [P][P] is destroyed.
+static relume_status find_components(struct components *out, double *metric,
+                                     const double *covariance, int n, int count)
+{
+    const size_t size = (size_t)n * (size_t)n, kept = (size_t)count * (size_t)n;
+    double *values = mem_array((size_t)n, sizeof *values),
+           *vectors = mem_array(size, sizeof *vectors);
+    double *half = mem_array(size, sizeof *half), *z = mem_array(size, sizeof *z);
     double *root = NULL, *inverse = NULL;
-    relume_status status =
-        scratch && z && lsq_eigenvectors(metric, n, values) ? RELUME_OK : RELUME_ENOMEM;
-    if (!status) {
-        root = scaled_columns(metric, values, n, 0.5);
-        inverse = scaled_columns(metric, values, n, -0.5);
-        status = root && inverse ? RELUME_OK : RELUME_ENOMEM;
+    *out = (struct components){count, 0.0, mem_array((size_t)count, sizeof(double)),
+                               mem_array(kept, sizeof(double)), mem_array(kept, sizeof(double))};
+    bool good = values && vectors && half && z && out->value && out->forward && out->back &&
+                lsq_eigenvectors(metric, n, n, values, vectors);
+    if (good) {
+        root = scaled_columns(vectors, values, n, 0.5);
+        inverse = scaled_columns(vectors, values, n, -0.5);
+        good = root && inverse;
     }
-    if (!status) {
-        lsq_product(false, false, n, n, n, covariance, root, scratch);
-        lsq_product(true, false, n, n, n, root, scratch, z);
-        status = lsq_eigenvectors(z, n, values) ? RELUME_OK : RELUME_ENOMEM;
+    if (good) {
+        lsq_product(false, false, n, n, n, covariance, root, half);
+        lsq_product(true, false, n, n, n, root, half, z);
+        for (int i = 0; i < n; i++)
+            out->total += z[i * n + i];
+        good = lsq_eigenvectors(z, n, count, out->value, vectors);
     }
-    if (!status) {
-        lsq_product(false, false, n, n, n, root, z, forward);
-        lsq_product(false, false, n, n, n, inverse, z, back);
+    if (good) {
+        lsq_product(false, true, count, n, n, vectors, root, out->forward);
+        lsq_product(false, true, count, n, n, vectors, inverse, out->back);
     }
-    free(scratch);
+    free(values);
+    free(vectors);
+    free(half);
     free(z);
     free(root);
     free(inverse);
-    return status;
+    return good ? RELUME_OK : RELUME_ENOMEM;
 }
 
 static relume_status alloc_plan(struct plan *p, const struct source *s)
@@ -249,38 +271,35 @@ static relume_status alloc_plan(struct plan *p, const struct source *s)
     return p->map && p->shift && p->weight && p->energy ? RELUME_OK : RELUME_ENOMEM;
 }
 
+static double product(const double *a, const double *b, int n)
+{
+    double sum = 0.0;
+    for (int i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
 static void take_components(struct plan *p, const struct view *v, const double *mean,
-                            const double *values, const double *forward, const double *back)
+                            const struct components *c)
 {
     const int n = p->numbers, f = p->functions.count;
-    for (int k = 0; k < n; k++) {
-        const int column = n - 1 - k;
-        if (k >= p->planes) {
-            p->lost += fmax(0.0, values[column]);
-            continue;
-        }
+    const size_t row = (size_t)n;
+    p->lost += c->total;
+    memcpy(p->map, c->forward, (size_t)p->planes * row * sizeof *p->map);
+    for (int k = 0; k < p->planes; k++) {
         p->weight[k] = 1.0;
-        p->energy[k] = fmax(0.0, values[column]);
-        for (int i = 0; i < n; i++) {
-            p->map[k * n + i] = forward[i * n + column];
-            p->shift[k] -= forward[i * n + column] * mean[i];
-        }
-        for (int j = 0; j < f; j++)
-            for (int c = 0; c < 3; c++) {
-                const double *node = v->nodes + (size_t)(3 * j + c) * (size_t)(n + 1);
-                double sum = 0.0;
-                for (int i = 0; i < n; i++)
-                    sum += node[i] * back[i * n + column];
-                p->transform[(c * p->planes + k) * f + j] = sum;
-            }
+        p->energy[k] = fmax(0.0, c->value[k]);
+        p->lost -= p->energy[k];
+        p->shift[k] = -product(c->forward + (size_t)k * row, mean, n);
     }
+    p->lost = fmax(p->lost, 0.0);
     for (int j = 0; j < f; j++)
-        for (int c = 0; c < 3; c++) {
-            const double *node = v->nodes + (size_t)(3 * j + c) * (size_t)(n + 1);
-            double sum = node[n];
-            for (int i = 0; i < n; i++)
-                sum += node[i] * mean[i];
-            p->mean[c * f + j] = sum;
+        for (int ch = 0; ch < 3; ch++) {
+            const double *node = v->nodes + (size_t)(3 * j + ch) * (row + 1);
+            p->mean[ch * f + j] = node[n] + product(node, mean, n);
+            for (int k = 0; k < p->planes; k++)
+                p->transform[(ch * p->planes + k) * f + j] =
+                    product(node, c->back + (size_t)k * row, n);
         }
 }
 
@@ -312,12 +331,11 @@ relume_status plan_components(struct plan *p, const struct source *s,
                        .terms = planes < n ? planes : n,
                        .planes = planes < n ? planes : n};
     struct view v;
-    double *mean = mem_array((size_t)n, sizeof *mean),
-           *values = mem_array((size_t)n, sizeof *values);
-    double *covariance = mem_array(size, sizeof *covariance), *metric = NULL;
-    double *forward = mem_array(size, sizeof *forward), *back = mem_array(size, sizeof *back);
+    struct components c = {0};
+    double *mean = mem_array((size_t)n, sizeof *mean), *metric = NULL;
+    double *covariance = mem_array(size, sizeof *covariance);
     relume_status status = open_view(&v, s, functions);
-    if (!status && (!mean || !values || !covariance || !forward || !back))
+    if (!status && (!mean || !covariance))
         status = RELUME_ENOMEM;
     if (!status)
         status = alloc_plan(p, s);
@@ -328,18 +346,16 @@ relume_status plan_components(struct plan *p, const struct source *s,
     if (!status && !(metric = metric_of(&v)))
         status = RELUME_ENOMEM;
     if (!status)
-        status = components(metric, covariance, n, values, forward, back);
+        status = find_components(&c, metric, covariance, n, p->planes);
     if (!status)
         status = measure_loss(&v, mean, covariance, &p->lost);
     if (!status)
-        take_components(p, &v, mean, values, forward, back);
+        take_components(p, &v, mean, &c);
     free_view(&v);
+    free_components(&c);
     free(mean);
-    free(values);
     free(covariance);
     free(metric);
-    free(forward);
-    free(back);
     if (status)
         plan_free(p);
     return status;

@@ -43,14 +43,15 @@ relume_status source_open(struct source *s, const struct relume_codes *codes,
     *s =
         (struct source){.codes = codes, .width = codes->width, .height = codes->height, .log = log};
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
-    s->numbers = info->joint ? info->coefficients : 3 * info->coefficients;
+    s->numbers = info->basis->learned ? info->coefficients : 3 * info->coefficients;
     const relume_status status = choose_lights(s);
     if (status || (is_srgb(codes) && s->numbers <= MOST_NUMBERS))
         return status;
     s->numbers = 3 * s->lights;
     return relume_coder_create(
         &s->between, &relume_basis_table, s->light, s->lights,
-        relume_coder_params(.log = log, .hemispherical = true, .decode = true));
+        relume_coder_params(.log = log, .hemispherical = true, .decode = true,
+                            .interpolant = relume_interpolant_find("angular")));
 }
 
 void source_close(struct source *s)
@@ -69,11 +70,31 @@ static void read_plane(const struct relume_codes *codes, int plane, size_t first
     const uint8_t *bytes = (const uint8_t *)codes->plane[plane] + first;
     const uint16_t *words = (const uint16_t *)codes->plane[plane] + first;
     for (size_t i = 0; i < n; i++) {
-        const float code = codes->storage == RELUME_STORE_8    ? (float)bytes[i]
-                           : codes->storage == RELUME_STORE_16 ? (float)words[i]
-                                                               : float_from_half(words[i]);
+        const float code = codes->storage == RELUME_STORE_8      ? (float)bytes[i]
+                           : codes->storage == RELUME_STORE_HALF ? float_from_half(words[i])
+                                                                 : (float)words[i];
         out[i] = code * scale + offset;
     }
+}
+
+// Coefficients times colours: number 3 k + c.
+static relume_status read_products(const struct source *s, size_t first, size_t n, float *out)
+{
+    const int k = relume_coder_info(s->codes->coder)->coefficients;
+    float *colour = mem_array(3 * n, sizeof *colour);
+    if (!colour)
+        return RELUME_ENOMEM;
+    for (int c = 0; c < 3; c++)
+        read_plane(s->codes, k + c, first, n, colour + (size_t)c * n);
+    for (int i = 0; i < k; i++) {
+        float *to = out + 3 * (size_t)i * n;
+        read_plane(s->codes, i, first, n, to);
+        for (size_t c = 3; c-- > 0;)
+            for (size_t x = 0; x < n; x++)
+                to[c * n + x] = to[x] * colour[c * n + x];
+    }
+    free(colour);
+    return RELUME_OK;
 }
 
 // ---------------------------------------------------------------- pictures
@@ -114,6 +135,8 @@ relume_status source_rows(const struct source *s, int row, int rows, float *out)
     const size_t n = (size_t)rows * (size_t)s->width, first = (size_t)row * (size_t)s->width;
     if (s->between)
         return picture_rows(s, row, rows, out);
+    if (relume_coder_info(s->codes->coder)->luminance)
+        return read_products(s, first, n, out);
     for (int p = 0; p < s->numbers; p++)
         read_plane(s->codes, p, first, n, out + (size_t)p * n);
     return RELUME_OK;
@@ -129,7 +152,7 @@ void source_weights(const struct source *s, struct relume_vec3 light, double *we
     relume_coder_weights(coder, light, w, constant);
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < k; i++)
-            weights[c * (p + 1) + (info->joint ? i : 3 * i + c)] = (double)w[c * k + i];
+            weights[c * (p + 1) + (info->basis->learned ? i : 3 * i + c)] = (double)w[c * k + i];
         weights[c * (p + 1) + p] = (double)constant[c];
     }
 }

@@ -97,12 +97,6 @@ void lsq_multiply(int m, int n, int k, const float *a, int lda, const float *b, 
                 ldc);
 }
 
-bool lsq_eigenvectors(double *matrix, int n, double *values)
-{
-    prepare();
-    return LAPACKE_dsyevd(LAPACK_ROW_MAJOR, 'V', 'L', n, matrix, n, values) == 0;
-}
-
 void lsq_product(bool turn_a, bool turn_b, int m, int n, int k, const double *a, const double *b,
                  double *c)
 {

@@ -31,10 +31,6 @@ bool lsq_invert_lower(double *factor, int n);
 void lsq_multiply(int m, int n, int k, const float *a, int lda, const float *b, int ldb, float *c,
                   int ldc);
 
-// Eigenvalues of the symmetric n x n matrix, ascending, and its eigenvectors in the columns of the
-// matrix. False: no memory.
-bool lsq_eigenvectors(double *matrix, int n, double *values);
-
 // c[m][n] = a b, or the transposes of what is stored: a is [m][k], turned [k][m]; b is [k][n],
 // turned [n][k].
 void lsq_product(bool turn_a, bool turn_b, int m, int n, int k, const double *a, const double *b,

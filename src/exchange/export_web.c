@@ -17,6 +17,7 @@
 enum { TRIALS = 24, CORRECTIONS = 5, TRIAL_PIXELS = 1 << 19, DEFAULT_PLANES = 27 };
 
 #define LEAST_STEP 1e-4
+#define FIRST_STEP 0.045
 #define MOST_STEP  8.0
 
 struct maker {
@@ -24,6 +25,7 @@ struct maker {
     struct planes planes, sample;
     struct plan plan;
     bool all;  // the number of planes was asked for
+    const char *path;
     double step;
 };
 
@@ -40,38 +42,59 @@ static double decibel(double error)
 // Quality 80 is a step of 0.045, about 11 codes; ten less doubles it.
 static double step_of_quality(int quality)
 {
-    return 0.045 * exp2((80 - quality) / 10.0);
+    return FIRST_STEP * exp2((80 - quality) / 10.0);
 }
 
-// What a step gives: bytes per pixel, or with `psnr` the expected decibels below the target.
-static relume_status try_step(const struct maker *m, double step, bool psnr, double *value)
+// What a step gives: the logarithm of the bytes per pixel, or with `psnr` the expected decibels.
+// Both fall with the step, nearly along lines.
+static relume_status try_step(const struct maker *m, double log_step, bool psnr, double *value)
 {
     struct web_folder w = {.plan = &m->plan, .planes = m->sample.data ? &m->sample : &m->planes};
-    const relume_status status = web_encode(&w, step, m->all, m->e->params->threads);
-    *value = psnr ? -decibel(w.error) : (double)w.bytes / pixels_of(w.planes);
+    const relume_status status = web_encode(&w, exp(log_step), m->all, m->e->params->threads);
+    *value = psnr ? decibel(w.error) : log((double)w.bytes / pixels_of(w.planes));
     web_folder_free(&w);
     return status;
 }
 
-// Bytes fall with the step: the smallest step whose bytes are at most `target`. Errors rise: the
-// largest step whose -dB are at most `target`.
+struct bracket {
+    double low, high;              // logarithms of steps
+    double low_value, high_value;  // NaN while not tried
+};
+
+// The secant's step, or the middle where an end is not known or the secant hugs an end.
+static double next_step(const struct bracket *b, double target)
+{
+    const double share = (b->low_value - target) / (b->low_value - b->high_value);
+    return b->low + (b->high - b->low) * (share > 0.02 && share < 0.98 ? share : 0.5);
+}
+
+// The step at which the value comes down to `target`: the largest that is still above (psnr), the
+// smallest that is not (bytes).
 static relume_status search(struct maker *m, bool psnr, double target)
 {
-    double low = log(LEAST_STEP), high = log(MOST_STEP), at = log(0.045);
-    for (int i = 0; i < TRIALS && high - low > 0.004; i++) {
+    struct bracket b = {log(LEAST_STEP), log(MOST_STEP), (double)NAN, (double)NAN};
+    double at = log(FIRST_STEP);
+    for (int i = 0; i < TRIALS && b.high - b.low > 0.004; i++) {
         double value;
-        const relume_status status = try_step(m, exp(at), psnr, &value);
+        const relume_status status = try_step(m, at, psnr, &value);
         if (status)
             return status;
         if (!log_progress(m->e->log, "trials", (double)i / TRIALS))
             return RELUME_ECANCEL;
-        if ((value > target) == psnr)
-            high = at;
-        else
-            low = at;
-        at = (low + high) / 2.0;
+        if (value > target) {
+            b.low = at;
+            b.low_value = value;
+        } else {
+            b.high = at;
+            b.high_value = value;
+        }
+        if (fabs(value - target) < (psnr ? 0.003 : 0.002) && (value > target) == psnr)
+            break;
+        at = isnan(b.low_value)    ? fmax(at - 1.4, (b.low + at) / 2.0)
+             : isnan(b.high_value) ? fmin(at + 1.4, (b.high + at) / 2.0)
+                                   : next_step(&b, target);
     }
-    m->step = psnr ? exp(low) : exp(high);
+    m->step = exp(psnr ? b.low : b.high);
     return RELUME_OK;
 }
 
@@ -89,7 +112,7 @@ static relume_status encode_whole(struct maker *m, struct web_folder *w)
         m->step = fmin(m->step * pow(found / target, 1.3) * 1.002, MOST_STEP);
     }
     return log_fail(m->e->log, RELUME_EDATA,
-                    "%g bytes a pixel cannot be reached; found at least %.3f", target,
+                    "%s: %g bytes a pixel cannot be reached; found at least %.3f", m->path, target,
                     (double)w->bytes / pixels_of(&m->planes));
 }
 
@@ -108,7 +131,7 @@ static relume_status measure_folder(const struct maker *m, const char *path,
 static relume_status attempt(struct maker *m, struct web_folder *w, double aim, const char *path,
                              struct relume_export_report *report)
 {
-    relume_status status = aim > 0.0 ? search(m, true, -aim) : RELUME_OK;
+    relume_status status = aim > 0.0 ? search(m, true, aim) : RELUME_OK;
     if (!status)
         status = encode_whole(m, w);
     if (!status)
@@ -137,8 +160,8 @@ static relume_status make_folder(struct maker *m, const char *path,
         aim += target - report->psnr_db + 0.01;
     }
     return log_fail(m->e->log, RELUME_EDATA,
-                    "%s: %g dB cannot be reached in this form; found at most %.2f dB", path, target,
-                    report->psnr_db);
+                    "%s: %g dB cannot be reached in this form; found at most %.2f dB", m->path,
+                    target, report->psnr_db);
 }
 
 static relume_status choose_functions(const struct export *e, struct functions *f)
@@ -186,7 +209,7 @@ static relume_status choose_step(struct maker *m)
 {
     const struct relume_export_params *p = m->e->params;
     if (p->bytes_per_pixel > 0.0)
-        return search(m, false, p->bytes_per_pixel);
+        return search(m, false, log(p->bytes_per_pixel));
     m->step = step_of_quality(p->quality ? p->quality : 80);
     return RELUME_OK;
 }
@@ -194,7 +217,7 @@ static relume_status choose_step(struct maker *m)
 relume_status export_web(const struct export *e, const char *path,
                          struct relume_export_report *report)
 {
-    struct maker m = {.e = e};
+    struct maker m = {.e = e, .path = path};
     outdir *dir = NULL;
     relume_status status = outdir_open(&dir, path, e->params->force, e->log);
     if (!status)

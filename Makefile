@@ -33,13 +33,13 @@ once     = $(eval $1 := $$(shell $2))$($1)
 EXR      = $(call once,EXR,pkg-config --cflags OpenEXR)
 OIIO     = $(call once,OIIO,pkg-config --cflags OpenImageIO)
 GLFW     = $(call once,GLFW,pkg-config --cflags glfw3)
-PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenImageIO OpenEXR openblas jansson)
+PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenImageIO OpenEXR openblas jansson libjpeg)
 LIBS     = -Wl,--as-needed $(PKG_LIBS) -llapacke -lembree3 -lm
 GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 
 LIB_C    := $(wildcard src/base/*.c src/math/*.c src/image/*.c src/capture/*.c src/scene/*.c \
-            src/coder/*.c src/pack/*.c src/relight/*.c src/view/*.c src/frame/*.c)
+            src/coder/*.c src/pack/*.c src/exchange/*.c src/relight/*.c src/view/*.c src/frame/*.c)
 LIB_CXX  := $(wildcard src/image/*.cpp)
 CLI_C    := $(wildcard src/cli/*.c)
 VIEWER_C := $(wildcard viewer/*.c)

@@ -246,6 +246,12 @@ struct relume_codes {
     const int *book_codes;         // [books]
 };
 
+// Codes that are there already, of any positive scales, as what a file is written from: the codes
+// come back as they are. Of `params` log and scratch are used. RELUME_EIO, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_coefficients_keep(relume_coefficients **out,
+                                                     const struct relume_codes *codes,
+                                                     const struct relume_encode_params *params);
+
 #ifdef __cplusplus
 }
 #endif

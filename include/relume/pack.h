@@ -41,7 +41,7 @@ struct relume_pack_contents {
     struct relume_geometry geometry;
     int views;
     const struct relume_pack_view *view;  // [views]
-    struct relume_encode_report report;   // over all views
+    struct relume_encode_report report;   // over all views; NaN: not known
 };
 struct relume_pack_params {
     const struct relume_log *log;

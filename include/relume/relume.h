@@ -6,6 +6,7 @@
 #include <relume/capture.h>
 #include <relume/codebook.h>
 #include <relume/coder.h>
+#include <relume/exchange.h>
 #include <relume/frame.h>
 #include <relume/image.h>
 #include <relume/lights.h>

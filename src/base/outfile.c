@@ -10,6 +10,7 @@
 #include <libgen.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -92,6 +93,25 @@ int scratch_open(const char *near)
     free(name);
     free(copy);
     return fd;
+}
+
+void *scratch_map(const char *near, size_t size)
+{
+    const int fd = scratch_open(near);
+    if (fd < 0)
+        return NULL;
+    errno = posix_fallocate(fd, 0, (off_t)size);
+    void *memory = errno ? MAP_FAILED : mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+    const int error = errno;
+    close(fd);
+    errno = error;
+    return memory == MAP_FAILED ? NULL : memory;
+}
+
+void scratch_unmap(void *memory, size_t size)
+{
+    if (memory)
+        munmap(memory, size);
 }
 
 // A new file with the permissions that the user's mask leaves; mkstemp would make it private.

@@ -37,4 +37,9 @@ int scratch_open(const char *near);
 bool scratch_write(int fd, const void *bytes, size_t size, off_t offset);
 bool scratch_read(int fd, void *bytes, size_t size, off_t offset);
 
+// Zeroed scratch memory that lives in an unlinked file beside `near`, so that the system may write
+// it out; its space is taken at once. NULL with errno set. Ends with scratch_unmap.
+void *scratch_map(const char *near, size_t size);
+void scratch_unmap(void *memory, size_t size);
+
 #endif

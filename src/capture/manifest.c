@@ -1,12 +1,12 @@
-// manifest.c - capture.json, read and written; the one file that knows jansson
+// manifest.c - capture.json, read and written
 #include "capture/manifest.h"
 
+#include "base/json.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"
 #include "math/vec.h"
 
-#include <jansson.h>
 #include <libgen.h>
 #include <stdio.h>
 #include <string.h>
@@ -28,40 +28,25 @@ static relume_status wrong(const struct parser *p, const char *where, const char
     return log_fail(p->log, RELUME_EDATA, "%s: %s; expected %s", p->path, where, expected);
 }
 
-static bool numbers(const json_t *value, double *out, size_t count)
-{
-    if (!json_is_array(value) || json_array_size(value) != count)
-        return false;
-    for (size_t i = 0; i < count; i++) {
-        const json_t *v = json_array_get(value, i);
-        if (!json_is_number(v) || !isfinite(json_number_value(v)))
-            return false;
-        out[i] = json_number_value(v);
-    }
-    return true;
-}
-
 // An optional member: absent leaves `out` as it is.
-static relume_status get_numbers(const struct parser *p, const json_t *object, const char *key,
+static relume_status get_numbers(const struct parser *p, const jvalue *object, const char *key,
                                  double *out, size_t count)
 {
-    const json_t *value = json_object_get(object, key);
+    const jvalue *value = jvalue_member(object, key);
     if (!value)
         return RELUME_OK;
-    if (count == 1 && json_is_number(value)) {
-        out[0] = json_number_value(value);
+    if (count == 1 && jvalue_number(value, out))
         return RELUME_OK;
-    }
     char expected[32];
     snprintf(expected, sizeof expected, "%zu number%s", count, count == 1 ? "" : "s");
-    return numbers(value, out, count) ? RELUME_OK : wrong(p, key, expected);
+    return jvalue_numbers(value, out, count) ? RELUME_OK : wrong(p, key, expected);
 }
 
 // A file name as a path from the working folder.
-static relume_status get_path(const struct parser *p, const json_t *value, const char *where,
+static relume_status get_path(const struct parser *p, const jvalue *value, const char *where,
                               const char **out)
 {
-    const char *text = json_string_value(value);
+    const char *text = jvalue_text(value);
     if (!text || !*text)
         return wrong(p, where, "a file name");
     *out = text[0] == '/' ? arena_text(&p->d->arena, text)
@@ -70,18 +55,18 @@ static relume_status get_path(const struct parser *p, const json_t *value, const
 }
 
 // The same for a member that may be absent or null.
-static relume_status get_plane(const struct parser *p, const json_t *object, const char *key,
+static relume_status get_plane(const struct parser *p, const jvalue *object, const char *key,
                                const char **out)
 {
-    const json_t *value = json_object_get(object, key);
-    return !value || json_is_null(value) ? RELUME_OK : get_path(p, value, key, out);
+    const jvalue *value = jvalue_member(object, key);
+    return !value || jvalue_is_null(value) ? RELUME_OK : get_path(p, value, key, out);
 }
 
-static relume_status read_vectors(const struct parser *p, const json_t *array, const char *what,
+static relume_status read_vectors(const struct parser *p, const jvalue *array, const char *what,
                                   bool unit, struct relume_vec3 **out, int *count)
 {
     char where[64];
-    const size_t n = json_array_size(array);
+    const size_t n = jvalue_count(array);
     if (n < 1 || n > (size_t)p->limits.max_lights)
         return wrong(p, what, "an array of [x, y, z], not empty and within the limits");
     struct relume_vec3 *v = arena_array(&p->d->arena, n, sizeof *v);
@@ -90,7 +75,7 @@ static relume_status read_vectors(const struct parser *p, const json_t *array, c
     for (size_t i = 0; i < n; i++) {
         double xyz[3];
         snprintf(where, sizeof where, "%s[%zu]", what, i);
-        if (!numbers(json_array_get(array, i), xyz, 3))
+        if (!jvalue_numbers(jvalue_item(array, i), xyz, 3))
             return wrong(p, where, "three finite numbers");
         v[i] = vec3_of(xyz[0], xyz[1], xyz[2]);
         if (unit && !direction_normalise(&v[i]))
@@ -107,9 +92,9 @@ static bool is_intensity(double v)
     return v >= 1e-30 && v <= 1e30;
 }
 
-static relume_status read_intensities(const struct parser *p, const json_t *array, int lights)
+static relume_status read_intensities(const struct parser *p, const jvalue *array, int lights)
 {
-    if (json_array_size(array) != (size_t)lights)
+    if (jvalue_count(array) != (size_t)lights)
         return wrong(p, "lights.intensities", "one [r, g, b] for every light");
     struct draft *d = p->d;
     d->intensities = arena_array(&d->arena, (size_t)lights, sizeof *d->intensities);
@@ -117,7 +102,7 @@ static relume_status read_intensities(const struct parser *p, const json_t *arra
         return RELUME_ENOMEM;
     for (int i = 0; i < lights; i++) {
         double rgb[3];
-        if (!numbers(json_array_get(array, (size_t)i), rgb, 3) || !is_intensity(rgb[0]) ||
+        if (!jvalue_numbers(jvalue_item(array, (size_t)i), rgb, 3) || !is_intensity(rgb[0]) ||
             !is_intensity(rgb[1]) || !is_intensity(rgb[2]))
             return wrong(p, "lights.intensities",
                          "three numbers from 1e-30 to 1e30 for every light");
@@ -127,14 +112,14 @@ static relume_status read_intensities(const struct parser *p, const json_t *arra
     return RELUME_OK;
 }
 
-static relume_status read_lights(const struct parser *p, const json_t *lights)
+static relume_status read_lights(const struct parser *p, const jvalue *lights)
 {
     struct draft *d = p->d;
-    const json_t *directions = json_object_get(lights, "directions");
-    const json_t *positions = json_object_get(lights, "positions");
-    if (json_is_null(positions))
+    const jvalue *directions = jvalue_member(lights, "directions");
+    const jvalue *positions = jvalue_member(lights, "positions");
+    if (jvalue_is_null(positions))
         positions = NULL;
-    const json_t *intensities = json_object_get(lights, "intensities");
+    const jvalue *intensities = jvalue_member(lights, "intensities");
     relume_status status = RELUME_OK;
     int n = 0;
     if (!directions && !positions)
@@ -150,39 +135,39 @@ static relume_status read_lights(const struct parser *p, const json_t *lights)
             return wrong(p, "lights", "as many positions as directions");
         n = m;
     }
-    if (!status && intensities && !json_is_null(intensities))
+    if (!status && intensities && !jvalue_is_null(intensities))
         status = read_intensities(p, intensities, n);
     d->m.lights = n;
     return status;
 }
 
-static relume_status read_geometry(const struct parser *p, const json_t *root)
+static relume_status read_geometry(const struct parser *p, const jvalue *root)
 {
     struct relume_geometry *g = &p->d->m.geometry;
     const char *projection = "planar";
-    const json_t *value = json_object_get(root, "projection");
+    const jvalue *value = jvalue_member(root, "projection");
     if (value)
-        projection = json_string_value(value);
+        projection = jvalue_text(value);
     enum relume_projection kind;
     if (!projection || relume_projection_parse(&kind, projection))
         return wrong(p, "projection", "planar, slab, cylindrical, spherical or cube");
     *g = relume_geometry_default(kind, 1, 1);
 
-    const json_t *window = json_object_get(root, "window");
-    const json_t *slab = json_object_get(root, "slab");
-    const json_t *panorama = json_object_get(root, "panorama");
-    const char *camera = json_string_value(json_object_get(window, "camera"));
+    const jvalue *window = jvalue_member(root, "window");
+    const jvalue *slab = jvalue_member(root, "slab");
+    const jvalue *panorama = jvalue_member(root, "panorama");
+    const char *camera = jvalue_text(jvalue_member(window, "camera"));
     if (camera && strcmp(camera, "orthographic") && strcmp(camera, "perspective"))
         return wrong(p, "window.camera", "orthographic or perspective");
     g->perspective = camera && !strcmp(camera, "perspective");
-    p->d->has_window = json_object_get(window, "min") && json_object_get(window, "max");
+    p->d->has_window = jvalue_member(window, "min") && jvalue_member(window, "max");
     if (kind == RELUME_SLAB && !slab)
         return wrong(p, "slab", "an object with uv_plane_z, st_plane_z, st_min, st_max");
 
     double center[3] = {0.0, 0.0, 0.0};
     relume_status status = get_numbers(p, window, "min", g->window_min, 2);
     const struct {
-        const json_t *object;
+        const jvalue *object;
         const char *key;
         double *out;
         size_t count;
@@ -209,39 +194,39 @@ static relume_status read_geometry(const struct parser *p, const json_t *root)
     return RELUME_OK;
 }
 
-static relume_status read_view(const struct parser *p, const json_t *object, int index)
+static relume_status read_view(const struct parser *p, const jvalue *object, int index)
 {
     struct draft *d = p->d;
     struct relume_manifest_view *v = &d->view[index];
     char where[48];
     snprintf(where, sizeof where, "views[%d].images", index);
-    const json_t *images = json_object_get(object, "images");
-    if (!json_is_array(images))
+    const jvalue *images = jvalue_member(object, "images");
+    if (!jvalue_is_array(images))
         return wrong(p, where, "an array of file names");
-    if (json_array_size(images) != (size_t)d->m.lights)
+    if (jvalue_count(images) != (size_t)d->m.lights)
         return log_fail(p->log, RELUME_EDATA, "%s: %s; expected %d images for %d lights, found %zu",
-                        p->path, where, d->m.lights, d->m.lights, json_array_size(images));
+                        p->path, where, d->m.lights, d->m.lights, jvalue_count(images));
     v->images = arena_array(&d->arena, (size_t)d->m.lights, sizeof *v->images);
     if (!v->images)
         return RELUME_ENOMEM;
     relume_status status = RELUME_OK;
     for (int i = 0; !status && i < d->m.lights; i++)
-        status = get_path(p, json_array_get(images, (size_t)i), where, &v->images[i]);
+        status = get_path(p, jvalue_item(images, (size_t)i), where, &v->images[i]);
     if (!status)
         status = get_plane(p, object, "depth", &v->depth);
     if (!status)
         status = get_plane(p, object, "mask", &v->mask);
     if (status)
         return status;
-    if (d->m.geometry.projection == RELUME_SLAB && !json_object_get(object, "uv"))
+    if (d->m.geometry.projection == RELUME_SLAB && !jvalue_member(object, "uv"))
         return wrong(p, "views[].uv", "two numbers for every view of a slab");
     return get_numbers(p, object, "uv", v->uv, 2);
 }
 
-static relume_status read_views(const struct parser *p, const json_t *views)
+static relume_status read_views(const struct parser *p, const jvalue *views)
 {
     struct draft *d = p->d;
-    const size_t n = json_array_size(views);
+    const size_t n = jvalue_count(views);
     if (n < 1 || n > (size_t)p->limits.max_views)
         return wrong(p, "views", "an array of views, not empty and within the limits");
     d->view = arena_array(&d->arena, n, sizeof *d->view);
@@ -250,34 +235,34 @@ static relume_status read_views(const struct parser *p, const json_t *views)
     d->m.views = (int)n;
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < n; i++)
-        status = read_view(p, json_array_get(views, i), (int)i);
+        status = read_view(p, jvalue_item(views, i), (int)i);
     return status;
 }
 
-static relume_status read_root(const struct parser *p, const json_t *root)
+static relume_status read_root(const struct parser *p, const jvalue *root)
 {
-    const char *format = json_string_value(json_object_get(root, "format"));
+    const char *format = jvalue_text(jvalue_member(root, "format"));
     if (!format || strcmp(format, "relume-capture"))
         return wrong(p, "format", "\"relume-capture\"");
-    const json_t *version = json_object_get(root, "version");
-    if (!json_is_integer(version) || json_integer_value(version) < 1)
+    long long version;
+    if (!jvalue_integer(jvalue_member(root, "version"), &version) || version < 1)
         return wrong(p, "version", "1");
-    if (json_integer_value(version) > VERSION)
+    if (version > VERSION)
         return log_fail(p->log, RELUME_EDATA,
                         "%s: version %lld is newer than this program; expected %d", p->path,
-                        (long long)json_integer_value(version), VERSION);
+                        version, VERSION);
     struct draft *d = p->d;
-    const json_t *transfer = json_object_get(root, "transfer");
-    if (transfer && !json_is_null(transfer)) {
-        const char *text = json_string_value(transfer);
+    const jvalue *transfer = jvalue_member(root, "transfer");
+    if (transfer && !jvalue_is_null(transfer)) {
+        const char *text = jvalue_text(transfer);
         if (!text || relume_transfer_parse(&d->m.transfer, text))
             return wrong(p, "transfer", "linear, srgb or gamma:NUMBER");
     }
     relume_status status = read_geometry(p, root);
     if (!status)
-        status = read_lights(p, json_object_get(root, "lights"));
+        status = read_lights(p, jvalue_member(root, "lights"));
     if (!status)
-        status = read_views(p, json_object_get(root, "views"));
+        status = read_views(p, jvalue_member(root, "views"));
     d->m.directions = d->directions;
     d->m.positions = d->positions;
     d->m.intensities = (const float(*)[3])d->intensities;
@@ -285,24 +270,12 @@ static relume_status read_root(const struct parser *p, const json_t *root)
     return status;
 }
 
-static relume_status load_json(json_t **root, const char *path, const struct relume_log *log)
-{
-    json_error_t error;
-    *root = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
-    if (*root)
-        return RELUME_OK;
-    if (error.line < 0)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, error.text);
-    return log_fail(log, RELUME_EDATA, "%s: line %d; expected JSON, %s", path, error.line,
-                    error.text);
-}
-
 relume_status manifest_read(struct draft *out, const char *path, const struct relume_limits *limits,
                             const struct relume_log *log)
 {
     *out = (struct draft){0};
-    json_t *root;
-    relume_status status = load_json(&root, path, log);
+    jvalue *root;
+    relume_status status = jvalue_load(&root, path, log);
     if (status)
         return status;
     char *copy = mem_text(path);
@@ -313,7 +286,7 @@ relume_status manifest_read(struct draft *out, const char *path, const struct re
         status = RELUME_ENOMEM;
     }
     free(copy);
-    json_decref(root);
+    jvalue_free(&root);
     if (status)
         draft_free(out);
     return status;
@@ -324,14 +297,14 @@ relume_status manifest_directions(const char *path, struct relume_vec3 **out, in
 {
     *out = NULL;
     *n = 0;
-    json_t *root;
-    relume_status status = load_json(&root, path, log);
+    jvalue *root;
+    relume_status status = jvalue_load(&root, path, log);
     if (status)
         return status;
     struct draft draft = {0};
     char no_folder[] = ".";
     const struct parser p = {&draft, path, no_folder, limits_or_default(NULL), log};
-    const json_t *lights = json_object_get(root, "lights");
+    const jvalue *lights = jvalue_member(root, "lights");
     // The output of `relume lights --json` has the directions at its top.
     status = read_lights(&p, lights ? lights : root);
     if (!status) {
@@ -340,7 +313,7 @@ relume_status manifest_directions(const char *path, struct relume_vec3 **out, in
         status = *out ? RELUME_OK : RELUME_ENOMEM;
     }
     draft_free(&draft);
-    json_decref(root);
+    jvalue_free(&root);
     return status;
 }
 
@@ -348,11 +321,9 @@ relume_status manifest_directions(const char *path, struct relume_vec3 **out, in
 
 static void put_text(FILE *f, const char *text)
 {
-    json_t *string = json_string(text);
-    char *quoted = string ? json_dumps(string, JSON_ENCODE_ANY) : NULL;
+    char *quoted = jvalue_quote(text);
     fputs(quoted ? quoted : "\"\"", f);
     free(quoted);
-    json_decref(string);
 }
 
 static void put_vectors(FILE *f, const char *key, const struct relume_vec3 *v, int n)

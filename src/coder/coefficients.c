@@ -24,15 +24,13 @@ void relume_coefficients_destroy(relume_coefficients **coefficients)
     free(c);
 }
 
-relume_status coefficients_create(relume_coefficients **out, const relume_coder *coder,
-                                  const relume_capture *capture,
-                                  const struct relume_encode_params *p)
+relume_status coefficients_create(relume_coefficients **out, const relume_coder *coder, int width,
+                                  int height, const struct relume_encode_params *p)
 {
     const size_t planes = (size_t)relume_coder_info(coder)->planes;
     relume_coefficients *c = *out = mem_zeroed(1, sizeof *c);
     if (!c)
         return RELUME_ENOMEM;
-    const int height = relume_capture_height(capture);
     c->bands = (height + BAND_ROWS - 1) / BAND_ROWS;
     c->scale = mem_zeroed(planes, sizeof *c->scale);
     c->offset = mem_zeroed(planes, sizeof *c->offset);
@@ -40,7 +38,7 @@ relume_status coefficients_create(relume_coefficients **out, const relume_coder 
     c->fd = scratch_open(p->scratch);
     c->info = (struct relume_coefficients_info){
         .coder = coder,
-        .width = relume_capture_width(capture),
+        .width = width,
         .height = height,
         .planes = relume_coder_info(coder)->planes,
         .storage = p->storage ? p->storage : RELUME_STORE_8,
@@ -170,6 +168,51 @@ relume_status relume_coefficients_read(const relume_coefficients *coefficients, 
                               (uint8_t *)out + i * width * bytes);
     free(packed);
     return good ? RELUME_OK : RELUME_EIO;
+}
+
+// Codes wait as numbers whose bands have the codes' own step: quantising gives them back.
+static relume_status keep_row(relume_coefficients *c, const struct relume_codes *codes, int row,
+                              uint16_t *room)
+{
+    const size_t width = (size_t)codes->width, first = (size_t)row * width;
+    for (int p = 0; p < codes->planes; p++) {
+        const uint8_t *bytes = (const uint8_t *)codes->plane[p] + first;
+        const uint16_t *words = (const uint16_t *)codes->plane[p] + first;
+        uint16_t *to = room + (size_t)p * width;
+        for (size_t x = 0; x < width; x++)
+            to[x] = codes->storage == RELUME_STORE_8 ? bytes[x] : words[x];
+        c->band[row / BAND_ROWS * codes->planes + p] =
+            (struct range){codes->offset[p],
+                           (float)((double)codes->offset[p] + 65535.0 * (double)codes->scale[p])};
+    }
+    return scratch_write(c->fd, room, width * (size_t)codes->planes * sizeof *room,
+                         coefficients_offset(c, row))
+               ? RELUME_OK
+               : RELUME_EIO;
+}
+
+relume_status relume_coefficients_keep(relume_coefficients **out, const struct relume_codes *codes,
+                                       const struct relume_encode_params *params)
+{
+    struct relume_encode_params p = params ? *params : (struct relume_encode_params){0};
+    p.storage = codes->storage;
+    uint16_t *room = mem_array((size_t)codes->width * (size_t)codes->planes, sizeof *room);
+    relume_status status = coefficients_create(out, codes->coder, codes->width, codes->height, &p);
+    if (!status && !room)
+        status = RELUME_ENOMEM;
+    for (int i = 0; !status && i < codes->planes; i++) {
+        (*out)->scale[i] = codes->scale[i];
+        (*out)->offset[i] = codes->offset[i];
+    }
+    for (int row = 0; !status && row < codes->height; row++)
+        status = keep_row(*out, codes, row, room);
+    if (status == RELUME_EIO)
+        status = log_fail(p.log, RELUME_EIO, "%s: no room for temporary data; %s",
+                          p.scratch ? p.scratch : "$TMPDIR", strerror(errno));
+    free(room);
+    if (status)
+        relume_coefficients_destroy(out);
+    return status;
 }
 
 struct relume_encode_report relume_coefficients_report(const relume_coefficients *coefficients)

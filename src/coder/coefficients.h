@@ -25,9 +25,8 @@ struct relume_coefficients {
     struct relume_encode_report report;
 };
 
-relume_status coefficients_create(relume_coefficients **out, const relume_coder *coder,
-                                  const relume_capture *capture,
-                                  const struct relume_encode_params *p);
+relume_status coefficients_create(relume_coefficients **out, const relume_coder *coder, int width,
+                                  int height, const struct relume_encode_params *p);
 // Where the rows from `row` on lie in the scratch file.
 off_t coefficients_offset(const relume_coefficients *c, int row);
 // The value that a waiting number stands for is min + step * number.

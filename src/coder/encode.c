@@ -360,7 +360,8 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
         .images = m->view[view].images,
         .threads = p.threads,
     };
-    status = coefficients_create(&c, coder, capture, &p);
+    status = coefficients_create(&c, coder, relume_capture_width(capture),
+                                 relume_capture_height(capture), &p);
     e.out = c;
     if (!status)
         status = alloc_encoder(&e);

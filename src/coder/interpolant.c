@@ -6,8 +6,9 @@
 #include <string.h>
 
 const struct relume_interpolant *const relume_interpolants[] = {
-    &interpolant_chord,   &interpolant_angular, &interpolant_tps,      &interpolant_rbf,
-    &interpolant_natural, &interpolant_hsh,     &interpolant_delaunay, NULL,
+    &interpolant_chord,    &interpolant_angular,    &interpolant_tps,
+    &interpolant_rbf,      &interpolant_natural,    &interpolant_hsh,
+    &interpolant_delaunay, &interpolant_octahedral, NULL,
 };
 
 const struct relume_interpolant *relume_interpolant_find(const char *name)

@@ -11,6 +11,7 @@ extern const struct relume_interpolant interpolant_tps;
 extern const struct relume_interpolant interpolant_rbf;
 extern const struct relume_interpolant interpolant_hsh;
 extern const struct relume_interpolant interpolant_natural;
+extern const struct relume_interpolant interpolant_octahedral;
 
 // For the kernels (chord, angular, tps): the N x N matrix B by which light i, predicted from all
 // others, is missed by (B t)_i / B_ii (Dubrule 1983). False for the others.

@@ -127,3 +127,12 @@ void lsq_multiply(int m, int n, int k, const float *a, int lda, const float *b, 
     cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, n, k, 1.0f, a, lda, b, ldb, 0.0f, c,
                 ldc);
 }
+
+void lsq_product(bool turn_a, bool turn_b, int m, int n, int k, const double *a, const double *b,
+                 double *c)
+{
+    prepare();
+    cblas_dgemm(CblasRowMajor, turn_a ? CblasTrans : CblasNoTrans,
+                turn_b ? CblasTrans : CblasNoTrans, m, n, k, 1.0, a, turn_a ? m : k, b,
+                turn_b ? k : n, 0.0, c, n);
+}

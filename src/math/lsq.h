@@ -37,4 +37,9 @@ void lsq_multiply_double(int m, int n, int k, const double *a, const double *b, 
 void lsq_multiply(int m, int n, int k, const float *a, int lda, const float *b, int ldb, float *c,
                   int ldc);
 
+// c[m][n] = a b, or the transposes of what is stored: a is [m][k], turned [k][m]; b is [k][n],
+// turned [n][k].
+void lsq_product(bool turn_a, bool turn_b, int m, int n, int k, const double *a, const double *b,
+                 double *c);
+
 #endif

@@ -427,7 +427,8 @@ static bool add_preview(struct builder *b, const struct relume_pack_contents *c,
     add_int(part, list, ATTR_VIEWS, c->views);
     report[0] = (float)c->report.fit_rms;
     report[1] = (float)c->report.store_rms;
-    add_floats(part, list, ATTR_REPORT, report, 2);
+    if (isfinite(report[0]) && isfinite(report[1]))
+        add_floats(part, list, ATTR_REPORT, report, 2);
     if (p->view->books)
         add_int(part, list, ATTR_BOOKS, relume_books_info(p->view->books)->books);
     return describe_coder(b, part, list, c->coder) && describe_geometry(b, part, list, c);

@@ -1,0 +1,84 @@
+// exchange.h - formats of the field: .ptm, .rti, relight's folders for the web
+#ifndef RELUME_EXCHANGE_H
+#define RELUME_EXCHANGE_H
+
+#include <relume/base.h>
+#include <relume/coder.h>
+#include <relume/pack.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct relume_import_params {
+    const struct relume_log *log;
+    const struct relume_limits *limits;
+    enum relume_compression compression;
+    int threads;  // default: all cores
+};
+#define relume_import_params(...) (&(const struct relume_import_params){__VA_ARGS__})
+
+// Turn `path` (.ptm, .rti, .hsh, a relight folder or its info.json) into the relume file `out` that
+// relights as the format says. Codes stay as they are, but for those in YCC, which become 16-bit
+// RGB. Returns RELUME_EDATA, RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_import(const char *path, const char *out,
+                                          const struct relume_import_params *params);
+
+enum relume_exchange {
+    RELUME_EXCHANGE_RELIGHT = 0,  // info.json and plane JPEGs, for OpenLIME and relight
+    RELUME_EXCHANGE_PTM,          // .ptm, PTM_FORMAT_RGB
+    RELUME_EXCHANGE_LPTM,         // .ptm, PTM_FORMAT_LRGB
+    RELUME_EXCHANGE_RTI,          // .rti, hemispherical harmonics
+    RELUME_EXCHANGE_DEEPZOOM,     // as RELIGHT, the planes as DeepZoom tiles
+};
+// "relight", "ptm", "lptm", "rti", "deepzoom". RELUME_EINVAL when `name` is none of these.
+RELUME_RESULT relume_status relume_exchange_parse(enum relume_exchange *out, const char *name);
+
+// How the planes of RELIGHT and DEEPZOOM follow the light.
+enum relume_web_type {
+    RELUME_WEB_BILINEAR = 0,  // principal components, their weights in a grid over the hemisphere
+    RELUME_WEB_RBF,           // principal components, Gaussians around the lights
+    RELUME_WEB_PTM,           // biquadratic polynomials, 6 coefficients
+    RELUME_WEB_LPTM,          // the same for the luminance, times a colour
+    RELUME_WEB_HSH,           // hemispherical harmonics, 9 coefficients
+    RELUME_WEB_SH,            // spherical harmonics, 9 coefficients
+};
+// "bilinear", "rbf", "ptm", "lptm", "hsh", "sh". RELUME_EINVAL when `name` is none of these.
+RELUME_RESULT relume_status relume_web_type_parse(enum relume_web_type *out, const char *name);
+
+// Zero in a field means its default. Of bytes_per_pixel, psnr_db and quality at most one is given.
+struct relume_export_params {
+    const struct relume_log *log;
+    int view;                   // of a slab
+    enum relume_web_type type;  // RELIGHT, DEEPZOOM
+    int coefficients;           // planes of bilinear and rbf, at most 45, default: up to 27, as
+                                // many as are worth their bytes; terms of the other types
+    int resolution;             // bilinear: side of the grid of lights, [3, 33]; default 11
+    double bytes_per_pixel;     // of all plane JPEGs together, not exceeded
+    double psnr_db;             // against the file's own pictures under its lights, reached
+    int quality;                // [1, 100]; default 80
+    bool force;                 // replace an existing folder that is not empty
+    int threads;                // default: all cores
+};
+#define relume_export_params(...) (&(const struct relume_export_params){__VA_ARGS__})
+
+// What an export became; measured by reading it back, under at most 16 of the file's lights.
+struct relume_export_report {
+    int planes;
+    double bytes_per_pixel;  // of plane JPEGs, or of the file
+    double psnr_db;          // mean over the lights, 8-bit sRGB, against the file's own pictures
+    bool exact;              // the file's codes as they are
+};
+
+// Write view `params->view` of `pack` as a file or folder `path`, whole or not at all; `report` may
+// be NULL. Returns RELUME_EINVAL, RELUME_EDATA (panoramas; a target that cannot be reached),
+// RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_export(relume_pack *pack, const char *path,
+                                          enum relume_exchange format,
+                                          struct relume_export_report *report,
+                                          const struct relume_export_params *params);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

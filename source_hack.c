@@ -1,0 +1,236 @@
+#include "exchange/source.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/thread.h"
+#include "image/half.h"
+#include "math/lsq.h"
+#include "math/vec.h"
+
+#include <relume/lights.h>
+#include <relume/relight.h>
+#include <string.h>
+
+// More numbers than these are replaced by pictures under so many directions.
+enum { MOST_NUMBERS = 1200, STAND_INS = 96 };
+
+enum { MOST_WEIGHTS = 3 * 4096 };
+
+static bool is_srgb(const struct relume_codes *codes)
+{
+    return codes->domain == RELUME_DOMAIN_DISPLAY &&
+           (codes->display.curve == RELUME_CURVE_SRGB || codes->display.curve == RELUME_CURVE_AUTO);
+}
+
+static relume_status choose_lights(struct source *s)
+{
+    const struct relume_coder_info *info = relume_coder_info(s->codes->coder);
+    const bool stand_in = s->between == NULL && info->lights > STAND_INS;
+    s->lights = stand_in ? STAND_INS : info->lights;
+    s->light = mem_array((size_t)s->lights, sizeof *s->light);
+    if (!s->light)
+        return RELUME_ENOMEM;
+    if (stand_in)
+        return relume_lights_make(s->light, s->lights, relume_pattern_find("hammersley"),
+                                  relume_lights_params(.hemisphere = true));
+    memcpy(s->light, info->directions, (size_t)s->lights * sizeof *s->light);
+    return RELUME_OK;
+}
+
+relume_status source_open(struct source *s, const struct relume_codes *codes,
+                          const struct relume_log *log)
+{
+    *s =
+        (struct source){.codes = codes, .width = codes->width, .height = codes->height, .log = log};
+    const struct relume_coder_info *info = relume_coder_info(codes->coder);
+    s->numbers = info->joint ? info->coefficients : 3 * info->coefficients;
+    const relume_status status = choose_lights(s);
+    if (status || (is_srgb(codes) && s->numbers <= MOST_NUMBERS))
+        return status;
+    s->numbers = 3 * s->lights;
+    return relume_coder_create(
+        &s->between, &relume_basis_table, s->light, s->lights,
+        relume_coder_params(.log = log, .hemispherical = true, .decode = true));
+}
+
+void source_close(struct source *s)
+{
+    relume_coder_destroy(&s->between);
+    free(s->light);
+    *s = (struct source){0};
+}
+
+// ---------------------------------------------------------------- coefficients
+
+static void read_plane(const struct relume_codes *codes, int plane, size_t first, size_t n,
+                       float *out)
+{
+    const float scale = codes->scale[plane], offset = codes->offset[plane];
+    const uint8_t *bytes = (const uint8_t *)codes->plane[plane] + first;
+    const uint16_t *words = (const uint16_t *)codes->plane[plane] + first;
+    for (size_t i = 0; i < n; i++) {
+        const float code = codes->storage == RELUME_STORE_8    ? (float)bytes[i]
+                           : codes->storage == RELUME_STORE_16 ? (float)words[i]
+                                                               : float_from_half(words[i]);
+        out[i] = code * scale + offset;
+    }
+}
+
+// ---------------------------------------------------------------- pictures
+
+static relume_status picture_rows(const struct source *s, int row, int rows, float *out)
+{
+    struct relume_codes band = *s->codes;
+    const size_t code = band.storage == RELUME_STORE_8 ? 1 : 2;
+    const size_t n = (size_t)rows * (size_t)s->width, first = (size_t)row * (size_t)s->width;
+    const void **planes = mem_array((size_t)band.planes, sizeof *planes);
+    struct relume_image picture = {0};
+    if (!planes)
+        return RELUME_ENOMEM;
+    for (int p = 0; p < band.planes; p++)
+        planes[p] = (const char *)s->codes->plane[p] + first * code;
+    band.plane = planes;
+    band.height = rows;
+    relume_status status = RELUME_OK;
+    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    for (int i = 0; !status && i < s->lights; i++) {
+        const struct relume_light light = {.direction = s->light[i], .rgb = {1.0f, 1.0f, 1.0f}};
+        status = relume_relight(&picture, &band, &light, 1, relume_relight_params(.threads = 1));
+        for (size_t c = 0; !status && c < 3; c++) {
+            float *to = out + (3 * (size_t)i + c) * n;
+            for (size_t x = 0; x < n; x++) {
+                const float v = picture.data[3 * x + c];
+                to[x] = relume_transfer_encode(srgb, v < 0.0f ? 0.0f : v > 1.0f ? 1.0f : v);
+            }
+        }
+    }
+    relume_image_destroy(&picture);
+    free(planes);
+    return status;
+}
+
+relume_status source_rows(const struct source *s, int row, int rows, float *out)
+{
+    const size_t n = (size_t)rows * (size_t)s->width, first = (size_t)row * (size_t)s->width;
+    if (s->between)
+        return picture_rows(s, row, rows, out);
+    for (int p = 0; p < s->numbers; p++)
+        read_plane(s->codes, p, first, n, out + (size_t)p * n);
+    return RELUME_OK;
+}
+
+#include <math.h>
+#include <stdlib.h>
+static double *hk_inv; static int hk_n; static struct relume_vec3 *hk_l;
+static double hk_ang(struct relume_vec3 a, struct relume_vec3 b){double d=a.x*b.x+a.y*b.y+a.z*b.z; return acos(d>1?1:d<-1?-1:d);}
+static void hk_weights(const struct relume_coder_info *info, struct relume_vec3 l, float *w){
+ int n=info->lights,m=n+3; const struct relume_vec3*L=info->directions;
+ if(!hk_inv||hk_n!=n||hk_l!=L){ hk_n=n; hk_l=(void*)L; double*A=calloc((size_t)m*m*2,8);
+  for(int i=0;i<n;i++){for(int j=0;j<n;j++)A[i*2*m+j]=i==j?0:-hk_ang(L[i],L[j]); double p[3]={1,L[i].x,L[i].y}; for(int k=0;k<3;k++)A[i*2*m+n+k]=A[(n+k)*2*m+i]=p[k];}
+  for(int i=0;i<m;i++)A[i*2*m+m+i]=1;
+  for(int i=0;i<m;i++){int b=i;for(int r=i;r<m;r++)if(fabs(A[r*2*m+i])>fabs(A[b*2*m+i]))b=r; for(int k=0;k<2*m;k++){double t=A[i*2*m+k];A[i*2*m+k]=A[b*2*m+k];A[b*2*m+k]=t;} double d=A[i*2*m+i];for(int k=0;k<2*m;k++)A[i*2*m+k]/=d; for(int r=0;r<m;r++)if(r!=i){double f=A[r*2*m+i];if(f!=0)for(int k=0;k<2*m;k++)A[r*2*m+k]-=f*A[i*2*m+k];}}
+  hk_inv=malloc(sizeof(double)*m*m); for(int i=0;i<m;i++)for(int j=0;j<m;j++)hk_inv[i*m+j]=A[i*2*m+m+j]; free(A);}
+ for(int i=0;i<n;i++){double s=0;for(int j=0;j<m;j++){double r=j<n?-hk_ang(l,L[j]):j==n?1:j==n+1?l.x:l.y; s+=hk_inv[j*m+i]*r;} for(int c=0;c<3;c++)w[c*n+i]=(float)s;}
+}
+void source_weights(const struct source *s, struct relume_vec3 light, double *weights)
+{
+    float w[MOST_WEIGHTS], constant[3];
+    const relume_coder *coder = s->between ? s->between : s->codes->coder;
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    const int k = info->coefficients, p = s->numbers;
+    memset(weights, 0, 3 * (size_t)(p + 1) * sizeof *weights);
+    relume_coder_weights(coder, light, w, constant);
+    if(!strcmp(info->basis->name,"table")&&info->lights<400) hk_weights(info,light,w);
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < k; i++)
+            weights[c * (p + 1) + (info->joint ? i : 3 * i + c)] = (double)w[c * k + i];
+        weights[c * (p + 1) + p] = (double)constant[c];
+    }
+}
+
+// ---------------------------------------------------------------- statistics
+
+// Bands are shared out over a fixed number of sums, so that equal bits follow from any number of
+// threads.
+enum { SUMS = 16, BAND_PIXELS = 2048, SAMPLE_PIXELS = 1 << 19 };
+
+struct survey {
+    const struct source *s;
+    int rows, every;        // rows of a band; every how many bands one is read
+    double *sum, *product;  // [SUMS][P], [SUMS][P][P]
+    relume_status status[SUMS];
+};
+
+static void add_band(double *sum, double *product, const float *x, size_t n, int p, float *turned,
+                     float *gram)
+{
+    const size_t size = (size_t)p;
+    for (size_t i = 0; i < size; i++)
+        for (size_t j = 0; j < n; j++) {
+            sum[i] += (double)x[i * n + j];
+            turned[j * size + i] = x[i * n + j];
+        }
+    lsq_multiply(p, p, (int)n, x, (int)n, turned, p, gram, p);
+    for (size_t i = 0; i < size * size; i++)
+        product[i] += (double)gram[i];
+}
+
+static void survey_part(void *context, size_t item, int worker)
+{
+    (void)worker;
+    struct survey *v = context;
+    const struct source *s = v->s;
+    const size_t p = (size_t)s->numbers, n = (size_t)v->rows * (size_t)s->width;
+    float *x = mem_array(p * n, sizeof *x), *turned = mem_array(p * n, sizeof *turned);
+    float *gram = mem_array(p * p, sizeof *gram);
+    v->status[item] = x && turned && gram ? RELUME_OK : RELUME_ENOMEM;
+    for (int band = (int)item * v->every; !v->status[item] && band * v->rows < s->height;
+         band += SUMS * v->every) {
+        const int row = band * v->rows;
+        const int rows = s->height - row < v->rows ? s->height - row : v->rows;
+        v->status[item] = source_rows(s, row, rows, x);
+        if (!v->status[item])
+            add_band(v->sum + item * p, v->product + item * p * p, x,
+                     (size_t)rows * (size_t)s->width, s->numbers, turned, gram);
+    }
+    free(x);
+    free(turned);
+    free(gram);
+}
+
+static size_t surveyed_pixels(const struct survey *v)
+{
+    size_t rows = 0;
+    for (int row = 0; row < v->s->height; row += v->rows * v->every)
+        rows += (size_t)(v->s->height - row < v->rows ? v->s->height - row : v->rows);
+    return rows * (size_t)v->s->width;
+}
+
+relume_status source_statistics(const struct source *s, int threads, double *mean,
+                                double *covariance)
+{
+    const size_t p = (size_t)s->numbers, pixels = (size_t)s->width * (size_t)s->height;
+    struct survey v = {.s = s, .rows = BAND_PIXELS / s->width + 1};
+    v.every = (int)(pixels / SAMPLE_PIXELS) + 1;
+    v.sum = mem_zeroed(SUMS * p, sizeof *v.sum);
+    v.product = mem_zeroed(SUMS * p * p, sizeof *v.product);
+    relume_status status = v.sum && v.product ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        thread_for(threads, SUMS, survey_part, &v);
+    for (int i = 0; !status && i < SUMS; i++)
+        status = v.status[i];
+    const double n = (double)surveyed_pixels(&v);
+    for (size_t i = 0; !status && i < p; i++) {
+        mean[i] = 0.0;
+        for (size_t part = 0; part < SUMS; part++)
+            mean[i] += v.sum[part * p + i] / n;
+    }
+    for (size_t i = 0; !status && i < p * p; i++) {
+        covariance[i] = -mean[i / p] * mean[i % p];
+        for (size_t part = 0; part < SUMS; part++)
+            covariance[i] += v.product[part * p * p + i] / n;
+    }
+    free(v.sum);
+    free(v.product);
+    return status;
+}

@@ -1,0 +1,89 @@
+// json.c - the one file that knows jansson
+#include "base/json.h"
+
+#include "base/log.h"
+
+#include <jansson.h>
+#include <math.h>
+
+relume_status jvalue_load(jvalue **root, const char *path, const struct relume_log *log)
+{
+    json_error_t error;
+    *root = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
+    if (*root)
+        return RELUME_OK;
+    if (error.line < 0)
+        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, error.text);
+    return log_fail(log, RELUME_EDATA, "%s: line %d; expected JSON, %s", path, error.line,
+                    error.text);
+}
+
+void jvalue_free(jvalue **root)
+{
+    json_decref(*root);
+    *root = NULL;
+}
+
+const jvalue *jvalue_member(const jvalue *object, const char *key)
+{
+    return json_object_get(object, key);
+}
+
+const jvalue *jvalue_item(const jvalue *array, size_t index)
+{
+    return json_array_get(array, index);
+}
+
+const char *jvalue_text(const jvalue *value)
+{
+    return json_string_value(value);
+}
+
+bool jvalue_is_null(const jvalue *value)
+{
+    return json_is_null(value);
+}
+
+bool jvalue_is_array(const jvalue *value)
+{
+    return json_is_array(value);
+}
+
+size_t jvalue_count(const jvalue *array)
+{
+    return json_array_size(array);
+}
+
+bool jvalue_number(const jvalue *value, double *out)
+{
+    if (!json_is_number(value) || !isfinite(json_number_value(value)))
+        return false;
+    *out = json_number_value(value);
+    return true;
+}
+
+bool jvalue_integer(const jvalue *value, long long *out)
+{
+    if (!json_is_integer(value))
+        return false;
+    *out = json_integer_value(value);
+    return true;
+}
+
+bool jvalue_numbers(const jvalue *array, double *out, size_t count)
+{
+    if (!json_is_array(array) || json_array_size(array) != count)
+        return false;
+    for (size_t i = 0; i < count; i++)
+        if (!jvalue_number(json_array_get(array, i), &out[i]))
+            return false;
+    return true;
+}
+
+char *jvalue_quote(const char *text)
+{
+    json_t *string = json_string(text);
+    char *quoted = string ? json_dumps(string, JSON_ENCODE_ANY) : NULL;
+    json_decref(string);
+    return quoted;
+}

@@ -1,0 +1,30 @@
+// json.h - reading JSON; the folder's door to jansson
+#ifndef BASE_JSON_H
+#define BASE_JSON_H
+
+#include <relume/base.h>
+
+// A value inside a tree; belongs to the root. Every function takes NULL for "absent".
+typedef struct json_t jvalue;
+
+// The whole file; members that come twice are an error. RELUME_EDATA with a sentence.
+relume_status jvalue_load(jvalue **root, const char *path, const struct relume_log *log);
+void jvalue_free(jvalue **root);
+
+// NULL when absent or when the value is of another kind.
+const jvalue *jvalue_member(const jvalue *object, const char *key);
+const jvalue *jvalue_item(const jvalue *array, size_t index);
+const char *jvalue_text(const jvalue *value);
+bool jvalue_is_null(const jvalue *value);
+bool jvalue_is_array(const jvalue *value);
+size_t jvalue_count(const jvalue *array);
+
+// False unless `value` is a finite number, an integer, an array of `count` finite numbers.
+bool jvalue_number(const jvalue *value, double *out);
+bool jvalue_integer(const jvalue *value, long long *out);
+bool jvalue_numbers(const jvalue *array, double *out, size_t count);
+
+// `text` as a JSON string with its quotes, to be freed; NULL when it cannot be one.
+char *jvalue_quote(const char *text);
+
+#endif

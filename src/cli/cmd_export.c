@@ -1,0 +1,94 @@
+#include "cli.h"
+
+static const struct option options[] = {
+    {"-o", OPTION_TEXT, "OUT", "the file (.ptm, .rti) or folder to write", 0, 0},
+    {"--to", OPTION_TEXT, "FORMAT", "relight, ptm, lptm, rti or deepzoom; default: relight", 0, 0},
+    {"--type", OPTION_TEXT, "T", "relight, deepzoom: bilinear, rbf, ptm, lptm, hsh or sh", 0, 0},
+    {"--coefficients", OPTION_INT, "K",
+     "planes (bilinear, rbf; default: up to 27) or terms of the type", 1, 45},
+    {"--bytes-per-pixel", OPTION_NUMBER, "B", "size of all plane JPEGs, not exceeded", 0.001, 100},
+    {"--psnr", OPTION_NUMBER, "DB", "quality against the file's own pictures, reached", 1, 100},
+    {"--quality", OPTION_INT, "Q", "10 less doubles the quantiser step; default: 80", 1, 100},
+    {"--resolution", OPTION_INT, "R", "bilinear: side of the grid of lights; default: 11", 3, 33},
+    {"--view", OPTION_INT, "N", "which view of a slab; default: 0", 0, 65535},
+    {"--force", OPTION_FLAG, NULL, "replace a folder that is not empty", 0, 0},
+    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+};
+
+static void say_result(const struct args *args, const struct relume_export_report *r)
+{
+    char text[256];
+    if (r->exact)
+        snprintf(text, sizeof text, "%s: the file's codes as they are, %d planes",
+                 args_text(args, "-o", NULL), r->planes);
+    else
+        snprintf(text, sizeof text,
+                 "%s: %d planes, %.3f bytes per pixel; %.2f dB from the file's own pictures",
+                 args_text(args, "-o", NULL), r->planes, r->bytes_per_pixel, r->psnr_db);
+    args_log(args)->message(args_log(args)->user, RELUME_NOTE, text);
+}
+
+static relume_status parse(const struct args *args, enum relume_exchange *format,
+                           struct relume_export_params *p)
+{
+    static const char *const formats[] = {"relight", "ptm", "lptm", "rti", "deepzoom", NULL};
+    static const char *const types[] = {"bilinear", "rbf", "ptm", "lptm", "hsh", "sh", NULL};
+    const char *to = args_text(args, "--to", "relight"), *type = args_text(args, "--type", NULL);
+    if (!args_has(args, "-o"))
+        return usage_error("export: expected -o OUT");
+    if (relume_exchange_parse(format, to))
+        return unknown_name("--to", to, formats);
+    if (type && relume_web_type_parse(&p->type, type))
+        return unknown_name("--type", type, types);
+    const bool folder = *format == RELUME_EXCHANGE_RELIGHT || *format == RELUME_EXCHANGE_DEEPZOOM;
+    static const char *const only_folders[] = {"--type", "--bytes-per-pixel", "--psnr", "--quality",
+                                               "--resolution"};
+    for (int i = 0; !folder && i < 5; i++)
+        if (args_has(args, only_folders[i]))
+            return usage_error("%s: only for --to relight and deepzoom", only_folders[i]);
+    if (args_has(args, "--bytes-per-pixel") + args_has(args, "--psnr") +
+            args_has(args, "--quality") >
+        1)
+        return usage_error("export: expected one of --bytes-per-pixel, --psnr and --quality");
+    return RELUME_OK;
+}
+
+static relume_status run(const struct args *args)
+{
+    enum relume_exchange format;
+    struct relume_export_params p = {
+        .log = args_log(args),
+        .view = args_int(args, "--view", 0),
+        .coefficients = args_int(args, "--coefficients", 0),
+        .resolution = args_int(args, "--resolution", 0),
+        .bytes_per_pixel = args_number(args, "--bytes-per-pixel", 0.0),
+        .psnr_db = args_number(args, "--psnr", 0.0),
+        .quality = args_int(args, "--quality", 0),
+        .force = args_has(args, "--force"),
+        .threads = args_threads(args),
+    };
+    relume_status status = parse(args, &format, &p);
+    if (status)
+        return status;
+    relume_pack *pack;
+    struct relume_export_report report;
+    status = relume_pack_open(&pack, args_input(args, 0),
+                              relume_pack_params(.log = p.log, .threads = p.threads));
+    if (!status)
+        status = relume_export(pack, args_text(args, "-o", NULL), format, &report, &p);
+    relume_pack_destroy(&pack);
+    if (!status)
+        say_result(args, &report);
+    return status;
+}
+
+const struct command command_export = {
+    .name = "export",
+    .usage = "FILE -o OUT [OPTION ...]",
+    .summary = "write a relume file as .ptm, .rti or a folder that web viewers show",
+    .example = "relume export statue.exr --to relight -o web/statue --bytes-per-pixel 1",
+    .min_inputs = 1,
+    .max_inputs = 1,
+    .options = options,
+    .run = run,
+};

@@ -1,0 +1,91 @@
+// export.c - a view of a relume file in another format
+#include "exchange/export.h"
+
+#include "base/log.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "math/vec.h"
+
+static relume_status find(const char *const *names, const char *name, int *index)
+{
+    for (int i = 0; names[i]; i++)
+        if (!strcmp(names[i], name)) {
+            *index = i;
+            return RELUME_OK;
+        }
+    return RELUME_EINVAL;
+}
+
+relume_status relume_exchange_parse(enum relume_exchange *out, const char *name)
+{
+    static const char *const names[] = {"relight", "ptm", "lptm", "rti", "deepzoom", NULL};
+    int index = 0;
+    const relume_status status = find(names, name, &index);
+    *out = (enum relume_exchange)index;
+    return status;
+}
+
+relume_status relume_web_type_parse(enum relume_web_type *out, const char *name)
+{
+    static const char *const names[] = {"bilinear", "rbf", "ptm", "lptm", "hsh", "sh", NULL};
+    int index = 0;
+    const relume_status status = find(names, name, &index);
+    *out = (enum relume_web_type)index;
+    return status;
+}
+
+double export_light_spacing(const struct source *s)
+{
+    double sum = 0.0;
+    for (int i = 0; i < s->lights; i++) {
+        double nearest = 2.0;
+        for (int j = 0; j < s->lights; j++)
+            if (j != i)
+                nearest = fmin(nearest, vec3_length(vec3_sub(s->light[i], s->light[j])));
+        sum += nearest;
+    }
+    return sum / s->lights;
+}
+
+static relume_status check(const relume_pack *pack, const char *path,
+                           const struct relume_export_params *p)
+{
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    if (info->geometry.projection >= RELUME_CYLINDRICAL)
+        return log_fail(p->log, RELUME_EDATA,
+                        "%s: a panorama has no such format; expected a planar file or a slab",
+                        path);
+    if (p->view < 0 || p->view >= info->views)
+        return log_fail(p->log, RELUME_EINVAL, "view %d; expected 0 to %d", p->view,
+                        info->views - 1);
+    if ((p->bytes_per_pixel > 0.0) + (p->psnr_db > 0.0) + (p->quality > 0) > 1)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "expected at most one of bytes per pixel, PSNR and quality");
+    return RELUME_OK;
+}
+
+relume_status relume_export(relume_pack *pack, const char *path, enum relume_exchange format,
+                            struct relume_export_report *report,
+                            const struct relume_export_params *params)
+{
+    const struct relume_export_params p = params ? *params : (struct relume_export_params){0};
+    const struct relume_codes *codes;
+    struct relume_export_report found = {0};
+    struct source source = {0};
+    relume_status status = check(pack, path, &p);
+    if (!status)
+        status = relume_pack_codes(&codes, pack, p.view);
+    if (!status)
+        status = source_open(&source, codes, p.log);
+    const struct export e = {&source, &p, p.log, format == RELUME_EXCHANGE_DEEPZOOM};
+    if (!status)
+        status = format == RELUME_EXCHANGE_RELIGHT || format == RELUME_EXCHANGE_DEEPZOOM
+                     ? export_web(&e, path, &found)
+                     : export_legacy(&e, path, format, &found);
+    source_close(&source);
+    if (report)
+        *report = found;
+    return status;
+}

@@ -1,0 +1,241 @@
+// export_web.c - a folder of the size or quality that is asked for
+//
+// One number, the common quantiser step, decides both. Trials run on at most half a million pixels'
+// worth of block rows; the last steps are on the whole picture, so that a size is never exceeded
+// and a PSNR, measured on what was written, is reached.
+#include "exchange/export.h"
+#include "exchange/measure.h"
+#include "exchange/tiles.h"
+#include "exchange/web.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/outfile.h"
+
+#include <math.h>
+
+enum { TRIALS = 24, CORRECTIONS = 5, TRIAL_PIXELS = 1 << 19, DEFAULT_PLANES = 27 };
+
+#define LEAST_STEP 1e-4
+#define FIRST_STEP 0.045
+#define MOST_STEP  8.0
+
+struct maker {
+    const struct export *e;
+    struct planes planes, sample;
+    struct plan plan;
+    bool all;  // the number of planes was asked for
+    const char *path;
+    double step;
+};
+
+static double pixels_of(const struct planes *p)
+{
+    return (double)p->width * p->height;
+}
+
+static double decibel(double error)
+{
+    return error > 1e-20 ? -10.0 * log10(error / 3.0) : 200.0;
+}
+
+// Quality 80 is a step of 0.045, about 11 codes; ten less doubles it.
+static double step_of_quality(int quality)
+{
+    return FIRST_STEP * exp2((80 - quality) / 10.0);
+}
+
+// What a step gives: the logarithm of the bytes per pixel, or with `psnr` the expected decibels.
+// Both fall with the step, nearly along lines.
+static relume_status try_step(const struct maker *m, double log_step, bool psnr, double *value)
+{
+    struct web_folder w = {.plan = &m->plan, .planes = m->sample.data ? &m->sample : &m->planes};
+    const relume_status status = web_encode(&w, exp(log_step), m->all, m->e->params->threads);
+    *value = psnr ? decibel(w.error) : log((double)w.bytes / pixels_of(w.planes));
+    web_folder_free(&w);
+    return status;
+}
+
+struct bracket {
+    double low, high;              // logarithms of steps
+    double low_value, high_value;  // NaN while not tried
+};
+
+// The secant's step, or the middle where an end is not known or the secant hugs an end.
+static double next_step(const struct bracket *b, double target)
+{
+    const double share = (b->low_value - target) / (b->low_value - b->high_value);
+    return b->low + (b->high - b->low) * (share > 0.02 && share < 0.98 ? share : 0.5);
+}
+
+// The step at which the value comes down to `target`: the largest that is still above (psnr), the
+// smallest that is not (bytes).
+static relume_status search(struct maker *m, bool psnr, double target)
+{
+    struct bracket b = {log(LEAST_STEP), log(MOST_STEP), (double)NAN, (double)NAN};
+    double at = log(FIRST_STEP);
+    for (int i = 0; i < TRIALS && b.high - b.low > 0.004; i++) {
+        double value;
+        const relume_status status = try_step(m, at, psnr, &value);
+        if (status)
+            return status;
+        if (!log_progress(m->e->log, "trials", (double)i / TRIALS))
+            return RELUME_ECANCEL;
+        if (value > target) {
+            b.low = at;
+            b.low_value = value;
+        } else {
+            b.high = at;
+            b.high_value = value;
+        }
+        if (fabs(value - target) < (psnr ? 0.003 : 0.002) && (value > target) == psnr)
+            break;
+        at = isnan(b.low_value)    ? fmax(at - 1.4, (b.low + at) / 2.0)
+             : isnan(b.high_value) ? fmin(at + 1.4, (b.high + at) / 2.0)
+                                   : next_step(&b, target);
+    }
+    m->step = exp(psnr ? b.low : b.high);
+    return RELUME_OK;
+}
+
+// The whole picture at the step that was found, made coarser until it is as small as was asked.
+static relume_status encode_whole(struct maker *m, struct web_folder *w)
+{
+    const double target = m->e->params->bytes_per_pixel;
+    for (int i = 0; i <= CORRECTIONS; i++) {
+        const relume_status status = web_encode(w, m->step, m->all, m->e->params->threads);
+        const double found = (double)w->bytes / pixels_of(&m->planes);
+        if (status || !(target > 0.0) || found <= target)
+            return status;
+        if (m->step >= MOST_STEP)
+            break;
+        m->step = fmin(m->step * pow(found / target, 1.3) * 1.002, MOST_STEP);
+    }
+    return log_fail(m->e->log, RELUME_EDATA,
+                    "%s: %g bytes a pixel cannot be reached; found at least %.3f", m->path, target,
+                    (double)w->bytes / pixels_of(&m->planes));
+}
+
+static relume_status measure_folder(const struct maker *m, const char *path,
+                                    struct relume_export_report *report)
+{
+    struct foreign f;
+    relume_status status = web_read(&f, path, NULL, m->e->log);
+    if (!status)
+        status = measure_psnr(&report->psnr_db, &f, m->e->source, m->e->params->threads);
+    foreign_free(&f);
+    return status;
+}
+
+// One attempt: the folder is written and looked at.
+static relume_status attempt(struct maker *m, struct web_folder *w, double aim, const char *path,
+                             struct relume_export_report *report)
+{
+    relume_status status = aim > 0.0 ? search(m, true, aim) : RELUME_OK;
+    if (!status)
+        status = encode_whole(m, w);
+    if (!status)
+        status = web_write(w, path, m->e->params->quality, m->e->log);
+    if (!status)
+        status = measure_folder(m, path, report);
+    report->planes = web_planes(w);
+    report->bytes_per_pixel = (double)w->bytes / pixels_of(&m->planes);
+    return status;
+}
+
+static relume_status make_folder(struct maker *m, const char *path,
+                                 struct relume_export_report *report)
+{
+    const double target = m->e->params->psnr_db;
+    double aim = target;
+    for (int i = 0; i <= CORRECTIONS && !(i > 0 && m->step < 1.01 * LEAST_STEP); i++) {
+        struct web_folder w = {.plan = &m->plan, .planes = &m->planes};
+        relume_status status = attempt(m, &w, aim, path, report);
+        const bool reached = !(target > 0.0) || report->psnr_db >= target;
+        if (!status && reached && m->e->tiles)
+            status = tiles_write(&w, m->step, path, m->e->params->threads, m->e->log);
+        web_folder_free(&w);
+        if (status || reached)
+            return status;
+        aim += target - report->psnr_db + 0.01;
+    }
+    return log_fail(m->e->log, RELUME_EDATA,
+                    "%s: %g dB cannot be reached in this form; found at most %.2f dB", m->path,
+                    target, report->psnr_db);
+}
+
+static relume_status choose_functions(const struct export *e, struct functions *f)
+{
+    const struct relume_export_params *p = e->params;
+    static const enum function_kind kinds[] = {
+        [RELUME_WEB_BILINEAR] = FUNCTIONS_GRID, [RELUME_WEB_RBF] = FUNCTIONS_GAUSS,
+        [RELUME_WEB_PTM] = FUNCTIONS_PTM,       [RELUME_WEB_LPTM] = FUNCTIONS_PTM,
+        [RELUME_WEB_HSH] = FUNCTIONS_HSH,       [RELUME_WEB_SH] = FUNCTIONS_SH,
+    };
+    *f = (struct functions){.kind = kinds[p->type]};
+    if (f->kind == FUNCTIONS_GRID) {
+        f->resolution = p->resolution ? p->resolution : DEFAULT_RESOLUTION;
+        f->count = f->resolution * f->resolution;
+        return RELUME_OK;
+    }
+    if (f->kind == FUNCTIONS_GAUSS) {
+        f->lights = e->source->light;
+        f->count = e->source->lights;
+        f->sigma = export_light_spacing(e->source);
+        return RELUME_OK;
+    }
+    f->count = p->coefficients ? p->coefficients : f->kind == FUNCTIONS_PTM ? 6 : 9;
+    if (functions_has_count(f->kind, f->count))
+        return RELUME_OK;
+    return log_fail(e->log, RELUME_EINVAL, "%d coefficients; expected %s", f->count,
+                    f->kind == FUNCTIONS_PTM ? "3 or 6 for ptm" : "1, 4 or 9 for hsh and sh");
+}
+
+static relume_status make_plan(struct maker *m)
+{
+    const struct relume_export_params *p = m->e->params;
+    struct functions f;
+    const relume_status status = choose_functions(m->e, &f);
+    if (status)
+        return status;
+    m->all = p->coefficients != 0;
+    if (f.kind == FUNCTIONS_GRID || f.kind == FUNCTIONS_GAUSS)
+        return plan_components(&m->plan, m->e->source, &f,
+                               p->coefficients ? p->coefficients : DEFAULT_PLANES, p->threads);
+    return plan_fit(&m->plan, m->e->source, &f, p->type == RELUME_WEB_LPTM, p->threads);
+}
+
+static relume_status choose_step(struct maker *m)
+{
+    const struct relume_export_params *p = m->e->params;
+    if (p->bytes_per_pixel > 0.0)
+        return search(m, false, log(p->bytes_per_pixel));
+    m->step = step_of_quality(p->quality ? p->quality : 80);
+    return RELUME_OK;
+}
+
+relume_status export_web(const struct export *e, const char *path,
+                         struct relume_export_report *report)
+{
+    struct maker m = {.e = e, .path = path};
+    outdir *dir = NULL;
+    relume_status status = outdir_open(&dir, path, e->params->force, e->log);
+    if (!status)
+        status = make_plan(&m);
+    if (!status)
+        status = planes_make(&m.planes, &m.plan, e->source, path, e->params->threads);
+    const int every = status ? 1 : (int)(pixels_of(&m.planes) / TRIAL_PIXELS) + 1;
+    if (!status && every > 1)
+        status = planes_sample(&m.sample, &m.planes, every, path, e->log);
+    if (!status)
+        status = choose_step(&m);
+    if (!status)
+        status = make_folder(&m, outdir_path(dir), report);
+    if (!status)
+        status = outdir_commit(&dir);
+    outdir_abort(&dir);
+    planes_free(&m.planes);
+    planes_free(&m.sample);
+    plan_free(&m.plan);
+    return status;
+}

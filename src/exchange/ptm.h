@@ -1,0 +1,23 @@
+// ptm.h - polynomial texture maps: .ptm files, version 1.2 and before (Malzbender and Gelb 2001)
+#ifndef EXCHANGE_PTM_H
+#define EXCHANGE_PTM_H
+
+#include "exchange/foreign.h"
+
+// PTM_FORMAT_RGB, LRGB, JPEG_RGB and JPEG_LRGB. RELUME_EDATA with a sentence.
+relume_status ptm_read(struct foreign *out, const char *path, const struct relume_limits *limits,
+                       const struct relume_log *log);
+
+// Raw PTM_FORMAT_RGB (channels) or PTM_FORMAT_LRGB (luminance) of six terms whose codes have
+// ptm_quantiser's scales and offsets. RELUME_EIO.
+relume_status ptm_write(const struct foreign *f, const char *path, const struct relume_log *log);
+
+// A coefficient in 0..255 is (code - bias) * scale with a whole bias: the finest scale whose codes
+// hold [min, max].
+struct ptm_quantiser {
+    double scale;
+    int bias;
+};
+struct ptm_quantiser ptm_quantiser(double min, double max);
+
+#endif

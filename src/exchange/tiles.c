@@ -1,0 +1,200 @@
+#include "exchange/tiles.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/outfile.h"
+#include "base/thread.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+// Tiles of 256 pixels with their overlap: whole blocks.
+enum { TILE = 254, OVERLAP = 1 };
+
+// One level of one sheet.
+struct level {
+    struct sheet sheet;        // all of it
+    float *own[SHEET_PLANES];  // NULL for the finest, which is the planes' own
+    double step;
+    const char *folder;
+    int columns, rows;
+    relume_status *status;  // [columns x rows]
+    struct sheet_result *tile;
+};
+
+static int least(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+static int most(int a, int b)
+{
+    return a > b ? a : b;
+}
+
+static relume_status cut(const struct level *l, int column, int row, struct sheet *tile,
+                         float **room)
+{
+    const struct sheet *s = &l->sheet;
+    const int x = most(column * TILE - OVERLAP, 0), y = most(row * TILE - OVERLAP, 0);
+    *tile = *s;
+    tile->width = least((column + 1) * TILE + OVERLAP, s->width) - x;
+    tile->height = least((row + 1) * TILE + OVERLAP, s->height) - y;
+    const size_t width = (size_t)tile->width, pixels = width * (size_t)tile->height;
+    *room = mem_array(pixels * (size_t)s->planes, sizeof **room);
+    if (!*room)
+        return RELUME_ENOMEM;
+    for (int p = 0; p < s->planes; p++) {
+        float *to = *room + (size_t)p * pixels;
+        tile->plane[p] = to;
+        for (int i = 0; i < tile->height; i++)
+            memcpy(to + (size_t)i * width,
+                   s->plane[p] + (size_t)(y + i) * (size_t)s->width + (size_t)x,
+                   width * sizeof *to);
+    }
+    return RELUME_OK;
+}
+
+static void encode_tile(void *context, size_t item, int worker)
+{
+    (void)worker;
+    const struct level *l = context;
+    struct sheet tile;
+    float *room = NULL;
+    l->status[item] = cut(l, (int)item % l->columns, (int)item / l->columns, &tile, &room);
+    if (!l->status[item])
+        l->status[item] = sheet_encode(&l->tile[item], &tile, l->step);
+    free(room);
+}
+
+static relume_status make_folder(const char *path, const struct relume_log *log)
+{
+    return mkdir(path, 0777) && errno != EEXIST
+               ? log_fail(log, RELUME_EIO, "%s: cannot be created; %s", path, strerror(errno))
+               : RELUME_OK;
+}
+
+static relume_status write_tiles(const struct level *l, const struct relume_log *log)
+{
+    relume_status status = make_folder(l->folder, log);
+    for (int i = 0; !status && i < l->columns * l->rows; i++) {
+        char *name = mem_format("%s/%d_%d.jpg", l->folder, i % l->columns, i / l->columns);
+        status = name ? outfile_save(name, l->tile[i].bytes, l->tile[i].size, log) : RELUME_ENOMEM;
+        free(name);
+    }
+    return status;
+}
+
+static relume_status write_level(struct level *l, int threads, const struct relume_log *log)
+{
+    l->columns = (l->sheet.width + TILE - 1) / TILE;
+    l->rows = (l->sheet.height + TILE - 1) / TILE;
+    const size_t n = (size_t)l->columns * (size_t)l->rows;
+    l->status = mem_zeroed(n, sizeof *l->status);
+    l->tile = mem_zeroed(n, sizeof *l->tile);
+    relume_status status = l->status && l->tile ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        thread_for(threads, n, encode_tile, l);
+    for (size_t i = 0; !status && i < n; i++)
+        status = l->status[i];
+    if (!status)
+        status = write_tiles(l, log);
+    for (size_t i = 0; l->tile && i < n; i++)
+        free(l->tile[i].bytes);
+    free(l->tile);
+    free(l->status);
+    return status;
+}
+
+// Half the size, rounded up: the mean of the one to four values that a pixel covers.
+static float *halve(const float *from, int width, int height)
+{
+    const int w = (width + 1) / 2, h = (height + 1) / 2;
+    float *to = mem_array((size_t)w * (size_t)h, sizeof *to);
+    for (int y = 0; to && y < h; y++)
+        for (int x = 0; x < w; x++) {
+            const int right = least(2 * x + 1, width - 1), below = least(2 * y + 1, height - 1);
+            const float *a = from + (size_t)(2 * y) * (size_t)width;
+            const float *b = from + (size_t)below * (size_t)width;
+            to[(size_t)y * (size_t)w + (size_t)x] =
+                0.25f * (a[2 * x] + a[right] + b[2 * x] + b[right]);
+        }
+    return to;
+}
+
+static relume_status go_up(struct level *l)
+{
+    for (int p = 0; p < l->sheet.planes; p++) {
+        float *half = halve(l->sheet.plane[p], l->sheet.width, l->sheet.height);
+        if (!half)
+            return RELUME_ENOMEM;
+        free(l->own[p]);
+        l->own[p] = half;
+        l->sheet.plane[p] = half;
+    }
+    l->sheet.width = (l->sheet.width + 1) / 2;
+    l->sheet.height = (l->sheet.height + 1) / 2;
+    return RELUME_OK;
+}
+
+static relume_status write_dzi(const char *path, const struct sheet *s,
+                               const struct relume_log *log)
+{
+    char *text = mem_format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+                            "<Image xmlns=\"http://schemas.microsoft.com/deepzoom/2008\" "
+                            "Format=\"jpg\" Overlap=\"%d\" TileSize=\"%d\">\n"
+                            "  <Size Width=\"%d\" Height=\"%d\"/>\n</Image>\n",
+                            OVERLAP, TILE, s->width, s->height);
+    const relume_status status = text ? outfile_save(path, text, strlen(text), log) : RELUME_ENOMEM;
+    free(text);
+    return status;
+}
+
+// Level numbers count down to 0, where one pixel is left.
+static int finest_level(int width, int height)
+{
+    int level = 0;
+    for (int side = most(width, height); side > 1; side = (side + 1) / 2)
+        level++;
+    return level;
+}
+
+static relume_status write_sheet(const struct web_folder *w, int index, double step,
+                                 const char *path, int threads, const struct relume_log *log)
+{
+    struct level l = {.sheet = web_sheet(w, index), .step = step};
+    char *dzi = mem_format("%s/plane_%d.dzi", path, index);
+    char *files = mem_format("%s/plane_%d_files", path, index);
+    char *jpeg = mem_format("%s/plane_%d.jpg", path, index);
+    relume_status status = dzi && files && jpeg ? write_dzi(dzi, &l.sheet, log) : RELUME_ENOMEM;
+    if (!status)
+        status = make_folder(files, log);
+    for (int level = finest_level(l.sheet.width, l.sheet.height); !status && level >= 0; level--) {
+        char *folder = mem_format("%s/%d", files, level);
+        l.folder = folder;
+        status = folder ? write_level(&l, threads, log) : RELUME_ENOMEM;
+        free(folder);
+        if (!status && level > 0)
+            status = go_up(&l);
+    }
+    if (!status && unlink(jpeg))
+        status = log_fail(log, RELUME_EIO, "%s: cannot be removed; %s", jpeg, strerror(errno));
+    for (int p = 0; p < SHEET_PLANES; p++)
+        free(l.own[p]);
+    free(dzi);
+    free(files);
+    free(jpeg);
+    return status;
+}
+
+relume_status tiles_write(const struct web_folder *w, double step, const char *path, int threads,
+                          const struct relume_log *log)
+{
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < w->kept; i++)
+        status = write_sheet(w, i, step, path, threads, log);
+    return status;
+}

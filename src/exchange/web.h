@@ -1,0 +1,34 @@
+// web.h - relight's folders for web viewers: info.json and plane_0.jpg, plane_1.jpg, ...
+#ifndef EXCHANGE_WEB_H
+#define EXCHANGE_WEB_H
+
+#include "exchange/planes.h"
+#include "exchange/sheet.h"
+
+// `path` is the folder or its info.json. ptm, hsh, sh, rbf and bilinear in rgb, lrgb, ycc, mrgb and
+// mycc, as far as the pairs exist. RELUME_EDATA with a sentence that names the file at fault.
+relume_status web_read(struct foreign *out, const char *path, const struct relume_limits *limits,
+                       const struct relume_log *log);
+
+// A folder being made: planes as JPEGs at a step, the number of planes by what they are worth.
+struct web_folder {
+    const struct plan *plan;
+    const struct planes *planes;
+    struct sheet_result *sheet;  // [sheets]
+    int sheets;                  // of the plan
+    int kept;                    // sheets worth their bytes
+    size_t bytes;                // of those
+    double error;                // expected squared error, summed over the channels
+};
+
+// Encode every sheet at `step`. `all`: keep even those that are not worth their bytes.
+relume_status web_encode(struct web_folder *w, double step, bool all, int threads);
+void web_folder_free(struct web_folder *w);
+// info.json and the JPEGs into the folder `path`. RELUME_EIO.
+relume_status web_write(const struct web_folder *w, const char *path, int quality,
+                        const struct relume_log *log);
+// Sheet `index` as it is encoded.
+struct sheet web_sheet(const struct web_folder *w, int index);
+int web_planes(const struct web_folder *w);
+
+#endif

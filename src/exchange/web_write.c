@@ -1,0 +1,240 @@
+// web_write.c - planes become a folder that relight and OpenLIME read
+#include "exchange/web.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/outfile.h"
+#include "base/thread.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static int min_of(int a, int b)
+{
+    return a < b ? a : b;
+}
+
+// The plan's plane that stands at place `p` of the folder: lrgb begins with the colour.
+static int plane_at(const struct plan *plan, int p)
+{
+    if (plan->form != FOREIGN_LUMINANCE)
+        return p;
+    return p < 3 ? plan->terms + p : p - 3;
+}
+
+struct sheet web_sheet(const struct web_folder *w, int index)
+{
+    const struct plan *plan = w->plan;
+    struct sheet s = {
+        .width = w->planes->width,
+        .height = w->planes->height,
+        .planes = min_of(plan->planes - 3 * index, SHEET_PLANES),
+        .ycbcr = plan->form == FOREIGN_CHANNELS,
+        .fixed = plan->form == FOREIGN_LUMINANCE && index == 0,
+    };
+    for (int c = 0; c < s.planes; c++) {
+        const int p = plane_at(plan, 3 * index + c);
+        s.plane[c] = planes_at(w->planes, p);
+        s.minimum[c] = w->planes->minimum[p];
+        s.maximum[c] = w->planes->maximum[p];
+        s.weight[c] = plan->weight[p];
+    }
+    return s;
+}
+
+struct job {
+    struct web_folder *w;
+    double step;
+    relume_status *status;
+};
+
+static void encode_one(void *context, size_t item, int worker)
+{
+    (void)worker;
+    const struct job *job = context;
+    const struct sheet s = web_sheet(job->w, (int)item);
+    free(job->w->sheet[item].bytes);
+    job->status[item] = sheet_encode(&job->w->sheet[item], &s, job->step);
+}
+
+// Joint planes come in the order of what they are worth: keep as many sheets as lower
+// error + price x bits.
+static void choose_kept(struct web_folder *w, double step, bool all)
+{
+    const struct plan *plan = w->plan;
+    const double pixels = (double)w->planes->width * w->planes->height;
+    const double price = SHEET_LAMBDA * step * step;
+    double left = plan->lost, best = 1e300, spent = 0.0, bits = 0.0;
+    for (int p = 0; p < plan->planes; p++)
+        left += plan->energy[p];
+    for (int i = 0; i < w->sheets; i++) {
+        bits += 8.0 * (double)w->sheet[i].size;
+        for (int c = 0; c < SHEET_PLANES; c++)
+            spent += w->sheet[i].distortion[c];
+        for (int p = 3 * i; p < min_of(3 * i + 3, plan->planes); p++)
+            left -= plan->energy[p];
+        const double cost = left + spent + price * bits / pixels;
+        if (cost < best || all || plan->form != FOREIGN_JOINT) {
+            best = cost;
+            w->kept = i + 1;
+            w->error = left + spent;
+        }
+    }
+    w->bytes = 0;
+    for (int i = 0; i < w->kept; i++)
+        w->bytes += w->sheet[i].size;
+}
+
+relume_status web_encode(struct web_folder *w, double step, bool all, int threads)
+{
+    w->sheets = (w->plan->planes + SHEET_PLANES - 1) / SHEET_PLANES;
+    if (!w->sheet)
+        w->sheet = mem_zeroed((size_t)w->sheets, sizeof *w->sheet);
+    struct job job = {w, step, mem_zeroed((size_t)w->sheets, sizeof *job.status)};
+    relume_status status = w->sheet && job.status ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        thread_for(threads, (size_t)w->sheets, encode_one, &job);
+    for (int i = 0; !status && i < w->sheets; i++)
+        status = job.status[i];
+    if (!status)
+        choose_kept(w, step, all);
+    free(job.status);
+    return status;
+}
+
+void web_folder_free(struct web_folder *w)
+{
+    for (int i = 0; w->sheet && i < w->sheets; i++)
+        free(w->sheet[i].bytes);
+    free(w->sheet);
+    *w = (struct web_folder){0};
+}
+
+int web_planes(const struct web_folder *w)
+{
+    return min_of(3 * w->kept, w->plan->planes);
+}
+
+// ---------------------------------------------------------------- info.json
+
+static void put_lights(FILE *f, const struct functions *functions)
+{
+    fputs("\"lights\": [", f);
+    for (int i = 0; i < functions->count; i++) {
+        const struct relume_vec3 l = functions->lights[i];
+        fprintf(f, "%s%.3f, %.3f, %.3f", i ? ", " : "", l.x, l.y, l.z);
+    }
+    fputs("],\n", f);
+}
+
+static int byte_of(double v)
+{
+    return (int)fmin(fmax(rint(v), 0.0), 255.0);
+}
+
+// 127 over the largest weight of the plane.
+static double range_of(const struct plan *plan, int plane)
+{
+    const int n = plan->functions.count;
+    double most = 1e-9;
+    for (int c = 0; c < 3; c++)
+        for (int j = 0; j < n; j++)
+            most = fmax(most, fabs(plan->transform[(c * plan->terms + plane) * n + j]));
+    return 127.0 / most;
+}
+
+static void put_basis(FILE *f, const struct plan *plan, int planes)
+{
+    const int n = plan->functions.count;
+    fputs("\"basis\": [", f);
+    for (int j = 0; j < n; j++)
+        for (int c = 0; c < 3; c++)
+            fprintf(f, "%s%d", j || c ? "," : "", byte_of(255.0 * plan->mean[c * n + j]));
+    for (int p = 0; p < planes; p++) {
+        const double range = range_of(plan, p);
+        for (int j = 0; j < n; j++)
+            for (int c = 0; c < 3; c++)
+                fprintf(f, ",%d",
+                        byte_of(127.0 + range * plan->transform[(c * plan->terms + p) * n + j]));
+    }
+    fputs("],\n", f);
+}
+
+enum column { SCALE, BIAS, RANGE };
+
+static double entry(const struct web_folder *w, enum column column, int p)
+{
+    const struct sheet_result *sheet = &w->sheet[p / SHEET_PLANES];
+    return column == SCALE  ? sheet->scale[p % SHEET_PLANES]
+           : column == BIAS ? sheet->bias[p % SHEET_PLANES]
+                            : range_of(w->plan, p);
+}
+
+static void put_column(FILE *f, const struct web_folder *w, const char *name, enum column column)
+{
+    fprintf(f, "\"%s\": [", name);
+    for (int p = 0; p < web_planes(w); p++)
+        fprintf(f, "%s%.8g", p ? ", " : "", entry(w, column, p));
+    fputs("]", f);
+}
+
+static void put_info(FILE *f, const struct web_folder *w, int quality)
+{
+    static const char *const kinds[] = {"ptm", "hsh", "sh", "rbf", "bilinear"};
+    static const char *const spaces[] = {"rgb", "lrgb", "mrgb"};
+    const struct plan *plan = w->plan;
+    const bool joint = plan->form == FOREIGN_JOINT;
+    fprintf(f, "{\n\"width\": %d, \"height\": %d,\n\"format\": \"jpg\",\n", w->planes->width,
+            w->planes->height);
+    fprintf(f, "\"type\": \"%s\",\n\"colorspace\": \"%s\",\n", kinds[plan->functions.kind],
+            spaces[plan->form]);
+    if (plan->functions.kind == FUNCTIONS_GRID)
+        fprintf(f, "\"resolution\": %d,\n", plan->functions.resolution);
+    if (plan->functions.kind == FUNCTIONS_GAUSS) {
+        fprintf(f, "\"sigma\": %.6g,\n", plan->functions.sigma);
+        put_lights(f, &plan->functions);
+    }
+    fprintf(f, "\"nplanes\": %d,\n\"quality\": %d,\n", web_planes(w), quality);
+    if (joint)
+        put_basis(f, plan, web_planes(w));
+    fputs("\"materials\": [\n{\n", f);
+    put_column(f, w, "scale", SCALE);
+    fputs(",\n", f);
+    put_column(f, w, "bias", BIAS);
+    if (joint) {
+        fputs(",\n", f);
+        put_column(f, w, "range", RANGE);
+    }
+    fputs("\n}\n]\n}\n", f);
+}
+
+static relume_status write_info(const struct web_folder *w, const char *path, int quality,
+                                const struct relume_log *log)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *f = open_memstream(&text, &size);
+    if (!f)
+        return RELUME_ENOMEM;
+    put_info(f, w, quality);
+    const bool failed = fclose(f) != 0;
+    char *name = mem_format("%s/info.json", path);
+    const relume_status status =
+        failed || !name ? RELUME_ENOMEM : outfile_save(name, text, size, log);
+    free(text);
+    free(name);
+    return status;
+}
+
+relume_status web_write(const struct web_folder *w, const char *path, int quality,
+                        const struct relume_log *log)
+{
+    relume_status status = write_info(w, path, quality, log);
+    for (int i = 0; !status && i < w->kept; i++) {
+        char *name = mem_format("%s/plane_%d.jpg", path, i);
+        status =
+            name ? outfile_save(name, w->sheet[i].bytes, w->sheet[i].size, log) : RELUME_ENOMEM;
+        free(name);
+    }
+    return status;
+}

@@ -1,0 +1,45 @@
+#!/bin/sh
+# An exported folder in a browser: a page of our own relights it by WebGL, software only, no network.
+. "$(dirname "$0")/lib.sh"
+browser=
+for b in chromium chromium-browser google-chrome; do
+    [ "$browser" ] || browser=$(command -v $b || true)
+done
+if [ -z "$browser" ]; then
+    skip 'exported folders in a browser' 'no chromium; make deps-web installs it'
+    finish
+    exit
+fi
+"$sphere" dome --size 64 --lights 40 --hemisphere --format png || exit 1
+"$RELUME" encode dome -o dome.exr --basis pca --coefficients 27 -q || exit 1
+"$RELUME" export dome.exr -o web --quality 90 2>note.txt || exit 1
+promised=$(sed -n 's/.*; \([0-9.]*\) dB from.*/\1/p' note.txt)
+"$RELUME" import web -o back.exr -q || exit 1
+n=0
+set --
+for light in '0 0 1' '0.6 0.3 0.7' '-0.5 0.7 0.3'; do
+    "$RELUME" relight back.exr -o back$n.png --light "dir $light" -q
+    "$RELUME" relight dome.exr -o own$n.png --light "dir $light" -q
+    set -- "$@" "$light" back$n.png "$light" own$n.png
+    n=$((n + 1))
+done
+"$TOP/tests/tools/web_page.sh" web "$@" >page.html
+mkdir home
+HOME=$work/home timeout 120 "$browser" --headless --no-sandbox --disable-gpu-sandbox --use-gl=angle \
+    --use-angle=swiftshader --enable-unsafe-swiftshader --user-data-dir="$work/home/profile" \
+    --virtual-time-budget=60000 --dump-dom "file://$work/page.html" >dom.txt 2>browser.txt
+if ! grep -q '^end' dom.txt; then
+    not_ok 'the page relights the folder' "$(grep -E '^(failed|light)' dom.txt; tail -n 3 browser.txt)"
+    finish
+    exit
+fi
+for l in 0 2 4; do
+    # codes and weights are the same; sums are rounded twice in single precision: a code apart
+    below "light $((l / 2)) in the browser is relume relight of the same codes" \
+        "$(sed -n "s/^light $l .* max \([0-9]*\) .*/\1/p" dom.txt)" 1
+    # the folder is lossy: no light is much worse than what export measured over all of them
+    above "light $((l / 2)) in the browser is the file's own picture" \
+        "$(sed -n "s/^light $((l + 1)) .* psnr \([0-9.]*\)/\1/p" dom.txt)" \
+        "$(awk -v p="$promised" 'BEGIN { print p - 3 }')"
+done
+finish

@@ -16,7 +16,8 @@ MAJOR := $(shell sed -n 's/^.define RELUME_VERSION "\([0-9]*\)\..*/\1/p' include
 CC       ?= gcc
 CXX      ?= g++
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wwrite-strings
-COMMON   := -g -fPIC -fvisibility=hidden -MMD -MP -pthread -ffp-contract=off $(WARNINGS)
+COMMON   := -g -fPIC -fvisibility=hidden -MMD -MP -pthread -ffp-contract=off \
+            -fno-math-errno -fno-trapping-math $(WARNINGS)
 release  := -O3 -DNDEBUG
 debug    := -O0
 asan     := -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer

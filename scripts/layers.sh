@@ -14,7 +14,7 @@ coder:base math image:base image capture coder
 pack:base image:base image capture coder view pack
 relight:base math image:base image coder relight
 view:base math image:base image relight view capture
-frame:base math:base image capture coder pack relight view frame
+frame:base math:base image capture coder pack relight view frame evaluate
 scene:base math image:base image lights capture scene
 cli:cli:*
 viewer:viewer:*

@@ -5,6 +5,7 @@
 #include <relume/base.h>
 #include <relume/capture.h>
 #include <relume/coder.h>
+#include <relume/evaluate.h>
 #include <relume/frame.h>
 #include <relume/image.h>
 #include <relume/lights.h>

@@ -10,7 +10,7 @@ rules="base::base
 math:base:base
 image:base math:base image
 capture:base math image:base image lights capture
-coder:base math image:base image capture coder
+coder:base math image:base image capture coder heldout
 pack:base image:base image capture coder view pack
 relight:base math image:base image coder relight
 view:base math image:base image relight view capture

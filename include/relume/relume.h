@@ -7,6 +7,7 @@
 #include <relume/coder.h>
 #include <relume/evaluate.h>
 #include <relume/frame.h>
+#include <relume/heldout.h>
 #include <relume/image.h>
 #include <relume/lights.h>
 #include <relume/pack.h>

@@ -321,7 +321,7 @@ static relume_status alloc_encoder(struct encoder *e)
         return RELUME_ENOMEM;
     for (size_t p = 0; p < planes; p++)
         e->total[p] = (struct range){FLT_MAX, -FLT_MAX};
-    return captured_create(&e->captured, e->coder);
+    return captured_create(&e->captured, e->coder, e->coder->world, e->lights);
 }
 
 static void free_encoder(struct encoder *e)

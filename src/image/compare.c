@@ -36,16 +36,6 @@ static bool is_inside(const struct job *j, size_t pixel)
     return !j->mask || j->mask->data[pixel] > 0.5f;
 }
 
-static inline float clip(float v)
-{
-    return v > 1.0f ? 1.0f : v > 0.0f ? v : 0.0f;
-}
-
-static inline float code_of(float display)
-{
-    return (float)(int)(display * 255.0f + 0.5f);
-}
-
 // Up to CIEDE_BLOCK pixels of both images.
 struct block {
     int n;
@@ -59,7 +49,7 @@ static void find_display(const struct job *j, struct block *b)
     for (int i = 0; i < 2; i++) {
         encoder_apply(&j->display, b->linear[i], b->display[i], 3 * b->n);
         for (int x = 0; x < 3 * b->n; x++)
-            b->display[i][x] = clip(b->display[i][x]);
+            b->display[i][x] = encoder_clip(b->display[i][x]);
     }
 }
 
@@ -69,8 +59,8 @@ static void find_lab(const struct job *j, const struct block *b, int i, struct l
     const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
     float rgb[3 * CIEDE_BLOCK];
     for (int x = 0; x < 3 * b->n; x++)
-        rgb[x] =
-            j->is_srgb ? clip(b->linear[i][x]) : relume_transfer_decode(srgb, b->display[i][x]);
+        rgb[x] = j->is_srgb ? encoder_clip(b->linear[i][x])
+                            : relume_transfer_decode(srgb, b->display[i][x]);
     lab_from_linear(j->tables, lab, rgb, b->n);
 }
 
@@ -97,7 +87,7 @@ static void add_pixel(struct sums *s, const struct block *b, int pixel)
     for (int x = 3 * pixel; x < 3 * pixel + 3; x++) {
         const double d = (double)b->linear[0][x] - (double)b->linear[1][x];
         const double e = (double)b->display[0][x] - (double)b->display[1][x];
-        const double f = (double)(code_of(b->display[0][x]) - code_of(b->display[1][x]));
+        const double f = encoder_code(b->display[0][x]) - encoder_code(b->display[1][x]);
         s->linear += d * d;
         s->display += e * e;
         s->coded += f * f;

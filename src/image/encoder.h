@@ -56,4 +56,15 @@ static inline void encoder_apply(const struct encoder *e, const float *linear, f
     }
 }
 
+static inline float encoder_clip(float v)
+{
+    return v > 1.0f ? 1.0f : v > 0.0f ? v : 0.0f;
+}
+
+// The 8-bit code of a clipped display value.
+static inline int encoder_code(float display)
+{
+    return (int)(display * 255.0f + 0.5f);
+}
+
 #endif

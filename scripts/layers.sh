@@ -53,6 +53,7 @@ only_in 'openexr' src/image/exr.c tests/tools/decode.c
 only_in 'OpenImageIO' src/image/oiio.cpp
 only_in 'embree' src/scene/trace.c
 only_in '(cblas|lapacke)' src/math/lsq.c
+only_in 'cairo' src/cli/plot.c
 only_in 'jansson' src/capture/manifest.c
 only_in 'GLFW' viewer/context_glfw.c
 only_in 'GL/osmesa' viewer/context_osmesa.c

@@ -14,11 +14,11 @@
 #include <unistd.h>
 
 extern const struct command command_synth, command_lights, command_encode, command_info,
-    command_relight, command_query, command_eval, command_compare;
+    command_relight, command_query, command_eval, command_compare, command_sweep;
 
 const struct command *const commands[] = {
     &command_synth, &command_lights, &command_encode,  &command_info, &command_relight,
-    &command_query, &command_eval,   &command_compare, NULL,
+    &command_query, &command_eval,   &command_compare, &command_sweep, NULL,
 };
 
 static const struct option common[] = {

@@ -132,14 +132,13 @@ static relume_status parse_grid(const struct args *args, struct grid *g)
     if (!status && sizes)
         status = parse_list("--coefficients", sizes, &g->sizes, g, accept_size);
     if (!status && interpolants)
-        status =
-            parse_list("--interpolant", interpolants, &g->interpolants, g, accept_interpolant);
+        status = parse_list("--interpolant", interpolants, &g->interpolants, g, accept_interpolant);
     if (!status)
         status = parse_list("--colour", args_text(args, "--colour", "rgb"), &g->colours, g,
                             accept_colour);
     if (!status)
-        status = parse_list("--bits", args_text(args, "--bits", "8"), &g->storages, g,
-                            accept_storage);
+        status =
+            parse_list("--bits", args_text(args, "--bits", "8"), &g->storages, g, accept_storage);
     if (!status)
         status =
             parse_list("--step", args_text(args, "--step", "plane"), &g->steps, g, accept_step);
@@ -321,7 +320,8 @@ static void skip_row(struct sweep_row *row, const struct listener *l, relume_sta
              *l->said ? l->said : relume_status_text(status));
 }
 
-static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n, struct listener *l)
+static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n,
+                                  struct listener *l)
 {
     struct relume_heldout_store store[MOST * MOST];
     struct relume_heldout_quality before, after[MOST * MOST];
@@ -329,8 +329,8 @@ static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n
     for (int i = 0; i < n; i++)
         store[i] = rows[i]->store;
     l->extent *= 0.9;
-    relume_status status = relume_heldout_measure(w->heldout, rows[0]->basis, &params, store, n,
-                                                  &before, after);
+    relume_status status =
+        relume_heldout_measure(w->heldout, rows[0]->basis, &params, store, n, &before, after);
     for (int i = 0; is_skipped(status) && i < n; i++)
         skip_row(rows[i], l, status);
     if (status)

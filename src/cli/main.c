@@ -17,7 +17,7 @@ extern const struct command command_synth, command_lights, command_encode, comma
     command_relight, command_query, command_eval, command_compare, command_sweep;
 
 const struct command *const commands[] = {
-    &command_synth, &command_lights, &command_encode,  &command_info, &command_relight,
+    &command_synth, &command_lights, &command_encode,  &command_info,  &command_relight,
     &command_query, &command_eval,   &command_compare, &command_sweep, NULL,
 };
 

@@ -21,6 +21,10 @@ struct box {
     double x0, y0, x1, y1;
 };
 
+struct line {
+    double x0, y0, x1, y1;
+};
+
 struct drawing {
     const struct plot *plot;
     cairo_t *c;
@@ -29,6 +33,8 @@ struct drawing {
     double y0, y1, y_step;
     struct box *taken;  // where labels may not go
     int taken_count;
+    struct line *line;  // of all series, on the page
+    int lines;
 };
 
 static double page_x(const struct drawing *d, double x)
@@ -90,12 +96,13 @@ static void choose_axes(struct drawing *d)
     const double margin = fmax(0.06 * (x1 - x0), 0.05);
     d->x0 = x0 - margin;
     d->x1 = x1 + margin;
-    d->y_step = nice_step(fmax(y1 - y0, 0.5), 7);
+    d->y_step = nice_step(fmax(y1 - y0, 0.5), 9);
     d->y0 = floor((y0 - 0.1 * d->y_step) / d->y_step) * d->y_step;
     d->y1 = ceil((y1 + 0.35 * d->y_step) / d->y_step) * d->y_step;
 }
 
-static void draw_grid_line(struct drawing *d, double x0, double y0, double x1, double y1, bool strong)
+static void draw_grid_line(struct drawing *d, double x0, double y0, double x1, double y1,
+                           bool strong)
 {
     set_colour(d->c, strong ? 0xd0d0d0 : 0xebebeb);
     cairo_set_line_width(d->c, 1.0);
@@ -227,18 +234,47 @@ static bool is_free(const struct drawing *d, struct box b)
     return true;
 }
 
-// Above, right, below or left of its point; nowhere when all four are taken.
+// Keep of [*from, *to] what satisfies p + t q >= 0.
+static void cut(double p, double q, double *from, double *to)
+{
+    if (q > 0.0)
+        *from = fmax(*from, -p / q);
+    else if (q < 0.0)
+        *to = fmin(*to, -p / q);
+    else if (p < 0.0)
+        *to = -1.0;
+}
+
+static bool is_crossed(const struct drawing *d, struct box b)
+{
+    for (int i = 0; i < d->lines; i++) {
+        const struct line *l = &d->line[i];
+        const double dx = l->x1 - l->x0, dy = l->y1 - l->y0;
+        double from = 0.0, to = 1.0;
+        cut(l->x0 - b.x0, dx, &from, &to);
+        cut(b.x1 - l->x0, -dx, &from, &to);
+        cut(l->y0 - b.y0, dy, &from, &to);
+        cut(b.y1 - l->y0, -dy, &from, &to);
+        if (from <= to)
+            return true;
+    }
+    return false;
+}
+
+// Above, right, below, left of its point, then between these; on a line only where nothing better
+// is free, and nowhere when all are taken.
 static void put_label(struct drawing *d, const struct plot_point *p)
 {
-    static const double side[4][2] = {{0.0, -1.0}, {1.0, 0.0}, {0.0, 1.0}, {-1.0, 0.0}};
+    static const double side[8][2] = {{0, -1},     {1, 0},     {0, 1},      {-1, 0},
+                                      {0.8, -0.8}, {0.8, 0.8}, {-0.8, 0.8}, {-0.8, -0.8}};
     const double x = page_x(d, p->x), y = page_y(d, p->y), w = text_width(d->c, p->label);
     const double h = 0.75 * SMALL;
-    for (int i = 0; i < 4; i++) {
-        const double cx = x + side[i][0] * (0.5 * w + RADIUS + 4.0);
-        const double cy = y + side[i][1] * (0.5 * h + RADIUS + 4.0);
+    for (int i = 0; i < 16; i++) {
+        const double cx = x + side[i % 8][0] * (0.5 * w + RADIUS + 4.0);
+        const double cy = y + side[i % 8][1] * (0.5 * h + RADIUS + 4.0);
         const struct box b = {cx - 0.5 * w - 1.0, cy - 0.5 * h - 1.0, cx + 0.5 * w + 1.0,
                               cy + 0.5 * h + 1.0};
-        if (!is_free(d, b))
+        if (!is_free(d, b) || (i < 8 && is_crossed(d, b)))
             continue;
         set_colour(d->c, 0x444444);
         put_text(d->c, cx - 0.5 * w, cy + 0.5 * h, 0.0, p->label);
@@ -247,10 +283,23 @@ static void put_label(struct drawing *d, const struct plot_point *p)
     }
 }
 
+static void find_lines(struct drawing *d, const struct plot_point *const *sorted)
+{
+    for (int i = 0; i < d->plot->points; i++)
+        for (int j = i + 1; j < d->plot->points; j++)
+            if (sorted[i]->series == sorted[j]->series) {
+                d->line[d->lines++] =
+                    (struct line){page_x(d, sorted[i]->x), page_y(d, sorted[i]->y),
+                                  page_x(d, sorted[j]->x), page_y(d, sorted[j]->y)};
+                break;
+            }
+}
+
 // Points on the hull are labelled first: they matter most.
 static void put_labels(struct drawing *d, const struct plot_point *const *sorted)
 {
     set_font(d->c, SMALL, false);
+    find_lines(d, sorted);
     for (int i = 0; i < d->plot->points; i++) {
         const double x = page_x(d, sorted[i]->x), y = page_y(d, sorted[i]->y);
         take(d, x - RADIUS - 1.0, y - RADIUS - 1.0, x + RADIUS + 1.0, y + RADIUS + 1.0);
@@ -350,7 +399,8 @@ static bool draw_to_stream(struct drawing *d, const struct plot_point *const *so
 {
     const bool png = format == PLOT_PNG;
     cairo_surface_t *surface =
-        png ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)(2.0 * WIDTH), (int)(2.0 * HEIGHT))
+        png ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)(2.0 * WIDTH),
+                                         (int)(2.0 * HEIGHT))
             : cairo_svg_surface_create_for_stream(add_bytes, s, WIDTH, HEIGHT);
     d->c = cairo_create(surface);
     if (png)
@@ -366,7 +416,8 @@ static bool draw_to_stream(struct drawing *d, const struct plot_point *const *so
     return good;
 }
 
-relume_status plot_draw(const struct plot *plot, enum plot_format format, char **bytes, size_t *size)
+relume_status plot_draw(const struct plot *plot, enum plot_format format, char **bytes,
+                        size_t *size)
 {
     *bytes = NULL;
     *size = 0;
@@ -376,10 +427,11 @@ relume_status plot_draw(const struct plot *plot, enum plot_format format, char *
         .plot = plot,
         .frame = {LEFT, TOP, WIDTH - LEGEND, HEIGHT - BOTTOM},
         .taken = calloc((size_t)plot->points, 2 * sizeof *d.taken),
+        .line = calloc((size_t)plot->points, sizeof *d.line),
     };
     const struct plot_point **sorted = calloc((size_t)plot->points, sizeof *sorted);
     struct stream s = {0};
-    bool good = d.taken && sorted;
+    bool good = d.taken && d.line && sorted;
     if (good) {
         for (int i = 0; i < plot->points; i++)
             sorted[i] = &plot->point[i];
@@ -388,6 +440,7 @@ relume_status plot_draw(const struct plot *plot, enum plot_format format, char *
         good = draw_to_stream(&d, sorted, format, &s);
     }
     free(d.taken);
+    free(d.line);
     free(sorted);
     if (!good) {
         free(s.bytes);

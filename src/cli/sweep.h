@@ -49,9 +49,9 @@ relume_status sweep_save(const struct sweep *sweep);
 
 // OUT.resume: finished rows, one a line, found again by what was swept over.
 typedef struct sweep_resume sweep_resume;
-// `captures` (NULL-terminated) are what the figures depend on: their images' names, sizes and times.
-// A file that something else wrote is left alone with a warning. RELUME_EIO when it cannot be
-// written, RELUME_ENOMEM.
+// `captures` (NULL-terminated) are what the figures depend on: their images' names, sizes and
+// times. A file that something else wrote is left alone with a warning. RELUME_EIO when it cannot
+// be written, RELUME_ENOMEM.
 relume_status sweep_resume_open(sweep_resume **out, struct sweep *sweep,
                                 const relume_capture *const *captures, uint64_t memory);
 // Keep one row that has just been measured. RELUME_EIO.

@@ -52,8 +52,8 @@ void sweep_print_text(const struct sweep *sweep, FILE *out)
                 relume_storage_name(r->store.storage), sweep_step_name(r));
         if (r->known)
             fprintf(out, "%6d %9.4f %9.3f %9.3f %9.3f %8.4f %7.2f  %s\n", r->planes,
-                    r->bytes_per_pixel, r->before_db, r->quality.psnr_db,
-                    r->quality.psnr_pooled_db, r->quality.ssim, r->seconds, r->on_hull ? "*" : "");
+                    r->bytes_per_pixel, r->before_db, r->quality.psnr_db, r->quality.psnr_pooled_db,
+                    r->quality.ssim, r->seconds, r->on_hull ? "*" : "");
         else
             fprintf(out, "skipped: %s\n", r->skipped);
     }
@@ -135,8 +135,7 @@ static void print_json_row(const struct sweep_row *r, FILE *out)
         json_text(out, r->interpolant->name);
     else
         fputs("null", out);
-    fprintf(out,
-            ", \"colour\": \"%s\", \"coefficients\": %d, \"bits\": \"%s\", \"step\": \"%s\"",
+    fprintf(out, ", \"colour\": \"%s\", \"coefficients\": %d, \"bits\": \"%s\", \"step\": \"%s\"",
             r->luminance ? "luminance" : "rgb", r->coefficients,
             relume_storage_name(r->store.storage), sweep_step_name(r));
     if (!r->known) {
@@ -236,6 +235,15 @@ static void add_point(struct diagram *d, const struct sweep *sweep, const struct
     snprintf(p->label, sizeof p->label, "%d", row->coefficients);
 }
 
+// The last two names of a path: files are often called capture.json or dirs.lp.
+static const char *short_path(const char *path)
+{
+    const char *last = strrchr(path, '/');
+    while (last && last > path && last[-1] != '/')
+        last--;
+    return last && last[1] ? last : path;
+}
+
 static void describe(const struct sweep *sweep, char *text, size_t size)
 {
     const char *bits = relume_storage_name(sweep->row[0].store.storage);
@@ -272,14 +280,13 @@ static relume_status save_diagram(const struct sweep *sweep)
 {
     struct diagram *d = calloc(1, sizeof *d);
     char title[160], subtitle[256];
-    const char *slash = strrchr(sweep->capture, '/');
     if (!d)
         return RELUME_ENOMEM;
     d->point = calloc((size_t)sweep->rows, sizeof *d->point);
     for (int i = 0; d->point && i < sweep->rows; i++)
         add_point(d, sweep, &sweep->row[i]);
     snprintf(title, sizeof title, "Rate and distortion on unseen lights: %.100s",
-             slash && slash[1] ? slash + 1 : sweep->capture);
+             short_path(sweep->capture));
     describe(sweep, subtitle, sizeof subtitle);
     const struct plot plot = {.title = title,
                               .subtitle = subtitle,

@@ -100,9 +100,10 @@ static bool parse_line(const char *line, struct kept *k)
     if (!last || sscanf(last, " %" SCNx64 "%n", &sum, &end) != 1 || last[end] != '\n' ||
         sum != line_sum(line, (size_t)(last - line)))
         return false;
-    return sscanf(line, "%" SCNx64 " %d %d %la %la %la %la %la %la %la %la", &k->key, &r->coefficients,
-                  &r->planes, &r->bytes, &r->bytes_per_pixel, &r->before_db, &r->quality.psnr_db,
-                  &r->quality.psnr_pooled_db, &r->quality.ssim, &r->seconds, &k->measured) == 11;
+    return sscanf(line, "%" SCNx64 " %d %d %la %la %la %la %la %la %la %la", &k->key,
+                  &r->coefficients, &r->planes, &r->bytes, &r->bytes_per_pixel, &r->before_db,
+                  &r->quality.psnr_db, &r->quality.psnr_pooled_db, &r->quality.ssim, &r->seconds,
+                  &k->measured) == 11;
 }
 
 static void find_row(const sweep_resume *r, struct sweep *sweep, const struct kept *k)
@@ -187,7 +188,8 @@ relume_status sweep_resume_keep(sweep_resume *resume, const struct sweep_row *ro
     const int n = snprintf(line, sizeof line, "%016" PRIx64 " %d %d %a %a %a %a %a %a %a %a",
                            row_key(resume, row), row->coefficients, row->planes, row->bytes,
                            row->bytes_per_pixel, row->before_db, row->quality.psnr_db,
-                           row->quality.psnr_pooled_db, row->quality.ssim, row->seconds, resume->sweep->measured);
+                           row->quality.psnr_pooled_db, row->quality.ssim, row->seconds,
+                           resume->sweep->measured);
     fprintf(resume->file, "%s %" PRIx64 "\n", line, line_sum(line, (size_t)n));
     return finish_writing(resume) ? RELUME_OK : cannot_write(resume);
 }

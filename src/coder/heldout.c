@@ -32,10 +32,11 @@ struct fold {
     struct captured unseen;
     int learned, judged;  // lights; the judged ones lie in the places behind the learned ones
     size_t planes;
-    float *value;           // [planes][pixels]
-    struct range *range;    // [chunks][planes]
-    float *scale, *offset;  // [views][planes]
-    float *work;            // [workers][work_size]
+    size_t room_planes, room_judged;  // that the arrays below have room for
+    float *value;                     // [planes][pixels]
+    struct range *range;              // [chunks][planes]
+    float *scale, *offset;            // [views][planes]
+    float *work;                      // [workers][work_size]
     size_t work_size;
     const struct relume_heldout_store *store;  // NULL: as they are
     struct encoder *display;
@@ -120,32 +121,8 @@ static relume_status make_coder(struct fold *f, const struct relume_basis *basis
     return status;
 }
 
-static relume_status make_room(struct fold *f)
+static void drop_room(struct fold *f)
 {
-    const relume_heldout *h = f->h;
-    const size_t workers = (size_t)thread_count(h->params.threads), chunks = (size_t)h->chunks;
-    const size_t judged = (size_t)f->judged;
-    f->planes = (size_t)relume_coder_info(f->coder)->planes;
-    const size_t predict = (f->planes + judged) * CODER_CHUNK, apply = coder_work(f->coder);
-    f->work_size = predict > apply ? predict : apply;
-    f->value = mem_array(f->planes, h->pixels * sizeof *f->value);
-    f->range = mem_array(chunks * f->planes, sizeof *f->range);
-    f->scale = mem_array((size_t)h->views * f->planes, sizeof *f->scale);
-    f->offset = mem_array((size_t)h->views * f->planes, sizeof *f->offset);
-    f->work = mem_array(workers * f->work_size, sizeof *f->work);
-    f->luma = mem_array(judged, h->pixels * sizeof *f->luma);
-    f->part = mem_array(chunks * judged, sizeof *f->part);
-    f->scratch = mem_array(workers * ssim_scratch(h->width), sizeof *f->scratch);
-    return f->value && f->range && f->scale && f->offset && f->work && f->luma && f->part &&
-                   f->scratch
-               ? RELUME_OK
-               : RELUME_ENOMEM;
-}
-
-static void drop_fold(struct fold *f)
-{
-    relume_coder_destroy(&f->coder);
-    captured_destroy(&f->unseen);
     free(f->value);
     free(f->range);
     free(f->scale);
@@ -154,6 +131,36 @@ static void drop_fold(struct fold *f)
     free(f->luma);
     free(f->part);
     free(f->scratch);
+}
+
+// Folds are about equally large: what one has used serves the next.
+static relume_status make_room(struct fold *f)
+{
+    const relume_heldout *h = f->h;
+    const size_t workers = (size_t)thread_count(h->params.threads), chunks = (size_t)h->chunks;
+    f->planes = (size_t)relume_coder_info(f->coder)->planes;
+    if (f->planes <= f->room_planes && (size_t)f->judged <= f->room_judged)
+        return RELUME_OK;
+    const size_t planes = f->planes > f->room_planes ? f->planes : f->room_planes;
+    const size_t judged = (size_t)f->judged > f->room_judged ? (size_t)f->judged : f->room_judged;
+    const size_t predict = (planes + judged) * CODER_CHUNK;
+    const size_t apply = 3 * (size_t)h->all * CODER_CHUNK;
+    drop_room(f);
+    f->work_size = predict > apply ? predict : apply;
+    f->value = mem_array(planes, h->pixels * sizeof *f->value);
+    f->range = mem_array(chunks * planes, sizeof *f->range);
+    f->scale = mem_array((size_t)h->views * planes, sizeof *f->scale);
+    f->offset = mem_array((size_t)h->views * planes, sizeof *f->offset);
+    f->work = mem_array(workers * f->work_size, sizeof *f->work);
+    f->luma = mem_array(judged, h->pixels * sizeof *f->luma);
+    f->part = mem_array(chunks * judged, sizeof *f->part);
+    f->scratch = mem_array(workers * ssim_scratch(h->width), sizeof *f->scratch);
+    f->room_planes = planes;
+    f->room_judged = judged;
+    return f->value && f->range && f->scale && f->offset && f->work && f->luma && f->part &&
+                   f->scratch
+               ? RELUME_OK
+               : RELUME_ENOMEM;
 }
 
 // ---------------------------------------------------------------- coefficients and their codes
@@ -167,14 +174,9 @@ static void find_coefficients(void *context, size_t item, int worker)
                 h->pixels, f->work + (size_t)worker * f->work_size);
     for (size_t p = 0; p < f->planes; p++) {
         float *v = f->value + p * h->pixels + c.first;
-        struct range r = {FLT_MAX, -FLT_MAX};
         for (size_t i = 0; h->mask && i < c.n; i++)
             v[i] = h->mask[c.first + i] > 0.5f ? v[i] : 0.0f;
-        for (size_t i = 0; i < c.n; i++) {
-            r.min = v[i] < r.min ? v[i] : r.min;
-            r.max = v[i] > r.max ? v[i] : r.max;
-        }
-        f->range[item * f->planes + p] = r;
+        f->range[item * f->planes + p] = range_of(v, c.n);
     }
 }
 
@@ -387,21 +389,36 @@ struct request {
     struct encoder *display;
 };
 
-static relume_status measure_fold(relume_heldout *h, int number, const struct request *r)
+static relume_status measure_fold(struct fold *f, int number, const struct request *r)
 {
-    const int judged = leave_out(h, number);
-    struct fold f = {.h = h, .learned = h->all - judged, .judged = judged, .display = r->display};
-    relume_status status = make_coder(&f, r->basis, &r->coder);
+    relume_heldout *h = f->h;
+    f->judged = leave_out(h, number);
+    f->learned = h->all - f->judged;
+    relume_status status = make_coder(f, r->basis, &r->coder);
     if (!status)
-        status = make_room(&f);
+        status = make_room(f);
     if (!status)
-        thread_for(h->params.threads, (size_t)h->chunks, find_coefficients, &f);
+        thread_for(h->params.threads, (size_t)h->chunks, find_coefficients, f);
     for (int i = -1; !status && i < r->stores; i++) {
-        f.store = i < 0 ? NULL : &r->store[i];
-        status = judge(&f, &r->total[i + 1]);
+        f->store = i < 0 ? NULL : &r->store[i];
+        status = judge(f, &r->total[i + 1]);
     }
-    drop_fold(&f);
-    put_back(h, number, judged);
+    relume_coder_destroy(&f->coder);
+    captured_destroy(&f->unseen);
+    put_back(h, number, f->judged);
+    return status;
+}
+
+static relume_status measure_folds(relume_heldout *h, const struct request *r)
+{
+    struct fold f = {.h = h, .display = r->display};
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < h->info.folds; i++) {
+        status = measure_fold(&f, i, r);
+        if (!status && !log_progress(r->coder.log, "judging", (i + 1.0) / h->info.folds))
+            status = RELUME_ECANCEL;
+    }
+    drop_room(&f);
     return status;
 }
 
@@ -449,12 +466,9 @@ relume_status relume_heldout_measure(relume_heldout *heldout, const struct relum
     relume_status status = stores && r.total && r.display ? RELUME_OK : RELUME_ENOMEM;
     if (!status && basis->learned)
         status = read_learning(heldout);
-    if (!status)
+    if (!status) {
         encoder_init(r.display, heldout->display);
-    for (int i = 0; !status && i < heldout->info.folds; i++) {
-        status = measure_fold(heldout, i, &r);
-        if (!status && !log_progress(r.coder.log, "judging", (i + 1.0) / heldout->info.folds))
-            status = RELUME_ECANCEL;
+        status = measure_folds(heldout, &r);
     }
     if (!status)
         *before = quality_of(&r.total[0]);

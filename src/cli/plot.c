@@ -170,11 +170,18 @@ static void draw_y_axis(struct drawing *d)
 
 // ---------------------------------------------------------------- points
 
-static void draw_mark(cairo_t *c, double x, double y, int series, double r)
+static unsigned colour_of(const struct drawing *d, int series)
 {
+    return colours[d->plot->series[series].colour % COLOURS];
+}
+
+static void draw_mark(const struct drawing *d, double x, double y, int series)
+{
+    cairo_t *c = d->c;
+    const double r = RADIUS;
     static const double angle[SHAPES] = {0.0, M_PI / 4.0, -M_PI / 2.0, 0.0, M_PI / 2.0};
     static const int corners[SHAPES] = {0, 4, 3, 4, 3};
-    const int shape = series % SHAPES;
+    const int shape = d->plot->series[series].mark % SHAPES;
     cairo_new_path(c);
     if (!corners[shape])
         cairo_arc(c, x, y, r, 0.0, 2.0 * M_PI);
@@ -183,7 +190,7 @@ static void draw_mark(cairo_t *c, double x, double y, int series, double r)
         cairo_line_to(c, x + 1.3 * r * cos(a), y + 1.3 * r * sin(a));
     }
     cairo_close_path(c);
-    set_colour(c, colours[series % COLOURS]);
+    set_colour(c, colour_of(d, series));
     cairo_fill_preserve(c);
     set_colour(c, 0xffffff);
     cairo_set_line_width(c, 0.8);
@@ -261,6 +268,19 @@ static bool is_crossed(const struct drawing *d, struct box b)
     return false;
 }
 
+// In the colour of its series, darker, on a white edge that parts it from lines.
+static void draw_label(cairo_t *c, double x, double y, const char *text, unsigned rgb)
+{
+    cairo_move_to(c, x, y);
+    cairo_text_path(c, text);
+    cairo_set_source_rgba(c, 1.0, 1.0, 1.0, 0.8);
+    cairo_set_line_width(c, 2.5);
+    cairo_stroke_preserve(c);
+    cairo_set_source_rgb(c, 0.7 * (rgb >> 16) / 255.0, 0.7 * (rgb >> 8 & 255) / 255.0,
+                         0.7 * (rgb & 255) / 255.0);
+    cairo_fill(c);
+}
+
 // Above, right, below, left of its point, then between these; on a line only where nothing better
 // is free, and nowhere when all are taken.
 static void put_label(struct drawing *d, const struct plot_point *p)
@@ -276,8 +296,7 @@ static void put_label(struct drawing *d, const struct plot_point *p)
                               cy + 0.5 * h + 1.0};
         if (!is_free(d, b) || (i < 8 && is_crossed(d, b)))
             continue;
-        set_colour(d->c, 0x444444);
-        put_text(d->c, cx - 0.5 * w, cy + 0.5 * h, 0.0, p->label);
+        draw_label(d->c, cx - 0.5 * w, cy + 0.5 * h, p->label, colour_of(d, p->series));
         take(d, b.x0, b.y0, b.x1, b.y1);
         return;
     }
@@ -295,6 +314,17 @@ static void find_lines(struct drawing *d, const struct plot_point *const *sorted
             }
 }
 
+// Of points in one place that say the same one label is enough.
+static bool is_said(const struct drawing *d, const struct plot_point *const *sorted, int i)
+{
+    for (int j = 0; j < i; j++)
+        if (!strcmp(sorted[j]->label, sorted[i]->label) &&
+            hypot(page_x(d, sorted[j]->x) - page_x(d, sorted[i]->x),
+                  page_y(d, sorted[j]->y) - page_y(d, sorted[i]->y)) < RADIUS)
+            return true;
+    return false;
+}
+
 // Points on the hull are labelled first: they matter most.
 static void put_labels(struct drawing *d, const struct plot_point *const *sorted)
 {
@@ -306,7 +336,7 @@ static void put_labels(struct drawing *d, const struct plot_point *const *sorted
     }
     for (int pass = 0; pass < 2; pass++)
         for (int i = 0; i < d->plot->points; i++)
-            if (sorted[i]->on_hull == !pass)
+            if (sorted[i]->on_hull == !pass && !is_said(d, sorted, i))
                 put_label(d, sorted[i]);
 }
 
@@ -316,12 +346,11 @@ static void draw_points(struct drawing *d, const struct plot_point *const *sorte
     cairo_set_line_width(d->c, 1.4);
     for (int s = 0; s < d->plot->series_count; s++) {
         draw_path(d, sorted, s);
-        set_colour(d->c, colours[s % COLOURS]);
+        set_colour(d->c, colour_of(d, s));
         cairo_stroke(d->c);
     }
     for (int i = 0; i < d->plot->points; i++)
-        draw_mark(d->c, page_x(d, sorted[i]->x), page_y(d, sorted[i]->y), sorted[i]->series,
-                  RADIUS);
+        draw_mark(d, page_x(d, sorted[i]->x), page_y(d, sorted[i]->y), sorted[i]->series);
     put_labels(d, sorted);
 }
 
@@ -330,17 +359,19 @@ static void draw_points(struct drawing *d, const struct plot_point *const *sorte
 static void draw_legend(struct drawing *d)
 {
     const double x = d->frame.x1 + 20.0;
+    const double room = (d->frame.y1 - d->frame.y0) / (d->plot->series_count + 1);
+    const double step = room < 20.0 ? room : 20.0;
     double y = d->frame.y0 + 8.0;
-    set_font(d->c, TEXT, false);
-    for (int s = 0; s < d->plot->series_count; s++, y += 20.0) {
-        set_colour(d->c, colours[s % COLOURS]);
+    set_font(d->c, step < 14.0 ? SMALL : TEXT, false);
+    for (int s = 0; s < d->plot->series_count; s++, y += step) {
+        set_colour(d->c, colour_of(d, s));
         cairo_set_line_width(d->c, 1.4);
         cairo_move_to(d->c, x, y);
         cairo_line_to(d->c, x + 24.0, y);
         cairo_stroke(d->c);
-        draw_mark(d->c, x + 12.0, y, s, RADIUS);
+        draw_mark(d, x + 12.0, y, s);
         set_colour(d->c, 0x222222);
-        put_text(d->c, x + 32.0, y + 4.0, 0.0, d->plot->series[s]);
+        put_text(d->c, x + 32.0, y + 4.0, 0.0, d->plot->series[s].name);
     }
     y += 4.0;
     cairo_set_source_rgba(d->c, 1.0, 0.83, 0.25, 0.55);

@@ -11,9 +11,14 @@ struct plot_point {
     char label[12];  // beside the point where there is room
 };
 
+struct plot_series {
+    char name[64];
+    int colour, mark;  // numbers; series that belong together share one of them
+};
+
 struct plot {
     const char *title, *subtitle, *x_label, *y_label;
-    const char *const *series;  // [series_count], for the legend
+    const struct plot_series *series;  // [series_count], in the order of the legend
     int series_count;
     const struct plot_point *point;  // points of a series are joined in the order of x
     int points;

@@ -185,63 +185,89 @@ void sweep_print_json(const struct sweep *sweep, FILE *out)
 enum { MOST_SERIES = 64 };
 
 struct diagram {
-    char name[MOST_SERIES][64];
-    const char *names[MOST_SERIES];
-    int series;
+    const struct sweep *sweep;
+    bool bits, steps;  // that rows differ in
+    struct plot_series series[MOST_SERIES];
+    char coder[MOST_SERIES][64], store[MOST_SERIES][64];  // what their names are made of
+    int series_count;
     struct plot_point *point;
     int points;
 };
 
-// What all rows share is not repeated in the legend.
-static void series_name(const struct sweep *sweep, const struct sweep_row *row, char *text,
-                        size_t size)
+static void find_differences(struct diagram *d)
 {
-    const struct sweep_row *first = &sweep->row[0];
-    bool bits = false, steps = false;
-    char coder[48];
-    for (int i = 0; i < sweep->rows; i++) {
-        bits |= sweep->row[i].store.storage != first->store.storage;
-        steps |= sweep->row[i].store.step != first->store.step;
+    const struct sweep_row *first = &d->sweep->row[0];
+    for (int i = 0; i < d->sweep->rows; i++) {
+        d->bits |= d->sweep->row[i].store.storage != first->store.storage;
+        d->steps |= d->sweep->row[i].store.step != first->store.step;
     }
+}
+
+// What all rows share is not repeated in the legend.
+static void store_name(const struct diagram *d, const struct sweep_row *row, char *text,
+                       size_t size)
+{
+    snprintf(text, size, "%s%s%s%s", d->bits ? ", " : "",
+             d->bits ? relume_storage_name(row->store.storage) : "", d->steps ? ", " : "",
+             d->steps ? sweep_step_name(row) : "");
+}
+
+// The place of `text` among the first `count` different texts; `count` when it is new.
+static int place_of(char (*texts)[64], int count, const char *text)
+{
+    int different = 0;
+    for (int i = 0; i < count; i++) {
+        bool seen = false;
+        for (int j = 0; j < i; j++)
+            seen |= !strcmp(texts[i], texts[j]);
+        if (!strcmp(texts[i], text) && !seen)
+            return different;
+        different += !seen;
+    }
+    return different;
+}
+
+// Coders differ by colour and mark; where they are stored in several ways, the mark tells the way.
+static int find_series(struct diagram *d, const struct sweep_row *row)
+{
+    char coder[64], store[64];
     sweep_coder_name(row, coder, sizeof coder);
-    snprintf(text, size, "%s%s%s%s", coder, bits ? ", " : "",
-             bits ? relume_storage_name(row->store.storage) : "",
-             steps ? (row->store.step == RELUME_STEP_COMMON ? ", common" : ", plane") : "");
-}
-
-static int find_series(struct diagram *d, const char *name)
-{
-    for (int i = 0; i < d->series; i++)
-        if (!strcmp(d->name[i], name))
+    store_name(d, row, store, sizeof store);
+    for (int i = 0; i < d->series_count; i++)
+        if (!strcmp(d->coder[i], coder) && !strcmp(d->store[i], store))
             return i;
-    if (d->series == MOST_SERIES)
+    if (d->series_count == MOST_SERIES)
         return MOST_SERIES - 1;
-    snprintf(d->name[d->series], sizeof d->name[0], "%s", name);
-    d->names[d->series] = d->name[d->series];
-    return d->series++;
+    const int n = d->series_count++;
+    struct plot_series *s = &d->series[n];
+    s->colour = place_of(d->coder, n, coder);
+    s->mark = d->bits || d->steps ? place_of(d->store, n, store) : s->colour;
+    snprintf(d->coder[n], sizeof d->coder[n], "%s", coder);
+    snprintf(d->store[n], sizeof d->store[n], "%s", store);
+    snprintf(s->name, sizeof s->name, "%.30s%.30s", coder, store);
+    return n;
 }
 
-static void add_point(struct diagram *d, const struct sweep *sweep, const struct sweep_row *row)
+static void add_point(struct diagram *d, const struct sweep_row *row)
 {
-    char name[64];
     if (!row->known || !(row->bytes_per_pixel > 0.0) || !isfinite(row->quality.psnr_db))
         return;
-    series_name(sweep, row, name, sizeof name);
     struct plot_point *p = &d->point[d->points++];
     *p = (struct plot_point){.x = row->bytes_per_pixel,
                              .y = row->quality.psnr_db,
-                             .series = find_series(d, name),
+                             .series = find_series(d, row),
                              .on_hull = row->on_hull};
     snprintf(p->label, sizeof p->label, "%d", row->coefficients);
 }
 
-// The last two names of a path: files are often called capture.json or dirs.lp.
+// The last three names of a path: files are often called capture.json or dirs.lp.
 static const char *short_path(const char *path)
 {
-    const char *last = strrchr(path, '/');
-    while (last && last > path && last[-1] != '/')
-        last--;
-    return last && last[1] ? last : path;
+    const char *from = path + strlen(path);
+    for (int names = 3; from > path; from--)
+        if (from[-1] == '/' && --names == 0)
+            break;
+    return from;
 }
 
 static void describe(const struct sweep *sweep, char *text, size_t size)
@@ -282,9 +308,11 @@ static relume_status save_diagram(const struct sweep *sweep)
     char title[160], subtitle[256];
     if (!d)
         return RELUME_ENOMEM;
+    d->sweep = sweep;
     d->point = calloc((size_t)sweep->rows, sizeof *d->point);
+    find_differences(d);
     for (int i = 0; d->point && i < sweep->rows; i++)
-        add_point(d, sweep, &sweep->row[i]);
+        add_point(d, &sweep->row[i]);
     snprintf(title, sizeof title, "Rate and distortion on unseen lights: %.100s",
              short_path(sweep->capture));
     describe(sweep, subtitle, sizeof subtitle);
@@ -292,8 +320,8 @@ static relume_status save_diagram(const struct sweep *sweep)
                               .subtitle = subtitle,
                               .x_label = "bytes per pixel and view (file)",
                               .y_label = "PSNR (dB)",
-                              .series = d->names,
-                              .series_count = d->series,
+                              .series = d->series,
+                              .series_count = d->series_count,
                               .point = d->point,
                               .points = d->points};
     relume_status status = d->point ? RELUME_OK : RELUME_ENOMEM;

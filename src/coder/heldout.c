@@ -443,10 +443,12 @@ static struct relume_heldout_quality quality_of(const struct total *t)
 
 static struct relume_heldout_store *copy_stores(const struct relume_heldout_store *store, int n)
 {
-    struct relume_heldout_store *s = mem_copy(store, (size_t)n, sizeof *store);
-    for (int i = 0; s && i < n; i++)
+    struct relume_heldout_store *s = mem_array((size_t)n, sizeof *s);
+    for (int i = 0; s && i < n; i++) {
+        s[i] = store[i];
         if (s[i].storage == RELUME_STORE_DEFAULT)
             s[i].storage = RELUME_STORE_8;
+    }
     return s;
 }
 

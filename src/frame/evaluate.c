@@ -103,17 +103,18 @@ static void load_image(void *context, size_t item, int worker)
         relume_capture_image(&e->image[item], e->capture, e->view, e->first + (int)item, NULL);
 }
 
-// What cannot be read is read again by the caller's thread, which may say why.
+// A broken image is read again by the caller's thread, which may say why.
 static relume_status load_ahead(struct evaluator *e, int count)
 {
     thread_for(e->params.threads, (size_t)count, load_image, e);
-    for (int i = 0; i < count; i++)
-        if (e->status[i]) {
-            relume_status status = relume_capture_image(&e->image[i], e->capture, e->view,
-                                                        e->first + i, e->params.log);
-            if (status)
-                return status;
-        }
+    for (int i = 0; i < count; i++) {
+        relume_status status = e->status[i];
+        if (status == RELUME_EDATA)
+            status = relume_capture_image(&e->image[i], e->capture, e->view, e->first + i,
+                                          e->params.log);
+        if (status)
+            return status;
+    }
     return RELUME_OK;
 }
 

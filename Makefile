@@ -16,7 +16,8 @@ MAJOR := $(shell sed -n 's/^.define RELUME_VERSION "\([0-9]*\)\..*/\1/p' include
 CC       ?= gcc
 CXX      ?= g++
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wwrite-strings
-COMMON   := -g -fPIC -fvisibility=hidden -MMD -MP -pthread -ffp-contract=off $(WARNINGS)
+COMMON   := -g -fPIC -fvisibility=hidden -MMD -MP -pthread -ffp-contract=off \
+            -fno-math-errno -fno-trapping-math $(WARNINGS)
 release  := -O3 -DNDEBUG
 debug    := -O0
 asan     := -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
@@ -34,7 +35,9 @@ EXR      = $(call once,EXR,pkg-config --cflags OpenEXR)
 OIIO     = $(call once,OIIO,pkg-config --cflags OpenImageIO)
 GLFW     = $(call once,GLFW,pkg-config --cflags glfw3)
 PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenImageIO OpenEXR openblas jansson libjpeg)
+CAIRO    = $(call once,CAIRO,pkg-config --cflags cairo)
 LIBS     = -Wl,--as-needed $(PKG_LIBS) -llapacke -lembree3 -lm
+CLI_LIBS = $(call once,CLI_LIBS,pkg-config --libs cairo)
 GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 
@@ -87,6 +90,7 @@ $B/obj/src/image/exr.o: own_flags = $(EXR)
 $B/obj/src/image/oiio.o: own_flags = $(OIIO)
 $B/obj/src/coder/kernels_avx2.o $B/obj/src/relight/kernels_avx2.o: own_flags = -mavx2 -mfma -mf16c
 $B/obj/src/%.o:               own_include = -Isrc
+$B/obj/src/cli/plot.o: own_flags = $(CAIRO)
 $B/obj/src/cli/%.o:           own_include = -Isrc/cli
 $B/obj/viewer/%.o:            own_include = -Iviewer
 $B/obj/viewer/context_glfw.o: own_flags = $(GLFW)
@@ -123,7 +127,7 @@ $B/librelume.so: $(LIB_O)
 	$(Q)ln -sfn $(@F) $@.$(MAJOR)
 $B/relume: $(CLI_O) $B/librelume.a
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS)
 $B/relume-view: $(VIEWER_O) $B/librelume.a
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS)

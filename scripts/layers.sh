@@ -10,12 +10,12 @@ rules="base::base
 math:base:base
 image:base math:base image
 capture:base math image:base image lights capture
-coder:base math image:base image capture codebook coder
+coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange
 relight:base math image:base image coder relight
 view:base math image:base image relight view capture
-frame:base math:base image capture coder pack relight view frame
+frame:base math:base image capture coder pack relight view frame evaluate
 scene:base math image:base image lights capture scene
 cli:cli:*
 viewer:viewer:*
@@ -56,6 +56,7 @@ only_in 'embree' src/scene/trace.c
 only_in '(cblas|lapacke)' src/math/lsq.c
 only_in 'jansson' src/base/json.c
 only_in 'jpeglib' src/image/jpeg.c
+only_in 'cairo' src/cli/plot.c
 only_in 'GLFW' viewer/context_glfw.c
 only_in 'GL/osmesa' viewer/context_osmesa.c
 only_in 'immintrin' src/relight/kernels_avx2.c src/coder/kernels_avx2.c

@@ -63,6 +63,11 @@ RELUME_API unsigned relume_cpu_features(void);
 // The number of cores that this process may use, at least 1.
 RELUME_API int relume_cpu_count(void);
 
+// Write a whole file: it appears under its name complete or not at all; devices and pipes are
+// written directly. RELUME_EIO with a sentence, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_file_save(const char *path, const void *bytes, size_t size,
+                                             const struct relume_log *log);
+
 // World axes: right-handed, x right, y up, z towards the viewer.
 // A light direction points from the scene TOWARDS the light.
 struct relume_vec3 {

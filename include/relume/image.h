@@ -75,6 +75,7 @@ struct relume_compare_params {
     const struct relume_image *mask;  // one channel, compare where > 0.5; NULL: everywhere
     struct relume_transfer display;   // default sRGB
     int threads;                      // default: all cores
+    bool no_ssim, no_delta_e;         // leave these out (NaN), they take most of the time
 };
 #define relume_compare_params(...) (&(const struct relume_compare_params){__VA_ARGS__})
 

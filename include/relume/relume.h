@@ -6,8 +6,10 @@
 #include <relume/capture.h>
 #include <relume/codebook.h>
 #include <relume/coder.h>
+#include <relume/evaluate.h>
 #include <relume/exchange.h>
 #include <relume/frame.h>
+#include <relume/heldout.h>
 #include <relume/image.h>
 #include <relume/lights.h>
 #include <relume/pack.h>

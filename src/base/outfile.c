@@ -241,6 +241,12 @@ void outfile_abort(outfile **file)
     free(f);
 }
 
+relume_status relume_file_save(const char *path, const void *bytes, size_t size,
+                               const struct relume_log *log)
+{
+    return outfile_save(path, bytes, size, log);
+}
+
 relume_status outfile_save(const char *path, const void *bytes, size_t size,
                            const struct relume_log *log)
 {

@@ -14,12 +14,13 @@
 #include <unistd.h>
 
 extern const struct command command_synth, command_lights, command_encode, command_info,
-    command_relight, command_query, command_eval, command_compare, command_import, command_export;
+    command_relight, command_query, command_eval, command_compare, command_sweep, command_import,
+    command_export;
 
 const struct command *const commands[] = {
-    &command_synth, &command_lights, &command_encode,  &command_info,   &command_relight,
-    &command_query, &command_eval,   &command_compare, &command_import, &command_export,
-    NULL,
+    &command_synth,   &command_lights, &command_encode, &command_info,
+    &command_relight, &command_query,  &command_eval,   &command_compare,
+    &command_sweep,   &command_import, &command_export, NULL,
 };
 
 static const struct option common[] = {

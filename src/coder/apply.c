@@ -94,16 +94,18 @@ relume_status relume_coder_apply(const relume_coder *coder, const float *samples
     return RELUME_OK;
 }
 
-relume_status captured_create(struct captured *out, const relume_coder *coder)
+relume_status captured_create(struct captured *out, const relume_coder *coder,
+                              const struct relume_vec3 *directions, int n)
 {
-    const size_t k = (size_t)coder->info.coefficients, lights = (size_t)coder->info.lights;
+    const size_t k = (size_t)coder->info.coefficients, lights = (size_t)n;
     float *weights = mem_array(3 * k, sizeof *weights);
+    out->lights = n;
     out->basis = mem_array(3 * lights * k, sizeof *out->basis);
     out->constant = mem_array(3 * lights, sizeof *out->constant);
     const bool good = weights && out->basis && out->constant;
     for (size_t i = 0; good && i < lights; i++) {
         float constant[3];
-        relume_coder_weights(coder, coder->world[i], weights, constant);
+        relume_coder_weights(coder, directions[i], weights, constant);
         for (size_t c = 0; c < 3; c++) {
             memcpy(out->basis + (c * lights + i) * k, weights + c * k, k * sizeof *weights);
             out->constant[c * lights + i] = constant[c];
@@ -119,14 +121,14 @@ void captured_destroy(struct captured *c)
 {
     free(c->basis);
     free(c->constant);
-    *c = (struct captured){NULL, NULL};
+    *c = (struct captured){0, NULL, NULL};
 }
 
 void captured_predict(const struct captured *c, const relume_coder *coder, int channel,
                       const float *planes, size_t plane_stride, size_t n, float *out)
 {
     const struct relume_coder_info *info = &coder->info;
-    const int k = info->coefficients, lights = info->lights;
+    const int k = info->coefficients, lights = c->lights;
     const size_t first = info->joint ? 0 : (size_t)channel, step = info->joint ? 1 : 3;
     const float *colour = info->luminance ? planes + (size_t)(k + channel) * plane_stride : NULL;
     lsq_multiply(lights, (int)n, k, c->basis + (size_t)(channel * lights * k), k,

@@ -37,13 +37,15 @@ size_t coder_work(const relume_coder *coder);
 void coder_apply(const relume_coder *coder, const float *samples, size_t stride, size_t n,
                  float *planes, size_t plane_stride, float *work);
 
-// The stored functions at the captured lights: basis[3][lights][K] and constant[3][lights].
+// The stored functions at some lights: basis[3][lights][K] and constant[3][lights].
 struct captured {
+    int lights;
     float *basis, *constant;
 };
-relume_status captured_create(struct captured *out, const relume_coder *coder);
+relume_status captured_create(struct captured *out, const relume_coder *coder,
+                              const struct relume_vec3 *directions, int n);
 void captured_destroy(struct captured *c);
-// What `n` pixels of coefficients say for the captured lights, one channel: out[light * n + pixel].
+// What `n` pixels of coefficients say for those lights, one channel: out[light * n + pixel].
 void captured_predict(const struct captured *c, const relume_coder *coder, int channel,
                       const float *planes, size_t plane_stride, size_t n, float *out);
 

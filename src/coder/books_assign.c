@@ -261,8 +261,10 @@ relume_status relume_books_assign(uint16_t *const *index, double *store_rms,
         .loss = mem_array((size_t)view->info.height, sizeof *a.loss),
         .dither = p.dither,
     };
+    const relume_coder *coder = view->info.coder;
     relume_status status =
-        a.work && a.loss ? captured_create(&a.captured, view->info.coder) : RELUME_ENOMEM;
+        a.work && a.loss ? captured_create(&a.captured, coder, coder->world, coder->info.lights)
+                         : RELUME_ENOMEM;
     for (int i = 0; !status && i < workers; i++)
         status = alloc_work(&a.work[i], &a) ? RELUME_OK : RELUME_ENOMEM;
     if (!status && p.dither > 0.0f) {

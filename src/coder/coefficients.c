@@ -6,6 +6,7 @@
 #include "image/half.h"
 
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
@@ -51,6 +52,31 @@ relume_status coefficients_create(relume_coefficients **out, const relume_coder 
         return log_fail(p->log, RELUME_EIO, "%s: no temporary file can be made in its folder; %s",
                         p->scratch ? p->scratch : "$TMPDIR", strerror(errno));
     return c->scale && c->offset && c->band ? RELUME_OK : RELUME_ENOMEM;
+}
+
+// Eight running extremes side by side: compilers keep them in vector registers.
+struct range range_of(const float *v, size_t n)
+{
+    enum { LANES = 8 };
+    float min[LANES], max[LANES];
+    for (int i = 0; i < LANES; i++) {
+        min[i] = FLT_MAX;
+        max[i] = -FLT_MAX;
+    }
+    for (size_t x = 0; x < n; x++) {
+        const float f = v[x];
+        const size_t i = x % LANES;
+        min[i] = f < min[i] ? f : min[i];
+        max[i] = f > max[i] ? f : max[i];
+    }
+    struct range r = {FLT_MAX, -FLT_MAX};
+    for (int i = 0; i < LANES; i++) {
+        r.min = min[i] < r.min ? min[i] : r.min;
+        r.max = max[i] > r.max ? max[i] : r.max;
+    }
+    if (r.max - r.min < TINY_RANGE)
+        r.min = r.max = fabsf(r.max) < TINY_RANGE ? 0.0f : r.max;
+    return r;
 }
 
 off_t coefficients_offset(const relume_coefficients *c, int row)

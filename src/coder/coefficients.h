@@ -14,6 +14,9 @@ struct range {
 // Ranges below this are one value: their steps would leave single precision.
 #define TINY_RANGE 1e-30f
 
+// Of `n` values; tiny ranges are widened to none.
+struct range range_of(const float *values, size_t n);
+
 // Planes of integer codes wait as 16-bit numbers with a scale of their own per band of rows, finer
 // than any code that follows; halves wait as they are. The file's order is [row][plane][x].
 struct relume_coefficients {

@@ -65,31 +65,6 @@ static void apply_mask(struct encoder *e)
                 e->values[p * pixels + x] = 0.0f;
 }
 
-// Eight running extremes side by side: compilers keep them in vector registers.
-static struct range find_range(const float *v, size_t pixels)
-{
-    enum { LANES = 8 };
-    float min[LANES], max[LANES];
-    for (int i = 0; i < LANES; i++) {
-        min[i] = FLT_MAX;
-        max[i] = -FLT_MAX;
-    }
-    for (size_t x = 0; x < pixels; x++) {
-        const float f = v[x];
-        const size_t i = x % LANES;
-        min[i] = f < min[i] ? f : min[i];
-        max[i] = f > max[i] ? f : max[i];
-    }
-    struct range r = {FLT_MAX, -FLT_MAX};
-    for (int i = 0; i < LANES; i++) {
-        r.min = min[i] < r.min ? min[i] : r.min;
-        r.max = max[i] > r.max ? max[i] : r.max;
-    }
-    if (r.max - r.min < TINY_RANGE)
-        r.min = r.max = fabsf(r.max) < TINY_RANGE ? 0.0f : r.max;
-    return r;
-}
-
 static void pack_plane(void *context, size_t plane, int worker)
 {
     (void)worker;
@@ -97,7 +72,7 @@ static void pack_plane(void *context, size_t plane, int worker)
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
     const float *v = e->values + plane * pixels;
     const bool half = e->out->info.storage == RELUME_STORE_HALF;
-    const struct range r = find_range(v, pixels);
+    const struct range r = range_of(v, pixels);
     const float scale = r.max > r.min ? 65535.0f / (r.max - r.min) : 0.0f;
     e->out->band[(size_t)(e->row / BAND_ROWS) * (size_t)e->planes + plane] = r;
     e->total[plane].min = r.min < e->total[plane].min ? r.min : e->total[plane].min;
@@ -321,7 +296,7 @@ static relume_status alloc_encoder(struct encoder *e)
         return RELUME_ENOMEM;
     for (size_t p = 0; p < planes; p++)
         e->total[p] = (struct range){FLT_MAX, -FLT_MAX};
-    return captured_create(&e->captured, e->coder);
+    return captured_create(&e->captured, e->coder, e->coder->world, e->lights);
 }
 
 static void free_encoder(struct encoder *e)

@@ -5,24 +5,30 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "image/ciede2000.h"
+#include "image/encoder.h"
+#include "image/ssim.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { RADIUS = 5, ROWS = 16 };
+// Rows of one block; SSIM filters 10 rows beside its own.
+enum { ROWS = 16, SSIM_ROWS = 64 };
 
 struct sums {  // of one block of rows
-    double linear, display, coded, delta_e, ssim, max_abs;
-    size_t pixels, windows;
+    double linear, display, coded, delta_e, max_abs;
+    struct ssim_sum ssim;
+    size_t pixels;
 };
 
 struct job {
     const struct relume_image *a, *b;
     const struct relume_image *mask;
-    struct relume_transfer display;
-    float *luma[2];  // display luma of both images
+    struct encoder display;
+    const struct ciede_tables *tables;  // NULL: delta E is not asked for
+    bool is_srgb;
+    float *luma[2];  // display luma of both images; NULL: SSIM is not asked for
     struct sums *block;
-    double *products;  // [threads][width][5], see filter_columns
+    double *scratch;  // [threads][ssim_scratch]
 };
 
 static bool is_inside(const struct job *j, size_t pixel)
@@ -30,35 +36,64 @@ static bool is_inside(const struct job *j, size_t pixel)
     return !j->mask || j->mask->data[pixel] > 0.5f;
 }
 
-static float display_value(const struct job *j, float linear)
+// Up to CIEDE_BLOCK pixels of both images.
+struct block {
+    int n;
+    const float *linear[2];
+    float display[2][3 * CIEDE_BLOCK];
+    float delta_e[CIEDE_BLOCK];
+};
+
+static void find_display(const struct job *j, struct block *b)
 {
-    const float v = relume_transfer_encode(j->display, linear);
-    return v > 1.0f ? 1.0f : v > 0.0f ? v : 0.0f;
+    for (int i = 0; i < 2; i++) {
+        encoder_apply(&j->display, b->linear[i], b->display[i], 3 * b->n);
+        for (int x = 0; x < 3 * b->n; x++)
+            b->display[i][x] = encoder_clip(b->display[i][x]);
+    }
 }
 
-static void measure_pixel(struct job *j, struct sums *s, size_t pixel)
+// CIEDE2000 looks at display codes as sRGB whatever they are.
+static void find_lab(const struct job *j, const struct block *b, int i, struct lab_block *lab)
 {
-    float a[3], b[3];
-    const float *la = j->a->data + 3 * pixel, *lb = j->b->data + 3 * pixel;
-    for (int c = 0; c < 3; c++) {
-        a[c] = display_value(j, la[c]);
-        b[c] = display_value(j, lb[c]);
-    }
-    j->luma[0][pixel] = 0.299f * a[0] + 0.587f * a[1] + 0.114f * a[2];
-    j->luma[1][pixel] = 0.299f * b[0] + 0.587f * b[1] + 0.114f * b[2];
-    if (!is_inside(j, pixel))
-        return;
-    for (int c = 0; c < 3; c++) {
-        const double d = (double)la[c] - (double)lb[c];
-        const double e = (double)a[c] - (double)b[c];
-        const double f =
-            (floor((double)a[c] * 255.0 + 0.5) - floor((double)b[c] * 255.0 + 0.5)) / 255.0;
+    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    float rgb[3 * CIEDE_BLOCK];
+    for (int x = 0; x < 3 * b->n; x++)
+        rgb[x] = j->is_srgb ? encoder_clip(b->linear[i][x])
+                            : relume_transfer_decode(srgb, b->display[i][x]);
+    lab_from_linear(j->tables, lab, rgb, b->n);
+}
+
+static void find_delta_e(const struct job *j, struct block *b)
+{
+    struct lab_block lab[2];
+    memset(lab, 0, sizeof lab);
+    for (int i = 0; i < 2; i++)
+        find_lab(j, b, i, &lab[i]);
+    ciede2000_block(j->tables, &lab[0], &lab[1], b->delta_e);
+}
+
+static void keep_luma(const struct job *j, const struct block *b, size_t first)
+{
+    for (int i = 0; i < 2; i++)
+        for (int x = 0; x < b->n; x++) {
+            const float *v = b->display[i] + 3 * x;
+            j->luma[i][first + (size_t)x] = 0.299f * v[0] + 0.587f * v[1] + 0.114f * v[2];
+        }
+}
+
+static void add_pixel(struct sums *s, const struct block *b, int pixel)
+{
+    for (int x = 3 * pixel; x < 3 * pixel + 3; x++) {
+        const double d = (double)b->linear[0][x] - (double)b->linear[1][x];
+        const double e = (double)b->display[0][x] - (double)b->display[1][x];
+        const double f = encoder_code(b->display[0][x]) - encoder_code(b->display[1][x]);
         s->linear += d * d;
         s->display += e * e;
         s->coded += f * f;
-        s->max_abs = fmax(s->max_abs, fabs(d));
+        s->max_abs = fabs(d) > s->max_abs ? fabs(d) : s->max_abs;
     }
-    s->delta_e += ciede2000_srgb(a, b);
+    s->delta_e += (double)b->delta_e[pixel];
     s->pixels++;
 }
 
@@ -66,74 +101,32 @@ static void measure_rows(void *context, size_t item, int worker)
 {
     (void)worker;
     struct job *j = context;
-    const size_t width = (size_t)j->a->width;
-    const int first = (int)item * ROWS;
-    const int end = first + ROWS < j->a->height ? first + ROWS : j->a->height;
-    for (size_t p = (size_t)first * width; p < (size_t)end * width; p++)
-        measure_pixel(j, &j->block[item], p);
-}
-
-// One row of the five filtered products that SSIM needs: a, b, aa, bb, ab, filtered down columns.
-static void filter_columns(const struct job *j, int row, const double *kernel, double *products)
-{
-    const size_t width = (size_t)j->a->width;
-    memset(products, 0, 5 * width * sizeof *products);
-    for (int dy = -RADIUS; dy <= RADIUS; dy++) {
-        const double w = kernel[dy + RADIUS];
-        const size_t at = (size_t)(row + dy) * width;
-        for (size_t x = 0; x < width; x++) {
-            const double a = (double)j->luma[0][at + x], b = (double)j->luma[1][at + x];
-            double *p = products + 5 * x;
-            p[0] += w * a;
-            p[1] += w * b;
-            p[2] += w * a * a;
-            p[3] += w * b * b;
-            p[4] += w * a * b;
-        }
+    const size_t width = (size_t)j->a->width, height = (size_t)j->a->height;
+    const size_t first = item * ROWS, end = first + ROWS < height ? first + ROWS : height;
+    struct block b = {0};
+    for (size_t at = first * width; at < end * width; at += (size_t)b.n) {
+        const size_t left = end * width - at;
+        b.n = left < CIEDE_BLOCK ? (int)left : CIEDE_BLOCK;
+        b.linear[0] = j->a->data + 3 * at;
+        b.linear[1] = j->b->data + 3 * at;
+        find_display(j, &b);
+        if (j->tables)
+            find_delta_e(j, &b);
+        if (j->luma[1])
+            keep_luma(j, &b, at);
+        for (int x = 0; x < b.n; x++)
+            if (is_inside(j, at + (size_t)x))
+                add_pixel(&j->block[item], &b, x);
     }
 }
 
-static double ssim_of(const double m[5])
-{
-    const double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;  // values lie in [0, 1]
-    const double va = m[2] - m[0] * m[0], vb = m[3] - m[1] * m[1], cov = m[4] - m[0] * m[1];
-    return (2.0 * m[0] * m[1] + c1) * (2.0 * cov + c2) /
-           ((m[0] * m[0] + m[1] * m[1] + c1) * (va + vb + c2));
-}
-
-static void make_kernel(double kernel[2 * RADIUS + 1])
-{
-    double sum = 0.0;
-    for (int i = -RADIUS; i <= RADIUS; i++)
-        sum += kernel[i + RADIUS] = exp(-i * i / (2.0 * 1.5 * 1.5));
-    for (int i = 0; i <= 2 * RADIUS; i++)
-        kernel[i] /= sum;
-}
-
-// Windows that lie wholly inside the image, as in the paper's own program.
 static void compare_structure(void *context, size_t item, int worker)
 {
     struct job *j = context;
-    const int width = j->a->width, height = j->a->height;
-    double kernel[2 * RADIUS + 1];
-    make_kernel(kernel);
-    double *products = j->products + 5 * (size_t)worker * (size_t)width;
-    struct sums *s = &j->block[item];
-    for (int y = (int)item * ROWS; y < ((int)item + 1) * ROWS; y++) {
-        if (y < RADIUS || y >= height - RADIUS)
-            continue;
-        filter_columns(j, y, kernel, products);
-        for (int x = RADIUS; x < width - RADIUS; x++) {
-            if (!is_inside(j, (size_t)y * (size_t)width + (size_t)x))
-                continue;
-            double mean[5] = {0.0, 0.0, 0.0, 0.0, 0.0};
-            for (int dx = -RADIUS; dx <= RADIUS; dx++)
-                for (int i = 0; i < 5; i++)
-                    mean[i] += kernel[dx + RADIUS] * products[5 * (x + dx) + i];
-            s->ssim += ssim_of(mean);
-            s->windows++;
-        }
-    }
+    const int width = j->a->width, first = (int)item * SSIM_ROWS;
+    double *scratch = j->scratch + (size_t)worker * ssim_scratch(width);
+    j->block[item].ssim = ssim_rows(j->luma[0], j->luma[1], j->mask ? j->mask->data : NULL, width,
+                                    j->a->height, first, first + SSIM_ROWS, scratch);
 }
 
 static double psnr(double mse)
@@ -141,7 +134,8 @@ static double psnr(double mse)
     return mse > 1e-20 ? fmin(-10.0 * log10(mse), 200.0) : 200.0;
 }
 
-static void collect(struct relume_difference *out, const struct sums *block, size_t blocks)
+static void collect(struct relume_difference *out, const struct sums *block, size_t blocks,
+                    bool with_delta_e)
 {
     struct sums t = {0};
     for (size_t i = 0; i < blocks; i++) {  // in order, so that threads change no bit
@@ -149,19 +143,19 @@ static void collect(struct relume_difference *out, const struct sums *block, siz
         t.display += block[i].display;
         t.coded += block[i].coded;
         t.delta_e += block[i].delta_e;
-        t.ssim += block[i].ssim;
+        t.ssim.sum += block[i].ssim.sum;
+        t.ssim.windows += block[i].ssim.windows;
         t.max_abs = fmax(t.max_abs, block[i].max_abs);
         t.pixels += block[i].pixels;
-        t.windows += block[i].windows;
     }
     const double samples = 3.0 * (double)t.pixels;
     *out = (struct relume_difference){
         .rms = sqrt(t.linear / samples),
         .max_abs = t.max_abs,
-        .psnr_db = psnr(t.coded / samples),
+        .psnr_db = psnr(t.coded / (255.0 * 255.0) / samples),
         .mse = t.display / samples,
-        .ssim = t.windows ? t.ssim / (double)t.windows : (double)NAN,
-        .delta_e = t.delta_e / (double)t.pixels,
+        .ssim = t.ssim.windows ? t.ssim.sum / (double)t.ssim.windows : (double)NAN,
+        .delta_e = with_delta_e ? t.delta_e / (double)t.pixels : (double)NAN,
         .pixels = t.pixels,
     };
 }
@@ -181,25 +175,33 @@ relume_status relume_image_compare(struct relume_difference *out, const struct r
 
     const size_t pixels = (size_t)image->width * (size_t)image->height;
     const size_t blocks = ((size_t)image->height + ROWS - 1) / ROWS;
+    const size_t parts = ((size_t)image->height + SSIM_ROWS - 1) / SSIM_ROWS;
     struct job job = {
         .a = image,
         .b = reference,
         .mask = masked ? p.mask : NULL,
-        .display = p.display,
-        .luma = {mem_array(pixels, sizeof(float)), mem_array(pixels, sizeof(float))},
+        .tables = p.no_delta_e ? NULL : ciede_tables(),
+        .is_srgb = p.display.curve == RELUME_CURVE_SRGB || p.display.curve == RELUME_CURVE_AUTO,
         .block = mem_zeroed(blocks, sizeof *job.block),
-        .products = mem_array((size_t)thread_count(p.threads) * (size_t)image->width,
-                              5 * sizeof *job.products),
     };
-    const bool good = job.luma[0] && job.luma[1] && job.block && job.products;
+    encoder_init(&job.display, p.display);
+    bool good = job.block;
+    if (good && !p.no_ssim) {
+        job.luma[0] = mem_array(pixels, sizeof(float));
+        job.luma[1] = mem_array(pixels, sizeof(float));
+        job.scratch = mem_array((size_t)thread_count(p.threads) * ssim_scratch(image->width),
+                                sizeof *job.scratch);
+        good = job.luma[0] && job.luma[1] && job.scratch;
+    }
     if (good) {
         thread_for(p.threads, blocks, measure_rows, &job);
-        thread_for(p.threads, blocks, compare_structure, &job);
-        collect(out, job.block, blocks);
+        if (!p.no_ssim)
+            thread_for(p.threads, parts, compare_structure, &job);
+        collect(out, job.block, blocks, !p.no_delta_e);
     }
     free(job.luma[0]);
     free(job.luma[1]);
     free(job.block);
-    free(job.products);
+    free(job.scratch);
     return good ? RELUME_OK : RELUME_ENOMEM;
 }

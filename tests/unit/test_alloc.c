@@ -156,6 +156,44 @@ static relume_status save_png(void)
     return status;
 }
 
+static relume_status evaluate(void)
+{
+    relume_pack *pack = NULL;
+    relume_capture *capture = NULL;
+    struct relume_evaluation e = {0};
+    relume_status status = relume_pack_open(&pack, pack_path, relume_pack_params(.threads = 1));
+    if (!status)
+        status = relume_capture_open(&capture, capture_path, NULL);
+    if (!status)
+        status = relume_evaluate(&e, pack, capture, relume_evaluate_params(.threads = 1));
+    assert_true((e.light != NULL) == (status == RELUME_OK && pack && capture));
+    relume_evaluation_destroy(&e);
+    relume_capture_destroy(&capture);
+    relume_pack_destroy(&pack);
+    return status;
+}
+
+static relume_status judge(void)
+{
+    const struct relume_heldout_store store = {RELUME_STORE_8, RELUME_STEP_PLANE};
+    struct relume_heldout_quality before, after;
+    relume_capture *capture = NULL;
+    relume_heldout *h = (void *)1;
+    relume_status status = relume_capture_open(&capture, capture_path, NULL);
+    if (!status) {
+        status =
+            relume_heldout_open(&h, capture, relume_heldout_params(.leave_out = 3, .threads = 1));
+        assert_true(status ? h == NULL : h != NULL);
+    }
+    if (!status)
+        status = relume_heldout_measure(h, &relume_basis_sh, relume_coder_params(.coefficients = 1),
+                                        &store, 1, &before, &after);
+    if (capture)
+        relume_heldout_destroy(&h);
+    relume_capture_destroy(&capture);
+    return status;
+}
+
 #define SWEEP(name, least)                                                                         \
     static void test_##name(void **state)                                                          \
     {                                                                                              \
@@ -170,6 +208,8 @@ SWEEP(encode_table, 60)
 SWEEP(read_pack, 30)
 SWEEP(compare_images, 5)
 SWEEP(save_png, 4)
+SWEEP(evaluate, 60)
+SWEEP(judge, 60)
 
 static void test_nothing_is_left(void **state)
 {
@@ -187,6 +227,7 @@ int main(void)
         cmocka_unit_test(test_read_table),      cmocka_unit_test(test_encode_pack),
         cmocka_unit_test(test_encode_table),    cmocka_unit_test(test_read_pack),
         cmocka_unit_test(test_compare_images),  cmocka_unit_test(test_save_png),
+        cmocka_unit_test(test_evaluate),        cmocka_unit_test(test_judge),
         cmocka_unit_test(test_nothing_is_left),
     };
     return cmocka_run_group_tests(tests, setup, teardown);

@@ -1,0 +1,33 @@
+// plot.h - a diagram of points in series, for one page or one screen
+#ifndef CLI_PLOT_H
+#define CLI_PLOT_H
+
+#include <relume/base.h>
+
+struct plot_point {
+    double x, y;  // x > 0: its axis is logarithmic
+    int series;
+    bool on_hull;    // joined by the hull's line
+    char label[12];  // beside the point where there is room
+};
+
+struct plot_series {
+    char name[64];
+    int colour, mark;  // numbers; series that belong together share one of them
+};
+
+struct plot {
+    const char *title, *subtitle, *x_label, *y_label;
+    const struct plot_series *series;  // [series_count], in the order of the legend
+    int series_count;
+    const struct plot_point *point;  // points of a series are joined in the order of x
+    int points;
+};
+
+enum plot_format { PLOT_SVG, PLOT_PNG };
+
+// The file's bytes, to be freed. RELUME_EINVAL when there is no point, RELUME_ENOMEM.
+relume_status plot_draw(const struct plot *plot, enum plot_format format, char **bytes,
+                        size_t *size);
+
+#endif

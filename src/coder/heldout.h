@@ -1,0 +1,45 @@
+// heldout.h - what is in memory of a capture whose coders are judged
+#ifndef CODER_HELDOUT_H
+#define CODER_HELDOUT_H
+
+#include <relume/heldout.h>
+
+// Rows of one view that follow each other in memory.
+struct strip {
+    int view, row, rows;
+    size_t first;  // pixel number in memory
+};
+
+// Pixels of one strip that are worked on at once, at most CODER_CHUNK.
+struct chunk {
+    int view;
+    size_t first, n;
+};
+
+struct relume_heldout {
+    struct relume_heldout_params params;
+    struct relume_heldout_info info;
+    const relume_capture *capture;
+    int lights, all;  // captured; with those of the test capture
+    int width, height, views;
+    bool hemispherical, pole_y, linear;
+    struct relume_transfer display;
+    struct relume_vec3 *directions;  // [all]
+    int *light_at;                   // [all]: which light's samples are in a place
+    size_t pixels;
+    float *samples;  // [all places][pixels][rgb]
+    uint8_t *codes;  // [all lights][pixels][rgb], display values rounded
+    float *luma;     // [all lights][pixels], of display values
+    float *mask;     // [pixels], or NULL
+    bool *masked;    // [views]
+    struct strip *strip;
+    int strips;
+    struct chunk *chunk;
+    int chunks;
+    struct relume_samples learning;  // of all captured lights; read when first needed
+};
+
+// Reads everything that relume_heldout_measure needs.
+relume_status heldout_load(relume_heldout *h);
+
+#endif

@@ -1,0 +1,294 @@
+#include <relume/evaluate.h>
+#include <relume/frame.h>
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/thread.h"
+
+#include <math.h>
+#include <stdio.h>
+
+// Sums over the images of one light, or of all.
+struct sums {
+    double square, mse;  // x pixels
+    double psnr, ssim, delta_e;
+    size_t pixels, images, structured;
+};
+
+struct evaluator {
+    struct relume_evaluate_params params;
+    relume_pack *pack;
+    const relume_capture *capture;
+    const struct relume_manifest *manifest;
+    const struct relume_pack_info *info;
+    struct relume_transfer display;
+    struct sums *light;  // [lights]
+    struct sums total;
+    // captured images are read ahead, as many at once as there are threads
+    int view, first, ahead;
+    struct relume_image *image;  // [ahead]
+    relume_status *status;       // [ahead]
+};
+
+// Sentences about the file begin with its name.
+struct about {
+    struct relume_log log;
+    const struct relume_log *to;
+    const char *name;
+};
+
+static void say_about(void *user, enum relume_level level, const char *text)
+{
+    const struct about *a = user;
+    log_line(a->to, level, "%s: %s", a->name, text);
+}
+
+static bool pass_progress(void *user, const char *what, double done)
+{
+    const struct about *a = user;
+    return log_progress(a->to, what, done);
+}
+
+void relume_evaluation_destroy(struct relume_evaluation *evaluation)
+{
+    free(evaluation->light);
+    *evaluation = (struct relume_evaluation){0};
+}
+
+// The stored view that stands where a captured one does, -1 when there is none.
+static int matching_view(const struct evaluator *e, int view)
+{
+    if (e->info->geometry.projection != RELUME_SLAB)
+        return view < e->info->views ? view : -1;
+    const double *uv = e->manifest->view[view].uv;
+    for (int i = 0; i < e->info->views; i++)
+        if (fabs(e->info->uv[i][0] - uv[0]) <= 1e-6 && fabs(e->info->uv[i][1] - uv[1]) <= 1e-6)
+            return i;
+    return -1;
+}
+
+static struct relume_camera camera_for(const struct evaluator *e, int view)
+{
+    const int match = matching_view(e, view);
+    if (match >= 0)
+        return (struct relume_camera){.framing = RELUME_FRAME_VIEW, .view = match};
+    const double *uv = e->manifest->view[view].uv;
+    return (struct relume_camera){.framing = RELUME_FRAME_EYE,
+                                  .eye = {uv[0], uv[1], e->manifest->geometry.uv_z}};
+}
+
+static void add(struct sums *s, const struct relume_difference *d)
+{
+    if (d->pixels == 0)
+        return;
+    s->square += d->rms * d->rms * (double)d->pixels;
+    s->mse += d->mse * (double)d->pixels;
+    s->psnr += d->psnr_db;
+    s->delta_e += d->delta_e;
+    s->pixels += d->pixels;
+    s->images++;
+    if (isfinite(d->ssim)) {
+        s->ssim += d->ssim;
+        s->structured++;
+    }
+}
+
+// ---------------------------------------------------------------- one view
+
+static void load_image(void *context, size_t item, int worker)
+{
+    (void)worker;
+    struct evaluator *e = context;
+    e->status[item] =
+        relume_capture_image(&e->image[item], e->capture, e->view, e->first + (int)item, NULL);
+}
+
+// A broken image is read again by the caller's thread, which may say why.
+static relume_status load_ahead(struct evaluator *e, int count)
+{
+    thread_for(e->params.threads, (size_t)count, load_image, e);
+    for (int i = 0; i < count; i++) {
+        relume_status status = e->status[i];
+        if (status == RELUME_EDATA)
+            status = relume_capture_image(&e->image[i], e->capture, e->view, e->first + i,
+                                          e->params.log);
+        if (status)
+            return status;
+    }
+    return RELUME_OK;
+}
+
+static void drop_images(struct evaluator *e)
+{
+    for (int i = 0; i < e->ahead; i++)
+        relume_image_destroy(&e->image[i]);
+}
+
+static relume_status compare_light(struct evaluator *e, const struct relume_image *captured,
+                                   int light, const struct relume_camera *camera,
+                                   const struct relume_image *mask)
+{
+    struct relume_light lamp = {.direction = e->manifest->directions[light],
+                                .rgb = {1.0f, 1.0f, 1.0f}};
+    if (e->manifest->positions) {
+        lamp.kind = RELUME_LIGHT_POINT;
+        lamp.position = e->manifest->positions[light];
+    }
+    struct about about = {.to = e->params.log, .name = e->params.file};
+    about.log = (struct relume_log){say_about, pass_progress, &about};
+    struct relume_image relit;
+    struct relume_difference difference;
+    relume_status status =
+        relume_frame(&relit, e->pack, camera, &lamp, 1,
+                     relume_frame_params(.log = &about.log, .threads = e->params.threads));
+    if (!status)
+        status = relume_image_compare(&difference, &relit, captured,
+                                      relume_compare_params(.mask = mask, .display = e->display,
+                                                            .threads = e->params.threads,
+                                                            .no_ssim = e->params.no_ssim,
+                                                            .no_delta_e = e->params.no_delta_e));
+    if (!status) {
+        add(&e->light[light], &difference);
+        add(&e->total, &difference);
+    }
+    relume_image_destroy(&relit);
+    return status;
+}
+
+static relume_status evaluate_some(struct evaluator *e, const struct relume_camera *camera,
+                                   const struct relume_image *mask)
+{
+    const int left = e->manifest->lights - e->first, count = left < e->ahead ? left : e->ahead;
+    relume_status status = load_ahead(e, count);
+    for (int i = 0; !status && i < count; i++) {
+        const int light = e->first + i;
+        status = compare_light(e, &e->image[i], light, camera, mask);
+        const double done = (e->view + (light + 1.0) / e->manifest->lights) / e->manifest->views;
+        if (!status && !log_progress(e->params.log, "evaluating", done))
+            status = RELUME_ECANCEL;
+    }
+    drop_images(e);
+    e->first += count;
+    return status;
+}
+
+static relume_status evaluate_view(struct evaluator *e, int view)
+{
+    const struct relume_camera camera = camera_for(e, view);
+    struct relume_image mask;
+    relume_status status = relume_capture_mask(&mask, e->capture, view, e->params.log);
+    e->view = view;
+    e->first = 0;
+    while (!status && e->first < e->manifest->lights)
+        status = evaluate_some(e, &camera, &mask);
+    if (camera.framing == RELUME_FRAME_VIEW)
+        relume_pack_drop(e->pack, camera.view);
+    relume_image_destroy(&mask);
+    return status;
+}
+
+// ---------------------------------------------------------------- the whole
+
+static relume_status check_fit(const struct evaluator *e)
+{
+    const int width = relume_capture_width(e->capture), height = relume_capture_height(e->capture);
+    const enum relume_projection theirs = e->manifest->geometry.projection;
+    const enum relume_projection ours = e->info->geometry.projection;
+    const struct relume_log *log = e->params.log;
+    const char *name = e->params.capture;
+    if (width != e->info->width || height != e->info->height)
+        return log_fail(log, RELUME_EDATA, "%s: %d x %d pixels; expected %d x %d as in the file",
+                        name, width, height, e->info->width, e->info->height);
+    if (theirs != ours)
+        return log_fail(log, RELUME_EDATA, "%s: a %s capture; expected %s as in the file", name,
+                        relume_projection_name(theirs), relume_projection_name(ours));
+    if (ours != RELUME_SLAB && e->manifest->views > e->info->views)
+        return log_fail(log, RELUME_EDATA, "%s: %d views; expected at most %d as in the file", name,
+                        e->manifest->views, e->info->views);
+    return RELUME_OK;
+}
+
+static double ratio(double a, double b)
+{
+    return b > 0.0 ? a / b : (double)NAN;
+}
+
+static double decibel(double mse)
+{
+    return mse > 1e-20 ? -10.0 * log10(mse) : mse >= 0.0 ? 200.0 : mse;
+}
+
+static void collect(const struct evaluator *e, struct relume_evaluation *out)
+{
+    const struct sums *t = &e->total;
+    const double pixels = (double)e->info->width * e->info->height;
+    out->views = e->manifest->views;
+    out->lights = e->manifest->lights;
+    out->width = e->info->width;
+    out->height = e->info->height;
+    out->images = t->images;
+    out->rms = sqrt(ratio(t->square, (double)t->pixels));
+    out->psnr_db = ratio(t->psnr, (double)t->images);
+    out->psnr_pooled_db = decibel(ratio(t->mse, (double)t->pixels));
+    out->ssim = ratio(t->ssim, (double)t->structured);
+    out->delta_e = ratio(t->delta_e, (double)t->images);
+    out->file_bytes = (double)e->info->file_bytes;
+    out->raw_bytes = (double)out->views * out->lights * pixels * 12.0;
+    out->ratio = out->raw_bytes / out->file_bytes;
+    out->bits_per_pixel = 8.0 * out->file_bytes / (e->info->views * pixels);
+    for (int i = 0; i < out->lights; i++) {
+        const struct sums *s = &e->light[i];
+        out->light[i].rms = sqrt(ratio(s->square, (double)s->pixels));
+        out->light[i].psnr_db = ratio(s->psnr, (double)s->images);
+    }
+}
+
+static bool create(struct evaluator *e, struct relume_evaluation *out)
+{
+    const size_t lights = (size_t)e->manifest->lights;
+    e->ahead = thread_count(e->params.threads);
+    if (e->ahead > e->manifest->lights)
+        e->ahead = e->manifest->lights;
+    e->light = mem_zeroed(lights, sizeof *e->light);
+    e->image = mem_zeroed((size_t)e->ahead, sizeof *e->image);
+    e->status = mem_zeroed((size_t)e->ahead, sizeof *e->status);
+    out->light = mem_zeroed(lights, sizeof *out->light);
+    return e->light && e->image && e->status && out->light;
+}
+
+static void destroy(struct evaluator *e)
+{
+    free(e->light);
+    free(e->image);
+    free(e->status);
+}
+
+relume_status relume_evaluate(struct relume_evaluation *out, relume_pack *pack,
+                              const relume_capture *capture,
+                              const struct relume_evaluate_params *params)
+{
+    struct evaluator e = {
+        .params = params ? *params : (struct relume_evaluate_params){0},
+        .pack = pack,
+        .capture = capture,
+        .manifest = relume_capture_manifest(capture),
+        .info = relume_pack_info(pack),
+    };
+    *out = (struct relume_evaluation){0};
+    e.params.file = e.params.file ? e.params.file : "the file";
+    e.params.capture = e.params.capture ? e.params.capture : "the capture";
+    relume_status status = check_fit(&e);
+    if (status)
+        return status;
+    if (e.manifest->transfer.curve == RELUME_CURVE_GAMMA)
+        e.display = e.manifest->transfer;
+    status = create(&e, out) ? RELUME_OK : RELUME_ENOMEM;
+    for (int view = 0; !status && view < e.manifest->views; view++)
+        status = evaluate_view(&e, view);
+    if (!status)
+        collect(&e, out);
+    else
+        relume_evaluation_destroy(out);
+    destroy(&e);
+    return status;
+}

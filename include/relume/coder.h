@@ -79,7 +79,9 @@ struct relume_coder_params {
     double ridge;        // Tikhonov weight relative to the data, [0, 1]; default: the basis's own
     bool luminance;      // one set of coefficients for the luminance and one colour per pixel
                          // (LRGB); not for learned bases
-    bool force;          // more coefficients than the lights determine are a warning, not an error
+    bool robust;  // shadows, highlights and stray values weigh less; slower. Not for table and
+                  // dct-resampled, which fit nothing
+    bool force;   // more coefficients than the lights determine are a warning, not an error
     const struct relume_interpolant *interpolant;  // table and pca; default: the basis's own
     bool choose;  // the interpolant is `chord`, its parameters those with which the lights of
                   // `samples` predict each other best

@@ -16,6 +16,8 @@ static const struct option options[] = {
     {"--bits", OPTION_TEXT, "B", "8, 10, 12, 16 or half; default: 8", 0, 0},
     {"--step", OPTION_TEXT, "S", "plane: each its own range; common: one step; default: plane", 0,
      0},
+    {"--robust", OPTION_FLAG, NULL,
+     "shadows, highlights and stray values weigh less in the fit; slower", 0, 0},
     {"--force", OPTION_FLAG, NULL, "allow more coefficients than the lights determine", 0, 0},
     {"--domain", OPTION_TEXT, "D",
      "auto, linear or display; default: auto, by the capture's transfer", 0, 0},
@@ -162,6 +164,7 @@ static relume_status parse(const struct args *args, struct request *r)
     *r = (struct request){
         .coder = {.coefficients = args_int(args, "--coefficients", 0),
                   .ridge = args_number(args, "--ridge", 0.0),
+                  .robust = args_has(args, "--robust"),
                   .force = args_has(args, "--force")},
         .pack = {.log = args_log(args), .threads = args_threads(args)},
     };

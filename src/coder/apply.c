@@ -7,7 +7,8 @@
 
 size_t coder_work(const relume_coder *coder)
 {
-    return 3 * (size_t)coder->info.lights * CODER_CHUNK;
+    const size_t separated = 3 * (size_t)coder->info.lights * CODER_CHUNK;
+    return separated + (coder->robust ? 2 * robust_work(coder->robust) : 0);
 }
 
 // samples[light][pixel][channel] -> to[channel][light][pixel]
@@ -57,14 +58,14 @@ static void split_colour(const relume_coder *coder, float *work, size_t n, float
     }
 }
 
-void coder_apply(const relume_coder *coder, const float *samples, size_t stride, size_t n,
-                 float *planes, size_t plane_stride, float *work)
+// `separated` as [channel][light][pixel].
+static void multiply(const relume_coder *coder, float *separated, size_t n, float *planes,
+                     size_t plane_stride)
 {
     const struct relume_coder_info *info = &coder->info;
     const int k = info->coefficients, lights = info->lights, columns = (int)n;
-    separate(work, samples, stride, lights, n);
     if (info->basis->learned) {
-        lsq_multiply(k, columns, 3 * lights, coder->map, 3 * lights, work, columns, planes,
+        lsq_multiply(k, columns, 3 * lights, coder->map, 3 * lights, separated, columns, planes,
                      (int)plane_stride);
         for (int i = 0; i < k; i++)
             for (size_t x = 0; x < n; x++)
@@ -72,11 +73,22 @@ void coder_apply(const relume_coder *coder, const float *samples, size_t stride,
         return;
     }
     if (info->luminance)
-        split_colour(coder, work, n, planes, plane_stride);
+        split_colour(coder, separated, n, planes, plane_stride);
     const int sets = info->luminance ? 1 : 3;
     for (int c = 0; c < sets; c++)
-        lsq_multiply(k, columns, lights, coder->map, lights, work + (size_t)(c * lights) * n,
+        lsq_multiply(k, columns, lights, coder->map, lights, separated + (size_t)(c * lights) * n,
                      columns, planes + (size_t)c * plane_stride, sets * (int)plane_stride);
+}
+
+void coder_apply(const relume_coder *coder, const float *samples, size_t stride, size_t n,
+                 float *planes, size_t plane_stride, float *work)
+{
+    const size_t lights = (size_t)coder->info.lights;
+    separate(work, samples, stride, (int)lights, n);
+    multiply(coder, work, n, planes, plane_stride);
+    if (coder->robust)
+        robust_apply(coder->robust, coder, work, n, planes, plane_stride,
+                     (double *)(void *)(work + 3 * lights * CODER_CHUNK));
 }
 
 relume_status relume_coder_apply(const relume_coder *coder, const float *samples, size_t stride,

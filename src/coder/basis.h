@@ -21,6 +21,7 @@ struct relume_coder {
     float *map;        // coefficients = map x samples + base; [K][lights], learned [K][3][lights];
                        // NULL when only decoding
     float *base;       // learned: [K]
+    struct robust *robust;                 // or NULL: plain least squares
     const struct relume_samples *samples;  // while being prepared
     bool decode, force;
     void *interpolant;  // data of info.interpolant
@@ -53,6 +54,14 @@ void captured_predict(const struct captured *c, const relume_coder *coder, int c
 relume_status samples_gram(double *gram, const struct relume_samples *s);
 // Mean squared error of each light predicted from the others, never 0 (choose.c).
 void predict_errors(double *error, const double *b, const double *gram, int lights);
+
+// Refits coefficients that are there already (robust.c); `separated` as [channel][light][pixel],
+// luminance coders: the first channel. Room for robust_work doubles at `work`.
+relume_status robust_create(struct robust **out, const relume_coder *coder);
+void robust_destroy(struct robust *r);
+size_t robust_work(const struct robust *r);
+void robust_apply(const struct robust *r, const relume_coder *coder, const float *separated,
+                  size_t n, float *planes, size_t plane_stride, double *work);
 
 // Regularised least squares on the captured directions, for bases with smooth functions:
 // fills coder->map and coder->transform. `roughness[K]` is what the ridge multiplies.

@@ -34,6 +34,7 @@ void relume_coder_destroy(relume_coder **coder)
     free(c->mean);
     free(c->map);
     free(c->base);
+    robust_destroy(c->robust);
     free(c);
 }
 
@@ -142,6 +143,11 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
     if (basis->interpolates && n > CODER_MAX_COEFFICIENTS)
         return log_fail(p.log, RELUME_EDATA, "basis %s takes at most %d lights; found %d",
                         basis->name, CODER_MAX_COEFFICIENTS, n);
+    if (p.robust && (basis == &relume_basis_table || basis == &relume_basis_dct_resampled))
+        return log_fail(p.log, RELUME_EINVAL,
+                        "basis %s fits nothing; expected a basis with a "
+                        "robust form",
+                        basis->name);
     if (basis->upper_only && !p.hemispherical)
         return log_fail(p.log, RELUME_EDATA,
                         "basis %s knows one hemisphere of lights; found lights on both",
@@ -178,6 +184,8 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
         status = prepare_interpolant(c, &p);
     if (!status)
         status = basis->prepare(c, p.log);
+    if (!status && p.robust && !p.decode)
+        status = robust_create(&c->robust, c);
     c->samples = NULL;
     if (status) {
         relume_coder_destroy(&c);

@@ -53,6 +53,13 @@ bool lsq_eigenvectors(double *matrix, int n, int count, double *values, double *
     return good && found == count;
 }
 
+bool lsq_solve(double *matrix, int n, double *b, int count)
+{
+    prepare();
+    // by columns, the lower triangle is the upper one and a right side is a column
+    return LAPACKE_dposv_work(LAPACK_COL_MAJOR, 'U', n, count, matrix, n, b, n) == 0;
+}
+
 bool lsq_invert(double *matrix, int n)
 {
     prepare();

@@ -14,6 +14,11 @@ bool lsq_eigenvalues(double *matrix, int n, double *values);
 // symmetric n x n matrix; the matrix is destroyed. The sign makes the largest component positive.
 bool lsq_eigenvectors(double *matrix, int n, int count, double *values, double *vectors);
 
+// Solve matrix x = b for `count` right sides b[count][n], in place; of the symmetric positive
+// definite matrix the lower triangle is read, and destroyed. False when it is not positive
+// definite.
+bool lsq_solve(double *matrix, int n, double *b, int count);
+
 // The inverse of a square matrix, in place. False when it is singular, or no memory.
 bool lsq_invert(double *matrix, int n);
 

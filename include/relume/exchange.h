@@ -53,12 +53,13 @@ struct relume_export_params {
     enum relume_web_type type;  // RELIGHT, DEEPZOOM
     int coefficients;           // planes of bilinear and rbf, at most 45, default: up to 27, as
                                 // many as are worth their bytes; terms of the other types
-    int resolution;             // bilinear: side of the grid of lights, [3, 33]; default 11
-    double bytes_per_pixel;     // of all plane JPEGs together, not exceeded
-    double psnr_db;             // against the file's own pictures under its lights, reached
-    int quality;                // [1, 100]; default 80
-    bool force;                 // replace an existing folder that is not empty
-    int threads;                // default: all cores
+    int resolution;  // bilinear: side of the grid of lights, [3, 33]; default 15, for many lights
+                     // more
+    double bytes_per_pixel;  // of all plane JPEGs together, not exceeded
+    double psnr_db;          // against the file's own pictures under its lights, reached
+    int quality;             // [1, 100]; default 80
+    bool force;              // replace an existing folder that is not empty
+    int threads;             // default: all cores
 };
 #define relume_export_params(...) (&(const struct relume_export_params){__VA_ARGS__})
 

@@ -6,8 +6,6 @@
 
 #include <relume/exchange.h>
 
-enum { DEFAULT_RESOLUTION = 11 };
-
 struct export
 {
     const struct source *source;

@@ -8,6 +8,7 @@
 
 #include <relume/base.h>
 #include <relume/capture.h>
+#include <relume/codebook.h>
 #include <relume/coder.h>
 
 #ifdef __cplusplus
@@ -48,8 +49,11 @@ RELUME_API struct relume_heldout_info relume_heldout_info(const relume_heldout *
 
 // How coefficients are stored.
 struct relume_heldout_store {
-    enum relume_storage storage;  // default: 8 bits
-    enum relume_step step;        // default: a step per plane
+    enum relume_storage storage;              // default: 8 bits
+    enum relume_step step;                    // default: a step per plane
+    const struct relume_books_params *books;  // codebooks instead of planes; threads are those of
+                                              // the held-out object
+    bool share;                               // one set of codebooks for all views
 };
 
 // Of display values as in relume/evaluate.h; NaN where nothing could be measured.

@@ -8,6 +8,8 @@
 #define BOOK_OPTIONS                                                                               \
     {"--codebook", OPTION_INT, "N", "vector quantisation: N code vectors in place of planes",      \
      1, 65536},                                                                                    \
+    BOOK_FORM_OPTIONS
+#define BOOK_FORM_OPTIONS                                                                          \
     {"--share", OPTION_FLAG, NULL, "codebooks: one set for all views", 0, 0},                      \
     {"--stages", OPTION_INT, "S", "codebooks: S after one another, each of what is left", 1, 8},   \
     {"--split", OPTION_TEXT, "HOW",                                                                \

@@ -1,4 +1,5 @@
 // cmd_sweep.c - relume sweep: every coder of a grid judged by lights that it has not seen
+#include "book_options.h"
 #include "sweep.h"
 
 #include <errno.h>
@@ -12,10 +13,12 @@ static const struct option options[] = {
     {"-o", OPTION_TEXT, "OUT", "write OUT.csv, OUT.json, OUT.svg, OUT.png; keep OUT.resume", 0, 0},
     {"--basis", OPTION_TEXT, "LIST", "bases, separated by commas; default: all", 0, 0},
     {"--coefficients", OPTION_TEXT, "LIST", "sizes; default: those natural to each basis", 0, 0},
-    {"--interpolant", OPTION_TEXT, "LIST", "of pca and table; default: the basis's own", 0, 0},
+    {"--interpolant", OPTION_TEXT, "LIST", "of pca and table, also auto; default: their own", 0, 0},
     {"--colour", OPTION_TEXT, "LIST", "rgb, luminance; default: rgb", 0, 0},
     {"--bits", OPTION_TEXT, "LIST", "8, 10, 12, 16, half; default: 8", 0, 0},
     {"--step", OPTION_TEXT, "LIST", "plane, common; default: plane", 0, 0},
+    {"--codebook", OPTION_TEXT, "LIST", "code vectors, 0: planes; default: 0", 0, 0},
+    BOOK_FORM_OPTIONS,
     {"--leave-out", OPTION_INT, "K", "lights left out at a time; default: 1", 1, 65535},
     {"--test", OPTION_TEXT, "CAPTURE", "judge by the lights of another capture instead", 0, 0},
     {"--domain", OPTION_TEXT, "D", "auto, linear or display; default: as encode", 0, 0},
@@ -34,12 +37,15 @@ enum { MOST = 64, MOST_ROWS = 4096, MOST_COEFFICIENTS = 4096 };
 
 struct grid {
     const struct relume_basis *basis[MOST];
-    const struct relume_interpolant *interpolant[MOST];
-    int size[MOST];
+    bool automatic[MOST];  // the basis is called auto: components with the interpolant chosen
+    const struct relume_interpolant *interpolant[MOST];  // NULL: chosen
+    int size[MOST], codes[MOST];
+    struct relume_books_params books;
+    bool share;
     bool luminance[MOST];
     enum relume_storage storage[MOST];
     enum relume_step step[MOST];
-    int bases, interpolants, sizes, colours, storages, steps;
+    int bases, interpolants, sizes, colours, storages, steps, books_count;
 };
 
 // The words of a comma-separated list, each given to `accept`.
@@ -67,31 +73,46 @@ static relume_status parse_list(const char *option, const char *text, int *count
 
 static relume_status accept_basis(struct grid *grid, int i, const char *word)
 {
-    const char *names[MOST] = {NULL};
+    const char *names[MOST] = {"auto"};
     for (int n = 0; relume_bases[n]; n++)
-        names[n] = relume_bases[n]->name;
-    grid->basis[i] = relume_basis_find(word);
+        names[n + 1] = relume_bases[n]->name;
+    grid->automatic[i] = !strcmp(word, "auto");
+    grid->basis[i] = grid->automatic[i] ? &relume_basis_pca : relume_basis_find(word);
     return grid->basis[i] ? RELUME_OK : unknown_name("basis", word, names);
 }
 
 static relume_status accept_interpolant(struct grid *grid, int i, const char *word)
 {
-    const char *names[MOST] = {NULL};
+    const char *names[MOST] = {"auto"};
     for (int n = 0; relume_interpolants[n]; n++)
-        names[n] = relume_interpolants[n]->name;
+        names[n + 1] = relume_interpolants[n]->name;
     grid->interpolant[i] = relume_interpolant_find(word);
-    return grid->interpolant[i] ? RELUME_OK : unknown_name("--interpolant", word, names);
+    return grid->interpolant[i] || !strcmp(word, "auto")
+               ? RELUME_OK
+               : unknown_name("--interpolant", word, names);
+}
+
+static bool parse_whole(const char *word, long least, long most, int *out)
+{
+    char *end;
+    const long number = strtol(word, &end, 10);
+    *out = (int)number;
+    return end != word && !*end && number >= least && number <= most;
 }
 
 static relume_status accept_size(struct grid *grid, int i, const char *word)
 {
-    char *end;
-    const long size = strtol(word, &end, 10);
-    if (*end || size < 1 || size > MOST_COEFFICIENTS)
-        return usage_error("--coefficients: expected whole numbers from 1 to %d; found '%s'",
-                           MOST_COEFFICIENTS, word);
-    grid->size[i] = (int)size;
-    return RELUME_OK;
+    if (parse_whole(word, 1, MOST_COEFFICIENTS, &grid->size[i]))
+        return RELUME_OK;
+    return usage_error("--coefficients: expected whole numbers from 1 to %d; found '%s'",
+                       MOST_COEFFICIENTS, word);
+}
+
+static relume_status accept_codes(struct grid *grid, int i, const char *word)
+{
+    if (parse_whole(word, 0, 65536, &grid->codes[i]))
+        return RELUME_OK;
+    return usage_error("--codebook: expected whole numbers from 0 to 65536; found '%s'", word);
 }
 
 static relume_status accept_colour(struct grid *grid, int i, const char *word)
@@ -127,6 +148,8 @@ static relume_status parse_grid(const struct args *args, struct grid *g)
     relume_status status = RELUME_OK;
     if (bases)
         status = parse_list("--basis", bases, &g->bases, g, accept_basis);
+    if (!bases)
+        status = accept_basis(g, g->bases++, "auto");
     for (int i = 0; !bases && relume_bases[i]; i++)
         g->basis[g->bases++] = relume_bases[i];
     if (!status && sizes)
@@ -142,25 +165,47 @@ static relume_status parse_grid(const struct args *args, struct grid *g)
     if (!status)
         status =
             parse_list("--step", args_text(args, "--step", "plane"), &g->steps, g, accept_step);
+    if (!status)
+        status = parse_list("--codebook", args_text(args, "--codebook", "0"), &g->books_count, g,
+                            accept_codes);
+    bool wanted;
+    if (!status)
+        status = parse_books(args, &g->books, &wanted);
+    g->share = args_has(args, "--share");
     return status;
 }
 
+static void add_row(struct sweep *sweep, const struct grid *g, struct sweep_row row, int codes)
+{
+    if (sweep->rows == MOST_ROWS)
+        return;
+    if (codes) {
+        row.books = g->books;
+        row.books.codes = codes;
+        row.store.share = g->share;
+    }
+    sweep->row[sweep->rows++] = row;
+}
+
+// Halves and codebooks have no step.
 static void add_rows(struct sweep *sweep, const struct grid *g, struct sweep_row row)
 {
     for (int i = 0; i < g->storages; i++)
-        for (int j = 0; j < g->steps; j++) {
-            if (g->step[j] == RELUME_STEP_COMMON && !relume_storage_top(g->storage[i]))
-                continue;  // halves have no step
-            row.store = (struct relume_heldout_store){g->storage[i], g->step[j]};
-            if (sweep->rows < MOST_ROWS)
-                sweep->row[sweep->rows++] = row;
-        }
+        for (int j = 0; j < g->steps; j++)
+            for (int k = 0; k < g->books_count; k++) {
+                const bool stepless = g->codes[k] || !relume_storage_top(g->storage[i]);
+                if (stepless && j > 0)
+                    continue;
+                row.store = (struct relume_heldout_store){
+                    .storage = g->storage[i], .step = stepless ? RELUME_STEP_PLANE : g->step[j]};
+                add_row(sweep, g, row, g->codes[k]);
+            }
 }
 
-static void add_forms(struct sweep *sweep, const struct grid *g, const struct relume_basis *basis,
-                      int size)
+static void add_forms(struct sweep *sweep, const struct grid *g, int number, int size)
 {
-    const bool interpolates = basis->interpolates && g->interpolants;
+    const struct relume_basis *basis = g->basis[number];
+    const bool interpolates = basis->interpolates && g->interpolants && !g->automatic[number];
     for (int i = 0; i < (interpolates ? g->interpolants : 1); i++)
         for (int j = 0; j < g->colours; j++)
             if (!g->luminance[j] || !basis->learned)
@@ -168,6 +213,7 @@ static void add_forms(struct sweep *sweep, const struct grid *g, const struct re
                          (struct sweep_row){
                              .basis = basis,
                              .interpolant = interpolates ? g->interpolant[i] : NULL,
+                             .choose = g->automatic[number] || (interpolates && !g->interpolant[i]),
                              .luminance = g->luminance[j],
                              .wanted = size,
                              .coefficients = size ? size : sweep->lights,
@@ -185,15 +231,15 @@ static relume_status make_rows(struct sweep *sweep, const struct grid *g)
     for (int b = 0; b < g->bases; b++) {
         const struct relume_basis *basis = g->basis[b];
         if (basis->interpolates && !basis->learned) {
-            add_forms(sweep, g, basis, 0);
+            add_forms(sweep, g, b, 0);
             continue;
         }
         for (int i = 0; i < g->sizes; i++)
             if (basis->has_count(g->size[i]))
-                add_forms(sweep, g, basis, g->size[i]);
+                add_forms(sweep, g, b, g->size[i]);
         for (size_t i = 0; !g->sizes && i < sizeof usual / sizeof *usual; i++)
             if (basis->has_count(usual[i]) && basis->fit_count(usual[i], sweep->lights) == usual[i])
-                add_forms(sweep, g, basis, usual[i]);
+                add_forms(sweep, g, b, usual[i]);
     }
     if (sweep->rows == MOST_ROWS)
         return usage_error("sweep: expected a grid of fewer than %d rows", MOST_ROWS);
@@ -210,7 +256,7 @@ static int group_end(const struct sweep *sweep, int first)
     int end = first + 1;
     for (; end < sweep->rows; end++) {
         const struct sweep_row *b = &sweep->row[end];
-        if (a->basis != b->basis || a->interpolant != b->interpolant ||
+        if (a->basis != b->basis || a->interpolant != b->interpolant || a->choose != b->choose ||
             a->luminance != b->luminance || a->wanted != b->wanted)
             break;
     }
@@ -219,9 +265,9 @@ static int group_end(const struct sweep *sweep, int first)
 
 // Keeps the last sentence, as the reason for leaving a row out, and maps progress to the whole.
 struct listener {
-    struct relume_log log;
+    struct relume_log log, inner;  // `inner` is for steps whose own progress is not shown
     const struct relume_log *to;
-    double first, extent;
+    double first, extent, last;
     char said[200];
 };
 
@@ -236,15 +282,29 @@ static void hear(void *user, enum relume_level level, const char *text)
 
 static bool pass_progress(void *user, const char *what, double done)
 {
+    struct listener *l = user;
+    (void)what;
+    l->last = l->first + l->extent * done;
+    return l->to->progress(l->to->user, "sweeping", l->last);
+}
+
+static bool hold_progress(void *user, const char *what, double done)
+{
     const struct listener *l = user;
     (void)what;
-    return l->to->progress(l->to->user, "sweeping", l->first + l->extent * done);
+    (void)done;
+    return l->to->progress(l->to->user, "sweeping", l->last);
 }
 
 static struct listener *listen_to(struct listener *l, const struct relume_log *to, double first,
                                   double extent)
 {
-    *l = (struct listener){{hear, pass_progress, l}, to, first, extent, ""};
+    *l = (struct listener){.log = {hear, pass_progress, l},
+                           .inner = {hear, hold_progress, l},
+                           .to = to,
+                           .first = first,
+                           .extent = extent,
+                           .last = first};
     return l;
 }
 
@@ -262,6 +322,7 @@ static struct relume_coder_params coder_params(const struct sweep_row *row,
     return (struct relume_coder_params){.log = log,
                                         .coefficients = row->wanted,
                                         .interpolant = row->interpolant,
+                                        .choose = row->choose,
                                         .luminance = row->luminance};
 }
 
@@ -291,7 +352,8 @@ static relume_status encode_row(struct work *w, struct sweep_row *row, const str
             w->capture, coder, path, NULL,
             relume_pack_encode_params(.log = log, .domain = w->sweep->domain,
                                       .storage = row->store.storage, .step = row->store.step,
-                                      .threads = args_threads(args)));
+                                      .books = row->books.codes ? &row->books : NULL,
+                                      .share = row->store.share, .threads = args_threads(args)));
     row->seconds = seconds_now() - start;
     if (!status)
         status = relume_pack_open(&pack, path, relume_pack_params(.log = log));
@@ -321,18 +383,39 @@ static void skip_row(struct sweep_row *row, const struct listener *l, relume_sta
 }
 
 static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n,
+                                  struct listener *l);
+
+// One way of storing may be impossible where the others are not.
+static relume_status measure_apart(struct work *w, struct sweep_row **rows, int n,
+                                   struct listener *l)
+{
+    const double first = l->first, extent = l->extent / n;
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < n; i++) {
+        listen_to(l, l->to, first + i * extent, extent);
+        status = measure_rows(w, &rows[i], 1, l);
+    }
+    return status;
+}
+
+static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n,
                                   struct listener *l)
 {
-    struct relume_heldout_store store[MOST * MOST];
-    struct relume_heldout_quality before, after[MOST * MOST];
+    struct relume_heldout_store store[MOST_ROWS];
+    struct relume_heldout_quality before, after[MOST_ROWS];
     const struct relume_coder_params params = coder_params(rows[0], &l->log);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; i++) {
+        rows[i]->books.log = &l->inner;
         store[i] = rows[i]->store;
+        store[i].books = rows[i]->books.codes ? &rows[i]->books : NULL;
+    }
     l->extent *= 0.9;
     relume_status status =
         relume_heldout_measure(w->heldout, rows[0]->basis, &params, store, n, &before, after);
-    for (int i = 0; is_skipped(status) && i < n; i++)
-        skip_row(rows[i], l, status);
+    if (is_skipped(status) && n > 1)
+        return measure_apart(w, rows, n, l);
+    if (is_skipped(status))
+        skip_row(rows[0], l, status);
     if (status)
         return is_skipped(status) ? RELUME_OK : status;
     l->first += l->extent;
@@ -354,7 +437,7 @@ static relume_status measure_rows(struct work *w, struct sweep_row **rows, int n
 
 static relume_status measure_group(struct work *w, int first, int end)
 {
-    struct sweep_row *rows[MOST * MOST];
+    struct sweep_row *rows[MOST_ROWS];
     struct listener l;
     const double all = (double)w->sweep->rows;
     int n = 0;

@@ -8,10 +8,12 @@
 struct sweep_row {
     const struct relume_basis *basis;
     const struct relume_interpolant *interpolant;  // NULL: the basis's own
+    bool choose;                                   // the interpolant is chosen by the capture
     bool luminance;
     int wanted;        // coefficients asked for; 0: the basis's own number
     int coefficients;  // of the file
     struct relume_heldout_store store;
+    struct relume_books_params books;  // where codes is not 0
 
     bool known;         // measured, now or in an earlier run
     char skipped[200];  // why not measured; "" when it was

@@ -8,12 +8,21 @@
 
 void sweep_coder_name(const struct sweep_row *row, char *text, size_t size)
 {
-    snprintf(text, size, "%s%s%s%s", row->basis->name, row->interpolant ? " " : "",
-             row->interpolant ? row->interpolant->name : "", row->luminance ? " luminance" : "");
+    if (row->choose && row->basis == &relume_basis_pca)
+        snprintf(text, size, "auto");
+    else
+        snprintf(text, size, "%s%s%s%s", row->basis->name,
+                 row->choose || row->interpolant ? " " : "",
+                 row->choose        ? "auto"
+                 : row->interpolant ? row->interpolant->name
+                                    : "",
+                 row->luminance ? " luminance" : "");
 }
 
 const char *sweep_step_name(const struct sweep_row *row)
 {
+    if (row->books.codes)
+        return "-";
     return row->store.step == RELUME_STEP_COMMON ? "common" : "plane";
 }
 
@@ -41,15 +50,15 @@ relume_status sweep_mark_hull(struct sweep *sweep)
 
 void sweep_print_text(const struct sweep *sweep, FILE *out)
 {
-    fprintf(out, "%-22s %4s %4s %-6s %6s %9s %9s %9s %9s %8s %7s  %s\n", "coder", "K", "bits",
-            "step", "planes", "bytes/px", "before dB", "PSNR dB", "pooled dB", "SSIM", "seconds",
-            "hull");
+    fprintf(out, "%-18s %4s %4s %-6s %5s %6s %9s %9s %9s %9s %8s %7s  %s\n", "coder", "K", "bits",
+            "step", "codes", "planes", "bytes/px", "before dB", "PSNR dB", "pooled dB", "SSIM",
+            "seconds", "hull");
     for (int i = 0; i < sweep->rows; i++) {
         const struct sweep_row *r = &sweep->row[i];
         char name[64];
         sweep_coder_name(r, name, sizeof name);
-        fprintf(out, "%-22s %4d %4s %-6s ", name, r->coefficients,
-                relume_storage_name(r->store.storage), sweep_step_name(r));
+        fprintf(out, "%-18s %4d %4s %-6s %5d ", name, r->coefficients,
+                relume_storage_name(r->store.storage), sweep_step_name(r), r->books.codes);
         if (r->known)
             fprintf(out, "%6d %9.4f %9.3f %9.3f %9.3f %8.4f %7.2f  %s\n", r->planes,
                     r->bytes_per_pixel, r->before_db, r->quality.psnr_db, r->quality.psnr_pooled_db,
@@ -78,15 +87,16 @@ static void csv_text(FILE *out, const char *text)
 
 void sweep_print_csv(const struct sweep *sweep, FILE *out)
 {
-    fputs("coder,coefficients,bits,step,planes,bytes,bytes_per_pixel,psnr_before_db,psnr_db,"
-          "psnr_pooled_db,ssim,seconds,hull,skipped\n",
-          out);
+    fputs(
+        "coder,coefficients,bits,step,codebook,planes,bytes,bytes_per_pixel,psnr_before_db,psnr_db,"
+        "psnr_pooled_db,ssim,seconds,hull,skipped\n",
+        out);
     for (int i = 0; i < sweep->rows; i++) {
         const struct sweep_row *r = &sweep->row[i];
         char name[64];
         sweep_coder_name(r, name, sizeof name);
-        fprintf(out, "%s,%d,%s,%s", name, r->coefficients, relume_storage_name(r->store.storage),
-                sweep_step_name(r));
+        fprintf(out, "%s,%d,%s,%s,%d", name, r->coefficients, relume_storage_name(r->store.storage),
+                sweep_step_name(r), r->books.codes);
         if (!r->known) {
             fputs(",,,,,,,,,", out);
             csv_text(out, r->skipped);
@@ -135,9 +145,11 @@ static void print_json_row(const struct sweep_row *r, FILE *out)
         json_text(out, r->interpolant->name);
     else
         fputs("null", out);
-    fprintf(out, ", \"colour\": \"%s\", \"coefficients\": %d, \"bits\": \"%s\", \"step\": \"%s\"",
+    fprintf(out,
+            ", \"colour\": \"%s\", \"coefficients\": %d, \"bits\": \"%s\", \"step\": \"%s\", "
+            "\"codebook\": %d",
             r->luminance ? "luminance" : "rgb", r->coefficients,
-            relume_storage_name(r->store.storage), sweep_step_name(r));
+            relume_storage_name(r->store.storage), sweep_step_name(r), r->books.codes);
     if (!r->known) {
         fputs(", \"skipped\": ", out);
         json_text(out, r->skipped);
@@ -186,7 +198,7 @@ enum { MOST_SERIES = 64 };
 
 struct diagram {
     const struct sweep *sweep;
-    bool bits, steps;  // that rows differ in
+    bool bits, steps, codes;  // that rows differ in
     struct plot_series series[MOST_SERIES];
     char coder[MOST_SERIES][64], store[MOST_SERIES][64];  // what their names are made of
     int series_count;
@@ -200,6 +212,7 @@ static void find_differences(struct diagram *d)
     for (int i = 0; i < d->sweep->rows; i++) {
         d->bits |= d->sweep->row[i].store.storage != first->store.storage;
         d->steps |= d->sweep->row[i].store.step != first->store.step;
+        d->codes |= d->sweep->row[i].books.codes != first->books.codes;
     }
 }
 
@@ -207,9 +220,17 @@ static void find_differences(struct diagram *d)
 static void store_name(const struct diagram *d, const struct sweep_row *row, char *text,
                        size_t size)
 {
-    snprintf(text, size, "%s%s%s%s", d->bits ? ", " : "",
-             d->bits ? relume_storage_name(row->store.storage) : "", d->steps ? ", " : "",
-             d->steps ? sweep_step_name(row) : "");
+    const bool planes = !row->books.codes;
+    size_t n = 0;
+    *text = '\0';
+    if (d->bits)
+        n += (size_t)snprintf(text, size, ", %s", relume_storage_name(row->store.storage));
+    if (d->steps && planes)
+        n += (size_t)snprintf(text + n, size - n, ", %s", sweep_step_name(row));
+    if (d->codes && planes)
+        snprintf(text + n, size - n, ", planes");
+    else if (d->codes)
+        snprintf(text + n, size - n, ", %d codes", row->books.codes);
 }
 
 // The place of `text` among the first `count` different texts; `count` when it is new.
@@ -241,7 +262,7 @@ static int find_series(struct diagram *d, const struct sweep_row *row)
     const int n = d->series_count++;
     struct plot_series *s = &d->series[n];
     s->colour = place_of(d->coder, n, coder);
-    s->mark = d->bits || d->steps ? place_of(d->store, n, store) : s->colour;
+    s->mark = d->bits || d->steps || d->codes ? place_of(d->store, n, store) : s->colour;
     snprintf(d->coder[n], sizeof d->coder[n], "%s", coder);
     snprintf(d->store[n], sizeof d->store[n], "%s", store);
     snprintf(s->name, sizeof s->name, "%.30s%.30s", coder, store);

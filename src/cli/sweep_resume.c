@@ -71,10 +71,18 @@ static uint64_t row_key(const sweep_resume *r, const struct sweep_row *row)
 {
     uint64_t h = hash_text(r->key, row->basis->name);
     h = hash_text(h, row->interpolant ? row->interpolant->name : "");
+    h = hash_number(h, row->choose);
     h = hash_number(h, row->luminance);
     h = hash_number(h, row->wanted);
     h = hash_text(h, relume_storage_name(row->store.storage));
-    return hash_number(h, row->store.step);
+    h = hash_number(h, row->store.step);
+    if (!row->books.codes)
+        return h;
+    const struct relume_books_params *b = &row->books;
+    const int64_t form[] = {b->codes, b->stages,        b->split,        b->groups,
+                            b->start, (int64_t)b->seed, row->store.share};
+    h = hash(h, form, sizeof form);
+    return hash(h, &b->dither, sizeof b->dither);
 }
 
 static uint64_t line_sum(const char *line, size_t n)

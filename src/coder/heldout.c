@@ -39,6 +39,7 @@ struct fold {
     float *work;                      // [workers][work_size]
     size_t work_size;
     const struct relume_heldout_store *store;  // NULL: as they are
+    struct fold_books books;
     struct encoder *display;
     float *luma;        // [judged][pixels], predicted
     struct sums *part;  // [chunks][judged]
@@ -61,22 +62,30 @@ static void swap_places(relume_heldout *h, int a, int b)
     }
 }
 
-// Samples of the lights to learn from must lie side by side: light `fold`, `fold` + folds, ... go
-// to the end, in that order. Doing it again backwards undoes it.
-static int leave_out(relume_heldout *h, int fold)
+static void bring(relume_heldout *h, int place, int light)
 {
-    if (h->params.test)
-        return h->all - h->lights;
-    const int folds = h->info.folds, count = (h->lights - fold + folds - 1) / folds;
-    for (int i = count - 1; i >= 0; i--)
-        swap_places(h, fold + i * folds, h->lights - count + i);
-    return count;
+    int at = place;
+    while (h->light_at[at] != light)
+        at++;
+    if (at != place)
+        swap_places(h, place, at);
 }
 
-static void put_back(relume_heldout *h, int fold, int count)
+// Samples of the lights to learn from must lie side by side, in the order of the capture; those of
+// the lights `fold`, `fold` + folds, ... follow. From fold to fold few lights change places.
+// Returns how many are left out.
+static int leave_out(relume_heldout *h, int fold)
 {
-    for (int i = 0; !h->params.test && i < count; i++)
-        swap_places(h, fold + i * h->info.folds, h->lights - count + i);
+    const int folds = h->info.folds;
+    int place = 0;
+    if (h->params.test)
+        return h->all - h->lights;
+    for (int i = 0; i < h->lights; i++)
+        if (i % folds != fold)
+            bring(h, place++, i);
+    for (int i = fold; i < h->lights; i += folds)
+        bring(h, place++, i);
+    return (h->lights - fold + folds - 1) / folds;
 }
 
 // ---------------------------------------------------------------- one coder
@@ -103,7 +112,7 @@ static relume_status make_coder(struct fold *f, const struct relume_basis *basis
     struct relume_samples samples = {0};
     struct relume_vec3 *directions = mem_array((size_t)h->all, sizeof *directions);
     relume_status status = directions ? RELUME_OK : RELUME_ENOMEM;
-    if (!status && basis->learned)
+    if (!status && (basis->learned || coder->choose))
         status = samples_of_fold(&samples, f);
     if (!status) {
         struct relume_coder_params p = *coder;
@@ -111,7 +120,7 @@ static relume_status make_coder(struct fold *f, const struct relume_basis *basis
             directions[i] = h->directions[h->light_at[i]];
         p.hemispherical = h->hemispherical;
         p.pole_y = h->pole_y;
-        p.samples = basis->learned ? &samples : NULL;
+        p.samples = samples.data ? &samples : NULL;
         status = relume_coder_create(&f->coder, basis, directions, f->learned, &p);
     }
     if (!status)
@@ -267,7 +276,10 @@ static void judge_chunk(void *context, size_t item, int worker)
     const float *planes = f->value + c.first;
     size_t stride = h->pixels;
     if (f->store) {
-        store_and_restore(f, c, work);
+        if (f->store->books)
+            fold_books_restore(&f->books, c.view, c.first, c.n, work);
+        else
+            store_and_restore(f, c, work);
         planes = work;
         stride = c.n;
     }
@@ -363,7 +375,11 @@ static relume_status judge(struct fold *f, struct total *total)
     struct sums *image = mem_zeroed(images, sizeof *image);
     if (!image)
         return RELUME_ENOMEM;
-    relume_status status = f->store ? choose_steps(f) : RELUME_OK;
+    relume_status status = RELUME_OK;
+    if (f->store && f->store->books)
+        status = fold_books_make(&f->books, h, f->coder, f->value, f->store);
+    else if (f->store)
+        status = choose_steps(f);
     if (!status) {
         thread_for(h->params.threads, (size_t)h->chunks, judge_chunk, f);
         for (size_t i = 0; i < (size_t)h->chunks * judged; i++) {
@@ -376,6 +392,7 @@ static relume_status judge(struct fold *f, struct total *total)
     }
     for (size_t i = 0; !status && i < images; i++)
         add_image(total, &image[i]);
+    fold_books_drop(&f->books);
     free(image);
     return status;
 }
@@ -405,7 +422,6 @@ static relume_status measure_fold(struct fold *f, int number, const struct reque
     }
     relume_coder_destroy(&f->coder);
     captured_destroy(&f->unseen);
-    put_back(h, number, f->judged);
     return status;
 }
 
@@ -466,7 +482,7 @@ relume_status relume_heldout_measure(relume_heldout *heldout, const struct relum
     r.total = mem_zeroed((size_t)n + 1, sizeof *r.total);
     r.display = mem_array(1, sizeof *r.display);
     relume_status status = stores && r.total && r.display ? RELUME_OK : RELUME_ENOMEM;
-    if (!status && basis->learned)
+    if (!status && (basis->learned || r.coder.choose))
         status = read_learning(heldout);
     if (!status) {
         encoder_init(r.display, heldout->display);

@@ -39,6 +39,23 @@ struct relume_heldout {
     struct relume_samples learning;  // of all captured lights; read when first needed
 };
 
+// Codebooks of one fold, and which vectors stand for each pixel.
+struct fold_books {
+    int views;
+    relume_books **books;  // [views], or the first for all
+    bool share;
+    uint16_t **index;  // [views * RELUME_MOST_BOOKS] -> pixels of the view
+    size_t *first;     // [views]: where the view begins in memory
+};
+
+// Learn codebooks from coefficients value[planes][pixels] and assign every pixel.
+relume_status fold_books_make(struct fold_books *out, const relume_heldout *h,
+                              const relume_coder *coder, const float *value,
+                              const struct relume_heldout_store *store);
+void fold_books_drop(struct fold_books *b);
+// The coefficients to[plane][pixel] that stand for `n` pixels from `first` on, of one view.
+void fold_books_restore(const struct fold_books *b, int view, size_t first, size_t n, float *to);
+
 // Reads everything that relume_heldout_measure needs.
 relume_status heldout_load(relume_heldout *h);
 

@@ -15,7 +15,7 @@ expect_ok 'sweep' - $sweep $grid -o out --json
 cp out.txt out1.json
 same 'OUT.json is what --json prints' out1.json out.json
 if [ "$(grep -o '"basis"' out.json | wc -l)" -eq 10 ]; then ok 'rows: 2 x 2 x 2 and table x 2'; else not_ok 'rows' "$(cat out.json)"; fi
-if [ "$(awk -F, 'NF != 14' out.csv | wc -l)" -eq 0 ] && [ "$(wc -l <out.csv)" -eq 11 ]; then ok 'CSV has 14 columns and 11 lines'; else not_ok 'CSV' "$(cat out.csv)"; fi
+if [ "$(awk -F, 'NF != 15' out.csv | wc -l)" -eq 0 ] && [ "$(wc -l <out.csv)" -eq 11 ]; then ok 'CSV has 15 columns and 11 lines'; else not_ok 'CSV' "$(cat out.csv)"; fi
 if grep -q '"hull": true' out.json; then ok 'the hull is marked'; else not_ok 'hull' "$(cat out.json)"; fi
 for f in bytes bytes_per_pixel psnr_before_db psnr_db psnr_pooled_db ssim; do
     above "sweep: $f" "$(field $f out.json)" 1e-6
@@ -39,6 +39,15 @@ if [ "$(field bytes out.txt)" = "$(field file_bytes e.json)" ]; then ok 'bytes a
 no_times() { sed 's/"seconds": [0-9.e-]*//g' "$1"; }
 for n in 1 7; do "$RELUME" sweep cap $grid --json --threads $n -q | sed 's/"seconds": [0-9.e-]*//g' >t$n.json; done
 same 'sweep with 1 and 7 threads' t1.json t7.json
+
+expect_ok 'auto, interpolants, luminance, codebooks' - $sweep --basis auto,pca,table,sh --coefficients 4 --interpolant auto,tps --colour rgb,luminance --codebook 0,32 --stages 2 --csv
+for r in auto,4,8,plane,0 auto,4,8,-,32 'pca auto' 'pca tps,4,8,plane,0' 'table auto,20,8,plane,0' 'table tps,20,8,-,32' sh,4,8,plane,0 'sh luminance,4,8,plane,0'; do
+    case $r in
+    'pca auto') if grep -q "^$r" out.txt; then not_ok 'pca auto is auto' "$(cat out.txt)"; else ok 'pca auto is auto'; fi ;;
+    *) if grep -q "^$r" out.txt; then ok "a row $r"; else not_ok "a row $r" "$(cat out.txt)"; fi ;;
+    esac
+done
+if grep -q '^sh luminance,4,8,-,32,.*expected one book' out.txt; then ok 'luminance and several codebooks: a reason'; else not_ok 'luminance and codebooks' "$(cat out.txt)"; fi
 
 # ---- rows that cannot be measured are named, the others are there
 expect_ok 'more coefficients than lights' - $sweep --basis sh --coefficients 9,16 --json
@@ -101,6 +110,8 @@ bad 'unknown domain' "unknown --domain" --domain log
 bad 'a size that is no number' '--coefficients: .*four' --coefficients 4,four
 bad 'a size of 0' '--coefficients: ' --coefficients 0
 bad 'a size that no basis has' '--coefficients: none of the bases' --basis sh --coefficients 5
+bad 'a codebook that is no number' '--codebook: .*many' --codebook many
+bad 'stages without codebooks' '--stages: expected together with --codebook' --stages 2
 bad 'an empty word' '--basis: ' --basis sh,,pca
 bad 'a comma at the end' '--basis: ' --basis sh,
 bad 'two ways to judge' '--leave-out or --test' --leave-out 2 --test held

@@ -235,8 +235,9 @@ static relume_status evaluate(void)
 
 static relume_status judge(void)
 {
-    const struct relume_heldout_store store = {RELUME_STORE_8, RELUME_STEP_PLANE};
-    struct relume_heldout_quality before, after;
+    const struct relume_books_params books = {.codes = 3};
+    const struct relume_heldout_store store[2] = {{.storage = RELUME_STORE_8}, {.books = &books}};
+    struct relume_heldout_quality before, after[2];
     relume_capture *capture = NULL;
     relume_heldout *h = (void *)1;
     relume_status status = relume_capture_open(&capture, capture_path, NULL);
@@ -247,7 +248,7 @@ static relume_status judge(void)
     }
     if (!status)
         status = relume_heldout_measure(h, &relume_basis_sh, relume_coder_params(.coefficients = 1),
-                                        &store, 1, &before, &after);
+                                        store, 2, &before, after);
     if (capture)
         relume_heldout_destroy(&h);
     relume_capture_destroy(&capture);

@@ -61,6 +61,7 @@ struct coding {
     int coefficients;
     enum relume_domain domain;
     struct relume_heldout_store store;
+    bool choose;
 };
 
 // The same by real files: one for each fold, evaluated on the lights that it has not seen.
@@ -77,13 +78,15 @@ static struct relume_heldout_quality by_files(const relume_capture *capture, con
         write_part(capture, rest_path, fold, true);
         CHECK_OK(relume_capture_open(&part, part_path, NULL));
         CHECK_OK(relume_capture_open(&rest, rest_path, NULL));
-        CHECK_OK(relume_coder_learn(&coder, c->basis, part,
-                                    relume_coder_params(.coefficients = c->coefficients),
-                                    relume_encode_params(.domain = c->domain)));
-        CHECK_OK(relume_pack_encode(part, coder, pack_path, NULL,
-                                    relume_pack_encode_params(.domain = c->domain,
-                                                              .storage = c->store.storage,
-                                                              .step = c->store.step)));
+        CHECK_OK(relume_coder_learn(
+            &coder, c->basis, part,
+            relume_coder_params(.coefficients = c->coefficients, .choose = c->choose),
+            relume_encode_params(.domain = c->domain)));
+        CHECK_OK(relume_pack_encode(
+            part, coder, pack_path, NULL,
+            relume_pack_encode_params(.domain = c->domain, .storage = c->store.storage,
+                                      .step = c->store.step, .books = c->store.books,
+                                      .share = c->store.share)));
         CHECK_OK(relume_pack_open(&pack, pack_path, NULL));
         CHECK_OK(relume_evaluate(&e, pack, rest, NULL));
         const double n = (double)e.images;
@@ -108,15 +111,20 @@ static struct relume_heldout_quality by_files(const relume_capture *capture, con
 static void test_against_files(void **state)
 {
     (void)state;
+    const struct relume_books_params two = {.codes = 16, .stages = 2, .seed = 3};
     const struct coding codings[] = {
-        {&relume_basis_sh, 4, RELUME_DOMAIN_LINEAR, {RELUME_STORE_8, RELUME_STEP_PLANE}},
-        {&relume_basis_sh, 4, RELUME_DOMAIN_DISPLAY, {RELUME_STORE_8, RELUME_STEP_COMMON}},
-        {&relume_basis_sh, 4, RELUME_DOMAIN_DISPLAY, {RELUME_STORE_HALF, RELUME_STEP_PLANE}},
-        {&relume_basis_table, 0, RELUME_DOMAIN_DISPLAY, {RELUME_STORE_8, RELUME_STEP_PLANE}},
-        {&relume_basis_table, 0, RELUME_DOMAIN_LINEAR, {RELUME_STORE_16, RELUME_STEP_PLANE}},
-        {&relume_basis_hsh, 4, RELUME_DOMAIN_LINEAR, {RELUME_STORE_10, RELUME_STEP_PLANE}},
-        {&relume_basis_pca, 5, RELUME_DOMAIN_DISPLAY, {RELUME_STORE_8, RELUME_STEP_COMMON}},
-        {&relume_basis_pca, 3, RELUME_DOMAIN_LINEAR, {RELUME_STORE_12, RELUME_STEP_PLANE}},
+        {.basis = &relume_basis_sh, 4, RELUME_DOMAIN_LINEAR, .store.step = RELUME_STEP_PLANE},
+        {.basis = &relume_basis_sh, 4, RELUME_DOMAIN_DISPLAY, .store.step = RELUME_STEP_COMMON},
+        {.basis = &relume_basis_sh, 4, RELUME_DOMAIN_DISPLAY, .store.storage = RELUME_STORE_HALF},
+        {.basis = &relume_basis_table, .domain = RELUME_DOMAIN_DISPLAY},
+        {.basis = &relume_basis_table, .store.storage = RELUME_STORE_16},
+        {.basis = &relume_basis_hsh, 4, .store.storage = RELUME_STORE_10},
+        {.basis = &relume_basis_pca, 5, RELUME_DOMAIN_DISPLAY, .store.step = RELUME_STEP_COMMON},
+        {.basis = &relume_basis_pca, 3, .store.storage = RELUME_STORE_12},
+        {.basis = &relume_basis_pca, 4, RELUME_DOMAIN_DISPLAY, .choose = true},
+        {.basis = &relume_basis_table, .domain = RELUME_DOMAIN_DISPLAY, .choose = true},
+        {.basis = &relume_basis_sh, 4, .store = {.storage = RELUME_STORE_HALF, .books = &two}},
+        {.basis = &relume_basis_pca, 4, .store = {.books = &two, .share = true}},
     };
     relume_capture *capture;
     CHECK_OK(relume_capture_open(&capture, folder, NULL));
@@ -128,9 +136,9 @@ static void test_against_files(void **state)
             &h, capture, relume_heldout_params(.leave_out = LEFT_OUT, .domain = c->domain)));
         assert_int_equal(relume_heldout_info(h).folds, FOLDS);
         assert_int_equal(relume_heldout_info(h).fewest, 8);
-        CHECK_OK(relume_heldout_measure(h, c->basis,
-                                        relume_coder_params(.coefficients = c->coefficients),
-                                        &c->store, 1, &before, &after));
+        CHECK_OK(relume_heldout_measure(
+            h, c->basis, relume_coder_params(.coefficients = c->coefficients, .choose = c->choose),
+            &c->store, 1, &before, &after));
         const struct relume_heldout_quality want = by_files(capture, c);
         print_message("%s %d: %.4f dB before storing, %.4f dB after\n", c->basis->name,
                       c->coefficients, before.psnr_db, after.psnr_db);
@@ -153,9 +161,10 @@ static void test_second_capture(void **state)
     write_part(capture, rest_path, 1, true);
     CHECK_OK(relume_capture_open(&part, part_path, NULL));
     CHECK_OK(relume_capture_open(&rest, rest_path, NULL));
-    const struct relume_heldout_store store[2] = {{RELUME_STORE_8, RELUME_STEP_PLANE},
-                                                  {RELUME_STORE_16, RELUME_STEP_PLANE}};
-    struct relume_heldout_quality before[2], after[2][2];
+    const struct relume_books_params books = {.codes = 64};
+    const struct relume_heldout_store store[3] = {
+        {.storage = RELUME_STORE_8}, {.storage = RELUME_STORE_16}, {.books = &books}};
+    struct relume_heldout_quality before[2], after[2][3];
     for (int i = 0; i < 2; i++) {
         relume_heldout *h;
         CHECK_OK(relume_heldout_open(&h, part,
@@ -163,23 +172,28 @@ static void test_second_capture(void **state)
         assert_int_equal(relume_heldout_info(h).folds, 1);
         assert_int_equal(relume_heldout_info(h).judged, 3);
         CHECK_OK(relume_heldout_measure(h, &relume_basis_sh, relume_coder_params(.coefficients = 4),
-                                        store, 2, &before[i], after[i]));
+                                        store, 3, &before[i], after[i]));
         relume_heldout_destroy(&h);
     }
     assert_memory_equal(&before[0], &before[1], sizeof before[0]);
     assert_memory_equal(after[0], after[1], sizeof after[0]);
     CHECK_NEAR(after[0][1].psnr_pooled_db, before[0].psnr_pooled_db, 1e-3);  // 16 bits lose nothing
     relume_coder *coder;
-    relume_pack *pack;
-    struct relume_evaluation e;
     CHECK_OK(relume_coder_learn(&coder, &relume_basis_sh, part,
                                 relume_coder_params(.coefficients = 4), NULL));
-    CHECK_OK(relume_pack_encode(part, coder, pack_path, NULL, NULL));
-    CHECK_OK(relume_pack_open(&pack, pack_path, NULL));
-    CHECK_OK(relume_evaluate(&e, pack, rest, NULL));
-    CHECK_NEAR(after[0][0].psnr_db, e.psnr_db, 0.01);
-    relume_evaluation_destroy(&e);
-    relume_pack_destroy(&pack);
+    for (int i = 0; i < 3; i++) {
+        relume_pack *pack;
+        struct relume_evaluation e;
+        CHECK_OK(relume_pack_encode(
+            part, coder, pack_path, NULL,
+            relume_pack_encode_params(.storage = store[i].storage, .books = store[i].books)));
+        CHECK_OK(relume_pack_open(&pack, pack_path, NULL));
+        CHECK_OK(relume_evaluate(&e, pack, rest, NULL));
+        CHECK_NEAR(after[0][i].psnr_db, e.psnr_db, 0.001);
+        CHECK_NEAR(after[0][i].ssim, e.ssim, 1e-5);
+        relume_evaluation_destroy(&e);
+        relume_pack_destroy(&pack);
+    }
     relume_coder_destroy(&coder);
     relume_capture_destroy(&capture);
     relume_capture_destroy(&part);

@@ -42,6 +42,12 @@ static const char *text_of(const char *name)
     return a->string->str;
 }
 
+static const char *text_or(const char *name, const char *otherwise)
+{
+    const exr_attribute_t *a = attribute(0, name, EXR_ATTR_STRING);
+    return a ? a->string->str : otherwise;
+}
+
 static int int_of(const char *name)
 {
     const exr_attribute_t *a = attribute(0, name, EXR_ATTR_INT);
@@ -183,9 +189,50 @@ static void sh(int count, struct vector d, double *value)
         }
 }
 
-// ---------------------------------------------------------------- basis table
+// ---------------------------------------------------------------- bases ptm, hsh, dct
 
-enum { MOST_POINTS = 256, CANDIDATES = 2048, HELPERS = 6 };
+static void ptm(int count, struct vector d, double *value)
+{
+    const double terms[6] = {d.x * d.x, d.y * d.y, d.x * d.y, d.x, d.y, 1.0};
+    memcpy(value, terms + 6 - count, (size_t)count * sizeof *value);
+}
+
+static void hsh(int count, struct vector d, double *value)
+{
+    const double x = 2.0 * fmax(d.z, sin(0.01)) - 1.0, phi = atan2(d.y, d.x);
+    for (int l = 0, k = 0; k < count; l++)
+        for (int m = l; m >= -l; m--, k++) {
+            const int a = abs(m), sign = a * (a - 1) / 2 % 2 ? -1 : 1;
+            const double n = sqrt((2 * l + 1) / (2 * PI) * factorial(l - a) / factorial(l + a));
+            value[k] = sign * n * (a % 2 ? -1 : 1) * legendre(l, a, x) *
+                       (m > 0   ? sqrt(2.0) * cos(a * phi)
+                        : m < 0 ? sqrt(2.0) * sin(a * phi)
+                                : 1.0);
+        }
+}
+
+static void dct(int count, int hemispherical, struct vector d, double *value)
+{
+    const int upper = hemispherical ? count : (count + 1) / 2;
+    const int first = d.z < 0.0 ? upper : 0, last = d.z < 0.0 ? count : upper;
+    const double x = (1.0 + d.x / (1.0 + fabs(d.z))) / 2.0;
+    const double y = (1.0 - d.y / (1.0 + fabs(d.z))) / 2.0;
+    for (int zone = 0, k = first; k < last; zone++)
+        for (int u = 0; u <= zone && k < last; u++, k++) {
+            const int v = zone - u;
+            value[k] = (u ? sqrt(2.0) : 1.0) * cos(PI * u * x) * (v ? sqrt(2.0) : 1.0) *
+                       cos(PI * v * y);
+        }
+}
+
+// ---------------------------------------------------------------- interpolants
+
+enum { MOST_POINTS = 256, CANDIDATES = 2048, HELPERS = 6, VORONOI = 8192 };
+
+struct set {
+    int n;
+    struct vector light[MOST_POINTS];
+};
 
 static double angle(struct vector a, struct vector b)
 {
@@ -235,10 +282,11 @@ static int on_hull(const struct vector *p, int n, int a, int b, int c)
     return 1;
 }
 
-static void table(const struct vector *light, int lights, struct vector d, double *value)
+static void delaunay(const struct set *s, struct vector d, double *value)
 {
+    const int lights = s->n;
     struct vector p[MOST_POINTS + HELPERS], outside[MOST_POINTS + HELPERS];
-    memcpy(p, light, (size_t)lights * sizeof *p);
+    memcpy(p, s->light, (size_t)lights * sizeof *p);
     const int n = add_helpers(p, lights);
     for (int i = 0; i < n; i++)
         outside[i] = shifted(p[i], i);
@@ -267,33 +315,211 @@ static void table(const struct vector *light, int lights, struct vector d, doubl
     fail("the direction lies in no triangle with a light");
 }
 
+static double angular(struct vector a, struct vector b)
+{
+    return -angle(a, b);
+}
+
+static double thin_plate(struct vector a, struct vector b)
+{
+    const double r = sqrt(dot(minus(a, b), minus(a, b)));
+    return r > 0.0 ? r * r * log(r) : 0.0;
+}
+
+// a[n][n] x = b by elimination with the largest pivot; x is left in b.
+static void solve(double *a, double *b, int n)
+{
+    for (int k = 0; k < n; k++) {
+        int best = k;
+        for (int i = k + 1; i < n; i++)
+            best = fabs(a[i * n + k]) > fabs(a[best * n + k]) ? i : best;
+        for (int j = 0; j < n; j++) {
+            const double t = a[k * n + j];
+            a[k * n + j] = a[best * n + j];
+            a[best * n + j] = t;
+        }
+        const double t = b[k];
+        b[k] = b[best];
+        b[best] = t;
+        for (int i = k + 1; i < n; i++) {
+            const double f = a[i * n + k] / a[k * n + k];
+            for (int j = k; j < n; j++)
+                a[i * n + j] -= f * a[k * n + j];
+            b[i] -= f * b[k];
+        }
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        for (int j = k + 1; j < n; j++)
+            b[k] -= a[k * n + j] * b[j];
+        b[k] /= a[k * n + k];
+    }
+}
+
+static void kernel(const struct set *s, double (*phi)(struct vector, struct vector),
+                   struct vector d, double *value)
+{
+    enum { MOST = MOST_POINTS + 4 };
+    static double a[MOST * MOST], b[MOST];
+    double lowest = 1.0, largest = 0.0;
+    for (int i = 0; i < s->n; i++)
+        lowest = fmin(lowest, s->light[i].z);
+    const int terms = lowest < -0.1 ? 4 : 3, n = s->n + terms;
+    for (int i = 0; i < s->n; i++) {
+        const double trend[4] = {1.0, s->light[i].x, s->light[i].y, s->light[i].z};
+        for (int j = 0; j < s->n; j++) {
+            a[i * n + j] = phi(s->light[i], s->light[j]);
+            largest = fmax(largest, fabs(a[i * n + j]));
+        }
+        for (int t = 0; t < terms; t++)
+            a[i * n + s->n + t] = a[(s->n + t) * n + i] = trend[t];
+        b[i] = phi(s->light[i], d);
+    }
+    const double trend[4] = {1.0, d.x, d.y, d.z};
+    for (int i = 0; i < s->n; i++)
+        a[i * n + i] += 1e-9 * largest;
+    for (int t = 0; t < terms; t++) {
+        for (int u = 0; u < terms; u++)
+            a[(s->n + t) * n + s->n + u] = t == u ? -1e-9 : 0.0;
+        b[s->n + t] = trend[t];
+    }
+    solve(a, b, n);
+    memcpy(value, b, (size_t)s->n * sizeof *value);
+}
+
+static void rbf(const struct set *s, double sigma, struct vector d, double *value)
+{
+    double sum = 0.0;
+    for (int i = 0; i < s->n && !(sigma > 0.0); i++) {
+        double nearest = 2.0;
+        for (int j = 0; j < s->n; j++) {
+            const struct vector e = minus(s->light[i], s->light[j]);
+            const double r = sqrt(dot(e, e));
+            nearest = j != i && r > 1e-6 ? fmin(nearest, r) : nearest;
+        }
+        sum += nearest;
+    }
+    const double width = sigma > 0.0 ? sigma : sum / s->n;
+    for (int round = 0; round < 2; round++) {
+        double total = 0.0;
+        for (int i = 0; i < s->n; i++) {
+            const struct vector e = minus(d, s->light[i]);
+            value[i] = round ? value[i] : exp(-dot(e, e) / (width * width));
+            total += value[i];
+        }
+        for (int i = 0; i < s->n; i++) {
+            value[i] /= total;
+            value[i] = value[i] > 0.001 || round || s->n > 200 ? value[i] : 0.0;
+        }
+    }
+}
+
+static void natural(const struct set *s, struct vector d, double *value)
+{
+    double sum = 0.0;
+    for (int i = 0; i < VORONOI; i++) {
+        const double z = 1.0 - (2.0 * i + 1.0) / VORONOI, r = sqrt(1.0 - z * z);
+        const double phi = i * PI * (3.0 - sqrt(5.0));
+        const struct vector p = {r * cos(phi), r * sin(phi), z};
+        int owner = 0;
+        for (int j = 1; j < s->n; j++)
+            owner = dot(p, s->light[j]) > dot(p, s->light[owner]) ? j : owner;
+        const double gain = dot(p, d) - dot(p, s->light[owner]);
+        value[owner] += fmax(gain, 0.0);
+        sum += fmax(gain, 0.0);
+    }
+    for (int j = 0; j < s->n; j++)
+        value[j] /= sum;
+}
+
+static void trend_of_nine(const struct set *s, double ridge, struct vector d, double *value)
+{
+    double a[81] = {0}, b[9], row[9];
+    for (int i = 0; i < s->n; i++) {
+        hsh(9, s->light[i], row);
+        for (int j = 0; j < 81; j++)
+            a[j] += row[j / 9] * row[j % 9];
+    }
+    for (int j = 0; j < 9; j++)
+        a[10 * j] += j ? (ridge > 0.0 ? ridge : 0.1) : 1e-9;
+    hsh(9, d, b);
+    solve(a, b, 9);
+    for (int i = 0; i < s->n; i++) {
+        hsh(9, s->light[i], row);
+        for (int j = 0; j < 9; j++)
+            value[i] += row[j] * b[j];
+    }
+}
+
+static void interpolate(struct vector d, double *value)
+{
+    static struct set s;
+    int n, four;
+    const float *xyz = floats_of(0, "relume.lights", &n);
+    const float *parameter = floats_of(0, "relume.parameter", &four);
+    const double first = four == 4 ? (double)parameter[0] : 0.0;
+    const char *name = text_or("relume.interpolant",
+                               strcmp(text_of("relume.basis"), "pca") ? "delaunay" : "angular");
+    if (n > 3 * MOST_POINTS)
+        fail("%d lights", n / 3);
+    s.n = n / 3;
+    for (int i = 0; i < s.n; i++)
+        s.light[i] = pole_frame(unit((struct vector){
+            (double)xyz[3 * i], (double)xyz[3 * i + 1], (double)xyz[3 * i + 2]}));
+    if (!strcmp(name, "delaunay"))
+        delaunay(&s, d, value);
+    else if (!strcmp(name, "angular"))
+        kernel(&s, angular, d, value);
+    else if (!strcmp(name, "tps"))
+        kernel(&s, thin_plate, d, value);
+    else if (!strcmp(name, "rbf"))
+        rbf(&s, first, d, value);
+    else if (!strcmp(name, "natural"))
+        natural(&s, d, value);
+    else if (!strcmp(name, "hsh"))
+        trend_of_nine(&s, first, d, value);
+    else
+        fail("interpolant %s", name);
+}
+
 // ---------------------------------------------------------------- decoding
 
-static void basis(int k, struct vector light, double *stored)
+// What the coefficients multiply, stored[3][k], and the constants.
+static void functions(int k, struct vector light, double *stored, double *constant)
 {
     struct vector d = pole_frame(unit(light));
-    if (int_of("relume.hemispherical") && d.z < 0.0)
+    const int hemispherical = int_of("relume.hemispherical");
+    if (hemispherical && d.z < 0.0)
         d = unit((struct vector){d.x, d.y, 0.0});
-    double *value = calloc((size_t)k, sizeof *value);
-    int n, size;
-    const float *xyz = floats_of(0, "relume.lights", &n);
+    int n, size, means;
+    (void)floats_of(0, "relume.lights", &n);
     const float *transform = floats_of(0, "relume.transform", &size);
+    const float *mean = floats_of(0, "relume.mean", &means);
     const char *name = text_of("relume.basis");
-    if (!strcmp(name, "sh")) {
+    const int pca = !strcmp(name, "pca"), raw = pca || !strcmp(name, "table") ? n / 3 : k;
+    double *value = calloc((size_t)raw, sizeof *value);
+    if (!strcmp(name, "sh"))
         sh(k, d, value);
-    } else if (!strcmp(name, "table") && n == 3 * k && k <= MOST_POINTS) {
-        struct vector light_of[MOST_POINTS];
-        for (int i = 0; i < k; i++)
-            light_of[i] = pole_frame(unit((struct vector){
-                (double)xyz[3 * i], (double)xyz[3 * i + 1], (double)xyz[3 * i + 2]}));
-        table(light_of, k, d, value);
-    } else {
-        fail("basis %s with %d coefficients", name, k);
-    }
-    for (int i = 0; i < k; i++) {
-        stored[i] = size ? 0.0 : value[i];
-        for (int j = 0; size && j < k; j++)
-            stored[i] += (double)transform[i * k + j] * value[j];
+    else if (!strcmp(name, "ptm"))
+        ptm(k, d, value);
+    else if (!strcmp(name, "hsh"))
+        hsh(k, d, value);
+    else if (!strcmp(name, "dct") || !strcmp(name, "dct-resampled"))
+        dct(k, hemispherical, d, value);
+    else if (!strcmp(name, "table") || pca)
+        interpolate(d, value);
+    else
+        fail("basis %s", name);
+    if ((pca && size != 3 * k * raw) || (!pca && size && size != k * raw))
+        fail("%d numbers of a transform", size);
+    for (int c = 0; c < 3; c++) {
+        const float *matrix = pca ? transform + c * k * raw : transform;
+        for (int i = 0; i < k; i++) {
+            stored[c * k + i] = size ? 0.0 : value[i];
+            for (int j = 0; size && j < raw; j++)
+                stored[c * k + i] += (double)matrix[i * raw + j] * value[j];
+        }
+        for (int j = 0; means && j < raw; j++)
+            constant[c] += (double)mean[c * raw + j] * value[j];
     }
     free(value);
 }
@@ -311,7 +537,7 @@ static double linearised(double v)
 
 int main(int argc, char **argv)
 {
-    enum { MOST = 3 * 4096 };
+    enum { MOST = 3 * 4096 + 3 };
     static const char *name[MOST];
     static float code[MOST];
     if (argc != 8)
@@ -327,21 +553,33 @@ int main(int argc, char **argv)
     int scales, offsets;
     const float *scale = floats_of(part, "relume.scale", &scales);
     const float *offset = floats_of(part, "relume.offset", &offsets);
-    if (channels != 3 * k || scales != 3 * k || offsets != 3 * k)
-        fail("%d channels, %d scales; expected %d", channels, scales, 3 * k);
+    const int luminance = !strcmp(text_or("relume.colour", "rgb"), "luminance");
+    const int shared = luminance || !strcmp(text_of("relume.basis"), "pca");
+    const int planes = luminance ? k + 3 : shared ? k : 3 * k;
+    if (channels != planes || scales != planes || offsets != planes)
+        fail("%d channels, %d scales; expected %d", channels, scales, planes);
 
-    double *weight = calloc((size_t)k, sizeof *weight), rgb[3] = {0, 0, 0};
-    basis(k, (struct vector){atof(argv[5]), atof(argv[6]), atof(argv[7])}, weight);
+    double *weight = calloc(3 * (size_t)k, sizeof *weight), rgb[3] = {0}, colour[3] = {1, 1, 1};
+    functions(k, (struct vector){atof(argv[5]), atof(argv[6]), atof(argv[7])}, weight, rgb);
     for (int i = 0; i < channels; i++) {
-        int number;
-        char letter;
-        if (sscanf(name[i], "c%4d.%c", &number, &letter) != 2 || number >= k)
-            fail("channel %s", name[i]);
+        int number = 0;
+        char letter = 0;
+        const int colours = sscanf(name[i], "colour.%c", &letter) == 1;
+        const int words = sscanf(name[i], "c%4d.%c", &number, &letter);
         const int c = letter == 'R' ? 0 : letter == 'G' ? 1 : 2;
-        const int plane = 3 * number + c;
-        rgb[c] += weight[number] * ((double)code[i] * (double)scale[plane] + (double)offset[plane]);
+        if (number >= k || (!colours && words != (shared ? 1 : 2)))
+            fail("channel %s", name[i]);
+        const int plane = colours ? k + c : shared ? number : 3 * number + c;
+        const double v = (double)code[i] * (double)scale[plane] + (double)offset[plane];
+        if (colours)
+            colour[c] = v;
+        for (int each = 0; each < 3 && !colours; each++)
+            if (shared || each == c)
+                rgb[each] += weight[each * k + number] * v;
     }
-    printf("%.9g %.9g %.9g\n", linearised(rgb[0]), linearised(rgb[1]), linearised(rgb[2]));
+    for (int c = 0; c < 3; c++)
+        rgb[c] = linearised(rgb[c] * colour[c]);
+    printf("%.9g %.9g %.9g\n", rgb[0], rgb[1], rgb[2]);
     free(weight);
     exr_finish(&file);
     return 0;

@@ -72,6 +72,9 @@ struct relume_capture_params {
     const struct relume_limits *limits;
     struct relume_transfer transfer;  // overrides the manifest's; default: the manifest's
     bool skip_missing;                // drop lights whose image does not exist instead of failing
+    bool repair;  // tables replace pixels that hold NaN or infinity instead of failing: by those
+                  // of the same place under the three nearest lights where it is whole, weighted
+                  // by 1 / angle; black where there is none
 };
 #define relume_capture_params(...) (&(const struct relume_capture_params){__VA_ARGS__})
 
@@ -89,7 +92,12 @@ RELUME_API int relume_capture_height(const relume_capture *capture);
 // No light lies below -0.1 along the pole (planar, slab: z; panoramas: y).
 RELUME_API bool relume_capture_hemispherical(const relume_capture *capture);
 
-// One image, linear, light intensity divided out, three channels.
+// The largest value that images under `light` can hold, linear, intensity divided out: there they
+// clip. Infinite for floating-point files.
+RELUME_API void relume_capture_white(const relume_capture *capture, int light, float rgb[3]);
+
+// One image, linear, light intensity divided out, three channels. NaN and infinity are
+// RELUME_EDATA.
 RELUME_RESULT relume_status relume_capture_image(struct relume_image *out,
                                                  const relume_capture *capture, int view, int light,
                                                  const struct relume_log *log);
@@ -118,6 +126,8 @@ RELUME_RESULT relume_status relume_table_open(relume_table **out, const relume_c
 // The next `rows` rows of every light: out[light][row][x][rgb], light intensity divided out.
 // Asking for more rows than are left is RELUME_EINVAL.
 RELUME_RESULT relume_status relume_table_read(relume_table *table, int rows, float *out);
+// Pixels of `light` that have been repaired in the rows read so far.
+RELUME_API size_t relume_table_repaired(const relume_table *table, int light);
 RELUME_API void relume_table_destroy(relume_table **table);
 
 #ifdef __cplusplus

@@ -208,11 +208,22 @@ RELUME_RESULT relume_status relume_encode(relume_coefficients **out, const relum
                                           const struct relume_encode_params *params);
 RELUME_API void relume_coefficients_destroy(relume_coefficients **coefficients);
 
+// Pixels of a view that carry little or no information; those outside the mask do not count.
+struct relume_encode_census {
+    size_t pixels;
+    size_t black;           // under every light
+    size_t clipped;         // as bright as the files can say, in a colour, under some light
+    size_t always_clipped;  // under every light
+    size_t repaired;        // pixels of images that held NaN or infinity, masked ones too
+    int black_images;       // lights under which nothing is seen
+};
+
 // How well a view was encoded, in the coefficients' own domain over the captured lights, in units
 // where 1 is white; measured on every 16th or 64th row.
 struct relume_encode_report {
-    double fit_rms;    // captured samples against unquantised coefficients
-    double store_rms;  // unquantised against stored coefficients
+    double fit_rms;                      // captured samples against unquantised coefficients
+    double store_rms;                    // unquantised against stored coefficients
+    struct relume_encode_census census;  // zeros where it is read from a file
 };
 RELUME_API struct relume_encode_report relume_coefficients_report(
     const relume_coefficients *coefficients);

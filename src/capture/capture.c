@@ -133,6 +133,7 @@ static relume_status check_image(relume_capture *c, const char *path,
         return status;
     const struct oiio_info info = *oiio_info_of(reader);
     oiio_close(&reader);
+    c->floats |= info.floats;
     if (c->width == 0) {
         c->width = info.width;
         c->height = info.height;
@@ -176,6 +177,7 @@ relume_status relume_capture_open(relume_capture **out, const char *path,
     relume_capture *c = mem_zeroed(1, sizeof *c);
     if (!c)
         return RELUME_ENOMEM;
+    c->repair = p.repair;
     relume_status status = read_description(c, path, &p);
     if (!status && p.skip_missing)
         status = skip_missing(c, p.log);
@@ -217,8 +219,15 @@ relume_status capture_stream(struct image_stream *out, const relume_capture *cap
     const relume_status opened =
         image_stream_open(out, reader, 3, image_transfer(capture->stated, info), to,
                           m->intensities ? m->intensities[light] : no_gain);
-    out->finite_only = true;
+    out->finite_only = !capture->repair;
     return opened;
+}
+
+void relume_capture_white(const relume_capture *capture, int light, float rgb[3])
+{
+    const float(*intensities)[3] = capture->draft.m.intensities;
+    for (int c = 0; c < 3; c++)
+        rgb[c] = capture->floats ? INFINITY : 1.0f / (intensities ? intensities[light][c] : 1.0f);
 }
 
 relume_status relume_capture_image(struct relume_image *out, const relume_capture *capture,
@@ -230,6 +239,7 @@ relume_status relume_capture_image(struct relume_image *out, const relume_captur
     relume_status status = capture_stream(&stream, capture, view, light, linear, log);
     if (status)
         return status;
+    stream.finite_only = true;
     status = relume_image_create(out, capture->width, capture->height, 3);
     if (!status)
         status = image_stream_read(&stream, 0, capture->height, out->data);

@@ -9,12 +9,15 @@ struct relume_capture {
     struct draft draft;
     char *path;
     int width, height;
-    int x, y;                         // origin of the images' data windows
+    int x, y;     // origin of the images' data windows
+    bool floats;  // an image holds floating-point numbers
+    bool repair;
     struct relume_transfer stated;    // for all images; AUTO: each file's own
     struct relume_transfer transfer;  // of the first image, never AUTO
 };
 
-// The rows of one image, light intensity divided out, coded by `to`.
+// The rows of one image, light intensity divided out, coded by `to`; NaN and infinity are errors
+// unless the capture is to be repaired.
 relume_status capture_stream(struct image_stream *out, const relume_capture *capture, int view,
                              int light, struct relume_transfer to, const struct relume_log *log);
 

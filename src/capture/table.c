@@ -3,6 +3,9 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "capture/capture.h"
+#include "capture/repair.h"
+
+#include <stdio.h>
 
 struct relume_table {
     const relume_capture *capture;
@@ -14,6 +17,8 @@ struct relume_table {
     relume_status *status;        // [lights], of the last read
     int rows;                     // of the read in progress
     float *out;
+    size_t *broken, *repaired;  // [lights]: pixels that were not finite, in one band and so far
+    bool *whole;                // [lights], for repair_band
 };
 
 void relume_table_destroy(relume_table **table)
@@ -26,6 +31,9 @@ void relume_table_destroy(relume_table **table)
         image_stream_close(&t->stream[i]);
     free(t->stream);
     free(t->status);
+    free(t->broken);
+    free(t->repaired);
+    free(t->whole);
     free(t);
 }
 
@@ -50,7 +58,11 @@ relume_status relume_table_open(relume_table **out, const relume_capture *captur
     t->log = p.log;
     t->stream = mem_zeroed((size_t)lights, sizeof *t->stream);
     t->status = mem_zeroed((size_t)lights, sizeof *t->status);
-    relume_status status = t->stream && t->status ? RELUME_OK : RELUME_ENOMEM;
+    t->broken = mem_zeroed((size_t)lights, sizeof *t->broken);
+    t->repaired = mem_zeroed((size_t)lights, sizeof *t->repaired);
+    t->whole = mem_zeroed((size_t)lights, sizeof *t->whole);
+    relume_status status =
+        t->stream && t->status && t->broken && t->repaired && t->whole ? RELUME_OK : RELUME_ENOMEM;
     while (!status && t->open < lights) {
         status = capture_stream(&t->stream[t->open], capture, view, t->open, to, p.log);
         t->open += !status;
@@ -65,8 +77,70 @@ static void read_light(void *context, size_t item, int worker)
 {
     (void)worker;
     relume_table *t = context;
-    const size_t band = (size_t)t->rows * (size_t)t->capture->width * 3;
-    t->status[item] = image_stream_read(&t->stream[item], t->row, t->rows, t->out + item * band);
+    const size_t pixels = (size_t)t->rows * (size_t)t->capture->width;
+    float *out = t->out + 3 * item * pixels;
+    t->status[item] = image_stream_read(&t->stream[item], t->row, t->rows, out);
+    t->broken[item] = t->capture->repair && !t->status[item] ? repair_count(out, pixels) : 0;
+}
+
+static void repair(relume_table *t)
+{
+    const struct relume_manifest *m = &t->capture->draft.m;
+    size_t sum = 0;
+    for (int i = 0; i < m->lights; i++) {
+        sum += t->broken[i];
+        t->repaired[i] += t->broken[i];
+    }
+    if (sum)
+        repair_band(t->out, t->broken, m->directions, m->lights,
+                    (size_t)t->rows * (size_t)t->capture->width, t->whole);
+}
+
+size_t relume_table_repaired(const relume_table *table, int light)
+{
+    return table->repaired[light];
+}
+
+// How many pixels of image `item` are not finite, the file being read once more.
+static void count_broken(void *context, size_t item, int worker)
+{
+    (void)worker;
+    relume_table *t = context;
+    const relume_capture *capture = t->capture;
+    const size_t width = (size_t)capture->width;
+    const struct relume_transfer linear = {RELUME_CURVE_LINEAR, 0.0f};
+    struct image_stream stream;
+    float *band = mem_array(3 * IMAGE_STREAM_ROWS * width, sizeof *band);
+    t->broken[item] = 0;
+    if (band && !capture_stream(&stream, capture, t->view, (int)item, linear, NULL)) {
+        stream.finite_only = false;
+        for (int row = 0; row < capture->height; row += IMAGE_STREAM_ROWS) {
+            const int left = capture->height - row;
+            const int rows = left < IMAGE_STREAM_ROWS ? left : IMAGE_STREAM_ROWS;
+            if (image_stream_read(&stream, row, rows, band))
+                break;
+            t->broken[item] += repair_count(band, (size_t)rows * width);
+        }
+        image_stream_close(&stream);
+    }
+    free(band);
+}
+
+// The error about an image that is not finite names it and counts.
+static relume_status refuse_broken(relume_table *t, int first)
+{
+    const struct relume_manifest *m = &t->capture->draft.m;
+    char more[64] = "";
+    int others = 0;
+    thread_for(t->threads, (size_t)m->lights, count_broken, t);
+    for (int i = 0; i < m->lights; i++)
+        others += i != first && t->broken[i];
+    if (others)
+        snprintf(more, sizeof more, ", and some of %d more image%s", others, others > 1 ? "s" : "");
+    const size_t n = t->broken[first];
+    return log_fail(t->log, RELUME_EDATA,
+                    "%s: %zu pixel%s NaN or infinite%s; expected finite radiance, or --repair",
+                    m->view[t->view].images[first], n, n == 1 ? " is" : "s are", more);
 }
 
 relume_status relume_table_read(relume_table *table, int rows, float *out)
@@ -79,6 +153,8 @@ relume_status relume_table_read(relume_table *table, int rows, float *out)
     thread_for(table->threads, (size_t)lights, read_light, table);
     table->row += rows;
     for (int i = 0; i < lights; i++) {
+        if (table->status[i] == RELUME_EDATA && image_stream_is_broken(&table->stream[i]))
+            return refuse_broken(table, i);
         if (table->status[i] == RELUME_EDATA)
             return log_fail(table->log, RELUME_EDATA, "%s: %s",
                             table->capture->draft.m.view[table->view].images[i],
@@ -86,5 +162,6 @@ relume_status relume_table_read(relume_table *table, int rows, float *out)
         if (table->status[i])
             return table->status[i];
     }
+    repair(table);
     return RELUME_OK;
 }

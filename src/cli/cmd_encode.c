@@ -26,6 +26,8 @@ static const struct option options[] = {
     {"--ridge", OPTION_NUMBER, "R", "smoothing of the fit, 0 to 1; default: 1e-6", 0, 1},
     BOOK_OPTIONS,
     {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
+    {"--repair", OPTION_FLAG, NULL,
+     "replace pixels that are NaN or infinite by those under the nearest lights", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
 
@@ -118,6 +120,31 @@ static void say_result(const struct args *args, const relume_coder *coder,
     args_log(args)->message(args_log(args)->user, RELUME_NOTE, text);
 }
 
+// What in the capture says little: black and clipped pixels, black images.
+static void say_census(const struct args *args, const struct relume_encode_census *c,
+                       bool hemispherical)
+{
+    const struct relume_log *log = args_log(args);
+    char text[256];
+    if (c->black) {
+        snprintf(text, sizeof text, "%s: %zu of %zu pixels are black under every light",
+                 args_input(args, 0), c->black, c->pixels);
+        log->message(log->user, c->black == c->pixels ? RELUME_WARNING : RELUME_NOTE, text);
+    }
+    if (c->clipped) {
+        snprintf(text, sizeof text,
+                 "%s: %zu of %zu pixels are saturated under some light, %zu of them under all",
+                 args_input(args, 0), c->clipped, c->pixels, c->always_clipped);
+        log->message(log->user, c->always_clipped == c->pixels ? RELUME_WARNING : RELUME_NOTE,
+                     text);
+    }
+    if (c->black_images && hemispherical) {
+        snprintf(text, sizeof text, "%s: %d image%s black", args_input(args, 0), c->black_images,
+                 c->black_images > 1 ? "s are" : " is");
+        log->message(log->user, RELUME_WARNING, text);
+    }
+}
+
 struct request {
     const struct relume_basis *basis;
     struct relume_transfer transfer;
@@ -132,10 +159,11 @@ static relume_status encode(const struct args *args, struct request *r)
     relume_capture *capture;
     relume_coder *coder = NULL;
     struct prefix_log about;
-    relume_status status = relume_capture_open(
-        &capture, args_input(args, 0),
-        relume_capture_params(.log = args_log(args), .transfer = r->transfer,
-                              .skip_missing = args_has(args, "--skip-missing")));
+    relume_status status =
+        relume_capture_open(&capture, args_input(args, 0),
+                            relume_capture_params(.log = args_log(args), .transfer = r->transfer,
+                                                  .skip_missing = args_has(args, "--skip-missing"),
+                                                  .repair = args_has(args, "--repair")));
     if (status)
         return status;
     r->coder.log = prefix_log(&about, args_log(args), args_input(args, 0));
@@ -149,8 +177,10 @@ static relume_status encode(const struct args *args, struct request *r)
     struct relume_encode_report report;
     if (!status)
         status = relume_pack_encode(capture, coder, path, &report, &r->pack);
-    if (!status)
+    if (!status) {
+        say_census(args, &report.census, relume_capture_hemispherical(capture));
         say_result(args, coder, &report, path);
+    }
     relume_coder_destroy(&coder);
     relume_capture_destroy(&capture);
     return status;

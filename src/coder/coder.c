@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "coder/interpolant.h"
+#include "math/lsq.h"
 
 #include <string.h>
 
@@ -56,10 +57,11 @@ static relume_status choose_count(const struct relume_basis *basis, int lights,
                         basis->fit_count(want, want));
     *count = basis->fit_count(want, lights);
     if (want > *count && p->force && !basis->interpolates) {
-        log_line(
-            p->log, RELUME_WARNING,
-            "%d lights do not determine %d coefficients of basis %s; smoothing decides the rest",
-            lights, want, basis->name);
+        if (!p->decode)
+            log_line(p->log, RELUME_WARNING,
+                     "%d lights do not determine %d coefficients of basis %s; smoothing decides "
+                     "the rest",
+                     lights, want, basis->name);
         *count = want;
     }
     if (want && *count < want && !basis->interpolates)
@@ -68,15 +70,13 @@ static relume_status choose_count(const struct relume_basis *basis, int lights,
                         basis->name, want, lights);
     if (want && *count != want)
         return log_fail(p->log, RELUME_EDATA,
-                        "basis %s takes %d coefficients for %d lights; found %d", basis->name,
-                        *count, lights, want);
+                        "basis %s takes %s%d coefficients for %d lights; found %d", basis->name,
+                        basis->learned ? "at most " : "", *count, lights, want);
     if (*count < 1)
         return log_fail(p->log, RELUME_EDATA, "basis %s cannot be fitted to %d lights", basis->name,
                         lights);
     return RELUME_OK;
 }
-
-enum { MOST_LUMINANCE = 256 };
 
 static relume_status copy_lights(relume_coder *c, const struct relume_vec3 *lights)
 {
@@ -109,6 +109,32 @@ static relume_status copy_functions(relume_coder *c, const struct relume_coder_p
     return RELUME_OK;
 }
 
+// Lights on a circle, great or small, say nothing about directions off it. They lie in a plane
+// then: the least eigenvalue of their covariance is their mean squared distance from it.
+static relume_status warn_degenerate(const relume_coder *c, const struct relume_log *log)
+{
+    static const double flat = 0.02;  // about a degree
+    const int n = c->info.lights;
+    double covariance[9] = {0}, values[3];
+    vec3 mean = {0};
+    for (int i = 0; i < n; i++)
+        mean = vec3_add(mean, vec3_scale(c->frame[i], 1.0 / n));
+    for (int i = 0; i < n; i++) {
+        const vec3 d = vec3_sub(c->frame[i], mean);
+        const double row[3] = {d.x, d.y, d.z};
+        for (int j = 0; j < 9; j++)
+            covariance[j] += row[j / 3] * row[j % 3] / n;
+    }
+    if (!lsq_eigenvalues(covariance, 3, values))
+        return RELUME_ENOMEM;
+    if (values[2] < flat * flat)
+        log_line(log, RELUME_WARNING, "all %d lights lie in one direction; others are guesses", n);
+    else if (values[0] < flat * flat)
+        log_line(log, RELUME_WARNING,
+                 "all %d lights lie on one ring; directions off it are guesses", n);
+    return RELUME_OK;
+}
+
 static relume_status prepare_interpolant(relume_coder *c, const struct relume_coder_params *p)
 {
     const struct relume_interpolant *own =
@@ -137,9 +163,8 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
     *out = NULL;
     if (n < 1 || p.ridge < 0.0 || p.ridge > 1.0)
         return RELUME_EINVAL;
-    if (p.luminance && (basis->learned || p.coefficients > MOST_LUMINANCE))
-        return log_fail(p.log, RELUME_EINVAL, "basis %s has no luminance form with %d coefficients",
-                        basis->name, p.coefficients);
+    if (p.luminance && basis->learned)
+        return log_fail(p.log, RELUME_EINVAL, "basis %s has no luminance form", basis->name);
     if (basis->interpolates && n > CODER_MAX_COEFFICIENTS)
         return log_fail(p.log, RELUME_EDATA, "basis %s takes at most %d lights; found %d",
                         basis->name, CODER_MAX_COEFFICIENTS, n);
@@ -148,6 +173,8 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
                         "basis %s fits nothing; expected a basis with a "
                         "robust form",
                         basis->name);
+    if (basis->learned && p.decode && !p.transform)
+        return log_fail(p.log, RELUME_EDATA, "basis %s without its functions", basis->name);
     if (basis->upper_only && !p.hemispherical)
         return log_fail(p.log, RELUME_EDATA,
                         "basis %s knows one hemisphere of lights; found lights on both",
@@ -180,6 +207,8 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
     status = copy_lights(c, lights);
     if (!status)
         status = copy_functions(c, &p);
+    if (!status && !p.decode && n > 1)
+        status = warn_degenerate(c, p.log);
     if (!status && basis->interpolates)
         status = prepare_interpolant(c, &p);
     if (!status)

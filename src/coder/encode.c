@@ -8,6 +8,7 @@
 #include "base/outfile.h"
 #include "base/thread.h"
 #include "coder/basis.h"
+#include "coder/census.h"
 #include "coder/coefficients.h"
 #include "image/half.h"
 
@@ -35,6 +36,8 @@ struct encoder {
     const char *const *images;  // [lights], for messages
     struct range *total;        // [planes], masked pixels being 0
     struct captured captured;
+    struct census census;
+    size_t repaired;
     double error_sum;
     size_t error_count;
     int threads;
@@ -52,6 +55,9 @@ static void apply_chunk(void *context, size_t item, int worker)
     const size_t n = pixels - first < CODER_CHUNK ? pixels - first : CODER_CHUNK;
     coder_apply(e->coder, e->samples + 3 * first, 3 * pixels, n, e->values + first, pixels,
                 e->work + (size_t)worker * coder_work(e->coder));
+    const size_t at = (size_t)e->row * (size_t)e->width + first;
+    census_add(&e->census, worker, e->samples + 3 * first, 3 * pixels, n,
+               e->mask->data ? e->mask->data + at : NULL);
 }
 
 // Pixels outside the mask are 0 and do not count for the range.
@@ -185,6 +191,14 @@ static relume_status encode_band(struct encoder *e, relume_table *table,
     return write_band(e, pixels, p);
 }
 
+static void say_repaired(struct encoder *e, int light, size_t pixels, const struct relume_log *log)
+{
+    e->repaired += pixels;
+    if (pixels)
+        log_line(log, RELUME_WARNING, "%s: %zu pixel%s NaN or infinite; repaired from other lights",
+                 e->images[light], pixels, pixels > 1 ? "s are" : " is");
+}
+
 static relume_status encode_bands(struct encoder *e, const relume_capture *capture, int view,
                                   struct relume_transfer display,
                                   const struct relume_encode_params *p)
@@ -201,6 +215,8 @@ static relume_status encode_bands(struct encoder *e, const relume_capture *captu
         if (!status && !log_progress(p->log, "encoding", done))
             status = RELUME_ECANCEL;
     }
+    for (int i = 0; !status && i < e->lights; i++)
+        say_repaired(e, i, relume_table_repaired(table, i), p->log);
     relume_table_destroy(&table);
     if (!status)
         return finish_writing(e, p);
@@ -308,6 +324,7 @@ static void free_encoder(struct encoder *e)
     free(e->packed[1]);
     free(e->total);
     captured_destroy(&e->captured);
+    census_destroy(&e->census);
 }
 
 relume_status relume_encode(relume_coefficients **out, const relume_coder *coder,
@@ -335,18 +352,21 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
         .images = m->view[view].images,
         .threads = p.threads,
     };
+    struct relume_transfer display = {RELUME_CURVE_LINEAR, 0.0f};
+    if (relume_encode_domain(capture, p.domain) == RELUME_DOMAIN_DISPLAY)
+        display = relume_encode_display(capture);
     status = coefficients_create(&c, coder, relume_capture_width(capture),
                                  relume_capture_height(capture), &p);
     e.out = c;
     if (!status)
         status = alloc_encoder(&e);
-    if (!status) {
-        struct relume_transfer display = {RELUME_CURVE_LINEAR, 0.0f};
-        if (relume_encode_domain(capture, p.domain) == RELUME_DOMAIN_DISPLAY)
-            display = relume_encode_display(capture);
+    if (!status)
+        status = census_create(&e.census, capture, display, thread_count(p.threads));
+    if (!status)
         status = encode_bands(&e, capture, view, display, &p);
-    }
     if (!status) {
+        c->report.census = census_result(&e.census);
+        c->report.census.repaired = e.repaired;
         c->report.fit_rms = e.error_count ? sqrt(e.error_sum / (double)e.error_count) : 0.0;
         coefficients_choose_steps(c, e.total, mask.data != NULL, p.step);
         if (c->info.storage != RELUME_STORE_HALF)

@@ -131,6 +131,11 @@ relume_status image_stream_read(struct image_stream *stream, int row, int rows, 
     return RELUME_OK;
 }
 
+bool image_stream_is_broken(const struct image_stream *stream)
+{
+    return !*oiio_error(stream->reader);
+}
+
 const char *image_stream_error(const struct image_stream *stream)
 {
     const char *said = oiio_error(stream->reader);

@@ -30,6 +30,8 @@ relume_status image_stream_open(struct image_stream *stream, oiio_reader *reader
                                 const float gain[3]);
 // out[row][x][channel]; rows must be asked for from the top on. RELUME_EDATA: the error tells.
 relume_status image_stream_read(struct image_stream *stream, int row, int rows, float *out);
+// Whether what went wrong is a sample that is not finite.
+bool image_stream_is_broken(const struct image_stream *stream);
 // What went wrong, for a sentence; belongs to the stream.
 const char *image_stream_error(const struct image_stream *stream);
 void image_stream_close(struct image_stream *stream);

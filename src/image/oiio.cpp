@@ -125,6 +125,7 @@ relume_status open_input(oiio_reader *r, const relume_limits *limits)
     r->info.y = spec.y;
     r->info.channels = spec.nchannels;
     r->info.bytes = spec.format == TypeUInt8 && spec.channelformats.empty();
+    r->info.floats = spec.format.is_floating_point();
     r->info.linear = says_linear(spec, format);
     find_colour(spec, r->info);
     return RELUME_OK;

@@ -17,6 +17,7 @@ struct oiio_info {
     int channels;  // as read_* delivers them
     int rgb[3];    // which channel is red, green, blue; all equal for grey
     bool bytes;    // 8-bit integers: oiio_read_bytes works
+    bool floats;   // floating point: values do not end at 1
     bool linear;   // float samples, or an integer file that says it is linear
 };
 

@@ -68,16 +68,29 @@ static relume_status encode_view(struct material *m, int i, const relume_coder *
     return status;
 }
 
-// Root mean square over views.
+static void add_census(struct relume_encode_census *sum, const struct relume_encode_census *c)
+{
+    sum->pixels += c->pixels;
+    sum->black += c->black;
+    sum->clipped += c->clipped;
+    sum->always_clipped += c->always_clipped;
+    sum->repaired += c->repaired;
+    sum->black_images += c->black_images;
+}
+
+// Root mean square over views, and all their pixels.
 static struct relume_encode_report mean_report(const struct material *m)
 {
-    struct relume_encode_report sum = {0.0, 0.0};
+    struct relume_encode_report sum = {0};
     for (int i = 0; i < m->views; i++) {
         const struct relume_encode_report r = relume_coefficients_report(m->coefficients[i]);
         sum.fit_rms += r.fit_rms * r.fit_rms / m->views;
         sum.store_rms += r.store_rms * r.store_rms / m->views;
+        add_census(&sum.census, &r.census);
     }
-    return (struct relume_encode_report){sqrt(sum.fit_rms), sqrt(sum.store_rms)};
+    sum.fit_rms = sqrt(sum.fit_rms);
+    sum.store_rms = sqrt(sum.store_rms);
+    return sum;
 }
 
 // Indices into the books of view `set`; what they cost joins `square`.

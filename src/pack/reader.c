@@ -91,8 +91,10 @@ static relume_status read_book_count(relume_pack *p)
 static void read_report(relume_pack *p)
 {
     const float *v = reader_floats(p, 0, ATTR_REPORT, 2);
-    p->info.report = (struct relume_encode_report){v ? (double)v[0] : (double)NAN,
-                                                   v ? (double)v[1] : (double)NAN};
+    p->info.report = (struct relume_encode_report){
+        .fit_rms = v ? (double)v[0] : (double)NAN,
+        .store_rms = v ? (double)v[1] : (double)NAN,
+    };
 }
 
 static relume_status read_uv(relume_pack *p)

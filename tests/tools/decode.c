@@ -220,8 +220,8 @@ static void dct(int count, int hemispherical, struct vector d, double *value)
     for (int zone = 0, k = first; k < last; zone++)
         for (int u = 0; u <= zone && k < last; u++, k++) {
             const int v = zone - u;
-            value[k] = (u ? sqrt(2.0) : 1.0) * cos(PI * u * x) * (v ? sqrt(2.0) : 1.0) *
-                       cos(PI * v * y);
+            value[k] =
+                (u ? sqrt(2.0) : 1.0) * cos(PI * u * x) * (v ? sqrt(2.0) : 1.0) * cos(PI * v * y);
         }
 }
 
@@ -463,8 +463,8 @@ static void interpolate(struct vector d, double *value)
         fail("%d lights", n / 3);
     s.n = n / 3;
     for (int i = 0; i < s.n; i++)
-        s.light[i] = pole_frame(unit((struct vector){
-            (double)xyz[3 * i], (double)xyz[3 * i + 1], (double)xyz[3 * i + 2]}));
+        s.light[i] = pole_frame(unit(
+            (struct vector){(double)xyz[3 * i], (double)xyz[3 * i + 1], (double)xyz[3 * i + 2]}));
     if (!strcmp(name, "delaunay"))
         delaunay(&s, d, value);
     else if (!strcmp(name, "angular"))

@@ -1,0 +1,171 @@
+#include "test.h"
+
+#include "math/lsq.h"
+
+enum { N = 24 };
+
+// Symmetric, with eigenvalues that a sum of random products has.
+static void fill(double *a, int n, uint32_t seed)
+{
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j <= i; j++)
+            a[i * n + j] = a[j * n + i] = 2.0 * test_uniform(&seed) - 1.0;
+}
+
+static double dot(const double *a, const double *b, int n)
+{
+    double sum = 0.0;
+    for (int i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+// A v = lambda v, orthonormal, descending, largest component positive, and no larger eigenvalue is
+// left out: the trace is the sum of all.
+static void test_eigenvectors(void **state)
+{
+    (void)state;
+    const int counts[] = {1, 5, N};
+    for (int round = 0; round < 3; round++) {
+        const int k = counts[round];
+        double a[N * N], work[N * N], values[N], v[N * N], all[N], trace = 0.0, total = 0.0;
+        fill(a, N, 5 + (uint32_t)round);
+        memcpy(work, a, sizeof a);
+        assert_true(lsq_eigenvectors(work, N, k, values, v));
+        memcpy(work, a, sizeof a);
+        assert_true(lsq_eigenvalues(work, N, all));
+        for (int i = 0; i < N; i++) {
+            trace += a[i * N + i];
+            total += all[i];
+        }
+        CHECK_NEAR(total, trace, 1e-12);
+        for (int i = 0; i < k; i++) {
+            CHECK_NEAR(values[i], all[N - 1 - i], 1e-12);
+            double top = 0.0;
+            for (int j = 0; j < N; j++) {
+                CHECK_NEAR(dot(a + j * N, v + i * N, N), values[i] * v[i * N + j], 1e-12);
+                top = fabs(v[i * N + j]) > fabs(top) ? v[i * N + j] : top;
+            }
+            assert_true(top > 0.0);
+            for (int j = 0; j <= i; j++)
+                CHECK_NEAR(dot(v + i * N, v + j * N, N), i == j, 1e-12);
+        }
+    }
+}
+
+// Equal eigenvalues and zero matrices leave the vectors open, but not their being orthonormal.
+static void test_degenerate_eigenvectors(void **state)
+{
+    (void)state;
+    for (int round = 0; round < 2; round++) {
+        double a[N * N] = {0}, values[N], v[N * N];
+        for (int i = 0; i < N; i++)
+            a[i * N + i] = round;
+        assert_true(lsq_eigenvectors(a, N, 7, values, v));
+        for (int i = 0; i < 7; i++) {
+            CHECK_NEAR(values[i], round, 1e-14);
+            for (int j = 0; j <= i; j++)
+                CHECK_NEAR(dot(v + i * N, v + j * N, N), i == j, 1e-12);
+        }
+    }
+}
+
+static void test_invert(void **state)
+{
+    (void)state;
+    double a[N * N], inverse[N * N];
+    fill(a, N, 3);
+    for (int i = 0; i < N; i++)
+        a[i * N + (i + 1) % N] += 4.0;  // not symmetric, and rows must be exchanged
+    memcpy(inverse, a, sizeof a);
+    assert_true(lsq_invert(inverse, N));
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++) {
+            double sum = 0.0;
+            for (int k = 0; k < N; k++)
+                sum += a[i * N + k] * inverse[k * N + j];
+            CHECK_NEAR(sum, i == j, 1e-11);
+        }
+    double singular[4] = {1.0, 2.0, 2.0, 4.0};
+    assert_false(lsq_invert(singular, 2));
+}
+
+static void test_add_gram(void **state)
+{
+    (void)state;
+    enum { ROWS = 7, D = 5 };
+    uint32_t seed = 9;
+    double rows[ROWS * D], gram[D * D];
+    for (int i = 0; i < ROWS * D; i++)
+        rows[i] = test_uniform(&seed);
+    for (int i = 0; i < D * D; i++)
+        gram[i] = 0.5 * (i / D + i % D);  // symmetric: what is there stays
+    lsq_add_gram(gram, D, rows, ROWS);
+    for (int i = 0; i < D; i++)
+        for (int j = 0; j < D; j++) {
+            double want = 0.5 * (i + j);
+            for (int r = 0; r < ROWS; r++)
+                want += rows[r * D + i] * rows[r * D + j];
+            CHECK_NEAR(gram[i * D + j], want, 1e-14);
+        }
+}
+
+static void test_cholesky(void **state)
+{
+    (void)state;
+    double a[N * N] = {0}, rows[2 * N * N], factor[N * N], inverse[N * N];
+    uint32_t seed = 21;
+    for (int i = 0; i < 2 * N * N; i++)
+        rows[i] = test_uniform(&seed) - 0.5;
+    lsq_add_gram(a, N, rows, 2 * N);
+    memcpy(factor, a, sizeof a);
+    assert_true(lsq_cholesky(factor, N));
+    memcpy(inverse, factor, sizeof factor);
+    assert_true(lsq_invert_lower(inverse, N));
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++) {
+            double square = 0.0, one = 0.0;
+            for (int k = 0; k < N; k++) {
+                square += factor[i * N + k] * factor[j * N + k];
+                one += factor[i * N + k] * inverse[k * N + j];
+            }
+            CHECK_NEAR(square, a[i * N + j], 1e-12);
+            CHECK_NEAR(one, i == j, 1e-10);
+            if (j > i)
+                assert_true(factor[i * N + j] == 0.0);
+        }
+    double indefinite[4] = {1.0, 2.0, 2.0, 1.0};
+    assert_false(lsq_cholesky(indefinite, 2));
+}
+
+static void test_multiply(void **state)
+{
+    (void)state;
+    enum { M = 3, K = 4, C = 5, LDA = 6, LDB = 7, LDC = 8 };
+    float a[M * LDA], b[K * LDB], c[M * LDC];
+    uint32_t seed = 2;
+    for (int i = 0; i < M * LDA; i++)
+        a[i] = (float)test_uniform(&seed);
+    for (int i = 0; i < K * LDB; i++)
+        b[i] = (float)test_uniform(&seed);
+    for (int i = 0; i < M * LDC; i++)
+        c[i] = -1.0f;
+    lsq_multiply(M, C, K, a, LDA, b, LDB, c, LDC);
+    for (int i = 0; i < M; i++)
+        for (int j = 0; j < LDC; j++) {
+            double want = j < C ? 0.0 : -1.0;  // what lies beyond the columns stays
+            for (int k = 0; j < C && k < K; k++)
+                want += (double)a[i * LDA + k] * (double)b[k * LDB + j];
+            CHECK_NEAR((double)c[i * LDC + j], want, 1e-6);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_eigenvectors), cmocka_unit_test(test_degenerate_eigenvectors),
+        cmocka_unit_test(test_invert),       cmocka_unit_test(test_add_gram),
+        cmocka_unit_test(test_cholesky),     cmocka_unit_test(test_multiply),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -17,6 +17,8 @@ for interpolant in $("$RELUME" encode --help | sed -n 's/.*table: \([a-z, ]*\).*
     both "dome --basis table --interpolant $interpolant --bits half" "9 8"
     [ "$interpolant" = hsh ] || both "all --basis pca --interpolant $interpolant" "9 8"
 done
+both "dome --basis auto" "9 8"
+both "all --basis table --interpolant auto --bits half" "9 8"
 for basis in ptm hsh sh dct table; do
     both "dome --basis $basis --colour luminance" "9 8"
     both "photos --basis $basis --colour luminance --step common" "9 8"

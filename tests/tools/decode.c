@@ -315,15 +315,27 @@ static void delaunay(const struct set *s, struct vector d, double *value)
     fail("the direction lies in no triangle with a light");
 }
 
-static double angular(struct vector a, struct vector b)
+static double angular(const double *parameter, struct vector a, struct vector b)
 {
+    (void)parameter;
     return -angle(a, b);
 }
 
-static double thin_plate(struct vector a, struct vector b)
+static double thin_plate(const double *parameter, struct vector a, struct vector b)
 {
+    (void)parameter;
     const double r = sqrt(dot(minus(a, b), minus(a, b)));
     return r > 0.0 ? r * r * log(r) : 0.0;
+}
+
+static double chord(const double *parameter, struct vector a, struct vector b)
+{
+    const struct vector d = minus(a, b);
+    const double z = parameter[1] * d.z, r = sqrt(d.x * d.x + d.y * d.y + z * z);
+    const double t = dot(a, b);
+    // the five products of second degree sum to P_2(t) without its factor
+    const double second = (3.0 * t * t - 1.0) / 6.0;
+    return 30.0 * t - pow(r, parameter[0]) + parameter[3] * second;
 }
 
 // a[n][n] x = b by elimination with the largest pivot; x is left in b.
@@ -355,28 +367,24 @@ static void solve(double *a, double *b, int n)
     }
 }
 
-static void kernel(const struct set *s, double (*phi)(struct vector, struct vector),
-                   struct vector d, double *value)
+// With `terms` of the trend 1, x, y, z, and `nugget` on the diagonal.
+static void kernel(const struct set *s,
+                   double (*phi)(const double *, struct vector, struct vector),
+                   const double *parameter, int terms, double nugget, struct vector d,
+                   double *value)
 {
     enum { MOST = MOST_POINTS + 4 };
     static double a[MOST * MOST], b[MOST];
-    double lowest = 1.0, largest = 0.0;
-    for (int i = 0; i < s->n; i++)
-        lowest = fmin(lowest, s->light[i].z);
-    const int terms = lowest < -0.1 ? 4 : 3, n = s->n + terms;
+    const int n = s->n + terms;
     for (int i = 0; i < s->n; i++) {
         const double trend[4] = {1.0, s->light[i].x, s->light[i].y, s->light[i].z};
-        for (int j = 0; j < s->n; j++) {
-            a[i * n + j] = phi(s->light[i], s->light[j]);
-            largest = fmax(largest, fabs(a[i * n + j]));
-        }
+        for (int j = 0; j < s->n; j++)
+            a[i * n + j] = phi(parameter, s->light[i], s->light[j]) + (i == j ? nugget : 0.0);
         for (int t = 0; t < terms; t++)
             a[i * n + s->n + t] = a[(s->n + t) * n + i] = trend[t];
-        b[i] = phi(s->light[i], d);
+        b[i] = phi(parameter, s->light[i], d);
     }
     const double trend[4] = {1.0, d.x, d.y, d.z};
-    for (int i = 0; i < s->n; i++)
-        a[i * n + i] += 1e-9 * largest;
     for (int t = 0; t < terms; t++) {
         for (int u = 0; u < terms; u++)
             a[(s->n + t) * n + s->n + u] = t == u ? -1e-9 : 0.0;
@@ -456,27 +464,38 @@ static void interpolate(struct vector d, double *value)
     int n, four;
     const float *xyz = floats_of(0, "relume.lights", &n);
     const float *parameter = floats_of(0, "relume.parameter", &four);
-    const double first = four == 4 ? (double)parameter[0] : 0.0;
+    double p[4] = {0};
+    for (int i = 0; i < 4 && four == 4; i++)
+        p[i] = (double)parameter[i];
     const char *name = text_or("relume.interpolant",
-                               strcmp(text_of("relume.basis"), "pca") ? "delaunay" : "angular");
+                               strcmp(text_of("relume.basis"), "pca") ? "delaunay" : "chord");
     if (n > 3 * MOST_POINTS)
         fail("%d lights", n / 3);
     s.n = n / 3;
+    double lowest = 1.0;
     for (int i = 0; i < s.n; i++)
         s.light[i] = pole_frame(unit(
             (struct vector){(double)xyz[3 * i], (double)xyz[3 * i + 1], (double)xyz[3 * i + 2]}));
+    for (int i = 0; i < s.n; i++)
+        lowest = fmin(lowest, s.light[i].z);
+    const int both = lowest < -0.1;  // hemispheres
     if (!strcmp(name, "delaunay"))
         delaunay(&s, d, value);
+    else if (!strcmp(name, "chord"))
+        kernel(&s, chord,
+               (const double[]){p[0] > 0.0 ? p[0] : 1.5,
+                                p[1] > 0.0 ? p[1] : both ? 1.0 : 1.5, p[2], p[3]},
+               1, 1e-5 + p[2], d, value);
     else if (!strcmp(name, "angular"))
-        kernel(&s, angular, d, value);
+        kernel(&s, angular, p, both ? 4 : 3, 1e-9, d, value);
     else if (!strcmp(name, "tps"))
-        kernel(&s, thin_plate, d, value);
+        kernel(&s, thin_plate, p, both ? 4 : 3, 1e-9, d, value);
     else if (!strcmp(name, "rbf"))
-        rbf(&s, first, d, value);
+        rbf(&s, p[0], d, value);
     else if (!strcmp(name, "natural"))
         natural(&s, d, value);
     else if (!strcmp(name, "hsh"))
-        trend_of_nine(&s, first, d, value);
+        trend_of_nine(&s, p[0], d, value);
     else
         fail("interpolant %s", name);
 }

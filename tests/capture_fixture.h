@@ -91,21 +91,30 @@ static inline void fixture_write(const struct fixture *f, const char *folder)
 }
 
 // FOLDER's capture into the relume file `path`.
-static inline relume_status fixture_encode(const char *folder, const char *path,
-                                           const struct relume_basis *basis, int coefficients,
-                                           const struct relume_pack_encode_params *params)
+static inline relume_status fixture_encode_with(const char *folder, const char *path,
+                                                const struct relume_basis *basis,
+                                                const struct relume_coder_params *how,
+                                                const struct relume_pack_encode_params *params)
 {
+    const struct relume_encode_params learn = {.threads = params ? params->threads : 0};
     relume_capture *capture = NULL;
     relume_coder *coder = NULL;
     relume_status status = relume_capture_open(&capture, folder, NULL);
     if (!status)
-        status = relume_coder_learn(&coder, basis, capture,
-                                    relume_coder_params(.coefficients = coefficients), NULL);
+        status = relume_coder_learn(&coder, basis, capture, how, &learn);
     if (!status)
         status = relume_pack_encode(capture, coder, path, NULL, params);
     relume_coder_destroy(&coder);
     relume_capture_destroy(&capture);
     return status;
+}
+
+static inline relume_status fixture_encode(const char *folder, const char *path,
+                                           const struct relume_basis *basis, int coefficients,
+                                           const struct relume_pack_encode_params *params)
+{
+    return fixture_encode_with(folder, path, basis,
+                               relume_coder_params(.coefficients = coefficients), params);
 }
 
 #endif

@@ -35,8 +35,8 @@ static relume_status solve(struct trend *t, const struct relume_vec3 *lights, do
     lsq_add_gram(gram, TERMS, rows, t->lights);
     for (int i = 0; i < TERMS; i++)
         gram[i * TERMS + i] += i ? ridge : 1e-9;
-    const bool good = lsq_invert(gram, TERMS);
-    for (int i = 0; good && i < t->lights; i++)
+    const relume_status status = lsq_invert(gram, TERMS);
+    for (int i = 0; !status && i < t->lights; i++)
         for (int j = 0; j < TERMS; j++) {
             double sum = 0.0;
             for (int k = 0; k < TERMS; k++)
@@ -44,7 +44,7 @@ static relume_status solve(struct trend *t, const struct relume_vec3 *lights, do
             t->weight[i * TERMS + j] = sum;
         }
     free(rows);
-    return good ? RELUME_OK : RELUME_ENOMEM;
+    return status;
 }
 
 // parameter[0]: the ridge.

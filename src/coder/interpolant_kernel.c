@@ -87,7 +87,7 @@ static void fill_row(const struct kernel *k, vec3 d, double *row)
 }
 
 // Coinciding lights and degenerate trends stay solvable by `least` on the diagonal.
-static bool invert(struct kernel *k, double least)
+static relume_status invert(struct kernel *k, double least)
 {
     const size_t n = (size_t)k->lights, size = n + (size_t)k->trend;
     for (size_t i = 0; i < n; i++) {
@@ -121,9 +121,10 @@ static relume_status prepare(void **data, struct kernel kind, double least,
     k->light = mem_copy(lights, (size_t)n, sizeof *lights);
     k->inverse = mem_array(size * size, sizeof *k->inverse);
     relume_status status = k->light && k->inverse ? RELUME_OK : RELUME_ENOMEM;
-    if (!status && !invert(k, least))
-        status =
-            log_fail(log, RELUME_EDATA, "the %d light directions leave the interpolant open", n);
+    if (!status)
+        status = invert(k, least);
+    if (status == RELUME_EDATA)
+        (void)log_fail(log, status, "the %d light directions leave the interpolant open", n);
     if (status) {
         release(k);
         *data = NULL;

@@ -60,14 +60,16 @@ bool lsq_solve(double *matrix, int n, double *b, int count)
     return LAPACKE_dposv_work(LAPACK_COL_MAJOR, 'U', n, count, matrix, n, b, n) == 0;
 }
 
-bool lsq_invert(double *matrix, int n)
+relume_status lsq_invert(double *matrix, int n)
 {
     prepare();
     lapack_int *pivots = mem_array((size_t)n, sizeof *pivots);
-    const bool good = pivots && !LAPACKE_dgetrf(LAPACK_ROW_MAJOR, n, n, matrix, n, pivots) &&
+    if (!pivots)
+        return RELUME_ENOMEM;
+    const bool good = !LAPACKE_dgetrf(LAPACK_ROW_MAJOR, n, n, matrix, n, pivots) &&
                       !LAPACKE_dgetri(LAPACK_ROW_MAJOR, n, matrix, n, pivots);
     free(pivots);
-    return good;
+    return good ? RELUME_OK : RELUME_EDATA;
 }
 
 void lsq_add_gram(double *gram, int n, const double *rows, int count)

@@ -19,8 +19,8 @@ bool lsq_eigenvectors(double *matrix, int n, int count, double *values, double *
 // definite.
 bool lsq_solve(double *matrix, int n, double *b, int count);
 
-// The inverse of a square matrix, in place. False when it is singular, or no memory.
-bool lsq_invert(double *matrix, int n);
+// The inverse of a square matrix, in place. RELUME_EDATA when it is singular, RELUME_ENOMEM.
+RELUME_RESULT relume_status lsq_invert(double *matrix, int n);
 
 // gram[n][n] += rows^T rows for rows[count][n]; both triangles.
 void lsq_add_gram(double *gram, int n, const double *rows, int count);

@@ -150,7 +150,7 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
     relume_status status = create(&m, manifest->views) ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; !status && i < manifest->views; i++)
         status = encode_view(&m, i, coder, capture, &encode);
-    struct relume_encode_report total = {0.0, 0.0};
+    struct relume_encode_report total = {0};
     if (!status)
         total = mean_report(&m);
     if (!status && p.books)

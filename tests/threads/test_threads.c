@@ -46,13 +46,18 @@ static void test_encode(void **state)
     (void)state;
     static const struct {
         const struct relume_basis *basis;
-        int coefficients;
+        struct relume_coder_params coder;
         enum relume_storage storage;
         enum relume_compression compression;
+        enum relume_step step;
     } kinds[] = {
-        {&relume_basis_sh, 9, RELUME_STORE_8, RELUME_COMPRESS_PIZ},
-        {&relume_basis_sh, 4, RELUME_STORE_16, RELUME_COMPRESS_ZIP},
-        {&relume_basis_table, 0, RELUME_STORE_HALF, RELUME_COMPRESS_NONE},
+        {&relume_basis_sh, {.coefficients = 9}, RELUME_STORE_8, RELUME_COMPRESS_PIZ, 0},
+        {&relume_basis_sh, {.coefficients = 4}, RELUME_STORE_16, RELUME_COMPRESS_ZIP, 0},
+        {&relume_basis_table, {0}, RELUME_STORE_HALF, RELUME_COMPRESS_NONE, 0},
+        {&relume_basis_pca, {0}, RELUME_STORE_8, RELUME_COMPRESS_PIZ, RELUME_STEP_COMMON},
+        {&relume_basis_pca, {.choose = true}, RELUME_STORE_12, RELUME_COMPRESS_ZIP, 0},
+        {&relume_basis_dct, {.luminance = true}, RELUME_STORE_10, RELUME_COMPRESS_RLE, 0},
+        {&relume_basis_dct_resampled, {0}, RELUME_STORE_8, RELUME_COMPRESS_PIZ, 0},
     };
     char path[96];
     snprintf(path, sizeof path, "%s/pack.exr", folder);
@@ -61,10 +66,11 @@ static void test_encode(void **state)
         size_t first_size = 0;
         for (size_t t = 0; t < 3; t++) {
             size_t size;
-            CHECK_OK(fixture_encode(
-                folder, path, kinds[k].basis, kinds[k].coefficients,
+            CHECK_OK(fixture_encode_with(
+                folder, path, kinds[k].basis, &kinds[k].coder,
                 relume_pack_encode_params(.threads = threads[t], .storage = kinds[k].storage,
-                                          .compression = kinds[k].compression)));
+                                          .compression = kinds[k].compression,
+                                          .step = kinds[k].step)));
             char *bytes = whole_file(path, &size);
             if (!first) {
                 first = bytes;

@@ -6,7 +6,7 @@
 
 #include <dirent.h>
 
-static char folder[64], capture_path[96], lp_path[96], pack_path[96], out_path[96];
+static char folder[64], capture_path[96], lp_path[96], pack_path[96], pca_path[96], out_path[96];
 
 static int setup(void **state)
 {
@@ -23,10 +23,12 @@ static int setup(void **state)
     snprintf(capture_path, sizeof capture_path, "%s/capture.json", folder);
     snprintf(lp_path, sizeof lp_path, "%s/dirs.lp", folder);
     snprintf(pack_path, sizeof pack_path, "%s/pack.exr", folder);
+    snprintf(pca_path, sizeof pca_path, "%s/pca.exr", folder);
     snprintf(out_path, sizeof out_path, "%s/out.exr", folder);
     static const char lp[] = "3\nv0-0.exr 0 0 1\nV0-1.EXR 1 0 1\n\nC:\\x\\v0-2.exr 0 1 1\n";
     test_write(lp_path, lp, sizeof lp - 1);
-    return fixture_encode(folder, pack_path, &relume_basis_sh, 4, NULL) != RELUME_OK;
+    return fixture_encode(folder, pca_path, &relume_basis_pca, 4, NULL) ||
+           fixture_encode(folder, pack_path, &relume_basis_sh, 4, NULL);
 }
 
 static int teardown(void **state)
@@ -102,6 +104,62 @@ static relume_status encode_table(void)
 {
     return fixture_encode(folder, out_path, &relume_basis_table, 0,
                           relume_pack_encode_params(.threads = 1, .storage = RELUME_STORE_HALF));
+}
+
+static relume_status encode_chosen(void)
+{
+    unlink(out_path);
+    const relume_status status = fixture_encode_with(
+        folder, out_path, &relume_basis_pca, relume_coder_params(.coefficients = 5, .choose = true),
+        relume_pack_encode_params(.threads = 1));
+    assert_true((access(out_path, F_OK) == 0) == (status == RELUME_OK));
+    return status;
+}
+
+static relume_status encode_luminance(void)
+{
+    return fixture_encode_with(folder, out_path, &relume_basis_dct,
+                               relume_coder_params(.coefficients = 3, .luminance = true),
+                               relume_pack_encode_params(.threads = 1));
+}
+
+static relume_status encode_resampled(void)
+{
+    return fixture_encode(folder, out_path, &relume_basis_dct_resampled, 3,
+                          relume_pack_encode_params(.threads = 1));
+}
+
+// Every interpolant once: what it prepares is all that differs.
+static relume_status prepare_interpolants(void)
+{
+    relume_capture *c;
+    relume_status status = relume_capture_open(&c, capture_path, NULL);
+    for (int i = 0; !status && relume_interpolants[i]; i++) {
+        const struct relume_manifest *m = relume_capture_manifest(c);
+        relume_coder *coder = (void *)1;
+        status =
+            relume_coder_create(&coder, &relume_basis_table, m->directions, m->lights,
+                                relume_coder_params(.interpolant = relume_interpolants[i]));
+        assert_true(status ? coder == NULL : coder != NULL);
+        relume_coder_destroy(&coder);
+    }
+    relume_capture_destroy(&c);
+    return status;
+}
+
+static relume_status read_components(void)
+{
+    relume_pack *pack = (void *)1;
+    relume_status status = relume_pack_open(&pack, pca_path, relume_pack_params(.threads = 1));
+    const struct relume_light light = {.direction = {0, 1, 1}, .rgb = {1, 1, 1}};
+    struct relume_image frame = {0};
+    assert_true(status ? pack == NULL : pack != NULL);
+    if (!status)
+        status = relume_frame(&frame, pack, &(struct relume_camera){.framing = RELUME_FRAME_VIEW},
+                              &light, 1, relume_frame_params(.threads = 1));
+    relume_image_destroy(&frame);
+    relume_pack_destroy(&pack);
+    return status;
 }
 
 static relume_status read_pack(void)
@@ -205,6 +263,11 @@ SWEEP(open_lp, 10)
 SWEEP(read_table, 20)
 SWEEP(encode_pack, 60)
 SWEEP(encode_table, 60)
+SWEEP(encode_chosen, 100)
+SWEEP(encode_luminance, 60)
+SWEEP(encode_resampled, 60)
+SWEEP(prepare_interpolants, 30)
+SWEEP(read_components, 30)
 SWEEP(read_pack, 30)
 SWEEP(compare_images, 5)
 SWEEP(save_png, 4)
@@ -228,7 +291,9 @@ int main(void)
         cmocka_unit_test(test_encode_table),    cmocka_unit_test(test_read_pack),
         cmocka_unit_test(test_compare_images),  cmocka_unit_test(test_save_png),
         cmocka_unit_test(test_evaluate),        cmocka_unit_test(test_judge),
-        cmocka_unit_test(test_nothing_is_left),
+        cmocka_unit_test(test_encode_chosen),   cmocka_unit_test(test_encode_luminance),
+        cmocka_unit_test(test_encode_resampled), cmocka_unit_test(test_prepare_interpolants),
+        cmocka_unit_test(test_read_components), cmocka_unit_test(test_nothing_is_left),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -516,7 +516,7 @@ void relume_pack_drop(relume_pack *pack, int view)
     free(l->plane);
     free(l->data);
     *l = (struct loaded){0};
-    if (!pack->info.shared)
+    if (pack->books && !pack->info.shared)
         reader_drop_books(&pack->books[view]);
 }
 

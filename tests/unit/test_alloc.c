@@ -135,6 +135,8 @@ static relume_status prepare_interpolants(void)
     relume_capture *c;
     relume_status status = relume_capture_open(&c, capture_path, NULL);
     for (int i = 0; !status && relume_interpolants[i]; i++) {
+        if (!strcmp(relume_interpolants[i]->name, "octahedral"))
+            continue;  // whose lights are a grid
         const struct relume_manifest *m = relume_capture_manifest(c);
         relume_coder *coder = (void *)1;
         status =
@@ -267,7 +269,7 @@ SWEEP(encode_chosen, 100)
 SWEEP(encode_luminance, 60)
 SWEEP(encode_resampled, 60)
 SWEEP(prepare_interpolants, 30)
-SWEEP(read_components, 30)
+SWEEP(read_components, 20)
 SWEEP(read_pack, 30)
 SWEEP(compare_images, 5)
 SWEEP(save_png, 4)

@@ -7,22 +7,47 @@ enum { SIDE = 8, K = 4 };
 // value = 0.2820948 c0 + 0.4886025 (-c1 y + c2 z - c3 x).
 static const double Y0 = 0.28209479177387814, Y1 = 0.48860251190291992;
 
+// Coefficients per colour, a luminance with colours, and components of all three colours.
+enum form { SEPARATE, LUMINANCE, COMPONENTS, FORMS };
+enum { LIGHTS = 6, PLANES = 3 * K };
+
+static const struct relume_vec3 axes[LIGHTS] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                                                {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
+
 struct setup {
+    enum form form;
     relume_coder *coder;
-    uint16_t words[3 * K][SIDE * SIDE];
-    const void *plane[3 * K];
-    float scale[3 * K], offset[3 * K];
+    float transform[3 * K * LIGHTS], mean[3 * LIGHTS];  // of the components
+    uint16_t words[PLANES][SIDE * SIDE];
+    const void *plane[PLANES];
+    float scale[PLANES], offset[PLANES];
     struct relume_codes codes;
 };
 
-static void make(struct setup *s, enum relume_domain domain)
+static void make_coder(struct setup *s, uint32_t *state)
 {
-    static const struct relume_vec3 axes[] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
-                                              {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
+    struct relume_coder_params p = {.coefficients = K, .decode = true};
+    if (s->form == COMPONENTS) {
+        for (int i = 0; i < 3 * K * LIGHTS; i++)
+            s->transform[i] = (float)test_uniform(state) - 0.3f;
+        for (int i = 0; i < 3 * LIGHTS; i++)
+            s->mean[i] = (float)test_uniform(state);
+        p.transform = s->transform;
+        p.mean = s->mean;
+        p.interpolant = relume_interpolant_find("delaunay");
+    }
+    p.luminance = s->form == LUMINANCE;
+    CHECK_OK(relume_coder_create(&s->coder,
+                                 s->form == COMPONENTS ? &relume_basis_pca : &relume_basis_sh, axes,
+                                 LIGHTS, &p));
+}
+
+static void make(struct setup *s, enum form form, enum relume_domain domain)
+{
     uint32_t state = 7;
-    CHECK_OK(relume_coder_create(&s->coder, &relume_basis_sh, axes, 6,
-                                 relume_coder_params(.coefficients = K, .decode = true)));
-    for (int p = 0; p < 3 * K; p++) {
+    s->form = form;
+    make_coder(s, &state);
+    for (int p = 0; p < PLANES; p++) {
         for (int i = 0; i < SIDE * SIDE; i++)
             s->words[p][i] = (uint16_t)(test_random(&state) & 0xffff);
         s->plane[p] = s->words[p];
@@ -35,7 +60,7 @@ static void make(struct setup *s, enum relume_domain domain)
         .display = {RELUME_CURVE_SRGB, 0.0f},
         .width = SIDE,
         .height = SIDE,
-        .planes = 3 * K,
+        .planes = relume_coder_info(s->coder)->planes,
         .storage = RELUME_STORE_16,
         .plane = s->plane,
         .scale = s->scale,
@@ -43,13 +68,41 @@ static void make(struct setup *s, enum relume_domain domain)
     };
 }
 
-static double closed_form(const struct setup *s, int pixel, int c, struct relume_vec3 l)
+static double coefficient(const struct setup *s, int pixel, int plane)
 {
+    return (double)s->words[plane][pixel] * (double)s->scale[plane] + (double)s->offset[plane];
+}
+
+// The triangulation of the axes is the octahedron: weights |x|, |y|, |z| over their sum.
+static double components(const struct setup *s, int pixel, int c, struct relume_vec3 l)
+{
+    const double sum = fabs(l.x) + fabs(l.y) + fabs(l.z);
+    const double weight[LIGHTS] = {fmax(l.x, 0) / sum,  fmax(-l.x, 0) / sum, fmax(l.y, 0) / sum,
+                                   fmax(-l.y, 0) / sum, fmax(l.z, 0) / sum,  fmax(-l.z, 0) / sum};
+    double v = 0.0;
+    for (int i = 0; i < LIGHTS; i++) {
+        v += weight[i] * (double)s->mean[c * LIGHTS + i];
+        for (int k = 0; k < K; k++)
+            v += weight[i] * (double)s->transform[(c * K + k) * LIGHTS + i] *
+                 coefficient(s, pixel, k);
+    }
+    return v;
+}
+
+static double harmonics(const struct setup *s, int pixel, int c, struct relume_vec3 l)
+{
+    const bool shared = s->form == LUMINANCE;
     double q[K];
     for (int k = 0; k < K; k++)
-        q[k] = (double)s->words[3 * k + c][pixel] * (double)s->scale[3 * k + c] +
-               (double)s->offset[3 * k + c];
+        q[k] = coefficient(s, pixel, shared ? k : 3 * k + c);
     const double v = Y0 * q[0] + Y1 * (-q[1] * l.y + q[2] * l.z - q[3] * l.x);
+    return shared ? v * coefficient(s, pixel, K + c) : v;
+}
+
+static double closed_form(const struct setup *s, int pixel, int c, struct relume_vec3 l)
+{
+    const double v =
+        s->form == COMPONENTS ? components(s, pixel, c, l) : harmonics(s, pixel, c, l);
     return s->codes.domain == RELUME_DOMAIN_DISPLAY
                ? (double)relume_transfer_decode(s->codes.display, (float)v)
                : v;
@@ -67,9 +120,9 @@ static const double TOLERANCE = 2e-6;
 static void test_directional_sum(void **state)
 {
     (void)state;
-    for (int domain = RELUME_DOMAIN_LINEAR; domain <= RELUME_DOMAIN_DISPLAY; domain++) {
+    for (int round = 0; round < 2 * FORMS; round++) {
         struct setup s;
-        make(&s, (enum relume_domain)domain);
+        make(&s, round / 2, round % 2 ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR);
         const struct relume_light lights[] = {
             {.direction = {2, 0, 0}, .rgb = {1, 0.5f, 0.25f}},
             {.direction = {0.3, -0.5, 0.7}, .rgb = {0.2f, 0.3f, 2}},
@@ -83,6 +136,12 @@ static void test_directional_sum(void **state)
                     (double)lights[1].rgb[c] * closed_form(&s, i, c, unit(0.3, -0.5, 0.7));
                 CHECK_NEAR(out.data[3 * i + c], want, TOLERANCE);
             }
+        for (int i = 0; i < SIDE * SIDE; i++) {  // the reference for one pixel says the same
+            double rgb[3];
+            relume_relight_pixel(rgb, &s.codes, i % SIDE, i / SIDE, lights, 2);
+            for (int c = 0; c < 3; c++)
+                CHECK_NEAR(rgb[c], (double)out.data[3 * i + c], TOLERANCE);
+        }
         relume_image_destroy(&out);
         relume_coder_destroy(&s.coder);
     }
@@ -91,9 +150,9 @@ static void test_directional_sum(void **state)
 static void test_point_light(void **state)
 {
     (void)state;
-    for (int domain = RELUME_DOMAIN_LINEAR; domain <= RELUME_DOMAIN_DISPLAY; domain++) {
+    for (int round = 0; round < 2 * FORMS; round++) {
         struct setup s;
-        make(&s, (enum relume_domain)domain);
+        make(&s, round / 2, round % 2 ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR);
         const struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, SIDE, SIDE);
         struct relume_image surface, out = {0};
         CHECK_OK(relume_surface(&surface, &g, NULL, NULL, SIDE, SIDE));
@@ -122,7 +181,7 @@ static void test_point_light_needs_surface(void **state)
     struct setup s;
     struct test_log log;
     struct relume_image out = {0};
-    make(&s, RELUME_DOMAIN_LINEAR);
+    make(&s, SEPARATE, RELUME_DOMAIN_LINEAR);
     test_log_init(&log);
     const struct relume_light light = {.kind = RELUME_LIGHT_POINT, .rgb = {1, 1, 1}};
     assert_int_equal(

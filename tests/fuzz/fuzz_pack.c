@@ -20,6 +20,10 @@ static const char *const words[] = {"relume.format",
                                     "relume.ridge",
                                     "relume.lights",
                                     "relume.transform",
+                                    "relume.mean",
+                                    "relume.colour",
+                                    "relume.interpolant",
+                                    "relume.parameter",
                                     "relume.scale",
                                     "relume.offset",
                                     "channels",
@@ -39,6 +43,15 @@ static const char *const words[] = {"relume.format",
                                     "display",
                                     "linear",
                                     "table",
+                                    "ptm",
+                                    "hsh",
+                                    "dct",
+                                    "pca",
+                                    "luminance",
+                                    "chord",
+                                    "natural",
+                                    "octahedral",
+                                    "colour.R",
                                     "scanlineimage",
                                     "c0000.R",
                                     NULL};
@@ -85,15 +98,23 @@ static bool one(struct fuzz *f, struct bytes b)
     return true;
 }
 
+static void add_with(struct fuzz *f, const struct fixture *fixture, const struct relume_basis *basis,
+                     const struct relume_coder_params *how, enum relume_storage storage,
+                     enum relume_compression compression)
+{
+    fixture_write(fixture, f->folder);
+    fixture_must(fixture_encode_with(
+                     f->folder, f->path, basis, how,
+                     relume_pack_encode_params(.storage = storage, .compression = compression)),
+                 "encode");
+    fuzz_add(f, fuzz_load(f->path));
+}
+
 static void add(struct fuzz *f, const struct fixture *fixture, const struct relume_basis *basis,
                 int coefficients, enum relume_storage storage, enum relume_compression compression)
 {
-    fixture_write(fixture, f->folder);
-    fixture_must(
-        fixture_encode(f->folder, f->path, basis, coefficients,
-                       relume_pack_encode_params(.storage = storage, .compression = compression)),
-        "encode");
-    fuzz_add(f, fuzz_load(f->path));
+    add_with(f, fixture, basis, relume_coder_params(.coefficients = coefficients), storage,
+             compression);
 }
 
 int main(int argc, char **argv)
@@ -112,5 +133,13 @@ int main(int argc, char **argv)
     add(&f, &plain, &relume_basis_table, 0, RELUME_STORE_16, RELUME_COMPRESS_ZIP);
     add(&f, &slab, &relume_basis_sh, 4, RELUME_STORE_HALF, RELUME_COMPRESS_RLE);
     add(&f, &slab, &relume_basis_table, 0, RELUME_STORE_8, RELUME_COMPRESS_NONE);
+    add(&f, &plain, &relume_basis_pca, 4, RELUME_STORE_10, RELUME_COMPRESS_NONE);
+    add(&f, &slab, &relume_basis_hsh, 4, RELUME_STORE_12, RELUME_COMPRESS_NONE);
+    add(&f, &plain, &relume_basis_dct, 5, RELUME_STORE_8, RELUME_COMPRESS_NONE);
+    add_with(&f, &slab, &relume_basis_ptm, relume_coder_params(.luminance = true), RELUME_STORE_8,
+             RELUME_COMPRESS_NONE);
+    add_with(&f, &slab, &relume_basis_table,
+             relume_coder_params(.interpolant = relume_interpolant_find("natural")), RELUME_STORE_8,
+             RELUME_COMPRESS_NONE);
     return fuzz_run(&f, argc, argv, one);
 }

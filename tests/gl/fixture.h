@@ -94,10 +94,11 @@ static void fill_codes(void *memory, size_t n, enum relume_storage storage, uint
     for (size_t i = 0; i < n; i++) {
         if (storage == RELUME_STORE_8)
             ((uint8_t *)memory)[i] = (uint8_t)(256 * uniform(random));
-        else if (storage == RELUME_STORE_16)
-            ((uint16_t *)memory)[i] = (uint16_t)(65536 * uniform(random));
-        else
+        else if (storage == RELUME_STORE_HALF)
             ((uint16_t *)memory)[i] = random_half(random);
+        else
+            ((uint16_t *)memory)[i] =
+                (uint16_t)((relume_storage_top(storage) + 1) * uniform(random));
     }
 }
 
@@ -108,7 +109,7 @@ static inline struct fixture_file fixture_make(int views, int width, int height,
 {
     struct fixture_file f = {.coder = fixture_coder(pole_y), .views = views};
     const size_t pixels = (size_t)width * (size_t)height;
-    const float range = storage == RELUME_STORE_8 ? 255 : storage == RELUME_STORE_16 ? 65535 : 1;
+    const float range = storage == RELUME_STORE_HALF ? 1 : (float)relume_storage_top(storage);
     uint64_t random = 11;
     for (int p = 0; p < FIXTURE_PLANES; p++) {
         const float spread = p < 3 ? 1.5f : 0.4f;

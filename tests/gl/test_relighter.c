@@ -65,6 +65,72 @@ static void display_files(void **state)
     run(RELUME_STORE_HALF, RELUME_DOMAIN_DISPLAY, "half, display", display_bound);
 }
 
+static void few_bits(void **state)
+{
+    (void)state;
+    run(RELUME_STORE_10, RELUME_DOMAIN_LINEAR, "10 bits, linear", linear_bound);
+    run(RELUME_STORE_12, RELUME_DOMAIN_DISPLAY, "12 bits, display", display_bound);
+}
+
+// The same codes under a coder that needs fewer planes.
+static void run_coder(const struct relume_basis *basis, const struct relume_coder_params *p,
+                      enum relume_storage storage, const char *what)
+{
+    for (int d = 0; d < 2; d++) {
+        const enum relume_domain domain = d ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR;
+        struct fixture_file f = fixture_make(1, W, H, storage, domain, false);
+        const struct code_source source = {fixture_fetch, NULL, &f};
+        relume_coder *sh = f.coder;
+        struct relighter r;
+        assert_int_equal(
+            relume_coder_create(&f.coder, basis, relume_coder_info(sh)->directions, FIXTURE_LIGHTS, p),
+            RELUME_OK);
+        relume_coder_destroy(&sh);
+        f.codes[0].coder = f.coder;
+        f.codes[0].planes = relume_coder_info(f.coder)->planes;
+        assert_true(f.codes[0].planes < FIXTURE_PLANES);
+        assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
+        compare_lights(&r, &f, what, d ? display_bound : linear_bound);
+        relighter_destroy(&r);
+        fixture_free(&f);
+    }
+}
+
+static void luminance_files(void **state)
+{
+    (void)state;
+    static const enum relume_storage storages[] = {RELUME_STORE_8, RELUME_STORE_12,
+                                                   RELUME_STORE_HALF};
+    for (int i = 0; i < 3; i++) {
+        run_coder(&relume_basis_sh,
+                  relume_coder_params(.coefficients = 9, .luminance = true, .decode = true),
+                  storages[i], "luminance, 9 + 3 planes");
+        run_coder(&relume_basis_dct,
+                  relume_coder_params(.coefficients = 10, .luminance = true, .decode = true),
+                  storages[i], "luminance, 10 + 3 planes");
+    }
+}
+
+static void component_files(void **state)
+{
+    (void)state;
+    static float transform[3 * 26 * FIXTURE_LIGHTS], mean[3 * FIXTURE_LIGHTS];
+    uint64_t random = 3;
+    for (size_t i = 0; i < sizeof transform / sizeof *transform; i++)
+        transform[i] = (float)(0.4 * uniform(&random) - 0.2);
+    for (int i = 0; i < 3 * FIXTURE_LIGHTS; i++)
+        mean[i] = (float)uniform(&random);
+    for (int k = 1; k <= 26; k += 5) {
+        char text[64];
+        snprintf(text, sizeof text, "%d components", k);
+        run_coder(&relume_basis_pca,
+                  relume_coder_params(.coefficients = k, .decode = true, .transform = transform,
+                                      .mean = mean,
+                                      .interpolant = relume_interpolant_find("delaunay")),
+                  k % 2 ? RELUME_STORE_8 : RELUME_STORE_16, text);
+    }
+}
+
 static void gamma_files(void **state)
 {
     (void)state;
@@ -165,6 +231,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(linear_files),
         cmocka_unit_test(display_files),
+        cmocka_unit_test(few_bits),
+        cmocka_unit_test(luminance_files),
+        cmocka_unit_test(component_files),
         cmocka_unit_test(gamma_files),
         cmocka_unit_test(many_arrays),
         cmocka_unit_test(codes_are_fetched_once),

@@ -118,8 +118,8 @@ struct relume_books_params {  // zero in a field means its default
     uint64_t seed;
     int max_rounds;  // default 24
     size_t sample;   // pixels to learn from; default: 40 a code, at least 65536
-    float dither;    // [0, 1]: this part of each pixel's error is given to pixels of the next row,
-                     // so that smooth ramps show noise instead of contours; default 0
+    float dither;    // [0, 1]: smooth ramps alternate between neighbouring codes in a fine pattern
+                     // instead of showing contours; 1 follows the ramp, default 0 does nothing
     int threads;
 };
 #define relume_books_params(...) (&(const struct relume_books_params){__VA_ARGS__})

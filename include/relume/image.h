@@ -85,6 +85,21 @@ RELUME_RESULT relume_status relume_image_compare(struct relume_difference *out,
                                                  const struct relume_image *reference,
                                                  const struct relume_compare_params *params);
 
+// Contours in smooth ramps (Wong 1998, Fig 9-11): what codes do to slopes that are too gentle to
+// hide them. Display luma of both images is smoothed (Gaussian, sigma 2 pixels: noise averages out
+// for the eye as well). Ramps are the pixels where the reference's slope is 0.2 to 4 of 255 levels
+// a pixel and changes by at most 0.25 levels from pixel to pixel.
+struct relume_ramps {
+    double error;   // mean squared difference of the slopes, (levels of 255 a pixel)^2
+    double slope;   // mean square of the reference's slopes
+    size_t pixels;  // of ramps
+};
+// Both images must have 3 channels and equal sizes, else RELUME_EINVAL. RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_image_ramps(struct relume_ramps *out,
+                                               const struct relume_image *image,
+                                               const struct relume_image *reference,
+                                               const struct relume_compare_params *params);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,22 +1,29 @@
 #include "cli.h"
 
+#include <math.h>
+
 static const struct option options[] = {
+    {"--ramps", OPTION_FLAG, NULL, "also how smooth ramps of B keep their slope (contours)", 0, 0},
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
 
-static void print(const struct args *args, const struct relume_difference *d)
+static void print(const struct args *args, const struct relume_difference *d,
+                  const struct relume_ramps *ramps)
 {
     const struct {
         const char *name;
         double value;
-    } rows[] = {{"rms", d->rms},
-                {"psnr_db", d->psnr_db},
-                {"ssim", d->ssim},
-                {"delta_e", d->delta_e},
-                {"max_abs", d->max_abs}};
+    } rows[] = {
+        {"rms", d->rms},
+        {"psnr_db", d->psnr_db},
+        {"ssim", d->ssim},
+        {"delta_e", d->delta_e},
+        {"max_abs", d->max_abs},
+        {"ramp_error", ramps->slope > 0.0 ? sqrt(ramps->error / ramps->slope) : (double)NAN}};
+    const size_t count = sizeof rows / sizeof *rows - !args_has(args, "--ramps");
     const bool json = args_has(args, "--json");
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    for (size_t i = 0; i < count; i++) {
         if (!json) {
             printf("%-8s %.6g\n", rows[i].name, rows[i].value);
             continue;
@@ -32,6 +39,7 @@ static relume_status run(const struct args *args)
 {
     struct relume_image a = {0}, b = {0};
     struct relume_difference difference;
+    struct relume_ramps ramps = {0};
     const struct relume_image_params *load = relume_image_params(.log = args_log(args));
     relume_status status = relume_image_load(&a, args_input(args, 0), load);
     if (!status)
@@ -42,8 +50,11 @@ static relume_status run(const struct args *args)
     if (!status)
         status = relume_image_compare(&difference, &a, &b,
                                       relume_compare_params(.threads = args_threads(args)));
+    if (!status && args_has(args, "--ramps"))
+        status = relume_image_ramps(&ramps, &a, &b,
+                                    relume_compare_params(.threads = args_threads(args)));
     if (!status)
-        print(args, &difference);
+        print(args, &difference, &ramps);
     relume_image_destroy(&a);
     relume_image_destroy(&b);
     return status;
@@ -51,7 +62,7 @@ static relume_status run(const struct args *args)
 
 const struct command command_compare = {
     .name = "compare",
-    .usage = "A B [--json]",
+    .usage = "A B [--ramps] [--json]",
     .summary = "measure how far two pictures are apart",
     .example = "relume compare relit.exr photograph.jpg --json",
     .min_inputs = 2,

@@ -154,9 +154,9 @@ static void remove_chunk(void *context, size_t item, int worker)
 }
 
 // Take from the sample what the book now says.
-static relume_status remove_book(struct sample *s, relume_books *books, int i, int threads)
+static relume_status remove_book(struct sample *s, const relume_books *books, int i, int threads)
 {
-    struct own *own = &books->own[i];
+    const struct own *own = &books->own[i];
     struct removal r = {.sample = s, .books = books, .book = i};
     r.distance = mem_array(s->n, sizeof *r.distance);
     r.apart = mem_array(s->n, sizeof *r.apart);
@@ -165,9 +165,6 @@ static relume_status remove_book(struct sample *s, relume_books *books, int i, i
     const bool good = r.distance && r.apart && r.scratch;
     if (good)
         thread_for(threads, (s->n + CHUNK - 1) / CHUNK, remove_chunk, &r);
-    own->error = 0.0;
-    for (size_t k = 0; good && k < s->n; k++)
-        own->error += r.distance[k] / (double)s->n;
     free(r.distance);
     free(r.apart);
     free(r.scratch);

@@ -25,7 +25,6 @@ struct relume_books {
         void *numbers;
         float *scale, *offset, *vectors;
         struct nearest nearest;
-        double error;  // mean squared error that this book has left in the sample
     } own[RELUME_MOST_BOOKS];
 };
 

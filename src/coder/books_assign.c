@@ -1,9 +1,10 @@
 // books_assign.c - every pixel of a view becomes one index per book
 //
 // Contours (Wong 1998, Fig 9-11) arise where a smooth ramp crosses from one code to the next. With
-// `dither` a pixel's error is handed on to the three pixels below it (1/4, 1/2, 1/4; Floyd and
-// Steinberg 1976 without the pixel beside, so that a row is still searched in one go), and the
-// ramp's mean value comes out right at the price of noise.
+// `dither`, a pixel x between its code a and a neighbour b of a takes b in a part t of all places,
+// t = (x - a) . (b - a) / |b - a|^2, by an ordered pattern (Bayer 1973): the mean of an area then
+// follows the ramp along that segment. Errors are not handed on from pixel to pixel (Floyd and
+// Steinberg 1976): what lies off the segment can never be made good, and would pile up.
 #include "coder/books.h"
 
 #include "base/log.h"
@@ -14,9 +15,6 @@
 
 #include <math.h>
 #include <string.h>
-
-// An error larger than this many times the usual one is an outlier, which must not smear.
-static const double MOST_HANDED_ON = 2.0;
 
 struct work {
     uint16_t *waiting;
@@ -30,6 +28,11 @@ struct work {
     float *wanted, *kept;  // [lights][x]
 };
 
+enum { NEIGHBOURS = 8 };
+// Dither only where the coefficients move less than this part of the way to the next code within
+// four pixels: steeper ramps hide their contours.
+static const double MOST_CHANGE = 0.5;
+
 struct assignment {
     const relume_books *books;
     const relume_coefficients *view;
@@ -37,7 +40,7 @@ struct assignment {
     struct captured captured;
     struct work *work;  // [workers]
     double *loss;       // [height]: squared error over the captured lights; negative: not measured
-    float *carried;     // dither: [x][planes], for the row in progress
+    int *neighbour[RELUME_MOST_BOOKS];  // dither: [codes][NEIGHBOURS]; NULL where there is none
     float dither;
     relume_status status;
 };
@@ -83,34 +86,84 @@ static bool alloc_work(struct work *w, const struct assignment *a)
     return true;
 }
 
-// Coefficients of the row, with what the row above has handed on.
 static relume_status begin_row(const struct assignment *a, struct work *w, int y)
 {
     const size_t width = (size_t)a->view->info.width, planes = (size_t)a->books->info.planes;
     const relume_status status = coefficients_values(a->view, y, w->waiting, w->row);
     for (size_t x = 0; !status && x < width; x++)
         for (size_t p = 0; p < planes; p++)
-            w->residual[x * planes + p] =
-                w->row[p * width + x] + (a->carried ? a->carried[x * planes + p] : 0.0f);
+            w->residual[x * planes + p] = w->row[p * width + x];
     return status;
 }
 
-// Pixels [first, last) of the row, one book after another.
-static void find_codes(const struct assignment *a, struct work *row, struct work *own, int y,
-                       size_t first, size_t last)
+// The vector as it is shown in this place: by its code, or by the neighbour that it has come
+// nearest to on the way there.
+static int choose_of_two(const struct assignment *a, int book, int code, const float *residual,
+                         float threshold, double change)
+{
+    const size_t planes = (size_t)a->books->info.planes;
+    const float *vectors = a->books->vectors[book], *from = vectors + (size_t)code * planes;
+    double part = 0.0, spacing = 0.0;
+    int other = code;
+    for (int i = 0; i < NEIGHBOURS; i++) {
+        const int next = a->neighbour[book][code * NEIGHBOURS + i];
+        const float *to = vectors + (size_t)next * planes;
+        double along = 0.0, square = 0.0;
+        for (size_t p = 0; p < planes; p++) {
+            const double d = (double)to[p] - (double)from[p];
+            along += ((double)residual[p] - (double)from[p]) * d;
+            square += d * d;
+        }
+        if (along > part * square) {
+            part = along / square;
+            spacing = square;
+            other = next;
+        }
+    }
+    if (change > MOST_CHANGE * MOST_CHANGE * spacing)
+        return code;
+    return (double)a->dither * part > (double)threshold ? other : code;
+}
+
+// How far the row's coefficients move in four pixels, squared.
+static double change_at(const struct assignment *a, const float *row, size_t x)
+{
+    const size_t width = (size_t)a->view->info.width, planes = (size_t)a->books->info.planes;
+    const size_t left = x < 2 ? 0 : x - 2, right = x + 2 < width ? x + 2 : width - 1;
+    double sum = 0.0;
+    for (size_t p = 0; p < planes; p++) {
+        const double d = (double)row[p * width + right] - (double)row[p * width + left];
+        sum += d * d;
+    }
+    return sum;
+}
+
+static float threshold_at(size_t x, int y)
+{
+    static const unsigned char order[4][4] = {
+        {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
+    return ((float)order[y % 4][x % 4] + 0.5f) / 16.0f;
+}
+
+// One book after another.
+static void find_codes(const struct assignment *a, struct work *w, int y)
 {
     const size_t width = (size_t)a->view->info.width, planes = (size_t)a->books->info.planes;
     for (int b = 0; b < a->books->info.books; b++) {
         const struct relume_book *book = &a->books->book[b];
         uint16_t *index = a->index[b] + (size_t)y * width;
-        for (size_t x = first; x < last; x++)
-            book_project(row->part + x * (size_t)book->dim, book, row->residual + x * planes);
-        nearest_find(&a->books->own[b].nearest, row->part, row->which + first, last - first, index,
-                     row->distance, row->apart, own->scratch);
-        for (size_t x = first; x < last; x++) {
+        for (size_t x = 0; x < width; x++)
+            book_project(w->part + x * (size_t)book->dim, book, w->residual + x * planes);
+        nearest_find(&a->books->own[b].nearest, w->part, w->which, width, index, w->distance,
+                     w->apart, w->scratch);
+        for (size_t x = 0; x < width; x++) {
+            float *residual = w->residual + x * planes;
+            if (a->neighbour[b])
+                index[x] = (uint16_t)choose_of_two(a, b, index[x], residual, threshold_at(x, y),
+                                                   change_at(a, w->row, x));
             const float *v = a->books->vectors[b] + (size_t)index[x] * planes;
             for (size_t p = 0; p < planes; p++)
-                row->residual[x * planes + p] -= v[p];
+                residual[p] -= v[p];
         }
     }
 }
@@ -156,75 +209,82 @@ static void assign_row(void *context, size_t item, int worker)
         a->loss[y] = NAN;
         return;
     }
-    find_codes(a, w, w, y, 0, (size_t)a->view->info.width);
+    find_codes(a, w, y);
     if (is_measured(a, y))
         a->loss[y] = measure_row(a, w, y);
 }
 
 // ---------------------------------------------------------------- dither
 
-enum { RUN = 192 };  // pixels of a row that a worker takes
-
-struct dithering {
-    struct assignment *a;
-    int y;
+struct near {
+    double distance;
+    int code;
 };
 
-static void assign_run(void *context, size_t item, int worker)
-{
-    const struct dithering *d = context;
-    const size_t width = (size_t)d->a->view->info.width, first = item * RUN;
-    find_codes(d->a, &d->a->work[0], &d->a->work[worker], d->y, first,
-               first + RUN < width ? first + RUN : width);
-}
+struct meeting {
+    const struct relume_book *book;
+    const float *vectors;
+    size_t planes;
+    int *neighbour;
+};
 
-static void hand_on(struct assignment *a)
+// The NEIGHBOURS codes nearest to one, itself where there are not as many.
+static void find_neighbours(void *context, size_t code, int worker)
 {
-    const size_t width = (size_t)a->view->info.width, planes = (size_t)a->books->info.planes;
-    const double usual = a->books->own[a->books->info.books - 1].error;
-    const float *error = a->work[0].residual;
-    memset(a->carried, 0, width * planes * sizeof *a->carried);
-    for (size_t x = 0; x < width; x++, error += planes) {
-        double square = 0.0;
-        for (size_t p = 0; p < planes; p++)
-            square += (double)error[p] * (double)error[p];
-        if (!(square > 0.0))
-            continue;
-        const double most = MOST_HANDED_ON * MOST_HANDED_ON * usual;
-        const float part = a->dither * (float)(square > most ? sqrt(most / square) : 1.0);
-        for (int side = -1; side <= 1; side++) {
-            if ((side < 0 && x == 0) || (side > 0 && x + 1 == width))
-                continue;
-            float *to = a->carried + (size_t)((ptrdiff_t)x + side) * planes;
-            const float share = part * (side ? 0.25f : 0.5f);
-            for (size_t p = 0; p < planes; p++)
-                to[p] += share * error[p];
+    (void)worker;
+    const struct meeting *m = context;
+    const float *own = m->vectors + code * m->planes;
+    struct near nearest[NEIGHBOURS];
+    for (int i = 0; i < NEIGHBOURS; i++)
+        nearest[i] = (struct near){INFINITY, (int)code};
+    for (int c = 0; c < m->book->codes; c++) {
+        double d = 0.0;
+        for (size_t p = 0; p < m->planes; p++) {
+            const double e = (double)own[p] - (double)m->vectors[(size_t)c * m->planes + p];
+            d += e * e;
         }
+        int at = NEIGHBOURS;
+        while (at > 0 && d > 0.0 && d < nearest[at - 1].distance)
+            at--;
+        if (at == NEIGHBOURS)
+            continue;
+        memmove(nearest + at + 1, nearest + at, (size_t)(NEIGHBOURS - 1 - at) * sizeof *nearest);
+        nearest[at] = (struct near){d, c};
     }
+    for (int i = 0; i < NEIGHBOURS; i++)
+        m->neighbour[code * NEIGHBOURS + (size_t)i] = nearest[i].code;
 }
 
-static relume_status assign_dithered(struct assignment *a, int threads,
-                                     const struct relume_log *log)
+// Only books with none for the same planes after them: a later stage mends the contours of the
+// earlier ones.
+static bool is_last_stage(const struct relume_books_info *info, int book)
 {
-    const size_t width = (size_t)a->view->info.width;
-    const int height = a->view->info.height;
-    struct dithering d = {.a = a};
-    for (d.y = 0; d.y < height; d.y++) {
-        const relume_status status = begin_row(a, &a->work[0], d.y);
-        if (status)
-            return status;
-        thread_for(threads, (width + RUN - 1) / RUN, assign_run, &d);
-        hand_on(a);
-        a->loss[d.y] = is_measured(a, d.y) ? measure_row(a, &a->work[0], d.y) : -1.0;
-        if (!log_progress(log, "finding codes", (d.y + 1.0) / height))
-            return RELUME_ECANCEL;
+    for (int b = book + 1; b < info->books; b++)
+        if (info->book[b].kind == info->book[book].kind &&
+            info->book[b].first == info->book[book].first)
+            return false;
+    return true;
+}
+
+static relume_status prepare_dither(struct assignment *a, int threads)
+{
+    const struct relume_books_info *info = &a->books->info;
+    for (int b = 0; b < info->books; b++) {
+        if (!is_last_stage(info, b))
+            continue;
+        const size_t codes = (size_t)info->codes[b];
+        struct meeting m = {&info->book[b], info->vectors[b], (size_t)info->planes, NULL};
+        m.neighbour = a->neighbour[b] = mem_array(codes, NEIGHBOURS * sizeof *m.neighbour);
+        if (!m.neighbour)
+            return RELUME_ENOMEM;
+        thread_for(threads, codes, find_neighbours, &m);
     }
     return RELUME_OK;
 }
 
 // ---------------------------------------------------------------- interface
 
-static relume_status assign_plain(struct assignment *a, int threads, const struct relume_log *log)
+static relume_status assign_rows(struct assignment *a, int threads, const struct relume_log *log)
 {
     const int height = a->view->info.height;
     thread_for(threads, (size_t)height, assign_row, a);
@@ -267,13 +327,10 @@ relume_status relume_books_assign(uint16_t *const *index, double *store_rms,
                          : RELUME_ENOMEM;
     for (int i = 0; !status && i < workers; i++)
         status = alloc_work(&a.work[i], &a) ? RELUME_OK : RELUME_ENOMEM;
-    if (!status && p.dither > 0.0f) {
-        a.carried =
-            mem_zeroed((size_t)view->info.width * (size_t)books->info.planes, sizeof *a.carried);
-        status = a.carried ? assign_dithered(&a, p.threads, p.log) : RELUME_ENOMEM;
-    } else if (!status) {
-        status = assign_plain(&a, p.threads, p.log);
-    }
+    if (!status && p.dither > 0.0f)
+        status = prepare_dither(&a, p.threads);
+    if (!status)
+        status = assign_rows(&a, p.threads, p.log);
     if (!status && store_rms)
         *store_rms = mean_loss(&a);
     for (int i = 0; a.work && i < workers; i++)
@@ -281,6 +338,7 @@ relume_status relume_books_assign(uint16_t *const *index, double *store_rms,
     captured_destroy(&a.captured);
     free(a.work);
     free(a.loss);
-    free(a.carried);
+    for (int b = 0; b < RELUME_MOST_BOOKS; b++)
+        free(a.neighbour[b]);
     return status;
 }

@@ -26,6 +26,14 @@ static const char *const words[] = {"relume.format",
                                     "relume.parameter",
                                     "relume.scale",
                                     "relume.offset",
+                                    "relume.books",
+                                    "relume.book",
+                                    "relume.first",
+                                    "relume.last",
+                                    "book0",
+                                    "view0000.book0",
+                                    "chroma",
+                                    "luma",
                                     "channels",
                                     "dataWindow",
                                     "displayWindow",
@@ -110,6 +118,18 @@ static void add_with(struct fuzz *f, const struct fixture *fixture, const struct
     fuzz_add(f, fuzz_load(f->path));
 }
 
+static void add_books(struct fuzz *f, const struct fixture *fixture, bool share,
+                      const struct relume_books_params *books, enum relume_storage storage)
+{
+    fixture_write(fixture, f->folder);
+    fixture_must(
+        fixture_encode(f->folder, f->path, &relume_basis_sh, 4,
+                       relume_pack_encode_params(.storage = storage, .books = books, .share = share,
+                                                 .compression = RELUME_COMPRESS_NONE)),
+        "encode");
+    fuzz_add(f, fuzz_load(f->path));
+}
+
 static void add(struct fuzz *f, const struct fixture *fixture, const struct relume_basis *basis,
                 int coefficients, enum relume_storage storage, enum relume_compression compression)
 {
@@ -141,5 +161,10 @@ int main(int argc, char **argv)
     add_with(&f, &slab, &relume_basis_table,
              relume_coder_params(.interpolant = relume_interpolant_find("natural")), RELUME_STORE_8,
              RELUME_COMPRESS_NONE);
+    add_books(&f, &plain, false, relume_books_params(.codes = 5, .stages = 2), RELUME_STORE_8);
+    add_books(&f, &slab, true, relume_books_params(.codes = 7, .split = RELUME_SPLIT_LUMA),
+              RELUME_STORE_12);
+    add_books(&f, &slab, false, relume_books_params(.codes = 3, .split = RELUME_SPLIT_PRODUCT),
+              RELUME_STORE_HALF);
     return fuzz_run(&f, argc, argv, one);
 }

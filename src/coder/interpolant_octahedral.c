@@ -12,32 +12,48 @@ struct grid {
     int lights, side;
 };
 
+// Where a direction lies in the grid, in nodes.
+static void place(const struct grid *g, vec3 d, double *u, double *v)
+{
+    const double sum = fabs(d.x) + fabs(d.y) + fabs(d.z);
+    *u = ((d.x + d.y) / sum + 1.0) / 2.0 * (g->side - 1);
+    *v = ((d.y - d.x) / sum + 1.0) / 2.0 * (g->side - 1);
+}
+
+static bool holds(const struct grid *g, const struct relume_vec3 *lights)
+{
+    static const double near = 0.05;
+    bool all = true;
+    for (int i = 0; i < g->lights; i++) {
+        double u, v;
+        place(g, lights[i], &u, &v);
+        all &= fabs(u - i % g->side) < near && fabs(v - i / g->side) < near;
+    }
+    return all;
+}
+
 // parameter[0]: the side, default: the root of the number of lights.
 static relume_status prepare(void **data, const struct relume_vec3 *lights, int n,
                              const double *parameter, const struct relume_log *log)
 {
-    (void)lights;
     *data = NULL;
     const double wanted = parameter[0] > 0.0 ? parameter[0] : sqrt(n);
-    const int side = wanted < 1024.0 ? (int)lround(wanted) : 0;
-    if (side < 2 || side * side != n)
+    const struct grid grid = {n, wanted < 1024.0 ? (int)lround(wanted) : 0};
+    if (grid.side < 2 || grid.side * grid.side != n || !holds(&grid, lights))
         return log_fail(log, RELUME_EDATA,
-                        "interpolant octahedral takes the nodes of a square grid; found %d lights",
+                        "interpolant octahedral takes the nodes of its grid as lights; found %d "
+                        "others",
                         n);
-    struct grid *g = *data = mem_array(1, sizeof *g);
-    if (!g)
-        return RELUME_ENOMEM;
-    *g = (struct grid){n, side};
-    return RELUME_OK;
+    *data = mem_copy(&grid, 1, sizeof grid);
+    return *data ? RELUME_OK : RELUME_ENOMEM;
 }
 
 static void evaluate(const void *data, struct relume_vec3 light, double *weights)
 {
     const struct grid *g = data;
     const int last = g->side - 1;
-    const double sum = fabs(light.x) + fabs(light.y) + fabs(light.z);
-    const double u = ((light.x + light.y) / sum + 1.0) / 2.0 * last;
-    const double v = ((light.y - light.x) / sum + 1.0) / 2.0 * last;
+    double u, v;
+    place(g, light, &u, &v);
     const int x = (int)fmin(fmax(floor(u), 0.0), last - 1);
     const int y = (int)fmin(fmax(floor(v), 0.0), last - 1);
     memset(weights, 0, (size_t)g->lights * sizeof *weights);

@@ -19,6 +19,11 @@ for interpolant in $("$RELUME" encode --help | sed -n 's/.*table: \([a-z, ]*\).*
 done
 both "dome --basis auto" "9 8"
 both "all --basis table --interpolant auto --bits half" "9 8"
+# the lights of web files: nodes of an octahedral grid
+awk 'BEGIN { for (i = 0; i < 25; i++) { u = i % 5 / 2 - 1; v = int(i / 5) / 2 - 1; x = (u - v) / 2; y = (u + v) / 2
+    z = 1 - (x < 0 ? -x : x) - (y < 0 ? -y : y); print x, y, z } }' >nodes.txt
+"$RELUME" synth box -o nodes --size $size --lights-from nodes.txt --samples 1 -q
+both "nodes --basis pca --interpolant octahedral" "9 8"
 for basis in ptm hsh sh dct table; do
     both "dome --basis $basis --colour luminance" "9 8"
     both "photos --basis $basis --colour luminance --step common" "9 8"

@@ -458,6 +458,16 @@ static void trend_of_nine(const struct set *s, double ridge, struct vector d, do
     }
 }
 
+static void octahedral(const struct set *s, double side, struct vector d, double *value)
+{
+    const int r = (int)lround(side > 0.0 ? side : sqrt(s->n));
+    const double sum = fabs(d.x) + fabs(d.y) + fabs(d.z);
+    const double u = ((d.x + d.y) / sum + 1.0) / 2.0 * (r - 1);
+    const double v = ((d.y - d.x) / sum + 1.0) / 2.0 * (r - 1);
+    for (int i = 0; i < s->n; i++)
+        value[i] = fmax(1.0 - fabs(u - i % r), 0.0) * fmax(1.0 - fabs(v - i / r), 0.0);
+}
+
 static void interpolate(struct vector d, double *value)
 {
     static struct set s;
@@ -494,6 +504,8 @@ static void interpolate(struct vector d, double *value)
         rbf(&s, p[0], d, value);
     else if (!strcmp(name, "natural"))
         natural(&s, d, value);
+    else if (!strcmp(name, "octahedral"))
+        octahedral(&s, p[0], d, value);
     else if (!strcmp(name, "hsh"))
         trend_of_nine(&s, p[0], d, value);
     else

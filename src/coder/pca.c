@@ -7,7 +7,8 @@
 // alike for each colour; components of M^1/2 t are optimal in it, and orthonormal, so that one
 // quantiser step serves all. A second pass weighs each direction by the inverse of the error that
 // remains there - decibels are won where little is left - on top of what interpolation itself
-// misses there, ln e = alpha + beta z fitted to the errors of captured lights left out.
+// misses there, ln e = alpha + beta z fitted to the errors of captured lights left out. Sets of
+// more than 400 lights are dense enough to be their own metric.
 #include "coder/pca.h"
 
 #include "base/log.h"
@@ -17,7 +18,7 @@
 
 #include <string.h>
 
-enum { BATCH = 512, RINGS = 12, AZIMUTHS = 40, DIRECTIONS = RINGS * AZIMUTHS };
+enum { BATCH = 512, DENSE = 400, RINGS = 12, AZIMUTHS = 40, DIRECTIONS = RINGS * AZIMUTHS };
 
 struct solver {
     const relume_coder *coder;
@@ -272,10 +273,21 @@ static void emphasise(struct solver *s)
     }
 }
 
+static relume_status solve_dense(struct solver *s)
+{
+    struct components *o = s->out;
+    if (!lsq_eigenvectors(s->covariance, (int)s->dim, o->count, s->values, o->analysis))
+        return RELUME_ENOMEM;
+    memcpy(o->function, o->analysis, (size_t)o->count * s->dim * sizeof *o->function);
+    return RELUME_OK;
+}
+
 static relume_status solve(struct solver *s)
 {
     vec3 d[DIRECTIONS];
     relume_status status = find_statistics(s);
+    if (!status && s->lights > DENSE)
+        return solve_dense(s);
     choose_directions(s, d);
     for (int i = 0; i < DIRECTIONS; i++) {
         coder_interpolate(s->coder, d[i], s->weights + (size_t)i * s->lights);

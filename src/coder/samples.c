@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { DEFAULT_PIXELS = 65536 };
+enum { DEFAULT_PIXELS = 65536, LEAST_PIXELS = 4096 };
 
 struct sampler {
     struct relume_samples *out;
@@ -117,6 +117,15 @@ void relume_samples_destroy(struct relume_samples *samples)
     *samples = (struct relume_samples){0};
 }
 
+// The work of learning grows with the square of the lights.
+static size_t enough_pixels(int lights)
+{
+    const double values = 3.0 * lights, most = 1e11 / (values * values);
+    return most < LEAST_PIXELS     ? LEAST_PIXELS
+           : most < DEFAULT_PIXELS ? (size_t)most
+                                   : DEFAULT_PIXELS;
+}
+
 relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *basis,
                                  const relume_capture *capture,
                                  const struct relume_coder_params *coder,
@@ -130,7 +139,7 @@ relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *
     relume_status status = RELUME_OK;
     *out = NULL;
     if (basis->learned || p.choose) {
-        status = relume_samples_read(&samples, capture, 0, encode);
+        status = relume_samples_read(&samples, capture, enough_pixels(m->lights), encode);
         p.samples = &samples;
     }
     if (!status)

@@ -1,11 +1,13 @@
 #include "math/lsq.h"
 
 #include "base/memory.h"
+#include "math/random.h"
 
 #include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
 #include <pthread.h>
+#include <string.h>
 
 static void one_thread(void)
 {
@@ -24,10 +26,87 @@ bool lsq_eigenvalues(double *matrix, int n, double *values)
     return LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'L', n, matrix, n, values) == 0;
 }
 
+// Where few eigenvectors of a large matrix are asked for: blocks of vectors times the matrix, again
+// and again, made orthonormal each time (Halko, Martinsson, Tropp 2011); then the small problem.
+enum { LARGE = 1024, SPARE = 16, POWERS = 12 };
+
+// rows[m][n] -> orthonormal; `small` has room for m x m.
+static bool orthonormalise(double *rows, int m, int n, double *small)
+{
+    for (int again = 0; again < 2; again++) {  // twice: the Gram matrix squares the condition
+        double trace = 0.0;
+        cblas_dsyrk(CblasRowMajor, CblasLower, CblasNoTrans, m, n, 1.0, rows, n, 0.0, small, m);
+        for (int i = 0; i < m; i++)
+            trace += small[i * m + i];
+        for (int i = 0; i < m; i++)
+            small[i * m + i] += 1e-14 * trace;
+        if (!lsq_cholesky(small, m))
+            return false;
+        cblas_dtrsm(CblasRowMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, m, n, 1.0,
+                    small, m, rows, n);
+    }
+    return true;
+}
+
+static bool top_eigenvectors(const double *matrix, int n, int count, double *values,
+                             double *vectors)
+{
+    const int m = count + SPARE;
+    const size_t size = (size_t)m * (size_t)n, square = (size_t)m * (size_t)m;
+    double *rows = mem_array(size, sizeof *rows), *next = mem_array(size, sizeof *next);
+    double *small = mem_array(square, sizeof *small), *turn = mem_array(square, sizeof *turn);
+    double *all = mem_array((size_t)m, sizeof *all);
+    bool good = rows && next && small && turn && all;
+    struct random random = random_stream(1, (uint64_t)n, (uint64_t)count);
+    for (size_t i = 0; good && i < size; i++)
+        rows[i] = random_range(&random, -1.0, 1.0);
+    double shift = 0.0;  // keeps directions alive that the matrix maps to zero
+    for (size_t i = 0; i < (size_t)n; i++)
+        shift += 1e-12 * matrix[i * (size_t)n + i];
+    shift = shift > 0.0 ? shift : 1.0;
+    for (int i = 0; good && i < POWERS; i++) {
+        good = orthonormalise(rows, m, n, small);
+        lsq_multiply_double(m, n, n, rows, matrix, next);
+        for (size_t j = 0; j < size; j++)
+            rows[j] = next[j] + shift * rows[j];
+    }
+    good = good && orthonormalise(rows, m, n, small);
+    if (good) {
+        lsq_multiply_double(m, n, n, rows, matrix, next);
+        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, m, m, n, 1.0, next, n, rows, n, 0.0,
+                    small, m);
+        good = lsq_eigenvectors(small, m, m, all, turn);
+    }
+    if (good) {
+        lsq_multiply_double(count, n, m, turn, rows, vectors);
+        memcpy(values, all, (size_t)count * sizeof *values);
+    }
+    free(rows);
+    free(next);
+    free(small);
+    free(turn);
+    free(all);
+    return good;
+}
+
+// The sign is open; the largest component becomes positive.
+static void fix_sign(double *v, int n)
+{
+    const int top = (int)cblas_idamax(n, v, 1);
+    if (v[top] < 0.0)
+        cblas_dscal(n, -1.0, v, 1);
+}
+
 bool lsq_eigenvectors(double *matrix, int n, int count, double *values, double *vectors)
 {
     prepare();
     const size_t size = (size_t)n;
+    if (n > LARGE && count < n / 8) {
+        const bool good = top_eigenvectors(matrix, n, count, values, vectors);
+        for (int i = 0; good && i < count; i++)
+            fix_sign(vectors + (size_t)i * size, n);
+        return good;
+    }
     double *all = mem_array(size, sizeof *all);
     double *columns = mem_array(size * (size_t)count, sizeof *columns);  // [n][count], ascending
     lapack_int *support = mem_array(2 * (size_t)count, sizeof *support);
@@ -36,16 +115,10 @@ bool lsq_eigenvectors(double *matrix, int n, int count, double *values, double *
                       !LAPACKE_dsyevr(LAPACK_ROW_MAJOR, 'V', 'I', 'L', n, matrix, n, 0.0, 0.0,
                                       n - count + 1, n, 0.0, &found, all, columns, count, support);
     for (int i = 0; good && i < count; i++) {
-        double *v = vectors + (size_t)i * size;
-        size_t top = 0;
         values[i] = all[count - 1 - i];
-        for (size_t j = 0; j < size; j++) {
-            v[j] = columns[j * (size_t)count + (size_t)(count - 1 - i)];
-            top = fabs(v[j]) > fabs(v[top]) ? j : top;
-        }
-        const double sign = v[top] < 0.0 ? -1.0 : 1.0;
         for (size_t j = 0; j < size; j++)
-            v[j] *= sign;
+            vectors[(size_t)i * size + j] = columns[j * (size_t)count + (size_t)(count - 1 - i)];
+        fix_sign(vectors + (size_t)i * size, n);
     }
     free(all);
     free(columns);

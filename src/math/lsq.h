@@ -12,6 +12,7 @@ bool lsq_eigenvalues(double *matrix, int n, double *values);
 
 // The `count` largest eigenvalues, descending, and their unit eigenvectors vectors[count][n] of the
 // symmetric n x n matrix; the matrix is destroyed. The sign makes the largest component positive.
+// Of more than 1024 rows the matrix must be positive semidefinite.
 bool lsq_eigenvectors(double *matrix, int n, int count, double *values, double *vectors);
 
 // Solve matrix x = b for `count` right sides b[count][n], in place; of the symmetric positive

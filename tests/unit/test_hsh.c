@@ -46,7 +46,8 @@ static void test_orthonormal(void **state)
     double v[COUNT];
     for (int i = 0; i < Z; i++)
         for (int j = 0; j < PHI; j++) {
-            const double z = (i + 0.5) / Z, r = sqrt(1.0 - z * z), phi = 6.283185307179586 * j / PHI;
+            const double z = (i + 0.5) / Z, r = sqrt(1.0 - z * z),
+                         phi = 6.283185307179586 * j / PHI;
             hsh_evaluate(HSH_MAX_DEGREE, (struct relume_vec3){r * cos(phi), r * sin(phi), z}, v);
             for (int a = 0; a < COUNT; a++)
                 for (int b = 0; b <= a; b++)

@@ -70,6 +70,47 @@ static void test_degenerate_eigenvectors(void **state)
     }
 }
 
+// The way for large matrices: eigenvalues that fall by half a decade each over a floor of 1e-6, in
+// axes turned by a reflection I - 2 u u'; and a zero matrix.
+static void test_large_eigenvectors(void **state)
+{
+    (void)state;
+    enum { LARGE = 1100, K = 12 };
+    const size_t n = LARGE;
+    double *a = calloc(n * n, sizeof *a), *v = calloc(K * n, sizeof *v), values[K];
+    double *u = calloc(n, sizeof *u), length = 0.0;
+    assert_true(lsq_eigenvectors(a, LARGE, K, values, v));
+    for (int i = 0; i < K; i++) {
+        CHECK_NEAR(values[i], 0.0, 1e-12);
+        for (int j = 0; j <= i; j++)
+            CHECK_NEAR(dot(v + (size_t)i * n, v + (size_t)j * n, LARGE), i == j, 1e-9);
+    }
+    uint32_t seed = 3;
+    for (size_t i = 0; i < n; i++) {
+        u[i] = test_uniform(&seed) - 0.5;
+        length += u[i] * u[i];
+    }
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++) {
+            a[i * n + j] = i == j ? 1e-6 : 0.0;
+            for (int k = 0; k < 2 * K; k++)  // sum of lambda q q', q a column of the reflection
+                a[i * n + j] += pow(10.0, -0.5 * k) *
+                                ((i == (size_t)k) - 2.0 * u[i] * u[k] / length) *
+                                ((j == (size_t)k) - 2.0 * u[j] * u[k] / length);
+        }
+    assert_true(lsq_eigenvectors(a, LARGE, K, values, v));
+    for (int i = 0; i < K; i++) {
+        double along = 0.0;
+        CHECK_NEAR(values[i], pow(10.0, -0.5 * i) + 1e-6, 1e-9);
+        for (size_t j = 0; j < n; j++)
+            along += v[(size_t)i * n + j] * ((j == (size_t)i) - 2.0 * u[j] * u[i] / length);
+        CHECK_NEAR(fabs(along), 1.0, 1e-9);
+    }
+    free(a);
+    free(v);
+    free(u);
+}
+
 static void test_invert(void **state)
 {
     (void)state;
@@ -163,9 +204,10 @@ static void test_multiply(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_eigenvectors), cmocka_unit_test(test_degenerate_eigenvectors),
-        cmocka_unit_test(test_invert),       cmocka_unit_test(test_add_gram),
-        cmocka_unit_test(test_cholesky),     cmocka_unit_test(test_multiply),
+        cmocka_unit_test(test_eigenvectors),       cmocka_unit_test(test_degenerate_eigenvectors),
+        cmocka_unit_test(test_large_eigenvectors), cmocka_unit_test(test_invert),
+        cmocka_unit_test(test_add_gram),           cmocka_unit_test(test_cholesky),
+        cmocka_unit_test(test_multiply),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -48,12 +48,17 @@ static const char *text_or(const char *name, const char *otherwise)
     return a ? a->string->str : otherwise;
 }
 
-static int int_of(const char *name)
+static int int_of_part(int part, const char *name)
 {
-    const exr_attribute_t *a = attribute(0, name, EXR_ATTR_INT);
+    const exr_attribute_t *a = attribute(part, name, EXR_ATTR_INT);
     if (!a)
         fail("no number %s", name);
     return a->i;
+}
+
+static int int_of(const char *name)
+{
+    return int_of_part(0, name);
 }
 
 static const float *floats_of(int part, const char *name, int *count)
@@ -63,7 +68,8 @@ static const float *floats_of(int part, const char *name, int *count)
     return a ? a->floatvector->arr : NULL;
 }
 
-static int find_part(const char *wanted)
+// -1 when there is none.
+static int look_for_part(const char *wanted)
 {
     int count = 0;
     if (exr_get_count(file, &count))
@@ -73,8 +79,15 @@ static int find_part(const char *wanted)
         if (!exr_get_name(file, part, &name) && name && !strcmp(name, wanted))
             return part;
     }
-    fail("no part %s", wanted);
     return -1;
+}
+
+static int find_part(const char *wanted)
+{
+    const int part = look_for_part(wanted);
+    if (part < 0)
+        fail("no part %s", wanted);
+    return part;
 }
 
 // Every channel of pixel (x, y), in the order of the file, as float. Halves become floats, which is
@@ -568,50 +581,103 @@ static double linearised(double v)
     return copysign(a <= 0.04045 ? a / 12.92 : pow((a + 0.055) / 1.055, 2.4), v);
 }
 
-int main(int argc, char **argv)
+// ---------------------------------------------------------------- coefficients
+
+enum { MOST = 3 * 4096 + 3 };
+static double coefficient[MOST];  // by plane
+static int k, shared, luminance, planes;
+
+// A channel of planes or of a codebook that covers planes from `first` on: what it adds, and to
+// what.
+static void add_number(const char *name, double code, const float *scale, const float *offset,
+                       int numbers, int first)
 {
-    enum { MOST = 3 * 4096 + 3 };
+    int number = 0;
+    char letter = 0;
+    const int colours = sscanf(name, "colour.%c", &letter) == 1;
+    const int words = sscanf(name, "c%4d.%c", &number, &letter);
+    const int triple = 3 * number, wide = letter == 'Y' || letter == 'U' || letter == 'V';
+    const int c = letter == 'R' ? 0 : letter == 'G' ? 1 : 2;
+    if (number >= k || (!colours && words != (shared ? 1 : 2)))
+        fail("channel %s", name);
+    const int plane = colours ? k + c : shared ? number : triple + (wide ? 0 : c);
+    const int d = letter == 'Y' ? number - first / 3
+                  : wide        ? 2 * (number - first / 3) + (letter == 'V')
+                                : plane - first;
+    if (d < 0 || d >= numbers)
+        fail("channel %s is number %d of %d", name, d, numbers);
+    const double v = code * (double)scale[d] + (double)offset[d];
+    if (!wide)
+        coefficient[plane] += v;
+    for (int each = 0; wide && each < 3; each++) {
+        static const double u_part[] = {1, 0, -1}, v_part[] = {1, -2, 1};
+        coefficient[triple + each] += letter == 'Y'   ? v / sqrt(3)
+                                      : letter == 'U' ? v * u_part[each] / sqrt(2)
+                                                      : v * v_part[each] / sqrt(6);
+    }
+}
+
+static void add_part(int part, int x, int y, int first)
+{
     static const char *name[MOST];
     static float code[MOST];
+    int scales, offsets;
+    const float *scale = floats_of(part, "relume.scale", &scales);
+    const float *offset = floats_of(part, "relume.offset", &offsets);
+    const int channels = read_pixel(part, x, y, name, code, MOST);
+    if (scales != channels || offsets != channels)
+        fail("%d channels, %d scales", channels, scales);
+    for (int i = 0; i < channels; i++)
+        add_number(name[i], (double)code[i], scale, offset, scales, first);
+}
+
+static void add_books(int part, const char *view, int x, int y)
+{
+    const char *name[8];
+    float index[8];
+    const int books = read_pixel(part, x, y, name, index, 8);
+    for (int b = 0; b < books; b++) {
+        char wanted[64], channel[8];
+        snprintf(channel, sizeof channel, "i%d", b);
+        if (strcmp(name[b], channel))
+            fail("channel %s; expected %s", name[b], channel);
+        snprintf(wanted, sizeof wanted, "book%d", b);
+        int book = look_for_part(wanted);
+        if (book < 0) {
+            snprintf(wanted, sizeof wanted, "%s.book%d", view, b);
+            book = find_part(wanted);
+        }
+        add_part(book, (int)index[b], 0, int_of_part(book, "relume.first"));
+    }
+}
+
+int main(int argc, char **argv)
+{
     if (argc != 8)
         fail("usage: decode FILE VIEW X Y LX LY LZ");
     if (exr_start_read(&file, argv[1], NULL))
         fail("%s cannot be opened", argv[1]);
     if (strcmp(text_of("relume.format"), "relume") || int_of("relume.version") != 1)
         fail("%s: no relume file of version 1", argv[1]);
-    char part_name[32];
-    snprintf(part_name, sizeof part_name, "view%04d", atoi(argv[2]));
-    const int part = find_part(part_name), k = int_of("relume.coefficients");
-    const int channels = read_pixel(part, atoi(argv[3]), atoi(argv[4]), name, code, MOST);
-    int scales, offsets;
-    const float *scale = floats_of(part, "relume.scale", &scales);
-    const float *offset = floats_of(part, "relume.offset", &offsets);
-    const int luminance = !strcmp(text_or("relume.colour", "rgb"), "luminance");
-    const int shared = luminance || !strcmp(text_of("relume.basis"), "pca");
-    const int planes = luminance ? k + 3 : shared ? k : 3 * k;
-    if (channels != planes || scales != planes || offsets != planes)
-        fail("%d channels, %d scales; expected %d", channels, scales, planes);
+    char view[32];
+    snprintf(view, sizeof view, "view%04d", atoi(argv[2]));
+    const int part = find_part(view), x = atoi(argv[3]), y = atoi(argv[4]);
+    k = int_of("relume.coefficients");
+    luminance = !strcmp(text_or("relume.colour", "rgb"), "luminance");
+    shared = luminance || !strcmp(text_of("relume.basis"), "pca");
+    planes = luminance ? k + 3 : shared ? k : 3 * k;
+    if (attribute(0, "relume.books", EXR_ATTR_INT) && int_of("relume.books"))
+        add_books(part, view, x, y);
+    else
+        add_part(part, x, y, 0);
 
-    double *weight = calloc(3 * (size_t)k, sizeof *weight), rgb[3] = {0}, colour[3] = {1, 1, 1};
+    double *weight = calloc(3 * (size_t)k, sizeof *weight), rgb[3] = {0};
     functions(k, (struct vector){atof(argv[5]), atof(argv[6]), atof(argv[7])}, weight, rgb);
-    for (int i = 0; i < channels; i++) {
-        int number = 0;
-        char letter = 0;
-        const int colours = sscanf(name[i], "colour.%c", &letter) == 1;
-        const int words = sscanf(name[i], "c%4d.%c", &number, &letter);
-        const int c = letter == 'R' ? 0 : letter == 'G' ? 1 : 2;
-        if (number >= k || (!colours && words != (shared ? 1 : 2)))
-            fail("channel %s", name[i]);
-        const int plane = colours ? k + c : shared ? number : 3 * number + c;
-        const double v = (double)code[i] * (double)scale[plane] + (double)offset[plane];
-        if (colours)
-            colour[c] = v;
-        for (int each = 0; each < 3 && !colours; each++)
-            if (shared || each == c)
-                rgb[each] += weight[each * k + number] * v;
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < k; i++)
+            rgb[c] += weight[c * k + i] * coefficient[shared ? i : 3 * i + c];
+        rgb[c] = linearised(rgb[c] * (luminance ? coefficient[k + c] : 1.0));
     }
-    for (int c = 0; c < 3; c++)
-        rgb[c] = linearised(rgb[c] * colour[c]);
     printf("%.9g %.9g %.9g\n", rgb[0], rgb[1], rgb[2]);
     free(weight);
     exr_finish(&file);

@@ -1,0 +1,98 @@
+#!/bin/sh
+# Codebooks on the command line: what is written is what is read, by the library and by the second
+# reader; what goes wrong says so in one line.
+. "$(dirname "$0")/lib.sh"
+. "$TOP/tests/cli/format.sh"
+relume() { "$RELUME" "$@" -q 2>err.txt || not_ok "relume $1" "$(cat err.txt)"; }
+eval_field() { # file capture field
+    "$RELUME" eval "$1" "$2" --json 2>err.txt >eval.json
+    field "$3" eval.json
+}
+
+both "dome --basis sh --coefficients 9 --codebook 40" "9 8"
+both "dome --basis sh --coefficients 16 --bits 16 --codebook 30 --stages 3" "9 8"
+both "dome --basis sh --coefficients 16 --codebook 30 --split luma --bits half" "9 8"
+both "dome --basis sh --coefficients 9 --codebook 20 --split luma --stages 2 --bits 10" "9 8"
+both "dome --basis sh --coefficients 9 --codebook 20 --split product:3 --bits 12" "9 8"
+both "dome --basis pca --coefficients 9 --codebook 50 --domain display" "9 8"
+both "dome --basis pca --coefficients 9 --codebook 50 --split product:2 --domain display" "9 8"
+both "photos --basis ptm --colour luminance --codebook 50" "9 8"
+
+# ---- a slab: one set for all views, or one for each
+"$RELUME" synth teapot -o slab --size $size --views 2x2 --lights 20 --samples 1 -q
+slab_ray() { awk -v u="$1" -v v="$2" -v x="$3" -v y="$4" -v n=$size 'BEGIN {
+    s = -1 + 2 * (x + .5) / n; t = 1 - 2 * (y + .5) / n
+    printf "--eye %g,%g,3 --direction %.9f,%.9f,-3", u, v, s - u, t - v }'; }
+uv=$(sed -n 's/.*"uv": \[\([^]]*\)\].*/\1/p' slab/capture.json | sed -n 3p | tr -d ,)
+for share in '' --share; do
+    relume encode slab -o slab.exr --basis sh --codebook 60 --stages 2 $share
+    agree "a slab ${share:-without --share}" slab.exr 2 "$(slab_ray $uv 14 13)" 14 13
+    "$RELUME" info slab.exr --json >info.json
+    want='"books": 2, "codes": 60, "shared": false'
+    [ "$share" ] && want='"books": 2, "codes": 60, "shared": true'
+    if grep -q "$want" info.json; then ok "info: $want"; else not_ok "info: $want" "$(cat info.json)"; fi
+done
+"$RELUME" info slab.exr >info.txt
+if grep -q '^codebooks     2 of 60 vectors, for all views$' info.txt; then ok 'info in words'; else not_ok 'info in words' "$(cat info.txt)"; fi
+
+# ---- more codes, more stages: better; as many codes as pixels: as good as planes
+relume encode dome -o planes.exr --basis sh --coefficients 9 --bits 16
+relume encode dome -o few.exr --basis sh --coefficients 9 --bits 16 --codebook 8
+relume encode dome -o more.exr --basis sh --coefficients 9 --bits 16 --codebook 64
+relume encode dome -o stages.exr --basis sh --coefficients 9 --bits 16 --codebook 8 --stages 3
+relume encode dome -o all.exr --basis sh --coefficients 9 --bits 16 --codebook $((size * size))
+planes=$(eval_field planes.exr dome rms)
+few=$(eval_field few.exr dome rms)
+below 'more codes are better' "$(eval_field more.exr dome rms)" "$(awk -v r="$few" 'BEGIN { print .7 * r }')"
+below 'more stages are better' "$(eval_field stages.exr dome rms)" "$(awk -v r="$few" 'BEGIN { print .9 * r }')"
+below 'a code for every pixel loses nothing' "$(eval_field all.exr dome rms)" "$(awk -v r="$planes" 'BEGIN { print r + 1e-4 }')"
+
+# ---- the same bytes for any number of threads; another seed, other bytes
+for n in 1 2 7; do
+    relume encode dome -o "e$n.exr" --codebook 20 --codebook-start random --seed 3 --dither 1 --threads $n
+done
+same '1 and 2 threads' e1.exr e2.exr
+same '1 and 7 threads' e1.exr e7.exr
+relume encode dome -o seed.exr --codebook 20 --codebook-start random --seed 4 --dither 1
+differ 'another seed' e1.exr seed.exr
+
+# ---- relight: lights add up, threads and plain C do not matter
+relume relight few.exr -o a.exr --light 'dir 1 0 1'
+relume relight few.exr -o b.exr --light 'dir 0 1 2'
+relume relight few.exr -o ab.exr --light 'dir 1 0 1' --light 'dir 0 1 2' --threads 1
+relume relight few.exr -o c.exr --light 'dir 1 0 1' --light 'dir 0 1 2' --cpu-mask 0
+"$mkimage" sum sum.exr a.exr b.exr
+below 'two lights are the sum of each' "$("$mkimage" maxdiff ab.exr sum.exr)" 1e-5
+below '--cpu-mask 0' "$("$mkimage" maxdiff ab.exr c.exr)" 1e-5
+"$RELUME" compare a.exr b.exr --ramps --json >c.json
+above 'compare --ramps' "$(field ramp_error c.json)" 0
+
+# ---- errors
+expect_fail 'more codes than pixels' 1 "dome: a codebook of 600 codes for $((size * size)) pixels" no.exr "$RELUME" encode dome -o no.exr --codebook 600
+expect_fail 'luma of joint coefficients' 2 'basis pca has no planes per colour' no.exr "$RELUME" encode dome -o no.exr --basis pca --coefficients 4 --codebook 20 --split luma
+expect_fail 'luminance and two books' 2 'expected one book' no.exr "$RELUME" encode dome -o no.exr --basis sh --colour luminance --codebook 20 --stages 2
+expect_fail 'too many books' 2 'at most 8 together' no.exr "$RELUME" encode dome -o no.exr --codebook 20 --stages 5 --split luma
+expect_fail 'a split of another name' 2 "found 'chroma'" no.exr "$RELUME" encode dome -o no.exr --codebook 20 --split chroma
+expect_fail 'options of codebooks without one' 2 'expected together with --codebook' no.exr "$RELUME" encode dome -o no.exr --share
+expect_fail 'more groups than coefficients' 2 '5 groups of 4 coefficients' no.exr "$RELUME" encode dome -o no.exr --basis sh --coefficients 4 --codebook 20 --split product:5
+
+# ---- an index beyond its book: the first sample of view0000 in a file without compression
+relume encode dome -o raw.exr --codebook 5 --compression none
+cp raw.exr bad.exr
+python=$(command -v python3 || true)
+if [ "$python" ]; then
+    "$python" - <<'PY'
+import struct
+b = bytearray(open("bad.exr", "rb").read())
+n = 24
+want = struct.pack("<ii", 0, n * 4)  # a line's header: y, bytes; indices are one UINT a pixel
+part = struct.pack("<i", 2)          # part number: preview, book0, view0000
+at = b.find(part + want)
+b[at + 12 : at + 16] = struct.pack("<I", 5)
+open("bad.exr", "wb").write(b)
+PY
+    expect_fail 'an index beyond its book' 1 'bad.exr: an index; expected indices below' no.exr "$RELUME" relight bad.exr -o no.exr
+else
+    skip 'an index beyond its book' 'no python3'
+fi
+finish

@@ -321,13 +321,13 @@ struct ptm_quantiser ptm_quantiser(double min, double max)
     return q;
 }
 
-// As few digits as give the same single precision number.
+// As few digits as are read back as the same number.
 static void print_scale(FILE *f, float scale)
 {
     char text[32];
-    for (int digits = 6; digits <= 9; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, (double)scale);
-        if (strtof(text, NULL) == scale)
+    for (int digits = 6; digits <= 12; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, 255.0 * (double)scale);
+        if ((float)(strtod(text, NULL) / 255.0) == scale)
             break;
     }
     fprintf(f, "%s ", text);
@@ -339,7 +339,7 @@ static void print_header(const struct foreign *f, FILE *out)
     fprintf(out, "PTM_1.2\nPTM_FORMAT_%s\n%d\n%d\n", copies == 1 ? "LRGB" : "RGB", f->width,
             f->height);
     for (int i = 0; i < TERMS; i++)
-        print_scale(out, (float)(255.0 * (double)f->scale[term_of_place[i] * copies]));
+        print_scale(out, f->scale[term_of_place[i] * copies]);
     fputs("\n", out);
     for (int i = 0; i < TERMS; i++) {
         const int p = term_of_place[i] * copies;

@@ -115,10 +115,9 @@ relume_status sheet_encode(struct sheet_result *out, const struct sheet *sheet, 
     for (size_t c = 0; !status && c < SHEET_PLANES; c++) {
         component(sheet, coding, (int)c, codes);
         trellis_transform(codes, sheet->width, sheet->height, dct);
-        out->distortion[c] = trellis_quantise(dct, blocks, coding[c].step,
-                                              sheet->lambda > 0.0 ? sheet->lambda : SHEET_LAMBDA,
-                                              quantised + c * 64 * blocks)
-                                 .distortion;
+        out->distortion[c] =
+            trellis_quantise(dct, blocks, coding[c].step, SHEET_LAMBDA, quantised + c * 64 * blocks)
+                .distortion;
         picture.step[c] = coding[c].step;
         picture.coefficients[c] = quantised + c * 64 * blocks;
     }

@@ -48,10 +48,13 @@ relume_status source_open(struct source *s, const struct relume_codes *codes,
     if (status || (is_srgb(codes) && s->numbers <= MOST_NUMBERS))
         return status;
     s->numbers = 3 * s->lights;
-    return relume_coder_create(
-        &s->between, &relume_basis_table, s->light, s->lights,
-        relume_coder_params(.log = log, .hemispherical = true, .decode = true,
-                            .interpolant = relume_interpolant_find("angular")));
+    // the file's own way between its lights, where it has one
+    const bool own = info->interpolant && s->lights == info->lights;
+    struct relume_coder_params params = {.log = log, .hemispherical = true, .decode = true};
+    params.interpolant = own ? info->interpolant : relume_interpolant_find("angular");
+    if (own)
+        memcpy(params.parameter, info->parameter, sizeof params.parameter);
+    return relume_coder_create(&s->between, &relume_basis_table, s->light, s->lights, &params);
 }
 
 void source_close(struct source *s)

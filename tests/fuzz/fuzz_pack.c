@@ -98,9 +98,9 @@ static bool one(struct fuzz *f, struct bytes b)
     return true;
 }
 
-static void add_with(struct fuzz *f, const struct fixture *fixture, const struct relume_basis *basis,
-                     const struct relume_coder_params *how, enum relume_storage storage,
-                     enum relume_compression compression)
+static void add_with(struct fuzz *f, const struct fixture *fixture,
+                     const struct relume_basis *basis, const struct relume_coder_params *how,
+                     enum relume_storage storage, enum relume_compression compression)
 {
     fixture_write(fixture, f->folder);
     fixture_must(fixture_encode_with(

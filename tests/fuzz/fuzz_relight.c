@@ -57,9 +57,8 @@ static bool one(struct fuzz *f, struct bytes b)
         &relume_basis_table, &relume_basis_sh,  &relume_basis_ptm,           &relume_basis_hsh,
         &relume_basis_pca,   &relume_basis_dct, &relume_basis_dct_resampled,
     };
-    static const enum relume_storage storages[] = {RELUME_STORE_8, RELUME_STORE_16,
-                                                   RELUME_STORE_HALF, RELUME_STORE_10,
-                                                   RELUME_STORE_12};
+    static const enum relume_storage storages[] = {
+        RELUME_STORE_8, RELUME_STORE_16, RELUME_STORE_HALF, RELUME_STORE_10, RELUME_STORE_12};
     (void)f;
     struct reader r = {b.data, b.data + b.size};
     const int width = 1 + (int)(take(&r, 1) % 70), height = 1 + (int)(take(&r, 1) % 5);

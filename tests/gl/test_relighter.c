@@ -82,9 +82,9 @@ static void run_coder(const struct relume_basis *basis, const struct relume_code
         const struct code_source source = {fixture_fetch, NULL, &f};
         relume_coder *sh = f.coder;
         struct relighter r;
-        assert_int_equal(
-            relume_coder_create(&f.coder, basis, relume_coder_info(sh)->directions, FIXTURE_LIGHTS, p),
-            RELUME_OK);
+        assert_int_equal(relume_coder_create(&f.coder, basis, relume_coder_info(sh)->directions,
+                                             FIXTURE_LIGHTS, p),
+                         RELUME_OK);
         relume_coder_destroy(&sh);
         f.codes[0].coder = f.coder;
         f.codes[0].planes = relume_coder_info(f.coder)->planes;

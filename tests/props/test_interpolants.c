@@ -271,7 +271,8 @@ static void test_octahedral_grid(void **state)
     const struct relume_interpolant *o = relume_interpolant_find("octahedral");
     struct set s = {.n = SIDE * SIDE};
     for (int i = 0; i < s.n; i++) {
-        const double u = 2.0 * (i % SIDE) / (SIDE - 1) - 1.0, v = 2.0 * (i / SIDE) / (SIDE - 1) - 1.0;
+        const double u = 2.0 * (i % SIDE) / (SIDE - 1) - 1.0,
+                     v = 2.0 * (i / SIDE) / (SIDE - 1) - 1.0;
         const double x = (u - v) / 2.0, y = (u + v) / 2.0;
         s.light[i] = vec3_unit(vec3_of(x, y, 1.0 - fabs(x) - fabs(y)));
     }
@@ -284,8 +285,9 @@ static void test_octahedral_grid(void **state)
     }
     o->evaluate(data, vec3_of(0.0, 0.0, 1.0), w);
     for (int j = 0; j < s.n; j++)
-        CHECK_NEAR(w[j], (j % SIDE == 2 || j % SIDE == 3) && (j / SIDE == 2 || j / SIDE == 3) ? 0.25 : 0.0,
-                   1e-12);
+        CHECK_NEAR(
+            w[j], (j % SIDE == 2 || j % SIDE == 3) && (j / SIDE == 2 || j / SIDE == 3) ? 0.25 : 0.0,
+            1e-12);
     o->release(data);
     const double parameter[4] = {0};
     s.light[7] = vec3_of(0.0, 0.0, 1.0);

@@ -368,8 +368,7 @@ static void solve(double *a, double *b, int n)
 }
 
 // With `terms` of the trend 1, x, y, z, and `nugget` on the diagonal.
-static void kernel(const struct set *s,
-                   double (*phi)(const double *, struct vector, struct vector),
+static void kernel(const struct set *s, double (*phi)(const double *, struct vector, struct vector),
                    const double *parameter, int terms, double nugget, struct vector d,
                    double *value)
 {
@@ -494,7 +493,10 @@ static void interpolate(struct vector d, double *value)
     else if (!strcmp(name, "chord"))
         kernel(&s, chord,
                (const double[]){p[0] > 0.0 ? p[0] : 1.5,
-                                p[1] > 0.0 ? p[1] : both ? 1.0 : 1.5, p[2], p[3]},
+                                p[1] > 0.0 ? p[1]
+                                : both     ? 1.0
+                                           : 1.5,
+                                p[2], p[3]},
                1, 1e-5 + p[2], d, value);
     else if (!strcmp(name, "angular"))
         kernel(&s, angular, p, both ? 4 : 3, 1e-9, d, value);

@@ -139,9 +139,8 @@ static relume_status prepare_interpolants(void)
             continue;  // whose lights are a grid
         const struct relume_manifest *m = relume_capture_manifest(c);
         relume_coder *coder = (void *)1;
-        status =
-            relume_coder_create(&coder, &relume_basis_table, m->directions, m->lights,
-                                relume_coder_params(.interpolant = relume_interpolants[i]));
+        status = relume_coder_create(&coder, &relume_basis_table, m->directions, m->lights,
+                                     relume_coder_params(.interpolant = relume_interpolants[i]));
         assert_true(status ? coder == NULL : coder != NULL);
         relume_coder_destroy(&coder);
     }
@@ -289,14 +288,14 @@ static void test_nothing_is_left(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_open_capture),    cmocka_unit_test(test_open_lp),
-        cmocka_unit_test(test_read_table),      cmocka_unit_test(test_encode_pack),
-        cmocka_unit_test(test_encode_table),    cmocka_unit_test(test_read_pack),
-        cmocka_unit_test(test_compare_images),  cmocka_unit_test(test_save_png),
-        cmocka_unit_test(test_evaluate),        cmocka_unit_test(test_judge),
-        cmocka_unit_test(test_encode_chosen),   cmocka_unit_test(test_encode_luminance),
+        cmocka_unit_test(test_open_capture),     cmocka_unit_test(test_open_lp),
+        cmocka_unit_test(test_read_table),       cmocka_unit_test(test_encode_pack),
+        cmocka_unit_test(test_encode_table),     cmocka_unit_test(test_read_pack),
+        cmocka_unit_test(test_compare_images),   cmocka_unit_test(test_save_png),
+        cmocka_unit_test(test_evaluate),         cmocka_unit_test(test_judge),
+        cmocka_unit_test(test_encode_chosen),    cmocka_unit_test(test_encode_luminance),
         cmocka_unit_test(test_encode_resampled), cmocka_unit_test(test_prepare_interpolants),
-        cmocka_unit_test(test_read_components), cmocka_unit_test(test_nothing_is_left),
+        cmocka_unit_test(test_read_components),  cmocka_unit_test(test_nothing_is_left),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

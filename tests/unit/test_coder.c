@@ -42,8 +42,8 @@ static void value(const relume_coder *coder, const float *planes, struct relume_
 
 static double quadratic(struct relume_vec3 l, int c)
 {
-    return (0.4 + 0.1 * c) * l.x * l.x - 0.2 * l.y * l.y + 0.3 * l.x * l.y + 0.25 * l.x - 0.5 * l.y +
-           0.7 - 0.1 * c;
+    return (0.4 + 0.1 * c) * l.x * l.x - 0.2 * l.y * l.y + 0.3 * l.x * l.y + 0.25 * l.x -
+           0.5 * l.y + 0.7 - 0.1 * c;
 }
 
 // Values are assumed at the horizon with the weight 1e-4.
@@ -91,7 +91,8 @@ static void test_luminance_of_coloured_greys(void **state)
             for (int c = 0; c < 3; c++)
                 samples[i][c] = (float)(colour[c] * quadratic(dome[i], 0));
         CHECK_OK(relume_coder_apply(coder, &samples[0][0], 3, 1, planes, 1));
-        CHECK_NEAR((double)(planes[info->coefficients] / planes[info->coefficients + 1]), 1.8, 1e-5);
+        CHECK_NEAR((double)(planes[info->coefficients] / planes[info->coefficients + 1]), 1.8,
+                   1e-5);
         for (int i = 0; i < LIGHTS; i++) {
             double rgb[3];
             value(coder, planes, dome[i], rgb);
@@ -177,7 +178,7 @@ static void find(const struct relume_samples *s, size_t pixel, int *view, int *a
     const int number = (int)s->data[3 * pixel];
     *view = number / 1000;
     *at = number % 1000;
-    assert_true(*view < shape.views && *at < shape.width * shape.height && *at % 5 > 0);
+    assert_true(*view < shape.views && *at<shape.width * shape.height && * at % 5> 0);
     for (int i = 0; i < shape.lights; i++)
         for (int c = 0; c < 3; c++)
             assert_true(s->data[((size_t)i * s->pixels + pixel) * 3 + (size_t)c] ==
@@ -241,8 +242,8 @@ static void test_samples_of_the_display_domain(void **state)
                                  relume_encode_params(.domain = RELUME_DOMAIN_DISPLAY)));
     assert_int_equal(display.pixels, linear.pixels);
     for (size_t i = 0; i < 3 * linear.pixels * (size_t)linear.lights; i++)
-        CHECK_NEAR((double)display.data[i],
-                   (double)relume_transfer_encode(srgb, linear.data[i]), 1e-5);
+        CHECK_NEAR((double)display.data[i], (double)relume_transfer_encode(srgb, linear.data[i]),
+                   1e-5);
     relume_samples_destroy(&linear);
     relume_samples_destroy(&display);
     relume_capture_destroy(&capture);

@@ -94,10 +94,8 @@ static void test_two_discs(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trip),
-        cmocka_unit_test(test_known_places),
-        cmocka_unit_test(test_zones),
-        cmocka_unit_test(test_orthonormal_on_the_square),
+        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_known_places),
+        cmocka_unit_test(test_zones),      cmocka_unit_test(test_orthonormal_on_the_square),
         cmocka_unit_test(test_two_discs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

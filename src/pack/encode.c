@@ -50,12 +50,12 @@ static bool create(struct material *m, int views)
 }
 
 static relume_status encode_view(struct material *m, int i, const relume_coder *coder,
-                                 const relume_capture *capture,
+                                 const relume_capture *capture, bool with_depth,
                                  const struct relume_encode_params *p)
 {
     const struct relume_manifest *manifest = relume_capture_manifest(capture);
     relume_status status = relume_encode(&m->coefficients[i], coder, capture, i, p);
-    if (!status)
+    if (!status && with_depth)
         status = relume_capture_depth(&m->depth[i], capture, i, p->log);
     if (!status)
         status = relume_capture_mask(&m->mask[i], capture, i, p->log);
@@ -149,7 +149,7 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
     struct material m = {0};
     relume_status status = create(&m, manifest->views) ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; !status && i < manifest->views; i++)
-        status = encode_view(&m, i, coder, capture, &encode);
+        status = encode_view(&m, i, coder, capture, !p.no_depth, &encode);
     struct relume_encode_report total = {0};
     if (!status)
         total = mean_report(&m);

@@ -35,6 +35,12 @@ done
 "$RELUME" info slab.exr >info.txt
 if grep -q '^codebooks     2 of 60 vectors, for all views$' info.txt; then ok 'info in words'; else not_ok 'info in words' "$(cat info.txt)"; fi
 
+# ---- without depth
+relume encode slab -o flat.exr --basis sh --codebook 60 --no-depth
+"$RELUME" info flat.exr --json >info.json
+if grep -q '"depth": false' info.json; then ok '--no-depth'; else not_ok '--no-depth' "$(cat info.json)"; fi
+below '--no-depth is smaller' "$(wc -c <flat.exr)" "$(($(wc -c <slab.exr) - 1000))"
+
 # ---- more codes, more stages: better; as many codes as pixels: as good as planes
 relume encode dome -o planes.exr --basis sh --coefficients 9 --bits 16
 relume encode dome -o few.exr --basis sh --coefficients 9 --bits 16 --codebook 8

@@ -66,9 +66,26 @@ void source_close(struct source *s)
 
 // ---------------------------------------------------------------- coefficients
 
+// The same plane of the vectors that codebooks name.
+static void read_vectors(const struct relume_codes *codes, int plane, size_t first, size_t n,
+                         float *out)
+{
+    memset(out, 0, n * sizeof *out);
+    for (int b = 0; b < codes->books; b++) {
+        const uint16_t *index = codes->index[b] + first;
+        const float *vectors = codes->vectors[b] + plane;
+        for (size_t i = 0; i < n; i++)
+            out[i] += vectors[(size_t)index[i] * (size_t)codes->planes];
+    }
+}
+
 static void read_plane(const struct relume_codes *codes, int plane, size_t first, size_t n,
                        float *out)
 {
+    if (codes->books) {
+        read_vectors(codes, plane, first, n, out);
+        return;
+    }
     const float scale = codes->scale[plane], offset = codes->offset[plane];
     const uint8_t *bytes = (const uint8_t *)codes->plane[plane] + first;
     const uint16_t *words = (const uint16_t *)codes->plane[plane] + first;
@@ -102,24 +119,44 @@ static relume_status read_products(const struct source *s, size_t first, size_t 
 
 // ---------------------------------------------------------------- pictures
 
+// Pointers of a band of rows in place of those of the whole view.
+struct band {
+    struct relume_codes codes;
+    const void **plane;
+    const uint16_t **index;
+};
+
+static relume_status open_band(struct band *band, const struct source *s, int row, int rows)
+{
+    const struct relume_codes *whole = s->codes;
+    const size_t code = whole->storage == RELUME_STORE_8 ? 1 : 2;
+    const size_t first = (size_t)row * (size_t)s->width;
+    *band = (struct band){.codes = *whole};
+    band->plane = mem_array((size_t)whole->planes, sizeof *band->plane);
+    band->index = mem_array((size_t)whole->books, sizeof *band->index);
+    if (!band->plane || !band->index)
+        return RELUME_ENOMEM;
+    for (int p = 0; !whole->books && p < whole->planes; p++)
+        band->plane[p] = (const char *)whole->plane[p] + first * code;
+    for (int b = 0; b < whole->books; b++)
+        band->index[b] = whole->index[b] + first;
+    band->codes.height = rows;
+    band->codes.plane = whole->books ? NULL : band->plane;
+    band->codes.index = whole->books ? band->index : NULL;
+    return RELUME_OK;
+}
+
 static relume_status picture_rows(const struct source *s, int row, int rows, float *out)
 {
-    struct relume_codes band = *s->codes;
-    const size_t code = band.storage == RELUME_STORE_8 ? 1 : 2;
-    const size_t n = (size_t)rows * (size_t)s->width, first = (size_t)row * (size_t)s->width;
-    const void **planes = mem_array((size_t)band.planes, sizeof *planes);
+    const size_t n = (size_t)rows * (size_t)s->width;
     struct relume_image picture = {0};
-    if (!planes)
-        return RELUME_ENOMEM;
-    for (int p = 0; p < band.planes; p++)
-        planes[p] = (const char *)s->codes->plane[p] + first * code;
-    band.plane = planes;
-    band.height = rows;
-    relume_status status = RELUME_OK;
+    struct band band;
+    relume_status status = open_band(&band, s, row, rows);
     const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
     for (int i = 0; !status && i < s->lights; i++) {
         const struct relume_light light = {.direction = s->light[i], .rgb = {1.0f, 1.0f, 1.0f}};
-        status = relume_relight(&picture, &band, &light, 1, relume_relight_params(.threads = 1));
+        status =
+            relume_relight(&picture, &band.codes, &light, 1, relume_relight_params(.threads = 1));
         for (size_t c = 0; !status && c < 3; c++) {
             float *to = out + (3 * (size_t)i + c) * n;
             for (size_t x = 0; x < n; x++) {
@@ -129,7 +166,8 @@ static relume_status picture_rows(const struct source *s, int row, int rows, flo
         }
     }
     relume_image_destroy(&picture);
-    free(planes);
+    free(band.plane);
+    free(band.index);
     return status;
 }
 

@@ -211,9 +211,9 @@ RELUME_API void relume_coefficients_destroy(relume_coefficients **coefficients);
 // Pixels of a view that carry little or no information; those outside the mask do not count.
 struct relume_encode_census {
     size_t pixels;
-    size_t black;           // under every light
+    size_t black;           // exactly 0 under every light
     size_t clipped;         // as bright as the files can say, in a colour, under some light
-    size_t always_clipped;  // under every light
+    size_t always_clipped;  // in the same colour under every light
     size_t repaired;        // pixels of images that held NaN or infinity, masked ones too
     int black_images;       // lights under which nothing is seen
 };

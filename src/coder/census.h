@@ -7,15 +7,14 @@
 // Counted by several workers at once, each for itself.
 struct census {
     int lights, workers;
-    bool clips;                          // the images have a largest value
-    float (*white)[3];                   // [lights], in the coefficients' domain
+    float (*white)[3];  // [lights], in the coefficients' domain; infinite for floats
     struct relume_encode_census *count;  // [workers]; black_images is not used
     bool *lit;                           // [workers][lights]
 };
 relume_status census_create(struct census *c, const relume_capture *capture,
                             struct relume_transfer display, int workers);
 void census_destroy(struct census *c);
-// At most CODER_CHUNK pixels: samples[light * stride + 3 * pixel + channel]. `mask` may be NULL.
+// Some pixels: samples[light * stride + 3 * pixel + channel]. `mask` may be NULL.
 void census_add(struct census *c, int worker, const float *samples, size_t stride, size_t n,
                 const float *mask);
 struct relume_encode_census census_result(const struct census *c);

@@ -207,7 +207,7 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
     status = copy_lights(c, lights);
     if (!status)
         status = copy_functions(c, &p);
-    if (!status && !p.decode && n > 1)
+    if (!status && !p.decode && n > 3)
         status = warn_degenerate(c, p.log);
     if (!status && basis->interpolates)
         status = prepare_interpolant(c, &p);

@@ -241,8 +241,8 @@ bad 'fewer lights than coefficients' 'few: 9 coefficients of basis sh need at le
 fine three-lights - few
 fine one-coefficient - few --basis sh --coefficients 1
 "$sphere" one --size 8 --lights 1
-fine one-light - one
-fine one-light-table - one --basis table
+fine one-light 'warning: one: 64 of 64 pixels are black under every light' one
+fine one-light-table 'warning: one: 64 of 64 pixels are black under every light' one --basis table
 bad 'one light for nine coefficients' 'one: .*need at least 9 lights; found 1' one --basis sh --coefficients 9
 "$sphere" ring --size 8 --lights 12
 awk 'NR == 1 { print; next } { a = 0.5235988 * NR; print $1, cos(a), sin(a), 0.5 }' ring/dirs.lp >ring/ring.lp

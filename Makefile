@@ -54,7 +54,7 @@ BENCH_C  := $(wildcard tests/bench/*.c)
 FUZZ_C   := $(wildcard tests/fuzz/*.c)
 TOOLS_C  := $(wildcard tests/tools/*.c)
 # minimal.c is built against the installed library instead (tests/cli/test_install.sh)
-SAMPLES_C := samples/sphere.c
+SAMPLES_C := samples/sphere.c samples/figures.c
 
 LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $(LIB_CXX:%.cpp=$B/obj/%.o)
 CLI_O    := $(CLI_C:%.c=$B/obj/%.o)

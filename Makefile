@@ -66,7 +66,7 @@ FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 
-.PHONY: all lib cli viewer deps deps-web demo test check check-threads bench fuzz headers layers format install clean
+.PHONY: all lib cli viewer deps deps-web demo figures test check check-threads bench fuzz headers layers format install clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
 lib: $B/librelume.a $B/librelume.so
@@ -183,6 +183,10 @@ fuzz: $(FUZZ)
 
 demo: all
 	@scripts/demo.sh $B build/demo
+
+# The pictures of docs/figures.md
+figures: cli $B/samples/figures
+	@scripts/figures.sh $B build/figures docs/pictures
 
 # ---------------------------------------------------------------- installing
 

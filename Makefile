@@ -54,7 +54,7 @@ BENCH_C  := $(wildcard tests/bench/*.c)
 FUZZ_C   := $(wildcard tests/fuzz/*.c)
 TOOLS_C  := $(wildcard tests/tools/*.c)
 # minimal.c is built against the installed library instead (tests/cli/test_install.sh)
-SAMPLES_C := samples/sphere.c
+SAMPLES_C := samples/sphere.c samples/figures.c
 
 LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $(LIB_CXX:%.cpp=$B/obj/%.o)
 CLI_O    := $(CLI_C:%.c=$B/obj/%.o)
@@ -66,7 +66,7 @@ FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 
-.PHONY: all lib cli viewer deps deps-web demo test check check-threads bench fuzz headers layers format install clean
+.PHONY: all lib cli viewer deps deps-web demo figures test check check-threads bench fuzz headers layers format install clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
 lib: $B/librelume.a $B/librelume.so
@@ -183,6 +183,10 @@ fuzz: $(FUZZ)
 
 demo: all
 	@scripts/demo.sh $B build/demo
+
+# The pictures of docs/figures.md
+figures: cli $B/samples/figures
+	@scripts/figures.sh $B build/figures docs/pictures
 
 # ---------------------------------------------------------------- installing
 

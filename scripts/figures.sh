@@ -38,16 +38,13 @@ encode box dct --bits 16 --basis dct --coefficients 64
 encode box resampled --bits 16 --basis dct-resampled --coefficients 64
 encode box pca --bits 16 --basis pca --coefficients 27
 
-plane="48 52" ball="55 43" # pixels: on the plane between box and ball; on the ball's left side
-for p in plane ball; do
-    [ $p = plane ] && pixel=$plane reach=0.8 || { pixel=$ball reach=0.6; }
-    # shellcheck disable=SC2086
-    {
-        "$draw" blob "$out/table.exr" $pixel $reach "$out/$p-1.png"
-        "$draw" blob "$out/table.exr" $pixel $reach "$out/$p-2.png" 25
-        "$draw" blob "$out/sh25.exr" $pixel $reach "$out/$p-3.png"
-    }
-done
+blobs() { # name, x, y, value at the picture's border
+    "$draw" blob "$out/table.exr" "$2" "$3" "$4" "$out/$1-1.png"
+    "$draw" blob "$out/table.exr" "$2" "$3" "$4" "$out/$1-2.png" 25
+    "$draw" blob "$out/sh25.exr" "$2" "$3" "$4" "$out/$1-3.png"
+}
+blobs plane 48 52 0.8 # on the plane between box and ball
+blobs ball 55 43 0.6  # on the ball's left side
 figure 9-2 "$out/plane-1.png" "$out/plane-2.png" "$out/plane-3.png" \
     "$out/ball-1.png" "$out/ball-2.png" "$out/ball-3.png"
 
@@ -56,10 +53,7 @@ light="dir -0.279979 0.628844 0.725374" square=38,60,32,32
 for f in table sh16 sh25 sh49 sh64 resampled dct pca; do relight $f "$light"; done
 figure 9-4 scale=4 "$out/sh16-lit.exr" "$out/sh25-lit.exr" "$out/sh49-lit.exr" "$out/table-lit.exr"
 
-for f in table resampled dct; do
-    # shellcheck disable=SC2086
-    "$draw" disc "$out/$f.exr" $plane "$out/$f-disc.exr"
-done
+for f in table resampled dct; do "$draw" disc "$out/$f.exr" 48 52 "$out/$f-disc.exr"; done
 figure 9-7 scale=6 "$out/table-disc.exr" "$out/resampled-disc.exr" "$out/dct-disc.exr"
 
 "$draw" resampled "$out/table.exr" "$out/disc-lit.exr" "$light"
@@ -86,11 +80,18 @@ relight smooth "$ramp"
 for n in 64 1024; do
     encode pot "contours$n" --basis sh --coefficients 25 --codebook $n
     encode pot "dithered$n" --basis sh --coefficients 25 --codebook $n --dither 1
-    for f in contours$n dithered$n; do relight $f "$ramp"; done
+    for f in contours$n dithered$n; do relight "$f" "$ramp"; done
 done
 figure 9-11 crop=72,64,68,68 scale=4 "$out/smooth-lit.exr" \
     "$out/contours64-lit.exr" "$out/dithered64-lit.exr" \
     "$out/contours1024-lit.exr" "$out/dithered1024-lit.exr"
+
+for n in 64 1024; do
+    for f in contours$n dithered$n; do
+        printf '  %s ' "$f"
+        "$relume" compare "$out/$f-lit.exr" "$out/smooth-lit.exr" --ramps --json
+    done
+done
 
 echo "A light slab of the teapot: 9 eyes, 60 lights"
 "$relume" synth teapot -o "$out/slab" --views 3x3 --lights 60 --size 128 -q

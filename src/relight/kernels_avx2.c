@@ -93,14 +93,21 @@ static void dot_halves(float *out, size_t n, float bias, const uint16_t *const *
     dot(out, n, bias, planes, weights, count, 2, load_halves, half_value);
 }
 
+// Eight plain loads are faster than a gather, and stores past the cache save reading what is
+// overwritten.
 static void look_up(uint32_t *out, size_t n, const uint16_t *index, const uint32_t *table)
 {
     size_t i = 0;
+    for (; i < n && (uintptr_t)(out + i) % 32; i++)
+        out[i] = table[index[i]];
     for (; i + 8 <= n; i += 8) {
-        const __m256i at = _mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)(index + i)));
-        _mm256_storeu_si256((__m256i *)(out + i),
-                            _mm256_i32gather_epi32((const int *)table, at, 4));
+        const uint16_t *at = index + i;
+        const __m256i pixels = _mm256_setr_epi32(
+            (int)table[at[0]], (int)table[at[1]], (int)table[at[2]], (int)table[at[3]],
+            (int)table[at[4]], (int)table[at[5]], (int)table[at[6]], (int)table[at[7]]);
+        _mm256_stream_si256((__m256i *)(out + i), pixels);
     }
+    _mm_sfence();
     for (; i < n; i++)
         out[i] = table[index[i]];
 }

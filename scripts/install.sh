@@ -35,7 +35,7 @@ libdir=\${prefix}/lib
 Name: relume
 Description: image-based relighting
 Version: $version
-Requires.private: OpenImageIO OpenEXR jansson
+Requires.private: OpenImageIO OpenEXR jansson libjpeg
 Libs: -L\${libdir} -lrelume
 Libs.private: $(pkg-config --libs openblas) -llapacke -lembree3 -lstdc++ -lm -pthread
 Cflags: -I\${includedir}

@@ -104,7 +104,7 @@ offers() { # expected, words...
     [ "$found" = "$expected" ] || { echo "offers '$found', expected '$expected'"; return 1; }
 }
 if command -v bash >/dev/null; then
-    check "completion of commands" offers "encode eval" relume e
+    check "completion of commands" offers "encode eval export" relume e
     check "completion of options" offers "--coefficients --colour --compression" relume encode --co
     check "completion of values" offers "8 10 12 16 half" relume encode --bits ""
     check "completion of scenes" offers "teapot" relume synth te

@@ -10,7 +10,7 @@ if [ -z "$browser" ]; then
     finish
     exit
 fi
-"$sphere" dome --size 64 --lights 40 --hemisphere --format png || exit 1
+"$sphere" dome --size 64 --lights 40 --hemisphere --shade wrap --format png || exit 1
 "$RELUME" encode dome -o dome.exr --basis pca --coefficients 27 -q || exit 1
 "$RELUME" export dome.exr -o web --quality 90 2>note.txt || exit 1
 promised=$(sed -n 's/.*; \([0-9.]*\) dB from.*/\1/p' note.txt)

@@ -81,7 +81,7 @@ interrupted() { # name, output, command...
         not_ok "$name" "was done before the signal came"
     elif [ "$status" -ne 124 ] && [ "$status" -ne 130 ]; then
         not_ok "$name" "status $status: $(cat err.txt)"
-    elif ! grep -q interrupted err.txt || [ "$(wc -l <err.txt)" -ne 1 ]; then
+    elif ! grep -q interrupted err.txt || [ "$(errors_of err.txt | wc -l)" -ne 1 ]; then
         not_ok "$name" "said: $(cat err.txt)"
     elif [ -e "$output" ] || [ "$(leftovers)" ]; then
         not_ok "$name" "left: $output $(leftovers)"

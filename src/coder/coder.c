@@ -148,6 +148,11 @@ static relume_status prepare_interpolant(relume_coder *c, const struct relume_co
     if (p->choose)
         status =
             interpolant_choose(c->info.parameter, &c->info.predicted_rms, c->frame, p->samples);
+    for (int k = 0; !status && k < 4; k++)
+        if (!(c->info.parameter[k] >= 0.0) || isinf(c->info.parameter[k]))
+            status = log_fail(p->log, RELUME_EDATA,
+                              "parameter %d of interpolant %s: expected 0 or more, found %g", k + 1,
+                              i->name, c->info.parameter[k]);
     if (!status)
         status = i->prepare(&c->interpolant, c->frame, c->info.lights, c->info.parameter, p->log);
     if (!status)

@@ -188,6 +188,11 @@ static relume_status prepare_chord(void **data, const struct relume_vec3 *lights
         kind.parameter[POWER] = 1.5;
     if (!(kind.parameter[STRETCH] > 0.0))
         kind.parameter[STRETCH] = spans_both(lights, n) ? 1.0 : 1.5;
+    if (kind.parameter[POWER] >= 2.0 || kind.parameter[STRETCH] > 100.0)
+        return log_fail(log, RELUME_EDATA,
+                        "interpolant chord: expected a power below 2 and a stretch of at most 100, "
+                        "found %g and %g",
+                        kind.parameter[POWER], kind.parameter[STRETCH]);
     return prepare(data, kind, 1e-5, lights, n, log);
 }
 

@@ -321,40 +321,57 @@ static double *metric_of(const struct view *v)
     return gram;
 }
 
-relume_status plan_components(struct plan *p, const struct source *s,
-                              const struct functions *functions, int planes, int threads)
+// What every plan is made from.
+struct preparation {
+    struct view view;
+    double *mean, *covariance;  // [P], [P][P]
+};
+
+static void free_preparation(struct preparation *prepared)
 {
-    const int n = s->numbers;
-    const size_t size = (size_t)n * (size_t)n;
-    *p = (struct plan){.form = FOREIGN_JOINT,
-                       .functions = *functions,
-                       .terms = planes < n ? planes : n,
-                       .planes = planes < n ? planes : n};
-    struct view v;
-    struct components c = {0};
-    double *mean = mem_array((size_t)n, sizeof *mean), *metric = NULL;
-    double *covariance = mem_array(size, sizeof *covariance);
-    relume_status status = open_view(&v, s, functions);
-    if (!status && (!mean || !covariance))
+    free_view(&prepared->view);
+    free(prepared->mean);
+    free(prepared->covariance);
+}
+
+static relume_status prepare(struct preparation *prepared, struct plan *p, const struct source *s,
+                             int threads)
+{
+    const size_t n = (size_t)s->numbers;
+    prepared->mean = mem_array(n, sizeof *prepared->mean);
+    prepared->covariance = mem_array(n * n, sizeof *prepared->covariance);
+    relume_status status = open_view(&prepared->view, s, &p->functions);
+    if (!status && (!prepared->mean || !prepared->covariance))
         status = RELUME_ENOMEM;
     if (!status)
         status = alloc_plan(p, s);
     if (!status)
-        status = source_statistics(s, threads, mean, covariance);
-    if (!status)
-        status = fit_nodes(&v, s, functions);
-    if (!status && !(metric = metric_of(&v)))
+        status = source_statistics(s, threads, prepared->mean, prepared->covariance);
+    return status ? status : fit_nodes(&prepared->view, s, &p->functions);
+}
+
+relume_status plan_components(struct plan *p, const struct source *s,
+                              const struct functions *functions, int planes, int threads)
+{
+    const int n = s->numbers;
+    *p = (struct plan){.form = FOREIGN_JOINT,
+                       .functions = *functions,
+                       .terms = planes < n ? planes : n,
+                       .planes = planes < n ? planes : n};
+    struct preparation prepared;
+    struct components c = {0};
+    double *metric = NULL;
+    relume_status status = prepare(&prepared, p, s, threads);
+    if (!status && !(metric = metric_of(&prepared.view)))
         status = RELUME_ENOMEM;
     if (!status)
-        status = find_components(&c, metric, covariance, n, p->planes);
+        status = find_components(&c, metric, prepared.covariance, n, p->planes);
     if (!status)
-        status = measure_loss(&v, mean, covariance, &p->lost);
+        status = measure_loss(&prepared.view, prepared.mean, prepared.covariance, &p->lost);
     if (!status)
-        take_components(p, &v, mean, &c);
-    free_view(&v);
+        take_components(p, &prepared.view, prepared.mean, &c);
+    free_preparation(&prepared);
     free_components(&c);
-    free(mean);
-    free(covariance);
     free(metric);
     if (status)
         plan_free(p);
@@ -430,33 +447,21 @@ static void take_weights(struct plan *p, const struct view *v)
 relume_status plan_fit(struct plan *p, const struct source *s, const struct functions *functions,
                        bool luminance, int threads)
 {
-    const size_t n = (size_t)s->numbers;
     *p = (struct plan){.form = luminance ? FOREIGN_LUMINANCE : FOREIGN_CHANNELS,
                        .functions = *functions,
                        .terms = functions->count,
                        .planes = luminance ? functions->count + 3 : 3 * functions->count};
-    struct view v;
-    double *mean = mem_array(n, sizeof *mean), *covariance = mem_array(n * n, sizeof *covariance);
-    relume_status status = open_view(&v, s, functions);
-    if (!status && (!mean || !covariance))
-        status = RELUME_ENOMEM;
-    if (!status)
-        status = alloc_plan(p, s);
-    if (!status)
-        status = source_statistics(s, threads, mean, covariance);
-    if (!status)
-        status = fit_nodes(&v, s, functions);
+    struct preparation prepared;
+    relume_status status = prepare(&prepared, p, s, threads);
     if (!status && luminance)
-        take_luminance(p, &v, s);
+        take_luminance(p, &prepared.view, s);
     else if (!status)
-        take_channels(p, &v);
+        take_channels(p, &prepared.view);
     if (!status) {
-        take_weights(p, &v);
-        status = measure_loss(&v, mean, covariance, &p->lost);
+        take_weights(p, &prepared.view);
+        status = measure_loss(&prepared.view, prepared.mean, prepared.covariance, &p->lost);
     }
-    free_view(&v);
-    free(mean);
-    free(covariance);
+    free_preparation(&prepared);
     if (status)
         plan_free(p);
     return status;

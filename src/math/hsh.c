@@ -1,16 +1,9 @@
 // hsh.c - H_lm = sqrt(2) N_lm P_l|m|(2 cos theta - 1) { cos m phi, 1 / sqrt 2, sin |m| phi }
-//         N_lm = sqrt((2l+1)/(2 pi) (l-|m|)!/(l+|m|)!)
+//         N_lm as for the spherical harmonics
 #include "math/hsh.h"
+#include "math/sh.h"
 
 #include <assert.h>
-
-static double normalisation(int l, int m)
-{
-    double ratio = 1.0;  // (l-m)! / (l+m)!
-    for (int i = l - m + 1; i <= l + m; i++)
-        ratio /= i;
-    return sqrt((2 * l + 1) / (2.0 * M_PI) * ratio);
-}
 
 void hsh_evaluate(int degree, vec3 d, double *values)
 {
@@ -21,7 +14,7 @@ void hsh_evaluate(int degree, vec3 d, double *values)
     for (int m = 0; m <= degree; m++) {
         double before = 0.0, p = p_mm;
         for (int l = m; l <= degree; l++) {
-            const double n = normalisation(l, m) * p * (m * (m - 1) / 2 % 2 ? -1.0 : 1.0);
+            const double n = sh_normalisation(l, m) * p * (m * (m - 1) / 2 % 2 ? -1.0 : 1.0);
             if (m == 0) {
                 values[l * (l + 1)] = n;
             } else {

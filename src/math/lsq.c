@@ -26,8 +26,9 @@ bool lsq_eigenvalues(double *matrix, int n, double *values)
     return LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'L', n, matrix, n, values) == 0;
 }
 
-// Where few eigenvectors of a large matrix are asked for: blocks of vectors times the matrix, again
-// and again, made orthonormal each time (Halko, Martinsson, Tropp 2011); then the small problem.
+// Where few eigenvectors of a large semidefinite matrix are asked for: blocks of vectors times it,
+// again and again, made orthonormal each time (Halko, Martinsson, Tropp 2011); then the small
+// problem.
 enum { LARGE = 1024, SPARE = 16, POWERS = 12 };
 
 // rows[m][n] -> orthonormal; `small` has room for m x m.

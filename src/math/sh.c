@@ -11,7 +11,7 @@
 #include <assert.h>
 #include <math.h>
 
-static double normalisation(int l, int m)
+double sh_normalisation(int l, int m)
 {
     double ratio = 1.0;  // (l-m)! / (l+m)!
     for (int i = l - m + 1; i <= l + m; i++)
@@ -27,7 +27,7 @@ void sh_evaluate(int degree, struct relume_vec3 d, double *values)
     for (int m = 0; m <= degree; m++) {
         double before = 0.0, p = p_mm;
         for (int l = m; l <= degree; l++) {
-            const double n = normalisation(l, m) * p;
+            const double n = sh_normalisation(l, m) * p;
             if (m == 0) {
                 values[l * (l + 1)] = n / M_SQRT2;
             } else {

@@ -10,4 +10,7 @@ enum { SH_MAX_DEGREE = 15 };
 // over the sphere. theta is measured from the third axis, phi = atan2(y, x).
 void sh_evaluate(int degree, struct relume_vec3 d, double *values);
 
+// N_lm = sqrt((2l+1)/(2 pi) (l-m)!/(l+m)!), 0 <= m <= l
+double sh_normalisation(int l, int m);
+
 #endif

@@ -423,32 +423,40 @@ static void run_job(struct job *job, int threads, void (*chunk)(void *, size_t, 
     thread_for(threads, (pixels + CHUNK - 1) / CHUNK, chunk, job);
 }
 
+// As begin_job, for what is shown: lights are checked, those without reflectance warned about.
+static relume_status start_job(struct job *job, const struct relume_codes *codes,
+                               const struct relume_light *lights, int n,
+                               const struct relume_relight_params *p)
+{
+    *job = (struct job){.codes = codes};
+    const relume_status status = n < 0 ? RELUME_EINVAL : check_lights(codes, lights, n, p);
+    if (status)
+        return status;
+    warn_below_horizon(codes, lights, n, p->log);
+    return begin_job(job, codes, lights, n, p);
+}
+
+static relume_status open_output(struct relume_image *out, const struct relume_codes *codes)
+{
+    if (!out->data)
+        return relume_image_create(out, codes->width, codes->height, 3);
+    const bool fits =
+        out->width == codes->width && out->height == codes->height && out->channels == 3;
+    return fits ? RELUME_OK : RELUME_EINVAL;
+}
+
 relume_status relume_relight(struct relume_image *out, const struct relume_codes *codes,
                              const struct relume_light *lights, int n,
                              const struct relume_relight_params *params)
 {
     const struct relume_relight_params p = params ? *params : (struct relume_relight_params){0};
-    if (n < 0)
-        return RELUME_EINVAL;
-    relume_status status = check_lights(codes, lights, n, &p);
-    if (status)
-        return status;
-    const bool create = !out->data;
-    if (create)
-        status = relume_image_create(out, codes->width, codes->height, 3);
-    else if (out->width != codes->width || out->height != codes->height || out->channels != 3)
-        return RELUME_EINVAL;
-    if (status)
-        return status;
-    warn_below_horizon(codes, lights, n, p.log);
-
     struct job job;
-    status = begin_job(&job, codes, lights, n, &p);
+    relume_status status = start_job(&job, codes, lights, n, &p);
+    if (!status)
+        status = open_output(out, codes);
     job.out = out->data;
     if (!status)
         run_job(&job, p.threads, relight_chunk);
-    else if (create)
-        relume_image_destroy(out);
     end_job(&job);
     return status;
 }
@@ -469,14 +477,8 @@ relume_status relume_relight_rgba8(uint8_t *out, const struct relume_codes *code
                                    const struct relume_relight_params *params)
 {
     const struct relume_relight_params p = params ? *params : (struct relume_relight_params){0};
-    if (n < 0)
-        return RELUME_EINVAL;
-    relume_status status = check_lights(codes, lights, n, &p);
-    if (status)
-        return status;
-    warn_below_horizon(codes, lights, n, p.log);
     struct job job;
-    status = begin_job(&job, codes, lights, n, &p);
+    relume_status status = start_job(&job, codes, lights, n, &p);
     job.out_rgba8 = (uint32_t *)(void *)out;
     if (!status && !(job.coder = mem_array(1, sizeof *job.coder)))
         status = RELUME_ENOMEM;

@@ -119,6 +119,32 @@ static void test_patterns(void **state)
                     check(sets[s], &patterns[p], kind, (size_t)count, 333, count);
 }
 
+// Every length and alignment of the streaming loop's head and tail; nothing behind the end.
+static void test_look_up(void **state)
+{
+    (void)state;
+    enum { CODES = 65536, LONGEST = 70 };
+    static uint32_t table[CODES], out[LONGEST + 20];
+    static uint16_t index[LONGEST + 20];
+    for (uint32_t i = 0; i < CODES; i++)
+        table[i] = i * 2654435761u;
+    for (uint32_t i = 0; i < LONGEST + 20; i++)
+        index[i] = (uint16_t)(i * 40503u + (i % 7 ? 0 : 65535));
+    for (int s = 0; sets[s]; s++)
+        for (size_t from = 0; from < 16; from++)
+            for (size_t n = 0; n <= LONGEST; n++) {
+                memset(out, 0xa5, sizeof out);
+                sets[s]->look_up(out + from, n, index + from / 2, table);
+                for (size_t i = 0; i < LONGEST + 20; i++) {
+                    const bool inside = i >= from && i < from + n;
+                    const uint32_t want = inside ? table[index[i - from + from / 2]] : 0xa5a5a5a5u;
+                    if (out[i] != want)
+                        fail_msg("%s: from %zu, n %zu: [%zu] is %x, expected %x", sets[s]->name,
+                                 from, n, i, out[i], want);
+                }
+            }
+}
+
 static void test_choice(void **state)
 {
     (void)state;
@@ -186,9 +212,8 @@ int main(int argc, char **argv)
         return 0;
     }
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_tails),
-        cmocka_unit_test(test_patterns),
-        cmocka_unit_test(test_choice),
+        cmocka_unit_test(test_tails),   cmocka_unit_test(test_patterns),
+        cmocka_unit_test(test_look_up), cmocka_unit_test(test_choice),
         cmocka_unit_test(test_chunks),
     };
     return cmocka_run_group_tests(tests, find_sets, NULL);

@@ -295,6 +295,25 @@ static void test_octahedral_grid(void **state)
     assert_null(data);
 }
 
+// A file may say anything: parameters that would give NaN or nonsense are refused.
+static void test_parameters_are_bounded(void **state)
+{
+    (void)state;
+    static const double bad[][4] = {
+        {2.0},      {1e30},       {-1.0},           {NAN},
+        {INFINITY}, {1.5, 101.0}, {1.5, 1.5, -0.1}, {1.5, 1.5, 0.0, INFINITY}};
+    const struct set s = make(20, true);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        struct relume_coder_params p = {.hemispherical = true};
+        memcpy(p.parameter, bad[i], sizeof p.parameter);
+        p.interpolant = relume_interpolant_find("chord");
+        relume_coder *coder;
+        assert_int_equal(relume_coder_create(&coder, &relume_basis_table, s.light, s.n, &p),
+                         RELUME_EDATA);
+        assert_null(coder);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -307,6 +326,7 @@ int main(void)
         cmocka_unit_test(test_poor_light_sets),
         cmocka_unit_test(test_rbf_closed_form),
         cmocka_unit_test(test_octahedral_grid),
+        cmocka_unit_test(test_parameters_are_bounded),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

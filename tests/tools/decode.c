@@ -637,7 +637,7 @@ static void add_books(int part, const char *view, int x, int y)
     float index[8];
     const int books = read_pixel(part, x, y, name, index, 8);
     for (int b = 0; b < books; b++) {
-        char wanted[64], channel[8];
+        char wanted[64], channel[16];
         snprintf(channel, sizeof channel, "i%d", b);
         if (strcmp(name[b], channel))
             fail("channel %s; expected %s", name[b], channel);

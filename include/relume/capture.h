@@ -75,6 +75,8 @@ struct relume_capture_params {
     bool repair;  // tables replace pixels that hold NaN or infinity instead of failing: by those
                   // of the same place under the three nearest lights where it is whole, weighted
                   // by 1 / angle; black where there is none
+    size_t keep_bytes;  // images of 8 bits that a table has read stay decoded in memory up to this
+                        // many bytes, so that later tables of the view are cheap; default: none
 };
 #define relume_capture_params(...) (&(const struct relume_capture_params){__VA_ARGS__})
 

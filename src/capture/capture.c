@@ -14,6 +14,7 @@ void relume_capture_destroy(relume_capture **capture)
 {
     if (!*capture)
         return;
+    kept_destroy(&(*capture)->kept);
     draft_free(&(*capture)->draft);
     free((*capture)->path);
     free(*capture);
@@ -185,6 +186,8 @@ relume_status relume_capture_open(relume_capture **out, const char *path,
         c->draft.m.transfer = p.transfer;
     if (!status)
         status = check_images(c, &p);
+    if (!status)
+        status = kept_create(&c->kept, c->draft.m.views * c->draft.m.lights, p.keep_bytes);
     if (status) {
         relume_capture_destroy(&c);
         return status;

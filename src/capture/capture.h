@@ -2,6 +2,7 @@
 #ifndef CAPTURE_CAPTURE_H
 #define CAPTURE_CAPTURE_H
 
+#include "capture/kept.h"
 #include "capture/manifest.h"
 #include "image/image.h"
 
@@ -12,6 +13,7 @@ struct relume_capture {
     int x, y;     // origin of the images' data windows
     bool floats;  // an image holds floating-point numbers
     bool repair;
+    struct kept *kept;
     struct relume_transfer stated;    // for all images; AUTO: each file's own
     struct relume_transfer transfer;  // of the first image, never AUTO
 };

@@ -21,6 +21,30 @@ struct relume_table {
     bool *whole;                // [lights], for repair_band
 };
 
+static size_t file_bytes(const struct image_stream *stream)
+{
+    const struct oiio_info *info = oiio_info_of(stream->reader);
+    return (size_t)info->width * (size_t)info->height * (size_t)info->channels;
+}
+
+// Rows come from memory where an earlier table has left them, else stay there if there is room.
+static void use_kept(relume_table *t, struct image_stream *stream, int light)
+{
+    struct kept *kept = t->capture->kept;
+    if (!oiio_info_of(stream->reader)->bytes)
+        return;
+    stream->kept = kept_find(kept, t->view * t->capture->draft.m.lights + light);
+    stream->keep = stream->kept ? NULL : kept_reserve(kept, file_bytes(stream));
+}
+
+static void close_stream(relume_table *t, struct image_stream *stream, int light)
+{
+    if (stream->keep)
+        kept_settle(t->capture->kept, t->view * t->capture->draft.m.lights + light, stream->keep,
+                    file_bytes(stream), t->row == t->capture->height && !t->status[light]);
+    image_stream_close(stream);
+}
+
 void relume_table_destroy(relume_table **table)
 {
     relume_table *t = *table;
@@ -28,7 +52,7 @@ void relume_table_destroy(relume_table **table)
     if (!t)
         return;
     for (int i = 0; i < t->open; i++)
-        image_stream_close(&t->stream[i]);
+        close_stream(t, &t->stream[i], i);
     free(t->stream);
     free(t->status);
     free(t->broken);
@@ -65,6 +89,8 @@ relume_status relume_table_open(relume_table **out, const relume_capture *captur
         t->stream && t->status && t->broken && t->repaired && t->whole ? RELUME_OK : RELUME_ENOMEM;
     while (!status && t->open < lights) {
         status = capture_stream(&t->stream[t->open], capture, view, t->open, to, p.log);
+        if (!status)
+            use_kept(t, &t->stream[t->open], t->open);
         t->open += !status;
     }
     if (status)

@@ -154,17 +154,21 @@ struct request {
     struct relume_books_params books;
 };
 
+// Learning reads the images once before the encoder does: decoded images of up to this size wait.
+#define KEEP_BYTES ((size_t)640 << 20)
+
 static relume_status encode(const struct args *args, struct request *r)
 {
     const char *path = args_text(args, "-o", NULL);
     relume_capture *capture;
     relume_coder *coder = NULL;
     struct prefix_log about;
-    relume_status status =
-        relume_capture_open(&capture, args_input(args, 0),
-                            relume_capture_params(.log = args_log(args), .transfer = r->transfer,
-                                                  .skip_missing = args_has(args, "--skip-missing"),
-                                                  .repair = args_has(args, "--repair")));
+    const size_t keep = r->basis->learned || r->coder.choose ? KEEP_BYTES : 0;
+    relume_status status = relume_capture_open(
+        &capture, args_input(args, 0),
+        relume_capture_params(.log = args_log(args), .transfer = r->transfer,
+                              .skip_missing = args_has(args, "--skip-missing"),
+                              .repair = args_has(args, "--repair"), .keep_bytes = keep));
     if (status)
         return status;
     r->coder.log = prefix_log(&about, args_log(args), args_input(args, 0));

@@ -151,11 +151,12 @@ void coefficients_quantise(const relume_coefficients *c, int plane, int row, con
     uint8_t *bytes = to;
     uint16_t *words = to;
     const float top = (float)relume_storage_top(c->info.storage);
+    const size_t width = (size_t)c->info.width;
     if (c->info.storage == RELUME_STORE_8)
-        for (int x = 0; x < c->info.width; x++)
+        for (size_t x = 0; x < width; x++)
             bytes[x] = (uint8_t)(int)clamp((float)from[x] * a + b, 255.0f);
     else
-        for (int x = 0; x < c->info.width; x++)
+        for (size_t x = 0; x < width; x++)
             words[x] = (uint16_t)(int)clamp((float)from[x] * a + b, top);
 }
 

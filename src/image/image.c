@@ -82,10 +82,9 @@ void image_stream_close(struct image_stream *stream)
     stream->scratch = NULL;
 }
 
-static void convert_bytes(const struct image_stream *s, const struct oiio_info *info, size_t pixels,
-                          float *out)
+static void convert_bytes(const struct image_stream *s, const struct oiio_info *info,
+                          const uint8_t *in, size_t pixels, float *out)
 {
-    const uint8_t *in = s->scratch;
     if (s->channels == 3 && info->channels == 3)
         for (size_t x = 0; x < pixels; x++, in += 3, out += 3)
             for (int c = 0; c < 3; c++)
@@ -111,22 +110,41 @@ static bool convert_floats(const struct image_stream *s, const struct oiio_info 
     return sum == 0.0f;
 }
 
+static relume_status read_bytes(const struct image_stream *s, const struct oiio_info *info, int row,
+                                int rows, float *out)
+{
+    const size_t stride = (size_t)info->width * (size_t)info->channels;
+    const uint8_t *in = s->kept ? s->kept + (size_t)row * stride : s->scratch;
+    const relume_status status =
+        s->kept ? RELUME_OK : oiio_read_bytes(s->reader, row, rows, s->scratch);
+    if (status)
+        return status;
+    if (s->keep)
+        memcpy(s->keep + (size_t)row * stride, in, (size_t)rows * stride);
+    convert_bytes(s, info, in, (size_t)rows * (size_t)info->width, out);
+    return RELUME_OK;
+}
+
+static relume_status read_floats(const struct image_stream *s, const struct oiio_info *info,
+                                 int row, int rows, float *out)
+{
+    const relume_status status = oiio_read_floats(s->reader, row, rows, s->scratch);
+    if (status)
+        return status;
+    const bool finite = convert_floats(s, info, (size_t)rows * (size_t)info->width, out);
+    return finite || !s->finite_only ? RELUME_OK : RELUME_EDATA;
+}
+
 relume_status image_stream_read(struct image_stream *stream, int row, int rows, float *out)
 {
     const struct oiio_info *info = oiio_info_of(stream->reader);
     for (int end = row + rows; row < end; row += IMAGE_STREAM_ROWS) {
         const int n = end - row < IMAGE_STREAM_ROWS ? end - row : IMAGE_STREAM_ROWS;
-        const size_t pixels = (size_t)n * (size_t)info->width;
-        const relume_status status =
-            info->bytes ? oiio_read_bytes(stream->reader, row, n, stream->scratch)
-                        : oiio_read_floats(stream->reader, row, n, stream->scratch);
+        const relume_status status = info->bytes ? read_bytes(stream, info, row, n, out)
+                                                 : read_floats(stream, info, row, n, out);
         if (status)
             return status;
-        if (info->bytes)
-            convert_bytes(stream, info, pixels, out);
-        else if (!convert_floats(stream, info, pixels, out) && stream->finite_only)
-            return RELUME_EDATA;
-        out += pixels * (size_t)stream->channels;
+        out += (size_t)n * (size_t)info->width * (size_t)stream->channels;
     }
     return RELUME_OK;
 }

@@ -22,6 +22,8 @@ struct image_stream {
     bool finite_only;     // NaN and infinity are errors; to be set after opening
     float table[3][256];  // per channel, for 8-bit files
     void *scratch;        // IMAGE_STREAM_ROWS rows of the file
+    const uint8_t *kept;  // or all its rows, in place of reading, 8-bit files
+    uint8_t *keep;        // or NULL: where all its rows go as they are read, 8-bit files
 };
 
 // Takes over `reader`, also on failure. RELUME_ENOMEM.

@@ -75,31 +75,38 @@ static void decode(const char *folder)
     thread_for(0, LIGHTS, decode_one, copy);
 }
 
-static void encode(const char *folder, enum relume_compression compression)
+struct setting {
+    const char *name;
+    const struct relume_basis *basis;
+    int coefficients;
+    enum relume_compression compression;
+};
+
+static void encode(const char *folder, const struct setting *s)
 {
     char lp[256], out[256];
     relume_capture *capture;
     relume_coder *coder;
     snprintf(lp, sizeof lp, "%s/dirs.lp", folder);
     snprintf(out, sizeof out, "%s/out.exr", folder);
-    bench_check(relume_capture_open(&capture, lp, NULL));
-    const struct relume_manifest *m = relume_capture_manifest(capture);
-    bench_check(
-        relume_coder_create(&coder, &relume_basis_sh, m->directions, m->lights,
-                            relume_coder_params(.coefficients = 16, .hemispherical = true)));
+    bench_check(relume_capture_open(
+        &capture, lp,
+        relume_capture_params(.keep_bytes = s->basis->learned ? (size_t)640 << 20 : 0)));
+    bench_check(relume_coder_learn(&coder, s->basis, capture,
+                                   relume_coder_params(.coefficients = s->coefficients), NULL));
     bench_check(relume_pack_encode(capture, coder, out, NULL,
-                                   relume_pack_encode_params(.compression = compression)));
+                                   relume_pack_encode_params(.compression = s->compression)));
     relume_coder_destroy(&coder);
     relume_capture_destroy(&capture);
 }
 
 // Peak memory of one encoding, in a process of its own.
-static long peak_mb(const char *folder)
+static long peak_mb(const char *folder, const struct setting *s)
 {
     fflush(stdout);
     const pid_t child = fork();
     if (child == 0) {
-        encode(folder, RELUME_COMPRESS_DEFAULT);
+        encode(folder, s);
         _exit(0);
     }
     struct rusage usage;
@@ -111,35 +118,36 @@ static long peak_mb(const char *folder)
 
 int main(int argc, char **argv)
 {
-    static const struct {
-        const char *name;
-        enum relume_compression value;
-    } kinds[] = {{"none", RELUME_COMPRESS_NONE},
-                 {"rle", RELUME_COMPRESS_RLE},
-                 {"zip", RELUME_COMPRESS_ZIP},
-                 {"piz (default)", RELUME_COMPRESS_PIZ}};
+    enum { SETTINGS = 5 };
+    const struct setting settings[SETTINGS] = {
+        {"sh 16, none", &relume_basis_sh, 16, RELUME_COMPRESS_NONE},
+        {"sh 16, rle", &relume_basis_sh, 16, RELUME_COMPRESS_RLE},
+        {"sh 16, zip", &relume_basis_sh, 16, RELUME_COMPRESS_ZIP},
+        {"sh 16, piz (default)", &relume_basis_sh, 16, RELUME_COMPRESS_PIZ},
+        {"pca 27, piz (default)", &relume_basis_pca, 27, RELUME_COMPRESS_PIZ}};
     const int side = argc > 1 ? atoi(argv[1]) : 2048;
     char folder[] = "/tmp/relume-bench-XXXXXX";
     if (side < 16 || !mkdtemp(folder))
         return 1;
     make_capture(folder, side);
-    printf("encode: %d JPEG photographs of %d x %d, sh 16, 8 bits, %d threads\n", LIGHTS, side,
-           side, relume_cpu_count());
-    printf("  peak memory %ld MB (target at 4096: 600)\n", peak_mb(folder));
-    struct bench read = {.runs = 0}, write[4] = {{.runs = 0}};
+    printf("encode: %d JPEG photographs of %d x %d, 8 bits, %d threads\n", LIGHTS, side, side,
+           relume_cpu_count());
+    for (int k = SETTINGS - 2; k < SETTINGS; k++)
+        printf("  %s: peak memory %ld MB\n", settings[k].name, peak_mb(folder, &settings[k]));
+    struct bench read = {.runs = 0}, write[SETTINGS] = {{.runs = 0}};
     for (int run = 0; run < RUNS; run++) {
         double t = bench_now_s();
         decode(folder);
         bench_add(&read, bench_now_s() - t);
-        for (int k = 0; k < 4; k++) {
+        for (int k = 0; k < SETTINGS; k++) {
             t = bench_now_s();
-            encode(folder, kinds[k].value);
+            encode(folder, &settings[k]);
             bench_add(&write[k], bench_now_s() - t);
         }
     }
     bench_print("decode only", &read);
-    for (int k = 0; k < 4; k++) {
-        bench_print(kinds[k].name, &write[k]);
+    for (int k = 0; k < SETTINGS; k++) {
+        bench_print(settings[k].name, &write[k]);
         printf("    encode / decode: %.2f\n", bench_median(&write[k]) / bench_median(&read));
     }
     char command[300];

@@ -1,0 +1,137 @@
+// test_table.c - images kept in memory: what a table reads, whether from a file or not
+#include "test.h"
+
+enum { LIGHTS = 3, WIDTH = 20, HEIGHT = 40, BYTES = 3 * WIDTH * HEIGHT };
+
+static char folder[64];
+
+static int setup(void **state)
+{
+    (void)state;
+    test_folder(folder);
+    return 0;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    test_folder_remove(folder);
+    return 0;
+}
+
+// Every image flat, its value telling light and version.
+static float value_of(int version, int light)
+{
+    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    return relume_transfer_decode(srgb, (float)(40 + 60 * version + 10 * light) / 255.0f);
+}
+
+static void write_images(int version)
+{
+    struct relume_image image;
+    char path[128];
+    CHECK_OK(relume_image_create(&image, WIDTH, HEIGHT, 3));
+    for (int i = 0; i < LIGHTS; i++) {
+        for (int k = 0; k < BYTES; k++)
+            image.data[k] = value_of(version, i);
+        snprintf(path, sizeof path, "%s/%d.png", folder, i);
+        CHECK_OK(relume_image_save(&image, path, NULL));
+    }
+    relume_image_destroy(&image);
+}
+
+static relume_capture *open_capture(size_t keep_bytes)
+{
+    char path[128];
+    relume_capture *capture;
+    snprintf(path, sizeof path, "%s/dirs.lp", folder);
+    FILE *lp = fopen(path, "w");
+    fprintf(lp, "%d\n0.png 0 0 1\n1.png 0.6 0 0.8\n2.png 0 0.6 0.8\n", LIGHTS);
+    fclose(lp);
+    CHECK_OK(relume_capture_open(&capture, path, relume_capture_params(.keep_bytes = keep_bytes)));
+    return capture;
+}
+
+// Reads `rows` rows, all of which must show versions[light].
+static void check_table(const relume_capture *capture, int rows, const int versions[LIGHTS])
+{
+    static float out[LIGHTS * BYTES];
+    relume_table *table;
+    CHECK_OK(relume_table_open(&table, capture, 0, NULL));
+    for (int row = 0; row < rows; row += 8) {  // bands that are not those of the stream
+        CHECK_OK(relume_table_read(table, 8, out));
+        for (int i = 0; i < LIGHTS; i++)
+            for (int k = 0; k < 3 * 8 * WIDTH; k++)
+                CHECK_NEAR(out[i * 3 * 8 * WIDTH + k], value_of(versions[i], i), 1e-6);
+    }
+    relume_table_destroy(&table);
+}
+
+// Files that change after the first table tell where the second one has its rows from.
+static void check_kept(size_t keep_bytes, int first_rows, const int second[LIGHTS])
+{
+    static const int old[LIGHTS] = {0};
+    write_images(0);
+    relume_capture *capture = open_capture(keep_bytes);
+    check_table(capture, first_rows, old);
+    write_images(1);
+    check_table(capture, HEIGHT, second);
+    check_table(capture, HEIGHT, second);
+    relume_capture_destroy(&capture);
+}
+
+static void test_nothing_is_kept(void **state)
+{
+    (void)state;
+    check_kept(0, HEIGHT, (const int[]){1, 1, 1});
+}
+
+static void test_all_are_kept(void **state)
+{
+    (void)state;
+    check_kept(LIGHTS * BYTES, HEIGHT, (const int[]){0, 0, 0});
+}
+
+static void test_budget(void **state)
+{
+    (void)state;
+    check_kept(3 * BYTES - 1, HEIGHT, (const int[]){0, 0, 1});
+}
+
+// A table that was closed early leaves nothing, and gives its room back.
+static void test_part_is_not_kept(void **state)
+{
+    (void)state;
+    check_kept(LIGHTS * BYTES, HEIGHT - 8, (const int[]){1, 1, 1});
+}
+
+// Two at once: the first to end is kept, the other's copies go.
+static void test_two_tables(void **state)
+{
+    (void)state;
+    static float out[LIGHTS * BYTES];
+    relume_table *tables[2];
+    write_images(0);
+    relume_capture *capture = open_capture(2 * LIGHTS * BYTES);
+    for (int t = 0; t < 2; t++)
+        CHECK_OK(relume_table_open(&tables[t], capture, 0, NULL));
+    for (int t = 0; t < 2; t++)
+        CHECK_OK(relume_table_read(tables[t], HEIGHT, out));
+    for (int t = 0; t < 2; t++)
+        relume_table_destroy(&tables[t]);
+    write_images(1);
+    check_table(capture, HEIGHT, (const int[]){0, 0, 0});
+    relume_capture_destroy(&capture);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_nothing_is_kept, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_all_are_kept, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_budget, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_part_is_not_kept, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_two_tables, setup, teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

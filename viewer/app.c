@@ -1,5 +1,7 @@
 #include "app.h"
 
+#include "keys.h"
+#include "lamps.h"
 #include "say.h"
 
 #include <math.h>
@@ -10,8 +12,6 @@
 static const double wheel_factor = 1.1;  // of the zoom, per step
 static const double zoom_least = 0.1;
 static const double zoom_most = 64.0;
-static const double exposure_step = 0.25;  // EV per key
-static const double dolly_factor = 1.05;   // of the eye's distance, per key
 
 static double clamp(double x, double low, double high)
 {
@@ -73,6 +73,7 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
     s->zoom = 1.0;
     if (!s->lights) {
         s->light[0] = (struct relume_light){.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
+        s->lamp[0].entry = -1;
         s->lights = 1;
     }
     const bool look = s->camera.framing == RELUME_FRAME_LOOK;
@@ -120,18 +121,30 @@ static void zoom_picture(struct app *app, double x, double y, double factor)
 
 // ---------------------------------------------------------------- turning
 
-// Directions of the frame in the world: right, up, and towards the viewer.
-struct axes {
-    struct relume_vec3 right, up, back;
-};
+bool app_pole_y(const struct app *app)
+{
+    return panoramic(&app->file);
+}
 
-static struct axes frame_axes(const struct app *app)
+struct relume_vec3 app_middle(const struct app *app)
+{
+    const struct relume_geometry *g = &app->file.geometry;
+    if (panoramic(&app->file))
+        return g->center;
+    const bool slab = g->projection == RELUME_SLAB;
+    const double *min = slab ? g->st_min : g->window_min;
+    const double *max = slab ? g->st_max : g->window_max;
+    return (struct relume_vec3){0.5 * (min[0] + max[0]), 0.5 * (min[1] + max[1]),
+                                slab ? g->st_z : 0.0};
+}
+
+struct app_axes app_axes(const struct app *app)
 {
     if (app->now.camera.framing != RELUME_FRAME_LOOK)
-        return (struct axes){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        return (struct app_axes){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const double pan = app->now.camera.look.pan_deg * PI / 180;
     const double tilt = app->now.camera.look.tilt_deg * PI / 180;
-    return (struct axes){
+    return (struct app_axes){
         .right = {cos(pan), 0, sin(pan)},
         .up = {-sin(tilt) * sin(pan), cos(tilt), sin(tilt) * cos(pan)},
         .back = {-cos(tilt) * sin(pan), -sin(tilt), cos(tilt) * cos(pan)},
@@ -145,31 +158,40 @@ static double dot(struct relume_vec3 a, struct relume_vec3 b)
 
 struct relume_vec3 app_seen_light(const struct app *app, int light)
 {
-    const struct axes a = frame_axes(app);
-    const struct relume_vec3 d = app->now.light[light].direction;
-    const double scale = 1 / sqrt(dot(d, d));
-    return (struct relume_vec3){dot(d, a.right) * scale, dot(d, a.up) * scale,
-                                dot(d, a.back) * scale};
+    const struct app_axes a = app_axes(app);
+    const struct relume_vec3 d = lamps_direction(&app->now.light[light], app_middle(app));
+    return (struct relume_vec3){dot(d, a.right), dot(d, a.up), dot(d, a.back)};
+}
+
+void app_aim_light(struct app *app, int light, struct relume_vec3 seen)
+{
+    const struct app_axes a = app_axes(app);
+    const struct relume_vec3 world = {
+        seen.x * a.right.x + seen.y * a.up.x + seen.z * a.back.x,
+        seen.x * a.right.y + seen.y * a.up.y + seen.z * a.back.y,
+        seen.x * a.right.z + seen.y * a.up.z + seen.z * a.back.z,
+    };
+    lamps_aim(&app->now, light, world, app_middle(app));
+}
+
+void app_turn_light(struct app *app, double yaw_deg, double pitch_deg)
+{
+    const struct relume_vec3 seen = app_seen_light(app, app->now.selected);
+    const double yaw = yaw_deg * PI / 180;
+    const double pitch = pitch_deg * PI / 180;
+    const double y = seen.y * cos(pitch) - seen.z * sin(pitch);
+    const double ahead = seen.y * sin(pitch) + seen.z * cos(pitch);
+    const double x = seen.x * cos(yaw) + ahead * sin(yaw);
+    const double z = ahead * cos(yaw) - seen.x * sin(yaw);
+    app_aim_light(app, app->now.selected, (struct relume_vec3){x, y, z});
 }
 
 // As if the front of a ball half as wide as the frame were dragged: right turns it about the
 // frame's up, down about its right.
 static void turn_light(struct app *app, double dx, double dy)
 {
-    const double per_pixel = PI / fmin(app->width, app->height);
-    const struct axes a = frame_axes(app);
-    const struct relume_vec3 seen = app_seen_light(app, 0);
-    const double yaw = dx * per_pixel;
-    const double pitch = dy * per_pixel;
-    const double y = seen.y * cos(pitch) - seen.z * sin(pitch);
-    const double ahead = seen.y * sin(pitch) + seen.z * cos(pitch);
-    const double x = seen.x * cos(yaw) + ahead * sin(yaw);
-    const double z = ahead * cos(yaw) - seen.x * sin(yaw);
-    app->now.light[0].direction = (struct relume_vec3){
-        x * a.right.x + y * a.up.x + z * a.back.x,
-        x * a.right.y + y * a.up.y + z * a.back.y,
-        x * a.right.z + y * a.up.z + z * a.back.z,
-    };
+    const double per_pixel = 180 / fmin(app->width, app->height);
+    app_turn_light(app, dx * per_pixel, dy * per_pixel);
 }
 
 // The object follows the cursor, so the eye goes the other way; it stays among the cameras.
@@ -183,7 +205,7 @@ static void move_eye(struct app *app, double dx, double dy)
     eye->y = clamp(eye->y + dy / app->height * high, f->uv_min[1], f->uv_max[1]);
 }
 
-static void dolly(struct app *app, double factor)
+void app_dolly(struct app *app, double factor)
 {
     const double st_z = app->file.geometry.st_z;
     const double captured = app->file.geometry.uv_z - st_z;
@@ -259,28 +281,20 @@ static bool on_wheel(struct app *app, const struct app_event *e)
 
 static bool on_key_down(struct app *app, const struct app_event *e)
 {
-    struct app_state *s = &app->now;
-    switch (e->key) {
-    case APP_KEY_ESCAPE: app->quit = true; return false;
-    case 'l': app->light_key = true; return false;
-    case 'r': *s = app->start; return true;
-    case 'b': s->ball = !s->ball; return true;
-    case '+': s->exposure_ev += exposure_step; return true;
-    case '-': s->exposure_ev -= exposure_step; return true;
-    case '[':
-    case ']':
-        if (s->camera.framing != RELUME_FRAME_EYE)
-            return false;
-        dolly(app, e->key == '[' ? 1 / dolly_factor : dolly_factor);
-        return true;
-    default: return false;
-    }
+    return keys_press(app, e->key);
 }
 
 static bool on_key_up(struct app *app, const struct app_event *e)
 {
     if (e->key == 'l')
         app->light_key = false;
+    return false;
+}
+
+// Only text fields of the panel read text.
+static bool on_text(struct app *app, const struct app_event *e)
+{
+    (void)app, (void)e;
     return false;
 }
 
@@ -294,9 +308,9 @@ static bool on_size(struct app *app, const struct app_event *e)
 }
 
 static bool (*const handlers[])(struct app *, const struct app_event *) = {
-    [APP_PRESS] = on_press, [APP_RELEASE] = on_release,   [APP_MOVE] = on_move,
-    [APP_WHEEL] = on_wheel, [APP_KEY_DOWN] = on_key_down, [APP_KEY_UP] = on_key_up,
-    [APP_SIZE] = on_size,
+    [APP_PRESS] = on_press,       [APP_RELEASE] = on_release, [APP_MOVE] = on_move,
+    [APP_WHEEL] = on_wheel,       [APP_KEY_DOWN] = on_key_down, [APP_KEY_UP] = on_key_up,
+    [APP_TEXT] = on_text,         [APP_SIZE] = on_size,
 };
 
 bool app_handle(struct app *app, const struct app_event *event)

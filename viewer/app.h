@@ -17,17 +17,32 @@ enum app_event_kind {
     APP_WHEEL,
     APP_KEY_DOWN,
     APP_KEY_UP,
+    APP_TEXT,  // a character that was typed, after its key
     APP_SIZE
 };
 enum app_button { APP_LEFT, APP_RIGHT };
-enum { APP_KEY_ESCAPE = 27 };
+// Keys that print nothing; all others are what is printed on them.
+enum {
+    APP_KEY_BACKSPACE = 8,
+    APP_KEY_TAB = 9,
+    APP_KEY_ENTER = 13,
+    APP_KEY_ESCAPE = 27,
+    APP_KEY_DELETE = 127,
+    APP_KEY_LEFT = 256,
+    APP_KEY_RIGHT,
+    APP_KEY_UP_ARROW,
+    APP_KEY_DOWN_ARROW,
+    APP_KEY_HOME,
+    APP_KEY_END,
+    APP_KEYS  // all are below
+};
 
 struct app_event {
     enum app_event_kind kind;
     enum app_button button;  // PRESS, RELEASE
     double x, y;             // PRESS, RELEASE, MOVE, WHEEL
     double wheel;            // WHEEL: steps, > 0 away from the user
-    int key;                 // KEY_*: a lower-case letter, a sign, or APP_KEY_*
+    int key;                 // KEY_*: a lower-case letter, a sign, or APP_KEY_*; TEXT: Unicode
     int width, height;       // SIZE
 };
 
@@ -39,6 +54,26 @@ struct app_file {
     double uv_min[2], uv_max[2];  // slab: where cameras stand
 };
 
+// What the viewer adds to a light. All zero is a light that shines as it says.
+struct app_lamp {
+    bool off, solo;
+    double stops;  // its value is multiplied by 2^stops
+    int entry;     // of the rig that it came from; -1: none
+};
+
+// What is made of the relit picture.
+enum app_pass {
+    APP_PASS_COLOUR = 0,
+    APP_PASS_NORMALS,
+    APP_PASS_SPECULAR,
+    APP_PASS_DIFFUSE_GAIN,
+    APP_PASS_UNSHARP,
+    APP_PASS_LUMINANCE,
+    APP_PASS_FALSE_COLOUR,
+    APP_PASS_DIFFERENCE,
+    APP_PASSES
+};
+
 // What can be reset.
 struct app_state {
     struct relume_camera camera;  // framing is never DEFAULT
@@ -46,11 +81,26 @@ struct app_state {
     double shift[2];              // of the picture's middle from the frame's, pixels
     double exposure_ev;
     struct relume_light light[APP_LIGHTS];
+    struct app_lamp lamp[APP_LIGHTS];  // by light
     int lights;
-    bool ball;  // show the light's direction on a ball in the corner
+    int selected;  // light that drags and keys change
+    bool ball;     // show the light's direction on a ball in the corner
+    enum app_pass pass;
 };
 
-enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT };
+enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT, APP_DRAG_GIZMO };
+
+// What the app cannot do itself; whoever runs it does, and sets this back to NONE.
+enum app_wish {
+    APP_WISH_NONE = 0,
+    APP_WISH_PNG,  // a picture of the frame
+    APP_WISH_EXR,
+    APP_WISH_SAVE_RIG,
+    APP_WISH_SWEEP,      // a recording
+    APP_WISH_TURNTABLE,  // a recording
+    APP_WISH_ADD_LIGHT   // of the SPEC app.spec
+};
+enum { APP_SPEC = 1024 };
 
 // Thread-safety: plain data.
 struct app {
@@ -61,6 +111,9 @@ struct app {
     enum app_drag drag;
     double cursor[2];
     bool light_key;  // L is held
+    bool panel, help, inspect, gizmos;  // shown
+    enum app_wish wish;
+    char spec[APP_SPEC];
     bool quit;
 };
 
@@ -81,7 +134,23 @@ struct app_rectangle {
 };
 struct app_rectangle app_picture(const struct app *app);
 
+// Directions of the frame in the world: right, up, and towards the viewer.
+struct app_axes {
+    struct relume_vec3 right, up, back;
+};
+struct app_axes app_axes(const struct app *app);
+
 // The direction of `light` as the viewer sees it: x right, y up, z towards the viewer.
 struct relume_vec3 app_seen_light(const struct app *app, int light);
+// Let it come from there (unit). Near lights move on a sphere about app_middle.
+void app_aim_light(struct app *app, int light, struct relume_vec3 seen);
+// Turn the selected light about the frame's up (> 0: to the right) and right (> 0: down).
+void app_turn_light(struct app *app, double yaw_deg, double pitch_deg);
+// The eye's distance from the st plane times `factor`, within limits.
+void app_dolly(struct app *app, double factor);
+// The middle of what the file shows; of a panorama its eye.
+struct relume_vec3 app_middle(const struct app *app);
+// Whether elevations are measured from +y, as in panoramas, not +z.
+bool app_pole_y(const struct app *app);
 
 #endif

@@ -1,5 +1,6 @@
 #include "renderer.h"
 
+#include "lamps.h"
 #include "say.h"
 
 #include <math.h>
@@ -129,7 +130,9 @@ static relume_status relight_needed(struct renderer *r, const struct app *app)
     const struct framing *framing = &framings[app->now.camera.framing];
     memset(r->needed, 0, (size_t)r->views * sizeof *r->needed);
     framing->mark(r, app);
-    relume_status status = relighter_begin(&r->relighter, app->now.light, app->now.lights);
+    struct relume_light lights[APP_LIGHTS];
+    const int count = lamps_shining(&app->now, lights);
+    relume_status status = relighter_begin(&r->relighter, lights, count);
     for (int i = 0; !status && i < r->views; i++) {
         r->relit[i] = NULL;
         if (r->needed[i])
@@ -155,7 +158,8 @@ relume_status renderer_draw(struct renderer *r, const struct app *app)
     target_begin(&r->frame, r->gl);
     framings[app->now.camera.framing].draw(r, app, &place);
     if (app->now.ball)
-        draw_ball(&r->ball, r->gl, &place, app_seen_light(app, 0), app->now.light[0].rgb);
+        draw_ball(&r->ball, r->gl, &place, app_seen_light(app, app->now.selected),
+                  app->now.light[app->now.selected].rgb);
     return gl_check(r->gl, "drawing", r->log);
 }
 

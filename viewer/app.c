@@ -1,5 +1,6 @@
 #include "app.h"
 
+#include "gizmo.h"
 #include "keys.h"
 #include "lamps.h"
 #include "say.h"
@@ -138,7 +139,7 @@ struct relume_vec3 app_middle(const struct app *app)
                                 slab ? g->st_z : 0.0};
 }
 
-struct app_axes app_axes(const struct app *app)
+struct app_axes app_frame_axes(const struct app *app)
 {
     if (app->now.camera.framing != RELUME_FRAME_LOOK)
         return (struct app_axes){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -158,14 +159,14 @@ static double dot(struct relume_vec3 a, struct relume_vec3 b)
 
 struct relume_vec3 app_seen_light(const struct app *app, int light)
 {
-    const struct app_axes a = app_axes(app);
+    const struct app_axes a = app_frame_axes(app);
     const struct relume_vec3 d = lamps_direction(&app->now.light[light], app_middle(app));
     return (struct relume_vec3){dot(d, a.right), dot(d, a.up), dot(d, a.back)};
 }
 
 void app_aim_light(struct app *app, int light, struct relume_vec3 seen)
 {
-    const struct app_axes a = app_axes(app);
+    const struct app_axes a = app_frame_axes(app);
     const struct relume_vec3 world = {
         seen.x * a.right.x + seen.y * a.up.x + seen.z * a.back.x,
         seen.x * a.right.y + seen.y * a.up.y + seen.z * a.back.y,
@@ -240,10 +241,14 @@ static void (*const drag_camera[])(struct app *, double dx, double dy) = {
 static bool on_press(struct app *app, const struct app_event *e)
 {
     const bool light = e->button == APP_RIGHT || app->light_key;
-    app->drag = light ? APP_DRAG_LIGHT : APP_DRAG_CAMERA;
+    const int grabbed = app->gizmos && !light ? gizmo_hit(app, e->x, e->y) : -1;
+    app->drag = light ? APP_DRAG_LIGHT : grabbed >= 0 ? APP_DRAG_GIZMO : APP_DRAG_CAMERA;
     app->cursor[0] = e->x;
     app->cursor[1] = e->y;
-    return false;
+    if (grabbed < 0)
+        return false;
+    app->now.selected = grabbed;
+    return true;
 }
 
 static bool on_release(struct app *app, const struct app_event *e)
@@ -263,6 +268,8 @@ static bool on_move(struct app *app, const struct app_event *e)
         return false;
     if (app->drag == APP_DRAG_LIGHT)
         turn_light(app, dx, dy);
+    else if (app->drag == APP_DRAG_GIZMO)
+        gizmo_drag(app, app->now.selected, e->x, e->y);
     else
         drag_camera[app->now.camera.framing](app, dx, dy);
     return true;
@@ -308,9 +315,9 @@ static bool on_size(struct app *app, const struct app_event *e)
 }
 
 static bool (*const handlers[])(struct app *, const struct app_event *) = {
-    [APP_PRESS] = on_press,       [APP_RELEASE] = on_release, [APP_MOVE] = on_move,
-    [APP_WHEEL] = on_wheel,       [APP_KEY_DOWN] = on_key_down, [APP_KEY_UP] = on_key_up,
-    [APP_TEXT] = on_text,         [APP_SIZE] = on_size,
+    [APP_PRESS] = on_press, [APP_RELEASE] = on_release,   [APP_MOVE] = on_move,
+    [APP_WHEEL] = on_wheel, [APP_KEY_DOWN] = on_key_down, [APP_KEY_UP] = on_key_up,
+    [APP_TEXT] = on_text,   [APP_SIZE] = on_size,
 };
 
 bool app_handle(struct app *app, const struct app_event *event)

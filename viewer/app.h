@@ -110,7 +110,7 @@ struct app {
     bool letterbox;     // keep the picture's proportions; else it fills the frame
     enum app_drag drag;
     double cursor[2];
-    bool light_key;  // L is held
+    bool light_key;                     // L is held
     bool panel, help, inspect, gizmos;  // shown
     enum app_wish wish;
     char spec[APP_SPEC];
@@ -138,7 +138,7 @@ struct app_rectangle app_picture(const struct app *app);
 struct app_axes {
     struct relume_vec3 right, up, back;
 };
-struct app_axes app_axes(const struct app *app);
+struct app_axes app_frame_axes(const struct app *app);
 
 // The direction of `light` as the viewer sees it: x right, y up, z towards the viewer.
 struct relume_vec3 app_seen_light(const struct app *app, int light);

@@ -98,7 +98,7 @@ static bool press_next_light(struct app *app, int key)
 static bool press_add(struct app *app, int key)
 {
     (void)key;
-    const struct relume_light light = {.direction = app_axes(app).back, .rgb = {1, 1, 1}};
+    const struct relume_light light = {.direction = app_frame_axes(app).back, .rgb = {1, 1, 1}};
     return lamps_add(&app->now, &light, -1);
 }
 

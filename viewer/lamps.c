@@ -66,8 +66,9 @@ static struct relume_vec3 between(struct relume_vec3 from, struct relume_vec3 to
 
 struct relume_vec3 lamps_direction(const struct relume_light *light, struct relume_vec3 middle)
 {
-    const struct relume_vec3 d =
-        light->kind == RELUME_LIGHT_DIRECTIONAL ? light->direction : between(middle, light->position);
+    const struct relume_vec3 d = light->kind == RELUME_LIGHT_DIRECTIONAL
+                                     ? light->direction
+                                     : between(middle, light->position);
     const double n = length(d);
     return n > 0 ? (struct relume_vec3){d.x / n, d.y / n, d.z / n} : (struct relume_vec3){0, 0, 1};
 }
@@ -92,7 +93,11 @@ void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,
 
 const struct lamp_preset lamp_presets[] = {
     {"raking", "one light from the left, 12 degrees above the picture", 1, {180}, {12}},
-    {"double raking", "two lights from the left and from above, 12 degrees", 2, {180, 90}, {12, 12}},
+    {"double raking",
+     "two lights from the left and from above, 12 degrees",
+     2,
+     {180, 90},
+     {12, 12}},
     {"dome",
      "eight lights all around, 45 degrees",
      8,

@@ -59,6 +59,12 @@ static void size(void *context, int *width, int *height)
     *width = *height = 1;
 }
 
+static double scale(void *context)
+{
+    (void)context;
+    return 1;
+}
+
 static void show(void *context, const char *title)
 {
     (void)context, (void)title;
@@ -72,5 +78,5 @@ static bool next(void *context, struct context_event *event, bool wait)
 }
 
 const struct context_backend context_osmesa = {
-    "osmesa", open_offscreen, close_offscreen, get_proc, size, show, next,
+    "osmesa", open_offscreen, close_offscreen, get_proc, size, scale, show, next,
 };

@@ -9,10 +9,11 @@ relume_status draw_present_create(struct program *program, const struct gl *gl,
     return program_create(program, gl, "present.frag", uniforms, COUNT, log);
 }
 
-void draw_present(const struct program *program, const struct gl *gl, const struct target *frame)
+void draw_present(const struct program *program, const struct gl *gl, const struct target *frame,
+                  GLuint framebuffer)
 {
     const struct place place = {.width = frame->width, .height = frame->height};
-    gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     gl->Viewport(0, 0, frame->width, frame->height);
     texture_use(gl, 0, GL_TEXTURE_2D, frame->texture);
     gl->UseProgram(program->id);

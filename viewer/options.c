@@ -1,5 +1,6 @@
 #include "options.h"
 
+#include "keys.h"
 #include "say.h"
 
 #include <math.h>
@@ -158,6 +159,22 @@ static relume_status take_ball(struct options *o, const char *name, const char *
     return RELUME_OK;
 }
 
+static relume_status take_panel(struct options *o, const char *name, const char *text,
+                                const struct relume_log *log)
+{
+    (void)name, (void)text, (void)log;
+    o->panel = true;
+    return RELUME_OK;
+}
+
+static relume_status take_window(struct options *o, const char *name, const char *text,
+                                 const struct relume_log *log)
+{
+    (void)name, (void)text, (void)log;
+    o->window = true;
+    return RELUME_OK;
+}
+
 static const struct option options[] = {
     {"--light", "SPEC", "a light, \"dir x y z [rgb r g b]\"; repeat for more; default dir 0 0 1",
      take_light},
@@ -172,6 +189,8 @@ static const struct option options[] = {
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},
     {"--script", "EVENTS", "play a text file of events without a window", take_script},
+    {"--window", NULL, "play --script in a window, which then stays", take_window},
+    {"--panel", NULL, "begin with the panel; offscreen: draw it as well", take_panel},
     {"--ball", NULL, "offscreen: draw the ball that shows the light, as the window does",
      take_ball},
     {"--help", NULL, "this text", NULL},
@@ -192,18 +211,24 @@ void options_help(void)
     puts("\n"
          "mouse:  drag         slab: turn; panorama: look around; picture: move\n"
          "        wheel        zoom\n"
-         "        right drag   turn the light (also: hold L and drag)\n"
-         "keys:   + -          exposure          [ ]   slab: nearer, farther\n"
-         "        B            light ball        R     reset           Esc   quit\n"
-         "        A relume file dropped onto the window is opened.\n\n"
+         "        right drag   turn the light\n"
+         "keys:");
+    for (const struct key_binding *b = key_bindings; b->key; b++)
+        if (b->shown)
+            printf("        %-12s %s\n", b->shown, b->what);
+    puts("        A relume file dropped onto the window is opened.\n\n"
          "A window shows a panorama as a perspective look ahead. --offscreen without a framing "
          "option\n"
          "shows what `relume relight` shows: planar files and panoramas their view 0, slabs the "
          "middle\n"
          "eye. Its picture fills --size; a window keeps the proportions.\n\n"
          "script: one event a line, # begins a comment:\n"
-         "        size 800 600             drag left|right x0 y0 x1 y1      wheel STEPS [x y]\n"
-         "        key K                    light \"dir 0 0 1\"                frame out.png\n\n"
+         "        size W H              drag left|right X0 Y0 X1 Y1   wheel STEPS [X Y]\n"
+         "        click X Y             press, release left|right X Y    move X Y\n"
+         "        key K                 hold K, let K                    type TEXT\n"
+         "        light SPEC            add SPEC                         rig FILE\n"
+         "        wait [SECONDS]        frame OUT: the picture           shot OUT: with the "
+         "panel\n\n"
          "example:\n"
          "  relume-view teapot.exr --eye 0.2,0,3 --light \"dir 1 1 1\" --offscreen teapot.png");
 }

@@ -7,7 +7,9 @@
 struct options {
     const char *file;       // NULL: only help was asked for
     const char *offscreen;  // picture to write without a window, or NULL
-    const char *script;     // events to play without a window, or NULL
+    const char *script;     // events to play, or NULL
+    bool window;            // play them in a window
+    bool panel;             // begin with the panel
     struct app_state start;
     bool sized;   // --size was given
     int threads;  // that read files; 0: all cores

@@ -168,7 +168,8 @@ relume_status renderer_read(struct relume_image *out, const struct renderer *r)
     return target_read(out, &r->frame, r->gl);
 }
 
-void renderer_present(const struct renderer *r)
+void renderer_present(const struct renderer *r, GLuint framebuffer)
 {
-    draw_present(&r->present, r->gl, &r->frame);
+    r->gl->BindVertexArray(r->vertices);
+    draw_present(&r->present, r->gl, &r->frame, framebuffer);
 }

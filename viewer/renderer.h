@@ -31,7 +31,7 @@ void renderer_destroy(struct renderer *renderer);
 relume_status renderer_draw(struct renderer *renderer, const struct app *app);
 // The last frame as an image, linear; the caller destroys it.
 relume_status renderer_read(struct relume_image *out, const struct renderer *renderer);
-// The last frame onto the screen.
-void renderer_present(const struct renderer *renderer);
+// The last frame onto a framebuffer of its size, coded for the screen (0: the screen).
+void renderer_present(const struct renderer *renderer, GLuint framebuffer);
 
 #endif

@@ -35,8 +35,9 @@ static bool at_end(struct script *s)
 static relume_status wrong(struct script *s, const char *expected)
 {
     skip_blanks(s);
-    return say(s->host.log, RELUME_EDATA, "%s: line %d, column %d; expected %s; found '%s'", s->path,
-               s->line, (int)(s->at - s->text) + 1, expected, *s->at ? s->at : "end of line");
+    return say(s->host.log, RELUME_EDATA, "%s: line %d, column %d; expected %s; found '%s'",
+               s->path, s->line, (int)(s->at - s->text) + 1, expected,
+               *s->at ? s->at : "end of line");
 }
 
 static bool take_word(struct script *s, const char *word)
@@ -89,12 +90,10 @@ static bool take_key(struct script *s, int *out)
         const char *name;
         int key;
     } names[] = {
-        {"esc", APP_KEY_ESCAPE},     {"tab", APP_KEY_TAB},
-        {"enter", APP_KEY_ENTER},    {"backspace", APP_KEY_BACKSPACE},
-        {"delete", APP_KEY_DELETE},  {"left", APP_KEY_LEFT},
-        {"right", APP_KEY_RIGHT},    {"up", APP_KEY_UP_ARROW},
-        {"down", APP_KEY_DOWN_ARROW}, {"home", APP_KEY_HOME},
-        {"end", APP_KEY_END},
+        {"esc", APP_KEY_ESCAPE},          {"tab", APP_KEY_TAB},       {"enter", APP_KEY_ENTER},
+        {"backspace", APP_KEY_BACKSPACE}, {"delete", APP_KEY_DELETE}, {"left", APP_KEY_LEFT},
+        {"right", APP_KEY_RIGHT},         {"up", APP_KEY_UP_ARROW},   {"down", APP_KEY_DOWN_ARROW},
+        {"home", APP_KEY_HOME},           {"end", APP_KEY_END},
     };
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (take_word(s, names[i].name)) {
@@ -339,13 +338,16 @@ relume_status script_open(struct script **out, const char *path, const struct sc
 relume_status script_step(struct script *s, bool *more)
 {
     *more = fgets(s->text, sizeof s->text, s->file) != NULL;
+    if (ferror(s->file))
+        return say(s->host.log, RELUME_EDATA, "%s: cannot be read; %s", s->path, strerror(errno));
     if (!*more)
         return RELUME_OK;
     s->line++;
     if (!strchr(s->text, '\n') && !feof(s->file))
-        return say(s->host.log, RELUME_EDATA,
-                   "%s: line %d, column %d; expected lines of at most %d characters; found a longer one",
-                   s->path, s->line, LINE - 1, LINE - 2);
+        return say(
+            s->host.log, RELUME_EDATA,
+            "%s: line %d, column %d; expected lines of at most %d characters; found a longer one",
+            s->path, s->line, LINE - 1, LINE - 2);
     return play_line(s);
 }
 

@@ -1,0 +1,366 @@
+#include "session.h"
+
+#include "lamps.h"
+#include "say.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+// ---------------------------------------------------------------- file
+
+static relume_status pack_codes(const struct relume_codes **out, void *user, int view)
+{
+    return relume_pack_codes(out, user, view);
+}
+
+static void pack_drop(void *user, int view)
+{
+    relume_pack_drop(user, view);
+}
+
+static struct app_file describe(const relume_pack *pack)
+{
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    struct app_file file = {info->geometry, info->width, info->height, info->views, {0}, {0}};
+    for (int axis = 0; axis < 2; axis++)
+        file.uv_min[axis] = file.uv_max[axis] = info->uv ? info->uv[0][axis] : 0.0;
+    for (int i = 1; info->uv && i < info->views; i++)
+        for (int axis = 0; axis < 2; axis++) {
+            file.uv_min[axis] = fmin(file.uv_min[axis], info->uv[i][axis]);
+            file.uv_max[axis] = fmax(file.uv_max[axis], info->uv[i][axis]);
+        }
+    return file;
+}
+
+static void set_name(struct session *s, const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    snprintf(s->name, sizeof s->name, "%s", slash ? slash + 1 : path);
+}
+
+// As relume_relight says it; only for lights that were asked for, not for each one dragged there.
+static void warn_below_horizon(const struct session *s)
+{
+    const struct relume_coder_info *info = relume_coder_info(relume_pack_info(s->pack)->coder);
+    for (int i = 0; info->hemispherical && i < s->app.start.lights; i++) {
+        const struct relume_vec3 d = s->app.start.light[i].direction;
+        char text[128];
+        if ((info->pole_y ? d.y : d.z) >= 0.0)
+            continue;
+        snprintf(text, sizeof text,
+                 "light %d lies below the horizon, where nothing was captured; the value at the "
+                 "horizon is shown",
+                 i + 1);
+        s->log->message(s->log->user, RELUME_WARNING, text);
+        return;
+    }
+}
+
+// What the panel says of the file.
+static void describe_lines(struct session *s)
+{
+    const struct relume_pack_info *info = relume_pack_info(s->pack);
+    const struct relume_coder_info *coder = relume_coder_info(info->coder);
+    int n = 0;
+    snprintf(s->line[n++], SESSION_TEXT, "%s, %d x %d",
+             relume_projection_name(info->geometry.projection), info->width, info->height);
+    if (info->views > 1)
+        snprintf(s->line[n++], SESSION_TEXT, "%d views", info->views);
+    snprintf(s->line[n++], SESSION_TEXT, "%s, %d coefficients, %d lights", coder->basis->name,
+             coder->coefficients, coder->lights);
+    snprintf(s->line[n++], SESSION_TEXT, "%s domain%s",
+             info->domain == RELUME_DOMAIN_DISPLAY ? "display" : "linear",
+             info->has_depth ? ", with depth" : "");
+    if (info->books)
+        snprintf(s->line[n++], SESSION_TEXT, "%d codebooks, the first of %d", info->books,
+                 info->codes);
+    else
+        snprintf(s->line[n++], SESSION_TEXT, "%s bits, %s", relume_storage_name(info->storage),
+                 info->compression);
+    snprintf(s->line[n++], SESSION_TEXT, "%.3f MB, %.2f bits per pixel",
+             (double)info->file_bytes * 1e-6,
+             8.0 * (double)info->file_bytes /
+                 ((double)info->views * (double)info->width * (double)info->height));
+    for (int i = 0; i < n; i++)
+        s->lines[i] = s->line[i];
+    s->lines[n] = NULL;
+}
+
+relume_status session_open(struct session *s, const char *path, const struct app_state *start,
+                           bool look_ahead)
+{
+    relume_pack *pack;
+    struct app app;
+    relume_status status =
+        relume_pack_open(&pack, path, relume_pack_params(.log = s->log, .threads = s->threads));
+    if (status)
+        return status;
+    const struct app_file file = describe(pack);
+    status = app_start(&app, &file, start, look_ahead, s->log);
+    if (status) {
+        relume_pack_destroy(&pack);
+        return status;
+    }
+    relume_pack_destroy(&s->pack);
+    s->pack = pack;
+    s->app = app;
+    set_name(s, path);
+    describe_lines(s);
+    warn_below_horizon(s);
+    return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- drawing
+
+static relume_status make_renderer(struct session *s)
+{
+    const struct relume_pack_info *info = relume_pack_info(s->pack);
+    const struct code_source source = {pack_codes, pack_drop, s->pack};
+    return renderer_create(&s->renderer, &s->gl, &source, &info->geometry, info->uv, info->views,
+                           s->log);
+}
+
+relume_status session_start(struct session *s, const struct context_backend *backend, int width,
+                            int height)
+{
+    s->backend = backend;
+    relume_status status = backend->open(&s->context, width, height, s->name, s->log);
+    if (!status)
+        status = gl_load(&s->gl, backend->get_proc, s->log);
+    if (!status)
+        status = make_renderer(s);
+    if (!status)
+        status = panel_create(&s->panel, backend->scale(s->context));
+    return status ? status : draw_panel_create(&s->drawing, &s->gl, s->panel, s->log);
+}
+
+relume_status session_drop(struct session *s, const char *path)
+{
+    const struct app was = s->app;
+    const struct app_state start = {.ball = was.now.ball};
+    if (session_open(s, path, &start, true))
+        return RELUME_OK;
+    s->app.width = was.width;
+    s->app.height = was.height;
+    s->app.letterbox = was.letterbox;
+    s->app.panel = was.panel;
+    s->app.gizmos = was.gizmos;
+    renderer_destroy(&s->renderer);
+    return make_renderer(s);
+}
+
+void session_close(struct session *s)
+{
+    if (s->screen.texture)
+        target_destroy(&s->screen, &s->gl);
+    draw_panel_destroy(&s->drawing, &s->gl);
+    panel_destroy(&s->panel);
+    renderer_destroy(&s->renderer);
+    if (s->context)
+        s->backend->close(s->context);
+    relume_pack_destroy(&s->pack);
+}
+
+bool session_send(struct session *s, const struct app_event *event)
+{
+    const bool shown = panel_shown(&s->app);
+    if (shown && panel_takes(s->panel, event))
+        return true;
+    const bool changed = app_handle(&s->app, event);
+    return changed || shown || s->app.wish;
+}
+
+static void count_histogram(struct session *s)
+{
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    const float gain = exp2f((float)s->app.now.exposure_ev);
+    struct relume_image frame;
+    (void)gain;
+    memset(s->histogram, 0, sizeof s->histogram);
+    if (renderer_read(&frame, &s->renderer))
+        return;
+    const size_t samples = 3 * (size_t)frame.width * (size_t)frame.height;
+    for (size_t i = 0; i < samples; i++) {
+        const float code = relume_transfer_encode(srgb, frame.data[i]);
+        s->histogram[(int)fminf(fmaxf(255 * code + 0.5f, 0), 255)][i % 3]++;
+    }
+    relume_image_destroy(&frame);
+}
+
+static relume_status grant_wish(struct session *s);
+
+relume_status session_draw(struct session *s)
+{
+    if (panel_shown(&s->app)) {
+        const bool histogram = panel_wants_histogram(s->panel) && s->renderer.frame.texture;
+        if (histogram)
+            count_histogram(s);
+        const struct panel_facts facts = {
+            .file = s->name,
+            .line = s->lines,
+            .message = s->message,
+            .histogram = histogram ? (const uint32_t(*)[3])s->histogram : NULL,
+        };
+        (void)panel_build(s->panel, &s->app, &facts);
+    }
+    const relume_status status = grant_wish(s);
+    return status ? status : renderer_draw(&s->renderer, &s->app);
+}
+
+static void present_onto(struct session *s, GLuint framebuffer)
+{
+    renderer_present(&s->renderer, framebuffer);
+    if (panel_shown(&s->app))
+        draw_panel(&s->drawing, &s->gl, s->panel, s->app.width, s->app.height);
+}
+
+void session_present(struct session *s)
+{
+    present_onto(s, 0);
+}
+
+// ---------------------------------------------------------------- pictures
+
+static bool sees_something(const struct session *s)
+{
+    for (int i = 0; i < s->renderer.views; i++)
+        if (s->renderer.needed[i])
+            return true;
+    return false;
+}
+
+static relume_status save(struct session *s, struct relume_image *image, const char *path)
+{
+    const relume_status status = relume_image_save(image, path, relume_image_params(.log = s->log));
+    relume_image_destroy(image);
+    return status;
+}
+
+relume_status session_frame(struct session *s, const char *path)
+{
+    struct relume_image image;
+    relume_status status = session_draw(s);
+    if (status)
+        return status;
+    if (!sees_something(s))
+        return say(s->log, RELUME_EDATA, "%s: the eye sees nothing of the slab", s->name);
+    status = renderer_read(&image, &s->renderer);
+    return status ? status : save(s, &image, path);
+}
+
+static relume_status prepare_screen(struct session *s)
+{
+    if (s->screen.width == s->app.width && s->screen.height == s->app.height)
+        return RELUME_OK;
+    if (s->screen.texture)
+        target_destroy(&s->screen, &s->gl);
+    return target_create(&s->screen, &s->gl, s->app.width, s->app.height, s->log);
+}
+
+// The screen's first row is the lowest, and its values are coded.
+static void turn_over_and_decode(struct relume_image *image)
+{
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    const size_t row = 3 * (size_t)image->width;
+    for (int y = 0; y < image->height / 2; y++) {
+        float *top = image->data + (size_t)y * row;
+        float *low = image->data + (size_t)(image->height - 1 - y) * row;
+        for (size_t i = 0; i < row; i++) {
+            const float keep = top[i];
+            top[i] = low[i];
+            low[i] = keep;
+        }
+    }
+    for (size_t i = 0; i < row * (size_t)image->height; i++)
+        image->data[i] = relume_transfer_decode(srgb, image->data[i]);
+}
+
+relume_status session_shot(struct session *s, const char *path)
+{
+    struct relume_image image;
+    relume_status status = session_draw(s);
+    if (!status)
+        status = prepare_screen(s);
+    if (status)
+        return status;
+    present_onto(s, s->screen.framebuffer);
+    status = target_read(&image, &s->screen, &s->gl);
+    if (status)
+        return status;
+    turn_over_and_decode(&image);
+    return save(s, &image, path);
+}
+
+// ---------------------------------------------------------------- wishes
+
+relume_status session_light(struct session *s, const char *spec, bool replace)
+{
+    struct relume_light light;
+    const relume_status status = relume_light_parse(&light, spec, s->log);
+    if (status)
+        return status;
+    if (replace)
+        s->app.now.lights = 0;
+    if (!lamps_add(&s->app.now, &light, -1))
+        return say(s->log, RELUME_EINVAL, "light '%s': expected at most %d lights", spec,
+                   APP_LIGHTS);
+    return RELUME_OK;
+}
+
+// "NAME-0001.png" with the first number that is free.
+static void free_name(char *path, size_t size, const struct session *s, const char *extension)
+{
+    const char *dot = strrchr(s->name, '.');
+    const int stem = dot ? (int)(dot - s->name) : (int)strlen(s->name);
+    for (int i = 1; i < 10000; i++) {
+        snprintf(path, size, "%.*s-%04d%s", stem, s->name, i, extension);
+        if (access(path, F_OK))
+            return;
+    }
+}
+
+static relume_status wish_picture(struct session *s, const char *extension)
+{
+    char path[SESSION_TEXT + 16];
+    free_name(path, sizeof path, s, extension);
+    const relume_status status = session_frame(s, path);
+    snprintf(s->message, sizeof s->message, "%.200s %s", path,
+             status ? "was not written" : "written");
+    return RELUME_OK;
+}
+
+static relume_status wish_png(struct session *s)
+{
+    return wish_picture(s, ".png");
+}
+
+static relume_status wish_exr(struct session *s)
+{
+    return wish_picture(s, ".exr");
+}
+
+static relume_status wish_add_light(struct session *s)
+{
+    const bool added = !session_light(s, s->app.spec, false);
+    snprintf(s->message, sizeof s->message, added ? "added: %.200s" : "no light: %.200s",
+             s->app.spec);
+    return RELUME_OK;
+}
+
+// What was wished for is done once; what fails is said in the panel and in the log.
+static relume_status grant_wish(struct session *s)
+{
+    static relume_status (*const grants[])(struct session *) = {
+        [APP_WISH_PNG] = wish_png,
+        [APP_WISH_EXR] = wish_exr,
+        [APP_WISH_ADD_LIGHT] = wish_add_light,
+    };
+    const enum app_wish wish = s->app.wish;
+    s->app.wish = APP_WISH_NONE;
+    if ((size_t)wish >= sizeof grants / sizeof *grants || !grants[wish])
+        return RELUME_OK;
+    return grants[wish](s);
+}

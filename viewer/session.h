@@ -1,0 +1,57 @@
+// session.h - an open file, what is drawn of it, and the panel over it
+#ifndef VIEWER_SESSION_H
+#define VIEWER_SESSION_H
+
+#include "context.h"
+#include "draw_panel.h"
+#include "renderer.h"
+
+#include <relume/pack.h>
+
+enum { SESSION_LINES = 10, SESSION_TEXT = 256 };
+
+struct session {
+    const struct context_backend *backend;
+    void *context;
+    struct gl gl;
+    relume_pack *pack;
+    struct app app;
+    struct renderer renderer;
+    struct panel *panel;
+    struct panel_drawing drawing;
+    struct target screen;  // of shots without a window
+    uint32_t histogram[256][3];
+    char name[SESSION_TEXT];  // of the file, for the title
+    char line[SESSION_LINES][SESSION_TEXT];
+    const char *lines[SESSION_LINES + 1];  // what the panel says of the file
+    char message[SESSION_TEXT];            // what the panel says last
+    int threads;                           // that read files
+    const struct relume_log *log;
+};
+
+// Open `path` and start the app; the session is untouched when that fails.
+relume_status session_open(struct session *s, const char *path, const struct app_state *start,
+                           bool look_ahead);
+// Get OpenGL and make what draws. RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EDATA.
+relume_status session_start(struct session *s, const struct context_backend *backend, int width,
+                            int height);
+// Show another file in the same window; one that cannot be opened is only complained about.
+relume_status session_drop(struct session *s, const char *path);
+void session_close(struct session *s);
+
+// Hand an event to the panel, else to the app; returns whether something may look different.
+bool session_send(struct session *s, const struct app_event *event);
+// Draw the frame, linear, with the panel as its events have changed the app, and do what was
+// wished.
+relume_status session_draw(struct session *s);
+// The frame and the panel onto the screen.
+void session_present(struct session *s);
+
+// Draw and write: the picture alone, or as the screen would show it.
+relume_status session_frame(struct session *s, const char *path);
+relume_status session_shot(struct session *s, const char *path);
+
+// A light from words, in place of all or beside them. RELUME_EINVAL, RELUME_EDATA with a sentence.
+relume_status session_light(struct session *s, const char *spec, bool replace);
+
+#endif

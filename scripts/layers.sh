@@ -13,7 +13,7 @@ capture:base math image:base image lights capture
 coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange
-relight:base math image:base image coder relight
+relight:base math image:base image coder relight normals enhance
 view:base math image:base image relight view capture
 frame:base math:base image capture coder pack relight view frame evaluate
 scene:base math image:base image lights capture scene

@@ -6,12 +6,14 @@
 #include <relume/capture.h>
 #include <relume/codebook.h>
 #include <relume/coder.h>
+#include <relume/enhance.h>
 #include <relume/evaluate.h>
 #include <relume/exchange.h>
 #include <relume/frame.h>
 #include <relume/heldout.h>
 #include <relume/image.h>
 #include <relume/lights.h>
+#include <relume/normals.h>
 #include <relume/pack.h>
 #include <relume/relight.h>
 #include <relume/scene.h>

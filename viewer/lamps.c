@@ -64,29 +64,68 @@ static struct relume_vec3 between(struct relume_vec3 from, struct relume_vec3 to
     return (struct relume_vec3){to.x - from.x, to.y - from.y, to.z - from.z};
 }
 
+static double dot(struct relume_vec3 a, struct relume_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static struct relume_vec3 cross(struct relume_vec3 a, struct relume_vec3 b)
+{
+    return (struct relume_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
+                                a.x * b.y - a.y * b.x};
+}
+
 struct relume_vec3 lamps_direction(const struct relume_light *light, struct relume_vec3 middle)
 {
-    const struct relume_vec3 d = light->kind == RELUME_LIGHT_DIRECTIONAL
-                                     ? light->direction
-                                     : between(middle, light->position);
+    const double turn = light->rotate_deg * PI / 180;
+    struct relume_vec3 d = light->direction;
+    if (light->kind == RELUME_LIGHT_ENVIRONMENT)
+        d = (struct relume_vec3){sin(turn), 0, -cos(turn)};
+    else if (relume_light_is_near(light->kind))
+        d = between(middle, light->position);
     const double n = length(d);
     return n > 0 ? (struct relume_vec3){d.x / n, d.y / n, d.z / n} : (struct relume_vec3){0, 0, 1};
 }
 
-void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,
-               struct relume_vec3 middle)
+// Turns `v` as the shortest way takes unit `from` to unit `to`.
+static struct relume_vec3 turned(struct relume_vec3 v, struct relume_vec3 from,
+                                 struct relume_vec3 to)
 {
-    struct relume_light *l = &state->light[light];
-    if (l->kind == RELUME_LIGHT_DIRECTIONAL) {
-        l->direction = direction;
-        return;
-    }
+    const struct relume_vec3 axis = cross(from, to);
+    const double c = dot(from, to);
+    if (c < -1 + 1e-9)
+        return (struct relume_vec3){-v.x, -v.y, -v.z};
+    const double k = dot(axis, v) / (1 + c);
+    const struct relume_vec3 side = cross(axis, v);
+    return (struct relume_vec3){c * v.x + side.x + k * axis.x, c * v.y + side.y + k * axis.y,
+                                c * v.z + side.z + k * axis.z};
+}
+
+static void aim_near(struct relume_light *l, struct relume_vec3 direction,
+                     struct relume_vec3 middle)
+{
+    const struct relume_vec3 was = lamps_direction(l, middle);
     const double far = length(between(middle, l->position));
     l->position = (struct relume_vec3){
         middle.x + far * direction.x,
         middle.y + far * direction.y,
         middle.z + far * direction.z,
     };
+    l->direction = turned(l->direction, was, direction);
+    l->u = turned(l->u, was, direction);
+    l->v = turned(l->v, was, direction);
+}
+
+void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,
+               struct relume_vec3 middle)
+{
+    struct relume_light *l = &state->light[light];
+    if (l->kind == RELUME_LIGHT_DIRECTIONAL)
+        l->direction = direction;
+    else if (l->kind == RELUME_LIGHT_ENVIRONMENT)
+        l->rotate_deg = atan2(direction.x, -direction.z) * 180 / PI;
+    else
+        aim_near(l, direction, middle);
 }
 
 // ---------------------------------------------------------------- arrangements

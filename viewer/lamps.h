@@ -15,8 +15,8 @@ bool lamps_add(struct app_state *state, const struct relume_light *light, int en
 // The last light stays. False when nothing was removed.
 bool lamps_remove(struct app_state *state, int light);
 
-// Turn one light, or what is there of it, to come from `direction` (unit, world); near ones move
-// on a sphere about `middle`.
+// Let one light come from `direction` (unit, world): near ones move on a sphere about `middle` and
+// turn with it, environments turn about y.
 void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,
                struct relume_vec3 middle);
 // Where it comes from as seen from `middle`, unit.

@@ -41,8 +41,7 @@ static relume_status host_light(void *user, const char *spec, bool replace)
 
 static relume_status host_rig(void *user, const char *path)
 {
-    (void)user, (void)path;
-    return RELUME_OK;
+    return session_load_rig(user, path);
 }
 
 static relume_status host_wait(void *user, double seconds)
@@ -69,10 +68,12 @@ static struct script_host host_of(struct session *s)
 
 // ---------------------------------------------------------------- without a window
 
-static relume_status run_offscreen(struct session *s, const struct options *o)
+static relume_status run_offscreen(struct session *s, struct options *o)
 {
     const struct script_host host = host_of(s);
-    relume_status status = session_open(s, o->file, &o->start, false);
+    relume_status status = session_take_rig(s, &o->rig, &o->start);
+    if (!status)
+        status = session_open(s, o->file, &o->start, false);
     if (!status)
         status = session_start(s, &context_osmesa, s->app.width, s->app.height);
     s->app.panel = o->panel;
@@ -158,13 +159,14 @@ static relume_status live(struct session *s, struct script *script)
     return status;
 }
 
-static relume_status run_window(struct session *s, const struct options *o)
+static relume_status run_window(struct session *s, struct options *o)
 {
     const struct script_host host = host_of(s);
     struct script *script = NULL;
-    struct app_state start = o->start;
-    start.ball = true;
-    relume_status status = session_open(s, o->file, &start, true);
+    o->start.ball = true;
+    relume_status status = session_take_rig(s, &o->rig, &o->start);
+    if (!status)
+        status = session_open(s, o->file, &o->start, true);
     if (status)
         return status;
     choose_size(&s->app, o->sized);
@@ -196,5 +198,6 @@ int main(int argc, char **argv)
     else if (!status)
         status = (offscreen ? run_offscreen : run_window)(&session, &options);
     session_close(&session);
+    options_release(&options);
     return exit_code(status);
 }

@@ -51,13 +51,25 @@ static relume_status take_framing(struct options *o, const char *name, enum relu
     return RELUME_OK;
 }
 
+static relume_status have_rig(struct options *o)
+{
+    return o->rig ? RELUME_OK : relume_rig_create(&o->rig);
+}
+
 static relume_status take_light(struct options *o, const char *name, const char *text,
                                 const struct relume_log *log)
 {
     (void)name;
-    if (o->start.lights == APP_LIGHTS)
-        return say(log, RELUME_EINVAL, "--light: expected at most %d lights", APP_LIGHTS);
-    return relume_light_parse(&o->start.light[o->start.lights++], text, log);
+    const relume_status status = have_rig(o);
+    return status ? status : relume_rig_add(o->rig, text, NULL, log);
+}
+
+static relume_status take_rig(struct options *o, const char *name, const char *text,
+                              const struct relume_log *log)
+{
+    if (o->rig)
+        return say(log, RELUME_EINVAL, "%s: expected it once and before --light", name);
+    return relume_rig_load(&o->rig, text, log);
 }
 
 static relume_status take_view(struct options *o, const char *name, const char *text,
@@ -176,6 +188,7 @@ static relume_status take_window(struct options *o, const char *name, const char
 }
 
 static const struct option options[] = {
+    {"--rig", "FILE", "lights of a rig (JSON)", take_rig},
     {"--light", "SPEC", "a light, \"dir x y z [rgb r g b]\"; repeat for more; default dir 0 0 1",
      take_light},
     {"--view", "N", "the captured view N itself (panoramas: unfolded)", take_view},
@@ -274,6 +287,11 @@ static bool asks_for_help(int argc, char **argv)
         if (!strcmp(argv[i], "--help") || !strcmp(argv[i], "-h"))
             return true;
     return false;
+}
+
+void options_release(struct options *o)
+{
+    relume_rig_destroy(&o->rig);
 }
 
 relume_status options_parse(struct options *o, int argc, char **argv, const struct relume_log *log)

@@ -4,6 +4,8 @@
 
 #include "app.h"
 
+#include <relume/rig.h>
+
 struct options {
     const char *file;       // NULL: only help was asked for
     const char *offscreen;  // picture to write without a window, or NULL
@@ -11,13 +13,16 @@ struct options {
     bool window;            // play them in a window
     bool panel;             // begin with the panel
     struct app_state start;
-    bool sized;   // --size was given
-    int threads;  // that read files; 0: all cores
+    relume_rig *rig;  // of --rig and --light, NULL without either
+    bool sized;       // --size was given
+    int threads;      // that read files; 0: all cores
 };
 
-// RELUME_EINVAL with a sentence in `log`: unknown options, wrong values, no FILE.
+// RELUME_EINVAL with a sentence in `log`: unknown options, wrong values, no FILE. RELUME_EDATA,
+// RELUME_ENOMEM: a file that a light needs. In every case options_release comes after it.
 relume_status options_parse(struct options *options, int argc, char **argv,
                             const struct relume_log *log);
+void options_release(struct options *options);
 void options_help(void);
 
 // "x,y,z": `count` numbers separated by commas or blanks and nothing else.

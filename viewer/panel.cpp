@@ -174,7 +174,9 @@ static ImVec4 colour_of(const relume_light &light)
 
 static const char *kind_name(const relume_light &light)
 {
-    return light.kind == RELUME_LIGHT_DIRECTIONAL ? "directional" : "point";
+    static const char *const names[] = {"directional", "environment", "point", "spot",
+                                        "slide",       "area",        "ies"};
+    return names[light.kind];
 }
 
 static bool list_row(app_state *s, int i)
@@ -270,6 +272,32 @@ static bool flip_side(app *app)
     return true;
 }
 
+// What a kind has beside a direction. A field that makes no light is put back.
+static bool edit_geometry(relume_light *light)
+{
+    const relume_light was = *light;
+    const double least = -180, most = 180, narrow = 0.5, wide = 89.5;
+    bool changed = false;
+    if (light->kind == RELUME_LIGHT_ENVIRONMENT)
+        changed |= ImGui::SliderScalar("rotation", ImGuiDataType_Double, &light->rotate_deg, &least,
+                                       &most, "%.1f deg");
+    if (relume_light_is_near(light->kind))
+        changed |= edit_vector("position", &light->position);
+    if (light->kind == RELUME_LIGHT_SPOT || light->kind == RELUME_LIGHT_SLIDE ||
+        light->kind == RELUME_LIGHT_IES)
+        changed |= edit_vector("axis", &light->direction);
+    if (light->kind == RELUME_LIGHT_SPOT || light->kind == RELUME_LIGHT_SLIDE)
+        changed |= ImGui::SliderScalar("half angle", ImGuiDataType_Double, &light->half_angle_deg,
+                                       &narrow, &wide, "%.1f deg");
+    if (light->kind == RELUME_LIGHT_AREA) {
+        changed |= edit_vector("half edge u", &light->u);
+        changed |= edit_vector("half edge v", &light->v);
+    }
+    if (changed && relume_light_check(light, "light", nullptr))
+        *light = was;
+    return changed;
+}
+
 static bool edit_light(panel *panel, app *app)
 {
     app_state *s = &app->now;
@@ -288,9 +316,7 @@ static bool edit_light(panel *panel, app *app)
     const double least = -8, most = 8;
     changed |=
         ImGui::SliderScalar("stops", ImGuiDataType_Double, &lamp->stops, &least, &most, "%+.2f");
-    if (light->kind != RELUME_LIGHT_DIRECTIONAL)
-        changed |= edit_vector("position", &light->position);
-    return changed;
+    return changed | edit_geometry(light);
 }
 
 static void wish_light(app *app, const char *spec)

@@ -48,7 +48,8 @@ static void warn_below_horizon(const struct session *s)
     for (int i = 0; info->hemispherical && i < s->app.start.lights; i++) {
         const struct relume_vec3 d = s->app.start.light[i].direction;
         char text[128];
-        if ((info->pole_y ? d.y : d.z) >= 0.0)
+        if (s->app.start.light[i].kind != RELUME_LIGHT_DIRECTIONAL ||
+            (info->pole_y ? d.y : d.z) >= 0.0)
             continue;
         snprintf(text, sizeof text,
                  "light %d lies below the horizon, where nothing was captured; the value at the "
@@ -162,6 +163,7 @@ void session_close(struct session *s)
     if (s->context)
         s->backend->close(s->context);
     relume_pack_destroy(&s->pack);
+    relume_rig_destroy(&s->rig);
 }
 
 bool session_send(struct session *s, const struct app_event *event)
@@ -296,18 +298,105 @@ relume_status session_shot(struct session *s, const char *path)
 
 // ---------------------------------------------------------------- wishes
 
+static relume_status too_many(const struct session *s)
+{
+    return say(s->log, RELUME_EINVAL, "lights: expected at most %d; found more", APP_LIGHTS);
+}
+
+static struct app_lamp lamp_of(const struct relume_rig_entry *e, int entry)
+{
+    return (struct app_lamp){
+        .off = !e->on || !(e->intensity > 0),
+        .solo = e->solo,
+        .stops = e->intensity > 0 ? log2(e->intensity) : 0,
+        .entry = entry,
+    };
+}
+
+static relume_status append_entries(const struct session *s, struct app_state *to, int first)
+{
+    for (int i = first; i < relume_rig_count(s->rig); i++) {
+        const struct relume_rig_entry *e = relume_rig_entry(s->rig, i);
+        if (!lamps_add(to, &e->light, i))
+            return too_many(s);
+        to->lamp[to->selected] = lamp_of(e, i);
+    }
+    return RELUME_OK;
+}
+
+relume_status session_take_rig(struct session *s, relume_rig **rig, struct app_state *start)
+{
+    s->rig = *rig;
+    *rig = NULL;
+    const relume_status status = s->rig ? append_entries(s, start, 0) : relume_rig_create(&s->rig);
+    start->selected = 0;
+    return status;
+}
+
 relume_status session_light(struct session *s, const char *spec, bool replace)
 {
-    struct relume_light light;
-    const relume_status status = relume_light_parse(&light, spec, s->log);
+    struct app_state *now = &s->app.now;
+    const int entry = relume_rig_count(s->rig);
+    const relume_status status = relume_rig_add(s->rig, spec, NULL, s->log);
     if (status)
         return status;
     if (replace)
-        s->app.now.lights = 0;
-    if (!lamps_add(&s->app.now, &light, -1))
-        return say(s->log, RELUME_EINVAL, "light '%s': expected at most %d lights", spec,
-                   APP_LIGHTS);
-    return RELUME_OK;
+        now->lights = 0;
+    return append_entries(s, now, entry);
+}
+
+// Its files stay with the session's own rig, which lights that were there before still need.
+relume_status session_load_rig(struct session *s, const char *path)
+{
+    struct app_state *now = &s->app.now;
+    const int first = relume_rig_count(s->rig);
+    relume_rig *loaded;
+    relume_status status = relume_rig_load(&loaded, path, s->log);
+    for (int i = 0; !status && i < relume_rig_count(loaded); i++) {
+        const struct relume_rig_entry *e = relume_rig_entry(loaded, i);
+        status = relume_rig_add(s->rig, e->spec, NULL, s->log);
+        if (!status)
+            status = relume_rig_set(s->rig, first + i, e, s->log);
+    }
+    if (!status && relume_rig_count(loaded) > APP_LIGHTS)
+        status = too_many(s);
+    if (!status && relume_rig_count(loaded) > 0) {
+        now->lights = 0;
+        status = append_entries(s, now, first);
+        now->selected = 0;
+    }
+    relume_rig_destroy(&loaded);
+    return status;
+}
+
+static relume_status store_light(const struct session *s, relume_rig *rig, int light)
+{
+    const struct app_lamp *lamp = &s->app.now.lamp[light];
+    const struct relume_light *l = &s->app.now.light[light];
+    const struct relume_rig_entry *from =
+        lamp->entry >= 0 ? relume_rig_entry(s->rig, lamp->entry) : NULL;
+    relume_status status = relume_rig_add(rig, from ? from->spec : "dir 0 0 1", NULL, s->log);
+    if (status)
+        return status;
+    struct relume_rig_entry e = *relume_rig_entry(rig, light);
+    e.on = !lamp->off;
+    e.solo = lamp->solo;
+    e.intensity = exp2(lamp->stops);
+    e.name = from ? from->name : e.name;
+    e.light = *l;
+    return relume_rig_set(rig, light, &e, s->log);
+}
+
+relume_status session_save_rig(struct session *s, const char *path)
+{
+    relume_rig *rig;
+    relume_status status = relume_rig_create(&rig);
+    for (int i = 0; !status && i < s->app.now.lights; i++)
+        status = store_light(s, rig, i);
+    if (!status)
+        status = relume_rig_save(rig, path, s->log);
+    relume_rig_destroy(&rig);
+    return status;
 }
 
 // "NAME-0001.png" with the first number that is free.
@@ -342,6 +431,16 @@ static relume_status wish_exr(struct session *s)
     return wish_picture(s, ".exr");
 }
 
+static relume_status wish_save_rig(struct session *s)
+{
+    char path[SESSION_TEXT + 16];
+    free_name(path, sizeof path, s, ".json");
+    const relume_status status = session_save_rig(s, path);
+    snprintf(s->message, sizeof s->message, "%.200s %s", path,
+             status ? "was not written" : "written");
+    return RELUME_OK;
+}
+
 static relume_status wish_add_light(struct session *s)
 {
     const bool added = !session_light(s, s->app.spec, false);
@@ -356,6 +455,7 @@ static relume_status grant_wish(struct session *s)
     static relume_status (*const grants[])(struct session *) = {
         [APP_WISH_PNG] = wish_png,
         [APP_WISH_EXR] = wish_exr,
+        [APP_WISH_SAVE_RIG] = wish_save_rig,
         [APP_WISH_ADD_LIGHT] = wish_add_light,
     };
     const enum app_wish wish = s->app.wish;

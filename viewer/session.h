@@ -7,6 +7,7 @@
 #include "renderer.h"
 
 #include <relume/pack.h>
+#include <relume/rig.h>
 
 enum { SESSION_LINES = 10, SESSION_TEXT = 256 };
 
@@ -15,6 +16,7 @@ struct session {
     void *context;
     struct gl gl;
     relume_pack *pack;
+    relume_rig *rig;  // owns what lights point at; the app's list says what shines
     struct app app;
     struct renderer renderer;
     struct panel *panel;
@@ -53,5 +55,12 @@ relume_status session_shot(struct session *s, const char *path);
 
 // A light from words, in place of all or beside them. RELUME_EINVAL, RELUME_EDATA with a sentence.
 relume_status session_light(struct session *s, const char *spec, bool replace);
+// The lights of a rig file in place of all; the present ones as a rig file.
+relume_status session_load_rig(struct session *s, const char *path);
+relume_status session_save_rig(struct session *s, const char *path);
+
+// Begin with the lights of `rig`, which becomes the session's; NULL: none. RELUME_EINVAL when there
+// are more than APP_LIGHTS, RELUME_ENOMEM.
+relume_status session_take_rig(struct session *s, relume_rig **rig, struct app_state *start);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include <relume/base.h>
 #include <relume/image.h>
-#include <relume/relight.h>
+#include <relume/light.h>
 #include <relume/normals.h>
 
 #ifdef __cplusplus

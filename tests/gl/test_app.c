@@ -271,8 +271,9 @@ static void options_are_read(void **state)
     char file[] = "a.exr";
     char *lit[] = {file, file, option, first, option, second};
     assert_int_equal(options_parse(&o, 6, lit, &keep), RELUME_OK);
-    assert_int_equal(o.start.lights, 2);
-    assert_true(o.start.light[1].rgb[2] == 3);
+    assert_int_equal(relume_rig_count(o.rig), 2);
+    assert_true(relume_rig_entry(o.rig, 1)->light.rgb[2] == 3);
+    options_release(&o);
     assert_int_equal(parse(&o, "--nonsense --help"), RELUME_OK);
     assert_null(o.file);
 }
@@ -304,6 +305,7 @@ static void wrong_options_are_refused(void **state)
         assert_int_equal(parse(&o, wrong[i][0]), RELUME_EINVAL);
         assert_non_null(strstr(said, wrong[i][1]));
         assert_true(said[0] != '\0');
+        options_release(&o);
     }
 }
 
@@ -325,12 +327,15 @@ static void host_send(void *user, const struct app_event *event)
 static relume_status host_light(void *user, const char *spec, bool replace)
 {
     struct app *app = ((struct frames *)user)->app;
-    struct relume_light light;
-    if (relume_light_parse(&light, spec, &keep))
-        return RELUME_EINVAL;
-    if (replace)
+    relume_rig *rig;
+    assert_int_equal(relume_rig_create(&rig), RELUME_OK);
+    const relume_status status = relume_rig_add(rig, spec, NULL, &keep);
+    if (!status && replace)
         app->now.lights = 0;
-    return lamps_add(&app->now, &light, -1) ? RELUME_OK : RELUME_EINVAL;
+    if (!status)
+        assert_true(lamps_add(&app->now, &relume_rig_entry(rig, 0)->light, -1));
+    relume_rig_destroy(&rig);
+    return status;
 }
 
 static relume_status host_rig(void *user, const char *path)

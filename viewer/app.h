@@ -32,6 +32,8 @@ enum {
     APP_KEY_RIGHT,
     APP_KEY_UP_ARROW,
     APP_KEY_DOWN_ARROW,
+    APP_KEY_PAGE_UP,
+    APP_KEY_PAGE_DOWN,
     APP_KEY_HOME,
     APP_KEY_END,
     APP_KEYS  // all are below
@@ -76,10 +78,17 @@ enum app_pass {
 
 // What can be reset.
 struct app_state {
-    struct relume_camera camera;  // framing is never DEFAULT
-    double zoom;                  // of the picture; 1 fits the frame
-    double shift[2];              // of the picture's middle from the frame's, pixels
+    struct relume_camera camera;              // framing is never DEFAULT
+    double zoom;                              // of the picture; 1 fits the frame
+    double shift[2];                          // of the picture's middle from the frame's, pixels
+    enum relume_interpolation interpolation;  // slab
+    double aperture;                          // slab: diameter, world units
+    double focus_z;                           // slab: the plane in focus ...
+    bool focused;                             // ... at the start; else the st plane
     double exposure_ev;
+    bool auto_exposure;  // on top of exposure_ev
+    int tone;            // place in relume_tones
+    double white;        // as relume_tone_params
     struct relume_light light[APP_LIGHTS];
     struct app_lamp lamp[APP_LIGHTS];  // by light
     int lights;
@@ -115,6 +124,11 @@ struct app {
     enum app_wish wish;
     char spec[APP_SPEC];
     bool quit;
+    double turned_deg[2];           // pan and tilt by the mouse since time last passed
+    double speed_deg_s[2];          // of pan and tilt: of the hand, then of what it let go
+    double adapted_ev, metered_ev;  // automatic exposure: in force, and aimed at
+    bool metered;
+    struct relume_look before_planet;
 };
 
 // A file seen as `start` says; a DEFAULT framing becomes what suits the file: the eye in the middle
@@ -126,6 +140,20 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
 
 // Returns whether the picture changed.
 bool app_handle(struct app *app, const struct app_event *event);
+
+// Let time pass: a panorama let go of in motion glides to a stop, automatic exposure adapts.
+// Returns whether the picture changed; false for good once all is at rest. What a span does, any
+// way to split it does.
+bool app_advance(struct app *app, double seconds);
+
+// Let no glide go on.
+void app_stand_still(struct app *app);
+
+// The exposure to draw with, EV.
+double app_exposure_ev(const struct app *app);
+// The frame drawn with that exposure would be a mid grey with `ev` more. The first frame of a file
+// is followed at once, later ones as time passes.
+void app_meter(struct app *app, double ev);
 
 // The rectangle of the frame that shows the whole picture: left, top, right, bottom in pixels.
 // A perspective look fills the frame.

@@ -90,6 +90,8 @@ static int key_letter(int key, int scancode)
         {GLFW_KEY_RIGHT, APP_KEY_RIGHT},
         {GLFW_KEY_UP, APP_KEY_UP_ARROW},
         {GLFW_KEY_DOWN, APP_KEY_DOWN_ARROW},
+        {GLFW_KEY_PAGE_UP, APP_KEY_PAGE_UP},
+        {GLFW_KEY_PAGE_DOWN, APP_KEY_PAGE_DOWN},
         {GLFW_KEY_HOME, APP_KEY_HOME},
         {GLFW_KEY_END, APP_KEY_END},
         {GLFW_KEY_F1, '?'},

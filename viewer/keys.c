@@ -2,12 +2,16 @@
 
 #include "lamps.h"
 
+#include <relume/tone.h>
+
 #include <math.h>
 
 static const double exposure_step = 0.25;  // EV
 static const double dolly_factor = 1.05;   // of the eye's distance
-static const double stop_step = 0.25;      // of a light's value
-static const double turn_step = 3.0;       // degrees of a light
+static const double focus_factor = 1.02;   // of the distance from the cameras
+static const double planet_zoom = 0.5;
+static const double stop_step = 0.25;  // of a light's value
+static const double turn_step = 3.0;   // degrees of a light
 
 static bool press_quit(struct app *app, int key)
 {
@@ -34,6 +38,7 @@ static bool press_reset(struct app *app, int key)
 {
     (void)key;
     app->now = app->start;
+    app_stand_still(app);
     return true;
 }
 
@@ -76,6 +81,74 @@ static bool press_dolly(struct app *app, int key)
     if (app->now.camera.framing != RELUME_FRAME_EYE)
         return false;
     app_dolly(app, key == '[' ? 1 / dolly_factor : dolly_factor);
+    return true;
+}
+
+static bool press_tone(struct app *app, int key)
+{
+    (void)key;
+    app->now.tone = relume_tones[app->now.tone + 1] ? app->now.tone + 1 : 0;
+    return true;
+}
+
+static bool press_auto_exposure(struct app *app, int key)
+{
+    (void)key;
+    app->now.auto_exposure = !app->now.auto_exposure;
+    app->adapted_ev = app->metered_ev = 0;
+    app->metered = true;
+    return true;
+}
+
+static bool press_planet(struct app *app, int key)
+{
+    struct relume_look *look = &app->now.camera.look;
+    (void)key;
+    if (app->now.camera.framing != RELUME_FRAME_LOOK)
+        return false;
+    app_stand_still(app);
+    if (look->stereographic) {
+        *look = app->before_planet;
+        return true;
+    }
+    app->before_planet = *look;
+    *look = (struct relume_look){look->pan_deg, -90, planet_zoom, true};
+    return true;
+}
+
+// By depth or linear, whichever is the default, then linear, then the nearest camera.
+static bool press_interpolation(struct app *app, int key)
+{
+    enum relume_interpolation *i = &app->now.interpolation;
+    (void)key;
+    if (app->now.camera.framing != RELUME_FRAME_EYE)
+        return false;
+    *i = *i == RELUME_INTERPOLATE_LINEAR     ? RELUME_INTERPOLATE_CONSTANT
+         : *i == RELUME_INTERPOLATE_CONSTANT ? RELUME_INTERPOLATE_DEFAULT
+                                             : RELUME_INTERPOLATE_LINEAR;
+    return true;
+}
+
+// None, then an eighth, a quarter, a half and all of the cameras' extent.
+static bool press_aperture(struct app *app, int key)
+{
+    const struct app_file *f = &app->file;
+    const double most = fmax(f->uv_max[0] - f->uv_min[0], f->uv_max[1] - f->uv_min[1]);
+    double *a = &app->now.aperture;
+    (void)key;
+    if (app->now.camera.framing != RELUME_FRAME_EYE)
+        return false;
+    *a = *a <= 0 ? most / 8 : *a < 0.75 * most ? *a * 2 : 0;
+    return true;
+}
+
+static bool press_focus(struct app *app, int key)
+{
+    const struct relume_geometry *g = &app->file.geometry;
+    double *z = &app->now.focus_z;
+    if (app->now.camera.framing != RELUME_FRAME_EYE)
+        return false;
+    *z = g->uv_z + (*z - g->uv_z) * (key == '.' ? focus_factor : 1 / focus_factor);
     return true;
 }
 
@@ -126,7 +199,7 @@ static bool press_solo(struct app *app, int key)
 
 static bool press_stops(struct app *app, int key)
 {
-    app->now.lamp[app->now.selected].stops += key == '.' ? stop_step : -stop_step;
+    app->now.lamp[app->now.selected].stops += key == APP_KEY_PAGE_UP ? stop_step : -stop_step;
     return true;
 }
 
@@ -190,8 +263,15 @@ const struct key_binding key_bindings[] = {
     {APP_KEY_TAB, "Tab", "panel", press_panel},
     {'+', "+ -", "exposure", press_exposure},
     {'-', NULL, NULL, press_exposure},
+    {'e', "E", "automatic exposure", press_auto_exposure},
+    {'t', "T", "next tone operator", press_tone},
     {'[', "[ ]", "slab: nearer, farther", press_dolly},
     {']', NULL, NULL, press_dolly},
+    {'d', "D", "slab: next interpolation", press_interpolation},
+    {'a', "A", "slab: next aperture", press_aperture},
+    {',', ", .", "slab: focus nearer, farther", press_focus},
+    {'.', NULL, NULL, press_focus},
+    {'o', "O", "panorama: little planet", press_planet},
     {'v', "V", "next view: colour, normals, ...", press_next_pass},
     {'r', "R", "reset", press_reset},
     {'l', "L", "hold: drags turn the light", press_hold_light},
@@ -199,13 +279,14 @@ const struct key_binding key_bindings[] = {
     {APP_KEY_RIGHT, NULL, NULL, press_turn},
     {APP_KEY_UP_ARROW, NULL, NULL, press_turn},
     {APP_KEY_DOWN_ARROW, NULL, NULL, press_turn},
-    {',', ", .", "light: dimmer, brighter", press_stops},
-    {'.', NULL, NULL, press_stops},
+    {APP_KEY_PAGE_UP, "Page up, down", "light: brighter, dimmer", press_stops},
+    {APP_KEY_PAGE_DOWN, NULL, NULL, press_stops},
     {'n', "N", "next light", press_next_light},
-    {'a', "A", "add a light", press_add},
-    {'d', "D", "delete the light", press_remove},
+    {'m', "M", "one more light", press_add},
+    {APP_KEY_DELETE, "Delete", "remove the light", press_remove},
+    {APP_KEY_BACKSPACE, NULL, NULL, press_remove},
     {'x', "X", "light off, on", press_off},
-    {'o', "O", "light alone (solo)", press_solo},
+    {'z', "Z", "light alone (solo)", press_solo},
     {'1', "1 2 3", "raking, double raking, dome", press_preset},
     {'2', NULL, NULL, press_preset},
     {'3', NULL, NULL, press_preset},

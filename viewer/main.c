@@ -44,10 +44,21 @@ static relume_status host_rig(void *user, const char *path)
     return session_load_rig(user, path);
 }
 
+static const double frame_s = 1.0 / 60;  // between frames when time is played
+static const double patience_s = 60;     // waiting for what never comes to rest
+
 static relume_status host_wait(void *user, double seconds)
 {
-    (void)seconds;
-    return session_draw(user);
+    const bool until_idle = seconds < 0;
+    double left = until_idle ? patience_s : seconds;
+    bool moves = true;
+    relume_status status = RELUME_OK;
+    for (; !status && left > 1e-9 && (moves || !until_idle); left -= frame_s) {
+        moves = session_pass(user, fmin(left, frame_s));
+        if (moves || until_idle)
+            status = session_draw(user);
+    }
+    return status;
 }
 
 static relume_status host_frame(void *user, const char *path)
@@ -132,12 +143,23 @@ static relume_status take_event(struct session *s, const struct context_event *e
     return session_drop(s, event->dropped);
 }
 
-static relume_status take_events(struct session *s, bool *changed)
+// Time in seconds since the last call.
+static double time_passed(double *then_ms)
+{
+    const double then = *then_ms;
+    *then_ms = now_ms();
+    return 1e-3 * (*then_ms - then);
+}
+
+static relume_status take_events(struct session *s, bool *changed, double *time_ms)
 {
     relume_status status = RELUME_OK;
     struct context_event event;
-    while (!status && !s->app.quit && s->backend->next(s->context, &event, !*changed))
+    *changed |= session_pass(s, time_passed(time_ms));
+    while (!status && !s->app.quit && s->backend->next(s->context, &event, !*changed)) {
+        *changed |= session_pass(s, time_passed(time_ms));
         status = take_event(s, &event, changed);
+    }
     return status;
 }
 
@@ -146,12 +168,13 @@ static relume_status live(struct session *s, struct script *script)
     relume_status status = RELUME_OK;
     bool more = script != NULL;
     bool changed = true;
+    double time_ms = now_ms();
     while (!status && !s->app.quit) {
         if (more)
             status = script_step(script, &more);
         changed |= more;
         if (!status)
-            status = take_events(s, &changed);
+            status = take_events(s, &changed, &time_ms);
         if (!status && changed && !s->app.quit)
             status = show_frame(s);
         changed = false;

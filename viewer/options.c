@@ -3,6 +3,8 @@
 #include "keys.h"
 #include "say.h"
 
+#include <relume/tone.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -119,6 +121,44 @@ static relume_status take_zoom(struct options *o, const char *name, const char *
     return status ? status : take_framing(o, name, RELUME_FRAME_LOOK, log);
 }
 
+static relume_status take_projection(struct options *o, const char *name, const char *text,
+                                     const struct relume_log *log)
+{
+    struct relume_look *look = &o->start.camera.look;
+    const bool planet = !strcmp(text, "planet");
+    if (strcmp(text, "perspective") && strcmp(text, "stereographic") && !planet)
+        return say(log, RELUME_EINVAL,
+                   "%s: expected perspective, stereographic or planet; found '%s'", name, text);
+    look->stereographic = strcmp(text, "perspective") != 0;
+    if (planet && look->tilt_deg == 0.0)
+        look->tilt_deg = -90.0;
+    if (planet && look->zoom == 0.0)
+        look->zoom = 0.5;
+    return take_framing(o, name, RELUME_FRAME_LOOK, log);
+}
+
+static relume_status take_interpolation(struct options *o, const char *name, const char *text,
+                                        const struct relume_log *log)
+{
+    if (!relume_interpolation_parse(&o->start.interpolation, text))
+        return RELUME_OK;
+    return say(log, RELUME_EINVAL, "%s: expected constant, linear or depth; found '%s'", name,
+               text);
+}
+
+static relume_status take_aperture(struct options *o, const char *name, const char *text,
+                                   const struct relume_log *log)
+{
+    return take_number(&o->start.aperture, name, text, 0, 1e9, log);
+}
+
+static relume_status take_focus(struct options *o, const char *name, const char *text,
+                                const struct relume_log *log)
+{
+    o->start.focused = true;
+    return take_number(&o->start.focus_z, name, text, -1e9, 1e9, log);
+}
+
 static relume_status take_size(struct options *o, const char *name, const char *text,
                                const struct relume_log *log)
 {
@@ -144,7 +184,28 @@ static relume_status take_threads(struct options *o, const char *name, const cha
 static relume_status take_exposure(struct options *o, const char *name, const char *text,
                                    const struct relume_log *log)
 {
+    o->start.auto_exposure = !strcmp(text, "auto");
+    if (o->start.auto_exposure)
+        return RELUME_OK;
     return take_number(&o->start.exposure_ev, name, text, -100, 100, log);
+}
+
+static relume_status take_tone(struct options *o, const char *name, const char *text,
+                               const struct relume_log *log)
+{
+    for (int i = 0; relume_tones[i]; i++)
+        if (!strcmp(relume_tones[i]->name, text)) {
+            o->start.tone = i;
+            return RELUME_OK;
+        }
+    return say(log, RELUME_EINVAL, "%s: expected linear, reinhard or filmic; found '%s'", name,
+               text);
+}
+
+static relume_status take_white(struct options *o, const char *name, const char *text,
+                                const struct relume_log *log)
+{
+    return take_number(&o->start.white, name, text, 1e-3, 1e6, log);
 }
 
 static relume_status take_offscreen(struct options *o, const char *name, const char *text,
@@ -196,8 +257,15 @@ static const struct option options[] = {
     {"--pan", "DEG", "panorama: turn right", take_pan},
     {"--tilt", "DEG", "panorama: look up", take_tilt},
     {"--zoom", "F", "panorama: 1 shows 90 degrees", take_zoom},
+    {"--projection", "P", "panorama: perspective, stereographic or planet", take_projection},
+    {"--interpolate", "I", "slab: constant, linear or depth; default: depth if there is any",
+     take_interpolation},
+    {"--aperture", "A", "slab: average the cameras within A/2 of the eye", take_aperture},
+    {"--focus", "Z", "slab: the plane at z = Z is sharp", take_focus},
     {"--size", "WxH", "pixels of the window or picture", take_size},
-    {"--exposure", "EV", "brighter by 2^EV", take_exposure},
+    {"--exposure", "EV", "brighter by 2^EV, or auto", take_exposure},
+    {"--tone", "T", "linear, reinhard or filmic; .exr, .hdr and .pfm stay linear", take_tone},
+    {"--white", "L", "reinhard: the luminance that becomes white; default: 4", take_white},
     {"--threads", "N", "threads that read files; default: all cores", take_threads},
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},
@@ -236,7 +304,8 @@ void options_help(void)
          "middle\n"
          "eye. Its picture fills --size; a window keeps the proportions.\n\n"
          "script: one event a line, # begins a comment:\n"
-         "        size W H              drag left|right X0 Y0 X1 Y1   wheel STEPS [X Y]\n"
+         "        size W H              wheel STEPS [X Y]\n"
+         "        drag left|right X0 Y0 X1 Y1 [S]   S: seconds that it takes\n"
          "        click X Y             press, release left|right X Y    move X Y\n"
          "        key K                 hold K, let K                    type TEXT\n"
          "        light SPEC            add SPEC                         rig FILE\n"

@@ -329,10 +329,10 @@ static bool light_buttons(panel *panel, app *app)
 {
     bool changed = false;
     if (ImGui::Button("add"))
-        changed |= keys_press(app, 'a');
+        changed |= keys_press(app, 'm');
     ImGui::SameLine();
     if (ImGui::Button("remove"))
-        changed |= keys_press(app, 'd');
+        changed |= keys_press(app, APP_KEY_DELETE);
     ImGui::SameLine();
     if (ImGui::Button("save rig"))
         app->wish = APP_WISH_SAVE_RIG;
@@ -513,7 +513,7 @@ static void help_window(const app *app, float scale)
         if (!b->shown)
             continue;
         ImGui::TextColored(ImVec4(1, 0.85f, 0.5f, 1), "%s", b->shown);
-        ImGui::SameLine(70 * scale);
+        ImGui::SameLine(110 * scale);
         ImGui::TextUnformatted(b->what);
     }
     ImGui::End();

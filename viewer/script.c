@@ -90,10 +90,19 @@ static bool take_key(struct script *s, int *out)
         const char *name;
         int key;
     } names[] = {
-        {"esc", APP_KEY_ESCAPE},          {"tab", APP_KEY_TAB},       {"enter", APP_KEY_ENTER},
-        {"backspace", APP_KEY_BACKSPACE}, {"delete", APP_KEY_DELETE}, {"left", APP_KEY_LEFT},
-        {"right", APP_KEY_RIGHT},         {"up", APP_KEY_UP_ARROW},   {"down", APP_KEY_DOWN_ARROW},
-        {"home", APP_KEY_HOME},           {"end", APP_KEY_END},
+        {"esc", APP_KEY_ESCAPE},
+        {"tab", APP_KEY_TAB},
+        {"enter", APP_KEY_ENTER},
+        {"backspace", APP_KEY_BACKSPACE},
+        {"delete", APP_KEY_DELETE},
+        {"left", APP_KEY_LEFT},
+        {"right", APP_KEY_RIGHT},
+        {"up", APP_KEY_UP_ARROW},
+        {"down", APP_KEY_DOWN_ARROW},
+        {"pageup", APP_KEY_PAGE_UP},
+        {"pagedown", APP_KEY_PAGE_DOWN},
+        {"home", APP_KEY_HOME},
+        {"end", APP_KEY_END},
     };
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (take_word(s, names[i].name)) {
@@ -130,15 +139,25 @@ static relume_status play_size(struct script *s)
 
 static relume_status play_drag(struct script *s)
 {
-    double n[4];
+    double n[5] = {0};
     enum app_button button;
-    if (!take_button(s, &button) || !take_numbers(s, n, 4))
-        return wrong(s, "drag left|right x0 y0 x1 y1");
+    relume_status status = RELUME_OK;
+    if (!take_button(s, &button) || !take_numbers(s, n, 4) ||
+        (!at_end(s) && (!take_numbers(s, n + 4, 1) || n[4] < 0 || n[4] > 3600)))
+        return wrong(s, "drag left|right x0 y0 x1 y1 [SECONDS]");
+    const int moves = n[4] > 0 ? 8 : 1;
     send(s, (struct app_event){.kind = APP_MOVE, .x = n[0], .y = n[1]});
     send(s, (struct app_event){.kind = APP_PRESS, .button = button, .x = n[0], .y = n[1]});
-    send(s, (struct app_event){.kind = APP_MOVE, .x = n[2], .y = n[3]});
+    for (int i = 1; !status && i <= moves; i++) {
+        const double part = (double)i / moves;
+        send(s, (struct app_event){.kind = APP_MOVE,
+                                   .x = n[0] + part * (n[2] - n[0]),
+                                   .y = n[1] + part * (n[3] - n[1])});
+        if (n[4] > 0)
+            status = s->host.wait(s->host.user, n[4] / moves);
+    }
     send(s, (struct app_event){.kind = APP_RELEASE, .button = button, .x = n[2], .y = n[3]});
-    return RELUME_OK;
+    return status;
 }
 
 static relume_status play_click(struct script *s)

@@ -3,6 +3,8 @@
 #include "lamps.h"
 #include "say.h"
 
+#include <relume/tone.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -90,6 +92,16 @@ static void describe_lines(struct session *s)
     s->lines[n] = NULL;
 }
 
+static relume_status check_depth(const relume_pack *pack, const struct app_state *start,
+                                 const struct relume_log *log)
+{
+    if (start->interpolation != RELUME_INTERPOLATE_DEPTH || relume_pack_info(pack)->has_depth)
+        return RELUME_OK;
+    return say(log, RELUME_EDATA,
+               "interpolation by depth needs to know where the surface is; expected a file with "
+               "depth");
+}
+
 relume_status session_open(struct session *s, const char *path, const struct app_state *start,
                            bool look_ahead)
 {
@@ -101,6 +113,8 @@ relume_status session_open(struct session *s, const char *path, const struct app
         return status;
     const struct app_file file = describe(pack);
     status = app_start(&app, &file, start, look_ahead, s->log);
+    if (!status)
+        status = check_depth(pack, start, s->log);
     if (status) {
         relume_pack_destroy(&pack);
         return status;
@@ -116,12 +130,19 @@ relume_status session_open(struct session *s, const char *path, const struct app
 
 // ---------------------------------------------------------------- drawing
 
+static relume_status pack_depth(struct relume_image *out, void *user, int view)
+{
+    return relume_pack_depth(out, user, view);
+}
+
 static relume_status make_renderer(struct session *s)
 {
     const struct relume_pack_info *info = relume_pack_info(s->pack);
     const struct code_source source = {pack_codes, pack_drop, s->pack};
-    return renderer_create(&s->renderer, &s->gl, &source, &info->geometry, info->uv, info->views,
-                           s->log);
+    const struct depth_source depth = {pack_depth, s->pack};
+    const relume_status status = renderer_create(&s->renderer, &s->gl, &source, &info->geometry,
+                                                 info->uv, info->views, s->log);
+    return status || !info->has_depth ? status : renderer_use_depth(&s->renderer, &depth);
 }
 
 relume_status session_start(struct session *s, const struct context_backend *backend, int width,
@@ -141,7 +162,12 @@ relume_status session_start(struct session *s, const struct context_backend *bac
 relume_status session_drop(struct session *s, const char *path)
 {
     const struct app was = s->app;
-    const struct app_state start = {.ball = was.now.ball};
+    const struct app_state start = {
+        .ball = was.now.ball,
+        .auto_exposure = was.now.auto_exposure,
+        .tone = was.now.tone,
+        .white = was.now.white,
+    };
     if (session_open(s, path, &start, true))
         return RELUME_OK;
     s->app.width = was.width;
@@ -178,9 +204,7 @@ bool session_send(struct session *s, const struct app_event *event)
 static void count_histogram(struct session *s)
 {
     const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
-    const float gain = exp2f((float)s->app.now.exposure_ev);
     struct relume_image frame;
-    (void)gain;
     memset(s->histogram, 0, sizeof s->histogram);
     if (renderer_read(&frame, &s->renderer))
         return;
@@ -193,6 +217,18 @@ static void count_histogram(struct session *s)
 }
 
 static relume_status grant_wish(struct session *s);
+
+// The first frame is drawn once more, with the exposure that it asks for.
+static relume_status meter(struct session *s)
+{
+    const double before = app_exposure_ev(&s->app);
+    double ev;
+    const relume_status status = renderer_meter(&ev, &s->renderer);
+    if (status)
+        return status;
+    app_meter(&s->app, ev);
+    return app_exposure_ev(&s->app) == before ? RELUME_OK : renderer_draw(&s->renderer, &s->app);
+}
 
 relume_status session_draw(struct session *s)
 {
@@ -208,13 +244,20 @@ relume_status session_draw(struct session *s)
         };
         (void)panel_build(s->panel, &s->app, &facts);
     }
-    const relume_status status = grant_wish(s);
-    return status ? status : renderer_draw(&s->renderer, &s->app);
+    relume_status status = grant_wish(s);
+    if (!status)
+        status = renderer_draw(&s->renderer, &s->app);
+    return status || !s->app.now.auto_exposure ? status : meter(s);
+}
+
+bool session_pass(struct session *s, double seconds)
+{
+    return app_advance(&s->app, seconds);
 }
 
 static void present_onto(struct session *s, GLuint framebuffer)
 {
-    renderer_present(&s->renderer, framebuffer);
+    renderer_present(&s->renderer, &s->app, framebuffer);
     if (panel_shown(&s->app))
         draw_panel(&s->drawing, &s->gl, s->panel, s->app.width, s->app.height);
 }
@@ -249,7 +292,11 @@ relume_status session_frame(struct session *s, const char *path)
         return status;
     if (!sees_something(s))
         return say(s->log, RELUME_EDATA, "%s: the eye sees nothing of the slab", s->name);
+    const struct relume_tone_params tone = {.tone = relume_tones[s->app.now.tone],
+                                            .white = s->app.now.white};
     status = renderer_read(&image, &s->renderer);
+    if (!status && !relume_image_saves_linear(path))
+        status = relume_tone_apply(&image, &tone);
     return status ? status : save(s, &image, path);
 }
 

@@ -49,6 +49,9 @@ relume_status session_draw(struct session *s);
 // The frame and the panel onto the screen.
 void session_present(struct session *s);
 
+// Let time pass for what moves by itself; returns whether the picture changed.
+bool session_pass(struct session *s, double seconds);
+
 // Draw and write: the picture alone, or as the screen would show it.
 relume_status session_frame(struct session *s, const char *path);
 relume_status session_shot(struct session *s, const char *path);

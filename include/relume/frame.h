@@ -31,13 +31,14 @@ struct relume_frame_params {
     const struct relume_log *log;
     unsigned cpu_off;  // as relume_relight_params
     int threads;       // default: all cores
-    bool constant;     // slab: nearest view
     // Where near lights meet views without depth: this far along every ray, world units; default:
     // planar views lie on z = 0, others are refused.
     double assume_depth;
     // Of the file's coder (relume_weight_grid_create), for near lights and environments in many
     // frames; default: made for the frame.
     const relume_weight_grid *grid;
+    enum relume_interpolation interpolation;  // slab; default: by depth where the file has it
+    double aperture, focus;                   // slab; as relume_view_params
 };
 #define relume_frame_params(...) (&(const struct relume_frame_params){__VA_ARGS__})
 

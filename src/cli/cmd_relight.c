@@ -29,6 +29,9 @@ static const struct option options[] = {
      "linear (clip, default), reinhard or filmic; .exr, .hdr and .pfm stay linear", 0, 0},
     {"--white", OPTION_NUMBER, "L", "reinhard: the luminance that becomes white; default: 4", 1e-3,
      1e6},
+    {"--pass", OPTION_TEXT, "NAME",
+     "colour, normals, specular, diffuse-gain, unsharp, luminance, false-colour, difference", 0, 0},
+    {"--capture", OPTION_TEXT, "CAPTURE", "--pass difference: the photographs", 0, 0},
     CPU_OPTION,
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
@@ -104,6 +107,20 @@ static relume_status parse_slab(const struct args *args, struct relume_frame_par
     return RELUME_OK;
 }
 
+static relume_status parse_pass(const struct args *args, struct relume_frame_params *params)
+{
+    const char *name = args_text(args, "--pass", relume_pass_name(RELUME_PASS_COLOUR));
+    const char *names[RELUME_PASSES + 1] = {NULL};
+    for (int i = 0; i < RELUME_PASSES; i++)
+        names[i] = relume_pass_name((enum relume_pass)i);
+    if (relume_pass_parse(&params->pass, name))
+        return unknown_name("--pass", name, names);
+    const bool difference = params->pass == RELUME_PASS_DIFFERENCE;
+    if (difference != args_has(args, "--capture"))
+        return usage_error("relight: expected --pass difference and --capture together");
+    return RELUME_OK;
+}
+
 // ---------------------------------------------------------------- exposure and tone
 
 struct developing {
@@ -146,11 +163,28 @@ static relume_status develop(struct relume_image *frame, struct developing d, co
     return RELUME_OK;
 }
 
+static relume_status open_capture(const struct args *args, relume_capture **capture)
+{
+    const char *path = args_text(args, "--capture", NULL);
+    return path ? relume_capture_open(capture, path, relume_capture_params(.log = args_log(args)))
+                : RELUME_OK;
+}
+
+// Linear pictures hold the vectors; others the codes (n + 1) / 2, as normal maps do.
+static void show_normals(struct relume_image *frame, const char *path)
+{
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    const size_t samples = (size_t)frame->width * (size_t)frame->height * 3;
+    for (size_t i = 0; !relume_image_saves_linear(path) && i < samples; i++)
+        frame->data[i] = relume_transfer_decode(srgb, 0.5f * frame->data[i] + 0.5f);
+}
+
 static relume_status render(const struct args *args, const struct relume_camera *camera,
                             struct relume_frame_params params, struct developing developing,
                             const struct relume_light *lights, int count)
 {
     relume_pack *pack;
+    relume_capture *capture = NULL;
     struct prefix_log about;
     struct relume_image frame = {0};
     const char *output = args_text(args, "-o", NULL);
@@ -162,12 +196,18 @@ static relume_status render(const struct args *args, const struct relume_camera 
     const double st_z = relume_pack_info(pack)->geometry.st_z;
     params.log = prefix_log(&about, args_log(args), args_input(args, 0));
     params.focus = args_number(args, "--focus", st_z) - st_z;
-    status = relume_frame(&frame, pack, camera, lights, count, &params);
+    status = open_capture(args, &capture);
+    params.capture = capture;
     if (!status)
+        status = relume_frame(&frame, pack, camera, lights, count, &params);
+    if (!status && params.pass == RELUME_PASS_NORMALS)
+        show_normals(&frame, output);
+    else if (!status)
         status = develop(&frame, developing, output);
     if (!status)
         status = relume_image_save(&frame, output, relume_image_params(.log = args_log(args)));
     relume_image_destroy(&frame);
+    relume_capture_destroy(&capture);
     relume_pack_destroy(&pack);
     return status;
 }
@@ -185,6 +225,8 @@ static relume_status run(const struct args *args)
     relume_status status = parse_camera(args, &camera);
     if (!status)
         status = parse_slab(args, &params);
+    if (!status)
+        status = parse_pass(args, &params);
     if (!status)
         status = parse_developing(args, &developing);
     if (!status)

@@ -2,6 +2,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "frame/passes.h"
 #include "math/vec.h"
 
 struct renderer {
@@ -112,6 +113,8 @@ static relume_status relight_view(const struct renderer *r, int view, struct rel
             out, codes, r->lights, r->light_count,
             relume_relight_params(.log = r->params.log, .cpu_off = r->params.cpu_off,
                                   .threads = r->params.threads, .surface = &surface, .grid = grid));
+    if (!status)
+        status = passes_apply(out, r->pack, view, codes, r->lights, r->light_count, &r->params);
     relume_image_destroy(&surface);
     if (!status && !log_progress(r->params.log, "relighting", 1.0))
         return RELUME_ECANCEL;

@@ -5,6 +5,7 @@
 #ifndef VIEWER_APP_H
 #define VIEWER_APP_H
 
+#include <relume/enhance.h>
 #include <relume/frame.h>
 #include <relume/relight.h>
 
@@ -54,6 +55,7 @@ struct app_file {
     int width, height;  // of a view
     int views;
     double uv_min[2], uv_max[2];  // slab: where cameras stand
+    bool compared;                // there is a capture to compare with
 };
 
 // What the viewer adds to a light. All zero is a light that shines as it says.
@@ -61,19 +63,6 @@ struct app_lamp {
     bool off, solo;
     double stops;  // its value is multiplied by 2^stops
     int entry;     // of the rig that it came from; -1: none
-};
-
-// What is made of the relit picture.
-enum app_pass {
-    APP_PASS_COLOUR = 0,
-    APP_PASS_NORMALS,
-    APP_PASS_SPECULAR,
-    APP_PASS_DIFFUSE_GAIN,
-    APP_PASS_UNSHARP,
-    APP_PASS_LUMINANCE,
-    APP_PASS_FALSE_COLOUR,
-    APP_PASS_DIFFERENCE,
-    APP_PASSES
 };
 
 // What can be reset.
@@ -94,7 +83,7 @@ struct app_state {
     int lights;
     int selected;  // light that drags and keys change
     bool ball;     // show the light's direction on a ball in the corner
-    enum app_pass pass;
+    enum relume_pass pass;
 };
 
 enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT, APP_DRAG_GIZMO };

@@ -83,6 +83,8 @@ static relume_status run_offscreen(struct session *s, struct options *o)
 {
     const struct script_host host = host_of(s);
     relume_status status = session_take_rig(s, &o->rig, &o->start);
+    if (!status && o->capture)
+        status = session_compare(s, o->capture);
     if (!status)
         status = session_open(s, o->file, &o->start, false);
     if (!status)
@@ -188,6 +190,8 @@ static relume_status run_window(struct session *s, struct options *o)
     struct script *script = NULL;
     o->start.ball = true;
     relume_status status = session_take_rig(s, &o->rig, &o->start);
+    if (!status && o->capture)
+        status = session_compare(s, o->capture);
     if (!status)
         status = session_open(s, o->file, &o->start, true);
     if (status)

@@ -224,6 +224,27 @@ static relume_status take_script(struct options *o, const char *name, const char
     return RELUME_OK;
 }
 
+static relume_status take_capture(struct options *o, const char *name, const char *text,
+                                  const struct relume_log *log)
+{
+    (void)name, (void)log;
+    o->capture = text;
+    return RELUME_OK;
+}
+
+static relume_status take_pass(struct options *o, const char *name, const char *text,
+                               const struct relume_log *log)
+{
+    const char *names[RELUME_PASSES + 1] = {NULL};
+    if (!relume_pass_parse(&o->start.pass, text))
+        return RELUME_OK;
+    for (int i = 0; i < RELUME_PASSES; i++)
+        names[i] = relume_pass_name((enum relume_pass)i);
+    const char *near = relume_name_nearest(text, names);
+    return say(log, RELUME_EINVAL, "%s: expected a view; found '%s'; did you mean '%s'?", name,
+               text, near ? near : names[0]);
+}
+
 static relume_status take_ball(struct options *o, const char *name, const char *text,
                                const struct relume_log *log)
 {
@@ -266,6 +287,9 @@ static const struct option options[] = {
     {"--exposure", "EV", "brighter by 2^EV, or auto", take_exposure},
     {"--tone", "T", "linear, reinhard or filmic; .exr, .hdr and .pfm stay linear", take_tone},
     {"--white", "L", "reinhard: the luminance that becomes white; default: 4", take_white},
+    {"--pass", "NAME", "colour, normals, specular, diffuse-gain, unsharp, luminance, ...",
+     take_pass},
+    {"--capture", "CAPTURE", "the photographs, for --pass difference", take_capture},
     {"--threads", "N", "threads that read files; default: all cores", take_threads},
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},

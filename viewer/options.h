@@ -10,6 +10,7 @@ struct options {
     const char *file;       // NULL: only help was asked for
     const char *offscreen;  // picture to write without a window, or NULL
     const char *script;     // events to play, or NULL
+    const char *capture;    // to compare with, or NULL
     bool window;            // play them in a window
     bool panel;             // begin with the panel
     struct app_state start;

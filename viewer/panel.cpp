@@ -365,21 +365,16 @@ static bool lights_section(panel *panel, app *app)
 
 // ---------------------------------------------------------------- other sections
 
-static const char *const pass_names[APP_PASSES] = {
-    "colour",  "normals",   "specular",     "diffuse gain",
-    "unsharp", "luminance", "false colour", "difference",
-};
-
-static bool choose_pass(app *app, const panel_facts *facts)
+static bool choose_pass(app *app)
 {
     bool changed = false;
-    if (!ImGui::BeginCombo("view", pass_names[app->now.pass]))
+    if (!ImGui::BeginCombo("view", relume_pass_name(app->now.pass)))
         return false;
-    for (int i = 0; i < APP_PASSES; i++) {
-        if (i == APP_PASS_DIFFERENCE && !facts->can_compare)
+    for (int i = 0; i < RELUME_PASSES; i++) {
+        if (i == RELUME_PASS_DIFFERENCE && !app->file.compared)
             continue;
-        if (ImGui::Selectable(pass_names[i], app->now.pass == i)) {
-            app->now.pass = (app_pass)i;
+        if (ImGui::Selectable(relume_pass_name((relume_pass)i), app->now.pass == i)) {
+            app->now.pass = (relume_pass)i;
             changed = true;
         }
     }
@@ -387,12 +382,12 @@ static bool choose_pass(app *app, const panel_facts *facts)
     return changed;
 }
 
-static bool picture_section(app *app, const panel_facts *facts)
+static bool picture_section(app *app)
 {
     const double least = -10, most = 10;
     bool changed = ImGui::SliderScalar("exposure", ImGuiDataType_Double, &app->now.exposure_ev,
                                        &least, &most, "%+.2f EV");
-    changed |= choose_pass(app, facts);
+    changed |= choose_pass(app);
     changed |= ImGui::Checkbox("ball", &app->now.ball);
     ImGui::SameLine();
     changed |= ImGui::Checkbox("handles", &app->gizmos);
@@ -487,7 +482,7 @@ static bool panel_window(panel *panel, app *app, const panel_facts *facts)
         environment_row(panel, app);
     }
     if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen))
-        changed |= picture_section(app, facts);
+        changed |= picture_section(app);
     panel->histogram = ImGui::CollapsingHeader("Histogram");
     if (panel->histogram)
         histogram_section(facts, panel->scale);

@@ -32,7 +32,6 @@ struct panel_facts {
     const uint32_t (*histogram)[3];   // [256] of display values, or NULL
     const struct relume_image *plot;  // of the inspector, drawn as PANEL_PLOT; NULL: none
     const char *plot_text;
-    bool can_compare;  // a capture is there to compare with
 };
 // Work through the events and make the triangles of the frame; changes `app` as the user asks.
 // Returns whether the picture changed.

@@ -45,6 +45,8 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
     if (!status)
         status = relighter_create(&r->relighter, gl, source, views, log);
     if (!status)
+        status = enhancer_create(&r->enhancer, gl, source, geometry, uv, views, log);
+    if (!status)
         status = create_programs(r);
     if (!status && geometry->projection == RELUME_SLAB) {
         status = relume_slab_create(&r->grid, geometry, uv, views);
@@ -61,6 +63,11 @@ relume_status renderer_use_depth(struct renderer *r, const struct depth_source *
     return r->grid ? depths_create(&r->depths, r->gl, r->grid, source) : RELUME_OK;
 }
 
+void renderer_use_capture(struct renderer *r, const relume_capture *capture)
+{
+    r->enhancer.capture = capture;
+}
+
 void renderer_destroy(struct renderer *r)
 {
     if (!r->gl)
@@ -70,6 +77,7 @@ void renderer_destroy(struct renderer *r)
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         program_destroy(programs[i], r->gl);
     relighter_destroy(&r->relighter);
+    enhancer_destroy(&r->enhancer);
     target_destroy(&r->frame, r->gl);
     target_destroy(&r->small, r->gl);
     target_destroy(&r->sum, r->gl);
@@ -214,6 +222,9 @@ static relume_status relight_needed(struct renderer *r, const struct app *app)
         r->relit[i] = NULL;
         if (r->needed[i])
             status = relighter_view(&r->relit[i], &r->relighter, i);
+        if (!status && r->needed[i] && app->now.pass != RELUME_PASS_COLOUR)
+            status = enhancer_view(&r->relit[i], &r->enhancer, i, r->relit[i], app->now.pass,
+                                   lights, count);
     }
     return status;
 }

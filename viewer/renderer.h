@@ -5,12 +5,14 @@
 #include "app.h"
 #include "depths.h"
 #include "draw.h"
+#include "enhancer.h"
 #include "relighter.h"
 
 struct renderer {
     const struct gl *gl;
     const struct relume_log *log;
     struct relighter relighter;
+    struct enhancer enhancer;
     struct program picture, slab, slab_depth, slab_lens, mean, panorama, ball, present;
     GLuint vertices;
     struct target frame;
@@ -33,6 +35,9 @@ void renderer_destroy(struct renderer *renderer);
 
 // The views of a slab have depth. RELUME_ENOMEM.
 relume_status renderer_use_depth(struct renderer *renderer, const struct depth_source *source);
+
+// A capture of the file to compare with, for RELUME_PASS_DIFFERENCE; it must outlive the renderer.
+void renderer_use_capture(struct renderer *renderer, const relume_capture *capture);
 
 // Draw the frame that `app` describes, linear, into renderer->frame.
 relume_status renderer_draw(struct renderer *renderer, const struct app *app);

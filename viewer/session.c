@@ -26,7 +26,12 @@ static void pack_drop(void *user, int view)
 static struct app_file describe(const relume_pack *pack)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
-    struct app_file file = {info->geometry, info->width, info->height, info->views, {0}, {0}};
+    struct app_file file = {
+        .geometry = info->geometry,
+        .width = info->width,
+        .height = info->height,
+        .views = info->views,
+    };
     for (int axis = 0; axis < 2; axis++)
         file.uv_min[axis] = file.uv_max[axis] = info->uv ? info->uv[0][axis] : 0.0;
     for (int i = 1; info->uv && i < info->views; i++)
@@ -102,6 +107,11 @@ static relume_status check_depth(const relume_pack *pack, const struct app_state
                "depth");
 }
 
+relume_status session_compare(struct session *s, const char *capture)
+{
+    return relume_capture_open(&s->capture, capture, relume_capture_params(.log = s->log));
+}
+
 relume_status session_open(struct session *s, const char *path, const struct app_state *start,
                            bool look_ahead)
 {
@@ -111,7 +121,8 @@ relume_status session_open(struct session *s, const char *path, const struct app
         relume_pack_open(&pack, path, relume_pack_params(.log = s->log, .threads = s->threads));
     if (status)
         return status;
-    const struct app_file file = describe(pack);
+    struct app_file file = describe(pack);
+    file.compared = s->capture != NULL;
     status = app_start(&app, &file, start, look_ahead, s->log);
     if (!status)
         status = check_depth(pack, start, s->log);
@@ -142,6 +153,7 @@ static relume_status make_renderer(struct session *s)
     const struct depth_source depth = {pack_depth, s->pack};
     const relume_status status = renderer_create(&s->renderer, &s->gl, &source, &info->geometry,
                                                  info->uv, info->views, s->log);
+    renderer_use_capture(&s->renderer, s->capture);
     return status || !info->has_depth ? status : renderer_use_depth(&s->renderer, &depth);
 }
 
@@ -175,6 +187,8 @@ relume_status session_drop(struct session *s, const char *path)
     s->app.letterbox = was.letterbox;
     s->app.panel = was.panel;
     s->app.gizmos = was.gizmos;
+    relume_capture_destroy(&s->capture);
+    s->app.file.compared = false;
     renderer_destroy(&s->renderer);
     return make_renderer(s);
 }
@@ -189,6 +203,7 @@ void session_close(struct session *s)
     if (s->context)
         s->backend->close(s->context);
     relume_pack_destroy(&s->pack);
+    relume_capture_destroy(&s->capture);
     relume_rig_destroy(&s->rig);
 }
 

@@ -16,7 +16,8 @@ struct session {
     void *context;
     struct gl gl;
     relume_pack *pack;
-    relume_rig *rig;  // owns what lights point at; the app's list says what shines
+    relume_capture *capture;  // of the file, to compare with, or NULL
+    relume_rig *rig;          // owns what lights point at; the app's list says what shines
     struct app app;
     struct renderer renderer;
     struct panel *panel;
@@ -34,6 +35,8 @@ struct session {
 // Open `path` and start the app; the session is untouched when that fails.
 relume_status session_open(struct session *s, const char *path, const struct app_state *start,
                            bool look_ahead);
+// A capture to compare the file with, before session_open. RELUME_EDATA, RELUME_ENOMEM.
+relume_status session_compare(struct session *s, const char *capture);
 // Get OpenGL and make what draws. RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EDATA.
 relume_status session_start(struct session *s, const struct context_backend *backend, int width,
                             int height);

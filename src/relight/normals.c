@@ -20,6 +20,7 @@ static const double bright_part = 0.10;             // highlights
 static const int rounds = 10;
 static const double tuning = 2.385;  // Cauchy: 95 % as good as least squares for normal errors
 static const double grazing = 0.05;  // cosines below are no evidence
+static const double black = 1e-3;    // albedo below which there is nothing but noise to fit
 
 struct fit {
     const struct relume_codes *codes;
@@ -176,11 +177,11 @@ static void fit_pixel(const struct fit *f, struct sample *s, size_t pixel, float
     }
     if (!f->params.plain)
         s = trim(s, &n);
-    if (!least_squares(&g, f, s, n) || !(vec3_length(g) > 1e-6))
+    if (!least_squares(&g, f, s, n) || !(vec3_length(g) > black))
         return;
     if (!f->params.plain && !fit_robustly(&g, f, s, n))
         return;
-    if (!(vec3_length(g) > 1e-6))
+    if (!(vec3_length(g) > black))
         return;
     g = vec3_unit(g);
     normal[0] = (float)g.x;

@@ -338,7 +338,7 @@ static bool on_move(struct app *app, const struct app_event *e)
     app->cursor[0] = e->x;
     app->cursor[1] = e->y;
     if (app->drag == APP_DRAG_NONE || (dx == 0 && dy == 0))
-        return false;
+        return app->inspect;
     if (app->drag == APP_DRAG_LIGHT)
         turn_light(app, dx, dy);
     else if (app->drag == APP_DRAG_GIZMO)

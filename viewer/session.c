@@ -174,6 +174,7 @@ relume_status session_start(struct session *s, const struct context_backend *bac
 relume_status session_drop(struct session *s, const char *path)
 {
     const struct app was = s->app;
+    inspect_destroy(&s->inspector);
     const struct app_state start = {
         .ball = was.now.ball,
         .auto_exposure = was.now.auto_exposure,
@@ -197,6 +198,7 @@ void session_close(struct session *s)
 {
     if (s->screen.texture)
         target_destroy(&s->screen, &s->gl);
+    inspect_destroy(&s->inspector);
     draw_panel_destroy(&s->drawing, &s->gl);
     panel_destroy(&s->panel);
     renderer_destroy(&s->renderer);
@@ -245,21 +247,43 @@ static relume_status meter(struct session *s)
     return app_exposure_ev(&s->app) == before ? RELUME_OK : renderer_draw(&s->renderer, &s->app);
 }
 
+static relume_status inspect(struct session *s, bool *shown)
+{
+    relume_status status = RELUME_OK;
+    if (!s->inspector.weights)
+        status = inspect_create(&s->inspector, s->pack, s->renderer.grid);
+    if (!status)
+        status = inspect_update(&s->inspector, &s->app, shown);
+    if (!status && *shown)
+        draw_panel_plot(&s->drawing, &s->gl, &s->inspector.plot);
+    return status;
+}
+
+static relume_status build_panel(struct session *s)
+{
+    const bool histogram = panel_wants_histogram(s->panel) && s->renderer.frame.texture;
+    bool plot = false;
+    if (histogram)
+        count_histogram(s);
+    const relume_status status = s->app.inspect ? inspect(s, &plot) : RELUME_OK;
+    const struct panel_facts facts = {
+        .file = s->name,
+        .line = s->lines,
+        .message = s->message,
+        .histogram = histogram ? (const uint32_t(*)[3])s->histogram : NULL,
+        .plot = plot ? &s->inspector.plot : NULL,
+        .plot_text = s->inspector.text,
+    };
+    if (!status)
+        (void)panel_build(s->panel, &s->app, &facts);
+    return status;
+}
+
 relume_status session_draw(struct session *s)
 {
-    if (panel_shown(&s->app)) {
-        const bool histogram = panel_wants_histogram(s->panel) && s->renderer.frame.texture;
-        if (histogram)
-            count_histogram(s);
-        const struct panel_facts facts = {
-            .file = s->name,
-            .line = s->lines,
-            .message = s->message,
-            .histogram = histogram ? (const uint32_t(*)[3])s->histogram : NULL,
-        };
-        (void)panel_build(s->panel, &s->app, &facts);
-    }
-    relume_status status = grant_wish(s);
+    relume_status status = panel_shown(&s->app) ? build_panel(s) : RELUME_OK;
+    if (!status)
+        status = grant_wish(s);
     if (!status)
         status = renderer_draw(&s->renderer, &s->app);
     return status || !s->app.now.auto_exposure ? status : meter(s);

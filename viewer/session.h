@@ -4,6 +4,7 @@
 
 #include "context.h"
 #include "draw_panel.h"
+#include "inspect.h"
 #include "renderer.h"
 
 #include <relume/pack.h>
@@ -22,7 +23,8 @@ struct session {
     struct renderer renderer;
     struct panel *panel;
     struct panel_drawing drawing;
-    struct target screen;  // of shots without a window
+    struct inspector inspector;  // made when first asked for
+    struct target screen;        // of shots without a window
     uint32_t histogram[256][3];
     char name[SESSION_TEXT];  // of the file, for the title
     char line[SESSION_LINES][SESSION_TEXT];

@@ -3,6 +3,7 @@
 #include "say.h"
 #include "script.h"
 #include "session.h"
+#include "settings.h"
 
 #include <math.h>
 #include <signal.h>
@@ -92,6 +93,8 @@ static relume_status run_offscreen(struct session *s, struct options *o)
     s->app.panel = o->panel;
     if (!status && o->script)
         status = script_play(o->script, &host);
+    if (!status && o->record)
+        status = session_record(s, o->kind, o->output, o->frames);
     if (!status && o->offscreen)
         status = (o->panel ? session_shot : session_frame)(s, o->offscreen);
     return status;
@@ -184,10 +187,40 @@ static relume_status live(struct session *s, struct script *script)
     return status;
 }
 
-static relume_status run_window(struct session *s, struct options *o)
+static bool has_near_light(const relume_rig *rig)
 {
-    const struct script_host host = host_of(s);
-    struct script *script = NULL;
+    for (int i = 0; i < relume_rig_count(rig); i++)
+        if (relume_light_is_near(relume_rig_entry(rig, i)->light.kind))
+            return true;
+    return false;
+}
+
+// The lights of the last time, where the command names none. Near ones belong to the scene that
+// they stood in.
+static void recall_rig(struct options *o, const struct settings *settings)
+{
+    if (o->rig || !settings->rig[0] || relume_rig_load(&o->rig, settings->rig, NULL))
+        return;
+    if (has_near_light(o->rig) || relume_rig_count(o->rig) > APP_LIGHTS)
+        relume_rig_destroy(&o->rig);
+}
+
+static void remember(struct session *s, struct settings *settings)
+{
+    const struct relume_log *log = s->log;
+    settings->width = s->app.width;
+    settings->height = s->app.height;
+    settings->panel = s->app.panel;
+    settings_save(settings);
+    s->log = NULL;  // a rig that cannot be kept is no news
+    if (settings->rig[0])
+        (void)session_save_rig(s, settings->rig);
+    s->log = log;
+}
+
+static relume_status open_window(struct session *s, struct options *o,
+                                 const struct settings *settings)
+{
     o->start.ball = true;
     relume_status status = session_take_rig(s, &o->rig, &o->start);
     if (!status && o->capture)
@@ -196,17 +229,37 @@ static relume_status run_window(struct session *s, struct options *o)
         status = session_open(s, o->file, &o->start, true);
     if (status)
         return status;
-    choose_size(&s->app, o->sized);
+    if (settings->width && !o->sized) {
+        s->app.width = settings->width;
+        s->app.height = settings->height;
+    } else {
+        choose_size(&s->app, o->sized);
+    }
     s->app.letterbox = true;
-    s->app.panel = o->panel;
+    s->app.panel = o->panel || settings->panel;
     status = session_start(s, &context_glfw, s->app.width, s->app.height);
+    if (!status)
+        s->backend->size(s->context, &s->app.width, &s->app.height);
+    return status;
+}
+
+static relume_status run_window(struct session *s, struct options *o)
+{
+    const struct script_host host = host_of(s);
+    struct settings settings = {0};
+    struct script *script = NULL;
+    if (!o->no_config) {
+        settings_load(&settings);
+        recall_rig(o, &settings);
+    }
+    relume_status status = open_window(s, o, &settings);
     if (!status && o->script)
         status = script_open(&script, o->script, &host);
-    if (status)
-        return status;
-    s->backend->size(s->context, &s->app.width, &s->app.height);
-    status = live(s, script);
+    if (!status)
+        status = live(s, script);
     script_close(&script);
+    if (!status && !o->no_config)
+        remember(s, &settings);
     return status;
 }
 
@@ -219,7 +272,8 @@ int main(int argc, char **argv)
     signal(SIGPIPE, SIG_IGN);
     relume_status status = options_parse(&options, argc, argv, &log);
     session.threads = options.threads;
-    const bool offscreen = options.offscreen || (options.script && !options.window);
+    const bool offscreen =
+        options.offscreen || options.record || (options.script && !options.window);
     if (!status && !options.file)
         options_help();
     else if (!status)

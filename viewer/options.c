@@ -245,6 +245,40 @@ static relume_status take_pass(struct options *o, const char *name, const char *
                text, near ? near : names[0]);
 }
 
+static relume_status take_record(struct options *o, const char *name, const char *text,
+                                 const struct relume_log *log)
+{
+    o->record = true;
+    if (!record_parse(&o->kind, text))
+        return RELUME_OK;
+    return say(log, RELUME_EINVAL, "%s: expected sweep or turntable; found '%s'", name, text);
+}
+
+static relume_status take_output(struct options *o, const char *name, const char *text,
+                                 const struct relume_log *log)
+{
+    (void)name, (void)log;
+    o->output = text;
+    return RELUME_OK;
+}
+
+static relume_status take_frames(struct options *o, const char *name, const char *text,
+                                 const struct relume_log *log)
+{
+    double n;
+    const relume_status status = take_number(&n, name, text, 1, 10000, log);
+    o->frames = status ? 0 : (int)n;
+    return status;
+}
+
+static relume_status take_no_config(struct options *o, const char *name, const char *text,
+                                    const struct relume_log *log)
+{
+    (void)name, (void)text, (void)log;
+    o->no_config = true;
+    return RELUME_OK;
+}
+
 static relume_status take_ball(struct options *o, const char *name, const char *text,
                                const struct relume_log *log)
 {
@@ -294,6 +328,10 @@ static const struct option options[] = {
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},
     {"--script", "EVENTS", "play a text file of events without a window", take_script},
+    {"--record", "KIND", "record a light sweep or a turntable without a window", take_record},
+    {"-o", "OUT", "--record: a folder of PNG files, or FILE.mp4 (by ffmpeg)", take_output},
+    {"--frames", "N", "--record: pictures of the round; default 72", take_frames},
+    {"--no-config", NULL, "neither read nor write what the window remembers", take_no_config},
     {"--window", NULL, "play --script in a window, which then stays", take_window},
     {"--panel", NULL, "begin with the panel; offscreen: draw it as well", take_panel},
     {"--ball", NULL, "offscreen: draw the ball that shows the light, as the window does",
@@ -404,6 +442,10 @@ relume_status options_parse(struct options *o, int argc, char **argv, const stru
         if (status)
             return status;
     }
+    if (o->record != (o->output != NULL))
+        return say(log, RELUME_EINVAL, "expected --record KIND and -o OUT together");
+    if (!o->frames)
+        o->frames = RECORD_FRAMES;
     if (!o->file)
         return say(log, RELUME_EINVAL, "expected 'relume-view FILE'; see 'relume-view --help'");
     return RELUME_OK;

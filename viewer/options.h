@@ -3,6 +3,7 @@
 #define VIEWER_OPTIONS_H
 
 #include "app.h"
+#include "record.h"
 
 #include <relume/rig.h>
 
@@ -11,8 +12,13 @@ struct options {
     const char *offscreen;  // picture to write without a window, or NULL
     const char *script;     // events to play, or NULL
     const char *capture;    // to compare with, or NULL
-    bool window;            // play them in a window
-    bool panel;             // begin with the panel
+    bool record;            // a recording of `kind` into `output`, `frames` long
+    enum record_kind kind;
+    const char *output;
+    int frames;
+    bool no_config;
+    bool window;  // play them in a window
+    bool panel;   // begin with the panel
     struct app_state start;
     relume_rig *rig;  // of --rig and --light, NULL without either
     bool sized;       // --size was given

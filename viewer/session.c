@@ -323,20 +323,61 @@ static relume_status save(struct session *s, struct relume_image *image, const c
     return status;
 }
 
+// The last frame; `linear` or by the app's tone.
+static relume_status read_frame(struct relume_image *image, struct session *s, bool linear)
+{
+    const struct relume_tone_params tone = {.tone = relume_tones[s->app.now.tone],
+                                            .white = s->app.now.white};
+    *image = (struct relume_image){0};
+    if (!sees_something(s))
+        return say(s->log, RELUME_EDATA, "%s: the eye sees nothing of the slab", s->name);
+    relume_status status = renderer_read(image, &s->renderer);
+    if (!status && !linear)
+        status = relume_tone_apply(image, &tone);
+    return status;
+}
+
 relume_status session_frame(struct session *s, const char *path)
 {
     struct relume_image image;
     relume_status status = session_draw(s);
+    if (!status)
+        status = read_frame(&image, s, relume_image_saves_linear(path));
+    return status ? status : save(s, &image, path);
+}
+
+static relume_status add_pictures(struct session *s, struct record *record, enum record_kind kind,
+                                  int frames)
+{
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < frames; i++) {
+        struct relume_image image = {0};
+        status = record_pose(&s->app, kind, (double)i / frames, s->log);
+        if (!status)
+            status = renderer_draw(&s->renderer, &s->app);
+        if (!status)
+            status = read_frame(&image, s, false);
+        if (!status)
+            status = record_add(record, &image);
+        relume_image_destroy(&image);
+    }
+    return status;
+}
+
+relume_status session_record(struct session *s, enum record_kind kind, const char *path, int frames)
+{
+    const struct app_state before = s->app.now;
+    struct record *record;
+    relume_status status = record_open(&record, path, s->log);
     if (status)
         return status;
-    if (!sees_something(s))
-        return say(s->log, RELUME_EDATA, "%s: the eye sees nothing of the slab", s->name);
-    const struct relume_tone_params tone = {.tone = relume_tones[s->app.now.tone],
-                                            .white = s->app.now.white};
-    status = renderer_read(&image, &s->renderer);
-    if (!status && !relume_image_saves_linear(path))
-        status = relume_tone_apply(&image, &tone);
-    return status ? status : save(s, &image, path);
+    s->app.now.ball = false;
+    status = add_pictures(s, record, kind, frames);
+    s->app.now = before;
+    if (!status)
+        return record_commit(&record);
+    record_abort(&record);
+    return status;
 }
 
 static relume_status prepare_screen(struct session *s)
@@ -517,6 +558,26 @@ static relume_status wish_exr(struct session *s)
     return wish_picture(s, ".exr");
 }
 
+static relume_status wish_recording(struct session *s, enum record_kind kind, const char *ending)
+{
+    char path[SESSION_TEXT + 16];
+    free_name(path, sizeof path, s, ending);
+    const relume_status status = session_record(s, kind, path, RECORD_FRAMES);
+    snprintf(s->message, sizeof s->message, "%.200s %s", path,
+             status ? "was not recorded" : "recorded");
+    return RELUME_OK;
+}
+
+static relume_status wish_sweep(struct session *s)
+{
+    return wish_recording(s, RECORD_SWEEP, "-sweep");
+}
+
+static relume_status wish_turntable(struct session *s)
+{
+    return wish_recording(s, RECORD_TURNTABLE, "-turntable");
+}
+
 static relume_status wish_save_rig(struct session *s)
 {
     char path[SESSION_TEXT + 16];
@@ -542,6 +603,8 @@ static relume_status grant_wish(struct session *s)
         [APP_WISH_PNG] = wish_png,
         [APP_WISH_EXR] = wish_exr,
         [APP_WISH_SAVE_RIG] = wish_save_rig,
+        [APP_WISH_SWEEP] = wish_sweep,
+        [APP_WISH_TURNTABLE] = wish_turntable,
         [APP_WISH_ADD_LIGHT] = wish_add_light,
     };
     const enum app_wish wish = s->app.wish;

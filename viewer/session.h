@@ -5,6 +5,7 @@
 #include "context.h"
 #include "draw_panel.h"
 #include "inspect.h"
+#include "record.h"
 #include "renderer.h"
 
 #include <relume/pack.h>
@@ -60,6 +61,11 @@ bool session_pass(struct session *s, double seconds);
 // Draw and write: the picture alone, or as the screen would show it.
 relume_status session_frame(struct session *s, const char *path);
 relume_status session_shot(struct session *s, const char *path);
+
+// Draw a round of `frames` pictures and write it; the app is as before afterwards. Errors of
+// record.h and session_draw.
+relume_status session_record(struct session *s, enum record_kind kind, const char *path,
+                             int frames);
 
 // A light from words, in place of all or beside them. RELUME_EINVAL, RELUME_EDATA with a sentence.
 relume_status session_light(struct session *s, const char *spec, bool replace);

@@ -1,0 +1,87 @@
+#!/bin/sh
+# relume-view in a real window, by real pointer and key events: a virtual X server and xdotool.
+. "$(dirname "$0")/lib.sh"
+
+for program in Xvfb xdotool; do
+    command -v "$program" >/dev/null 2>&1 && continue
+    skip 'a window and a pointer' "$program is not installed"
+    exit 0
+done
+
+size=256
+"$sphere" photos --size $size --lights 40 --hemisphere && "$RELUME" encode -q photos -o ball.exr || exit 1
+
+Xvfb -displayfd 3 -screen 0 800x800x24 -nolisten tcp 3>display.txt 2>xvfb.txt &
+server=$!
+viewer=
+trap 'kill $viewer $server 2>/dev/null; wait 2>/dev/null; cd /; rm -rf "$work"' EXIT
+tries=0
+until [ -s display.txt ] || [ $tries -eq 100 ]; do sleep 0.1; tries=$((tries + 1)); done
+DISPLAY=:$(cat display.txt)
+export DISPLAY
+unset WAYLAND_DISPLAY
+
+"$VIEWER" ball.exr --size ${size}x$size --no-config >view.txt 2>&1 &
+viewer=$!
+window=$(timeout 30 xdotool search --sync --onlyvisible --name 'ball.exr' | head -n 1)
+if [ -z "$window" ]; then
+    not_ok 'a window opens' "$(cat view.txt xvfb.txt | head -c 600)"
+    finish
+    exit 1
+fi
+ok 'a window opens'
+xdotool windowmove "$window" 0 0 windowfocus "$window"
+
+# press S and wait for the picture that it saves
+picture() { # number
+    file=$(printf 'ball-%04d.png' "$1")
+    xdotool key s
+    tries=0
+    until [ -s "$file" ] || [ $tries -eq 100 ]; do sleep 0.1; tries=$((tries + 1)); done
+}
+# the tool's own picture under the light that the drag should make: one of 255, for either rounding
+shows() { # name, picture, SPEC
+    if [ ! -s "$2" ]; then not_ok "$1" "$2 was not saved; $(cat view.txt)"; return; fi
+    "$RELUME" relight ball.exr -o want.png --light "$3"
+    "$RELUME" compare "$2" want.png >difference.txt
+    above "$1" "$(awk '$1 == "psnr_db" { print $2 }' difference.txt)" 45
+}
+drag() { # button, x, y, x, y
+    xdotool mousemove "$2" "$3" mousedown "$1" mousemove $((($2 + $4) / 2)) $((($3 + $5) / 2)) \
+        mousemove "$4" "$5" mouseup "$1"
+    sleep 0.3
+}
+
+xdotool key b # the ball in the corner is no part of the picture
+picture 1
+shows 'lit from the front' ball-0001.png 'dir 0 0 1'
+drag 3 100 128 132 128 # 32 of 256 pixels: 22.5 degrees to the right
+picture 2
+shows 'a drag turns the light' ball-0002.png 'dir 0.382683 0 0.923880'
+differ 'other pixels' ball-0001.png ball-0002.png
+xdotool key Tab
+sleep 0.3
+drag 1 76 126 109 126 # from the middle of the panel's ball to 0.6 of its radius
+picture 3
+shows "the panel's ball turns the light" ball-0003.png 'dir 0.6 0 0.8'
+xdotool key Tab windowsize "$window" 1 1
+sleep 0.3
+xdotool windowsize "$window" $size $size
+sleep 0.3
+picture 4
+same 'a window of one pixel and back' ball-0003.png ball-0004.png
+xdotool windowunmap "$window"
+sleep 0.3
+xdotool windowmap "$window" windowfocus "$window"
+sleep 0.3
+xdotool key Escape
+status=none
+tries=0
+while [ $tries -lt 50 ] && kill -0 $viewer 2>/dev/null; do sleep 0.1; tries=$((tries + 1)); done
+if kill -0 $viewer 2>/dev/null; then not_ok 'Esc quits' 'it is still there'; else
+    wait $viewer
+    status=$?
+    viewer=
+    if [ $status -eq 0 ]; then ok 'Esc quits'; else not_ok 'Esc quits' "status $status: $(cat view.txt)"; fi
+fi
+finish

@@ -1,0 +1,380 @@
+// Normals from relit reflectance, and the passes that use them, against closed forms
+#include "test.h"
+
+enum { SIDE = 24, LIGHTS = 49 };
+
+static const float albedo[3] = {0.8f, 0.5f, 0.3f};
+
+// A file whose table basis holds exactly the samples that it is given: [light][pixel][rgb].
+struct table_file {
+    relume_coder *coder;
+    struct relume_codes codes;
+    uint16_t *memory;
+    const void **plane;
+    float *scale, *offset;
+    struct relume_vec3 light[LIGHTS];
+};
+
+static void make_lights(struct relume_vec3 *light)
+{
+    for (int i = 0; i < LIGHTS; i++) {
+        const double z = 0.15 + 0.84 * (i + 0.5) / LIGHTS;
+        const double phi = 2.399963229728653 * i;
+        light[i] = (struct relume_vec3){sqrt(1 - z * z) * cos(phi), sqrt(1 - z * z) * sin(phi), z};
+    }
+}
+
+static void make_file(struct table_file *f, const float *samples)
+{
+    const size_t pixels = SIDE * SIDE;
+    CHECK_OK(relume_coder_create(&f->coder, &relume_basis_table, f->light, LIGHTS,
+                                 relume_coder_params(.hemispherical = true)));
+    const struct relume_coder_info *info = relume_coder_info(f->coder);
+    assert_int_equal(info->coefficients, LIGHTS);
+    f->memory = calloc(3 * LIGHTS * pixels, sizeof *f->memory);
+    f->plane = calloc(3 * LIGHTS, sizeof *f->plane);
+    f->scale = calloc(3 * LIGHTS, sizeof *f->scale);
+    f->offset = calloc(3 * LIGHTS, sizeof *f->offset);
+    for (int k = 0; k < LIGHTS; k++)
+        for (int c = 0; c < 3; c++) {
+            const int p = relume_coder_plane(info, k, c);
+            uint16_t *plane = f->memory + (size_t)p * pixels;
+            f->plane[p] = plane;
+            f->scale[p] = 4.0f / 65535;
+            for (size_t i = 0; i < pixels; i++)
+                plane[i] =
+                    (uint16_t)lrintf(samples[3 * ((size_t)k * pixels + i) + (size_t)c] * 65535 / 4);
+        }
+    f->codes = (struct relume_codes){
+        .coder = f->coder,
+        .domain = RELUME_DOMAIN_LINEAR,
+        .width = SIDE,
+        .height = SIDE,
+        .planes = 3 * LIGHTS,
+        .storage = RELUME_STORE_16,
+        .plane = f->plane,
+        .scale = f->scale,
+        .offset = f->offset,
+    };
+}
+
+static void free_file(struct table_file *f)
+{
+    relume_coder_destroy(&f->coder);
+    free(f->memory);
+    free(f->plane);
+    free(f->scale);
+    free(f->offset);
+}
+
+static double dot(struct relume_vec3 a, struct relume_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+// The front of a sphere, out to 60 degrees.
+static struct relume_vec3 sphere_normal(int pixel)
+{
+    const double reach = sin(M_PI / 3) / sqrt(2);
+    const double x = reach * (2 * (pixel % SIDE + 0.5) / SIDE - 1);
+    const double y = reach * (1 - 2 * (pixel / SIDE + 0.5) / SIDE);
+    return (struct relume_vec3){x, y, sqrt(1 - x * x - y * y)};
+}
+
+// Lambertian, with shadows thrown on every fifth sample and, where asked for, a narrow highlight.
+static float *make_samples(const struct relume_vec3 *light, bool spoiled)
+{
+    const size_t pixels = SIDE * SIDE;
+    float *samples = calloc(3 * LIGHTS * pixels, sizeof *samples);
+    uint32_t random = 5;
+    for (int k = 0; k < LIGHTS; k++)
+        for (size_t i = 0; i < pixels; i++) {
+            const struct relume_vec3 n = sphere_normal((int)i);
+            const struct relume_vec3 h = {light[k].x, light[k].y, light[k].z + 1};
+            const bool shadow = spoiled && test_random(&random) % 5 == 0;
+            const double lobe = spoiled ? pow(fmax(dot(n, h) / sqrt(dot(h, h)), 0), 200) : 0;
+            for (int c = 0; c < 3; c++)
+                samples[3 * ((size_t)k * pixels + i) + (size_t)c] =
+                    shadow ? 0.01f : (float)(albedo[c] * fmax(dot(n, light[k]), 0) + lobe);
+        }
+    return samples;
+}
+
+static double worst_degrees(const struct relume_normals *normals, double *median)
+{
+    double angle[SIDE * SIDE], most = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const float *g = normals->normal.data + 3 * i;
+        const struct relume_vec3 got = {(double)g[0], (double)g[1], (double)g[2]};
+        CHECK_NEAR(dot(got, got), 1.0, 1e-5);
+        angle[i] = acos(fmin(dot(got, sphere_normal(i)), 1.0)) * 180 / M_PI;
+        most = fmax(most, angle[i]);
+    }
+    for (int i = 0; i < SIDE * SIDE; i++)  // a short sort
+        for (int k = i + 1; k < SIDE * SIDE; k++)
+            if (angle[k] < angle[i]) {
+                const double keep = angle[i];
+                angle[i] = angle[k];
+                angle[k] = keep;
+            }
+    *median = angle[SIDE * SIDE / 2];
+    return most;
+}
+
+static void fit(struct relume_normals *out, bool spoiled, bool plain, int threads)
+{
+    struct table_file f;
+    make_lights(f.light);
+    float *samples = make_samples(f.light, spoiled);
+    make_file(&f, samples);
+    CHECK_OK(relume_normals_fit(out, &f.codes,
+                                relume_normals_params(.plain = plain, .threads = threads)));
+    free_file(&f);
+    free(samples);
+}
+
+// Attached shadows are weighed zero, so that the only error is that of 16-bit codes: 3e-5 of
+// samples up to 0.8, some 0.01 degrees.
+static void a_matt_sphere_is_exact(void **state)
+{
+    (void)state;
+    struct relume_normals n;
+    double median;
+    fit(&n, false, false, 0);
+    const double worst = worst_degrees(&n, &median);
+    print_message("  worst %.4f, median %.4f degrees\n", worst, median);
+    assert_true(worst < 0.05);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        for (int c = 0; c < 3; c++)
+            CHECK_NEAR(n.albedo.data[3 * i + c], albedo[c], 1e-3);
+    relume_normals_destroy(&n);
+}
+
+// A fifth of the samples in shadow and a highlight: the fit stays within a degree, where plain
+// least squares is off by several.
+static void shadows_and_highlights_are_outvoted(void **state)
+{
+    (void)state;
+    struct relume_normals robust, plain;
+    double median, plain_median;
+    fit(&robust, true, false, 0);
+    fit(&plain, true, true, 0);
+    const double worst = worst_degrees(&robust, &median);
+    (void)worst_degrees(&plain, &plain_median);
+    print_message("  worst %.3f, median %.3f; plain median %.3f degrees\n", worst, median,
+                  plain_median);
+    assert_true(median < 0.2);
+    assert_true(plain_median > 3);
+    relume_normals_destroy(&robust);
+    relume_normals_destroy(&plain);
+}
+
+static void threads_make_no_difference(void **state)
+{
+    (void)state;
+    struct relume_normals one, seven;
+    fit(&one, true, false, 1);
+    fit(&seven, true, false, 7);
+    const size_t bytes = 3 * SIDE * SIDE * sizeof(float);
+    assert_memory_equal(one.normal.data, seven.normal.data, bytes);
+    assert_memory_equal(one.albedo.data, seven.albedo.data, bytes);
+    relume_normals_destroy(&one);
+    relume_normals_destroy(&seven);
+}
+
+static void black_pixels_have_no_normal(void **state)
+{
+    (void)state;
+    struct table_file f;
+    struct relume_normals n;
+    make_lights(f.light);
+    float *samples = calloc(3 * LIGHTS * SIDE * SIDE, sizeof *samples);
+    make_file(&f, samples);
+    CHECK_OK(relume_normals_fit(&n, &f.codes, NULL));
+    for (int i = 0; i < 3 * SIDE * SIDE; i++)
+        assert_true(n.normal.data[i] == 0 && n.albedo.data[i] == 0);
+    relume_normals_destroy(&n);
+    free_file(&f);
+    free(samples);
+}
+
+// Lights in one plane say nothing of the slope across it.
+static void lights_in_a_plane_are_refused(void **state)
+{
+    (void)state;
+    struct test_log log;
+    struct relume_vec3 light[8];
+    relume_coder *coder;
+    struct relume_normals n;
+    test_log_init(&log);
+    for (int i = 0; i < 8; i++)
+        light[i] = (struct relume_vec3){sin(0.1 * i), 0, cos(0.1 * i)};
+    CHECK_OK(relume_coder_create(&coder, &relume_basis_table, light, 8,
+                                 relume_coder_params(.hemispherical = true)));
+    const struct relume_codes codes = {.coder = coder, .width = 4, .height = 4};
+    assert_int_equal(relume_normals_fit(&n, &codes, relume_normals_params(.log = &log.log)),
+                     RELUME_EDATA);
+    assert_int_equal(log.lines, 1);
+    assert_null(n.normal.data);
+    relume_coder_destroy(&coder);
+}
+
+// ---------------------------------------------------------------- passes
+
+struct scene {
+    struct relume_normals normals;
+    struct relume_image image;
+    struct relume_light light;
+};
+
+static struct scene make_scene(void)
+{
+    struct scene s = {.light = {.direction = {0, 0, 2}, .rgb = {1, 2, 0.5f}}};
+    CHECK_OK(relume_image_create(&s.normals.normal, 8, 4, 3));
+    CHECK_OK(relume_image_create(&s.normals.albedo, 8, 4, 3));
+    CHECK_OK(relume_image_create(&s.image, 8, 4, 3));
+    for (int i = 0; i < 32; i++) {
+        s.normals.normal.data[3 * i] = i % 8 < 4 ? 0.6f : -0.6f;
+        s.normals.normal.data[3 * i + 2] = 0.8f;
+        for (int c = 0; c < 3; c++) {
+            s.normals.albedo.data[3 * i + c] = 0.5f;
+            s.image.data[3 * i + c] = 0.5f * 0.8f * s.light.rgb[c];
+        }
+    }
+    return s;
+}
+
+static void free_scene(struct scene *s)
+{
+    relume_normals_destroy(&s->normals);
+    relume_image_destroy(&s->image);
+}
+
+static void apply(struct scene *s, enum relume_pass pass, const struct relume_pass_params *params)
+{
+    CHECK_OK(relume_pass_apply(&s->image, pass, &s->normals, &s->light, 1, params));
+}
+
+// The half vector is +z itself: cosine 0.8.
+static void a_highlight_is_added(void **state)
+{
+    (void)state;
+    struct scene s = make_scene();
+    apply(&s, RELUME_PASS_SPECULAR, relume_pass_params(.specular = 0.25f, .exponent = 10));
+    for (int c = 0; c < 3; c++)
+        CHECK_NEAR(s.image.data[c], s.light.rgb[c] * (0.4 + 0.25 * pow(0.8, 10)), 1e-6);
+    free_scene(&s);
+}
+
+// f + (g - 1)(f - albedo): 0.4 is 0.1 below the albedo of 0.5, three times that is 0.3.
+static void diffuse_gain_keeps_the_maximum(void **state)
+{
+    (void)state;
+    struct scene s = make_scene();
+    apply(&s, RELUME_PASS_DIFFUSE_GAIN, relume_pass_params(.gain = 3));
+    CHECK_NEAR(s.image.data[0], 0.2, 1e-6);
+    CHECK_NEAR(s.image.data[1], 0.4, 1e-6);
+    for (int i = 0; i < 96; i++)  // where the surface faces the light nothing changes
+        s.image.data[i] = s.normals.albedo.data[i] * s.light.rgb[i % 3];
+    apply(&s, RELUME_PASS_DIFFUSE_GAIN, relume_pass_params(.gain = 3));
+    CHECK_NEAR(s.image.data[1], 1.0, 1e-6);
+    free_scene(&s);
+}
+
+// A step from +0.6 to -0.6 in the middle of eight columns; the mean over three rows and columns.
+static void unsharp_exaggerates_detail(void **state)
+{
+    (void)state;
+    struct scene s = make_scene();
+    struct relume_image detail;
+    CHECK_OK(relume_normals_detail(&detail, &s.normals.normal, 1, 2));
+    CHECK_NEAR(detail.data[3 * 1], 0, 1e-6);
+    CHECK_NEAR(detail.data[3 * 3], 0.4, 1e-6);
+    CHECK_NEAR(detail.data[3 * 4], -0.4, 1e-6);
+    CHECK_NEAR(detail.data[3 * 3 + 2], 0, 1e-6);
+    relume_image_destroy(&detail);
+    s.light.direction = (struct relume_vec3){1, 0, 0};
+    apply(&s, RELUME_PASS_UNSHARP, relume_pass_params(.gain = 0.5f, .radius = 1));
+    CHECK_NEAR(s.image.data[3 * 3], 0.4 + 0.5 * 0.5 * 0.4, 1e-6);
+    CHECK_NEAR(s.image.data[3 * 4 + 1], 0.8 - 2 * 0.5 * 0.5 * 0.4, 1e-6);
+    free_scene(&s);
+}
+
+static void luminance_and_false_colour(void **state)
+{
+    (void)state;
+    struct scene s = make_scene();
+    const double y = 0.4 * (0.2126 * 1 + 0.7152 * 2 + 0.0722 * 0.5);
+    apply(&s, RELUME_PASS_LUMINANCE, NULL);
+    for (int c = 0; c < 3; c++)
+        CHECK_NEAR(s.image.data[c], y, 1e-6);
+    double before = -1;
+    for (int i = 0; i <= 20; i++) {  // lighter and lighter
+        for (int c = 0; c < 3; c++)
+            s.image.data[c] = (float)(i / 20.0);
+        apply(&s, RELUME_PASS_FALSE_COLOUR, NULL);
+        const double lightness = 0.2126 * (double)s.image.data[0] +
+                                 0.7152 * (double)s.image.data[1] +
+                                 0.0722 * (double)s.image.data[2];
+        assert_true(lightness > before);
+        before = lightness;
+    }
+    CHECK_NEAR(s.image.data[0], 1.0, 1e-6);
+    free_scene(&s);
+}
+
+static void differences_and_wrong_sizes(void **state)
+{
+    (void)state;
+    struct scene s = make_scene();
+    struct relume_image other, small;
+    CHECK_OK(relume_image_create(&other, 8, 4, 3));
+    CHECK_OK(relume_image_create(&small, 4, 4, 3));
+    other.data[1] = 1.0f;
+    apply(&s, RELUME_PASS_DIFFERENCE, relume_pass_params(.reference = &other));
+    CHECK_NEAR(s.image.data[0], 0.4, 1e-6);
+    CHECK_NEAR(s.image.data[1], 0.2, 1e-6);
+    assert_int_equal(relume_pass_apply(&s.image, RELUME_PASS_DIFFERENCE, NULL, NULL, 0,
+                                       relume_pass_params(.reference = &small)),
+                     RELUME_EINVAL);
+    assert_int_equal(relume_pass_apply(&s.image, RELUME_PASS_DIFFERENCE, NULL, NULL, 0, NULL),
+                     RELUME_EINVAL);
+    assert_int_equal(relume_pass_apply(&small, RELUME_PASS_NORMALS, &s.normals, NULL, 0, NULL),
+                     RELUME_EINVAL);
+    assert_int_equal(relume_pass_apply(&s.image, RELUME_PASS_UNSHARP, NULL, NULL, 0, NULL),
+                     RELUME_EINVAL);
+    relume_image_destroy(&other);
+    relume_image_destroy(&small);
+    free_scene(&s);
+}
+
+static void passes_have_names(void **state)
+{
+    (void)state;
+    for (int i = 0; i < RELUME_PASSES; i++) {
+        enum relume_pass pass;
+        CHECK_OK(relume_pass_parse(&pass, relume_pass_name((enum relume_pass)i)));
+        assert_int_equal(pass, i);
+    }
+    enum relume_pass ignored;
+    assert_int_equal(relume_pass_parse(&ignored, "normal"), RELUME_EINVAL);
+    assert_null(relume_pass_name(RELUME_PASSES));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_matt_sphere_is_exact),
+        cmocka_unit_test(shadows_and_highlights_are_outvoted),
+        cmocka_unit_test(threads_make_no_difference),
+        cmocka_unit_test(black_pixels_have_no_normal),
+        cmocka_unit_test(lights_in_a_plane_are_refused),
+        cmocka_unit_test(a_highlight_is_added),
+        cmocka_unit_test(diffuse_gain_keeps_the_maximum),
+        cmocka_unit_test(unsharp_exaggerates_detail),
+        cmocka_unit_test(luminance_and_false_colour),
+        cmocka_unit_test(differences_and_wrong_sizes),
+        cmocka_unit_test(passes_have_names),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,300 @@
+// The panel without a window: real clicks change the app, and it is drawn; passes and the inspector
+// against the library
+#include "fixture.h"
+
+#include "draw_panel.h"
+#include "enhancer.h"
+#include "inspect.h"
+#include "lamps.h"
+
+static struct app make_app(void)
+{
+    const struct app_file file = {
+        .geometry = {.projection = RELUME_PLANAR, .window_min = {-1, -1}, .window_max = {1, 1}},
+        .width = 400,
+        .height = 400,
+        .views = 1,
+    };
+    const struct app_state start = {0};
+    struct app app;
+    assert_int_equal(app_start(&app, &file, &start, false, &fixture_log), RELUME_OK);
+    app.width = 640;
+    app.height = 560;
+    app.panel = true;
+    return app;
+}
+
+static struct panel *make_panel(struct app *app)
+{
+    static const struct panel_facts none = {0};
+    struct panel *panel;
+    assert_int_equal(panel_create(&panel, 1), RELUME_OK);
+    panel_build(panel, app, &none);
+    panel_build(panel, app, &none);
+    return panel;
+}
+
+static bool tell(struct panel *panel, enum app_event_kind kind, double x, double y)
+{
+    const struct app_event e = {.kind = kind, .x = x, .y = y};
+    return panel_takes(panel, &e);
+}
+
+static bool drag(struct panel *panel, struct app *app, double x0, double y0, double x1, double y1)
+{
+    static const struct panel_facts none = {0};
+    (void)tell(panel, APP_MOVE, x0, y0);
+    assert_true(tell(panel, APP_PRESS, x0, y0));
+    assert_true(tell(panel, APP_MOVE, x1, y1));
+    assert_true(tell(panel, APP_RELEASE, x1, y1));
+    return panel_build(panel, app, &none);
+}
+
+// ---------------------------------------------------------------- events
+
+// The ball of the first light has its middle at (76, 126) and a radius of 55 pixels.
+static void the_ball_turns_the_light(void **state)
+{
+    (void)state;
+    struct app app = make_app();
+    struct panel *panel = make_panel(&app);
+    assert_true(drag(panel, &app, 76, 126, 76 + 33, 126 - 22));
+    const struct relume_vec3 d = app.now.light[0].direction;
+    assert_float_equal(d.x, 0.6, 0.02);  // pixels: 1 / 55
+    assert_float_equal(d.y, 0.4, 0.02);
+    assert_float_equal(d.x * d.x + d.y * d.y + d.z * d.z, 1, 1e-9);
+    panel_destroy(&panel);
+}
+
+static void a_click_turns_the_light_off(void **state)
+{
+    (void)state;
+    struct app app = make_app();
+    struct panel *panel = make_panel(&app);
+    assert_true(drag(panel, &app, 25, 49, 25, 49));
+    assert_true(app.now.lamp[0].off);
+    assert_true(drag(panel, &app, 25, 49, 25, 49));
+    assert_false(app.now.lamp[0].off);
+    panel_destroy(&panel);
+}
+
+// What begins beside the panel is the app's, wherever it ends; the wheel goes to what is under it.
+static void the_picture_keeps_its_events(void **state)
+{
+    (void)state;
+    struct app app = make_app();
+    struct panel *panel = make_panel(&app);
+    assert_false(tell(panel, APP_PRESS, 500, 300));
+    assert_false(tell(panel, APP_MOVE, 76, 126));
+    assert_false(tell(panel, APP_RELEASE, 76, 126));
+    assert_false(tell(panel, APP_WHEEL, 500, 300));
+    assert_true(tell(panel, APP_WHEEL, 76, 126));
+    const struct app_event key = {.kind = APP_KEY_DOWN, .key = 'r'};
+    assert_false(panel_takes(panel, &key));
+    panel_destroy(&panel);
+}
+
+static void text_goes_into_the_field(void **state)
+{
+    (void)state;
+    static const struct panel_facts none = {0};
+    struct app app = make_app();
+    struct panel *panel = make_panel(&app);
+    drag(panel, &app, 60, 269, 60, 269);  // the field for a SPEC
+    for (const char *c = "dir 1 0 1"; *c; c++) {
+        const struct app_event e = {.kind = APP_TEXT, .key = *c};
+        assert_true(panel_takes(panel, &e));
+    }
+    const struct app_event down = {.kind = APP_KEY_DOWN, .key = APP_KEY_ENTER};
+    assert_true(panel_takes(panel, &down));
+    panel_build(panel, &app, &none);
+    assert_int_equal(app.wish, APP_WISH_ADD_LIGHT);
+    assert_string_equal(app.spec, "dir 1 0 1");
+    panel_destroy(&panel);
+}
+
+static void tiny_frames_do_no_harm(void **state)
+{
+    (void)state;
+    static const struct panel_facts none = {0};
+    struct app app = make_app();
+    struct panel *panel = make_panel(&app);
+    app.help = app.inspect = app.gizmos = true;
+    for (int side = 1; side < 100; side += 7) {
+        app.width = app.height = side;
+        panel_build(panel, &app, &none);
+    }
+    panel_destroy(&panel);
+}
+
+// ---------------------------------------------------------------- drawing
+
+static void the_panel_is_drawn_where_it_is(void **state)
+{
+    (void)state;
+    struct app app = make_app();
+    struct panel *panel = make_panel(&app);
+    struct panel_drawing drawing;
+    struct target target;
+    struct relume_image image;
+    assert_int_equal(draw_panel_create(&drawing, &fixture_gl, panel, &fixture_log), RELUME_OK);
+    assert_int_equal(target_create(&target, &fixture_gl, app.width, app.height, &fixture_log),
+                     RELUME_OK);
+    target_begin(&target, &fixture_gl);
+    draw_panel(&drawing, &fixture_gl, panel, app.width, app.height);
+    assert_int_equal(target_read(&image, &target, &fixture_gl), RELUME_OK);
+    double inside = 0, beside = 0;
+    for (int y = 0; y < app.height; y++)  // the screen's first row is the lowest
+        for (int x = 0; x < app.width; x++) {
+            const float *rgb = image.data + 3 * ((app.height - 1 - y) * app.width + x);
+            const double sum = (double)(rgb[0] + rgb[1] + rgb[2]);
+            if (x < 300 && y < 540)
+                inside += sum;
+            else
+                beside += sum;
+        }
+    assert_true(inside > 10000);
+    assert_true(beside == 0);
+    // the white dot of the light in the middle of the ball
+    assert_true(image.data[3 * ((app.height - 1 - 126) * app.width + 76)] > 0.99f);
+    relume_image_destroy(&image);
+    target_destroy(&target, &fixture_gl);
+    draw_panel_destroy(&drawing, &fixture_gl);
+    panel_destroy(&panel);
+    assert_int_equal(gl_check(&fixture_gl, "test", &fixture_log), RELUME_OK);
+}
+
+// ---------------------------------------------------------------- passes
+
+// The twins differ by single precision; the highlight's power of 40 multiplies its error by 40.
+static void passes_are_those_of_the_library(void **state)
+{
+    (void)state;
+    enum { W = 19, H = 13 };
+    static const struct relume_light lights[] = {
+        {.direction = {0.2, 0.3, 0.8}, .rgb = {1, 0.9f, 0.8f}},
+        {.direction = {-2, 1, 0.5}, .rgb = {0.1f, 0.4f, 0.6f}},
+    };
+    static const struct relume_geometry panorama = {.projection = RELUME_SPHERICAL};
+    static const struct relume_geometry planar = {.projection = RELUME_PLANAR};
+    for (int turned = 0; turned < 2; turned++) {
+        const struct relume_geometry *geometry = turned ? &panorama : &planar;
+        struct fixture_file f =
+            fixture_make(1, W, H, RELUME_STORE_16, RELUME_DOMAIN_LINEAR, turned);
+        const struct code_source source = {fixture_fetch, NULL, &f};
+        struct relighter relighter;
+        struct enhancer enhancer;
+        assert_int_equal(relighter_create(&relighter, &fixture_gl, &source, 1, &fixture_log),
+                         RELUME_OK);
+        assert_int_equal(
+            enhancer_create(&enhancer, &fixture_gl, &source, geometry, NULL, 1, &fixture_log),
+            RELUME_OK);
+        const struct target *relit, *shown;
+        assert_int_equal(relighter_begin(&relighter, lights, 2), RELUME_OK);
+        assert_int_equal(relighter_view(&relit, &relighter, 0), RELUME_OK);
+        struct relume_normals normals;
+        const struct relume_codes *codes;
+        fixture_fetch(&codes, &f, 0);
+        assert_int_equal(relume_normals_fit(&normals, codes, NULL), RELUME_OK);
+        struct relume_image towards;
+        assert_int_equal(relume_image_create(&towards, W, H, 3), RELUME_OK);
+        for (int i = 0; i < W * H; i++) {
+            const struct relume_vec3 ray =
+                relume_panorama_ray(&panorama, W, H, i % W + 0.5, i / W + 0.5);
+            towards.data[3 * i] = (float)-ray.x;
+            towards.data[3 * i + 1] = (float)-ray.y;
+            towards.data[3 * i + 2] = (float)-ray.z;
+        }
+        for (int p = RELUME_PASS_NORMALS; p < RELUME_PASS_DIFFERENCE; p++) {
+            struct relume_image want = fixture_relight(&f, 0, lights, 2);
+            struct relume_image got;
+            assert_int_equal(
+                relume_pass_apply(&want, (enum relume_pass)p, &normals, lights, 2,
+                                  relume_pass_params(.towards = turned ? &towards : NULL)),
+                RELUME_OK);
+            if (p == RELUME_PASS_NORMALS)
+                for (int i = 0; i < 3 * W * H; i++)
+                    want.data[i] =
+                        relume_transfer_decode((struct relume_transfer){.curve = RELUME_CURVE_SRGB},
+                                               0.5f * want.data[i] + 0.5f);
+            assert_int_equal(
+                enhancer_view(&shown, &enhancer, 0, relit, (enum relume_pass)p, lights, 2),
+                RELUME_OK);
+            assert_int_equal(target_read(&got, shown, &fixture_gl), RELUME_OK);
+            assert_below(relume_pass_name((enum relume_pass)p), fixture_difference(&got, &want),
+                         1e-4);
+            relume_image_destroy(&got);
+            relume_image_destroy(&want);
+        }
+        relume_image_destroy(&towards);
+        relume_normals_destroy(&normals);
+        enhancer_destroy(&enhancer);
+        relighter_destroy(&relighter);
+        fixture_free(&f);
+    }
+}
+
+// ---------------------------------------------------------------- inspector
+
+static void the_inspector_decodes_as_the_library(void **state)
+{
+    (void)state;
+    static const enum relume_storage storages[] = {RELUME_STORE_8, RELUME_STORE_12,
+                                                   RELUME_STORE_HALF};
+    static const struct relume_light light = {.direction = {0.3, -0.2, 0.9}, .rgb = {1, 1, 1}};
+    for (int i = 0; i < 6; i++) {
+        const enum relume_domain domain = i < 3 ? RELUME_DOMAIN_LINEAR : RELUME_DOMAIN_DISPLAY;
+        struct fixture_file f = fixture_make(1, 7, 5, storages[i % 3], domain, false);
+        const struct relume_codes *codes;
+        float coefficient[FIXTURE_PLANES], weights[FIXTURE_PLANES], constant[3], colour[3], rgb[3];
+        double want[3];
+        fixture_fetch(&codes, &f, 0);
+        const double size = sqrt(0.3 * 0.3 + 0.2 * 0.2 + 0.9 * 0.9);
+        const struct relume_vec3 d = {0.3 / size, -0.2 / size, 0.9 / size};
+        relume_coder_weights(codes->coder, d, weights, constant);
+        for (int at = 0; at < 35; at++) {
+            inspect_coefficients(coefficient, colour, codes, at % 7, at / 7);
+            inspect_value(rgb, codes, coefficient, colour, weights, constant);
+            relume_relight_pixel(want, codes, at % 7, at / 7, &light, 1);
+            for (int c = 0; c < 3; c++)  // single precision of values up to about 4
+                assert_float_equal(rgb[c], want[c], 2e-5);
+        }
+        fixture_free(&f);
+    }
+}
+
+static void the_cursor_finds_its_pixel(void **state)
+{
+    (void)state;
+    struct app app = make_app();  // 400 x 400 in 640 x 560, not letterboxed
+    int view, pixel[2];
+    assert_true(inspect_pick(&view, pixel, &app, NULL, 320, 280));
+    assert_true(view == 0 && pixel[0] == 200 && pixel[1] == 200);
+    assert_true(inspect_pick(&view, pixel, &app, NULL, 639.9, 0));
+    assert_true(pixel[0] == 399 && pixel[1] == 0);
+    app.letterbox = true;
+    assert_false(inspect_pick(&view, pixel, &app, NULL, 20, 280));
+    assert_true(inspect_pick(&view, pixel, &app, NULL, 40.5, 280));
+    assert_int_equal(pixel[0], 0);
+    app.file.geometry.projection = RELUME_SPHERICAL;
+    app.now.camera.framing = RELUME_FRAME_LOOK;  // ahead is the middle of the panorama
+    app.now.camera.look = (struct relume_look){.zoom = 1};
+    assert_true(inspect_pick(&view, pixel, &app, NULL, 320.5, 280.5));
+    assert_true(pixel[0] == 200 && pixel[1] == 200);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_ball_turns_the_light),
+        cmocka_unit_test(a_click_turns_the_light_off),
+        cmocka_unit_test(the_picture_keeps_its_events),
+        cmocka_unit_test(text_goes_into_the_field),
+        cmocka_unit_test(tiny_frames_do_no_harm),
+        cmocka_unit_test(the_panel_is_drawn_where_it_is),
+        cmocka_unit_test(passes_are_those_of_the_library),
+        cmocka_unit_test(the_inspector_decodes_as_the_library),
+        cmocka_unit_test(the_cursor_finds_its_pixel),
+    };
+    return cmocka_run_group_tests(tests, fixture_open, fixture_close);
+}

@@ -27,6 +27,7 @@ static relume_status compile(GLuint *out, const struct gl *gl, GLenum stage, con
         return RELUME_OK;
     char text[512] = "";
     gl->GetShaderInfoLog(*out, sizeof text, NULL, text);
+    text[strcspn(text, "\r\n")] = '\0';  // the first mistake is enough
     return say(log, RELUME_ESYSTEM, "shader %s does not compile; %s", name, text);
 }
 
@@ -43,6 +44,7 @@ static relume_status link_program(struct program *program, const struct gl *gl, 
         return RELUME_OK;
     char text[512] = "";
     gl->GetProgramInfoLog(program->id, sizeof text, NULL, text);
+    text[strcspn(text, "\r\n")] = '\0';
     return say(log, RELUME_ESYSTEM, "shader %s does not link; %s", name, text);
 }
 

@@ -171,7 +171,7 @@ static inline struct relume_image fixture_relight(struct fixture_file *f, int vi
     return image;
 }
 
-static double fixture_difference(const struct relume_image *a, const struct relume_image *b)
+static inline double fixture_difference(const struct relume_image *a, const struct relume_image *b)
 {
     double most = 0;
     assert_int_equal(a->width, b->width);
@@ -184,7 +184,7 @@ static double fixture_difference(const struct relume_image *a, const struct relu
 }
 
 // Prints both sides, so that a failure and a slackening bound are seen.
-static void assert_below(const char *what, double got, double bound)
+static inline void assert_below(const char *what, double got, double bound)
 {
     print_message("  %s: %.3g, bound %.3g\n", what, got, bound);
     assert_true(got <= bound);

@@ -101,6 +101,8 @@ static void choose_axes(struct drawing *d)
     d->y1 = ceil((y1 + 0.35 * d->y_step) / d->y_step) * d->y_step;
 }
 
+enum { AXIS_TEXT = 0x333333 };
+
 static void draw_grid_line(struct drawing *d, double x0, double y0, double x1, double y1,
                            bool strong)
 {
@@ -125,7 +127,7 @@ static void draw_x_tick(struct drawing *d, double value, bool named)
     if (!named)
         return;
     snprintf(text, sizeof text, "%.6g", value);
-    set_colour(d->c, 0x333333);
+    set_colour(d->c, AXIS_TEXT);
     put_text(d->c, x, d->frame.y1 + 18.0, 0.5, text);
 }
 
@@ -145,6 +147,7 @@ static void draw_x_axis(struct drawing *d)
                     draw_x_tick(d, v, is_named(digit, decades));
             }
     }
+    set_colour(d->c, AXIS_TEXT);
     put_text(d->c, 0.5 * (d->frame.x0 + d->frame.x1), d->frame.y1 + 42.0, 0.5, d->plot->x_label);
 }
 
@@ -158,9 +161,10 @@ static void draw_y_axis(struct drawing *d)
         char text[32];
         draw_grid_line(d, d->frame.x0, y, d->frame.x1, y, true);
         snprintf(text, sizeof text, "%.*f", decimals, v);
-        set_colour(d->c, 0x333333);
+        set_colour(d->c, AXIS_TEXT);
         put_text(d->c, d->frame.x0 - 8.0, y + 4.0, 1.0, text);
     }
+    set_colour(d->c, AXIS_TEXT);
     cairo_save(d->c);
     cairo_translate(d->c, 22.0, 0.5 * (d->frame.y0 + d->frame.y1));
     cairo_rotate(d->c, -M_PI / 2.0);

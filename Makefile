@@ -42,7 +42,8 @@ GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 
 LIB_C    := $(wildcard src/base/*.c src/math/*.c src/image/*.c src/capture/*.c src/scene/*.c \
-            src/coder/*.c src/pack/*.c src/exchange/*.c src/relight/*.c src/view/*.c src/frame/*.c)
+            src/coder/*.c src/pack/*.c src/exchange/*.c src/relight/*.c src/view/*.c src/pass/*.c \
+            src/frame/*.c)
 LIB_CXX  := $(wildcard src/image/*.cpp)
 CLI_C    := $(wildcard src/cli/*.c)
 VIEWER_C := $(wildcard viewer/*.c)

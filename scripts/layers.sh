@@ -15,6 +15,7 @@ pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange
 relight:base math image:base image coder relight
 view:base math image:base image relight view capture
+pass:base math image:base image tone
 frame:base math:base image capture coder pack relight view frame evaluate
 scene:base math image:base image lights capture scene
 cli:cli:*

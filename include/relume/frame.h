@@ -31,7 +31,8 @@ struct relume_frame_params {
     const struct relume_log *log;
     unsigned cpu_off;  // as relume_relight_params
     int threads;       // default: all cores
-    bool constant;     // slab: nearest view
+    enum relume_interpolation interpolation;  // slab; default: by depth where the file has it
+    double aperture, focus;                   // slab; as relume_view_params
 };
 #define relume_frame_params(...) (&(const struct relume_frame_params){__VA_ARGS__})
 

@@ -15,6 +15,7 @@
 #include <relume/pack.h>
 #include <relume/relight.h>
 #include <relume/scene.h>
+#include <relume/tone.h>
 #include <relume/view.h>
 
 #endif

@@ -45,7 +45,9 @@ static relume_status query(const struct args *args, const struct relume_light *l
             rgb, pack, eye, direction, lights, count,
             relume_frame_params(.log = prefix_log(&about, args_log(args), args_input(args, 0)),
                                 .cpu_off = parse_cpu_off(args), .threads = args_threads(args),
-                                .constant = args_has(args, "--nearest")));
+                                .interpolation = args_has(args, "--nearest")
+                                                     ? RELUME_INTERPOLATE_CONSTANT
+                                                     : RELUME_INTERPOLATE_LINEAR));
     if (!status)
         print(args, rgb);
     relume_pack_destroy(&pack);

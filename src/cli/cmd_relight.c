@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const struct option options[] = {
     {"-o", OPTION_TEXT, "OUT", "picture to write: .exr (linear), .png, .jpg, .tif, .hdr, ...", 0,
@@ -14,9 +15,21 @@ static const struct option options[] = {
     {"--pan", OPTION_NUMBER, "A", "panorama: degrees to the right", 0, 0},
     {"--tilt", OPTION_NUMBER, "A", "panorama: degrees up", 0, 0},
     {"--zoom", OPTION_NUMBER, "F", "panorama: 1 shows 90 degrees; default: 1", 0.01, 1000},
+    {"--projection", OPTION_TEXT, "P",
+     "panorama: perspective (default), stereographic, planet (looking down on it)", 0, 0},
     {"--size", OPTION_TEXT, "WxH", "size of an --eye or --pan frame", 0, 0},
-    {"--nearest", OPTION_FLAG, NULL, "slab: nearest view instead of the quadralinear basis", 0, 0},
-    {"--exposure", OPTION_NUMBER, "EV", "multiply by 2^EV; default: 0", -100, 100},
+    {"--interpolate", OPTION_TEXT, "I",
+     "slab: constant, linear or depth; default: depth where the file has it, else linear", 0, 0},
+    {"--nearest", OPTION_FLAG, NULL, "slab: the same as --interpolate constant", 0, 0},
+    {"--aperture", OPTION_NUMBER, "A", "slab: average the cameras within A/2 of the eye; default: 0",
+     0, 1e9},
+    {"--focus", OPTION_NUMBER, "Z", "slab: the plane at z = Z is sharp; default: the st plane", 0,
+     0},
+    {"--exposure", OPTION_TEXT, "EV", "multiply by 2^EV, or auto: a mid grey; default: 0", 0, 0},
+    {"--tone", OPTION_TEXT, "T",
+     "linear (clip, default), reinhard or filmic; .exr, .hdr and .pfm stay linear", 0, 0},
+    {"--white", OPTION_NUMBER, "L", "reinhard: the luminance that becomes white; default: 4", 1e-3,
+     1e6},
     CPU_OPTION,
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
@@ -34,53 +47,130 @@ static relume_status parse_size(const char *text, struct relume_camera *camera)
         "--size: expected WIDTHxHEIGHT, at most 65536 a side and 2^30 pixels; found '%s'", text);
 }
 
+static relume_status parse_look(const struct args *args, struct relume_look *look)
+{
+    static const char *const names[] = {"perspective", "stereographic", "planet", NULL};
+    const char *name = args_text(args, "--projection", names[0]);
+    int which = 0;
+    while (names[which] && strcmp(names[which], name))
+        which++;
+    if (!names[which])
+        return unknown_name("--projection", name, names);
+    const bool planet = which == 2;
+    look->stereographic = which > 0;
+    look->pan_deg = args_number(args, "--pan", 0.0);
+    look->tilt_deg = args_number(args, "--tilt", planet ? -90.0 : 0.0);
+    look->zoom = args_number(args, "--zoom", planet ? 0.5 : 1.0);
+    return RELUME_OK;
+}
+
 static relume_status parse_camera(const struct args *args, struct relume_camera *camera)
 {
-    const bool look =
-        args_has(args, "--pan") || args_has(args, "--tilt") || args_has(args, "--zoom");
+    const bool look = args_has(args, "--pan") || args_has(args, "--tilt") ||
+                      args_has(args, "--zoom") || args_has(args, "--projection");
+    relume_status status = RELUME_OK;
     *camera = (struct relume_camera){0};
     if (args_has(args, "--view") + args_has(args, "--eye") + look > 1)
-        return usage_error("relight: expected one of --view, --eye, --pan/--tilt/--zoom");
+        return usage_error(
+            "relight: expected one of --view, --eye, --pan/--tilt/--zoom/--projection");
     if (args_has(args, "--view")) {
         camera->framing = RELUME_FRAME_VIEW;
         camera->view = args_int(args, "--view", 0);
     } else if (args_has(args, "--eye")) {
         camera->framing = RELUME_FRAME_EYE;
-        const relume_status status =
-            args_vec3(&camera->eye, "--eye", args_text(args, "--eye", NULL));
-        if (status)
-            return status;
+        status = args_vec3(&camera->eye, "--eye", args_text(args, "--eye", NULL));
     } else if (look) {
         camera->framing = RELUME_FRAME_LOOK;
-        camera->look.pan_deg = args_number(args, "--pan", 0.0);
-        camera->look.tilt_deg = args_number(args, "--tilt", 0.0);
-        camera->look.zoom = args_number(args, "--zoom", 1.0);
+        status = parse_look(args, &camera->look);
     }
-    return parse_size(args_text(args, "--size", NULL), camera);
+    return status ? status : parse_size(args_text(args, "--size", NULL), camera);
+}
+
+static relume_status parse_slab(const struct args *args, struct relume_frame_params *params)
+{
+    static const char *const names[] = {"constant", "linear", "depth", NULL};
+    const bool nearest = args_has(args, "--nearest");
+    const bool named = args_has(args, "--interpolate");
+    const bool lens = args_has(args, "--aperture") || args_has(args, "--focus");
+    if (nearest + named + lens > 1)
+        return usage_error("relight: expected one of --interpolate, --nearest, --aperture/--focus");
+    if (nearest)
+        params->interpolation = RELUME_INTERPOLATE_CONSTANT;
+    else if (lens)
+        params->interpolation = RELUME_INTERPOLATE_LINEAR;
+    params->aperture = args_number(args, "--aperture", 0.0);
+    if (named && relume_interpolation_parse(&params->interpolation,
+                                            args_text(args, "--interpolate", NULL)))
+        return unknown_name("--interpolate", args_text(args, "--interpolate", NULL), names);
+    return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- exposure and tone
+
+struct developing {
+    struct relume_tone_params tone;
+    bool automatic;
+};
+
+static relume_status parse_developing(const struct args *args, struct developing *d)
+{
+    const char *exposure = args_text(args, "--exposure", "0");
+    const char *tone = args_text(args, "--tone", relume_tone_linear.name);
+    const char *names[16] = {NULL};
+    *d = (struct developing){.automatic = !strcmp(exposure, "auto")};
+    if (!d->automatic && (!parse_numbers(exposure, &d->tone.exposure_ev, 1) ||
+                          !(fabs(d->tone.exposure_ev) <= 100.0)))
+        return usage_error("--exposure: expected a number from -100 to 100, or auto; found '%s'",
+                           exposure);
+    for (int i = 0; relume_tones[i]; i++)
+        names[i] = relume_tones[i]->name;
+    d->tone.white = args_number(args, "--white", 0.0);
+    d->tone.tone = relume_tone_find(tone);
+    return d->tone.tone ? RELUME_OK : unknown_name("--tone", tone, names);
+}
+
+static void expose(struct relume_image *frame, double ev)
+{
+    const float gain = exp2f((float)ev);
+    const size_t samples = (size_t)frame->width * (size_t)frame->height * 3;
+    for (size_t i = 0; i < samples; i++)
+        frame->data[i] *= gain;
+}
+
+static relume_status develop(struct relume_image *frame, struct developing d, const char *path)
+{
+    if (d.automatic)
+        d.tone.exposure_ev = relume_tone_meter(frame);
+    if (!relume_image_saves_linear(path))
+        return relume_tone_apply(frame, &d.tone);
+    expose(frame, d.tone.exposure_ev);
+    return RELUME_OK;
 }
 
 static relume_status render(const struct args *args, const struct relume_camera *camera,
+                            struct relume_frame_params params, struct developing developing,
                             const struct relume_light *lights, int count)
 {
     relume_pack *pack;
     struct prefix_log about;
     struct relume_image frame = {0};
+    const char *output = args_text(args, "-o", NULL);
     relume_status status =
         relume_pack_open(&pack, args_input(args, 0),
                          relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
+    if (status)
+        return status;
+    const double st_z = relume_pack_info(pack)->geometry.st_z;
+    params.log = prefix_log(&about, args_log(args), args_input(args, 0));
+    params.cpu_off = parse_cpu_off(args);
+    params.threads = args_threads(args);
+    params.focus = args_number(args, "--focus", st_z) - st_z;
+    status = relume_frame(&frame, pack, camera, lights, count, &params);
     if (!status)
-        status = relume_frame(
-            &frame, pack, camera, lights, count,
-            relume_frame_params(.log = prefix_log(&about, args_log(args), args_input(args, 0)),
-                                .cpu_off = parse_cpu_off(args), .threads = args_threads(args),
-                                .constant = args_has(args, "--nearest")));
-    const float gain = exp2f((float)args_number(args, "--exposure", 0.0));
-    const size_t samples = (size_t)frame.width * (size_t)frame.height * 3;
-    for (size_t i = 0; !status && i < samples; i++)
-        frame.data[i] *= gain;
+        status = develop(&frame, developing, output);
     if (!status)
-        status = relume_image_save(&frame, args_text(args, "-o", NULL),
-                                   relume_image_params(.log = args_log(args)));
+        status =
+            relume_image_save(&frame, output, relume_image_params(.log = args_log(args)));
     relume_image_destroy(&frame);
     relume_pack_destroy(&pack);
     return status;
@@ -89,15 +179,21 @@ static relume_status render(const struct args *args, const struct relume_camera 
 static relume_status run(const struct args *args)
 {
     struct relume_camera camera;
+    struct relume_frame_params params = {0};
+    struct developing developing;
     struct relume_light *lights = NULL;
     int count = 0;
     if (!args_has(args, "-o"))
         return usage_error("relight: expected -o OUT");
     relume_status status = parse_camera(args, &camera);
     if (!status)
+        status = parse_slab(args, &params);
+    if (!status)
+        status = parse_developing(args, &developing);
+    if (!status)
         status = parse_lights(args, &lights, &count);
     if (!status)
-        status = render(args, &camera, lights, count);
+        status = render(args, &camera, params, developing, lights, count);
     free(lights);
     return status;
 }

@@ -59,6 +59,12 @@ static relume_status check_camera(const struct relume_camera *camera, const stru
     return RELUME_OK;
 }
 
+static bool behind_cameras(const struct app_file *file, double z)
+{
+    const struct relume_geometry *g = &file->geometry;
+    return !((z - g->st_z) / (g->uv_z - g->st_z) < 1.0);
+}
+
 relume_status app_start(struct app *app, const struct app_file *file, const struct app_state *start,
                         bool look_ahead, const struct relume_log *log)
 {
@@ -68,6 +74,12 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
     const relume_status status = check_camera(&s->camera, file, log);
     if (status)
         return status;
+    if (!s->focused)
+        s->focus_z = file->geometry.st_z;
+    else if (file->geometry.projection == RELUME_SLAB && behind_cameras(file, s->focus_z))
+        return say(log, RELUME_EINVAL,
+                   "--focus: expected a plane in front of the cameras at z = %g; found z = %g",
+                   file->geometry.uv_z, s->focus_z);
     if (s->camera.look.zoom <= 0.0)
         s->camera.look.zoom = 1.0;
     s->zoom = 1.0;

@@ -44,6 +44,10 @@ struct app_state {
     struct relume_camera camera;  // framing is never DEFAULT
     double zoom;                  // of the picture; 1 fits the frame
     double shift[2];              // of the picture's middle from the frame's, pixels
+    enum relume_interpolation interpolation;  // slab
+    double aperture;                          // slab: diameter, world units
+    double focus_z;                           // slab: the plane in focus ...
+    bool focused;                             // ... at the start; else the st plane
     double exposure_ev;
     struct relume_light light[APP_LIGHTS];
     int lights;

@@ -93,6 +93,16 @@ static void warn_below_horizon(const struct viewer *v)
     }
 }
 
+static relume_status check_depth(const relume_pack *pack, const struct app_state *start,
+                                 const struct relume_log *log)
+{
+    if (start->interpolation != RELUME_INTERPOLATE_DEPTH || relume_pack_info(pack)->has_depth)
+        return RELUME_OK;
+    return say(log, RELUME_EDATA,
+               "interpolation by depth needs to know where the surface is; expected a file with "
+               "depth");
+}
+
 // Open `path` and start the app; `v` is untouched when that fails.
 static relume_status open_file(struct viewer *v, const char *path, const struct app_state *start,
                                bool look_ahead)
@@ -105,6 +115,8 @@ static relume_status open_file(struct viewer *v, const char *path, const struct 
         return status;
     const struct app_file file = describe(pack);
     status = app_start(&app, &file, start, look_ahead, v->log);
+    if (!status)
+        status = check_depth(pack, start, v->log);
     if (status) {
         relume_pack_destroy(&pack);
         return status;
@@ -117,12 +129,21 @@ static relume_status open_file(struct viewer *v, const char *path, const struct 
     return RELUME_OK;
 }
 
+static relume_status pack_depth(struct relume_image *out, void *user, int view)
+{
+    return relume_pack_depth(out, user, view);
+}
+
 static relume_status make_renderer(struct viewer *v)
 {
     const struct relume_pack_info *info = relume_pack_info(v->pack);
     const struct code_source source = {pack_codes, pack_drop, v->pack};
-    return renderer_create(&v->renderer, &v->gl, &source, &info->geometry, info->uv, info->views,
-                           v->log);
+    const struct depth_source depth = {pack_depth, v->pack};
+    relume_status status = renderer_create(&v->renderer, &v->gl, &source, &info->geometry,
+                                           info->uv, info->views, v->log);
+    if (!status && info->has_depth)
+        status = renderer_use_depth(&v->renderer, &depth);
+    return status;
 }
 
 static relume_status open_context(struct viewer *v, const struct context_backend *backend,

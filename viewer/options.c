@@ -106,6 +106,44 @@ static relume_status take_zoom(struct options *o, const char *name, const char *
     return status ? status : take_framing(o, name, RELUME_FRAME_LOOK, log);
 }
 
+static relume_status take_projection(struct options *o, const char *name, const char *text,
+                                     const struct relume_log *log)
+{
+    struct relume_look *look = &o->start.camera.look;
+    const bool planet = !strcmp(text, "planet");
+    if (strcmp(text, "perspective") && strcmp(text, "stereographic") && !planet)
+        return say(log, RELUME_EINVAL,
+                   "%s: expected perspective, stereographic or planet; found '%s'", name, text);
+    look->stereographic = strcmp(text, "perspective") != 0;
+    if (planet && look->tilt_deg == 0.0)
+        look->tilt_deg = -90.0;
+    if (planet && look->zoom == 0.0)
+        look->zoom = 0.5;
+    return take_framing(o, name, RELUME_FRAME_LOOK, log);
+}
+
+static relume_status take_interpolation(struct options *o, const char *name, const char *text,
+                                        const struct relume_log *log)
+{
+    if (!relume_interpolation_parse(&o->start.interpolation, text))
+        return RELUME_OK;
+    return say(log, RELUME_EINVAL, "%s: expected constant, linear or depth; found '%s'", name,
+               text);
+}
+
+static relume_status take_aperture(struct options *o, const char *name, const char *text,
+                                   const struct relume_log *log)
+{
+    return take_number(&o->start.aperture, name, text, 0, 1e9, log);
+}
+
+static relume_status take_focus(struct options *o, const char *name, const char *text,
+                                const struct relume_log *log)
+{
+    o->start.focused = true;
+    return take_number(&o->start.focus_z, name, text, -1e9, 1e9, log);
+}
+
 static relume_status take_size(struct options *o, const char *name, const char *text,
                                const struct relume_log *log)
 {
@@ -166,6 +204,11 @@ static const struct option options[] = {
     {"--pan", "DEG", "panorama: turn right", take_pan},
     {"--tilt", "DEG", "panorama: look up", take_tilt},
     {"--zoom", "F", "panorama: 1 shows 90 degrees", take_zoom},
+    {"--projection", "P", "panorama: perspective, stereographic or planet", take_projection},
+    {"--interpolate", "I", "slab: constant, linear or depth; default: depth if there is any",
+     take_interpolation},
+    {"--aperture", "A", "slab: average the cameras within A/2 of the eye", take_aperture},
+    {"--focus", "Z", "slab: the plane at z = Z is sharp", take_focus},
     {"--size", "WxH", "pixels of the window or picture", take_size},
     {"--exposure", "EV", "brighter by 2^EV", take_exposure},
     {"--threads", "N", "threads that read files; default: all cores", take_threads},

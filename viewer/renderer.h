@@ -3,6 +3,7 @@
 #define VIEWER_RENDERER_H
 
 #include "app.h"
+#include "depths.h"
 #include "draw.h"
 #include "relighter.h"
 
@@ -10,10 +11,12 @@ struct renderer {
     const struct gl *gl;
     const struct relume_log *log;
     struct relighter relighter;
-    struct program picture, slab, panorama, ball, present;
+    struct program picture, slab, slab_depth, slab_lens, mean, panorama, ball, present;
     GLuint vertices;
     struct target frame;
-    relume_slab *grid;  // NULL: not a slab
+    struct target sum;     // of an aperture's cameras; made when first needed
+    relume_slab *grid;     // NULL: not a slab
+    struct depths depths;  // empty: not a slab, or without depth
     struct relume_geometry geometry;
     int views;
     bool *needed;                 // [views]
@@ -26,6 +29,9 @@ relume_status renderer_create(struct renderer *renderer, const struct gl *gl,
                               const struct relume_geometry *geometry, const double (*uv)[2],
                               int views, const struct relume_log *log);
 void renderer_destroy(struct renderer *renderer);
+
+// The views of a slab have depth. RELUME_ENOMEM.
+relume_status renderer_use_depth(struct renderer *renderer, const struct depth_source *source);
 
 // Draw the frame that `app` describes, linear, into renderer->frame.
 relume_status renderer_draw(struct renderer *renderer, const struct app *app);

@@ -106,6 +106,23 @@ static void gather(double sum[5], const struct around *a, const struct camera *c
 
 // ---------------------------------------------------------------- one ray
 
+// Adds the camera's disparity and its weight where it sees what is walked at.
+static void meet(double sum[2], const struct around *a, const struct camera *c, double q,
+                 double step)
+{
+    const double found = disparity_at(a, c, q);
+    if (c->weight > negligible && found > (double)RELUME_SLAB_BACKGROUND &&
+        fabs(found - q) <= step) {
+        sum[0] += c->weight * found;
+        sum[1] += c->weight;
+    }
+}
+
+static double walking_speed(const struct camera *c)
+{
+    return c->weight > negligible ? c->speed : 0.0;
+}
+
 // The first disparity, from near to far, at which a camera sees what it walks at.
 static bool walk(double *q, const struct around *a, double nearest, double farthest)
 {
@@ -113,25 +130,15 @@ static bool walk(double *q, const struct around *a, double nearest, double farth
     if (!(nearest >= farthest))
         return false;
     for (int i = 0; i < a->count; i++)
-        if (a->camera[i].weight > negligible)
-            speed = fmax(speed, a->camera[i].speed);
-    const double length = fmin(ceil((nearest - farthest) * speed), most_steps);
-    const int steps = length >= 1.0 ? (int)length : 1;
+        speed = fmax(speed, walking_speed(&a->camera[i]));
+    const int steps = (int)fmin(fmax(ceil((nearest - farthest) * speed), 1.0), most_steps);
     const double step = (nearest - farthest) / steps;
     for (int k = 0; k <= steps; k++) {
-        double sum = 0.0;
-        double weight = 0.0;
-        for (int i = 0; i < a->count; i++) {
-            const struct camera *c = &a->camera[i];
-            const double found = disparity_at(a, c, nearest - k * step);
-            if (c->weight > negligible && found > (double)RELUME_SLAB_BACKGROUND &&
-                fabs(found - (nearest - k * step)) <= step) {
-                sum += c->weight * found;
-                weight += c->weight;
-            }
-        }
-        if (weight > 0.0) {
-            *q = sum / weight;
+        double sum[2] = {0.0, 0.0};
+        for (int i = 0; i < a->count; i++)
+            meet(sum, a, &a->camera[i], nearest - k * step, step);
+        if (sum[1] > 0.0) {
+            *q = sum[0] / sum[1];
             return true;
         }
     }

@@ -2,6 +2,8 @@
 
 #include "say.h"
 
+#include <relume/tone.h>
+
 #include <math.h>
 #include <string.h>
 
@@ -10,6 +12,16 @@
 static const double wheel_factor = 1.1;  // of the zoom, per step
 static const double zoom_least = 0.1;
 static const double zoom_most = 64.0;
+// A perspective look gets 150 degrees wide, a stereographic one 340; both as narrow as 2 and 4.
+static const double look_least[2] = {0.26795, 0.08749};
+static const double look_most = 57.29;
+static const double planet_zoom = 0.5;
+static const double focus_factor = 1.02;   // of the distance from the cameras, per key
+static const double hand_s = 0.05;         // the hand's speed is its mean over about so long
+static const double glide_s = 0.35;        // a glide loses 63 % of its speed in that time ...
+static const double still_px_s = 4.0;      // ... and is over below this speed
+static const double adapt_s = 0.5;         // automatic exposure, likewise
+static const double adapted_enough = 0.02; // EV
 static const double exposure_step = 0.25;  // EV per key
 static const double dolly_factor = 1.05;   // of the eye's distance, per key
 
@@ -83,6 +95,8 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
     if (s->camera.look.zoom <= 0.0)
         s->camera.look.zoom = 1.0;
     s->zoom = 1.0;
+    if (s->white <= 0.0)
+        s->white = RELUME_TONE_WHITE;
     if (!s->lights) {
         s->light[0] = (struct relume_light){.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
         s->lights = 1;
@@ -203,13 +217,61 @@ static void dolly(struct app *app, double factor)
     *z = st_z + captured * clamp((*z - st_z) / captured * factor, 0.25, 4.0);
 }
 
+static double degrees_per_pixel(const struct app *app)
+{
+    const struct relume_look *look = &app->now.camera.look;
+    const double field = (look->stereographic ? 4 : 2) * atan(1 / look->zoom) * 180 / PI;
+    return field / app->width;
+}
+
+static void turn_by(struct relume_look *look, double pan_deg, double tilt_deg)
+{
+    look->pan_deg = remainder(look->pan_deg + pan_deg, 360);
+    look->tilt_deg = clamp(look->tilt_deg + tilt_deg, -90, 90);
+}
+
 // The scene follows the cursor.
 static void turn_look(struct app *app, double dx, double dy)
 {
+    const double per_pixel = degrees_per_pixel(app);
+    turn_by(&app->now.camera.look, -dx * per_pixel, dy * per_pixel);
+    app->turned_deg[0] -= dx * per_pixel;
+    app->turned_deg[1] += dy * per_pixel;
+}
+
+static void stand_still(struct app *app)
+{
+    app->speed_deg_s[0] = app->speed_deg_s[1] = 0;
+    app->turned_deg[0] = app->turned_deg[1] = 0;
+}
+
+// Degrees that the direction at (x, y) lies to the right of and above `want`.
+static void look_error(double error[2], const struct app *app, double x, double y,
+                       struct relume_vec3 want)
+{
+    const struct relume_vec3 got =
+        relume_look_ray(app->now.camera.look, app->width, app->height, x, y);
+    error[0] = remainder(atan2(got.x, -got.z) - atan2(want.x, -want.z), 2 * PI) * 180 / PI;
+    error[1] = (asin(clamp(got.y, -1, 1)) - asin(clamp(want.y, -1, 1))) * 180 / PI;
+}
+
+// The direction under (x, y) stays there; near the poles, where pan and tilt cannot hold it, the
+// middle does.
+static void zoom_look(struct app *app, double x, double y, double factor)
+{
+    enum { ROUNDS = 16 };
     struct relume_look *look = &app->now.camera.look;
-    const double per_pixel = 2 * atan(1 / look->zoom) * 180 / PI / app->width;
-    look->pan_deg = remainder(look->pan_deg - dx * per_pixel, 360);
-    look->tilt_deg = clamp(look->tilt_deg + dy * per_pixel, -90, 90);
+    const struct relume_vec3 want = relume_look_ray(*look, app->width, app->height, x, y);
+    double error[2];
+    look->zoom = clamp(look->zoom * factor, look_least[look->stereographic], look_most);
+    const struct relume_look middle = *look;
+    for (int i = 0; i < ROUNDS; i++) {
+        look_error(error, app, x, y, want);
+        turn_by(look, -error[0], -error[1]);
+    }
+    look_error(error, app, x, y, want);
+    if (hypot(error[0], error[1]) > 0.1 * degrees_per_pixel(app))
+        *look = middle;
 }
 
 static void move_picture(struct app *app, double dx, double dy)
@@ -233,6 +295,7 @@ static bool on_press(struct app *app, const struct app_event *e)
     app->drag = light ? APP_DRAG_LIGHT : APP_DRAG_CAMERA;
     app->cursor[0] = e->x;
     app->cursor[1] = e->y;
+    stand_still(app);
     return false;
 }
 
@@ -261,11 +324,88 @@ static bool on_move(struct app *app, const struct app_event *e)
 static bool on_wheel(struct app *app, const struct app_event *e)
 {
     const double factor = pow(wheel_factor, e->wheel);
-    struct relume_look *look = &app->now.camera.look;
     if (app->now.camera.framing == RELUME_FRAME_LOOK)
-        look->zoom = clamp(look->zoom * factor, zoom_least, zoom_most);
+        zoom_look(app, e->x, e->y, factor);
     else
         zoom_picture(app, e->x, e->y, factor);
+    return true;
+}
+
+static bool next_tone(struct app *app)
+{
+    app->now.tone = relume_tones[app->now.tone + 1] ? app->now.tone + 1 : 0;
+    return true;
+}
+
+static bool switch_auto_exposure(struct app *app)
+{
+    app->now.auto_exposure = !app->now.auto_exposure;
+    app->adapted_ev = app->metered_ev = 0;
+    app->metered = true;
+    return true;
+}
+
+static bool switch_planet(struct app *app)
+{
+    struct relume_look *look = &app->now.camera.look;
+    if (app->now.camera.framing != RELUME_FRAME_LOOK)
+        return false;
+    stand_still(app);
+    if (look->stereographic) {
+        *look = app->before_planet;
+        return true;
+    }
+    app->before_planet = *look;
+    *look = (struct relume_look){look->pan_deg, -90, planet_zoom, true};
+    return true;
+}
+
+// By depth or linear, whichever is the default, then linear, then the nearest camera.
+static bool next_interpolation(struct app *app)
+{
+    enum relume_interpolation *i = &app->now.interpolation;
+    if (app->now.camera.framing != RELUME_FRAME_EYE)
+        return false;
+    *i = *i == RELUME_INTERPOLATE_LINEAR     ? RELUME_INTERPOLATE_CONSTANT
+         : *i == RELUME_INTERPOLATE_CONSTANT ? RELUME_INTERPOLATE_DEFAULT
+                                             : RELUME_INTERPOLATE_LINEAR;
+    return true;
+}
+
+// None, then an eighth, a quarter, a half and all of the cameras' extent.
+static bool next_aperture(struct app *app)
+{
+    const struct app_file *f = &app->file;
+    const double most = fmax(f->uv_max[0] - f->uv_min[0], f->uv_max[1] - f->uv_min[1]);
+    double *a = &app->now.aperture;
+    if (app->now.camera.framing != RELUME_FRAME_EYE)
+        return false;
+    *a = *a <= 0 ? most / 8 : *a < 0.75 * most ? *a * 2 : 0;
+    return true;
+}
+
+static bool move_focus(struct app *app, double factor)
+{
+    const struct relume_geometry *g = &app->file.geometry;
+    double *z = &app->now.focus_z;
+    if (app->now.camera.framing != RELUME_FRAME_EYE)
+        return false;
+    *z = g->uv_z + (*z - g->uv_z) * factor;
+    return true;
+}
+
+static bool move_nearer(struct app *app, double factor)
+{
+    if (app->now.camera.framing != RELUME_FRAME_EYE)
+        return false;
+    dolly(app, factor);
+    return true;
+}
+
+static bool reset(struct app *app)
+{
+    app->now = app->start;
+    stand_still(app);
     return true;
 }
 
@@ -275,16 +415,19 @@ static bool on_key_down(struct app *app, const struct app_event *e)
     switch (e->key) {
     case APP_KEY_ESCAPE: app->quit = true; return false;
     case 'l': app->light_key = true; return false;
-    case 'r': *s = app->start; return true;
+    case 'r': return reset(app);
     case 'b': s->ball = !s->ball; return true;
     case '+': s->exposure_ev += exposure_step; return true;
     case '-': s->exposure_ev -= exposure_step; return true;
-    case '[':
-    case ']':
-        if (s->camera.framing != RELUME_FRAME_EYE)
-            return false;
-        dolly(app, e->key == '[' ? 1 / dolly_factor : dolly_factor);
-        return true;
+    case 't': return next_tone(app);
+    case 'e': return switch_auto_exposure(app);
+    case 'o': return switch_planet(app);
+    case 'd': return next_interpolation(app);
+    case 'a': return next_aperture(app);
+    case ',': return move_focus(app, 1 / focus_factor);
+    case '.': return move_focus(app, focus_factor);
+    case '[': return move_nearer(app, 1 / dolly_factor);
+    case ']': return move_nearer(app, dolly_factor);
     default: return false;
     }
 }
@@ -314,4 +457,67 @@ static bool (*const handlers[])(struct app *, const struct app_event *) = {
 bool app_handle(struct app *app, const struct app_event *event)
 {
     return handlers[event->kind](app, event);
+}
+
+// ---------------------------------------------------------------- time
+
+static void follow_hand(struct app *app, double seconds)
+{
+    const double keep = exp(-seconds / hand_s);
+    for (int i = 0; i < 2; i++) {
+        const double speed = app->turned_deg[i] / seconds;
+        app->speed_deg_s[i] = keep * app->speed_deg_s[i] + (1 - keep) * speed;
+        app->turned_deg[i] = 0;
+    }
+}
+
+static bool glide(struct app *app, double seconds)
+{
+    double *speed = app->speed_deg_s;
+    const double keep = exp(-seconds / glide_s);
+    const double way = glide_s * (1 - keep);
+    if (hypot(speed[0], speed[1]) < still_px_s * degrees_per_pixel(app)) {
+        stand_still(app);
+        return false;
+    }
+    turn_by(&app->now.camera.look, speed[0] * way, speed[1] * way);
+    speed[0] *= keep;
+    speed[1] *= keep;
+    return true;
+}
+
+static bool adapt(struct app *app, double seconds)
+{
+    const double left = app->metered_ev - app->adapted_ev;
+    if (!app->now.auto_exposure || fabs(left) < adapted_enough)
+        return false;
+    app->adapted_ev += left * (1 - exp(-seconds / adapt_s));
+    return true;
+}
+
+bool app_advance(struct app *app, double seconds)
+{
+    if (!(seconds > 0))
+        return false;
+    bool changed = adapt(app, seconds);
+    if (app->now.camera.framing != RELUME_FRAME_LOOK)
+        return changed;
+    if (app->drag == APP_DRAG_CAMERA)
+        follow_hand(app, seconds);
+    else
+        changed |= glide(app, seconds);
+    return changed;
+}
+
+double app_exposure_ev(const struct app *app)
+{
+    return app->now.exposure_ev + (app->now.auto_exposure ? app->adapted_ev : 0);
+}
+
+void app_meter(struct app *app, double ev)
+{
+    app->metered_ev = app->adapted_ev + ev + app->now.exposure_ev;
+    if (!app->metered)
+        app->adapted_ev = app->metered_ev;
+    app->metered = true;
 }

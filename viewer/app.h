@@ -49,6 +49,9 @@ struct app_state {
     double focus_z;                           // slab: the plane in focus ...
     bool focused;                             // ... at the start; else the st plane
     double exposure_ev;
+    bool auto_exposure;  // on top of exposure_ev
+    int tone;            // place in relume_tones
+    double white;        // as relume_tone_params
     struct relume_light light[APP_LIGHTS];
     int lights;
     bool ball;  // show the light's direction on a ball in the corner
@@ -66,6 +69,11 @@ struct app {
     double cursor[2];
     bool light_key;  // L is held
     bool quit;
+    double turned_deg[2];           // pan and tilt by the mouse since time last passed
+    double speed_deg_s[2];          // of pan and tilt: of the hand, then of what it let go
+    double adapted_ev, metered_ev;  // automatic exposure: in force, and aimed at
+    bool metered;
+    struct relume_look before_planet;
 };
 
 // A file seen as `start` says; a DEFAULT framing becomes what suits the file: the eye in the middle
@@ -77,6 +85,17 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
 
 // Returns whether the picture changed.
 bool app_handle(struct app *app, const struct app_event *event);
+
+// Let time pass: a panorama let go of in motion glides to a stop, automatic exposure adapts. Returns
+// whether the picture changed; false for good once all is at rest. What a span does, any way to
+// split it does.
+bool app_advance(struct app *app, double seconds);
+
+// The exposure to draw with, EV.
+double app_exposure_ev(const struct app *app);
+// The frame drawn with that exposure would be a mid grey with `ev` more. The first frame of a file
+// is followed at once, later ones as time passes.
+void app_meter(struct app *app, double ev);
 
 // The rectangle of the frame that shows the whole picture: left, top, right, bottom in pixels.
 // A perspective look fills the frame.

@@ -71,9 +71,10 @@ relume_status draw_ball_create(struct program *program, const struct gl *gl,
 void draw_ball(const struct program *program, const struct gl *gl, const struct place *place,
                struct relume_vec3 light, const float rgb[3]);
 
-// A linear frame onto the screen, coded as sRGB.
+// A linear frame onto the screen, through relume_tones[tone], coded as sRGB; `white` > 0.
 relume_status draw_present_create(struct program *program, const struct gl *gl,
                                   const struct relume_log *log);
-void draw_present(const struct program *program, const struct gl *gl, const struct target *frame);
+void draw_present(const struct program *program, const struct gl *gl, const struct target *frame,
+                  int tone, double white);
 
 #endif

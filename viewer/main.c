@@ -6,6 +6,7 @@
 #include "script.h"
 
 #include <relume/pack.h>
+#include <relume/tone.h>
 
 #include <math.h>
 #include <signal.h>
@@ -23,6 +24,7 @@ struct viewer {
     struct renderer renderer;
     char name[256];  // of the file, for the title
     int threads;     // that read files
+    double time_ms;  // up to which time has passed for the app
     const struct relume_log *log;
 };
 
@@ -174,16 +176,36 @@ static bool sees_something(const struct viewer *v)
     return false;
 }
 
+static relume_status draw_image(struct viewer *v, struct relume_image *image)
+{
+    const relume_status status = renderer_draw(&v->renderer, &v->app);
+    return status ? status : renderer_read(image, &v->renderer);
+}
+
+// The first frame is drawn once more, with the exposure that it asks for.
+static relume_status meter_image(struct viewer *v, struct relume_image *image)
+{
+    const double before = app_exposure_ev(&v->app);
+    app_meter(&v->app, relume_tone_meter(image));
+    if (app_exposure_ev(&v->app) == before)
+        return RELUME_OK;
+    relume_image_destroy(image);
+    return draw_image(v, image);
+}
+
 static relume_status save_frame(void *user, const struct app *app, const char *path)
 {
     struct viewer *v = user;
-    struct relume_image image;
-    relume_status status = renderer_draw(&v->renderer, app);
-    if (status)
-        return status;
-    if (!sees_something(v))
-        return say(v->log, RELUME_EDATA, "%s: the eye sees nothing of the slab", v->name);
-    status = renderer_read(&image, &v->renderer);
+    struct relume_image image = {0};
+    const struct relume_tone_params tone = {.tone = relume_tones[app->now.tone],
+                                            .white = app->now.white};
+    relume_status status = draw_image(v, &image);
+    if (!status && !sees_something(v))
+        status = say(v->log, RELUME_EDATA, "%s: the eye sees nothing of the slab", v->name);
+    if (!status && app->now.auto_exposure)
+        status = meter_image(v, &image);
+    if (!status && !relume_image_saves_linear(path))
+        status = relume_tone_apply(&image, &tone);
     if (!status)
         status = relume_image_save(&image, path, relume_image_params(.log = v->log));
     relume_image_destroy(&image);
@@ -224,14 +246,32 @@ static double now_ms(void)
     return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
 }
 
+static relume_status meter_frame(struct viewer *v)
+{
+    double ev;
+    const relume_status status = renderer_meter(&ev, &v->renderer);
+    if (!status)
+        app_meter(&v->app, ev);
+    return status;
+}
+
+static bool pass_time(struct viewer *v)
+{
+    const double then = v->time_ms;
+    v->time_ms = now_ms();
+    return app_advance(&v->app, 1e-3 * (v->time_ms - then));
+}
+
 static relume_status show_frame(struct viewer *v)
 {
     char title[320];
     const double start = now_ms();
-    const relume_status status = renderer_draw(&v->renderer, &v->app);
+    relume_status status = renderer_draw(&v->renderer, &v->app);
+    if (!status && v->app.now.auto_exposure)
+        status = meter_frame(v);
     if (status)
         return status;
-    renderer_present(&v->renderer);
+    renderer_present(&v->renderer, &v->app);
     v->gl.Finish();
     snprintf(title, sizeof title, "%s - %.1f ms - relume-view", v->name, now_ms() - start);
     v->backend->show(v->context, title);
@@ -242,7 +282,11 @@ static relume_status show_frame(struct viewer *v)
 // about.
 static relume_status drop_file(struct viewer *v, const char *path)
 {
-    struct app_state start = {.ball = v->app.now.ball};
+    const struct app_state *now = &v->app.now;
+    struct app_state start = {.ball = now->ball,
+                              .auto_exposure = now->auto_exposure,
+                              .tone = now->tone,
+                              .white = now->white};
     const int width = v->app.width;
     const int height = v->app.height;
     if (open_file(v, path, &start, true))
@@ -280,10 +324,14 @@ static relume_status run_window(struct viewer *v, const struct options *o)
         return status;
     v->backend->size(v->context, &v->app.width, &v->app.height);
     bool changed = true;
+    v->time_ms = now_ms();
     while (!status && !v->app.quit) {
         struct context_event event;
-        while (!status && !v->app.quit && v->backend->next(v->context, &event, !changed))
+        changed |= pass_time(v);
+        while (!status && !v->app.quit && v->backend->next(v->context, &event, !changed)) {
+            changed |= pass_time(v);
             status = take_event(v, &event, &changed);
+        }
         if (!status && changed && !v->app.quit)
             status = show_frame(v);
         changed = false;

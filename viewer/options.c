@@ -2,6 +2,8 @@
 
 #include "say.h"
 
+#include <relume/tone.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -169,7 +171,28 @@ static relume_status take_threads(struct options *o, const char *name, const cha
 static relume_status take_exposure(struct options *o, const char *name, const char *text,
                                    const struct relume_log *log)
 {
+    o->start.auto_exposure = !strcmp(text, "auto");
+    if (o->start.auto_exposure)
+        return RELUME_OK;
     return take_number(&o->start.exposure_ev, name, text, -100, 100, log);
+}
+
+static relume_status take_tone(struct options *o, const char *name, const char *text,
+                               const struct relume_log *log)
+{
+    for (int i = 0; relume_tones[i]; i++)
+        if (!strcmp(relume_tones[i]->name, text)) {
+            o->start.tone = i;
+            return RELUME_OK;
+        }
+    return say(log, RELUME_EINVAL, "%s: expected linear, reinhard or filmic; found '%s'", name,
+               text);
+}
+
+static relume_status take_white(struct options *o, const char *name, const char *text,
+                                const struct relume_log *log)
+{
+    return take_number(&o->start.white, name, text, 1e-3, 1e6, log);
 }
 
 static relume_status take_offscreen(struct options *o, const char *name, const char *text,
@@ -210,7 +233,9 @@ static const struct option options[] = {
     {"--aperture", "A", "slab: average the cameras within A/2 of the eye", take_aperture},
     {"--focus", "Z", "slab: the plane at z = Z is sharp", take_focus},
     {"--size", "WxH", "pixels of the window or picture", take_size},
-    {"--exposure", "EV", "brighter by 2^EV", take_exposure},
+    {"--exposure", "EV", "brighter by 2^EV, or auto", take_exposure},
+    {"--tone", "T", "linear, reinhard or filmic; .exr, .hdr and .pfm stay linear", take_tone},
+    {"--white", "L", "reinhard: the luminance that becomes white; default: 4", take_white},
     {"--threads", "N", "threads that read files; default: all cores", take_threads},
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},
@@ -237,6 +262,9 @@ void options_help(void)
          "        wheel        zoom\n"
          "        right drag   turn the light (also: hold L and drag)\n"
          "keys:   + -          exposure          [ ]   slab: nearer, farther\n"
+         "        E            auto exposure     A     slab: aperture\n"
+         "        T            tone operator     , .   slab: focus nearer, farther\n"
+         "        O            little planet     D     slab: interpolation\n"
          "        B            light ball        R     reset           Esc   quit\n"
          "        A relume file dropped onto the window is opened.\n\n"
          "A window shows a panorama as a perspective look ahead. --offscreen without a framing "
@@ -245,7 +273,8 @@ void options_help(void)
          "middle\n"
          "eye. Its picture fills --size; a window keeps the proportions.\n\n"
          "script: one event a line, # begins a comment:\n"
-         "        size 800 600             drag left|right x0 y0 x1 y1      wheel STEPS [x y]\n"
+         "        size 800 600             drag left|right x0 y0 x1 y1 [S]  wheel STEPS [x y]\n"
+         "        wait SECONDS             (S: seconds that the drag takes)\n"
          "        key K                    light \"dir 0 0 1\"                frame out.png\n\n"
          "example:\n"
          "  relume-view teapot.exr --eye 0.2,0,3 --light \"dir 1 1 1\" --offscreen teapot.png");

@@ -2,6 +2,8 @@
 
 #include "say.h"
 
+#include <relume/tone.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,6 +67,7 @@ void renderer_destroy(struct renderer *r)
         program_destroy(programs[i], r->gl);
     relighter_destroy(&r->relighter);
     target_destroy(&r->frame, r->gl);
+    target_destroy(&r->small, r->gl);
     target_destroy(&r->sum, r->gl);
     if (r->depths.views)
         depths_destroy(&r->depths);
@@ -215,7 +218,7 @@ relume_status renderer_draw(struct renderer *r, const struct app *app)
         .width = app->width,
         .height = app->height,
         .picture = app_picture(app),
-        .exposure = (float)exp2(app->now.exposure_ev),
+        .exposure = (float)exp2(app_exposure_ev(app)),
     };
     relume_status status = prepare_target(&r->frame, r, app->width, app->height);
     if (!status)
@@ -237,7 +240,28 @@ relume_status renderer_read(struct relume_image *out, const struct renderer *r)
     return target_read(out, &r->frame, r->gl);
 }
 
-void renderer_present(const struct renderer *r)
+relume_status renderer_meter(double *ev, struct renderer *r)
 {
-    draw_present(&r->present, r->gl, &r->frame);
+    enum { SIDE = 128 };
+    const int width = r->frame.width < SIDE ? r->frame.width : SIDE;
+    const int height = r->frame.height < SIDE ? r->frame.height : SIDE;
+    const struct place place = {width, height, {0, 0, width, height}, 1};
+    struct relume_image image;
+    *ev = 0;
+    relume_status status = prepare_target(&r->small, r, width, height);
+    if (status)
+        return status;
+    r->gl->BindVertexArray(r->vertices);
+    target_begin(&r->small, r->gl);
+    draw_picture(&r->picture, r->gl, &place, &r->frame);
+    status = target_read(&image, &r->small, r->gl);
+    if (!status)
+        *ev = relume_tone_meter(&image);
+    relume_image_destroy(&image);
+    return status;
+}
+
+void renderer_present(const struct renderer *r, const struct app *app)
+{
+    draw_present(&r->present, r->gl, &r->frame, app->now.tone, app->now.white);
 }

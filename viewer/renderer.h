@@ -14,6 +14,7 @@ struct renderer {
     struct program picture, slab, slab_depth, slab_lens, mean, panorama, ball, present;
     GLuint vertices;
     struct target frame;
+    struct target small;   // of the frame, to meter
     struct target sum;     // of an aperture's cameras; made when first needed
     relume_slab *grid;     // NULL: not a slab
     struct depths depths;  // empty: not a slab, or without depth
@@ -37,7 +38,9 @@ relume_status renderer_use_depth(struct renderer *renderer, const struct depth_s
 relume_status renderer_draw(struct renderer *renderer, const struct app *app);
 // The last frame as an image, linear; the caller destroys it.
 relume_status renderer_read(struct relume_image *out, const struct renderer *renderer);
-// The last frame onto the screen.
-void renderer_present(const struct renderer *renderer);
+// What relume_tone_meter says of the last frame, seen through a small copy of it.
+relume_status renderer_meter(double *ev, struct renderer *renderer);
+// The last frame onto the screen, by the app's tone.
+void renderer_present(const struct renderer *renderer, const struct app *app);
 
 #endif

@@ -53,15 +53,43 @@ static relume_status play_size(struct player *p, char *rest)
     return RELUME_OK;
 }
 
+// In steps of a sixtieth of a second, as a window would.
+static void pass(struct player *p, double seconds)
+{
+    const double frame = 1.0 / 60;
+    for (; seconds > frame; seconds -= frame)
+        (void)app_advance(p->app, frame);
+    (void)app_advance(p->app, seconds);
+}
+
+static relume_status play_wait(struct player *p, char *rest)
+{
+    double seconds;
+    if (!options_numbers(rest, &seconds, 1) || seconds < 0 || seconds > 3600)
+        return wrong(p, "wait SECONDS", rest);
+    pass(p, seconds);
+    return RELUME_OK;
+}
+
 static relume_status play_drag(struct player *p, char *rest)
 {
-    double n[4];
+    double n[5] = {0};
     const bool right = !strncmp(rest, "right ", 6);
-    if ((!right && strncmp(rest, "left ", 5)) || !options_numbers(rest + 5 + right, n, 4))
-        return wrong(p, "drag left|right x0 y0 x1 y1", rest);
+    const char *numbers = rest + 5 + right;
+    if ((!right && strncmp(rest, "left ", 5)) ||
+        (!options_numbers(numbers, n, 4) && !options_numbers(numbers, n, 5)) || n[4] < 0 ||
+        n[4] > 3600)
+        return wrong(p, "drag left|right x0 y0 x1 y1 [SECONDS]", rest);
     const enum app_button button = right ? APP_RIGHT : APP_LEFT;
+    const int moves = n[4] > 0 ? 8 : 1;
     send(p, (struct app_event){.kind = APP_PRESS, .button = button, .x = n[0], .y = n[1]});
-    send(p, (struct app_event){.kind = APP_MOVE, .x = n[2], .y = n[3]});
+    for (int i = 1; i <= moves; i++) {
+        const double part = (double)i / moves;
+        send(p, (struct app_event){.kind = APP_MOVE,
+                                   .x = n[0] + part * (n[2] - n[0]),
+                                   .y = n[1] + part * (n[3] - n[1])});
+        pass(p, n[4] / moves);
+    }
     send(p, (struct app_event){.kind = APP_RELEASE, .button = button, .x = n[2], .y = n[3]});
     return RELUME_OK;
 }
@@ -106,7 +134,7 @@ static relume_status play_frame(struct player *p, char *rest)
 
 static const struct word words[] = {
     {"size", play_size}, {"drag", play_drag},   {"wheel", play_wheel},
-    {"key", play_key},   {"light", play_light}, {"frame", play_frame},
+    {"key", play_key},   {"light", play_light}, {"frame", play_frame}, {"wait", play_wait},
 };
 
 static relume_status play_line(struct player *p, char *line)
@@ -120,7 +148,7 @@ static relume_status play_line(struct player *p, char *line)
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         if (strlen(words[i].name) == length && !strncmp(words[i].name, line, length))
             return words[i].play(p, rest);
-    return wrong(p, "size, drag, wheel, key, light or frame", line);
+    return wrong(p, "size, drag, wheel, key, light, wait or frame", line);
 }
 
 relume_status script_play(struct app *app, const char *path, script_frame *frame, void *user,

@@ -30,8 +30,9 @@ RELUME_API const struct relume_tone *relume_tone_find(const char *name);
 struct relume_tone_params {
     const struct relume_tone *tone;  // default: linear
     double exposure_ev;              // multiply by 2^EV first
-    double white;                    // default: 4
+    double white;                    // default: RELUME_TONE_WHITE
 };
+#define RELUME_TONE_WHITE 4.0
 #define relume_tone_params(...) (&(const struct relume_tone_params){__VA_ARGS__})
 
 // Apply to every pixel of `image`, three channels, in place. RELUME_EINVAL.

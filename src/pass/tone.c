@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double default_white = 4.0;
-
 static float luminance(const float rgb[3])
 {
     return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];  // BT.709
@@ -71,7 +69,7 @@ relume_status relume_tone_apply(struct relume_image *image, const struct relume_
 {
     const struct relume_tone_params p = params ? *params : (struct relume_tone_params){0};
     const struct relume_tone *tone = p.tone ? p.tone : &relume_tone_linear;
-    const float white = (float)(p.white != 0.0 ? p.white : default_white);
+    const float white = (float)(p.white != 0.0 ? p.white : RELUME_TONE_WHITE);
     const float gain = (float)exp2(p.exposure_ev);
     if (!image->data || image->channels != 3 || !(white > 0.0f))
         return RELUME_EINVAL;

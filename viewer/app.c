@@ -16,15 +16,15 @@ static const double zoom_most = 64.0;
 static const double look_least[2] = {0.26795, 0.08749};
 static const double look_most = 57.29;
 static const double planet_zoom = 0.5;
-static const double most_spin_deg = 30;    // of a zoom
-static const double focus_factor = 1.02;   // of the distance from the cameras, per key
-static const double hand_s = 0.05;         // the hand's speed is its mean over about so long
-static const double glide_s = 0.35;        // a glide loses 63 % of its speed in that time ...
-static const double still_px_s = 4.0;      // ... and is over below this speed
-static const double adapt_s = 0.5;         // automatic exposure, likewise
-static const double adapted_enough = 0.02; // EV
-static const double exposure_step = 0.25;  // EV per key
-static const double dolly_factor = 1.05;   // of the eye's distance, per key
+static const double most_spin_deg = 30;     // of a zoom
+static const double focus_factor = 1.02;    // of the distance from the cameras, per key
+static const double hand_s = 0.05;          // the hand's speed is its mean over about so long
+static const double glide_s = 0.35;         // a glide loses 63 % of its speed in that time ...
+static const double still_px_s = 4.0;       // ... and is over below this speed
+static const double adapt_s = 0.5;          // automatic exposure, likewise
+static const double adapted_enough = 0.02;  // EV
+static const double exposure_step = 0.25;   // EV per key
+static const double dolly_factor = 1.05;    // of the eye's distance, per key
 
 static double clamp(double x, double low, double high)
 {
@@ -256,8 +256,8 @@ static void look_error(double error[2], const struct app *app, double x, double 
     error[1] = (asin(clamp(got.y, -1, 1)) - asin(clamp(want.y, -1, 1))) * 180 / PI;
 }
 
-// The direction under (x, y) stays there; near the poles, where pan and tilt cannot hold it or would
-// have to spin, the middle does.
+// The direction under (x, y) stays there; near the poles, where pan and tilt cannot hold it or
+// would have to spin, the middle does.
 static void zoom_look(struct app *app, double x, double y, double factor)
 {
     enum { ROUNDS = 32 };

@@ -41,9 +41,9 @@ struct app_file {
 
 // What can be reset.
 struct app_state {
-    struct relume_camera camera;  // framing is never DEFAULT
-    double zoom;                  // of the picture; 1 fits the frame
-    double shift[2];              // of the picture's middle from the frame's, pixels
+    struct relume_camera camera;              // framing is never DEFAULT
+    double zoom;                              // of the picture; 1 fits the frame
+    double shift[2];                          // of the picture's middle from the frame's, pixels
     enum relume_interpolation interpolation;  // slab
     double aperture;                          // slab: diameter, world units
     double focus_z;                           // slab: the plane in focus ...
@@ -86,9 +86,9 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
 // Returns whether the picture changed.
 bool app_handle(struct app *app, const struct app_event *event);
 
-// Let time pass: a panorama let go of in motion glides to a stop, automatic exposure adapts. Returns
-// whether the picture changed; false for good once all is at rest. What a span does, any way to
-// split it does.
+// Let time pass: a panorama let go of in motion glides to a stop, automatic exposure adapts.
+// Returns whether the picture changed; false for good once all is at rest. What a span does, any
+// way to split it does.
 bool app_advance(struct app *app, double seconds);
 
 // The exposure to draw with, EV.

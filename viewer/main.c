@@ -141,8 +141,8 @@ static relume_status make_renderer(struct viewer *v)
     const struct relume_pack_info *info = relume_pack_info(v->pack);
     const struct code_source source = {pack_codes, pack_drop, v->pack};
     const struct depth_source depth = {pack_depth, v->pack};
-    relume_status status = renderer_create(&v->renderer, &v->gl, &source, &info->geometry,
-                                           info->uv, info->views, v->log);
+    relume_status status = renderer_create(&v->renderer, &v->gl, &source, &info->geometry, info->uv,
+                                           info->views, v->log);
     if (!status && info->has_depth)
         status = renderer_use_depth(&v->renderer, &depth);
     return status;

@@ -16,10 +16,14 @@ static relume_status create_programs(struct renderer *r)
         struct program *program;
         relume_status (*create)(struct program *, const struct gl *, const struct relume_log *);
     } list[] = {
-        {&r->picture, draw_picture_create},       {&r->slab, draw_slab_create},
-        {&r->slab_depth, draw_slab_depth_create}, {&r->slab_lens, draw_slab_lens_create},
-        {&r->mean, draw_mean_create},             {&r->panorama, draw_panorama_create},
-        {&r->ball, draw_ball_create},             {&r->present, draw_present_create},
+        {&r->picture, draw_picture_create},
+        {&r->slab, draw_slab_create},
+        {&r->slab_depth, draw_slab_depth_create},
+        {&r->slab_lens, draw_slab_lens_create},
+        {&r->mean, draw_mean_create},
+        {&r->panorama, draw_panorama_create},
+        {&r->ball, draw_ball_create},
+        {&r->present, draw_present_create},
     };
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < sizeof list / sizeof *list; i++)
@@ -60,9 +64,8 @@ void renderer_destroy(struct renderer *r)
 {
     if (!r->gl)
         return;
-    struct program *const programs[] = {&r->picture,   &r->slab, &r->slab_depth,
-                                        &r->slab_lens, &r->mean, &r->panorama,
-                                        &r->ball,      &r->present};
+    struct program *const programs[] = {&r->picture, &r->slab,     &r->slab_depth, &r->slab_lens,
+                                        &r->mean,    &r->panorama, &r->ball,       &r->present};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         program_destroy(programs[i], r->gl);
     relighter_destroy(&r->relighter);
@@ -143,8 +146,8 @@ static bool takes_depth(const struct renderer *r, const struct app *app)
            (i == RELUME_INTERPOLATE_DEFAULT || i == RELUME_INTERPOLATE_DEPTH);
 }
 
-static relume_status draw_lens(struct renderer *r, const struct app *app,
-                               const struct place *place, const struct slab_seen *seen)
+static relume_status draw_lens(struct renderer *r, const struct app *app, const struct place *place,
+                               const struct slab_seen *seen)
 {
     relume_status status = prepare_target(&r->sum, r, place->width, place->height);
     if (status)

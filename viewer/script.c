@@ -133,8 +133,8 @@ static relume_status play_frame(struct player *p, char *rest)
 }
 
 static const struct word words[] = {
-    {"size", play_size}, {"drag", play_drag},   {"wheel", play_wheel},
-    {"key", play_key},   {"light", play_light}, {"frame", play_frame}, {"wait", play_wait},
+    {"size", play_size},   {"drag", play_drag},   {"wheel", play_wheel}, {"key", play_key},
+    {"light", play_light}, {"frame", play_frame}, {"wait", play_wait},
 };
 
 static relume_status play_line(struct player *p, char *line)

@@ -29,8 +29,8 @@ struct relume_camera {
 
 struct relume_frame_params {
     const struct relume_log *log;
-    unsigned cpu_off;  // as relume_relight_params
-    int threads;       // default: all cores
+    unsigned cpu_off;                         // as relume_relight_params
+    int threads;                              // default: all cores
     enum relume_interpolation interpolation;  // slab; default: by depth where the file has it
     double aperture, focus;                   // slab; as relume_view_params
 };

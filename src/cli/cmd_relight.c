@@ -21,8 +21,8 @@ static const struct option options[] = {
     {"--interpolate", OPTION_TEXT, "I",
      "slab: constant, linear or depth; default: depth where the file has it, else linear", 0, 0},
     {"--nearest", OPTION_FLAG, NULL, "slab: the same as --interpolate constant", 0, 0},
-    {"--aperture", OPTION_NUMBER, "A", "slab: average the cameras within A/2 of the eye; default: 0",
-     0, 1e9},
+    {"--aperture", OPTION_NUMBER, "A",
+     "slab: average the cameras within A/2 of the eye; default: 0", 0, 1e9},
     {"--focus", OPTION_NUMBER, "Z", "slab: the plane at z = Z is sharp; default: the st plane", 0,
      0},
     {"--exposure", OPTION_TEXT, "EV", "multiply by 2^EV, or auto: a mid grey; default: 0", 0, 0},
@@ -99,8 +99,8 @@ static relume_status parse_slab(const struct args *args, struct relume_frame_par
     else if (lens)
         params->interpolation = RELUME_INTERPOLATE_LINEAR;
     params->aperture = args_number(args, "--aperture", 0.0);
-    if (named && relume_interpolation_parse(&params->interpolation,
-                                            args_text(args, "--interpolate", NULL)))
+    if (named &&
+        relume_interpolation_parse(&params->interpolation, args_text(args, "--interpolate", NULL)))
         return unknown_name("--interpolate", args_text(args, "--interpolate", NULL), names);
     return RELUME_OK;
 }
@@ -169,8 +169,7 @@ static relume_status render(const struct args *args, const struct relume_camera 
     if (!status)
         status = develop(&frame, developing, output);
     if (!status)
-        status =
-            relume_image_save(&frame, output, relume_image_params(.log = args_log(args)));
+        status = relume_image_save(&frame, output, relume_image_params(.log = args_log(args)));
     relume_image_destroy(&frame);
     relume_pack_destroy(&pack);
     return status;

@@ -23,8 +23,10 @@ static struct renderer renderer_of(relume_pack *pack, const struct relume_light 
         .lights = lights,
         .light_count = n,
         .params = p,
-        .view = {.threads = p.threads, .interpolation = p.interpolation,
-                 .aperture = p.aperture, .focus = p.focus},
+        .view = {.threads = p.threads,
+                 .interpolation = p.interpolation,
+                 .aperture = p.aperture,
+                 .focus = p.focus},
     };
 }
 

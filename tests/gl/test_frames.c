@@ -183,8 +183,8 @@ static relume_status make_depth(struct relume_image *out, void *user, int view)
             const double block = (g.uv_z - 1) / g.uv_z;  // how far down the ray z = 1 lies
             const double at[2] = {eye[0] + block * (s - eye[0]), eye[1] + block * (v - eye[1])};
             const double slope[2] = {0.2, -0.4};  // floor: z = 0.2 x - 0.4
-            const double floor = (g.uv_z - slope[1] - slope[0] * eye[0]) /
-                                 (g.uv_z + slope[0] * (s - eye[0]));
+            const double floor =
+                (g.uv_z - slope[1] - slope[0] * eye[0]) / (g.uv_z + slope[0] * (s - eye[0]));
             const bool on_block = fabs(at[0]) < 0.2 && fabs(at[1] - 0.1) < 0.15;
             const double part = on_block ? block : y < 2 ? (double)INFINITY : floor;
             const double length = hypot(hypot(s - eye[0], v - eye[1]), g.uv_z);
@@ -273,8 +273,8 @@ static void other_ways_to_see_a_slab_are_the_library_s(void **state)
                      ways[i].interpolation, ways[i].aperture, ways[i].focus, eyes[e].x, eyes[e].y,
                      eyes[e].z);
             assert_int_equal(relume_image_create(&want, 67, 45, 3), RELUME_OK);
-            assert_int_equal(
-                relume_slab_frame(&want, t.renderer.grid, eyes[e], t.views, &ways[i]), RELUME_OK);
+            assert_int_equal(relume_slab_frame(&want, t.renderer.grid, eyes[e], t.views, &ways[i]),
+                             RELUME_OK);
             const struct relume_camera camera = {
                 .framing = RELUME_FRAME_EYE, .eye = eyes[e], .width = 67, .height = 45};
             struct app app = make_app(&t.about, &camera);
@@ -345,8 +345,9 @@ static void cameras_without_a_grid_are_refused(void **state)
 
 static void compare_panorama(const struct relume_geometry *g, int width, int height)
 {
-    static const struct relume_look looks[] = {{0, 0, 1, 0},   {180, 0, 1, 0},    {-90, 40, 1.5, 0},
-                                               {30, 90, 1, 0}, {70, -80, 0.7, 0}, {135, 35, 2, 0}, {20, -90, 0.5, 1}, {-130, 25, 0.8, 1}};
+    static const struct relume_look looks[] = {
+        {0, 0, 1, 0},      {180, 0, 1, 0},  {-90, 40, 1.5, 0}, {30, 90, 1, 0},
+        {70, -80, 0.7, 0}, {135, 35, 2, 0}, {20, -90, 0.5, 1}, {-130, 25, 0.8, 1}};
     struct fixture_file f =
         fixture_make(1, width, height, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, true);
     const struct app_file file = {*g, width, height, 1, {0}, {0}};
@@ -451,8 +452,8 @@ static void tones_are_the_library_s(void **state)
 {
     (void)state;
     const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0};
-    static const float values[][3] = {
-        {0, 0, 0}, {0.18f, 0.18f, 0.18f}, {1, 0.5f, 0.25f}, {3, 0.1f, 9}, {-1, 0.4f, 2}, {1e6f, 0, 1}};
+    static const float values[][3] = {{0, 0, 0},    {0.18f, 0.18f, 0.18f}, {1, 0.5f, 0.25f},
+                                      {3, 0.1f, 9}, {-1, 0.4f, 2},         {1e6f, 0, 1}};
     struct program present;
     struct target frame;
     GLuint vertices;

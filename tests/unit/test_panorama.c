@@ -212,22 +212,22 @@ static void look_turns_as_the_contract_says(void **state)
     assert_vec3(relume_look_ray(front, 200, 100, 100, 50), 0, 0, -1);
     // zoom 1 sees 90 degrees across, zoom 2 half the tangent; pixels are square
     assert_vec3(relume_look_ray(front, 200, 100, 200, 50), sqrt(.5), 0, -sqrt(.5));
-    assert_vec3(relume_look_ray((struct relume_look){0, 0, 2, false}, 200, 100, 0, 50), -sqrt(.2), 0,
-                -sqrt(.8));
+    assert_vec3(relume_look_ray((struct relume_look){0, 0, 2, false}, 200, 100, 0, 50), -sqrt(.2),
+                0, -sqrt(.8));
     assert_vec3(relume_look_ray(front, 200, 100, 100, 0), 0, sqrt(.2), -sqrt(.8));
     assert_vec3(relume_look_ray((struct relume_look){90, 0, 1, false}, 200, 100, 100, 50), 1, 0, 0);
     assert_vec3(relume_look_ray((struct relume_look){0, 30, 0, false}, 200, 100, 100, 50), 0, 0.5,
                 -sqrt(.75));
     // tilt first, then pan: no roll, the right edge stays level
-    assert_vec3(relume_look_ray((struct relume_look){90, 30, 1, false}, 200, 100, 100, 50), sqrt(.75), 0.5,
-                0);
+    assert_vec3(relume_look_ray((struct relume_look){90, 30, 1, false}, 200, 100, 100, 50),
+                sqrt(.75), 0.5, 0);
     const vec3 centre = relume_look_ray((struct relume_look){20, 0, 1, false}, 200, 100, 100, 50);
     const vec3 right = relume_look_ray((struct relume_look){20, 0, 1, false}, 200, 100, 200, 50);
     assert_float_equal(centre.y, right.y, 1e-15);
 }
 
-// Snyder 1987, "Map projections", 21: seen from the far pole, the angle c from the middle is drawn at
-// tan(c / 2); all angles between lines stay.
+// Snyder 1987, "Map projections", 21: seen from the far pole, the angle c from the middle is drawn
+// at tan(c / 2); all angles between lines stay.
 static void stereographic_looks(void **state)
 {
     (void)state;
@@ -236,7 +236,7 @@ static void stereographic_looks(void **state)
     assert_vec3(relume_look_ray(front, 200, 100, 200, 50), 1, 0, 0);
     const struct relume_look planet = {0, -90, 0.5, true};
     assert_vec3(relume_look_ray(planet, 200, 200, 100, 100), 0, -1, 0);
-    assert_vec3(relume_look_ray(planet, 200, 200, 150, 100), 1, 0, 0);   // the horizon
+    assert_vec3(relume_look_ray(planet, 200, 200, 150, 100), 1, 0, 0);  // the horizon
     assert_vec3(relume_look_ray(planet, 200, 200, 100, 50), 0, 0, -1);  // ahead is up
     const struct relume_look looks[] = {{30, -90, 0.4, true}, {-100, 20, 1.3, true}};
     for (int i = 0; i < 2; i++)
@@ -260,8 +260,8 @@ static void frames_show_the_directions_they_look_at(void **state)
     (void)state;
     enum { W = 96, H = 48 };
     static const struct relume_look looks[] = {
-        {0, 0, 1, false},     {180, 10, 1, false}, {-179, -5, 2, false},  {45, 20, 1.5, false},
-        {30, 90, 1, false},   {0, -75, 1, false},  {135, 35, 1, false},   {10, -90, 0.6, true},
+        {0, 0, 1, false},   {180, 10, 1, false}, {-179, -5, 2, false}, {45, 20, 1.5, false},
+        {30, 90, 1, false}, {0, -75, 1, false},  {135, 35, 1, false},  {10, -90, 0.6, true},
     };
     struct relume_image out;
     assert_int_equal(relume_image_create(&out, W, H, 3), RELUME_OK);

@@ -82,7 +82,8 @@ static int look(const struct scene *scene, struct relume_vec3 eye, double s, dou
         if (part <= 0 || fabs(x) > p->half[0] || fabs(y) > p->half[1])
             continue;
         p->paint(rgb, x, y);
-        *distance = part * sqrt((s - eye.x) * (s - eye.x) + (t - eye.y) * (t - eye.y) + eye.z * eye.z);
+        *distance =
+            part * sqrt((s - eye.x) * (s - eye.x) + (t - eye.y) * (t - eye.y) + eye.z * eye.z);
         return i;
     }
     return -1;
@@ -244,7 +245,8 @@ static void silhouettes_are_sharp(void **state)
         struct relume_image flat =
             draw(&c, eyes[e], relume_view_params(.interpolation = RELUME_INTERPOLATE_LINEAR));
         render(&want, &depth, &scene, eyes[e], W, H);
-        const int outline = 126;  // pixels around 0.4 x 0.3, seen 1.5 times as large on the st plane
+        const int outline =
+            126;  // pixels around 0.4 x 0.3, seen 1.5 times as large on the st plane
         assert_true(count_wrong(&got, &want, 12, 0.01) <= 1.5 * outline);
         assert_true(count_wrong(&flat, &want, 12, 0.01) > 2 * count_wrong(&got, &want, 12, 0.01));
         relume_image_destroy(&got);
@@ -332,14 +334,14 @@ static void wrong_disparities_are_refused(void **state)
                           relume_view_params(.interpolation = RELUME_INTERPOLATE_DEPTH)),
         RELUME_EINVAL);
     struct relume_image mixed[VIEWS] = {{0}};
-    assert_int_equal(relume_slab_frame(&out, c.slab, eye, c.views,
-                                       relume_view_params(.disparity = mixed)),
-                     RELUME_EINVAL);
+    assert_int_equal(
+        relume_slab_frame(&out, c.slab, eye, c.views, relume_view_params(.disparity = mixed)),
+        RELUME_EINVAL);
     for (int i = 0; i < VIEWS; i++)
         mixed[i] = small;
-    assert_int_equal(relume_slab_frame(&out, c.slab, eye, c.views,
-                                       relume_view_params(.disparity = mixed)),
-                     RELUME_EINVAL);
+    assert_int_equal(
+        relume_slab_frame(&out, c.slab, eye, c.views, relume_view_params(.disparity = mixed)),
+        RELUME_EINVAL);
     relume_image_destroy(&out);
     relume_image_destroy(&small);
     release(&c);
@@ -413,8 +415,8 @@ static void what_is_in_focus_keeps_its_value(void **state)
     for (int e = 0; e < EYES; e++)
         for (int a = 0; a < 4; a++) {
             struct relume_image want, depth;
-            struct relume_image got = draw(
-                &c, eyes[e], relume_view_params(.aperture = apertures[a], .focus = 0.5));
+            struct relume_image got =
+                draw(&c, eyes[e], relume_view_params(.aperture = apertures[a], .focus = 0.5));
             render(&want, &depth, &scene, eyes[e], W, H);
             assert_int_equal(count_wrong(&got, &want, 12, 3e-6), 0);
             relume_image_destroy(&got);
@@ -433,9 +435,9 @@ static void weights_are_bilinear_beside_the_aperture(void **state)
     CHECK_NEAR(lens.place[1], 0.1, 1e-12);
     static const double cases[][4] = {
         // u, v, radius, weight: a step of the grid is 0.2
-        {-0.1, 0.1, 0, 1},       {-0.05, 0.1, 0, 0.75},   {-0.05, 0.15, 0, 0.5625},
-        {0.1, 0.1, 0, 0},        {0.1, 0.1, 0.05, 0.25},  {0.1, 0.1, 0.2, 1},
-        {0.1, 0.1, 0.1, 0.5},    {0.02, 0.26, 0.1, 0.42}, {-0.3, 0.1, 0.19, 0.95},
+        {-0.1, 0.1, 0, 1},    {-0.05, 0.1, 0, 0.75},   {-0.05, 0.15, 0, 0.5625},
+        {0.1, 0.1, 0, 0},     {0.1, 0.1, 0.05, 0.25},  {0.1, 0.1, 0.2, 1},
+        {0.1, 0.1, 0.1, 0.5}, {0.02, 0.26, 0.1, 0.42}, {-0.3, 0.1, 0.19, 0.95},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         CHECK_NEAR(relume_slab_lens_weight(&lens, cases[i], cases[i][2]), cases[i][3], 1e-9);

@@ -79,8 +79,9 @@ RELUME_API int relume_slab_blend(int view[4], double weight[4], const relume_sla
 
 // Depth as disparity: `*out` is created with one channel. A point of disparity q that the camera at
 // c sees in (s, t) is seen by the camera at c' in (s, t) + q (c - c'): 0 on the st plane, rising
-// towards the cameras, RELUME_SLAB_BACKGROUND where `depth` is infinite. `depth` is one channel of
-// distances along the rays of the camera at `uv`. RELUME_EINVAL, RELUME_ENOMEM.
+// towards the cameras. Where `depth` is infinite it is RELUME_SLAB_BACKGROUND, twice that beside a
+// surface, whose colour such a texel may have some of. `depth` is one channel of distances along
+// the rays of the camera at `uv`. RELUME_EINVAL, RELUME_ENOMEM.
 #define RELUME_SLAB_BACKGROUND (-1.0f)
 RELUME_RESULT relume_status relume_slab_disparity(struct relume_image *out, const relume_slab *slab,
                                                   const double uv[2],

@@ -191,6 +191,30 @@ static void disparity_is_that_of_the_plane(void **state)
     relume_slab_destroy(&slab);
 }
 
+// An antialiased texel beside a surface is of neither.
+static void background_beside_a_surface_is_told(void **state)
+{
+    (void)state;
+    const double uv[2] = {0, 0};
+    relume_slab *slab = make_slab();
+    struct relume_image depth, disparity;
+    CHECK_OK(relume_image_create(&depth, 6, 5, 1));
+    for (int i = 0; i < 30; i++)
+        depth.data[i] = INFINITY;
+    depth.data[2 * 6 + 2] = 3;
+    CHECK_OK(relume_slab_disparity(&disparity, slab, uv, &depth));
+    for (int y = 0; y < 5; y++)
+        for (int x = 0; x < 6; x++) {
+            const bool beside = abs(x - 2) <= 1 && abs(y - 2) <= 1;
+            if (x != 2 || y != 2)
+                assert_true(disparity.data[y * 6 + x] ==
+                            (beside ? 2 : 1) * RELUME_SLAB_BACKGROUND);
+        }
+    relume_image_destroy(&depth);
+    relume_image_destroy(&disparity);
+    relume_slab_destroy(&slab);
+}
+
 static void eyes_before_the_cameras_bound_disparity(void **state)
 {
     (void)state;
@@ -495,6 +519,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(disparity_is_that_of_the_plane),
+        cmocka_unit_test(background_beside_a_surface_is_told),
         cmocka_unit_test(eyes_before_the_cameras_bound_disparity),
         cmocka_unit_test(a_sheet_at_any_height_is_met),
         cmocka_unit_test(silhouettes_are_sharp),

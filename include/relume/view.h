@@ -118,6 +118,14 @@ RELUME_RESULT relume_status relume_slab_frame(struct relume_image *out, const re
                                               const struct relume_image *views,
                                               const struct relume_view_params *params);
 
+// What such a frame by depth shows at (s, t): `params` must have disparities, and of these and of
+// `views` those are read that relume_slab_blend names for the ray. RELUME_EINVAL likewise and for a
+// ray that misses the grid.
+RELUME_RESULT relume_status relume_slab_value(float rgb[3], const relume_slab *slab,
+                                              struct relume_vec3 eye, const double st[2],
+                                              const struct relume_image *views,
+                                              const struct relume_view_params *params);
+
 // ------------------------------------------------------------------ panorama
 // Angles in degrees: pan > 0 turns right (-z towards +x), tilt > 0 looks up; tilt is applied
 // first, then pan. The horizontal field of view is 2 atan(1 / zoom), of a stereographic look twice

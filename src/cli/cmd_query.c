@@ -47,7 +47,7 @@ static relume_status query(const struct args *args, const struct relume_light *l
                                 .cpu_off = parse_cpu_off(args), .threads = args_threads(args),
                                 .interpolation = args_has(args, "--nearest")
                                                      ? RELUME_INTERPOLATE_CONSTANT
-                                                     : RELUME_INTERPOLATE_LINEAR));
+                                                     : RELUME_INTERPOLATE_DEFAULT));
     if (!status)
         print(args, rgb);
     relume_pack_destroy(&pack);

@@ -55,8 +55,7 @@ relume_status relume_slab_disparity(struct relume_image *out, const relume_slab 
             if (isfinite(d))
                 out->data[i] = (float)(m < most / (1.0 + most) ? m / (1.0 - m) : most);
             else
-                out->data[i] =
-                    beside_surface(depth, column, row) ? fringe : RELUME_SLAB_BACKGROUND;
+                out->data[i] = beside_surface(depth, column, row) ? fringe : RELUME_SLAB_BACKGROUND;
         }
     return status;
 }

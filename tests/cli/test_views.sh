@@ -36,6 +36,14 @@ differ 'an aperture blurs' wide.exr linear.exr
 for n in 1 3; do relume relight slab.exr -o t$n.exr --eye 0.1,0.2,3.3 --threads $n; done
 same 'threads do not matter' t1.exr t3.exr
 
+# ---- one ray is a pixel: column 40, row 60 of 96 looks at s = -0.15625, t = -0.2604167
+relume query slab.exr --eye 0.25,0.25,3 --direction=-0.40625,-0.5104167,-3 --light "$light" >q.txt
+"$mkimage" read default.exr 40 60 >p.txt
+for i in 1 2 3; do
+    below "query is the pixel, channel $i" \
+        "$(awk -v i=$i 'NR == FNR { a = $i; next } { d = $i - a; print d < 0 ? -d : d }' q.txt p.txt)" 1e-4
+done
+
 # ---- developing
 relume synth attic -o pano --lights 9 --hemisphere --size 32 --samples 1 || exit 1
 relume encode pano -o pano.exr || exit 1

@@ -207,8 +207,7 @@ static void background_beside_a_surface_is_told(void **state)
         for (int x = 0; x < 6; x++) {
             const bool beside = abs(x - 2) <= 1 && abs(y - 2) <= 1;
             if (x != 2 || y != 2)
-                assert_true(disparity.data[y * 6 + x] ==
-                            (beside ? 2 : 1) * RELUME_SLAB_BACKGROUND);
+                assert_true(disparity.data[y * 6 + x] == (beside ? 2 : 1) * RELUME_SLAB_BACKGROUND);
         }
     relume_image_destroy(&depth);
     relume_image_destroy(&disparity);
@@ -295,6 +294,38 @@ static void captured_eyes_give_their_view_bit_by_bit(void **state)
         assert_memory_equal(got.data, c.views[i].data, sizeof(float) * 3 * W * H);
         relume_image_destroy(&got);
     }
+    release(&c);
+}
+
+// One ray is the pixel of the frame that looks along it.
+static void a_ray_is_its_pixel(void **state)
+{
+    (void)state;
+    static const struct sheet sheets[] = {{1.0, {0.2, 0.15}, paint_red},
+                                          {-0.5, {9, 9}, paint_ramp}};
+    const struct scene scene = {sheets, 2};
+    const struct relume_geometry g = geometry();
+    struct captured c;
+    capture(&c, &scene);
+    const struct relume_view_params params = {.disparity = c.disparity};
+    for (int e = 0; e < 3; e++) {
+        struct relume_image frame = draw(&c, eyes[e], &params);
+        for (int i = 7; i < W * H; i += 13) {
+            const double st[2] = {g.st_min[0] + (i % W + 0.5) / W * 2,
+                                  g.st_max[1] - (i / W + 0.5) / H * 1.5};
+            float rgb[3];
+            CHECK_OK(relume_slab_value(rgb, c.slab, eyes[e], st, c.views, &params));
+            for (int k = 0; k < 3; k++)
+                CHECK_NEAR(rgb[k], frame.data[3 * i + k], 1e-6);
+        }
+        relume_image_destroy(&frame);
+    }
+    const double beyond[2] = {0, 0};
+    float rgb[3];
+    const struct relume_vec3 outside = {2, 0, uv_z};
+    assert_int_equal(relume_slab_value(rgb, c.slab, outside, beyond, c.views, &params),
+                     RELUME_EINVAL);
+    assert_int_equal(relume_slab_value(rgb, c.slab, eyes[0], beyond, c.views, NULL), RELUME_EINVAL);
     release(&c);
 }
 
@@ -524,6 +555,7 @@ int main(void)
         cmocka_unit_test(a_sheet_at_any_height_is_met),
         cmocka_unit_test(silhouettes_are_sharp),
         cmocka_unit_test(captured_eyes_give_their_view_bit_by_bit),
+        cmocka_unit_test(a_ray_is_its_pixel),
         cmocka_unit_test(background_is_on_the_st_plane),
         cmocka_unit_test(threads_do_not_matter),
         cmocka_unit_test(wrong_disparities_are_refused),

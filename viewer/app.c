@@ -18,6 +18,7 @@ static const double zoom_most = 64.0;
 // A perspective look gets 150 degrees wide, a stereographic one 340; both as narrow as 2 and 4.
 static const double look_least[2] = {0.26795, 0.08749};
 static const double look_most = 57.29;
+static const double most_spin_deg = 30;     // of a zoom
 static const double hand_s = 0.05;          // the hand's speed is its mean over about so long
 static const double glide_s = 0.35;         // a glide loses 63 % of its speed in that time ...
 static const double still_px_s = 4.0;       // ... and is over below this speed
@@ -276,11 +277,11 @@ static void look_error(double error[2], const struct app *app, double x, double 
     error[1] = (asin(clamp(got.y, -1, 1)) - asin(clamp(want.y, -1, 1))) * 180 / PI;
 }
 
-// The direction under (x, y) stays there; near the poles, where pan and tilt cannot hold it, the
-// middle does.
+// The direction under (x, y) stays there; near the poles, where pan and tilt cannot hold it or
+// would have to spin, the middle does.
 static void zoom_look(struct app *app, double x, double y, double factor)
 {
-    enum { ROUNDS = 16 };
+    enum { ROUNDS = 32 };
     struct relume_look *look = &app->now.camera.look;
     const struct relume_vec3 want = relume_look_ray(*look, app->width, app->height, x, y);
     double error[2];
@@ -291,7 +292,8 @@ static void zoom_look(struct app *app, double x, double y, double factor)
         turn_by(look, -error[0], -error[1]);
     }
     look_error(error, app, x, y, want);
-    if (hypot(error[0], error[1]) > 0.1 * degrees_per_pixel(app))
+    const double spin = fabs(remainder(look->pan_deg - middle.pan_deg, 360));
+    if (hypot(error[0], error[1]) > 0.1 * degrees_per_pixel(app) || spin > most_spin_deg)
         *look = middle;
 }
 

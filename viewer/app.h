@@ -55,7 +55,6 @@ struct app_file {
     int width, height;  // of a view
     int views;
     double uv_min[2], uv_max[2];  // slab: where cameras stand
-    bool compared;                // there is a capture to compare with
 };
 
 // What the viewer adds to a light. All zero is a light that shines as it says.
@@ -110,6 +109,7 @@ struct app {
     double cursor[2];
     bool light_key;                     // L is held
     bool panel, help, inspect, gizmos;  // shown
+    bool compared;  // there is a capture to compare with
     enum app_wish wish;
     char spec[APP_SPEC];
     bool quit;

@@ -371,7 +371,7 @@ static bool choose_pass(app *app)
     if (!ImGui::BeginCombo("view", relume_pass_name(app->now.pass)))
         return false;
     for (int i = 0; i < RELUME_PASSES; i++) {
-        if (i == RELUME_PASS_DIFFERENCE && !app->file.compared)
+        if (i == RELUME_PASS_DIFFERENCE && !app->compared)
             continue;
         if (ImGui::Selectable(relume_pass_name((relume_pass)i), app->now.pass == i)) {
             app->now.pass = (relume_pass)i;

@@ -121,8 +121,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
         relume_pack_open(&pack, path, relume_pack_params(.log = s->log, .threads = s->threads));
     if (status)
         return status;
-    struct app_file file = describe(pack);
-    file.compared = s->capture != NULL;
+    const struct app_file file = describe(pack);
     status = app_start(&app, &file, start, look_ahead, s->log);
     if (!status)
         status = check_depth(pack, start, s->log);
@@ -133,6 +132,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
     relume_pack_destroy(&s->pack);
     s->pack = pack;
     s->app = app;
+    s->app.compared = s->capture != NULL;
     set_name(s, path);
     describe_lines(s);
     warn_below_horizon(s);
@@ -189,7 +189,7 @@ relume_status session_drop(struct session *s, const char *path)
     s->app.panel = was.panel;
     s->app.gizmos = was.gizmos;
     relume_capture_destroy(&s->capture);
-    s->app.file.compared = false;
+    s->app.compared = false;
     renderer_destroy(&s->renderer);
     return make_renderer(s);
 }

@@ -69,7 +69,7 @@ struct relume_pack_encode_params {
     const struct relume_books_params *books;  // codebooks instead of planes; threads are
                                               // those of this struct
     bool share;                               // one set of codebooks for all views
-    bool no_depth;                            // leave depth out, which only near lights need
+    bool no_depth;                            // leave depth out: no near lights, no views by depth
 };
 #define relume_pack_encode_params(...) (&(const struct relume_pack_encode_params){__VA_ARGS__})
 RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,

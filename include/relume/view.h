@@ -79,8 +79,9 @@ RELUME_API int relume_slab_blend(int view[4], double weight[4], const relume_sla
 
 // Depth as disparity: `*out` is created with one channel. A point of disparity q that the camera at
 // c sees in (s, t) is seen by the camera at c' in (s, t) + q (c - c'): 0 on the st plane, rising
-// towards the cameras, RELUME_SLAB_BACKGROUND where `depth` is infinite. `depth` is one channel of
-// distances along the rays of the camera at `uv`. RELUME_EINVAL, RELUME_ENOMEM.
+// towards the cameras. Where `depth` is infinite it is RELUME_SLAB_BACKGROUND, twice that beside a
+// surface, whose colour such a texel may have some of. `depth` is one channel of distances along
+// the rays of the camera at `uv`. RELUME_EINVAL, RELUME_ENOMEM.
 #define RELUME_SLAB_BACKGROUND (-1.0f)
 RELUME_RESULT relume_status relume_slab_disparity(struct relume_image *out, const relume_slab *slab,
                                                   const double uv[2],
@@ -99,8 +100,8 @@ struct relume_slab_lens {
     double step[2][2];  // u, v: to the next line of the grid below and above
 };
 RELUME_API struct relume_slab_lens relume_slab_lens(const relume_slab *slab, int column, int row);
-RELUME_API double relume_slab_lens_weight(const struct relume_slab_lens *camera,
-                                          const double uv[2], double radius);
+RELUME_API double relume_slab_lens_weight(const struct relume_slab_lens *camera, const double uv[2],
+                                          double radius);
 
 // Mark in needed[views] the views that a frame from `eye` can touch (seed Fig 8-13); returns how
 // many, 0 when the eye sees nothing of the slab.
@@ -114,6 +115,14 @@ RELUME_API int relume_slab_needs(bool *needed, const relume_slab *slab, struct r
 // another size, a plane of focus on or behind the cameras; RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_slab_frame(struct relume_image *out, const relume_slab *slab,
                                               struct relume_vec3 eye,
+                                              const struct relume_image *views,
+                                              const struct relume_view_params *params);
+
+// What such a frame by depth shows at (s, t): `params` must have disparities, and of these and of
+// `views` those are read that relume_slab_blend names for the ray. RELUME_EINVAL likewise and for a
+// ray that misses the grid.
+RELUME_RESULT relume_status relume_slab_value(float rgb[3], const relume_slab *slab,
+                                              struct relume_vec3 eye, const double st[2],
                                               const struct relume_image *views,
                                               const struct relume_view_params *params);
 

@@ -25,7 +25,7 @@ static const struct option options[] = {
     {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
     {"--ridge", OPTION_NUMBER, "R", "smoothing of the fit, 0 to 1; default: 1e-6", 0, 1},
     BOOK_OPTIONS,
-    {"--no-depth", OPTION_FLAG, NULL, "leave depth out, which only near lights need", 0, 0},
+    {"--no-depth", OPTION_FLAG, NULL, "leave depth out: no near lights, no eyes by depth", 0, 0},
     {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
     {"--repair", OPTION_FLAG, NULL,
      "replace pixels that are NaN or infinite by those under the nearest lights", 0, 0},

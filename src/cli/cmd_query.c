@@ -40,9 +40,8 @@ static relume_status query(const struct args *args, const struct relume_light *l
                          relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
     struct relume_frame_params params = parse_frame(args);
     params.log = prefix_log(&about, args_log(args), args_input(args, 0));
-    if (!status)
-        params.interpolation =
-            args_has(args, "--nearest") ? RELUME_INTERPOLATE_CONSTANT : RELUME_INTERPOLATE_LINEAR;
+    params.interpolation =
+        args_has(args, "--nearest") ? RELUME_INTERPOLATE_CONSTANT : RELUME_INTERPOLATE_DEFAULT;
     if (!status)
         status = relume_query(rgb, pack, eye, direction, lights, count, &params);
     if (!status)

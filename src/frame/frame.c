@@ -360,6 +360,32 @@ static relume_status query_planar(const struct renderer *r, vec3 eye, vec3 direc
     return status;
 }
 
+// As a frame from `eye` shows it: by depth from the cameras around the ray.
+static relume_status query_depth(const struct renderer *r, const relume_slab *slab, vec3 eye,
+                                 const double st[2], const int *around, int count, float rgb[3])
+{
+    const size_t views = (size_t)r->info->views;
+    struct relume_view_params params = r->view;
+    bool *needed = mem_zeroed(views, sizeof *needed);
+    struct relume_image *images = mem_zeroed(2 * views, sizeof *images);
+    relume_status status = needed && images ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; !status && i < count; i++)
+        needed[around[i]] = true;
+    if (!status)
+        status = relight_needed(r, needed, images);
+    if (!status)
+        status = find_disparity(r, slab, needed, images + views);
+    if (!status) {
+        params.disparity = images + views;
+        status = relume_slab_value(rgb, slab, eye, st, images, &params);
+    }
+    for (size_t i = 0; images && i < 2 * views; i++)
+        relume_image_destroy(&images[i]);
+    free(images);
+    free(needed);
+    return status;
+}
+
 static relume_status query_slab(const struct renderer *r, vec3 eye, vec3 direction, float rgb[3])
 {
     const struct relume_geometry *g = &r->info->geometry;
@@ -379,7 +405,10 @@ static relume_status query_slab(const struct renderer *r, vec3 eye, vec3 directi
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     if (count == 0)
         status = no_ray(r, "it misses the camera grid");
-    for (int i = 0; !status && i < count; i++) {
+    const bool by_depth = count > 1 && takes_depth(r);
+    if (!status && by_depth)
+        status = query_depth(r, slab, eye, st, view, count, rgb);
+    for (int i = 0; !status && !by_depth && i < count; i++) {
         struct relume_image image = {0};
         float value[3];
         status = relight_view(r, view[i], &image);

@@ -21,6 +21,20 @@ double relume_slab_eye_disparity(const relume_slab *slab, struct relume_vec3 eye
     return slab_reach(&reach, slab, eye) && reach < 0.0 ? -1.0 / reach : (double)INFINITY;
 }
 
+// Background beside a surface: antialiased, it holds some of that surface's colour.
+static const float fringe = 2.0f * RELUME_SLAB_BACKGROUND;
+
+static bool beside_surface(const struct relume_image *depth, int column, int row)
+{
+    for (int y = row - 1; y <= row + 1; y++)
+        for (int x = column - 1; x <= column + 1; x++) {
+            const bool inside = x >= 0 && x < depth->width && y >= 0 && y < depth->height;
+            if (inside && isfinite(depth->data[(size_t)y * (size_t)depth->width + (size_t)x]))
+                return true;
+        }
+    return false;
+}
+
 relume_status relume_slab_disparity(struct relume_image *out, const relume_slab *slab,
                                     const double uv[2], const struct relume_image *depth)
 {
@@ -41,7 +55,7 @@ relume_status relume_slab_disparity(struct relume_image *out, const relume_slab 
             if (isfinite(d))
                 out->data[i] = (float)(m < most / (1.0 + most) ? m / (1.0 - m) : most);
             else
-                out->data[i] = RELUME_SLAB_BACKGROUND;
+                out->data[i] = beside_surface(depth, column, row) ? fringe : RELUME_SLAB_BACKGROUND;
         }
     return status;
 }

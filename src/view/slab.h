@@ -44,6 +44,8 @@ struct slab_frame {
 };
 relume_status slab_frame_depth(const struct slab_frame *frame);
 relume_status slab_frame_lens(const struct slab_frame *frame);
+// What slab_frame_depth gives a pixel that looks at (s, t).
+relume_status slab_value_depth(float rgb[3], const struct slab_frame *frame, const double st[2]);
 
 static inline bool slab_is_lens(const struct relume_view_params *params)
 {

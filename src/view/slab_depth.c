@@ -176,12 +176,11 @@ static void shade(float rgb[3], const struct around *a, double nearest, double f
         rgb[k] = sum[4] > 0.0 ? (float)(sum[k] / sum[4]) : 0.0f;
 }
 
-static void find_cameras(struct around *a, const struct slab_frame *f, int column, int row)
+static void find_cameras(struct around *a, const struct slab_frame *f, const struct slab_ray *ray)
 {
-    const struct slab_ray ray = slab_ray_of(f, column, row);
-    const struct neighbours across = slab_columns_at(f->slab, false, ray.uv[0]);
-    const struct neighbours down = slab_rows_at(f->slab, false, ray.uv[1]);
-    *a = (struct around){.frame = f, .texel = {ray.texel[0], ray.texel[1]}};
+    const struct neighbours across = slab_columns_at(f->slab, false, ray->uv[0]);
+    const struct neighbours down = slab_rows_at(f->slab, false, ray->uv[1]);
+    *a = (struct around){.frame = f, .texel = {ray->texel[0], ray->texel[1]}};
     for (int j = 0; j < down.count; j++)
         for (int i = 0; i < across.count; i++) {
             struct camera *c = &a->camera[a->count++];
@@ -190,7 +189,7 @@ static void find_cameras(struct around *a, const struct slab_frame *f, int colum
             c->rgb = f->views[view].data;
             c->disparity = f->params.disparity[view].data;
             c->weight = across.weight[i] * down.weight[j];
-            slab_shift(c->shift, f, &ray, f->slab->u[across.index[i]], f->slab->v[down.index[j]]);
+            slab_shift(c->shift, f, ray, f->slab->u[across.index[i]], f->slab->v[down.index[j]]);
             c->speed = hypot(c->shift[0], c->shift[1]);
         }
 }
@@ -202,8 +201,9 @@ static void draw_row(void *context, size_t row, int worker)
     (void)worker;
     float *rgb = out->data + 3 * row * (size_t)out->width;
     for (int x = 0; x < out->width; x++, rgb += 3) {
+        const struct slab_ray ray = slab_ray_of(f->of, x, (int)row);
         struct around a;
-        find_cameras(&a, f->of, x, (int)row);
+        find_cameras(&a, f->of, &ray);
         shade(rgb, &a, f->nearest, f->farthest);
     }
 }
@@ -222,12 +222,10 @@ static bool usable(const struct slab_frame *f)
     return true;
 }
 
-relume_status slab_frame_depth(const struct slab_frame *f)
+static struct frame frame_of(const struct slab_frame *f)
 {
     const int cameras = f->slab->columns * f->slab->rows;
     struct frame frame = {.of = f, .nearest = -INFINITY, .farthest = INFINITY};
-    if (!usable(f))
-        return RELUME_EINVAL;
     for (int i = 0; i < cameras; i++) {
         double range[2];
         if (!f->needed[i] || !relume_slab_range(range, &f->params.disparity[i]))
@@ -236,6 +234,31 @@ relume_status slab_frame_depth(const struct slab_frame *f)
         frame.nearest = fmax(frame.nearest, range[1]);
     }
     frame.nearest = fmin(frame.nearest, relume_slab_eye_disparity(f->slab, f->eye));
+    return frame;
+}
+
+relume_status slab_frame_depth(const struct slab_frame *f)
+{
+    if (!usable(f))
+        return RELUME_EINVAL;
+    struct frame frame = frame_of(f);
     thread_for(f->params.threads, (size_t)f->out->height, draw_row, &frame);
+    return RELUME_OK;
+}
+
+relume_status slab_value_depth(float rgb[3], const struct slab_frame *f, const double st[2])
+{
+    const struct relume_geometry *g = &f->slab->geometry;
+    if (!usable(f))
+        return RELUME_EINVAL;
+    const struct frame frame = frame_of(f);
+    const struct slab_ray ray = {
+        .uv = {slab_hit(f->eye.x, st[0], f->reach), slab_hit(f->eye.y, st[1], f->reach)},
+        .texel = {(st[0] - g->st_min[0]) / (g->st_max[0] - g->st_min[0]) * f->width,
+                  (g->st_max[1] - st[1]) / (g->st_max[1] - g->st_min[1]) * f->height},
+    };
+    struct around a;
+    find_cameras(&a, f, &ray);
+    shade(rgb, &a, frame.nearest, frame.farthest);
     return RELUME_OK;
 }

@@ -185,3 +185,33 @@ relume_status relume_slab_frame(struct relume_image *out, const relume_slab *sla
     free(needed);
     return status;
 }
+
+relume_status relume_slab_value(float rgb[3], const relume_slab *slab, struct relume_vec3 eye,
+                                const double st[2], const struct relume_image *views,
+                                const struct relume_view_params *params)
+{
+    const int cameras = slab->columns * slab->rows;
+    struct slab_frame frame = {.slab = slab, .views = views, .eye = eye};
+    double uv[2], weight[4];
+    int around[4];
+    if (!params || !params->disparity || !slab_reach(&frame.reach, slab, eye) ||
+        !relume_slab_uv(uv, slab, eye, st[0], st[1]))
+        return RELUME_EINVAL;
+    bool *needed = mem_zeroed((size_t)cameras, sizeof *needed);
+    if (!needed)
+        return RELUME_ENOMEM;
+    const int count = relume_slab_blend(around, weight, slab, uv, NULL);
+    for (int i = 0; i < count; i++)
+        needed[around[i]] = true;
+    const struct relume_image *view = check_views(needed, views, cameras);
+    relume_status status = RELUME_EINVAL;
+    if (view) {
+        frame.params = *params;
+        frame.width = view->width;
+        frame.height = view->height;
+        frame.needed = needed;
+        status = slab_value_depth(rgb, &frame, st);
+    }
+    free(needed);
+    return status;
+}

@@ -5,6 +5,7 @@
 
 "$RELUME" synth teapot -q -o teapot --views 2x2 --lights 12 --size 24 --samples 1 || exit 1
 "$RELUME" encode -q teapot -o teapot.exr || exit 1
+"$RELUME" encode -q teapot -o bare.exr --no-depth || exit 1
 light="dir 0.5 0.4 0.8"
 
 same() { # name, options...: both programs draw the same linear frame
@@ -21,7 +22,30 @@ same() { # name, options...: both programs draw the same linear frame
 }
 same 'the default frame'
 same 'a captured view' --view 3
-same 'an eye between cameras' --eye 0.1,-0.2,3
+same 'an eye between cameras' --eye 0.1,-0.2,3 --interpolate linear
+same 'the nearest camera' --eye 0.1,-0.2,3 --interpolate constant
+same 'an aperture' --eye 0.1,-0.2,3 --aperture 0.6 --focus 0.5
+
+# by depth a rounding may send a ray to another texel, a few in a frame: PSNR instead of the worst
+"$RELUME" relight teapot.exr -o cpu.exr --light "$light" --eye 0.1,-0.2,3 &&
+    "$VIEWER" teapot.exr --offscreen gpu.exr --light "$light" --eye 0.1,-0.2,3
+above 'an eye by depth' "$("$RELUME" compare cpu.exr gpu.exr | awk '$1 == "psnr_db" { print $2 }')" 45
+
+developed() { # name, options...: both programs write the same picture for the screen
+    name=$1
+    shift
+    "$RELUME" relight pano.exr -o cpu.png "$@" && "$VIEWER" pano.exr --offscreen gpu.png "$@" || {
+        not_ok "$name" "a program failed"
+        return
+    }
+    # 1/255 of display values; near white that is 2.3/255 of linear light
+    below "$name" "$("$RELUME" compare cpu.png gpu.png | awk '$1 == "max_abs" { print $2 }')" 0.01
+}
+"$RELUME" synth attic -q -o pano --lights 9 --hemisphere --size 24 --samples 1 || exit 1
+"$RELUME" encode -q pano -o pano.exr || exit 1
+developed 'tone and exposure' --pan 40 --exposure 2 --tone filmic --size 100x60
+developed 'automatic exposure' --pan 40 --exposure auto --tone reinhard --white 2 --size 100x60
+developed 'a little planet' --projection planet --exposure auto --size 80x80
 
 refuse() { # name, status, pattern, command...
     name=$1 want=$2 pattern=$3
@@ -39,6 +63,8 @@ refuse() { # name, status, pattern, command...
 refuse 'no display' 3 'use --offscreen .*package' env -u DISPLAY -u WAYLAND_DISPLAY "$VIEWER" teapot.exr
 refuse 'no such file' 1 'none.exr: no such file' "$VIEWER" none.exr --offscreen none.png
 refuse 'unknown option' 2 "did you mean '--offscreen'" "$VIEWER" teapot.exr --offscren none.png
+refuse 'no depth' 1 'file with depth' "$VIEWER" bare.exr --interpolate depth --offscreen none.png
+refuse 'a focus behind the cameras' 2 'focus: expected' "$VIEWER" teapot.exr --focus 3 --offscreen none.png
 refuse 'unwritable picture' 3 'nowhere/x.png' "$VIEWER" teapot.exr --offscreen nowhere/x.png
 if [ -e none.png ]; then not_ok 'nothing is written' 'none.png exists'; else ok 'nothing is written'; fi
 finish

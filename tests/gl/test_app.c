@@ -6,6 +6,8 @@
 #include "options.h"
 #include "script.h"
 
+#include <relume/tone.h>
+
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -140,6 +142,163 @@ static void the_panorama_follows_the_cursor(void **state)
     assert_float_equal(app.now.camera.look.zoom, 1.21, 1e-9);
 }
 
+static double angle(struct relume_vec3 a, struct relume_vec3 b)
+{
+    return 2 * asin(0.5 * hypot(hypot(a.x - b.x, a.y - b.y), a.z - b.z)) * 180 / acos(-1);
+}
+
+static struct relume_vec3 seen_at(const struct app *app, double x, double y)
+{
+    return relume_look_ray(app->now.camera.look, app->width, app->height, x, y);
+}
+
+// A pixel of 1024 is a twentieth of a degree; where pan and tilt cannot hold the place, the middle
+// stays.
+static void a_panorama_zooms_about_the_cursor(void **state)
+{
+    (void)state;
+    static const struct relume_look looks[] = {
+        {0, 0, 1, false}, {170, 20, 1.5, false}, {-60, -40, 1, false}, {40, 10, 1.5, true}};
+    static const double cursors[][2] = {{512, 256}, {100, 400}, {1000, 30}, {700, 256}};
+    for (size_t i = 0; i < sizeof looks / sizeof *looks; i++)
+        for (size_t k = 0; k < sizeof cursors / sizeof *cursors; k++) {
+            struct app app = make_app(RELUME_SPHERICAL, true);
+            app.now.camera.look = looks[i];
+            const double x = cursors[k][0], y = cursors[k][1];
+            const struct relume_vec3 before = seen_at(&app, x, y);
+            app_handle(&app, &(struct app_event){.kind = APP_WHEEL, .wheel = 3, .x = x, .y = y});
+            assert_float_equal(app.now.camera.look.zoom, looks[i].zoom * 1.331, 1e-9);
+            assert_true(angle(before, seen_at(&app, x, y)) < 0.05);
+        }
+    struct app app = make_app(RELUME_SPHERICAL, true);
+    app.now.camera.look = (struct relume_look){0, -90, 0.5, true};
+    app_handle(&app, &(struct app_event){.kind = APP_WHEEL, .wheel = 3, .x = 512, .y = 400});
+    assert_true(app.now.camera.look.tilt_deg == -90);
+}
+
+static void fields_of_view_have_limits(void **state)
+{
+    (void)state;
+    for (int stereographic = 0; stereographic < 2; stereographic++) {
+        const double widest = stereographic ? 340 : 150;
+        const double field = stereographic ? 4 : 2;
+        struct app app = make_app(RELUME_SPHERICAL, true);
+        app.now.camera.look.stereographic = stereographic;
+        const struct relume_look *look = &app.now.camera.look;
+        const struct app_event out = {.kind = APP_WHEEL, .wheel = -100, .x = 512, .y = 256};
+        const struct app_event in = {.kind = APP_WHEEL, .wheel = 100, .x = 512, .y = 256};
+        app_handle(&app, &out);
+        assert_float_equal(field * atan(1 / look->zoom) * 180 / acos(-1), widest, 0.01);
+        app_handle(&app, &in);
+        assert_float_equal(field * atan(1 / look->zoom) * 180 / acos(-1), field, 0.01);
+    }
+}
+
+// ---------------------------------------------------------------- time
+
+// A drag of `dx` pixels in a fifth of a second.
+static void throw_panorama(struct app *app, double dx, double dy)
+{
+    app_handle(app, &(struct app_event){.kind = APP_PRESS, .x = 500, .y = 250});
+    for (int i = 1; i <= 10; i++) {
+        app_handle(app, &(struct app_event){
+                            .kind = APP_MOVE, .x = 500 + dx * i / 10, .y = 250 + dy * i / 10});
+        assert_false(app_advance(app, 0.02));  // what the hand does, the hand has shown
+    }
+    app_handle(app, &(struct app_event){.kind = APP_RELEASE});
+}
+
+static void a_panorama_glides_to_a_stop(void **state)
+{
+    (void)state;
+    struct app app = make_app(RELUME_SPHERICAL, true);
+    throw_panorama(&app, -100, 0);
+    const double released = app.now.camera.look.pan_deg;
+    assert_float_equal(released, 100 * 90.0 / 1024, 1e-9);
+    double before = released, step = INFINITY;
+    int frames = 0;
+    for (; app_advance(&app, 1.0 / 60); frames++) {
+        const double pan = app.now.camera.look.pan_deg;
+        assert_true(pan > before && pan - before < step);  // ever slower
+        step = pan - before;
+        before = pan;
+    }
+    assert_true(frames > 20 && frames < 200);
+    assert_true(step < 0.02);  // degrees in a frame: no jolt at the end
+    // 500 pixels a second, all but lost in 0.35 s: 175 pixels at most, the hand's mean being below
+    const double way = (before - released) / 90 * 1024;
+    assert_true(way > 160 && way < 175);
+    assert_true(app.now.camera.look.tilt_deg == 0);
+    for (int i = 0; i < 10; i++)
+        assert_false(app_advance(&app, 1));
+    assert_true(app.now.camera.look.pan_deg == before);
+}
+
+static void a_glide_does_not_depend_on_frames(void **state)
+{
+    (void)state;
+    struct app fast = make_app(RELUME_SPHERICAL, true), slow = fast;
+    throw_panorama(&fast, -100, 40);
+    throw_panorama(&slow, -100, 40);
+    for (int i = 0; i < 60; i++)
+        app_advance(&fast, 0.005);
+    for (int i = 0; i < 3; i++)
+        app_advance(&slow, 0.1);
+    assert_float_equal(fast.now.camera.look.pan_deg, slow.now.camera.look.pan_deg, 1e-9);
+    assert_float_equal(fast.now.camera.look.tilt_deg, slow.now.camera.look.tilt_deg, 1e-9);
+}
+
+static void a_hand_that_rests_lets_go_of_nothing(void **state)
+{
+    (void)state;
+    struct app app = make_app(RELUME_SPHERICAL, true);
+    app_handle(&app, &(struct app_event){.kind = APP_PRESS, .x = 500, .y = 250});
+    app_handle(&app, &(struct app_event){.kind = APP_MOVE, .x = 400, .y = 250});
+    app_advance(&app, 0.02);
+    app_advance(&app, 1);
+    app_handle(&app, &(struct app_event){.kind = APP_RELEASE});
+    assert_false(app_advance(&app, 0.1));
+    // a touch stops a glide; a drag in no time at all has no speed
+    throw_panorama(&app, -100, 0);
+    assert_true(app_advance(&app, 0.01));
+    drag(&app, APP_LEFT, 10, 0);
+    assert_false(app_advance(&app, 0.1));
+    struct app slab = make_app(RELUME_SLAB, true);
+    drag(&slab, APP_LEFT, 10, 0);
+    assert_false(app_advance(&slab, 0.1));
+    assert_false(app_advance(&slab, 0));
+    assert_false(app_advance(&slab, NAN));
+}
+
+static void automatic_exposure_adapts(void **state)
+{
+    (void)state;
+    struct app app = make_app(RELUME_PLANAR, true);
+    app.now.auto_exposure = true;
+    app.now.exposure_ev = 1;
+    app_meter(&app, 2);  // the first frame: at once, and a stop brighter as the user wants it
+    assert_float_equal(app_exposure_ev(&app), 4, 1e-12);
+    app_meter(&app, -1);
+    assert_false(app_advance(&app, 1));
+    app_meter(&app, -3);  // two stops too bright
+    struct app slow = app;
+    assert_true(app_advance(&app, 0.5));
+    assert_float_equal(app_exposure_ev(&app), 2 + 2 * exp(-1), 1e-9);
+    for (int i = 0; i < 5; i++)
+        app_advance(&slow, 0.1);
+    assert_float_equal(app_exposure_ev(&slow), app_exposure_ev(&app), 1e-9);
+    int frames = 0;
+    while (app_advance(&app, 0.1))
+        assert_true(++frames < 100);
+    assert_float_equal(app_exposure_ev(&app), 2, 0.02);
+    assert_true(key(&app, 'e'));
+    assert_true(app_exposure_ev(&app) == 1);
+    assert_true(key(&app, 'e'));
+    app_meter(&app, 2);
+    assert_true(app_exposure_ev(&app) == 1);  // from here on gently
+    assert_true(app_advance(&app, 0.1) && app_exposure_ev(&app) > 1.1);
+}
+
 static void the_picture_moves_and_zooms_about_the_cursor(void **state)
 {
     (void)state;
@@ -204,7 +363,7 @@ static void the_light_turns_as_seen_in_a_panorama(void **state)
 {
     (void)state;
     struct app app = make_app(RELUME_SPHERICAL, true);
-    app.now.camera.look = (struct relume_look){90, 30, 1};
+    app.now.camera.look = (struct relume_look){90, 30, 1, false};
     const struct relume_vec3 before = app_seen_light(&app, 0);
     assert_float_equal(before.x, 1, 1e-12);  // looking to +x, the light at +z is on the right
     drag(&app, APP_RIGHT, -256, 0);          // a quarter turn to the left: now behind the viewer
@@ -225,13 +384,65 @@ static void keys(void **state)
     assert_float_equal(app.now.exposure_ev, 0.25, 1e-12);
     assert_true(key(&app, 'b'));
     assert_true(app.now.ball);
-    assert_false(key(&app, '['));  // only a slab has an eye to move
+    static const int of_slabs_and_panoramas[] = {'[', ']', 'a', 'd', ',', '.', 'o'};
+    for (size_t i = 0; i < sizeof of_slabs_and_panoramas / sizeof(int); i++)
+        assert_false(key(&app, of_slabs_and_panoramas[i]));
+    for (int i = 1; relume_tones[i]; i++)
+        assert_true(key(&app, 't') && app.now.tone == i);
+    assert_true(key(&app, 't') && app.now.tone == 0);
     assert_false(key(&app, 'q'));  // has no meaning
     assert_true(key(&app, 'r'));
     assert_true(app.now.exposure_ev == 0 && !app.now.ball);
     assert_false(app.quit);
     key(&app, APP_KEY_ESCAPE);
     assert_true(app.quit);
+}
+
+static void keys_of_a_slab(void **state)
+{
+    (void)state;
+    struct app app = make_app(RELUME_SLAB, true);
+    double want = 0.25;  // an eighth of the cameras' extent of 2
+    for (int i = 0; i < 4; i++, want *= 2)
+        assert_true(key(&app, 'a') && app.now.aperture == want);
+    assert_true(key(&app, 'a') && app.now.aperture == 0);
+    assert_true(app.now.focus_z == 0);
+    for (int i = 0; i < 500; i++)
+        key(&app, '.');
+    assert_true(app.now.focus_z < -1);
+    for (int i = 0; i < 5000; i++)
+        key(&app, ',');
+    assert_true(app.now.focus_z > 2 && app.now.focus_z < 3);  // never behind the cameras
+    assert_true(key(&app, 'd') && app.now.interpolation == RELUME_INTERPOLATE_LINEAR);
+    assert_true(key(&app, 'd') && app.now.interpolation == RELUME_INTERPOLATE_CONSTANT);
+    assert_true(key(&app, 'd') && app.now.interpolation == RELUME_INTERPOLATE_DEFAULT);
+}
+
+static void a_planet_and_back(void **state)
+{
+    (void)state;
+    struct app app = make_app(RELUME_CUBE, true);
+    app.now.camera.look = (struct relume_look){30, 10, 2, false};
+    assert_true(key(&app, 'o'));
+    const struct relume_look planet = app.now.camera.look;
+    assert_true(planet.stereographic && planet.tilt_deg == -90 && planet.pan_deg == 30);
+    assert_true(key(&app, 'o'));
+    assert_false(app.now.camera.look.stereographic);
+    assert_true(app.now.camera.look.tilt_deg == 10 && app.now.camera.look.zoom == 2);
+}
+
+static void a_focus_behind_the_cameras_is_refused(void **state)
+{
+    (void)state;
+    const struct app_file file = make_file(RELUME_SLAB);
+    struct app_state start = {.focused = true, .focus_z = 3};
+    struct app app;
+    said[0] = '\0';
+    assert_int_equal(app_start(&app, &file, &start, true, &keep), RELUME_EINVAL);
+    assert_non_null(strstr(said, "--focus: expected"));
+    start.focus_z = -2;
+    assert_int_equal(app_start(&app, &file, &start, true, &keep), RELUME_OK);
+    assert_true(app.now.focus_z == -2);
 }
 
 // ---------------------------------------------------------------- options
@@ -265,6 +476,14 @@ static void options_are_read(void **state)
     assert_int_equal(parse(&o, "--pan 20 --tilt -5 a.exr --zoom 2 --ball"), RELUME_OK);
     assert_int_equal(o.start.camera.framing, RELUME_FRAME_LOOK);
     assert_true(o.start.camera.look.tilt_deg == -5 && o.start.ball);
+    assert_int_equal(parse(&o, "a.exr --exposure auto --tone filmic --white 8"), RELUME_OK);
+    assert_true(o.start.auto_exposure && o.start.tone == 2 && o.start.white == 8);
+    assert_int_equal(parse(&o, "a.exr --projection planet --pan 5"), RELUME_OK);
+    assert_true(o.start.camera.look.stereographic && o.start.camera.look.tilt_deg == -90);
+    assert_int_equal(parse(&o, "a.exr --interpolate constant --aperture 0.5 --focus -1"),
+                     RELUME_OK);
+    assert_int_equal(o.start.interpolation, RELUME_INTERPOLATE_CONSTANT);
+    assert_true(o.start.aperture == 0.5 && o.start.focused && o.start.focus_z == -1);
     char option[] = "--light";
     char first[] = "dir 1 0 1";
     char second[] = "dir 0 0 2 rgb 1 2 3";
@@ -298,6 +517,13 @@ static void wrong_options_are_refused(void **state)
         {"a.exr --pan nan", "found 'nan'"},
         {"a.exr --view 0 --eye 0,0,3", "found two"},
         {"a.exr --ball=1", "takes no value"},
+        {"a.exr --exposure bright", "found 'bright'"},
+        {"a.exr --tone sepia", "filmic"},
+        {"a.exr --white 0", "from"},
+        {"a.exr --projection flat", "planet"},
+        {"a.exr --projection planet --eye 0,0,3", "found two"},
+        {"a.exr --interpolate cubic", "constant, linear or depth"},
+        {"a.exr --aperture -1", "from"},
         {"a.exr --light up", ""},
     };
     struct options o;
@@ -346,7 +572,10 @@ static relume_status host_rig(void *user, const char *path)
 
 static relume_status host_wait(void *user, double seconds)
 {
-    ((struct frames *)user)->waited = seconds;
+    struct frames *f = user;
+    f->waited = seconds;
+    for (double left = seconds; left > 0; left -= 1.0 / 60)
+        (void)app_advance(f->app, fmin(left, 1.0 / 60));
     return RELUME_OK;
 }
 
@@ -409,6 +638,29 @@ static void scripts_play_events(void **state)
                 frames.at[2].now.light[0].rgb[0] == 2);
 }
 
+// A drag that takes time throws the panorama; waiting lets it glide.
+static void scripts_let_time_pass(void **state)
+{
+    (void)state;
+    struct app app = make_app(RELUME_SPHERICAL, true);
+    static struct frames frames;
+    assert_int_equal(play(&app, &frames,
+                          "drag left 500 250 400 250 0.2\n"
+                          "frame let-go.png\n"
+                          "wait 0.1\n"
+                          "frame gliding.png\n"
+                          "wait 10\n"
+                          "frame stopped.png\n"
+                          "wait 10\n"
+                          "frame stopped.png\n"),
+                     RELUME_OK);
+    double pan[4];
+    for (int i = 0; i < 4; i++)
+        pan[i] = frames.at[i].now.camera.look.pan_deg;
+    assert_float_equal(pan[0], 100 * 90.0 / 1024, 1e-9);
+    assert_true(pan[1] > pan[0] + 1 && pan[2] > pan[1] + 1 && pan[3] == pan[2]);
+}
+
 static void broken_scripts_name_the_line(void **state)
 {
     (void)state;
@@ -434,6 +686,7 @@ static void broken_scripts_name_the_line(void **state)
         {"shot  ", 7},
         {"wait -1", 6},
         {"wait soon", 6},
+        {"drag left 1 2 3 4 -1", 21},
         {"click 1", 8},
         {"press middle 1 1", 7},
     };
@@ -667,15 +920,25 @@ int main(void)
         cmocka_unit_test(cameras_that_do_not_fit_are_refused),
         cmocka_unit_test(the_slab_turns_with_the_cursor),
         cmocka_unit_test(the_panorama_follows_the_cursor),
+        cmocka_unit_test(a_panorama_zooms_about_the_cursor),
+        cmocka_unit_test(fields_of_view_have_limits),
+        cmocka_unit_test(a_panorama_glides_to_a_stop),
+        cmocka_unit_test(a_glide_does_not_depend_on_frames),
+        cmocka_unit_test(a_hand_that_rests_lets_go_of_nothing),
+        cmocka_unit_test(automatic_exposure_adapts),
         cmocka_unit_test(the_picture_moves_and_zooms_about_the_cursor),
         cmocka_unit_test(windows_keep_the_proportions),
         cmocka_unit_test(the_light_turns_like_a_ball),
         cmocka_unit_test(l_and_drag_turn_the_light_too),
         cmocka_unit_test(the_light_turns_as_seen_in_a_panorama),
         cmocka_unit_test(keys),
+        cmocka_unit_test(keys_of_a_slab),
+        cmocka_unit_test(a_planet_and_back),
+        cmocka_unit_test(a_focus_behind_the_cameras_is_refused),
         cmocka_unit_test(options_are_read),
         cmocka_unit_test(wrong_options_are_refused),
         cmocka_unit_test(scripts_play_events),
+        cmocka_unit_test(scripts_let_time_pass),
         cmocka_unit_test(broken_scripts_name_the_line),
         cmocka_unit_test(long_lines_are_refused),
         cmocka_unit_test(scripts_hold_keys_and_wait),

@@ -167,6 +167,126 @@ static void slab_frames_are_the_library_s(void **state)
     close_slab(&t);
 }
 
+// A floor that rises to the right with a block on it, as the camera at (u, v) sees it: smooth, with
+// jumps, and some background.
+static relume_status make_depth(struct relume_image *out, void *user, int view)
+{
+    const struct slab_test *t = user;
+    const struct relume_geometry g = slab_geometry();
+    const double *eye = t->uv[view];
+    const int width = t->about.width, height = t->about.height;
+    assert_int_equal(relume_image_create(out, width, height, 1), RELUME_OK);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const double s = g.st_min[0] + (x + 0.5) / width * 2;
+            const double v = g.st_max[1] - (y + 0.5) / height * 1.5;
+            const double block = (g.uv_z - 1) / g.uv_z;  // how far down the ray z = 1 lies
+            const double at[2] = {eye[0] + block * (s - eye[0]), eye[1] + block * (v - eye[1])};
+            const double slope[2] = {0.2, -0.4};  // floor: z = 0.2 x - 0.4
+            const double floor =
+                (g.uv_z - slope[1] - slope[0] * eye[0]) / (g.uv_z + slope[0] * (s - eye[0]));
+            const bool on_block = fabs(at[0]) < 0.2 && fabs(at[1] - 0.1) < 0.15;
+            const double part = on_block ? block : y < 2 ? (double)INFINITY : floor;
+            const double length = hypot(hypot(s - eye[0], v - eye[1]), g.uv_z);
+            out->data[y * width + x] = (float)(part * length);
+        }
+    return RELUME_OK;
+}
+
+// Where a walk meets the surface hangs on comparisons of rounded numbers: of a hundred pixels one
+// may find another texel.
+static void compare_most(const char *what, const struct relume_image *got,
+                         const struct relume_image *want)
+{
+    const int pixels = got->width * got->height;
+    int wrong = 0;
+    for (int i = 0; i < pixels; i++) {
+        bool off = false;
+        for (int c = 0; c < 3; c++)
+            off |= !(fabs((double)got->data[3 * i + c] - (double)want->data[3 * i + c]) < 1e-3);
+        wrong += off;
+    }
+    assert_below(what, wrong, 0.01 * pixels);
+}
+
+static void slab_frames_by_depth_are_the_library_s(void **state)
+{
+    (void)state;
+    static const struct relume_vec3 eyes[] = {{0, 0, 3},      {-0.6, 0.3, 3}, {0.1, 0.25, 3},
+                                              {0.4, 0.25, 3}, {0.3, 0, 5},    {-0.2, 0.11, 2.3}};
+    struct slab_test t;
+    open_slab(&t, 40, 30);
+    const struct depth_source source = {make_depth, &t};
+    assert_int_equal(renderer_use_depth(&t.renderer, &source), RELUME_OK);
+    struct relume_image disparity[CAMERAS];
+    for (int i = 0; i < CAMERAS; i++) {
+        struct relume_image depth;
+        assert_int_equal(make_depth(&depth, &t, i), RELUME_OK);
+        assert_int_equal(relume_slab_disparity(&disparity[i], t.renderer.grid, t.uv[i], &depth),
+                         RELUME_OK);
+        relume_image_destroy(&depth);
+    }
+    for (size_t i = 0; i < sizeof eyes / sizeof *eyes; i++) {
+        struct relume_image want, got;
+        char text[64];
+        snprintf(text, sizeof text, "by depth, eye %g %g %g", eyes[i].x, eyes[i].y, eyes[i].z);
+        assert_int_equal(relume_image_create(&want, 67, 45, 3), RELUME_OK);
+        assert_int_equal(relume_slab_frame(&want, t.renderer.grid, eyes[i], t.views,
+                                           relume_view_params(.disparity = disparity)),
+                         RELUME_OK);
+        const struct relume_camera camera = {
+            .framing = RELUME_FRAME_EYE, .eye = eyes[i], .width = 67, .height = 45};
+        struct app app = make_app(&t.about, &camera);
+        assert_int_equal(renderer_draw(&t.renderer, &app), RELUME_OK);
+        assert_int_equal(renderer_read(&got, &t.renderer), RELUME_OK);
+        compare_most(text, &got, &want);
+        relume_image_destroy(&got);
+        // and not by accident: without depth it is another frame
+        app.now.interpolation = RELUME_INTERPOLATE_LINEAR;
+        if (i != 2)
+            assert_true(compare_frame(&t.renderer, &app, &want) > 0.1);
+        relume_image_destroy(&want);
+    }
+    for (int i = 0; i < CAMERAS; i++)
+        relume_image_destroy(&disparity[i]);
+    close_slab(&t);
+}
+
+static void other_ways_to_see_a_slab_are_the_library_s(void **state)
+{
+    (void)state;
+    static const struct relume_view_params ways[] = {
+        {.interpolation = RELUME_INTERPOLATE_CONSTANT},
+        {.aperture = 0.3},
+        {.focus = 0.6},
+        {.aperture = 0.9, .focus = -0.7},
+        {.aperture = 5, .focus = 1},
+    };
+    static const struct relume_vec3 eyes[] = {{0, 0, 3}, {-0.61, 0.33, 3}, {0.3, 0.01, 4.1}};
+    struct slab_test t;
+    open_slab(&t, 40, 30);
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++)
+        for (size_t e = 0; e < sizeof eyes / sizeof *eyes; e++) {
+            struct relume_image want;
+            char text[96];
+            snprintf(text, sizeof text, "way %d, aperture %g, focus %g, eye %g %g %g",
+                     ways[i].interpolation, ways[i].aperture, ways[i].focus, eyes[e].x, eyes[e].y,
+                     eyes[e].z);
+            assert_int_equal(relume_image_create(&want, 67, 45, 3), RELUME_OK);
+            assert_int_equal(relume_slab_frame(&want, t.renderer.grid, eyes[e], t.views, &ways[i]),
+                             RELUME_OK);
+            const struct relume_camera camera = {
+                .framing = RELUME_FRAME_EYE, .eye = eyes[e], .width = 67, .height = 45};
+            struct app app = make_app(&t.about, &camera);
+            app.now.interpolation = ways[i].interpolation;
+            app.now.aperture = ways[i].aperture;
+            app.now.focus_z = ways[i].focus;
+            assert_below(text, compare_frame(&t.renderer, &app, &want), same_grid_bound);
+            relume_image_destroy(&want);
+        }
+    close_slab(&t);
+}
+
 static void only_views_that_matter_are_relit(void **state)
 {
     (void)state;
@@ -225,8 +345,9 @@ static void cameras_without_a_grid_are_refused(void **state)
 
 static void compare_panorama(const struct relume_geometry *g, int width, int height)
 {
-    static const struct relume_look looks[] = {{0, 0, 1},   {180, 0, 1},    {-90, 40, 1.5},
-                                               {30, 90, 1}, {70, -80, 0.7}, {135, 35, 2}};
+    static const struct relume_look looks[] = {
+        {0, 0, 1, 0},      {180, 0, 1, 0},  {-90, 40, 1.5, 0}, {30, 90, 1, 0},
+        {70, -80, 0.7, 0}, {135, 35, 2, 0}, {20, -90, 0.5, 1}, {-130, 25, 0.8, 1}};
     struct fixture_file f =
         fixture_make(1, width, height, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, true);
     const struct app_file file = {*g, width, height, 1, {0}, {0}};
@@ -327,18 +448,83 @@ static void the_screen_shows_srgb(void **state)
     program_destroy(&present, &fixture_gl);
 }
 
+static void tones_are_the_library_s(void **state)
+{
+    (void)state;
+    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0};
+    static const float values[][3] = {{0, 0, 0},    {0.18f, 0.18f, 0.18f}, {1, 0.5f, 0.25f},
+                                      {3, 0.1f, 9}, {-1, 0.4f, 2},         {1e6f, 0, 1}};
+    struct program present;
+    struct target frame;
+    GLuint vertices;
+    assert_int_equal(draw_present_create(&present, &fixture_gl, &fixture_log), RELUME_OK);
+    assert_int_equal(target_create(&frame, &fixture_gl, 1, 1, &fixture_log), RELUME_OK);
+    fixture_gl.GenVertexArrays(1, &vertices);
+    fixture_gl.BindVertexArray(vertices);
+    for (int t = 0; relume_tones[t]; t++)
+        for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+            unsigned char shown[4];
+            float want[3];
+            target_begin(&frame, &fixture_gl);
+            fixture_gl.ClearColor(values[i][0], values[i][1], values[i][2], 1);
+            fixture_gl.Clear(GL_COLOR_BUFFER_BIT);
+            draw_present(&present, &fixture_gl, &frame, t, 2.5, 0);
+            fixture_gl.ReadPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, shown);
+            relume_tones[t]->apply(want, values[i], 2.5f);
+            for (int c = 0; c < 3; c++)
+                assert_true(
+                    abs(shown[c] - (int)lroundf(255 * relume_transfer_encode(srgb, want[c]))) <= 1);
+        }
+    fixture_gl.DeleteVertexArrays(1, &vertices);
+    target_destroy(&frame, &fixture_gl);
+    program_destroy(&present, &fixture_gl);
+}
+
+static void the_meter_sees_a_small_frame(void **state)
+{
+    (void)state;
+    enum { W = 300, H = 170 };
+    struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
+    const struct app_file file = {.geometry = {.projection = RELUME_PLANAR}, W, H, 1, {0}, {0}};
+    const struct code_source source = {fixture_fetch, NULL, &f};
+    struct renderer r;
+    assert_int_equal(
+        renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 1, &fixture_log),
+        RELUME_OK);
+    const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW};
+    struct app app = make_app(&file, &camera);
+    double ev[2];
+    for (int i = 0; i < 2; i++) {
+        app.now.exposure_ev = 3 * i;
+        assert_int_equal(renderer_draw(&r, &app), RELUME_OK);
+        assert_int_equal(renderer_meter(&ev[i], &r), RELUME_OK);
+    }
+    assert_true(fabs(ev[0] - ev[1] - 3) < 0.1);
+    struct relume_image frame;
+    assert_int_equal(renderer_read(&frame, &r), RELUME_OK);
+    // noise is averaged in the small copy, which moves its logarithm by some tenths
+    assert_below("metered", fabs(relume_tone_meter(&frame) - ev[1]), 0.5);
+    relume_image_destroy(&frame);
+    renderer_destroy(&r);
+    fixture_free(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_view_is_drawn_texel_by_texel),
         cmocka_unit_test(a_reduced_view_is_averaged),
         cmocka_unit_test(slab_frames_are_the_library_s),
+        cmocka_unit_test(slab_frames_by_depth_are_the_library_s),
+        cmocka_unit_test(other_ways_to_see_a_slab_are_the_library_s),
         cmocka_unit_test(only_views_that_matter_are_relit),
         cmocka_unit_test(one_row_and_one_camera_are_drawn),
         cmocka_unit_test(cameras_without_a_grid_are_refused),
         cmocka_unit_test(panorama_frames_are_the_library_s),
         cmocka_unit_test(the_ball_is_bright_where_the_light_comes_from),
         cmocka_unit_test(the_screen_shows_srgb),
+        cmocka_unit_test(tones_are_the_library_s),
+        cmocka_unit_test(the_meter_sees_a_small_frame),
     };
     return cmocka_run_group_tests_name("frames", tests, fixture_open, fixture_close);
 }

@@ -1,3 +1,5 @@
+#include "math/vec.h"
+
 #include <relume/view.h>
 
 #include <math.h>
@@ -8,8 +10,6 @@
 #include <cmocka.h>
 
 #define PI 3.14159265358979323846
-
-typedef struct relume_vec3 vec3;
 
 // One panorama of each layout, and how far a bilinear picture of the directions may be off.
 struct panorama {
@@ -208,22 +208,51 @@ static void no_direction_no_pixel(void **state)
 static void look_turns_as_the_contract_says(void **state)
 {
     (void)state;
-    const struct relume_look front = {0, 0, 1};
+    const struct relume_look front = {0, 0, 1, false};
     assert_vec3(relume_look_ray(front, 200, 100, 100, 50), 0, 0, -1);
     // zoom 1 sees 90 degrees across, zoom 2 half the tangent; pixels are square
     assert_vec3(relume_look_ray(front, 200, 100, 200, 50), sqrt(.5), 0, -sqrt(.5));
-    assert_vec3(relume_look_ray((struct relume_look){0, 0, 2}, 200, 100, 0, 50), -sqrt(.2), 0,
-                -sqrt(.8));
+    assert_vec3(relume_look_ray((struct relume_look){0, 0, 2, false}, 200, 100, 0, 50), -sqrt(.2),
+                0, -sqrt(.8));
     assert_vec3(relume_look_ray(front, 200, 100, 100, 0), 0, sqrt(.2), -sqrt(.8));
-    assert_vec3(relume_look_ray((struct relume_look){90, 0, 1}, 200, 100, 100, 50), 1, 0, 0);
-    assert_vec3(relume_look_ray((struct relume_look){0, 30, 0}, 200, 100, 100, 50), 0, 0.5,
+    assert_vec3(relume_look_ray((struct relume_look){90, 0, 1, false}, 200, 100, 100, 50), 1, 0, 0);
+    assert_vec3(relume_look_ray((struct relume_look){0, 30, 0, false}, 200, 100, 100, 50), 0, 0.5,
                 -sqrt(.75));
     // tilt first, then pan: no roll, the right edge stays level
-    assert_vec3(relume_look_ray((struct relume_look){90, 30, 1}, 200, 100, 100, 50), sqrt(.75), 0.5,
-                0);
-    const vec3 centre = relume_look_ray((struct relume_look){20, 0, 1}, 200, 100, 100, 50);
-    const vec3 right = relume_look_ray((struct relume_look){20, 0, 1}, 200, 100, 200, 50);
+    assert_vec3(relume_look_ray((struct relume_look){90, 30, 1, false}, 200, 100, 100, 50),
+                sqrt(.75), 0.5, 0);
+    const vec3 centre = relume_look_ray((struct relume_look){20, 0, 1, false}, 200, 100, 100, 50);
+    const vec3 right = relume_look_ray((struct relume_look){20, 0, 1, false}, 200, 100, 200, 50);
     assert_float_equal(centre.y, right.y, 1e-15);
+}
+
+// Snyder 1987, "Map projections", 21: seen from the far pole, the angle c from the middle is drawn
+// at tan(c / 2); all angles between lines stay.
+static void stereographic_looks(void **state)
+{
+    (void)state;
+    const struct relume_look front = {0, 0, 1, true};
+    assert_vec3(relume_look_ray(front, 200, 100, 100, 50), 0, 0, -1);
+    assert_vec3(relume_look_ray(front, 200, 100, 200, 50), 1, 0, 0);
+    const struct relume_look planet = {0, -90, 0.5, true};
+    assert_vec3(relume_look_ray(planet, 200, 200, 100, 100), 0, -1, 0);
+    assert_vec3(relume_look_ray(planet, 200, 200, 150, 100), 1, 0, 0);  // the horizon
+    assert_vec3(relume_look_ray(planet, 200, 200, 100, 50), 0, 0, -1);  // ahead is up
+    const struct relume_look looks[] = {{30, -90, 0.4, true}, {-100, 20, 1.3, true}};
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 50; k++) {
+            const double x = 13.0 + 3.7 * k, y = 90.0 - 1.6 * k, step = 1e-4;
+            const vec3 middle = relume_look_ray(looks[i], 200, 100, 100, 50);
+            const vec3 at = relume_look_ray(looks[i], 200, 100, x, y);
+            const double r = hypot(x - 100, y - 50) / 100 / looks[i].zoom;
+            assert_float_equal(vec3_angle(middle, at), 2 * atan(r), 1e-9);
+            const vec3 across = vec3_sub(relume_look_ray(looks[i], 200, 100, x + step, y), at);
+            const vec3 down = vec3_sub(relume_look_ray(looks[i], 200, 100, x, y + step), at);
+            const double scale = vec3_length(across);
+            // one-sided differences over 1e-6 of the frame
+            assert_float_equal(vec3_length(down) / scale, 1, 1e-5);
+            assert_float_equal(vec3_dot(across, down) / scale / scale, 0, 1e-5);
+        }
 }
 
 static void frames_show_the_directions_they_look_at(void **state)
@@ -231,8 +260,8 @@ static void frames_show_the_directions_they_look_at(void **state)
     (void)state;
     enum { W = 96, H = 48 };
     static const struct relume_look looks[] = {
-        {0, 0, 1},   {180, 10, 1}, {-179, -5, 2}, {45, 20, 1.5},
-        {30, 90, 1}, {0, -75, 1},  {135, 35, 1},
+        {0, 0, 1, false},   {180, 10, 1, false}, {-179, -5, 2, false}, {45, 20, 1.5, false},
+        {30, 90, 1, false}, {0, -75, 1, false},  {135, 35, 1, false},  {10, -90, 0.6, true},
     };
     struct relume_image out;
     assert_int_equal(relume_image_create(&out, W, H, 3), RELUME_OK);
@@ -240,7 +269,7 @@ static void frames_show_the_directions_they_look_at(void **state)
         const struct panorama *p = &panoramas[i];
         struct relume_image image = direction_image(p);
         const bool cylinder = p->geometry.projection == RELUME_CYLINDRICAL;
-        for (int k = 0; k < (cylinder ? 4 : 7); k++) {
+        for (int k = 0; k < (cylinder ? 4 : 8); k++) {
             assert_int_equal(relume_panorama_frame(&out, &p->geometry, &image, looks[k], NULL),
                              RELUME_OK);
             for (int y = 0; y < H; y++)
@@ -352,7 +381,7 @@ static void frames_do_not_depend_on_threads(void **state)
     (void)state;
     enum { W = 33, H = 21 };
     const struct panorama *p = &panoramas[1];
-    const struct relume_look look = {170, 60, 1};
+    const struct relume_look look = {170, 60, 1, true};
     struct relume_image image = random_image(p), one, many;
     assert_int_equal(relume_image_create(&one, W, H, 3), RELUME_OK);
     assert_int_equal(relume_image_create(&many, W, H, 3), RELUME_OK);
@@ -394,6 +423,7 @@ int main(void)
         cmocka_unit_test(cube_faces),
         cmocka_unit_test(no_direction_no_pixel),
         cmocka_unit_test(look_turns_as_the_contract_says),
+        cmocka_unit_test(stereographic_looks),
         cmocka_unit_test(frames_show_the_directions_they_look_at),
         cmocka_unit_test(texel_centres_are_exact),
         cmocka_unit_test(sample_black_outside),

@@ -1,0 +1,81 @@
+#!/bin/sh
+# How a slab or a panorama is looked at, and how a picture is developed.
+. "$(dirname "$0")/lib.sh"
+
+relume() { "$RELUME" "$@" -q; }
+psnr() { "$RELUME" compare "$1" "$2" | awk '$1 == "psnr_db" { print $2 }'; }
+
+# ---- a camera left out: synth renders the truth
+relume synth teapot -o slab --views 3x3 --lights 4 --hemisphere --size 96 --samples 4 || exit 1
+relume synth teapot -o truth --eye 0.25,0.25,3 --lights-from slab/capture.json --size 96 --samples 4 || exit 1
+relume encode slab -o slab.exr --basis table --bits 16 || exit 1
+relume encode slab -o bare.exr --basis table --bits 16 --no-depth || exit 1
+# the second of its lights
+light="dir $(tr -d '\n ' <slab/capture.json | sed 's/.*"directions":\[\[[^]]*\],\[\([^]]*\)\].*/\1/' | tr ',' ' ')"
+for i in constant linear depth; do
+    relume relight slab.exr -o $i.exr --eye 0.25,0.25,3 --light "$light" --interpolate $i
+done
+above 'by depth, a camera left out is met' "$(psnr depth.exr truth/view00/light0001.exr)" 24
+above 'better than by the nearest camera' "$(psnr depth.exr truth/view00/light0001.exr)" \
+    "$(psnr constant.exr truth/view00/light0001.exr)"
+above 'and than linearly, by 4 dB' "$(psnr depth.exr truth/view00/light0001.exr)" \
+    "$(psnr linear.exr truth/view00/light0001.exr | awk '{ print $1 + 4 }')"
+relume relight slab.exr -o default.exr --eye 0.25,0.25,3 --light "$light"
+same 'depth is the default where there is any' default.exr depth.exr
+relume relight bare.exr -o bare.out.exr --eye 0.25,0.25,3 --light "$light"
+same 'else it is linear' bare.out.exr linear.exr
+relume relight slab.exr -o nearest.exr --eye 0.25,0.25,3 --light "$light" --nearest
+same '--nearest is constant' nearest.exr constant.exr
+relume relight slab.exr -o eye.exr --eye 0.5,0,3 --light "$light"
+relume relight slab.exr -o view.exr --view 5 --light "$light"
+same 'a captured eye is its view' eye.exr view.exr
+relume relight slab.exr -o pinhole.exr --eye 0.25,0.25,3 --light "$light" --aperture 0 --focus 0
+same 'no aperture, the st plane in focus: linear' pinhole.exr linear.exr
+relume relight slab.exr -o wide.exr --light "$light" --aperture 0.8
+differ 'an aperture blurs' wide.exr linear.exr
+for n in 1 3; do relume relight slab.exr -o t$n.exr --eye 0.1,0.2,3.3 --threads $n; done
+same 'threads do not matter' t1.exr t3.exr
+
+# ---- one ray is a pixel: column 40, row 60 of 96 looks at s = -0.15625, t = -0.2604167
+relume query slab.exr --eye 0.25,0.25,3 --direction=-0.40625,-0.5104167,-3 --light "$light" >q.txt
+"$mkimage" read default.exr 40 60 >p.txt
+for i in 1 2 3; do
+    below "query is the pixel, channel $i" \
+        "$(awk -v i=$i 'NR == FNR { a = $i; next } { d = $i - a; print d < 0 ? -d : d }' q.txt p.txt)" 1e-4
+done
+
+# ---- developing
+relume synth attic -o pano --lights 9 --hemisphere --size 32 --samples 1 || exit 1
+relume encode pano -o pano.exr || exit 1
+look='--pan 30 --size 90x50'
+for t in linear reinhard filmic; do
+    relume relight pano.exr $look -o $t.png --tone $t
+    relume relight pano.exr $look -o $t.exr --tone $t
+done
+same 'EXR stays linear' linear.exr filmic.exr
+differ 'filmic is not linear' linear.png filmic.png
+differ 'nor reinhard' reinhard.png filmic.png
+relume relight pano.exr $look -o plain.png
+same 'linear is the default' plain.png linear.png
+relume relight pano.exr $look -o auto.exr --exposure auto
+differ 'automatic exposure exposes' auto.exr linear.exr
+relume relight pano.exr -o planet.exr --projection planet --size 60x60
+relume relight pano.exr -o down.exr --projection stereographic --tilt -90 --zoom 0.5 --size 60x60
+same 'a planet is a stereographic look down' planet.exr down.exr
+
+# ---- refusals
+expect_fail 'interpolation by depth without depth' 1 'expected a file with depth' x.png \
+    "$RELUME" relight bare.exr -o x.png --interpolate depth
+expect_fail 'unknown interpolation' 2 "did you mean 'linear'" x.png \
+    "$RELUME" relight slab.exr -o x.png --interpolate liner
+expect_fail 'a focus behind the cameras' 2 'expected one between z = 3' x.png \
+    "$RELUME" relight slab.exr -o x.png --focus 4
+expect_fail 'an aperture and an interpolation' 2 'expected one of' x.png \
+    "$RELUME" relight slab.exr -o x.png --aperture 1 --interpolate depth
+expect_fail 'unknown tone' 2 "did you mean 'filmic'" x.png \
+    "$RELUME" relight slab.exr -o x.png --tone flimic
+expect_fail 'no exposure' 2 'or auto; found .bright' x.png \
+    "$RELUME" relight slab.exr -o x.png --exposure bright
+expect_fail 'unknown projection' 2 'perspective' x.png \
+    "$RELUME" relight pano.exr -o x.png --projection flat
+finish

@@ -109,7 +109,7 @@ struct app {
     double cursor[2];
     bool light_key;                     // L is held
     bool panel, help, inspect, gizmos;  // shown
-    bool compared;  // there is a capture to compare with
+    bool compared;                      // there is a capture to compare with
     enum app_wish wish;
     char spec[APP_SPEC];
     bool quit;

@@ -7,6 +7,8 @@
 
 #define PI 3.14159265358979323846
 
+static const double most_bytes = 512e6;  // of photographs in memory
+
 // ---------------------------------------------------------------- directions of the disc
 
 // A place on the disc, x right and y up in [-1, 1], as a direction; false outside.
@@ -49,12 +51,23 @@ static void make_weights(struct inspector *in, const relume_coder *coder)
     }
 }
 
-relume_status inspect_create(struct inspector *in, relume_pack *pack, const relume_slab *grid)
+static bool fits(const relume_capture *capture, const relume_pack *pack)
+{
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    const double bytes = 12.0 * relume_capture_width(capture) * relume_capture_height(capture) *
+                         relume_capture_manifest(capture)->lights;
+    return relume_capture_width(capture) == info->width &&
+           relume_capture_height(capture) == info->height && bytes <= most_bytes;
+}
+
+relume_status inspect_create(struct inspector *in, relume_pack *pack, const relume_slab *grid,
+                             const relume_capture *capture)
 {
     const relume_coder *coder = relume_pack_info(pack)->coder;
     const size_t size = 3 * (size_t)relume_coder_info(coder)->coefficients;
     const size_t places = (size_t)INSPECT_GRID * INSPECT_GRID;
-    *in = (struct inspector){.pack = pack, .grid = grid, .view = -1};
+    *in = (struct inspector){.pack = pack, .grid = grid, .view = -1, .measured_view = -1};
+    in->capture = capture && fits(capture, pack) ? capture : NULL;
     in->weights = calloc(places * size, sizeof *in->weights);
     in->constant = calloc(places, sizeof *in->constant);
     in->coefficient = calloc(size, sizeof *in->coefficient);
@@ -73,6 +86,7 @@ void inspect_destroy(struct inspector *in)
     free(in->weights);
     free(in->constant);
     free(in->coefficient);
+    free(in->measured);
     relume_image_destroy(&in->plot);
     *in = (struct inspector){.view = -1};
 }
@@ -258,11 +272,77 @@ static void mark_directions(struct inspector *in, const struct app *app,
 {
     static const float dot[3] = {0.2f, 0.9f, 0.9f};
     static const float cross[3] = {1, 0.85f, 0.2f};
-    for (int i = 0; i < info->lights; i++)
+    for (int i = 0; !in->capture && i < info->lights; i++)
         mark(in, info->directions[i], info->pole_y, 0, dot);
     for (int i = 0; i < app->now.lights; i++)
         if (app->now.light[i].kind == RELUME_LIGHT_DIRECTIONAL)
             mark(in, app->now.light[i].direction, info->pole_y, 3, cross);
+}
+
+// ---------------------------------------------------------------- photographs
+
+static int view_in_capture(const struct inspector *in, int view)
+{
+    const struct relume_pack_info *info = relume_pack_info(in->pack);
+    const struct relume_manifest *m = relume_capture_manifest(in->capture);
+    int best = 0;
+    double least = INFINITY;
+    for (int i = 0; info->uv && i < m->views; i++) {
+        const double far =
+            hypot(m->view[i].uv[0] - info->uv[view][0], m->view[i].uv[1] - info->uv[view][1]);
+        best = far < least ? i : best;
+        least = fmin(far, least);
+    }
+    return best;
+}
+
+static relume_status read_photographs(struct inspector *in, int view)
+{
+    const struct relume_manifest *m = relume_capture_manifest(in->capture);
+    const size_t size =
+        3 * (size_t)relume_capture_width(in->capture) * (size_t)relume_capture_height(in->capture);
+    if (!in->measured)
+        in->measured = malloc((size_t)m->lights * size * sizeof *in->measured);
+    relume_status status = in->measured ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; !status && i < m->lights; i++) {
+        struct relume_image image;
+        status = relume_capture_image(&image, in->capture, view_in_capture(in, view), i, NULL);
+        if (!status)
+            memcpy(in->measured + (size_t)i * size, image.data, size * sizeof *image.data);
+        relume_image_destroy(&image);
+    }
+    in->measured_view = status ? -1 : view;
+    return status;
+}
+
+// A filled square in a dark frame.
+static void mark_measured(struct inspector *in, const int at[2], const float rgb[3])
+{
+    static const float frame[3] = {0.05f, 0.05f, 0.05f};
+    for (int j = -2; j <= 2; j++)
+        for (int i = -2; i <= 2; i++)
+            memcpy(plot_pixel(in, clamp_to(at[0] + i, INSPECT_SIDE),
+                              clamp_to(at[1] + j, INSPECT_SIDE)),
+                   abs(i) == 2 || abs(j) == 2 ? frame : rgb, 3 * sizeof *rgb);
+}
+
+static void mark_photographs(struct inspector *in, const struct app *app, bool pole_y)
+{
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    const struct relume_manifest *m = relume_capture_manifest(in->capture);
+    const size_t width = (size_t)relume_capture_width(in->capture);
+    const size_t height = (size_t)relume_capture_height(in->capture);
+    const float gain = exp2f((float)app_exposure_ev(app));
+    for (int i = 0; i < m->lights; i++) {
+        const float *pixel =
+            in->measured + 3 * (((size_t)i * height + (size_t)in->y) * width + (size_t)in->x);
+        float rgb[3];
+        int at[2];
+        for (int c = 0; c < 3; c++)
+            rgb[c] = fminf(fmaxf(relume_transfer_encode(srgb, gain * pixel[c]), 0), 1);
+        if (disc_place(at, m->directions[i], pole_y))
+            mark_measured(in, at, rgb);
+    }
 }
 
 relume_status inspect_update(struct inspector *in, const struct app *app, bool *shown)
@@ -274,13 +354,17 @@ relume_status inspect_update(struct inspector *in, const struct app *app, bool *
         return RELUME_OK;
     if (in->view >= 0 && in->view != view)
         relume_pack_drop(in->pack, in->view);
-    const relume_status status = relume_pack_codes(&codes, in->pack, view);
+    relume_status status = relume_pack_codes(&codes, in->pack, view);
+    if (!status && in->capture && in->measured_view != view)
+        status = read_photographs(in, view);
     if (status)
         return status;
     in->view = view;
     in->x = pixel[0];
     in->y = pixel[1];
     fill_disc(in, app, codes);
+    if (in->capture)
+        mark_photographs(in, app, relume_coder_info(codes->coder)->pole_y);
     mark_directions(in, app, relume_coder_info(codes->coder));
     snprintf(in->text, sizeof in->text, "view %d, pixel %d, %d", view, in->x, in->y);
     return RELUME_OK;

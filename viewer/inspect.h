@@ -2,7 +2,8 @@
 //
 // The disc's middle is light along the pole (from the viewer; in panoramas from above), its rim
 // light from the horizon. Colours are what the pixel shows under a light of 1 from there; dots
-// stand at the captured directions, crosses at the directional lights.
+// stand at the captured directions, filled with what was measured there when the photographs are at
+// hand; crosses at the directional lights.
 #ifndef VIEWER_INSPECT_H
 #define VIEWER_INSPECT_H
 
@@ -13,6 +14,9 @@
 enum { INSPECT_GRID = 48, INSPECT_SIDE = 3 * INSPECT_GRID };
 
 struct inspector {
+    const relume_capture *capture;  // the photographs, or NULL
+    float *measured;                // [lights][height][width][3] of `measured_view`, linear
+    int measured_view;
     relume_pack *pack;
     const relume_slab *grid;   // of a slab, or NULL
     float *weights;            // [INSPECT_GRID^2][3][K], zero outside the disc
@@ -23,9 +27,9 @@ struct inspector {
     char text[128];
 };
 
-// The file must outlive it. RELUME_ENOMEM.
+// The file and the photographs (of its size; NULL: none) must outlive it. RELUME_ENOMEM.
 relume_status inspect_create(struct inspector *inspector, relume_pack *pack,
-                             const relume_slab *grid);
+                             const relume_slab *grid, const relume_capture *capture);
 void inspect_destroy(struct inspector *inspector);
 
 // The view and pixel that the frame shows at (x, y); of a slab in the camera nearest to the ray.

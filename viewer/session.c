@@ -251,7 +251,7 @@ static relume_status inspect(struct session *s, bool *shown)
 {
     relume_status status = RELUME_OK;
     if (!s->inspector.weights)
-        status = inspect_create(&s->inspector, s->pack, s->renderer.grid);
+        status = inspect_create(&s->inspector, s->pack, s->renderer.grid, s->capture);
     if (!status)
         status = inspect_update(&s->inspector, &s->app, shown);
     if (!status && *shown)

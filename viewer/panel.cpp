@@ -7,6 +7,8 @@ extern "C" {
 #include "lamps.h"
 }
 
+#include <relume/tone.h>
+
 #include <imgui.h>
 #include <imgui_internal.h>
 
@@ -382,11 +384,29 @@ static bool choose_pass(app *app)
     return changed;
 }
 
+static bool choose_tone(app *app)
+{
+    bool changed = false;
+    if (!ImGui::BeginCombo("tone", relume_tones[app->now.tone]->name))
+        return false;
+    for (int i = 0; relume_tones[i]; i++)
+        if (ImGui::Selectable(relume_tones[i]->name, app->now.tone == i)) {
+            app->now.tone = i;
+            changed = true;
+        }
+    ImGui::EndCombo();
+    return changed;
+}
+
 static bool picture_section(app *app)
 {
     const double least = -10, most = 10;
     bool changed = ImGui::SliderScalar("exposure", ImGuiDataType_Double, &app->now.exposure_ev,
                                        &least, &most, "%+.2f EV");
+    bool automatic = app->now.auto_exposure;
+    if (ImGui::Checkbox("automatic exposure", &automatic))
+        changed |= keys_press(app, 'e');
+    changed |= choose_tone(app);
     changed |= choose_pass(app);
     changed |= ImGui::Checkbox("ball", &app->now.ball);
     ImGui::SameLine();
@@ -424,8 +444,8 @@ static void histogram_section(const panel_facts *facts, float scale)
                         IM_COL32(20, 20, 22, 255));
     if (!facts->histogram)
         return;
-    uint32_t most = 1;  // black and white pixels would press all others down
-    for (int i = 1; i < 255; i++)
+    uint32_t most = 1;
+    for (int i = 0; i < 256; i++)
         for (int c = 0; c < 3; c++)
             most = std::max(most, facts->histogram[i][c]);
     static const ImU32 colours[3] = {IM_COL32(255, 70, 70, 200), IM_COL32(80, 220, 80, 200),
@@ -433,9 +453,9 @@ static void histogram_section(const panel_facts *facts, float scale)
     for (int c = 0; c < 3; c++) {
         ImVec2 line[256];
         for (int i = 0; i < 256; i++) {
-            const float part = std::min(1.0f, (float)facts->histogram[i][c] / (float)most);
-            line[i] = ImVec2(corner.x + size.x * ((float)i + 0.5f) / 256,
-                             corner.y + size.y * (1 - std::sqrt(part)));
+            const float part = std::log1p((float)facts->histogram[i][c]) / std::log1p((float)most);
+            line[i] =
+                ImVec2(corner.x + size.x * ((float)i + 0.5f) / 256, corner.y + size.y * (1 - part));
         }
         draw->AddPolyline(line, 256, colours[c], 0, 1);
     }
@@ -596,8 +616,8 @@ static void collect_runs(panel *panel)
     }
 }
 
-// A frame for every event, so that a click within one picture is a press and a release, and one
-// more, in which all hovering is known.
+// A frame for every event, so that a click within one picture is a press and a release, and two
+// more: new windows find their size in the first and are seen in the second.
 extern "C" bool panel_build(struct panel *panel, struct app *app, const struct panel_facts *facts)
 {
     ImGui::SetCurrentContext(panel->context);
@@ -607,6 +627,7 @@ extern "C" bool panel_build(struct panel *panel, struct app *app, const struct p
         one_frame(panel, app, facts);
     }
     panel->queue.clear();
+    one_frame(panel, app, facts);
     one_frame(panel, app, facts);
     collect_runs(panel);
     return panel->changed;

@@ -209,15 +209,6 @@ void session_close(struct session *s)
     relume_rig_destroy(&s->rig);
 }
 
-bool session_send(struct session *s, const struct app_event *event)
-{
-    const bool shown = panel_shown(&s->app);
-    if (shown && panel_takes(s->panel, event))
-        return true;
-    const bool changed = app_handle(&s->app, event);
-    return changed || shown || s->app.wish;
-}
-
 static void count_histogram(struct session *s)
 {
     const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
@@ -259,12 +250,9 @@ static relume_status inspect(struct session *s, bool *shown)
     return status;
 }
 
-static relume_status build_panel(struct session *s)
+static relume_status build_panel(struct session *s, bool histogram)
 {
-    const bool histogram = panel_wants_histogram(s->panel) && s->renderer.frame.texture;
     bool plot = false;
-    if (histogram)
-        count_histogram(s);
     const relume_status status = s->app.inspect ? inspect(s, &plot) : RELUME_OK;
     const struct panel_facts facts = {
         .file = s->name,
@@ -279,14 +267,37 @@ static relume_status build_panel(struct session *s)
     return status;
 }
 
+// Once more, with the histogram of the frame that has just been drawn.
+static relume_status add_histogram(struct session *s)
+{
+    if (!panel_shown(&s->app) || !panel_wants_histogram(s->panel))
+        return RELUME_OK;
+    count_histogram(s);
+    return build_panel(s, true);
+}
+
+// A panel that has just appeared is made at once, so that the next click finds it.
+bool session_send(struct session *s, const struct app_event *event)
+{
+    const bool shown = panel_shown(&s->app);
+    if (shown && panel_takes(s->panel, event))
+        return true;
+    const bool changed = app_handle(&s->app, event);
+    if (!shown && panel_shown(&s->app) && build_panel(s, false))
+        return true;  // what went wrong goes wrong again when it is drawn, and is told there
+    return changed || shown || s->app.wish;
+}
+
 relume_status session_draw(struct session *s)
 {
-    relume_status status = panel_shown(&s->app) ? build_panel(s) : RELUME_OK;
+    relume_status status = panel_shown(&s->app) ? build_panel(s, false) : RELUME_OK;
     if (!status)
         status = grant_wish(s);
     if (!status)
         status = renderer_draw(&s->renderer, &s->app);
-    return status || !s->app.now.auto_exposure ? status : meter(s);
+    if (!status && s->app.now.auto_exposure)
+        status = meter(s);
+    return status ? status : add_histogram(s);
 }
 
 bool session_pass(struct session *s, double seconds)

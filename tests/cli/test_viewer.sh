@@ -47,6 +47,45 @@ developed 'tone and exposure' --pan 40 --exposure 2 --tone filmic --size 100x60
 developed 'automatic exposure' --pan 40 --exposure auto --tone reinhard --white 2 --size 100x60
 developed 'a little planet' --projection planet --exposure auto --size 80x80
 
+same 'luminance' --view 1 --pass luminance
+same 'enhanced' --view 1 --pass unsharp
+same 'with a highlight' --pass specular
+
+# a panel that is open changes a shot, not a frame; clicks on it change the picture
+cat >panel.txt <<'END'
+size 500 540
+frame plain.png
+key tab
+frame open.png
+shot shot.png
+click 25 49
+frame dark.png
+END
+"$VIEWER" teapot.exr --script panel.txt --light "$light"
+check 'a frame is the picture alone' cmp plain.png open.png
+if cmp -s shot.png open.png; then not_ok 'a shot shows the panel' 'it is the picture'; else ok 'a shot shows the panel'; fi
+"$RELUME" compare dark.png shot.png >dark.txt 2>&1
+if cmp -s dark.png open.png; then not_ok 'a click turns the light off' 'nothing changed'; else ok 'a click turns the light off'; fi
+
+# a rig in, the same rig out
+"$RELUME" relight teapot.exr -o rigged.png --light "$light" --light "dir -1 0 1 rgb 0 0 1" --save-rig rig.json
+"$VIEWER" teapot.exr --rig rig.json --offscreen seen.png
+check 'a rig' "$RELUME" compare rigged.png seen.png
+if [ "$("$RELUME" compare rigged.png seen.png | awk '$1 == "max_abs" { print ($2 < 0.01) }')" = 1 ]; then
+    ok 'the lights of a rig'; else not_ok 'the lights of a rig' "$("$RELUME" compare rigged.png seen.png)"; fi
+
+"$VIEWER" teapot.exr --record turntable -o turn --frames 3
+check 'a recording is a folder of pictures' test -s turn/0002.png -a ! -e turn/0003.png -a ! -e turn.part
+mkdir fake
+cat >fake/ffmpeg <<'END'
+#!/bin/sh
+for last; do :; done
+wc -c >"${last#file:}"
+END
+chmod +x fake/ffmpeg
+PATH="$PWD/fake:$PATH" "$VIEWER" teapot.exr --record sweep -o 'a film; rm x.mp4' --frames 5
+check 'a film gets every picture' test "$(cat 'a film; rm x.mp4')" -eq $((5 * 24 * 24 * 3))
+
 refuse() { # name, status, pattern, command...
     name=$1 want=$2 pattern=$3
     shift 3
@@ -66,5 +105,15 @@ refuse 'unknown option' 2 "did you mean '--offscreen'" "$VIEWER" teapot.exr --of
 refuse 'no depth' 1 'file with depth' "$VIEWER" bare.exr --interpolate depth --offscreen none.png
 refuse 'a focus behind the cameras' 2 'focus: expected' "$VIEWER" teapot.exr --focus 3 --offscreen none.png
 refuse 'unwritable picture' 3 'nowhere/x.png' "$VIEWER" teapot.exr --offscreen nowhere/x.png
+refuse 'a script with a mistake' 1 'bad.txt: line 2, column 9; expected size W H; found' \
+    sh -c 'printf "key b\nsize 800\n" >bad.txt; "$VIEWER" teapot.exr --script bad.txt'
+refuse 'a turntable of one view' 2 'turntable: expected a slab' \
+    "$VIEWER" teapot.exr --view 0 --record turntable -o none.png
+refuse 'a recording over a folder' 2 'is there already' "$VIEWER" teapot.exr --record sweep -o teapot
+refuse 'a recording without a name' 2 'expected --record KIND and -o OUT' \
+    "$VIEWER" teapot.exr --record sweep
+refuse 'a film without ffmpeg' 3 'ffmpeg is not installed' \
+    env PATH=/nonexistent "$VIEWER" teapot.exr --record sweep -o none.png.mp4 --frames 2
+refuse 'an unknown pass' 2 "did you mean 'normals'" "$VIEWER" teapot.exr --pass normal
 if [ -e none.png ]; then not_ok 'nothing is written' 'none.png exists'; else ok 'nothing is written'; fi
 finish

@@ -164,6 +164,17 @@ struct relume_vec3 app_middle(const struct app *app)
                                 slab ? g->st_z : 0.0};
 }
 
+double app_reach(const struct app *app)
+{
+    const struct relume_geometry *g = &app->file.geometry;
+    if (panoramic(&app->file))
+        return 1;
+    const bool slab = g->projection == RELUME_SLAB;
+    const double *min = slab ? g->st_min : g->window_min;
+    const double *max = slab ? g->st_max : g->window_max;
+    return 0.5 * fmax(fabs(max[0] - min[0]), fabs(max[1] - min[1]));
+}
+
 struct app_axes app_frame_axes(const struct app *app)
 {
     if (app->now.camera.framing != RELUME_FRAME_LOOK)
@@ -362,7 +373,7 @@ static bool on_wheel(struct app *app, const struct app_event *e)
 
 static bool on_key_down(struct app *app, const struct app_event *e)
 {
-    return keys_press(app, e->key);
+    return keys_press(app, e->key, e->repeat);
 }
 
 static bool on_key_up(struct app *app, const struct app_event *e)

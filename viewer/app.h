@@ -45,6 +45,7 @@ struct app_event {
     enum app_button button;  // PRESS, RELEASE
     double x, y;             // PRESS, RELEASE, MOVE, WHEEL
     double wheel;            // WHEEL: steps, > 0 away from the user
+    bool repeat;             // KEY_DOWN: the key was down already
     int key;                 // KEY_*: a lower-case letter, a sign, or APP_KEY_*; TEXT: Unicode
     int width, height;       // SIZE
 };
@@ -110,6 +111,7 @@ struct app {
     bool light_key;                     // L is held
     bool panel, help, inspect, gizmos;  // shown
     bool compared;                      // there is a capture to compare with
+    bool near_lights;  // it is known where the surface is, so that near lights can shine on it
     enum app_wish wish;
     char spec[APP_SPEC];
     bool quit;
@@ -167,6 +169,8 @@ void app_turn_light(struct app *app, double yaw_deg, double pitch_deg);
 void app_dolly(struct app *app, double factor);
 // The middle of what the file shows; of a panorama its eye.
 struct relume_vec3 app_middle(const struct app *app);
+// Half the extent of what the file shows; of a panorama 1.
+double app_reach(const struct app *app);
 // Whether elevations are measured from +y, as in panoramas, not +z.
 bool app_pole_y(const struct app *app);
 

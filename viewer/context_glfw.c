@@ -112,6 +112,7 @@ static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mo
     (void)mods;
     struct app_event e = at_cursor(handle, action == GLFW_RELEASE ? APP_KEY_UP : APP_KEY_DOWN);
     e.key = key_letter(key, scancode);
+    e.repeat = action == GLFW_REPEAT;
     if (e.key)
         push_input(handle, e);
 }

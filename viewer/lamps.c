@@ -128,6 +128,35 @@ void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,
         aim_near(l, direction, middle);
 }
 
+static struct relume_vec3 scaled(struct relume_vec3 a, double s)
+{
+    return (struct relume_vec3){s * a.x, s * a.y, s * a.z};
+}
+
+void lamps_change_kind(struct app_state *state, int light, enum relume_light_kind kind,
+                       struct relume_vec3 middle, double far)
+{
+    struct relume_light *l = &state->light[light];
+    const struct relume_vec3 d = lamps_direction(l, middle);
+    const struct relume_vec3 pole =
+        fabs(d.y) < 0.9 ? (struct relume_vec3){0, 1, 0} : (struct relume_vec3){0, 0, 1};
+    const struct relume_vec3 side = cross(d, pole);
+    const struct relume_vec3 right = scaled(side, 1 / length(side));
+    struct relume_light made = {.kind = kind, .direction = d, .half_angle_deg = 25};
+    if (relume_light_is_near(kind)) {
+        made.position =
+            (struct relume_vec3){middle.x + far * d.x, middle.y + far * d.y, middle.z + far * d.z};
+        made.direction = scaled(d, -1);
+        made.nofall = true;  // as bright as it was
+        made.u = scaled(right, 0.25 * far);
+        made.v = cross(made.u, d);  // u x v is -d
+    }
+    memcpy(made.rgb, l->rgb, sizeof made.rgb);
+    made.nofall &= kind != RELUME_LIGHT_AREA;
+    *l = made;
+    state->lamp[light].entry = -1;
+}
+
 // ---------------------------------------------------------------- arrangements
 
 const struct lamp_preset lamp_presets[] = {

@@ -22,6 +22,11 @@ void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,
 // Where it comes from as seen from `middle`, unit.
 struct relume_vec3 lamps_direction(const struct relume_light *light, struct relume_vec3 middle);
 
+// Make a light of another kind of it (directional, point, spot or area) that comes from where it
+// came from: near ones stand `far` from `middle` and shine towards it.
+void lamps_change_kind(struct app_state *state, int light, enum relume_light_kind kind,
+                       struct relume_vec3 middle, double far);
+
 // Arrangements of directional lights that replace the list. `up` is the pole of the file: z for
 // planar files and slabs, y for panoramas.
 struct lamp_preset {

@@ -174,11 +174,11 @@ static ImVec4 colour_of(const relume_light &light)
     return ImVec4(light.rgb[0] / most, light.rgb[1] / most, light.rgb[2] / most, 1);
 }
 
-static const char *kind_name(const relume_light &light)
+static const char *kind_name(relume_light_kind kind)
 {
     static const char *const names[] = {"directional", "environment", "point", "spot",
                                         "slide",       "area",        "ies"};
-    return names[light.kind];
+    return names[kind];
 }
 
 static bool list_row(app_state *s, int i)
@@ -200,7 +200,7 @@ static bool list_row(app_state *s, int i)
     ImGui::SameLine();
     ImGui::ColorButton("##colour", colour_of(s->light[i]), ImGuiColorEditFlags_NoTooltip);
     ImGui::SameLine();
-    std::snprintf(label, sizeof label, "%d %s", i + 1, kind_name(s->light[i]));
+    std::snprintf(label, sizeof label, "%d %s", i + 1, kind_name(s->light[i].kind));
     if (ImGui::Selectable(label, s->selected == i)) {
         s->selected = i;
         changed = true;
@@ -300,6 +300,27 @@ static bool edit_geometry(relume_light *light)
     return changed;
 }
 
+// Kinds that need no file can become one another.
+static bool choose_kind(app *app)
+{
+    static const relume_light_kind kinds[] = {RELUME_LIGHT_DIRECTIONAL, RELUME_LIGHT_POINT,
+                                              RELUME_LIGHT_SPOT, RELUME_LIGHT_AREA};
+    app_state *s = &app->now;
+    const relume_light_kind now = s->light[s->selected].kind;
+    bool changed = false;
+    if (!app->near_lights || now == RELUME_LIGHT_ENVIRONMENT || now == RELUME_LIGHT_SLIDE ||
+        now == RELUME_LIGHT_IES || !ImGui::BeginCombo("kind", kind_name(now)))
+        return false;
+    for (const relume_light_kind kind : kinds) {
+        if (ImGui::Selectable(kind_name(kind), kind == now) && kind != now) {
+            lamps_change_kind(s, s->selected, kind, app_middle(app), 1.5 * app_reach(app));
+            changed = true;
+        }
+    }
+    ImGui::EndCombo();
+    return changed;
+}
+
 static bool edit_light(panel *panel, app *app)
 {
     app_state *s = &app->now;
@@ -309,7 +330,7 @@ static bool edit_light(panel *panel, app *app)
     ImGui::SameLine();
     ImGui::BeginGroup();
     ImGui::Text("light %d", s->selected + 1);
-    ImGui::TextUnformatted(kind_name(*light));
+    ImGui::TextUnformatted(kind_name(light->kind));
     changed |= flip_side(app);
     changed |= ImGui::ColorEdit3("colour", light->rgb,
                                  ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_Float |
@@ -318,6 +339,7 @@ static bool edit_light(panel *panel, app *app)
     const double least = -8, most = 8;
     changed |=
         ImGui::SliderScalar("stops", ImGuiDataType_Double, &lamp->stops, &least, &most, "%+.2f");
+    changed |= choose_kind(app);
     return changed | edit_geometry(light);
 }
 
@@ -331,10 +353,10 @@ static bool light_buttons(panel *panel, app *app)
 {
     bool changed = false;
     if (ImGui::Button("add"))
-        changed |= keys_press(app, 'm');
+        changed |= keys_press(app, 'm', false);
     ImGui::SameLine();
     if (ImGui::Button("remove"))
-        changed |= keys_press(app, APP_KEY_DELETE);
+        changed |= keys_press(app, APP_KEY_DELETE, false);
     ImGui::SameLine();
     if (ImGui::Button("save rig"))
         app->wish = APP_WISH_SAVE_RIG;
@@ -405,7 +427,7 @@ static bool picture_section(app *app)
                                        &least, &most, "%+.2f EV");
     bool automatic = app->now.auto_exposure;
     if (ImGui::Checkbox("automatic exposure", &automatic))
-        changed |= keys_press(app, 'e');
+        changed |= keys_press(app, 'e', false);
     changed |= choose_tone(app);
     changed |= choose_pass(app);
     changed |= ImGui::Checkbox("ball", &app->now.ball);

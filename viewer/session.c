@@ -107,6 +107,13 @@ static relume_status check_depth(const relume_pack *pack, const struct app_state
                "depth");
 }
 
+// Planar files without depth lie on z = 0.
+static bool has_surface(const struct session *s)
+{
+    const struct relume_pack_info *info = relume_pack_info(s->pack);
+    return info->has_depth || info->geometry.projection == RELUME_PLANAR;
+}
+
 relume_status session_compare(struct session *s, const char *capture)
 {
     return relume_capture_open(&s->capture, capture, relume_capture_params(.log = s->log));
@@ -133,6 +140,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
     s->pack = pack;
     s->app = app;
     s->app.compared = s->capture != NULL;
+    s->app.near_lights = has_surface(s);
     set_name(s, path);
     describe_lines(s);
     warn_below_horizon(s);
@@ -212,10 +220,16 @@ void session_close(struct session *s)
 static void count_histogram(struct session *s)
 {
     const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    const struct relume_tone_params tone = {.tone = relume_tones[s->app.now.tone],
+                                            .white = s->app.now.white};
     struct relume_image frame;
     memset(s->histogram, 0, sizeof s->histogram);
     if (renderer_read(&frame, &s->renderer))
         return;
+    if (relume_tone_apply(&frame, &tone)) {
+        relume_image_destroy(&frame);
+        return;
+    }
     const size_t samples = 3 * (size_t)frame.width * (size_t)frame.height;
     for (size_t i = 0; i < samples; i++) {
         const float code = relume_transfer_encode(srgb, frame.data[i]);
@@ -507,13 +521,24 @@ relume_status session_load_rig(struct session *s, const char *path)
     return status;
 }
 
+// Any light of that kind; the numbers follow.
+static const char *words_of(enum relume_light_kind kind)
+{
+    switch (kind) {
+    case RELUME_LIGHT_POINT: return "point 0 0 1";
+    case RELUME_LIGHT_SPOT: return "spot 0 0 1 0 0 -1 25";
+    case RELUME_LIGHT_AREA: return "area 0 0 1 1 0 0 0 1 0";
+    default: return "dir 0 0 1";
+    }
+}
+
 static relume_status store_light(const struct session *s, relume_rig *rig, int light)
 {
     const struct app_lamp *lamp = &s->app.now.lamp[light];
     const struct relume_light *l = &s->app.now.light[light];
     const struct relume_rig_entry *from =
         lamp->entry >= 0 ? relume_rig_entry(s->rig, lamp->entry) : NULL;
-    relume_status status = relume_rig_add(rig, from ? from->spec : "dir 0 0 1", NULL, s->log);
+    relume_status status = relume_rig_add(rig, from ? from->spec : words_of(l->kind), NULL, s->log);
     if (status)
         return status;
     struct relume_rig_entry e = *relume_rig_entry(rig, light);
@@ -553,7 +578,10 @@ static relume_status wish_picture(struct session *s, const char *extension)
 {
     char path[SESSION_TEXT + 16];
     free_name(path, sizeof path, s, extension);
+    const bool ball = s->app.now.ball;
+    s->app.now.ball = false;
     const relume_status status = session_frame(s, path);
+    s->app.now.ball = ball;
     snprintf(s->message, sizeof s->message, "%.200s %s", path,
              status ? "was not written" : "written");
     return RELUME_OK;

@@ -52,7 +52,6 @@ drag() { # button, x, y, x, y
     sleep 0.3
 }
 
-xdotool key b # the ball in the corner is no part of the picture
 picture 1
 shows 'lit from the front' ball-0001.png 'dir 0 0 1'
 drag 3 100 128 132 128 # 32 of 256 pixels: 22.5 degrees to the right

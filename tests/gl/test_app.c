@@ -892,6 +892,50 @@ static void near_lights_turn_about_the_middle(void **state)
     assert_float_equal(app.now.light[0].rotate_deg, 90, 1e-12);
 }
 
+static double dot3(struct relume_vec3 a, struct relume_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static void kinds_become_one_another(void **state)
+{
+    (void)state;
+    static const enum relume_light_kind kinds[] = {RELUME_LIGHT_POINT, RELUME_LIGHT_SPOT,
+                                                   RELUME_LIGHT_AREA, RELUME_LIGHT_DIRECTIONAL};
+    const struct relume_vec3 middle = {1, 2, 3};
+    const struct relume_vec3 from = {0.6, 0, 0.8};
+    struct app app = make_app(RELUME_PLANAR, false);
+    app.now.light[0].direction = from;
+    app.now.light[0].rgb[1] = 7;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        lamps_change_kind(&app.now, 0, kinds[i], middle, 5);
+        const struct relume_light *l = &app.now.light[0];
+        assert_int_equal(relume_light_check(l, "light", &keep), RELUME_OK);
+        assert_true(l->kind == kinds[i] && l->rgb[1] == 7);
+        assert_float_equal(dot3(lamps_direction(l, middle), from), 1, 1e-12);
+        if (kinds[i] == RELUME_LIGHT_DIRECTIONAL)
+            continue;
+        assert_float_equal(l->position.x, 4, 1e-12);
+        assert_float_equal(dot3(l->direction, from), -1, 1e-12);
+        const struct relume_vec3 shines = {l->u.y * l->v.z - l->u.z * l->v.y,
+                                           l->u.z * l->v.x - l->u.x * l->v.z,
+                                           l->u.x * l->v.y - l->u.y * l->v.x};
+        assert_true(dot3(shines, from) < 0);
+    }
+}
+
+static void held_keys_repeat_steps_only(void **state)
+{
+    (void)state;
+    struct app app = make_app(RELUME_PLANAR, false);
+    struct app_event e = {.kind = APP_KEY_DOWN, .key = APP_KEY_TAB, .repeat = true};
+    assert_false(app_handle(&app, &e));
+    assert_false(app.panel);
+    e.key = '+';
+    assert_true(app_handle(&app, &e) && app_handle(&app, &e));
+    assert_true(app.now.exposure_ev == 0.5);
+}
+
 // Hidden handles are not in the way of the camera.
 static void handles_are_dragged_only_when_shown(void **state)
 {
@@ -949,6 +993,8 @@ int main(void)
         cmocka_unit_test(near_lights_stand_where_they_are),
         cmocka_unit_test(near_lights_stand_in_panoramas),
         cmocka_unit_test(near_lights_turn_about_the_middle),
+        cmocka_unit_test(kinds_become_one_another),
+        cmocka_unit_test(held_keys_repeat_steps_only),
         cmocka_unit_test(handles_are_dragged_only_when_shown),
     };
     return cmocka_run_group_tests_name("app", tests, NULL, NULL);

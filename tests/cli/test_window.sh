@@ -83,4 +83,27 @@ if kill -0 $viewer 2>/dev/null; then not_ok 'Esc quits' 'it is still there'; els
     viewer=
     if [ $status -eq 0 ]; then ok 'Esc quits'; else not_ok 'Esc quits' "status $status: $(cat view.txt)"; fi
 fi
+
+# the window remembers; settings that cannot be read or written are no reason to fail
+remembers() { # name, folder for settings, size that is wanted, options...
+    name=$1 settings=$2 want=$3
+    shift 3
+    printf 'wait\nkey esc\n' >leave.txt
+    XDG_CONFIG_HOME=$settings timeout 60 "$VIEWER" ball.exr --script leave.txt --window "$@" >view.txt 2>&1
+    status=$?
+    got=$(sed -n 's/^size //p' "$settings/relume/viewer" 2>/dev/null)
+    if [ $status -eq 0 ] && [ ! -s view.txt ] && [ "$got" = "$want" ]; then ok "$name"; else
+        not_ok "$name" "status $status, size '$got'; $(cat view.txt)"
+    fi
+}
+remembers 'a size is kept' "$work/config" '300 200' --size 300x200 --light 'dir 1 0 1'
+remembers 'it comes back' "$work/config" '300 200'
+check 'the lights are kept' grep -q 'dir 1 0 1' config/relume/rig.json
+printf 'size -1 99999999\npanel x\n\377\n' >config/relume/viewer
+printf '{' >config/relume/rig.json
+remembers 'broken settings are forgotten' "$work/config" "$((2 * size)) $((2 * size))"
+touch file
+remembers 'settings that cannot be written' "$work/file" ''
+remembers 'no settings' "$work/none" '' --no-config
+check 'nothing is written then' test ! -e none
 finish

@@ -38,7 +38,7 @@ PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenImageIO OpenEXR openblas j
 CAIRO    = $(call once,CAIRO,pkg-config --cflags cairo)
 LIBS     = -Wl,--as-needed $(PKG_LIBS) -llapacke -lembree3 -lm
 CLI_LIBS = $(call once,CLI_LIBS,pkg-config --libs cairo)
-GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa)
+GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa egl)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 
 LIB_C    := $(wildcard src/base/*.c src/math/*.c src/image/*.c src/capture/*.c src/scene/*.c \

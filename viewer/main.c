@@ -1,5 +1,5 @@
 // main.c - relume-view: a file in a window, or in pictures written without one
-#include "context.h"
+#include "context_offscreen.h"
 #include "options.h"
 #include "renderer.h"
 #include "say.h"
@@ -173,7 +173,7 @@ static relume_status run_offscreen(struct viewer *v, const struct options *o)
 {
     relume_status status = open_file(v, o->file, &o->start, false);
     if (!status)
-        status = open_context(v, &context_osmesa, v->app.width, v->app.height);
+        status = open_context(v, context_offscreen(o->gl), v->app.width, v->app.height);
     if (!status && o->script)
         status = script_play(&v->app, o->script, save_frame, v, v->log);
     if (!status && o->offscreen)

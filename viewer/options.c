@@ -150,6 +150,15 @@ static relume_status take_script(struct options *o, const char *name, const char
     return RELUME_OK;
 }
 
+static relume_status take_gl(struct options *o, const char *name, const char *text,
+                             const struct relume_log *log)
+{
+    o->gl = text;
+    if (!strcmp(text, "auto") || !strcmp(text, "osmesa") || !strcmp(text, "egl"))
+        return RELUME_OK;
+    return say(log, RELUME_EINVAL, "%s: expected auto, osmesa or egl; found '%s'", name, text);
+}
+
 static relume_status take_ball(struct options *o, const char *name, const char *text,
                                const struct relume_log *log)
 {
@@ -172,6 +181,8 @@ static const struct option options[] = {
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},
     {"--script", "EVENTS", "play a text file of events without a window", take_script},
+    {"--gl", "NAME",
+     "offscreen by osmesa, egl, or auto: a graphics card, else osmesa; default auto", take_gl},
     {"--ball", NULL, "offscreen: draw the ball that shows the light, as the window does",
      take_ball},
     {"--help", NULL, "this text", NULL},
@@ -253,7 +264,7 @@ static bool asks_for_help(int argc, char **argv)
 
 relume_status options_parse(struct options *o, int argc, char **argv, const struct relume_log *log)
 {
-    *o = (struct options){0};
+    *o = (struct options){.gl = "auto"};
     if (asks_for_help(argc, argv))
         return RELUME_OK;
     for (int i = 1; i < argc; i++) {

@@ -9,8 +9,9 @@ struct options {
     const char *offscreen;  // picture to write without a window, or NULL
     const char *script;     // events to play without a window, or NULL
     struct app_state start;
-    bool sized;   // --size was given
-    int threads;  // that read files; 0: all cores
+    bool sized;      // --size was given
+    const char *gl;  // what offscreen frames are drawn by: a name that context_offscreen knows
+    int threads;     // that read files; 0: all cores
 };
 
 // RELUME_EINVAL with a sentence in `log`: unknown options, wrong values, no FILE.

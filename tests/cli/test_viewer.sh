@@ -23,6 +23,15 @@ same 'the default frame'
 same 'a captured view' --view 3
 same 'an eye between cameras' --eye 0.1,-0.2,3
 
+# Mesa draws by the same code whether OSMesa or EGL asks; a graphics card rounds in its own way.
+if "$VIEWER" teapot.exr --offscreen egl.exr --gl egl 2>err.txt; then
+    "$VIEWER" teapot.exr --offscreen osmesa.exr --gl osmesa
+    worst=$("$RELUME" compare egl.exr osmesa.exr | awk '$1 == "max_abs" { print $2 }')
+    if awk "BEGIN { exit !($worst < 1e-3) }"; then ok 'EGL and OSMesa agree'; else not_ok 'EGL and OSMesa agree' "off by $worst"; fi
+else
+    skip 'EGL and OSMesa agree' "$(cat err.txt)"
+fi
+
 refuse() { # name, status, pattern, command...
     name=$1 want=$2 pattern=$3
     shift 3
@@ -39,6 +48,7 @@ refuse() { # name, status, pattern, command...
 refuse 'no display' 3 'use --offscreen .*package' env -u DISPLAY -u WAYLAND_DISPLAY "$VIEWER" teapot.exr
 refuse 'no such file' 1 'none.exr: no such file' "$VIEWER" none.exr --offscreen none.png
 refuse 'unknown option' 2 "did you mean '--offscreen'" "$VIEWER" teapot.exr --offscren none.png
+refuse 'unknown source of GL' 2 'auto, osmesa or egl; found .vulkan' "$VIEWER" teapot.exr --offscreen none.png --gl vulkan
 refuse 'unwritable picture' 3 'nowhere/x.png' "$VIEWER" teapot.exr --offscreen nowhere/x.png
 if [ -e none.png ]; then not_ok 'nothing is written' 'none.png exists'; else ok 'nothing is written'; fi
 finish

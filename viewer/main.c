@@ -23,6 +23,8 @@ struct viewer {
     struct renderer renderer;
     char name[256];  // of the file, for the title
     int threads;     // that read files
+    size_t vram_bytes;
+    bool streams;  // frames are drawn with the views that are there
     const struct relume_log *log;
 };
 
@@ -53,6 +55,18 @@ static relume_status pack_codes(const struct relume_codes **out, void *user, int
 static void pack_drop(void *user, int view)
 {
     relume_pack_drop(user, view);
+}
+
+static relume_status pack_surface(struct relume_image *out, void *user, int view)
+{
+    const struct relume_pack_info *info = relume_pack_info(user);
+    struct relume_image depth;
+    relume_status status = relume_pack_depth(&depth, user, view);
+    if (!status)
+        status = relume_surface(out, &info->geometry, info->uv[view], depth.data ? &depth : NULL,
+                                info->width, info->height);
+    relume_image_destroy(&depth);
+    return status;
 }
 
 static struct app_file describe(const relume_pack *pack)
@@ -109,6 +123,7 @@ static relume_status open_file(struct viewer *v, const char *path, const struct 
         relume_pack_destroy(&pack);
         return status;
     }
+    renderer_destroy(&v->renderer);  // its thread may be reading the old file
     relume_pack_destroy(&v->pack);
     v->pack = pack;
     v->app = app;
@@ -120,9 +135,13 @@ static relume_status open_file(struct viewer *v, const char *path, const struct 
 static relume_status make_renderer(struct viewer *v)
 {
     const struct relume_pack_info *info = relume_pack_info(v->pack);
-    const struct code_source source = {pack_codes, pack_drop, v->pack};
-    return renderer_create(&v->renderer, &v->gl, &source, &info->geometry, info->uv, info->views,
-                           v->log);
+    const struct code_source source = {pack_codes, pack_drop, v->pack, pack_surface};
+    const relume_status status = renderer_create(&v->renderer, &v->gl, &source, &info->geometry,
+                                                 info->uv, info->views, v->log);
+    if (status)
+        return status;
+    v->renderer.relighter.budget = v->vram_bytes;
+    return v->streams ? renderer_stream(&v->renderer) : RELUME_OK;
 }
 
 static relume_status open_context(struct viewer *v, const struct context_backend *backend,
@@ -229,7 +248,6 @@ static relume_status drop_file(struct viewer *v, const char *path)
     v->app.width = width;
     v->app.height = height;
     v->app.letterbox = true;
-    renderer_destroy(&v->renderer);
     return make_renderer(v);
 }
 
@@ -249,6 +267,7 @@ static relume_status run_window(struct viewer *v, const struct options *o)
 {
     struct app_state start = o->start;
     start.ball = true;
+    v->streams = true;
     relume_status status = open_file(v, o->file, &start, true);
     if (status)
         return status;
@@ -265,7 +284,7 @@ static relume_status run_window(struct viewer *v, const struct options *o)
             status = take_event(v, &event, &changed);
         if (!status && changed && !v->app.quit)
             status = show_frame(v);
-        changed = false;
+        changed = !status && renderer_is_pending(&v->renderer);
     }
     return status;
 }
@@ -279,6 +298,7 @@ int main(int argc, char **argv)
     signal(SIGPIPE, SIG_IGN);
     relume_status status = options_parse(&options, argc, argv, &log);
     viewer.threads = options.threads;
+    viewer.vram_bytes = (size_t)(options.vram_mb * 1048576.0);
     if (!status && !options.file)
         options_help();
     else if (!status)

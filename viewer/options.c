@@ -128,6 +128,12 @@ static relume_status take_threads(struct options *o, const char *name, const cha
     return status;
 }
 
+static relume_status take_vram(struct options *o, const char *name, const char *text,
+                               const struct relume_log *log)
+{
+    return take_number(&o->vram_mb, name, text, 1, 1e6, log);
+}
+
 static relume_status take_exposure(struct options *o, const char *name, const char *text,
                                    const struct relume_log *log)
 {
@@ -178,6 +184,8 @@ static const struct option options[] = {
     {"--size", "WxH", "pixels of the window or picture", take_size},
     {"--exposure", "EV", "brighter by 2^EV", take_exposure},
     {"--threads", "N", "threads that read files; default: all cores", take_threads},
+    {"--vram", "MB", "graphics memory for views; those not used for long leave; default: 1024",
+     take_vram},
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},
     {"--script", "EVENTS", "play a text file of events without a window", take_script},
@@ -264,7 +272,7 @@ static bool asks_for_help(int argc, char **argv)
 
 relume_status options_parse(struct options *o, int argc, char **argv, const struct relume_log *log)
 {
-    *o = (struct options){.gl = "auto"};
+    *o = (struct options){.gl = "auto", .vram_mb = 1024};
     if (asks_for_help(argc, argv))
         return RELUME_OK;
     for (int i = 1; i < argc; i++) {

@@ -12,6 +12,7 @@ struct options {
     bool sized;      // --size was given
     const char *gl;  // what offscreen frames are drawn by: a name that context_offscreen knows
     int threads;     // that read files; 0: all cores
+    double vram_mb;  // graphics memory for views
 };
 
 // RELUME_EINVAL with a sentence in `log`: unknown options, wrong values, no FILE.

@@ -31,9 +31,12 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
 {
     *r = (struct renderer){.gl = gl, .log = log, .geometry = *geometry, .views = views};
     gl->GenVertexArrays(1, &r->vertices);
+    r->uv = calloc((size_t)views, sizeof *r->uv);
+    if (r->uv && uv)
+        memcpy(r->uv, uv, (size_t)views * sizeof *r->uv);
     r->needed = calloc((size_t)views, sizeof *r->needed);
     r->relit = calloc((size_t)views, sizeof *r->relit);
-    relume_status status = r->needed && r->relit ? RELUME_OK : RELUME_ENOMEM;
+    relume_status status = r->uv && r->needed && r->relit ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = relighter_create(&r->relighter, gl, source, views, log);
     if (!status)
@@ -59,6 +62,7 @@ void renderer_destroy(struct renderer *r)
     target_destroy(&r->frame, r->gl);
     r->gl->DeleteVertexArrays(1, &r->vertices);
     relume_slab_destroy(&r->grid);
+    free(r->uv);
     free(r->needed);
     free(r->relit);
     *r = (struct renderer){0};
@@ -124,6 +128,37 @@ static relume_status prepare_frame(struct renderer *r, int width, int height)
     return target_create(&r->frame, r->gl, width, height, r->log);
 }
 
+// How far apart the cameras of two views stand, squared.
+static double apart(const struct renderer *r, int a, int b)
+{
+    const double du = r->uv[a][0] - r->uv[b][0], dv = r->uv[a][1] - r->uv[b][1];
+    return du * du + dv * dv;
+}
+
+// The view on the GPU that stands nearest to a missing one, or -1.
+static int nearest_present(const struct renderer *r, int missing)
+{
+    int nearest = -1;
+    for (int i = 0; i < r->views; i++)
+        if (relighter_has(&r->relighter, i) &&
+            (nearest < 0 || apart(r, i, missing) < apart(r, nearest, missing)))
+            nearest = i;
+    return nearest;
+}
+
+static relume_status stand_in(struct renderer *r)
+{
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < r->views; i++) {
+        if (!r->needed[i] || r->relit[i])
+            continue;
+        const int nearest = nearest_present(r, i);
+        status = nearest < 0 ? relighter_wait(&r->relit[i], &r->relighter, i)
+                             : relighter_view(&r->relit[i], &r->relighter, nearest);
+    }
+    return status;
+}
+
 static relume_status relight_needed(struct renderer *r, const struct app *app)
 {
     const struct framing *framing = &framings[app->now.camera.framing];
@@ -135,7 +170,7 @@ static relume_status relight_needed(struct renderer *r, const struct app *app)
         if (r->needed[i])
             status = relighter_view(&r->relit[i], &r->relighter, i);
     }
-    return status;
+    return status ? status : stand_in(r);
 }
 
 relume_status renderer_draw(struct renderer *r, const struct app *app)
@@ -157,6 +192,16 @@ relume_status renderer_draw(struct renderer *r, const struct app *app)
     if (app->now.ball)
         draw_ball(&r->ball, r->gl, &place, app_seen_light(app, 0), app->now.light[0].rgb);
     return gl_check(r->gl, "drawing", r->log);
+}
+
+relume_status renderer_stream(struct renderer *r)
+{
+    return relighter_stream(&r->relighter);
+}
+
+bool renderer_is_pending(const struct renderer *r)
+{
+    return r->relighter.pending;
 }
 
 relume_status renderer_read(struct relume_image *out, const struct renderer *r)

@@ -16,6 +16,7 @@ struct renderer {
     relume_slab *grid;  // NULL: not a slab
     struct relume_geometry geometry;
     int views;
+    double (*uv)[2];              // [views]
     bool *needed;                 // [views]
     const struct target **relit;  // [views]; NULL where not needed
 };
@@ -27,7 +28,11 @@ relume_status renderer_create(struct renderer *renderer, const struct gl *gl,
                               int views, const struct relume_log *log);
 void renderer_destroy(struct renderer *renderer);
 
-// Draw the frame that `app` describes, linear, into renderer->frame.
+// Draw the frame that `app` describes, linear, into renderer->frame. After renderer_stream, views
+// that are still being read are stood in for by their nearest neighbours, and renderer_is_pending
+// tells that another frame would be better.
+relume_status renderer_stream(struct renderer *renderer);
+bool renderer_is_pending(const struct renderer *renderer);
 relume_status renderer_draw(struct renderer *renderer, const struct app *app);
 // The last frame as an image, linear; the caller destroys it.
 relume_status renderer_read(struct relume_image *out, const struct renderer *renderer);

@@ -1,0 +1,40 @@
+// loader.h - codes of views, read by a thread of its own while frames are drawn
+#ifndef VIEWER_LOADER_H
+#define VIEWER_LOADER_H
+
+#include <relume/coder.h>
+
+// Where codes come from: a pack, or a test. `drop` (may be NULL) hears that a view's codes are no
+// longer looked at. `surface` (may be NULL) tells where a view's pixels lie, for near lights; the
+// caller destroys the image.
+struct code_source {
+    relume_status (*codes)(const struct relume_codes **out, void *user, int view);
+    void (*drop)(void *user, int view);
+    void *user;
+    relume_status (*surface)(struct relume_image *out, void *user, int view);
+};
+
+// While a loader lives the source is used by its thread, and by others only through the loader.
+typedef struct loader loader;
+
+// RELUME_ENOMEM, RELUME_ESYSTEM.
+relume_status loader_create(loader **out, const struct code_source *source, int views);
+// Waits for the view that is being read; what was read and not taken is dropped.
+void loader_destroy(loader **loader);
+
+// Read `view` when those asked for before have been read. Asking again changes nothing.
+void loader_ask(loader *loader, int view);
+// Forget what was asked for and is not being read yet.
+void loader_clear(loader *loader);
+
+struct loaded {
+    int view;
+    relume_status status;
+    const struct relume_codes *codes;  // until loader_drop
+};
+// A view that has been read; false when there is none, with `wait` only when none is asked for.
+bool loader_take(struct loaded *out, loader *loader, bool wait);
+void loader_drop(loader *loader, int view);
+relume_status loader_surface(struct relume_image *out, loader *loader, int view);
+
+#endif

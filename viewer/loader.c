@@ -9,18 +9,18 @@ struct loader {
     struct code_source source;
     int views;
     pthread_t thread;
-    pthread_mutex_t lock;      // of everything below
+    pthread_mutex_t lock;  // of everything below
     pthread_cond_t work, news;
-    pthread_mutex_t reading;   // the source is in use
-    enum stage *stage;         // [views]
-    uint64_t *order;           // [views]: when it was asked for
-    struct loaded *result;     // [views]
+    pthread_mutex_t reading;  // the source is in use
+    enum stage *stage;        // [views]
+    uint64_t *order;          // [views]: when it was asked for
+    struct loaded *result;    // [views]
     uint64_t asked;
     bool stop;
 };
 
 // The view of that stage which was asked for first, or -1.
-static int first_of(const loader *l, enum stage stage)
+static int first_of(const struct loader *l, enum stage stage)
 {
     int first = -1;
     for (int i = 0; i < l->views; i++)
@@ -29,7 +29,7 @@ static int first_of(const loader *l, enum stage stage)
     return first;
 }
 
-static struct loaded read_view(loader *l, int view)
+static struct loaded read_view(struct loader *l, int view)
 {
     struct loaded result = {.view = view};
     pthread_mutex_lock(&l->reading);
@@ -40,7 +40,7 @@ static struct loaded read_view(loader *l, int view)
 
 static void *run(void *context)
 {
-    loader *l = context;
+    struct loader *l = context;
     pthread_mutex_lock(&l->lock);
     while (!l->stop) {
         const int view = first_of(l, ASKED);
@@ -60,7 +60,7 @@ static void *run(void *context)
     return NULL;
 }
 
-static void release(loader *l)
+static void release(struct loader *l)
 {
     pthread_mutex_destroy(&l->lock);
     pthread_mutex_destroy(&l->reading);
@@ -72,10 +72,10 @@ static void release(loader *l)
     free(l);
 }
 
-relume_status loader_create(loader **out, const struct code_source *source, int views)
+relume_status loader_create(struct loader **out, const struct code_source *source, int views)
 {
     *out = NULL;
-    loader *l = calloc(1, sizeof *l);
+    struct loader *l = calloc(1, sizeof *l);
     if (!l)
         return RELUME_ENOMEM;
     l->source = *source;
@@ -97,7 +97,7 @@ relume_status loader_create(loader **out, const struct code_source *source, int 
     return status;
 }
 
-void loader_destroy(loader **loader)
+void loader_destroy(struct loader **loader)
 {
     struct loader *l = *loader;
     *loader = NULL;
@@ -114,7 +114,7 @@ void loader_destroy(loader **loader)
     release(l);
 }
 
-void loader_ask(loader *loader, int view)
+void loader_ask(struct loader *loader, int view)
 {
     pthread_mutex_lock(&loader->lock);
     if (loader->stage[view] == IDLE) {
@@ -125,7 +125,7 @@ void loader_ask(loader *loader, int view)
     pthread_mutex_unlock(&loader->lock);
 }
 
-void loader_clear(loader *loader)
+void loader_clear(struct loader *loader)
 {
     pthread_mutex_lock(&loader->lock);
     for (int i = 0; i < loader->views; i++)
@@ -134,7 +134,7 @@ void loader_clear(loader *loader)
     pthread_mutex_unlock(&loader->lock);
 }
 
-bool loader_take(struct loaded *out, loader *loader, bool wait)
+bool loader_take(struct loaded *out, struct loader *loader, bool wait)
 {
     pthread_mutex_lock(&loader->lock);
     int view = first_of(loader, READ);
@@ -150,7 +150,7 @@ bool loader_take(struct loaded *out, loader *loader, bool wait)
     return view >= 0;
 }
 
-void loader_drop(loader *loader, int view)
+void loader_drop(struct loader *loader, int view)
 {
     pthread_mutex_lock(&loader->reading);
     if (loader->source.drop)
@@ -158,7 +158,7 @@ void loader_drop(loader *loader, int view)
     pthread_mutex_unlock(&loader->reading);
 }
 
-relume_status loader_surface(struct relume_image *out, loader *loader, int view)
+relume_status loader_surface(struct relume_image *out, struct loader *loader, int view)
 {
     if (!loader->source.surface)
         return RELUME_EINVAL;

@@ -15,17 +15,17 @@ struct code_source {
 };
 
 // While a loader lives the source is used by its thread, and by others only through the loader.
-typedef struct loader loader;
+struct loader;
 
 // RELUME_ENOMEM, RELUME_ESYSTEM.
-relume_status loader_create(loader **out, const struct code_source *source, int views);
+relume_status loader_create(struct loader **out, const struct code_source *source, int views);
 // Waits for the view that is being read; what was read and not taken is dropped.
-void loader_destroy(loader **loader);
+void loader_destroy(struct loader **loader);
 
 // Read `view` when those asked for before have been read. Asking again changes nothing.
-void loader_ask(loader *loader, int view);
+void loader_ask(struct loader *loader, int view);
 // Forget what was asked for and is not being read yet.
-void loader_clear(loader *loader);
+void loader_clear(struct loader *loader);
 
 struct loaded {
     int view;
@@ -33,8 +33,8 @@ struct loaded {
     const struct relume_codes *codes;  // until loader_drop
 };
 // A view that has been read; false when there is none, with `wait` only when none is asked for.
-bool loader_take(struct loaded *out, loader *loader, bool wait);
-void loader_drop(loader *loader, int view);
-relume_status loader_surface(struct relume_image *out, loader *loader, int view);
+bool loader_take(struct loaded *out, struct loader *loader, bool wait);
+void loader_drop(struct loader *loader, int view);
+relume_status loader_surface(struct relume_image *out, struct loader *loader, int view);
 
 #endif

@@ -105,7 +105,7 @@ static void release(struct relighter *r, struct relit_view *v)
     r->bytes -= v->bytes;
     free(v->array);
     free(v->scale);
-    near_view_destroy(&v->near, r->gl);
+    nearby_view_destroy(&v->near, r->gl);
     if (v->codes.books)
         books_forget(&v->codes);
     *v = (struct relit_view){0};
@@ -296,7 +296,7 @@ static relume_status pass_lookup(const struct relighter *r, const struct relit_v
 {
     const struct gl *gl = r->gl;
     texture_use(gl, 1, GL_TEXTURE_2D_ARRAY, r->table);
-    const relume_status status = books_relight(gl, &v->codes, lights, n);
+    const relume_status status = books_relight(gl, &v->codes, lights, n, r->grid);
     if (status)
         return status;
     texture_use(gl, 0, GL_TEXTURE_2D_ARRAY, v->array[0]);
@@ -368,17 +368,31 @@ static relume_status relight_display(struct relighter *r, struct relit_view *v, 
     return status;
 }
 
-// All lights at once: sums in linear light, or one codebook that is linear when relit.
+// The distant lights at once: sums in linear light, or one codebook that is linear when relit;
+// that of the display domain leaves environments to its linear twin.
 static relume_status relight_books(struct relighter *r, struct relit_view *v)
 {
-    return pass_lookup(r, v, r->light, r->lights, &v->relit);
+    const bool display = v->codes.domain == RELUME_DOMAIN_DISPLAY;
+    struct relume_light *distant = malloc((size_t)r->lights * sizeof *distant + 1);
+    relume_status status = distant ? RELUME_OK : RELUME_ENOMEM;
+    int n = 0;
+    for (int i = 0; !status && i < r->lights; i++)
+        if (r->light[i].kind == RELUME_LIGHT_DIRECTIONAL ||
+            (!display && is_environment(r->light[i].kind)))
+            distant[n++] = r->light[i];
+    if (!status && !display && has_kind(r, is_environment))
+        status = need_grid(r, v->codes.coder);
+    if (!status)
+        status = pass_lookup(r, v, distant, n, &v->relit);
+    free(distant);
+    return status;
 }
 
 // ---------------------------------------------------------------- near lights, environments
 
-static struct near_codes near_codes_of(const struct relit_view *v)
+static struct nearby_codes nearby_codes_of(const struct relit_view *v)
 {
-    return (struct near_codes){&v->codes, v->array[0], v->layers, formats[v->codes.storage].unit};
+    return (struct nearby_codes){&v->codes, v->array[0], v->layers, formats[v->codes.storage].unit};
 }
 
 static relume_status find_surface(const struct relighter *r, int view, struct relume_image *out)
@@ -391,7 +405,7 @@ static relume_status find_surface(const struct relighter *r, int view, struct re
 static relume_status need_surface(struct relighter *r, struct relit_view *v)
 {
     struct relume_image surface = {0};
-    const struct near_codes codes = near_codes_of(v);
+    const struct nearby_codes codes = nearby_codes_of(v);
     if (v->near.surface.data)
         return RELUME_OK;
     if (v->arrays > 1)
@@ -402,17 +416,17 @@ static relume_status need_surface(struct relighter *r, struct relit_view *v)
     if (status == RELUME_EINVAL)
         return say(r->log, RELUME_EDATA,
                    "a near light needs to know where the surface is; expected a file with depth");
-    return status ? status : near_view_create(&v->near, &r->near, &codes, &surface);
+    return status ? status : nearby_view_create(&v->near, &r->near, &codes, &surface);
 }
 
 static relume_status relight_near(struct relighter *r, struct relit_view *v)
 {
-    const struct near_codes codes = near_codes_of(v);
+    const struct nearby_codes codes = nearby_codes_of(v);
     relume_status status = need_surface(r, v);
     target_resume(&v->relit, r->gl);
     for (int i = 0; !status && i < r->lights; i++)
         if (relume_light_is_near(r->light[i].kind))
-            status = near_draw(&r->near, &v->near, &codes, &r->light[i]);
+            status = nearby_draw(&r->near, &v->near, &codes, &r->light[i]);
     return status;
 }
 
@@ -420,18 +434,23 @@ static relume_status linear_codes(const struct relume_codes **out, void *user, i
 {
     struct linear_source *s = user;
     const struct relume_codes *codes;
+    relume_refit **refit = s->first ? &s->refit : &s->first;
     relume_status status = s->source.codes(&codes, s->source.user, view);
     if (!status)
-        status = relume_refit_create(&s->refit, codes, relume_refit_params(.log = s->log));
+        status =
+            relume_refit_create(refit, codes, relume_refit_params(.log = s->log, .like = s->first));
     if (!status)
-        *out = relume_refit_codes(s->refit);
+        *out = relume_refit_codes(*refit);
     return status;
 }
 
 static void linear_drop(void *user, int view)
 {
     struct linear_source *s = user;
-    relume_refit_destroy(&s->refit);
+    if (s->refit)
+        relume_refit_destroy(&s->refit);
+    else
+        relume_refit_forget(s->first);
     if (s->source.drop)
         s->source.drop(s->source.user, view);
 }
@@ -522,7 +541,7 @@ relume_status relighter_create(struct relighter *r, const struct gl *gl,
     if (!status)
         status = program_create(&r->lookup, gl, "lookup.frag", lookup_uniforms, LOOKUP_COUNT, log);
     if (!status)
-        status = near_create(&r->near, gl, log);
+        status = nearby_create(&r->near, gl, log);
     gl->GenVertexArrays(1, &r->vertices);
     gl->GenTextures(1, &r->table);
     gl->GenTextures(1, &r->weights);
@@ -541,11 +560,12 @@ void relighter_destroy(struct relighter *r)
     if (r->linear)
         relighter_destroy(r->linear);
     free(r->linear);
+    relume_refit_destroy(&r->linear_source.first);
     target_destroy(&r->coded, r->gl);
     program_destroy(&r->dot, r->gl);
     program_destroy(&r->develop, r->gl);
     program_destroy(&r->lookup, r->gl);
-    near_destroy(&r->near);
+    nearby_destroy(&r->near);
     relume_weight_grid_destroy(&r->grid);
     r->gl->DeleteTextures(1, &r->table);
     r->gl->DeleteTextures(1, &r->weights);
@@ -610,7 +630,7 @@ relume_status relighter_begin(struct relighter *r, const struct relume_light *li
 
 void relighter_forget(struct relighter *r)
 {
-    near_forget(&r->near);
+    nearby_forget(&r->near);
     free(r->light);
     r->light = NULL;
     if (r->linear)

@@ -3,12 +3,12 @@
 // Linear-domain codes fold all distant lights into one weight vector and one pass; display-domain
 // codes take two small passes for each light: the dot product, then decoding and adding in linear
 // light. Environments meet a linear twin of display-domain codes, made once (relume_refit). Near
-// lights are a pass each (near.h).
+// lights are a pass each (nearby.h).
 #ifndef VIEWER_RELIGHTER_H
 #define VIEWER_RELIGHTER_H
 
 #include "loader.h"
-#include "near.h"
+#include "nearby.h"
 #include "program.h"
 #include "target.h"
 
@@ -25,13 +25,14 @@ struct relit_view {
     struct target relit;
     struct relume_codes codes;  // planes and indices are gone; the rest is ours
     float *scale;
-    struct near_view near;
+    struct nearby_view near;
 };
 
 // The codes of the linear twin come from those of the file.
 struct linear_source {
     struct code_source source;
-    relume_refit *refit;  // of the view that was asked for last
+    relume_refit *first;  // the first view's: all others have its coder
+    relume_refit *refit;  // of the view that was asked for last, or NULL: the first
     const struct relume_log *log;
 };
 
@@ -39,10 +40,10 @@ struct relighter {
     const struct gl *gl;
     const struct relume_log *log;
     struct code_source source;
-    loader *loader;  // or NULL: views are read when they are asked for
-    bool pending;    // this frame asked for a view that is still being read
+    struct loader *loader;  // or NULL: views are read when they are asked for
+    bool pending;           // this frame asked for a view that is still being read
     struct program dot, develop, lookup;
-    struct near near;
+    struct nearby near;
     relume_weight_grid *grid;  // of the coder, for environments; NULL: not made yet
     struct relighter *linear;  // the linear twin, under the environments; NULL: not made yet
     struct linear_source linear_source;
@@ -54,8 +55,8 @@ struct relighter {
     int views;
     struct relume_light *light;
     int lights;
-    size_t budget, bytes;  // of graphics memory for codes and relit views; the budget, a gigabyte to
-                           // begin with, may be set at any time
+    size_t budget, bytes;  // of graphics memory for codes and relit views; the budget, a gigabyte
+                           // to begin with, may be set at any time
     uint64_t frame;
 };
 

@@ -97,9 +97,9 @@ static void check_kind(struct relighter *r, const struct relume_codes *codes, co
     assert_int_equal(find_surface(&surface, NULL, 0), RELUME_OK);
     for (int n = 1; n <= 2; n++) {
         snprintf(what, sizeof what, "%s, %s, %d lights", name, relume_light_kind_name(kind), n);
-        assert_int_equal(relume_relight(&want, codes, lights, n,
-                                        relume_relight_params(.surface = &surface)),
-                         RELUME_OK);
+        assert_int_equal(
+            relume_relight(&want, codes, lights, n, relume_relight_params(.surface = &surface)),
+            RELUME_OK);
         assert_int_equal(relighter_begin(r, lights, n), RELUME_OK);
         assert_int_equal(relighter_view(&target, r, 0), RELUME_OK);
         assert_int_equal(target_read(&got, target, &fixture_gl), RELUME_OK);
@@ -158,7 +158,8 @@ static void check_coder(const struct relume_basis *basis, struct relume_coder_pa
     p.decode = true;
     assert_int_equal(relume_coder_create(&coder, basis, lights, FIXTURE_LIGHTS, &p), RELUME_OK);
     relume_coder_destroy(&f.coder);
-    f.coder = f.codes[0].coder = coder;
+    f.coder = coder;
+    f.codes[0].coder = coder;
     f.codes[0].planes = relume_coder_info(coder)->planes;
     assert_true(f.codes[0].planes <= FIXTURE_PLANES);
     assert_int_equal(fixture_fetch(&codes, &f, 0), RELUME_OK);
@@ -342,10 +343,14 @@ static void a_broken_view_is_heard_of(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(separate_channels),       cmocka_unit_test(other_bases),
-        cmocka_unit_test(components),              cmocka_unit_test(codebooks),
-        cmocka_unit_test(without_a_surface),       cmocka_unit_test(views_arrive_later),
-        cmocka_unit_test(a_view_can_be_waited_for), cmocka_unit_test(a_broken_view_is_heard_of),
+        cmocka_unit_test(separate_channels),
+        cmocka_unit_test(other_bases),
+        cmocka_unit_test(components),
+        cmocka_unit_test(codebooks),
+        cmocka_unit_test(without_a_surface),
+        cmocka_unit_test(views_arrive_later),
+        cmocka_unit_test(a_view_can_be_waited_for),
+        cmocka_unit_test(a_broken_view_is_heard_of),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);
 }

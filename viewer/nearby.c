@@ -1,4 +1,4 @@
-#include "near.h"
+#include "nearby.h"
 
 #include "say.h"
 
@@ -38,55 +38,84 @@ enum uniform {
     UNIFORMS
 };
 static const char *const uniforms[] = {
-    "rectangle",   "frame_size",    "codes",         "picture",   "surface",
-    "grid",        "affine",        "indices",       "vectors",   "light.kind",
-    "light.rgb",   "light.nofall",  "light.position", "light.axis", "light.right",
-    "light.up",    "light.half_angle", "facets",     "steps",     "hemisphere",
-    "pole_y",      "form",          "coefficients",  "layers",    "books",
-    "coded",       "display.curve", "display.gamma",
+    "rectangle",
+    "frame_size",
+    "codes",
+    "picture",
+    "surface",
+    "grid",
+    "affine",
+    "indices",
+    "vectors",
+    "light.kind",
+    "light.rgb",
+    "light.nofall",
+    "light.position",
+    "light.axis",
+    "light.right",
+    "light.up",
+    "light.half_angle",
+    "facets",
+    "steps",
+    "hemisphere",
+    "pole_y",
+    "form",
+    "coefficients",
+    "layers",
+    "books",
+    "coded",
+    "display.curve",
+    "display.gamma",
 };
 
 // Texture units; each sampler has its own.
-enum unit { UNIT_CODES, UNIT_PICTURE, UNIT_SURFACE, UNIT_GRID, UNIT_AFFINE, UNIT_INDICES,
-            UNIT_VECTORS };
+enum unit {
+    UNIT_CODES,
+    UNIT_PICTURE,
+    UNIT_SURFACE,
+    UNIT_GRID,
+    UNIT_AFFINE,
+    UNIT_INDICES,
+    UNIT_VECTORS
+};
 
 // As in near.frag.
 enum { FORM_SEPARATE, FORM_JOINT, FORM_LUMINANCE };
 enum { LANES = 4, VECTORS_WIDE = 64 };
 
-struct near_picture {
+struct nearby_picture {
     const void *key;
     GLuint texture;
-    struct near_picture *next;
+    struct nearby_picture *next;
 };
 
-relume_status near_create(struct near *near, const struct gl *gl, const struct relume_log *log)
+relume_status nearby_create(struct nearby *near, const struct gl *gl, const struct relume_log *log)
 {
-    *near = (struct near){.gl = gl, .log = log};
+    *near = (struct nearby){.gl = gl, .log = log};
     gl->GenTextures(1, &near->grid);
     gl->GenTextures(1, &near->facets);
     return program_create(&near->program, gl, "near.frag", uniforms, UNIFORMS, log);
 }
 
-void near_forget(struct near *near)
+void nearby_forget(struct nearby *near)
 {
     while (near->picture) {
-        struct near_picture *p = near->picture;
+        struct nearby_picture *p = near->picture;
         near->picture = p->next;
         near->gl->DeleteTextures(1, &p->texture);
         free(p);
     }
 }
 
-void near_destroy(struct near *near)
+void nearby_destroy(struct nearby *near)
 {
     if (!near->gl)
         return;
-    near_forget(near);
+    nearby_forget(near);
     near->gl->DeleteTextures(1, &near->grid);
     near->gl->DeleteTextures(1, &near->facets);
     program_destroy(&near->program, near->gl);
-    *near = (struct near){0};
+    *near = (struct nearby){0};
 }
 
 static int form_of(const struct relume_coder_info *info)
@@ -114,11 +143,11 @@ static void gather_constants(float *texel, const struct relume_weight_grid_info 
     const size_t nodes = (size_t)g->rows * (size_t)g->columns;
     memset(texel, 0, nodes * LANES * sizeof *texel);
     for (size_t i = 0; g->sets == 3 && i < nodes; i++)
-        memcpy(texel + LANES * i,
-               g->data + i * (size_t)g->stride + 3 * (size_t)g->coefficients, 3 * sizeof *texel);
+        memcpy(texel + LANES * i, g->data + i * (size_t)g->stride + 3 * (size_t)g->coefficients,
+               3 * sizeof *texel);
 }
 
-static relume_status upload_grid(struct near *near, const struct relume_weight_grid_info *g)
+static relume_status upload_grid(struct nearby *near, const struct relume_weight_grid_info *g)
 {
     const struct gl *gl = near->gl;
     const int layers = (g->coefficients + LANES - 1) / LANES * g->sets + 1;
@@ -149,7 +178,7 @@ static relume_status upload_grid(struct near *near, const struct relume_weight_g
     return gl_check(gl, "uploading weights", near->log);
 }
 
-static relume_status need_grid(struct near *near, const relume_coder *coder)
+static relume_status need_grid(struct nearby *near, const relume_coder *coder)
 {
     if (near->layers)
         return RELUME_OK;
@@ -172,7 +201,7 @@ static void upload_floats(const struct gl *gl, GLuint texture, GLint internal, G
     texture_settings(gl, GL_TEXTURE_2D);
 }
 
-static relume_status upload_positions(struct near_view *v, const struct gl *gl)
+static relume_status upload_positions(struct nearby_view *v, const struct gl *gl)
 {
     const size_t n = (size_t)v->surface.width * (size_t)v->surface.height;
     float *texels = malloc(n * 4 * sizeof *texels);
@@ -192,8 +221,8 @@ static relume_status upload_positions(struct near_view *v, const struct gl *gl)
     return RELUME_OK;
 }
 
-static relume_status upload_affine(struct near_view *v, const struct gl *gl,
-                                   const struct near_codes *c)
+static relume_status upload_affine(struct nearby_view *v, const struct gl *gl,
+                                   const struct nearby_codes *c)
 {
     const int planes = c->codes->planes;
     float *texels = calloc((size_t)c->layers * 2 * LANES, sizeof *texels);
@@ -219,7 +248,7 @@ static void gather_book(float *texels, const struct relume_codes *codes, int boo
                codes->vectors[book] + (size_t)v * planes, planes * sizeof *texels);
 }
 
-static relume_status upload_vectors(struct near_view *v, const struct near *near,
+static relume_status upload_vectors(struct nearby_view *v, const struct nearby *near,
                                     const struct relume_codes *codes)
 {
     const struct gl *gl = near->gl;
@@ -250,10 +279,10 @@ static relume_status upload_vectors(struct near_view *v, const struct near *near
     return RELUME_OK;
 }
 
-relume_status near_view_create(struct near_view *view, const struct near *near,
-                               const struct near_codes *codes, struct relume_image *surface)
+relume_status nearby_view_create(struct nearby_view *view, const struct nearby *near,
+                                 const struct nearby_codes *codes, struct relume_image *surface)
 {
-    *view = (struct near_view){.surface = *surface};
+    *view = (struct nearby_view){.surface = *surface};
     *surface = (struct relume_image){0};
     relume_status status = upload_positions(view, near->gl);
     if (!status)
@@ -262,17 +291,17 @@ relume_status near_view_create(struct near_view *view, const struct near *near,
     if (!status)
         status = gl_check(near->gl, "uploading a surface", near->log);
     if (status)
-        near_view_destroy(view, near->gl);
+        nearby_view_destroy(view, near->gl);
     return status;
 }
 
-void near_view_destroy(struct near_view *view, const struct gl *gl)
+void nearby_view_destroy(struct nearby_view *view, const struct gl *gl)
 {
     gl->DeleteTextures(1, &view->positions);
     gl->DeleteTextures(1, &view->affine);
     gl->DeleteTextures(1, &view->vectors);
     relume_image_destroy(&view->surface);
-    *view = (struct near_view){0};
+    *view = (struct nearby_view){0};
 }
 
 // ---------------------------------------------------------------- lights
@@ -292,21 +321,23 @@ static relume_status upload_lamp(const struct gl *gl, GLuint texture, const relu
     return RELUME_OK;
 }
 
-static relume_status upload_slide(const struct near *near, GLuint texture,
+static relume_status upload_slide(const struct nearby *near, GLuint texture,
                                   const struct relume_image *image)
 {
     const int most = near->gl->max_texture;
     if (image->width > most || image->height > most)
-        return say(near->log, RELUME_ESYSTEM, "a slide of %d x %d: OpenGL takes at most %d x %d "
-                   "here", image->width, image->height, most, most);
+        return say(near->log, RELUME_ESYSTEM,
+                   "a slide of %d x %d: OpenGL takes at most %d x %d "
+                   "here",
+                   image->width, image->height, most, most);
     upload_floats(near->gl, texture, GL_RGB32F, GL_RGB, image->width, image->height, image->data);
     return RELUME_OK;
 }
 
-static relume_status use_picture(struct near *near, const struct relume_light *light)
+static relume_status use_picture(struct nearby *near, const struct relume_light *light)
 {
     const void *key = light->kind == RELUME_LIGHT_SLIDE ? (const void *)light->image : light->ies;
-    struct near_picture *p = near->picture;
+    struct nearby_picture *p = near->picture;
     while (p && p->key != key)
         p = p->next;
     relume_status status = RELUME_OK;
@@ -333,7 +364,7 @@ static void put_vec3(float *texel, struct relume_vec3 v)
 }
 
 // Rows: position, normal, radiance. Sets `n`, how many there are.
-static void use_facets(const struct near *near, const struct near_view *view,
+static void use_facets(const struct nearby *near, const struct nearby_view *view,
                        const struct relume_light *light, int *n)
 {
     struct relume_facet facet[RELUME_FACETS_MOST * RELUME_FACETS_MOST];
@@ -362,7 +393,7 @@ static void set_vec3(const struct gl *gl, GLint at, struct relume_vec3 v)
     gl->Uniform3f(at, (float)v.x, (float)v.y, (float)v.z);
 }
 
-static relume_status set_light(struct near *near, const struct near_view *view,
+static relume_status set_light(struct nearby *near, const struct nearby_view *view,
                                const struct relume_light *l)
 {
     const struct gl *gl = near->gl;
@@ -389,8 +420,8 @@ static relume_status set_light(struct near *near, const struct near_view *view,
     return status;
 }
 
-static void set_codes(const struct near *near, const struct near_view *view,
-                      const struct near_codes *c)
+static void set_codes(const struct nearby *near, const struct nearby_view *view,
+                      const struct nearby_codes *c)
 {
     const struct gl *gl = near->gl;
     const GLint *at = near->program.at;
@@ -399,8 +430,8 @@ static void set_codes(const struct near *near, const struct near_view *view,
     static const struct {
         enum uniform sampler;
         enum unit unit;
-    } units[] = {{CODES, UNIT_CODES}, {PICTURE, UNIT_PICTURE}, {SURFACE, UNIT_SURFACE},
-                 {GRID, UNIT_GRID},   {AFFINE, UNIT_AFFINE},   {INDICES, UNIT_INDICES},
+    } units[] = {{CODES, UNIT_CODES},    {PICTURE, UNIT_PICTURE}, {SURFACE, UNIT_SURFACE},
+                 {GRID, UNIT_GRID},      {AFFINE, UNIT_AFFINE},   {INDICES, UNIT_INDICES},
                  {VECTORS, UNIT_VECTORS}};
     for (size_t i = 0; i < sizeof units / sizeof *units; i++)
         gl->Uniform1i(at[units[i].sampler], units[i].unit);
@@ -421,8 +452,8 @@ static void set_codes(const struct near *near, const struct near_view *view,
     gl->Uniform1f(at[GAMMA], codes->display.gamma);
 }
 
-relume_status near_draw(struct near *near, const struct near_view *view,
-                        const struct near_codes *codes, const struct relume_light *light)
+relume_status nearby_draw(struct nearby *near, const struct nearby_view *view,
+                          const struct nearby_codes *codes, const struct relume_light *light)
 {
     const struct gl *gl = near->gl;
     const float width = (float)view->surface.width, height = (float)view->surface.height;

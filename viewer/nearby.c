@@ -25,7 +25,6 @@ enum uniform {
     UP,
     HALF_ANGLE,
     FACETS,
-    STEPS,
     HEMISPHERE,
     POLE_Y,
     FORM,
@@ -38,34 +37,12 @@ enum uniform {
     UNIFORMS
 };
 static const char *const uniforms[] = {
-    "rectangle",
-    "frame_size",
-    "codes",
-    "picture",
-    "surface",
-    "grid",
-    "affine",
-    "indices",
-    "vectors",
-    "light.kind",
-    "light.rgb",
-    "light.nofall",
-    "light.position",
-    "light.axis",
-    "light.right",
-    "light.up",
-    "light.half_angle",
-    "facets",
-    "steps",
-    "hemisphere",
-    "pole_y",
-    "form",
-    "coefficients",
-    "layers",
-    "books",
-    "coded",
-    "display.curve",
-    "display.gamma",
+    "rectangle",     "frame_size",       "codes",          "picture",    "surface",
+    "grid",          "affine",           "indices",        "vectors",    "light.kind",
+    "light.rgb",     "light.nofall",     "light.position", "light.axis", "light.right",
+    "light.up",      "light.half_angle", "facets",         "hemisphere", "pole_y",
+    "form",          "coefficients",     "layers",         "books",      "coded",
+    "display.curve", "display.gamma",
 };
 
 // Texture units; each sampler has its own.
@@ -173,14 +150,13 @@ static relume_status upload_grid(struct nearby *near, const struct relume_weight
                           GL_FLOAT, texels);
     }
     free(texels);
-    near->steps = g->steps;
-    near->layers = layers;
+    near->has_grid = true;
     return gl_check(gl, "uploading weights", near->log);
 }
 
 static relume_status need_grid(struct nearby *near, const relume_coder *coder)
 {
-    if (near->layers)
+    if (near->has_grid)
         return RELUME_OK;
     relume_weight_grid *grid;
     relume_status status = relume_weight_grid_create(&grid, coder, NULL);
@@ -440,7 +416,6 @@ static void set_codes(const struct nearby *near, const struct nearby_view *view,
     texture_use(gl, UNIT_GRID, GL_TEXTURE_2D_ARRAY, near->grid);
     texture_use(gl, UNIT_AFFINE, GL_TEXTURE_2D, view->affine);
     texture_use(gl, UNIT_VECTORS, GL_TEXTURE_2D_ARRAY, view->vectors);
-    gl->Uniform1i(at[STEPS], near->steps);
     gl->Uniform1i(at[HEMISPHERE], info->hemispherical);
     gl->Uniform1i(at[POLE_Y], info->pole_y);
     gl->Uniform1i(at[FORM], form_of(info));

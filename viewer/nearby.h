@@ -15,7 +15,7 @@ struct nearby {
     const struct gl *gl;
     const struct relume_log *log;
     struct program program;
-    int steps, layers;               // of the weight grid; layers 0: not uploaded yet
+    bool has_grid;                   // has been uploaded
     GLuint grid;                     // array texture of the weights by direction
     GLuint facets;                   // a column for each facet of the area light in use
     struct nearby_picture *picture;  // what slides and lamps need, by their pointers

@@ -24,7 +24,6 @@ uniform int facets;
 uniform sampler2D surface;     // where the pixel's surface is; alpha 0: nowhere
 uniform sampler2DArray grid;   // weights by direction, four coefficients a texel; the last layer
                                // holds the constants
-uniform int steps;             // of the grid, from pole to horizon
 uniform bool hemisphere, pole_y;
 
 const int JOINT = 1, LUMINANCE = 2;  // else each channel has coefficients of its own
@@ -101,14 +100,18 @@ bool facet_at(out vec3 towards, out vec3 rgb, int facet, vec3 point)
 
 // ---------------------------------------------------------------- what is reflected
 
-// In texels of the grid. A full sphere has two rows at the horizon.
+// In texels of the grid.
 vec2 weight_grid_place(vec3 direction)
 {
     vec3 d = pole_y ? vec3(-direction.z, direction.x, direction.y) : direction;
-    float z = hemisphere ? max(d.z, 0.0) : d.z;
-    float row = acos(clamp(z, -1.0, 1.0)) / (0.5 * PI) * float(steps);
-    float column = (atan(d.y, d.x) / (2.0 * PI) + 0.5) * float(4 * steps);
-    return vec2(column, !hemisphere && d.z < 0.0 ? row + 1.0 : row) + 0.5;
+    ivec2 size = textureSize(grid, 0).xy;
+    float down = float(hemisphere ? size.y - 1 : size.y / 2 - 1);
+    bool below = d.z < 0.0;
+    float height = below && hemisphere ? 0.0 : abs(d.z);
+    float theta = atan(length(d.xy), height);
+    float row = down * (1.0 - sqrt(max(1.0 - theta / (0.5 * PI), 0.0)));
+    float column = (atan(d.y, d.x) / (2.0 * PI) + 0.5) * float(size.x - 1);
+    return vec2(column, below && !hemisphere ? float(size.y - 1) - row : row) + 0.5;
 }
 
 vec4 coefficients_at(ivec2 at, int layer)

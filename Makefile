@@ -136,7 +136,9 @@ $(UNIT): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
-$(BENCH) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
+# The bench that draws is linked as the tests of GL are.
+GL_BENCH := $B/tests/bench/bench_viewer
+$(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
@@ -144,7 +146,7 @@ $(TOOLS): $B/%: $B/obj/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
-$(GL): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O)) $B/librelume.a
+$(GL) $(GL_BENCH): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O)) $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)

@@ -33,19 +33,22 @@ CXX17    := -std=c++17 $(COMMON) $(MODE)
 once     = $(eval $1 := $$(shell $2))$($1)
 EXR      = $(call once,EXR,pkg-config --cflags OpenEXR)
 OIIO     = $(call once,OIIO,pkg-config --cflags OpenImageIO)
+IMGUI    = $(call once,IMGUI,pkg-config --cflags imgui)
 GLFW     = $(call once,GLFW,pkg-config --cflags glfw3)
 PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenImageIO OpenEXR openblas jansson libjpeg)
 CAIRO    = $(call once,CAIRO,pkg-config --cflags cairo)
 LIBS     = -Wl,--as-needed $(PKG_LIBS) -llapacke -lembree3 -lm
 CLI_LIBS = $(call once,CLI_LIBS,pkg-config --libs cairo)
-GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa egl)
+GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa egl imgui)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 
 LIB_C    := $(wildcard src/base/*.c src/math/*.c src/image/*.c src/capture/*.c src/scene/*.c \
-            src/coder/*.c src/pack/*.c src/exchange/*.c src/relight/*.c src/view/*.c src/frame/*.c)
+            src/coder/*.c src/pack/*.c src/exchange/*.c src/relight/*.c src/view/*.c src/pass/*.c \
+            src/frame/*.c)
 LIB_CXX  := $(wildcard src/image/*.cpp)
 CLI_C    := $(wildcard src/cli/*.c)
 VIEWER_C := $(wildcard viewer/*.c)
+VIEWER_CXX := $(wildcard viewer/*.cpp)
 SHADERS  := $(wildcard viewer/shaders/*.glsl)
 HEADERS  := $(wildcard include/relume/*.h)
 UNIT_C   := $(wildcard tests/unit/*.c tests/props/*.c tests/kernels/*.c tests/threads/*.c)
@@ -58,7 +61,7 @@ SAMPLES_C := samples/sphere.c samples/figures.c
 
 LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $(LIB_CXX:%.cpp=$B/obj/%.o)
 CLI_O    := $(CLI_C:%.c=$B/obj/%.o)
-VIEWER_O := $(VIEWER_C:%.c=$B/obj/%.o) $B/obj/viewer/shaders.o
+VIEWER_O := $(VIEWER_C:%.c=$B/obj/%.o) $(VIEWER_CXX:%.cpp=$B/obj/%.o) $B/obj/viewer/shaders.o
 UNIT     := $(UNIT_C:%.c=$B/%)
 GL       := $(GL_C:%.c=$B/%)
 BENCH    := $(BENCH_C:%.c=$B/%)
@@ -94,6 +97,7 @@ $B/obj/src/cli/plot.o: own_flags = $(CAIRO)
 $B/obj/src/cli/%.o:           own_include = -Isrc/cli
 $B/obj/viewer/%.o:            own_include = -Iviewer
 $B/obj/viewer/context_glfw.o: own_flags = $(GLFW)
+$B/obj/viewer/panel.o: own_flags = $(IMGUI) -Wno-shadow
 $B/obj/tests/tools/decode.o: own_flags = $(EXR)
 $B/obj/tests/%.o:             own_include = -Isrc -Itests -Iviewer
 
@@ -174,7 +178,7 @@ layers:
 	@scripts/layers.sh
 
 format:
-	clang-format -i $(LIB_C) $(LIB_CXX) $(CLI_C) $(VIEWER_C) $(HEADERS) $(UNIT_C) $(GL_C) \
+	clang-format -i $(LIB_C) $(LIB_CXX) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
 	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*.h viewer/*.h tests/*.h samples/*.c)
 
 bench: all $(BENCH)

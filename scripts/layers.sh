@@ -13,9 +13,10 @@ capture:base math image:base image lights capture
 coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange
-relight:base math image:base image coder light relight rig
+relight:base math image:base image coder light relight rig normals enhance
 view:base math image:base image light relight view capture
-frame:base math:base image capture coder pack light relight view frame evaluate
+pass:base math image:base image tone
+frame:base math:base image capture coder pack light relight view frame evaluate normals enhance
 scene:base math image:base image lights capture scene
 cli:cli:*
 viewer:viewer:*
@@ -58,6 +59,7 @@ only_in 'jansson' src/base/json.c
 only_in 'jpeglib' src/image/jpeg.c
 only_in 'cairo' src/cli/plot.c
 only_in 'GLFW' viewer/context_glfw.c
+only_in 'imgui' viewer/panel.cpp
 only_in 'GL/osmesa' viewer/context_osmesa.c
 only_in 'EGL/' viewer/context_egl.c
 only_in 'immintrin' src/relight/kernels_avx2.c src/coder/kernels_avx2.c

@@ -1,6 +1,11 @@
 #include "app.h"
 
+#include "gizmo.h"
+#include "keys.h"
+#include "lamps.h"
 #include "say.h"
+
+#include <relume/tone.h>
 
 #include <math.h>
 #include <string.h>
@@ -10,8 +15,14 @@
 static const double wheel_factor = 1.1;  // of the zoom, per step
 static const double zoom_least = 0.1;
 static const double zoom_most = 64.0;
-static const double exposure_step = 0.25;  // EV per key
-static const double dolly_factor = 1.05;   // of the eye's distance, per key
+// A perspective look gets 150 degrees wide, a stereographic one 340; both as narrow as 2 and 4.
+static const double look_least[2] = {0.26795, 0.08749};
+static const double look_most = 57.29;
+static const double hand_s = 0.05;          // the hand's speed is its mean over about so long
+static const double glide_s = 0.35;         // a glide loses 63 % of its speed in that time ...
+static const double still_px_s = 4.0;       // ... and is over below this speed
+static const double adapt_s = 0.5;          // automatic exposure, likewise
+static const double adapted_enough = 0.02;  // EV
 
 static double clamp(double x, double low, double high)
 {
@@ -59,6 +70,12 @@ static relume_status check_camera(const struct relume_camera *camera, const stru
     return RELUME_OK;
 }
 
+static bool behind_cameras(const struct app_file *file, double z)
+{
+    const struct relume_geometry *g = &file->geometry;
+    return !((z - g->st_z) / (g->uv_z - g->st_z) < 1.0);
+}
+
 relume_status app_start(struct app *app, const struct app_file *file, const struct app_state *start,
                         bool look_ahead, const struct relume_log *log)
 {
@@ -68,11 +85,20 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
     const relume_status status = check_camera(&s->camera, file, log);
     if (status)
         return status;
+    if (!s->focused)
+        s->focus_z = file->geometry.st_z;
+    else if (file->geometry.projection == RELUME_SLAB && behind_cameras(file, s->focus_z))
+        return say(log, RELUME_EINVAL,
+                   "--focus: expected a plane in front of the cameras at z = %g; found z = %g",
+                   file->geometry.uv_z, s->focus_z);
     if (s->camera.look.zoom <= 0.0)
         s->camera.look.zoom = 1.0;
     s->zoom = 1.0;
+    if (s->white <= 0.0)
+        s->white = RELUME_TONE_WHITE;
     if (!s->lights) {
         s->light[0] = (struct relume_light){.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
+        s->lamp[0].entry = -1;
         s->lights = 1;
     }
     const bool look = s->camera.framing == RELUME_FRAME_LOOK;
@@ -120,18 +146,30 @@ static void zoom_picture(struct app *app, double x, double y, double factor)
 
 // ---------------------------------------------------------------- turning
 
-// Directions of the frame in the world: right, up, and towards the viewer.
-struct axes {
-    struct relume_vec3 right, up, back;
-};
+bool app_pole_y(const struct app *app)
+{
+    return panoramic(&app->file);
+}
 
-static struct axes frame_axes(const struct app *app)
+struct relume_vec3 app_middle(const struct app *app)
+{
+    const struct relume_geometry *g = &app->file.geometry;
+    if (panoramic(&app->file))
+        return g->center;
+    const bool slab = g->projection == RELUME_SLAB;
+    const double *min = slab ? g->st_min : g->window_min;
+    const double *max = slab ? g->st_max : g->window_max;
+    return (struct relume_vec3){0.5 * (min[0] + max[0]), 0.5 * (min[1] + max[1]),
+                                slab ? g->st_z : 0.0};
+}
+
+struct app_axes app_frame_axes(const struct app *app)
 {
     if (app->now.camera.framing != RELUME_FRAME_LOOK)
-        return (struct axes){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        return (struct app_axes){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const double pan = app->now.camera.look.pan_deg * PI / 180;
     const double tilt = app->now.camera.look.tilt_deg * PI / 180;
-    return (struct axes){
+    return (struct app_axes){
         .right = {cos(pan), 0, sin(pan)},
         .up = {-sin(tilt) * sin(pan), cos(tilt), sin(tilt) * cos(pan)},
         .back = {-cos(tilt) * sin(pan), -sin(tilt), cos(tilt) * cos(pan)},
@@ -145,31 +183,40 @@ static double dot(struct relume_vec3 a, struct relume_vec3 b)
 
 struct relume_vec3 app_seen_light(const struct app *app, int light)
 {
-    const struct axes a = frame_axes(app);
-    const struct relume_vec3 d = app->now.light[light].direction;
-    const double scale = 1 / sqrt(dot(d, d));
-    return (struct relume_vec3){dot(d, a.right) * scale, dot(d, a.up) * scale,
-                                dot(d, a.back) * scale};
+    const struct app_axes a = app_frame_axes(app);
+    const struct relume_vec3 d = lamps_direction(&app->now.light[light], app_middle(app));
+    return (struct relume_vec3){dot(d, a.right), dot(d, a.up), dot(d, a.back)};
+}
+
+void app_aim_light(struct app *app, int light, struct relume_vec3 seen)
+{
+    const struct app_axes a = app_frame_axes(app);
+    const struct relume_vec3 world = {
+        seen.x * a.right.x + seen.y * a.up.x + seen.z * a.back.x,
+        seen.x * a.right.y + seen.y * a.up.y + seen.z * a.back.y,
+        seen.x * a.right.z + seen.y * a.up.z + seen.z * a.back.z,
+    };
+    lamps_aim(&app->now, light, world, app_middle(app));
+}
+
+void app_turn_light(struct app *app, double yaw_deg, double pitch_deg)
+{
+    const struct relume_vec3 seen = app_seen_light(app, app->now.selected);
+    const double yaw = yaw_deg * PI / 180;
+    const double pitch = pitch_deg * PI / 180;
+    const double y = seen.y * cos(pitch) - seen.z * sin(pitch);
+    const double ahead = seen.y * sin(pitch) + seen.z * cos(pitch);
+    const double x = seen.x * cos(yaw) + ahead * sin(yaw);
+    const double z = ahead * cos(yaw) - seen.x * sin(yaw);
+    app_aim_light(app, app->now.selected, (struct relume_vec3){x, y, z});
 }
 
 // As if the front of a ball half as wide as the frame were dragged: right turns it about the
 // frame's up, down about its right.
 static void turn_light(struct app *app, double dx, double dy)
 {
-    const double per_pixel = PI / fmin(app->width, app->height);
-    const struct axes a = frame_axes(app);
-    const struct relume_vec3 seen = app_seen_light(app, 0);
-    const double yaw = dx * per_pixel;
-    const double pitch = dy * per_pixel;
-    const double y = seen.y * cos(pitch) - seen.z * sin(pitch);
-    const double ahead = seen.y * sin(pitch) + seen.z * cos(pitch);
-    const double x = seen.x * cos(yaw) + ahead * sin(yaw);
-    const double z = ahead * cos(yaw) - seen.x * sin(yaw);
-    app->now.light[0].direction = (struct relume_vec3){
-        x * a.right.x + y * a.up.x + z * a.back.x,
-        x * a.right.y + y * a.up.y + z * a.back.y,
-        x * a.right.z + y * a.up.z + z * a.back.z,
-    };
+    const double per_pixel = 180 / fmin(app->width, app->height);
+    app_turn_light(app, dx * per_pixel, dy * per_pixel);
 }
 
 // The object follows the cursor, so the eye goes the other way; it stays among the cameras.
@@ -183,7 +230,7 @@ static void move_eye(struct app *app, double dx, double dy)
     eye->y = clamp(eye->y + dy / app->height * high, f->uv_min[1], f->uv_max[1]);
 }
 
-static void dolly(struct app *app, double factor)
+void app_dolly(struct app *app, double factor)
 {
     const double st_z = app->file.geometry.st_z;
     const double captured = app->file.geometry.uv_z - st_z;
@@ -191,13 +238,61 @@ static void dolly(struct app *app, double factor)
     *z = st_z + captured * clamp((*z - st_z) / captured * factor, 0.25, 4.0);
 }
 
+static double degrees_per_pixel(const struct app *app)
+{
+    const struct relume_look *look = &app->now.camera.look;
+    const double field = (look->stereographic ? 4 : 2) * atan(1 / look->zoom) * 180 / PI;
+    return field / app->width;
+}
+
+static void turn_by(struct relume_look *look, double pan_deg, double tilt_deg)
+{
+    look->pan_deg = remainder(look->pan_deg + pan_deg, 360);
+    look->tilt_deg = clamp(look->tilt_deg + tilt_deg, -90, 90);
+}
+
 // The scene follows the cursor.
 static void turn_look(struct app *app, double dx, double dy)
 {
+    const double per_pixel = degrees_per_pixel(app);
+    turn_by(&app->now.camera.look, -dx * per_pixel, dy * per_pixel);
+    app->turned_deg[0] -= dx * per_pixel;
+    app->turned_deg[1] += dy * per_pixel;
+}
+
+void app_stand_still(struct app *app)
+{
+    app->speed_deg_s[0] = app->speed_deg_s[1] = 0;
+    app->turned_deg[0] = app->turned_deg[1] = 0;
+}
+
+// Degrees that the direction at (x, y) lies to the right of and above `want`.
+static void look_error(double error[2], const struct app *app, double x, double y,
+                       struct relume_vec3 want)
+{
+    const struct relume_vec3 got =
+        relume_look_ray(app->now.camera.look, app->width, app->height, x, y);
+    error[0] = remainder(atan2(got.x, -got.z) - atan2(want.x, -want.z), 2 * PI) * 180 / PI;
+    error[1] = (asin(clamp(got.y, -1, 1)) - asin(clamp(want.y, -1, 1))) * 180 / PI;
+}
+
+// The direction under (x, y) stays there; near the poles, where pan and tilt cannot hold it, the
+// middle does.
+static void zoom_look(struct app *app, double x, double y, double factor)
+{
+    enum { ROUNDS = 16 };
     struct relume_look *look = &app->now.camera.look;
-    const double per_pixel = 2 * atan(1 / look->zoom) * 180 / PI / app->width;
-    look->pan_deg = remainder(look->pan_deg - dx * per_pixel, 360);
-    look->tilt_deg = clamp(look->tilt_deg + dy * per_pixel, -90, 90);
+    const struct relume_vec3 want = relume_look_ray(*look, app->width, app->height, x, y);
+    double error[2];
+    look->zoom = clamp(look->zoom * factor, look_least[look->stereographic], look_most);
+    const struct relume_look middle = *look;
+    for (int i = 0; i < ROUNDS; i++) {
+        look_error(error, app, x, y, want);
+        turn_by(look, -error[0], -error[1]);
+    }
+    look_error(error, app, x, y, want);
+    if (hypot(error[0], error[1]) > 0.1 * degrees_per_pixel(app))
+        *look = middle;
 }
 
 static void move_picture(struct app *app, double dx, double dy)
@@ -218,10 +313,15 @@ static void (*const drag_camera[])(struct app *, double dx, double dy) = {
 static bool on_press(struct app *app, const struct app_event *e)
 {
     const bool light = e->button == APP_RIGHT || app->light_key;
-    app->drag = light ? APP_DRAG_LIGHT : APP_DRAG_CAMERA;
+    const int grabbed = app->gizmos && !light ? gizmo_hit(app, e->x, e->y) : -1;
+    app->drag = light ? APP_DRAG_LIGHT : grabbed >= 0 ? APP_DRAG_GIZMO : APP_DRAG_CAMERA;
     app->cursor[0] = e->x;
     app->cursor[1] = e->y;
-    return false;
+    app_stand_still(app);
+    if (grabbed < 0)
+        return false;
+    app->now.selected = grabbed;
+    return true;
 }
 
 static bool on_release(struct app *app, const struct app_event *e)
@@ -238,9 +338,11 @@ static bool on_move(struct app *app, const struct app_event *e)
     app->cursor[0] = e->x;
     app->cursor[1] = e->y;
     if (app->drag == APP_DRAG_NONE || (dx == 0 && dy == 0))
-        return false;
+        return app->inspect;
     if (app->drag == APP_DRAG_LIGHT)
         turn_light(app, dx, dy);
+    else if (app->drag == APP_DRAG_GIZMO)
+        gizmo_drag(app, app->now.selected, e->x, e->y);
     else
         drag_camera[app->now.camera.framing](app, dx, dy);
     return true;
@@ -249,9 +351,8 @@ static bool on_move(struct app *app, const struct app_event *e)
 static bool on_wheel(struct app *app, const struct app_event *e)
 {
     const double factor = pow(wheel_factor, e->wheel);
-    struct relume_look *look = &app->now.camera.look;
     if (app->now.camera.framing == RELUME_FRAME_LOOK)
-        look->zoom = clamp(look->zoom * factor, zoom_least, zoom_most);
+        zoom_look(app, e->x, e->y, factor);
     else
         zoom_picture(app, e->x, e->y, factor);
     return true;
@@ -259,28 +360,20 @@ static bool on_wheel(struct app *app, const struct app_event *e)
 
 static bool on_key_down(struct app *app, const struct app_event *e)
 {
-    struct app_state *s = &app->now;
-    switch (e->key) {
-    case APP_KEY_ESCAPE: app->quit = true; return false;
-    case 'l': app->light_key = true; return false;
-    case 'r': *s = app->start; return true;
-    case 'b': s->ball = !s->ball; return true;
-    case '+': s->exposure_ev += exposure_step; return true;
-    case '-': s->exposure_ev -= exposure_step; return true;
-    case '[':
-    case ']':
-        if (s->camera.framing != RELUME_FRAME_EYE)
-            return false;
-        dolly(app, e->key == '[' ? 1 / dolly_factor : dolly_factor);
-        return true;
-    default: return false;
-    }
+    return keys_press(app, e->key);
 }
 
 static bool on_key_up(struct app *app, const struct app_event *e)
 {
     if (e->key == 'l')
         app->light_key = false;
+    return false;
+}
+
+// Only text fields of the panel read text.
+static bool on_text(struct app *app, const struct app_event *e)
+{
+    (void)app, (void)e;
     return false;
 }
 
@@ -296,10 +389,73 @@ static bool on_size(struct app *app, const struct app_event *e)
 static bool (*const handlers[])(struct app *, const struct app_event *) = {
     [APP_PRESS] = on_press, [APP_RELEASE] = on_release,   [APP_MOVE] = on_move,
     [APP_WHEEL] = on_wheel, [APP_KEY_DOWN] = on_key_down, [APP_KEY_UP] = on_key_up,
-    [APP_SIZE] = on_size,
+    [APP_TEXT] = on_text,   [APP_SIZE] = on_size,
 };
 
 bool app_handle(struct app *app, const struct app_event *event)
 {
     return handlers[event->kind](app, event);
+}
+
+// ---------------------------------------------------------------- time
+
+static void follow_hand(struct app *app, double seconds)
+{
+    const double keep = exp(-seconds / hand_s);
+    for (int i = 0; i < 2; i++) {
+        const double speed = app->turned_deg[i] / seconds;
+        app->speed_deg_s[i] = keep * app->speed_deg_s[i] + (1 - keep) * speed;
+        app->turned_deg[i] = 0;
+    }
+}
+
+static bool glide(struct app *app, double seconds)
+{
+    double *speed = app->speed_deg_s;
+    const double keep = exp(-seconds / glide_s);
+    const double way = glide_s * (1 - keep);
+    if (hypot(speed[0], speed[1]) < still_px_s * degrees_per_pixel(app)) {
+        app_stand_still(app);
+        return false;
+    }
+    turn_by(&app->now.camera.look, speed[0] * way, speed[1] * way);
+    speed[0] *= keep;
+    speed[1] *= keep;
+    return true;
+}
+
+static bool adapt(struct app *app, double seconds)
+{
+    const double left = app->metered_ev - app->adapted_ev;
+    if (!app->now.auto_exposure || fabs(left) < adapted_enough)
+        return false;
+    app->adapted_ev += left * (1 - exp(-seconds / adapt_s));
+    return true;
+}
+
+bool app_advance(struct app *app, double seconds)
+{
+    if (!(seconds > 0))
+        return false;
+    bool changed = adapt(app, seconds);
+    if (app->now.camera.framing != RELUME_FRAME_LOOK)
+        return changed;
+    if (app->drag == APP_DRAG_CAMERA)
+        follow_hand(app, seconds);
+    else
+        changed |= glide(app, seconds);
+    return changed;
+}
+
+double app_exposure_ev(const struct app *app)
+{
+    return app->now.exposure_ev + (app->now.auto_exposure ? app->adapted_ev : 0);
+}
+
+void app_meter(struct app *app, double ev)
+{
+    app->metered_ev = app->adapted_ev + ev + app->now.exposure_ev;
+    if (!app->metered)
+        app->adapted_ev = app->metered_ev;
+    app->metered = true;
 }

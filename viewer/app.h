@@ -5,6 +5,7 @@
 #ifndef VIEWER_APP_H
 #define VIEWER_APP_H
 
+#include <relume/enhance.h>
 #include <relume/frame.h>
 #include <relume/relight.h>
 
@@ -17,17 +18,34 @@ enum app_event_kind {
     APP_WHEEL,
     APP_KEY_DOWN,
     APP_KEY_UP,
+    APP_TEXT,  // a character that was typed, after its key
     APP_SIZE
 };
 enum app_button { APP_LEFT, APP_RIGHT };
-enum { APP_KEY_ESCAPE = 27 };
+// Keys that print nothing; all others are what is printed on them.
+enum {
+    APP_KEY_BACKSPACE = 8,
+    APP_KEY_TAB = 9,
+    APP_KEY_ENTER = 13,
+    APP_KEY_ESCAPE = 27,
+    APP_KEY_DELETE = 127,
+    APP_KEY_LEFT = 256,
+    APP_KEY_RIGHT,
+    APP_KEY_UP_ARROW,
+    APP_KEY_DOWN_ARROW,
+    APP_KEY_PAGE_UP,
+    APP_KEY_PAGE_DOWN,
+    APP_KEY_HOME,
+    APP_KEY_END,
+    APP_KEYS  // all are below
+};
 
 struct app_event {
     enum app_event_kind kind;
     enum app_button button;  // PRESS, RELEASE
     double x, y;             // PRESS, RELEASE, MOVE, WHEEL
     double wheel;            // WHEEL: steps, > 0 away from the user
-    int key;                 // KEY_*: a lower-case letter, a sign, or APP_KEY_*
+    int key;                 // KEY_*: a lower-case letter, a sign, or APP_KEY_*; TEXT: Unicode
     int width, height;       // SIZE
 };
 
@@ -37,20 +55,50 @@ struct app_file {
     int width, height;  // of a view
     int views;
     double uv_min[2], uv_max[2];  // slab: where cameras stand
+    bool compared;                // there is a capture to compare with
+};
+
+// What the viewer adds to a light. All zero is a light that shines as it says.
+struct app_lamp {
+    bool off, solo;
+    double stops;  // its value is multiplied by 2^stops
+    int entry;     // of the rig that it came from; -1: none
 };
 
 // What can be reset.
 struct app_state {
-    struct relume_camera camera;  // framing is never DEFAULT
-    double zoom;                  // of the picture; 1 fits the frame
-    double shift[2];              // of the picture's middle from the frame's, pixels
+    struct relume_camera camera;              // framing is never DEFAULT
+    double zoom;                              // of the picture; 1 fits the frame
+    double shift[2];                          // of the picture's middle from the frame's, pixels
+    enum relume_interpolation interpolation;  // slab
+    double aperture;                          // slab: diameter, world units
+    double focus_z;                           // slab: the plane in focus ...
+    bool focused;                             // ... at the start; else the st plane
     double exposure_ev;
+    bool auto_exposure;  // on top of exposure_ev
+    int tone;            // place in relume_tones
+    double white;        // as relume_tone_params
     struct relume_light light[APP_LIGHTS];
+    struct app_lamp lamp[APP_LIGHTS];  // by light
     int lights;
-    bool ball;  // show the light's direction on a ball in the corner
+    int selected;  // light that drags and keys change
+    bool ball;     // show the light's direction on a ball in the corner
+    enum relume_pass pass;
 };
 
-enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT };
+enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT, APP_DRAG_GIZMO };
+
+// What the app cannot do itself; whoever runs it does, and sets this back to NONE.
+enum app_wish {
+    APP_WISH_NONE = 0,
+    APP_WISH_PNG,  // a picture of the frame
+    APP_WISH_EXR,
+    APP_WISH_SAVE_RIG,
+    APP_WISH_SWEEP,      // a recording
+    APP_WISH_TURNTABLE,  // a recording
+    APP_WISH_ADD_LIGHT   // of the SPEC app.spec
+};
+enum { APP_SPEC = 1024 };
 
 // Thread-safety: plain data.
 struct app {
@@ -60,8 +108,16 @@ struct app {
     bool letterbox;     // keep the picture's proportions; else it fills the frame
     enum app_drag drag;
     double cursor[2];
-    bool light_key;  // L is held
+    bool light_key;                     // L is held
+    bool panel, help, inspect, gizmos;  // shown
+    enum app_wish wish;
+    char spec[APP_SPEC];
     bool quit;
+    double turned_deg[2];           // pan and tilt by the mouse since time last passed
+    double speed_deg_s[2];          // of pan and tilt: of the hand, then of what it let go
+    double adapted_ev, metered_ev;  // automatic exposure: in force, and aimed at
+    bool metered;
+    struct relume_look before_planet;
 };
 
 // A file seen as `start` says; a DEFAULT framing becomes what suits the file: the eye in the middle
@@ -74,6 +130,20 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
 // Returns whether the picture changed.
 bool app_handle(struct app *app, const struct app_event *event);
 
+// Let time pass: a panorama let go of in motion glides to a stop, automatic exposure adapts.
+// Returns whether the picture changed; false for good once all is at rest. What a span does, any
+// way to split it does.
+bool app_advance(struct app *app, double seconds);
+
+// Let no glide go on.
+void app_stand_still(struct app *app);
+
+// The exposure to draw with, EV.
+double app_exposure_ev(const struct app *app);
+// The frame drawn with that exposure would be a mid grey with `ev` more. The first frame of a file
+// is followed at once, later ones as time passes.
+void app_meter(struct app *app, double ev);
+
 // The rectangle of the frame that shows the whole picture: left, top, right, bottom in pixels.
 // A perspective look fills the frame.
 struct app_rectangle {
@@ -81,7 +151,23 @@ struct app_rectangle {
 };
 struct app_rectangle app_picture(const struct app *app);
 
+// Directions of the frame in the world: right, up, and towards the viewer.
+struct app_axes {
+    struct relume_vec3 right, up, back;
+};
+struct app_axes app_frame_axes(const struct app *app);
+
 // The direction of `light` as the viewer sees it: x right, y up, z towards the viewer.
 struct relume_vec3 app_seen_light(const struct app *app, int light);
+// Let it come from there (unit). Near lights move on a sphere about app_middle.
+void app_aim_light(struct app *app, int light, struct relume_vec3 seen);
+// Turn the selected light about the frame's up (> 0: to the right) and right (> 0: down).
+void app_turn_light(struct app *app, double yaw_deg, double pitch_deg);
+// The eye's distance from the st plane times `factor`, within limits.
+void app_dolly(struct app *app, double factor);
+// The middle of what the file shows; of a panorama its eye.
+struct relume_vec3 app_middle(const struct app *app);
+// Whether elevations are measured from +y, as in panoramas, not +z.
+bool app_pole_y(const struct app *app);
 
 #endif

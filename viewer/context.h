@@ -22,6 +22,8 @@ struct context_backend {
     gl_proc (*get_proc)(const char *name);
     // Pixels of the picture that `show` shows.
     void (*size)(void *context, int *width, int *height);
+    // Pixels per unit of the desktop; 1 on ordinary screens.
+    double (*scale)(void *context);
     void (*show)(void *context, const char *title);
     // The next event; false when there is none (with `wait` only after sleeping for one).
     bool (*next)(void *context, struct context_event *event, bool wait);

@@ -81,6 +81,20 @@ static int key_letter(int key, int scancode)
 {
     static const int special[][2] = {
         {GLFW_KEY_ESCAPE, APP_KEY_ESCAPE},
+        {GLFW_KEY_TAB, APP_KEY_TAB},
+        {GLFW_KEY_ENTER, APP_KEY_ENTER},
+        {GLFW_KEY_KP_ENTER, APP_KEY_ENTER},
+        {GLFW_KEY_BACKSPACE, APP_KEY_BACKSPACE},
+        {GLFW_KEY_DELETE, APP_KEY_DELETE},
+        {GLFW_KEY_LEFT, APP_KEY_LEFT},
+        {GLFW_KEY_RIGHT, APP_KEY_RIGHT},
+        {GLFW_KEY_UP, APP_KEY_UP_ARROW},
+        {GLFW_KEY_DOWN, APP_KEY_DOWN_ARROW},
+        {GLFW_KEY_PAGE_UP, APP_KEY_PAGE_UP},
+        {GLFW_KEY_PAGE_DOWN, APP_KEY_PAGE_DOWN},
+        {GLFW_KEY_HOME, APP_KEY_HOME},
+        {GLFW_KEY_END, APP_KEY_END},
+        {GLFW_KEY_F1, '?'},
         {GLFW_KEY_KP_ADD, '+'},
         {GLFW_KEY_KP_SUBTRACT, '-'},
         {GLFW_KEY_EQUAL, '+'},
@@ -100,6 +114,13 @@ static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mo
     e.key = key_letter(key, scancode);
     if (e.key)
         push_input(handle, e);
+}
+
+static void on_char(GLFWwindow *handle, unsigned code)
+{
+    struct app_event e = at_cursor(handle, APP_TEXT);
+    e.key = (int)code;
+    push_input(handle, e);
 }
 
 static void on_size(GLFWwindow *handle, int width, int height)
@@ -134,6 +155,7 @@ static void listen(GLFWwindow *handle)
     glfwSetMouseButtonCallback(handle, on_button);
     glfwSetScrollCallback(handle, on_wheel);
     glfwSetKeyCallback(handle, on_key);
+    glfwSetCharCallback(handle, on_char);
     glfwSetFramebufferSizeCallback(handle, on_size);
     glfwSetWindowRefreshCallback(handle, on_refresh);
     glfwSetDropCallback(handle, on_drop);
@@ -202,6 +224,12 @@ static void size(void *context, int *width, int *height)
     glfwGetFramebufferSize(w->handle, width, height);
 }
 
+static double scale(void *context)
+{
+    const struct window *w = context;
+    return pixels_per_unit(w->handle);
+}
+
 static void show(void *context, const char *title)
 {
     const struct window *w = context;
@@ -225,5 +253,5 @@ static bool next(void *context, struct context_event *event, bool wait)
 }
 
 const struct context_backend context_glfw = {
-    "glfw", open_window, close_window, get_proc, size, show, next,
+    "glfw", open_window, close_window, get_proc, size, scale, show, next,
 };

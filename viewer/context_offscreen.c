@@ -25,6 +25,12 @@ void offscreen_size(void *context, int *width, int *height)
     *width = *height = 1;
 }
 
+double offscreen_scale(void *context)
+{
+    (void)context;
+    return 1.0;
+}
+
 void offscreen_show(void *context, const char *title)
 {
     (void)context, (void)title;

@@ -9,6 +9,7 @@ const struct context_backend *context_offscreen(const char *name);
 
 // A screen of one pixel, on which nothing happens.
 void offscreen_size(void *context, int *width, int *height);
+double offscreen_scale(void *context);
 void offscreen_show(void *context, const char *title);
 bool offscreen_next(void *context, struct context_event *event, bool wait);
 

@@ -29,12 +29,34 @@ relume_status draw_picture_create(struct program *program, const struct gl *gl,
 void draw_picture(const struct program *program, const struct gl *gl, const struct place *place,
                   const struct target *view);
 
-// A slab from `eye`. `views` are relit textures by view number; those without weight may be NULL.
+// A slab from an eye.
+struct slab_seen {
+    const relume_slab *slab;
+    const struct relume_geometry *geometry;
+    struct relume_vec3 eye;
+    const struct target *const *views;  // relit, by view number; NULL where they have no weight
+};
+// The quadralinear basis, or the nearest camera.
 relume_status draw_slab_create(struct program *program, const struct gl *gl,
                                const struct relume_log *log);
 void draw_slab(const struct program *program, const struct gl *gl, const struct place *place,
-               const relume_slab *slab, const struct relume_geometry *geometry,
-               struct relume_vec3 eye, const struct target *const *views);
+               const struct slab_seen *seen, bool nearest);
+// Each camera where it sees the surface: `disparity` are textures by view number, of the views that
+// are there, `range` the least and the greatest value in any of them.
+relume_status draw_slab_depth_create(struct program *program, const struct gl *gl,
+                                     const struct relume_log *log);
+void draw_slab_depth(const struct program *program, const struct gl *gl, const struct place *place,
+                     const struct slab_seen *seen, const GLuint *disparity, const double range[2]);
+// Through an aperture: adds weighted values and their weights (alpha) to a black target, which
+// draw_mean then divides. `aperture` and `focus` as relume_view_params.
+relume_status draw_slab_lens_create(struct program *program, const struct gl *gl,
+                                    const struct relume_log *log);
+void draw_slab_lens(const struct program *program, const struct gl *gl, const struct place *place,
+                    const struct slab_seen *seen, double aperture, double focus);
+relume_status draw_mean_create(struct program *program, const struct gl *gl,
+                               const struct relume_log *log);
+void draw_mean(const struct program *program, const struct gl *gl, const struct place *place,
+               const struct target *sum);
 
 // A perspective look into a panorama.
 relume_status draw_panorama_create(struct program *program, const struct gl *gl,
@@ -49,9 +71,11 @@ relume_status draw_ball_create(struct program *program, const struct gl *gl,
 void draw_ball(const struct program *program, const struct gl *gl, const struct place *place,
                struct relume_vec3 light, const float rgb[3]);
 
-// A linear frame onto the screen, coded as sRGB.
+// A linear frame onto a framebuffer whose first row is the lowest (0: the screen), through
+// relume_tones[tone], coded as sRGB; `white` > 0.
 relume_status draw_present_create(struct program *program, const struct gl *gl,
                                   const struct relume_log *log);
-void draw_present(const struct program *program, const struct gl *gl, const struct target *frame);
+void draw_present(const struct program *program, const struct gl *gl, const struct target *frame,
+                  int tone, double white, GLuint framebuffer);
 
 #endif

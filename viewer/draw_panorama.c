@@ -2,9 +2,10 @@
 
 #define PI 3.14159265358979323846
 
-enum { VIEW = DRAW_OWN, PROJECTION, ELEVATION, LOOK, LOOK_SIZE, EXPOSURE, COUNT };
+enum { VIEW = DRAW_OWN, PROJECTION, ELEVATION, LOOK, STEREOGRAPHIC, LOOK_SIZE, EXPOSURE, COUNT };
 static const char *const uniforms[] = {
-    "rectangle", "frame_size", "view", "projection", "elevation", "look", "look_size", "exposure",
+    "rectangle", "frame_size",    "view",      "projection", "elevation",
+    "look",      "stereographic", "look_size", "exposure",
 };
 
 relume_status draw_panorama_create(struct program *program, const struct gl *gl,
@@ -25,6 +26,7 @@ void draw_panorama(const struct program *program, const struct gl *gl, const str
     gl->Uniform2f(at[ELEVATION], (float)geometry->v_min, (float)geometry->v_max);
     gl->Uniform3f(at[LOOK], (float)(look.pan_deg * PI / 180), (float)(look.tilt_deg * PI / 180),
                   (float)(1.0 / look.zoom));
+    gl->Uniform1i(at[STEREOGRAPHIC], look.stereographic);
     gl->Uniform2f(at[LOOK_SIZE], (float)place->width, (float)place->height);
     gl->Uniform1f(at[EXPOSURE], place->exposure);
     draw_rectangle(gl, program, place, (struct app_rectangle){0, 0, place->width, place->height});

@@ -1,7 +1,7 @@
 #include "draw.h"
 
-enum { FRAME = DRAW_OWN, COUNT };
-static const char *const uniforms[] = {"rectangle", "frame_size", "frame"};
+enum { FRAME = DRAW_OWN, TONE, WHITE, COUNT };
+static const char *const uniforms[] = {"rectangle", "frame_size", "frame", "tone", "white"};
 
 relume_status draw_present_create(struct program *program, const struct gl *gl,
                                   const struct relume_log *log)
@@ -9,13 +9,16 @@ relume_status draw_present_create(struct program *program, const struct gl *gl,
     return program_create(program, gl, "present.frag", uniforms, COUNT, log);
 }
 
-void draw_present(const struct program *program, const struct gl *gl, const struct target *frame)
+void draw_present(const struct program *program, const struct gl *gl, const struct target *frame,
+                  int tone, double white, GLuint framebuffer)
 {
     const struct place place = {.width = frame->width, .height = frame->height};
-    gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     gl->Viewport(0, 0, frame->width, frame->height);
     texture_use(gl, 0, GL_TEXTURE_2D, frame->texture);
     gl->UseProgram(program->id);
     gl->Uniform1i(program->at[FRAME], 0);
+    gl->Uniform1i(program->at[TONE], tone);
+    gl->Uniform1f(program->at[WHITE], (float)white);
     draw_rectangle(gl, program, &place, (struct app_rectangle){0, 0, frame->width, frame->height});
 }

@@ -7,16 +7,41 @@
 
 #include <math.h>
 
-enum { VIEW_00 = DRAW_OWN, VIEW_10, VIEW_01, VIEW_11, PICTURE, ST, CELL, EYE, EXPOSURE, COUNT };
-static const char *const uniforms[] = {
-    "rectangle", "frame_size", "view00", "view10", "view01",   "view11",
-    "picture",   "st",         "cell",   "eye",    "exposure",
+enum {
+    VIEW_00 = DRAW_OWN,
+    VIEW_10,
+    VIEW_01,
+    VIEW_11,
+    PICTURE,
+    ST,
+    CELL,
+    EYE,
+    EXPOSURE,
+    COMMON,
+    NEAREST = COMMON,
+    LINEAR_COUNT,
+    DISPARITY_00 = COMMON,
+    RANGE = DISPARITY_00 + 4,
+    DEPTH_COUNT,
+};
+#define COMMON_UNIFORMS                                                                            \
+    "rectangle", "frame_size", "view00", "view10", "view01", "view11", "picture", "st", "cell",    \
+        "eye", "exposure"
+static const char *const linear_uniforms[] = {COMMON_UNIFORMS, "nearest"};
+static const char *const depth_uniforms[] = {
+    COMMON_UNIFORMS, "disparity00", "disparity10", "disparity01", "disparity11", "range",
 };
 
 relume_status draw_slab_create(struct program *program, const struct gl *gl,
                                const struct relume_log *log)
 {
-    return program_create(program, gl, "slab.frag", uniforms, COUNT, log);
+    return program_create(program, gl, "slab.frag", linear_uniforms, LINEAR_COUNT, log);
+}
+
+relume_status draw_slab_depth_create(struct program *program, const struct gl *gl,
+                                     const struct relume_log *log)
+{
+    return program_create(program, gl, "slab_depth.frag", depth_uniforms, DEPTH_COUNT, log);
 }
 
 // Along one axis: the cameras on both sides of a cell and the part of the window seen through it.
@@ -50,30 +75,34 @@ static bool find_strip(struct strip *strip, const double *lines, int n, int i, d
            clip(strip, window[0], window[1], window);
 }
 
-// Views of weight 0 were not relit: another one of the cell stands in.
-static void use_views(const struct gl *gl, const struct target *const views[4])
-{
-    const struct target *any = NULL;
-    for (int i = 0; i < 4; i++)
-        any = views[i] ? views[i] : any;
-    for (int i = 0; any && i < 4; i++)
-        texture_use(gl, i, GL_TEXTURE_2D, (views[i] ? views[i] : any)->texture);
-}
-
 struct cells {
     const struct program *program;
     const struct gl *gl;
     const struct place *place;
-    const struct relume_geometry *geometry;
+    const struct slab_seen *seen;
     struct relume_slab_grid grid;
-    const struct target *const *views;
+    const GLuint *disparity;  // [views], or NULL
 };
+
+// Views of weight 0 were not relit: another one of the cell stands in.
+static void use_views(const struct cells *c, const int view[4])
+{
+    int any = -1;
+    for (int i = 0; i < 4; i++)
+        any = c->seen->views[view[i]] ? view[i] : any;
+    for (int i = 0; any >= 0 && i < 4; i++) {
+        const int shown = c->seen->views[view[i]] ? view[i] : any;
+        texture_use(c->gl, i, GL_TEXTURE_2D, c->seen->views[shown]->texture);
+        if (c->disparity)
+            texture_use(c->gl, 4 + i, GL_TEXTURE_2D, c->disparity[shown]);
+    }
+}
 
 static struct app_rectangle pixels_of(const struct cells *c, const struct strip *across,
                                       const struct strip *down)
 {
     const struct app_rectangle *p = &c->place->picture;
-    const struct relume_geometry *g = c->geometry;
+    const struct relume_geometry *g = c->seen->geometry;
     const double per_s = (p->right - p->left) / (g->st_max[0] - g->st_min[0]);
     const double per_t = (p->bottom - p->top) / (g->st_max[1] - g->st_min[1]);
     return (struct app_rectangle){
@@ -89,22 +118,19 @@ static void draw_cell(const struct cells *c, const struct strip *across, const s
     const struct relume_slab_grid *grid = &c->grid;
     const int *low = &grid->view[(size_t)down->low * (size_t)grid->columns];
     const int *high = &grid->view[(size_t)down->high * (size_t)grid->columns];
-    const struct target *const views[4] = {
-        c->views[low[across->low]],
-        c->views[low[across->high]],
-        c->views[high[across->low]],
-        c->views[high[across->high]],
-    };
-    use_views(c->gl, views);
+    const int view[4] = {low[across->low], low[across->high], high[across->low],
+                         high[across->high]};
+    use_views(c, view);
     c->gl->Uniform4f(c->program->at[CELL], (float)grid->u[across->low], (float)grid->v[down->low],
                      (float)grid->u[across->high], (float)grid->v[down->high]);
     draw_rectangle(c->gl, c->program, c->place, pixels_of(c, across, down));
 }
 
-static void set_uniforms(const struct cells *c, struct relume_vec3 eye, double reach)
+static void set_uniforms(const struct cells *c, double reach)
 {
     const struct gl *gl = c->gl;
-    const struct relume_geometry *g = c->geometry;
+    const struct relume_geometry *g = c->seen->geometry;
+    const struct relume_vec3 *eye = &c->seen->eye;
     const struct app_rectangle *p = &c->place->picture;
     const GLint *at = c->program->at;
     gl->UseProgram(c->program->id);
@@ -113,27 +139,50 @@ static void set_uniforms(const struct cells *c, struct relume_vec3 eye, double r
     gl->Uniform4f(at[PICTURE], (float)p->left, (float)p->top, (float)p->right, (float)p->bottom);
     gl->Uniform4f(at[ST], (float)g->st_min[0], (float)g->st_min[1], (float)g->st_max[0],
                   (float)g->st_max[1]);
-    gl->Uniform3f(at[EYE], (float)eye.x, (float)eye.y, (float)reach);
+    gl->Uniform3f(at[EYE], (float)eye->x, (float)eye->y, (float)reach);
     gl->Uniform1f(at[EXPOSURE], c->place->exposure);
 }
 
-void draw_slab(const struct program *program, const struct gl *gl, const struct place *place,
-               const relume_slab *slab, const struct relume_geometry *geometry,
-               struct relume_vec3 eye, const struct target *const *views)
+static double reach_of(const struct slab_seen *seen)
 {
-    const struct relume_geometry *g = geometry;
-    const struct cells cells = {program, gl, place, g, relume_slab_grid(slab), views};
-    const struct relume_slab_grid *grid = &cells.grid;
-    const double reach = (g->uv_z - eye.z) / (g->st_z - eye.z);
+    const struct relume_geometry *g = seen->geometry;
+    return (g->uv_z - seen->eye.z) / (g->st_z - seen->eye.z);
+}
+
+static void draw_cells(const struct cells *c)
+{
+    const struct relume_geometry *g = c->seen->geometry;
+    const struct relume_slab_grid *grid = &c->grid;
+    const double reach = reach_of(c->seen);
     const double s[2] = {g->st_min[0], g->st_max[0]};
     const double t[2] = {g->st_min[1], g->st_max[1]};
-    set_uniforms(&cells, eye, reach);
     struct strip across, down;
     for (int j = 0; j == 0 || j < grid->rows - 1; j++) {
-        if (!find_strip(&down, grid->v, grid->rows, j, eye.y, reach, t))
+        if (!find_strip(&down, grid->v, grid->rows, j, c->seen->eye.y, reach, t))
             continue;
         for (int i = 0; i == 0 || i < grid->columns - 1; i++)
-            if (find_strip(&across, grid->u, grid->columns, i, eye.x, reach, s))
-                draw_cell(&cells, &across, &down);
+            if (find_strip(&across, grid->u, grid->columns, i, c->seen->eye.x, reach, s))
+                draw_cell(c, &across, &down);
     }
+}
+
+void draw_slab(const struct program *program, const struct gl *gl, const struct place *place,
+               const struct slab_seen *seen, bool nearest)
+{
+    const struct cells cells = {program, gl, place, seen, relume_slab_grid(seen->slab), NULL};
+    set_uniforms(&cells, reach_of(seen));
+    gl->Uniform1i(program->at[NEAREST], nearest);
+    draw_cells(&cells);
+}
+
+void draw_slab_depth(const struct program *program, const struct gl *gl, const struct place *place,
+                     const struct slab_seen *seen, const GLuint *disparity, const double range[2])
+{
+    const struct cells cells = {program, gl, place, seen, relume_slab_grid(seen->slab), disparity};
+    const double nearest = fmin(range[1], relume_slab_eye_disparity(seen->slab, seen->eye));
+    set_uniforms(&cells, reach_of(seen));
+    for (int i = 0; i < 4; i++)
+        gl->Uniform1i(program->at[DISPARITY_00 + i], 4 + i);
+    gl->Uniform2f(program->at[RANGE], (float)range[0], (float)nearest);
+    draw_cells(&cells);
 }

@@ -11,7 +11,6 @@ struct loader {
     pthread_t thread;
     pthread_mutex_t lock;  // of everything below
     pthread_cond_t work, news;
-    pthread_mutex_t reading;  // the source is in use
     enum stage *stage;        // [views]
     uint64_t *order;          // [views]: when it was asked for
     struct loaded *result;    // [views]
@@ -32,9 +31,7 @@ static int first_of(const struct loader *l, enum stage stage)
 static struct loaded read_view(struct loader *l, int view)
 {
     struct loaded result = {.view = view};
-    pthread_mutex_lock(&l->reading);
     result.status = l->source.codes(&result.codes, l->source.user, view);
-    pthread_mutex_unlock(&l->reading);
     return result;
 }
 
@@ -63,7 +60,6 @@ static void *run(void *context)
 static void release(struct loader *l)
 {
     pthread_mutex_destroy(&l->lock);
-    pthread_mutex_destroy(&l->reading);
     pthread_cond_destroy(&l->work);
     pthread_cond_destroy(&l->news);
     free(l->stage);
@@ -81,7 +77,6 @@ relume_status loader_create(struct loader **out, const struct code_source *sourc
     l->source = *source;
     l->views = views;
     pthread_mutex_init(&l->lock, NULL);
-    pthread_mutex_init(&l->reading, NULL);
     pthread_cond_init(&l->work, NULL);
     pthread_cond_init(&l->news, NULL);
     l->stage = calloc((size_t)views, sizeof *l->stage);
@@ -109,8 +104,8 @@ void loader_destroy(struct loader **loader)
     pthread_mutex_unlock(&l->lock);
     pthread_join(l->thread, NULL);
     for (int i = 0; i < l->views; i++)
-        if (l->stage[i] == READ && !l->result[i].status)
-            loader_drop(l, i);
+        if (l->stage[i] == READ && !l->result[i].status && l->source.drop)
+            l->source.drop(l->source.user, i);
     release(l);
 }
 
@@ -148,22 +143,4 @@ bool loader_take(struct loaded *out, struct loader *loader, bool wait)
     }
     pthread_mutex_unlock(&loader->lock);
     return view >= 0;
-}
-
-void loader_drop(struct loader *loader, int view)
-{
-    pthread_mutex_lock(&loader->reading);
-    if (loader->source.drop)
-        loader->source.drop(loader->source.user, view);
-    pthread_mutex_unlock(&loader->reading);
-}
-
-relume_status loader_surface(struct relume_image *out, struct loader *loader, int view)
-{
-    if (!loader->source.surface)
-        return RELUME_EINVAL;
-    pthread_mutex_lock(&loader->reading);
-    const relume_status status = loader->source.surface(out, loader->source.user, view);
-    pthread_mutex_unlock(&loader->reading);
-    return status;
 }

@@ -4,8 +4,8 @@
 
 #include <relume/coder.h>
 
-// Where codes come from: a pack, or a test. `drop` (may be NULL) hears that a view's codes are no
-// longer looked at. `surface` (may be NULL) tells where a view's pixels lie, for near lights; the
+// Where codes come from: a pack, or a test. `drop` (may be NULL) hears that one who asked for a
+// view's codes no longer looks at them. `surface` (may be NULL) tells where a view's pixels lie, for near lights; the
 // caller destroys the image.
 struct code_source {
     relume_status (*codes)(const struct relume_codes **out, void *user, int view);
@@ -14,10 +14,9 @@ struct code_source {
     relume_status (*surface)(struct relume_image *out, void *user, int view);
 };
 
-// While a loader lives the source is used by its thread, and by others only through the loader.
 struct loader;
 
-// RELUME_ENOMEM, RELUME_ESYSTEM.
+// The source is used by the loader's thread as well from now on. RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status loader_create(struct loader **out, const struct code_source *source, int views);
 // Waits for the view that is being read; what was read and not taken is dropped.
 void loader_destroy(struct loader **loader);
@@ -30,11 +29,9 @@ void loader_clear(struct loader *loader);
 struct loaded {
     int view;
     relume_status status;
-    const struct relume_codes *codes;  // until loader_drop
+    const struct relume_codes *codes;  // to be dropped
 };
 // A view that has been read; false when there is none, with `wait` only when none is asked for.
 bool loader_take(struct loaded *out, struct loader *loader, bool wait);
-void loader_drop(struct loader *loader, int view);
-relume_status loader_surface(struct relume_image *out, struct loader *loader, int view);
 
 #endif

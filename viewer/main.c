@@ -1,32 +1,16 @@
 // main.c - relume-view: a file in a window, or in pictures written without one
 #include "context_offscreen.h"
 #include "options.h"
-#include "renderer.h"
 #include "say.h"
 #include "script.h"
-
-#include <relume/pack.h>
+#include "session.h"
+#include "settings.h"
 
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <time.h>
-
-// A file that is open, and what is drawn of it.
-struct viewer {
-    const struct context_backend *backend;
-    void *context;
-    struct gl gl;
-    relume_pack *pack;
-    struct app app;
-    struct renderer renderer;
-    char name[256];  // of the file, for the title
-    int threads;     // that read files
-    size_t vram_bytes;
-    bool streams;  // frames are drawn with the views that are there
-    const struct relume_log *log;
-};
 
 static void on_message(void *user, enum relume_level level, const char *text)
 {
@@ -45,158 +29,75 @@ static int exit_code(relume_status status)
     }
 }
 
-// ---------------------------------------------------------------- file
+// ---------------------------------------------------------------- scripts
 
-static relume_status pack_codes(const struct relume_codes **out, void *user, int view)
+static void host_send(void *user, const struct app_event *event)
 {
-    return relume_pack_codes(out, user, view);
+    (void)session_send(user, event);
 }
 
-static void pack_drop(void *user, int view)
+static relume_status host_light(void *user, const char *spec, bool replace)
 {
-    relume_pack_drop(user, view);
+    return session_light(user, spec, replace);
 }
 
-static relume_status pack_surface(struct relume_image *out, void *user, int view)
+static relume_status host_rig(void *user, const char *path)
 {
-    const struct relume_pack_info *info = relume_pack_info(user);
-    struct relume_image depth;
-    relume_status status = relume_pack_depth(&depth, user, view);
-    if (!status)
-        status = relume_surface(out, &info->geometry, info->uv[view], depth.data ? &depth : NULL,
-                                info->width, info->height);
-    relume_image_destroy(&depth);
+    return session_load_rig(user, path);
+}
+
+static const double frame_s = 1.0 / 60;  // between frames when time is played
+static const double patience_s = 60;     // waiting for what never comes to rest
+
+static relume_status host_wait(void *user, double seconds)
+{
+    const bool until_idle = seconds < 0;
+    double left = until_idle ? patience_s : seconds;
+    bool moves = true;
+    relume_status status = RELUME_OK;
+    for (; !status && left > 1e-9 && (moves || !until_idle); left -= frame_s) {
+        moves = session_pass(user, fmin(left, frame_s));
+        if (moves || until_idle)
+            status = session_draw(user);
+    }
     return status;
 }
 
-static struct app_file describe(const relume_pack *pack)
+static relume_status host_frame(void *user, const char *path)
 {
-    const struct relume_pack_info *info = relume_pack_info(pack);
-    struct app_file file = {info->geometry, info->width, info->height, info->views, {0}, {0}};
-    for (int axis = 0; axis < 2; axis++)
-        file.uv_min[axis] = file.uv_max[axis] = info->uv ? info->uv[0][axis] : 0.0;
-    for (int i = 1; info->uv && i < info->views; i++)
-        for (int axis = 0; axis < 2; axis++) {
-            file.uv_min[axis] = fmin(file.uv_min[axis], info->uv[i][axis]);
-            file.uv_max[axis] = fmax(file.uv_max[axis], info->uv[i][axis]);
-        }
-    return file;
+    return session_frame(user, path);
 }
 
-static void set_name(struct viewer *v, const char *path)
+static relume_status host_shot(void *user, const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    snprintf(v->name, sizeof v->name, "%s", slash ? slash + 1 : path);
+    return session_shot(user, path);
 }
 
-// As relume_relight says it; only for lights that were asked for, not for each one dragged there.
-static void warn_below_horizon(const struct viewer *v)
+static struct script_host host_of(struct session *s)
 {
-    const struct relume_coder_info *info = relume_coder_info(relume_pack_info(v->pack)->coder);
-    for (int i = 0; info->hemispherical && i < v->app.start.lights; i++) {
-        const struct relume_vec3 d = v->app.start.light[i].direction;
-        char text[128];
-        if ((info->pole_y ? d.y : d.z) >= 0.0)
-            continue;
-        snprintf(text, sizeof text,
-                 "light %d lies below the horizon, where nothing was captured; the value at the "
-                 "horizon is shown",
-                 i + 1);
-        v->log->message(v->log->user, RELUME_WARNING, text);
-        return;
-    }
-}
-
-// Open `path` and start the app; `v` is untouched when that fails.
-static relume_status open_file(struct viewer *v, const char *path, const struct app_state *start,
-                               bool look_ahead)
-{
-    relume_pack *pack;
-    struct app app;
-    relume_status status =
-        relume_pack_open(&pack, path, relume_pack_params(.log = v->log, .threads = v->threads));
-    if (status)
-        return status;
-    const struct app_file file = describe(pack);
-    status = app_start(&app, &file, start, look_ahead, v->log);
-    if (status) {
-        relume_pack_destroy(&pack);
-        return status;
-    }
-    renderer_destroy(&v->renderer);  // its thread may be reading the old file
-    relume_pack_destroy(&v->pack);
-    v->pack = pack;
-    v->app = app;
-    set_name(v, path);
-    warn_below_horizon(v);
-    return RELUME_OK;
-}
-
-static relume_status make_renderer(struct viewer *v)
-{
-    const struct relume_pack_info *info = relume_pack_info(v->pack);
-    const struct code_source source = {pack_codes, pack_drop, v->pack, pack_surface};
-    const relume_status status = renderer_create(&v->renderer, &v->gl, &source, &info->geometry,
-                                                 info->uv, info->views, v->log);
-    if (status)
-        return status;
-    v->renderer.relighter.budget = v->vram_bytes;
-    return v->streams ? renderer_stream(&v->renderer) : RELUME_OK;
-}
-
-static relume_status open_context(struct viewer *v, const struct context_backend *backend,
-                                  int width, int height)
-{
-    v->backend = backend;
-    relume_status status = backend->open(&v->context, width, height, v->name, v->log);
-    if (!status)
-        status = gl_load(&v->gl, backend->get_proc, v->log);
-    return status ? status : make_renderer(v);
-}
-
-static void close_viewer(struct viewer *v)
-{
-    renderer_destroy(&v->renderer);
-    if (v->context)
-        v->backend->close(v->context);
-    relume_pack_destroy(&v->pack);
+    return (struct script_host){s,         &s->app,    host_send, host_light, host_rig,
+                                host_wait, host_frame, host_shot, s->log};
 }
 
 // ---------------------------------------------------------------- without a window
 
-static bool sees_something(const struct viewer *v)
+static relume_status run_offscreen(struct session *s, struct options *o)
 {
-    for (int i = 0; i < v->renderer.views; i++)
-        if (v->renderer.needed[i])
-            return true;
-    return false;
-}
-
-static relume_status save_frame(void *user, const struct app *app, const char *path)
-{
-    struct viewer *v = user;
-    struct relume_image image;
-    relume_status status = renderer_draw(&v->renderer, app);
-    if (status)
-        return status;
-    if (!sees_something(v))
-        return say(v->log, RELUME_EDATA, "%s: the eye sees nothing of the slab", v->name);
-    status = renderer_read(&image, &v->renderer);
+    const struct script_host host = host_of(s);
+    relume_status status = session_take_rig(s, &o->rig, &o->start);
+    if (!status && o->capture)
+        status = session_compare(s, o->capture);
     if (!status)
-        status = relume_image_save(&image, path, relume_image_params(.log = v->log));
-    relume_image_destroy(&image);
-    return status;
-}
-
-static relume_status run_offscreen(struct viewer *v, const struct options *o)
-{
-    relume_status status = open_file(v, o->file, &o->start, false);
+        status = session_open(s, o->file, &o->start, false);
     if (!status)
-        status = open_context(v, context_offscreen(o->gl), v->app.width, v->app.height);
+        status = session_start(s, context_offscreen(o->gl), s->app.width, s->app.height);
+    s->app.panel = o->panel;
     if (!status && o->script)
-        status = script_play(&v->app, o->script, save_frame, v, v->log);
+        status = script_play(o->script, &host);
+    if (!status && o->record)
+        status = session_record(s, o->kind, o->output, o->frames);
     if (!status && o->offscreen)
-        status = save_frame(v, &v->app, o->offscreen);
+        status = (o->panel ? session_shot : session_frame)(s, o->offscreen);
     return status;
 }
 
@@ -222,88 +123,165 @@ static double now_ms(void)
     return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
 }
 
-static relume_status show_frame(struct viewer *v)
+static relume_status show_frame(struct session *s)
 {
     char title[320];
     const double start = now_ms();
-    const relume_status status = renderer_draw(&v->renderer, &v->app);
+    const relume_status status = session_draw(s);
     if (status)
         return status;
-    renderer_present(&v->renderer);
-    v->gl.Finish();
-    snprintf(title, sizeof title, "%s - %.1f ms - relume-view", v->name, now_ms() - start);
-    v->backend->show(v->context, title);
+    session_present(s);
+    s->gl.Finish();
+    snprintf(title, sizeof title, "%s - %.1f ms - relume-view", s->name, now_ms() - start);
+    s->backend->show(s->context, title);
     return RELUME_OK;
 }
 
-// A dropped file takes the place of the open one; one that cannot be opened is only complained
-// about.
-static relume_status drop_file(struct viewer *v, const char *path)
-{
-    struct app_state start = {.ball = v->app.now.ball};
-    const int width = v->app.width;
-    const int height = v->app.height;
-    if (open_file(v, path, &start, true))
-        return RELUME_OK;
-    v->app.width = width;
-    v->app.height = height;
-    v->app.letterbox = true;
-    return make_renderer(v);
-}
-
-static relume_status take_event(struct viewer *v, const struct context_event *event, bool *changed)
+static relume_status take_event(struct session *s, const struct context_event *event, bool *changed)
 {
     if (event->kind == CONTEXT_CLOSE)
-        v->app.quit = true;
+        s->app.quit = true;
     if (event->kind == CONTEXT_INPUT)
-        *changed |= app_handle(&v->app, &event->input);
+        *changed |= session_send(s, &event->input);
     if (event->kind != CONTEXT_DROP)
         return RELUME_OK;
     *changed = true;
-    return drop_file(v, event->dropped);
+    return session_drop(s, event->dropped);
 }
 
-static relume_status run_window(struct viewer *v, const struct options *o)
+// Time in seconds since the last call.
+static double time_passed(double *then_ms)
 {
-    struct app_state start = o->start;
-    start.ball = true;
-    v->streams = true;
-    relume_status status = open_file(v, o->file, &start, true);
-    if (status)
-        return status;
-    choose_size(&v->app, o->sized);
-    v->app.letterbox = true;
-    status = open_context(v, &context_glfw, v->app.width, v->app.height);
-    if (status)
-        return status;
-    v->backend->size(v->context, &v->app.width, &v->app.height);
-    bool changed = true;
-    while (!status && !v->app.quit) {
-        struct context_event event;
-        while (!status && !v->app.quit && v->backend->next(v->context, &event, !changed))
-            status = take_event(v, &event, &changed);
-        if (!status && changed && !v->app.quit)
-            status = show_frame(v);
-        changed = !status && renderer_is_pending(&v->renderer);
+    const double then = *then_ms;
+    *then_ms = now_ms();
+    return 1e-3 * (*then_ms - then);
+}
+
+static relume_status take_events(struct session *s, bool *changed, double *time_ms)
+{
+    relume_status status = RELUME_OK;
+    struct context_event event;
+    *changed |= session_pass(s, time_passed(time_ms));
+    while (!status && !s->app.quit && s->backend->next(s->context, &event, !*changed)) {
+        *changed |= session_pass(s, time_passed(time_ms));
+        status = take_event(s, &event, changed);
     }
+    return status;
+}
+
+static relume_status live(struct session *s, struct script *script)
+{
+    relume_status status = RELUME_OK;
+    bool more = script != NULL;
+    bool changed = true;
+    double time_ms = now_ms();
+    while (!status && !s->app.quit) {
+        if (more)
+            status = script_step(script, &more);
+        changed |= more;
+        if (!status)
+            status = take_events(s, &changed, &time_ms);
+        if (!status && changed && !s->app.quit)
+            status = show_frame(s);
+        changed = !status && renderer_is_pending(&s->renderer);
+    }
+    return status;
+}
+
+static bool has_near_light(const relume_rig *rig)
+{
+    for (int i = 0; i < relume_rig_count(rig); i++)
+        if (relume_light_is_near(relume_rig_entry(rig, i)->light.kind))
+            return true;
+    return false;
+}
+
+// The lights of the last time, where the command names none. Near ones belong to the scene that
+// they stood in.
+static void recall_rig(struct options *o, const struct settings *settings)
+{
+    if (o->rig || !settings->rig[0] || relume_rig_load(&o->rig, settings->rig, NULL))
+        return;
+    if (has_near_light(o->rig) || relume_rig_count(o->rig) > APP_LIGHTS)
+        relume_rig_destroy(&o->rig);
+}
+
+static void remember(struct session *s, struct settings *settings)
+{
+    const struct relume_log *log = s->log;
+    settings->width = s->app.width;
+    settings->height = s->app.height;
+    settings->panel = s->app.panel;
+    settings_save(settings);
+    s->log = NULL;  // a rig that cannot be kept is no news
+    if (settings->rig[0])
+        (void)session_save_rig(s, settings->rig);
+    s->log = log;
+}
+
+static relume_status open_window(struct session *s, struct options *o,
+                                 const struct settings *settings)
+{
+    o->start.ball = true;
+    relume_status status = session_take_rig(s, &o->rig, &o->start);
+    if (!status && o->capture)
+        status = session_compare(s, o->capture);
+    if (!status)
+        status = session_open(s, o->file, &o->start, true);
+    if (status)
+        return status;
+    if (settings->width && !o->sized) {
+        s->app.width = settings->width;
+        s->app.height = settings->height;
+    } else {
+        choose_size(&s->app, o->sized);
+    }
+    s->app.letterbox = true;
+    s->app.panel = o->panel || settings->panel;
+    status = session_start(s, &context_glfw, s->app.width, s->app.height);
+    if (!status)
+        s->backend->size(s->context, &s->app.width, &s->app.height);
+    return status;
+}
+
+static relume_status run_window(struct session *s, struct options *o)
+{
+    const struct script_host host = host_of(s);
+    struct settings settings = {0};
+    struct script *script = NULL;
+    s->streams = true;
+    if (!o->no_config) {
+        settings_load(&settings);
+        recall_rig(o, &settings);
+    }
+    relume_status status = open_window(s, o, &settings);
+    if (!status && o->script)
+        status = script_open(&script, o->script, &host);
+    if (!status)
+        status = live(s, script);
+    script_close(&script);
+    if (!status && !o->no_config)
+        remember(s, &settings);
     return status;
 }
 
 int main(int argc, char **argv)
 {
     static const struct relume_log log = {.message = on_message};
+    static struct session session = {.log = &log};
     struct options options;
-    struct viewer viewer = {.log = &log};
     signal(SIGXFSZ, SIG_IGN);  // a file size limit is a write error, not a death
     signal(SIGPIPE, SIG_IGN);
     relume_status status = options_parse(&options, argc, argv, &log);
-    viewer.threads = options.threads;
-    viewer.vram_bytes = (size_t)(options.vram_mb * 1048576.0);
+    session.threads = options.threads;
+    session.vram_bytes = (size_t)(options.vram_mb * 1048576.0);
+    const bool offscreen =
+        options.offscreen || options.record || (options.script && !options.window);
     if (!status && !options.file)
         options_help();
     else if (!status)
-        status =
-            (options.offscreen || options.script ? run_offscreen : run_window)(&viewer, &options);
-    close_viewer(&viewer);
+        status = (offscreen ? run_offscreen : run_window)(&session, &options);
+    session_close(&session);
+    options_release(&options);
     return exit_code(status);
 }

@@ -1,8 +1,9 @@
 #include "options.h"
 
+#include "keys.h"
 #include "say.h"
 
-#include <relume/rig.h>
+#include <relume/tone.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -52,28 +53,25 @@ static relume_status take_framing(struct options *o, const char *name, enum relu
     return RELUME_OK;
 }
 
-relume_status options_light(struct relume_light *out, const char *spec,
-                            const struct relume_log *log)
+static relume_status have_rig(struct options *o)
 {
-    relume_rig *rig;
-    relume_status status = relume_rig_create(&rig);
-    if (!status)
-        status = relume_rig_add(rig, spec, NULL, log);
-    if (!status)
-        *out = relume_rig_entry(rig, 0)->light;
-    if (!status && out->kind != RELUME_LIGHT_DIRECTIONAL)
-        status = say(log, RELUME_EINVAL, "light '%s': expected \"dir x y z [rgb r g b]\"", spec);
-    relume_rig_destroy(&rig);
-    return status;
+    return o->rig ? RELUME_OK : relume_rig_create(&o->rig);
 }
 
 static relume_status take_light(struct options *o, const char *name, const char *text,
                                 const struct relume_log *log)
 {
     (void)name;
-    if (o->start.lights == APP_LIGHTS)
-        return say(log, RELUME_EINVAL, "--light: expected at most %d lights", APP_LIGHTS);
-    return options_light(&o->start.light[o->start.lights++], text, log);
+    const relume_status status = have_rig(o);
+    return status ? status : relume_rig_add(o->rig, text, NULL, log);
+}
+
+static relume_status take_rig(struct options *o, const char *name, const char *text,
+                              const struct relume_log *log)
+{
+    if (o->rig)
+        return say(log, RELUME_EINVAL, "%s: expected it once and before --light", name);
+    return relume_rig_load(&o->rig, text, log);
 }
 
 static relume_status take_view(struct options *o, const char *name, const char *text,
@@ -123,6 +121,44 @@ static relume_status take_zoom(struct options *o, const char *name, const char *
     return status ? status : take_framing(o, name, RELUME_FRAME_LOOK, log);
 }
 
+static relume_status take_projection(struct options *o, const char *name, const char *text,
+                                     const struct relume_log *log)
+{
+    struct relume_look *look = &o->start.camera.look;
+    const bool planet = !strcmp(text, "planet");
+    if (strcmp(text, "perspective") && strcmp(text, "stereographic") && !planet)
+        return say(log, RELUME_EINVAL,
+                   "%s: expected perspective, stereographic or planet; found '%s'", name, text);
+    look->stereographic = strcmp(text, "perspective") != 0;
+    if (planet && look->tilt_deg == 0.0)
+        look->tilt_deg = -90.0;
+    if (planet && look->zoom == 0.0)
+        look->zoom = 0.5;
+    return take_framing(o, name, RELUME_FRAME_LOOK, log);
+}
+
+static relume_status take_interpolation(struct options *o, const char *name, const char *text,
+                                        const struct relume_log *log)
+{
+    if (!relume_interpolation_parse(&o->start.interpolation, text))
+        return RELUME_OK;
+    return say(log, RELUME_EINVAL, "%s: expected constant, linear or depth; found '%s'", name,
+               text);
+}
+
+static relume_status take_aperture(struct options *o, const char *name, const char *text,
+                                   const struct relume_log *log)
+{
+    return take_number(&o->start.aperture, name, text, 0, 1e9, log);
+}
+
+static relume_status take_focus(struct options *o, const char *name, const char *text,
+                                const struct relume_log *log)
+{
+    o->start.focused = true;
+    return take_number(&o->start.focus_z, name, text, -1e9, 1e9, log);
+}
+
 static relume_status take_size(struct options *o, const char *name, const char *text,
                                const struct relume_log *log)
 {
@@ -154,7 +190,28 @@ static relume_status take_vram(struct options *o, const char *name, const char *
 static relume_status take_exposure(struct options *o, const char *name, const char *text,
                                    const struct relume_log *log)
 {
+    o->start.auto_exposure = !strcmp(text, "auto");
+    if (o->start.auto_exposure)
+        return RELUME_OK;
     return take_number(&o->start.exposure_ev, name, text, -100, 100, log);
+}
+
+static relume_status take_tone(struct options *o, const char *name, const char *text,
+                               const struct relume_log *log)
+{
+    for (int i = 0; relume_tones[i]; i++)
+        if (!strcmp(relume_tones[i]->name, text)) {
+            o->start.tone = i;
+            return RELUME_OK;
+        }
+    return say(log, RELUME_EINVAL, "%s: expected linear, reinhard or filmic; found '%s'", name,
+               text);
+}
+
+static relume_status take_white(struct options *o, const char *name, const char *text,
+                                const struct relume_log *log)
+{
+    return take_number(&o->start.white, name, text, 1e-3, 1e6, log);
 }
 
 static relume_status take_offscreen(struct options *o, const char *name, const char *text,
@@ -182,6 +239,61 @@ static relume_status take_gl(struct options *o, const char *name, const char *te
     return say(log, RELUME_EINVAL, "%s: expected auto, osmesa or egl; found '%s'", name, text);
 }
 
+static relume_status take_capture(struct options *o, const char *name, const char *text,
+                                  const struct relume_log *log)
+{
+    (void)name, (void)log;
+    o->capture = text;
+    return RELUME_OK;
+}
+
+static relume_status take_pass(struct options *o, const char *name, const char *text,
+                               const struct relume_log *log)
+{
+    const char *names[RELUME_PASSES + 1] = {NULL};
+    if (!relume_pass_parse(&o->start.pass, text))
+        return RELUME_OK;
+    for (int i = 0; i < RELUME_PASSES; i++)
+        names[i] = relume_pass_name((enum relume_pass)i);
+    const char *near = relume_name_nearest(text, names);
+    return say(log, RELUME_EINVAL, "%s: expected a view; found '%s'; did you mean '%s'?", name,
+               text, near ? near : names[0]);
+}
+
+static relume_status take_record(struct options *o, const char *name, const char *text,
+                                 const struct relume_log *log)
+{
+    o->record = true;
+    if (!record_parse(&o->kind, text))
+        return RELUME_OK;
+    return say(log, RELUME_EINVAL, "%s: expected sweep or turntable; found '%s'", name, text);
+}
+
+static relume_status take_output(struct options *o, const char *name, const char *text,
+                                 const struct relume_log *log)
+{
+    (void)name, (void)log;
+    o->output = text;
+    return RELUME_OK;
+}
+
+static relume_status take_frames(struct options *o, const char *name, const char *text,
+                                 const struct relume_log *log)
+{
+    double n;
+    const relume_status status = take_number(&n, name, text, 1, 10000, log);
+    o->frames = status ? 0 : (int)n;
+    return status;
+}
+
+static relume_status take_no_config(struct options *o, const char *name, const char *text,
+                                    const struct relume_log *log)
+{
+    (void)name, (void)text, (void)log;
+    o->no_config = true;
+    return RELUME_OK;
+}
+
 static relume_status take_ball(struct options *o, const char *name, const char *text,
                                const struct relume_log *log)
 {
@@ -190,7 +302,24 @@ static relume_status take_ball(struct options *o, const char *name, const char *
     return RELUME_OK;
 }
 
+static relume_status take_panel(struct options *o, const char *name, const char *text,
+                                const struct relume_log *log)
+{
+    (void)name, (void)text, (void)log;
+    o->panel = true;
+    return RELUME_OK;
+}
+
+static relume_status take_window(struct options *o, const char *name, const char *text,
+                                 const struct relume_log *log)
+{
+    (void)name, (void)text, (void)log;
+    o->window = true;
+    return RELUME_OK;
+}
+
 static const struct option options[] = {
+    {"--rig", "FILE", "lights of a rig (JSON)", take_rig},
     {"--light", "SPEC", "a light, \"dir x y z [rgb r g b]\"; repeat for more; default dir 0 0 1",
      take_light},
     {"--view", "N", "the captured view N itself (panoramas: unfolded)", take_view},
@@ -198,8 +327,18 @@ static const struct option options[] = {
     {"--pan", "DEG", "panorama: turn right", take_pan},
     {"--tilt", "DEG", "panorama: look up", take_tilt},
     {"--zoom", "F", "panorama: 1 shows 90 degrees", take_zoom},
+    {"--projection", "P", "panorama: perspective, stereographic or planet", take_projection},
+    {"--interpolate", "I", "slab: constant, linear or depth; default: depth if there is any",
+     take_interpolation},
+    {"--aperture", "A", "slab: average the cameras within A/2 of the eye", take_aperture},
+    {"--focus", "Z", "slab: the plane at z = Z is sharp", take_focus},
     {"--size", "WxH", "pixels of the window or picture", take_size},
-    {"--exposure", "EV", "brighter by 2^EV", take_exposure},
+    {"--exposure", "EV", "brighter by 2^EV, or auto", take_exposure},
+    {"--tone", "T", "linear, reinhard or filmic; .exr, .hdr and .pfm stay linear", take_tone},
+    {"--white", "L", "reinhard: the luminance that becomes white; default: 4", take_white},
+    {"--pass", "NAME", "colour, normals, specular, diffuse-gain, unsharp, luminance, ...",
+     take_pass},
+    {"--capture", "CAPTURE", "the photographs, for --pass difference", take_capture},
     {"--threads", "N", "threads that read files; default: all cores", take_threads},
     {"--vram", "MB", "graphics memory for views; those not used for long leave; default: 1024",
      take_vram},
@@ -208,6 +347,12 @@ static const struct option options[] = {
     {"--script", "EVENTS", "play a text file of events without a window", take_script},
     {"--gl", "NAME",
      "offscreen by osmesa, egl, or auto: a graphics card, else osmesa; default auto", take_gl},
+    {"--record", "KIND", "record a light sweep or a turntable without a window", take_record},
+    {"-o", "OUT", "--record: a folder of PNG files, or FILE.mp4 (by ffmpeg)", take_output},
+    {"--frames", "N", "--record: pictures of the round; default 72", take_frames},
+    {"--no-config", NULL, "neither read nor write what the window remembers", take_no_config},
+    {"--window", NULL, "play --script in a window, which then stays", take_window},
+    {"--panel", NULL, "begin with the panel; offscreen: draw it as well", take_panel},
     {"--ball", NULL, "offscreen: draw the ball that shows the light, as the window does",
      take_ball},
     {"--help", NULL, "this text", NULL},
@@ -228,18 +373,25 @@ void options_help(void)
     puts("\n"
          "mouse:  drag         slab: turn; panorama: look around; picture: move\n"
          "        wheel        zoom\n"
-         "        right drag   turn the light (also: hold L and drag)\n"
-         "keys:   + -          exposure          [ ]   slab: nearer, farther\n"
-         "        B            light ball        R     reset           Esc   quit\n"
-         "        A relume file dropped onto the window is opened.\n\n"
+         "        right drag   turn the light\n"
+         "keys:");
+    for (const struct key_binding *b = key_bindings; b->key; b++)
+        if (b->shown)
+            printf("        %-12s %s\n", b->shown, b->what);
+    puts("        A relume file dropped onto the window is opened.\n\n"
          "A window shows a panorama as a perspective look ahead. --offscreen without a framing "
          "option\n"
          "shows what `relume relight` shows: planar files and panoramas their view 0, slabs the "
          "middle\n"
          "eye. Its picture fills --size; a window keeps the proportions.\n\n"
          "script: one event a line, # begins a comment:\n"
-         "        size 800 600             drag left|right x0 y0 x1 y1      wheel STEPS [x y]\n"
-         "        key K                    light \"dir 0 0 1\"                frame out.png\n\n"
+         "        size W H              wheel STEPS [X Y]\n"
+         "        drag left|right X0 Y0 X1 Y1 [S]   S: seconds that it takes\n"
+         "        click X Y             press, release left|right X Y    move X Y\n"
+         "        key K                 hold K, let K                    type TEXT\n"
+         "        light SPEC            add SPEC                         rig FILE\n"
+         "        wait [SECONDS]        frame OUT: the picture           shot OUT: with the "
+         "panel\n\n"
          "example:\n"
          "  relume-view teapot.exr --eye 0.2,0,3 --light \"dir 1 1 1\" --offscreen teapot.png");
 }
@@ -287,6 +439,11 @@ static bool asks_for_help(int argc, char **argv)
     return false;
 }
 
+void options_release(struct options *o)
+{
+    relume_rig_destroy(&o->rig);
+}
+
 relume_status options_parse(struct options *o, int argc, char **argv, const struct relume_log *log)
 {
     *o = (struct options){.gl = "auto", .vram_mb = 1024};
@@ -304,6 +461,10 @@ relume_status options_parse(struct options *o, int argc, char **argv, const stru
         if (status)
             return status;
     }
+    if (o->record != (o->output != NULL))
+        return say(log, RELUME_EINVAL, "expected --record KIND and -o OUT together");
+    if (!o->frames)
+        o->frames = RECORD_FRAMES;
     if (!o->file)
         return say(log, RELUME_EINVAL, "expected 'relume-view FILE'; see 'relume-view --help'");
     return RELUME_OK;

@@ -3,26 +3,36 @@
 #define VIEWER_OPTIONS_H
 
 #include "app.h"
+#include "record.h"
+
+#include <relume/rig.h>
 
 struct options {
     const char *file;       // NULL: only help was asked for
     const char *offscreen;  // picture to write without a window, or NULL
-    const char *script;     // events to play without a window, or NULL
+    const char *script;     // events to play, or NULL
+    const char *capture;    // to compare with, or NULL
+    bool record;            // a recording of `kind` into `output`, `frames` long
+    enum record_kind kind;
+    const char *output;
+    int frames;
+    bool no_config;
+    bool window;  // play them in a window
+    bool panel;   // begin with the panel
     struct app_state start;
-    bool sized;      // --size was given
-    const char *gl;  // what offscreen frames are drawn by: a name that context_offscreen knows
-    int threads;     // that read files; 0: all cores
-    double vram_mb;  // graphics memory for views
+    relume_rig *rig;  // of --rig and --light, NULL without either
+    bool sized;       // --size was given
+    const char *gl;   // what offscreen frames are drawn by: a name that context_offscreen knows
+    int threads;      // that read files; 0: all cores
+    double vram_mb;   // graphics memory for views
 };
 
-// RELUME_EINVAL with a sentence in `log`: unknown options, wrong values, no FILE.
+// RELUME_EINVAL with a sentence in `log`: unknown options, wrong values, no FILE. RELUME_EDATA,
+// RELUME_ENOMEM: a file that a light needs. In every case options_release comes after it.
 relume_status options_parse(struct options *options, int argc, char **argv,
                             const struct relume_log *log);
+void options_release(struct options *options);
 void options_help(void);
-
-// One directional light in words. RELUME_EINVAL with a sentence, RELUME_ENOMEM.
-relume_status options_light(struct relume_light *out, const char *spec,
-                            const struct relume_log *log);
 
 // "x,y,z": `count` numbers separated by commas or blanks and nothing else.
 bool options_numbers(const char *text, double *out, int count);

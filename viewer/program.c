@@ -46,13 +46,14 @@ static relume_status link_program(struct program *program, const struct gl *gl, 
     return say(log, RELUME_ESYSTEM, "shader %s does not link; %s", name, text);
 }
 
-relume_status program_create(struct program *program, const struct gl *gl, const char *fragment,
-                             const char *const *uniforms, int n, const struct relume_log *log)
+relume_status program_create_with(struct program *program, const struct gl *gl, const char *vertex,
+                                  const char *fragment, const char *const *uniforms, int n,
+                                  const struct relume_log *log)
 {
     assert(n <= PROGRAM_UNIFORMS);
     *program = (struct program){0};
     GLuint stages[2] = {0, 0};
-    relume_status status = compile(&stages[0], gl, GL_VERTEX_SHADER, "rectangle.vert", log);
+    relume_status status = compile(&stages[0], gl, GL_VERTEX_SHADER, vertex, log);
     if (!status)
         status = compile(&stages[1], gl, GL_FRAGMENT_SHADER, fragment, log);
     if (!status)
@@ -62,6 +63,12 @@ relume_status program_create(struct program *program, const struct gl *gl, const
     for (int i = 0; !status && i < n; i++)
         program->at[i] = gl->GetUniformLocation(program->id, uniforms[i]);
     return status;
+}
+
+relume_status program_create(struct program *program, const struct gl *gl, const char *fragment,
+                             const char *const *uniforms, int n, const struct relume_log *log)
+{
+    return program_create_with(program, gl, "rectangle.vert", fragment, uniforms, n, log);
 }
 
 void program_destroy(struct program *program, const struct gl *gl)

@@ -16,6 +16,10 @@ struct program {
 // of the caller's enum. RELUME_ESYSTEM with the compiler's words.
 relume_status program_create(struct program *program, const struct gl *gl, const char *fragment,
                              const char *const *uniforms, int n, const struct relume_log *log);
+// The same with a vertex shader of its own.
+relume_status program_create_with(struct program *program, const struct gl *gl, const char *vertex,
+                                  const char *fragment, const char *const *uniforms, int n,
+                                  const struct relume_log *log);
 void program_destroy(struct program *program, const struct gl *gl);
 
 #endif

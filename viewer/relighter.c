@@ -218,7 +218,8 @@ static relume_status take_loaded(struct relighter *r, int view)
             break;
         if (!r->view[loaded.view].array)
             status = keep(r, loaded.view, loaded.codes);
-        loader_drop(r->loader, loaded.view);
+        if (r->source.drop)
+            r->source.drop(r->source.user, loaded.view);
     }
     return status;
 }
@@ -395,13 +396,6 @@ static struct nearby_codes nearby_codes_of(const struct relit_view *v)
     return (struct nearby_codes){&v->codes, v->array[0], v->layers, formats[v->codes.storage].unit};
 }
 
-static relume_status find_surface(const struct relighter *r, int view, struct relume_image *out)
-{
-    if (r->loader)
-        return loader_surface(out, r->loader, view);
-    return r->source.surface ? r->source.surface(out, r->source.user, view) : RELUME_EINVAL;
-}
-
 static relume_status need_surface(struct relighter *r, struct relit_view *v)
 {
     struct relume_image surface = {0};
@@ -412,7 +406,8 @@ static relume_status need_surface(struct relighter *r, struct relit_view *v)
         return say(r->log, RELUME_ESYSTEM,
                    "near lights on %d planes: OpenGL has %d texture layers of four here",
                    v->codes.planes, r->gl->max_layers);
-    const relume_status status = find_surface(r, (int)(v - r->view), &surface);
+    const relume_status status = r->source.surface ? r->source.surface(&surface, r->source.user, (int)(v - r->view))
+                          : RELUME_EINVAL;
     if (status == RELUME_EINVAL)
         return say(r->log, RELUME_EDATA,
                    "a near light needs to know where the surface is; expected a file with depth");

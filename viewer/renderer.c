@@ -1,6 +1,9 @@
 #include "renderer.h"
 
+#include "lamps.h"
 #include "say.h"
+
+#include <relume/tone.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,8 +17,13 @@ static relume_status create_programs(struct renderer *r)
         struct program *program;
         relume_status (*create)(struct program *, const struct gl *, const struct relume_log *);
     } list[] = {
-        {&r->picture, draw_picture_create},   {&r->slab, draw_slab_create},
-        {&r->panorama, draw_panorama_create}, {&r->ball, draw_ball_create},
+        {&r->picture, draw_picture_create},
+        {&r->slab, draw_slab_create},
+        {&r->slab_depth, draw_slab_depth_create},
+        {&r->slab_lens, draw_slab_lens_create},
+        {&r->mean, draw_mean_create},
+        {&r->panorama, draw_panorama_create},
+        {&r->ball, draw_ball_create},
         {&r->present, draw_present_create},
     };
     relume_status status = RELUME_OK;
@@ -40,6 +48,8 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
     if (!status)
         status = relighter_create(&r->relighter, gl, source, views, log);
     if (!status)
+        status = enhancer_create(&r->enhancer, gl, source, geometry, uv, views, log);
+    if (!status)
         status = create_programs(r);
     if (!status && geometry->projection == RELUME_SLAB) {
         status = relume_slab_create(&r->grid, geometry, uv, views);
@@ -51,15 +61,31 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
     return status;
 }
 
+relume_status renderer_use_depth(struct renderer *r, const struct depth_source *source)
+{
+    return r->grid ? depths_create(&r->depths, r->gl, r->grid, source) : RELUME_OK;
+}
+
+void renderer_use_capture(struct renderer *r, const relume_capture *capture)
+{
+    r->enhancer.capture = capture;
+}
+
 void renderer_destroy(struct renderer *r)
 {
     if (!r->gl)
         return;
-    struct program *const programs[] = {&r->picture, &r->slab, &r->panorama, &r->ball, &r->present};
+    struct program *const programs[] = {&r->picture, &r->slab,     &r->slab_depth, &r->slab_lens,
+                                        &r->mean,    &r->panorama, &r->ball,       &r->present};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         program_destroy(programs[i], r->gl);
     relighter_destroy(&r->relighter);
+    enhancer_destroy(&r->enhancer);
     target_destroy(&r->frame, r->gl);
+    target_destroy(&r->small, r->gl);
+    target_destroy(&r->sum, r->gl);
+    if (r->depths.views)
+        depths_destroy(&r->depths);
     r->gl->DeleteVertexArrays(1, &r->vertices);
     relume_slab_destroy(&r->grid);
     free(r->uv);
@@ -70,14 +96,38 @@ void renderer_destroy(struct renderer *r)
 
 // ---------------------------------------------------------------- framings
 
+static relume_status prepare_target(struct target *target, const struct renderer *r, int width,
+                                    int height)
+{
+    if (target->width == width && target->height == height)
+        return RELUME_OK;
+    target_destroy(target, r->gl);
+    return target_create(target, r->gl, width, height, r->log);
+}
+
 static void mark_view(struct renderer *r, const struct app *app)
 {
     r->needed[app->now.camera.view] = true;
 }
 
+static double focus_of(const struct app *app)
+{
+    return app->now.focus_z - app->file.geometry.st_z;
+}
+
+static struct relume_view_params view_params(const struct app *app)
+{
+    return (struct relume_view_params){
+        .interpolation = app->now.interpolation,
+        .aperture = app->now.aperture,
+        .focus = focus_of(app),
+    };
+}
+
 static void mark_eye(struct renderer *r, const struct app *app)
 {
-    (void)relume_slab_needs(r->needed, r->grid, app->now.camera.eye, NULL);
+    const struct relume_view_params params = view_params(app);
+    (void)relume_slab_needs(r->needed, r->grid, app->now.camera.eye, &params);
 }
 
 static void mark_look(struct renderer *r, const struct app *app)
@@ -86,32 +136,76 @@ static void mark_look(struct renderer *r, const struct app *app)
     r->needed[0] = true;
 }
 
-static void draw_framed_view(const struct renderer *r, const struct app *app,
-                             const struct place *place)
+static relume_status draw_framed_view(struct renderer *r, const struct app *app,
+                                      const struct place *place)
 {
     draw_picture(&r->picture, r->gl, place, r->relit[app->now.camera.view]);
+    return RELUME_OK;
 }
 
-static void draw_framed_eye(const struct renderer *r, const struct app *app,
-                            const struct place *place)
+static bool takes_lens(const struct app *app)
 {
+    return app->now.aperture != 0.0 || focus_of(app) != 0.0;
+}
+
+// An eye at a camera sees its view alone, whatever the depth.
+static bool takes_depth(const struct renderer *r, const struct app *app)
+{
+    const enum relume_interpolation i = app->now.interpolation;
+    int views = 0;
+    for (int k = 0; k < r->views; k++)
+        views += r->needed[k];
+    return r->depths.views && views > 1 && !takes_lens(app) &&
+           (i == RELUME_INTERPOLATE_DEFAULT || i == RELUME_INTERPOLATE_DEPTH);
+}
+
+static relume_status draw_lens(struct renderer *r, const struct app *app, const struct place *place,
+                               const struct slab_seen *seen)
+{
+    relume_status status = prepare_target(&r->sum, r, place->width, place->height);
+    if (status)
+        return status;
+    target_begin(&r->sum, r->gl);
+    draw_slab_lens(&r->slab_lens, r->gl, place, seen, app->now.aperture, focus_of(app));
+    target_resume(&r->frame, r->gl);
+    draw_mean(&r->mean, r->gl, place, &r->sum);
+    return RELUME_OK;
+}
+
+static relume_status draw_framed_eye(struct renderer *r, const struct app *app,
+                                     const struct place *place)
+{
+    const struct slab_seen seen = {r->grid, &r->geometry, app->now.camera.eye, r->relit};
     bool any = false;
     for (int i = 0; i < r->views; i++)
         any |= r->needed[i];
-    if (any)
-        draw_slab(&r->slab, r->gl, place, r->grid, &r->geometry, app->now.camera.eye, r->relit);
+    if (!any)
+        return RELUME_OK;
+    if (takes_lens(app))
+        return draw_lens(r, app, place, &seen);
+    if (!takes_depth(r, app)) {
+        draw_slab(&r->slab, r->gl, place, &seen,
+                  app->now.interpolation == RELUME_INTERPOLATE_CONSTANT);
+        return RELUME_OK;
+    }
+    double range[2];
+    const relume_status status = depths_use(&r->depths, r->needed, range);
+    if (!status)
+        draw_slab_depth(&r->slab_depth, r->gl, place, &seen, r->depths.texture, range);
+    return status;
 }
 
-static void draw_framed_look(const struct renderer *r, const struct app *app,
-                             const struct place *place)
+static relume_status draw_framed_look(struct renderer *r, const struct app *app,
+                                      const struct place *place)
 {
     draw_panorama(&r->panorama, r->gl, place, &r->geometry, app->now.camera.look, r->relit[0]);
+    return RELUME_OK;
 }
 
 // Which views a framing needs, and how it is drawn from them.
 static const struct framing {
     void (*mark)(struct renderer *r, const struct app *app);
-    void (*draw)(const struct renderer *r, const struct app *app, const struct place *place);
+    relume_status (*draw)(struct renderer *r, const struct app *app, const struct place *place);
 } framings[] = {
     [RELUME_FRAME_VIEW] = {mark_view, draw_framed_view},
     [RELUME_FRAME_EYE] = {mark_eye, draw_framed_eye},
@@ -119,14 +213,6 @@ static const struct framing {
 };
 
 // ---------------------------------------------------------------- frame
-
-static relume_status prepare_frame(struct renderer *r, int width, int height)
-{
-    if (r->frame.width == width && r->frame.height == height)
-        return RELUME_OK;
-    target_destroy(&r->frame, r->gl);
-    return target_create(&r->frame, r->gl, width, height, r->log);
-}
 
 // How far apart the cameras of two views stand, squared.
 static double apart(const struct renderer *r, int a, int b)
@@ -164,11 +250,18 @@ static relume_status relight_needed(struct renderer *r, const struct app *app)
     const struct framing *framing = &framings[app->now.camera.framing];
     memset(r->needed, 0, (size_t)r->views * sizeof *r->needed);
     framing->mark(r, app);
-    relume_status status = relighter_begin(&r->relighter, app->now.light, app->now.lights);
+    struct relume_light lights[APP_LIGHTS];
+    const int count = lamps_shining(&app->now, lights);
+    relume_status status = relighter_begin(&r->relighter, lights, count);
+    relume_status (*const look_up)(const struct target **, struct relighter *, int) =
+        app->now.pass == RELUME_PASS_COLOUR ? relighter_view : relighter_wait;  // no stand-ins
     for (int i = 0; !status && i < r->views; i++) {
         r->relit[i] = NULL;
         if (r->needed[i])
-            status = relighter_view(&r->relit[i], &r->relighter, i);
+            status = look_up(&r->relit[i], &r->relighter, i);
+        if (!status && r->needed[i] && app->now.pass != RELUME_PASS_COLOUR)
+            status = enhancer_view(&r->relit[i], &r->enhancer, i, r->relit[i], app->now.pass,
+                                   lights, count);
     }
     return status ? status : stand_in(r);
 }
@@ -179,18 +272,21 @@ relume_status renderer_draw(struct renderer *r, const struct app *app)
         .width = app->width,
         .height = app->height,
         .picture = app_picture(app),
-        .exposure = (float)exp2(app->now.exposure_ev),
+        .exposure = (float)exp2(app_exposure_ev(app)),
     };
-    relume_status status = prepare_frame(r, app->width, app->height);
+    relume_status status = prepare_target(&r->frame, r, app->width, app->height);
     if (!status)
         status = relight_needed(r, app);
     if (status)
         return status;
     r->gl->BindVertexArray(r->vertices);
     target_begin(&r->frame, r->gl);
-    framings[app->now.camera.framing].draw(r, app, &place);
+    status = framings[app->now.camera.framing].draw(r, app, &place);
+    if (status)
+        return status;
     if (app->now.ball)
-        draw_ball(&r->ball, r->gl, &place, app_seen_light(app, 0), app->now.light[0].rgb);
+        draw_ball(&r->ball, r->gl, &place, app_seen_light(app, app->now.selected),
+                  app->now.light[app->now.selected].rgb);
     return gl_check(r->gl, "drawing", r->log);
 }
 
@@ -209,7 +305,29 @@ relume_status renderer_read(struct relume_image *out, const struct renderer *r)
     return target_read(out, &r->frame, r->gl);
 }
 
-void renderer_present(const struct renderer *r)
+relume_status renderer_meter(double *ev, struct renderer *r)
 {
-    draw_present(&r->present, r->gl, &r->frame);
+    enum { SIDE = 128 };
+    const int width = r->frame.width < SIDE ? r->frame.width : SIDE;
+    const int height = r->frame.height < SIDE ? r->frame.height : SIDE;
+    const struct place place = {width, height, {0, 0, width, height}, 1};
+    struct relume_image image;
+    *ev = 0;
+    relume_status status = prepare_target(&r->small, r, width, height);
+    if (status)
+        return status;
+    r->gl->BindVertexArray(r->vertices);
+    target_begin(&r->small, r->gl);
+    draw_picture(&r->picture, r->gl, &place, &r->frame);
+    status = target_read(&image, &r->small, r->gl);
+    if (!status)
+        *ev = relume_tone_meter(&image);
+    relume_image_destroy(&image);
+    return status;
+}
+
+void renderer_present(const struct renderer *r, const struct app *app, GLuint framebuffer)
+{
+    r->gl->BindVertexArray(r->vertices);
+    draw_present(&r->present, r->gl, &r->frame, app->now.tone, app->now.white, framebuffer);
 }

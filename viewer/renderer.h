@@ -3,17 +3,23 @@
 #define VIEWER_RENDERER_H
 
 #include "app.h"
+#include "depths.h"
 #include "draw.h"
+#include "enhancer.h"
 #include "relighter.h"
 
 struct renderer {
     const struct gl *gl;
     const struct relume_log *log;
     struct relighter relighter;
-    struct program picture, slab, panorama, ball, present;
+    struct enhancer enhancer;
+    struct program picture, slab, slab_depth, slab_lens, mean, panorama, ball, present;
     GLuint vertices;
     struct target frame;
-    relume_slab *grid;  // NULL: not a slab
+    struct target small;   // of the frame, to meter
+    struct target sum;     // of an aperture's cameras; made when first needed
+    relume_slab *grid;     // NULL: not a slab
+    struct depths depths;  // empty: not a slab, or without depth
     struct relume_geometry geometry;
     int views;
     double (*uv)[2];              // [views]
@@ -28,6 +34,12 @@ relume_status renderer_create(struct renderer *renderer, const struct gl *gl,
                               int views, const struct relume_log *log);
 void renderer_destroy(struct renderer *renderer);
 
+// The views of a slab have depth. RELUME_ENOMEM.
+relume_status renderer_use_depth(struct renderer *renderer, const struct depth_source *source);
+
+// A capture of the file to compare with, for RELUME_PASS_DIFFERENCE; it must outlive the renderer.
+void renderer_use_capture(struct renderer *renderer, const relume_capture *capture);
+
 // Draw the frame that `app` describes, linear, into renderer->frame. After renderer_stream, views
 // that are still being read are stood in for by their nearest neighbours, and renderer_is_pending
 // tells that another frame would be better.
@@ -36,7 +48,10 @@ bool renderer_is_pending(const struct renderer *renderer);
 relume_status renderer_draw(struct renderer *renderer, const struct app *app);
 // The last frame as an image, linear; the caller destroys it.
 relume_status renderer_read(struct relume_image *out, const struct renderer *renderer);
-// The last frame onto the screen.
-void renderer_present(const struct renderer *renderer);
+// What relume_tone_meter says of the last frame, seen through a small copy of it.
+relume_status renderer_meter(double *ev, struct renderer *renderer);
+// The last frame by the app's tone onto a framebuffer of its size, coded for the screen (0: the
+// screen).
+void renderer_present(const struct renderer *renderer, const struct app *app, GLuint framebuffer);
 
 #endif

@@ -1,15 +1,37 @@
-// script.h - a text file of events, played through the app as if a user made them
+// script.h - a text file of events, played as if a user made them
 #ifndef VIEWER_SCRIPT_H
 #define VIEWER_SCRIPT_H
 
 #include "app.h"
 
-// Called for `frame FILE`: draw what `app` describes and write it.
-typedef relume_status script_frame(void *user, const struct app *app, const char *path);
+// Who acts on what a script says. `user` is handed to every function; statuses other than RELUME_OK
+// end the script.
+struct script_host {
+    void *user;
+    struct app *app;  // asked for sizes only
+    void (*send)(void *user, const struct app_event *event);
+    // `light SPEC` (in place of all lights) and `add SPEC`. RELUME_EINVAL, RELUME_EDATA with a
+    // sentence.
+    relume_status (*light)(void *user, const char *spec, bool replace);
+    relume_status (*rig)(void *user, const char *path);
+    // Let time pass: `seconds` of it, or until nothing moves when negative.
+    relume_status (*wait)(void *user, double seconds);
+    relume_status (*frame)(void *user, const char *path);  // the picture alone
+    relume_status (*shot)(void *user, const char *path);   // with all that is drawn over it
+    const struct relume_log *log;
+};
 
-// Play the file `path`; its words are in options_help(). RELUME_EDATA names the line that is wrong;
-// else what `frame` returned. Ends early when an event quits the app.
-relume_status script_play(struct app *app, const char *path, script_frame *frame, void *user,
-                          const struct relume_log *log);
+// An open script. Thread-safety: one thread at a time.
+struct script;
+
+// RELUME_EDATA, RELUME_ENOMEM.
+relume_status script_open(struct script **out, const char *path, const struct script_host *host);
+// Play one line; `*more` is false behind the last. RELUME_EDATA names the line and column that are
+// wrong.
+relume_status script_step(struct script *script, bool *more);
+void script_close(struct script **script);
+
+// All of it, or until an event quits the app.
+relume_status script_play(const char *path, const struct script_host *host);
 
 #endif

@@ -3,6 +3,8 @@
 #define RELUME_FRAME_H
 
 #include <relume/base.h>
+#include <relume/capture.h>
+#include <relume/enhance.h>
 #include <relume/image.h>
 #include <relume/pack.h>
 #include <relume/relight.h>
@@ -31,13 +33,16 @@ struct relume_frame_params {
     const struct relume_log *log;
     unsigned cpu_off;  // as relume_relight_params
     int threads;       // default: all cores
-    bool constant;     // slab: nearest view
     // Where near lights meet views without depth: this far along every ray, world units; default:
     // planar views lie on z = 0, others are refused.
     double assume_depth;
     // Of the file's coder (relume_weight_grid_create), for near lights and environments in many
     // frames; default: made for the frame.
     const relume_weight_grid *grid;
+    enum relume_pass pass;          // of every view, before they become a frame
+    const relume_capture *capture;  // PASS_DIFFERENCE: of the file; the nearest view and light count
+    enum relume_interpolation interpolation;  // slab; default: by depth where the file has it
+    double aperture, focus;                   // slab; as relume_view_params
 };
 #define relume_frame_params(...) (&(const struct relume_frame_params){__VA_ARGS__})
 

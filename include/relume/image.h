@@ -60,6 +60,9 @@ RELUME_RESULT relume_status relume_image_load(struct relume_image *out, const ch
 RELUME_RESULT relume_status relume_image_save(const struct relume_image *image, const char *path,
                                               const struct relume_image_params *params);
 
+// Whether relume_image_save would write linear light under that name.
+RELUME_API bool relume_image_saves_linear(const char *path);
+
 // How far `image` is from `reference`. All but rms and max_abs are of display values:
 // coded by `display`, clipped to [0, 1].
 struct relume_difference {

@@ -6,6 +6,7 @@
 #include <relume/capture.h>
 #include <relume/codebook.h>
 #include <relume/coder.h>
+#include <relume/enhance.h>
 #include <relume/evaluate.h>
 #include <relume/exchange.h>
 #include <relume/frame.h>
@@ -13,10 +14,12 @@
 #include <relume/image.h>
 #include <relume/light.h>
 #include <relume/lights.h>
+#include <relume/normals.h>
 #include <relume/pack.h>
 #include <relume/relight.h>
 #include <relume/rig.h>
 #include <relume/scene.h>
+#include <relume/tone.h>
 #include <relume/view.h>
 
 #endif

@@ -10,9 +10,28 @@
 extern "C" {
 #endif
 
+// How a slab's cameras become one ray.
+enum relume_interpolation {
+    RELUME_INTERPOLATE_DEFAULT = 0,  // by depth where disparities are given, else linear
+    RELUME_INTERPOLATE_CONSTANT,     // the nearest camera
+    RELUME_INTERPOLATE_LINEAR,       // quadralinear: four cameras, all looking at the st plane
+    RELUME_INTERPOLATE_DEPTH,        // four cameras, each where it sees the surface of the ray
+};
+// "constant", "linear", "depth". RELUME_EINVAL when `name` is none of these.
+RELUME_RESULT relume_status relume_interpolation_parse(enum relume_interpolation *out,
+                                                       const char *name);
+
+// All but `threads` is of slabs.
 struct relume_view_params {
-    int threads;    // default: all cores
-    bool constant;  // slab: the nearest view instead of the quadralinear basis
+    int threads;  // default: all cores
+    enum relume_interpolation interpolation;
+    // By view number, as relume_slab_disparity makes them, read where views are. NULL: not known.
+    const struct relume_image *disparity;
+    // Synthetic aperture: its diameter on the uv plane, world units, and how far the plane in focus
+    // lies from the st plane (z minus st_z). With either of them not 0 all cameras within the
+    // aperture are averaged in linear light, whatever `interpolation` says. Default: a pinhole, the
+    // st plane in focus.
+    double aperture, focus;
 };
 #define relume_view_params(...) (&(const struct relume_view_params){__VA_ARGS__})
 
@@ -58,6 +77,31 @@ RELUME_API bool relume_slab_uv(double uv[2], const relume_slab *slab, struct rel
 RELUME_API int relume_slab_blend(int view[4], double weight[4], const relume_slab *slab,
                                  const double uv[2], const struct relume_view_params *params);
 
+// Depth as disparity: `*out` is created with one channel. A point of disparity q that the camera at
+// c sees in (s, t) is seen by the camera at c' in (s, t) + q (c - c'): 0 on the st plane, rising
+// towards the cameras, RELUME_SLAB_BACKGROUND where `depth` is infinite. `depth` is one channel of
+// distances along the rays of the camera at `uv`. RELUME_EINVAL, RELUME_ENOMEM.
+#define RELUME_SLAB_BACKGROUND (-1.0f)
+RELUME_RESULT relume_status relume_slab_disparity(struct relume_image *out, const relume_slab *slab,
+                                                  const double uv[2],
+                                                  const struct relume_image *depth);
+// The least and the greatest of such an image, background left out; false when all is background.
+RELUME_API bool relume_slab_range(double range[2], const struct relume_image *disparity);
+// The disparity of the plane at height z; that which is nearest to an eye, infinite for one on or
+// beyond the uv plane. What rises above it lies behind the eye.
+RELUME_API double relume_slab_plane_disparity(const relume_slab *slab, double z);
+RELUME_API double relume_slab_eye_disparity(const relume_slab *slab, struct relume_vec3 eye);
+
+// What a camera weighs in a frame through an aperture of `radius` around the point `uv` of the uv
+// plane, not normalised.
+struct relume_slab_lens {
+    double place[2];    // u, v of the camera
+    double step[2][2];  // u, v: to the next line of the grid below and above
+};
+RELUME_API struct relume_slab_lens relume_slab_lens(const relume_slab *slab, int column, int row);
+RELUME_API double relume_slab_lens_weight(const struct relume_slab_lens *camera,
+                                          const double uv[2], double radius);
+
 // Mark in needed[views] the views that a frame from `eye` can touch (seed Fig 8-13); returns how
 // many, 0 when the eye sees nothing of the slab.
 RELUME_API int relume_slab_needs(bool *needed, const relume_slab *slab, struct relume_vec3 eye,
@@ -65,8 +109,9 @@ RELUME_API int relume_slab_needs(bool *needed, const relume_slab *slab, struct r
 
 // The window st_min..st_max as seen from `eye`. `views` are the relit images by view number, read
 // where needed; a pixel whose ray misses the uv grid is black. `out` has the wanted size already.
-// A captured eye and size give back that view bit by bit. RELUME_EINVAL for an eye that sees
-// nothing or a needed view that is missing or of another size; RELUME_ENOMEM.
+// A captured eye and size give back that view bit by bit, unless an aperture or a focus is given.
+// RELUME_EINVAL for an eye that sees nothing, a needed view or disparity that is missing or of
+// another size, a plane of focus on or behind the cameras; RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_slab_frame(struct relume_image *out, const relume_slab *slab,
                                               struct relume_vec3 eye,
                                               const struct relume_image *views,
@@ -74,9 +119,12 @@ RELUME_RESULT relume_status relume_slab_frame(struct relume_image *out, const re
 
 // ------------------------------------------------------------------ panorama
 // Angles in degrees: pan > 0 turns right (-z towards +x), tilt > 0 looks up; tilt is applied
-// first, then pan. The horizontal field of view is 2 atan(1 / zoom).
+// first, then pan. The horizontal field of view is 2 atan(1 / zoom), of a stereographic look twice
+// that: it shows up to nearly everything, circles stay circles, and tilted by -90 it is a little
+// planet.
 struct relume_look {
     double pan_deg, tilt_deg, zoom;  // zoom 0 means 1
+    bool stereographic;              // instead of perspective
 };
 
 // Unit direction through the (fractional) position (x, y) of a width x height frame; pixel centres
@@ -99,7 +147,7 @@ RELUME_API bool relume_panorama_sample(float rgb[3], const struct relume_geometr
                                        const struct relume_image *image,
                                        struct relume_vec3 direction);
 
-// A perspective frame; `out` has the wanted size already. RELUME_EINVAL when `image` is no panorama
+// A frame; `out` has the wanted size already. RELUME_EINVAL when `image` is no panorama
 // of three channels or `look` is not finite.
 RELUME_RESULT relume_status relume_panorama_frame(struct relume_image *out,
                                                   const struct relume_geometry *geometry,

@@ -41,6 +41,9 @@ static relume_status query(const struct args *args, const struct relume_light *l
     struct relume_frame_params params = parse_frame(args);
     params.log = prefix_log(&about, args_log(args), args_input(args, 0));
     if (!status)
+        params.interpolation =
+            args_has(args, "--nearest") ? RELUME_INTERPOLATE_CONSTANT : RELUME_INTERPOLATE_LINEAR;
+    if (!status)
         status = relume_query(rgb, pack, eye, direction, lights, count, &params);
     if (!status)
         print(args, rgb);

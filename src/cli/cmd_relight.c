@@ -2,6 +2,7 @@
 #include "frame_options.h"
 
 #include <math.h>
+#include <string.h>
 
 static const struct option options[] = {
     {"-o", OPTION_TEXT, "OUT", "picture to write: .exr (linear), .png, .jpg, .tif, .hdr, ...", 0,
@@ -13,9 +14,24 @@ static const struct option options[] = {
     {"--pan", OPTION_NUMBER, "A", "panorama: degrees to the right", 0, 0},
     {"--tilt", OPTION_NUMBER, "A", "panorama: degrees up", 0, 0},
     {"--zoom", OPTION_NUMBER, "F", "panorama: 1 shows 90 degrees; default: 1", 0.01, 1000},
+    {"--projection", OPTION_TEXT, "P",
+     "panorama: perspective (default), stereographic, planet (looking down on it)", 0, 0},
     {"--size", OPTION_TEXT, "WxH", "size of an --eye or --pan frame", 0, 0},
-    {"--nearest", OPTION_FLAG, NULL, "slab: nearest view instead of the quadralinear basis", 0, 0},
-    {"--exposure", OPTION_NUMBER, "EV", "multiply by 2^EV; default: 0", -100, 100},
+    {"--interpolate", OPTION_TEXT, "I",
+     "slab: constant, linear or depth; default: depth where the file has it, else linear", 0, 0},
+    {"--nearest", OPTION_FLAG, NULL, "slab: the same as --interpolate constant", 0, 0},
+    {"--aperture", OPTION_NUMBER, "A",
+     "slab: average the cameras within A/2 of the eye; default: 0", 0, 1e9},
+    {"--focus", OPTION_NUMBER, "Z", "slab: the plane at z = Z is sharp; default: the st plane", 0,
+     0},
+    {"--exposure", OPTION_TEXT, "EV", "multiply by 2^EV, or auto: a mid grey; default: 0", 0, 0},
+    {"--tone", OPTION_TEXT, "T",
+     "linear (clip, default), reinhard or filmic; .exr, .hdr and .pfm stay linear", 0, 0},
+    {"--white", OPTION_NUMBER, "L", "reinhard: the luminance that becomes white; default: 4", 1e-3,
+     1e6},
+    {"--pass", OPTION_TEXT, "NAME",
+     "colour, normals, specular, diffuse-gain, unsharp, luminance, false-colour, difference", 0, 0},
+    {"--capture", OPTION_TEXT, "CAPTURE", "--pass difference: the photographs", 0, 0},
     CPU_OPTION,
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
@@ -33,52 +49,165 @@ static relume_status parse_size(const char *text, struct relume_camera *camera)
         "--size: expected WIDTHxHEIGHT, at most 65536 a side and 2^30 pixels; found '%s'", text);
 }
 
+static relume_status parse_look(const struct args *args, struct relume_look *look)
+{
+    static const char *const names[] = {"perspective", "stereographic", "planet", NULL};
+    const char *name = args_text(args, "--projection", names[0]);
+    int which = 0;
+    while (names[which] && strcmp(names[which], name))
+        which++;
+    if (!names[which])
+        return unknown_name("--projection", name, names);
+    const bool planet = which == 2;
+    look->stereographic = which > 0;
+    look->pan_deg = args_number(args, "--pan", 0.0);
+    look->tilt_deg = args_number(args, "--tilt", planet ? -90.0 : 0.0);
+    look->zoom = args_number(args, "--zoom", planet ? 0.5 : 1.0);
+    return RELUME_OK;
+}
+
 static relume_status parse_camera(const struct args *args, struct relume_camera *camera)
 {
-    const bool look =
-        args_has(args, "--pan") || args_has(args, "--tilt") || args_has(args, "--zoom");
+    const bool look = args_has(args, "--pan") || args_has(args, "--tilt") ||
+                      args_has(args, "--zoom") || args_has(args, "--projection");
+    relume_status status = RELUME_OK;
     *camera = (struct relume_camera){0};
     if (args_has(args, "--view") + args_has(args, "--eye") + look > 1)
-        return usage_error("relight: expected one of --view, --eye, --pan/--tilt/--zoom");
+        return usage_error(
+            "relight: expected one of --view, --eye, --pan/--tilt/--zoom/--projection");
     if (args_has(args, "--view")) {
         camera->framing = RELUME_FRAME_VIEW;
         camera->view = args_int(args, "--view", 0);
     } else if (args_has(args, "--eye")) {
         camera->framing = RELUME_FRAME_EYE;
-        const relume_status status =
-            args_vec3(&camera->eye, "--eye", args_text(args, "--eye", NULL));
-        if (status)
-            return status;
+        status = args_vec3(&camera->eye, "--eye", args_text(args, "--eye", NULL));
     } else if (look) {
         camera->framing = RELUME_FRAME_LOOK;
-        camera->look.pan_deg = args_number(args, "--pan", 0.0);
-        camera->look.tilt_deg = args_number(args, "--tilt", 0.0);
-        camera->look.zoom = args_number(args, "--zoom", 1.0);
+        status = parse_look(args, &camera->look);
     }
-    return parse_size(args_text(args, "--size", NULL), camera);
+    return status ? status : parse_size(args_text(args, "--size", NULL), camera);
+}
+
+static relume_status parse_slab(const struct args *args, struct relume_frame_params *params)
+{
+    static const char *const names[] = {"constant", "linear", "depth", NULL};
+    const bool nearest = args_has(args, "--nearest");
+    const bool named = args_has(args, "--interpolate");
+    const bool lens = args_has(args, "--aperture") || args_has(args, "--focus");
+    if (nearest + named + lens > 1)
+        return usage_error("relight: expected one of --interpolate, --nearest, --aperture/--focus");
+    if (nearest)
+        params->interpolation = RELUME_INTERPOLATE_CONSTANT;
+    else if (lens)
+        params->interpolation = RELUME_INTERPOLATE_LINEAR;
+    params->aperture = args_number(args, "--aperture", 0.0);
+    if (named &&
+        relume_interpolation_parse(&params->interpolation, args_text(args, "--interpolate", NULL)))
+        return unknown_name("--interpolate", args_text(args, "--interpolate", NULL), names);
+    return RELUME_OK;
+}
+
+static relume_status parse_pass(const struct args *args, struct relume_frame_params *params)
+{
+    const char *name = args_text(args, "--pass", relume_pass_name(RELUME_PASS_COLOUR));
+    const char *names[RELUME_PASSES + 1] = {NULL};
+    for (int i = 0; i < RELUME_PASSES; i++)
+        names[i] = relume_pass_name((enum relume_pass)i);
+    if (relume_pass_parse(&params->pass, name))
+        return unknown_name("--pass", name, names);
+    const bool difference = params->pass == RELUME_PASS_DIFFERENCE;
+    if (difference != args_has(args, "--capture"))
+        return usage_error("relight: expected --pass difference and --capture together");
+    return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- exposure and tone
+
+struct developing {
+    struct relume_tone_params tone;
+    bool automatic;
+};
+
+static relume_status parse_developing(const struct args *args, struct developing *d)
+{
+    const char *exposure = args_text(args, "--exposure", "0");
+    const char *tone = args_text(args, "--tone", relume_tone_linear.name);
+    const char *names[16] = {NULL};
+    *d = (struct developing){.automatic = !strcmp(exposure, "auto")};
+    if (!d->automatic && (!parse_numbers(exposure, &d->tone.exposure_ev, 1) ||
+                          !(fabs(d->tone.exposure_ev) <= 100.0)))
+        return usage_error("--exposure: expected a number from -100 to 100, or auto; found '%s'",
+                           exposure);
+    for (int i = 0; relume_tones[i]; i++)
+        names[i] = relume_tones[i]->name;
+    d->tone.white = args_number(args, "--white", 0.0);
+    d->tone.tone = relume_tone_find(tone);
+    return d->tone.tone ? RELUME_OK : unknown_name("--tone", tone, names);
+}
+
+static void expose(struct relume_image *frame, double ev)
+{
+    const float gain = exp2f((float)ev);
+    const size_t samples = (size_t)frame->width * (size_t)frame->height * 3;
+    for (size_t i = 0; i < samples; i++)
+        frame->data[i] *= gain;
+}
+
+static relume_status develop(struct relume_image *frame, struct developing d, const char *path)
+{
+    if (d.automatic)
+        d.tone.exposure_ev = relume_tone_meter(frame);
+    if (!relume_image_saves_linear(path))
+        return relume_tone_apply(frame, &d.tone);
+    expose(frame, d.tone.exposure_ev);
+    return RELUME_OK;
+}
+
+static relume_status open_capture(const struct args *args, relume_capture **capture)
+{
+    const char *path = args_text(args, "--capture", NULL);
+    return path ? relume_capture_open(capture, path, relume_capture_params(.log = args_log(args)))
+                : RELUME_OK;
+}
+
+// Linear pictures hold the vectors; others the codes (n + 1) / 2, as normal maps do.
+static void show_normals(struct relume_image *frame, const char *path)
+{
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    const size_t samples = (size_t)frame->width * (size_t)frame->height * 3;
+    for (size_t i = 0; !relume_image_saves_linear(path) && i < samples; i++)
+        frame->data[i] = relume_transfer_decode(srgb, 0.5f * frame->data[i] + 0.5f);
 }
 
 static relume_status render(const struct args *args, const struct relume_camera *camera,
+                            struct relume_frame_params params, struct developing developing,
                             const struct relume_light *lights, int count)
 {
     relume_pack *pack;
+    relume_capture *capture = NULL;
     struct prefix_log about;
     struct relume_image frame = {0};
+    const char *output = args_text(args, "-o", NULL);
     relume_status status =
         relume_pack_open(&pack, args_input(args, 0),
                          relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
-    struct relume_frame_params params = parse_frame(args);
+    if (status)
+        return status;
+    const double st_z = relume_pack_info(pack)->geometry.st_z;
     params.log = prefix_log(&about, args_log(args), args_input(args, 0));
+    params.focus = args_number(args, "--focus", st_z) - st_z;
+    status = open_capture(args, &capture);
+    params.capture = capture;
     if (!status)
         status = relume_frame(&frame, pack, camera, lights, count, &params);
-    const float gain = exp2f((float)args_number(args, "--exposure", 0.0));
-    const size_t samples = (size_t)frame.width * (size_t)frame.height * 3;
-    for (size_t i = 0; !status && i < samples; i++)
-        frame.data[i] *= gain;
+    if (!status && params.pass == RELUME_PASS_NORMALS)
+        show_normals(&frame, output);
+    else if (!status)
+        status = develop(&frame, developing, output);
     if (!status)
-        status = relume_image_save(&frame, args_text(args, "-o", NULL),
-                                   relume_image_params(.log = args_log(args)));
+        status = relume_image_save(&frame, output, relume_image_params(.log = args_log(args)));
     relume_image_destroy(&frame);
+    relume_capture_destroy(&capture);
     relume_pack_destroy(&pack);
     return status;
 }
@@ -86,6 +215,8 @@ static relume_status render(const struct args *args, const struct relume_camera 
 static relume_status run(const struct args *args)
 {
     struct relume_camera camera;
+    struct relume_frame_params params = parse_frame(args);
+    struct developing developing;
     relume_rig *rig = NULL;
     const struct relume_light *lights;
     int count;
@@ -93,9 +224,15 @@ static relume_status run(const struct args *args)
         return usage_error("relight: expected -o OUT");
     relume_status status = parse_camera(args, &camera);
     if (!status)
+        status = parse_slab(args, &params);
+    if (!status)
+        status = parse_pass(args, &params);
+    if (!status)
+        status = parse_developing(args, &developing);
+    if (!status)
         status = parse_lights(args, &rig, &lights, &count);
     if (!status)
-        status = render(args, &camera, lights, count);
+        status = render(args, &camera, params, developing, lights, count);
     relume_rig_destroy(&rig);
     return status;
 }

@@ -38,7 +38,6 @@ struct relume_frame_params parse_frame(const struct args *args)
     return (struct relume_frame_params){
         .cpu_off = args_has(args, "--cpu-mask") ? ~(unsigned)args_int(args, "--cpu-mask", 0) : 0u,
         .threads = args_threads(args),
-        .constant = args_has(args, "--nearest"),
         .assume_depth = args_number(args, "--assume-depth", 0.0),
     };
 }

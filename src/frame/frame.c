@@ -2,6 +2,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "frame/passes.h"
 #include "math/vec.h"
 
 struct renderer {
@@ -30,7 +31,10 @@ static struct renderer renderer_of(relume_pack *pack, const struct relume_light 
         .light_count = n,
         .params = p,
         .shared = shared,
-        .view = {.threads = p.threads, .constant = p.constant},
+        .view = {.threads = p.threads,
+                 .interpolation = p.interpolation,
+                 .aperture = p.aperture,
+                 .focus = p.focus},
     };
 }
 
@@ -109,6 +113,8 @@ static relume_status relight_view(const struct renderer *r, int view, struct rel
             out, codes, r->lights, r->light_count,
             relume_relight_params(.log = r->params.log, .cpu_off = r->params.cpu_off,
                                   .threads = r->params.threads, .surface = &surface, .grid = grid));
+    if (!status)
+        status = passes_apply(out, r->pack, view, codes, r->lights, r->light_count, &r->params);
     relume_image_destroy(&surface);
     if (!status && !log_progress(r->params.log, "relighting", 1.0))
         return RELUME_ECANCEL;
@@ -145,6 +151,67 @@ static relume_status relight_needed(const struct renderer *r, const bool *needed
     return status;
 }
 
+static bool takes_depth(const struct renderer *r)
+{
+    const struct relume_view_params *v = &r->view;
+    return r->info->has_depth && v->aperture == 0.0 && v->focus == 0.0 &&
+           (v->interpolation == RELUME_INTERPOLATE_DEFAULT ||
+            v->interpolation == RELUME_INTERPOLATE_DEPTH);
+}
+
+static relume_status find_disparity(const struct renderer *r, const relume_slab *slab,
+                                    const bool *needed, struct relume_image *images)
+{
+    relume_status status = RELUME_OK;
+    for (int v = 0; !status && v < r->info->views; v++) {
+        struct relume_image depth = {0};
+        if (!needed[v])
+            continue;
+        status = relume_pack_depth(&depth, r->pack, v);
+        if (!status)
+            status = relume_slab_disparity(&images[v], slab, r->info->uv[v], &depth);
+        relume_image_destroy(&depth);
+    }
+    return status;
+}
+
+static relume_status draw_slab(const struct renderer *r, struct relume_image *out,
+                               const relume_slab *slab, struct relume_vec3 eye, const bool *needed,
+                               const struct relume_image *images)
+{
+    struct relume_view_params params = r->view;
+    const size_t views = (size_t)r->info->views;
+    struct relume_image *disparity = NULL;
+    relume_status status = RELUME_OK;
+    if (takes_depth(r)) {
+        disparity = mem_zeroed(views, sizeof *disparity);
+        params.disparity = disparity;
+        status = disparity ? find_disparity(r, slab, needed, disparity) : RELUME_ENOMEM;
+    }
+    if (!status)
+        status = relume_slab_frame(out, slab, eye, images, &params);
+    for (size_t v = 0; disparity && v < views; v++)
+        relume_image_destroy(&disparity[v]);
+    free(disparity);
+    return status;
+}
+
+static relume_status check_slab(const struct renderer *r)
+{
+    const struct relume_geometry *g = &r->info->geometry;
+    const struct relume_view_params *v = &r->view;
+    if (v->interpolation == RELUME_INTERPOLATE_DEPTH && !r->info->has_depth)
+        return log_fail(r->params.log, RELUME_EDATA,
+                        "interpolation by depth needs to know where the surface is; expected a "
+                        "file with depth");
+    if (!(v->focus / (g->uv_z - g->st_z) < 1.0))
+        return log_fail(r->params.log, RELUME_EINVAL,
+                        "the plane in focus lies on or behind the cameras; expected one between "
+                        "z = %g and the scene, found z = %g",
+                        g->uv_z, g->st_z + v->focus);
+    return RELUME_OK;
+}
+
 static relume_status render_eye(const struct renderer *r, const struct relume_camera *camera,
                                 struct relume_image *out)
 {
@@ -153,8 +220,10 @@ static relume_status render_eye(const struct renderer *r, const struct relume_ca
         return log_fail(log, RELUME_EINVAL, "an eye needs a light slab; this file is %s",
                         relume_projection_name(r->info->geometry.projection));
     relume_slab *slab;
-    relume_status status =
-        relume_slab_create(&slab, &r->info->geometry, r->info->uv, r->info->views);
+    relume_status status = check_slab(r);
+    if (status)
+        return status;
+    status = relume_slab_create(&slab, &r->info->geometry, r->info->uv, r->info->views);
     if (status)
         return log_fail(log, status == RELUME_EINVAL ? RELUME_EDATA : status,
                         "the cameras of the slab do not form a grid");
@@ -176,7 +245,7 @@ static relume_status render_eye(const struct renderer *r, const struct relume_ca
         status = relume_image_create(out, camera->width ? camera->width : r->info->width,
                                      camera->height ? camera->height : r->info->height, 3);
     if (!status)
-        status = relume_slab_frame(out, slab, eye, images, &r->view);
+        status = draw_slab(r, out, slab, eye, needed, images);
     for (size_t v = 0; images && v < views; v++)
         relume_image_destroy(&images[v]);
     free(images);

@@ -271,6 +271,11 @@ static bool is_device(const char *path)
            !S_ISDIR(s.st_mode);
 }
 
+bool relume_image_saves_linear(const char *path)
+{
+    return has_extension(path, ".exr") || is_device(path) || oiio_writes_floats(path);
+}
+
 relume_status relume_image_save(const struct relume_image *image, const char *path,
                                 const struct relume_image_params *params)
 {

@@ -234,8 +234,11 @@ struct relume_vec3 relume_look_ray(struct relume_look look, int width, int heigh
     const double b = (height - 2.0 * y) / width * reach;
     const double tilt = look.tilt_deg * PI / 180.0;
     const double pan = look.pan_deg * PI / 180.0;
-    const double up = b * cos(tilt) + sin(tilt);
-    const double ahead = cos(tilt) - b * sin(tilt);
+    // The ray before it is turned; stereographic: seen from the far end of a sphere's axis.
+    const double square = look.stereographic ? a * a + b * b : 0.0;
+    const double depth = look.stereographic ? 0.5 * (1.0 - square) : 1.0;
+    const double up = b * cos(tilt) + depth * sin(tilt);
+    const double ahead = depth * cos(tilt) - b * sin(tilt);
     return vec3_unit(vec3_of(a * cos(pan) + ahead * sin(pan), up, a * sin(pan) - ahead * cos(pan)));
 }
 

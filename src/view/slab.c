@@ -209,10 +209,15 @@ struct neighbours slab_rows_at(const relume_slab *slab, bool constant, double v)
     return find_neighbours(slab->v, slab->rows, slab->slack, constant, v);
 }
 
+static bool takes_nearest(const struct relume_view_params *params)
+{
+    return params && params->interpolation == RELUME_INTERPOLATE_CONSTANT && !slab_is_lens(params);
+}
+
 int relume_slab_blend(int view[4], double weight[4], const relume_slab *slab, const double uv[2],
                       const struct relume_view_params *params)
 {
-    const bool constant = params && params->constant;
+    const bool constant = takes_nearest(params);
     const struct neighbours across = slab_columns_at(slab, constant, uv[0]);
     const struct neighbours down = slab_rows_at(slab, constant, uv[1]);
     int n = 0;
@@ -227,12 +232,12 @@ int relume_slab_blend(int view[4], double weight[4], const relume_slab *slab, co
 
 // ---------------------------------------------------------------- which views
 
-// The lines with weight anywhere between the points `a` and `b`; false when there are none.
+// The lines with weight anywhere between two points; false when there are none.
 static bool line_span(int span[2], const double *lines, int n, double slack, bool constant,
-                      double a, double b)
+                      double from, double to)
 {
-    const double low = fmax(fmin(a, b), lines[0]);
-    const double high = fmin(fmax(a, b), lines[n - 1]);
+    const double low = fmax(from, lines[0]);
+    const double high = fmin(to, lines[n - 1]);
     if (low > high + slack)
         return false;
     const struct neighbours first = find_neighbours(lines, n, slack, constant, low);
@@ -246,15 +251,18 @@ int relume_slab_needs(bool *needed, const relume_slab *slab, struct relume_vec3 
                       const struct relume_view_params *params)
 {
     const struct relume_geometry *g = &slab->geometry;
-    const bool constant = params && params->constant;
+    const bool constant = takes_nearest(params);
+    const double radius = params ? 0.5 * fabs(params->aperture) : 0.0;
     const size_t columns = (size_t)slab->columns;
     memset(needed, 0, columns * (size_t)slab->rows * sizeof *needed);
     double a[2], b[2];
     int across[2], down[2];
     if (!relume_slab_uv(a, slab, eye, g->st_min[0], g->st_min[1]) ||
         !relume_slab_uv(b, slab, eye, g->st_max[0], g->st_max[1]) ||
-        !line_span(across, slab->u, slab->columns, slab->slack, constant, a[0], b[0]) ||
-        !line_span(down, slab->v, slab->rows, slab->slack, constant, a[1], b[1]))
+        !line_span(across, slab->u, slab->columns, slab->slack, constant, fmin(a[0], b[0]) - radius,
+                   fmax(a[0], b[0]) + radius) ||
+        !line_span(down, slab->v, slab->rows, slab->slack, constant, fmin(a[1], b[1]) - radius,
+                   fmax(a[1], b[1]) + radius))
         return 0;
     for (int row = down[0]; row <= down[1]; row++)
         for (int column = across[0]; column <= across[1]; column++)

@@ -31,6 +31,48 @@ double slab_hit(double eye, double st, double reach);
 struct neighbours slab_columns_at(const relume_slab *slab, bool constant, double u);
 struct neighbours slab_rows_at(const relume_slab *slab, bool constant, double v);
 
+// One frame of one slab, as the ways to draw it share it.
+struct slab_frame {
+    const relume_slab *slab;
+    const struct relume_image *out;
+    const struct relume_image *views;
+    int width, height;  // of a view
+    struct relume_vec3 eye;
+    double reach;
+    struct relume_view_params params;
+    const bool *needed;  // [views]
+};
+relume_status slab_frame_depth(const struct slab_frame *frame);
+relume_status slab_frame_lens(const struct slab_frame *frame);
+
+static inline bool slab_is_lens(const struct relume_view_params *params)
+{
+    return params && (params->aperture != 0.0 || params->focus != 0.0);
+}
+
+// The place on the st plane that the centre of a column (row) of the frame looks at.
+static inline double slab_s(const struct slab_frame *f, int column)
+{
+    const struct relume_geometry *g = &f->slab->geometry;
+    return g->st_min[0] + (column + 0.5) / f->out->width * (g->st_max[0] - g->st_min[0]);
+}
+static inline double slab_t(const struct slab_frame *f, int row)
+{
+    const struct relume_geometry *g = &f->slab->geometry;
+    return g->st_max[1] - (row + 0.5) / f->out->height * (g->st_max[1] - g->st_min[1]);
+}
+
+// The ray of a pixel: where it meets the uv plane, and the place in a view (texels, centres at
+// +0.5) that shows its point on the st plane.
+struct slab_ray {
+    double uv[2], texel[2];
+};
+struct slab_ray slab_ray_of(const struct slab_frame *frame, int column, int row);
+// How far the texel of the ray's point moves in the view of the camera at (u, v) when the point's
+// disparity rises by 1.
+void slab_shift(double shift[2], const struct slab_frame *frame, const struct slab_ray *ray,
+                double u, double v);
+
 // All the weight on one of them.
 static inline struct neighbours one_neighbour(int index)
 {

@@ -1,7 +1,8 @@
 // slab_frame.c - a frame of a light slab: the quadralinear basis, four cameras times four texels
 //
 // A pixel fixes (s, t); its ray meets the uv plane in (u, v). Since u depends on s alone and v on t
-// alone, every weight of a frame is the product of one factor per column and one per row.
+// alone, every weight of a frame is the product of one factor per column and one per row. Frames by
+// depth and through an aperture are in slab_depth.c and slab_lens.c.
 #include "view/slab.h"
 
 #include "base/memory.h"
@@ -44,14 +45,12 @@ static struct taps combine(struct neighbours lines, struct neighbours texels)
 }
 
 struct frame {
-    const relume_slab *slab;
-    const struct relume_image *out;
-    const struct relume_image *views;
+    const struct slab_frame *of;
     const struct taps *across;  // [width]
     const struct taps *down;    // [height]
 };
 
-static const float *texel(const struct frame *f, const struct taps *across, int i,
+static const float *texel(const struct slab_frame *f, const struct taps *across, int i,
                           const struct taps *down, int j)
 {
     const int columns = f->slab->columns;
@@ -71,7 +70,7 @@ static void draw_pixel(float *rgb, const struct frame *f, const struct taps *acr
     for (int j = 0; j < down->count; j++)
         for (int i = 0; i < across->count; i++) {
             const float w = down->weight[j] * across->weight[i];
-            const float *from = texel(f, across, i, down, j);
+            const float *from = texel(f->of, across, i, down, j);
             for (int c = 0; c < 3; c++)
                 rgb[c] += w * from[c];
         }
@@ -81,31 +80,66 @@ static void draw_row(void *context, size_t row, int worker)
 {
     const struct frame *f = context;
     (void)worker;
-    float *rgb = f->out->data + 3 * row * (size_t)f->out->width;
-    for (int x = 0; x < f->out->width; x++, rgb += 3)
+    const struct relume_image *out = f->of->out;
+    float *rgb = out->data + 3 * row * (size_t)out->width;
+    for (int x = 0; x < out->width; x++, rgb += 3)
         draw_pixel(rgb, f, &f->across[x], &f->down[row]);
 }
 
 // Column c looks at s = st_min + (c+.5)/W * extent; row 0 is at the top, where t is largest.
-static void prepare_taps(struct taps *across, struct taps *down, const struct frame *f,
-                         struct relume_vec3 eye, double reach, bool constant,
-                         const struct relume_image *view)
+static void prepare_taps(struct taps *across, struct taps *down, const struct slab_frame *f,
+                         bool constant)
 {
-    const struct relume_geometry *g = &f->slab->geometry;
-    const int width = f->out->width;
-    const int height = f->out->height;
-    for (int x = 0; x < width; x++) {
-        const double s = g->st_min[0] + (x + 0.5) / width * (g->st_max[0] - g->st_min[0]);
-        const double u = slab_hit(eye.x, s, reach);
-        across[x] =
-            combine(slab_columns_at(f->slab, constant, u), texel_neighbours(x, width, view->width));
+    for (int x = 0; x < f->out->width; x++) {
+        const double u = slab_hit(f->eye.x, slab_s(f, x), f->reach);
+        across[x] = combine(slab_columns_at(f->slab, constant, u),
+                            texel_neighbours(x, f->out->width, f->width));
     }
-    for (int y = 0; y < height; y++) {
-        const double t = g->st_max[1] - (y + 0.5) / height * (g->st_max[1] - g->st_min[1]);
-        const double v = slab_hit(eye.y, t, reach);
-        down[y] =
-            combine(slab_rows_at(f->slab, constant, v), texel_neighbours(y, height, view->height));
+    for (int y = 0; y < f->out->height; y++) {
+        const double v = slab_hit(f->eye.y, slab_t(f, y), f->reach);
+        down[y] = combine(slab_rows_at(f->slab, constant, v),
+                          texel_neighbours(y, f->out->height, f->height));
     }
+}
+
+static relume_status draw_linear(const struct slab_frame *f, bool constant)
+{
+    struct taps *across = mem_array((size_t)f->out->width, sizeof *across);
+    struct taps *down = mem_array((size_t)f->out->height, sizeof *down);
+    const struct frame frame = {f, across, down};
+    if (across && down) {
+        prepare_taps(across, down, f, constant);
+        thread_for(f->params.threads, (size_t)f->out->height, draw_row, (void *)&frame);
+    }
+    const relume_status status = across && down ? RELUME_OK : RELUME_ENOMEM;
+    free(across);
+    free(down);
+    return status;
+}
+
+// ---------------------------------------------------------------- public
+
+// Whether an eye stands at a camera: its view is the frame, whatever the depth.
+static bool is_camera(const struct slab_frame *f)
+{
+    return f->reach == 0.0 && slab_columns_at(f->slab, false, f->eye.x).count == 1 &&
+           slab_rows_at(f->slab, false, f->eye.y).count == 1;
+}
+
+static relume_status draw(const struct slab_frame *f)
+{
+    const struct relume_view_params *p = &f->params;
+    if (slab_is_lens(p))
+        return slab_frame_lens(f);
+    switch (p->interpolation) {
+    case RELUME_INTERPOLATE_CONSTANT: return draw_linear(f, true);
+    case RELUME_INTERPOLATE_LINEAR: return draw_linear(f, false);
+    case RELUME_INTERPOLATE_DEFAULT:
+    case RELUME_INTERPOLATE_DEPTH: break;
+    }
+    if (!p->disparity && p->interpolation == RELUME_INTERPOLATE_DEPTH)
+        return RELUME_EINVAL;
+    return p->disparity && !is_camera(f) ? slab_frame_depth(f) : draw_linear(f, false);
 }
 
 // The first needed view when all needed ones are there, of one size and of three channels.
@@ -130,28 +164,24 @@ relume_status relume_slab_frame(struct relume_image *out, const relume_slab *sla
                                 const struct relume_view_params *params)
 {
     const int cameras = slab->columns * slab->rows;
-    double reach;
-    if (!out->data || out->channels != 3 || !slab_reach(&reach, slab, eye))
+    struct slab_frame frame = {.slab = slab, .out = out, .views = views, .eye = eye};
+    if (params)
+        frame.params = *params;
+    if (!out->data || out->channels != 3 || !slab_reach(&frame.reach, slab, eye))
         return RELUME_EINVAL;
     bool *needed = mem_zeroed((size_t)cameras, sizeof *needed);
-    struct taps *across = mem_array((size_t)out->width, sizeof *across);
-    struct taps *down = mem_array((size_t)out->height, sizeof *down);
-    relume_status status = RELUME_ENOMEM;
-    if (!needed || !across || !down)
-        goto done;
-    status = RELUME_EINVAL;
-    if (!relume_slab_needs(needed, slab, eye, params))
-        goto done;
-    const struct relume_image *view = check_views(needed, views, cameras);
-    if (!view)
-        goto done;
-    struct frame frame = {slab, out, views, across, down};
-    prepare_taps(across, down, &frame, eye, reach, params && params->constant, view);
-    thread_for(params ? params->threads : 0, (size_t)out->height, draw_row, &frame);
-    status = RELUME_OK;
-done:
+    if (!needed)
+        return RELUME_ENOMEM;
+    const struct relume_image *view = NULL;
+    if (relume_slab_needs(needed, slab, eye, params))
+        view = check_views(needed, views, cameras);
+    relume_status status = RELUME_EINVAL;
+    if (view) {
+        frame.width = view->width;
+        frame.height = view->height;
+        frame.needed = needed;
+        status = draw(&frame);
+    }
     free(needed);
-    free(across);
-    free(down);
     return status;
 }

@@ -23,6 +23,25 @@ same 'the default frame'
 same 'a captured view' --view 3
 same 'an eye between cameras' --eye 0.1,-0.2,3
 
+# Half floats hold the weights of near lights on the GPU: 1/255 is promised.
+"$RELUME" synth box -q -o sky --projection spherical --lights 1 --size 16 --samples 1 || exit 1
+nearly() { # name, light, options...: both programs draw the same frame to 1/255
+    name=$1 lamp=$2
+    shift 2
+    "$RELUME" relight teapot.exr -q -o cpu.exr --light "$lamp" "$@" &&
+        "$VIEWER" teapot.exr --offscreen gpu.exr --light "$lamp" "$@" || {
+        not_ok "$name" "a program failed"
+        return
+    }
+    worst=$("$RELUME" compare cpu.exr gpu.exr | awk '$1 == "max_abs" { print $2 }')
+    if awk "BEGIN { exit !($worst < 1 / 255) }"; then ok "$name"; else not_ok "$name" "off by $worst"; fi
+}
+nearly 'a point light' 'point 0.6 1 2 rgb 2 2 2'
+nearly 'a spot from another eye' 'spot 0.5 0.5 2.5 -0.1 -0.1 -1 20 rgb 6 5 4' --eye 0.1,-0.2,3
+nearly 'an area light' 'area 0 1.5 1 0.5 0 0 0 0 0.5 rgb 8 8 8'
+nearly 'a slide' 'slide 0 0 3 0 0 -1 25 cpu.exr rgb 5 5 5'
+nearly 'an environment' 'env sky/view00/light0000.exr 30 rgb 3 3 3'
+
 # Mesa draws by the same code whether OSMesa or EGL asks; a graphics card rounds in its own way.
 if "$VIEWER" teapot.exr --offscreen egl.exr --gl egl 2>err.txt; then
     "$VIEWER" teapot.exr --offscreen osmesa.exr --gl osmesa

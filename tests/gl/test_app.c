@@ -1,5 +1,8 @@
 // The viewer's state machine, options and scripts; no OpenGL
 #include "app.h"
+#include "gizmo.h"
+#include "keys.h"
+#include "lamps.h"
 #include "options.h"
 #include "script.h"
 
@@ -223,7 +226,7 @@ static void keys(void **state)
     assert_true(key(&app, 'b'));
     assert_true(app.now.ball);
     assert_false(key(&app, '['));  // only a slab has an eye to move
-    assert_false(key(&app, 'x'));
+    assert_false(key(&app, 'z'));  // has no meaning
     assert_true(key(&app, 'r'));
     assert_true(app.now.exposure_ev == 0 && !app.now.ball);
     assert_false(app.quit);
@@ -268,8 +271,9 @@ static void options_are_read(void **state)
     char file[] = "a.exr";
     char *lit[] = {file, file, option, first, option, second};
     assert_int_equal(options_parse(&o, 6, lit, &keep), RELUME_OK);
-    assert_int_equal(o.start.lights, 2);
-    assert_true(o.start.light[1].rgb[2] == 3);
+    assert_int_equal(relume_rig_count(o.rig), 2);
+    assert_true(relume_rig_entry(o.rig, 1)->light.rgb[2] == 3);
+    options_release(&o);
     assert_int_equal(parse(&o, "--nonsense --help"), RELUME_OK);
     assert_null(o.file);
 }
@@ -301,23 +305,63 @@ static void wrong_options_are_refused(void **state)
         assert_int_equal(parse(&o, wrong[i][0]), RELUME_EINVAL);
         assert_non_null(strstr(said, wrong[i][1]));
         assert_true(said[0] != '\0');
+        options_release(&o);
     }
 }
 
 // ---------------------------------------------------------------- scripts
 
 struct frames {
+    struct app *app;
     int count;
     char path[4][64];
-    struct app app[4];
+    struct app at[4];
+    double waited;
 };
 
-static relume_status keep_frame(void *user, const struct app *app, const char *path)
+static void host_send(void *user, const struct app_event *event)
+{
+    app_handle(((struct frames *)user)->app, event);
+}
+
+static relume_status host_light(void *user, const char *spec, bool replace)
+{
+    struct app *app = ((struct frames *)user)->app;
+    relume_rig *rig;
+    assert_int_equal(relume_rig_create(&rig), RELUME_OK);
+    const relume_status status = relume_rig_add(rig, spec, NULL, &keep);
+    if (!status && replace)
+        app->now.lights = 0;
+    if (!status)
+        assert_true(lamps_add(&app->now, &relume_rig_entry(rig, 0)->light, -1));
+    relume_rig_destroy(&rig);
+    return status;
+}
+
+static relume_status host_rig(void *user, const char *path)
+{
+    (void)user, (void)path;
+    return RELUME_OK;
+}
+
+static relume_status host_wait(void *user, double seconds)
+{
+    ((struct frames *)user)->waited = seconds;
+    return RELUME_OK;
+}
+
+static relume_status host_frame(void *user, const char *path)
 {
     struct frames *f = user;
     snprintf(f->path[f->count], sizeof f->path[0], "%s", path);
-    f->app[f->count++] = *app;
+    f->at[f->count++] = *f->app;
     return RELUME_OK;
+}
+
+static struct script_host host_of(struct frames *frames)
+{
+    return (struct script_host){frames,    frames->app, host_send,  host_light, host_rig,
+                                host_wait, host_frame,  host_frame, &keep};
 }
 
 static relume_status play(struct app *app, struct frames *frames, const char *text)
@@ -327,9 +371,10 @@ static relume_status play(struct app *app, struct frames *frames, const char *te
     assert_true(fd >= 0);
     assert_int_equal(write(fd, text, strlen(text)), (ssize_t)strlen(text));
     close(fd);
-    *frames = (struct frames){0};
+    *frames = (struct frames){.app = app};
     said[0] = '\0';
-    const relume_status status = script_play(app, path, keep_frame, frames, &keep);
+    const struct script_host host = host_of(frames);
+    const relume_status status = script_play(path, &host);
     unlink(path);
     return status;
 }
@@ -356,35 +401,189 @@ static void scripts_play_events(void **state)
                      RELUME_OK);
     assert_int_equal(frames.count, 3);
     assert_string_equal(frames.path[1], "two words.png");
-    assert_int_equal(frames.app[0].width, 800);
-    assert_float_equal(frames.app[0].now.camera.eye.x, -0.5, 1e-12);
-    assert_float_equal(frames.app[1].now.light[0].direction.x, 1, 1e-12);
-    assert_true(frames.app[1].now.exposure_ev == 0.25);
-    assert_true(frames.app[2].now.light[0].direction.y == 1 &&
-                frames.app[2].now.light[0].rgb[0] == 2);
+    assert_int_equal(frames.at[0].width, 800);
+    assert_float_equal(frames.at[0].now.camera.eye.x, -0.5, 1e-12);
+    assert_float_equal(frames.at[1].now.light[0].direction.x, 1, 1e-12);
+    assert_true(frames.at[1].now.exposure_ev == 0.25);
+    assert_true(frames.at[2].now.light[0].direction.y == 1 &&
+                frames.at[2].now.light[0].rgb[0] == 2);
 }
 
 static void broken_scripts_name_the_line(void **state)
 {
     (void)state;
-    static const char *const wrong[] = {
-        "jump",          "size 800",
-        "size 0 5",      "drag up 1 2 3 4",
-        "drag left 1 2", "wheel",
-        "key enter",     "light \"lamp 1 2 3\"",
-        "frame",         "drag left 1 2 3 x",
+    static const struct {
+        const char *line;
+        int column;
+    } wrong[] = {
+        {"jump", 1},
+        {"size 800", 9},
+        {"  size 0 5", 8},
+        {"size 1e9 5", 6},
+        {"size 5 5 5", 10},
+        {"drag up 1 2 3 4", 6},
+        {"drag left 1 2", 14},
+        {"drag left 1 2 3 x", 17},
+        {"wheel", 6},
+        {"wheel 1 2", 10},
+        {"wheel 1 2 nan", 11},
+        {"key return", 5},
+        {"key", 4},
+        {"light \"lamp 1 2 3\"", 7},
+        {"frame", 6},
+        {"shot  ", 7},
+        {"wait -1", 6},
+        {"wait soon", 6},
+        {"click 1", 8},
+        {"press middle 1 1", 7},
     };
     static struct frames frames;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         char text[128];
+        char place[64];
         struct app app = make_app(RELUME_PLANAR, false);
-        snprintf(text, sizeof text, "size 8 8\n%s\n", wrong[i]);
+        snprintf(text, sizeof text, "size 8 8\n%s\n", wrong[i].line);
+        snprintf(place, sizeof place, "line 2, column %d; expected", wrong[i].column);
         assert_int_equal(play(&app, &frames, text), RELUME_EDATA);
-        assert_non_null(strstr(said, "line 2; expected"));
+        if (!strstr(said, place))
+            fail_msg("'%s' said '%s'", wrong[i].line, said);
     }
     struct app app = make_app(RELUME_PLANAR, false);
-    assert_int_equal(script_play(&app, "/nonexistent/script", keep_frame, &frames, &keep),
-                     RELUME_EDATA);
+    frames.app = &app;
+    const struct script_host host = host_of(&frames);
+    assert_int_equal(script_play("/nonexistent/script", &host), RELUME_EDATA);
+    assert_int_equal(script_play("/tmp", &host), RELUME_EDATA);
+}
+
+static void long_lines_are_refused(void **state)
+{
+    (void)state;
+    static char text[8192];
+    static struct frames frames;
+    struct app app = make_app(RELUME_PLANAR, false);
+    memset(text, ' ', sizeof text - 1);
+    assert_int_equal(play(&app, &frames, text), RELUME_EDATA);
+    assert_non_null(strstr(said, "longer"));
+}
+
+static void scripts_hold_keys_and_wait(void **state)
+{
+    (void)state;
+    static struct frames frames;
+    struct app app = make_app(RELUME_PLANAR, false);
+    assert_int_equal(play(&app, &frames,
+                          "hold l\ndrag left 0 0 100 0\nlet l\nwait 0.5\nframe a.png\n"
+                          "drag left 0 0 100 0\nkey right\nkey tab\nadd \"dir 0 1 0\"\nshot b.png"),
+                     RELUME_OK);
+    assert_float_equal(frames.at[0].now.light[0].direction.x, 1, 1e-12);
+    assert_true(frames.at[0].now.shift[0] == 0);
+    assert_true(frames.waited == 0.5);
+    assert_true(frames.at[1].now.shift[0] == 100);
+    assert_true(frames.at[1].panel);
+    assert_int_equal(frames.at[1].now.lights, 2);
+}
+
+// ---------------------------------------------------------------- lights
+
+static void keys_change_the_selected_light(void **state)
+{
+    (void)state;
+    struct app app = make_app(RELUME_PLANAR, false);
+    struct app_state *s = &app.now;
+    assert_true(key(&app, 'a'));
+    assert_true(s->lights == 2 && s->selected == 1);
+    key(&app, APP_KEY_RIGHT);  // three degrees to the right
+    assert_float_equal(s->light[1].direction.x, sin(3 * M_PI / 180), 1e-12);
+    assert_true(s->light[0].direction.z == 1);
+    key(&app, APP_KEY_UP_ARROW);
+    assert_true(s->light[1].direction.y > 0.05);
+    struct relume_light shining[APP_LIGHTS];
+    key(&app, '.');
+    assert_int_equal(lamps_shining(s, shining), 2);
+    assert_float_equal(shining[1].rgb[0], exp2(0.25), 1e-6);
+    key(&app, 'o');
+    assert_int_equal(lamps_shining(s, shining), 1);
+    assert_float_equal(shining[0].rgb[0], exp2(0.25), 1e-6);
+    key(&app, 'x');  // solo and off: dark
+    assert_int_equal(lamps_shining(s, shining), 0);
+    key(&app, 'n');
+    assert_int_equal(s->selected, 0);
+    assert_true(key(&app, 'd'));
+    assert_true(s->lights == 1 && s->lamp[0].off && s->light[0].direction.y > 0.05);
+    assert_false(key(&app, 'd'));  // the last one stays
+    for (int i = 1; i < APP_LIGHTS; i++)
+        assert_true(key(&app, 'a'));
+    assert_false(key(&app, 'a'));
+}
+
+static void arrangements_stand_on_the_pole(void **state)
+{
+    (void)state;
+    struct app app = make_app(RELUME_PLANAR, false);
+    key(&app, '1');
+    assert_int_equal(app.now.lights, 1);
+    assert_float_equal(app.now.light[0].direction.z, sin(12 * M_PI / 180), 1e-12);
+    assert_true(app.now.light[0].direction.x < -0.9);
+    app = make_app(RELUME_SPHERICAL, false);
+    key(&app, '3');
+    assert_int_equal(app.now.lights, 8);
+    for (int i = 0; i < 8; i++)
+        assert_float_equal(app.now.light[i].direction.y, sqrt(0.5), 1e-12);
+}
+
+static void every_key_is_bound_once(void **state)
+{
+    (void)state;
+    for (const struct key_binding *a = key_bindings; a->key; a++) {
+        assert_true(!a->shown == !a->what);
+        for (const struct key_binding *b = a + 1; b->key; b++)
+            assert_true(a->key != b->key);
+    }
+}
+
+// ---------------------------------------------------------------- handles
+
+static void handles_are_grabbed_and_follow(void **state)
+{
+    (void)state;
+    struct app app = make_app(RELUME_PLANAR, false);  // 400 x 200
+    key(&app, 'a');
+    app_aim_light(&app, 1, (struct relume_vec3){0.6, 0, -0.8});
+    const struct gizmo_circle disc = gizmo_disc(&app);
+    struct gizmo g;
+    assert_true(gizmo_of(&g, &app, 0) && !g.behind);
+    assert_true(g.x == 200 && g.y == 100);
+    assert_true(gizmo_of(&g, &app, 1) && g.behind);
+    assert_float_equal(g.x, 200 + 0.6 * disc.radius, 1e-9);
+    assert_int_equal(gizmo_hit(&app, 203, 97), 0);
+    assert_int_equal(gizmo_hit(&app, g.x + 5, g.y + 5), 1);
+    assert_int_equal(gizmo_hit(&app, 230, 100), -1);
+    gizmo_drag(&app, 1, 200, 100 - 0.6 * disc.radius);  // stays behind
+    assert_float_equal(app.now.light[1].direction.y, 0.6, 1e-12);
+    assert_float_equal(app.now.light[1].direction.z, -0.8, 1e-12);
+    gizmo_drag(&app, 0, 1000, 100);  // beyond the rim: from the side
+    assert_float_equal(app.now.light[0].direction.x, 1, 1e-12);
+}
+
+// Hidden handles are not in the way of the camera.
+static void handles_are_dragged_only_when_shown(void **state)
+{
+    (void)state;
+    struct app app = make_app(RELUME_PLANAR, false);
+    const struct app_event press = {.kind = APP_PRESS, .x = 200, .y = 100};
+    const struct app_event move = {.kind = APP_MOVE, .x = 242, .y = 100};
+    const struct app_event release = {.kind = APP_RELEASE};
+    app_handle(&app, &press);
+    app_handle(&app, &move);
+    app_handle(&app, &release);
+    assert_true(app.now.shift[0] == 42 && app.now.light[0].direction.x == 0);
+    key(&app, 'r');
+    key(&app, 'g');
+    app_handle(&app, &press);
+    app_handle(&app, &move);
+    app_handle(&app, &release);
+    assert_true(app.now.shift[0] == 0);
+    assert_float_equal(app.now.light[0].direction.x, 42 / gizmo_disc(&app).radius, 1e-12);
 }
 
 int main(void)
@@ -404,6 +603,13 @@ int main(void)
         cmocka_unit_test(wrong_options_are_refused),
         cmocka_unit_test(scripts_play_events),
         cmocka_unit_test(broken_scripts_name_the_line),
+        cmocka_unit_test(long_lines_are_refused),
+        cmocka_unit_test(scripts_hold_keys_and_wait),
+        cmocka_unit_test(keys_change_the_selected_light),
+        cmocka_unit_test(arrangements_stand_on_the_pole),
+        cmocka_unit_test(every_key_is_bound_once),
+        cmocka_unit_test(handles_are_grabbed_and_follow),
+        cmocka_unit_test(handles_are_dragged_only_when_shown),
     };
     return cmocka_run_group_tests_name("app", tests, NULL, NULL);
 }

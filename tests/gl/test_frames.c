@@ -316,7 +316,7 @@ static void the_screen_shows_srgb(void **state)
         target_begin(&frame, &fixture_gl);
         fixture_gl.ClearColor(values[i], 0.25f, 0, 1);
         fixture_gl.Clear(GL_COLOR_BUFFER_BIT);
-        draw_present(&present, &fixture_gl, &frame);
+        draw_present(&present, &fixture_gl, &frame, 0, 4, 0);
         fixture_gl.ReadPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, shown);
         const float code = relume_transfer_encode(srgb, fminf(fmaxf(values[i], 0), 1));
         assert_true(abs(shown[0] - (int)lroundf(255 * code)) <= 1);

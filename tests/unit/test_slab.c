@@ -202,7 +202,7 @@ static void blend_at_crossings_borders_and_outside(void **state)
     assert_int_equal(relume_slab_blend(view, w, slab, broken, NULL), 0);
     const double near_second[2] = {-0.5, 0.3};
     assert_int_equal(
-        relume_slab_blend(view, w, slab, near_second, relume_view_params(.constant = true)), 1);
+        relume_slab_blend(view, w, slab, near_second, relume_view_params(.interpolation = RELUME_INTERPOLATE_CONSTANT)), 1);
     assert_int_equal(view[0], order[COLUMNS + 1]);
     relume_slab_destroy(&slab);
 }
@@ -266,7 +266,7 @@ static void needs_are_the_views_with_weight(void **state)
         const struct relume_vec3 eye = {3 * uniform(&random) - 1.5, 2 * uniform(&random) - 1,
                                         0.5 + 6 * uniform(&random)};
         compare_needs(slab, eye, NULL);
-        compare_needs(slab, eye, relume_view_params(.constant = true));
+        compare_needs(slab, eye, relume_view_params(.interpolation = RELUME_INTERPOLATE_CONSTANT));
     }
     relume_slab_destroy(&slab);
 }

@@ -1,9 +1,10 @@
 #version 330 core
-// A perspective look into a panorama; twin of src/view/panorama.c, function by function.
+// A look into a panorama; twin of src/view/panorama.c, function by function.
 uniform sampler2D view;
 uniform int projection;      // enum relume_projection
 uniform vec2 elevation;      // cylinder: v_min, v_max
 uniform vec3 look;           // pan and tilt in radians, 1 / zoom
+uniform bool stereographic;
 uniform vec2 look_size;      // pixels of the frame
 uniform float exposure;
 out vec4 color;
@@ -24,8 +25,9 @@ vec3 look_ray(vec3 l, vec2 size, vec2 position)
 {
     float a = (2.0 * position.x / size.x - 1.0) * l.z;
     float b = (size.y - 2.0 * position.y) / size.x * l.z;
-    float up = b * cos(l.y) + sin(l.y);
-    float ahead = cos(l.y) - b * sin(l.y);
+    float depth = stereographic ? 0.5 * (1.0 - a * a - b * b) : 1.0;
+    float up = b * cos(l.y) + depth * sin(l.y);
+    float ahead = depth * cos(l.y) - b * sin(l.y);
     return vec3(a * cos(l.x) + ahead * sin(l.x), up, a * sin(l.x) - ahead * cos(l.x));
 }
 

@@ -10,6 +10,7 @@ uniform vec4 picture;   // left, top, right, bottom of the window in the frame
 uniform vec4 st;        // st_min, st_max
 uniform vec4 cell;      // low u, low v, high u, high v
 uniform vec3 eye;       // x, y, and how far towards the st plane the uv plane lies
+uniform bool nearest;   // the nearest camera instead
 uniform float exposure;
 out vec4 color;
 
@@ -24,6 +25,8 @@ void main()
     vec2 uv = slab_uv(eye, mix(st.x, st.z, at.x), mix(st.w, st.y, at.y));
     vec2 size = max(cell.zw - cell.xy, vec2(1e-30));  // one row or column has cells of no width
     vec2 part = clamp((uv - cell.xy) / size, 0.0, 1.0);
+    if (nearest)
+        part = step(0.5, part);
     vec2 position = at * vec2(textureSize(view00, 0));
     vec3 low = mix(texels_bilinear(view00, position), texels_bilinear(view10, position), part.x);
     vec3 high = mix(texels_bilinear(view01, position), texels_bilinear(view11, position), part.x);

@@ -1,0 +1,105 @@
+#include "frame/passes.h"
+
+#include "base/log.h"
+#include "math/vec.h"
+
+// Panoramas see the surface from their eye; planar files and slabs from +z, as far as highlights
+// are concerned.
+static relume_status find_towards(struct relume_image *out, const struct relume_pack_info *info)
+{
+    const struct relume_geometry *g = &info->geometry;
+    *out = (struct relume_image){0};
+    if (g->projection < RELUME_CYLINDRICAL)
+        return RELUME_OK;
+    const relume_status status = relume_image_create(out, info->width, info->height, 3);
+    float *to = out->data;
+    for (int y = 0; !status && y < info->height; y++)
+        for (int x = 0; x < info->width; x++, to += 3) {
+            const vec3 ray = relume_panorama_ray(g, info->width, info->height, x + 0.5, y + 0.5);
+            to[0] = (float)-ray.x;
+            to[1] = (float)-ray.y;
+            to[2] = (float)-ray.z;
+        }
+    return status;
+}
+
+// ---------------------------------------------------------------- photographs
+
+static int find_light(const struct relume_manifest *manifest, vec3 direction)
+{
+    int best = 0;
+    for (int i = 1; i < manifest->lights; i++)
+        if (vec3_dot(manifest->directions[i], direction) >
+            vec3_dot(manifest->directions[best], direction))
+            best = i;
+    return best;
+}
+
+static int find_view(const struct relume_manifest *manifest, const double uv[2])
+{
+    int best = 0;
+    double least = INFINITY;
+    for (int i = 0; i < manifest->views; i++) {
+        const double far = hypot(manifest->view[i].uv[0] - uv[0], manifest->view[i].uv[1] - uv[1]);
+        if (far < least)
+            best = i;
+        least = fmin(far, least);
+    }
+    return best;
+}
+
+// The photograph under the captured light nearest to the one light of the frame, times its value.
+static relume_status find_photograph(struct relume_image *out, const struct relume_pack_info *info,
+                                     int view, const struct relume_light *lights, int n,
+                                     const struct relume_frame_params *params)
+{
+    const struct relume_capture *capture = params->capture;
+    if (!capture || n != 1 || lights[0].kind != RELUME_LIGHT_DIRECTIONAL)
+        return log_fail(params->log, RELUME_EINVAL,
+                        "a difference needs a capture and one directional light");
+    if (relume_capture_width(capture) != info->width ||
+        relume_capture_height(capture) != info->height)
+        return log_fail(params->log, RELUME_EDATA,
+                        "the capture's images are %d x %d; expected %d x %d",
+                        relume_capture_width(capture), relume_capture_height(capture), info->width,
+                        info->height);
+    const struct relume_manifest *manifest = relume_capture_manifest(capture);
+    const double origin[2] = {0, 0};
+    const relume_status status =
+        relume_capture_image(out, capture, find_view(manifest, info->uv ? info->uv[view] : origin),
+                             find_light(manifest, vec3_unit(lights[0].direction)), params->log);
+    const size_t samples = 3 * (size_t)info->width * (size_t)info->height;
+    for (size_t i = 0; !status && i < samples; i++)
+        out->data[i] *= lights[0].rgb[i % 3];
+    return status;
+}
+
+relume_status passes_apply(struct relume_image *image, relume_pack *pack, int view,
+                           const struct relume_codes *codes, const struct relume_light *lights,
+                           int n, const struct relume_frame_params *params)
+{
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    struct relume_pass_params p = {.threads = params->threads};
+    struct relume_normals normals = {0};
+    struct relume_image towards = {0}, reference = {0};
+    relume_status status = RELUME_OK;
+    if (params->pass == RELUME_PASS_COLOUR)
+        return RELUME_OK;
+    if (relume_pass_needs_normals(params->pass))
+        status =
+            relume_normals_fit(&normals, codes,
+                               relume_normals_params(.log = params->log, .cpu_off = params->cpu_off,
+                                                     .threads = params->threads));
+    if (!status && params->pass == RELUME_PASS_SPECULAR)
+        status = find_towards(&towards, info);
+    if (!status && params->pass == RELUME_PASS_DIFFERENCE)
+        status = find_photograph(&reference, info, view, lights, n, params);
+    p.towards = towards.data ? &towards : NULL;
+    p.reference = reference.data ? &reference : NULL;
+    if (!status)
+        status = relume_pass_apply(image, params->pass, &normals, lights, n, &p);
+    relume_normals_destroy(&normals);
+    relume_image_destroy(&towards);
+    relume_image_destroy(&reference);
+    return status;
+}

@@ -1,0 +1,150 @@
+// slab_lens.c - a frame of a light slab through a synthetic aperture
+//
+// Isaksen, McMillan, Gortler 2000 (dynamically reparameterized light fields): all cameras within
+// the aperture look at the point where the ray meets the plane in focus; what lies on that plane
+// adds up, the rest is blurred. A camera counts by the bilinear basis of its place, taken at the
+// point of the aperture nearest to it: whole within the aperture, falling to nothing over one step
+// of the grid beside it. So a pinhole is the quadralinear basis with another plane in focus, and a
+// frame changes smoothly with the aperture and the eye.
+#include "view/slab.h"
+
+#include "base/memory.h"
+#include "base/thread.h"
+
+#include <math.h>
+
+struct camera {
+    const float *rgb;  // [height][width][3]
+    struct relume_slab_lens lens;
+};
+
+struct frame {
+    const struct slab_frame *of;
+    double radius;
+    double focus;  // disparity of the plane in focus
+    int count;
+    struct camera *camera;
+};
+
+// ---------------------------------------------------------------- weights
+
+// The bilinear basis at `away` from its camera, with the next ones at step[0] below, step[1] above.
+static double hat(double away, const double step[2])
+{
+    return fmax(1.0 - fabs(away) / step[away > 0.0], 0.0);
+}
+
+double relume_slab_lens_weight(const struct relume_slab_lens *camera, const double uv[2],
+                               double radius)
+{
+    const double away[2] = {uv[0] - camera->place[0], uv[1] - camera->place[1]};
+    const double distance = hypot(away[0], away[1]);
+    const double left = distance > radius ? 1.0 - radius / distance : 0.0;
+    return hat(left * away[0], camera->step[0]) * hat(left * away[1], camera->step[1]);
+}
+
+static void find_steps(double step[2], const double *lines, int n, int i, double slack)
+{
+    step[0] = i > 0 ? lines[i] - lines[i - 1] : slack;
+    step[1] = i < n - 1 ? lines[i + 1] - lines[i] : slack;
+}
+
+struct relume_slab_lens relume_slab_lens(const relume_slab *slab, int column, int row)
+{
+    struct relume_slab_lens lens = {.place = {slab->u[column], slab->v[row]}};
+    find_steps(lens.step[0], slab->u, slab->columns, column, slab->slack);
+    find_steps(lens.step[1], slab->v, slab->rows, row, slab->slack);
+    return lens;
+}
+
+// ---------------------------------------------------------------- pixels
+
+// Adds the bilinear value at a place in texels; nothing outside the view.
+static bool add_sample(double sum[3], const struct slab_frame *f, const float *rgb,
+                       const double at[2], double weight)
+{
+    if (!(at[0] >= 0.0 && at[0] <= f->width && at[1] >= 0.0 && at[1] <= f->height))
+        return false;
+    const double x = fmin(fmax(at[0] - 0.5, 0.0), f->width - 1.0);
+    const double y = fmin(fmax(at[1] - 0.5, 0.0), f->height - 1.0);
+    const int left = (int)x, top = (int)y;
+    const int right = left + 1 < f->width ? left + 1 : left;
+    const int low = top + 1 < f->height ? top + 1 : top;
+    const double across = x - left, down = y - top;
+    const float *a = rgb + 3 * (size_t)top * (size_t)f->width;
+    const float *b = rgb + 3 * (size_t)low * (size_t)f->width;
+    for (int k = 0; k < 3; k++) {
+        const double upper = a[3 * left + k] * (1.0 - across) + a[3 * right + k] * across;
+        const double lower = b[3 * left + k] * (1.0 - across) + b[3 * right + k] * across;
+        sum[k] += weight * (upper * (1.0 - down) + lower * down);
+    }
+    return true;
+}
+
+static void draw_pixel(float *rgb, const struct frame *f, int column, int row)
+{
+    const struct slab_ray ray = slab_ray_of(f->of, column, row);
+    double sum[3] = {0.0, 0.0, 0.0};
+    double total = 0.0;
+    for (int i = 0; i < f->count; i++) {
+        const struct camera *c = &f->camera[i];
+        const double weight = relume_slab_lens_weight(&c->lens, ray.uv, f->radius);
+        double shift[2];
+        if (weight == 0.0)
+            continue;
+        slab_shift(shift, f->of, &ray, c->lens.place[0], c->lens.place[1]);
+        const double at[2] = {ray.texel[0] + f->focus * shift[0],
+                              ray.texel[1] + f->focus * shift[1]};
+        if (add_sample(sum, f->of, c->rgb, at, weight))
+            total += weight;
+    }
+    for (int k = 0; k < 3; k++)
+        rgb[k] = total > 0.0 ? (float)(sum[k] / total) : 0.0f;
+}
+
+static void draw_row(void *context, size_t row, int worker)
+{
+    const struct frame *f = context;
+    const struct relume_image *out = f->of->out;
+    (void)worker;
+    float *rgb = out->data + 3 * row * (size_t)out->width;
+    for (int x = 0; x < out->width; x++, rgb += 3)
+        draw_pixel(rgb, f, x, (int)row);
+}
+
+// ---------------------------------------------------------------- frame
+
+static void find_cameras(struct frame *f)
+{
+    const relume_slab *slab = f->of->slab;
+    for (int row = 0; row < slab->rows; row++)
+        for (int column = 0; column < slab->columns; column++) {
+            const int view = slab->view[(size_t)row * (size_t)slab->columns + (size_t)column];
+            if (f->of->needed[view])
+                f->camera[f->count++] = (struct camera){
+                    f->of->views[view].data,
+                    relume_slab_lens(slab, column, row),
+                };
+        }
+}
+
+relume_status slab_frame_lens(const struct slab_frame *f)
+{
+    const relume_slab *slab = f->slab;
+    const struct relume_view_params *p = &f->params;
+    struct frame frame = {
+        .of = f,
+        .radius = 0.5 * p->aperture,
+        .focus = relume_slab_plane_disparity(slab, slab->geometry.st_z + p->focus),
+    };
+    if (!(p->aperture >= 0.0) || !isfinite(p->aperture) || !(frame.focus > -1.0) ||
+        !isfinite(frame.focus))
+        return RELUME_EINVAL;
+    frame.camera = mem_array((size_t)slab->columns * (size_t)slab->rows, sizeof *frame.camera);
+    if (!frame.camera)
+        return RELUME_ENOMEM;
+    find_cameras(&frame);
+    thread_for(p->threads, (size_t)f->out->height, draw_row, &frame);
+    free(frame.camera);
+    return RELUME_OK;
+}

@@ -1,0 +1,260 @@
+#include "enhancer.h"
+
+#include "app.h"
+#include "say.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { DETAIL = 4 };  // pixels: what is finer counts as detail
+
+enum {
+    RECTANGLE,
+    SIZE,
+    VIEW,
+    NORMALS,
+    ALBEDOS,
+    DETAILS,
+    TOWARDS,
+    REFERENCE,
+    PASS,
+    TOWARDS_GIVEN,
+    LIGHTS,
+    DIRECTION,
+    VALUE,
+    STRENGTH,
+    COUNT
+};
+static const char *const uniforms[] = {
+    "rectangle", "frame_size", "view",          "normals", "albedos",   "details", "towards",
+    "reference", "pass",       "towards_given", "lights",  "direction", "value",   "strength",
+};
+// Texture units, by their uniform
+enum { UNIT_VIEW, UNIT_NORMALS, UNIT_ALBEDOS, UNIT_DETAILS, UNIT_TOWARDS, UNIT_REFERENCE };
+
+// gain, specular, exponent, top: the defaults of relume_pass_params
+static const float strength[4] = {2.0f, 0.6f, 40.0f, 1.0f};
+
+relume_status enhancer_create(struct enhancer *e, const struct gl *gl,
+                              const struct code_source *source,
+                              const struct relume_geometry *geometry, const double (*uv)[2],
+                              int views, const struct relume_log *log)
+{
+    *e = (struct enhancer){
+        .gl = gl, .log = log, .source = *source, .geometry = *geometry, .uv = uv, .views = views};
+    e->view = calloc((size_t)views, sizeof *e->view);
+    if (!e->view)
+        return RELUME_ENOMEM;
+    gl->GenVertexArrays(1, &e->vertices);
+    return program_create(&e->program, gl, "enhance.frag", uniforms, COUNT, log);
+}
+
+void enhancer_destroy(struct enhancer *e)
+{
+    if (!e->gl)
+        return;
+    for (int i = 0; e->view && i < e->views; i++) {
+        struct enhanced_view *v = &e->view[i];
+        const GLuint textures[] = {v->normal, v->albedo, v->detail, v->reference};
+        e->gl->DeleteTextures(4, textures);
+        target_destroy(&v->shown, e->gl);
+    }
+    e->gl->DeleteTextures(1, &e->towards);
+    e->gl->DeleteVertexArrays(1, &e->vertices);
+    program_destroy(&e->program, e->gl);
+    free(e->view);
+    *e = (struct enhancer){0};
+}
+
+// ---------------------------------------------------------------- textures
+
+static GLuint upload(const struct gl *gl, GLuint texture, const struct relume_image *image)
+{
+    if (!texture)
+        gl->GenTextures(1, &texture);
+    texture_use(gl, 0, GL_TEXTURE_2D, texture);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGB32F, image->width, image->height, 0, GL_RGB, GL_FLOAT,
+                   image->data);
+    texture_settings(gl, GL_TEXTURE_2D);
+    return texture;
+}
+
+static relume_status fit(struct enhancer *e, int view)
+{
+    struct enhanced_view *v = &e->view[view];
+    const struct relume_codes *codes;
+    struct relume_normals normals = {0};
+    struct relume_image detail = {0};
+    relume_status status = e->source.codes(&codes, e->source.user, view);
+    if (!status)
+        status = relume_normals_fit(&normals, codes,
+                                    relume_normals_params(.log = e->log, .threads = e->threads));
+    if (!status)
+        status = relume_normals_detail(&detail, &normals.normal, DETAIL, e->threads);
+    if (!status) {
+        v->normal = upload(e->gl, 0, &normals.normal);
+        v->albedo = upload(e->gl, 0, &normals.albedo);
+        v->detail = upload(e->gl, 0, &detail);
+    }
+    relume_normals_destroy(&normals);
+    relume_image_destroy(&detail);
+    if (e->source.drop)
+        e->source.drop(e->source.user, view);
+    return status;
+}
+
+static relume_status find_towards(struct enhancer *e, const struct target *view)
+{
+    struct relume_image image;
+    const relume_status status = relume_image_create(&image, view->width, view->height, 3);
+    float *to = image.data;
+    for (int y = 0; !status && y < view->height; y++)
+        for (int x = 0; x < view->width; x++, to += 3) {
+            const struct relume_vec3 ray =
+                relume_panorama_ray(&e->geometry, view->width, view->height, x + 0.5, y + 0.5);
+            to[0] = (float)-ray.x;
+            to[1] = (float)-ray.y;
+            to[2] = (float)-ray.z;
+        }
+    if (!status)
+        e->towards = upload(e->gl, 0, &image);
+    relume_image_destroy(&image);
+    return status;
+}
+
+// ---------------------------------------------------------------- photographs
+
+static int nearest_light(const struct relume_manifest *m, struct relume_vec3 d)
+{
+    int best = 0;
+    double most = -INFINITY;
+    for (int i = 0; i < m->lights; i++) {
+        const struct relume_vec3 l = m->directions[i];
+        const double along = l.x * d.x + l.y * d.y + l.z * d.z;
+        if (along > most)
+            best = i;
+        most = fmax(most, along);
+    }
+    return best;
+}
+
+static int nearest_view(const struct relume_manifest *m, const double (*uv)[2], int view)
+{
+    int best = 0;
+    double least = INFINITY;
+    for (int i = 0; uv && i < m->views; i++) {
+        const double far = hypot(m->view[i].uv[0] - uv[view][0], m->view[i].uv[1] - uv[view][1]);
+        if (far < least)
+            best = i;
+        least = fmin(far, least);
+    }
+    return best;
+}
+
+// The photograph under the captured light nearest to the first one, times its value.
+static relume_status find_photograph(struct enhancer *e, int view, const struct target *relit,
+                                     const struct relume_light *lights, int n)
+{
+    struct enhanced_view *v = &e->view[view];
+    if (!e->capture || n < 1)
+        return RELUME_OK;
+    const struct relume_manifest *m = relume_capture_manifest(e->capture);
+    const int light = nearest_light(m, lights[0].direction);
+    if (relume_capture_width(e->capture) != relit->width ||
+        relume_capture_height(e->capture) != relit->height)
+        return say(e->log, RELUME_EDATA, "the capture's images are %d x %d; expected %d x %d",
+                   relume_capture_width(e->capture), relume_capture_height(e->capture),
+                   relit->width, relit->height);
+    if (v->reference && v->light == light)
+        return RELUME_OK;
+    struct relume_image image;
+    const relume_status status =
+        relume_capture_image(&image, e->capture, nearest_view(m, e->uv, view), light, e->log);
+    if (!status)
+        v->reference = upload(e->gl, v->reference, &image);
+    v->light = light;
+    relume_image_destroy(&image);
+    return status;
+}
+
+// ---------------------------------------------------------------- drawing
+
+static relume_status prepare(struct enhancer *e, int view, const struct target *relit,
+                             enum relume_pass pass, const struct relume_light *lights, int n)
+{
+    struct enhanced_view *v = &e->view[view];
+    relume_status status = RELUME_OK;
+    if (!v->shown.texture)
+        status = target_create(&v->shown, e->gl, relit->width, relit->height, e->log);
+    if (!status && relume_pass_needs_normals(pass) && !v->normal)
+        status = fit(e, view);
+    if (!status && pass == RELUME_PASS_SPECULAR && !e->towards &&
+        e->geometry.projection >= RELUME_CYLINDRICAL)
+        status = find_towards(e, relit);
+    if (!status && pass == RELUME_PASS_DIFFERENCE)
+        status = find_photograph(e, view, relit, lights, n);
+    return status;
+}
+
+static void set_lights(const struct enhancer *e, const struct relume_light *lights, int n)
+{
+    float direction[APP_LIGHTS][3];
+    float value[APP_LIGHTS][3];
+    int count = 0;
+    for (int i = 0; i < n && count < APP_LIGHTS; i++) {
+        const struct relume_vec3 d = lights[i].direction;
+        const double scale = 1 / sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+        if (lights[i].kind != RELUME_LIGHT_DIRECTIONAL)
+            continue;
+        direction[count][0] = (float)(d.x * scale);
+        direction[count][1] = (float)(d.y * scale);
+        direction[count][2] = (float)(d.z * scale);
+        for (int c = 0; c < 3; c++)
+            value[count][c] = lights[i].rgb[c];
+        count++;
+    }
+    e->gl->Uniform1i(e->program.at[LIGHTS], count);
+    if (!count)
+        return;
+    e->gl->Uniform3fv(e->program.at[DIRECTION], count, direction[0]);
+    e->gl->Uniform3fv(e->program.at[VALUE], count, value[0]);
+}
+
+static void set_textures(const struct enhancer *e, const struct enhanced_view *v,
+                         const struct target *relit)
+{
+    const struct gl *gl = e->gl;
+    const GLuint textures[] = {
+        [UNIT_VIEW] = relit->texture, [UNIT_NORMALS] = v->normal,  [UNIT_ALBEDOS] = v->albedo,
+        [UNIT_DETAILS] = v->detail,   [UNIT_TOWARDS] = e->towards, [UNIT_REFERENCE] = v->reference,
+    };
+    for (int unit = UNIT_VIEW; unit <= UNIT_REFERENCE; unit++) {
+        texture_use(gl, unit, GL_TEXTURE_2D, textures[unit]);
+        gl->Uniform1i(e->program.at[VIEW + unit], unit);
+    }
+    gl->Uniform1i(e->program.at[TOWARDS_GIVEN], e->towards != 0);
+}
+
+relume_status enhancer_view(const struct target **out, struct enhancer *e, int view,
+                            const struct target *relit, enum relume_pass pass,
+                            const struct relume_light *lights, int n)
+{
+    const struct gl *gl = e->gl;
+    const struct enhanced_view *v = &e->view[view];
+    const relume_status status = prepare(e, view, relit, pass, lights, n);
+    if (status)
+        return status;
+    gl->BindVertexArray(e->vertices);
+    target_begin(&v->shown, gl);
+    gl->UseProgram(e->program.id);
+    set_textures(e, v, relit);
+    set_lights(e, lights, n);
+    gl->Uniform1i(e->program.at[PASS], (GLint)pass);
+    gl->Uniform4f(e->program.at[STRENGTH], strength[0], strength[1], strength[2], strength[3]);
+    gl->Uniform4f(e->program.at[RECTANGLE], 0, 0, (float)relit->width, (float)relit->height);
+    gl->Uniform2f(e->program.at[SIZE], (float)relit->width, (float)relit->height);
+    gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    *out = &v->shown;
+    return gl_check(gl, "enhancing", e->log);
+}

@@ -1,0 +1,29 @@
+// gizmo.h - handles of the lights in the picture: where they are, and what dragging them does
+#ifndef VIEWER_GIZMO_H
+#define VIEWER_GIZMO_H
+
+#include "app.h"
+
+struct gizmo {
+    double x, y;  // pixels of the frame
+    bool behind;  // a direction from behind the picture
+    bool near;    // stands where the light is; else on the disc of directions
+};
+
+// The disc of directions: its middle is light from the viewer, its rim light from the side.
+struct gizmo_circle {
+    double x, y, radius;
+};
+struct gizmo_circle gizmo_disc(const struct app *app);
+
+// False when the light has no place in the frame.
+bool gizmo_of(struct gizmo *out, const struct app *app, int light);
+
+// The light whose handle is at (x, y), the nearest; -1 when there is none.
+int gizmo_hit(const struct app *app, double x, double y);
+
+// Move the handle of `light` to (x, y): a direction keeps its side, a near light its distance from
+// the viewer.
+void gizmo_drag(struct app *app, int light, double x, double y);
+
+#endif

@@ -1,0 +1,287 @@
+#include "inspect.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+// ---------------------------------------------------------------- directions of the disc
+
+// A place on the disc, x right and y up in [-1, 1], as a direction; false outside.
+static bool disc_direction(struct relume_vec3 *out, double x, double y, bool pole_y)
+{
+    const double up = 1 - x * x - y * y;
+    if (up < 0)
+        return false;
+    *out = pole_y ? (struct relume_vec3){x, sqrt(up), -y} : (struct relume_vec3){x, y, sqrt(up)};
+    return true;
+}
+
+// The inverse, in pixels of the plot; false below the horizon.
+static bool disc_place(int at[2], struct relume_vec3 d, bool pole_y)
+{
+    const double scale = 0.5 * INSPECT_SIDE / sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+    if ((pole_y ? d.y : d.z) < 0)
+        return false;
+    at[0] = (int)(0.5 * INSPECT_SIDE + scale * d.x);
+    at[1] = (int)(0.5 * INSPECT_SIDE - scale * (pole_y ? -d.z : d.y));
+    return true;
+}
+
+static double grid_place(int i)
+{
+    return 2 * (i + 0.5) / INSPECT_GRID - 1;
+}
+
+// ---------------------------------------------------------------- making
+
+static void make_weights(struct inspector *in, const relume_coder *coder)
+{
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    const size_t size = 3 * (size_t)info->coefficients;
+    for (int i = 0; i < INSPECT_GRID * INSPECT_GRID; i++) {
+        struct relume_vec3 d;
+        if (disc_direction(&d, grid_place(i % INSPECT_GRID), -grid_place(i / INSPECT_GRID),
+                           info->pole_y))
+            relume_coder_weights(coder, d, in->weights + (size_t)i * size, in->constant[i]);
+    }
+}
+
+relume_status inspect_create(struct inspector *in, relume_pack *pack, const relume_slab *grid)
+{
+    const relume_coder *coder = relume_pack_info(pack)->coder;
+    const size_t size = 3 * (size_t)relume_coder_info(coder)->coefficients;
+    const size_t places = (size_t)INSPECT_GRID * INSPECT_GRID;
+    *in = (struct inspector){.pack = pack, .grid = grid, .view = -1};
+    in->weights = calloc(places * size, sizeof *in->weights);
+    in->constant = calloc(places, sizeof *in->constant);
+    in->coefficient = calloc(size, sizeof *in->coefficient);
+    relume_status status = RELUME_ENOMEM;
+    if (in->weights && in->constant && in->coefficient)
+        status = relume_image_create(&in->plot, INSPECT_SIDE, INSPECT_SIDE, 3);
+    if (status)
+        inspect_destroy(in);
+    else
+        make_weights(in, coder);
+    return status;
+}
+
+void inspect_destroy(struct inspector *in)
+{
+    free(in->weights);
+    free(in->constant);
+    free(in->coefficient);
+    relume_image_destroy(&in->plot);
+    *in = (struct inspector){.view = -1};
+}
+
+// ---------------------------------------------------------------- picking
+
+static int clamp_to(double x, int n)
+{
+    return x < 0 ? 0 : x >= n ? n - 1 : (int)x;
+}
+
+static bool pick_look(int pixel[2], const struct app *app, double x, double y)
+{
+    double xy[2];
+    const struct relume_vec3 ray =
+        relume_look_ray(app->now.camera.look, app->width, app->height, x, y);
+    if (!relume_panorama_pixel(xy, &app->file.geometry, app->file.width, app->file.height, ray))
+        return false;
+    pixel[0] = clamp_to(xy[0], app->file.width);
+    pixel[1] = clamp_to(xy[1], app->file.height);
+    return true;
+}
+
+static bool pick_picture(int pixel[2], const struct app *app, double x, double y)
+{
+    const struct app_rectangle r = app_picture(app);
+    if (x < r.left || x >= r.right || y < r.top || y >= r.bottom)
+        return false;
+    pixel[0] = clamp_to((x - r.left) / (r.right - r.left) * app->file.width, app->file.width);
+    pixel[1] = clamp_to((y - r.top) / (r.bottom - r.top) * app->file.height, app->file.height);
+    return true;
+}
+
+static bool pick_camera(int *view, const struct app *app, const relume_slab *grid,
+                        const int pixel[2])
+{
+    const struct relume_geometry *g = &app->file.geometry;
+    const double s =
+        g->st_min[0] + (pixel[0] + 0.5) / app->file.width * (g->st_max[0] - g->st_min[0]);
+    const double t =
+        g->st_max[1] - (pixel[1] + 0.5) / app->file.height * (g->st_max[1] - g->st_min[1]);
+    double uv[2], weight[4];
+    int views[4], best = 0;
+    if (!grid || !relume_slab_uv(uv, grid, app->now.camera.eye, s, t))
+        return false;
+    const int n = relume_slab_blend(views, weight, grid, uv, NULL);
+    for (int i = 1; i < n; i++)
+        best = weight[i] > weight[best] ? i : best;
+    *view = n ? views[best] : -1;
+    return n > 0;
+}
+
+bool inspect_pick(int *view, int pixel[2], const struct app *app, const relume_slab *grid, double x,
+                  double y)
+{
+    *view = app->now.camera.framing == RELUME_FRAME_VIEW ? app->now.camera.view : 0;
+    if (app->now.camera.framing == RELUME_FRAME_LOOK)
+        return pick_look(pixel, app, x, y);
+    if (!pick_picture(pixel, app, x, y))
+        return false;
+    return app->now.camera.framing != RELUME_FRAME_EYE || pick_camera(view, app, grid, pixel);
+}
+
+// ---------------------------------------------------------------- one pixel
+
+static float half_value(uint16_t bits)
+{
+    const int exponent = bits >> 10 & 31;
+    const int mantissa = bits & 1023;
+    const float size =
+        exponent ? ldexpf((float)(1024 + mantissa), exponent - 25) : ldexpf((float)mantissa, -24);
+    return bits & 0x8000 ? -size : size;
+}
+
+static float plane_value(const struct relume_codes *codes, int plane, size_t at)
+{
+    const void *codes_of = codes->plane[plane];
+    float code;
+    if (codes->storage == RELUME_STORE_8)
+        code = ((const uint8_t *)codes_of)[at];
+    else if (codes->storage == RELUME_STORE_HALF)
+        code = half_value(((const uint16_t *)codes_of)[at]);
+    else
+        code = ((const uint16_t *)codes_of)[at];
+    return code * codes->scale[plane] + codes->offset[plane];
+}
+
+static float stored_value(const struct relume_codes *codes, int plane, size_t at)
+{
+    float sum = 0;
+    if (!codes->books)
+        return plane_value(codes, plane, at);
+    for (int b = 0; b < codes->books; b++)
+        sum +=
+            codes->vectors[b][(size_t)codes->index[b][at] * (size_t)codes->planes + (size_t)plane];
+    return sum;
+}
+
+void inspect_coefficients(float *coefficient, float colour[3], const struct relume_codes *codes,
+                          int x, int y)
+{
+    const struct relume_coder_info *info = relume_coder_info(codes->coder);
+    const size_t at = (size_t)y * (size_t)codes->width + (size_t)x;
+    const int k = info->coefficients;
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < k; i++)
+            coefficient[c * k + i] = stored_value(codes, relume_coder_plane(info, i, c), at);
+        colour[c] = info->luminance ? stored_value(codes, k + c, at) : 1;
+    }
+}
+
+void inspect_value(float rgb[3], const struct relume_codes *codes, const float *coefficient,
+                   const float colour[3], const float *weights, const float constant[3])
+{
+    const int k = relume_coder_info(codes->coder)->coefficients;
+    for (int c = 0; c < 3; c++) {
+        float sum = constant[c];
+        for (int i = 0; i < k; i++)
+            sum += weights[c * k + i] * coefficient[c * k + i];
+        rgb[c] = sum * colour[c];
+        if (codes->domain == RELUME_DOMAIN_DISPLAY)
+            rgb[c] = relume_transfer_decode(codes->display, rgb[c]);
+    }
+}
+
+// ---------------------------------------------------------------- plot
+
+static float *plot_pixel(struct inspector *in, int x, int y)
+{
+    return in->plot.data + 3 * ((size_t)y * INSPECT_SIDE + (size_t)x);
+}
+
+static void fill_cell(struct inspector *in, int cell, const float rgb[3])
+{
+    const int side = INSPECT_SIDE / INSPECT_GRID;
+    for (int j = 0; j < side; j++)
+        for (int i = 0; i < side; i++)
+            memcpy(plot_pixel(in, cell % INSPECT_GRID * side + i, cell / INSPECT_GRID * side + j),
+                   rgb, 3 * sizeof *rgb);
+}
+
+static void fill_disc(struct inspector *in, const struct app *app, const struct relume_codes *codes)
+{
+    static const float outside[3] = {0.09f, 0.09f, 0.1f};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    const size_t size = 3 * (size_t)relume_coder_info(codes->coder)->coefficients;
+    const float gain = exp2f((float)app_exposure_ev(app));
+    float colour[3];
+    inspect_coefficients(in->coefficient, colour, codes, in->x, in->y);
+    for (int i = 0; i < INSPECT_GRID * INSPECT_GRID; i++) {
+        struct relume_vec3 ignored;
+        float rgb[3];
+        if (!disc_direction(&ignored, grid_place(i % INSPECT_GRID), grid_place(i / INSPECT_GRID),
+                            false)) {
+            fill_cell(in, i, outside);
+            continue;
+        }
+        inspect_value(rgb, codes, in->coefficient, colour, in->weights + (size_t)i * size,
+                      in->constant[i]);
+        for (int c = 0; c < 3; c++)
+            rgb[c] = fminf(fmaxf(relume_transfer_encode(srgb, gain * rgb[c]), 0), 1);
+        fill_cell(in, i, rgb);
+    }
+}
+
+// Arms of `reach` pixels: a dot, or a cross with 3.
+static void mark(struct inspector *in, struct relume_vec3 d, bool pole_y, int reach,
+                 const float rgb[3])
+{
+    int at[2];
+    if (!disc_place(at, d, pole_y))
+        return;
+    for (int k = -reach; k <= reach; k++) {
+        memcpy(plot_pixel(in, clamp_to(at[0] + k, INSPECT_SIDE), clamp_to(at[1], INSPECT_SIDE)),
+               rgb, 3 * sizeof *rgb);
+        memcpy(plot_pixel(in, clamp_to(at[0], INSPECT_SIDE), clamp_to(at[1] + k, INSPECT_SIDE)),
+               rgb, 3 * sizeof *rgb);
+    }
+}
+
+static void mark_directions(struct inspector *in, const struct app *app,
+                            const struct relume_coder_info *info)
+{
+    static const float dot[3] = {0.2f, 0.9f, 0.9f};
+    static const float cross[3] = {1, 0.85f, 0.2f};
+    for (int i = 0; i < info->lights; i++)
+        mark(in, info->directions[i], info->pole_y, 0, dot);
+    for (int i = 0; i < app->now.lights; i++)
+        if (app->now.light[i].kind == RELUME_LIGHT_DIRECTIONAL)
+            mark(in, app->now.light[i].direction, info->pole_y, 3, cross);
+}
+
+relume_status inspect_update(struct inspector *in, const struct app *app, bool *shown)
+{
+    int view, pixel[2];
+    const struct relume_codes *codes;
+    *shown = inspect_pick(&view, pixel, app, in->grid, app->cursor[0], app->cursor[1]);
+    if (!*shown)
+        return RELUME_OK;
+    if (in->view >= 0 && in->view != view)
+        relume_pack_drop(in->pack, in->view);
+    const relume_status status = relume_pack_codes(&codes, in->pack, view);
+    if (status)
+        return status;
+    in->view = view;
+    in->x = pixel[0];
+    in->y = pixel[1];
+    fill_disc(in, app, codes);
+    mark_directions(in, app, relume_coder_info(codes->coder));
+    snprintf(in->text, sizeof in->text, "view %d, pixel %d, %d", view, in->x, in->y);
+    return RELUME_OK;
+}

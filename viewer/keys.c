@@ -1,0 +1,312 @@
+#include "keys.h"
+
+#include "lamps.h"
+
+#include <relume/tone.h>
+
+#include <math.h>
+
+static const double exposure_step = 0.25;  // EV
+static const double dolly_factor = 1.05;   // of the eye's distance
+static const double focus_factor = 1.02;   // of the distance from the cameras
+static const double planet_zoom = 0.5;
+static const double stop_step = 0.25;  // of a light's value
+static const double turn_step = 3.0;   // degrees of a light
+
+static bool press_quit(struct app *app, int key)
+{
+    (void)key;
+    app->quit = true;
+    return false;
+}
+
+static bool press_panel(struct app *app, int key)
+{
+    (void)key;
+    app->panel = !app->panel;
+    return true;
+}
+
+static bool press_help(struct app *app, int key)
+{
+    (void)key;
+    app->help = !app->help;
+    return true;
+}
+
+static bool press_reset(struct app *app, int key)
+{
+    (void)key;
+    app->now = app->start;
+    app_stand_still(app);
+    return true;
+}
+
+static bool press_hold_light(struct app *app, int key)
+{
+    (void)key;
+    app->light_key = true;
+    return false;
+}
+
+static bool press_ball(struct app *app, int key)
+{
+    (void)key;
+    app->now.ball = !app->now.ball;
+    return true;
+}
+
+static bool press_gizmos(struct app *app, int key)
+{
+    (void)key;
+    app->gizmos = !app->gizmos;
+    return true;
+}
+
+static bool press_inspect(struct app *app, int key)
+{
+    (void)key;
+    app->inspect = !app->inspect;
+    return true;
+}
+
+static bool press_exposure(struct app *app, int key)
+{
+    app->now.exposure_ev += key == '+' ? exposure_step : -exposure_step;
+    return true;
+}
+
+static bool press_dolly(struct app *app, int key)
+{
+    if (app->now.camera.framing != RELUME_FRAME_EYE)
+        return false;
+    app_dolly(app, key == '[' ? 1 / dolly_factor : dolly_factor);
+    return true;
+}
+
+static bool press_tone(struct app *app, int key)
+{
+    (void)key;
+    app->now.tone = relume_tones[app->now.tone + 1] ? app->now.tone + 1 : 0;
+    return true;
+}
+
+static bool press_auto_exposure(struct app *app, int key)
+{
+    (void)key;
+    app->now.auto_exposure = !app->now.auto_exposure;
+    app->adapted_ev = app->metered_ev = 0;
+    app->metered = true;
+    return true;
+}
+
+static bool press_planet(struct app *app, int key)
+{
+    struct relume_look *look = &app->now.camera.look;
+    (void)key;
+    if (app->now.camera.framing != RELUME_FRAME_LOOK)
+        return false;
+    app_stand_still(app);
+    if (look->stereographic) {
+        *look = app->before_planet;
+        return true;
+    }
+    app->before_planet = *look;
+    *look = (struct relume_look){look->pan_deg, -90, planet_zoom, true};
+    return true;
+}
+
+// By depth or linear, whichever is the default, then linear, then the nearest camera.
+static bool press_interpolation(struct app *app, int key)
+{
+    enum relume_interpolation *i = &app->now.interpolation;
+    (void)key;
+    if (app->now.camera.framing != RELUME_FRAME_EYE)
+        return false;
+    *i = *i == RELUME_INTERPOLATE_LINEAR     ? RELUME_INTERPOLATE_CONSTANT
+         : *i == RELUME_INTERPOLATE_CONSTANT ? RELUME_INTERPOLATE_DEFAULT
+                                             : RELUME_INTERPOLATE_LINEAR;
+    return true;
+}
+
+// None, then an eighth, a quarter, a half and all of the cameras' extent.
+static bool press_aperture(struct app *app, int key)
+{
+    const struct app_file *f = &app->file;
+    const double most = fmax(f->uv_max[0] - f->uv_min[0], f->uv_max[1] - f->uv_min[1]);
+    double *a = &app->now.aperture;
+    (void)key;
+    if (app->now.camera.framing != RELUME_FRAME_EYE)
+        return false;
+    *a = *a <= 0 ? most / 8 : *a < 0.75 * most ? *a * 2 : 0;
+    return true;
+}
+
+static bool press_focus(struct app *app, int key)
+{
+    const struct relume_geometry *g = &app->file.geometry;
+    double *z = &app->now.focus_z;
+    if (app->now.camera.framing != RELUME_FRAME_EYE)
+        return false;
+    *z = g->uv_z + (*z - g->uv_z) * (key == '.' ? focus_factor : 1 / focus_factor);
+    return true;
+}
+
+static bool press_next_pass(struct app *app, int key)
+{
+    (void)key;
+    const int passes = app->file.compared ? RELUME_PASSES : RELUME_PASS_DIFFERENCE;
+    app->now.pass = (enum relume_pass)((app->now.pass + 1) % passes);
+    return true;
+}
+
+// ---------------------------------------------------------------- lights
+
+static bool press_next_light(struct app *app, int key)
+{
+    (void)key;
+    app->now.selected = (app->now.selected + 1) % app->now.lights;
+    return true;
+}
+
+static bool press_add(struct app *app, int key)
+{
+    (void)key;
+    const struct relume_light light = {.direction = app_frame_axes(app).back, .rgb = {1, 1, 1}};
+    return lamps_add(&app->now, &light, -1);
+}
+
+static bool press_remove(struct app *app, int key)
+{
+    (void)key;
+    return lamps_remove(&app->now, app->now.selected);
+}
+
+static bool press_off(struct app *app, int key)
+{
+    (void)key;
+    struct app_lamp *lamp = &app->now.lamp[app->now.selected];
+    lamp->off = !lamp->off;
+    return true;
+}
+
+static bool press_solo(struct app *app, int key)
+{
+    (void)key;
+    struct app_lamp *lamp = &app->now.lamp[app->now.selected];
+    lamp->solo = !lamp->solo;
+    return true;
+}
+
+static bool press_stops(struct app *app, int key)
+{
+    app->now.lamp[app->now.selected].stops += key == APP_KEY_PAGE_UP ? stop_step : -stop_step;
+    return true;
+}
+
+static bool press_turn(struct app *app, int key)
+{
+    const double dx = (key == APP_KEY_RIGHT) - (key == APP_KEY_LEFT);
+    const double dy = (key == APP_KEY_DOWN_ARROW) - (key == APP_KEY_UP_ARROW);
+    app_turn_light(app, dx * turn_step, dy * turn_step);
+    return true;
+}
+
+static bool press_preset(struct app *app, int key)
+{
+    lamps_arrange(&app->now, &lamp_presets[key - '1'], app_pole_y(app));
+    return true;
+}
+
+// ---------------------------------------------------------------- wishes
+
+static bool wish(struct app *app, enum app_wish wanted)
+{
+    app->wish = wanted;
+    return false;
+}
+
+static bool press_png(struct app *app, int key)
+{
+    (void)key;
+    return wish(app, APP_WISH_PNG);
+}
+
+static bool press_exr(struct app *app, int key)
+{
+    (void)key;
+    return wish(app, APP_WISH_EXR);
+}
+
+static bool press_save_rig(struct app *app, int key)
+{
+    (void)key;
+    return wish(app, APP_WISH_SAVE_RIG);
+}
+
+static bool press_sweep(struct app *app, int key)
+{
+    (void)key;
+    return wish(app, APP_WISH_SWEEP);
+}
+
+static bool press_turntable(struct app *app, int key)
+{
+    (void)key;
+    return wish(app, APP_WISH_TURNTABLE);
+}
+
+// ---------------------------------------------------------------- table
+
+const struct key_binding key_bindings[] = {
+    {'?', "?", "this list", press_help},
+    {'/', NULL, NULL, press_help},
+    {APP_KEY_TAB, "Tab", "panel", press_panel},
+    {'+', "+ -", "exposure", press_exposure},
+    {'-', NULL, NULL, press_exposure},
+    {'e', "E", "automatic exposure", press_auto_exposure},
+    {'t', "T", "next tone operator", press_tone},
+    {'[', "[ ]", "slab: nearer, farther", press_dolly},
+    {']', NULL, NULL, press_dolly},
+    {'d', "D", "slab: next interpolation", press_interpolation},
+    {'a', "A", "slab: next aperture", press_aperture},
+    {',', ", .", "slab: focus nearer, farther", press_focus},
+    {'.', NULL, NULL, press_focus},
+    {'o', "O", "panorama: little planet", press_planet},
+    {'v', "V", "next view: colour, normals, ...", press_next_pass},
+    {'r', "R", "reset", press_reset},
+    {'l', "L", "hold: drags turn the light", press_hold_light},
+    {APP_KEY_LEFT, "arrows", "turn the light", press_turn},
+    {APP_KEY_RIGHT, NULL, NULL, press_turn},
+    {APP_KEY_UP_ARROW, NULL, NULL, press_turn},
+    {APP_KEY_DOWN_ARROW, NULL, NULL, press_turn},
+    {APP_KEY_PAGE_UP, "Page up, down", "light: brighter, dimmer", press_stops},
+    {APP_KEY_PAGE_DOWN, NULL, NULL, press_stops},
+    {'n', "N", "next light", press_next_light},
+    {'m', "M", "one more light", press_add},
+    {APP_KEY_DELETE, "Delete", "remove the light", press_remove},
+    {APP_KEY_BACKSPACE, NULL, NULL, press_remove},
+    {'x', "X", "light off, on", press_off},
+    {'z', "Z", "light alone (solo)", press_solo},
+    {'1', "1 2 3", "raking, double raking, dome", press_preset},
+    {'2', NULL, NULL, press_preset},
+    {'3', NULL, NULL, press_preset},
+    {'b', "B", "ball that shows the light", press_ball},
+    {'g', "G", "handles of the lights in the picture", press_gizmos},
+    {'i', "I", "inspector: the reflectance under the cursor", press_inspect},
+    {'s', "S", "save the picture, PNG", press_png},
+    {'p', "P", "save the picture, EXR", press_exr},
+    {'w', "W", "write the lights, a rig file", press_save_rig},
+    {'k', "K", "record a light sweep", press_sweep},
+    {'j', "J", "record a turntable", press_turntable},
+    {APP_KEY_ESCAPE, "Esc", "quit", press_quit},
+    {0, NULL, NULL, NULL},
+};
+
+bool keys_press(struct app *app, int key)
+{
+    for (const struct key_binding *b = key_bindings; b->key; b++)
+        if (b->key == key)
+            return b->press(app, key);
+    return false;
+}

@@ -1,0 +1,165 @@
+#include "lamps.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+double lamps_factor(const struct app_state *state, int light)
+{
+    const struct app_lamp *lamp = &state->lamp[light];
+    bool solo = false;
+    for (int i = 0; i < state->lights; i++)
+        solo |= state->lamp[i].solo;
+    return lamp->off || (solo && !lamp->solo) ? 0.0 : exp2(lamp->stops);
+}
+
+int lamps_shining(const struct app_state *state, struct relume_light out[APP_LIGHTS])
+{
+    int n = 0;
+    for (int i = 0; i < state->lights; i++) {
+        const double factor = lamps_factor(state, i);
+        if (factor == 0.0)
+            continue;
+        out[n] = state->light[i];
+        for (int c = 0; c < 3; c++)
+            out[n].rgb[c] *= (float)factor;
+        n++;
+    }
+    return n;
+}
+
+bool lamps_add(struct app_state *state, const struct relume_light *light, int entry)
+{
+    if (state->lights == APP_LIGHTS)
+        return false;
+    state->selected = state->lights++;
+    state->light[state->selected] = *light;
+    state->lamp[state->selected] = (struct app_lamp){.entry = entry};
+    return true;
+}
+
+bool lamps_remove(struct app_state *state, int light)
+{
+    if (state->lights < 2)
+        return false;
+    const size_t behind = (size_t)(state->lights - 1 - light);
+    memmove(&state->light[light], &state->light[light + 1], behind * sizeof *state->light);
+    memmove(&state->lamp[light], &state->lamp[light + 1], behind * sizeof *state->lamp);
+    state->lights--;
+    if (state->selected >= state->lights || state->selected > light)
+        state->selected--;
+    return true;
+}
+
+// ---------------------------------------------------------------- directions
+
+static double length(struct relume_vec3 a)
+{
+    return sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+}
+
+static struct relume_vec3 between(struct relume_vec3 from, struct relume_vec3 to)
+{
+    return (struct relume_vec3){to.x - from.x, to.y - from.y, to.z - from.z};
+}
+
+static double dot(struct relume_vec3 a, struct relume_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static struct relume_vec3 cross(struct relume_vec3 a, struct relume_vec3 b)
+{
+    return (struct relume_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
+                                a.x * b.y - a.y * b.x};
+}
+
+struct relume_vec3 lamps_direction(const struct relume_light *light, struct relume_vec3 middle)
+{
+    const double turn = light->rotate_deg * PI / 180;
+    struct relume_vec3 d = light->direction;
+    if (light->kind == RELUME_LIGHT_ENVIRONMENT)
+        d = (struct relume_vec3){sin(turn), 0, -cos(turn)};
+    else if (relume_light_is_near(light->kind))
+        d = between(middle, light->position);
+    const double n = length(d);
+    return n > 0 ? (struct relume_vec3){d.x / n, d.y / n, d.z / n} : (struct relume_vec3){0, 0, 1};
+}
+
+// Turns `v` as the shortest way takes unit `from` to unit `to`.
+static struct relume_vec3 turned(struct relume_vec3 v, struct relume_vec3 from,
+                                 struct relume_vec3 to)
+{
+    const struct relume_vec3 axis = cross(from, to);
+    const double c = dot(from, to);
+    if (c < -1 + 1e-9)
+        return (struct relume_vec3){-v.x, -v.y, -v.z};
+    const double k = dot(axis, v) / (1 + c);
+    const struct relume_vec3 side = cross(axis, v);
+    return (struct relume_vec3){c * v.x + side.x + k * axis.x, c * v.y + side.y + k * axis.y,
+                                c * v.z + side.z + k * axis.z};
+}
+
+static void aim_near(struct relume_light *l, struct relume_vec3 direction,
+                     struct relume_vec3 middle)
+{
+    const struct relume_vec3 was = lamps_direction(l, middle);
+    const double far = length(between(middle, l->position));
+    l->position = (struct relume_vec3){
+        middle.x + far * direction.x,
+        middle.y + far * direction.y,
+        middle.z + far * direction.z,
+    };
+    l->direction = turned(l->direction, was, direction);
+    l->u = turned(l->u, was, direction);
+    l->v = turned(l->v, was, direction);
+}
+
+void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,
+               struct relume_vec3 middle)
+{
+    struct relume_light *l = &state->light[light];
+    if (l->kind == RELUME_LIGHT_DIRECTIONAL)
+        l->direction = direction;
+    else if (l->kind == RELUME_LIGHT_ENVIRONMENT)
+        l->rotate_deg = atan2(direction.x, -direction.z) * 180 / PI;
+    else
+        aim_near(l, direction, middle);
+}
+
+// ---------------------------------------------------------------- arrangements
+
+const struct lamp_preset lamp_presets[] = {
+    {"raking", "one light from the left, 12 degrees above the picture", 1, {180}, {12}},
+    {"double raking",
+     "two lights from the left and from above, 12 degrees",
+     2,
+     {180, 90},
+     {12, 12}},
+    {"dome",
+     "eight lights all around, 45 degrees",
+     8,
+     {0, 45, 90, 135, 180, 225, 270, 315},
+     {45, 45, 45, 45, 45, 45, 45, 45}},
+    {NULL, NULL, 0, {0}, {0}},
+};
+
+void lamps_arrange(struct app_state *state, const struct lamp_preset *preset, bool pole_y)
+{
+    state->lights = 0;
+    for (int i = 0; i < preset->lights; i++) {
+        const double a = preset->azimuth[i] * PI / 180;
+        const double e = preset->elevation[i] * PI / 180;
+        const double x = cos(e) * cos(a);
+        const double y = cos(e) * sin(a);
+        const double z = sin(e);
+        const float value = preset->lights > 2 ? 2.0f / (float)preset->lights : 1.0f;
+        const struct relume_light light = {
+            .direction = pole_y ? (struct relume_vec3){x, z, -y} : (struct relume_vec3){x, y, z},
+            .rgb = {value, value, value},
+        };
+        lamps_add(state, &light, -1);
+    }
+    state->selected = 0;
+}

@@ -1,0 +1,35 @@
+// lamps.h - the list of lights: what shines, add and remove, arrangements
+#ifndef VIEWER_LAMPS_H
+#define VIEWER_LAMPS_H
+
+#include "app.h"
+
+// The factor of a light's value; 0 for one that does not shine (it is off, or another is solo).
+double lamps_factor(const struct app_state *state, int light);
+
+// The lights that shine with the values that they have; returns how many.
+int lamps_shining(const struct app_state *state, struct relume_light out[APP_LIGHTS]);
+
+// Append and select. False when the list is full.
+bool lamps_add(struct app_state *state, const struct relume_light *light, int entry);
+// The last light stays. False when nothing was removed.
+bool lamps_remove(struct app_state *state, int light);
+
+// Let one light come from `direction` (unit, world): near ones move on a sphere about `middle` and
+// turn with it, environments turn about y.
+void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,
+               struct relume_vec3 middle);
+// Where it comes from as seen from `middle`, unit.
+struct relume_vec3 lamps_direction(const struct relume_light *light, struct relume_vec3 middle);
+
+// Arrangements of directional lights that replace the list. `up` is the pole of the file: z for
+// planar files and slabs, y for panoramas.
+struct lamp_preset {
+    const char *name, *what;
+    int lights;
+    double azimuth[8], elevation[8];  // degrees; from x towards y, above the picture
+};
+extern const struct lamp_preset lamp_presets[];  // ends with a NULL name
+void lamps_arrange(struct app_state *state, const struct lamp_preset *preset, bool pole_y);
+
+#endif

@@ -1,0 +1,84 @@
+// session.h - an open file, what is drawn of it, and the panel over it
+#ifndef VIEWER_SESSION_H
+#define VIEWER_SESSION_H
+
+#include "context.h"
+#include "draw_panel.h"
+#include "inspect.h"
+#include "pack_source.h"
+#include "record.h"
+#include "renderer.h"
+
+#include <relume/pack.h>
+#include <relume/rig.h>
+
+enum { SESSION_LINES = 10, SESSION_TEXT = 256 };
+
+struct session {
+    const struct context_backend *backend;
+    void *context;
+    struct gl gl;
+    relume_pack *pack;
+    struct pack_source *source;  // of it, for the renderer and its threads
+    relume_capture *capture;  // of the file, to compare with, or NULL
+    relume_rig *rig;          // owns what lights point at; the app's list says what shines
+    struct app app;
+    struct renderer renderer;
+    struct panel *panel;
+    struct panel_drawing drawing;
+    struct inspector inspector;  // made when first asked for
+    struct target screen;        // of shots without a window
+    uint32_t histogram[256][3];
+    char name[SESSION_TEXT];  // of the file, for the title
+    char line[SESSION_LINES][SESSION_TEXT];
+    const char *lines[SESSION_LINES + 1];  // what the panel says of the file
+    char message[SESSION_TEXT];            // what the panel says last
+    int threads;                           // that read files
+    size_t vram_bytes;                     // for views
+    bool streams;                          // frames are drawn with the views that are there
+    const struct relume_log *log;
+};
+
+// Open `path` and start the app; the session is untouched when that fails.
+relume_status session_open(struct session *s, const char *path, const struct app_state *start,
+                           bool look_ahead);
+// A capture to compare the file with, before session_open. RELUME_EDATA, RELUME_ENOMEM.
+relume_status session_compare(struct session *s, const char *capture);
+// Get OpenGL and make what draws. RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EDATA.
+relume_status session_start(struct session *s, const struct context_backend *backend, int width,
+                            int height);
+// Show another file in the same window; one that cannot be opened is only complained about.
+relume_status session_drop(struct session *s, const char *path);
+void session_close(struct session *s);
+
+// Hand an event to the panel, else to the app; returns whether something may look different.
+bool session_send(struct session *s, const struct app_event *event);
+// Draw the frame, linear, with the panel as its events have changed the app, and do what was
+// wished.
+relume_status session_draw(struct session *s);
+// The frame and the panel onto the screen.
+void session_present(struct session *s);
+
+// Let time pass for what moves by itself; returns whether the picture changed.
+bool session_pass(struct session *s, double seconds);
+
+// Draw and write: the picture alone, or as the screen would show it.
+relume_status session_frame(struct session *s, const char *path);
+relume_status session_shot(struct session *s, const char *path);
+
+// Draw a round of `frames` pictures and write it; the app is as before afterwards. Errors of
+// record.h and session_draw.
+relume_status session_record(struct session *s, enum record_kind kind, const char *path,
+                             int frames);
+
+// A light from words, in place of all or beside them. RELUME_EINVAL, RELUME_EDATA with a sentence.
+relume_status session_light(struct session *s, const char *spec, bool replace);
+// The lights of a rig file in place of all; the present ones as a rig file.
+relume_status session_load_rig(struct session *s, const char *path);
+relume_status session_save_rig(struct session *s, const char *path);
+
+// Begin with the lights of `rig`, which becomes the session's; NULL: none. RELUME_EINVAL when there
+// are more than APP_LIGHTS, RELUME_ENOMEM.
+relume_status session_take_rig(struct session *s, relume_rig **rig, struct app_state *start);
+
+#endif

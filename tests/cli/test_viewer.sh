@@ -39,7 +39,8 @@ nearly() { # name, light, options...: both programs draw the same frame to 1/255
 nearly 'a point light' 'point 0.6 1 2 rgb 2 2 2'
 nearly 'a spot from another eye' 'spot 0.5 0.5 2.5 -0.1 -0.1 -1 20 rgb 6 5 4' --eye 0.1,-0.2,3
 nearly 'an area light' 'area 0 1.5 1 0.5 0 0 0 0 0.5 rgb 8 8 8'
-nearly 'a slide' 'slide 0 0 3 0 0 -1 25 cpu.exr rgb 5 5 5'
+"$RELUME" relight teapot.exr -o slide.png --light 'dir 0 0 1'
+nearly 'a slide' 'slide 0 0 3 0 0 -1 25 slide.png rgb 5 5 5'
 nearly 'an environment' 'env sky/view00/light0000.exr 30 rgb 3 3 3'
 
 # Mesa draws by the same code whether OSMesa or EGL asks; a graphics card rounds in its own way.

@@ -11,9 +11,9 @@ struct loader {
     pthread_t thread;
     pthread_mutex_t lock;  // of everything below
     pthread_cond_t work, news;
-    enum stage *stage;        // [views]
-    uint64_t *order;          // [views]: when it was asked for
-    struct loaded *result;    // [views]
+    enum stage *stage;      // [views]
+    uint64_t *order;        // [views]: when it was asked for
+    struct loaded *result;  // [views]
     uint64_t asked;
     bool stop;
 };

@@ -406,7 +406,8 @@ static relume_status need_surface(struct relighter *r, struct relit_view *v)
         return say(r->log, RELUME_ESYSTEM,
                    "near lights on %d planes: OpenGL has %d texture layers of four here",
                    v->codes.planes, r->gl->max_layers);
-    const relume_status status = r->source.surface ? r->source.surface(&surface, r->source.user, (int)(v - r->view))
+    const relume_status status =
+        r->source.surface ? r->source.surface(&surface, r->source.user, (int)(v - r->view))
                           : RELUME_EINVAL;
     if (status == RELUME_EINVAL)
         return say(r->log, RELUME_EDATA,

@@ -22,13 +22,15 @@ static relume_status create_programs(struct renderer *r)
         {&r->slab_depth, draw_slab_depth_create},
         {&r->slab_lens, draw_slab_lens_create},
         {&r->mean, draw_mean_create},
-        {&r->panorama, draw_panorama_create},
+
         {&r->ball, draw_ball_create},
         {&r->present, draw_present_create},
     };
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < sizeof list / sizeof *list; i++)
         status = list[i].create(list[i].program, r->gl, r->log);
+    if (!status && r->geometry.projection >= RELUME_CYLINDRICAL)
+        status = draw_panorama_create(&r->panorama, r->gl, r->geometry.projection, r->log);
     return status;
 }
 

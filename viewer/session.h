@@ -20,8 +20,8 @@ struct session {
     struct gl gl;
     relume_pack *pack;
     struct pack_source *source;  // of it, for the renderer and its threads
-    relume_capture *capture;  // of the file, to compare with, or NULL
-    relume_rig *rig;          // owns what lights point at; the app's list says what shines
+    relume_capture *capture;     // of the file, to compare with, or NULL
+    relume_rig *rig;             // owns what lights point at; the app's list says what shines
     struct app app;
     struct renderer renderer;
     struct panel *panel;

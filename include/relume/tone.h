@@ -32,7 +32,7 @@ struct relume_tone_params {
     double exposure_ev;              // multiply by 2^EV first
     double white;                    // default: RELUME_TONE_WHITE
 };
-#define RELUME_TONE_WHITE 4.0
+#define RELUME_TONE_WHITE       4.0
 #define relume_tone_params(...) (&(const struct relume_tone_params){__VA_ARGS__})
 
 // Apply to every pixel of `image`, three channels, in place. RELUME_EINVAL.

@@ -99,8 +99,8 @@ struct relume_slab_lens {
     double step[2][2];  // u, v: to the next line of the grid below and above
 };
 RELUME_API struct relume_slab_lens relume_slab_lens(const relume_slab *slab, int column, int row);
-RELUME_API double relume_slab_lens_weight(const struct relume_slab_lens *camera,
-                                          const double uv[2], double radius);
+RELUME_API double relume_slab_lens_weight(const struct relume_slab_lens *camera, const double uv[2],
+                                          double radius);
 
 // Mark in needed[views] the views that a frame from `eye` can touch (seed Fig 8-13); returns how
 // many, 0 when the eye sees nothing of the slab.

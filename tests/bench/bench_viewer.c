@@ -162,7 +162,7 @@ static void open_scene(struct scene *s, struct file *f)
     const struct code_source source = {fetch, NULL, f, find_surface};
     *s = (struct scene){.frame = {0}};
     bench_check(relighter_create(&s->relighter, &gl, &source, 1, NULL));
-    bench_check(draw_panorama_create(&s->panorama, &gl, NULL));
+    bench_check(draw_panorama_create(&s->panorama, &gl, RELUME_SPHERICAL, NULL));
     bench_check(target_create(&s->frame, &gl, width, height, NULL));
 }
 

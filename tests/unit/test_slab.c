@@ -202,7 +202,9 @@ static void blend_at_crossings_borders_and_outside(void **state)
     assert_int_equal(relume_slab_blend(view, w, slab, broken, NULL), 0);
     const double near_second[2] = {-0.5, 0.3};
     assert_int_equal(
-        relume_slab_blend(view, w, slab, near_second, relume_view_params(.interpolation = RELUME_INTERPOLATE_CONSTANT)), 1);
+        relume_slab_blend(view, w, slab, near_second,
+                          relume_view_params(.interpolation = RELUME_INTERPOLATE_CONSTANT)),
+        1);
     assert_int_equal(view[0], order[COLUMNS + 1]);
     relume_slab_destroy(&slab);
 }

@@ -39,7 +39,7 @@ PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenImageIO OpenEXR openblas j
 CAIRO    = $(call once,CAIRO,pkg-config --cflags cairo)
 LIBS     = -Wl,--as-needed $(PKG_LIBS) -llapacke -lembree3 -lm
 CLI_LIBS = $(call once,CLI_LIBS,pkg-config --libs cairo)
-GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa imgui)
+GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa egl imgui)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 
 LIB_C    := $(wildcard src/base/*.c src/math/*.c src/image/*.c src/capture/*.c src/scene/*.c \
@@ -140,7 +140,9 @@ $(UNIT): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
-$(BENCH) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
+# The bench that draws is linked as the tests of GL are.
+GL_BENCH := $B/tests/bench/bench_viewer
+$(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
@@ -148,7 +150,7 @@ $(TOOLS): $B/%: $B/obj/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
-$(GL): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O)) $B/librelume.a
+$(GL) $(GL_BENCH): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O)) $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)

@@ -54,7 +54,8 @@ void books_upload(const struct gl *gl, const struct relume_codes *codes)
 }
 
 relume_status books_relight(const struct gl *gl, const struct relume_codes *codes,
-                            const struct relume_light *lights, int n)
+                            const struct relume_light *lights, int n,
+                            const relume_weight_grid *grid)
 {
     int rows = 1;
     for (int b = 0; b < codes->books; b++) {
@@ -69,7 +70,8 @@ relume_status books_relight(const struct gl *gl, const struct relume_codes *code
     texture_settings(gl, GL_TEXTURE_2D_ARRAY);
     relume_status status = RELUME_OK;
     for (int b = 0; !status && b < codes->books; b++) {
-        status = relume_relight_book(table, codes, b, lights, n, NULL);
+        status =
+            relume_relight_book(table, codes, b, lights, n, relume_relight_params(.grid = grid));
         if (!status)
             gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, b, TABLE_WIDTH, rows, 1, GL_RGB,
                               GL_FLOAT, table);

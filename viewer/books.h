@@ -17,8 +17,9 @@ size_t books_bytes(const struct relume_codes *codes);
 // The indices into the array texture that is bound.
 void books_upload(const struct gl *gl, const struct relume_codes *codes);
 // The relit vectors into the array texture that is bound, as lookup.frag reads them; the lights are
-// those of relume_relight_book. Its errors, RELUME_ENOMEM.
+// those of relume_relight_book, `grid` may be NULL. Its errors, RELUME_ENOMEM.
 relume_status books_relight(const struct gl *gl, const struct relume_codes *codes,
-                            const struct relume_light *lights, int n);
+                            const struct relume_light *lights, int n,
+                            const relume_weight_grid *grid);
 
 #endif

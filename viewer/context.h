@@ -28,7 +28,10 @@ struct context_backend {
     // The next event; false when there is none (with `wait` only after sleeping for one).
     bool (*next)(void *context, struct context_event *event, bool wait);
 };
-extern const struct context_backend context_glfw;    // a window
-extern const struct context_backend context_osmesa;  // no display needed; draw into targets
+extern const struct context_backend context_glfw;  // a window
+// No display needed, draw into targets:
+extern const struct context_backend context_osmesa;
+extern const struct context_backend context_egl;       // a graphics card, else Mesa's software
+extern const struct context_backend context_egl_card;  // fails without a card
 
 #endif

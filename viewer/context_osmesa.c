@@ -1,5 +1,5 @@
 // context_osmesa.c - OpenGL in memory by Mesa's software renderer; the only file that knows OSMesa
-#include "context.h"
+#include "context_offscreen.h"
 
 #include "say.h"
 
@@ -53,30 +53,7 @@ static gl_proc get_proc(const char *name)
     return OSMesaGetProcAddress(name);
 }
 
-static void size(void *context, int *width, int *height)
-{
-    (void)context;
-    *width = *height = 1;
-}
-
-static double scale(void *context)
-{
-    (void)context;
-    return 1;
-}
-
-static void show(void *context, const char *title)
-{
-    (void)context, (void)title;
-}
-
-static bool next(void *context, struct context_event *event, bool wait)
-{
-    (void)context, (void)wait;
-    event->kind = CONTEXT_CLOSE;
-    return false;
-}
-
 const struct context_backend context_osmesa = {
-    "osmesa", open_offscreen, close_offscreen, get_proc, size, scale, show, next,
+    "osmesa",       open_offscreen,  close_offscreen, get_proc,
+    offscreen_size, offscreen_scale, offscreen_show,  offscreen_next,
 };

@@ -2,16 +2,19 @@
 
 #define PI 3.14159265358979323846
 
-enum { VIEW = DRAW_OWN, PROJECTION, ELEVATION, LOOK, STEREOGRAPHIC, LOOK_SIZE, EXPOSURE, COUNT };
+enum { VIEW = DRAW_OWN, ELEVATION, LOOK, STEREOGRAPHIC, LOOK_SIZE, EXPOSURE, COUNT };
 static const char *const uniforms[] = {
-    "rectangle", "frame_size",    "view",      "projection", "elevation",
+    "rectangle", "frame_size",    "view",      "elevation",
     "look",      "stereographic", "look_size", "exposure",
 };
 
 relume_status draw_panorama_create(struct program *program, const struct gl *gl,
-                                   const struct relume_log *log)
+                                   enum relume_projection projection, const struct relume_log *log)
 {
-    return program_create(program, gl, "panorama.frag", uniforms, COUNT, log);
+    const char *name = projection == RELUME_CUBE        ? "panorama_cube.frag"
+                       : projection == RELUME_SPHERICAL ? "panorama_sphere.frag"
+                                                        : "panorama_cylinder.frag";
+    return program_create(program, gl, name, uniforms, COUNT, log);
 }
 
 void draw_panorama(const struct program *program, const struct gl *gl, const struct place *place,
@@ -22,7 +25,6 @@ void draw_panorama(const struct program *program, const struct gl *gl, const str
     texture_use(gl, 0, GL_TEXTURE_2D, view->texture);
     gl->UseProgram(program->id);
     gl->Uniform1i(at[VIEW], 0);
-    gl->Uniform1i(at[PROJECTION], (GLint)geometry->projection);
     gl->Uniform2f(at[ELEVATION], (float)geometry->v_min, (float)geometry->v_max);
     gl->Uniform3f(at[LOOK], (float)(look.pan_deg * PI / 180), (float)(look.tilt_deg * PI / 180),
                   (float)(1.0 / look.zoom));

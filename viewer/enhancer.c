@@ -87,9 +87,10 @@ static relume_status fit(struct enhancer *e, int view)
     struct relume_normals normals = {0};
     struct relume_image detail = {0};
     relume_status status = e->source.codes(&codes, e->source.user, view);
-    if (!status)
-        status = relume_normals_fit(&normals, codes,
-                                    relume_normals_params(.log = e->log, .threads = e->threads));
+    if (status)
+        return status;
+    status = relume_normals_fit(&normals, codes,
+                                relume_normals_params(.log = e->log, .threads = e->threads));
     if (!status)
         status = relume_normals_detail(&detail, &normals.normal, DETAIL, e->threads);
     if (!status) {

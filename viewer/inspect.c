@@ -51,23 +51,24 @@ static void make_weights(struct inspector *in, const relume_coder *coder)
     }
 }
 
-static bool fits(const relume_capture *capture, const relume_pack *pack)
+static bool fits(const relume_capture *capture, const struct relume_pack_info *info)
 {
-    const struct relume_pack_info *info = relume_pack_info(pack);
     const double bytes = 12.0 * relume_capture_width(capture) * relume_capture_height(capture) *
                          relume_capture_manifest(capture)->lights;
     return relume_capture_width(capture) == info->width &&
            relume_capture_height(capture) == info->height && bytes <= most_bytes;
 }
 
-relume_status inspect_create(struct inspector *in, relume_pack *pack, const relume_slab *grid,
+relume_status inspect_create(struct inspector *in, const struct relume_pack_info *info,
+                             const struct code_source *source, const relume_slab *grid,
                              const relume_capture *capture)
 {
-    const relume_coder *coder = relume_pack_info(pack)->coder;
+    const relume_coder *coder = info->coder;
     const size_t size = 3 * (size_t)relume_coder_info(coder)->coefficients;
     const size_t places = (size_t)INSPECT_GRID * INSPECT_GRID;
-    *in = (struct inspector){.pack = pack, .grid = grid, .view = -1, .measured_view = -1};
-    in->capture = capture && fits(capture, pack) ? capture : NULL;
+    *in = (struct inspector){
+        .info = info, .source = *source, .grid = grid, .view = -1, .measured_view = -1};
+    in->capture = capture && fits(capture, info) ? capture : NULL;
     in->weights = calloc(places * size, sizeof *in->weights);
     in->constant = calloc(places, sizeof *in->constant);
     in->coefficient = calloc(size, sizeof *in->coefficient);
@@ -81,8 +82,16 @@ relume_status inspect_create(struct inspector *in, relume_pack *pack, const relu
     return status;
 }
 
+static void drop_codes(struct inspector *in)
+{
+    if (in->codes && in->source.drop)
+        in->source.drop(in->source.user, in->view);
+    in->codes = NULL;
+}
+
 void inspect_destroy(struct inspector *in)
 {
+    drop_codes(in);
     free(in->weights);
     free(in->constant);
     free(in->coefficient);
@@ -283,7 +292,7 @@ static void mark_directions(struct inspector *in, const struct app *app,
 
 static int view_in_capture(const struct inspector *in, int view)
 {
-    const struct relume_pack_info *info = relume_pack_info(in->pack);
+    const struct relume_pack_info *info = in->info;
     const struct relume_manifest *m = relume_capture_manifest(in->capture);
     int best = 0;
     double least = INFINITY;
@@ -345,27 +354,35 @@ static void mark_photographs(struct inspector *in, const struct app *app, bool p
     }
 }
 
+static relume_status hold_codes(struct inspector *in, int view)
+{
+    if (in->codes && in->view == view)
+        return RELUME_OK;
+    drop_codes(in);
+    in->view = view;
+    const relume_status status = in->source.codes(&in->codes, in->source.user, view);
+    if (status)
+        in->codes = NULL;
+    return status;
+}
+
 relume_status inspect_update(struct inspector *in, const struct app *app, bool *shown)
 {
     int view, pixel[2];
-    const struct relume_codes *codes;
     *shown = inspect_pick(&view, pixel, app, in->grid, app->cursor[0], app->cursor[1]);
     if (!*shown)
         return RELUME_OK;
-    if (in->view >= 0 && in->view != view)
-        relume_pack_drop(in->pack, in->view);
-    relume_status status = relume_pack_codes(&codes, in->pack, view);
+    relume_status status = hold_codes(in, view);
     if (!status && in->capture && in->measured_view != view)
         status = read_photographs(in, view);
     if (status)
         return status;
-    in->view = view;
     in->x = pixel[0];
     in->y = pixel[1];
-    fill_disc(in, app, codes);
+    fill_disc(in, app, in->codes);
     if (in->capture)
-        mark_photographs(in, app, relume_coder_info(codes->coder)->pole_y);
-    mark_directions(in, app, relume_coder_info(codes->coder));
+        mark_photographs(in, app, relume_coder_info(in->codes->coder)->pole_y);
+    mark_directions(in, app, relume_coder_info(in->codes->coder));
     snprintf(in->text, sizeof in->text, "view %d, pixel %d, %d", view, in->x, in->y);
     return RELUME_OK;
 }

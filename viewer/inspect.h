@@ -8,6 +8,7 @@
 #define VIEWER_INSPECT_H
 
 #include "app.h"
+#include "loader.h"
 
 #include <relume/pack.h>
 
@@ -17,19 +18,23 @@ struct inspector {
     const relume_capture *capture;  // the photographs, or NULL
     float *measured;                // [lights][height][width][3] of `measured_view`, linear
     int measured_view;
-    relume_pack *pack;
-    const relume_slab *grid;   // of a slab, or NULL
-    float *weights;            // [INSPECT_GRID^2][3][K], zero outside the disc
-    float (*constant)[3];      // [INSPECT_GRID^2]
-    float *coefficient;        // [3][K] of the pixel
-    int view, x, y;            // shown now; view -1: none
-    struct relume_image plot;  // display values
+    const struct relume_pack_info *info;
+    struct code_source source;
+    const struct relume_codes *codes;  // of `view`, held until another one is looked at
+    const relume_slab *grid;           // of a slab, or NULL
+    float *weights;                    // [INSPECT_GRID^2][3][K], zero outside the disc
+    float (*constant)[3];              // [INSPECT_GRID^2]
+    float *coefficient;                // [3][K] of the pixel
+    int view, x, y;                    // shown now; view -1: none
+    struct relume_image plot;          // display values
     char text[128];
 };
 
-// The file and the photographs (of its size; NULL: none) must outlive it. RELUME_ENOMEM.
-relume_status inspect_create(struct inspector *inspector, relume_pack *pack,
-                             const relume_slab *grid, const relume_capture *capture);
+// The file that `info` describes, its source and the photographs (of its size; NULL: none) must
+// outlive it. RELUME_ENOMEM.
+relume_status inspect_create(struct inspector *inspector, const struct relume_pack_info *info,
+                             const struct code_source *source, const relume_slab *grid,
+                             const relume_capture *capture);
 void inspect_destroy(struct inspector *inspector);
 
 // The view and pixel that the frame shows at (x, y); of a slab in the camera nearest to the ray.

@@ -1,4 +1,5 @@
 // main.c - relume-view: a file in a window, or in pictures written without one
+#include "context_offscreen.h"
 #include "options.h"
 #include "say.h"
 #include "script.h"
@@ -89,7 +90,7 @@ static relume_status run_offscreen(struct session *s, struct options *o)
     if (!status)
         status = session_open(s, o->file, &o->start, false);
     if (!status)
-        status = session_start(s, &context_osmesa, s->app.width, s->app.height);
+        status = session_start(s, context_offscreen(o->gl), s->app.width, s->app.height);
     s->app.panel = o->panel;
     if (!status && o->script)
         status = script_play(o->script, &host);
@@ -182,7 +183,7 @@ static relume_status live(struct session *s, struct script *script)
             status = take_events(s, &changed, &time_ms);
         if (!status && changed && !s->app.quit)
             status = show_frame(s);
-        changed = false;
+        changed = !status && renderer_is_pending(&s->renderer);
     }
     return status;
 }
@@ -248,6 +249,7 @@ static relume_status run_window(struct session *s, struct options *o)
     const struct script_host host = host_of(s);
     struct settings settings = {0};
     struct script *script = NULL;
+    s->streams = true;
     if (!o->no_config) {
         settings_load(&settings);
         recall_rig(o, &settings);
@@ -272,6 +274,7 @@ int main(int argc, char **argv)
     signal(SIGPIPE, SIG_IGN);
     relume_status status = options_parse(&options, argc, argv, &log);
     session.threads = options.threads;
+    session.vram_bytes = (size_t)(options.vram_mb * 1048576.0);
     const bool offscreen =
         options.offscreen || options.record || (options.script && !options.window);
     if (!status && !options.file)

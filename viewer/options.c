@@ -181,6 +181,12 @@ static relume_status take_threads(struct options *o, const char *name, const cha
     return status;
 }
 
+static relume_status take_vram(struct options *o, const char *name, const char *text,
+                               const struct relume_log *log)
+{
+    return take_number(&o->vram_mb, name, text, 1, 1e6, log);
+}
+
 static relume_status take_exposure(struct options *o, const char *name, const char *text,
                                    const struct relume_log *log)
 {
@@ -222,6 +228,15 @@ static relume_status take_script(struct options *o, const char *name, const char
     (void)name, (void)log;
     o->script = text;
     return RELUME_OK;
+}
+
+static relume_status take_gl(struct options *o, const char *name, const char *text,
+                             const struct relume_log *log)
+{
+    o->gl = text;
+    if (!strcmp(text, "auto") || !strcmp(text, "osmesa") || !strcmp(text, "egl"))
+        return RELUME_OK;
+    return say(log, RELUME_EINVAL, "%s: expected auto, osmesa or egl; found '%s'", name, text);
 }
 
 static relume_status take_capture(struct options *o, const char *name, const char *text,
@@ -325,9 +340,13 @@ static const struct option options[] = {
      take_pass},
     {"--capture", "CAPTURE", "the photographs, for --pass difference", take_capture},
     {"--threads", "N", "threads that read files; default: all cores", take_threads},
+    {"--vram", "MB", "graphics memory for views; those not used for long leave; default: 1024",
+     take_vram},
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},
     {"--script", "EVENTS", "play a text file of events without a window", take_script},
+    {"--gl", "NAME",
+     "offscreen by osmesa, egl, or auto: a graphics card, else osmesa; default auto", take_gl},
     {"--record", "KIND", "record a light sweep or a turntable without a window", take_record},
     {"-o", "OUT", "--record: a folder of PNG files, or FILE.mp4 (by ffmpeg)", take_output},
     {"--frames", "N", "--record: pictures of the round; default 72", take_frames},
@@ -427,7 +446,7 @@ void options_release(struct options *o)
 
 relume_status options_parse(struct options *o, int argc, char **argv, const struct relume_log *log)
 {
-    *o = (struct options){0};
+    *o = (struct options){.gl = "auto", .vram_mb = 1024};
     if (asks_for_help(argc, argv))
         return RELUME_OK;
     for (int i = 1; i < argc; i++) {

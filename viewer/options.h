@@ -22,7 +22,9 @@ struct options {
     struct app_state start;
     relume_rig *rig;  // of --rig and --light, NULL without either
     bool sized;       // --size was given
+    const char *gl;   // what offscreen frames are drawn by: a name that context_offscreen knows
     int threads;      // that read files; 0: all cores
+    double vram_mb;   // graphics memory for views
 };
 
 // RELUME_EINVAL with a sentence in `log`: unknown options, wrong values, no FILE. RELUME_EDATA,

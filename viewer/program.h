@@ -5,7 +5,7 @@
 #include "gl.h"
 #include "shaders.h"
 
-enum { PROGRAM_UNIFORMS = 24 };
+enum { PROGRAM_UNIFORMS = 32 };
 
 struct program {
     GLuint id;

@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const size_t budget = (size_t)1 << 30;  // graphics memory to fill with views
-
 // How GL stores the codes of each kind; `unit` turns its normalised values back into codes.
 struct code_format {
     GLint internal;
@@ -107,6 +105,7 @@ static void release(struct relighter *r, struct relit_view *v)
     r->bytes -= v->bytes;
     free(v->array);
     free(v->scale);
+    nearby_view_destroy(&v->near, r->gl);
     if (v->codes.books)
         books_forget(&v->codes);
     *v = (struct relit_view){0};
@@ -187,27 +186,81 @@ static relume_status upload(struct relighter *r, struct relit_view *v,
     return status ? status : gl_check(gl, "uploading a view", r->log);
 }
 
+static relume_status keep(struct relighter *r, int view, const struct relume_codes *codes)
+{
+    const relume_status status = upload(r, &r->view[view], codes);
+    if (status)
+        release(r, &r->view[view]);
+    return status;
+}
+
 static relume_status load(struct relighter *r, int view)
 {
     const struct relume_codes *codes;
     relume_status status = r->source.codes(&codes, r->source.user, view);
     if (status)
         return status;
-    status = upload(r, &r->view[view], codes);
-    if (status)
-        release(r, &r->view[view]);
+    status = keep(r, view, codes);
     if (r->source.drop)
         r->source.drop(r->source.user, view);
     return status;
 }
 
+// What the loader has read, up to `view`; -1: as much as is there.
+static relume_status take_loaded(struct relighter *r, int view)
+{
+    struct loaded loaded;
+    relume_status status = RELUME_OK;
+    while (!status && (view < 0 || !r->view[view].array) &&
+           loader_take(&loaded, r->loader, view >= 0)) {
+        status = loaded.status;
+        if (status)
+            break;
+        if (!r->view[loaded.view].array)
+            status = keep(r, loaded.view, loaded.codes);
+        if (r->source.drop)
+            r->source.drop(r->source.user, loaded.view);
+    }
+    return status;
+}
+
 // ---------------------------------------------------------------- passes
+
+static void begin_adding(const struct relighter *r)
+{
+    r->gl->BindVertexArray(r->vertices);
+    r->gl->Enable(GL_BLEND);
+    r->gl->BlendFunc(GL_ONE, GL_ONE);
+}
 
 static void draw_all(const struct gl *gl, const struct program *p, const struct target *into)
 {
     gl->Uniform4f(p->at[DOT_RECTANGLE], 0, 0, (float)into->width, (float)into->height);
     gl->Uniform2f(p->at[DOT_SIZE], (float)into->width, (float)into->height);
     gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+static bool is_environment(enum relume_light_kind kind)
+{
+    return kind == RELUME_LIGHT_ENVIRONMENT;
+}
+
+static bool is_distant(enum relume_light_kind kind)
+{
+    return !relume_light_is_near(kind);
+}
+
+static bool has_kind(const struct relighter *r, bool (*is)(enum relume_light_kind))
+{
+    for (int i = 0; i < r->lights; i++)
+        if (is(r->light[i].kind))
+            return true;
+    return false;
+}
+
+static relume_status need_grid(struct relighter *r, const relume_coder *coder)
+{
+    return r->grid ? RELUME_OK : relume_weight_grid_create(&r->grid, coder, NULL);
 }
 
 // The dot product of all planes, added to what `into` holds.
@@ -244,7 +297,7 @@ static relume_status pass_lookup(const struct relighter *r, const struct relit_v
 {
     const struct gl *gl = r->gl;
     texture_use(gl, 1, GL_TEXTURE_2D_ARRAY, r->table);
-    const relume_status status = books_relight(gl, &v->codes, lights, n);
+    const relume_status status = books_relight(gl, &v->codes, lights, n, r->grid);
     if (status)
         return status;
     texture_use(gl, 0, GL_TEXTURE_2D_ARRAY, v->array[0]);
@@ -256,31 +309,35 @@ static relume_status pass_lookup(const struct relighter *r, const struct relit_v
     return RELUME_OK;
 }
 
-// `coded` decoded by the file's curve, times the light, added to what the target in use holds.
-static void pass_develop(const struct relighter *r, const struct relit_view *v, const float rgb[3])
+// `coded` decoded by `display`, times the light, added to what the target in use holds.
+static void pass_develop(const struct relighter *r, const struct relit_view *v,
+                         const struct target *coded, struct relume_transfer display,
+                         const float rgb[3])
 {
     const struct gl *gl = r->gl;
-    texture_use(gl, 0, GL_TEXTURE_2D, r->coded.texture);
+    texture_use(gl, 0, GL_TEXTURE_2D, coded->texture);
     gl->UseProgram(r->develop.id);
     gl->Uniform1i(r->develop.at[DEVELOP_CODED], 0);
-    gl->Uniform1i(r->develop.at[DEVELOP_CURVE], (GLint)v->codes.display.curve);
-    gl->Uniform1f(r->develop.at[DEVELOP_GAMMA], v->codes.display.gamma);
+    gl->Uniform1i(r->develop.at[DEVELOP_CURVE], (GLint)display.curve);
+    gl->Uniform1f(r->develop.at[DEVELOP_GAMMA], display.gamma);
     gl->Uniform3f(r->develop.at[DEVELOP_LIGHT], rgb[0], rgb[1], rgb[2]);
     draw_all(gl, &r->develop, &v->relit);
 }
 
-static void add_light(struct weights *w, const struct relit_view *v,
-                      const struct relume_light *light, const float rgb[3])
-{
-    weights_add(w, &v->codes, formats[v->codes.storage].unit, light->direction, rgb);
-}
-
 static relume_status relight_linear(struct relighter *r, struct relit_view *v, struct weights *w)
 {
-    for (int i = 0; i < r->lights; i++)
-        add_light(w, v, &r->light[i], r->light[i].rgb);
-    pass_dot(r, v, w, &v->relit);
-    return RELUME_OK;
+    const double unit = formats[v->codes.storage].unit;
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < r->lights; i++) {
+        const struct relume_light *l = &r->light[i];
+        if (l->kind == RELUME_LIGHT_DIRECTIONAL)
+            weights_add(w, &v->codes, unit, l->direction, l->rgb);
+        else if (l->kind == RELUME_LIGHT_ENVIRONMENT && !(status = need_grid(r, v->codes.coder)))
+            weights_add_environment(w, &v->codes, unit, r->grid, l);
+    }
+    if (!status && has_kind(r, is_distant))
+        pass_dot(r, v, w, &v->relit);
+    return status;
 }
 
 static relume_status prepare_coded(struct relighter *r, const struct relit_view *v)
@@ -296,24 +353,144 @@ static relume_status relight_display(struct relighter *r, struct relit_view *v, 
     static const float one[3] = {1, 1, 1};
     relume_status status = prepare_coded(r, v);
     for (int i = 0; !status && i < r->lights; i++) {
+        if (r->light[i].kind != RELUME_LIGHT_DIRECTIONAL)
+            continue;
         target_begin(&r->coded, r->gl);
         if (v->codes.books) {
             status = pass_lookup(r, v, &r->light[i], 1, &r->coded);
         } else {
             weights_clear(w);
-            add_light(w, v, &r->light[i], one);
+            weights_add(w, &v->codes, formats[v->codes.storage].unit, r->light[i].direction, one);
             pass_dot(r, v, w, &r->coded);
         }
         target_resume(&v->relit, r->gl);
-        pass_develop(r, v, r->light[i].rgb);
+        pass_develop(r, v, &r->coded, v->codes.display, r->light[i].rgb);
     }
     return status;
 }
 
-// All lights at once: sums in linear light, or one codebook that is linear when relit.
+// The distant lights at once: sums in linear light, or one codebook that is linear when relit;
+// that of the display domain leaves environments to its linear twin.
 static relume_status relight_books(struct relighter *r, struct relit_view *v)
 {
-    return pass_lookup(r, v, r->light, r->lights, &v->relit);
+    const bool display = v->codes.domain == RELUME_DOMAIN_DISPLAY;
+    struct relume_light *distant = malloc((size_t)r->lights * sizeof *distant + 1);
+    relume_status status = distant ? RELUME_OK : RELUME_ENOMEM;
+    int n = 0;
+    for (int i = 0; !status && i < r->lights; i++)
+        if (r->light[i].kind == RELUME_LIGHT_DIRECTIONAL ||
+            (!display && is_environment(r->light[i].kind)))
+            distant[n++] = r->light[i];
+    if (!status && !display && has_kind(r, is_environment))
+        status = need_grid(r, v->codes.coder);
+    if (!status)
+        status = pass_lookup(r, v, distant, n, &v->relit);
+    free(distant);
+    return status;
+}
+
+// ---------------------------------------------------------------- near lights, environments
+
+static struct nearby_codes nearby_codes_of(const struct relit_view *v)
+{
+    return (struct nearby_codes){&v->codes, v->array[0], v->layers, formats[v->codes.storage].unit};
+}
+
+static relume_status need_surface(struct relighter *r, struct relit_view *v)
+{
+    struct relume_image surface = {0};
+    const struct nearby_codes codes = nearby_codes_of(v);
+    if (v->near.surface.data)
+        return RELUME_OK;
+    if (v->arrays > 1)
+        return say(r->log, RELUME_ESYSTEM,
+                   "near lights on %d planes: OpenGL has %d texture layers of four here",
+                   v->codes.planes, r->gl->max_layers);
+    const relume_status status =
+        r->source.surface ? r->source.surface(&surface, r->source.user, (int)(v - r->view))
+                          : RELUME_EINVAL;
+    if (status == RELUME_EINVAL)
+        return say(r->log, RELUME_EDATA,
+                   "a near light needs to know where the surface is; expected a file with depth");
+    return status ? status : nearby_view_create(&v->near, &r->near, &codes, &surface);
+}
+
+static relume_status relight_near(struct relighter *r, struct relit_view *v)
+{
+    const struct nearby_codes codes = nearby_codes_of(v);
+    relume_status status = need_surface(r, v);
+    target_resume(&v->relit, r->gl);
+    for (int i = 0; !status && i < r->lights; i++)
+        if (relume_light_is_near(r->light[i].kind))
+            status = nearby_draw(&r->near, &v->near, &codes, &r->light[i]);
+    return status;
+}
+
+static relume_status linear_codes(const struct relume_codes **out, void *user, int view)
+{
+    struct linear_source *s = user;
+    const struct relume_codes *codes;
+    relume_refit **refit = s->first ? &s->refit : &s->first;
+    relume_status status = s->source.codes(&codes, s->source.user, view);
+    if (!status)
+        status =
+            relume_refit_create(refit, codes, relume_refit_params(.log = s->log, .like = s->first));
+    if (!status)
+        *out = relume_refit_codes(*refit);
+    return status;
+}
+
+static void linear_drop(void *user, int view)
+{
+    struct linear_source *s = user;
+    if (s->refit)
+        relume_refit_destroy(&s->refit);
+    else
+        relume_refit_forget(s->first);
+    if (s->source.drop)
+        s->source.drop(s->source.user, view);
+}
+
+static relume_status need_linear(struct relighter *r)
+{
+    if (r->linear)
+        return RELUME_OK;
+    r->linear = malloc(sizeof *r->linear);
+    if (!r->linear)
+        return RELUME_ENOMEM;
+    r->linear_source = (struct linear_source){.source = r->source, .log = r->log};
+    const struct code_source source = {linear_codes, linear_drop, &r->linear_source, NULL};
+    const relume_status status = relighter_create(r->linear, r->gl, &source, r->views, r->log);
+    if (status) {
+        free(r->linear);
+        r->linear = NULL;
+    }
+    return status;
+}
+
+// The linear twin under the environments alone.
+static relume_status relight_environments(struct relighter *r, struct relit_view *v)
+{
+    static const struct relume_transfer linear = {RELUME_CURVE_LINEAR, 0.0f};
+    static const float one[3] = {1.0f, 1.0f, 1.0f};
+    const struct target *twin;
+    struct relume_light *environments = malloc((size_t)r->lights * sizeof *environments);
+    int n = 0;
+    relume_status status = environments ? need_linear(r) : RELUME_ENOMEM;
+    for (int i = 0; !status && i < r->lights; i++)
+        if (is_environment(r->light[i].kind))
+            environments[n++] = r->light[i];
+    if (!status)
+        status = relighter_begin(r->linear, environments, n);
+    if (!status)
+        status = relighter_view(&twin, r->linear, (int)(v - r->view));
+    free(environments);
+    if (status)
+        return status;
+    begin_adding(r);
+    target_resume(&v->relit, r->gl);
+    pass_develop(r, v, twin, linear, one);
+    return RELUME_OK;
 }
 
 static relume_status relight(struct relighter *r, struct relit_view *v)
@@ -324,14 +501,16 @@ static relume_status relight(struct relighter *r, struct relit_view *v)
     relume_status status = weights_create(&w, v->codes.coder, v->codes.planes);
     if (status)
         return status;
-    gl->BindVertexArray(r->vertices);
     target_begin(&v->relit, gl);
-    gl->Enable(GL_BLEND);
-    gl->BlendFunc(GL_ONE, GL_ONE);
+    begin_adding(r);
     if (v->codes.books && (!display || v->codes.books == 1))
         status = relight_books(r, v);
     else
         status = (display ? relight_display : relight_linear)(r, v, &w);
+    if (!status && display && has_kind(r, is_environment))
+        status = relight_environments(r, v);
+    if (!status && has_kind(r, relume_light_is_near))
+        status = relight_near(r, v);
     gl->Disable(GL_BLEND);
     weights_destroy(&w);
     if (!status)
@@ -347,7 +526,7 @@ relume_status relighter_create(struct relighter *r, const struct gl *gl,
                                const struct relume_log *log)
 {
     *r = (struct relighter){
-        .gl = gl, .log = log, .source = *source, .views = views, .budget = budget};
+        .gl = gl, .log = log, .source = *source, .views = views, .budget = (size_t)1 << 30};
     r->view = calloc((size_t)views, sizeof *r->view);
     relume_status status = r->view ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
@@ -357,6 +536,8 @@ relume_status relighter_create(struct relighter *r, const struct gl *gl,
             program_create(&r->develop, gl, "develop.frag", develop_uniforms, DEVELOP_COUNT, log);
     if (!status)
         status = program_create(&r->lookup, gl, "lookup.frag", lookup_uniforms, LOOKUP_COUNT, log);
+    if (!status)
+        status = nearby_create(&r->near, gl, log);
     gl->GenVertexArrays(1, &r->vertices);
     gl->GenTextures(1, &r->table);
     gl->GenTextures(1, &r->weights);
@@ -369,12 +550,19 @@ void relighter_destroy(struct relighter *r)
 {
     if (!r->gl)
         return;
+    loader_destroy(&r->loader);
     for (int i = 0; r->view && i < r->views; i++)
         release(r, &r->view[i]);
+    if (r->linear)
+        relighter_destroy(r->linear);
+    free(r->linear);
+    relume_refit_destroy(&r->linear_source.first);
     target_destroy(&r->coded, r->gl);
     program_destroy(&r->dot, r->gl);
     program_destroy(&r->develop, r->gl);
     program_destroy(&r->lookup, r->gl);
+    nearby_destroy(&r->near);
+    relume_weight_grid_destroy(&r->grid);
     r->gl->DeleteTextures(1, &r->table);
     r->gl->DeleteTextures(1, &r->weights);
     r->gl->DeleteVertexArrays(1, &r->vertices);
@@ -383,11 +571,19 @@ void relighter_destroy(struct relighter *r)
     *r = (struct relighter){0};
 }
 
+static bool same_vector(struct relume_vec3 a, struct relume_vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
 static bool same_light(const struct relume_light *a, const struct relume_light *b)
 {
-    return a->kind == b->kind && a->direction.x == b->direction.x &&
-           a->direction.y == b->direction.y && a->direction.z == b->direction.z &&
-           a->rgb[0] == b->rgb[0] && a->rgb[1] == b->rgb[1] && a->rgb[2] == b->rgb[2];
+    return a->kind == b->kind && same_vector(a->direction, b->direction) &&
+           same_vector(a->position, b->position) && same_vector(a->u, b->u) &&
+           same_vector(a->v, b->v) && a->disc == b->disc && a->nofall == b->nofall &&
+           a->half_angle_deg == b->half_angle_deg && a->rotate_deg == b->rotate_deg &&
+           a->rgb[0] == b->rgb[0] && a->rgb[1] == b->rgb[1] && a->rgb[2] == b->rgb[2] &&
+           a->image == b->image && a->environment == b->environment && a->ies == b->ies;
 }
 
 static bool same_lights(const struct relighter *r, const struct relume_light *lights, int n)
@@ -400,11 +596,21 @@ static bool same_lights(const struct relighter *r, const struct relume_light *li
     return true;
 }
 
-relume_status relighter_begin(struct relighter *r, const struct relume_light *lights, int n)
+static relume_status begin_frame(struct relighter *r)
 {
     r->frame++;
-    if (same_lights(r, lights, n))
+    r->pending = false;
+    if (!r->loader)
         return RELUME_OK;
+    loader_clear(r->loader);
+    return take_loaded(r, -1);
+}
+
+relume_status relighter_begin(struct relighter *r, const struct relume_light *lights, int n)
+{
+    const relume_status status = begin_frame(r);
+    if (status || same_lights(r, lights, n))
+        return status;
     const size_t bytes = (size_t)n * sizeof *lights;
     struct relume_light *copy = malloc(bytes ? bytes : 1);
     if (!copy)
@@ -418,17 +624,55 @@ relume_status relighter_begin(struct relighter *r, const struct relume_light *li
     return RELUME_OK;
 }
 
-relume_status relighter_view(const struct target **out, struct relighter *r, int view)
+void relighter_forget(struct relighter *r)
 {
-    struct relit_view *v = &r->view[view];
-    *out = NULL;
-    relume_status status = v->array ? RELUME_OK : load(r, view);
-    if (status)
-        return status;
+    nearby_forget(&r->near);
+    free(r->light);
+    r->light = NULL;
+    if (r->linear)
+        relighter_forget(r->linear);
+}
+
+static relume_status show(const struct target **out, struct relighter *r, struct relit_view *v)
+{
     v->used = r->frame;
-    if (!v->fresh)
-        status = relight(r, v);
+    const relume_status status = v->fresh ? RELUME_OK : relight(r, v);
     if (!status)
         *out = &v->relit;
     return status;
+}
+
+relume_status relighter_view(const struct target **out, struct relighter *r, int view)
+{
+    struct relit_view *v = &r->view[view];
+    relume_status status = RELUME_OK;
+    *out = NULL;
+    if (!v->array && r->loader) {
+        loader_ask(r->loader, view);
+        r->pending = true;
+        return RELUME_OK;
+    }
+    if (!v->array)
+        status = load(r, view);
+    return status ? status : show(out, r, v);
+}
+
+relume_status relighter_wait(const struct target **out, struct relighter *r, int view)
+{
+    *out = NULL;
+    if (!r->loader || r->view[view].array)
+        return relighter_view(out, r, view);
+    loader_ask(r->loader, view);
+    const relume_status status = take_loaded(r, view);
+    return status ? status : show(out, r, &r->view[view]);
+}
+
+bool relighter_has(const struct relighter *r, int view)
+{
+    return r->view[view].array != NULL;
+}
+
+relume_status relighter_stream(struct relighter *r)
+{
+    return loader_create(&r->loader, &r->source, r->views);
 }

@@ -22,13 +22,15 @@ static relume_status create_programs(struct renderer *r)
         {&r->slab_depth, draw_slab_depth_create},
         {&r->slab_lens, draw_slab_lens_create},
         {&r->mean, draw_mean_create},
-        {&r->panorama, draw_panorama_create},
+
         {&r->ball, draw_ball_create},
         {&r->present, draw_present_create},
     };
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < sizeof list / sizeof *list; i++)
         status = list[i].create(list[i].program, r->gl, r->log);
+    if (!status && r->geometry.projection >= RELUME_CYLINDRICAL)
+        status = draw_panorama_create(&r->panorama, r->gl, r->geometry.projection, r->log);
     return status;
 }
 
@@ -39,9 +41,12 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
 {
     *r = (struct renderer){.gl = gl, .log = log, .geometry = *geometry, .views = views};
     gl->GenVertexArrays(1, &r->vertices);
+    r->uv = calloc((size_t)views, sizeof *r->uv);
+    if (r->uv && uv)
+        memcpy(r->uv, uv, (size_t)views * sizeof *r->uv);
     r->needed = calloc((size_t)views, sizeof *r->needed);
     r->relit = calloc((size_t)views, sizeof *r->relit);
-    relume_status status = r->needed && r->relit ? RELUME_OK : RELUME_ENOMEM;
+    relume_status status = r->uv && r->needed && r->relit ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = relighter_create(&r->relighter, gl, source, views, log);
     if (!status)
@@ -85,6 +90,7 @@ void renderer_destroy(struct renderer *r)
         depths_destroy(&r->depths);
     r->gl->DeleteVertexArrays(1, &r->vertices);
     relume_slab_destroy(&r->grid);
+    free(r->uv);
     free(r->needed);
     free(r->relit);
     *r = (struct renderer){0};
@@ -210,6 +216,37 @@ static const struct framing {
 
 // ---------------------------------------------------------------- frame
 
+// How far apart the cameras of two views stand, squared.
+static double apart(const struct renderer *r, int a, int b)
+{
+    const double du = r->uv[a][0] - r->uv[b][0], dv = r->uv[a][1] - r->uv[b][1];
+    return du * du + dv * dv;
+}
+
+// The view on the GPU that stands nearest to a missing one, or -1.
+static int nearest_present(const struct renderer *r, int missing)
+{
+    int nearest = -1;
+    for (int i = 0; i < r->views; i++)
+        if (relighter_has(&r->relighter, i) &&
+            (nearest < 0 || apart(r, i, missing) < apart(r, nearest, missing)))
+            nearest = i;
+    return nearest;
+}
+
+static relume_status stand_in(struct renderer *r)
+{
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < r->views; i++) {
+        if (!r->needed[i] || r->relit[i])
+            continue;
+        const int nearest = nearest_present(r, i);
+        status = nearest < 0 ? relighter_wait(&r->relit[i], &r->relighter, i)
+                             : relighter_view(&r->relit[i], &r->relighter, nearest);
+    }
+    return status;
+}
+
 static relume_status relight_needed(struct renderer *r, const struct app *app)
 {
     const struct framing *framing = &framings[app->now.camera.framing];
@@ -218,15 +255,17 @@ static relume_status relight_needed(struct renderer *r, const struct app *app)
     struct relume_light lights[APP_LIGHTS];
     const int count = lamps_shining(&app->now, lights);
     relume_status status = relighter_begin(&r->relighter, lights, count);
+    relume_status (*const look_up)(const struct target **, struct relighter *, int) =
+        app->now.pass == RELUME_PASS_COLOUR ? relighter_view : relighter_wait;  // no stand-ins
     for (int i = 0; !status && i < r->views; i++) {
         r->relit[i] = NULL;
         if (r->needed[i])
-            status = relighter_view(&r->relit[i], &r->relighter, i);
+            status = look_up(&r->relit[i], &r->relighter, i);
         if (!status && r->needed[i] && app->now.pass != RELUME_PASS_COLOUR)
             status = enhancer_view(&r->relit[i], &r->enhancer, i, r->relit[i], app->now.pass,
                                    lights, count);
     }
-    return status;
+    return status ? status : stand_in(r);
 }
 
 relume_status renderer_draw(struct renderer *r, const struct app *app)
@@ -251,6 +290,16 @@ relume_status renderer_draw(struct renderer *r, const struct app *app)
         draw_ball(&r->ball, r->gl, &place, app_seen_light(app, app->now.selected),
                   app->now.light[app->now.selected].rgb);
     return gl_check(r->gl, "drawing", r->log);
+}
+
+relume_status renderer_stream(struct renderer *r)
+{
+    return relighter_stream(&r->relighter);
+}
+
+bool renderer_is_pending(const struct renderer *r)
+{
+    return r->relighter.pending;
 }
 
 relume_status renderer_read(struct relume_image *out, const struct renderer *r)

@@ -22,6 +22,7 @@ struct renderer {
     struct depths depths;  // empty: not a slab, or without depth
     struct relume_geometry geometry;
     int views;
+    double (*uv)[2];              // [views]
     bool *needed;                 // [views]
     const struct target **relit;  // [views]; NULL where not needed
 };
@@ -39,7 +40,11 @@ relume_status renderer_use_depth(struct renderer *renderer, const struct depth_s
 // A capture of the file to compare with, for RELUME_PASS_DIFFERENCE; it must outlive the renderer.
 void renderer_use_capture(struct renderer *renderer, const relume_capture *capture);
 
-// Draw the frame that `app` describes, linear, into renderer->frame.
+// Draw the frame that `app` describes, linear, into renderer->frame. After renderer_stream, views
+// that are still being read are stood in for by their nearest neighbours, and renderer_is_pending
+// tells that another frame would be better.
+relume_status renderer_stream(struct renderer *renderer);
+bool renderer_is_pending(const struct renderer *renderer);
 relume_status renderer_draw(struct renderer *renderer, const struct app *app);
 // The last frame as an image, linear; the caller destroys it.
 relume_status renderer_read(struct relume_image *out, const struct renderer *renderer);

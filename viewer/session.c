@@ -13,16 +13,6 @@
 
 // ---------------------------------------------------------------- file
 
-static relume_status pack_codes(const struct relume_codes **out, void *user, int view)
-{
-    return relume_pack_codes(out, user, view);
-}
-
-static void pack_drop(void *user, int view)
-{
-    relume_pack_drop(user, view);
-}
-
 static struct app_file describe(const relume_pack *pack)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
@@ -119,6 +109,14 @@ relume_status session_compare(struct session *s, const char *capture)
     return relume_capture_open(&s->capture, capture, relume_capture_params(.log = s->log));
 }
 
+// The renderer first: its thread may be reading.
+static void close_file(struct session *s)
+{
+    renderer_destroy(&s->renderer);
+    pack_source_destroy(&s->source);
+    relume_pack_destroy(&s->pack);
+}
+
 relume_status session_open(struct session *s, const char *path, const struct app_state *start,
                            bool look_ahead)
 {
@@ -136,7 +134,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
         relume_pack_destroy(&pack);
         return status;
     }
-    relume_pack_destroy(&s->pack);
+    close_file(s);
     s->pack = pack;
     s->app = app;
     s->app.compared = s->capture != NULL;
@@ -149,20 +147,23 @@ relume_status session_open(struct session *s, const char *path, const struct app
 
 // ---------------------------------------------------------------- drawing
 
-static relume_status pack_depth(struct relume_image *out, void *user, int view)
-{
-    return relume_pack_depth(out, user, view);
-}
-
 static relume_status make_renderer(struct session *s)
 {
     const struct relume_pack_info *info = relume_pack_info(s->pack);
-    const struct code_source source = {pack_codes, pack_drop, s->pack};
-    const struct depth_source depth = {pack_depth, s->pack};
-    const relume_status status = renderer_create(&s->renderer, &s->gl, &source, &info->geometry,
-                                                 info->uv, info->views, s->log);
+    relume_status status = pack_source_create(&s->source, s->pack);
+    if (status)
+        return status;
+    const struct code_source source = pack_source_codes(s->source);
+    const struct depth_source depth = pack_source_depth(s->source);
+    status = renderer_create(&s->renderer, &s->gl, &source, &info->geometry, info->uv, info->views,
+                             s->log);
+    if (status)
+        return status;
+    s->renderer.relighter.budget = s->vram_bytes;
     renderer_use_capture(&s->renderer, s->capture);
-    return status || !info->has_depth ? status : renderer_use_depth(&s->renderer, &depth);
+    if (info->has_depth)
+        status = renderer_use_depth(&s->renderer, &depth);
+    return status || !s->streams ? status : renderer_stream(&s->renderer);
 }
 
 relume_status session_start(struct session *s, const struct context_backend *backend, int width,
@@ -198,7 +199,6 @@ relume_status session_drop(struct session *s, const char *path)
     s->app.gizmos = was.gizmos;
     relume_capture_destroy(&s->capture);
     s->app.compared = false;
-    renderer_destroy(&s->renderer);
     return make_renderer(s);
 }
 
@@ -209,10 +209,9 @@ void session_close(struct session *s)
     inspect_destroy(&s->inspector);
     draw_panel_destroy(&s->drawing, &s->gl);
     panel_destroy(&s->panel);
-    renderer_destroy(&s->renderer);
+    close_file(s);
     if (s->context)
         s->backend->close(s->context);
-    relume_pack_destroy(&s->pack);
     relume_capture_destroy(&s->capture);
     relume_rig_destroy(&s->rig);
 }
@@ -255,8 +254,10 @@ static relume_status meter(struct session *s)
 static relume_status inspect(struct session *s, bool *shown)
 {
     relume_status status = RELUME_OK;
+    const struct code_source source = pack_source_codes(s->source);
     if (!s->inspector.weights)
-        status = inspect_create(&s->inspector, s->pack, s->renderer.grid, s->capture);
+        status = inspect_create(&s->inspector, relume_pack_info(s->pack), &source, s->renderer.grid,
+                                s->capture);
     if (!status)
         status = inspect_update(&s->inspector, &s->app, shown);
     if (!status && *shown)

@@ -5,6 +5,7 @@
 #include "context.h"
 #include "draw_panel.h"
 #include "inspect.h"
+#include "pack_source.h"
 #include "record.h"
 #include "renderer.h"
 
@@ -18,8 +19,9 @@ struct session {
     void *context;
     struct gl gl;
     relume_pack *pack;
-    relume_capture *capture;  // of the file, to compare with, or NULL
-    relume_rig *rig;          // owns what lights point at; the app's list says what shines
+    struct pack_source *source;  // of it, for the renderer and its threads
+    relume_capture *capture;     // of the file, to compare with, or NULL
+    relume_rig *rig;             // owns what lights point at; the app's list says what shines
     struct app app;
     struct renderer renderer;
     struct panel *panel;
@@ -32,6 +34,8 @@ struct session {
     const char *lines[SESSION_LINES + 1];  // what the panel says of the file
     char message[SESSION_TEXT];            // what the panel says last
     int threads;                           // that read files
+    size_t vram_bytes;                     // for views
+    bool streams;                          // frames are drawn with the views that are there
     const struct relume_log *log;
 };
 

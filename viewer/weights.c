@@ -44,13 +44,12 @@ static struct relume_vec3 unit_vector(struct relume_vec3 v)
     return (struct relume_vec3){v.x / length, v.y / length, v.z / length};
 }
 
-void weights_add(struct weights *w, const struct relume_codes *codes, double unit,
-                 struct relume_vec3 direction, const float rgb[3])
+// The basis [3][K] in `w`, and what it adds to each channel, times `rgb`.
+static void add_basis(struct weights *w, const struct relume_codes *codes, double unit,
+                      const float constant[3], const float rgb[3])
 {
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     const int coefficients = info->coefficients;
-    float constant[3];
-    relume_coder_weights(codes->coder, unit_vector(direction), w->basis, constant);
     for (int c = 0; c < 3; c++) {
         double sum = constant[c];
         for (int k = 0; k < coefficients; k++) {
@@ -66,4 +65,23 @@ void weights_add(struct weights *w, const struct relume_codes *codes, double uni
             w->colour[c] = codes->offset[plane];
         }
     }
+}
+
+void weights_add(struct weights *w, const struct relume_codes *codes, double unit,
+                 struct relume_vec3 direction, const float rgb[3])
+{
+    float constant[3];
+    relume_coder_weights(codes->coder, unit_vector(direction), w->basis, constant);
+    add_basis(w, codes, unit, constant, rgb);
+}
+
+void weights_add_environment(struct weights *w, const struct relume_codes *codes, double unit,
+                             const relume_weight_grid *grid, const struct relume_light *light)
+{
+    static const float one[3] = {1.0f, 1.0f, 1.0f};
+    const size_t k = (size_t)relume_coder_info(codes->coder)->coefficients;
+    float constant[3] = {0.0f, 0.0f, 0.0f};
+    memset(w->basis, 0, 3 * k * sizeof *w->basis);
+    relume_environment_weights(w->basis, constant, grid, light);
+    add_basis(w, codes, unit, constant, one);
 }

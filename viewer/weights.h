@@ -26,5 +26,8 @@ void weights_clear(struct weights *weights);
 // `unit`; scale and offset of `codes` are folded in, its planes are not looked at.
 void weights_add(struct weights *weights, const struct relume_codes *codes, double unit,
                  struct relume_vec3 direction, const float rgb[3]);
+// Add an environment light; `grid` is of the coder.
+void weights_add_environment(struct weights *weights, const struct relume_codes *codes, double unit,
+                             const relume_weight_grid *grid, const struct relume_light *light);
 
 #endif

@@ -39,8 +39,9 @@ struct relume_frame_params {
     // Of the file's coder (relume_weight_grid_create), for near lights and environments in many
     // frames; default: made for the frame.
     const relume_weight_grid *grid;
-    enum relume_pass pass;          // of every view, before they become a frame
-    const relume_capture *capture;  // PASS_DIFFERENCE: of the file; the nearest view and light count
+    enum relume_pass pass;  // of every view, before they become a frame
+    const relume_capture
+        *capture;  // PASS_DIFFERENCE: of the file; the nearest view and light count
     enum relume_interpolation interpolation;  // slab; default: by depth where the file has it
     double aperture, focus;                   // slab; as relume_view_params
 };

@@ -76,6 +76,8 @@ typedef struct relume_refit relume_refit;
 struct relume_refit_params {
     const struct relume_log *log;  // hears the loss as a note
     int coefficients;              // default: twice those of the codes, at most 3 x lights
+    const relume_refit *like;      // take over what this one learned from another view of the same
+                                   // file; it must outlive the new one
     unsigned cpu_off;              // as relume_relight_params
     int threads;                   // default: all cores
 };
@@ -86,6 +88,8 @@ RELUME_RESULT relume_status relume_refit_create(relume_refit **out,
                                                 const struct relume_codes *codes,
                                                 const struct relume_refit_params *params);
 RELUME_API void relume_refit_destroy(relume_refit **refit);
+// Forget the codes; what was learned stays, for `like` and for what uses the codes' coder.
+RELUME_API void relume_refit_forget(relume_refit *refit);
 // Linear codes of the same size; they belong to the refit.
 RELUME_API const struct relume_codes *relume_refit_codes(const relume_refit *refit);
 // Root mean square difference at the captured directions, linear, 1 = white.

@@ -15,7 +15,8 @@
 enum { SAMPLES = 16384, BAND = 4096 };
 
 struct relume_refit {
-    relume_coder *coder;
+    relume_coder *learned;  // or NULL: another refit's
+    const relume_coder *coder;
     struct relume_codes codes;
     void **plane;  // [planes], or with a codebook
     float *scale, *offset;
@@ -31,17 +32,25 @@ struct work {
     size_t pixels;  // or code vectors
 };
 
+void relume_refit_forget(relume_refit *refit)
+{
+    for (int p = 0; refit->plane && p < refit->codes.planes; p++)
+        free(refit->plane[p]);
+    free(refit->plane);
+    free(refit->scale);
+    free(refit->offset);
+    free(refit->vectors);
+    refit->plane = NULL;
+    refit->scale = refit->offset = refit->vectors = NULL;
+    refit->codes = (struct relume_codes){.coder = refit->coder};
+}
+
 void relume_refit_destroy(relume_refit **refit)
 {
     if (!*refit)
         return;
-    for (int p = 0; (*refit)->plane && p < (*refit)->codes.planes; p++)
-        free((*refit)->plane[p]);
-    free((*refit)->plane);
-    free((*refit)->scale);
-    free((*refit)->offset);
-    free((*refit)->vectors);
-    relume_coder_destroy(&(*refit)->coder);
+    relume_refit_forget(*refit);
+    relume_coder_destroy(&(*refit)->learned);
     free(*refit);
     *refit = NULL;
 }
@@ -169,8 +178,10 @@ static relume_status learn(relume_refit *refit, const struct work *w,
                            const struct relume_samples *samples)
 {
     const struct relume_coder_params p = coder_params(w, samples);
-    return relume_coder_create(&refit->coder, &relume_basis_pca, w->info->directions,
-                               w->info->lights, &p);
+    const relume_status status = relume_coder_create(&refit->learned, &relume_basis_pca,
+                                                     w->info->directions, w->info->lights, &p);
+    refit->coder = refit->learned;
+    return status;
 }
 
 static relume_status create_planes(relume_refit *refit, const struct work *w)
@@ -281,7 +292,9 @@ static relume_status refit_codes(relume_refit *refit, struct work *w,
     relume_status status = samples.data ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = decode(w, codes, 0, step, samples.pixels, samples.data);
-    if (!status)
+    if (!status && w->params.like)
+        refit->coder = w->params.like->coder;
+    else if (!status)
         status = learn(refit, w, &samples);
     if (!status)
         status = create_codes(refit, w, book);

@@ -86,6 +86,35 @@ chmod +x fake/ffmpeg
 PATH="$PWD/fake:$PATH" "$VIEWER" teapot.exr --record sweep -o 'a film; rm x.mp4' --frames 5
 check 'a film gets every picture' test "$(cat 'a film; rm x.mp4')" -eq $((5 * 24 * 24 * 3))
 
+# Half floats hold the weights of near lights on the GPU: 1/255 is promised.
+"$RELUME" synth box -q -o sky --projection spherical --lights 1 --size 16 --samples 1 || exit 1
+nearly() { # name, light, options...: both programs draw the same frame to 1/255
+    name=$1 lamp=$2
+    shift 2
+    "$RELUME" relight teapot.exr -q -o cpu.exr --light "$lamp" "$@" &&
+        "$VIEWER" teapot.exr --offscreen gpu.exr --light "$lamp" "$@" || {
+        not_ok "$name" "a program failed"
+        return
+    }
+    worst=$("$RELUME" compare cpu.exr gpu.exr | awk '$1 == "max_abs" { print $2 }')
+    if awk "BEGIN { exit !($worst < 1 / 255) }"; then ok "$name"; else not_ok "$name" "off by $worst"; fi
+}
+nearly 'a point light' 'point 0.6 1 2 rgb 2 2 2'
+nearly 'a spot from another eye' 'spot 0.5 0.5 2.5 -0.1 -0.1 -1 20 rgb 6 5 4' --eye 0.1,-0.2,3
+nearly 'an area light' 'area 0 1.5 1 0.5 0 0 0 0 0.5 rgb 8 8 8'
+"$RELUME" relight teapot.exr -o slide.png --light 'dir 0 0 1'
+nearly 'a slide' 'slide 0 0 3 0 0 -1 25 slide.png rgb 5 5 5'
+nearly 'an environment' 'env sky/view00/light0000.exr 30 rgb 3 3 3'
+
+# Mesa draws by the same code whether OSMesa or EGL asks; a graphics card rounds in its own way.
+if "$VIEWER" teapot.exr --offscreen egl.exr --gl egl 2>err.txt; then
+    "$VIEWER" teapot.exr --offscreen osmesa.exr --gl osmesa
+    worst=$("$RELUME" compare egl.exr osmesa.exr | awk '$1 == "max_abs" { print $2 }')
+    if awk "BEGIN { exit !($worst < 1e-3) }"; then ok 'EGL and OSMesa agree'; else not_ok 'EGL and OSMesa agree' "off by $worst"; fi
+else
+    skip 'EGL and OSMesa agree' "$(cat err.txt)"
+fi
+
 refuse() { # name, status, pattern, command...
     name=$1 want=$2 pattern=$3
     shift 3
@@ -104,6 +133,7 @@ refuse 'no such file' 1 'none.exr: no such file' "$VIEWER" none.exr --offscreen 
 refuse 'unknown option' 2 "did you mean '--offscreen'" "$VIEWER" teapot.exr --offscren none.png
 refuse 'no depth' 1 'file with depth' "$VIEWER" bare.exr --interpolate depth --offscreen none.png
 refuse 'a focus behind the cameras' 2 'focus: expected' "$VIEWER" teapot.exr --focus 3 --offscreen none.png
+refuse 'unknown source of GL' 2 'auto, osmesa or egl; found .vulkan' "$VIEWER" teapot.exr --offscreen none.png --gl vulkan
 refuse 'unwritable picture' 3 'nowhere/x.png' "$VIEWER" teapot.exr --offscreen nowhere/x.png
 refuse 'a script with a mistake' 1 'bad.txt: line 2, column 9; expected size W H; found' \
     sh -c 'printf "key b\nsize 800\n" >bad.txt; "$VIEWER" teapot.exr --script bad.txt'

@@ -41,7 +41,7 @@ static void a_view_is_drawn_texel_by_texel(void **state)
     enum { W = 53, H = 31 };
     struct fixture_file f = fixture_make(2, W, H, RELUME_STORE_8, RELUME_DOMAIN_DISPLAY, false);
     const struct app_file file = {.geometry = {.projection = RELUME_PLANAR}, W, H, 2, {0}, {0}};
-    const struct code_source source = {fixture_fetch, NULL, &f};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
     struct renderer r;
     assert_int_equal(
         renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 2, &fixture_log),
@@ -66,7 +66,7 @@ static void a_reduced_view_is_averaged(void **state)
     enum { W = 32, H = 20 };
     struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, RELUME_DOMAIN_DISPLAY, false);
     const struct app_file file = {.geometry = {.projection = RELUME_PLANAR}, W, H, 1, {0}, {0}};
-    const struct code_source source = {fixture_fetch, NULL, &f};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
     struct renderer r;
     assert_int_equal(
         renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 1, &fixture_log),
@@ -120,7 +120,7 @@ static void open_slab(struct slab_test *t, int width, int height)
     }
     t->file = fixture_make(CAMERAS, width, height, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
     t->about = (struct app_file){slab_geometry(), width, height, CAMERAS, {-1, -0.5}, {1, 0.5}};
-    const struct code_source source = {fixture_fetch, NULL, &t->file};
+    const struct code_source source = {fixture_fetch, NULL, &t->file, NULL};
     assert_int_equal(renderer_create(&t->renderer, &fixture_gl, &source, &t->about.geometry,
                                      (const double(*)[2])t->uv, CAMERAS, &fixture_log),
                      RELUME_OK);
@@ -317,7 +317,7 @@ static void one_row_and_one_camera_are_drawn(void **state)
     for (int n = 1; n <= 2; n++) {
         struct fixture_file f = fixture_make(n, 9, 7, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
         const struct app_file file = {g, 9, 7, n, {-0.5, 0.2}, {0.5, 0.2}};
-        const struct code_source source = {fixture_fetch, NULL, &f};
+        const struct code_source source = {fixture_fetch, NULL, &f, NULL};
         struct renderer r;
         assert_int_equal(renderer_create(&r, &fixture_gl, &source, &g, uv, n, &fixture_log),
                          RELUME_OK);
@@ -336,7 +336,7 @@ static void cameras_without_a_grid_are_refused(void **state)
     (void)state;
     static const double uv[][2] = {{0, 0}, {1, 1}};
     const struct relume_geometry g = slab_geometry();
-    const struct code_source source = {fixture_fetch, NULL, NULL};
+    const struct code_source source = {fixture_fetch, NULL, NULL, NULL};
     struct renderer r;
     assert_int_equal(renderer_create(&r, &fixture_gl, &source, &g, uv, 2, NULL), RELUME_EDATA);
 }
@@ -351,7 +351,7 @@ static void compare_panorama(const struct relume_geometry *g, int width, int hei
     struct fixture_file f =
         fixture_make(1, width, height, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, true);
     const struct app_file file = {*g, width, height, 1, {0}, {0}};
-    const struct code_source source = {fixture_fetch, NULL, &f};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
     struct renderer r;
     assert_int_equal(renderer_create(&r, &fixture_gl, &source, g, NULL, 1, &fixture_log),
                      RELUME_OK);
@@ -393,7 +393,7 @@ static void the_ball_is_bright_where_the_light_comes_from(void **state)
     enum { W = 200, H = 200 };
     struct fixture_file f = fixture_make(1, 4, 4, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
     const struct app_file file = {.geometry = {.projection = RELUME_PLANAR}, W, H, 1, {0}, {0}};
-    const struct code_source source = {fixture_fetch, NULL, &f};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
     struct renderer r;
     assert_int_equal(
         renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 1, &fixture_log),
@@ -486,7 +486,7 @@ static void the_meter_sees_a_small_frame(void **state)
     enum { W = 300, H = 170 };
     struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
     const struct app_file file = {.geometry = {.projection = RELUME_PLANAR}, W, H, 1, {0}, {0}};
-    const struct code_source source = {fixture_fetch, NULL, &f};
+    const struct code_source source = {.codes = fixture_fetch, .user = &f};
     struct renderer r;
     assert_int_equal(
         renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 1, &fixture_log),

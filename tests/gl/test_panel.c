@@ -181,7 +181,7 @@ static void passes_are_those_of_the_library(void **state)
         const struct relume_geometry *geometry = turned ? &panorama : &planar;
         struct fixture_file f =
             fixture_make(1, W, H, RELUME_STORE_16, RELUME_DOMAIN_LINEAR, turned);
-        const struct code_source source = {fixture_fetch, NULL, &f};
+        const struct code_source source = {.codes = fixture_fetch, .user = &f};
         struct relighter relighter;
         struct enhancer enhancer;
         assert_int_equal(relighter_create(&relighter, &fixture_gl, &source, 1, &fixture_log),

@@ -56,7 +56,7 @@ static relume_status draw_with(const struct gl *gl)
 {
     struct fixture_file f = fixture_make(1, 8, 8, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
     const struct relume_geometry geometry = {.projection = RELUME_PLANAR};
-    const struct code_source source = {fixture_fetch, NULL, &f};
+    const struct code_source source = {.codes = fixture_fetch, .user = &f};
     const struct app_file file = {.geometry = geometry, .width = 8, .height = 8, .views = 1};
     const struct app_state start = {0};
     struct renderer r;

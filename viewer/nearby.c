@@ -1,0 +1,447 @@
+#include "nearby.h"
+
+#include "say.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum uniform {
+    RECTANGLE,
+    SIZE,
+    CODES,
+    PICTURE,
+    SURFACE,
+    GRID,
+    AFFINE,
+    INDICES,
+    VECTORS,
+    KIND,
+    RGB,
+    NOFALL,
+    POSITION,
+    AXIS,
+    RIGHT,
+    UP,
+    HALF_ANGLE,
+    FACETS,
+    HEMISPHERE,
+    POLE_Y,
+    FORM,
+    COEFFICIENTS,
+    LAYERS,
+    BOOKS,
+    CODED,
+    CURVE,
+    GAMMA,
+    UNIFORMS
+};
+static const char *const uniforms[] = {
+    "rectangle",     "frame_size",       "codes",          "picture",    "surface",
+    "grid",          "affine",           "indices",        "vectors",    "light.kind",
+    "light.rgb",     "light.nofall",     "light.position", "light.axis", "light.right",
+    "light.up",      "light.half_angle", "facets",         "hemisphere", "pole_y",
+    "form",          "coefficients",     "layers",         "books",      "coded",
+    "display.curve", "display.gamma",
+};
+
+// Texture units; each sampler has its own.
+enum unit {
+    UNIT_CODES,
+    UNIT_PICTURE,
+    UNIT_SURFACE,
+    UNIT_GRID,
+    UNIT_AFFINE,
+    UNIT_INDICES,
+    UNIT_VECTORS
+};
+
+// As in near.frag.
+enum { FORM_SEPARATE, FORM_JOINT, FORM_LUMINANCE };
+enum { LANES = 4, VECTORS_WIDE = 64 };
+
+struct nearby_picture {
+    const void *key;
+    GLuint texture;
+    struct nearby_picture *next;
+};
+
+relume_status nearby_create(struct nearby *near, const struct gl *gl, const struct relume_log *log)
+{
+    *near = (struct nearby){.gl = gl, .log = log};
+    gl->GenTextures(1, &near->grid);
+    gl->GenTextures(1, &near->facets);
+    return program_create(&near->program, gl, "near.frag", uniforms, UNIFORMS, log);
+}
+
+void nearby_forget(struct nearby *near)
+{
+    while (near->picture) {
+        struct nearby_picture *p = near->picture;
+        near->picture = p->next;
+        near->gl->DeleteTextures(1, &p->texture);
+        free(p);
+    }
+}
+
+void nearby_destroy(struct nearby *near)
+{
+    if (!near->gl)
+        return;
+    nearby_forget(near);
+    near->gl->DeleteTextures(1, &near->grid);
+    near->gl->DeleteTextures(1, &near->facets);
+    program_destroy(&near->program, near->gl);
+    *near = (struct nearby){0};
+}
+
+static int form_of(const struct relume_coder_info *info)
+{
+    return info->luminance ? FORM_LUMINANCE : info->joint ? FORM_JOINT : FORM_SEPARATE;
+}
+
+// ---------------------------------------------------------------- weights by direction
+
+// Four coefficients of one set, from every node.
+static void gather_layer(float *texel, const struct relume_weight_grid_info *g, int layer)
+{
+    const int sets = g->sets, set = layer % sets, first = layer / sets * LANES;
+    const size_t nodes = (size_t)g->rows * (size_t)g->columns;
+    for (size_t i = 0; i < nodes; i++)
+        for (int lane = 0; lane < LANES; lane++, texel++)
+            *texel = first + lane < g->coefficients
+                         ? g->data[i * (size_t)g->stride +
+                                   (size_t)(set * g->coefficients + first + lane)]
+                         : 0.0f;
+}
+
+static void gather_constants(float *texel, const struct relume_weight_grid_info *g)
+{
+    const size_t nodes = (size_t)g->rows * (size_t)g->columns;
+    memset(texel, 0, nodes * LANES * sizeof *texel);
+    for (size_t i = 0; g->sets == 3 && i < nodes; i++)
+        memcpy(texel + LANES * i, g->data + i * (size_t)g->stride + 3 * (size_t)g->coefficients,
+               3 * sizeof *texel);
+}
+
+static relume_status upload_grid(struct nearby *near, const struct relume_weight_grid_info *g)
+{
+    const struct gl *gl = near->gl;
+    const int layers = (g->coefficients + LANES - 1) / LANES * g->sets + 1;
+    if (layers > gl->max_layers)
+        return say(near->log, RELUME_ESYSTEM,
+                   "near lights on %d coefficients take %d texture layers; OpenGL has %d here",
+                   g->coefficients, layers, gl->max_layers);
+    float *texels = malloc((size_t)g->rows * (size_t)g->columns * LANES * sizeof *texels);
+    if (!texels)
+        return RELUME_ENOMEM;
+    texture_use(gl, UNIT_GRID, GL_TEXTURE_2D_ARRAY, near->grid);
+    gl->TexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA16F, g->columns, g->rows, layers, 0, GL_RGBA,
+                   GL_FLOAT, NULL);
+    texture_settings(gl, GL_TEXTURE_2D_ARRAY);
+    gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    for (int i = 0; i < layers; i++) {
+        if (i < layers - 1)
+            gather_layer(texels, g, i);
+        else
+            gather_constants(texels, g);
+        gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, i, g->columns, g->rows, 1, GL_RGBA,
+                          GL_FLOAT, texels);
+    }
+    free(texels);
+    near->has_grid = true;
+    return gl_check(gl, "uploading weights", near->log);
+}
+
+static relume_status need_grid(struct nearby *near, const relume_coder *coder)
+{
+    if (near->has_grid)
+        return RELUME_OK;
+    relume_weight_grid *grid;
+    relume_status status = relume_weight_grid_create(&grid, coder, NULL);
+    if (!status)
+        status = upload_grid(near, relume_weight_grid_info(grid));
+    relume_weight_grid_destroy(&grid);
+    return status;
+}
+
+// ---------------------------------------------------------------- views
+
+static void upload_floats(const struct gl *gl, GLuint texture, GLint internal, GLenum format,
+                          int width, int height, const float *values)
+{
+    texture_use(gl, UNIT_PICTURE, GL_TEXTURE_2D, texture);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, internal, width, height, 0, format, GL_FLOAT, values);
+    texture_settings(gl, GL_TEXTURE_2D);
+}
+
+static relume_status upload_positions(struct nearby_view *v, const struct gl *gl)
+{
+    const size_t n = (size_t)v->surface.width * (size_t)v->surface.height;
+    float *texels = malloc(n * 4 * sizeof *texels);
+    if (!texels)
+        return RELUME_ENOMEM;
+    for (size_t i = 0; i < n; i++) {
+        const float *p = v->surface.data + 3 * i;
+        const bool finite = isfinite(p[0]) && isfinite(p[1]) && isfinite(p[2]);
+        for (size_t c = 0; c < 3; c++)
+            texels[4 * i + c] = finite ? p[c] : 0.0f;
+        texels[4 * i + 3] = finite ? 1.0f : 0.0f;
+    }
+    gl->GenTextures(1, &v->positions);
+    upload_floats(gl, v->positions, GL_RGBA32F, GL_RGBA, v->surface.width, v->surface.height,
+                  texels);
+    free(texels);
+    return RELUME_OK;
+}
+
+static relume_status upload_affine(struct nearby_view *v, const struct gl *gl,
+                                   const struct nearby_codes *c)
+{
+    const int planes = c->codes->planes;
+    float *texels = calloc((size_t)c->layers * 2 * LANES, sizeof *texels);
+    if (!texels)
+        return RELUME_ENOMEM;
+    for (int p = 0; p < planes; p++) {
+        float *layer = texels + p / LANES * 2 * LANES + p % LANES;
+        layer[0] = (float)(c->unit * (double)c->codes->scale[p]);
+        layer[LANES] = c->codes->offset[p];
+    }
+    gl->GenTextures(1, &v->affine);
+    upload_floats(gl, v->affine, GL_RGBA32F, GL_RGBA, 2, c->layers, texels);
+    free(texels);
+    return RELUME_OK;
+}
+
+// Code vectors side by side, each as texels of four numbers.
+static void gather_book(float *texels, const struct relume_codes *codes, int book, int layers)
+{
+    const size_t planes = (size_t)codes->planes;
+    for (int v = 0; v < codes->book_codes[book]; v++)
+        memcpy(texels + (size_t)v * (size_t)layers * LANES,
+               codes->vectors[book] + (size_t)v * planes, planes * sizeof *texels);
+}
+
+static relume_status upload_vectors(struct nearby_view *v, const struct nearby *near,
+                                    const struct relume_codes *codes)
+{
+    const struct gl *gl = near->gl;
+    const int layers = (codes->planes + LANES - 1) / LANES, width = VECTORS_WIDE * layers;
+    int most = 0;
+    for (int b = 0; b < codes->books; b++)
+        most = codes->book_codes[b] > most ? codes->book_codes[b] : most;
+    const int height = (most + VECTORS_WIDE - 1) / VECTORS_WIDE;
+    if (width > gl->max_texture)
+        return say(near->log, RELUME_ESYSTEM,
+                   "near lights on codebooks of %d numbers take a texture %d wide; OpenGL has %d "
+                   "here",
+                   codes->planes, width, gl->max_texture);
+    float *texels = calloc((size_t)width * (size_t)height, LANES * sizeof *texels);
+    if (!texels)
+        return RELUME_ENOMEM;
+    gl->GenTextures(1, &v->vectors);
+    texture_use(gl, UNIT_VECTORS, GL_TEXTURE_2D_ARRAY, v->vectors);
+    gl->TexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, width, height, codes->books, 0, GL_RGBA,
+                   GL_FLOAT, NULL);
+    texture_settings(gl, GL_TEXTURE_2D_ARRAY);
+    for (int b = 0; b < codes->books; b++) {
+        gather_book(texels, codes, b, layers);
+        gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, b, width, height, 1, GL_RGBA, GL_FLOAT,
+                          texels);
+    }
+    free(texels);
+    return RELUME_OK;
+}
+
+relume_status nearby_view_create(struct nearby_view *view, const struct nearby *near,
+                                 const struct nearby_codes *codes, struct relume_image *surface)
+{
+    *view = (struct nearby_view){.surface = *surface};
+    *surface = (struct relume_image){0};
+    relume_status status = upload_positions(view, near->gl);
+    if (!status)
+        status = codes->codes->books ? upload_vectors(view, near, codes->codes)
+                                     : upload_affine(view, near->gl, codes);
+    if (!status)
+        status = gl_check(near->gl, "uploading a surface", near->log);
+    if (status)
+        nearby_view_destroy(view, near->gl);
+    return status;
+}
+
+void nearby_view_destroy(struct nearby_view *view, const struct gl *gl)
+{
+    gl->DeleteTextures(1, &view->positions);
+    gl->DeleteTextures(1, &view->affine);
+    gl->DeleteTextures(1, &view->vectors);
+    relume_image_destroy(&view->surface);
+    *view = (struct nearby_view){0};
+}
+
+// ---------------------------------------------------------------- lights
+
+// Every half degree; the file's own angles are rarely finer.
+static relume_status upload_lamp(const struct gl *gl, GLuint texture, const relume_ies *ies)
+{
+    enum { ACROSS = 721, DOWN = 361 };
+    float *texels = malloc((size_t)ACROSS * DOWN * sizeof *texels);
+    if (!texels)
+        return RELUME_ENOMEM;
+    for (int y = 0; y < DOWN; y++)
+        for (int x = 0; x < ACROSS; x++)
+            texels[y * ACROSS + x] = (float)relume_ies_value(ies, 0.5 * y, 0.5 * x);
+    upload_floats(gl, texture, GL_R32F, GL_RED, ACROSS, DOWN, texels);
+    free(texels);
+    return RELUME_OK;
+}
+
+static relume_status upload_slide(const struct nearby *near, GLuint texture,
+                                  const struct relume_image *image)
+{
+    const int most = near->gl->max_texture;
+    if (image->width > most || image->height > most)
+        return say(near->log, RELUME_ESYSTEM,
+                   "a slide of %d x %d: OpenGL takes at most %d x %d "
+                   "here",
+                   image->width, image->height, most, most);
+    upload_floats(near->gl, texture, GL_RGB32F, GL_RGB, image->width, image->height, image->data);
+    return RELUME_OK;
+}
+
+static relume_status use_picture(struct nearby *near, const struct relume_light *light)
+{
+    const void *key = light->kind == RELUME_LIGHT_SLIDE ? (const void *)light->image : light->ies;
+    struct nearby_picture *p = near->picture;
+    while (p && p->key != key)
+        p = p->next;
+    relume_status status = RELUME_OK;
+    if (!p) {
+        p = calloc(1, sizeof *p);
+        if (!p)
+            return RELUME_ENOMEM;
+        near->gl->GenTextures(1, &p->texture);
+        status = light->kind == RELUME_LIGHT_SLIDE ? upload_slide(near, p->texture, light->image)
+                                                   : upload_lamp(near->gl, p->texture, light->ies);
+        p->next = near->picture;
+        near->picture = p;
+        p->key = status ? NULL : key;
+    }
+    texture_use(near->gl, UNIT_PICTURE, GL_TEXTURE_2D, p->texture);
+    return status;
+}
+
+static void put_vec3(float *texel, struct relume_vec3 v)
+{
+    texel[0] = (float)v.x;
+    texel[1] = (float)v.y;
+    texel[2] = (float)v.z;
+}
+
+// Rows: position, normal, radiance. Sets `n`, how many there are.
+static void use_facets(const struct nearby *near, const struct nearby_view *view,
+                       const struct relume_light *light, int *n)
+{
+    struct relume_facet facet[RELUME_FACETS_MOST * RELUME_FACETS_MOST];
+    float texels[3][RELUME_FACETS_MOST * RELUME_FACETS_MOST][3];
+    const int side = relume_light_facet_side(light, relume_area_distance(light, &view->surface));
+    relume_light_facets(facet, light, side);
+    *n = side * side;
+    for (int i = 0; i < *n; i++) {
+        put_vec3(texels[0][i], facet[i].position);
+        put_vec3(texels[1][i], facet[i].normal);
+        memcpy(texels[2][i], facet[i].rgb, sizeof facet[i].rgb);
+    }
+    for (int row = 1; row < 3; row++)
+        memmove(&texels[0][0][0] + row * *n * 3, texels[row], (size_t)*n * sizeof *texels[row]);
+    upload_floats(near->gl, near->facets, GL_RGB32F, GL_RGB, *n, 3, &texels[0][0][0]);
+}
+
+static struct relume_vec3 unit_vector(struct relume_vec3 v)
+{
+    const double length = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    return (struct relume_vec3){v.x / length, v.y / length, v.z / length};
+}
+
+static void set_vec3(const struct gl *gl, GLint at, struct relume_vec3 v)
+{
+    gl->Uniform3f(at, (float)v.x, (float)v.y, (float)v.z);
+}
+
+static relume_status set_light(struct nearby *near, const struct nearby_view *view,
+                               const struct relume_light *l)
+{
+    const struct gl *gl = near->gl;
+    const GLint *at = near->program.at;
+    relume_status status = RELUME_OK;
+    int facets = 0;
+    if (l->kind == RELUME_LIGHT_SLIDE || l->kind == RELUME_LIGHT_IES)
+        status = use_picture(near, l);
+    else if (l->kind == RELUME_LIGHT_AREA)
+        use_facets(near, view, l, &facets);
+    gl->Uniform1i(at[KIND], (GLint)l->kind);
+    gl->Uniform3f(at[RGB], l->rgb[0], l->rgb[1], l->rgb[2]);
+    gl->Uniform1i(at[NOFALL], l->nofall);
+    set_vec3(gl, at[POSITION], l->position);
+    gl->Uniform1f(at[HALF_ANGLE], (float)(l->half_angle_deg * (3.14159265358979 / 180.0)));
+    gl->Uniform1i(at[FACETS], facets);
+    if (l->kind != RELUME_LIGHT_POINT && l->kind != RELUME_LIGHT_AREA) {
+        struct relume_vec3 right, up;
+        relume_light_frame(&right, &up, l->direction);
+        set_vec3(gl, at[AXIS], unit_vector(l->direction));
+        set_vec3(gl, at[RIGHT], right);
+        set_vec3(gl, at[UP], up);
+    }
+    return status;
+}
+
+static void set_codes(const struct nearby *near, const struct nearby_view *view,
+                      const struct nearby_codes *c)
+{
+    const struct gl *gl = near->gl;
+    const GLint *at = near->program.at;
+    const struct relume_codes *codes = c->codes;
+    const struct relume_coder_info *info = relume_coder_info(codes->coder);
+    static const struct {
+        enum uniform sampler;
+        enum unit unit;
+    } units[] = {{CODES, UNIT_CODES},    {PICTURE, UNIT_PICTURE}, {SURFACE, UNIT_SURFACE},
+                 {GRID, UNIT_GRID},      {AFFINE, UNIT_AFFINE},   {INDICES, UNIT_INDICES},
+                 {VECTORS, UNIT_VECTORS}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+        gl->Uniform1i(at[units[i].sampler], units[i].unit);
+    texture_use(gl, codes->books ? UNIT_INDICES : UNIT_CODES, GL_TEXTURE_2D_ARRAY, c->array);
+    texture_use(gl, UNIT_SURFACE, GL_TEXTURE_2D, view->positions);
+    texture_use(gl, UNIT_GRID, GL_TEXTURE_2D_ARRAY, near->grid);
+    texture_use(gl, UNIT_AFFINE, GL_TEXTURE_2D, view->affine);
+    texture_use(gl, UNIT_VECTORS, GL_TEXTURE_2D_ARRAY, view->vectors);
+    gl->Uniform1i(at[HEMISPHERE], info->hemispherical);
+    gl->Uniform1i(at[POLE_Y], info->pole_y);
+    gl->Uniform1i(at[FORM], form_of(info));
+    gl->Uniform1i(at[COEFFICIENTS], info->coefficients);
+    gl->Uniform1i(at[LAYERS], (codes->planes + LANES - 1) / LANES);
+    gl->Uniform1i(at[BOOKS], codes->books);
+    gl->Uniform1i(at[CODED], codes->domain == RELUME_DOMAIN_DISPLAY);
+    gl->Uniform1i(at[CURVE], (GLint)codes->display.curve);
+    gl->Uniform1f(at[GAMMA], codes->display.gamma);
+}
+
+relume_status nearby_draw(struct nearby *near, const struct nearby_view *view,
+                          const struct nearby_codes *codes, const struct relume_light *light)
+{
+    const struct gl *gl = near->gl;
+    const float width = (float)view->surface.width, height = (float)view->surface.height;
+    relume_status status = need_grid(near, codes->codes->coder);
+    if (status)
+        return status;
+    gl->UseProgram(near->program.id);
+    status = set_light(near, view, light);
+    if (status)
+        return status;
+    set_codes(near, view, codes);
+    gl->Uniform4f(near->program.at[RECTANGLE], 0, 0, width, height);
+    gl->Uniform2f(near->program.at[SIZE], width, height);
+    gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    return RELUME_OK;
+}

@@ -1,0 +1,200 @@
+#version 330 core
+// A light that stands near: the basis at every pixel's own direction towards it (Wong 1998, Eq. 7.7
+// with its sign corrected). Twins: relume_light_at, relume_facet_at, relume_weight_grid_place.
+#include "transfer.glsl"
+#include "texels.glsl"
+
+const float PI = 3.14159265358979;
+
+// enum relume_light_kind
+const int SPOT = 3, SLIDE = 4, AREA = 5, IES = 6;
+struct Light {
+    int kind;
+    vec3 rgb;
+    bool nofall;
+    vec3 position;
+    vec3 axis, right, up;  // it shines along the axis; unit vectors
+    float half_angle;      // radians
+};
+uniform Light light;
+uniform sampler2D picture;  // slide: its picture; ies: intensities [vertical][horizontal]; area:
+                            // a column for each facet: position, normal, radiance
+uniform int facets;
+
+uniform sampler2D surface;     // where the pixel's surface is; alpha 0: nowhere
+uniform sampler2DArray grid;   // weights by direction, four coefficients a texel; the last layer
+                               // holds the constants
+uniform bool hemisphere, pole_y;
+
+const int JOINT = 1, LUMINANCE = 2;  // else each channel has coefficients of its own
+uniform int form;
+uniform int coefficients, layers;
+uniform sampler2DArray codes;     // four planes a texel
+uniform sampler2D affine;         // [layer]: scale, offset
+uniform usampler2DArray indices;  // [book]
+uniform sampler2DArray vectors;   // [book]: vector v begins at (v mod 64 * layers, v / 64)
+uniform int books;                // 0: planes
+uniform bool coded;               // display domain
+uniform Transfer display;
+out vec4 color;
+
+// ---------------------------------------------------------------- what arrives
+
+bool ray_to(out vec3 towards, out float distance, vec3 from, vec3 point)
+{
+    towards = from - point;
+    distance = length(towards);
+    towards /= distance;
+    return distance >= 1e-6;
+}
+
+vec3 spot_factor(vec3 ray)
+{
+    float angle = acos(clamp(dot(ray, light.axis), -1.0, 1.0));
+    return vec3(1.0 - smoothstep(0.9 * light.half_angle, light.half_angle, angle));
+}
+
+vec3 slide_factor(vec3 ray)
+{
+    vec2 size = vec2(textureSize(picture, 0));
+    float forward = dot(ray, light.axis);
+    float scale = size.x / (2.0 * tan(light.half_angle) * forward);
+    vec2 at = 0.5 * size + scale * vec2(dot(ray, light.right), -dot(ray, light.up));
+    bool inside = forward > 0.0 && all(greaterThanEqual(at, vec2(0.0))) &&
+                  all(lessThanEqual(at, size));
+    return inside ? texels_bilinear(picture, at) : vec3(0.0);
+}
+
+vec3 ies_factor(vec3 ray)
+{
+    vec2 cells = vec2(textureSize(picture, 0) - 1);
+    float vertical = acos(clamp(dot(ray, light.axis), -1.0, 1.0)) / PI;
+    float horizontal = atan(dot(ray, light.up), dot(ray, light.right)) / (2.0 * PI);
+    vec2 at = vec2(fract(horizontal), vertical) * cells + 0.5;
+    return texels_bilinear(picture, at).rrr;
+}
+
+bool light_at(out vec3 towards, out vec3 rgb, vec3 point)
+{
+    float distance;
+    bool arrives = ray_to(towards, distance, light.position, point);
+    rgb = light.rgb * (light.nofall ? 1.0 : 1.0 / (distance * distance));
+    if (light.kind == SPOT)
+        rgb *= spot_factor(-towards);
+    else if (light.kind == SLIDE)
+        rgb *= slide_factor(-towards);
+    else if (light.kind == IES)
+        rgb *= ies_factor(-towards);
+    return arrives;
+}
+
+bool facet_at(out vec3 towards, out vec3 rgb, int facet, vec3 point)
+{
+    vec3 normal = texelFetch(picture, ivec2(facet, 1), 0).xyz;
+    float distance;
+    bool arrives = ray_to(towards, distance, texelFetch(picture, ivec2(facet, 0), 0).xyz, point);
+    float cosine = -dot(towards, normal);
+    rgb = texelFetch(picture, ivec2(facet, 2), 0).rgb * cosine / (distance * distance);
+    return arrives && cosine > 0.0;
+}
+
+// ---------------------------------------------------------------- what is reflected
+
+// In texels of the grid.
+vec2 weight_grid_place(vec3 direction)
+{
+    vec3 d = pole_y ? vec3(-direction.z, direction.x, direction.y) : direction;
+    ivec2 size = textureSize(grid, 0).xy;
+    float down = float(hemisphere ? size.y - 1 : size.y / 2 - 1);
+    bool below = d.z < 0.0;
+    float height = below && hemisphere ? 0.0 : abs(d.z);
+    float theta = atan(length(d.xy), height);
+    float row = down * (1.0 - sqrt(max(1.0 - theta / (0.5 * PI), 0.0)));
+    float column = (atan(d.y, d.x) / (2.0 * PI) + 0.5) * float(size.x - 1);
+    return vec2(column, below && !hemisphere ? float(size.y - 1) - row : row) + 0.5;
+}
+
+vec4 coefficients_at(ivec2 at, int layer)
+{
+    if (books == 0)
+        return texelFetch(codes, ivec3(at, layer), 0) * texelFetch(affine, ivec2(0, layer), 0) +
+               texelFetch(affine, ivec2(1, layer), 0);
+    vec4 sum = vec4(0.0);
+    for (int b = 0; b < books; b++) {
+        int v = int(texelFetch(indices, ivec3(at, b), 0).r);
+        sum += texelFetch(vectors, ivec3((v & 63) * layers + layer, v >> 6, b), 0);
+    }
+    return sum;
+}
+
+float plane_at(ivec2 at, int plane)
+{
+    return coefficients_at(at, plane >> 2)[plane & 3];
+}
+
+vec4 weights_at(vec2 place, int layer)
+{
+    return texture(grid, vec3(place, float(layer)));
+}
+
+// Four coefficients of three channels stand in three layers: r0 g0 b0 r1, g1 b1 r2 g2, b2 r3 g3 b3.
+vec3 dot_separate(ivec2 at, vec2 place)
+{
+    vec3 sum = vec3(0.0);
+    for (int group = 0; 4 * group < coefficients; group++) {
+        vec4 w = weights_at(place, group);
+        vec4 c0 = coefficients_at(at, 3 * group);
+        vec4 c1 = 3 * group + 1 < layers ? coefficients_at(at, 3 * group + 1) : vec4(0.0);
+        vec4 c2 = 3 * group + 2 < layers ? coefficients_at(at, 3 * group + 2) : vec4(0.0);
+        sum.r += dot(w, vec4(c0.x, c0.w, c1.z, c2.y));
+        sum.g += dot(w, vec4(c0.y, c1.x, c1.w, c2.z));
+        sum.b += dot(w, vec4(c0.z, c1.y, c2.x, c2.w));
+    }
+    return sum;
+}
+
+vec3 dot_joint(ivec2 at, vec2 place)
+{
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < layers; i++) {
+        vec4 c = coefficients_at(at, i);
+        sum += vec3(dot(c, weights_at(place, 3 * i)), dot(c, weights_at(place, 3 * i + 1)),
+                    dot(c, weights_at(place, 3 * i + 2)));
+    }
+    return sum;
+}
+
+vec3 dot_luminance(ivec2 at, vec2 place)
+{
+    float sum = 0.0;
+    for (int i = 0; 4 * i < coefficients; i++)
+        sum += dot(coefficients_at(at, i), weights_at(place, i));
+    return sum * vec3(plane_at(at, coefficients), plane_at(at, coefficients + 1),
+                      plane_at(at, coefficients + 2));
+}
+
+vec3 reflectance(ivec2 at, vec3 towards)
+{
+    ivec3 size = textureSize(grid, 0);
+    vec2 place = weight_grid_place(towards) / vec2(size.xy);
+    vec3 value = form == JOINT       ? dot_joint(at, place) + weights_at(place, size.z - 1).rgb
+                 : form == LUMINANCE ? dot_luminance(at, place)
+                                     : dot_separate(at, place);
+    if (!coded)
+        return value;
+    return vec3(transfer_decode(display, value.r), transfer_decode(display, value.g),
+                transfer_decode(display, value.b));
+}
+
+void main()
+{
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    vec4 point = texelFetch(surface, at, 0);
+    vec3 sum = vec3(0.0), towards, rgb;
+    if (point.a > 0.0 && light.kind != AREA && light_at(towards, rgb, point.xyz))
+        sum = rgb * reflectance(at, towards);
+    for (int i = 0; point.a > 0.0 && i < facets; i++)
+        if (facet_at(towards, rgb, i, point.xyz))
+            sum += rgb * reflectance(at, towards);
+    color = vec4(sum, 1.0);
+}

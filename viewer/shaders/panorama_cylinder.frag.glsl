@@ -1,0 +1,20 @@
+#version 330 core
+// A look into a cylinder.
+#include "panorama.glsl"
+
+bool panorama_pixel(out vec2 xy, out int face, vec3 d)
+{
+    face = 0;
+    float h = d.y / length(d.xz);
+    if (!(h >= elevation.x && h <= elevation.y))
+        return false;
+    float down = (elevation.y - h) / (elevation.y - elevation.x);
+    xy = vec2(azimuth_column(d), down * float(textureSize(view, 0).y));
+    return true;
+}
+
+vec3 panorama_texel(int face, int x, int y)
+{
+    ivec2 size = textureSize(view, 0);
+    return fetch(wrap_index(x, size.x), clamp(y, 0, size.y - 1));
+}

@@ -25,7 +25,7 @@ struct relume_weight_grid_params {
 };
 #define relume_weight_grid_params(...) (&(const struct relume_weight_grid_params){__VA_ARGS__})
 
-// RELUME_ENOMEM. `coder` must live as long as the grid.
+// RELUME_EINVAL (steps), RELUME_ENOMEM. `coder` must live as long as the grid.
 RELUME_RESULT relume_status
 relume_weight_grid_create(relume_weight_grid **out, const relume_coder *coder,
                           const struct relume_weight_grid_params *params);
@@ -116,7 +116,8 @@ struct relume_relight_params {
 // display-domain codes are decoded light by light, linearised, then summed.
 // A light below the horizon of a hemispherical capture is a warning (once) in the log.
 // `out` is created when its data is NULL, else it must have the size of `codes`.
-// Near lights evaluate the basis at every pixel's own direction and add nothing to background.
+// Near lights evaluate the basis at every pixel's own direction and add nothing to background; from
+// below the horizon of a hemispherical capture areas add nothing, others are taken at the horizon.
 // Returns RELUME_EINVAL (a light that relume_light_check refuses, a near light without a surface),
 // RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_relight(struct relume_image *out,

@@ -36,14 +36,25 @@ static void host_send(void *user, const struct app_event *event)
     (void)session_send(user, event);
 }
 
-static relume_status host_light(void *user, const char *spec, bool replace)
+static relume_status host_light(void *user, const char *spec, bool replace,
+                                const struct relume_log *log)
 {
-    return session_light(user, spec, replace);
+    struct session *s = user;
+    const struct relume_log *usual = s->log;
+    s->log = log;
+    const relume_status status = session_light(s, spec, replace);
+    s->log = usual;
+    return status;
 }
 
-static relume_status host_rig(void *user, const char *path)
+static relume_status host_rig(void *user, const char *path, const struct relume_log *log)
 {
-    return session_load_rig(user, path);
+    struct session *s = user;
+    const struct relume_log *usual = s->log;
+    s->log = log;
+    const relume_status status = session_load_rig(s, path);
+    s->log = usual;
+    return status;
 }
 
 static const double frame_s = 1.0 / 60;  // between frames when time is played

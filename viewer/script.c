@@ -251,16 +251,33 @@ static relume_status play_type(struct script *s)
 
 // ---------------------------------------------------------------- beyond events
 
+// Says where in the script it happened.
+static void say_place(void *user, enum relume_level level, const char *text)
+{
+    const struct script *s = user;
+    char line[2 * LINE];
+    if (!s->host.log || !s->host.log->message)
+        return;
+    snprintf(line, sizeof line, "%s: line %d, column %d; %s", s->path, s->line,
+             (int)(s->at - s->text) + 1, text);
+    s->host.log->message(s->host.log->user, level, line);
+}
+
+// What is wrong with a light or a rig is the script's fault.
+static relume_status blame_script(struct script *s, relume_status status)
+{
+    s->at += strlen(s->at);
+    return status == RELUME_EINVAL ? RELUME_EDATA : status;
+}
+
 static relume_status set_light(struct script *s, bool replace)
 {
+    const struct relume_log log = {.message = say_place, .user = s};
     char copy[LINE];
-    const char *at = s->at;
     const char *spec = take_rest(s, copy);
-    const char *expected = replace ? "light \"dir x y z [rgb r g b]\"" : "add \"dir x y z\"";
-    if (spec && !s->host.light(s->host.user, spec, replace))
-        return RELUME_OK;
-    s->at = at;
-    return wrong(s, expected);
+    if (!spec)
+        return wrong(s, "a light, as in \"dir 0 0 1\"");
+    return blame_script(s, s->host.light(s->host.user, spec, replace, &log));
 }
 
 static relume_status play_light(struct script *s)
@@ -284,7 +301,10 @@ static relume_status with_path(struct script *s, relume_status (*act)(void *, co
 
 static relume_status play_rig(struct script *s)
 {
-    return with_path(s, s->host.rig, "rig FILE");
+    const struct relume_log log = {.message = say_place, .user = s};
+    char copy[LINE];
+    const char *path = take_rest(s, copy);
+    return path ? blame_script(s, s->host.rig(s->host.user, path, &log)) : wrong(s, "rig FILE");
 }
 
 static relume_status play_frame(struct script *s)

@@ -10,10 +10,11 @@ struct script_host {
     void *user;
     struct app *app;  // asked for sizes only
     void (*send)(void *user, const struct app_event *event);
-    // `light SPEC` (in place of all lights) and `add SPEC`. RELUME_EINVAL, RELUME_EDATA with a
-    // sentence.
-    relume_status (*light)(void *user, const char *spec, bool replace);
-    relume_status (*rig)(void *user, const char *path);
+    // `light SPEC` (in place of all lights) and `add SPEC`, and the lights of a rig file; what is
+    // wrong goes to `log`, which says where.
+    relume_status (*light)(void *user, const char *spec, bool replace,
+                           const struct relume_log *log);
+    relume_status (*rig)(void *user, const char *path, const struct relume_log *log);
     // Let time pass: `seconds` of it, or until nothing moves when negative.
     relume_status (*wait)(void *user, double seconds);
     relume_status (*frame)(void *user, const char *path);  // the picture alone

@@ -477,6 +477,18 @@ static relume_status append_entries(const struct session *s, struct app_state *t
     return RELUME_OK;
 }
 
+// Entries from `first` on.
+static relume_status check_near(const struct session *s, int first)
+{
+    for (int i = first; i < relume_rig_count(s->rig); i++)
+        if (!s->app.near_lights && relume_light_is_near(relume_rig_entry(s->rig, i)->light.kind))
+            return say(s->log, RELUME_EDATA,
+                       "light '%s': near lights need to know where the surface is; expected a file "
+                       "with depth",
+                       relume_rig_entry(s->rig, i)->spec);
+    return RELUME_OK;
+}
+
 relume_status session_take_rig(struct session *s, relume_rig **rig, struct app_state *start)
 {
     s->rig = *rig;
@@ -490,7 +502,9 @@ relume_status session_light(struct session *s, const char *spec, bool replace)
 {
     struct app_state *now = &s->app.now;
     const int entry = relume_rig_count(s->rig);
-    const relume_status status = relume_rig_add(s->rig, spec, NULL, s->log);
+    relume_status status = relume_rig_add(s->rig, spec, NULL, s->log);
+    if (!status)
+        status = check_near(s, entry);
     if (status)
         return status;
     if (replace)
@@ -511,6 +525,8 @@ relume_status session_load_rig(struct session *s, const char *path)
         if (!status)
             status = relume_rig_set(s->rig, first + i, e, s->log);
     }
+    if (!status)
+        status = check_near(s, first);
     if (!status && relume_rig_count(loaded) > APP_LIGHTS)
         status = too_many(s);
     if (!status && relume_rig_count(loaded) > 0) {

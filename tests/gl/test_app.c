@@ -550,12 +550,13 @@ static void host_send(void *user, const struct app_event *event)
     app_handle(((struct frames *)user)->app, event);
 }
 
-static relume_status host_light(void *user, const char *spec, bool replace)
+static relume_status host_light(void *user, const char *spec, bool replace,
+                                const struct relume_log *log)
 {
     struct app *app = ((struct frames *)user)->app;
     relume_rig *rig;
     assert_int_equal(relume_rig_create(&rig), RELUME_OK);
-    const relume_status status = relume_rig_add(rig, spec, NULL, &keep);
+    const relume_status status = relume_rig_add(rig, spec, NULL, log);
     if (!status && replace)
         app->now.lights = 0;
     if (!status)
@@ -564,9 +565,9 @@ static relume_status host_light(void *user, const char *spec, bool replace)
     return status;
 }
 
-static relume_status host_rig(void *user, const char *path)
+static relume_status host_rig(void *user, const char *path, const struct relume_log *log)
 {
-    (void)user, (void)path;
+    (void)user, (void)path, (void)log;
     return RELUME_OK;
 }
 
@@ -696,7 +697,7 @@ static void broken_scripts_name_the_line(void **state)
         char place[64];
         struct app app = make_app(RELUME_PLANAR, false);
         snprintf(text, sizeof text, "size 8 8\n%s\n", wrong[i].line);
-        snprintf(place, sizeof place, "line 2, column %d; expected", wrong[i].column);
+        snprintf(place, sizeof place, "line 2, column %d; ", wrong[i].column);
         assert_int_equal(play(&app, &frames, text), RELUME_EDATA);
         if (!strstr(said, place))
             fail_msg("'%s' said '%s'", wrong[i].line, said);

@@ -29,6 +29,30 @@ static int exit_code(relume_status status)
     }
 }
 
+// ---------------------------------------------------------------- frames
+
+static double now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
+}
+
+static relume_status show_frame(struct session *s)
+{
+    char title[640];
+    const double start = now_ms();
+    const relume_status status = session_draw(s);
+    if (status)
+        return status;
+    session_present(s, 0);
+    s->gl.Finish();
+    snprintf(title, sizeof title, "%s - %.1f ms%s%s - relume-view", s->name, now_ms() - start,
+             s->message[0] ? " - " : "", s->message);
+    s->backend->show(s->context, title);
+    return RELUME_OK;
+}
+
 // ---------------------------------------------------------------- scripts
 
 static void host_send(void *user, const struct app_event *event)
@@ -62,14 +86,15 @@ static const double patience_s = 60;     // waiting for what never comes to rest
 
 static relume_status host_wait(void *user, double seconds)
 {
+    struct session *s = user;
     const bool until_idle = seconds < 0;
     double left = until_idle ? patience_s : seconds;
     bool moves = true;
     relume_status status = RELUME_OK;
     for (; !status && left > 1e-9 && (moves || !until_idle); left -= frame_s) {
-        moves = session_pass(user, fmin(left, frame_s));
+        moves = session_pass(s, fmin(left, frame_s)) || renderer_is_pending(&s->renderer);
         if (moves || until_idle)
-            status = session_draw(user);
+            status = (s->streams ? show_frame : session_draw)(s);
     }
     return status;
 }
@@ -125,27 +150,6 @@ static void choose_size(struct app *app, bool sized)
     scale = fmin(scale, fmin(most[0] / app->width, most[1] / app->height));
     app->width = (int)fmax(1.0, app->width * scale);
     app->height = (int)fmax(1.0, app->height * scale);
-}
-
-static double now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
-
-static relume_status show_frame(struct session *s)
-{
-    char title[320];
-    const double start = now_ms();
-    const relume_status status = session_draw(s);
-    if (status)
-        return status;
-    session_present(s);
-    s->gl.Finish();
-    snprintf(title, sizeof title, "%s - %.1f ms - relume-view", s->name, now_ms() - start);
-    s->backend->show(s->context, title);
-    return RELUME_OK;
 }
 
 static relume_status take_event(struct session *s, const struct context_event *event, bool *changed)

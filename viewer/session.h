@@ -56,8 +56,10 @@ bool session_send(struct session *s, const struct app_event *event);
 // Draw the frame, linear, with the panel as its events have changed the app, and do what was
 // wished.
 relume_status session_draw(struct session *s);
-// The frame and the panel onto the screen.
-void session_present(struct session *s);
+// The frame and the panel onto a framebuffer of its size (0: the screen).
+void session_present(struct session *s, GLuint framebuffer);
+// Do what the app wishes for, once. What fails is said in the panel and the log, and is no error.
+relume_status session_grant_wish(struct session *s);
 
 // Let time pass for what moves by itself; returns whether the picture changed.
 bool session_pass(struct session *s, double seconds);

@@ -1,0 +1,97 @@
+// session_wishes.c - what keys and the panel ask for and the app cannot do
+#include "session.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+// "NAME-0001.png" with the first number that is free.
+static void free_name(char *path, size_t size, const struct session *s, const char *extension)
+{
+    const char *dot = strrchr(s->name, '.');
+    const int stem = dot ? (int)(dot - s->name) : (int)strlen(s->name);
+    for (int i = 1; i < 10000; i++) {
+        snprintf(path, size, "%.*s-%04d%s", stem, s->name, i, extension);
+        if (access(path, F_OK))
+            return;
+    }
+}
+
+static relume_status wish_picture(struct session *s, const char *extension)
+{
+    char path[SESSION_TEXT + 16];
+    free_name(path, sizeof path, s, extension);
+    const bool ball = s->app.now.ball;
+    s->app.now.ball = false;
+    const relume_status status = session_frame(s, path);
+    s->app.now.ball = ball;
+    snprintf(s->message, sizeof s->message, "%.200s %s", path,
+             status ? "was not written" : "written");
+    return RELUME_OK;
+}
+
+static relume_status wish_png(struct session *s)
+{
+    return wish_picture(s, ".png");
+}
+
+static relume_status wish_exr(struct session *s)
+{
+    return wish_picture(s, ".exr");
+}
+
+static relume_status wish_recording(struct session *s, enum record_kind kind, const char *ending)
+{
+    char path[SESSION_TEXT + 16];
+    free_name(path, sizeof path, s, ending);
+    const relume_status status = session_record(s, kind, path, RECORD_FRAMES);
+    snprintf(s->message, sizeof s->message, "%.200s %s", path,
+             status ? "was not recorded" : "recorded");
+    return RELUME_OK;
+}
+
+static relume_status wish_sweep(struct session *s)
+{
+    return wish_recording(s, RECORD_SWEEP, "-sweep");
+}
+
+static relume_status wish_turntable(struct session *s)
+{
+    return wish_recording(s, RECORD_TURNTABLE, "-turntable");
+}
+
+static relume_status wish_save_rig(struct session *s)
+{
+    char path[SESSION_TEXT + 16];
+    free_name(path, sizeof path, s, ".json");
+    const relume_status status = session_save_rig(s, path);
+    snprintf(s->message, sizeof s->message, "%.200s %s", path,
+             status ? "was not written" : "written");
+    return RELUME_OK;
+}
+
+static relume_status wish_add_light(struct session *s)
+{
+    const bool added = !session_light(s, s->app.spec, false);
+    snprintf(s->message, sizeof s->message, added ? "added: %.200s" : "no light: %.200s",
+             s->app.spec);
+    return RELUME_OK;
+}
+
+// What was wished for is done once; what fails is said in the panel and in the log.
+relume_status session_grant_wish(struct session *s)
+{
+    static relume_status (*const grants[])(struct session *) = {
+        [APP_WISH_PNG] = wish_png,
+        [APP_WISH_EXR] = wish_exr,
+        [APP_WISH_SAVE_RIG] = wish_save_rig,
+        [APP_WISH_SWEEP] = wish_sweep,
+        [APP_WISH_TURNTABLE] = wish_turntable,
+        [APP_WISH_ADD_LIGHT] = wish_add_light,
+    };
+    const enum app_wish wish = s->app.wish;
+    s->app.wish = APP_WISH_NONE;
+    if ((size_t)wish >= sizeof grants / sizeof *grants || !grants[wish])
+        return RELUME_OK;
+    return grants[wish](s);
+}

@@ -360,6 +360,16 @@ static void draw_points(struct drawing *d, const struct plot_point *const *sorte
 
 // ---------------------------------------------------------------- the page
 
+// Room right of the frame for the longest name, up to half of the page.
+static double legend_width(const struct drawing *d)
+{
+    double width = 0.0;
+    set_font(d->c, TEXT, false);
+    for (int s = 0; s < d->plot->series_count; s++)
+        width = fmax(width, text_width(d->c, d->plot->series[s].name));
+    return fmin(fmax(width + 64.0, LEGEND), 0.5 * WIDTH);
+}
+
 static void draw_legend(struct drawing *d)
 {
     const double x = d->frame.x1 + 20.0;
@@ -389,6 +399,7 @@ static void draw_legend(struct drawing *d)
 
 static void draw_page(struct drawing *d, const struct plot_point *const *sorted)
 {
+    d->frame.x1 = WIDTH - legend_width(d);
     set_colour(d->c, 0xffffff);
     cairo_paint(d->c);
     set_colour(d->c, 0x111111);
@@ -460,7 +471,7 @@ relume_status plot_draw(const struct plot *plot, enum plot_format format, char *
         return RELUME_EINVAL;
     struct drawing d = {
         .plot = plot,
-        .frame = {LEFT, TOP, WIDTH - LEGEND, HEIGHT - BOTTOM},
+        .frame = {LEFT, TOP, WIDTH, HEIGHT - BOTTOM},
         .taken = calloc((size_t)plot->points, 2 * sizeof *d.taken),
         .line = calloc((size_t)plot->points, sizeof *d.line),
     };

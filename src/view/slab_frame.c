@@ -106,10 +106,10 @@ static relume_status draw_linear(const struct slab_frame *f, bool constant)
 {
     struct taps *across = mem_array((size_t)f->out->width, sizeof *across);
     struct taps *down = mem_array((size_t)f->out->height, sizeof *down);
-    const struct frame frame = {f, across, down};
+    struct frame frame = {f, across, down};
     if (across && down) {
         prepare_taps(across, down, f, constant);
-        thread_for(f->params.threads, (size_t)f->out->height, draw_row, (void *)&frame);
+        thread_for(f->params.threads, (size_t)f->out->height, draw_row, &frame);
     }
     const relume_status status = across && down ? RELUME_OK : RELUME_ENOMEM;
     free(across);

@@ -150,10 +150,10 @@ usage 'threads nan' 'whole number' 'encode good -o u.exr --threads nan'
 light() { expect_fail "light '$1'" 2 "$2" u.exr "$RELUME" relight good.exr -o u.exr --light "$1"; }
 light 'sun 1 2 3' "light 'sun 1 2 3': unknown kind"
 light 'dir 0 0 0' 'found zero'
-light 'dir 0 0' 'three numbers'
-light 'dir nan 0 1' 'three numbers'
-light 'dir 0 0 1 rgb 1 2' 'three numbers'
-light 'dir 0 0 1 red' "unexpected 'red'"
+light 'dir 0 0' 'expected .*dir x y z.* found .the end'
+light 'dir nan 0 1' 'expected .*dir x y z.* found .nan 0 1'
+light 'dir 0 0 1 rgb 1 2' 'expected .*rgb r g b.* found .the end'
+light 'dir 0 0 1 red' "found 'red'"
 frame() { expect_fail "relight $*" "$status_wanted" 'good.exr: |relight: |--' u.exr "$RELUME" relight good.exr -o u.exr "$@"; }
 status_wanted=2
 frame --view 7

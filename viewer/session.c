@@ -287,11 +287,12 @@ static relume_status add_histogram(struct session *s)
     return build_panel(s, true);
 }
 
-// A panel that has just appeared is made at once, so that the next click finds it.
+// A panel that has just appeared is made at once, so that the next click finds it. One that has
+// gone still hears of releases: it may have had the press.
 bool session_send(struct session *s, const struct app_event *event)
 {
     const bool shown = panel_shown(&s->app);
-    if (shown && panel_takes(s->panel, event))
+    if ((shown || event->kind == APP_RELEASE) && panel_takes(s->panel, event))
         return true;
     const bool changed = app_handle(&s->app, event);
     if (!shown && panel_shown(&s->app) && build_panel(s, false))

@@ -1,9 +1,13 @@
 #include "cli.h"
 
+#include <string.h>
+
 static const struct option options[] = {
     {"-o", OPTION_TEXT, "OUT", "the file (.ptm, .rti) or folder to write", 0, 0},
     {"--to", OPTION_TEXT, "FORMAT", "relight, ptm, lptm, rti or deepzoom; default: relight", 0, 0},
     {"--type", OPTION_TEXT, "T", "relight, deepzoom: bilinear, rbf, ptm, lptm, hsh or sh", 0, 0},
+    {"--colorspace", OPTION_TEXT, "C",
+     "ptm, hsh, sh: rgb, or ycc: only the luminance follows the light; default: rgb", 0, 0},
     {"--coefficients", OPTION_INT, "K",
      "planes (bilinear, rbf; default: up to 27) or terms of the type", 1, 45},
     {"--bytes-per-pixel", OPTION_NUMBER, "B", "size of all plane JPEGs, not exceeded", 0.001, 100},
@@ -34,17 +38,22 @@ static relume_status parse(const struct args *args, enum relume_exchange *format
 {
     static const char *const formats[] = {"relight", "ptm", "lptm", "rti", "deepzoom", NULL};
     static const char *const types[] = {"bilinear", "rbf", "ptm", "lptm", "hsh", "sh", NULL};
+    static const char *const spaces[] = {"rgb", "ycc", NULL};
     const char *to = args_text(args, "--to", "relight"), *type = args_text(args, "--type", NULL);
+    const char *space = args_text(args, "--colorspace", "rgb");
     if (!args_has(args, "-o"))
         return usage_error("export: expected -o OUT");
     if (relume_exchange_parse(format, to))
         return unknown_name("--to", to, formats);
     if (type && relume_web_type_parse(&p->type, type))
         return unknown_name("--type", type, types);
+    if (strcmp(space, "rgb") && strcmp(space, "ycc"))
+        return unknown_name("--colorspace", space, spaces);
+    p->ycc = !strcmp(space, "ycc");
     const bool folder = *format == RELUME_EXCHANGE_RELIGHT || *format == RELUME_EXCHANGE_DEEPZOOM;
-    static const char *const only_folders[] = {"--type", "--bytes-per-pixel", "--psnr", "--quality",
-                                               "--resolution"};
-    for (int i = 0; !folder && i < 5; i++)
+    static const char *const only_folders[] = {"--type", "--colorspace", "--bytes-per-pixel",
+                                               "--psnr", "--quality",    "--resolution"};
+    for (int i = 0; !folder && i < 6; i++)
         if (args_has(args, only_folders[i]))
             return usage_error("%s: only for --to relight and deepzoom", only_folders[i]);
     if (args_has(args, "--bytes-per-pixel") + args_has(args, "--psnr") +

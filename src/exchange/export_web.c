@@ -203,6 +203,11 @@ static relume_status make_plan(struct maker *m)
 {
     const struct relume_export_params *p = m->e->params;
     struct functions f;
+    if (p->ycc && p->type != RELUME_WEB_PTM && p->type != RELUME_WEB_HSH &&
+        p->type != RELUME_WEB_SH)
+        return log_fail(m->e->log, RELUME_EINVAL,
+                        "colour space ycc: expected type ptm, hsh or sh; principal components have "
+                        "their own");
     const relume_status status = choose_functions(m->e, &f);
     if (status)
         return status;
@@ -210,7 +215,10 @@ static relume_status make_plan(struct maker *m)
     if (f.kind == FUNCTIONS_GRID || f.kind == FUNCTIONS_GAUSS)
         return plan_components(&m->plan, m->e->source, &f,
                                p->coefficients ? p->coefficients : DEFAULT_PLANES, p->threads);
-    return plan_fit(&m->plan, m->e->source, &f, p->type == RELUME_WEB_LPTM, p->threads);
+    const enum foreign_form form = p->type == RELUME_WEB_LPTM ? FOREIGN_LUMINANCE
+                                   : p->ycc                   ? FOREIGN_YCC
+                                                              : FOREIGN_CHANNELS;
+    return plan_fit(&m->plan, m->e->source, &f, form, p->threads);
 }
 
 static relume_status choose_step(struct maker *m)

@@ -3,6 +3,9 @@
 #include "base/log.h"
 #include "base/memory.h"
 
+const double foreign_rgb_of_ycc[3][3] = {
+    {1.0, 0.0, 1.402}, {1.0, -0.344136, -0.714136}, {1.0, 1.772, 0.0}};
+
 relume_status foreign_create(struct foreign *f, const char *path, long width, long height,
                              int planes, const struct relume_limits *limits,
                              const struct relume_log *log)

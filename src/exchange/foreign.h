@@ -4,6 +4,8 @@
 //     channels   value_c(l) = sum_k C_{3k+c} T_k . f(l)
 //     luminance  value_c(l) = C_{K+c} sum_k C_k T_k . f(l)
 //     joint      value_c(l) = M_c . f(l) + sum_k C_k T_{c,k} . f(l)
+//     ycc        Y(l) = sum_k C_k f_k(l), Cb = C_K, Cr = C_{K+1} for every light, then JPEG's RGB;
+//                only for writing: what is read of it is joint
 // T being `transform` and M `mean`.
 #ifndef EXCHANGE_FOREIGN_H
 #define EXCHANGE_FOREIGN_H
@@ -12,7 +14,7 @@
 
 #include "exchange/functions.h"
 
-enum foreign_form { FOREIGN_CHANNELS, FOREIGN_LUMINANCE, FOREIGN_JOINT };
+enum foreign_form { FOREIGN_CHANNELS, FOREIGN_LUMINANCE, FOREIGN_JOINT, FOREIGN_YCC };
 
 enum { FOREIGN_MOST_PLANES = 1024 };
 
@@ -34,6 +36,9 @@ relume_status foreign_create(struct foreign *f, const char *path, long width, lo
                              int planes, const struct relume_limits *limits,
                              const struct relume_log *log);
 void foreign_free(struct foreign *f);
+
+// JPEG's YCbCr -> RGB.
+extern const double foreign_rgb_of_ycc[3][3];
 
 static inline size_t foreign_pixels(const struct foreign *f)
 {

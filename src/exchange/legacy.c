@@ -129,7 +129,8 @@ static relume_status fit(struct foreign *f, const struct export *e, const struct
     struct plan plan;
     struct planes planes = {0};
     relume_status status =
-        plan_fit(&plan, e->source, &t->functions, t->luminance, e->params->threads);
+        plan_fit(&plan, e->source, &t->functions,
+                 t->luminance ? FOREIGN_LUMINANCE : FOREIGN_CHANNELS, e->params->threads);
     if (!status)
         status = planes_make(&planes, &plan, e->source, path, e->params->threads);
     for (int k = 0; !status && k < t->functions.count; k++)

@@ -28,11 +28,12 @@ struct plan {
 relume_status plan_components(struct plan *p, const struct source *s,
                               const struct functions *functions, int planes, int threads);
 
-// Least squares on the picture's values with the functions ptm, hsh or sh; `luminance`: one set
-// for all channels, times a colour (the rows of `map` for the terms then give the sum of the
-// channels, those of the colour the base colour; the terms are to be divided by its sum).
+// Least squares on the picture's values with the functions ptm, hsh or sh. `form`: channels;
+// luminance, one set for all channels, times a colour (the rows of `map` for the terms then give
+// the sum of the channels, those of the colour the base colour; the terms are to be divided by its
+// sum); or ycc.
 relume_status plan_fit(struct plan *p, const struct source *s, const struct functions *functions,
-                       bool luminance, int threads);
+                       enum foreign_form form, int threads);
 void plan_free(struct plan *p);
 
 #endif

@@ -247,9 +247,6 @@ static relume_status read_basis(struct folder *w)
 
 // (Y, a, b) -> RGB: t = Y - b/2, G = b + t, B = t - a/2, R = B + a
 static const double rgb_of_yab[3][3] = {{1.0, 0.5, -0.5}, {1.0, 0.0, 0.5}, {1.0, -0.5, -0.5}};
-// JPEG's YCbCr -> RGB
-static const double rgb_of_ycc[3][3] = {
-    {1.0, 0.0, 1.402}, {1.0, -0.344136, -0.714136}, {1.0, 1.772, 0.0}};
 
 // Which of (Y, a, b) the plane adds to; -1: to all, which are R, G, B.
 static int component_of(const struct folder *w, int plane)
@@ -298,10 +295,10 @@ static void fill_ycc(const struct folder *w)
     const double one = constant_term(&f->functions);
     for (int c = 0; c < 3; c++) {
         double *t = f->transform + c * f->terms * n;
-        f->mean[c * n] = -0.5 * one * (rgb_of_ycc[c][1] + rgb_of_ycc[c][2]);
+        f->mean[c * n] = -0.5 * one * (foreign_rgb_of_ycc[c][1] + foreign_rgb_of_ycc[c][2]);
         t[0] = 1.0;
-        t[n] = one * rgb_of_ycc[c][1];
-        t[2 * n] = one * rgb_of_ycc[c][2];
+        t[n] = one * foreign_rgb_of_ycc[c][1];
+        t[2 * n] = one * foreign_rgb_of_ycc[c][2];
         for (int k = 1; k < n; k++)
             t[(k + 2) * n + k] = 1.0;
     }

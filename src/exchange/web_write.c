@@ -14,12 +14,20 @@ static int min_of(int a, int b)
     return a < b ? a : b;
 }
 
-// The plan's plane that stands at place `p` of the folder: lrgb begins with the colour.
+// The plan's plane that stands at place `p` of the folder: lrgb begins with the colour; ycc with
+// Y0, Cb, Cr, then only first planes are used.
 static int plane_at(const struct plan *plan, int p)
 {
+    if (plan->form == FOREIGN_YCC)
+        return p % 3 == 0 ? p / 3 : p < 3 ? plan->terms + p - 1 : -1;
     if (plan->form != FOREIGN_LUMINANCE)
         return p;
     return p < 3 ? plan->terms + p : p - 3;
+}
+
+static int folder_planes(const struct plan *plan)
+{
+    return plan->form == FOREIGN_YCC ? 3 * plan->terms : plan->planes;
 }
 
 struct sheet web_sheet(const struct web_folder *w, int index)
@@ -28,7 +36,9 @@ struct sheet web_sheet(const struct web_folder *w, int index)
     struct sheet s = {
         .width = w->planes->width,
         .height = w->planes->height,
-        .planes = min_of(plan->planes - 3 * index, SHEET_PLANES),
+        .planes = plan->form == FOREIGN_YCC && index > 0
+                      ? 1
+                      : min_of(folder_planes(plan) - 3 * index, SHEET_PLANES),
         .ycbcr = plan->form == FOREIGN_CHANNELS,
         .fixed = plan->form == FOREIGN_LUMINANCE && index == 0,
     };
@@ -87,7 +97,7 @@ static void choose_kept(struct web_folder *w, double step, bool all)
 
 relume_status web_encode(struct web_folder *w, double step, bool all, int threads)
 {
-    w->sheets = (w->plan->planes + SHEET_PLANES - 1) / SHEET_PLANES;
+    w->sheets = (folder_planes(w->plan) + SHEET_PLANES - 1) / SHEET_PLANES;
     if (!w->sheet)
         w->sheet = mem_zeroed((size_t)w->sheets, sizeof *w->sheet);
     struct job job = {w, step, mem_zeroed((size_t)w->sheets, sizeof *job.status)};
@@ -112,7 +122,7 @@ void web_folder_free(struct web_folder *w)
 
 int web_planes(const struct web_folder *w)
 {
-    return min_of(3 * w->kept, w->plan->planes);
+    return min_of(3 * w->kept, folder_planes(w->plan));
 }
 
 // ---------------------------------------------------------------- info.json
@@ -181,7 +191,7 @@ static void put_column(FILE *f, const struct web_folder *w, const char *name, en
 static void put_info(FILE *f, const struct web_folder *w, int quality)
 {
     static const char *const kinds[] = {"ptm", "hsh", "sh", "rbf", "bilinear"};
-    static const char *const spaces[] = {"rgb", "lrgb", "mrgb"};
+    static const char *const spaces[] = {"rgb", "lrgb", "mrgb", "ycc"};
     const struct plan *plan = w->plan;
     const bool joint = plan->form == FOREIGN_JOINT;
     fprintf(f, "{\n\"width\": %d, \"height\": %d,\n\"format\": \"jpg\",\n", w->planes->width,

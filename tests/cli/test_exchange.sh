@@ -55,8 +55,10 @@ above 'a ptm file keeps its quality as .ptm' "$(psnr ptm.exr ptm-back.exr)" 40
 expect_ok 'the basis is fitted where it differs' 'dB from the file' "$RELUME" export pca.exr --to rti -o pca.rti --coefficients 4
 
 # ---- relight folders of every type
-for type in bilinear rbf ptm lptm hsh sh; do
-    "$RELUME" export pca.exr -o web-$type --type $type --quality 95 2>note.txt || not_ok "export --type $type" "$(cat note.txt)"
+for kind in bilinear rbf ptm lptm hsh sh ptm:ycc hsh:ycc sh:ycc; do
+    type=$(echo $kind | tr -d :) space=rgb
+    case $kind in *:ycc) space=ycc ;; esac
+    "$RELUME" export pca.exr -o web-$type --type ${kind%:*} --colorspace $space --quality 95 2>note.txt || not_ok "export --type $type" "$(cat note.txt)"
     relume import web-$type -o web-$type.exr
     decoded_alike "folder $type: an independent decoder" web-$type web-$type.exr
     above "folder $type: as good as was promised" "$(psnr pca.exr web-$type.exr)" "$(awk -v p="$(promised)" 'BEGIN { print p - 5 }')"

@@ -795,6 +795,32 @@ static void every_key_is_bound_once(void **state)
     }
 }
 
+// ---------------------------------------------------------------- recordings
+
+static void recordings_go_once_around(void **state)
+{
+    (void)state;
+    struct app app = make_app(RELUME_PLANAR, false);  // light from the front: lowered to 60 degrees
+    for (int i = 0; i < 4; i++) {
+        static const double sign[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+        assert_int_equal(record_pose(&app, RECORD_SWEEP, i / 4.0, &keep), RELUME_OK);
+        const struct relume_vec3 d = app.now.light[0].direction;
+        assert_float_equal(d.x, 0.5 * sign[i][0], 1e-12);
+        assert_float_equal(d.y, 0.5 * sign[i][1], 1e-12);
+        assert_float_equal(d.z, sqrt(0.75), 1e-12);
+    }
+    said[0] = '\0';
+    assert_int_equal(record_pose(&app, RECORD_TURNTABLE, 0, &keep), RELUME_EINVAL);
+    assert_non_null(strstr(said, "turntable"));
+    app = make_app(RELUME_SLAB, false);
+    record_pose(&app, RECORD_TURNTABLE, 0.25, &keep);  // at the upper end of the cameras
+    assert_float_equal(app.now.camera.eye.x, 0, 1e-12);
+    assert_float_equal(app.now.camera.eye.y, 0.5, 1e-12);
+    app = make_app(RELUME_CYLINDRICAL, true);
+    record_pose(&app, RECORD_TURNTABLE, 0.25, &keep);
+    assert_float_equal(app.now.camera.look.pan_deg, 90, 1e-12);
+}
+
 // ---------------------------------------------------------------- handles
 
 static void handles_are_grabbed_and_follow(void **state)
@@ -990,6 +1016,7 @@ int main(void)
         cmocka_unit_test(keys_change_the_selected_light),
         cmocka_unit_test(arrangements_stand_on_the_pole),
         cmocka_unit_test(every_key_is_bound_once),
+        cmocka_unit_test(recordings_go_once_around),
         cmocka_unit_test(handles_are_grabbed_and_follow),
         cmocka_unit_test(near_lights_stand_where_they_are),
         cmocka_unit_test(near_lights_stand_in_panoramas),

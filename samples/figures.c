@@ -440,8 +440,11 @@ static struct relume_image resampled_image(const struct file *f, struct relume_l
 
 static struct relume_light light_of(const char *spec)
 {
-    struct relume_light light;
-    must(relume_light_parse(&light, spec, &to_stderr), spec);
+    relume_rig *rig;
+    must(relume_rig_create(&rig), spec);
+    must(relume_rig_add(rig, spec, NULL, &to_stderr), spec);
+    const struct relume_light light = relume_rig_entry(rig, 0)->light;
+    relume_rig_destroy(&rig);
     return light;
 }
 

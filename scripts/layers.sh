@@ -13,9 +13,9 @@ capture:base math image:base image lights capture
 coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange
-relight:base math image:base image coder relight
-view:base math image:base image relight view capture
-frame:base math:base image capture coder pack relight view frame evaluate
+relight:base math image:base image coder light relight rig
+view:base math image:base image light relight view capture
+frame:base math:base image capture coder pack light relight view frame evaluate
 scene:base math image:base image lights capture scene
 cli:cli:*
 viewer:viewer:*

@@ -69,7 +69,7 @@ relume_status books_relight(const struct gl *gl, const struct relume_codes *code
     texture_settings(gl, GL_TEXTURE_2D_ARRAY);
     relume_status status = RELUME_OK;
     for (int b = 0; !status && b < codes->books; b++) {
-        status = relume_relight_book(table, codes, b, lights, n);
+        status = relume_relight_book(table, codes, b, lights, n, NULL);
         if (!status)
             gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, b, TABLE_WIDTH, rows, 1, GL_RGB,
                               GL_FLOAT, table);

@@ -2,6 +2,8 @@
 
 #include "say.h"
 
+#include <relume/rig.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -50,13 +52,28 @@ static relume_status take_framing(struct options *o, const char *name, enum relu
     return RELUME_OK;
 }
 
+relume_status options_light(struct relume_light *out, const char *spec,
+                            const struct relume_log *log)
+{
+    relume_rig *rig;
+    relume_status status = relume_rig_create(&rig);
+    if (!status)
+        status = relume_rig_add(rig, spec, NULL, log);
+    if (!status)
+        *out = relume_rig_entry(rig, 0)->light;
+    if (!status && out->kind != RELUME_LIGHT_DIRECTIONAL)
+        status = say(log, RELUME_EINVAL, "light '%s': expected \"dir x y z [rgb r g b]\"", spec);
+    relume_rig_destroy(&rig);
+    return status;
+}
+
 static relume_status take_light(struct options *o, const char *name, const char *text,
                                 const struct relume_log *log)
 {
     (void)name;
     if (o->start.lights == APP_LIGHTS)
         return say(log, RELUME_EINVAL, "--light: expected at most %d lights", APP_LIGHTS);
-    return relume_light_parse(&o->start.light[o->start.lights++], text, log);
+    return options_light(&o->start.light[o->start.lights++], text, log);
 }
 
 static relume_status take_view(struct options *o, const char *name, const char *text,

@@ -18,6 +18,10 @@ relume_status options_parse(struct options *options, int argc, char **argv,
                             const struct relume_log *log);
 void options_help(void);
 
+// One directional light in words. RELUME_EINVAL with a sentence, RELUME_ENOMEM.
+relume_status options_light(struct relume_light *out, const char *spec,
+                            const struct relume_log *log);
+
 // "x,y,z": `count` numbers separated by commas or blanks and nothing else.
 bool options_numbers(const char *text, double *out, int count);
 

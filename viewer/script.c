@@ -91,7 +91,7 @@ static relume_status play_light(struct player *p, char *rest)
 {
     struct relume_light light;
     const char *spec = unquoted(rest);
-    if (relume_light_parse(&light, spec, p->log))
+    if (options_light(&light, spec, p->log))
         return wrong(p, "light \"dir x y z [rgb r g b]\"", spec);
     p->app->now.light[0] = light;
     p->app->now.lights = 1;

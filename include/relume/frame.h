@@ -32,11 +32,18 @@ struct relume_frame_params {
     unsigned cpu_off;  // as relume_relight_params
     int threads;       // default: all cores
     bool constant;     // slab: nearest view
+    // Where near lights meet views without depth: this far along every ray, world units; default:
+    // planar views lie on z = 0, others are refused.
+    double assume_depth;
+    // Of the file's coder (relume_weight_grid_create), for near lights and environments in many
+    // frames; default: made for the frame.
+    const relume_weight_grid *grid;
 };
 #define relume_frame_params(...) (&(const struct relume_frame_params){__VA_ARGS__})
 
 // Create `*out`, linear, three channels. Only the views that the frame touches are read and relit.
-// Returns RELUME_EINVAL (camera does not fit the file), RELUME_EDATA, RELUME_ENOMEM.
+// Returns RELUME_EINVAL (camera does not fit the file, a light is wrong), RELUME_EDATA (also: near
+// lights and no depth), RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_frame(struct relume_image *out, relume_pack *pack,
                                          const struct relume_camera *camera,
                                          const struct relume_light *lights, int n,

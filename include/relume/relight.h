@@ -5,37 +5,102 @@
 #include <relume/base.h>
 #include <relume/coder.h>
 #include <relume/image.h>
+#include <relume/light.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-enum relume_light_kind {
-    RELUME_LIGHT_DIRECTIONAL = 0,
-    RELUME_LIGHT_POINT,  // the direction differs from pixel to pixel: needs `surface`
+// ------------------------------------------------------------------ weight grid
+// The basis of a coder at a grid of directions, between which it is bilinear: near lights and
+// environments ask for thousands of directions a pixel. Rows are even in the angle from the pole,
+// columns in azimuth, so that no crease of the map cuts a cell. A full sphere has two rows at the
+// horizon, for bases that jump there. Never changes. Thread-safety: safe.
+typedef struct relume_weight_grid relume_weight_grid;
+
+struct relume_weight_grid_params {
+    int steps;    // cells from pole to horizon, [2, 1024]; default 96, fewer where that takes more
+                  // than 256 MB
+    int threads;  // default: all cores
 };
+#define relume_weight_grid_params(...) (&(const struct relume_weight_grid_params){__VA_ARGS__})
 
-// A light of value 1 gives a white Lambertian surface facing it the value 1.
-struct relume_light {
-    enum relume_light_kind kind;
-    struct relume_vec3 direction;  // directional: towards the light; any length but 0
-    struct relume_vec3 position;   // point: world units; the same value at every distance
-    float rgb[3];                  // linear value of the light
+// RELUME_ENOMEM. `coder` must live as long as the grid.
+RELUME_RESULT relume_status
+relume_weight_grid_create(relume_weight_grid **out, const relume_coder *coder,
+                          const struct relume_weight_grid_params *params);
+RELUME_API void relume_weight_grid_destroy(relume_weight_grid **grid);
+
+// Pointers belong to the grid.
+struct relume_weight_grid_info {
+    const relume_coder *coder;
+    int steps, rows, columns;  // nodes: hemispherical steps + 1 rows, else 2 (steps + 1); 4 steps +
+                               // 1 columns, the last the same as the first
+    int sets;           // 1: the weights of the three channels are equal; 3: they are not
+    int coefficients;   // K
+    int stride;         // floats from node to node
+    const float *data;  // [rows][columns][stride]: the weights [sets][K], then the constants
+                        // [3] where sets is 3 (else they are 0)
 };
+RELUME_API const struct relume_weight_grid_info *relume_weight_grid_info(
+    const relume_weight_grid *grid);
 
-// Read a SPEC: "dir x y z [rgb r g b]". RELUME_EINVAL with a sentence in `log`.
-RELUME_RESULT relume_status relume_light_parse(struct relume_light *out, const char *spec,
-                                               const struct relume_log *log);
+// Where a unit direction (world) lies: column x in [0, columns - 1], row y in [0, rows - 1], not
+// rounded. Below the horizon of a hemispherical capture: at the horizon.
+RELUME_API void relume_weight_grid_place(double xy[2], const relume_weight_grid *grid,
+                                         struct relume_vec3 direction);
 
+// Add value[c] times the basis at a unit direction to weights[3][K] and constant[3].
+RELUME_API void relume_weight_grid_add(float *weights, float constant[3],
+                                       const relume_weight_grid *grid, struct relume_vec3 direction,
+                                       const float value[3]);
+
+// ------------------------------------------------------------------ environment
+// Add an environment light to weights[3][K] and constant[3]: sum over the map of E dw / pi times
+// the basis (Wong 1998, Eq. 7.6). Directions below the horizon of a hemispherical capture are 0.
+// For codes of the linear domain.
+RELUME_API void relume_environment_weights(float *weights, float constant[3],
+                                           const relume_weight_grid *grid,
+                                           const struct relume_light *light);
+
+// ------------------------------------------------------------------ refit
+// Codes of the display domain once more in linear light, so that an environment is one weight
+// vector there too: decoded at the captured directions, made linear, learned by `pca`. One codebook
+// becomes one codebook, other codes become planes of half floats. Never changes. Thread-safety:
+// safe.
+typedef struct relume_refit relume_refit;
+
+struct relume_refit_params {
+    const struct relume_log *log;  // hears the loss as a note
+    int coefficients;              // default: twice those of the codes, at most 3 x lights
+    unsigned cpu_off;              // as relume_relight_params
+    int threads;                   // default: all cores
+};
+#define relume_refit_params(...) (&(const struct relume_refit_params){__VA_ARGS__})
+
+// RELUME_ENOMEM; what relume_coder_create says.
+RELUME_RESULT relume_status relume_refit_create(relume_refit **out,
+                                                const struct relume_codes *codes,
+                                                const struct relume_refit_params *params);
+RELUME_API void relume_refit_destroy(relume_refit **refit);
+// Linear codes of the same size; they belong to the refit.
+RELUME_API const struct relume_codes *relume_refit_codes(const relume_refit *refit);
+// Root mean square difference at the captured directions, linear, 1 = white.
+RELUME_API double relume_refit_loss(const relume_refit *refit);
+
+// ------------------------------------------------------------------ relighting
 struct relume_relight_params {
     const struct relume_log *log;
     unsigned cpu_off;  // RELUME_CPU_* features not to use; ~0u runs the plain C reference
     int threads;       // default: all cores
     // Three channels of the size of the codes: the world position that each pixel sees, not
-    // finite for background. Only point lights read it (Wong 1998, Eq. 7.7 with its sign
-    // corrected).
+    // finite for background. Only near lights read it.
     const struct relume_image *surface;
-    float exposure_ev;  // relume_relight_rgba8: multiply by 2^EV before coding
+    const relume_weight_grid *grid;  // of the codes' coder, for near lights and environments;
+                                     // default: made for the call
+    const relume_refit *refit;       // of display-domain codes, for environments; default: made
+                                     // for the call
+    float exposure_ev;               // relume_relight_rgba8: multiply by 2^EV before coding
 };
 #define relume_relight_params(...) (&(const struct relume_relight_params){__VA_ARGS__})
 
@@ -44,8 +109,9 @@ struct relume_relight_params {
 // display-domain codes are decoded light by light, linearised, then summed.
 // A light below the horizon of a hemispherical capture is a warning (once) in the log.
 // `out` is created when its data is NULL, else it must have the size of `codes`.
-// Point lights evaluate the basis at every pixel's own direction and add nothing to background.
-// Returns RELUME_EINVAL (a zero direction, a point light without a surface), RELUME_ENOMEM.
+// Near lights evaluate the basis at every pixel's own direction and add nothing to background.
+// Returns RELUME_EINVAL (a light that relume_light_check refuses, a near light without a surface),
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_relight(struct relume_image *out,
                                            const struct relume_codes *codes,
                                            const struct relume_light *lights, int n,
@@ -60,12 +126,13 @@ RELUME_RESULT relume_status relume_relight_rgba8(uint8_t *out, const struct relu
 
 // What code vector v of codebook `book` adds to a pixel: rgb[v][3], for clients that look up pixels
 // themselves. Sums over books are in the file's domain: linear under all `n` lights, or display
-// under one light whose colour is left out. A single codebook gives linear values under all lights
-// in either domain. Directional lights only, others are left out. RELUME_EINVAL when there is no
-// such book or when several books in the display domain meet any number of lights but one;
+// under one directional light whose colour is left out. A single codebook gives linear values under
+// all lights in either domain. Near lights are left out. RELUME_EINVAL when there is no such book
+// or when several books in the display domain meet anything but one directional light;
 // RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_relight_book(float *rgb, const struct relume_codes *codes,
-                                                int book, const struct relume_light *lights, int n);
+                                                int book, const struct relume_light *lights, int n,
+                                                const struct relume_relight_params *params);
 
 // The same at one pixel under directional lights, in double precision: the slow reference.
 RELUME_API void relume_relight_pixel(double rgb[3], const struct relume_codes *codes, int x, int y,

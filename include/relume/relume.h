@@ -11,9 +11,11 @@
 #include <relume/frame.h>
 #include <relume/heldout.h>
 #include <relume/image.h>
+#include <relume/light.h>
 #include <relume/lights.h>
 #include <relume/pack.h>
 #include <relume/relight.h>
+#include <relume/rig.h>
 #include <relume/scene.h>
 #include <relume/view.h>
 

@@ -5,6 +5,7 @@
 
 #include <jansson.h>
 #include <math.h>
+#include <string.h>
 
 relume_status jvalue_load(jvalue **root, const char *path, const struct relume_log *log)
 {
@@ -14,8 +15,8 @@ relume_status jvalue_load(jvalue **root, const char *path, const struct relume_l
         return RELUME_OK;
     if (error.line < 0)
         return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, error.text);
-    return log_fail(log, RELUME_EDATA, "%s: line %d; expected JSON, %s", path, error.line,
-                    error.text);
+    return log_fail(log, RELUME_EDATA, "%s: line %d, column %d; expected JSON, %s", path,
+                    error.line, error.column, error.text);
 }
 
 void jvalue_free(jvalue **root)
@@ -49,6 +50,26 @@ bool jvalue_is_array(const jvalue *value)
     return json_is_array(value);
 }
 
+bool jvalue_is_object(const jvalue *value)
+{
+    return json_is_object(value);
+}
+
+const char *jvalue_unknown(const jvalue *object, const char *const *known)
+{
+    const char *key;
+    json_t *value;
+    json_object_foreach((json_t *)(uintptr_t)object, key, value)
+    {
+        int i = 0;
+        while (known[i] && strcmp(known[i], key))
+            i++;
+        if (!known[i])
+            return key;
+    }
+    return NULL;
+}
+
 size_t jvalue_count(const jvalue *array)
 {
     return json_array_size(array);
@@ -68,6 +89,12 @@ bool jvalue_integer(const jvalue *value, long long *out)
         return false;
     *out = json_integer_value(value);
     return true;
+}
+
+bool jvalue_truth(const jvalue *value, bool *out)
+{
+    *out = json_is_true(value);
+    return json_is_boolean(value);
 }
 
 bool jvalue_numbers(const jvalue *array, double *out, size_t count)

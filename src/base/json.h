@@ -17,11 +17,17 @@ const jvalue *jvalue_item(const jvalue *array, size_t index);
 const char *jvalue_text(const jvalue *value);
 bool jvalue_is_null(const jvalue *value);
 bool jvalue_is_array(const jvalue *value);
+bool jvalue_is_object(const jvalue *value);
 size_t jvalue_count(const jvalue *array);
 
-// False unless `value` is a finite number, an integer, an array of `count` finite numbers.
+// The first member of an object that is not in the NULL-terminated list; NULL when all are.
+const char *jvalue_unknown(const jvalue *object, const char *const *known);
+
+// False unless `value` is a finite number, an integer, true or false, an array of `count` finite
+// numbers.
 bool jvalue_number(const jvalue *value, double *out);
 bool jvalue_integer(const jvalue *value, long long *out);
+bool jvalue_truth(const jvalue *value, bool *out);
 bool jvalue_numbers(const jvalue *array, double *out, size_t count);
 
 // `text` as a JSON string with its quotes, to be freed; NULL when it cannot be one.

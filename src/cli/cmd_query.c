@@ -1,12 +1,10 @@
 #include "cli.h"
 #include "frame_options.h"
 
-#include <stdlib.h>
-
 static const struct option options[] = {
     {"--eye", OPTION_TEXT, "x,y,z", "where the ray starts", 0, 0},
     {"--direction", OPTION_TEXT, "x,y,z", "where it goes, into the scene", 0, 0},
-    LIGHT_OPTION,
+    LIGHT_OPTIONS,
     {"--nearest", OPTION_FLAG, NULL, "slab: nearest view instead of the quadralinear basis", 0, 0},
     CPU_OPTION,
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
@@ -40,12 +38,10 @@ static relume_status query(const struct args *args, const struct relume_light *l
     status =
         relume_pack_open(&pack, args_input(args, 0),
                          relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
+    struct relume_frame_params params = parse_frame(args);
+    params.log = prefix_log(&about, args_log(args), args_input(args, 0));
     if (!status)
-        status = relume_query(
-            rgb, pack, eye, direction, lights, count,
-            relume_frame_params(.log = prefix_log(&about, args_log(args), args_input(args, 0)),
-                                .cpu_off = parse_cpu_off(args), .threads = args_threads(args),
-                                .constant = args_has(args, "--nearest")));
+        status = relume_query(rgb, pack, eye, direction, lights, count, &params);
     if (!status)
         print(args, rgb);
     relume_pack_destroy(&pack);
@@ -54,14 +50,15 @@ static relume_status query(const struct args *args, const struct relume_light *l
 
 static relume_status run(const struct args *args)
 {
-    struct relume_light *lights = NULL;
-    int count = 0;
+    relume_rig *rig = NULL;
+    const struct relume_light *lights;
+    int count;
     if (!args_has(args, "--eye") || !args_has(args, "--direction"))
         return usage_error("query: expected --eye x,y,z and --direction x,y,z");
-    relume_status status = parse_lights(args, &lights, &count);
+    relume_status status = parse_lights(args, &rig, &lights, &count);
     if (!status)
         status = query(args, lights, count);
-    free(lights);
+    relume_rig_destroy(&rig);
     return status;
 }
 

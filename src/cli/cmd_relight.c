@@ -2,12 +2,11 @@
 #include "frame_options.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 static const struct option options[] = {
     {"-o", OPTION_TEXT, "OUT", "picture to write: .exr (linear), .png, .jpg, .tif, .hdr, ...", 0,
      0},
-    LIGHT_OPTION,
+    LIGHT_OPTIONS,
     {"--view", OPTION_INT, "N", "a captured view at its own size (panoramas: unfolded)", 0, 65535},
     {"--eye", OPTION_TEXT, "x,y,z", "slab: the window as seen from there; default: the middle", 0,
      0},
@@ -68,12 +67,10 @@ static relume_status render(const struct args *args, const struct relume_camera 
     relume_status status =
         relume_pack_open(&pack, args_input(args, 0),
                          relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
+    struct relume_frame_params params = parse_frame(args);
+    params.log = prefix_log(&about, args_log(args), args_input(args, 0));
     if (!status)
-        status = relume_frame(
-            &frame, pack, camera, lights, count,
-            relume_frame_params(.log = prefix_log(&about, args_log(args), args_input(args, 0)),
-                                .cpu_off = parse_cpu_off(args), .threads = args_threads(args),
-                                .constant = args_has(args, "--nearest")));
+        status = relume_frame(&frame, pack, camera, lights, count, &params);
     const float gain = exp2f((float)args_number(args, "--exposure", 0.0));
     const size_t samples = (size_t)frame.width * (size_t)frame.height * 3;
     for (size_t i = 0; !status && i < samples; i++)
@@ -89,16 +86,17 @@ static relume_status render(const struct args *args, const struct relume_camera 
 static relume_status run(const struct args *args)
 {
     struct relume_camera camera;
-    struct relume_light *lights = NULL;
-    int count = 0;
+    relume_rig *rig = NULL;
+    const struct relume_light *lights;
+    int count;
     if (!args_has(args, "-o"))
         return usage_error("relight: expected -o OUT");
     relume_status status = parse_camera(args, &camera);
     if (!status)
-        status = parse_lights(args, &lights, &count);
+        status = parse_lights(args, &rig, &lights, &count);
     if (!status)
         status = render(args, &camera, lights, count);
-    free(lights);
+    relume_rig_destroy(&rig);
     return status;
 }
 

@@ -1,24 +1,44 @@
 #include "frame_options.h"
 
-#include <stdlib.h>
+static relume_status open_rig(const struct args *args, relume_rig **rig)
+{
+    const char *path = args_text(args, "--rig", NULL);
+    return path ? relume_rig_load(rig, path, args_log(args)) : relume_rig_create(rig);
+}
 
-relume_status parse_lights(const struct args *args, struct relume_light **lights, int *count)
+static relume_status add_lights(const struct args *args, relume_rig *rig)
 {
     const int given = args_count(args, "--light");
-    *count = given ? given : 1;
-    *lights = calloc((size_t)*count, sizeof **lights);
-    relume_status status = *lights ? RELUME_OK : RELUME_ENOMEM;
-    for (int i = 0; !status && i < *count; i++)
-        status = relume_light_parse(
-            &(*lights)[i], given ? args_nth(args, "--light", i) : "dir 0 0 1", args_log(args));
-    if (status) {
-        free(*lights);
-        *lights = NULL;
-    }
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < given; i++)
+        status = relume_rig_add(rig, args_nth(args, "--light", i), NULL, args_log(args));
+    if (!status && !given && !args_has(args, "--rig"))
+        status = relume_rig_add(rig, "dir 0 0 1", NULL, args_log(args));
     return status;
 }
 
-unsigned parse_cpu_off(const struct args *args)
+relume_status parse_lights(const struct args *args, relume_rig **rig,
+                           const struct relume_light **lights, int *count)
 {
-    return args_has(args, "--cpu-mask") ? ~(unsigned)args_int(args, "--cpu-mask", 0) : 0u;
+    const char *save = args_text(args, "--save-rig", NULL);
+    relume_status status = open_rig(args, rig);
+    if (!status)
+        status = add_lights(args, *rig);
+    if (!status && save)
+        status = relume_rig_save(*rig, save, args_log(args));
+    if (!status)
+        status = relume_rig_lights(lights, count, *rig);
+    if (status)
+        relume_rig_destroy(rig);
+    return status;
+}
+
+struct relume_frame_params parse_frame(const struct args *args)
+{
+    return (struct relume_frame_params){
+        .cpu_off = args_has(args, "--cpu-mask") ? ~(unsigned)args_int(args, "--cpu-mask", 0) : 0u,
+        .threads = args_threads(args),
+        .constant = args_has(args, "--nearest"),
+        .assume_depth = args_number(args, "--assume-depth", 0.0),
+    };
 }

@@ -1,22 +1,34 @@
-// frame_options.h - what `relight` and `query` share: lights, camera, kernels
+// frame_options.h - what `relight` and `query` share: lights, depth, kernels
 #ifndef CLI_FRAME_OPTIONS_H
 #define CLI_FRAME_OPTIONS_H
 
 #include "cli.h"
 
 // Table rows for a command's options.
-#define LIGHT_OPTION                                                                               \
+#define LIGHT_OPTIONS                                                                              \
+    {"--light",                                                                                    \
+     OPTION_TEXT,                                                                                  \
+     "SPEC",                                                                                       \
+     "\"dir x y z\", point, spot, slide, area, env, ies (docs/lights.md); repeats; default: "      \
+     "\"dir 0 0 1\"",                                                                              \
+     0,                                                                                            \
+     0},                                                                                           \
+        {"--rig", OPTION_TEXT, "FILE", "lights of a rig (JSON), before those of --light", 0, 0},   \
+        {"--save-rig", OPTION_TEXT, "FILE", "write all lights as a rig", 0, 0},                    \
     {                                                                                              \
-        "--light", OPTION_TEXT, "SPEC",                                                            \
-            "\"dir x y z [rgb r g b]\"; repeats; default: \"dir 0 0 1\"", 0, 0                     \
+        "--assume-depth", OPTION_NUMBER, "D",                                                      \
+            "near lights, file without depth: the surface is this far from the eye", 1e-6, 1e9     \
     }
 #define CPU_OPTION                                                                                 \
     {                                                                                              \
         "--cpu-mask", OPTION_INT, "M", "CPU features to use, 0: plain C; default: all", 0, 65535   \
     }
 
-// `*lights` is to be freed.
-relume_status parse_lights(const struct args *args, struct relume_light **lights, int *count);
-unsigned parse_cpu_off(const struct args *args);
+// The lights of --rig and --light, "dir 0 0 1" where both are missing; --save-rig is obeyed. They
+// belong to `*rig`, which is to be destroyed.
+relume_status parse_lights(const struct args *args, relume_rig **rig,
+                           const struct relume_light **lights, int *count);
+// Threads, kernels and depth; the log is still to be set.
+struct relume_frame_params parse_frame(const struct args *args);
 
 #endif

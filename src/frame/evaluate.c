@@ -22,7 +22,8 @@ struct evaluator {
     const struct relume_manifest *manifest;
     const struct relume_pack_info *info;
     struct relume_transfer display;
-    struct sums *light;  // [lights]
+    relume_weight_grid *grid;  // where lights are near
+    struct sums *light;        // [lights]
     struct sums total;
     // captured images are read ahead, as many at once as there are threads
     int view, first, ahead;
@@ -132,15 +133,16 @@ static relume_status compare_light(struct evaluator *e, const struct relume_imag
                                 .rgb = {1.0f, 1.0f, 1.0f}};
     if (e->manifest->positions) {
         lamp.kind = RELUME_LIGHT_POINT;
+        lamp.nofall = true;
         lamp.position = e->manifest->positions[light];
     }
     struct about about = {.to = e->params.log, .name = e->params.file};
     about.log = (struct relume_log){say_about, pass_progress, &about};
     struct relume_image relit;
     struct relume_difference difference;
-    relume_status status =
-        relume_frame(&relit, e->pack, camera, &lamp, 1,
-                     relume_frame_params(.log = &about.log, .threads = e->params.threads));
+    relume_status status = relume_frame(
+        &relit, e->pack, camera, &lamp, 1,
+        relume_frame_params(.log = &about.log, .threads = e->params.threads, .grid = e->grid));
     if (!status)
         status = relume_image_compare(&difference, &relit, captured,
                                       relume_compare_params(.mask = mask, .display = e->display,
@@ -243,6 +245,14 @@ static void collect(const struct evaluator *e, struct relume_evaluation *out)
     }
 }
 
+static relume_status make_grid(struct evaluator *e)
+{
+    if (!e->manifest->positions)
+        return RELUME_OK;
+    return relume_weight_grid_create(&e->grid, e->info->coder,
+                                     relume_weight_grid_params(.threads = e->params.threads));
+}
+
 static bool create(struct evaluator *e, struct relume_evaluation *out)
 {
     const size_t lights = (size_t)e->manifest->lights;
@@ -258,6 +268,7 @@ static bool create(struct evaluator *e, struct relume_evaluation *out)
 
 static void destroy(struct evaluator *e)
 {
+    relume_weight_grid_destroy(&e->grid);
     free(e->light);
     free(e->image);
     free(e->status);
@@ -282,7 +293,7 @@ relume_status relume_evaluate(struct relume_evaluation *out, relume_pack *pack,
         return status;
     if (e.manifest->transfer.curve == RELUME_CURVE_GAMMA)
         e.display = e.manifest->transfer;
-    status = create(&e, out) ? RELUME_OK : RELUME_ENOMEM;
+    status = create(&e, out) ? make_grid(&e) : RELUME_ENOMEM;
     for (int view = 0; !status && view < e.manifest->views; view++)
         status = evaluate_view(&e, view);
     if (!status)

@@ -11,10 +11,16 @@ struct renderer {
     int light_count;
     struct relume_frame_params params;
     struct relume_view_params view;
+    struct shared *shared;
+};
+
+// What all views of a frame use.
+struct shared {
+    relume_weight_grid *grid;
 };
 
 static struct renderer renderer_of(relume_pack *pack, const struct relume_light *lights, int n,
-                                   const struct relume_frame_params *params)
+                                   const struct relume_frame_params *params, struct shared *shared)
 {
     const struct relume_frame_params p = params ? *params : (struct relume_frame_params){0};
     return (struct renderer){
@@ -23,46 +29,86 @@ static struct renderer renderer_of(relume_pack *pack, const struct relume_light 
         .lights = lights,
         .light_count = n,
         .params = p,
+        .shared = shared,
         .view = {.threads = p.threads, .constant = p.constant},
     };
 }
 
-static bool has_point_light(const struct renderer *r)
+static const struct relume_light *find_near(const struct renderer *r)
 {
     for (int i = 0; i < r->light_count; i++)
-        if (r->lights[i].kind == RELUME_LIGHT_POINT)
+        if (relume_light_is_near(r->lights[i].kind))
+            return &r->lights[i];
+    return NULL;
+}
+
+static bool has_environment(const struct renderer *r)
+{
+    for (int i = 0; i < r->light_count; i++)
+        if (r->lights[i].kind == RELUME_LIGHT_ENVIRONMENT)
             return true;
     return false;
+}
+
+static relume_status assume_depth(const struct renderer *r, struct relume_image *depth)
+{
+    const size_t n = (size_t)r->info->width * (size_t)r->info->height;
+    const relume_status status = relume_image_create(depth, r->info->width, r->info->height, 1);
+    for (size_t i = 0; !status && i < n; i++)
+        depth->data[i] = (float)r->params.assume_depth;
+    return status;
 }
 
 static relume_status find_surface(const struct renderer *r, int view, struct relume_image *out)
 {
     struct relume_image depth;
     relume_status status = relume_pack_depth(&depth, r->pack, view);
+    if (!status && !depth.data && r->params.assume_depth > 0.0)
+        status = assume_depth(r, &depth);
     if (status)
         return status;
     status = relume_surface(out, &r->info->geometry, r->info->uv[view], depth.data ? &depth : NULL,
                             r->info->width, r->info->height);
     if (status == RELUME_EINVAL)
         status = log_fail(r->params.log, RELUME_EDATA,
-                          "a point light needs to know where the surface is; expected a file with "
-                          "depth");
+                          "a near light (%s) needs to know where the surface is; expected a file "
+                          "with depth, or a depth to assume",
+                          relume_light_kind_name(find_near(r)->kind));
     relume_image_destroy(&depth);
+    return status;
+}
+
+// All views of a file have one coder.
+static relume_status find_grid(const struct renderer *r, const struct relume_codes *codes,
+                               const relume_weight_grid **grid)
+{
+    const bool folded = codes->domain != RELUME_DOMAIN_DISPLAY && has_environment(r);
+    relume_status status = RELUME_OK;
+    *grid = r->params.grid;
+    if (*grid || !(find_near(r) || folded))
+        return RELUME_OK;
+    if (!r->shared->grid)
+        status = relume_weight_grid_create(&r->shared->grid, codes->coder,
+                                           relume_weight_grid_params(.threads = r->params.threads));
+    *grid = r->shared->grid;
     return status;
 }
 
 static relume_status relight_view(const struct renderer *r, int view, struct relume_image *out)
 {
     const struct relume_codes *codes;
+    const relume_weight_grid *grid = NULL;
     struct relume_image surface = {0};
     relume_status status = relume_pack_codes(&codes, r->pack, view);
-    if (!status && has_point_light(r))
+    if (!status && find_near(r))
         status = find_surface(r, view, &surface);
+    if (!status)
+        status = find_grid(r, codes, &grid);
     if (!status)
         status = relume_relight(
             out, codes, r->lights, r->light_count,
             relume_relight_params(.log = r->params.log, .cpu_off = r->params.cpu_off,
-                                  .threads = r->params.threads, .surface = &surface));
+                                  .threads = r->params.threads, .surface = &surface, .grid = grid));
     relume_image_destroy(&surface);
     if (!status && !log_progress(r->params.log, "relighting", 1.0))
         return RELUME_ECANCEL;
@@ -161,7 +207,8 @@ relume_status relume_frame(struct relume_image *out, relume_pack *pack,
                            const struct relume_camera *camera, const struct relume_light *lights,
                            int n, const struct relume_frame_params *params)
 {
-    const struct renderer r = renderer_of(pack, lights, n, params);
+    struct shared shared = {0};
+    const struct renderer r = renderer_of(pack, lights, n, params, &shared);
     *out = (struct relume_image){0};
     relume_status status = RELUME_EINVAL;
     switch (camera->framing) {
@@ -175,6 +222,7 @@ relume_status relume_frame(struct relume_image *out, relume_pack *pack,
     }
     if (status)
         relume_image_destroy(out);
+    relume_weight_grid_destroy(&shared.grid);
     return status;
 }
 
@@ -292,20 +340,28 @@ static relume_status query_panorama(const struct renderer *r, vec3 eye, vec3 dir
     return status;
 }
 
-relume_status relume_query(float rgb[3], relume_pack *pack, struct relume_vec3 eye,
-                           struct relume_vec3 direction, const struct relume_light *lights, int n,
-                           const struct relume_frame_params *params)
+static relume_status query(const struct renderer *r, vec3 eye, vec3 direction, float rgb[3])
 {
-    const struct renderer r = renderer_of(pack, lights, n, params);
-    if (!(vec3_length(direction) > 0.0))
-        return log_fail(r.params.log, RELUME_EINVAL,
-                        "direction: expected three numbers, not all 0");
-    switch (r.info->geometry.projection) {
-    case RELUME_PLANAR: return query_planar(&r, eye, direction, rgb);
-    case RELUME_SLAB: return query_slab(&r, eye, direction, rgb);
+    switch (r->info->geometry.projection) {
+    case RELUME_PLANAR: return query_planar(r, eye, direction, rgb);
+    case RELUME_SLAB: return query_slab(r, eye, direction, rgb);
     case RELUME_CYLINDRICAL:
     case RELUME_SPHERICAL:
     case RELUME_CUBE: break;
     }
-    return query_panorama(&r, eye, direction, rgb);
+    return query_panorama(r, eye, direction, rgb);
+}
+
+relume_status relume_query(float rgb[3], relume_pack *pack, struct relume_vec3 eye,
+                           struct relume_vec3 direction, const struct relume_light *lights, int n,
+                           const struct relume_frame_params *params)
+{
+    struct shared shared = {0};
+    const struct renderer r = renderer_of(pack, lights, n, params, &shared);
+    if (!(vec3_length(direction) > 0.0))
+        return log_fail(r.params.log, RELUME_EINVAL,
+                        "direction: expected three numbers, not all 0");
+    const relume_status status = query(&r, eye, direction, rgb);
+    relume_weight_grid_destroy(&shared.grid);
+    return status;
 }

@@ -1,62 +1,206 @@
-// light.c - light specifications in words
-#include <relume/relight.h>
+// light.c - what each kind of light is, and what point-like ones send to a point
+#include "relight/light.h"
 
 #include "base/log.h"
+#include "math/vec.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+static const char *const kind_names[] = {
+    [RELUME_LIGHT_DIRECTIONAL] = "dir", [RELUME_LIGHT_ENVIRONMENT] = "env",
+    [RELUME_LIGHT_POINT] = "point",     [RELUME_LIGHT_SPOT] = "spot",
+    [RELUME_LIGHT_SLIDE] = "slide",     [RELUME_LIGHT_AREA] = "area",
+    [RELUME_LIGHT_IES] = "ies",
+};
 
-static bool take_number(const char **text, double *out)
+const char *relume_light_kind_name(enum relume_light_kind kind)
 {
-    char *end;
-    *out = strtod(*text, &end);
-    if (end == *text || !isfinite(*out))
-        return false;
-    *text = end;
-    return true;
+    return kind_names[kind];
 }
 
-static bool take_numbers(const char **text, double *out, int count)
+// ---------------------------------------------------------------- checks
+
+enum needs { DIRECTION = 1, POSITION = 2, ANGLE = 4, EDGES = 8, IMAGE = 16, MAP = 32, TABLE = 64 };
+
+static const int needs[] = {
+    [RELUME_LIGHT_DIRECTIONAL] = DIRECTION,
+    [RELUME_LIGHT_ENVIRONMENT] = MAP,
+    [RELUME_LIGHT_POINT] = POSITION,
+    [RELUME_LIGHT_SPOT] = POSITION | DIRECTION | ANGLE,
+    [RELUME_LIGHT_SLIDE] = POSITION | DIRECTION | ANGLE | IMAGE,
+    [RELUME_LIGHT_AREA] = POSITION | EDGES,
+    [RELUME_LIGHT_IES] = POSITION | DIRECTION | TABLE,
+};
+
+// Sums of products of values and 1 / distance^2 stay far from the largest float.
+static const double MOST_VALUE = 1e9;
+
+static bool all_finite(vec3 v)
 {
-    for (int i = 0; i < count; i++)
-        if (!take_number(text, &out[i]))
-            return false;
-    return true;
+    return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
 }
 
-static bool take_word(const char **text, const char *word)
+static bool has_length(vec3 v)
 {
-    const char *t = *text + strspn(*text, " \t");
-    const size_t n = strlen(word);
-    if (strncmp(t, word, n) || (t[n] && !strchr(" \t", t[n])))
-        return false;
-    *text = t + n;
-    return true;
+    const double length = vec3_length(v);
+    return length > 1e-12 && isfinite(length);
 }
 
-relume_status relume_light_parse(struct relume_light *out, const char *spec,
+const char *light_complaint(const struct relume_light *l, bool with_files)
+{
+    const int files = IMAGE | MAP | TABLE, need = needs[l->kind] & (with_files ? ~0 : ~files);
+    for (int c = 0; c < 3; c++)
+        if (!(fabs((double)l->rgb[c]) <= MOST_VALUE))
+            return "expected values of at most 1e9";
+    if (need & DIRECTION && !has_length(l->direction))
+        return "expected a direction, found zero";
+    if (need & POSITION && !all_finite(l->position))
+        return "expected a finite position";
+    if (need & ANGLE && !(l->half_angle_deg > 0.0 && l->half_angle_deg < 90.0))
+        return "expected a half angle between 0 and 90 degrees, both excluded";
+    if (need & EDGES && !has_length(vec3_cross(l->u, l->v)))
+        return "expected two half edges that span an area";
+    if (need & IMAGE && !(l->image && l->image->data && l->image->channels == 3))
+        return "expected a picture of three channels";
+    if (!(fabs(l->rotate_deg) <= MOST_VALUE))
+        return "expected a finite rotation";
+    if (need & MAP && !l->environment)
+        return "expected an environment map";
+    if (need & TABLE && !l->ies)
+        return "expected a distribution";
+    return NULL;
+}
+
+relume_status relume_light_check(const struct relume_light *light, const char *name,
                                  const struct relume_log *log)
 {
-    const char *t = spec;
-    double d[3], rgb[3] = {1.0, 1.0, 1.0};
-    *out = (struct relume_light){0};
-    if (!take_word(&t, "dir"))
-        return log_fail(log, RELUME_EINVAL,
-                        "light '%s': unknown kind; expected \"dir x y z [rgb r g b]\"", spec);
-    if (!take_numbers(&t, d, 3))
-        return log_fail(log, RELUME_EINVAL, "light '%s': expected three numbers after dir", spec);
-    if (!(hypot(hypot(d[0], d[1]), d[2]) > 1e-12))
-        return log_fail(log, RELUME_EINVAL, "light '%s': expected a direction, found zero", spec);
-    if (take_word(&t, "rgb") && !take_numbers(&t, rgb, 3))
-        return log_fail(log, RELUME_EINVAL, "light '%s': expected three numbers after rgb", spec);
-    if (t[strspn(t, " \t")])
-        return log_fail(log, RELUME_EINVAL, "light '%s': unexpected '%s'", spec,
-                        t + strspn(t, " \t"));
-    *out = (struct relume_light){
-        .kind = RELUME_LIGHT_DIRECTIONAL,
-        .direction = {d[0], d[1], d[2]},
-        .rgb = {(float)rgb[0], (float)rgb[1], (float)rgb[2]},
-    };
-    return RELUME_OK;
+    const bool known = light->kind >= 0 && (size_t)light->kind < sizeof needs / sizeof *needs;
+    const char *wrong = known ? light_complaint(light, true) : "unknown kind";
+    return wrong ? log_fail(log, RELUME_EINVAL, "%s: %s", name, wrong) : RELUME_OK;
+}
+
+// ---------------------------------------------------------------- near lights
+
+void relume_light_frame(struct relume_vec3 *right, struct relume_vec3 *up, struct relume_vec3 axis)
+{
+    const vec3 a = vec3_unit(axis), y = {0.0, 1.0, 0.0}, z = {0.0, 0.0, 1.0};
+    const bool vertical = fabs(a.y) > 1.0 - 1e-9;
+    *right = vec3_unit(vec3_cross(a, vertical ? z : y));
+    *up = vec3_cross(*right, a);
+}
+
+static double smoothstep(double low, double high, double x)
+{
+    const double t = fmin(fmax((x - low) / (high - low), 0.0), 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+static double radians(double degrees)
+{
+    return degrees * (M_PI / 180.0);
+}
+
+// Full inside 0.9 of the half angle, by angle.
+static bool spot_factor(float rgb[3], const struct relume_light *l, vec3 ray)
+{
+    const double angle = vec3_angle(ray, vec3_unit(l->direction));
+    const double half = radians(l->half_angle_deg);
+    const float f = (float)(1.0 - smoothstep(0.9 * half, half, angle));
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= f;
+    return f > 0.0f;
+}
+
+// Bilinear with the border clamped; pixel centres are at +0.5.
+static void picture_at(float rgb[3], const struct relume_image *image, double x, double y)
+{
+    const double cx = fmin(fmax(x - 0.5, 0.0), image->width - 1.0);
+    const double cy = fmin(fmax(y - 0.5, 0.0), image->height - 1.0);
+    const int x0 = (int)cx, y0 = (int)cy;
+    const int x1 = x0 + (x0 + 1 < image->width), y1 = y0 + (y0 + 1 < image->height);
+    const float fx = (float)(cx - x0), fy = (float)(cy - y0);
+    const float *top = image->data + (size_t)y0 * (size_t)image->width * 3;
+    const float *low = image->data + (size_t)y1 * (size_t)image->width * 3;
+    for (int c = 0; c < 3; c++) {
+        const float t = top[3 * x0 + c] * (1.0f - fx) + top[3 * x1 + c] * fx;
+        const float l = low[3 * x0 + c] * (1.0f - fx) + low[3 * x1 + c] * fx;
+        rgb[c] = t * (1.0f - fy) + l * fy;
+    }
+}
+
+static bool slide_factor(float rgb[3], const struct relume_light *l, vec3 ray)
+{
+    vec3 right, up;
+    float texel[3];
+    relume_light_frame(&right, &up, l->direction);
+    const double forward = vec3_dot(ray, vec3_unit(l->direction));
+    if (!(forward > 0.0))
+        return false;
+    const double scale = l->image->width / (2.0 * tan(radians(l->half_angle_deg)) * forward);
+    const double x = 0.5 * l->image->width + scale * vec3_dot(ray, right);
+    const double y = 0.5 * l->image->height - scale * vec3_dot(ray, up);
+    if (!(x >= 0.0 && x <= l->image->width && y >= 0.0 && y <= l->image->height))
+        return false;
+    picture_at(texel, l->image, x, y);
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= texel[c];
+    return true;
+}
+
+// The plane of horizontal angle 0 holds the right of the lamp's frame, that of 90 its up.
+static bool ies_factor(float rgb[3], const struct relume_light *l, vec3 ray)
+{
+    vec3 right, up;
+    relume_light_frame(&right, &up, l->direction);
+    const double vertical = vec3_angle(ray, vec3_unit(l->direction));
+    const double horizontal = atan2(vec3_dot(ray, up), vec3_dot(ray, right));
+    const float f =
+        (float)relume_ies_value(l->ies, vertical * (180.0 / M_PI), horizontal * (180.0 / M_PI));
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= f;
+    return f > 0.0f;
+}
+
+// Nearer than this a light is taken to be in the surface, and nothing arrives.
+static const double LEAST_DISTANCE = 1e-6;
+
+static bool ray_to(vec3 *towards, double *distance, vec3 from, vec3 point)
+{
+    const vec3 d = vec3_sub(from, point);
+    *distance = vec3_length(d);
+    *towards = vec3_scale(d, 1.0 / *distance);
+    return *distance >= LEAST_DISTANCE && isfinite(*distance);
+}
+
+bool relume_light_at(struct relume_vec3 *towards, float rgb[3], const struct relume_light *light,
+                     struct relume_vec3 point)
+{
+    double distance;
+    if (!ray_to(towards, &distance, light->position, point))
+        return false;
+    const float fall = light->nofall ? 1.0f : (float)(1.0 / (distance * distance));
+    for (int c = 0; c < 3; c++)
+        rgb[c] = light->rgb[c] * fall;
+    const vec3 ray = vec3_scale(*towards, -1.0);
+    switch (light->kind) {
+    case RELUME_LIGHT_POINT: return true;
+    case RELUME_LIGHT_SPOT: return spot_factor(rgb, light, ray);
+    case RELUME_LIGHT_SLIDE: return slide_factor(rgb, light, ray);
+    case RELUME_LIGHT_IES: return ies_factor(rgb, light, ray);
+    case RELUME_LIGHT_DIRECTIONAL:
+    case RELUME_LIGHT_ENVIRONMENT:
+    case RELUME_LIGHT_AREA: break;
+    }
+    return false;
+}
+
+bool relume_facet_at(struct relume_vec3 *towards, float rgb[3], const struct relume_facet *facet,
+                     struct relume_vec3 point)
+{
+    double distance;
+    if (!ray_to(towards, &distance, facet->position, point))
+        return false;
+    const double cosine = -vec3_dot(*towards, facet->normal);
+    const float f = (float)(cosine / (distance * distance));
+    for (int c = 0; c < 3; c++)
+        rgb[c] = facet->rgb[c] * f;
+    return cosine > 0.0;
 }

@@ -14,7 +14,9 @@
 #include "relight/books.h"
 #include "relight/bytes.h"
 #include "relight/kernels.h"
+#include "relight/near.h"
 
+#include <stdio.h>
 #include <string.h>
 
 // Pixels a worker takes at once: each plane is then read in runs of 8 kB, long enough for the CPU
@@ -41,9 +43,12 @@ struct job {
     bool display;
     bool linear;  // passes give linear light; else they are to be made linear, then added
     struct curve curve;
-    const struct relume_light *lights;  // all of them, for those that differ from pixel to pixel
-    int light_count;
-    const struct relume_image *surface;
+    const relume_weight_grid *grid;  // borrowed, or made
+    relume_weight_grid *made;
+    struct near near;
+    // Display domain: environments are relit from linear codes of their own.
+    struct job *distant;
+    relume_refit *refit;
 };
 
 static void fold_quantiser(struct pass *pass, const struct relume_codes *codes)
@@ -83,26 +88,47 @@ static int count_kind(const struct relume_light *lights, int n, enum relume_ligh
     return count;
 }
 
+// One directional light alone, its colour kept for later.
+static void set_displayed(struct pass *pass, const relume_coder *coder,
+                          const struct relume_light *light, float *one)
+{
+    struct relume_light white = *light;
+    memcpy(pass->rgb, light->rgb, sizeof pass->rgb);
+    white.rgb[0] = white.rgb[1] = white.rgb[2] = 1.0f;
+    add_light(pass, coder, &white, one);
+}
+
+static void fill_passes(struct job *job, const struct relume_light *lights, int n, float *one)
+{
+    const relume_coder *coder = job->codes->coder;
+    for (int i = 0, next = 0; i < n; i++) {
+        const enum relume_light_kind kind = lights[i].kind;
+        struct pass *pass = job->passes;
+        if (kind == RELUME_LIGHT_ENVIRONMENT && !job->display)
+            relume_environment_weights(pass->weights, pass->bias, job->grid, &lights[i]);
+        if (kind != RELUME_LIGHT_DIRECTIONAL)
+            continue;
+        if (job->display)
+            set_displayed(&pass[next++], coder, &lights[i], one);
+        else
+            add_light(pass, coder, &lights[i], one);
+    }
+}
+
+// Display domain: a pass for every directional light; a single codebook sums into the first.
 static relume_status make_passes(struct job *job, const struct relume_light *lights, int n)
 {
     const size_t size = 3 * (size_t)relume_coder_info(job->codes->coder)->coefficients;
-    job->count = job->display ? count_kind(lights, n, RELUME_LIGHT_DIRECTIONAL) : 1;
+    const int directional = count_kind(lights, n, RELUME_LIGHT_DIRECTIONAL);
+    const int least = job->display && job->codes->books != 1 ? 0 : 1;
+    job->count = job->display && directional > least ? directional : least;
     job->passes = mem_zeroed((size_t)job->count, sizeof *job->passes);
     float *one = mem_array(size, sizeof *one);
     bool good = job->passes && one;
     for (int i = 0; good && i < job->count; i++)
         good = (job->passes[i].weights = mem_zeroed(size, sizeof(float))) != NULL;
-    for (int i = 0, next = 0; good && i < n; i++) {
-        struct relume_light light = lights[i];
-        if (light.kind != RELUME_LIGHT_DIRECTIONAL)
-            continue;
-        struct pass *pass = &job->passes[job->display ? next++ : 0];
-        if (job->display) {
-            memcpy(pass->rgb, light.rgb, sizeof pass->rgb);
-            light.rgb[0] = light.rgb[1] = light.rgb[2] = 1.0f;
-        }
-        add_light(pass, job->codes->coder, &light, one);
-    }
+    if (good)
+        fill_passes(job, lights, n, one);
     for (int i = 0; good && i < job->count; i++)
         if (!job->codes->books)
             fold_quantiser(&job->passes[i], job->codes);
@@ -143,7 +169,7 @@ static relume_status relight_vectors(struct job *job)
     for (int p = 0; p < job->count; p++)
         if (!relight_books(job, &job->passes[p]))
             return RELUME_ENOMEM;
-    if (job->display && job->codes->books == 1 && job->count > 0)
+    if (job->display && job->codes->books == 1)
         sum_single_book(job);
     return RELUME_OK;
 }
@@ -255,25 +281,6 @@ static void decode_pixel(double value[3], const struct relume_codes *codes, size
     }
 }
 
-static void add_point_lights(const struct job *job, size_t pixel, float *out)
-{
-    const float *p = job->surface->data + 3 * pixel;
-    const vec3 seen = vec3_of((double)p[0], (double)p[1], (double)p[2]);
-    for (int i = 0; i < job->light_count; i++) {
-        const struct relume_light *light = &job->lights[i];
-        const vec3 towards = vec3_sub(light->position, seen);
-        const double distance = vec3_length(towards);
-        double value[3];
-        if (light->kind != RELUME_LIGHT_POINT || !(distance > 0.0) || !isfinite(distance))
-            continue;
-        decode_pixel(value, job->codes, pixel, vec3_scale(towards, 1.0 / distance));
-        for (int c = 0; c < 3; c++) {
-            const float v = (float)value[c];
-            out[c] += light->rgb[c] * (job->display ? curve_decode(&job->curve, v) : v);
-        }
-    }
-}
-
 static void dot_channel(const struct job *job, const struct pass *pass, int channel, size_t first,
                         size_t n, float *out)
 {
@@ -302,6 +309,16 @@ static size_t chunk_size(const struct job *job, size_t first)
     return pixels - first < CHUNK ? pixels - first : CHUNK;
 }
 
+static void relight_distant(const struct job *job, size_t first, size_t n, float *out)
+{
+    float sum[CHUNK];
+    for (int c = 0; c < 3; c++) {
+        dot_channel(job, &job->passes[0], c, first, n, sum);
+        for (size_t i = 0; i < n; i++)
+            out[3 * i + (size_t)c] += sum[i];
+    }
+}
+
 // out[n][3]: linear values of the pixels from `first` on.
 static void relight_pixels(const struct job *job, size_t first, size_t n, float *out)
 {
@@ -315,8 +332,10 @@ static void relight_pixels(const struct job *job, size_t first, size_t n, float 
     for (size_t i = 0; i < n; i++)
         for (size_t c = 0; c < 3; c++)
             out[3 * i + c] = sum[c][i];
-    for (size_t i = 0; job->surface && i < n; i++)
-        add_point_lights(job, first + i, out + 3 * i);
+    if (job->near.count)
+        near_add(&job->near, first, n, out);
+    if (job->distant)
+        relight_distant(job->distant, first, n, out);
 }
 
 static void relight_chunk(void *context, size_t item, int worker)
@@ -357,14 +376,26 @@ static void warn_below_horizon(const struct relume_codes *codes, const struct re
         }
 }
 
-static relume_status check_directions(const struct relume_light *lights, int n,
-                                      const struct relume_log *log)
+static relume_status check_each(const struct relume_light *lights, int n,
+                                const struct relume_log *log)
+{
+    for (int i = 0; i < n; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "light %d", i + 1);
+        const relume_status status = relume_light_check(&lights[i], name, log);
+        if (status)
+            return status;
+    }
+    return RELUME_OK;
+}
+
+// The first near light, -1 when there is none.
+static int find_near(const struct relume_light *lights, int n)
 {
     for (int i = 0; i < n; i++)
-        if (lights[i].kind == RELUME_LIGHT_DIRECTIONAL && !(vec3_length(lights[i].direction) > 0.0))
-            return log_fail(log, RELUME_EINVAL, "light %d: expected a direction, found zero",
-                            i + 1);
-    return RELUME_OK;
+        if (relume_light_is_near(lights[i].kind))
+            return i;
+    return -1;
 }
 
 static relume_status check_lights(const struct relume_codes *codes,
@@ -372,17 +403,42 @@ static relume_status check_lights(const struct relume_codes *codes,
                                   const struct relume_relight_params *p)
 {
     const struct relume_image *s = p->surface;
-    const relume_status status = check_directions(lights, n, p->log);
-    if (status)
+    const relume_status status = check_each(lights, n, p->log);
+    const int near = status ? -1 : find_near(lights, n);
+    if (near < 0 ||
+        (s && s->width == codes->width && s->height == codes->height && s->channels == 3))
         return status;
-    if (count_kind(lights, n, RELUME_LIGHT_POINT) == 0)
-        return RELUME_OK;
-    if (!s || s->width != codes->width || s->height != codes->height || s->channels != 3)
-        return log_fail(p->log, RELUME_EINVAL,
-                        "a point light needs to know where the surface is; expected depth");
-    return RELUME_OK;
+    return log_fail(
+        p->log, RELUME_EINVAL,
+        "light %d: a near light (%s) needs to know where the surface is; expected depth", near + 1,
+        relume_light_kind_name(lights[near].kind));
 }
 
+// ---------------------------------------------------------------- jobs
+
+static relume_status find_grid(struct job *job, const struct relume_relight_params *p)
+{
+    if (p->grid && relume_weight_grid_info(p->grid)->coder == job->codes->coder) {
+        job->grid = p->grid;
+        return RELUME_OK;
+    }
+    const relume_status status = relume_weight_grid_create(
+        &job->made, job->codes->coder, relume_weight_grid_params(.threads = p->threads));
+    job->grid = job->made;
+    return status;
+}
+
+static relume_status begin_near(struct job *job, const struct relume_light *lights, int n,
+                                const struct relume_relight_params *p)
+{
+    job->near = (struct near){.codes = job->codes,
+                              .grid = job->grid,
+                              .surface = p->surface,
+                              .display = job->display ? &job->curve : NULL};
+    return near_create(&job->near, lights, n);
+}
+
+// Everything but environments of the display domain.
 static relume_status begin_job(struct job *job, const struct relume_codes *codes,
                                const struct relume_light *lights, int n,
                                const struct relume_relight_params *p)
@@ -392,19 +448,22 @@ static relume_status begin_job(struct job *job, const struct relume_codes *codes
         .kernels = kernels_choose(p->cpu_off),
         .display = codes->domain == RELUME_DOMAIN_DISPLAY,
         .linear = codes->domain != RELUME_DOMAIN_DISPLAY,
-        .lights = lights,
-        .light_count = n,
-        .surface = count_kind(lights, n, RELUME_LIGHT_POINT) ? p->surface : NULL,
     };
-    relume_status status = make_passes(job, lights, n);
+    const bool near = p->surface && find_near(lights, n) >= 0;
+    const bool folded = job->linear && count_kind(lights, n, RELUME_LIGHT_ENVIRONMENT);
+    relume_status status = near || folded ? find_grid(job, p) : RELUME_OK;
+    if (!status)
+        status = make_passes(job, lights, n);
     if (!status && job->display)
         curve_init(&job->curve, codes->display);
     if (!status && codes->books)
         status = relight_vectors(job);
+    if (!status && near)
+        status = begin_near(job, lights, n, p);
     return status;
 }
 
-static void end_job(struct job *job)
+static void end_passes(struct job *job)
 {
     for (int i = 0; job->passes && i < job->count; i++) {
         for (int b = 0; job->passes[i].book && b < job->codes->books; b++)
@@ -413,8 +472,70 @@ static void end_job(struct job *job)
         free(job->passes[i].weights);
     }
     free(job->passes);
+}
+
+static void end_distant(struct job *job)
+{
+    if (!job->distant)
+        return;
+    end_passes(job->distant);
+    relume_weight_grid_destroy(&job->distant->made);
+    free(job->distant);
+    job->distant = NULL;
+}
+
+static void end_job(struct job *job)
+{
+    end_distant(job);
+    end_passes(job);
+    near_destroy(&job->near);
+    relume_weight_grid_destroy(&job->made);
+    relume_refit_destroy(&job->refit);
     free(job->coder);
     free(job->words);
+}
+
+// What the vectors of a single codebook have of the environments joins their table.
+static void join_single_book(struct job *job)
+{
+    const size_t n = 3 * (size_t)job->codes->book_codes[0];
+    for (size_t i = 0; i < n; i++)
+        job->passes[0].book[0][i] += job->distant->passes[0].book[0][i];
+    end_distant(job);
+}
+
+static relume_status begin_distant(struct job *job, const struct relume_light *lights, int n,
+                                   const struct relume_relight_params *p)
+{
+    const int count = job->display ? count_kind(lights, n, RELUME_LIGHT_ENVIRONMENT) : 0;
+    if (!count)
+        return RELUME_OK;
+    const struct relume_relight_params own = {.cpu_off = p->cpu_off, .threads = p->threads};
+    struct relume_light *environments = mem_array((size_t)count, sizeof *environments);
+    job->distant = mem_zeroed(1, sizeof *job->distant);
+    relume_status status = environments && job->distant ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0, next = 0; !status && i < n; i++)
+        if (lights[i].kind == RELUME_LIGHT_ENVIRONMENT)
+            environments[next++] = lights[i];
+    if (!status && !p->refit)
+        status = relume_refit_create(
+            &job->refit, job->codes,
+            relume_refit_params(.log = p->log, .cpu_off = p->cpu_off, .threads = p->threads));
+    if (!status)
+        status = begin_job(job->distant, relume_refit_codes(p->refit ? p->refit : job->refit),
+                           environments, count, &own);
+    free(environments);
+    if (!status && job->codes->books == 1)
+        join_single_book(job);
+    return status;
+}
+
+static relume_status begin_all(struct job *job, const struct relume_codes *codes,
+                               const struct relume_light *lights, int n,
+                               const struct relume_relight_params *p)
+{
+    const relume_status status = begin_job(job, codes, lights, n, p);
+    return status ? status : begin_distant(job, lights, n, p);
 }
 
 static void run_job(struct job *job, int threads, void (*chunk)(void *, size_t, int))
@@ -423,7 +544,7 @@ static void run_job(struct job *job, int threads, void (*chunk)(void *, size_t, 
     thread_for(threads, (pixels + CHUNK - 1) / CHUNK, chunk, job);
 }
 
-// As begin_job, for what is shown: lights are checked, those without reflectance warned about.
+// As begin_all, for what is shown: lights are checked, those without reflectance warned about.
 static relume_status start_job(struct job *job, const struct relume_codes *codes,
                                const struct relume_light *lights, int n,
                                const struct relume_relight_params *p)
@@ -433,7 +554,7 @@ static relume_status start_job(struct job *job, const struct relume_codes *codes
     if (status)
         return status;
     warn_below_horizon(codes, lights, n, p->log);
-    return begin_job(job, codes, lights, n, p);
+    return begin_all(job, codes, lights, n, p);
 }
 
 static relume_status open_output(struct relume_image *out, const struct relume_codes *codes)
@@ -484,7 +605,7 @@ relume_status relume_relight_rgba8(uint8_t *out, const struct relume_codes *code
         status = RELUME_ENOMEM;
     if (!status) {
         byte_coder_init(job.coder, exp2f(p.exposure_ev));
-        if (codes->books == 1 && job.linear && !job.surface)
+        if (codes->books == 1 && job.linear && !job.near.count)
             status = code_vectors(&job);
     }
     if (!status)
@@ -494,20 +615,20 @@ relume_status relume_relight_rgba8(uint8_t *out, const struct relume_codes *code
 }
 
 relume_status relume_relight_book(float *rgb, const struct relume_codes *codes, int book,
-                                  const struct relume_light *lights, int n)
+                                  const struct relume_light *lights, int n,
+                                  const struct relume_relight_params *params)
 {
-    const struct relume_relight_params none = {0};
+    struct relume_relight_params p = params ? *params : (struct relume_relight_params){0};
     struct job job;
-    if (n < 0 || book < 0 || book >= codes->books || check_directions(lights, n, NULL))
+    if (n < 0 || book < 0 || book >= codes->books || check_each(lights, n, p.log))
         return RELUME_EINVAL;
-    relume_status status = begin_job(&job, codes, lights, n, &none);
-    if (!status && codes->books > 1 && !job.linear && job.count != 1)
-        status = RELUME_EINVAL;
-    const size_t bytes = 3 * (size_t)codes->book_codes[book] * sizeof *rgb;
-    if (!status && job.count > 0)
-        memcpy(rgb, job.passes[0].book[book], bytes);
-    else if (!status)
-        memset(rgb, 0, bytes);
+    if (codes->books > 1 && codes->domain == RELUME_DOMAIN_DISPLAY &&
+        (n != 1 || lights[0].kind != RELUME_LIGHT_DIRECTIONAL))
+        return RELUME_EINVAL;
+    p.surface = NULL;
+    const relume_status status = begin_all(&job, codes, lights, n, &p);
+    if (!status)
+        memcpy(rgb, job.passes[0].book[book], 3 * (size_t)codes->book_codes[book] * sizeof *rgb);
     end_job(&job);
     return status;
 }

@@ -200,9 +200,11 @@ static void test_point_lights(void **state)
             uint32_t seed = 1;
             for (int i = 0; i < 3 * PIXELS; i++)
                 surface.data[i] = (float)test_uniform(&seed);
-            const struct relume_light both[] = {
-                lights[0],
-                {.kind = RELUME_LIGHT_POINT, .position = {0.4, -0.2, 3}, .rgb = {1, 2, 3}}};
+            const struct relume_light both[] = {lights[0],
+                                                {.kind = RELUME_LIGHT_POINT,
+                                                 .nofall = true,
+                                                 .position = {0.4, -0.2, 3},
+                                                 .rgb = {1, 2, 3}}};
             CHECK_OK(relume_relight(&out, &s.codes, both, 2,
                                     relume_relight_params(.surface = &surface)));
             for (int i = 0; i < PIXELS; i++) {
@@ -227,18 +229,18 @@ static void test_tables(void **state)
     float rgb[300 * 3];
     struct setup s;
     make(&s, 1, RELUME_DOMAIN_DISPLAY);
-    CHECK_OK(relume_relight_book(rgb, &s.codes, 0, lights, 3));
+    CHECK_OK(relume_relight_book(rgb, &s.codes, 0, lights, 3, NULL));
     for (int i = 0; i < PIXELS; i++)
         for (int c = 0; c < 3; c++)
             CHECK_NEAR(rgb[3 * s.index[0][i] + c], slow(&s, i, c, lights, 3), TOLERANCE);
-    CHECK_OK(relume_relight_book(rgb, &s.codes, 0, lights, 0));
+    CHECK_OK(relume_relight_book(rgb, &s.codes, 0, lights, 0, NULL));
     assert_true(rgb[0] == 0.0f && rgb[899] == 0.0f);
-    assert_int_equal(relume_relight_book(rgb, &s.codes, 1, lights, 1), RELUME_EINVAL);
+    assert_int_equal(relume_relight_book(rgb, &s.codes, 1, lights, 1, NULL), RELUME_EINVAL);
     s.codes.books = 2;
-    assert_int_equal(relume_relight_book(rgb, &s.codes, 0, lights, 2), RELUME_EINVAL);
-    assert_int_equal(relume_relight_book(rgb, &s.codes, 0, lights, 0), RELUME_EINVAL);
+    assert_int_equal(relume_relight_book(rgb, &s.codes, 0, lights, 2, NULL), RELUME_EINVAL);
+    assert_int_equal(relume_relight_book(rgb, &s.codes, 0, lights, 0, NULL), RELUME_EINVAL);
     const struct relume_light nowhere = {.rgb = {1, 1, 1}};
-    assert_int_equal(relume_relight_book(rgb, &s.codes, 0, &nowhere, 1), RELUME_EINVAL);
+    assert_int_equal(relume_relight_book(rgb, &s.codes, 0, &nowhere, 1, NULL), RELUME_EINVAL);
     drop(&s);
 }
 

@@ -1,0 +1,159 @@
+// light.h - kinds of light, and what each sends to a point of the scene
+#ifndef RELUME_LIGHT_H
+#define RELUME_LIGHT_H
+
+#include <relume/base.h>
+#include <relume/image.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum relume_light_kind {
+    RELUME_LIGHT_DIRECTIONAL = 0,
+    RELUME_LIGHT_ENVIRONMENT,  // distant as well: all directions at once
+    RELUME_LIGHT_POINT,        // from here on near: the direction differs from pixel to pixel
+    RELUME_LIGHT_SPOT,
+    RELUME_LIGHT_SLIDE,
+    RELUME_LIGHT_AREA,
+    RELUME_LIGHT_IES,
+};
+
+typedef struct relume_ies relume_ies;                  // a goniometric distribution
+typedef struct relume_environment relume_environment;  // a map of distant radiance
+
+// A light of value 1 (near ones: at distance 1) gives a white Lambertian surface facing it the
+// value 1. Environments and areas are radiances E that weigh E dw / pi. Plain data.
+struct relume_light {
+    enum relume_light_kind kind;
+    struct relume_vec3 direction;      // directional: towards the light; spot, slide, ies: the axis
+                                       // along which it shines; any length but 0
+    struct relume_vec3 position;       // near ones, world units; area: the centre
+    struct relume_vec3 u, v;           // area: half edges; it emits towards u x v
+    bool disc;                         // area: the ellipse inside, not the rectangle
+    bool nofall;                       // point, spot, slide, ies: the same value at every distance
+    double half_angle_deg;             // (0, 90). spot: full inside 0.9 of it, smoothstep to 0;
+                                       // slide: half the width of the picture
+    double rotate_deg;                 // environment: > 0 turns it from -z towards +x
+    float rgb[3];                      // linear value
+    const struct relume_image *image;  // slide: the picture, linear, three channels; borrowed
+    const relume_environment *environment;  // borrowed
+    const relume_ies *ies;                  // borrowed
+};
+
+// "dir", "env", "point", ... as in a SPEC (rig.h); never NULL.
+RELUME_API const char *relume_light_kind_name(enum relume_light_kind kind);
+
+// Whether the light needs to know where the surface is.
+static inline bool relume_light_is_near(enum relume_light_kind kind)
+{
+    return kind >= RELUME_LIGHT_POINT;
+}
+
+// RELUME_EINVAL with a sentence that begins with `name` unless every number is finite, directions
+// have a length, angles are in range and what the kind needs is there.
+RELUME_RESULT relume_status relume_light_check(const struct relume_light *light, const char *name,
+                                               const struct relume_log *log);
+
+// What a point, spot, slide or ies light sends to `point`: its value there and the unit direction
+// towards it (Wong 1998, Eq. 7.7 with its sign corrected: L = S - P). False where nothing arrives:
+// outside the cone or picture, at the light itself, at a point that is not finite.
+RELUME_API bool relume_light_at(struct relume_vec3 *towards, float rgb[3],
+                                const struct relume_light *light, struct relume_vec3 point);
+
+// The frame of a slide or ies light that shines along `axis`: image right and up, unit vectors. Up
+// is world +y projected, +z where the axis is vertical; seen along the axis, right is right.
+RELUME_API void relume_light_frame(struct relume_vec3 *right, struct relume_vec3 *up,
+                                   struct relume_vec3 axis);
+
+// ------------------------------------------------------------------ area
+// A piece of an area light: sends rgb * max(0, cos) / distance^2, the cosine being between `normal`
+// and the direction from the piece to the point.
+struct relume_facet {
+    struct relume_vec3 position, normal;
+    float rgb[3];  // radiance x area / pi
+};
+
+enum { RELUME_FACETS_MOST = 32 };  // along one side
+
+// How many facets a side an area light needs so that their sum is the integral to about 1 percent
+// at points at least `distance` away; in [1, RELUME_FACETS_MOST].
+RELUME_API int relume_light_facet_side(const struct relume_light *area, double distance);
+
+// The light in side x side pieces: Gauss-Legendre nodes, for discs in radius^2 and evenly in angle.
+// Fills out[side * side].
+RELUME_API void relume_light_facets(struct relume_facet *out, const struct relume_light *area,
+                                    int side);
+
+// What a facet sends to `point`, as relume_light_at.
+RELUME_API bool relume_facet_at(struct relume_vec3 *towards, float rgb[3],
+                                const struct relume_facet *facet, struct relume_vec3 point);
+
+// The least distance from an area light of the positions in `surface` (three channels) that lie
+// before it; infinite when there are none.
+RELUME_API double relume_area_distance(const struct relume_light *area,
+                                       const struct relume_image *surface);
+
+// ------------------------------------------------------------------ ies
+// Read an IES LM-63 file (1986, 1991, 1995, 2002; type C photometry). `*out` is NULL on failure.
+// Returns RELUME_EDATA with a sentence, RELUME_ENOMEM. Never changes afterwards. Thread-safety:
+// safe.
+RELUME_RESULT relume_status relume_ies_load(relume_ies **out, const char *path,
+                                            const struct relume_log *log);
+// The same from `size` bytes of text; sentences begin with `name`.
+RELUME_RESULT relume_status relume_ies_parse(relume_ies **out, const char *text, size_t size,
+                                             const char *name, const struct relume_log *log);
+RELUME_API void relume_ies_destroy(relume_ies **ies);
+
+// Intensity in [0, 1] of the maximum, bilinear in the angles. vertical_deg in [0, 180] from the
+// lamp's axis, horizontal_deg of any size; 0 outside the measured angles.
+RELUME_API double relume_ies_value(const relume_ies *ies, double vertical_deg,
+                                   double horizontal_deg);
+// The largest intensity of the file, candela.
+RELUME_API double relume_ies_candela(const relume_ies *ies);
+
+// ------------------------------------------------------------------ environment
+struct relume_environment_params {
+    const struct relume_log *log;
+    const char *name;  // how sentences call the map; default: "environment"
+};
+#define relume_environment_params(...) (&(const struct relume_environment_params){__VA_ARGS__})
+
+// Prepare a lat-long map (linear, three channels; spherical layout as seen from the scene: the
+// middle column is -z, +x to its right, row 0 is up). NaN, infinite and negative values become 0
+// with a warning; a map that is not twice as wide as high is a warning. `map` is copied.
+// RELUME_EINVAL, RELUME_ENOMEM. Never changes. Thread-safety: safe.
+RELUME_RESULT relume_status
+relume_environment_create(relume_environment **out, const struct relume_image *map,
+                          const struct relume_environment_params *params);
+// The same from a file that relume_image_load reads. Also RELUME_EDATA.
+RELUME_RESULT relume_status relume_environment_load(relume_environment **out, const char *path,
+                                                    const struct relume_log *log);
+RELUME_API void relume_environment_destroy(relume_environment **environment);
+
+// The cleaned map at no more than 1024 x 512 pixels, for showing it.
+RELUME_API const struct relume_image *relume_environment_map(const relume_environment *environment);
+
+// The map as light by light: a cell's energy-weighted direction and E dw / pi, without rotation. At
+// most 256 x 128 cells with exact solid angles; black ones are left out.
+struct relume_environment_cell {
+    struct relume_vec3 direction;
+    float rgb[3];
+};
+RELUME_API const struct relume_environment_cell *relume_environment_cells(
+    int *n, const relume_environment *environment);
+
+// `direction` of the map as the scene sees it after the rotation.
+RELUME_API struct relume_vec3 relume_environment_turn(struct relume_vec3 direction,
+                                                      double rotate_deg);
+
+// `n` directional lights that stand for an environment light, drawn by luminance (stratified; equal
+// seeds give equal lights) and of the same total.
+RELUME_RESULT relume_status relume_environment_sample(struct relume_light *out, int n,
+                                                      const struct relume_light *environment,
+                                                      uint64_t seed);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

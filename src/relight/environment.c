@@ -1,0 +1,306 @@
+// environment.c - distant radiance from all directions (Wong 1998, Eq. 7.6): a map becomes cells
+// with exact solid angles and the directions from where their energy comes
+#include <relume/light.h>
+#include <relume/relight.h>
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "math/random.h"
+#include "math/vec.h"
+
+#include <string.h>
+
+enum { CELL_COLUMNS = 256, CELL_ROWS = 128, SHOWN_COLUMNS = 1024, SHOWN_ROWS = 512 };
+
+struct relume_environment {
+    struct relume_image map;
+    int count;
+    struct relume_environment_cell *cell;
+};
+
+// ---------------------------------------------------------------- the map
+
+static size_t clean(struct relume_image *map)
+{
+    const size_t n = (size_t)map->width * (size_t)map->height * 3;
+    size_t bad = 0;
+    for (size_t i = 0; i < n; i++)
+        if (!(map->data[i] >= 0.0f && map->data[i] <= 1e9f)) {
+            map->data[i] = 0.0f;
+            bad++;
+        }
+    return bad;
+}
+
+static relume_status copy_map(struct relume_image *to, const struct relume_image *from)
+{
+    const relume_status status = relume_image_create(to, from->width, from->height, 3);
+    if (!status)
+        memcpy(to->data, from->data,
+               (size_t)from->width * (size_t)from->height * 3 * sizeof *from->data);
+    return status;
+}
+
+static void say_oddities(const struct relume_image *map, size_t bad,
+                         const struct relume_environment_params *p)
+{
+    const char *name = p->name ? p->name : "environment";
+    if (bad)
+        log_line(p->log, RELUME_WARNING,
+                 "%s: %zu samples are negative, not finite or above 1e9; taken as 0", name, bad);
+    if (map->width != 2 * map->height)
+        log_line(p->log, RELUME_WARNING,
+                 "%s: %d x %d pixels; expected a map twice as wide as high, it is stretched", name,
+                 map->width, map->height);
+}
+
+// Block averages of at most SHOWN_COLUMNS x SHOWN_ROWS pixels, in place of `map`.
+static relume_status shrink(struct relume_image *map)
+{
+    const int width = map->width < SHOWN_COLUMNS ? map->width : SHOWN_COLUMNS;
+    const int height = map->height < SHOWN_ROWS ? map->height : SHOWN_ROWS;
+    struct relume_image small;
+    if (width == map->width && height == map->height)
+        return RELUME_OK;
+    relume_status status = relume_image_create(&small, width, height, 3);
+    float *count = mem_zeroed((size_t)width * (size_t)height, sizeof *count);
+    if (!status && !count)
+        status = RELUME_ENOMEM;
+    for (int y = 0; !status && y < map->height; y++)
+        for (int x = 0; x < map->width; x++) {
+            const size_t to = (size_t)((int64_t)y * height / map->height) * (size_t)width +
+                              (size_t)((int64_t)x * width / map->width);
+            const float *from = map->data + 3 * ((size_t)y * (size_t)map->width + (size_t)x);
+            for (size_t c = 0; c < 3; c++)
+                small.data[3 * to + c] += from[c];
+            count[to] += 1.0f;
+        }
+    for (size_t i = 0; !status && i < (size_t)width * (size_t)height * 3; i++)
+        small.data[i] /= count[i / 3];
+    free(count);
+    if (status) {
+        relume_image_destroy(&small);
+        return status;
+    }
+    relume_image_destroy(map);
+    *map = small;
+    return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- cells
+
+struct gathered {
+    double rgb[3];  // sum of E dw
+    vec3 centre;    // sum of direction x luminance x dw
+};
+
+static double luminance(const float rgb[3])
+{
+    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
+}
+
+// The pixels of small maps are cut into pieces, so that a cell is never wider than 3 degrees.
+static int pieces(int pixels, int cells)
+{
+    return pixels >= cells ? 1 : cells / pixels;
+}
+
+static void gather_row(struct gathered *cells, int columns, const struct relume_image *map, int row,
+                       double top, double bottom, const double (*azimuth)[2], int cut)
+{
+    const double solid = 2.0 * M_PI / ((double)map->width * cut) * (cos(top) - cos(bottom));
+    const double theta = 0.5 * (top + bottom);
+    for (int i = 0; i < map->width * cut; i++) {
+        const float *e = map->data + 3 * ((size_t)row * (size_t)map->width + (size_t)(i / cut));
+        struct gathered *g = &cells[(int64_t)i * columns / ((int64_t)map->width * cut)];
+        const double energy = luminance(e) * solid;
+        for (int c = 0; c < 3; c++)
+            g->rgb[c] += (double)e[c] * solid;
+        g->centre =
+            vec3_add(g->centre, vec3_of(energy * sin(theta) * azimuth[i][0], energy * cos(theta),
+                                        -energy * sin(theta) * azimuth[i][1]));
+    }
+}
+
+static void keep_cells(relume_environment *e, const struct gathered *cells, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const struct gathered *g = &cells[i];
+        if (!(vec3_length(g->centre) > 0.0))
+            continue;
+        struct relume_environment_cell *to = &e->cell[e->count++];
+        to->direction = vec3_unit(g->centre);
+        for (int c = 0; c < 3; c++)
+            to->rgb[c] = (float)(g->rgb[c] / M_PI);
+    }
+}
+
+static relume_status make_cells(relume_environment *e)
+{
+    const struct relume_image *map = &e->map;
+    const int across = pieces(map->width, CELL_COLUMNS), down = pieces(map->height, CELL_ROWS);
+    const int fine = map->width * across, lines = map->height * down;
+    const int columns = fine < CELL_COLUMNS ? fine : CELL_COLUMNS;
+    const int rows = lines < CELL_ROWS ? lines : CELL_ROWS;
+    double(*azimuth)[2] = mem_array((size_t)fine, sizeof *azimuth);
+    struct gathered *row = mem_zeroed((size_t)columns, sizeof *row);
+    e->cell = mem_array((size_t)columns * (size_t)rows, sizeof *e->cell);
+    const bool good = azimuth && row && e->cell;
+    for (int i = 0; good && i < fine; i++) {
+        const double phi = ((i + 0.5) / fine * 2.0 - 1.0) * M_PI;
+        azimuth[i][0] = sin(phi);
+        azimuth[i][1] = cos(phi);
+    }
+    for (int y = 0, r = 0; good && y < lines; y++) {
+        gather_row(row, columns, map, y / down, M_PI * y / lines, M_PI * (y + 1) / lines,
+                   (const double(*)[2])azimuth, across);
+        if ((int64_t)(y + 1) * rows / lines == r)
+            continue;
+        keep_cells(e, row, columns);
+        memset(row, 0, (size_t)columns * sizeof *row);
+        r++;
+    }
+    free(azimuth);
+    free(row);
+    return good ? RELUME_OK : RELUME_ENOMEM;
+}
+
+relume_status relume_environment_create(relume_environment **out, const struct relume_image *map,
+                                        const struct relume_environment_params *params)
+{
+    const struct relume_environment_params p =
+        params ? *params : (struct relume_environment_params){0};
+    *out = NULL;
+    if (!map->data || map->channels != 3 || map->width < 1 || map->height < 1)
+        return RELUME_EINVAL;
+    relume_environment *e = mem_zeroed(1, sizeof *e);
+    relume_status status = e ? copy_map(&e->map, map) : RELUME_ENOMEM;
+    if (!status) {
+        say_oddities(map, clean(&e->map), &p);
+        status = make_cells(e);
+    }
+    if (!status)
+        status = shrink(&e->map);
+    if (status)
+        relume_environment_destroy(&e);
+    *out = e;
+    return status;
+}
+
+relume_status relume_environment_load(relume_environment **out, const char *path,
+                                      const struct relume_log *log)
+{
+    struct relume_image map;
+    *out = NULL;
+    relume_status status = relume_image_load(&map, path, relume_image_params(.log = log));
+    if (!status)
+        status = relume_environment_create(out, &map,
+                                           relume_environment_params(.log = log, .name = path));
+    relume_image_destroy(&map);
+    return status;
+}
+
+void relume_environment_destroy(relume_environment **environment)
+{
+    if (!*environment)
+        return;
+    relume_image_destroy(&(*environment)->map);
+    free((*environment)->cell);
+    free(*environment);
+    *environment = NULL;
+}
+
+const struct relume_image *relume_environment_map(const relume_environment *environment)
+{
+    return &environment->map;
+}
+
+const struct relume_environment_cell *relume_environment_cells(
+    int *n, const relume_environment *environment)
+{
+    *n = environment->count;
+    return environment->cell;
+}
+
+// ---------------------------------------------------------------- light
+
+// About +y by the right hand, -z goes to -x: the other way round.
+struct relume_vec3 relume_environment_turn(struct relume_vec3 direction, double rotate_deg)
+{
+    const double c = cos(rotate_deg * (M_PI / 180.0)), s = sin(rotate_deg * (M_PI / 180.0));
+    const vec3 d = direction;
+    return vec3_of(c * d.x - s * d.z, d.y, s * d.x + c * d.z);
+}
+
+void relume_environment_weights(float *weights, float constant[3], const relume_weight_grid *grid,
+                                const struct relume_light *light)
+{
+    const relume_environment *e = light->environment;
+    const struct relume_coder_info *info = relume_coder_info(relume_weight_grid_info(grid)->coder);
+    for (int i = 0; i < e->count; i++) {
+        const vec3 d = relume_environment_turn(e->cell[i].direction, light->rotate_deg);
+        float value[3];
+        if (info->hemispherical && pole_from_world(d, info->pole_y).z < 0.0)
+            continue;
+        for (int c = 0; c < 3; c++)
+            value[c] = light->rgb[c] * e->cell[i].rgb[c];
+        relume_weight_grid_add(weights, constant, grid, d, value);
+    }
+}
+
+// ---------------------------------------------------------------- sampling
+
+// By inversion of the running sum of luminance, one draw in each of n equal shares.
+static void draw(struct relume_light *out, int n, const struct relume_light *light,
+                 const double *sum, uint64_t seed)
+{
+    const relume_environment *e = light->environment;
+    const double total = sum[e->count - 1];
+    struct random random = random_stream(seed, 0, 0);
+    for (int i = 0, at = 0; i < n; i++) {
+        const double want = (i + random_next(&random)) / n * total;
+        while (at < e->count - 1 && sum[at] <= want)
+            at++;
+        const struct relume_environment_cell *cell = &e->cell[at];
+        const double factor = total / (n * luminance(cell->rgb));
+        out[i] = (struct relume_light){
+            .direction = relume_environment_turn(cell->direction, light->rotate_deg)};
+        for (int c = 0; c < 3; c++)
+            out[i].rgb[c] = (float)((double)cell->rgb[c] * factor);
+    }
+}
+
+// Colours in proportion, so that each channel has the total of the map.
+static void match_totals(struct relume_light *out, int n, const struct relume_light *light)
+{
+    const relume_environment *e = light->environment;
+    for (int c = 0; c < 3; c++) {
+        double map = 0.0, drawn = 0.0;
+        for (int i = 0; i < e->count; i++)
+            map += (double)e->cell[i].rgb[c];
+        for (int i = 0; i < n; i++)
+            drawn += (double)out[i].rgb[c];
+        const double factor = drawn > 0.0 ? map / drawn : 0.0;
+        for (int i = 0; i < n; i++)
+            out[i].rgb[c] = (float)((double)out[i].rgb[c] * factor * (double)light->rgb[c]);
+    }
+}
+
+relume_status relume_environment_sample(struct relume_light *out, int n,
+                                        const struct relume_light *environment, uint64_t seed)
+{
+    const relume_environment *e = environment->environment;
+    for (int i = 0; i < n; i++)
+        out[i] = (struct relume_light){.direction = {0.0, 1.0, 0.0}};
+    if (n < 1 || e->count == 0)
+        return n < 1 ? RELUME_EINVAL : RELUME_OK;
+    double *sum = mem_array((size_t)e->count, sizeof *sum);
+    if (!sum)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < e->count; i++)
+        sum[i] = luminance(e->cell[i].rgb) + (i ? sum[i - 1] : 0.0);
+    draw(out, n, environment, sum, seed);
+    match_totals(out, n, environment);
+    free(sum);
+    return RELUME_OK;
+}

@@ -13,14 +13,14 @@ extern "C" {
 
 // ------------------------------------------------------------------ weight grid
 // The basis of a coder at a grid of directions, between which it is bilinear: near lights and
-// environments ask for thousands of directions a pixel. Rows are even in the angle from the pole,
-// columns in azimuth, so that no crease of the map cuts a cell. A full sphere has two rows at the
-// horizon, for bases that jump there. Never changes. Thread-safety: safe.
+// environments ask for thousands of directions a pixel. Rows go by the angle from the pole, columns
+// by azimuth, so that no crease of the map cuts a cell. A full sphere has two rows at the horizon,
+// for bases that jump there. Never changes. Thread-safety: safe.
 typedef struct relume_weight_grid relume_weight_grid;
 
 struct relume_weight_grid_params {
-    int steps;    // cells from pole to horizon, [2, 1024]; default 96, fewer where that takes more
-                  // than 256 MB
+    int steps;    // columns in 90 degrees, [2, 1024]; default 96, fewer where that takes more than
+                  // 256 MB. Then reflectance of smooth bases is met to 1e-3 of white
     int threads;  // default: all cores
 };
 #define relume_weight_grid_params(...) (&(const struct relume_weight_grid_params){__VA_ARGS__})
@@ -34,8 +34,8 @@ RELUME_API void relume_weight_grid_destroy(relume_weight_grid **grid);
 // Pointers belong to the grid.
 struct relume_weight_grid_info {
     const relume_coder *coder;
-    int steps, rows, columns;  // nodes: hemispherical steps + 1 rows, else 2 (steps + 1); 4 steps +
-                               // 1 columns, the last the same as the first
+    int rows, columns;  // nodes. A hemisphere has rows from the pole to the horizon, a sphere as
+                        // many again from the horizon down; the last column is the first
     int sets;           // 1: the weights of the three channels are equal; 3: they are not
     int coefficients;   // K
     int stride;         // floats from node to node
@@ -45,8 +45,11 @@ struct relume_weight_grid_info {
 RELUME_API const struct relume_weight_grid_info *relume_weight_grid_info(
     const relume_weight_grid *grid);
 
-// Where a unit direction (world) lies: column x in [0, columns - 1], row y in [0, rows - 1], not
-// rounded. Below the horizon of a hemispherical capture: at the horizon.
+// Where a unit direction (world) lies, from node to node: column x in [0, columns - 1], row y in
+// [0, rows - 1]. With phi and theta in the pole's frame (0 <= theta <= 90 degrees from the nearer
+// pole) and m cells from pole to horizon: x = (phi + 180) (columns - 1) / 360 and
+// y = m (1 - sqrt(1 - theta / 90)), counted from the last row below the horizon. Below the horizon
+// of a hemispherical capture: at the horizon.
 RELUME_API void relume_weight_grid_place(double xy[2], const relume_weight_grid *grid,
                                          struct relume_vec3 direction);
 

@@ -1,63 +1,88 @@
 // directions.c - a coder's basis tabulated over directions
 //
-// Rows are even in the angle from the pole, columns in azimuth: unlike octahedral and concentric
-// maps this one has no crease inside a cell, and near the pole, where columns meet, a smooth
-// function is linear in the angle. The bilinear error is h^2 / 8 x the second derivative.
+// Rows go by the angle from the pole, columns by azimuth: unlike octahedral and concentric maps
+// this one has no crease inside a cell, and near the pole, where columns meet, a smooth function is
+// linear in the angle. The bilinear error is h^2 / 8 x the second derivative. Rows are closer at
+// the horizon, 1 - t = sqrt(1 - theta / 90 degrees), since hemispherical harmonics rise there like
+// sqrt(cos theta).
 #include <relume/relight.h>
 
 #include "base/memory.h"
 #include "base/thread.h"
 #include "math/vec.h"
 
-enum { DEFAULT_STEPS = 96, LEAST_STEPS = 16, MOST_STEPS = 1024, MOST_WEIGHTS = 3 * 4096 };
+#include <string.h>
+
+enum { DEFAULT_STEPS = 96, LEAST_STEPS = 16, MOST_STEPS = 1024, MOST_FUNCTIONS = 4096 };
 static const size_t MOST_BYTES = (size_t)256 << 20;
 
 struct relume_weight_grid {
     struct relume_weight_grid_info info;
     bool hemispherical, pole_y;
+    int down;  // cells from pole to horizon
     float *data;
+    float *turned;  // while it is made: [functions][stride], the coder's transform and mean
 };
 
-static bool below(const struct relume_weight_grid *g, int row)
-{
-    return row > g->info.steps;
-}
-
-// The direction of a node, world. The second row at the horizon lies a hair below it.
+// The second row at the horizon lies a hair below it.
 static vec3 node_direction(const struct relume_weight_grid *g, int row, int column)
 {
-    const int step = below(g, row) ? row - 1 : row;
-    const double theta = 0.5 * M_PI * step / g->info.steps;
+    const bool below = row > g->down;
+    const int step = below ? g->info.rows - 1 - row : row;
+    const double t = (double)step / g->down, theta = 0.5 * M_PI * (2.0 * t - t * t);
     const double phi = 2.0 * M_PI * column / (g->info.columns - 1) - M_PI;
-    double height = step == g->info.steps ? 0.0 : cos(theta);
-    if (below(g, row) && step == g->info.steps)
-        height = -1e-12;
-    const double r = sin(theta);
-    return world_from_pole(vec3_of(r * cos(phi), r * sin(phi), height), g->pole_y);
+    const double height = step == g->down ? 1e-12 : cos(theta), r = sin(theta);
+    return vec3_of(r * cos(phi), r * sin(phi), below ? -height : height);
+}
+
+// The coder's transform and mean with a node's values side by side.
+static relume_status turn_transform(struct relume_weight_grid *g)
+{
+    const struct relume_coder_info *info = relume_coder_info(g->info.coder);
+    const size_t raw = (size_t)info->functions, stride = (size_t)g->info.stride;
+    const size_t used = (size_t)g->info.sets * (size_t)g->info.coefficients;
+    if (!info->transform)
+        return RELUME_OK;
+    g->turned = mem_zeroed(raw, stride * sizeof *g->turned);
+    for (size_t j = 0; g->turned && j < raw; j++) {
+        for (size_t i = 0; i < used; i++)
+            g->turned[j * stride + i] = info->transform[i * raw + j];
+        for (size_t c = 0; info->mean && c < 3; c++)
+            g->turned[j * stride + used + c] = info->mean[c * raw + j];
+    }
+    return g->turned ? RELUME_OK : RELUME_ENOMEM;
+}
+
+static void add_scaled(float *restrict to, const float *restrict from, float factor, int n)
+{
+    for (int i = 0; i < n; i++)
+        to[i] += factor * from[i];
 }
 
 static void fill_row(void *context, size_t row, int worker)
 {
     (void)worker;
     const struct relume_weight_grid *g = context;
-    const struct relume_weight_grid_info *info = &g->info;
-    const size_t used = (size_t)info->sets * (size_t)info->coefficients;
-    float weights[MOST_WEIGHTS], constant[3];
-    float *to = g->data + row * (size_t)info->columns * (size_t)info->stride;
-    for (int x = 0; x < info->columns; x++, to += info->stride) {
-        relume_coder_weights(info->coder, node_direction(g, (int)row, x), weights, constant);
-        for (size_t i = 0; i < used; i++)
-            to[i] = weights[i];
-        for (size_t c = 0; info->sets == 3 && c < 3; c++)
-            to[used + c] = constant[c];
+    const struct relume_coder_info *info = relume_coder_info(g->info.coder);
+    const int stride = g->info.stride;
+    double value[MOST_FUNCTIONS];
+    float *to = g->data + row * (size_t)g->info.columns * (size_t)stride;
+    for (int x = 0; x < g->info.columns; x++, to += stride) {
+        info->basis->evaluate(g->info.coder, node_direction(g, (int)row, x), value);
+        memset(to, 0, (size_t)stride * sizeof *to);
+        for (int j = 0; j < info->functions; j++)
+            if (g->turned && value[j] != 0.0)
+                add_scaled(to, g->turned + (size_t)j * (size_t)stride, (float)value[j], stride);
+            else if (!g->turned)
+                to[j] = (float)value[j];
     }
 }
 
-static void set_size(struct relume_weight_grid_info *info, bool hemispherical, int steps)
+static void set_size(struct relume_weight_grid *g, int steps)
 {
-    info->steps = steps;
-    info->columns = 4 * steps + 1;
-    info->rows = (hemispherical ? 1 : 2) * (steps + 1);
+    g->down = steps + steps / 2;
+    g->info.columns = 4 * steps + 1;
+    g->info.rows = (g->hemispherical ? 1 : 2) * (g->down + 1);
 }
 
 static size_t floats(const struct relume_weight_grid_info *info)
@@ -87,15 +112,18 @@ relume_status relume_weight_grid_create(relume_weight_grid **out, const relume_c
         .stride = sets * info->coefficients + (sets == 3 ? 3 : 0),
     };
     int steps = p.steps ? p.steps : DEFAULT_STEPS;
-    set_size(&g->info, g->hemispherical, steps);
+    set_size(g, steps);
     while (!p.steps && steps > LEAST_STEPS && floats(&g->info) * sizeof(float) > MOST_BYTES)
-        set_size(&g->info, g->hemispherical, steps /= 2);
+        set_size(g, steps /= 2);
     g->info.data = g->data = mem_array(floats(&g->info), sizeof(float));
-    if (!g->data) {
+    const relume_status status = g->data ? turn_transform(g) : RELUME_ENOMEM;
+    if (status) {
         relume_weight_grid_destroy(&g);
-        return RELUME_ENOMEM;
+        return status;
     }
     thread_for(p.threads, (size_t)g->info.rows, fill_row, g);
+    free(g->turned);
+    g->turned = NULL;
     *out = g;
     return RELUME_OK;
 }
@@ -118,11 +146,14 @@ void relume_weight_grid_place(double xy[2], const relume_weight_grid *grid,
                               struct relume_vec3 direction)
 {
     const vec3 d = pole_from_world(direction, grid->pole_y);
-    const double r = sqrt(d.x * d.x + d.y * d.y), steps = grid->info.steps;
-    const bool lower = d.z < 0.0;
-    const double theta = lower && grid->hemispherical ? 0.5 * M_PI : atan2(r, d.z);
-    xy[0] = (atan2(d.y, d.x) + M_PI) * (2.0 * steps / M_PI);
-    xy[1] = theta * (2.0 * steps / M_PI) + (lower && !grid->hemispherical ? 1.0 : 0.0);
+    const double r = sqrt(d.x * d.x + d.y * d.y);
+    const bool below = d.z < 0.0;
+    const double height = below && grid->hemispherical ? 0.0 : fabs(d.z);
+    const double t = 1.0 - sqrt(1.0 - atan2(r, height) * (2.0 / M_PI));
+    xy[0] = (atan2(d.y, d.x) + M_PI) * ((grid->info.columns - 1) / (2.0 * M_PI));
+    xy[1] = grid->down * t;
+    if (below && !grid->hemispherical)
+        xy[1] = grid->info.rows - 1 - xy[1];
 }
 
 // The four nodes around a direction and their shares.
@@ -154,10 +185,14 @@ static struct corners corners_at(const struct relume_weight_grid *g, vec3 direct
     };
 }
 
-static float mix(const struct corners *at, int i)
+static void blend(float *restrict to, const struct corners *at, int first, int n, float value)
 {
-    return at->share[0] * at->node[0][i] + at->share[1] * at->node[1][i] +
-           at->share[2] * at->node[2][i] + at->share[3] * at->node[3][i];
+    const float a = value * at->share[0], b = value * at->share[1];
+    const float c = value * at->share[2], d = value * at->share[3];
+    const float *restrict p = at->node[0] + first, *restrict q = at->node[1] + first;
+    const float *restrict r = at->node[2] + first, *restrict s = at->node[3] + first;
+    for (int i = 0; i < n; i++)
+        to[i] += a * p[i] + b * q[i] + c * r[i] + d * s[i];
 }
 
 void relume_weight_grid_add(float *weights, float constant[3], const relume_weight_grid *grid,
@@ -165,17 +200,9 @@ void relume_weight_grid_add(float *weights, float constant[3], const relume_weig
 {
     const struct corners at = corners_at(grid, direction);
     const int k = grid->info.coefficients;
-    if (grid->info.sets == 1) {
-        for (int i = 0; i < k; i++) {
-            const float b = mix(&at, i);
-            for (int c = 0; c < 3; c++)
-                weights[c * k + i] += value[c] * b;
-        }
-        return;
-    }
     for (int c = 0; c < 3; c++) {
-        for (int i = 0; i < k; i++)
-            weights[c * k + i] += value[c] * mix(&at, c * k + i);
-        constant[c] += value[c] * mix(&at, 3 * k + c);
+        blend(weights + c * k, &at, grid->info.sets == 3 ? c * k : 0, k, value[c]);
+        if (grid->info.sets == 3)
+            blend(constant + c, &at, 3 * k + c, 1, value[c]);
     }
 }

@@ -284,14 +284,15 @@ relume_status relume_rig_set(relume_rig *rig, int index, const struct relume_rig
     relume_status status = check(&next, log);
     if (status)
         return status;
-    next.name = mem_text(entry->name);
+    const bool renamed = strcmp(entry->name, old->name) != 0;
+    next.name = renamed ? mem_text(entry->name) : old->name;
     next.spec = spec_text(&next.light, next.file);
     if (!next.name || !next.spec) {
-        free((char *)(uintptr_t)next.name);
+        free((char *)(uintptr_t)(renamed ? next.name : NULL));
         free((char *)(uintptr_t)next.spec);
         return RELUME_ENOMEM;
     }
-    free((char *)(uintptr_t)old->name);
+    free((char *)(uintptr_t)(renamed ? old->name : NULL));
     free((char *)(uintptr_t)old->spec);
     *old = next;
     return RELUME_OK;

@@ -112,7 +112,8 @@ struct relume_relight_params {
 // display-domain codes are decoded light by light, linearised, then summed.
 // A light below the horizon of a hemispherical capture is a warning (once) in the log.
 // `out` is created when its data is NULL, else it must have the size of `codes`.
-// Near lights evaluate the basis at every pixel's own direction and add nothing to background.
+// Near lights evaluate the basis at every pixel's own direction and add nothing to background; from
+// below the horizon of a hemispherical capture areas add nothing, others are taken at the horizon.
 // Returns RELUME_EINVAL (a light that relume_light_check refuses, a near light without a surface),
 // RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_relight(struct relume_image *out,

@@ -58,10 +58,20 @@ void near_destroy(struct near *near)
     *near = (struct near){0};
 }
 
-static bool arrives(vec3 *towards, float rgb[3], const struct emitter *e, vec3 point)
+static bool is_captured(const struct near *near, vec3 towards)
 {
-    return e->light ? relume_light_at(towards, rgb, e->light, point)
-                    : relume_facet_at(towards, rgb, &e->facet, point);
+    const struct relume_coder_info *info = relume_coder_info(near->codes->coder);
+    return !info->hemispherical || pole_from_world(towards, info->pole_y).z >= 0.0;
+}
+
+// Areas are integrals: from below the horizon of a hemispherical capture they add nothing. Others
+// are taken at the horizon there, as directional lights are.
+static bool arrives(vec3 *towards, float rgb[3], const struct near *near, const struct emitter *e,
+                    vec3 point)
+{
+    if (e->light)
+        return relume_light_at(towards, rgb, e->light, point);
+    return relume_facet_at(towards, rgb, &e->facet, point) && is_captured(near, *towards);
 }
 
 // ---------------------------------------------------------------- coefficients
@@ -142,7 +152,7 @@ static void add_linear(const struct near *near, vec3 point, const float *coeffic
     vec3 towards;
     clear(s, near);
     for (int i = 0; i < near->count; i++)
-        if (arrives(&towards, rgb, &near->emitter[i], point))
+        if (arrives(&towards, rgb, near, &near->emitter[i], point))
             relume_weight_grid_add(s->weights, s->constant, near->grid, towards, rgb);
     decode(value, near, s->weights, s->constant, coefficient);
     for (int c = 0; c < 3; c++)
@@ -156,7 +166,7 @@ static void add_displayed(const struct near *near, vec3 point, const float *coef
     float value[3], rgb[3];
     vec3 towards;
     for (int i = 0; i < near->count; i++) {
-        if (!arrives(&towards, rgb, &near->emitter[i], point))
+        if (!arrives(&towards, rgb, near, &near->emitter[i], point))
             continue;
         clear(s, near);
         relume_weight_grid_add(s->weights, s->constant, near->grid, towards, one);

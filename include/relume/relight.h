@@ -25,7 +25,7 @@ struct relume_weight_grid_params {
 };
 #define relume_weight_grid_params(...) (&(const struct relume_weight_grid_params){__VA_ARGS__})
 
-// RELUME_ENOMEM. `coder` must live as long as the grid.
+// RELUME_EINVAL (steps), RELUME_ENOMEM. `coder` must live as long as the grid.
 RELUME_RESULT relume_status
 relume_weight_grid_create(relume_weight_grid **out, const relume_coder *coder,
                           const struct relume_weight_grid_params *params);

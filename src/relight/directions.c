@@ -93,12 +93,12 @@ static size_t floats(const struct relume_weight_grid_info *info)
 relume_status relume_weight_grid_create(relume_weight_grid **out, const relume_coder *coder,
                                         const struct relume_weight_grid_params *params)
 {
-    const struct relume_coder_info *info = relume_coder_info(coder);
     const struct relume_weight_grid_params p =
         params ? *params : (struct relume_weight_grid_params){0};
     *out = NULL;
     if (p.steps && (p.steps < 2 || p.steps > MOST_STEPS))
         return RELUME_EINVAL;
+    const struct relume_coder_info *info = relume_coder_info(coder);
     struct relume_weight_grid *g = mem_zeroed(1, sizeof *g);
     if (!g)
         return RELUME_ENOMEM;

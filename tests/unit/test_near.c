@@ -91,10 +91,11 @@ static void test_grid_layout(void **state)
         relume_weight_grid_destroy(&grid);
         learned_destroy(&l);
     }
-    assert_int_equal(relume_weight_grid_create(&(relume_weight_grid *){NULL}, NULL,
-                                               relume_weight_grid_params(.steps = 5000)) !=
-                         RELUME_OK,
-                     true);
+    relume_weight_grid *none;
+    assert_int_equal(
+        relume_weight_grid_create(&none, NULL, relume_weight_grid_params(.steps = 5000)),
+        RELUME_EINVAL);
+    assert_null(none);
 }
 
 // ---------------------------------------------------------------- near lights
@@ -130,7 +131,7 @@ static void as_planes(struct stored *to, struct setup *s, enum relume_storage st
         to->scale[p] = top ? s->scale[p] * 65535.0f / (float)top : 1.0f;
         to->offset[p] = top ? s->offset[p] : 0.0f;
         for (int i = 0; i < PIXELS; i++) {
-            const int code = s->words[p][i] * top / 65535;
+            const int code = (int)((int64_t)s->words[p][i] * top / 65535);
             to->byte[p][i] = (uint8_t)code;
             to->word[p][i] = top ? (uint16_t)code : half_of((float)coefficient(s, i, p) + 0.001f);
         }

@@ -77,6 +77,7 @@ static void some_destroy(struct some *some)
     free(some->bytes);
     free(some->plane);
     free(some->index);
+    *some = (struct some){0};
 }
 
 static relume_status some_create(struct some *some, const struct relume_codes *from, size_t first,
@@ -125,8 +126,7 @@ static relume_status decode(const struct work *w, const struct relume_codes *cod
     relume_status status = some_create(&some, codes, first, step, n);
     for (int i = 0; !status && i < w->info->lights; i++)
         status = decode_light(w, &some.codes, i, n, out + (size_t)i * n * 3);
-    if (some.bytes)
-        some_destroy(&some);
+    some_destroy(&some);
     return status;
 }
 

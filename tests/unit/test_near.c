@@ -3,6 +3,8 @@
 #include "learned_fixture.h"
 #include "relight_fixture.h"
 
+#include "base/memory.h"
+
 // ---------------------------------------------------------------- the grid
 
 // Bases whose functions are smooth, or have their creases where the grid has nodes.
@@ -37,10 +39,10 @@ static void test_grid(void **state)
             double worst = 0, square = 0;
             learned_create(&l, *b, half > 0, half == 2, 0);
             CHECK_OK(relume_weight_grid_create(&grid, l.coder, NULL));
-            for (int i = 0; i < 600; i++) {  // below the horizon of a dome as well
+            for (int i = 0; i < 300; i++) {  // below the horizon of a dome as well
                 const double error = grid_error(&l, grid, &seed);
                 worst = fmax(worst, error);
-                square += error * error / 600;
+                square += error * error / 300;
             }
             // Triangles and cells of interpolants have creases inside grid cells: as wide as the
             // cell, 1/10 of the spacing of 64 lights.
@@ -532,15 +534,17 @@ static void test_refit(void **state)
         assert_non_null(strstr(log.text, "loss"));
         assert_true(relume_refit_loss(refit) < 5e-3);
         CHECK_OK(relume_relight(&out, &t.codes, lights, 2, relume_relight_params(.refit = refit)));
-        CHECK_OK(relume_relight(&again, &t.codes, lights, 2, NULL));
+        if (i < 2)
+            CHECK_OK(relume_relight(&again, &t.codes, lights, 2, NULL));
         double square = 0;
-        for (int x = 0; x < LEARNED_PIXELS; x += 30) {
+        for (int x = 0; x < LEARNED_PIXELS; x += 75) {
             double want[3];
             relume_relight_pixel(want, &t.codes, x % 20, x / 20, lamps, above);
             for (int c = 0; c < 3; c++) {
                 const double d = (double)out.data[3 * x + c] - want[c];
-                square += d * d / (LEARNED_PIXELS / 10);
-                CHECK_NEAR(again.data[3 * x + c], (double)out.data[3 * x + c], 0);
+                square += d * d / 12;  // 4 pixels
+                if (i < 2)
+                    CHECK_NEAR(again.data[3 * x + c], (double)out.data[3 * x + c], 0);
             }
         }
         // Interpolated between 64 lights instead of the basis itself; the sums are near 0.5.
@@ -550,6 +554,39 @@ static void test_refit(void **state)
         relume_refit_destroy(&refit);
         relume_image_destroy(&out);
         relume_image_destroy(&again);
+        learned_destroy(&t.l);
+    }
+    relume_environment_destroy(&e);
+}
+
+// Memory that runs out at any place is said, and everything is given back (the sanitizer looks).
+static void test_allocations(void **state)
+{
+    (void)state;
+    static struct taught t;
+    relume_environment *e = sky();
+    const struct relume_light lights[] = {
+        {.kind = RELUME_LIGHT_ENVIRONMENT, .environment = e, .rgb = {1, 1, 1}},
+        {.kind = RELUME_LIGHT_AREA, .position = {0, 0, 2}, .u = {0, 1, 0}, .v = {1, 0, 0}},
+        {.direction = {0, 0, 1}}};
+    float points[LEARNED_PIXELS * 3] = {0};
+    const struct relume_image surface = {20, LEARNED_PIXELS / 20, 3, points};
+    for (int book = 0; book < 2; book++) {
+        teach(&t, &relume_basis_sh, book);
+        t.codes.domain = RELUME_DOMAIN_DISPLAY;
+        relume_status status = RELUME_ENOMEM;
+        for (long n = 1; status; n += 1 + n / 3) {  // of some thousand
+            struct relume_image out = {0};
+            mem_fail_after(n);
+            status = relume_relight(&out, &t.codes, lights, 3,
+                                    relume_relight_params(.surface = &surface, .threads = 1));
+            assert_true(status == RELUME_OK || status == RELUME_ENOMEM);
+            assert_true(n < 100000);
+            if (mem_fail_pending())
+                assert_int_equal(status, RELUME_OK);
+            mem_fail_after(0);
+            relume_image_destroy(&out);
+        }
         learned_destroy(&t.l);
     }
     relume_environment_destroy(&e);
@@ -587,7 +624,7 @@ int main(void)
         cmocka_unit_test(test_kinds),        cmocka_unit_test(test_storages),
         cmocka_unit_test(test_together),     cmocka_unit_test(test_odd_places),
         cmocka_unit_test(test_environments), cmocka_unit_test(test_refit),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_refusals),     cmocka_unit_test(test_allocations),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

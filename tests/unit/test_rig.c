@@ -1,6 +1,8 @@
 // test_rig.c - lights in words and as JSON
 #include "test.h"
 
+#include "base/memory.h"
+
 #include <sys/stat.h>
 
 static char folder[64];
@@ -272,6 +274,35 @@ static void test_wrong_files(void **state)
     assert_int_equal(relume_rig_load(&rig, "/nonexistent", &heard.log), RELUME_EDATA);
 }
 
+// Memory that runs out at any place is said; nothing half done is left.
+static void test_allocations(void **state)
+{
+    (void)state;
+    char path[128];
+    snprintf(path, sizeof path, "%s/memory.json", folder);
+    relume_rig *rig = create();
+    for (int i = 0; i < SPECS; i++)
+        add(rig, specs[i]);
+    relume_status status = RELUME_ENOMEM;
+    for (long n = 1; status; n++) {
+        mem_fail_after(n);
+        status = relume_rig_save(rig, path, NULL);
+        assert_true(status == RELUME_OK || status == RELUME_ENOMEM);
+        mem_fail_after(0);
+    }
+    status = RELUME_ENOMEM;
+    for (long n = 1; status; n++) {
+        relume_rig *again;
+        mem_fail_after(n);
+        status = relume_rig_load(&again, path, NULL);
+        assert_true(status == RELUME_OK || status == RELUME_ENOMEM);
+        assert_true(!again == !!status);
+        mem_fail_after(0);
+        relume_rig_destroy(&again);
+    }
+    relume_rig_destroy(&rig);
+}
+
 static void test_many(void **state)
 {
     (void)state;
@@ -300,6 +331,7 @@ int main(void)
         cmocka_unit_test(test_words),       cmocka_unit_test(test_wrong_words),
         cmocka_unit_test(test_switches),    cmocka_unit_test(test_files),
         cmocka_unit_test(test_wrong_files), cmocka_unit_test(test_many),
+        cmocka_unit_test(test_allocations),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

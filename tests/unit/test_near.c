@@ -21,7 +21,7 @@ static double grid_error(const struct learned *l, const relume_weight_grid *grid
     relume_coder_weights(l->coder, d, exact, constant);
     relume_weight_grid_add(weights, base, grid, d, one);
     double worst = 0;
-    for (int x = 0; x < LEARNED_PIXELS; x++)
+    for (int x = 0; x < LEARNED_PIXELS; x += 11)
         for (int c = 0; c < 3; c++)
             worst = fmax(worst, fabs(learned_show(l, x, c, exact, constant) -
                                      learned_show(l, x, c, weights, base)));
@@ -549,12 +549,12 @@ static void test_refit(void **state)
         CHECK_OK(relume_relight(&out, &t.codes, lights, 2, relume_relight_params(.refit = refit)));
         CHECK_OK(relume_relight(&again, &t.codes, lights, 2, NULL));
         double square = 0;
-        for (int x = 0; x < LEARNED_PIXELS; x += 75) {
+        for (int x = 70; x < LEARNED_PIXELS; x += 150) {
             double want[3];
             relume_relight_pixel(want, &t.codes, x % 20, x / 20, lamps, above);
             for (int c = 0; c < 3; c++) {
                 const double d = (double)out.data[3 * x + c] - want[c];
-                square += d * d / 12;  // 4 pixels
+                square += d * d / 6;  // 2 pixels
                 CHECK_NEAR(again.data[3 * x + c], (double)out.data[3 * x + c], 0);
             }
         }
@@ -586,7 +586,7 @@ static void test_allocations(void **state)
         teach(&t, &relume_basis_sh, book);
         t.codes.domain = RELUME_DOMAIN_DISPLAY;
         relume_status status = RELUME_ENOMEM;
-        for (long n = 1; status; n += n) {  // of some thousand
+        for (long n = 1; status; n *= 3) {  // of some thousand
             struct relume_image out = {0};
             mem_fail_after(n);
             status = relume_relight(&out, &t.codes, lights, 3,

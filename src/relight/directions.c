@@ -195,14 +195,32 @@ static void blend(float *restrict to, const struct corners *at, int first, int n
         to[i] += a * p[i] + b * q[i] + c * r[i] + d * s[i];
 }
 
+enum { RUN = 64 };
+
+// The same weights for all channels: blended once, then scaled.
+static void blend_shared(float *weights, const struct corners *at, int k, const float value[3])
+{
+    float once[RUN];
+    for (int first = 0; first < k; first += RUN) {
+        const int n = k - first < RUN ? k - first : RUN;
+        memset(once, 0, (size_t)n * sizeof *once);
+        blend(once, at, first, n, 1.0f);
+        for (int c = 0; c < 3; c++)
+            add_scaled(weights + c * k + first, once, value[c], n);
+    }
+}
+
 void relume_weight_grid_add(float *weights, float constant[3], const relume_weight_grid *grid,
                             struct relume_vec3 direction, const float value[3])
 {
     const struct corners at = corners_at(grid, direction);
     const int k = grid->info.coefficients;
+    if (grid->info.sets == 1) {
+        blend_shared(weights, &at, k, value);
+        return;
+    }
     for (int c = 0; c < 3; c++) {
-        blend(weights + c * k, &at, grid->info.sets == 3 ? c * k : 0, k, value[c]);
-        if (grid->info.sets == 3)
-            blend(constant + c, &at, 3 * k + c, 1, value[c]);
+        blend(weights + c * k, &at, c * k, k, value[c]);
+        blend(constant + c, &at, 3 * k + c, 1, value[c]);
     }
 }

@@ -88,18 +88,18 @@ static relume_status fetch(const struct relume_codes **out, void *user, int view
 static const double BOUND = 1.0 / 255;
 
 static void check_kind(struct relighter *r, const struct relume_codes *codes, const char *name,
-                       enum relume_light_kind kind)
+                       enum relume_light_kind kind, const struct relume_relight_params *shared)
 {
     const struct relume_light lights[] = {light_of(kind), light_of(RELUME_LIGHT_DIRECTIONAL)};
     struct relume_image surface, want = {0}, got;
     const struct target *target;
     char what[96];
+    struct relume_relight_params params = *shared;
     assert_int_equal(find_surface(&surface, NULL, 0), RELUME_OK);
+    params.surface = &surface;
     for (int n = 1; n <= 2; n++) {
         snprintf(what, sizeof what, "%s, %s, %d lights", name, relume_light_kind_name(kind), n);
-        assert_int_equal(
-            relume_relight(&want, codes, lights, n, relume_relight_params(.surface = &surface)),
-            RELUME_OK);
+        assert_int_equal(relume_relight(&want, codes, lights, n, &params), RELUME_OK);
         assert_int_equal(relighter_begin(r, lights, n), RELUME_OK);
         assert_int_equal(relighter_view(&target, r, 0), RELUME_OK);
         assert_int_equal(target_read(&got, target, &fixture_gl), RELUME_OK);
@@ -119,10 +119,18 @@ static void check_codes(const struct relume_codes *codes, const char *name)
     struct source_file file = {*codes};
     const struct code_source source = {fetch, NULL, &file, find_surface};
     struct relighter r;
+    relume_weight_grid *grid;
+    relume_refit *refit = NULL;
+    assert_int_equal(relume_weight_grid_create(&grid, codes->coder, NULL), RELUME_OK);
+    if (codes->domain == RELUME_DOMAIN_DISPLAY)
+        assert_int_equal(relume_refit_create(&refit, codes, NULL), RELUME_OK);
     assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
     for (int kind = RELUME_LIGHT_ENVIRONMENT; kind <= RELUME_LIGHT_IES; kind++)
-        check_kind(&r, codes, name, (enum relume_light_kind)kind);
+        check_kind(&r, codes, name, (enum relume_light_kind)kind,
+                   relume_relight_params(.grid = grid, .refit = refit));
     relighter_destroy(&r);
+    relume_refit_destroy(&refit);
+    relume_weight_grid_destroy(&grid);
 }
 
 static void check_storage(enum relume_storage storage, enum relume_domain domain, bool pole_y,

@@ -13,11 +13,16 @@ logs=$(mktemp -d) || exit 1
 trap 'rm -rf "$logs"' EXIT
 passed=0 failed=0 skipped=0
 
-# What is installed, documented and shown by a browser does not depend on how the tool was compiled:
-# sanitizers see nothing there that other scripts do not show them.
+# Starting the tool hundreds of times is slow under sanitizers. They see the scripts with hostile
+# input and the window; not what is installed, documented and shown by a browser, nor values that
+# the unit tests ask the same code for.
 is_left_out() { # script
     case $build in *asan* | *tsan*) ;; *) return 1 ;; esac
-    case $1 in *test_build.sh | *test_docs.sh | *test_install.sh | *test_web.sh) return 0 ;; esac
+    case $(basename "$1" .sh) in
+    test_build | test_docs | test_install | test_web) return 0 ;;
+    test_codebook | test_contract | test_format | test_format_bases | test_real) return 0 ;;
+    test_lights | test_synth | test_viewer | test_views) return 0 ;;
+    esac
     return 1
 }
 

@@ -9,7 +9,7 @@ bad=0
 rules="base::base
 math:base:base
 image:base math:base image
-capture:base math image:base image lights capture
+capture:base math image:base image lights capture ball photometric
 coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange
@@ -55,6 +55,8 @@ only_in 'openexr' src/image/exr.c tests/tools/decode.c
 only_in 'OpenImageIO' src/image/oiio.cpp
 only_in 'embree' src/scene/trace.c
 only_in '(cblas|lapacke)' src/math/lsq.c
+only_in 'fftw3' src/math/fft.c
+only_in 'kissfft' src/math/fft_kiss.c
 only_in 'jansson' src/base/json.c
 only_in 'jpeglib' src/image/jpeg.c
 only_in 'cairo' src/cli/plot.c

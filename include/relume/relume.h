@@ -17,6 +17,7 @@
 #include <relume/lights.h>
 #include <relume/normals.h>
 #include <relume/pack.h>
+#include <relume/photometric.h>
 #include <relume/relight.h>
 #include <relume/rig.h>
 #include <relume/scene.h>

@@ -21,7 +21,8 @@ struct relume_notes {
     int orientation;     // EXIF 2.3: 1 to 8
     bool linear;         // code values are linear light: floats, RAW, or the file says so
     bool bytes, floats;  // 8-bit integers; floating point, which does not end at 1
-    bool profile;        // an ICC profile is embedded
+    bool profile;         // an embedded matrix ICC profile says what code values mean
+    float to_srgb[9];     // its linear light -> linear sRGB; the identity where there is none
     char camera[64];     // maker and model
 };
 
@@ -66,6 +67,8 @@ RELUME_RESULT relume_status relume_white_measure(float gain[3], const struct rel
                                                  int x, int y, int width, int height,
                                                  const struct relume_log *log);
 RELUME_API void relume_white_apply(struct relume_image *image, const float gain[3]);
+// pixel = m pixel, m row by row: notes.to_srgb for what was merged from code values.
+RELUME_API void relume_primaries_apply(struct relume_image *image, const float m[9]);
 
 // Fall-off as an even polynomial of the distance r from the centre, r = 1 in the corners:
 // 1 + k[0] r^2 + k[1] r^4 + k[2] r^6, one for all channels.

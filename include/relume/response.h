@@ -16,8 +16,7 @@ extern "C" {
 enum { RELUME_CODES = 256 };
 
 // Code value -> exposure (radiance x time), per channel, never falling. Entry i belongs to code
-// i / 255; between them log exposure is linear (exposure where the lower one is 0). Thread-safety:
-// plain data.
+// i / 255; between them it is linear. Thread-safety: plain data.
 struct relume_response {
     float exposure[3][RELUME_CODES];
 };

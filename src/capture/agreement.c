@@ -99,6 +99,15 @@ static void count_ends(struct tally *t, const float *rgb)
     t->black += rgb[0] <= black && rgb[1] <= black && rgb[2] <= black;
 }
 
+// The last code that says nothing.
+static float black_level(const struct relume_response *response, int c)
+{
+    int i = 0;
+    while (i < RELUME_CODES - 1 && !(response->exposure[c][i + 1] > 0.0f))
+        i++;
+    return (float)i / (RELUME_CODES - 1);
+}
+
 relume_status agreement(struct relume_exposure_report *report, const struct relume_image *codes,
                         const double *exposures, int n, const struct relume_response *response,
                         const struct relume_merge_params *params)
@@ -112,10 +121,11 @@ relume_status agreement(struct relume_exposure_report *report, const struct relu
         for (int j = 0; j < n; j++)
             count_ends(&t[j], codes[j].data + 3 * i);
         for (int c = 0; c < 3; c++) {
+            const float low = black_level(response, c) + dark;
             for (int j = 0; j < n; j++) {
                 const float code = codes[j].data[3 * i + (size_t)c], mask = mask_at(params, j, i);
                 const float f = relume_response_decode(response, c, code);
-                const bool good = code > dark && code < bright && f > 0.0f;
+                const bool good = code > low && code < bright;
                 const float w = relume_merge_weight(params->weights, code, false, false) * mask;
                 s[j] =
                     good ? (struct sample){w, log2f(f / (float)exposures[j])} : (struct sample){0};

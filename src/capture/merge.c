@@ -12,7 +12,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { BAND = 16, STEPS = 1020 };  // weights are tabled in quarters of a code
+// Weights are tabled in quarters of an 8-bit code, log exposures in parts of 256.
+enum { BAND = 16, STEPS = 255 * 4, LOGS = 255 * 256 };
 
 static const char *const names[] = {"spline", "hat", "gaussian"};
 
@@ -64,24 +65,14 @@ struct merge {
     struct exposure *exposure;
     int *by_time;  // indices, longest first
     int n;
-    float log_exposure[3][RELUME_CODES];
+    float *log_exposure[3];  // [LOGS + 1]
     float *out;
 };
 
 static float log_exposure(const struct merge *m, int c, float code)
 {
-    const float *v = m->log_exposure[c];
-    if (!(code > 0.0f))
-        return v[0];
-    const float x = code * (RELUME_CODES - 1);
-    if (!(x < RELUME_CODES - 1))
-        return v[RELUME_CODES - 1];
-    const int i = (int)x;
-    const float t = x - (float)i;
-    if (t == 0.0f)
-        return v[i];
-    return isinf(v[i]) ? logf(relume_response_decode(m->response, c, code))
-                       : v[i] + t * (v[i + 1] - v[i]);
+    const float x = code > 0.0f ? fminf(code, 1.0f) : 0.0f;
+    return m->log_exposure[c][(int)(x * LOGS + 0.5f)];
 }
 
 static float weight_of(const struct exposure *e, size_t pixel, float code)
@@ -155,8 +146,8 @@ static void prepare(struct merge *m, const struct relume_image *codes, const dou
                                                exposures[i] == longest, exposures[i] == shortest);
     }
     for (int c = 0; c < 3; c++)
-        for (int i = 0; i < RELUME_CODES; i++)
-            m->log_exposure[c][i] = logf(m->response->exposure[c][i]);
+        for (int i = 0; i <= LOGS; i++)
+            m->log_exposure[c][i] = logf(relume_response_decode(m->response, c, (float)i / LOGS));
 }
 
 static relume_status check(const struct relume_image *codes, const double *exposures, int n,
@@ -192,7 +183,10 @@ relume_status relume_merge(struct relume_image *out, struct relume_exposure_repo
                       .exposure = mem_array((size_t)n, sizeof *m.exposure),
                       .by_time = mem_array((size_t)n, sizeof *m.by_time),
                       .n = n};
-    status = m.exposure && m.by_time ? RELUME_OK : RELUME_ENOMEM;
+    float *logs = mem_array(3 * (LOGS + 1), sizeof *logs);
+    for (int c = 0; logs && c < 3; c++)
+        m.log_exposure[c] = logs + (size_t)c * (LOGS + 1);
+    status = m.exposure && m.by_time && logs ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = agreement(report, codes, exposures, n, response, &p);
     if (!status)
@@ -204,5 +198,6 @@ relume_status relume_merge(struct relume_image *out, struct relume_exposure_repo
     }
     free(m.exposure);
     free(m.by_time);
+    free(logs);
     return status;
 }

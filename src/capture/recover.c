@@ -18,16 +18,13 @@ static const int default_samples = 400;
 static const double default_smoothness = 20.0;
 static const double rows_of_paper = 550.0;  // smoothness is stated for 50 samples x 11 exposures
 static const double same_exposure = 1.01;
+// This far below middle grey 8 bits hold nothing: what codes are there are the black level's.
+static const double nothing_ev = -9.0;
+enum { LEAST_BLACK = 16 };
 
 static int code_of(float v)
 {
     return v >= 1.0f ? N - 1 : v > 0.0f ? (int)(v * (N - 1) + 0.5f) : 0;
-}
-
-// Eq. 4, scaled to 1 at the top.
-static double hat(int z)
-{
-    return (z < MIDDLE ? z : N - 1 - z) / (double)(MIDDLE - 1);
 }
 
 // ---------------------------------------------------------------- samples
@@ -87,49 +84,72 @@ static void choose_places(const struct search *s, struct place *place, int sampl
 
 // ---------------------------------------------------------------- the system
 
+// What one channel of the bracket is solved for.
+struct channel {
+    const struct search *s;
+    const struct place *place;
+    int c, samples;
+    const double *log_time;
+    int *z;     // [n], scratch
+    int black;  // codes up to this one say nothing; -1: all do
+};
+
+// Eq. 4, scaled to 1 at the top.
+static double hat(const struct channel *ch, int z)
+{
+    if (z <= ch->black)
+        return 0.0;
+    return (z < MIDDLE ? z : N - 1 - z) / (double)(MIDDLE - 1);
+}
+
+static bool read_codes(const struct channel *ch, int i)
+{
+    if (ch->place[i].pixel == SIZE_MAX)
+        return false;
+    for (int j = 0; j < ch->s->n; j++)
+        ch->z[j] = code_of(ch->s->codes[j].data[3 * ch->place[i].pixel + (size_t)ch->c]);
+    return true;
+}
+
 struct equations {
     double *matrix, *right;  // [N][N], [N]
     double rows;
-    int seen;  // code values that count
-    bool has[N];
+    bool has[N];  // code values that count
 };
 
 // One sample: the rows of its exposures without ln E.
-static void add_sample(struct equations *e, const int *z, const double *log_time, int n)
+static void add_sample(struct equations *e, const struct channel *ch)
 {
+    const int *z = ch->z, n = ch->s->n;
     double total = 0.0, mean = 0.0;
-    for (int j = 0; j < n; j++) {
-        const double w = hat(z[j]) * hat(z[j]);
-        total += w;
-        mean += w * log_time[j];
-    }
-    if (!(total > 0.0))
-        return;
-    mean /= total;
     int used = 0;
     for (int j = 0; j < n; j++) {
-        const double w = hat(z[j]) * hat(z[j]);
+        const double w = hat(ch, z[j]) * hat(ch, z[j]);
+        total += w;
+        mean += w * ch->log_time[j];
+        used += w > 0.0;
+    }
+    if (used < 2)
+        return;
+    mean /= total;
+    e->rows += used;
+    for (int j = 0; j < n; j++) {
+        const double w = hat(ch, z[j]) * hat(ch, z[j]);
         double *row = e->matrix + (size_t)z[j] * N;
         row[z[j]] += w;
         for (int k = 0; k < n; k++)
-            row[z[k]] -= w * hat(z[k]) * hat(z[k]) / total;
-        e->right[z[j]] += w * (log_time[j] - mean);
-        used += w > 0.0;
+            row[z[k]] -= w * hat(ch, z[k]) * hat(ch, z[k]) / total;
+        e->right[z[j]] += w * (ch->log_time[j] - mean);
+        e->has[z[j]] |= w > 0.0;
     }
-    e->rows += used > 1 ? used : 0;
-    for (int j = 0; used > 1 && j < n; j++)
-        if (hat(z[j]) > 0.0 && !e->has[z[j]]) {
-            e->has[z[j]] = true;
-            e->seen++;
-        }
 }
 
-static void add_smoothness(struct equations *e, double smoothness)
+static void add_smoothness(struct equations *e, const struct channel *ch, double smoothness)
 {
     static const double second[3] = {1.0, -2.0, 1.0};
     for (int z = 1; z < N - 1; z++) {
         // The ends weigh nothing in Eq. 3; a little keeps the curve straight there.
-        const double w = smoothness * fmax(hat(z), 0.05);
+        const double w = smoothness * fmax(hat(ch, z), 0.05);
         for (int a = 0; a < 3; a++)
             for (int b = 0; b < 3; b++)
                 e->matrix[(size_t)(z - 1 + a) * N + (size_t)(z - 1 + b)] +=
@@ -157,42 +177,95 @@ static void make_monotone(double *g)
             g[z++] = level[i];
 }
 
-static relume_status solve_channel(struct relume_response *out, int c, const struct search *s,
-                                   const struct place *place, int samples, const double *log_time,
-                                   double smoothness, const struct relume_log *log)
+static relume_status solve(double *g, const struct channel *ch, double smoothness,
+                           const struct relume_log *log)
 {
     static const char *const names[] = {"red", "green", "blue"};
-    struct equations e = {
-        mem_zeroed((size_t)N * N, sizeof(double)), mem_zeroed(N, sizeof(double)), 0.0, 0, {false}};
-    int *z = mem_array((size_t)s->n, sizeof *z);
-    relume_status status = e.matrix && e.right && z ? RELUME_OK : RELUME_ENOMEM;
-    for (int i = 0; !status && i < samples; i++) {
-        if (place[i].pixel == SIZE_MAX)
-            continue;
-        for (int j = 0; j < s->n; j++)
-            z[j] = code_of(s->codes[j].data[3 * place[i].pixel + (size_t)c]);
-        add_sample(&e, z, log_time, s->n);
-    }
-    if (!status && e.seen < LEAST_CODES)
-        status =
-            log_fail(log, RELUME_EDATA,
-                     "the %s channel shows %d code values in two exposures at once; expected %d "
-                     "or more: is everything saturated, or are exposures too far apart?",
-                     names[c], e.seen, LEAST_CODES);
+    struct equations e = {.matrix = mem_zeroed((size_t)N * N, sizeof(double)), .right = g};
+    int seen = 0;
+    if (!e.matrix)
+        return RELUME_ENOMEM;
+    memset(g, 0, N * sizeof *g);
+    for (int i = 0; i < ch->samples; i++)
+        if (read_codes(ch, i))
+            add_sample(&e, ch);
+    for (int z = 0; z < N; z++)
+        seen += e.has[z];
+    relume_status status = RELUME_OK;
+    if (seen < LEAST_CODES)
+        status = log_fail(log, RELUME_EDATA,
+                          "the %s channel shows %d code values in two exposures at once; expected "
+                          "%d or more: is all saturated, or are the exposures too far apart?",
+                          names[ch->c], seen, LEAST_CODES);
     if (!status) {
-        add_smoothness(&e, smoothness * sqrt(e.rows / rows_of_paper));
-        if (!lsq_solve(e.matrix, N, e.right, 1))
-            status = log_fail(log, RELUME_EDATA, "the %s response is not determined", names[c]);
-    }
-    if (!status) {
-        make_monotone(e.right);
-        for (int i = 0; i < N; i++)
-            out->exposure[c][i] = (float)exp(e.right[i] - e.right[MIDDLE]);
+        add_smoothness(&e, ch, smoothness * sqrt(e.rows / rows_of_paper));
+        if (!lsq_solve(e.matrix, N, g, 1))
+            status = log_fail(log, RELUME_EDATA,
+                              "the %s response is not determined; expected "
+                              "exposures that overlap",
+                              names[ch->c]);
     }
     free(e.matrix);
-    free(e.right);
-    free(z);
     return status;
+}
+
+// ln E of the sample in ch->z, NAN where no exposure resolves it well.
+static double log_radiance(const double *g, const struct channel *ch)
+{
+    double total = 0.0, sum = 0.0;
+    for (int j = 0; j < ch->s->n; j++) {
+        const double w = ch->z[j] > N / 4 ? hat(ch, ch->z[j]) : 0.0;
+        total += w;
+        sum += w * (g[ch->z[j]] - ch->log_time[j]);
+    }
+    return total > 0.0 ? sum / total : (double)NAN;
+}
+
+static int median(const int count[N])
+{
+    int total = 0, sum = 0, z = 0;
+    for (int i = 0; i < N; i++)
+        total += count[i];
+    for (sum = count[0]; 2 * sum < total; sum += count[z])
+        z++;
+    return z;
+}
+
+// Scanned film and some cameras lift black: the highest code that says nothing, -1 when black is 0.
+static int find_black(const double *g, const struct channel *ch)
+{
+    int count[N] = {0}, distance[N] = {0}, seen = 0;
+    for (int i = 0; i < ch->samples; i++) {
+        const double radiance = read_codes(ch, i) ? log_radiance(g, ch) : (double)NAN;
+        for (int j = 0; j < ch->s->n; j++)
+            if (radiance + ch->log_time[j] < g[MIDDLE] + nothing_ev * log(2.0)) {
+                count[ch->z[j]]++;
+                seen++;
+            }
+    }
+    const int black = median(count);
+    for (int z = 0; z < N; z++)
+        distance[abs(z - black)] += count[z];
+    if (seen < LEAST_BLACK || black < 2 || black > N / 4)
+        return -1;
+    return black + (int)ceil(3.0 * 1.4826 * median(distance));
+}
+
+static relume_status solve_channel(struct relume_response *out, struct channel *ch,
+                                   double smoothness, const struct relume_log *log)
+{
+    double g[N];
+    relume_status status = solve(g, ch, smoothness, log);
+    if (!status)
+        ch->black = find_black(g, ch);
+    if (!status && ch->black >= 0)
+        status = solve(g, ch, smoothness, log);
+    if (status)
+        return status;
+    make_monotone(g);
+    for (int i = 0; i < N; i++)
+        out->exposure[ch->c][i] = i <= ch->black ? 0.0f : (float)exp(g[i] - g[MIDDLE]);
+    return RELUME_OK;
 }
 
 // Codes of 1/2 are grey; the green of full code is 1.
@@ -243,16 +316,20 @@ relume_status relume_response_recover(struct relume_response *out, const struct 
     const struct search s = {codes, n};
     struct place *place = mem_array((size_t)samples, sizeof *place);
     double *log_time = mem_array((size_t)n, sizeof *log_time);
-    status = place && log_time ? RELUME_OK : RELUME_ENOMEM;
+    int *z = mem_array((size_t)n, sizeof *z);
+    status = place && log_time && z ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         choose_places(&s, place, samples);
     for (int j = 0; !status && j < n; j++)
         log_time[j] = log(exposures[j]);
-    for (int c = 0; !status && c < 3; c++)
-        status = solve_channel(out, c, &s, place, samples, log_time, smoothness, p.log);
+    for (int c = 0; !status && c < 3; c++) {
+        struct channel ch = {&s, place, c, samples, log_time, z, -1};
+        status = solve_channel(out, &ch, smoothness, p.log);
+    }
     if (!status)
         normalise(out);
     free(place);
     free(log_time);
+    free(z);
     return status;
 }

@@ -20,10 +20,7 @@ float relume_response_decode(const struct relume_response *response, int channel
     const int i = (int)x;
     if (!(x < RELUME_CODES - 1))
         return e[RELUME_CODES - 1];
-    const float t = x - (float)i;
-    if (t == 0.0f || !(e[i] > 0.0f))
-        return e[i] + t * (e[i + 1] - e[i]);
-    return e[i] * powf(e[i + 1] / e[i], t);
+    return e[i] + (x - (float)i) * (e[i + 1] - e[i]);
 }
 
 float relume_response_encode(const struct relume_response *response, int channel, float exposure)
@@ -38,8 +35,7 @@ float relume_response_encode(const struct relume_response *response, int channel
         const int middle = (low + high) / 2;
         *(e[middle] <= exposure ? &low : &high) = middle;
     }
-    const float t = e[low] > 0.0f ? logf(exposure / e[low]) / logf(e[high] / e[low])
-                                  : (exposure - e[low]) / (e[high] - e[low]);
+    const float t = (exposure - e[low]) / (e[high] - e[low]);
     return ((float)low + t) / (RELUME_CODES - 1);
 }
 

@@ -30,7 +30,6 @@ struct relume_displacements {
     double step;        // pixels between nodes; node (0, 0) lies at `origin`, pixels
     double origin[2];
     float (*d)[2];  // [rows][columns], pixels, from malloc: pixel p of the anchor is p + d there
-    double score;   // of the whole picture: normalised correlation, [-1, 1]
 };
 // Hierarchical macroblocks (exposure brackets held by hand): normalised correlation of sharpened
 // pictures, searched from one block of the whole picture down to blocks of 16 pixels; survives

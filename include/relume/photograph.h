@@ -21,8 +21,8 @@ struct relume_notes {
     int orientation;     // EXIF 2.3: 1 to 8
     bool linear;         // code values are linear light: floats, RAW, or the file says so
     bool bytes, floats;  // 8-bit integers; floating point, which does not end at 1
-    bool profile;         // an embedded matrix ICC profile says what code values mean
-    float to_srgb[9];     // its linear light -> linear sRGB; the identity where there is none
+    bool profile;        // an embedded matrix ICC profile says what code values mean
+    float to_srgb[9];    // its linear light -> linear sRGB; the identity where there is none
     char camera[64];     // maker and model
 };
 

@@ -41,8 +41,7 @@ static relume_status parse_line(const char *path, struct times *t, char *text, i
         words[n++] = w;
     if (n == 0)
         return RELUME_OK;
-    if (n > 2 || t->count == MAX_LINES ||
-        !parse_seconds(words[n - 1], &t->line[t->count].seconds))
+    if (n > 2 || t->count == MAX_LINES || !parse_seconds(words[n - 1], &t->line[t->count].seconds))
         return data_error("%s: line %d; expected 'seconds' or 'name seconds', such as 1/60", path,
                           number);
     snprintf(t->line[t->count].name, sizeof t->line->name, "%s", n == 2 ? words[0] : "");
@@ -79,8 +78,8 @@ static relume_status assign(const char *path, const struct times *t, const struc
         return data_error("%s: %d times; expected one for each of the %d photographs", path,
                           t->count, list->count);
     for (int i = 0; i < list->count; i++) {
-        const double *seconds = named ? find(t, base_name(list->path[i]))
-                                      : &t->line[i % t->count].seconds;
+        const double *seconds =
+            named ? find(t, base_name(list->path[i])) : &t->line[i % t->count].seconds;
         if (!seconds)
             return data_error("%s: no line for %s; expected 'name seconds' for every photograph",
                               path, base_name(list->path[i]));

@@ -16,8 +16,8 @@ const char *base_name(const char *path)
 static bool is_picture(const char *name)
 {
     static const char *const extensions[] = {
-        ".jpg", ".jpeg", ".png", ".tif", ".tiff", ".exr", ".hdr", ".ppm", ".dng", ".cr2", ".cr3",
-        ".nef", ".arw",  ".orf", ".raf", ".rw2",  ".pef", ".srw", NULL};
+        ".jpg", ".jpeg", ".png", ".tif", ".tiff", ".exr", ".hdr", ".ppm", ".dng", ".cr2",
+        ".cr3", ".nef",  ".arw", ".orf", ".raf",  ".rw2", ".pef", ".srw", NULL};
     const char *dot = strrchr(name, '.');
     for (int i = 0; dot && dot != name && extensions[i]; i++)
         if (!strcasecmp(dot, extensions[i]))

@@ -9,7 +9,7 @@ bad=0
 rules="base::base
 math:base:base
 image:base math:base image
-capture:base math image:base image lights capture ball photometric
+capture:base math image:base image lights capture ball photometric photograph response align
 coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange
@@ -59,6 +59,7 @@ only_in 'fftw3' src/math/fft.c
 only_in 'kissfft' src/math/fft_kiss.c
 only_in 'jansson' src/base/json.c
 only_in 'jpeglib' src/image/jpeg.c
+only_in 'lcms2' src/image/profile.c tests/unit/test_photograph.c
 only_in 'cairo' src/cli/plot.c
 only_in 'GLFW' viewer/context_glfw.c
 only_in 'imgui' viewer/panel.cpp

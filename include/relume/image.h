@@ -47,6 +47,7 @@ struct relume_image_params {
     const struct relume_limits *limits;
     int channels;  // loading: 1 or 3, converted to; default 3. Alpha is dropped, grey is spread
     bool half;     // saving EXR: half instead of float samples
+    int threads;   // saving EXR: worker threads; default: one
 };
 #define relume_image_params(...) (&(const struct relume_image_params){__VA_ARGS__})
 

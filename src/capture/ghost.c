@@ -1,8 +1,13 @@
 // ghost.c - what moved between the exposures of an aligned bracket
 //
-// In 11 x 11 pixels the correlation of two pictures, means kept, falls below 0.95 where they show
-// different things; it needs no response curve. The anchor is first given the tones of the other
-// exposure, so that a curved response does not lower the correlation of what stood still.
+// In 11 x 11 pixels the correlation of two pictures, means kept, falls where they show different
+// things; it needs no response curve. The reference is first given the tones of the exposure that
+// is judged, so that a curved response does not lower the correlation of what stood still and
+// brightness counts as well: the threshold can be higher than the 0.95 of untreated codes.
+//
+// The reference of a pixel is the anchor, or where that is black or saturated, the next exposure on
+// the way to the judged one that is not. Where the way ends at the judged one itself nothing else
+// knows the pixel, and it stays.
 #include <relume/align.h>
 
 #include "base/log.h"
@@ -12,15 +17,17 @@
 
 #include <math.h>
 
-enum { HALF = 5 };
+enum { HALF = 5, WINDOW = (2 * HALF + 1) * (2 * HALF + 1) };
 static const double default_threshold = 0.985, default_black = 0.05, default_white = 0.95;
+static const double least_part = 0.25;  // of a window, resolved by both: below, nothing is said
 
 struct ghosts {
-    const struct relume_image *a, *b;  // the anchor in the tones of b, and b
-    float (*rows)[3];                  // [pixels]: sums along rows of aa, bb, ab
     const struct relume_image *codes;  // the whole bracket
-    int n, i;
-    bool is_end;  // the longest or the shortest
+    const int *order;                  // exposures from the anchor to the judged one
+    int steps;                         // how many
+    int step;                          // which of them is the reference now
+    const struct relume_image *like;   // the reference in the tones of the judged one
+    float (*rows)[4];                  // [pixels]: sums along rows of 1, aa, bb, ab
     double threshold, black, white;
     struct relume_image *mask;
 };
@@ -30,13 +37,29 @@ static int clamp(int i, int n)
     return i < 0 ? 0 : i >= n ? n - 1 : i;
 }
 
-static void products(const struct ghosts *g, size_t pixel, double sign, double sum[3])
+static const struct relume_image *on_the_way(const struct ghosts *g, int step)
 {
-    const float *a = g->a->data + 3 * pixel, *b = g->b->data + 3 * pixel;
+    return &g->codes[g->order[step]];
+}
+
+static bool resolves(const struct ghosts *g, int step, size_t pixel)
+{
+    const float *c = on_the_way(g, step)->data + 3 * pixel;
+    const double mean = ((double)c[0] + (double)c[1] + (double)c[2]) / 3.0;
+    return mean > g->black && mean < g->white;
+}
+
+static void add_products(const struct ghosts *g, size_t pixel, double sign, double sum[4])
+{
+    const float *a = g->like->data + 3 * pixel;
+    const float *b = on_the_way(g, g->steps - 1)->data + 3 * pixel;
+    if (!resolves(g, g->step, pixel) || !resolves(g, g->steps - 1, pixel))
+        return;
+    sum[0] += sign;
     for (int c = 0; c < 3; c++) {
-        sum[0] += sign * (double)a[c] * (double)a[c];
-        sum[1] += sign * (double)b[c] * (double)b[c];
-        sum[2] += sign * (double)a[c] * (double)b[c];
+        sum[1] += sign * (double)a[c] * (double)a[c];
+        sum[2] += sign * (double)b[c] * (double)b[c];
+        sum[3] += sign * (double)a[c] * (double)b[c];
     }
 }
 
@@ -44,69 +67,62 @@ static void sum_row(void *context, size_t row, int worker)
 {
     const struct ghosts *g = context;
     (void)worker;
-    const int width = g->a->width;
+    const int width = g->mask->width;
     const size_t first = row * (size_t)width;
-    double sum[3] = {0.0, 0.0, 0.0};
+    double sum[4] = {0.0, 0.0, 0.0, 0.0};
     for (int x = -HALF; x < HALF; x++)
-        products(g, first + (size_t)clamp(x, width), 1.0, sum);
+        add_products(g, first + (size_t)clamp(x, width), 1.0, sum);
     for (int x = 0; x < width; x++) {
-        products(g, first + (size_t)clamp(x + HALF, width), 1.0, sum);
-        for (int k = 0; k < 3; k++)
+        add_products(g, first + (size_t)clamp(x + HALF, width), 1.0, sum);
+        for (int k = 0; k < 4; k++)
             g->rows[first + (size_t)x][k] = (float)sum[k];
-        products(g, first + (size_t)clamp(x - HALF, width), -1.0, sum);
+        add_products(g, first + (size_t)clamp(x - HALF, width), -1.0, sum);
     }
 }
 
-static bool resolves(const struct ghosts *g, int image, size_t pixel)
+static bool is_reference(const struct ghosts *g, size_t pixel)
 {
-    const float *c = g->codes[image].data + 3 * pixel;
-    const double mean = ((double)c[0] + (double)c[1] + (double)c[2]) / 3.0;
-    return mean > g->black && mean < g->white;
+    for (int step = 0; step < g->step; step++)
+        if (resolves(g, step, pixel))
+            return false;
+    return resolves(g, g->step, pixel);
 }
 
-// Whether nothing but this end of the bracket knows the pixel.
-static bool is_only_source(const struct ghosts *g, size_t pixel)
+static bool is_alike(const struct ghosts *g, size_t row, size_t x)
 {
-    if (!g->is_end)
-        return false;
-    for (int j = 0; j < g->n; j++)
-        if (j != g->i && resolves(g, j, pixel))
-            return false;
-    return true;
+    const size_t width = (size_t)g->mask->width;
+    double sum[4] = {0.0, 0.0, 0.0, 0.0};
+    for (int k = -HALF; k <= HALF; k++) {
+        const float *s = g->rows[(size_t)clamp((int)row + k, g->mask->height) * width + x];
+        for (int j = 0; j < 4; j++)
+            sum[j] += (double)s[j];
+    }
+    return sum[0] < least_part * WINDOW || sum[3] >= g->threshold * 0.5 * (sum[1] + sum[2]);
 }
 
 static void judge_row(void *context, size_t row, int worker)
 {
     const struct ghosts *g = context;
     (void)worker;
-    const size_t width = (size_t)g->a->width;
-    for (size_t x = 0; x < width; x++) {
-        const size_t pixel = row * width + x;
-        double sum[3] = {0.0, 0.0, 0.0};
-        for (int k = -HALF; k <= HALF; k++) {
-            const float *s = g->rows[(size_t)clamp((int)row + k, g->a->height) * width + x];
-            for (int j = 0; j < 3; j++)
-                sum[j] += (double)s[j];
-        }
-        const bool alike = sum[2] >= g->threshold * 0.5 * (sum[0] + sum[1]);
-        g->mask->data[pixel] = alike || is_only_source(g, pixel);
-    }
+    const size_t width = (size_t)g->mask->width;
+    for (size_t x = 0; x < width; x++)
+        if (is_reference(g, row * width + x))
+            g->mask->data[row * width + x] = is_alike(g, row, x);
 }
 
-static relume_status judge(struct ghosts *g, const struct relume_image *anchor, int threads)
+// Sets the mask where order[step] is the reference.
+static relume_status judge(struct ghosts *g, int threads)
 {
     struct relume_image alike;
-    relume_status status = tones_match(&alike, anchor, g->b, threads);
+    const relume_status status =
+        tones_match(&alike, on_the_way(g, g->step), on_the_way(g, g->steps - 1), threads);
     if (status)
         return status;
-    g->a = &alike;
-    status = relume_image_create(g->mask, anchor->width, anchor->height, 1);
-    if (!status) {
-        thread_for(threads, (size_t)anchor->height, sum_row, g);
-        thread_for(threads, (size_t)anchor->height, judge_row, g);
-    }
+    g->like = &alike;
+    thread_for(threads, (size_t)g->mask->height, sum_row, g);
+    thread_for(threads, (size_t)g->mask->height, judge_row, g);
     relume_image_destroy(&alike);
-    return status;
+    return RELUME_OK;
 }
 
 static relume_status all_good(struct relume_image *mask, const struct relume_image *like)
@@ -127,14 +143,23 @@ static bool is_bracket(const struct relume_image *codes, int n, int anchor)
     return good;
 }
 
-static bool is_end(const double *exposures, int n, int i)
+// The exposures between the anchor and image i, both included; returns how many.
+static int way_to(int *order, const double *exposures, int n, int anchor, int i)
 {
-    bool longest = true, shortest = true;
+    const double sign = exposures[i] < exposures[anchor] ? -1.0 : 1.0;
+    int steps = 0;
+    order[steps++] = anchor;
     for (int j = 0; j < n; j++) {
-        longest &= exposures[j] <= exposures[i];
-        shortest &= exposures[j] >= exposures[i];
+        if (j == anchor || j == i || sign * exposures[j] <= sign * exposures[anchor] ||
+            sign * exposures[j] >= sign * exposures[i])
+            continue;
+        int at = steps++;
+        for (; at > 1 && sign * exposures[order[at - 1]] > sign * exposures[j]; at--)
+            order[at] = order[at - 1];
+        order[at] = j;
     }
-    return longest || shortest;
+    order[steps++] = i;
+    return steps;
 }
 
 relume_status relume_ghost_masks(struct relume_image *masks, const struct relume_image *codes,
@@ -144,7 +169,6 @@ relume_status relume_ghost_masks(struct relume_image *masks, const struct relume
     const struct relume_ghost_params p = params ? *params : (struct relume_ghost_params){0};
     struct ghosts g = {
         .codes = codes,
-        .n = n,
         .threshold = p.threshold > 0.0 ? p.threshold : default_threshold,
         .black = p.black > 0.0 ? p.black : default_black,
         .white = p.white > 0.0 ? p.white : default_white,
@@ -155,17 +179,20 @@ relume_status relume_ghost_masks(struct relume_image *masks, const struct relume
         return log_fail(p.log, RELUME_EINVAL,
                         "ghosts: expected pictures of 3 channels and equal sizes, and an anchor "
                         "among them");
+    int *order = mem_array((size_t)n + 1, sizeof *order);
     g.rows = mem_array((size_t)codes->width * (size_t)codes->height, sizeof *g.rows);
-    relume_status status = g.rows ? RELUME_OK : RELUME_ENOMEM;
+    relume_status status = g.rows && order ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; !status && i < n; i++) {
-        g.i = i;
-        g.b = &codes[i];
+        status = all_good(&masks[i], codes);
+        g.order = order;
+        g.steps = status || i == anchor ? 0 : way_to(order, exposures, n, anchor, i);
         g.mask = &masks[i];
-        g.is_end = is_end(exposures, n, i);
-        status = i == anchor ? all_good(&masks[i], codes) : judge(&g, &codes[anchor], p.threads);
+        for (g.step = 0; !status && g.step + 1 < g.steps; g.step++)
+            status = judge(&g, p.threads);
     }
     for (int i = 0; status && i < n; i++)
         relume_image_destroy(&masks[i]);
     free(g.rows);
+    free(order);
     return status;
 }

@@ -301,12 +301,23 @@ static void multiply(struct relume_image *mask, const struct relume_image *by)
         mask->data[i] *= by->data[i];
 }
 
+// The last code that says nothing in any channel, as a part of full scale.
+static double black_level(const struct relume_response *response)
+{
+    int last = 0;
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < RELUME_CODES && !(response->exposure[c][i] > 0.0f); i++)
+            last = i > last ? i : last;
+    return (double)last / (RELUME_CODES - 1);
+}
+
 static relume_status leave_out_ghosts(struct bracket *b, const struct args *args)
 {
     struct relume_image masks[MAX_BRACKET];
     const relume_status status = relume_ghost_masks(
         masks, b->codes, b->exposure, b->n, b->anchor,
-        relume_ghost_params(.log = args_log(args), .threads = args_threads(args)));
+        relume_ghost_params(.log = args_log(args), .threads = args_threads(args),
+                            .black = 0.05 + black_level(&b->response)));
     for (int i = 0; !status && i < b->n; i++) {
         const size_t pixels = (size_t)masks[i].width * (size_t)masks[i].height;
         double good = 0.0;

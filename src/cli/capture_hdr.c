@@ -53,20 +53,20 @@ static relume_status parse_choices(struct choices *out, const struct args *args)
 
 // ---------------------------------------------------------------- report
 
-static void put_string(const char *text)
+static void put_string(FILE *out, const char *text)
 {
-    putchar('"');
+    fputc('"', out);
     for (; *text; text++)
         if (*text == '"' || *text == '\\')
-            printf("\\%c", *text);
+            fprintf(out, "\\%c", *text);
         else if ((unsigned char)*text < ' ')
-            printf("\\u%04x", *text);
+            fprintf(out, "\\u%04x", *text);
         else
-            putchar(*text);
-    putchar('"');
+            fputc(*text, out);
+    fputc('"', out);
 }
 
-static void put_photo_json(const struct bracket *b, int i)
+static void put_photo_json(FILE *out, const struct bracket *b, int i)
 {
     const struct relume_exposure_report *r = &b->report[i];
     const struct {
@@ -84,41 +84,41 @@ static void put_photo_json(const struct bracket *b, int i)
         {"shift_px", b->shift[i]},
         {"ghosts", b->ghosts[i]},
     };
-    printf("%s\n    {\"file\": ", i ? "," : "");
-    put_string(b->path[i]);
+    fprintf(out, "%s\n    {\"file\": ", i ? "," : "");
+    put_string(out, b->path[i]);
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
-        printf(", \"%s\": ", numbers[k].name);
-        json_number(stdout, numbers[k].value);
+        fprintf(out, ", \"%s\": ", numbers[k].name);
+        json_number(out, numbers[k].value);
     }
-    putchar('}');
+    fputc('}', out);
 }
 
-static void print_json(const struct bracket *b, const char *output, int index)
+static void print_json(FILE *out, const struct bracket *b, const char *output, int index)
 {
-    printf("%s{\"output\": ", index ? ",\n  " : "");
-    put_string(output);
-    printf(", \"width\": %d, \"height\": %d, \"anchor\": ", b->out.width, b->out.height);
-    put_string(b->path[b->anchor]);
-    printf(", \"response\": ");
-    put_string(b->response_source);
-    printf(", \"photos\": [");
+    fprintf(out, "%s{\"output\": ", index ? ",\n  " : "");
+    put_string(out, output);
+    fprintf(out, ", \"width\": %d, \"height\": %d, \"anchor\": ", b->out.width, b->out.height);
+    put_string(out, b->path[b->anchor]);
+    fprintf(out, ", \"response\": ");
+    put_string(out, b->response_source);
+    fprintf(out, ", \"photos\": [");
     for (int i = 0; i < b->n; i++)
-        put_photo_json(b, i);
-    printf("]}");
+        put_photo_json(out, b, i);
+    fprintf(out, "]}");
 }
 
-static void print_table(const struct bracket *b, const char *output)
+static void print_table(FILE *out, const struct bracket *b, const char *output)
 {
-    printf("%s: %d x %d pixels, response %s\n", output, b->out.width, b->out.height,
-           b->response_source);
-    printf("%-24s %10s %9s %8s %8s %7s %7s %7s %7s\n", "photograph", "time s", "residual",
-           "bias EV", "noise EV", "white", "black", "shift", "ghosts");
+    fprintf(out, "%s: %d x %d pixels, response %s\n", output, b->out.width, b->out.height,
+            b->response_source);
+    fprintf(out, "%-24s %10s %9s %8s %8s %7s %7s %7s %7s\n", "photograph", "time s", "residual",
+            "bias EV", "noise EV", "white", "black", "shift", "ghosts");
     for (int i = 0; i < b->n; i++) {
         const struct relume_exposure_report *r = &b->report[i];
-        printf("%-24s %10.5g %9.3f %8.3f %8.3f %6.1f%% %6.1f%% %7.2f %6.1f%%%s\n",
-               base_name(b->path[i]), b->notes[i].time_s, r->residual_ev, r->bias_ev, r->noise_ev,
-               100.0 * r->saturated, 100.0 * r->black, b->shift[i], 100.0 * b->ghosts[i],
-               i == b->anchor ? "  anchor" : "");
+        fprintf(out, "%-24s %10.5g %9.3f %8.3f %8.3f %6.1f%% %6.1f%% %7.2f %6.1f%%%s\n",
+                base_name(b->path[i]), b->notes[i].time_s, r->residual_ev, r->bias_ev, r->noise_ev,
+                100.0 * r->saturated, 100.0 * r->black, b->shift[i], 100.0 * b->ghosts[i],
+                i == b->anchor ? "  anchor" : "");
     }
 }
 
@@ -153,7 +153,7 @@ static relume_status whiten(struct bracket *b, const struct choices *c, const st
 }
 
 static relume_status run_bracket(struct bracket *b, const struct choices *c, const char *output,
-                                 int index, const struct args *args)
+                                 int index, FILE *report, const struct args *args)
 {
     const char *flat = args_text(args, "--flat", NULL);
     relume_status status = bracket_load(b, args);
@@ -176,9 +176,9 @@ static relume_status run_bracket(struct bracket *b, const struct choices *c, con
     if (status)
         return status;
     if (args_has(args, "--json"))
-        print_json(b, output, index);
+        print_json(report, b, output, index);
     else
-        print_table(b, output);
+        print_table(report, b, output);
     return RELUME_OK;
 }
 
@@ -231,7 +231,7 @@ static void output_name(char *out, size_t size, const struct choices *c, const s
 
 static relume_status run_group(const struct choices *c, const struct photo_list *list,
                                const struct relume_notes *notes, const int *group, int which,
-                               const struct args *args)
+                               FILE *report, const struct args *args)
 {
     char output[4096];
     struct bracket *b = calloc(1, sizeof *b);
@@ -242,7 +242,7 @@ static relume_status run_group(const struct choices *c, const struct photo_list 
     const relume_status status =
         n > MAX_BRACKET ? data_error("%s: %d photographs in one bracket; expected at most %d",
                                      list->path[0], n, MAX_BRACKET)
-                        : run_bracket(b, c, output, which, args);
+                        : run_bracket(b, c, output, which, report, args);
     bracket_free(b);
     free(b);
     return status;
@@ -257,27 +257,30 @@ static relume_status make_folder(const char *path)
 }
 
 static relume_status run_groups(const struct choices *c, struct photo_list *list,
-                                struct relume_notes *notes, int *group, const struct args *args)
+                                struct relume_notes *notes, int *group, FILE *report,
+                                const struct args *args)
 {
+    const bool json = args_has(args, "--json");
     int groups = 1;
     relume_status status = read_notes(notes, list, args);
     if (!status && !c->is_file) {
         groups = relume_notes_group(group, notes, list->count, 0.0);
         status = groups > 0 ? make_folder(args_text(args, "-o", NULL)) : RELUME_ENOMEM;
     }
-    if (!status && args_has(args, "--json"))
-        printf("{\"brackets\": [");
+    fputs(json ? "{\"brackets\": [" : "", report);
     for (int i = 0; !status && i < groups; i++)
-        status = run_group(c, list, notes, group, i, args);
-    if (!status && args_has(args, "--json"))
-        puts("]}");
+        status = run_group(c, list, notes, group, i, report, args);
+    fputs(json ? "]}\n" : "", report);
     return status;
 }
 
+// The report is printed when all went well.
 relume_status capture_hdr(const struct args *args)
 {
     struct choices choices;
     struct photo_list list;
+    char *text = NULL;
+    size_t size = 0;
     relume_status status = parse_choices(&choices, args);
     if (!status)
         status = photo_list_make(&list, args);
@@ -285,7 +288,14 @@ relume_status capture_hdr(const struct args *args)
         return status;
     struct relume_notes *notes = calloc((size_t)list.count, sizeof *notes);
     int *group = calloc((size_t)list.count, sizeof *group);
-    status = notes && group ? run_groups(&choices, &list, notes, group, args) : RELUME_ENOMEM;
+    FILE *report = open_memstream(&text, &size);
+    status = notes && group && report ? run_groups(&choices, &list, notes, group, report, args)
+                                      : RELUME_ENOMEM;
+    if (report && fclose(report) && !status)
+        status = RELUME_ENOMEM;
+    if (!status)
+        fputs(text, stdout);
+    free(text);
     free(notes);
     free(group);
     photo_list_free(&list);

@@ -79,14 +79,15 @@ RELUME_API double relume_likeness(const struct relume_image *a, const struct rel
 struct relume_ghost_params {
     const struct relume_log *log;
     int threads;          // default: all cores
-    double threshold;     // least correlation of 11 x 11 pixels; default 0.95
+    double threshold;     // least correlation of 11 x 11 pixels; default 0.985
     double black, white;  // codes beyond resolve nothing; default 0.05, 0.95
 };
 #define relume_ghost_params(...) (&(const struct relume_ghost_params){__VA_ARGS__})
 
-// masks[i], one channel: 0 where image i of an aligned bracket disagrees with the anchor, else 1;
-// masks[anchor] is all 1. `exposures` tell the longest and the shortest, which keep what only they
-// resolve. On failure all masks are empty. RELUME_EINVAL for wrong sizes, RELUME_ENOMEM.
+// masks[i], one channel: 0 where image i of an aligned bracket disagrees with its reference, else 1.
+// The reference of a pixel is the anchor, or where that is black or saturated the next exposure
+// towards image i that is not; what only image i resolves stays. masks[anchor] is all 1. On failure
+// all masks are empty. RELUME_EINVAL for wrong sizes, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_ghost_masks(struct relume_image *masks,
                                                const struct relume_image *codes,
                                                const double *exposures, int n, int anchor,

@@ -196,7 +196,7 @@ static void count_broken(void *context, size_t item, int worker)
     relume_table *t = context;
     const relume_capture *capture = t->capture;
     const size_t width = (size_t)capture->width;
-    const struct relume_transfer linear = {RELUME_CURVE_LINEAR, 0.0f};
+    const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     struct image_stream stream;
     float *band = mem_array(3 * IMAGE_STREAM_ROWS * width, sizeof *band);
     t->broken[item] = 0;

@@ -39,6 +39,9 @@ static const struct option options[] = {
     {"--weights", OPTION_TEXT, "W", "--hdr: spline (default), hat or gaussian", 0, 0},
     {"--align", OPTION_TEXT, "A", "none, blocks or homography; default: none", 0, 0},
     {"--ghosts", OPTION_FLAG, NULL, "--hdr: leave out what moved between exposures", 0, 0},
+    {"--white", OPTION_TEXT, "x,y,w,h", "--hdr: a region that is grey", 0, 0},
+    {"--flat", OPTION_TEXT, "FILE", "--hdr: photograph of an even surface, against vignetting", 0,
+     0},
     // both
     {"--skip-bad", OPTION_FLAG, NULL, "leave out photographs that cannot be read or used", 0, 0},
     {"--json", OPTION_FLAG, NULL, "print one JSON object", 0, 0},

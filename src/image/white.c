@@ -8,10 +8,20 @@
 static const double luminance[3] = {0.2126, 0.7152, 0.0722};  // BT.709
 static const double most_clipped = 0.1;
 
+static float highest(const struct relume_image *image)
+{
+    const size_t samples = 3 * (size_t)image->width * (size_t)image->height;
+    float most = 0.0f;
+    for (size_t i = 0; i < samples; i++)
+        most = fmaxf(most, image->data[i]);
+    return most;
+}
+
 relume_status relume_white_measure(float gain[3], const struct relume_image *image, int x, int y,
                                    int width, int height, const struct relume_log *log)
 {
     double mean[3] = {0.0, 0.0, 0.0}, grey = 0.0;
+    const bool ends_at_1 = highest(image) <= 1.0f;
     size_t clipped = 0;
     if (image->channels != 3 || x < 0 || y < 0 || width < 1 || height < 1 ||
         width > image->width - x || height > image->height - y)
@@ -22,7 +32,7 @@ relume_status relume_white_measure(float gain[3], const struct relume_image *ima
     for (int row = y; row < y + height; row++) {
         const float *p = image->data + 3 * ((size_t)row * (size_t)image->width + (size_t)x);
         for (int i = 0; i < width; i++, p += 3) {
-            clipped += p[0] >= 1.0f || p[1] >= 1.0f || p[2] >= 1.0f;
+            clipped += ends_at_1 && (p[0] >= 1.0f || p[1] >= 1.0f || p[2] >= 1.0f);
             for (int c = 0; c < 3; c++)
                 mean[c] += (double)p[c] / count;
         }

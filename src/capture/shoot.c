@@ -146,7 +146,7 @@ static relume_status write_manifest(const struct shoot *s, const char *path)
     const struct relume_manifest_view view = {.images = images,
                                               .mask = s->p.mask ? "mask.exr" : NULL};
     const struct relume_manifest m = {
-        .transfer = {RELUME_CURVE_LINEAR, 0.0f},
+        .transfer = {.curve = RELUME_CURVE_LINEAR},
         .geometry = geometry_of(s),
         .lights = s->shots,
         .directions = s->out->direction,
@@ -180,7 +180,7 @@ static relume_status write_lp(const struct shoot *s, const char *path)
 
 static relume_status copy_mask(const struct shoot *s, const char *path)
 {
-    const struct relume_transfer as_stored = {RELUME_CURVE_LINEAR, 0.0f};
+    const struct relume_transfer as_stored = {.curve = RELUME_CURVE_LINEAR};
     struct relume_image mask;
     if (!s->p.mask)
         return RELUME_OK;

@@ -87,7 +87,7 @@ enum look { LOOK_LIGHT, LOOK_NORMAL };
 
 static float coded(float v, enum look look)
 {
-    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     if (look == LOOK_NORMAL)
         return 0.5f + 0.5f * v;
     return relume_transfer_encode(srgb, fminf(fmaxf(v, 0.0f), 1.0f));

@@ -13,8 +13,8 @@
 
 enum { LEVELS = 12, RADII = 10, FIRST_RADIUS = 8, PER_LEVEL = 24, MOST = LEVELS * PER_LEVEL };
 static const double SMALLEST = 0.015, LARGEST = 0.6;
-static const double EDGES = 0.88;           // quantile of the gradient above which edges lie
-static const double LEAST_COVERAGE = 0.45;  // below it is no circle but a chance
+static const double EDGES = 0.88;         // quantile of the gradient above which edges lie
+static const double LEAST_EXCESS = 0.38;  // of coverage over chance: below it is no circle
 
 struct pyramid {
     int levels;
@@ -273,6 +273,15 @@ static bool is_plausible(const struct relume_ball *b, const struct relume_image 
            b->y > 0 && b->x < mean->width && b->y < mean->height;
 }
 
+// Coverage beyond that which texture has by chance, [0, 1] (the tolerance and the search of
+// ball_follow).
+static double excess(const struct relume_ball *b, double scale)
+{
+    const double r = b->radius / scale;
+    const double chance = fmax(0.01 * r, 1.0) / fmax(0.08 * r, 5.0);
+    return (b->coverage - chance) / (1.0 - chance);
+}
+
 static int by_score(const void *a, const void *b)
 {
     const struct candidate *p = a, *q = b;
@@ -297,7 +306,7 @@ static void screen(struct candidate *list, int n, const struct pyramid *p,
         list[i].score = 0.0;
         if (follow_at(b, camera, p, level, 120) && is_plausible(b, mean, params) &&
             (!params->peak || has_highlight(b, params->peak, least)))
-            list[i].score = b->coverage;
+            list[i].score = excess(b, 1 << level);
     }
     qsort(list, (size_t)n, sizeof *list, by_score);
 }
@@ -316,10 +325,10 @@ static int choose(struct relume_ball *out, int count, struct candidate *list, in
                   const struct relume_ball_camera *camera, const struct relume_ball_params *params)
 {
     int found = 0;
-    for (int i = 0; i < n && found < count && list[i].score >= 0.8 * LEAST_COVERAGE; i++) {
+    for (int i = 0; i < n && found < count && list[i].score >= 0.8 * LEAST_EXCESS; i++) {
         struct relume_ball b = list[i].ball;
         if (is_apart(&b, out, found) && follow_at(&b, camera, p, 0, 360) &&
-            b.coverage >= LEAST_COVERAGE && is_plausible(&b, mean, params) &&
+            excess(&b, 1.0) >= LEAST_EXCESS && is_plausible(&b, mean, params) &&
             is_apart(&b, out, found))
             out[found++] = b;
     }

@@ -10,6 +10,7 @@
 #include <string.h>
 
 static const float WHITE = 0.998f, BLACK = 0.002f;
+static const float FAINT = 2e-4f;  // about one code of 8 bits in the dark
 
 // Boxes of `step` x `step` pixels.
 static relume_status shrink(struct relume_image *out, const struct relume_image *from)
@@ -42,7 +43,7 @@ static void count_ends(struct shot *shot, const struct relume_image *image, bool
     shot->black = (float)black / (float)n;
 }
 
-// Sums for finding the balls.
+// Means of the logarithm, for finding the balls.
 static relume_status add_to_mean(struct shoot *s, const struct relume_image *image)
 {
     if (!s->mean.data) {
@@ -62,7 +63,8 @@ static relume_status add_to_mean(struct shoot *s, const struct relume_image *ima
         for (int x = 0; x < image->width; x++) {
             const size_t at = (size_t)y * (size_t)image->width + (size_t)x;
             const float v = ball_grey(image, x, y);
-            s->mean.data[at] += (v - s->mean.data[at]) / (float)(s->summed + 1);
+            s->mean.data[at] +=
+                (logf(fmaxf(v, 0.0f) + FAINT) - s->mean.data[at]) / (float)(s->summed + 1);
             s->peak.data[at] = v > s->peak.data[at] ? v : s->peak.data[at];
         }
     s->summed++;
@@ -176,6 +178,8 @@ relume_status shoot_read(struct shoot *s)
         if (!status && !log_progress(s->p.log, "reading", (done + 1.0) / all))
             status = RELUME_ECANCEL;
     }
+    for (size_t i = 0; s->mean.data && i < (size_t)s->mean.width * (size_t)s->mean.height; i++)
+        s->mean.data[i] = expf(s->mean.data[i]);
     if (!status && s->shots < 3)
         status = log_fail(s->p.log, RELUME_EDATA, "%d photographs; expected at least 3", s->shots);
     return status;

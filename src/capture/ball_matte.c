@@ -14,6 +14,7 @@ static const double DARK = 0.02;    // brightest value below which nothing is se
 static const double FACING = 0.25;  // n.v below which the surface is seen too obliquely
 static const double LIT = 0.1;      // n.L below which it is shadow or nearly
 static const double CLIPPED = 0.98;
+static const double PIXEL_SIGMA = 0.2;  // of an outline, at least
 
 struct patch {
     vec3 normal;
@@ -93,7 +94,8 @@ static double weigh(struct patch *p, int n, const double lamp[4], double *scratc
     return scale / 2.385;
 }
 
-static struct relume_ball_light fit(struct patch *p, int n, double *scratch)
+static struct relume_ball_light fit(struct patch *p, int n, const struct relume_ball *ball,
+                                    double *scratch)
 {
     struct relume_ball_light light = {.sight = RELUME_BALL_DARK};
     double lamp[4], most = 0.0, clipped = 0.0, spread = 0.0;
@@ -118,7 +120,9 @@ static struct relume_ball_light fit(struct patch *p, int n, double *scratch)
     light.sight = weight > LEAST / 4.0 ? RELUME_BALL_SEEN : RELUME_BALL_RIM;
     light.direction = vec3_unit(l);
     // Misses are texture and bounced light rather than noise: a patch in ten counts.
-    light.sigma_deg = spread / vec3_length(l) * sqrt(2.0 * 10.0 / fmax(weight, 1.0)) * 180.0 / M_PI;
+    const double of_fit = spread / vec3_length(l) * sqrt(2.0 * 10.0 / fmax(weight, 1.0));
+    const double of_outline = fmax(ball->sigma, PIXEL_SIGMA) / ball->radius;
+    light.sigma_deg = hypot(of_fit, of_outline) * 180.0 / M_PI;
     for (int c = 0; c < 3; c++)
         if (solve(lamp, p, n, c))
             light.intensity[c] =
@@ -135,7 +139,7 @@ relume_status relume_ball_matte(struct relume_ball_light *out, const struct relu
     double *scratch = mem_array(MOST, sizeof *scratch);
     const relume_status status = patch && scratch ? RELUME_OK : RELUME_ENOMEM;
     if (!status) {
-        *out = fit(patch, gather(patch, ball, camera, photograph), scratch);
+        *out = fit(patch, gather(patch, ball, camera, photograph), ball, scratch);
         out->x = ball->x;
         out->y = ball->y;
     }

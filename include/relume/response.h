@@ -90,10 +90,12 @@ struct relume_merge_params {
 };
 #define relume_merge_params(...) (&(const struct relume_merge_params){__VA_ARGS__})
 
-// Radiance in units of the response's exposure / those of `exposures`. A pixel that no exposure
-// resolves takes the longest exposure's value where that is dark, the shortest's where it is
-// bright. `report` [n] may be NULL. RELUME_EINVAL for wrong sizes, RELUME_EDATA when no pixel of
-// any exposure is resolved, RELUME_ENOMEM.
+// The rule of the ends is left where a longer exposure is darker or a shorter one brighter than
+// half of full scale and than that end: there something else happened. Radiance in units of the
+// response's exposure / those of `exposures`. A pixel that no exposure resolves takes the longest
+// exposure's value where that is dark, the shortest's where it is bright. `report` [n] may be NULL.
+// RELUME_EINVAL for wrong sizes, RELUME_EDATA when no pixel of any exposure is resolved,
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_merge(struct relume_image *out,
                                          struct relume_exposure_report *report,
                                          const struct relume_image *codes, const double *exposures,

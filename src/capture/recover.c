@@ -19,7 +19,7 @@ static const double default_smoothness = 20.0;
 static const double rows_of_paper = 550.0;  // smoothness is stated for 50 samples x 11 exposures
 static const double same_exposure = 1.01;
 // This far below middle grey 8 bits hold nothing: what codes are there are the black level's.
-static const double nothing_ev = -9.0;
+static const double nothing_ev = -12.0;
 enum { LEAST_BLACK = 16 };
 
 static int code_of(float v)

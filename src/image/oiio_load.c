@@ -19,7 +19,7 @@ static char why_not[400];
 
 static void load(void)
 {
-    void *module = dlopen(module_name, RTLD_NOW | RTLD_LOCAL);
+    void *module = dlopen(module_name, RTLD_LAZY | RTLD_LOCAL);
     const struct oiio_bridge *found = module ? dlsym(module, "relume_oiio_bridge") : NULL;
     if (!found)
         snprintf(why_not, sizeof why_not, "%s", dlerror());

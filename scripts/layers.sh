@@ -9,7 +9,7 @@ bad=0
 rules="base::base
 math:base:base
 image:base math:base image
-capture:base math image:base image lights capture ball photometric photograph response align
+capture:base math image:base image lights capture ball photometric shoot photograph response align
 coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange

@@ -24,6 +24,7 @@
 #include <relume/response.h>
 #include <relume/rig.h>
 #include <relume/scene.h>
+#include <relume/shoot.h>
 #include <relume/tone.h>
 #include <relume/view.h>
 

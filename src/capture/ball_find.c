@@ -13,8 +13,9 @@
 
 enum { LEVELS = 12, RADII = 10, FIRST_RADIUS = 8, PER_LEVEL = 24, MOST = LEVELS * PER_LEVEL };
 static const double SMALLEST = 0.015, LARGEST = 0.6;
-static const double EDGES = 0.88;           // quantile of the gradient above which edges lie
-static const double LEAST_COVERAGE = 0.45;  // below it is no circle but a chance
+static const double EDGES = 0.88;         // quantile of the gradient above which edges lie
+static const double WIDEST = 0.14;        // how far a circle may be off, share of its radius
+static const double LEAST_EXCESS = 0.38;  // of coverage over chance: below it is no circle
 
 struct pyramid {
     int levels;
@@ -234,7 +235,7 @@ static bool follow_at(struct relume_ball *ball, const struct relume_ball_camera 
     ball->x /= scale;
     ball->y /= scale;
     ball->radius /= scale;
-    if (!ball_follow(ball, &small, &p->level[level], angles))
+    if (!ball_follow(ball, &small, &p->level[level], angles, WIDEST))
         return false;
     ball->x *= scale;
     ball->y *= scale;
@@ -273,6 +274,15 @@ static bool is_plausible(const struct relume_ball *b, const struct relume_image 
            b->y > 0 && b->x < mean->width && b->y < mean->height;
 }
 
+// Coverage beyond that which texture has by chance, [0, 1] (the tolerance and the search of
+// ball_follow).
+static double excess(const struct relume_ball *b, double scale)
+{
+    const double r = b->radius / scale;
+    const double chance = fmax(0.01 * r, 1.0) / fmax(0.08 * r, 5.0);
+    return (b->coverage - chance) / (1.0 - chance);
+}
+
 static int by_score(const void *a, const void *b)
 {
     const struct candidate *p = a, *q = b;
@@ -297,9 +307,22 @@ static void screen(struct candidate *list, int n, const struct pyramid *p,
         list[i].score = 0.0;
         if (follow_at(b, camera, p, level, 120) && is_plausible(b, mean, params) &&
             (!params->peak || has_highlight(b, params->peak, least)))
-            list[i].score = b->coverage;
+            list[i].score = excess(b, 1 << level);
     }
     qsort(list, (size_t)n, sizeof *list, by_score);
+}
+
+// The steepest place of log light lies on the dark side of an edge, that of light itself on it.
+static void settle(struct relume_ball *ball, const struct relume_ball_camera *camera,
+                   const struct relume_image *light)
+{
+    struct relume_ball b = *ball;
+    const double reach = fmax(3.0 / b.radius, 0.02);
+    if (ball_follow(&b, camera, light, 360, reach) && b.coverage >= 0.5 * ball->coverage &&
+        hypot(b.x - ball->x, b.y - ball->y) < 3.0 && fabs(b.radius - ball->radius) < 3.0) {
+        b.coverage = ball->coverage;
+        *ball = b;
+    }
 }
 
 static bool is_apart(const struct relume_ball *a, const struct relume_ball *list, int n)
@@ -315,13 +338,16 @@ static int choose(struct relume_ball *out, int count, struct candidate *list, in
                   const struct pyramid *p, const struct relume_image *mean,
                   const struct relume_ball_camera *camera, const struct relume_ball_params *params)
 {
+    const struct relume_image *light = params->mask ? params->mask : mean;
     int found = 0;
-    for (int i = 0; i < n && found < count && list[i].score >= 0.8 * LEAST_COVERAGE; i++) {
+    for (int i = 0; i < n && found < count && list[i].score >= 0.8 * LEAST_EXCESS; i++) {
         struct relume_ball b = list[i].ball;
         if (is_apart(&b, out, found) && follow_at(&b, camera, p, 0, 360) &&
-            b.coverage >= LEAST_COVERAGE && is_plausible(&b, mean, params) &&
-            is_apart(&b, out, found))
+            excess(&b, 1.0) >= LEAST_EXCESS && is_plausible(&b, mean, params) &&
+            is_apart(&b, out, found)) {
+            settle(&b, camera, light);
             out[found++] = b;
+        }
     }
     return found;
 }

@@ -71,16 +71,19 @@ void photo_list_free(struct photo_list *list)
     *list = (struct photo_list){0};
 }
 
+relume_status photo_list_add(struct photo_list *list, const char *path)
+{
+    struct stat s;
+    const bool folder = !stat(path, &s) && S_ISDIR(s.st_mode);
+    return folder ? add_folder(list, path) : add(list, "", path);
+}
+
 relume_status photo_list_make(struct photo_list *out, const struct args *args)
 {
     relume_status status = RELUME_OK;
     *out = (struct photo_list){0};
-    for (int i = 0; !status && i < args_inputs(args); i++) {
-        struct stat s;
-        const char *path = args_input(args, i);
-        const bool folder = !stat(path, &s) && S_ISDIR(s.st_mode);
-        status = folder ? add_folder(out, path) : add(out, "", path);
-    }
+    for (int i = 0; !status && i < args_inputs(args); i++)
+        status = photo_list_add(out, args_input(args, i));
     if (status)
         photo_list_free(out);
     return status;

@@ -42,6 +42,9 @@ struct relume_recover_params {
     const struct relume_log *log;
     int samples;        // places that are looked at; default 400
     double smoothness;  // weight of the second differences; default 20
+    // [n], one channel: places where one is 0 (outside of a warped picture, a ghost) are not looked
+    // at; empty image: all are; or NULL
+    const struct relume_image *masks;
 };
 #define relume_recover_params(...) (&(const struct relume_recover_params){__VA_ARGS__})
 

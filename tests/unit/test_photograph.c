@@ -1,4 +1,6 @@
 // Photographs: what EXIF and ICC profiles say, turning, grouping, white balance and fall-off
+#include "test.h"
+
 #include "made_camera.h"
 
 #include <lcms2.h>

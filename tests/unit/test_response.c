@@ -1,4 +1,6 @@
 // Response curves, their recovery and the merge, on closed forms and on the made camera
+#include "test.h"
+
 #include "made_camera.h"
 
 static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};

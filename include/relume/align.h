@@ -71,9 +71,9 @@ RELUME_RESULT relume_status relume_warp_homography(struct relume_image *out,
                                                    const struct relume_homography *h,
                                                    const struct relume_align_params *params);
 
-// How alike two pictures are whatever their exposure and light: the correlation of their normalised
-// gradient magnitudes where they are, [-1, 1]. Photographs of one scene reach 0.5 and more, of
-// others about 0. NaN when memory is short or sizes differ.
+// How alike two pictures are whatever their exposure: the correlation of their normalised gradient
+// magnitudes where they are, [-1, 1]. Exposures of one scene reach 0.3 and more, of others about 0.
+// NaN when one shows no detail, when sizes differ or memory is short.
 RELUME_API double relume_likeness(const struct relume_image *a, const struct relume_image *b);
 
 struct relume_ghost_params {

@@ -42,6 +42,9 @@ struct relume_recover_params {
     const struct relume_log *log;
     int samples;        // places that are looked at; default 400
     double smoothness;  // weight of the second differences; default 20
+    // [n], one channel: places where one is 0 (outside of a warped picture, a ghost) are not looked
+    // at; empty image: all are; or NULL
+    const struct relume_image *masks;
 };
 #define relume_recover_params(...) (&(const struct relume_recover_params){__VA_ARGS__})
 
@@ -90,10 +93,12 @@ struct relume_merge_params {
 };
 #define relume_merge_params(...) (&(const struct relume_merge_params){__VA_ARGS__})
 
-// Radiance in units of the response's exposure / those of `exposures`. A pixel that no exposure
-// resolves takes the longest exposure's value where that is dark, the shortest's where it is
-// bright. `report` [n] may be NULL. RELUME_EINVAL for wrong sizes, RELUME_EDATA when no pixel of
-// any exposure is resolved, RELUME_ENOMEM.
+// The rule of the ends is left where a longer exposure is darker or a shorter one brighter than
+// half of full scale and than that end: there something else happened. Radiance in units of the
+// response's exposure / those of `exposures`. A pixel that no exposure resolves takes the longest
+// exposure's value where that is dark, the shortest's where it is bright. `report` [n] may be NULL.
+// RELUME_EINVAL for wrong sizes, RELUME_EDATA when no pixel of any exposure is resolved,
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_merge(struct relume_image *out,
                                          struct relume_exposure_report *report,
                                          const struct relume_image *codes, const double *exposures,

@@ -15,8 +15,9 @@
 #include "capture/tones.h"
 
 #include <math.h>
+#include <string.h>
 
-enum { SAMPLES = 64, LANES = 8, VISITED = 16, FILLED = 32 };
+enum { SAMPLES = 64, VISITED = 16, FILLED = 32 };
 static const double least_part = 0.1;      // of its parent's score: below, a block stays
 static const double good_match = 0.5;      // correlation of a block that its surroundings follow
 static const double least_overlap = 0.25;  // of a block, with the other picture
@@ -81,43 +82,66 @@ static struct rectangle clipped(struct rectangle r, int x, int y, int width, int
     return r;
 }
 
+// Sums of a block's samples and products, four at a time (a vector type of GCC and Clang: from
+// loops over arrays neither makes good code); a block has few enough samples for single precision.
+typedef float four __attribute__((vector_size(16)));
+
 struct sums {
-    double a, b, aa, bb, ab;
+    four b, bb, ab;
 };
 
-// Of n samples of two rows.
-static void add_rows(struct sums *s, const float *a, const float *b, int n)
+static four load(const float *from)
 {
-    float sa[LANES] = {0}, sb[LANES] = {0}, saa[LANES] = {0}, sbb[LANES] = {0}, sab[LANES] = {0};
+    four v;
+    memcpy(&v, from, sizeof v);
+    return v;
+}
+
+static void add_row(struct sums *s, const float *a, const float *b, int n)
+{
+    struct sums even = *s, odd = {{0}, {0}, {0}};
     int i = 0;
-    for (; i + LANES <= n; i += LANES)
-        for (int k = 0; k < LANES; k++) {
-            const float x = a[i + k], y = b[i + k];
-            sa[k] += x;
-            sb[k] += y;
-            saa[k] += x * x;
-            sbb[k] += y * y;
-            sab[k] += x * y;
-        }
-    for (int k = 0; i < n; i++, k++) {
-        sa[k] += a[i];
-        sb[k] += b[i];
-        saa[k] += a[i] * a[i];
-        sbb[k] += b[i] * b[i];
-        sab[k] += a[i] * b[i];
+    for (; i + 8 <= n; i += 8) {
+        const four a0 = load(a + i), a1 = load(a + i + 4), b0 = load(b + i), b1 = load(b + i + 4);
+        even.b += b0;
+        even.bb += b0 * b0;
+        even.ab += a0 * b0;
+        odd.b += b1;
+        odd.bb += b1 * b1;
+        odd.ab += a1 * b1;
     }
-    for (int k = 0; k < LANES; k++) {
-        s->a += (double)sa[k];
-        s->b += (double)sb[k];
-        s->aa += (double)saa[k];
-        s->bb += (double)sbb[k];
-        s->ab += (double)sab[k];
+    for (; i < n; i++) {
+        odd.b[0] += b[i];
+        odd.bb[0] += b[i] * b[i];
+        odd.ab[0] += a[i] * b[i];
     }
+    *s = (struct sums){even.b + odd.b, even.bb + odd.bb, even.ab + odd.ab};
+}
+
+static double total(four v)
+{
+    return ((double)v[0] + (double)v[1]) + ((double)v[2] + (double)v[3]);
+}
+
+struct moments {
+    double a, aa;  // sum of samples, and of squares
+};
+
+static struct moments moments_of(const struct relume_image *image, const struct rectangle *r)
+{
+    const size_t stride = 3 * (size_t)image->width;
+    struct sums sum = {{0}, {0}, {0}};
+    for (int y = r->y; y < r->y + r->height; y++) {
+        const float *row = image->data + (size_t)y * stride + 3 * (size_t)r->x;
+        add_row(&sum, row, row, 3 * r->width);
+    }
+    return (struct moments){total(sum.b), total(sum.bb)};
 }
 
 struct block {
     struct rectangle r;  // inside of the anchor, pixels of the pyramid level
-    double contrast;     // |cr| / N, what the correlation is multiplied by
+    struct moments anchor;
+    double contrast;  // |cr| / N, what the correlation is multiplied by
 };
 
 // The correlation of the block with the image at shift (dx, dy), times its contrast: blocks without
@@ -128,29 +152,25 @@ static double score(const struct search *s, const struct block *b, int dx, int d
     if ((double)r.width * r.height < least_overlap * b->r.width * b->r.height)
         return (double)-INFINITY;
     const size_t stride = 3 * (size_t)s->anchor->width;
-    struct sums sum = {0};
+    const bool whole = r.width == b->r.width && r.height == b->r.height;
+    const struct moments m = whole ? b->anchor : moments_of(s->anchor, &r);
+    struct sums sum = {{0}, {0}, {0}};
     for (int y = r.y; y < r.y + r.height; y++)
-        add_rows(&sum, s->anchor->data + (size_t)y * stride + 3 * (size_t)r.x,
-                 s->image->data + (size_t)(y + dy) * stride + 3 * (size_t)(r.x + dx), 3 * r.width);
-    const double n = 3.0 * r.width * r.height;
-    const double aa = sum.aa - sum.a * sum.a / n, bb = sum.bb - sum.b * sum.b / n;
-    if (!(aa > 1e-9 * n) || !(bb > 1e-9 * n))
+        add_row(&sum, s->anchor->data + (size_t)y * stride + 3 * (size_t)r.x,
+                s->image->data + (size_t)(y + dy) * stride + 3 * (size_t)(r.x + dx), 3 * r.width);
+    const double n = 3.0 * r.width * r.height, b1 = total(sum.b);
+    const double aa = m.aa - m.a * m.a / n, bb = total(sum.bb) - b1 * b1 / n;
+    if (!(aa > 1e-6 * n) || !(bb > 1e-6 * n))  // a thousandth of full scale: noise of 8 bits
         return 0.0;
-    return b->contrast * (sum.ab - sum.a * sum.b / n) / sqrt(aa * bb);
+    return b->contrast * (total(sum.ab) - m.a * b1 / n) / sqrt(aa * bb);
 }
 
 // Its scale is that of level 0, whatever the pyramid level.
-static double contrast_of(const struct search *s, const struct rectangle *r)
+static double contrast_of(const struct search *s, const struct block *b)
 {
-    const size_t stride = 3 * (size_t)s->anchor->width;
-    struct sums sum = {0};
-    for (int y = r->y; y < r->y + r->height; y++) {
-        const float *row = s->anchor->data + (size_t)y * stride + 3 * (size_t)r->x;
-        add_rows(&sum, row, row, 3 * r->width);
-    }
-    const double n = 3.0 * r->width * r->height;
-    const double variance = fmax(sum.aa / n - sum.a * sum.a / (n * n), 0.0);
-    return sqrt(3.0 * variance / ((double)r->width * r->height)) / s->scale;
+    const double n = 3.0 * b->r.width * b->r.height;
+    const double variance = fmax(b->anchor.aa / n - b->anchor.a * b->anchor.a / (n * n), 0.0);
+    return sqrt(9.0 * variance / n) / s->scale;
 }
 
 // ---------------------------------------------------------------- the search
@@ -283,7 +303,8 @@ static void match_block(const struct search *s, int column, int row)
                                    s->anchor->height)};
     if (b.r.width < 4 || b.r.height < 4)
         return;
-    b.contrast = contrast_of(s, &b.r);
+    b.anchor = moments_of(s->anchor, &b.r);
+    b.contrast = contrast_of(s, &b);
     const struct guess best =
         s->parent ? search_block(s, &b, column, row, node->d) : search_root(s, &b);
     if (!isfinite(best.score))
@@ -367,7 +388,7 @@ static relume_status match_all(struct grid *out, const struct pyramid *anchor,
         free(parent.node);
         parent = *out;
     }
-    return status;
+    return status || grid_median(out) ? status : RELUME_ENOMEM;
 }
 
 relume_status relume_align_blocks(struct relume_displacements *out,

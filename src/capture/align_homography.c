@@ -13,6 +13,7 @@
 #include "base/thread.h"
 #include "capture/pyramid.h"
 #include "capture/structure.h"
+#include "capture/tones.h"
 #include "math/lsq.h"
 
 #include <math.h>
@@ -328,30 +329,54 @@ relume_status relume_align_homography(struct relume_homography *out,
     return status;
 }
 
-double relume_likeness(const struct relume_image *a, const struct relume_image *b)
+static double mean(const struct relume_image *image)
 {
-    double h[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, likeness = NAN;
-    struct relume_image structure[2] = {{0}, {0}};
-    struct pyramid pa = {0}, pb = {0};
-    struct ecc e = {.parameters = 0};
-    memcpy(e.h, h, sizeof h);
-    if (a->width != b->width || a->height != b->height)
-        return likeness;
-    relume_status status = lumas(&pa, a, 1);
+    const size_t samples = (size_t)image->width * (size_t)image->height * 3;
+    double sum = 0.0;
+    for (size_t i = 0; i < samples; i++)
+        sum += (double)image->data[i];
+    return sum / (double)samples;
+}
+
+static double likeness_of(const struct relume_image *dark, const struct relume_image *bright)
+{
+    struct relume_image clipped = {0}, luma[2] = {{0}, {0}}, structure[2] = {{0}, {0}};
+    struct ecc e = {.parameters = 0, .h = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    double likeness = -1.0;
+    relume_status status = tones_match(&clipped, dark, bright, 1);
     if (!status)
-        status = lumas(&pb, b, 1);
-    int level = 0;
-    while (level < pa.levels - 1 && longer_side(&pa.level[level]) > LIKENESS)
-        level++;
+        status = structure_luma(&luma[0], &clipped, 1);
     if (!status)
-        status = prepare(&e, structure, &pa.level[level], &pb.level[level], 1);
+        status = structure_luma(&luma[1], bright, 1);
+    if (!status)
+        status = prepare(&e, structure, &luma[0], &luma[1], 1);
     if (!status) {
         const struct sums s = sum_all(&e, 1);
         likeness = correlation_of(&s, &e);
     }
     free(e.band);
-    relume_image_destroy(&structure[0]);
-    relume_image_destroy(&structure[1]);
+    relume_image_destroy(&clipped);
+    for (int i = 0; i < 2; i++) {
+        relume_image_destroy(&luma[i]);
+        relume_image_destroy(&structure[i]);
+    }
+    return likeness > -1.0 ? likeness : (double)NAN;
+}
+
+// The darker one is given the tones of the brighter one: it saturates where that does.
+double relume_likeness(const struct relume_image *a, const struct relume_image *b)
+{
+    struct pyramid pa = {0}, pb = {0};
+    double likeness = NAN;
+    if (a->width != b->width || a->height != b->height || a->channels != 3 || b->channels != 3)
+        return likeness;
+    relume_status status = pyramid_make(&pa, a, LIKENESS, 1);
+    if (!status)
+        status = pyramid_make(&pb, b, LIKENESS, 1);
+    if (!status) {
+        const struct relume_image *x = &pa.level[pa.levels - 1], *y = &pb.level[pb.levels - 1];
+        likeness = mean(x) < mean(y) ? likeness_of(x, y) : likeness_of(y, x);
+    }
     pyramid_free(&pa);
     pyramid_free(&pb);
     return likeness;

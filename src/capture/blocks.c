@@ -1,5 +1,6 @@
 #include "capture/blocks.h"
 
+#include "base/memory.h"
 #include "base/thread.h"
 #include "math/lsq.h"
 
@@ -76,4 +77,35 @@ void grid_fill(struct grid *grid, int threads)
         trusted += grid->node[i].trusted;
     if (trusted >= LEAST_TRUSTED)
         thread_for(threads, (size_t)grid->count, fill_row, grid);
+}
+
+static double median(double *v, int n)
+{
+    for (int i = 1; i < n; i++) {
+        const double x = v[i];
+        int at = i;
+        for (; at > 0 && v[at - 1] > x; at--)
+            v[at] = v[at - 1];
+        v[at] = x;
+    }
+    return v[n / 2];
+}
+
+bool grid_median(struct grid *grid)
+{
+    const int n = grid->count;
+    struct node *out = mem_copy(grid->node, (size_t)n * (size_t)n, sizeof *out);
+    for (int i = 0; out && i < n * n; i++)
+        for (int k = 0; k < 2; k++) {
+            double v[9];
+            for (int j = 0; j < 9; j++)
+                v[j] =
+                    grid_node(grid, clamp(i % n + j % 3 - 1, n), clamp(i / n + j / 3 - 1, n))->d[k];
+            out[i].d[k] = median(v, 9);
+        }
+    if (out) {
+        free(grid->node);
+        grid->node = out;
+    }
+    return out != NULL;
 }

@@ -23,5 +23,8 @@ void grid_interpolate(const struct grid *grid, double x, double y, double d[2], 
 // Blocks without detail follow the trusted ones around them: an affine map fitted with weights that
 // fall with the distance.
 void grid_fill(struct grid *grid, int threads);
+// Each displacement becomes the median of the 3 x 3 around it: single wrong matches vanish, shifts,
+// rolls and edges of motion stay. Returns false when memory is short.
+bool grid_median(struct grid *grid);
 
 #endif

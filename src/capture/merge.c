@@ -13,6 +13,7 @@
 #include <string.h>
 
 // Weights are tabled in quarters of an 8-bit code, log exposures in parts of 256.
+static const float unlike = 0.05f;  // codes that differ by more than noise
 enum { BAND = 16, STEPS = 255 * 4, LOGS = 255 * 256 };
 
 static const char *const names[] = {"spline", "hat", "gaussian"};
@@ -55,8 +56,10 @@ float relume_merge_weight(enum relume_merge_weights weights, float code, bool lo
 
 struct exposure {
     const float *codes, *mask;
+    double time;
     float log_time;
     float weight[STEPS + 1];
+    float inner[STEPS + 1];  // without the rule of the ends
 };
 
 struct merge {
@@ -75,10 +78,29 @@ static float log_exposure(const struct merge *m, int c, float code)
     return m->log_exposure[c][(int)(x * LOGS + 0.5f)];
 }
 
-static float weight_of(const struct exposure *e, size_t pixel, float code)
+// Whether a shorter exposure is brighter, or a longer one darker: a mark in the picture, a hot
+// pixel or something that moved. `code` belongs to `e`.
+static bool is_impossible(const struct merge *m, const struct exposure *e, size_t sample,
+                          float code)
+{
+    for (int i = 0; i < m->n; i++) {
+        const struct exposure *other = &m->exposure[i];
+        const float there = other->codes[sample];
+        if ((other->time > e->time && there < fminf(code, 0.5f) - unlike) ||
+            (other->time < e->time && there > fmaxf(code, 0.5f) + unlike))
+            return true;
+    }
+    return false;
+}
+
+static float weight_of(const struct merge *m, const struct exposure *e, size_t pixel, int c,
+                       float code)
 {
     const float x = code > 0.0f ? fminf(code, 1.0f) : 0.0f;
-    const float w = e->weight[(int)(x * STEPS + 0.5f)];
+    const int at = (int)(x * STEPS + 0.5f);
+    float w = e->weight[at];
+    if (w != e->inner[at] && is_impossible(m, e, 3 * pixel + (size_t)c, code))
+        w = e->inner[at];
     return e->mask ? w * e->mask[pixel] : w;
 }
 
@@ -106,7 +128,7 @@ static float merge_sample(const struct merge *m, size_t pixel, int c)
     for (int i = 0; i < m->n; i++) {
         const struct exposure *e = &m->exposure[i];
         const float code = e->codes[3 * pixel + (size_t)c];
-        const float w = weight_of(e, pixel, code), l = log_exposure(m, c, code);
+        const float w = weight_of(m, e, pixel, c, code), l = log_exposure(m, c, code);
         if (w > 0.0f && !isinf(l)) {
             total += w;
             sum += w * (l - e->log_time);
@@ -140,7 +162,10 @@ static void prepare(struct merge *m, const struct relume_image *codes, const dou
         struct exposure *e = &m->exposure[i];
         e->codes = codes[i].data;
         e->mask = p->masks ? p->masks[i].data : NULL;
+        e->time = exposures[i];
         e->log_time = (float)log(exposures[i]);
+        for (int k = 0; k <= STEPS; k++)
+            e->inner[k] = relume_merge_weight(p->weights, (float)k / STEPS, false, false);
         for (int k = 0; k <= STEPS; k++)
             e->weight[k] = relume_merge_weight(p->weights, (float)k / STEPS,
                                                exposures[i] == longest, exposures[i] == shortest);

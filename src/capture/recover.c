@@ -19,7 +19,7 @@ static const double default_smoothness = 20.0;
 static const double rows_of_paper = 550.0;  // smoothness is stated for 50 samples x 11 exposures
 static const double same_exposure = 1.01;
 // This far below middle grey 8 bits hold nothing: what codes are there are the black level's.
-static const double nothing_ev = -9.0;
+static const double nothing_ev = -12.0;
 enum { LEAST_BLACK = 16 };
 
 static int code_of(float v)
@@ -35,9 +35,17 @@ struct place {
 };
 
 struct search {
-    const struct relume_image *codes;
+    const struct relume_image *codes, *masks;
     int n;
 };
+
+static bool is_masked(const struct search *s, size_t pixel)
+{
+    for (int j = 0; s->masks && j < s->n; j++)
+        if (s->masks[j].data && !(s->masks[j].data[pixel] > 0.0f))
+            return true;
+    return false;
+}
 
 // Differences to the four neighbours, summed over exposures.
 static float unevenness(const struct search *s, int x, int y)
@@ -77,7 +85,7 @@ static void choose_places(const struct search *s, struct place *place, int sampl
             const double b = brightness(s, pixel);
             struct place *p = &place[b >= 1.0 ? samples - 1 : b > 0.0 ? (int)(b * samples) : 0];
             const float uneven = unevenness(s, x, y);
-            if (uneven < p->uneven)
+            if (uneven < p->uneven && !is_masked(s, pixel))
                 *p = (struct place){pixel, uneven};
         }
 }
@@ -313,7 +321,7 @@ relume_status relume_response_recover(struct relume_response *out, const struct 
     relume_status status = check(codes, exposures, n, p.log);
     if (status)
         return status;
-    const struct search s = {codes, n};
+    const struct search s = {codes, p.masks, n};
     struct place *place = mem_array((size_t)samples, sizeof *place);
     double *log_time = mem_array((size_t)n, sizeof *log_time);
     int *z = mem_array((size_t)n, sizeof *z);

@@ -108,7 +108,7 @@ static relume_status check_scene(struct bracket *b, const int *order, const stru
     for (int i = 0; !status && i < b->n; i++)
         status = shrink(&thumb[i], &b->codes[order[i]]);
     for (int i = 0; i < b->n; i++)
-        likeness[i] = -1.0;
+        likeness[i] = (double)NAN;
     for (int i = 0; !status && i < b->n; i++)
         for (int j = i + 1; j < b->n && j <= i + 2; j++) {
             const double l = relume_likeness(&thumb[i], &thumb[j]);
@@ -291,14 +291,8 @@ static relume_status find_response(struct bracket *b, const struct args *args)
     b->response_source = "recovered";
     return relume_response_recover(
         &b->response, b->codes, b->exposure, b->n,
-        relume_recover_params(.log = prefix_log(&log, args_log(args), b->path[0])));
-}
-
-static void multiply(struct relume_image *mask, const struct relume_image *by)
-{
-    const size_t pixels = (size_t)by->width * (size_t)by->height;
-    for (size_t i = 0; mask->data && i < pixels; i++)
-        mask->data[i] *= by->data[i];
+        relume_recover_params(.log = prefix_log(&log, args_log(args), b->path[0]),
+                              .masks = b->masks));
 }
 
 // The last code that says nothing in any channel, as a part of full scale.
@@ -311,24 +305,45 @@ static double black_level(const struct relume_response *response)
     return (double)last / (RELUME_CODES - 1);
 }
 
-static relume_status leave_out_ghosts(struct bracket *b, const struct args *args)
+static void combine(struct relume_image *mask, const struct relume_image *ghosts, double *part)
 {
-    struct relume_image masks[MAX_BRACKET];
-    const relume_status status = relume_ghost_masks(
-        masks, b->codes, b->exposure, b->n, b->anchor,
-        relume_ghost_params(.log = args_log(args), .threads = args_threads(args),
-                            .black = 0.05 + black_level(&b->response)));
+    const size_t pixels = (size_t)ghosts->width * (size_t)ghosts->height;
+    double good = 0.0;
+    for (size_t i = 0; i < pixels; i++) {
+        good += (double)ghosts->data[i];
+        mask->data[i] *= ghosts->data[i];
+    }
+    *part = 1.0 - good / (double)pixels;
+}
+
+static relume_status leave_out_ghosts(struct bracket *b, double black, const struct args *args)
+{
+    struct relume_image ghosts[MAX_BRACKET];
+    relume_status status = relume_ghost_masks(
+        ghosts, b->codes, b->exposure, b->n, b->anchor,
+        relume_ghost_params(.log = args_log(args), .threads = args_threads(args), .black = black));
     for (int i = 0; !status && i < b->n; i++) {
-        const size_t pixels = (size_t)masks[i].width * (size_t)masks[i].height;
-        double good = 0.0;
-        for (size_t k = 0; k < pixels; k++)
-            good += (double)masks[i].data[k];
-        b->ghosts[i] = 1.0 - good / (double)pixels;
-        multiply(&masks[i], b->masks[i].data ? &b->masks[i] : &masks[i]);
-        relume_image_destroy(&b->masks[i]);
-        b->masks[i] = masks[i];
+        if (b->masks[i].data) {
+            combine(&b->masks[i], &ghosts[i], &b->ghosts[i]);
+            relume_image_destroy(&ghosts[i]);
+        } else {
+            combine(&ghosts[i], &ghosts[i], &b->ghosts[i]);
+            b->masks[i] = ghosts[i];
+        }
     }
     return status;
+}
+
+// A response that was recovered may show a black level: below it nothing can be told apart.
+static relume_status find_response_and_ghosts(struct bracket *b, const struct args *args)
+{
+    const double dark = 0.05;
+    const bool ghosts = args_has(args, "--ghosts");
+    relume_status status = find_response(b, args);
+    if (status || !ghosts)
+        return status;
+    status = leave_out_ghosts(b, dark + black_level(&b->response), args);
+    return status || strcmp(b->response_source, "recovered") != 0 ? status : find_response(b, args);
 }
 
 static void report_bias(const struct bracket *b, const struct args *args)
@@ -350,11 +365,9 @@ relume_status bracket_merge(struct bracket *b, enum relume_merge_weights weights
 {
     struct prefix_log log;
     const char *save = args_text(args, "--save-response", NULL);
-    relume_status status = find_response(b, args);
+    relume_status status = find_response_and_ghosts(b, args);
     if (!status && save)
         status = relume_response_save(&b->response, save, args_log(args));
-    if (!status && args_has(args, "--ghosts"))
-        status = leave_out_ghosts(b, args);
     if (!status)
         status =
             relume_merge(&b->out, b->report, b->codes, b->exposure, b->n, &b->response,

@@ -12,7 +12,7 @@ static struct relume_vec3 lamp_at(int i, double distance)
 
 struct photographs {
     char folder[64], out[96];
-    char path[LAMPS][128];
+    char path[LAMPS][96];
     const char *list[LAMPS];
 };
 
@@ -25,7 +25,8 @@ static void photograph(struct photographs *p, struct made_scene s, double distan
         struct relume_image image;
         s.lamp = i == dark ? (struct relume_vec3){0, 0, -9} : lamp_at(i, distance);
         CHECK_OK(made_photograph(&image, &s, 0.003));
-        snprintf(p->path[i], sizeof p->path[i], "%s/p%d.png", p->folder, i);
+        char *path = p->path[i];
+        snprintf(path, sizeof p->path[i], "%.63s/p%d.png", p->folder, i);
         p->list[i] = p->path[i];
         CHECK_OK(relume_image_save(&image, p->path[i], NULL));
         relume_image_destroy(&image);

@@ -11,6 +11,7 @@
 // One photograph and, where balls have photographs of their own, that of the ball under its light.
 struct shot {
     const char *path, *ball_path;  // borrowed
+    int number;                    // among those that were given
     char name[32];                 // of the image in the folder
     struct relume_notes notes;
     struct relume_image small;  // three channels, linear, at most SHOT_SMALL pixels a side

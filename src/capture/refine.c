@@ -56,30 +56,48 @@ static void take(struct refiner *r, const float *band, size_t stride, size_t at,
         r->pixels++;
 }
 
-static relume_status read_pixels(struct refiner *r, const struct relume_log *log)
+static size_t count_inside(const struct relume_image *mask, size_t all)
 {
-    const int width = relume_capture_width(r->capture), height = relume_capture_height(r->capture);
-    const size_t all = (size_t)width * (size_t)height;
-    const size_t step = all / (4 * PIXELS) + 1, stride = 3 * (size_t)width;
-    struct relume_image mask;
-    relume_table *table = NULL;
-    float *band = mem_array((size_t)r->lights * stride, sizeof *band);
-    float(*white)[3] = mem_array((size_t)r->lights, sizeof *white);
-    relume_status status = relume_capture_mask(&mask, r->capture, 0, log);
-    if (!status)
-        status = band && white
-                     ? relume_table_open(&table, r->capture, 0,
-                                         relume_table_params(.log = log, .threads = r->threads))
-                     : RELUME_ENOMEM;
-    for (int i = 0; !status && i < r->lights; i++)
-        relume_capture_white(r->capture, i, white[i]);
+    size_t n = 0;
+    for (size_t i = 0; mask->data && i < all; i++)
+        n += mask->data[i] > 0.5f;
+    return mask->data ? n : all;
+}
+
+// Pixels inside the mask, evenly, row by row.
+static relume_status read_rows(struct refiner *r, const struct relume_image *mask, float *band,
+                               float (*white)[3], const struct relume_log *log)
+{
+    const size_t width = (size_t)relume_capture_width(r->capture);
+    const size_t all = width * (size_t)relume_capture_height(r->capture);
+    const size_t step = count_inside(mask, all) / PIXELS + 1;
+    relume_table *table;
+    relume_status status = relume_table_open(
+        &table, r->capture, 0, relume_table_params(.log = log, .threads = r->threads));
+    size_t inside = 0;
     for (size_t at = 0; !status && at < all; at++) {
-        if (at % (size_t)width == 0)
+        if (at % width == 0)
             status = relume_table_read(table, 1, band);
-        if (!status && at % step == 0 && r->pixels < PIXELS && (!mask.data || mask.data[at] > 0.5f))
-            take(r, band, stride, at % (size_t)width, white);
+        if (!status && (!mask->data || mask->data[at] > 0.5f) && inside++ % step == 0)
+            take(r, band, 3 * width, at % width, white);
     }
     relume_table_destroy(&table);
+    return status;
+}
+
+static relume_status read_pixels(struct refiner *r, const struct relume_log *log)
+{
+    struct relume_image mask;
+    float *band =
+        mem_array((size_t)r->lights * 3, (size_t)relume_capture_width(r->capture) * sizeof *band);
+    float(*white)[3] = mem_array((size_t)r->lights, sizeof *white);
+    relume_status status = relume_capture_mask(&mask, r->capture, 0, log);
+    if (!status && !(band && white))
+        status = RELUME_ENOMEM;
+    for (int i = 0; !status && i < r->lights; i++)
+        relume_capture_white(r->capture, i, white[i]);
+    if (!status)
+        status = read_rows(r, &mask, band, white, log);
     relume_image_destroy(&mask);
     free(band);
     free(white);

@@ -21,7 +21,7 @@ struct shot {
     float intensity[3];
     double position_sigma;
 };
-enum { SHOT_SMALL = 256 };
+enum { SHOT_SMALL = 168 };
 
 struct shoot {
     struct relume_shoot_params p;

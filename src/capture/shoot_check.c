@@ -8,7 +8,7 @@
 #include <relume/align.h>
 #include <stdio.h>
 
-enum { PAIRS = 12, GRID = 1500 };
+enum { PAIRS = 5, GRID = 1500 };
 static const double LIKE = 0.35, UNLIKE = 0.5;  // likeness: of one scene; share of the others'
 static const float SATURATED = 0.02f, DARK = 0.999f;
 static const double FLAT = 0.004;   // least eigenvalue of the directions' mean square

@@ -203,6 +203,18 @@ done:
     return status;
 }
 
+// What lies outside the file's mask is not known.
+static relume_status blacken(struct relume_image *frame, relume_pack *pack)
+{
+    struct relume_image mask;
+    const relume_status status = relume_pack_mask(&mask, pack, 0);
+    const size_t pixels = (size_t)frame->width * (size_t)frame->height;
+    for (size_t i = 0; !status && mask.data && i < 3 * pixels; i++)
+        frame->data[i] *= mask.data[i / 3] > 0.5f ? 1.0f : 0.0f;
+    relume_image_destroy(&mask);
+    return status;
+}
+
 static relume_status relight(const struct args *args, const char *file)
 {
     relume_pack *pack;
@@ -219,6 +231,8 @@ static relume_status relight(const struct args *args, const char *file)
     status = parse_lights(args, &rig, &lights, &n);
     if (!status)
         status = relume_frame(&frame, pack, &(struct relume_camera){0}, lights, n, &params);
+    if (!status)
+        status = blacken(&frame, pack);
     if (!status)
         status = relume_image_save(&frame, args_text(args, "--relight", NULL),
                                    relume_image_params(.log = args_log(args)));

@@ -8,7 +8,7 @@ bad=0
 # folder: private folders it may include | public headers it may include (* = all)
 rules="base::base
 math:base:base
-image:base math:base image
+image:base math:base image photograph response
 capture:base math image:base image lights capture ball photometric shoot photograph response align
 coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack

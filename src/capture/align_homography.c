@@ -19,7 +19,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { COARSE = 80, FINE = 1400, ROUNDS = 30, BAND = 16, PARAMETERS = 8, LIKENESS = 256 };
+enum { COARSE = 80, FINE = 1400, ROUNDS = 15, BAND = 16, PARAMETERS = 8, LIKENESS = 256 };
 static const double small_step = 1e-2;  // pixels in the corners: then a level is done
 static const double most_shift = 0.12;  // of the longer side, tried on the coarsest level
 static const double default_roll_deg = 12.0, roll_step_deg = 3.0;

@@ -7,7 +7,8 @@
 //
 // The reference of a pixel is the anchor, or where that is black or saturated, the next exposure on
 // the way to the judged one that is not. Where the way ends at the judged one itself nothing else
-// knows the pixel, and it stays.
+// knows the pixel, and it stays, unless most of its window could be judged and was a ghost: single
+// saturated pixels of a place that something covered.
 #include <relume/align.h>
 
 #include "base/log.h"
@@ -19,7 +20,8 @@
 
 enum { HALF = 5, WINDOW = (2 * HALF + 1) * (2 * HALF + 1) };
 static const double default_threshold = 0.985, default_black = 0.05, default_white = 0.95;
-static const double least_part = 0.25;  // of a window, resolved by both: below, nothing is said
+// Of a window, resolved by both: below, nothing is said of a pixel, and of one without a reference.
+static const double least_part = 0.25, most_part = 0.5;
 
 struct ghosts {
     const struct relume_image *codes;  // the whole bracket
@@ -80,15 +82,19 @@ static void sum_row(void *context, size_t row, int worker)
     }
 }
 
-static bool is_reference(const struct ghosts *g, size_t pixel)
+// How much of the window has to be resolved for a judgement by the present reference; 2: it is not
+// this pixel's.
+static double part_needed(const struct ghosts *g, size_t pixel)
 {
     for (int step = 0; step < g->step; step++)
         if (resolves(g, step, pixel))
-            return false;
-    return resolves(g, g->step, pixel);
+            return 2.0;
+    if (resolves(g, g->step, pixel))
+        return least_part;
+    return g->step + 2 == g->steps ? most_part : 2.0;
 }
 
-static bool is_alike(const struct ghosts *g, size_t row, size_t x)
+static bool is_alike(const struct ghosts *g, size_t row, size_t x, double part)
 {
     const size_t width = (size_t)g->mask->width;
     double sum[4] = {0.0, 0.0, 0.0, 0.0};
@@ -97,7 +103,7 @@ static bool is_alike(const struct ghosts *g, size_t row, size_t x)
         for (int j = 0; j < 4; j++)
             sum[j] += (double)s[j];
     }
-    return sum[0] < least_part * WINDOW || sum[3] >= g->threshold * 0.5 * (sum[1] + sum[2]);
+    return sum[0] < part * WINDOW || sum[3] >= g->threshold * 0.5 * (sum[1] + sum[2]);
 }
 
 static void judge_row(void *context, size_t row, int worker)
@@ -105,9 +111,11 @@ static void judge_row(void *context, size_t row, int worker)
     const struct ghosts *g = context;
     (void)worker;
     const size_t width = (size_t)g->mask->width;
-    for (size_t x = 0; x < width; x++)
-        if (is_reference(g, row * width + x))
-            g->mask->data[row * width + x] = is_alike(g, row, x);
+    for (size_t x = 0; x < width; x++) {
+        const double part = part_needed(g, row * width + x);
+        if (part <= 1.0)
+            g->mask->data[row * width + x] = is_alike(g, row, x, part);
+    }
 }
 
 // Sets the mask where order[step] is the reference.

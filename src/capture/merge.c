@@ -13,7 +13,8 @@
 #include <string.h>
 
 // Weights are tabled in quarters of an 8-bit code, log exposures in parts of 256.
-static const float unlike = 0.05f;  // codes that differ by more than noise
+static const float least_total = 0.01f;  // below, all codes lie within 4 % of an end
+static const float unlike = 0.05f;       // codes that differ by more than noise
 enum { BAND = 16, STEPS = 255 * 4, LOGS = 255 * 256 };
 
 static const char *const names[] = {"spline", "hat", "gaussian"};
@@ -134,7 +135,7 @@ static float merge_sample(const struct merge *m, size_t pixel, int c)
             sum += w * (l - e->log_time);
         }
     }
-    return total > 1e-6f ? expf(sum / total) : unresolved(m, pixel, c);
+    return total > least_total ? expf(sum / total) : unresolved(m, pixel, c);
 }
 
 static void merge_band(void *context, size_t band, int worker)

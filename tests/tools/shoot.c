@@ -1,6 +1,6 @@
 // shoot.c - pictures of the made camera, and how far a radiance map is from another
 //
-//   shoot photo OUT.png W H TIME ROLL DX DY NOISE [X Y RADIUS]   one exposure; a ball at X, Y
+//   shoot photo OUT.ppm W H TIME ROLL DX DY NOISE [X Y RADIUS]   one exposure; a ball at X, Y
 //   shoot truth OUT.exr W H                                      the radiance that is there
 //   shoot logrms A B BORDER    RMS of ln A / B after one scale, inside of the border, where both
 //   are
@@ -9,6 +9,9 @@
 
 #include <stdio.h>
 #include <string.h>
+
+// Where the camera stands: there a quarter of a picture saturates in an exposure of 4.
+static const double from[2] = {3310, 1730};
 
 static double number(char **argv, int argc, int i)
 {
@@ -20,18 +23,20 @@ static int photo(int argc, char **argv)
     const struct made_shot s = {
         .time = number(argv, argc, 5),
         .roll_deg = number(argv, argc, 6),
-        .shift = {number(argv, argc, 7), number(argv, argc, 8)},
+        .shift = {from[0] + number(argv, argc, 7), from[1] + number(argv, argc, 8)},
         .noise = number(argv, argc, 9),
         .object = {number(argv, argc, 10), number(argv, argc, 11), number(argv, argc, 12)},
         .seed = (uint32_t)(1000.0 * number(argv, argc, 5)),
     };
     struct relume_image image = made_shoot(&s, atoi(argv[3]), atoi(argv[4]));
-    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};  // saving codes it again
+    FILE *f = fopen(argv[2], "wb");
+    if (!f)
+        return 1;
+    fprintf(f, "P6\n%d %d\n255\n", image.width, image.height);
     for (size_t i = 0; i < 3 * (size_t)image.width * (size_t)image.height; i++)
-        image.data[i] = relume_transfer_decode(srgb, image.data[i]);
-    const int failed = relume_image_save(&image, argv[2], NULL);
+        fputc((int)lroundf(255.0f * image.data[i]), f);
     relume_image_destroy(&image);
-    return failed;
+    return fclose(f);
 }
 
 static int truth(char **argv)
@@ -42,7 +47,8 @@ static int truth(char **argv)
         return 1;
     for (int i = 0; i < width * height; i++)
         for (int c = 0; c < 3; c++)
-            image.data[3 * i + c] = (float)made_radiance(i % width + 0.5, i / width + 0.5, c);
+            image.data[3 * i + c] =
+                (float)made_radiance(from[0] + i % width + 0.5, from[1] + i / width + 0.5, c);
     const int failed = relume_image_save(&image, argv[2], NULL);
     relume_image_destroy(&image);
     return failed;

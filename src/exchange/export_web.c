@@ -202,19 +202,23 @@ static relume_status choose_functions(const struct export *e, struct functions *
 static relume_status make_plan(struct maker *m)
 {
     const struct relume_export_params *p = m->e->params;
+    const bool joint = p->type == RELUME_WEB_BILINEAR || p->type == RELUME_WEB_RBF;
     struct functions f;
-    if (p->ycc && p->type != RELUME_WEB_PTM && p->type != RELUME_WEB_HSH &&
-        p->type != RELUME_WEB_SH)
+    if (p->ycc && p->type == RELUME_WEB_LPTM)
         return log_fail(m->e->log, RELUME_EINVAL,
-                        "colour space ycc: expected type ptm, hsh or sh; principal components have "
-                        "their own");
+                        "colour space ycc: expected type bilinear, rbf, ptm, hsh or sh");
+    if (joint && p->ycc && p->coefficients && p->coefficients < 3)
+        return log_fail(m->e->log, RELUME_EINVAL,
+                        "%d coefficients; expected at least 3 in colour space mycc",
+                        p->coefficients);
     const relume_status status = choose_functions(m->e, &f);
     if (status)
         return status;
     m->all = p->coefficients != 0;
-    if (f.kind == FUNCTIONS_GRID || f.kind == FUNCTIONS_GAUSS)
-        return plan_components(&m->plan, m->e->source, &f,
-                               p->coefficients ? p->coefficients : DEFAULT_PLANES, p->threads);
+    if (joint)
+        return (p->ycc ? plan_yab : plan_components)(
+            &m->plan, m->e->source, &f, p->coefficients ? p->coefficients : DEFAULT_PLANES,
+            p->threads);
     const enum foreign_form form = p->type == RELUME_WEB_LPTM ? FOREIGN_LUMINANCE
                                    : p->ycc                   ? FOREIGN_YCC
                                                               : FOREIGN_CHANNELS;

@@ -17,8 +17,7 @@ static double product(const double *a, const double *b, int n)
     return sum;
 }
 
-static void take_components(struct plan *p, const struct plan_view *v,
-                            const struct principal *c)
+static void take_components(struct plan *p, const struct plan_view *v, const struct principal *c)
 {
     const int n = p->numbers, f = p->functions.count;
     const size_t row = (size_t)n;

@@ -126,7 +126,8 @@ static relume_status solve_nodes(struct plan_view *v, const double *prior, doubl
     return status;
 }
 
-static relume_status fit_nodes(struct plan_view *v, const struct source *s, const struct functions *f)
+static relume_status fit_nodes(struct plan_view *v, const struct source *s,
+                               const struct functions *f)
 {
     if (f->kind != FUNCTIONS_GRID && f->kind != FUNCTIONS_GAUSS)
         return solve_nodes(v, NULL, FIT_RIDGE);

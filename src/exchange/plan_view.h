@@ -11,11 +11,11 @@
 struct plan_view {
     int directions, functions, numbers;
     struct relume_vec3 *direction;
-    double *share;  // [directions], sums to 1
-    double *f;      // [directions][functions]
-    double *a;      // [directions][3][P + 1]: what the file shows
-    double *nodes;  // [functions][3][P + 1]
-    double *shown;  // [directions][3][P + 1]: what the viewer shows
+    double *share;              // [directions], sums to 1
+    double *f;                  // [directions][functions]
+    double *a;                  // [directions][3][P + 1]: what the file shows
+    double *nodes;              // [functions][3][P + 1]
+    double *shown;              // [directions][3][P + 1]: what the viewer shows
     double *mean, *covariance;  // [P], [P][P] of the numbers over the picture
 };
 

@@ -152,25 +152,34 @@ static relume_status analyse_luminance(struct maker *m, int chroma, int count)
             y->node[j * n + i] = m->luminance[j * n + i] - rest[i] / 6.0;
     }
     principal_free(&y->c);
-    const relume_status status =
-        rest ? analyse(m, y, energy_of[PART_Y], count) : RELUME_ENOMEM;
+    const relume_status status = rest ? analyse(m, y, energy_of[PART_Y], count) : RELUME_ENOMEM;
     free(rest);
     return status;
 }
 
+struct split {
+    int luminance, chroma;
+};
+
 // So many pairs of chroma planes that each is worth more than the luminance planes in its stead.
-static int choose_chroma(const struct maker *m, int planes, int most_chroma)
+static struct split choose_split(const struct maker *m, int planes)
 {
-    const double *y = m->part[PART_Y].c.value;
-    const double *a = m->part[PART_A].c.value, *b = m->part[PART_B].c.value;
-    int luminance = 1, chroma = 1;
-    while (luminance + 2 * chroma < planes)
-        if (chroma < luminance && chroma < most_chroma &&
-            luminance + 2 * (chroma + 1) <= planes && (a[chroma] + b[chroma]) / 2.0 > y[luminance])
-            chroma++;
+    const struct principal *y = &m->part[PART_Y].c, *a = &m->part[PART_A].c,
+                           *b = &m->part[PART_B].c;
+    struct split s = {1, 1};
+    while (s.luminance + 2 * s.chroma < planes) {
+        const bool room = s.chroma < s.luminance && s.chroma < a->count &&
+                          s.luminance + 2 * (s.chroma + 1) <= planes;
+        const bool more = s.luminance < y->count;
+        if (room &&
+            (!more || (a->value[s.chroma] + b->value[s.chroma]) / 2.0 > y->value[s.luminance]))
+            s.chroma++;
+        else if (more)
+            s.luminance++;
         else
-            luminance++;
-    return chroma;
+            break;
+    }
+    return s;
 }
 
 // ---------------------------------------------------------------- planes
@@ -224,9 +233,10 @@ static int min_of(int a, int b)
 }
 
 relume_status plan_yab(struct plan *p, const struct source *s, const struct functions *functions,
-                       int planes, int threads)
+                       int planes, int most_chroma, int threads)
 {
-    const int most = s->numbers + 1, most_chroma = min_of(planes / 3, most);
+    const int most = s->numbers + 1;
+    most_chroma = min_of(most_chroma, min_of(planes / 3, most));
     const int count = min_of(planes, 3 * most);
     *p = (struct plan){
         .form = FOREIGN_JOINT, .functions = *functions, .terms = count, .planes = count};
@@ -242,7 +252,9 @@ relume_status plan_yab(struct plan *p, const struct source *s, const struct func
     if (!status)
         status = analyse_luminance(&m, most_chroma, min_of(count, most));
     if (!status) {
-        p->chroma = choose_chroma(&m, count, most_chroma);
+        const struct split split = choose_split(&m, count);
+        p->chroma = split.chroma;
+        p->planes = p->terms = split.luminance + 2 * split.chroma;
         status = analyse_luminance(&m, p->chroma, min_of(count, most));
     }
     if (!status)

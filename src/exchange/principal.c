@@ -24,8 +24,8 @@ void principal_free(struct principal *c)
     *c = (struct principal){0};
 }
 
-relume_status principal_find(struct principal *out, double *metric, const double *covariance,
-                              int n, int count)
+relume_status principal_find(struct principal *out, double *metric, const double *covariance, int n,
+                             int count)
 {
     const size_t size = (size_t)n * (size_t)n, kept = (size_t)count * (size_t)n;
     double *values = mem_array((size_t)n, sizeof *values),
@@ -33,7 +33,7 @@ relume_status principal_find(struct principal *out, double *metric, const double
     double *half = mem_array(size, sizeof *half), *z = mem_array(size, sizeof *z);
     double *root = NULL, *inverse = NULL;
     *out = (struct principal){count, 0.0, mem_array((size_t)count, sizeof(double)),
-                               mem_array(kept, sizeof(double)), mem_array(kept, sizeof(double))};
+                              mem_array(kept, sizeof(double)), mem_array(kept, sizeof(double))};
     bool good = values && vectors && half && z && out->value && out->forward && out->back &&
                 lsq_eigenvectors(metric, n, n, values, vectors);
     if (good) {

@@ -16,8 +16,8 @@ struct principal {
 
 // Of n numbers with that covariance [n][n] the `count` largest; `metric` [n][n] is destroyed.
 // RELUME_ENOMEM.
-relume_status principal_find(struct principal *out, double *metric, const double *covariance,
-                              int n, int count);
+relume_status principal_find(struct principal *out, double *metric, const double *covariance, int n,
+                             int count);
 void principal_free(struct principal *c);
 
 #endif

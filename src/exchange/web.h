@@ -23,6 +23,9 @@ struct web_folder {
 
 // Encode every sheet at `step`. `all`: keep even those that are not worth their bytes.
 relume_status web_encode(struct web_folder *w, double step, bool all, int threads);
+// Of an encoded plan with chroma planes: how many of the pairs say more than a pair of blank planes
+// costs, at least 1.
+int web_useful_chroma(const struct web_folder *w, double step);
 void web_folder_free(struct web_folder *w);
 // info.json and the JPEGs into the folder `path`. RELUME_EIO.
 relume_status web_write(const struct web_folder *w, const char *path, int quality,

@@ -112,6 +112,20 @@ relume_status web_encode(struct web_folder *w, double step, bool all, int thread
     return status;
 }
 
+// A blank plane costs two bits a block: its DC and its end.
+#define BLANK_BITS (2.0 / 64.0)
+
+int web_useful_chroma(const struct web_folder *w, double step)
+{
+    const double cost = SHEET_LAMBDA * step * step * 2.0 * BLANK_BITS;
+    for (int i = w->plan->chroma - 1; i > 0; i--) {
+        const double *energy = w->plan->energy + 3 * i, *distortion = w->sheet[i].distortion;
+        if (energy[1] + energy[2] - distortion[1] - distortion[2] > cost)
+            return i + 1;
+    }
+    return 1;
+}
+
 void web_folder_free(struct web_folder *w)
 {
     for (int i = 0; w->sheet && i < w->sheets; i++)

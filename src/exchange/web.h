@@ -10,6 +10,12 @@
 relume_status web_read(struct foreign *out, const char *path, const struct relume_limits *limits,
                        const struct relume_log *log);
 
+// Whether folders of the type have that many functions.
+static inline bool web_has_count(enum function_kind kind, int count)
+{
+    return functions_has_count(kind, count) && (kind != FUNCTIONS_HSH || count <= 9);
+}
+
 // A folder being made: planes as JPEGs at a step, the number of planes by what they are worth.
 struct web_folder {
     const struct plan *plan;

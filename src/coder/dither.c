@@ -9,7 +9,7 @@
 enum { NEIGHBOURS = 8 };
 
 // The band begins so far on the way to the other code, whose middle is the edge.
-#define BAND 0.3
+#define BAND 0.25
 // Only where the vectors move less than this part of the way within four pixels: steeper ramps hide
 // their contours.
 #define MOST_CHANGE 0.5

@@ -204,14 +204,17 @@ static double measure_edges(const struct dither *d, const uint16_t *index, struc
     return edges;
 }
 
-// Leaves the longest contours, in the order of the pairs.
+// Leaves the longest contours that fit, in the order of the pairs.
 static void choose(const struct dither *d, struct contours *c, double edges)
 {
     double left = d->share < 1.0 ? d->share * edges / EDGES_PER_PIXEL : INFINITY;
     size_t kept = 0;
     qsort(c->at, c->count, sizeof *c->at, by_length);
-    while (kept < c->count && c->at[kept].area <= left)
-        left -= c->at[kept++].area;
+    for (size_t i = 0; i < c->count; i++)
+        if (c->at[i].area <= left) {
+            left -= c->at[i].area;
+            c->at[kept++] = c->at[i];
+        }
     c->count = kept;
     qsort(c->at, c->count, sizeof *c->at, by_pair);
 }

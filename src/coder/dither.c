@@ -4,6 +4,7 @@
 #include "base/thread.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { NEIGHBOURS = 8 };
@@ -123,9 +124,14 @@ void dither_offer(const struct dither *d, size_t x, size_t y, uint16_t code, con
 
 // ---------------------------------------------------------------- contours
 
-// Indices cost where neighbours differ. A pixel of a band costs a sixth of such an edge: measured
-// in PIZ with 64 to 256 codes, and rounded up.
-#define EDGES_PER_PIXEL (1.0 / 6.0)
+// Indices cost where neighbours differ, about the logarithm of by how much: so does PIZ. A pixel of
+// a band costs BAND_PRICE of such an edge.
+#define BAND_PRICE 1.0
+
+static double edge_cost(uint16_t a, uint16_t b)
+{
+    return log2(1.0 + abs(a - b));
+}
 
 struct contour {
     uint32_t pair;  // smaller code, larger code
@@ -185,10 +191,10 @@ static struct contour *find(const struct contours *c, uint16_t a, uint16_t b)
     return bsearch(&wanted, c->at, c->count, sizeof *c->at, by_pair);
 }
 
-// Lengths of the contours; the number of all edges.
+// Lengths of the contours; what all edges cost.
 static double measure_edges(const struct dither *d, const uint16_t *index, struct contours *c)
 {
-    double edges = 0.0;
+    double cost = 0.0;
     for (size_t y = 0; y < d->height; y++)
         for (size_t x = 0; x < d->width; x++) {
             const uint16_t *at = index + y * d->width + x;
@@ -196,25 +202,29 @@ static double measure_edges(const struct dither *d, const uint16_t *index, struc
                                       y + 1 < d->height ? at[d->width] : at[0]};
             for (int i = 0; i < 2; i++) {
                 struct contour *contour = next[i] == at[0] ? NULL : find(c, at[0], next[i]);
-                edges += next[i] != at[0];
+                cost += edge_cost(at[0], next[i]);
                 if (contour)
                     contour->length += 1.0;
             }
         }
-    return edges;
+    return cost;
 }
 
 // Leaves the longest contours that fit, in the order of the pairs.
 static void choose(const struct dither *d, struct contours *c, double edges)
 {
-    double left = d->share < 1.0 ? d->share * edges / EDGES_PER_PIXEL : INFINITY;
+    double left = d->share < 1.0 ? d->share * edges : INFINITY;
     size_t kept = 0;
     qsort(c->at, c->count, sizeof *c->at, by_length);
-    for (size_t i = 0; i < c->count; i++)
-        if (c->at[i].area <= left) {
-            left -= c->at[i].area;
-            c->at[kept++] = c->at[i];
+    for (size_t i = 0; i < c->count; i++) {
+        const struct contour *at = &c->at[i];
+        const double price =
+            BAND_PRICE * at->area * edge_cost((uint16_t)(at->pair >> 16), (uint16_t)at->pair);
+        if (price <= left) {
+            left -= price;
+            c->at[kept++] = *at;
         }
+    }
     c->count = kept;
     qsort(c->at, c->count, sizeof *c->at, by_pair);
 }

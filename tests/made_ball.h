@@ -87,14 +87,22 @@ static inline double made_shade(const struct made_scene *s, struct relume_vec3 r
     return v;
 }
 
-static inline double made_value(const struct made_scene *s, double x, double y)
+// What a ray sees of the balls; false where it sees the cloth behind them.
+static inline bool made_value(double *value, const struct made_scene *s, double x, double y)
 {
     struct relume_vec3 from, ray, at, n;
     made_ray(s, x, y, &from, &ray);
     for (int b = 0; b < s->balls; b++)
-        if (made_hit(s, b, from, ray, &at, &n))
-            return made_shade(s, ray, at, n);
-    return 0.12 + 0.04 * sin(0.7 * x + 2.0 * sin(0.11 * y)) * sin(0.45 * y);  // cloth
+        if (made_hit(s, b, from, ray, &at, &n)) {
+            *value = made_shade(s, ray, at, n);
+            return true;
+        }
+    return false;
+}
+
+static inline double made_cloth(int x, int y)
+{
+    return 0.12 + 0.04 * sin(0.7 * x + 2.0 * sin(0.11 * y)) * sin(0.45 * y);
 }
 
 // Three channels, clipped at 1 as a camera does, with noise of `noise`.
@@ -104,10 +112,15 @@ static inline relume_status made_photograph(struct relume_image *out, const stru
     uint32_t random = 12345;
     const relume_status status = relume_image_create(out, MADE_WIDTH, MADE_HEIGHT, 3);
     for (int i = 0; !status && i < MADE_WIDTH * MADE_HEIGHT; i++) {
+        const int x = i % MADE_WIDTH, y = i / MADE_WIDTH;
+        const double cloth = made_cloth(x, y);
         double sum = 0.0;
-        for (int k = 0; k < MADE_RAYS * MADE_RAYS; k++)
-            sum += made_value(s, i % MADE_WIDTH + (k % MADE_RAYS + 0.5) / MADE_RAYS,
-                              i / MADE_WIDTH + (k / MADE_RAYS + 0.5) / MADE_RAYS);
+        for (int k = 0; k < MADE_RAYS * MADE_RAYS; k++) {
+            double value = cloth;
+            made_value(&value, s, x + (k % MADE_RAYS + 0.5) / MADE_RAYS,
+                       y + (k / MADE_RAYS + 0.5) / MADE_RAYS);
+            sum += value;
+        }
         random = random * 1664525u + 1013904223u;
         const double v = sum / (MADE_RAYS * MADE_RAYS) + noise * (random / 2147483648.0 - 1.0);
         for (int c = 0; c < 3; c++)

@@ -163,8 +163,8 @@ static bool follow(struct follower *f, double reach)
     return true;
 }
 
-bool ball_follow(struct relume_ball *ball, const struct relume_ball_camera *camera,
-                 const struct relume_image *edges, int angles, double reach)
+relume_status ball_follow(struct relume_ball *ball, const struct relume_ball_camera *camera,
+                          const struct relume_image *edges, int angles, double reach)
 {
     struct follower f = {
         .ball = ball,
@@ -175,9 +175,11 @@ bool ball_follow(struct relume_ball *ball, const struct relume_ball_camera *came
         .change = mem_zeroed((size_t)angles, sizeof *f.change),
         .scratch = mem_zeroed((size_t)angles, sizeof *f.scratch),
     };
-    const bool found = f.point && f.change && f.scratch && follow(&f, reach * ball->radius);
+    relume_status status = f.point && f.change && f.scratch ? RELUME_OK : RELUME_ENOMEM;
+    if (!status && !follow(&f, reach * ball->radius))
+        status = RELUME_EDATA;
     free(f.point);
     free(f.change);
     free(f.scratch);
-    return found;
+    return status;
 }

@@ -196,7 +196,7 @@ static int ascending(const void *a, const void *b)
 }
 
 // The median |miss| / albedo of lit samples, with surfaces fitted to the lights as they are.
-static double residual_of(struct refiner *r)
+static relume_status find_residual(double *residual, struct refiner *r)
 {
     double *miss = mem_array(r->pixels * (size_t)r->lights, sizeof *miss);
     size_t n = 0;
@@ -210,25 +210,26 @@ static double residual_of(struct refiner *r)
         }
     if (n)
         qsort(miss, n, sizeof *miss, ascending);
-    const double found = n ? miss[n / 2] : (double)NAN;
+    *residual = n ? miss[n / 2] : (double)NAN;
+    const relume_status status = miss ? RELUME_OK : RELUME_ENOMEM;
     free(miss);
-    return found;
+    return status;
 }
 
 static relume_status solve(struct refiner *r, const vec3 *given, double residual[2],
                            const struct relume_log *log)
 {
-    residual[0] = residual_of(r);
-    for (int round = 0; round < ROUNDS; round++) {
+    relume_status status = find_residual(&residual[0], r);
+    for (int round = 0; !status && round < ROUNDS; round++) {
         thread_for(r->threads, (size_t)r->lights, fit_light, r);
         if (!fix_gauge(r, given))
-            return RELUME_EDATA;
+            return log_fail(log, RELUME_EDATA,
+                            "lights cannot be refined: the surface does not tell them apart");
         thread_for(r->threads, r->pixels, fit_pixel, r);
         if (!log_progress(log, "refining", (round + 1.0) / ROUNDS))
             return RELUME_ECANCEL;
     }
-    residual[1] = residual_of(r);
-    return RELUME_OK;
+    return status ? status : find_residual(&residual[1], r);
 }
 
 relume_status relume_lights_refine(struct relume_vec3 *direction, double *intensity,

@@ -193,10 +193,11 @@ static relume_status encode(const struct args *args, const struct job *job, cons
                                 relume_encode_params(.log = args_log(args), .domain = domain,
                                                      .threads = args_threads(args)));
     if (!status)
-        status = relume_pack_encode(
-            capture, coder, path, NULL,
-            relume_pack_encode_params(.log = args_log(args), .domain = domain,
-                                      .compression = RELUME_COMPRESS_PIZ, .threads = args_threads(args)));
+        status =
+            relume_pack_encode(capture, coder, path, NULL,
+                               relume_pack_encode_params(.log = args_log(args), .domain = domain,
+                                                         .compression = RELUME_COMPRESS_PIZ,
+                                                         .threads = args_threads(args)));
 done:
     relume_coder_destroy(&coder);
     relume_capture_destroy(&capture);

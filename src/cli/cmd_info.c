@@ -43,6 +43,8 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
                        const char *display)
 {
     printf("projection    %s\n", relume_projection_name(i->geometry.projection));
+    if (i->slabs)
+        printf("slabs         %d\n", i->slabs);
     printf("views         %d of %d x %d pixels\n", i->views, i->width, i->height);
     printf("lights        %d, %s\n", c->lights,
            c->hemispherical ? "one hemisphere" : "whole sphere");

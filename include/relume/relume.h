@@ -19,6 +19,7 @@
 #include <relume/relight.h>
 #include <relume/rig.h>
 #include <relume/scene.h>
+#include <relume/slabs.h>
 #include <relume/tone.h>
 #include <relume/view.h>
 

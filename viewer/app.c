@@ -3,6 +3,7 @@
 #include "gizmo.h"
 #include "keys.h"
 #include "lamps.h"
+#include "orbit.h"
 #include "say.h"
 
 #include <relume/tone.h>
@@ -49,6 +50,10 @@ static void choose_framing(struct relume_camera *camera, const struct app_file *
     if (file->geometry.projection != RELUME_SLAB)
         return;
     camera->framing = RELUME_FRAME_EYE;
+    if (file->around) {
+        camera->eye = relume_slabs_eye(file->around, 0);
+        return;
+    }
     camera->eye = (struct relume_vec3){
         .x = 0.5 * (file->uv_min[0] + file->uv_max[0]),
         .y = 0.5 * (file->uv_min[1] + file->uv_max[1]),
@@ -71,6 +76,21 @@ static relume_status check_camera(const struct relume_camera *camera, const stru
     return RELUME_OK;
 }
 
+static relume_status check_around(const struct app_state *s, const struct app_file *file,
+                                  int width, int height, const struct relume_log *log)
+{
+    const struct relume_vec3 eye = s->camera.eye;
+    struct relume_window window;
+    if (!file->around || s->camera.framing != RELUME_FRAME_EYE)
+        return RELUME_OK;
+    if (s->aperture != 0.0 || s->focused)
+        return say(log, RELUME_EINVAL, "--aperture, --focus: expected one slab; found several");
+    if (!relume_slabs_window(&window, file->around, eye, NULL, width, height))
+        return say(log, RELUME_EINVAL, "--eye: expected a place beside the object; found %g,%g,%g",
+                   eye.x, eye.y, eye.z);
+    return RELUME_OK;
+}
+
 static bool behind_cameras(const struct app_file *file, double z)
 {
     const struct relume_geometry *g = &file->geometry;
@@ -83,7 +103,9 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
     *app = (struct app){.file = *file, .start = *start};
     struct app_state *s = &app->start;
     choose_framing(&s->camera, file, look_ahead);
-    const relume_status status = check_camera(&s->camera, file, log);
+    relume_status status = check_camera(&s->camera, file, log);
+    if (!status)
+        status = check_around(s, file, file->width, file->height, log);
     if (status)
         return status;
     if (!s->focused)
@@ -133,6 +155,12 @@ struct app_rectangle app_picture(const struct app *app)
     };
 }
 
+bool app_window(const struct app *app, struct relume_window *window)
+{
+    return relume_slabs_window(window, app->file.around, app->now.camera.eye, NULL, app->file.width,
+                               app->file.height);
+}
+
 // The point of the picture under (x, y) stays there.
 static void zoom_picture(struct app *app, double x, double y, double factor)
 {
@@ -149,12 +177,14 @@ static void zoom_picture(struct app *app, double x, double y, double factor)
 
 bool app_pole_y(const struct app *app)
 {
-    return panoramic(&app->file);
+    return app->file.around || panoramic(&app->file);
 }
 
 struct relume_vec3 app_middle(const struct app *app)
 {
     const struct relume_geometry *g = &app->file.geometry;
+    if (app->file.around)
+        return relume_slabs_middle(app->file.around);
     if (panoramic(&app->file))
         return g->center;
     const bool slab = g->projection == RELUME_SLAB;
@@ -177,6 +207,8 @@ double app_reach(const struct app *app)
 
 struct app_axes app_frame_axes(const struct app *app)
 {
+    if (orbit_is(app))
+        return orbit_axes(app);
     if (app->now.camera.framing != RELUME_FRAME_LOOK)
         return (struct app_axes){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const double pan = app->now.camera.look.pan_deg * PI / 180;
@@ -231,9 +263,22 @@ static void turn_light(struct app *app, double dx, double dy)
     app_turn_light(app, dx * per_pixel, dy * per_pixel);
 }
 
+static void turn_orbit(struct app *app, double dx, double dy)
+{
+    double turn_deg[2];
+    orbit_drag(turn_deg, app, dx, dy);
+    orbit_turn(app, turn_deg[0], turn_deg[1]);
+    app->turned_deg[0] += turn_deg[0];
+    app->turned_deg[1] += turn_deg[1];
+}
+
 // The object follows the cursor, so the eye goes the other way; it stays among the cameras.
 static void move_eye(struct app *app, double dx, double dy)
 {
+    if (orbit_is(app)) {
+        turn_orbit(app, dx, dy);
+        return;
+    }
     const struct app_file *f = &app->file;
     struct relume_vec3 *eye = &app->now.camera.eye;
     const double wide = f->uv_max[0] - f->uv_min[0];
@@ -244,6 +289,10 @@ static void move_eye(struct app *app, double dx, double dy)
 
 void app_dolly(struct app *app, double factor)
 {
+    if (orbit_is(app)) {
+        orbit_dolly(app, factor);
+        return;
+    }
     const double st_z = app->file.geometry.st_z;
     const double captured = app->file.geometry.uv_z - st_z;
     double *z = &app->now.camera.eye.z;
@@ -252,6 +301,8 @@ void app_dolly(struct app *app, double factor)
 
 static double degrees_per_pixel(const struct app *app)
 {
+    if (orbit_is(app))
+        return orbit_degrees_per_pixel(app);
     const struct relume_look *look = &app->now.camera.look;
     const double field = (look->stereographic ? 4 : 2) * atan(1 / look->zoom) * 180 / PI;
     return field / app->width;
@@ -366,6 +417,8 @@ static bool on_wheel(struct app *app, const struct app_event *e)
     const double factor = pow(wheel_factor, e->wheel);
     if (app->now.camera.framing == RELUME_FRAME_LOOK)
         zoom_look(app, e->x, e->y, factor);
+    else if (orbit_is(app))
+        orbit_dolly(app, 1 / factor);
     else
         zoom_picture(app, e->x, e->y, factor);
     return true;
@@ -431,7 +484,10 @@ static bool glide(struct app *app, double seconds)
         app_stand_still(app);
         return false;
     }
-    turn_by(&app->now.camera.look, speed[0] * way, speed[1] * way);
+    if (orbit_is(app))
+        orbit_turn(app, speed[0] * way, speed[1] * way);
+    else
+        turn_by(&app->now.camera.look, speed[0] * way, speed[1] * way);
     speed[0] *= keep;
     speed[1] *= keep;
     return true;
@@ -451,7 +507,7 @@ bool app_advance(struct app *app, double seconds)
     if (!(seconds > 0))
         return false;
     bool changed = adapt(app, seconds);
-    if (app->now.camera.framing != RELUME_FRAME_LOOK)
+    if (app->now.camera.framing != RELUME_FRAME_LOOK && !orbit_is(app))
         return changed;
     if (app->drag == APP_DRAG_CAMERA)
         follow_hand(app, seconds);

@@ -89,6 +89,11 @@ RELUME_RESULT relume_status relume_slabs_value(float rgb[3], const relume_slabs 
                                                const struct relume_image *views,
                                                const struct relume_view_params *params);
 
+// The view that weighs most in a ray, and the place in [0, 1] x [0, 1] of its picture, rows from the
+// top, where it shows the ray's point on the st plane. False when no slab has any weight.
+RELUME_API bool relume_slabs_nearest(int *view, double place[2], const relume_slabs *slabs,
+                                     struct relume_vec3 eye, struct relume_vec3 direction);
+
 #ifdef __cplusplus
 }
 #endif

@@ -240,3 +240,42 @@ relume_status relume_slabs_value(float rgb[3], const relume_slabs *slabs, vec3 e
     end(&job);
     return status;
 }
+
+// As far as one slab knows it: the weight of its nearest camera.
+static double nearest_in(int *view, double place[2], const relume_slab *slab, vec3 eye,
+                         vec3 direction)
+{
+    const struct relume_geometry *g = &slab->geometry;
+    const vec3 way = relume_pose_turn_back(&g->pose, direction);
+    double uv[2], st[2], weights[4];
+    int views[4], best = 0;
+    if (!slabs_ray(uv, st, slab, relume_pose_local(&g->pose, eye), way))
+        return 0.0;
+    const int n = relume_slab_blend(views, weights, slab, uv, NULL);
+    for (int i = 1; i < n; i++)
+        best = weights[i] > weights[best] ? i : best;
+    if (n == 0)
+        return 0.0;
+    *view = views[best];
+    place[0] = (st[0] - g->st_min[0]) / (g->st_max[0] - g->st_min[0]);
+    place[1] = (g->st_max[1] - st[1]) / (g->st_max[1] - g->st_min[1]);
+    return weights[best] * relume_slab_weight(slab, uv, st);
+}
+
+bool relume_slabs_nearest(int *view, double place[2], const relume_slabs *slabs, vec3 eye,
+                          vec3 direction)
+{
+    double most = 0.0;
+    for (int i = 0; i < slabs->count; i++) {
+        double found[2] = {0.0, 0.0};
+        int which = 0;
+        const double weight = nearest_in(&which, found, slabs->slab[i], eye, direction);
+        if (!(weight > most))
+            continue;
+        most = weight;
+        *view = which;
+        place[0] = found[0];
+        place[1] = found[1];
+    }
+    return most > 0.0;
+}

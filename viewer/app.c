@@ -76,8 +76,8 @@ static relume_status check_camera(const struct relume_camera *camera, const stru
     return RELUME_OK;
 }
 
-static relume_status check_around(const struct app_state *s, const struct app_file *file,
-                                  int width, int height, const struct relume_log *log)
+static relume_status check_around(const struct app_state *s, const struct app_file *file, int width,
+                                  int height, const struct relume_log *log)
 {
     const struct relume_vec3 eye = s->camera.eye;
     struct relume_window window;

@@ -92,8 +92,8 @@ static struct turned turn(const struct program *program, const struct gl *gl,
         .down = relume_pose_turn_back(&g->pose, w->down),
     };
     t.grid = relume_slab_grid(t.slab);
-    const double extent = fmax(t.grid.u[t.grid.columns - 1] - t.grid.u[0],
-                               t.grid.v[t.grid.rows - 1] - t.grid.v[0]);
+    const double extent =
+        fmax(t.grid.u[t.grid.columns - 1] - t.grid.u[0], t.grid.v[t.grid.rows - 1] - t.grid.v[0]);
     t.slack = 1e-6 * fmax(extent, fabs(g->uv_z - g->st_z));
     return t;
 }
@@ -191,8 +191,8 @@ static void draw_slab_cells(const struct turned *t)
     set_vector(t, RIGHT, t->right);
     set_vector(t, DOWN, t->down);
     gl->Uniform2f(at[PLANES], (float)g->uv_z, (float)g->st_z);
-    gl->Uniform4f(at[GRID], (float)grid->u[0], (float)grid->v[0],
-                  (float)grid->u[grid->columns - 1], (float)grid->v[grid->rows - 1]);
+    gl->Uniform4f(at[GRID], (float)grid->u[0], (float)grid->v[0], (float)grid->u[grid->columns - 1],
+                  (float)grid->v[grid->rows - 1]);
     gl->Uniform1f(at[SLACK], (float)t->slack);
     gl->Uniform4f(at[ST], (float)g->st_min[0], (float)g->st_min[1], (float)g->st_max[0],
                   (float)g->st_max[1]);

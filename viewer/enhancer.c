@@ -254,8 +254,8 @@ static void set_textures(const struct enhancer *e, int view, const struct target
     const GLuint towards = e->towards[slab_of(e, view)];
     const struct gl *gl = e->gl;
     const GLuint textures[] = {
-        [UNIT_VIEW] = relit->texture, [UNIT_NORMALS] = v->normal,  [UNIT_ALBEDOS] = v->albedo,
-        [UNIT_DETAILS] = v->detail,   [UNIT_TOWARDS] = towards, [UNIT_REFERENCE] = v->reference,
+        [UNIT_VIEW] = relit->texture, [UNIT_NORMALS] = v->normal, [UNIT_ALBEDOS] = v->albedo,
+        [UNIT_DETAILS] = v->detail,   [UNIT_TOWARDS] = towards,   [UNIT_REFERENCE] = v->reference,
     };
     for (int unit = UNIT_VIEW; unit <= UNIT_REFERENCE; unit++) {
         texture_use(gl, unit, GL_TEXTURE_2D, textures[unit]);

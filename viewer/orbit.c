@@ -113,8 +113,7 @@ void orbit_move(struct relume_vec3 *point, const struct app *app, double x, doub
     if (!orbit_place(from, app, *point) || !app_window(app, &w))
         return;
     const struct relume_vec3 normal = cross(w.right, w.down);
-    const double ahead =
-        dot(minus(*point, w.eye), normal) / dot(minus(w.corner, w.eye), normal);
+    const double ahead = dot(minus(*point, w.eye), normal) / dot(minus(w.corner, w.eye), normal);
     const struct relume_vec3 across = scaled(w.right, ahead * (x - from[0]) / (r.right - r.left));
     const struct relume_vec3 down = scaled(w.down, ahead * (y - from[1]) / (r.bottom - r.top));
     *point = (struct relume_vec3){point->x + across.x + down.x, point->y + across.y + down.y,

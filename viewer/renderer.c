@@ -92,8 +92,8 @@ void renderer_destroy(struct renderer *r)
 {
     if (!r->gl)
         return;
-    struct program *const programs[] = {&r->picture, &r->slab,     &r->slab_depth, &r->slab_lens,
-                                        &r->slabs,   &r->slabs_depth, &r->mean,    &r->panorama,
+    struct program *const programs[] = {&r->picture, &r->slab,        &r->slab_depth, &r->slab_lens,
+                                        &r->slabs,   &r->slabs_depth, &r->mean,       &r->panorama,
                                         &r->ball,    &r->present};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         program_destroy(programs[i], r->gl);

@@ -37,8 +37,8 @@ static relume_status find_slabs(relume_slabs **around, const relume_pack *pack,
     *around = NULL;
     if (!info->slabs)
         return RELUME_OK;
-    const relume_status status = relume_slabs_create(around, info->slab, info->slabs, info->uv,
-                                                     info->slab_of, info->views);
+    const relume_status status =
+        relume_slabs_create(around, info->slab, info->slabs, info->uv, info->slab_of, info->views);
     if (status == RELUME_EINVAL)
         return say(log, RELUME_EDATA, "the cameras of a slab do not stand on a grid");
     return status;

@@ -26,8 +26,9 @@ struct relume_camera {
     enum relume_framing framing;
     int view;
     struct relume_vec3 eye;
-    struct relume_aim aim;  // EYE, several slabs: where it looks. Of one slab: all zero is the window
-    int through;            // EYE, several slabs: 1 + the slab whose st window it looks through
+    struct relume_aim
+        aim;      // EYE, several slabs: where it looks. Of one slab: all zero is the window
+    int through;  // EYE, several slabs: 1 + the slab whose st window it looks through
     struct relume_look look;
     int width, height;  // default: the view's own size; LOOK: 1024 x 512
 };

@@ -61,7 +61,7 @@ struct relume_synth_params {
     int grid[2];    // slab: cameras along u and v; default 5 x 5
     double spread;  // slab: the grid reaches from -spread to spread; default 0.5, of several
                     // slabs so far that neighbours overlap: 1.15 x 3 tan(180 degrees / slabs)
-    enum relume_ring ring;  // slab: several of them, each with the grid
+    enum relume_ring ring;           // slab: several of them, each with the grid
     const struct relume_vec3 *eyes;  // slab: cameras instead of the grid, all of one z;
                                      // panorama: its one centre; planar: (0, 0, z) perspective
     int eye_count;

@@ -45,15 +45,16 @@ struct relume_window {
 // Where an eye looks. All zero: at the middle of the object, +y up, through a window as large as
 // the largest st window; for an eye straight before a slab it is that slab's window.
 struct relume_aim {
-    bool aimed;              // at `at`; else at the middle
-    struct relume_vec3 at;   // world
-    struct relume_vec3 up;   // zero: +y, for an eye straight above or below -z or +z
-    double field_of_view_deg;  // horizontal, below 180; 0: as above, and pixels are square otherwise
+    bool aimed;             // at `at`; else at the middle
+    struct relume_vec3 at;  // world
+    struct relume_vec3 up;  // zero: +y, for an eye straight above or below -z or +z
+    double
+        field_of_view_deg;  // horizontal, below 180; 0: as above, and pixels are square otherwise
 };
 // False when the eye stands where it looks, looks along `up`, or something is not finite.
 RELUME_API bool relume_slabs_window(struct relume_window *out, const relume_slabs *slabs,
-                                    struct relume_vec3 eye, const struct relume_aim *aim,
-                                    int width, int height);
+                                    struct relume_vec3 eye, const struct relume_aim *aim, int width,
+                                    int height);
 // The st window of a slab as seen from `eye` (world), as relume_slab_frame shows it.
 RELUME_API struct relume_window relume_slab_window(const struct relume_geometry *slab,
                                                    struct relume_vec3 eye);
@@ -84,13 +85,12 @@ RELUME_RESULT relume_status relume_slabs_frame(struct relume_image *out, const r
 // extent: `corner` = eye + direction, `right` and `down` zero. RELUME_EINVAL likewise and when no
 // slab has any weight.
 RELUME_RESULT relume_status relume_slabs_value(float rgb[3], const relume_slabs *slabs,
-                                               struct relume_vec3 eye,
-                                               struct relume_vec3 direction,
+                                               struct relume_vec3 eye, struct relume_vec3 direction,
                                                const struct relume_image *views,
                                                const struct relume_view_params *params);
 
-// The view that weighs most in a ray, and the place in [0, 1] x [0, 1] of its picture, rows from the
-// top, where it shows the ray's point on the st plane. False when no slab has any weight.
+// The view that weighs most in a ray, and the place in [0, 1] x [0, 1] of its picture, rows from
+// the top, where it shows the ray's point on the st plane. False when no slab has any weight.
 RELUME_API bool relume_slabs_nearest(int *view, double place[2], const relume_slabs *slabs,
                                      struct relume_vec3 eye, struct relume_vec3 direction);
 

@@ -8,13 +8,15 @@ static const struct option options[] = {
     {"--size", OPTION_INT, "N",
      "width (planar, slab, cube face) or height (panoramas); default 256", 1, 65536},
     {"--views", OPTION_TEXT, "GxG", "slab: grid of cameras; default 5x5", 0, 0},
-    {"--spread", OPTION_NUMBER, "S", "slab: cameras reach from -S to S; default 0.5, with --slabs so far that they overlap", 0.001, 1000},
+    {"--spread", OPTION_NUMBER, "S",
+     "slab: cameras reach from -S to S; default 0.5, with --slabs so far that they overlap", 0.001,
+     1000},
     {"--slabs", OPTION_TEXT, "N",
      "slab: 4, 6 or 8 around the object, or cube: 4 and one from above; default: one slab", 0, 0},
     {"--lights", OPTION_INT, "N", "number of light directions; default 100", 1, 65536},
     PATTERN_OPTION,
-    {"--hemisphere", OPTION_FLAG, NULL, "lights on the viewer's (panoramas, --slabs: upper) side only", 0,
-     0},
+    {"--hemisphere", OPTION_FLAG, NULL,
+     "lights on the viewer's (panoramas, --slabs: upper) side only", 0, 0},
     {"--lights-from", OPTION_TEXT, "FILE",
      "directions of a capture.json, a .lp file or lines x y z", 0, 0},
     {"--projection", OPTION_TEXT, "P",
@@ -98,11 +100,10 @@ static relume_status make_lights(struct relume_vec3 **out, int *n, bool pole_y,
     *out = malloc((size_t)*n * sizeof **out);
     if (!*out)
         return RELUME_ENOMEM;
-    return relume_lights_make(*out, *n, pattern,
-                              relume_lights_params(.log = args_log(args),
-                                                   .seed = (uint64_t)args_int(args, "--seed", 0),
-                                                   .hemisphere = args_has(args, "--hemisphere"),
-                                                   .pole_y = pole_y));
+    return relume_lights_make(
+        *out, *n, pattern,
+        relume_lights_params(.log = args_log(args), .seed = (uint64_t)args_int(args, "--seed", 0),
+                             .hemisphere = args_has(args, "--hemisphere"), .pole_y = pole_y));
 }
 
 static relume_status capture(const struct relume_scene_kind *kind,

@@ -89,11 +89,11 @@ static relume_status find_refit(const struct renderer *r, const struct relume_co
     *refit = NULL;
     if (codes->domain != RELUME_DOMAIN_DISPLAY || !has_environment(r))
         return RELUME_OK;
-    return relume_refit_create(
-        refit, codes,
-        relume_refit_params(.log = r->shared->learned ? NULL : r->params.log,
-                            .like = r->shared->learned, .cpu_off = r->params.cpu_off,
-                            .threads = r->params.threads));
+    return relume_refit_create(refit, codes,
+                               relume_refit_params(.log = r->shared->learned ? NULL : r->params.log,
+                                                   .like = r->shared->learned,
+                                                   .cpu_off = r->params.cpu_off,
+                                                   .threads = r->params.threads));
 }
 
 static void keep_refit(const struct renderer *r, relume_refit **refit)
@@ -126,11 +126,11 @@ relume_status renderer_relight(const struct renderer *r, int view, struct relume
     if (!status)
         status = find_refit(r, codes, &refit);
     if (!status)
-        status = relume_relight(
-            out, codes, r->lights, r->light_count,
-            relume_relight_params(.log = r->params.log, .cpu_off = r->params.cpu_off,
-                                  .threads = r->params.threads, .surface = &surface, .grid = grid,
-                                  .refit = refit));
+        status =
+            relume_relight(out, codes, r->lights, r->light_count,
+                           relume_relight_params(.log = r->params.log, .cpu_off = r->params.cpu_off,
+                                                 .threads = r->params.threads, .surface = &surface,
+                                                 .grid = grid, .refit = refit));
     keep_refit(r, &refit);
     if (!status)
         status = passes_apply(out, r->pack, view, codes, r->lights, r->light_count, &r->params);

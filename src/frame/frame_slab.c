@@ -54,8 +54,7 @@ static relume_status draw(const struct renderer *r, const struct relume_camera *
 static bool is_aimed(const struct relume_aim *aim)
 {
     const vec3 up = aim->up;
-    return aim->aimed || aim->field_of_view_deg != 0.0 || up.x != 0.0 || up.y != 0.0 ||
-           up.z != 0.0;
+    return aim->aimed || aim->field_of_view_deg != 0.0 || up.x != 0.0 || up.y != 0.0 || up.z != 0.0;
 }
 
 relume_status frame_eye(const struct renderer *r, const struct relume_camera *camera,
@@ -104,8 +103,10 @@ relume_status query_slab(const struct renderer *r, vec3 eye, vec3 direction, flo
 {
     const struct relume_geometry *g = &r->info->geometry;
     double st[2], uv[2], xy[2];
-    if ((eye.z - g->st_z) * (g->uv_z - g->st_z) <= 0.0 || !ray_goes_towards(eye, direction, g->st_z) ||
-        !ray_meets_plane(eye, direction, g->st_z, st) || !ray_meets_plane(eye, direction, g->uv_z, uv) ||
+    if ((eye.z - g->st_z) * (g->uv_z - g->st_z) <= 0.0 ||
+        !ray_goes_towards(eye, direction, g->st_z) ||
+        !ray_meets_plane(eye, direction, g->st_z, st) ||
+        !ray_meets_plane(eye, direction, g->uv_z, uv) ||
         !ray_window_pixel(g->st_min, g->st_max, r->info->width, r->info->height, st, xy))
         return ray_none(r, "it misses the window");
     relume_slab *slab;

@@ -27,8 +27,8 @@ static relume_status make_slabs(relume_slabs **slabs, const struct renderer *r)
                   : RELUME_OK;
 }
 
-static relume_status gather(struct gathered *g, const struct renderer *r,
-                            const relume_slabs *slabs, const struct relume_window *window)
+static relume_status gather(struct gathered *g, const struct renderer *r, const relume_slabs *slabs,
+                            const struct relume_window *window)
 {
     const struct members members = {slabs, r->info->slab_of};
     const vec3 eye = window->eye;
@@ -45,8 +45,7 @@ static relume_status choose_window(struct relume_window *window, const struct re
                                    const relume_slabs *slabs, const struct relume_camera *camera,
                                    int width, int height)
 {
-    const vec3 eye =
-        camera->framing == RELUME_FRAME_EYE ? camera->eye : relume_slabs_eye(slabs, 0);
+    const vec3 eye = camera->framing == RELUME_FRAME_EYE ? camera->eye : relume_slabs_eye(slabs, 0);
     if (camera->through > 0 && camera->through <= relume_slabs_count(slabs)) {
         *window = relume_slab_window(relume_slabs_geometry(slabs, camera->through - 1), eye);
         return RELUME_OK;

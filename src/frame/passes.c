@@ -18,10 +18,10 @@ static relume_status find_towards(struct relume_image *out, const relume_pack *p
     for (int y = 0; !status && y < info->height; y++)
         for (int x = 0; x < info->width; x++, to += 3) {
             const vec3 towards =
-                panorama ? vec3_scale(relume_panorama_ray(g, info->width, info->height, x + 0.5,
-                                                          y + 0.5),
-                                      -1.0)
-                         : g->pose.axis[2];
+                panorama
+                    ? vec3_scale(
+                          relume_panorama_ray(g, info->width, info->height, x + 0.5, y + 0.5), -1.0)
+                    : g->pose.axis[2];
             to[0] = (float)towards.x;
             to[1] = (float)towards.y;
             to[2] = (float)towards.z;

@@ -30,7 +30,7 @@ bool ray_meets_plane(vec3 eye, vec3 direction, double z, double xy[2])
 }
 
 bool ray_window_pixel(const double min[2], const double max[2], int width, int height,
-                         const double at[2], double xy[2])
+                      const double at[2], double xy[2])
 {
     xy[0] = (at[0] - min[0]) / (max[0] - min[0]) * width;
     xy[1] = (max[1] - at[1]) / (max[1] - min[1]) * height;

@@ -149,8 +149,8 @@ static relume_status read_slabs(relume_pack *p)
         return RELUME_ENOMEM;
     for (int i = 0; i < n; i++, v += 12) {
         slab[i] = p->info.geometry;
-        slab[i].pose = (struct relume_pose){
-            vector_of(v), {vector_of(v + 3), vector_of(v + 6), vector_of(v + 9)}};
+        slab[i].pose = (struct relume_pose){vector_of(v),
+                                            {vector_of(v + 3), vector_of(v + 6), vector_of(v + 9)}};
         if (!relume_pose_normalise(&slab[i].pose))
             return reader_bad(p, ATTR_POSE, "rotations: unit vectors, perpendicular, right-handed");
         const relume_status status = read_planes(p, &slab[i], i, n);

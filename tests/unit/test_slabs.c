@@ -158,24 +158,39 @@ static double difference(const struct relume_image *a, const struct relume_image
     return most;
 }
 
+// How close a ray passes the ball's middle, 1 at its rim.
+static double depth_in_ball(const struct relume_window *w, int pixel)
+{
+    const vec3 way = ray_of(w, (pixel % W + 0.5) / W, (pixel / W + 0.5) / W);
+    const double b = dot(w->eye, way);
+    return sqrt(dot(w->eye, w->eye) - b * b / dot(way, way)) / radius;
+}
+
+// Over the ball but its rim: silhouettes are a texel wide, and there are as many from every eye.
 static double psnr_at(vec3 eye)
 {
     const struct relume_window w = window_from(eye);
     struct relume_image got = draw(&w, relume_view_params(.disparity = c.disparity)), want, depth;
     double square = 0;
+    int n = 0;
     render(&want, &depth, &w, W, W);
-    for (int i = 0; i < 3 * W * W; i++)
+    for (int i = 0; i < 3 * W * W; i++) {
+        if (depth_in_ball(&w, i / 3) > 0.85)
+            continue;
         square += pow((double)got.data[i] - (double)want.data[i], 2);
+        n++;
+    }
+    assert_true(n > 1000);
     relume_image_destroy(&got);
     relume_image_destroy(&want);
     relume_image_destroy(&depth);
-    return -10 * log10(square / (3 * W * W));
+    return -10 * log10(square / n);
 }
 
 // ---------------------------------------------------------------- frames
 
-// Eyes between cameras, in the middle of a cell of slab 0 and on the seam of two slabs, by the ring
-// and before and behind it. Silhouettes a texel wide are what keeps it from being better.
+// Eyes between cameras, in the middle of a cell of slab 0 and on the seam of two slabs, on the ring
+// and before and behind it.
 static void the_seam_is_as_good_as_the_inside(void **state)
 {
     (void)state;
@@ -184,32 +199,36 @@ static void the_seam_is_as_good_as_the_inside(void **state)
         const double inside = psnr_at(eye_at(atan(place(2) / uv_z) * 90 / PI, 0.3, distance));
         const double between = psnr_at(eye_at(180.0 / RING, 0.3, distance));
         const double far = psnr_at(eye_at(180.0 + 180.0 / RING, -0.2, distance));
-        assert_true(inside > 26);
-        assert_true(between > inside - 1);
-        assert_true(far > inside - 1);
+        // bilinear between texels of paint that bends 25 x 0.3 a square unit errs by 60 dB
+        assert_true(inside > 57);
+        assert_true(between > 57);
+        assert_true(far > 57);
     }
 }
 
-// A ray onto the ball, from an eye that goes around it: nowhere does its value jump. The ball's
-// paint changes by 1.5 per unit, the ray's point by 0.7 times the step; neighbouring texels, 0.036
-// apart, by 0.05, of which a camera that leaves takes its weight of 1e-4.
+static void look_at_ball(float rgb[3], double azimuth_deg, const struct relume_view_params *params)
+{
+    const vec3 eye = eye_at(azimuth_deg, 0.4, 3.3);
+    const vec3 way = {0.3 - eye.x, 0.02 - eye.y, -eye.z};
+    CHECK_OK(relume_slabs_value(rgb, c.slabs, eye, way, c.view, params));
+}
+
+// A ray onto the ball, from an eye that goes around it: nowhere does its value jump, also where
+// without depth two slabs show different things. In a step uv moves by 5e-4, weights by 2e-3 at
+// most, and what they weigh differs by 0.6; a camera that leaves takes its 1e-4 with it.
 static void nothing_jumps_across_a_seam(void **state)
 {
     (void)state;
     const double step_deg = 0.01;
-    const struct relume_view_params params = {.disparity = c.disparity};
-    float before[3] = {0}, now[3];
-    for (int i = 0; i <= 6000; i += 1 + (i % 600 > 300) * 9) {
-        const vec3 eye = eye_at(step_deg * i, 0.4, 3.3);
-        const vec3 way = {-eye.x, 0.02 - eye.y, -eye.z};
-        CHECK_OK(relume_slabs_value(now, c.slabs, eye, way, c.view, &params));
-        const vec3 next = eye_at(step_deg * (i + 1), 0.4, 3.3);
-        const vec3 next_way = {-next.x, 0.02 - next.y, -next.z};
-        memcpy(before, now, sizeof before);
-        CHECK_OK(relume_slabs_value(now, c.slabs, next, next_way, c.view, &params));
-        for (int k = 0; k < 3; k++)
-            CHECK_NEAR(now[k], before[k], 2e-3);
-    }
+    const struct relume_view_params ways[] = {{.disparity = c.disparity}, {0}};
+    for (int way = 0; way < 2; way++)
+        for (int i = 0; i < 6000; i += i > 2400 && i < 3600 ? 1 : 20) {
+            float before[3], now[3];
+            look_at_ball(before, step_deg * i, &ways[way]);
+            look_at_ball(now, step_deg * (i + 1), &ways[way]);
+            for (int k = 0; k < 3; k++)
+                CHECK_NEAR(now[k], before[k], 1.5e-3);
+        }
 }
 
 // Seen through a slab's own window from one of its cameras, where no other slab has a say.

@@ -222,7 +222,7 @@ static void nothing_jumps_across_a_seam(void **state)
     const double step_deg = 0.01;
     const struct relume_view_params ways[] = {{.disparity = c.disparity}, {0}};
     for (int way = 0; way < 2; way++)
-        for (int i = 0; i < 6000; i += i > 2400 && i < 3600 ? 1 : 20) {
+        for (int i = 0; i<6000; i += i> 2400 && i < 3600 ? 1 : 20) {
             float before[3], now[3];
             look_at_ball(before, step_deg * i, &ways[way]);
             look_at_ball(now, step_deg * (i + 1), &ways[way]);

@@ -19,6 +19,7 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
            "\"width\": %d, \"height\": %d, \"lights\": %d, \"hemispherical\": %s, ",
            i->version, relume_projection_name(i->geometry.projection), i->views, i->width,
            i->height, c->lights, c->hemispherical ? "true" : "false");
+    printf("\"slabs\": %d, ", i->slabs ? i->slabs : i->geometry.projection == RELUME_SLAB);
     printf("\"basis\": \"%s\", \"coefficients\": %d, \"planes\": %d, \"interpolant\": %s%s%s, "
            "\"domain\": \"%s\", "
            "\"display\": \"%s\", \"bits\": \"%s\", \"compression\": \"%s\", ",

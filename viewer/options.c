@@ -372,7 +372,7 @@ void options_help(void)
     }
     puts("\n"
          "mouse:  drag         slab: turn; panorama: look around; picture: move\n"
-         "        wheel        zoom\n"
+         "        wheel        zoom; several slabs: nearer, farther\n"
          "        right drag   turn the light\n"
          "keys:");
     for (const struct key_binding *b = key_bindings; b->key; b++)

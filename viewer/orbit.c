@@ -42,11 +42,10 @@ bool orbit_is(const struct app *app)
     return app->file.around && app->now.camera.framing == RELUME_FRAME_EYE;
 }
 
-static void put_eye(struct app *app, struct relume_vec3 from_middle)
+static void put_eye(struct app *app, struct relume_vec3 d)
 {
     const struct relume_vec3 m = relume_slabs_middle(app->file.around);
-    app->now.camera.eye =
-        (struct relume_vec3){m.x + from_middle.x, m.y + from_middle.y, m.z + from_middle.z};
+    app->now.camera.eye = (struct relume_vec3){m.x + d.x, m.y + d.y, m.z + d.z};
 }
 
 static struct relume_vec3 eye_from_middle(const struct app *app)
@@ -54,15 +53,59 @@ static struct relume_vec3 eye_from_middle(const struct app *app)
     return minus(app->now.camera.eye, relume_slabs_middle(app->file.around));
 }
 
+static struct relume_vec3 from_middle(double azimuth, double elevation, double away)
+{
+    return scaled((struct relume_vec3){sin(azimuth) * cos(elevation), sin(elevation),
+                                       cos(azimuth) * cos(elevation)},
+                  away);
+}
+
+static double elevation_of(struct relume_vec3 d)
+{
+    return atan2(d.y, hypot(d.x, d.z));
+}
+
+// Whether some camera sees the middle from that side.
+static bool is_covered(const struct app *app, struct relume_vec3 d)
+{
+    const struct relume_vec3 m = relume_slabs_middle(app->file.around);
+    const struct relume_vec3 eye = {m.x + d.x, m.y + d.y, m.z + d.z};
+    double place[2];
+    int view;
+    return relume_slabs_nearest(&view, place, app->file.around, eye, scaled(d, -1));
+}
+
+// As high or low as cameras go on the way from the first slab's height to the wanted one; false
+// when they do not stand at this azimuth.
+static bool find_covered(double *elevation, const struct app *app, double azimuth, double away)
+{
+    double inside = elevation_of(
+        minus(relume_slabs_eye(app->file.around, 0), relume_slabs_middle(app->file.around)));
+    double outside = *elevation;
+    if (!is_covered(app, from_middle(azimuth, inside, away)))
+        return false;
+    for (int i = 0; i < 40; i++) {
+        const double between = 0.5 * (inside + outside);
+        if (is_covered(app, from_middle(azimuth, between, away)))
+            inside = between;
+        else
+            outside = between;
+    }
+    *elevation = inside;
+    return true;
+}
+
 void orbit_turn(struct app *app, double right_deg, double up_deg)
 {
     const struct relume_vec3 d = eye_from_middle(app);
     const double most = highest_deg * PI / 180;
+    const double away = length(d);
     const double azimuth = atan2(d.x, d.z) + right_deg * PI / 180;
-    const double elevation = atan2(d.y, hypot(d.x, d.z)) + up_deg * PI / 180;
-    const double e = clamp(elevation, -most, most);
-    put_eye(app, scaled((struct relume_vec3){sin(azimuth) * cos(e), sin(e), cos(azimuth) * cos(e)},
-                        length(d)));
+    double elevation = clamp(elevation_of(d) + up_deg * PI / 180, -most, most);
+    const bool leaves =
+        is_covered(app, d) && !is_covered(app, from_middle(azimuth, elevation, away));
+    if (!leaves || find_covered(&elevation, app, azimuth, away))
+        put_eye(app, from_middle(azimuth, elevation, away));
 }
 
 double orbit_degrees_per_pixel(const struct app *app)

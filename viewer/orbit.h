@@ -6,7 +6,8 @@
 
 // Whether the frame is one of several slabs.
 bool orbit_is(const struct app *app);
-// Turn the eye about the object, degrees to the right and up; it never passes the poles.
+// Turn the eye about the object, degrees to the right and up. It stays where cameras see the middle
+// from, once it is there, and never passes the poles.
 void orbit_turn(struct app *app, double right_deg, double up_deg);
 // As the object follows a drag, by how much.
 void orbit_drag(double turn_deg[2], const struct app *app, double dx, double dy);

@@ -222,10 +222,13 @@ static void a_drag_turns_the_object(void **state)
     send(app, APP_MOVE, 10 + H / 2.0, 15);
     assert_true(fabs(app->now.camera.eye.x + away) < 1e-9);
     assert_true(fabs(app->now.camera.eye.z) < 1e-9);
-    send(app, APP_MOVE, 10 + H / 2.0, 15 + H / 6.0);
-    assert_true(fabs(app->now.camera.eye.y - 0.5 * away) < 1e-9);  // 30 degrees up
-    send(app, APP_MOVE, 10 + H / 2.0, 15 + 10.0 * H);              // not beyond the pole
-    assert_true(app->now.camera.eye.y < away && app->now.camera.eye.x < 0);
+    send(app, APP_MOVE, 10 + H / 2.0, 15 + H / 9.0);
+    assert_true(fabs(app->now.camera.eye.y - away * sin(0.3490658504)) < 1e-9);  // 20 degrees up
+    // as high as the cameras are and no higher, and at a corner of the ring less high
+    send(app, APP_MOVE, 10 + H / 2.0, 15 + 10.0 * H);
+    assert_true(fabs(app->now.camera.eye.y - away * sin(atan(rows[1] / 3))) < 1e-4);
+    send(app, APP_MOVE, 10 + 0.75 * H, 15 + 10.0 * H);
+    assert_true(fabs(app->now.camera.eye.y - away * sin(atan(rows[1] / 3 * sqrt(0.5)))) < 1e-4);
     assert_true(fabs(length_of(app->now.camera.eye) - away) < 1e-9);
     struct relume_window window;
     assert_true(app_window(app, &window));

@@ -76,16 +76,16 @@ static relume_status check_camera(const struct relume_camera *camera, const stru
     return RELUME_OK;
 }
 
-static relume_status check_around(const struct app_state *s, const struct app_file *file, int width,
-                                  int height, const struct relume_log *log)
+static relume_status check_around(const struct relume_camera *camera, const struct app_file *file,
+                                  const struct app_state *start, const struct relume_log *log)
 {
-    const struct relume_vec3 eye = s->camera.eye;
+    const struct relume_vec3 eye = camera->eye;
     struct relume_window window;
-    if (!file->around || s->camera.framing != RELUME_FRAME_EYE)
+    if (!file->around || camera->framing != RELUME_FRAME_EYE)
         return RELUME_OK;
-    if (s->aperture != 0.0 || s->focused)
+    if (start->aperture != 0.0 || start->focused)
         return say(log, RELUME_EINVAL, "--aperture, --focus: expected one slab; found several");
-    if (!relume_slabs_window(&window, file->around, eye, NULL, width, height))
+    if (!relume_slabs_window(&window, file->around, eye, NULL, file->width, file->height))
         return say(log, RELUME_EINVAL, "--eye: expected a place beside the object; found %g,%g,%g",
                    eye.x, eye.y, eye.z);
     return RELUME_OK;
@@ -105,7 +105,7 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
     choose_framing(&s->camera, file, look_ahead);
     relume_status status = check_camera(&s->camera, file, log);
     if (!status)
-        status = check_around(s, file, file->width, file->height, log);
+        status = check_around(&s->camera, file, start, log);
     if (status)
         return status;
     if (!s->focused)

@@ -66,18 +66,20 @@ static relume_status find_surface(const struct renderer *r, int view, struct rel
     return status;
 }
 
-// All views of a file have one coder.
+// All views of a file have one coder, and so have all their refits.
 static relume_status find_grid(const struct renderer *r, const struct relume_codes *codes,
-                               const relume_weight_grid **grid)
+                               const relume_refit *refit, const relume_weight_grid **grid)
 {
     const bool folded = codes->domain != RELUME_DOMAIN_DISPLAY && has_environment(r);
+    const bool refitted = refit && !find_near(r);
     relume_status status = RELUME_OK;
-    *grid = r->params.grid;
-    if (*grid || !(find_near(r) || folded))
+    *grid = refitted ? NULL : r->params.grid;
+    if (*grid || !(find_near(r) || folded || refitted))
         return RELUME_OK;
     if (!r->shared->grid)
-        status = relume_weight_grid_create(&r->shared->grid, codes->coder,
-                                           relume_weight_grid_params(.threads = r->params.threads));
+        status = relume_weight_grid_create(
+            &r->shared->grid, refitted ? relume_refit_codes(refit)->coder : codes->coder,
+            relume_weight_grid_params(.threads = r->params.threads));
     *grid = r->shared->grid;
     return status;
 }
@@ -122,9 +124,9 @@ relume_status renderer_relight(const struct renderer *r, int view, struct relume
     if (!status && find_near(r))
         status = find_surface(r, view, &surface);
     if (!status)
-        status = find_grid(r, codes, &grid);
-    if (!status)
         status = find_refit(r, codes, &refit);
+    if (!status)
+        status = find_grid(r, codes, refit, &grid);
     if (!status)
         status =
             relume_relight(out, codes, r->lights, r->light_count,

@@ -85,9 +85,10 @@ static relume_status check_around(const struct relume_camera *camera, const stru
         return RELUME_OK;
     if (start->aperture != 0.0 || start->focused)
         return say(log, RELUME_EINVAL, "--aperture, --focus: expected one slab; found several");
-    if (!relume_slabs_window(&window, file->around, eye, NULL, file->width, file->height))
-        return say(log, RELUME_EINVAL, "--eye: expected a place beside the object; found %g,%g,%g",
-                   eye.x, eye.y, eye.z);
+    if (!relume_slabs_window(&window, file->around, eye, &camera->aim, file->width, file->height))
+        return say(log, RELUME_EINVAL,
+                   "--eye: expected a place beside what it looks at; found %g,%g,%g", eye.x, eye.y,
+                   eye.z);
     return RELUME_OK;
 }
 
@@ -140,7 +141,7 @@ struct app_rectangle app_picture(const struct app *app)
         return (struct app_rectangle){0, 0, app->width, app->height};
     double width = app->width;
     double height = app->height;
-    if (app->letterbox) {
+    if (app->letterbox && s->camera.aim.field_of_view_deg == 0.0) {
         const double fit = fmin(width / app->file.width, height / app->file.height);
         width = app->file.width * fit;
         height = app->file.height * fit;
@@ -157,8 +158,8 @@ struct app_rectangle app_picture(const struct app *app)
 
 bool app_window(const struct app *app, struct relume_window *window)
 {
-    return relume_slabs_window(window, app->file.around, app->now.camera.eye, NULL, app->file.width,
-                               app->file.height);
+    return relume_slabs_window(window, app->file.around, app->now.camera.eye, &app->now.camera.aim,
+                               app->width, app->height);
 }
 
 // The point of the picture under (x, y) stays there.
@@ -177,7 +178,8 @@ static void zoom_picture(struct app *app, double x, double y, double factor)
 
 bool app_pole_y(const struct app *app)
 {
-    return app->file.around || panoramic(&app->file);
+    const relume_slabs *around = app->file.around;
+    return (around && relume_slabs_count(around) > 1) || panoramic(&app->file);
 }
 
 struct relume_vec3 app_middle(const struct app *app)

@@ -42,15 +42,22 @@ bool orbit_is(const struct app *app)
     return app->file.around && app->now.camera.framing == RELUME_FRAME_EYE;
 }
 
+// What the eye goes around.
+static struct relume_vec3 target_of(const struct app *app)
+{
+    const struct relume_aim *aim = &app->now.camera.aim;
+    return aim->aimed ? aim->at : relume_slabs_middle(app->file.around);
+}
+
 static void put_eye(struct app *app, struct relume_vec3 d)
 {
-    const struct relume_vec3 m = relume_slabs_middle(app->file.around);
+    const struct relume_vec3 m = target_of(app);
     app->now.camera.eye = (struct relume_vec3){m.x + d.x, m.y + d.y, m.z + d.z};
 }
 
 static struct relume_vec3 eye_from_middle(const struct app *app)
 {
-    return minus(app->now.camera.eye, relume_slabs_middle(app->file.around));
+    return minus(app->now.camera.eye, target_of(app));
 }
 
 static struct relume_vec3 from_middle(double azimuth, double elevation, double away)
@@ -68,7 +75,7 @@ static double elevation_of(struct relume_vec3 d)
 // Whether some camera sees the middle from that side.
 static bool is_covered(const struct app *app, struct relume_vec3 d)
 {
-    const struct relume_vec3 m = relume_slabs_middle(app->file.around);
+    const struct relume_vec3 m = target_of(app);
     const struct relume_vec3 eye = {m.x + d.x, m.y + d.y, m.z + d.z};
     double place[2];
     int view;
@@ -79,8 +86,7 @@ static bool is_covered(const struct app *app, struct relume_vec3 d)
 // when they do not stand at this azimuth.
 static bool find_covered(double *elevation, const struct app *app, double azimuth, double away)
 {
-    double inside = elevation_of(
-        minus(relume_slabs_eye(app->file.around, 0), relume_slabs_middle(app->file.around)));
+    double inside = elevation_of(minus(relume_slabs_eye(app->file.around, 0), target_of(app)));
     double outside = *elevation;
     if (!is_covered(app, from_middle(azimuth, inside, away)))
         return false;
@@ -123,7 +129,7 @@ void orbit_drag(double turn_deg[2], const struct app *app, double dx, double dy)
 void orbit_dolly(struct app *app, double factor)
 {
     const relume_slabs *slabs = app->file.around;
-    const double captured = length(minus(relume_slabs_eye(slabs, 0), relume_slabs_middle(slabs)));
+    const double captured = length(minus(relume_slabs_eye(slabs, 0), target_of(app)));
     const struct relume_vec3 d = eye_from_middle(app);
     const double now = length(d);
     put_eye(app, scaled(d, captured * clamp(now / captured * factor, 0.25, 4.0) / now));

@@ -30,15 +30,17 @@ static struct app_file describe(const relume_pack *pack)
     return file;
 }
 
-static relume_status find_slabs(relume_slabs **around, const relume_pack *pack,
+// Several slabs, or one for a free eye.
+static relume_status find_slabs(relume_slabs **around, const relume_pack *pack, bool free_eye,
                                 const struct relume_log *log)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
     *around = NULL;
-    if (!info->slabs)
+    if (!info->slabs && !(free_eye && info->geometry.projection == RELUME_SLAB))
         return RELUME_OK;
     const relume_status status =
-        relume_slabs_create(around, info->slab, info->slabs, info->uv, info->slab_of, info->views);
+        relume_slabs_create(around, info->slabs ? info->slab : &info->geometry,
+                            info->slabs ? info->slabs : 1, info->uv, info->slab_of, info->views);
     if (status == RELUME_EINVAL)
         return say(log, RELUME_EDATA, "the cameras of a slab do not stand on a grid");
     return status;
@@ -143,7 +145,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
     if (status)
         return status;
     struct app_file file = describe(pack);
-    status = find_slabs(&around, pack, s->log);
+    status = find_slabs(&around, pack, relume_aim_given(&start->camera.aim), s->log);
     file.around = around;
     if (!status)
         status = app_start(&app, &file, start, look_ahead, s->log);

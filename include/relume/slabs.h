@@ -18,7 +18,8 @@ extern "C" {
 typedef struct relume_slabs relume_slabs;
 
 // View i of `views` stands at uv[i] of slab[slab_of[i]]; `slab_of` may be NULL for one slab.
-// RELUME_EINVAL when the cameras of a slab are no grid (relume_slab_create); RELUME_ENOMEM.
+// RELUME_EINVAL when a pose is no rotation or the cameras of a slab are no grid
+// (relume_slab_create); RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_slabs_create(relume_slabs **out,
                                                 const struct relume_geometry *slab, int slabs,
                                                 const double (*uv)[2], const int *slab_of,
@@ -51,6 +52,8 @@ struct relume_aim {
     double
         field_of_view_deg;  // horizontal, below 180; 0: as above, and pixels are square otherwise
 };
+// Whether anything is not zero.
+RELUME_API bool relume_aim_given(const struct relume_aim *aim);
 // False when the eye stands where it looks, looks along `up`, or something is not finite.
 RELUME_API bool relume_slabs_window(struct relume_window *out, const relume_slabs *slabs,
                                     struct relume_vec3 eye, const struct relume_aim *aim, int width,

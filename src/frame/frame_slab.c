@@ -51,12 +51,6 @@ static relume_status draw(const struct renderer *r, const struct relume_camera *
     return status ? status : relume_slab_frame(out, slab, eye, g->images, &params);
 }
 
-static bool is_aimed(const struct relume_aim *aim)
-{
-    const vec3 up = aim->up;
-    return aim->aimed || aim->field_of_view_deg != 0.0 || up.x != 0.0 || up.y != 0.0 || up.z != 0.0;
-}
-
 relume_status frame_eye(const struct renderer *r, const struct relume_camera *camera,
                         struct relume_image *out)
 {
@@ -66,7 +60,7 @@ relume_status frame_eye(const struct renderer *r, const struct relume_camera *ca
     relume_slab *slab = NULL;
     struct gathered gathered = {0};
     relume_status status = check_slab(r);
-    if (!status && (r->info->slabs || is_aimed(&camera->aim)))
+    if (!status && (r->info->slabs || relume_aim_given(&camera->aim)))
         return frame_around(r, camera, out);
     if (!status)
         status = make_slab(&slab, r);

@@ -23,8 +23,12 @@ relume_status relume_slabs_create(relume_slabs **out, const struct relume_geomet
     s->count = slabs;
     s->views = views;
     relume_status status = RELUME_OK;
-    for (int i = 0; !status && i < slabs; i++)
-        status = slab_create(&s->slab[i], &slab[i], uv, slab_of, i, views);
+    for (int i = 0; !status && i < slabs; i++) {
+        struct relume_geometry geometry = slab[i];
+        status = relume_pose_normalise(&geometry.pose)
+                     ? slab_create(&s->slab[i], &geometry, uv, slab_of, i, views)
+                     : RELUME_EINVAL;
+    }
     if (status)
         relume_slabs_destroy(&s);
     *out = s;
@@ -118,8 +122,8 @@ struct relume_window relume_slab_window(const struct relume_geometry *g, vec3 ey
     return (struct relume_window){
         .eye = eye,
         .corner = relume_pose_world(&g->pose, corner),
-        .right = vec3_scale(g->pose.axis[0], g->st_max[0] - g->st_min[0]),
-        .down = vec3_scale(g->pose.axis[1], g->st_min[1] - g->st_max[1]),
+        .right = relume_pose_turn(&g->pose, vec3_of(g->st_max[0] - g->st_min[0], 0, 0)),
+        .down = relume_pose_turn(&g->pose, vec3_of(0, g->st_min[1] - g->st_max[1], 0)),
     };
 }
 
@@ -145,6 +149,11 @@ static vec3 choose_up(vec3 wanted, vec3 ahead)
         return wanted;
     const bool steep = fabs(ahead.y) > 1.0 - 1e-9;
     return steep ? vec3_of(0, 0, ahead.y < 0.0 ? -1.0 : 1.0) : vec3_of(0, 1, 0);
+}
+
+bool relume_aim_given(const struct relume_aim *aim)
+{
+    return aim->aimed || aim->field_of_view_deg != 0.0 || !is_zero(aim->up);
 }
 
 bool relume_slabs_window(struct relume_window *out, const relume_slabs *slabs, vec3 eye,

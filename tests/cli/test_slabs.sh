@@ -49,6 +49,9 @@ relume relight ring.exr -o again.exr --eye 2.5980762,1,1.5 --light "$light"
 same 'the middle is where an eye looks' frame.exr again.exr
 relume relight ring.exr -o turned.exr --eye 2.5980762,1,1.5 --up 1,1,0 --fov 20 --light "$light"
 differ 'another up and another field of view' turned.exr frame.exr
+relume relight ring.exr -o cpu.exr --eye 2.5,1,1.4 --look-at 0.1,0.2,0 --up 0.1,1,0 --fov 25 --size 90x60 --light "$light"
+"$VIEWER" ring.exr --offscreen gpu.exr --eye 2.5,1,1.4 --look-at 0.1,0.2,0 --up 0.1,1,0 --fov 25 --size 90x60 --light "$light"
+above 'the viewer shows the same' "$(psnr gpu.exr cpu.exr)" 60
 "$RELUME" info ring.exr --json >info.txt
 check 'info says how many, and version 2' grep -q '"version": 2.*"slabs": 6' info.txt
 

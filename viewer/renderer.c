@@ -271,33 +271,42 @@ static const struct framing {
 
 // ---------------------------------------------------------------- frame
 
-// How far apart the cameras of two views stand, squared; those of two slabs very far.
+// How far apart the cameras of two views stand, squared.
 static double apart(const struct renderer *r, int a, int b)
 {
-    if (r->slab_of && r->slab_of[a] != r->slab_of[b])
-        return HUGE_VAL;
     const double du = r->uv[a][0] - r->uv[b][0], dv = r->uv[a][1] - r->uv[b][1];
     return du * du + dv * dv;
 }
 
-// The view on the GPU that stands nearest to a missing one, or -1.
+static bool of_one_slab(const struct renderer *r, int a, int b)
+{
+    return !r->slab_of || r->slab_of[a] == r->slab_of[b];
+}
+
+// The view on the GPU that stands nearest to a missing one of the same slab, or -1.
 static int nearest_present(const struct renderer *r, int missing)
 {
     int nearest = -1;
     for (int i = 0; i < r->views; i++)
-        if (relighter_has(&r->relighter, i) &&
+        if (relighter_has(&r->relighter, i) && of_one_slab(r, i, missing) &&
             (nearest < 0 || apart(r, i, missing) < apart(r, nearest, missing)))
             nearest = i;
     return nearest;
 }
 
+// Of several slabs those that are not there yet say nothing while others do.
 static relume_status stand_in(struct renderer *r)
 {
     relume_status status = RELUME_OK;
+    bool any = false;
+    for (int i = 0; r->slab_of && i < r->views; i++)
+        any |= r->relit[i] != NULL;
     for (int i = 0; !status && i < r->views; i++) {
         if (!r->needed[i] || r->relit[i])
             continue;
         const int nearest = nearest_present(r, i);
+        if (nearest < 0 && any)
+            continue;
         status = nearest < 0 ? relighter_wait(&r->relit[i], &r->relighter, i)
                              : relighter_view(&r->relit[i], &r->relighter, nearest);
     }

@@ -148,6 +148,12 @@ static double window_for(double spread, double distance)
     return distance * tan(angle) - spread;
 }
 
+// Quarter turns are exact.
+static double whole(double x)
+{
+    return fabs(x - round(x)) < 1e-12 ? round(x) + 0.0 : x;
+}
+
 static void place_ring(struct synth *s)
 {
     const int around = ring_around[s->p.ring];
@@ -159,11 +165,12 @@ static void place_ring(struct synth *s)
         s->geometry.st_max[axis] = window;
     }
     for (int i = 0; i < s->slabs; i++) {
-        const double angle_rad = 2.0 * M_PI * i / around;
+        const double c = whole(cos(2.0 * M_PI * i / around));
+        const double n = whole(sin(2.0 * M_PI * i / around));
         s->slab[i] = s->geometry;
-        s->slab[i].pose.axis[0] = vec3_of(cos(angle_rad), 0, -sin(angle_rad));
+        s->slab[i].pose.axis[0] = vec3_of(c, 0, 0.0 - n);
         s->slab[i].pose.axis[1] = vec3_of(0, 1, 0);
-        s->slab[i].pose.axis[2] = vec3_of(sin(angle_rad), 0, cos(angle_rad));
+        s->slab[i].pose.axis[2] = vec3_of(n, 0, c);
         if (i >= around)
             s->slab[i].pose = (struct relume_pose){
                 .axis = {vec3_of(1, 0, 0), vec3_of(0, 0, -1), vec3_of(0, 1, 0)}};

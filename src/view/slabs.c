@@ -3,8 +3,6 @@
 
 #include "base/memory.h"
 
-#include <string.h>
-
 // Of the extent of the camera grid, and of the window's: where a slab's word begins to fade.
 static const double fade_uv = 0.25;
 static const double fade_st = 0.0625;
@@ -87,12 +85,9 @@ static double fade(double inside, double width)
 }
 
 // Of a place between `low` and `high`; a grid of one line has no inside to fade in.
-static double line_weight(double at, double low, double high, double slack)
+static double line_weight(double at, double low, double high)
 {
-    if (!(at >= low - slack && at <= high + slack))
-        return 0.0;
-    const double extent = high - low;
-    return extent > 0.0 ? fade(fmin(at - low, high - at), fade_uv * extent) : 1.0;
+    return high > low ? fade(fmin(at - low, high - at), fade_uv * (high - low)) : 1.0;
 }
 
 double relume_slab_weight(const relume_slab *slab, const double uv[2], const double st[2])
@@ -107,7 +102,7 @@ double relume_slab_weight(const relume_slab *slab, const double uv[2], const dou
         const double high = lines[axis][last[axis]];
         if (!(uv[axis] >= low - slab->slack && uv[axis] <= high + slab->slack))
             return 0.0;
-        grid *= line_weight(uv[axis], low, high, slab->slack);
+        grid *= line_weight(uv[axis], low, high);
         window *= fade(fmin(st[axis] - g->st_min[axis], g->st_max[axis] - st[axis]),
                        fade_st * (g->st_max[axis] - g->st_min[axis]));
     }

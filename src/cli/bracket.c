@@ -20,15 +20,28 @@ static void say_softly(void *user, enum relume_level level, const char *text)
     log->message(log->user, level == RELUME_ERROR ? RELUME_WARNING : level, text);
 }
 
+static struct relume_log softly(const struct args *args)
+{
+    struct relume_log soft = *args_log(args);
+    soft.message = say_softly;
+    soft.user = (void *)args_log(args);
+    return soft;
+}
+
 static void drop(struct bracket *b, int i)
 {
     relume_image_destroy(&b->codes[i]);
+    relume_image_destroy(&b->masks[i]);
+    b->anchor -= i < b->anchor;
     for (b->n--; i < b->n; i++) {
         b->path[i] = b->path[i + 1];
         b->notes[i] = b->notes[i + 1];
         b->codes[i] = b->codes[i + 1];
+        b->masks[i] = b->masks[i + 1];
+        b->exposure[i] = b->exposure[i + 1];
+        b->shift[i] = b->shift[i + 1];
     }
-    b->codes[b->n] = (struct relume_image){0};
+    b->codes[b->n] = b->masks[b->n] = (struct relume_image){0};
 }
 
 static relume_status at_least_one(const struct bracket *b)
@@ -53,9 +66,7 @@ static relume_status check_size(const struct bracket *b, int i, const struct rel
 relume_status bracket_load(struct bracket *b, const struct args *args)
 {
     const bool skip = args_has(args, "--skip-bad");
-    struct relume_log soft = *args_log(args);
-    soft.message = say_softly;
-    soft.user = (void *)args_log(args);
+    const struct relume_log soft = softly(args);
     const struct relume_log *log = skip ? &soft : args_log(args);
     for (int i = 0; i < b->n;) {
         const struct relume_notes noted = b->notes[i];
@@ -123,7 +134,8 @@ static relume_status check_scene(struct bracket *b, const int *order, const stru
     if (status || foreign < 0)
         return status;
     const char *path = b->path[order[foreign]];
-    if (!args_has(args, "--skip-bad"))
+    const bool all_hang_on_it = b->aligned && order[foreign] == b->anchor;
+    if (!args_has(args, "--skip-bad") || all_hang_on_it)
         return data_error(
             "%s: another scene than the other exposures, or not aligned (likeness "
             "%.2f); expected %.2f or more; leave it out, or try --align or --skip-bad",
@@ -134,6 +146,8 @@ static relume_status check_scene(struct bracket *b, const int *order, const stru
              likeness[foreign]);
     args_log(args)->message(args_log(args)->user, RELUME_WARNING, text);
     drop(b, order[foreign]);
+    if (!b->aligned)
+        b->anchor = relume_align_anchor(b->codes, b->n);
     return at_least_one(b);
 }
 
@@ -177,11 +191,8 @@ relume_status bracket_check(struct bracket *b, const struct args *args)
     sort_by_exposure(b, order);
     const int before = b->n;
     relume_status status = check_scene(b, order, args);
-    if (!status && b->n < before) {
-        for (int i = 0; i < b->n; i++)
-            b->exposure[i] = relume_notes_exposure(&b->notes[i]);
+    if (!status && b->n < before)
         sort_by_exposure(b, order);
-    }
     return status ? status : check_order(b, order);
 }
 
@@ -244,20 +255,26 @@ static relume_status align_one(struct bracket *b, int i, enum align_mode mode,
 
 relume_status bracket_align(struct bracket *b, enum align_mode mode, const struct args *args)
 {
-    relume_status status = RELUME_OK;
+    const bool skip = args_has(args, "--skip-bad");
+    const struct relume_log soft = softly(args), *log = skip ? &soft : args_log(args);
     b->anchor = relume_align_anchor(b->codes, b->n);
-    for (int i = 0; !status && mode != ALIGN_NONE && i < b->n; i++) {
-        struct prefix_log log;
+    b->aligned = mode != ALIGN_NONE;
+    for (int i = 0; b->aligned && i < b->n; i++) {
+        struct prefix_log about;
         if (i == b->anchor)
             continue;
-        status = align_one(b, i, mode,
-                           relume_align_params(.log = prefix_log(&log, args_log(args), b->path[i]),
-                                               .threads = args_threads(args)));
-        if (!status &&
-            !args_log(args)->progress(args_log(args)->user, "aligning", (i + 1.0) / b->n))
-            status = RELUME_ECANCEL;
+        const relume_status status =
+            align_one(b, i, mode,
+                      relume_align_params(.log = prefix_log(&about, log, b->path[i]),
+                                          .threads = args_threads(args)));
+        if (status == RELUME_EDATA && skip)
+            drop(b, i--);
+        else if (status)
+            return status;
+        if (!log->progress(args_log(args)->user, "aligning", (i + 1.0) / b->n))
+            return RELUME_ECANCEL;
     }
-    return status;
+    return RELUME_OK;
 }
 
 // ---------------------------------------------------------------- merge

@@ -8,8 +8,10 @@
 #include "math/vec.h"
 
 #include <libgen.h>
+#include <relume/response.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { VERSION = 1 };
 
@@ -112,6 +114,17 @@ static relume_status read_intensities(const struct parser *p, const jvalue *arra
     return RELUME_OK;
 }
 
+static relume_status read_falloff(const struct parser *p, const jvalue *value)
+{
+    const char *text = jvalue_text(value);
+    if (!value || jvalue_is_null(value))
+        return RELUME_OK;
+    if (!text || (strcmp(text, "inverse-square") && strcmp(text, "none")))
+        return wrong(p, "lights.falloff", "inverse-square or none");
+    p->d->m.no_falloff = !strcmp(text, "none");
+    return RELUME_OK;
+}
+
 static relume_status read_lights(const struct parser *p, const jvalue *lights)
 {
     struct draft *d = p->d;
@@ -137,6 +150,8 @@ static relume_status read_lights(const struct parser *p, const jvalue *lights)
     }
     if (!status && intensities && !jvalue_is_null(intensities))
         status = read_intensities(p, intensities, n);
+    if (!status)
+        status = read_falloff(p, jvalue_member(lights, "falloff"));
     d->m.lights = n;
     return status;
 }
@@ -350,6 +365,25 @@ static relume_status read_views(const struct parser *p, const jvalue *views)
     return status ? status : check_slabs_seen(p);
 }
 
+// A known curve, or the file of a response.
+static relume_status read_transfer(const struct parser *p, const jvalue *value)
+{
+    struct draft *d = p->d;
+    const char *text = jvalue_text(value), *path = NULL;
+    if (!value || jvalue_is_null(value) || (text && !relume_transfer_parse(&d->m.transfer, text)))
+        return RELUME_OK;
+    const relume_status status = text ? get_path(p, value, "transfer", &path) : RELUME_EDATA;
+    if (status == RELUME_ENOMEM)
+        return status;
+    if (status || access(path, F_OK))
+        return wrong(p, "transfer", "linear, srgb, gamma:NUMBER or a response-curve file");
+    struct relume_response *response = arena_array(&d->arena, 1, sizeof *response);
+    if (!response)
+        return RELUME_ENOMEM;
+    d->m.transfer = (struct relume_transfer){.curve = RELUME_CURVE_RESPONSE, .response = response};
+    return relume_response_load(response, path, p->log);
+}
+
 static relume_status read_root(const struct parser *p, const jvalue *root)
 {
     const char *format = jvalue_text(jvalue_member(root, "format"));
@@ -363,13 +397,9 @@ static relume_status read_root(const struct parser *p, const jvalue *root)
                         "%s: version %lld is newer than this program; expected %d", p->path,
                         version, VERSION);
     struct draft *d = p->d;
-    const jvalue *transfer = jvalue_member(root, "transfer");
-    if (transfer && !jvalue_is_null(transfer)) {
-        const char *text = jvalue_text(transfer);
-        if (!text || relume_transfer_parse(&d->m.transfer, text))
-            return wrong(p, "transfer", "linear, srgb or gamma:NUMBER");
-    }
-    relume_status status = read_geometry(p, root);
+    relume_status status = read_transfer(p, jvalue_member(root, "transfer"));
+    if (!status)
+        status = read_geometry(p, root);
     if (!status)
         status = read_lights(p, jvalue_member(root, "lights"));
     if (!status)
@@ -459,6 +489,8 @@ static void put_lights(FILE *f, const struct relume_manifest *m)
     if (m->positions) {
         fputs(",\n", f);
         put_vectors(f, "positions", m->positions, m->lights);
+        if (m->no_falloff)
+            fputs(",\n    \"falloff\": \"none\"", f);
     }
     fputs("\n  },\n", f);
 }
@@ -544,6 +576,10 @@ relume_status relume_manifest_write(const struct relume_manifest *manifest, cons
 {
     char *text = NULL;
     size_t size = 0;
+    if (manifest->transfer.curve == RELUME_CURVE_RESPONSE)
+        return log_fail(log, RELUME_EINVAL,
+                        "%s: a response curve lives in a file of its own; expected linear pictures",
+                        path);
     FILE *f = open_memstream(&text, &size);
     if (!f)
         return RELUME_ENOMEM;

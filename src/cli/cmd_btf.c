@@ -118,7 +118,7 @@ static relume_status open_btf(relume_btf **out, const char *name, const struct a
                                              .fill = args_has(args, "--fill")));
 }
 
-static const struct relume_btf_fit_params fit_params(const struct args *args)
+static struct relume_btf_fit_params fit_params(const struct args *args)
 {
     return (struct relume_btf_fit_params){
         .log = args_log(args),

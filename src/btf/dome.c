@@ -11,11 +11,12 @@ struct relume_dome {
     vec3 *point;  // [n + 1]; the last is the nadir, which closes the hull below the rim
     int n;
     struct hull_triangle *triangle;
+    vec3 (*across)[3];  // [triangles]: the weight of corner c grows along across[c]
     int triangles;
 };
 
-static const double LOWEST = 1e-3;     // z of a direction that can be measured
-static const double NOTHING = 1e-9;    // weights below are rounding
+static const double LOWEST = 1e-3;   // z of a direction that can be measured
+static const double NOTHING = 1e-9;  // weights below are rounding
 
 static relume_status check(const struct relume_vec3 *d, int n, const struct relume_log *log)
 {
@@ -29,6 +30,24 @@ static relume_status check(const struct relume_vec3 *d, int n, const struct relu
     return RELUME_OK;
 }
 
+static relume_status triangulate(relume_dome *d, const struct relume_vec3 *directions)
+{
+    d->point = mem_array((size_t)d->n + 1, sizeof *d->point);
+    if (!d->point)
+        return RELUME_ENOMEM;
+    memcpy(d->point, directions, (size_t)d->n * sizeof *d->point);
+    d->point[d->n] = vec3_of(0.0, 0.0, -1.0);
+    const relume_status status = hull_build(d->point, d->n + 1, &d->triangle, &d->triangles);
+    if (status)
+        return status;
+    d->across = mem_array((size_t)d->triangles, sizeof *d->across);
+    for (int i = 0; d->across && i < d->triangles; i++)
+        for (int c = 0; c < 3; c++)
+            d->across[i][c] = vec3_cross(d->point[d->triangle[i].corner[(c + 1) % 3]],
+                                         d->point[d->triangle[i].corner[(c + 2) % 3]]);
+    return d->across ? RELUME_OK : RELUME_ENOMEM;
+}
+
 relume_status relume_dome_create(relume_dome **out, const struct relume_vec3 *directions, int n,
                                  const struct relume_log *log)
 {
@@ -40,13 +59,7 @@ relume_status relume_dome_create(relume_dome **out, const struct relume_vec3 *di
     if (!d)
         return RELUME_ENOMEM;
     d->n = n;
-    d->point = mem_array((size_t)n + 1, sizeof *d->point);
-    status = d->point ? RELUME_OK : RELUME_ENOMEM;
-    if (!status) {
-        memcpy(d->point, directions, (size_t)n * sizeof *d->point);
-        d->point[n] = vec3_of(0.0, 0.0, -1.0);
-        status = hull_build(d->point, n + 1, &d->triangle, &d->triangles);
-    }
+    status = triangulate(d, directions);
     if (status == RELUME_EDATA)
         log_fail(log, status, "directions: expected some not on one great circle");
     if (status)
@@ -60,14 +73,23 @@ void relume_dome_destroy(relume_dome **dome)
     if (*dome) {
         free((*dome)->point);
         free((*dome)->triangle);
+        free((*dome)->across);
     }
     free(*dome);
     *dome = NULL;
 }
 
-static double least_of(const double w[3])
+// Barycentric weights of the ray's hit; false when the triangle faces away.
+static bool weigh(const vec3 across[3], vec3 d, double weight[3])
 {
-    return fmin(w[0], fmin(w[1], w[2]));
+    double sum = 0.0;
+    for (int c = 0; c < 3; c++)
+        sum += weight[c] = vec3_dot(d, across[c]);
+    if (!(sum > 1e-12))
+        return false;
+    for (int c = 0; c < 3; c++)
+        weight[c] /= sum;
+    return true;
 }
 
 // The triangle that `d` meets: the one whose smallest weight is largest, for rays through edges.
@@ -75,13 +97,16 @@ static const struct hull_triangle *find(const relume_dome *dome, vec3 d, double 
 {
     const struct hull_triangle *best = &dome->triangle[0];
     double most = -INFINITY;
-    for (int i = 0; i < dome->triangles; i++) {
+    for (int i = 0; i < dome->triangles && most < NOTHING; i++) {
         double w[3];
-        if (!hull_weights(dome->point, dome->triangle[i], d, w) || !(least_of(w) > most))
+        if (!weigh(dome->across[i], d, w))
             continue;
-        most = least_of(w);
-        best = &dome->triangle[i];
-        memcpy(weight, w, sizeof w);
+        const double least = fmin(w[0], fmin(w[1], w[2]));
+        if (least > most) {
+            most = least;
+            best = &dome->triangle[i];
+            memcpy(weight, w, sizeof w);
+        }
     }
     return best;
 }

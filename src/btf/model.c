@@ -7,7 +7,8 @@
 #include <string.h>
 
 const struct relume_btf_model *const relume_btf_models[] = {
-    &model_rfp, &model_rfnl, &model_rfnlc, &model_vpca, &model_lpca, &model_fmf, NULL,
+    &model_bump,  &model_laf,  &model_slaf, &model_rfp, &model_rfnl,
+    &model_rfnlc, &model_vpca, &model_lpca, &model_fmf, NULL,
 };
 
 const struct relume_btf_model *relume_btf_model_find(const char *name)

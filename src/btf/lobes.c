@@ -26,21 +26,22 @@ static void clear(struct normal *s, int unknowns)
     s->error = 0.0;
 }
 
-static void build(struct normal *s, const struct lobe *lobe, int count, const double (*d)[3],
-                  const double *y, int n)
+static void build(struct normal *s, const struct lobe *lobe, int count,
+                  const struct lobe_samples *p)
 {
     const int unknowns = PER_LOBE * count;
     clear(s, unknowns);
-    for (int i = 0; i < n; i++) {
-        double slope[MOST], rest = y[i];
+    for (int i = 0; i < p->n; i++) {
+        const double *d = p->d[i], w = p->w ? p->w[i] : 1.0;
+        double slope[MOST], rest = p->y[i];
         for (int j = 0; j < count; j++) {
             const double *t = lobe[j].t;
-            const double dot = t[0] * d[i][0] + t[1] * d[i][1] + t[2] * d[i][2];
+            const double dot = t[0] * d[0] + t[1] * d[1] + t[2] * d[2];
             const double log_dot = dot > 1e-9 ? log(dot) : 0.0;
-            const double value = dot > 1e-9 ? exp(lobe[j].n * log_dot) : 0.0;
+            const double value = dot > 1e-9 ? w * exp(lobe[j].n * log_dot) : 0.0;
             const double along = dot > 1e-9 ? lobe[j].n * value / dot : 0.0;
             for (int c = 0; c < 3; c++)
-                slope[PER_LOBE * j + c] = along * d[i][c];
+                slope[PER_LOBE * j + c] = along * d[c];
             slope[PER_LOBE * j + 3] = lobe[j].n * log_dot * value;
             rest -= value;
         }
@@ -53,14 +54,14 @@ static void build(struct normal *s, const struct lobe *lobe, int count, const do
     }
 }
 
-static double error_of(const struct lobe *lobe, int count, const double (*d)[3], const double *y,
-                       int n)
+static double error_of(const struct lobe *lobe, int count, const struct lobe_samples *p)
 {
     double error = 0.0;
-    for (int i = 0; i < n; i++) {
-        double rest = y[i];
+    for (int i = 0; i < p->n; i++) {
+        double sum = 0.0;
         for (int j = 0; j < count; j++)
-            rest -= lobe_at(&lobe[j], d[i]);
+            sum += lobe_at(&lobe[j], p->d[i]);
+        const double rest = p->y[i] - (p->w ? p->w[i] * sum : sum);
         error += rest * rest;
     }
     return error;
@@ -92,18 +93,18 @@ static bool step(const struct normal *s, double damping, const struct lobe *lobe
     return true;
 }
 
-double lobes_fit(struct lobe *lobe, int count, const double (*d)[3], const double *y, int n)
+double lobes_fit(struct lobe *lobe, int count, const struct lobe_samples *samples)
 {
     struct normal s;
     double damping = 1e-2;
-    build(&s, lobe, count, d, y, n);
+    build(&s, lobe, count, samples);
     for (int round = 0; round < ROUNDS; round++) {
         const double before = s.error;
         bool better = false;
         for (int trial = 0; trial < TRIALS && !better; trial++) {
             struct lobe next[MODEL_LOBES];
             if (step(&s, damping, lobe, count, next) &&
-                error_of(next, count, d, y, n) < s.error) {
+                error_of(next, count, samples) < s.error) {
                 memcpy(lobe, next, (size_t)count * sizeof *lobe);
                 better = true;
             }
@@ -111,7 +112,7 @@ double lobes_fit(struct lobe *lobe, int count, const double (*d)[3], const doubl
         }
         if (!better)
             break;
-        build(&s, lobe, count, d, y, n);
+        build(&s, lobe, count, samples);
         if (before - s.error <= ENOUGH * before)
             break;
     }

@@ -1,5 +1,5 @@
 // lobes.h - sums of powers of cosines (Lafortune et al. 1997) fitted to samples by
-// Levenberg-Marquardt:  y_i ~ sum_j max(0, t_j . d_i)^n_j
+// Levenberg-Marquardt:  y_i ~ w_i sum_j max(0, t_j . d_i)^n_j
 #ifndef BTF_LOBES_H
 #define BTF_LOBES_H
 
@@ -20,8 +20,13 @@ static inline double lobe_at(const struct lobe *lobe, const double d[3])
     return s > 1e-9 ? exp(lobe->n * log(s)) : 0.0;
 }
 
+struct lobe_samples {
+    const double (*d)[3];
+    const double *w, *y;  // w NULL: all 1
+    int n;
+};
 // Improve `lobe[count]` from where they are; count <= MODEL_LOBES. Returns the squared error.
-double lobes_fit(struct lobe *lobe, int count, const double (*d)[3], const double *y, int n);
+double lobes_fit(struct lobe *lobe, int count, const struct lobe_samples *samples);
 
 // A lobe of exponent `n` along the unit vector `d`, `height` high.
 struct lobe lobe_along(const double d[3], double n, double height);

@@ -22,7 +22,7 @@ struct judge {
 // Whether the model was fitted to that direction.
 static bool is_known(const struct relume_dome_blend *b)
 {
-    return b->count == 1 && b->rim == 1.0;
+    return b->count == 1 && b->rim > 1.0 - 1e-9;
 }
 
 static relume_status prepare(struct judge *j, bool unseen)

@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-enum { PER_LOBE = 4, MOST = PER_LOBE * MODEL_LOBES, ROUNDS = 40, TRIALS = 6 };
-static const double ENOUGH = 1e-4;  // a round that gains less than this part ends the fit
+enum { PER_LOBE = 4, MOST = PER_LOBE * MODEL_LOBES, ROUNDS = 30, TRIALS = 6 };
+static const double ENOUGH = 2e-3;  // a round that gains less than this part ends the fit
 
 struct normal {
     double gram[MOST][MOST];  // J'J, the lower triangle

@@ -1,5 +1,5 @@
 // cmd_btf.c - relume btf: measured materials, the models that compress them, and how good they are
-#include "cli.h"
+#include "btf_report.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 #include <time.h>
 
 static const struct option options[] = {
-    {"-o", OPTION_TEXT, "DIR", "fit: the folder of the model to make", 0, 0},
+    {"-o", OPTION_TEXT, "DIR", "fit: the folder of the model to make; render: the picture", 0, 0},
     {"--model", OPTION_TEXT, "NAME", "fit: rfp, rfnl, rfnlc, vpca, lpca, ...; default rfnlc", 0, 0},
     {"--models", OPTION_TEXT, "A,B,...", "compare: only these", 0, 0},
     {"--clusters", OPTION_INT, "N", "lpca: default 32; rfnlc: default 1024", 1, 65536},
@@ -18,6 +18,8 @@ static const struct option options[] = {
      "compare: also without every K-th view and light, judged on pairs with one of these", 2, 64},
     {"--pictures", OPTION_INT, "N",
      "compare, eval: pictures judged by CIEDE2000 and SSIM; default 25", 0, 65536},
+    {"--eye", OPTION_TEXT, "x,y,z", "render: the direction towards the eye; default 0,0,1", 0, 0},
+    {"--light", OPTION_TEXT, "SPEC", "render: \"dir x y z\" [rgb r g b]; may be repeated", 0, 0},
     {"--size", OPTION_INT, "N", "of a built-in material, texels; default 64", 1, 1024},
     {"--directions", OPTION_TEXT, "SET", "of a built-in material: bonn (default), dome, coarse", 0,
      0},
@@ -130,65 +132,6 @@ static struct relume_btf_fit_params fit_params(const struct args *args)
     };
 }
 
-// ---------------------------------------------------------------- printing
-
-static void member(const char *name, double value)
-{
-    printf(", \"%s\": ", name);
-    json_number(stdout, value);
-}
-
-static void members(const struct relume_btf_error *e)
-{
-    member("mae_avg", e->mean_avg);
-    member("mae_min", e->mean_min);
-    member("mae_max", e->mean_max);
-    member("rms", e->rms);
-    member("relative_rms", e->relative);
-    member("delta_e", e->delta_e);
-    member("ssim", e->ssim);
-}
-
-static double bytes_per_texel(const struct relume_btf_fitted_info *info)
-{
-    return (double)info->bytes / ((double)info->width * info->height);
-}
-
-static void print_heading(bool held_out)
-{
-    printf("model   mean abs   min      max      RMS %%   rel. %%  dE2000  SSIM    bytes/texel"
-           "   total MiB   fit s%s\n",
-           held_out ? "   left out: mean   RMS %" : "");
-}
-
-static void print_row(const struct relume_btf_fitted_info *info, const struct relume_btf_error *e,
-                      double fit_s, const struct relume_btf_error *held_out)
-{
-    printf("%-7s %-9.4f  %-7.4f  %-7.4f  %-6.2f  %-6.1f  %-6.2f  %-6.4f  %-12.1f  %-10.3f  %-6.1f",
-           relume_btf_model_name(info->model), e->mean_avg, e->mean_min, e->mean_max, 100.0 * e->rms,
-           100.0 * e->relative, e->delta_e, e->ssim, bytes_per_texel(info),
-           (double)info->bytes / 1048576.0, fit_s);
-    if (held_out)
-        printf("           %-7.4f  %-6.2f", held_out->mean_avg, 100.0 * held_out->rms);
-    printf("\n");
-}
-
-static void print_json_row(const struct relume_btf_fitted_info *info,
-                           const struct relume_btf_error *e, double fit_s,
-                           const struct relume_btf_error *held_out)
-{
-    printf("{\"model\": \"%s\"", relume_btf_model_name(info->model));
-    members(e);
-    printf(", \"bytes\": %llu", (unsigned long long)info->bytes);
-    member("bytes_per_texel", bytes_per_texel(info));
-    member("fit_seconds", fit_s);
-    if (held_out) {
-        member("left_out_mae", held_out->mean_avg);
-        member("left_out_rms", held_out->rms);
-    }
-    printf("}");
-}
-
 // ---------------------------------------------------------------- compare
 
 // Every K-th is dropped, but never the first: the pole keeps the hemisphere covered.
@@ -253,8 +196,8 @@ static relume_status compare_one(const relume_btf *btf, const relume_btf *part,
         status = judge_left_out(&held_out, part, btf, model, args);
     if (!status) {
         const struct relume_btf_fitted_info info = relume_btf_fitted_info(fitted);
-        (args_has(args, "--json") ? print_json_row : print_row)(&info, &error, fit_s,
-                                                                part ? &held_out : NULL);
+        (args_has(args, "--json") ? btf_json_row : btf_row)(&info, &error, fit_s,
+                                                            part ? &held_out : NULL);
         fflush(stdout);
     }
     relume_btf_fitted_destroy(&fitted);
@@ -274,7 +217,7 @@ static relume_status compare(const struct args *args)
     if (!status && json)
         printf("{\"models\":[");
     else if (!status)
-        print_heading(part != NULL);
+        btf_heading(part != NULL);
     for (int i = 0; !status && models[i]; i++) {
         if (json && i)
             printf(",\n");
@@ -330,17 +273,113 @@ static relume_status eval(const struct args *args)
     if (!status) {
         const struct relume_btf_fitted_info info = relume_btf_fitted_info(fitted);
         if (args_has(args, "--json")) {
-            print_json_row(&info, &error, (double)NAN, NULL);
+            btf_json_row(&info, &error, (double)NAN, NULL);
             puts("");
         } else {
-            print_heading(false);
-            print_row(&info, &error, (double)NAN, NULL);
+            btf_heading(false);
+            btf_row(&info, &error, (double)NAN, NULL);
         }
     }
     relume_btf_fitted_destroy(&fitted);
     relume_btf_destroy(&btf);
     // sizes that differ are the inputs' fault here
     return status == RELUME_EINVAL ? RELUME_EDATA : status;
+}
+
+// ---------------------------------------------------------------- render
+
+struct swatch {
+    const relume_btf *btf;            // one of the two
+    const relume_btf_fitted *fitted;
+    struct relume_vec3 eye;
+};
+
+static void add_light(struct relume_image *image, const struct swatch *s,
+                      const struct relume_light *light)
+{
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++) {
+            float rgb[3];
+            if (s->btf)
+                relume_btf_evaluate(s->btf, x, y, s->eye, light->direction, rgb);
+            else
+                relume_btf_fitted_evaluate(s->fitted, x, y, s->eye, light->direction, rgb);
+            float *to = image->data + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
+            for (int c = 0; c < 3; c++)
+                to[c] += rgb[c] * light->rgb[c];
+        }
+}
+
+static struct relume_vec3 unit(struct relume_vec3 v)
+{
+    const double length = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+    return (struct relume_vec3){v.x / length, v.y / length, v.z / length};
+}
+
+static relume_status light_swatch(struct relume_image *image, const struct swatch *s,
+                                  const struct args *args)
+{
+    const int count = args_count(args, "--light");
+    const struct relume_light *lights;
+    relume_rig *rig = NULL;
+    int n = 0;
+    relume_status status = relume_rig_create(&rig);
+    for (int i = 0; i < (count ? count : 1) && !status; i++)
+        status = relume_rig_add(rig, count ? args_nth(args, "--light", i) : "dir 0 0 1", NULL,
+                                args_log(args));
+    if (!status)
+        status = relume_rig_lights(&lights, &n, rig);
+    for (int i = 0; i < n && !status; i++) {
+        struct relume_light light = lights[i];
+        if (light.kind != RELUME_LIGHT_DIRECTIONAL)
+            status = usage_error("btf render: expected lights \"dir x y z\"; found '%s'",
+                                 relume_light_kind_name(light.kind));
+        light.direction = unit(light.direction);
+        if (!status)
+            add_light(image, s, &light);
+    }
+    relume_rig_destroy(&rig);
+    return status;
+}
+
+// The sample as it was photographed: every texel seen from one direction, under distant lights.
+static relume_status render(const struct args *args)
+{
+    struct swatch s = {.eye = {0.0, 0.0, 1.0}};
+    struct relume_image image = {0};
+    relume_btf *btf = NULL;
+    relume_btf_fitted *fitted = NULL;
+    const char *eye = args_text(args, "--eye", NULL);
+    int width = 0, height = 0;
+    if (!args_has(args, "-o"))
+        return usage_error("btf render: expected -o FILE");
+    relume_status status = eye ? args_vec3(&s.eye, "--eye", eye) : RELUME_OK;
+    if (!status && !(s.eye.z > 0.0))
+        status = usage_error("--eye: expected a direction with z > 0; found '%s'", eye);
+    if (!status && is_model(args_input(args, 1))) {
+        status = relume_btf_fitted_open(&fitted, args_input(args, 1),
+                                        relume_btf_params(.log = args_log(args)));
+        if (!status) {
+            const struct relume_btf_fitted_info i = relume_btf_fitted_info(fitted);
+            width = i.width, height = i.height;
+        }
+    } else if (!status) {
+        status = open_btf(&btf, args_input(args, 1), args);
+        if (!status)
+            width = relume_btf_info(btf)->width, height = relume_btf_info(btf)->height;
+    }
+    s.btf = btf, s.fitted = fitted, s.eye = unit(s.eye);
+    if (!status)
+        status = relume_image_create(&image, width, height, 3);
+    if (!status)
+        status = light_swatch(&image, &s, args);
+    if (!status)
+        status = relume_image_save(&image, args_text(args, "-o", NULL),
+                                   relume_image_params(.log = args_log(args)));
+    relume_image_destroy(&image);
+    relume_btf_fitted_destroy(&fitted);
+    relume_btf_destroy(&btf);
+    return status;
 }
 
 // ---------------------------------------------------------------- info
@@ -400,7 +439,7 @@ static relume_status info(const struct args *args)
 static const struct verb {
     const char *name;
     relume_status (*run)(const struct args *args);
-} verbs[] = {{"fit", fit}, {"eval", eval}, {"compare", compare}, {"info", info}};
+} verbs[] = {{"fit", fit}, {"eval", eval}, {"compare", compare}, {"info", info}, {"render", render}};
 enum { VERBS = sizeof verbs / sizeof *verbs };
 
 static relume_status run(const struct args *args)
@@ -420,8 +459,8 @@ static relume_status run(const struct args *args)
 
 const struct command command_btf = {
     .name = "btf",
-    .usage = "fit|eval|compare|info BTF|MATERIAL|MODEL [BTF]",
-    .summary = "measured materials: compress a BTF by a model, measure what that costs",
+    .usage = "fit|eval|compare|info|render BTF|MATERIAL|MODEL [BTF]",
+    .summary = "measured materials: fit models to a BTF, measure and show them",
     .example = "relume btf compare corduroy --size 32 --models rfnl,lpca --json",
     .min_inputs = 2,
     .max_inputs = 3,

@@ -32,12 +32,19 @@ above 'left out is worse' "$(field left_out_rms out.json)" "$(field rms out.json
 "$RELUME" synth --btf wallpaper -o again --size 8 --directions coarse --samples 1 --bounces 0 --threads 3 -q
 if diff -r paper again >/dev/null; then ok 'the same for any threads'; else not_ok 'the same for any threads' "$(diff -rq paper again)"; fi
 
+# ---- a measured pair, shown, is the measured picture
+expect_ok 'btf render' - "$RELUME" btf render paper -o shown.exr --light 'dir 0 0 1' -q
+at=$("$mkimage" read shown.exr 2 3)
+expect_ok 'btf render a model' - "$RELUME" btf render lpca -o model.exr --eye 0.3,0,1 --light 'dir 1 0 1' --light 'dir 0 1 1 rgb 1 0 0' -q
+expect_fail 'a light that is near' 2 "expected lights .dir x y z.; found 'point'" x.exr "$RELUME" btf render paper -o x.exr --light 'point 0 0 1'
+
 # ---- from outside: NumPy reads the values in place
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
     check 'NumPy reads the values' /usr/bin/python3 -c '
-import numpy
+import numpy, sys
 v = numpy.load("paper/values.npy", mmap_mode="r")
-assert v.shape == (19, 19, 8, 8, 3) and v.dtype == numpy.float16 and 0 < v.astype("f4").mean() < 1'
+assert v.shape == (19, 19, 8, 8, 3) and v.dtype == numpy.float16 and 0 < v.astype("f4").mean() < 1
+assert abs(float(sys.argv[1]) - v[0, 0, 3, 2, 0]) < 1e-6' "$(echo "$at" | cut -d' ' -f1)"
 else
     skip 'NumPy reads the values' 'no NumPy here'
 fi

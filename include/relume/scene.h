@@ -101,10 +101,10 @@ struct relume_btf_synth_params {
     int views;
     const struct relume_vec3 *light;  // with `lights`; default: the same
     int lights;
-    int samples;     // camera rays a texel and view; default 4
-    int bounces;     // of light inside the relief, beside direct light; default 1, negative: none
-    uint64_t seed;   // of the relief and of the sampling
-    int threads;     // default: all cores
+    int samples;    // camera rays a texel and view; default 4
+    int bounces;    // of light inside the relief, beside direct light; default 1, negative: none
+    uint64_t seed;  // of the relief and of the sampling
+    int threads;    // default: all cores
     const char *scratch;  // as in relume_btf_params
 };
 #define relume_btf_synth_params(...) (&(const struct relume_btf_synth_params){__VA_ARGS__})

@@ -140,8 +140,8 @@ const struct relume_btf_info *relume_btf_info(const relume_btf *btf)
 
 const uint16_t *relume_btf_picture(const relume_btf *btf, int view, int light)
 {
-    const size_t stored = (size_t)btf->view_at[view] * (size_t)btf->stored_lights +
-                          (size_t)btf->light_at[light];
+    const size_t stored =
+        (size_t)btf->view_at[view] * (size_t)btf->stored_lights + (size_t)btf->light_at[light];
     return btf->values + stored * btf_texels(btf) * 3;
 }
 
@@ -149,7 +149,9 @@ void relume_btf_store(relume_btf *btf, int view, int light, const float *rgb)
 {
     uint16_t *to = btf->own + (relume_btf_picture(btf, view, light) - btf->values);
     for (size_t i = 0; i < btf_texels(btf) * 3; i++)
-        to[i] = half_from_float(rgb[i] > HALF_MAX ? HALF_MAX : rgb[i] < -HALF_MAX ? -HALF_MAX : rgb[i]);
+        to[i] = half_from_float(rgb[i] > HALF_MAX    ? HALF_MAX
+                                : rgb[i] < -HALF_MAX ? -HALF_MAX
+                                                     : rgb[i]);
 }
 
 static bool pick(vec3 *to, const vec3 *from, int *at, const int *from_at, const int *which, int n)

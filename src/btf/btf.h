@@ -11,10 +11,10 @@ struct relume_btf {
     struct relume_btf_info info;  // owns what it points to
     vec3 *view, *light;
     relume_dome *views, *lights;
-    const uint16_t *values;     // [stored view][stored light][height][width][3]
-    uint16_t *own;              // or NULL: scratch memory behind `values`
-    struct npy_file file;       // or the file behind them
-    int *view_at, *light_at;    // where a view and a light of this BTF are stored
+    const uint16_t *values;   // [stored view][stored light][height][width][3]
+    uint16_t *own;            // or NULL: scratch memory behind `values`
+    struct npy_file file;     // or the file behind them
+    int *view_at, *light_at;  // where a view and a light of this BTF are stored
     int stored_lights;
 };
 

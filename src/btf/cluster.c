@@ -12,10 +12,10 @@ enum { ROUNDS = 50, CHUNK = 256 };
 struct means {
     const struct reduced *r;
     int clusters;
-    float *center;   // [clusters][count]
-    int *which;      // [texels]
-    double *squared; // [texels]: distance to the nearest center
-    int newest;      // while starting: only this center is new
+    float *center;    // [clusters][count]
+    int *which;       // [texels]
+    double *squared;  // [texels]: distance to the nearest center
+    int newest;       // while starting: only this center is new
 };
 
 static double distance(const float *a, const float *b, int n)

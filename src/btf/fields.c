@@ -118,7 +118,7 @@ static void fit_view(const struct fields *s, struct lobe *lobe, const struct fie
                      double top)
 {
     const int n = s->m->lights, count = s->m->lobes;
-    const struct lobe_samples samples = {(const double (*)[3])s->light, NULL, w->y, n};
+    const struct lobe_samples samples = {(const double(*)[3])s->light, NULL, w->y, n};
     lobe[0] = broad_start(s, w->y);
     for (int j = 1; j < count; j++) {
         for (int i = 0; i < n; i++) {

@@ -24,7 +24,6 @@ void fields_end(struct fields *s);
 // Fit entry `entry` to values [view][light][3]; false: no memory. Safe on several cores.
 bool fields_fit(const struct fields *s, size_t entry, const float *values);
 
-void fields_eval(const relume_btf_fitted *m, size_t entry, const struct model_at *at,
-                 float rgb[3]);
+void fields_eval(const relume_btf_fitted *m, size_t entry, const struct model_at *at, float rgb[3]);
 
 #endif

@@ -105,8 +105,8 @@ static relume_status read_info(struct relume_btf_info *info, vec3 **view, vec3 *
     if (!jvalue_integer(jvalue_member(root, "width"), &side[0]) ||
         !jvalue_integer(jvalue_member(root, "height"), &side[1]) ||
         !limits_allow(&f->limits, side[0], side[1]))
-        return log_fail(f->log, RELUME_EDATA, "%s: width, height; expected texels within the limits",
-                        f->json);
+        return log_fail(f->log, RELUME_EDATA,
+                        "%s: width, height; expected texels within the limits", f->json);
     if (flag && !jvalue_truth(flag, &cosine))
         return log_fail(f->log, RELUME_EDATA, "%s: includes_cosine; expected true or false",
                         f->json);
@@ -116,9 +116,8 @@ static relume_status read_info(struct relume_btf_info *info, vec3 **view, vec3 *
         btf_read_directions(jvalue_member(root, "view_directions"), f->json, "view_directions",
                             &f->limits, view, &info->views, f->log);
     if (!status)
-        status =
-            btf_read_directions(jvalue_member(root, "light_directions"), f->json,
-                                "light_directions", &f->limits, light, &info->lights, f->log);
+        status = btf_read_directions(jvalue_member(root, "light_directions"), f->json,
+                                     "light_directions", &f->limits, light, &info->lights, f->log);
     info->view = *view, info->light = *light;
     return status;
 }
@@ -224,11 +223,10 @@ static relume_status save_truth(const struct relume_image *image, const char *fo
 static relume_status save_values(const relume_btf *b, const char *folder,
                                  const struct relume_log *log)
 {
-    const struct npy npy = {
-        NPY_HALF,
-        5,
-        {(size_t)b->info.views, (size_t)b->info.lights, (size_t)b->info.height,
-         (size_t)b->info.width, 3}};
+    const struct npy npy = {NPY_HALF,
+                            5,
+                            {(size_t)b->info.views, (size_t)b->info.lights, (size_t)b->info.height,
+                             (size_t)b->info.width, 3}};
     char *path = mem_format("%s/values.npy", folder);
     const relume_status status = path ? npy_save(&npy, b->values, path, log) : RELUME_ENOMEM;
     free(path);

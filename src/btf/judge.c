@@ -84,8 +84,8 @@ static void sum_up(const struct judge *j, struct relume_btf_error *out)
     const size_t texels = btf_texels(j->btf);
     const double values = 3.0 * (double)j->pairs;
     double squared = 0.0, energy = 0.0;
-    *out = (struct relume_btf_error){.mean_min = INFINITY, .pairs = j->pairs, .delta_e = NAN,
-                                     .ssim = NAN};
+    *out = (struct relume_btf_error){
+        .mean_min = INFINITY, .pairs = j->pairs, .delta_e = NAN, .ssim = NAN};
     for (size_t i = 0; i < texels; i++) {
         const double mean = j->error[i].absolute / values;
         out->mean_avg += mean / (double)texels;
@@ -133,8 +133,8 @@ static relume_status compare_pictures(const struct judge *j,
         if (seen * wanted / j->pairs == (seen - 1) * wanted / j->pairs)
             continue;
         struct relume_difference d;
-        draw(j, (int)(pair / (size_t)j->btf->info.lights), (int)(pair % (size_t)j->btf->info.lights),
-             &model, &measured);
+        draw(j, (int)(pair / (size_t)j->btf->info.lights),
+             (int)(pair % (size_t)j->btf->info.lights), &model, &measured);
         status = relume_image_compare(&d, &model, &measured,
                                       relume_compare_params(.threads = p->threads));
         delta_e += d.delta_e;
@@ -153,8 +153,7 @@ static relume_status compare_pictures(const struct judge *j,
 relume_status relume_btf_judge(struct relume_btf_error *out, const relume_btf_fitted *fitted,
                                const relume_btf *btf, const struct relume_btf_judge_params *params)
 {
-    const struct relume_btf_judge_params p =
-        params ? *params : (struct relume_btf_judge_params){0};
+    const struct relume_btf_judge_params p = params ? *params : (struct relume_btf_judge_params){0};
     struct judge j = {.model = fitted, .btf = btf};
     if (fitted->width != btf->info.width || fitted->height != btf->info.height)
         return log_fail(p.log, RELUME_EINVAL, "%s: %d x %d texels; expected %d x %d as the model",

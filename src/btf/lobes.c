@@ -103,8 +103,7 @@ double lobes_fit(struct lobe *lobe, int count, const struct lobe_samples *sample
         bool better = false;
         for (int trial = 0; trial < TRIALS && !better; trial++) {
             struct lobe next[MODEL_LOBES];
-            if (step(&s, damping, lobe, count, next) &&
-                error_of(next, count, samples) < s.error) {
+            if (step(&s, damping, lobe, count, next) && error_of(next, count, samples) < s.error) {
                 memcpy(lobe, next, (size_t)count * sizeof *lobe);
                 better = true;
             }

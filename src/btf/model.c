@@ -67,8 +67,8 @@ static relume_status choose(int *out, const char *what, int asked, int usual, in
     *out = !usual ? 0 : asked ? asked : usual < most ? usual : most;
     if (!usual || (*out >= 1 && *out <= most))
         return RELUME_OK;
-    return log_fail(f->log, RELUME_EINVAL, "%s: expected 1 to %d %s; found %d",
-                    f->out->model->name, most, what, *out);
+    return log_fail(f->log, RELUME_EINVAL, "%s: expected 1 to %d %s; found %d", f->out->model->name,
+                    most, what, *out);
 }
 
 static int least(size_t a, size_t b)

@@ -13,8 +13,8 @@ enum { MODEL_ARRAYS = 6, MODEL_LOBES = 4 };
 struct model_array {
     const char *name;
     struct npy npy;
-    bool each;        // one entry a texel: shape[0] is their number or [1] with `by_view`
-    size_t below;     // integers: all are below this
+    bool each;     // one entry a texel: shape[0] is their number or [1] with `by_view`
+    size_t below;  // integers: all are below this
     void *data;
     struct npy_file file;  // or empty: `data` is malloc'd
 };
@@ -50,10 +50,10 @@ struct fitting {
 struct relume_btf_model {
     const char *name;
     const char *summary;
-    bool view_grid, light_grid;              // known at measured views (lights) only
-    int clusters, components, lobes;         // defaults; 0: the model has none
-    int most_clusters;                       // 0: 65536
-    void (*layout)(relume_btf_fitted *m);    // adds the arrays, with model_add
+    bool view_grid, light_grid;            // known at measured views (lights) only
+    int clusters, components, lobes;       // defaults; 0: the model has none
+    int most_clusters;                     // 0: 65536
+    void (*layout)(relume_btf_fitted *m);  // adds the arrays, with model_add
     relume_status (*fit)(struct fitting *f);
     void (*eval)(const relume_btf_fitted *m, const struct model_at *at, float rgb[3]);
 };

@@ -1,6 +1,7 @@
-// model_bump.c - bump mapping with the mean BRDF of the sample: a colour and a normal a texel, and one
-// table of view and light that is looked up in the frame of the normal. Normals come from the view
-// nearest to the pole, by photometric stereo (Woodham 1980) without the darkest and brightest lights.
+// model_bump.c - bump mapping with the mean BRDF of the sample: a colour and a normal a texel, and
+// one table of view and light that is looked up in the frame of the normal. Normals come from the
+// view nearest to the pole, by photometric stereo (Woodham 1980) without the darkest and brightest
+// lights.
 #include "base/memory.h"
 #include "base/thread.h"
 #include "btf/model.h"
@@ -17,8 +18,7 @@ static void layout(relume_btf_fitted *m)
 {
     model_add(m, "color", NPY_HALF, true, 0, MODEL_SHAPE(m->texels, 3));
     model_add(m, "normal", NPY_HALF, true, 0, MODEL_SHAPE(m->texels, 3));
-    model_add(m, "mean", NPY_HALF, false, 0,
-              MODEL_SHAPE((size_t)m->views, (size_t)m->lights, 3));
+    model_add(m, "mean", NPY_HALF, false, 0, MODEL_SHAPE((size_t)m->views, (size_t)m->lights, 3));
 }
 
 struct work {
@@ -101,8 +101,7 @@ static void average(const struct fitting *f, const double *mean)
             double sum[3] = {0.0, 0.0, 0.0};
             for (size_t i = 0; i < 3 * m->texels; i++)
                 sum[i % 3] += (double)float_from_half(p[i]);
-            uint16_t *to =
-                model_halfs(m, MEAN) + 3 * ((size_t)v * (size_t)m->lights + (size_t)l);
+            uint16_t *to = model_halfs(m, MEAN) + 3 * ((size_t)v * (size_t)m->lights + (size_t)l);
             for (int c = 0; c < 3; c++)
                 to[c] = half_from_float(all[c] > 0.0 ? (float)(sum[c] / all[c]) : 0.0f);
         }
@@ -134,9 +133,9 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
 {
     const uint16_t *color = model_halfs(m, COLOR) + 3 * at->texel;
     const uint16_t *normal = model_halfs(m, NORMAL) + 3 * at->texel;
-    const vec3 n = vec3_unit(vec3_of((double)float_from_half(normal[0]),
-                                     (double)float_from_half(normal[1]),
-                                     (double)float_from_half(normal[2])));
+    const vec3 n =
+        vec3_unit(vec3_of((double)float_from_half(normal[0]), (double)float_from_half(normal[1]),
+                          (double)float_from_half(normal[2])));
     const struct relume_dome_blend v = relume_dome_at(m->view_dome, turned(at->v, n));
     const struct relume_dome_blend l = relume_dome_at(m->light_dome, turned(at->l, n));
     double sum[3] = {0.0, 0.0, 0.0};

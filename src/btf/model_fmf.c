@@ -1,5 +1,5 @@
-// model_fmf.c - full matrix factorisation (Koudelka et al. 2003; Liu et al. 2004): one singular value
-// decomposition of the matrix of texels by pairs of directions and colours
+// model_fmf.c - full matrix factorisation (Koudelka et al. 2003; Liu et al. 2004): one singular
+// value decomposition of the matrix of texels by pairs of directions and colours
 //     BTF(x, v, l) ~ sum_k weight_k(x) pattern_k(v, l)
 #include "btf/reduce.h"
 #include "image/half.h"

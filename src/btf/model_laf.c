@@ -47,9 +47,9 @@ struct work {
 
 // What one texel needs.
 struct texel {
-    double *y, *rest;  // [fitted_count]
-    double *lobe;      // [pairs][lobes]: values
-    double *factor;    // [views]
+    double *y, *rest;            // [fitted_count]
+    double *lobe;                // [pairs][lobes]: values
+    double *factor;              // [views]
     double albedo[3][UNKNOWNS];  // of each colour: rho_d, rho_j
 };
 
@@ -90,9 +90,9 @@ static struct lobe start(const struct work *w, double *rest)
     double most = 0.0;
     for (size_t k = 0; k < sizeof usual / sizeof *usual; k++) {
         // in units of sqrt(3), so that the mirror's peak is 1 at every angle
-        const struct lobe lobe = lobe_along((double[3]){1.732 * usual[k].t[0], 1.732 * usual[k].t[1],
-                                                        1.732 * usual[k].t[2]},
-                                            usual[k].n, 1.0);
+        const struct lobe lobe = lobe_along(
+            (double[3]){1.732 * usual[k].t[0], 1.732 * usual[k].t[1], 1.732 * usual[k].t[2]},
+            usual[k].n, 1.0);
         double both = 0.0, own = 0.0;
         for (size_t i = 0; i < w->fitted_count; i++) {
             const double value = w->fitted_cosine[i] * lobe_at(&lobe, w->fitted[i]);
@@ -116,14 +116,14 @@ static void fit_lobes(const struct work *w, size_t texel, const float *values, s
     for (size_t i = 0; i < w->fitted_count; i++)
         s->y[i] = luminance(values + 3 * i * w->stride);
     subtract_diffuse(w, s);
-    const struct lobe_samples samples = {(const double (*)[3])w->fitted, w->fitted_cosine, s->y,
+    const struct lobe_samples samples = {(const double(*)[3])w->fitted, w->fitted_cosine, s->y,
                                          (int)w->fitted_count};
     for (int j = 0; j < count; j++)
         lobe[j] = start(w, s->rest);
     lobes_fit(lobe, count, &samples);
     uint16_t *to = model_halfs(w->m, LOBE) + texel * (size_t)count * 4;
     for (int j = 0; j < count; j++, to += 4) {
-                for (int c = 0; c < 3; c++)
+        for (int c = 0; c < 3; c++)
             to[c] = half_from_float((float)lobe[j].t[c]);
         to[3] = half_from_float((float)lobe[j].n);
         for (int c = 0; c < 3; c++)
@@ -304,8 +304,7 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
 // Views are measured ones here, their factors are blended.
 static void eval_scaled(const relume_btf_fitted *m, const struct model_at *at, float rgb[3])
 {
-    const float factor =
-        model_floats(m, FACTOR)[at->texel * (size_t)m->views + (size_t)at->view];
+    const float factor = model_floats(m, FACTOR)[at->texel * (size_t)m->views + (size_t)at->view];
     eval(m, at, rgb);
     for (int c = 0; c < 3; c++)
         rgb[c] *= factor;

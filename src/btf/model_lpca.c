@@ -1,5 +1,5 @@
-// model_lpca.c - local principal components of apparent BRDFs (Mueller, Meseth, Klein 2003): texels in
-// clusters, each with a mean and components of its own
+// model_lpca.c - local principal components of apparent BRDFs (Mueller, Meseth, Klein 2003): texels
+// in clusters, each with a mean and components of its own
 //     BTF(x, v, l) ~ mean_c(v, l) + sum_k weight_k(x) pattern_kc(v, l),   c = cluster(x)
 //
 // Clusters come from k-means, then from a generalised Lloyd iteration (Kambhatla and Leen 1997) in
@@ -55,7 +55,8 @@ static bool solve(const struct local *p, size_t cluster, double *gram, double *r
             row[j] = (double)p->r->score[p->members->texel[i] * n + j] - mean[j];
         lsq_add_gram(gram, (int)n, row, 1);
     }
-    return lsq_eigenvectors(gram, (int)n, (int)(k < n ? k : n), values, p->vector + cluster * k * n);
+    return lsq_eigenvectors(gram, (int)n, (int)(k < n ? k : n), values,
+                            p->vector + cluster * k * n);
 }
 
 static void solve_cluster(void *context, size_t item, int worker)
@@ -170,9 +171,9 @@ struct cluster {
     float *turned;         // [values][count]
     float *product;        // [count][count]
     double *gram, *root, *vector;
-    double *mean;          // [values]
-    float *pattern;        // [components][values]
-    float *texel;          // [values]
+    double *mean;    // [values]
+    float *pattern;  // [components][values]
+    float *texel;    // [values]
 };
 
 static void free_cluster(struct cluster *s)

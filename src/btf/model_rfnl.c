@@ -1,5 +1,5 @@
-// model_rfnl.c - reflectance fields with non-linear lobes for every texel and view (Meseth, Mueller,
-// Klein 2003; thesis, Eq. 3.1)
+// model_rfnl.c - reflectance fields with non-linear lobes for every texel and view (Meseth,
+// Mueller, Klein 2003; thesis, Eq. 3.1)
 #include "btf/fields.h"
 
 static void layout(relume_btf_fitted *m)

@@ -1,5 +1,5 @@
-// model_rfnlc.c - clustered reflectance fields (thesis, Procedure 1): texels in clusters, fields with
-// lobes fitted to the mean of each cluster, one index a texel
+// model_rfnlc.c - clustered reflectance fields (thesis, Procedure 1): texels in clusters, fields
+// with lobes fitted to the mean of each cluster, one index a texel
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"

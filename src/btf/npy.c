@@ -15,8 +15,10 @@
 static const struct {
     const char *descr;
     size_t size;
-} kinds[] = {
-    [NPY_HALF] = {"<f2", 2}, [NPY_FLOAT] = {"<f4", 4}, [NPY_U8] = {"|u1", 1}, [NPY_U16] = {"<u2", 2}};
+} kinds[] = {[NPY_HALF] = {"<f2", 2},
+             [NPY_FLOAT] = {"<f4", 4},
+             [NPY_U8] = {"|u1", 1},
+             [NPY_U16] = {"<u2", 2}};
 enum { KINDS = sizeof kinds / sizeof *kinds, PREFIX = 10, ALIGN = 64, WRITE_AT_ONCE = 1 << 24 };
 static const char MAGIC[] = "\x93NUMPY\x01";
 

@@ -222,10 +222,9 @@ static relume_status load(const struct pictures *p, size_t index, struct relume_
 {
     char *path = mem_format("%s/%s", p->path, p->all[index].name);
     const relume_status status =
-        path ? relume_image_load(image, path,
-                                 relume_image_params(.log = log, .limits = p->params
-                                                                               ? p->params->limits
-                                                                               : NULL))
+        path ? relume_image_load(
+                   image, path,
+                   relume_image_params(.log = log, .limits = p->params ? p->params->limits : NULL))
              : RELUME_ENOMEM;
     free(path);
     return status;

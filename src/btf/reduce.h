@@ -1,5 +1,5 @@
-// reduce.h - few numbers for each texel: the leading singular vectors of all values, texels by pairs
-// of directions and colours
+// reduce.h - few numbers for each texel: the leading singular vectors of all values, texels by
+// pairs of directions and colours
 #ifndef BTF_REDUCE_H
 #define BTF_REDUCE_H
 

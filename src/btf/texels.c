@@ -1,5 +1,5 @@
-// texels.c - a loop over texels on several cores: pictures lie apart in the file, so that a chunk of
-// texels is gathered at once
+// texels.c - a loop over texels on several cores: pictures lie apart in the file, so that a chunk
+// of texels is gathered at once
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"

@@ -33,17 +33,16 @@ void btf_row(const struct relume_btf_fitted_info *info, const struct relume_btf_
              double fit_s, const struct relume_btf_error *held_out)
 {
     printf("%-7s %-9.4f  %-7.4f  %-7.4f  %-6.2f  %-6.1f  %-6.2f  %-6.4f  %-12.1f  %-10.3f  %-6.1f",
-           relume_btf_model_name(info->model), e->mean_avg, e->mean_min, e->mean_max, 100.0 * e->rms,
-           100.0 * e->relative, e->delta_e, e->ssim, bytes_per_texel(info),
+           relume_btf_model_name(info->model), e->mean_avg, e->mean_min, e->mean_max,
+           100.0 * e->rms, 100.0 * e->relative, e->delta_e, e->ssim, bytes_per_texel(info),
            (double)info->bytes / 1048576.0, fit_s);
     if (held_out)
         printf("           %-7.4f  %-6.2f", held_out->mean_avg, 100.0 * held_out->rms);
     printf("\n");
 }
 
-void btf_json_row(const struct relume_btf_fitted_info *info,
-                  const struct relume_btf_error *e, double fit_s,
-                           const struct relume_btf_error *held_out)
+void btf_json_row(const struct relume_btf_fitted_info *info, const struct relume_btf_error *e,
+                  double fit_s, const struct relume_btf_error *held_out)
 {
     printf("{\"model\": \"%s\"", relume_btf_model_name(info->model));
     members(e);

@@ -172,9 +172,9 @@ static relume_status run_bracket(struct bracket *b, const struct choices *c, con
     if (!status)
         status = relume_image_save(
             &b->out, output,
-            relume_image_params(.log = args_log(args),
-                                .threads = args_threads(args) > 0 ? args_threads(args)
-                                                                  : relume_cpu_count()));
+            relume_image_params(.log = args_log(args), .threads = args_threads(args) > 0
+                                                                      ? args_threads(args)
+                                                                      : relume_cpu_count()));
     if (status)
         return status;
     if (args_has(args, "--json"))

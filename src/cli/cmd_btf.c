@@ -101,10 +101,10 @@ static relume_status synth_material(relume_btf **out, const struct relume_btf_ma
     relume_btf_set_directions(set, d);
     const relume_status status = relume_btf_synth(
         out, material,
-        relume_btf_synth_params(
-                .log = args_log(args), .size = args_int(args, "--size", 64), .view = d,
-                .views = set->count, .light = d, .lights = set->count,
-                .seed = (uint64_t)args_int(args, "--seed", 0), .threads = args_threads(args)));
+        relume_btf_synth_params(.log = args_log(args), .size = args_int(args, "--size", 64),
+                                .view = d, .views = set->count, .light = d, .lights = set->count,
+                                .seed = (uint64_t)args_int(args, "--seed", 0),
+                                .threads = args_threads(args)));
     free(d);
     return status;
 }
@@ -289,7 +289,7 @@ static relume_status eval(const struct args *args)
 // ---------------------------------------------------------------- render
 
 struct swatch {
-    const relume_btf *btf;            // one of the two
+    const relume_btf *btf;  // one of the two
     const relume_btf_fitted *fitted;
     struct relume_vec3 eye;
 };
@@ -387,8 +387,8 @@ static relume_status render(const struct args *args)
 static relume_status model_info(const struct args *args)
 {
     relume_btf_fitted *fitted;
-    const relume_status status = relume_btf_fitted_open(
-        &fitted, args_input(args, 1), relume_btf_params(.log = args_log(args)));
+    const relume_status status = relume_btf_fitted_open(&fitted, args_input(args, 1),
+                                                        relume_btf_params(.log = args_log(args)));
     if (status)
         return status;
     const struct relume_btf_fitted_info i = relume_btf_fitted_info(fitted);
@@ -398,14 +398,15 @@ static relume_status model_info(const struct args *args)
                "\"clusters\": %d, \"components\": %d, \"lobes\": %d, \"bytes\": %llu, "
                "\"bytes_each\": %llu, \"raw_bytes\": %llu}\n",
                relume_btf_model_name(i.model), i.width, i.height, i.views, i.lights, i.clusters,
-               i.components, i.lobes, (unsigned long long)i.bytes,
-               (unsigned long long)i.bytes_each, (unsigned long long)raw);
+               i.components, i.lobes, (unsigned long long)i.bytes, (unsigned long long)i.bytes_each,
+               (unsigned long long)raw);
     else
-        printf("model    %s: %s\ntexels   %d x %d\nviews    %d\nlights   %d\nbytes    %llu, %llu of "
-               "each texel; 1:%.0f of the measured values\n",
-               relume_btf_model_name(i.model), relume_btf_model_summary(i.model), i.width, i.height,
-               i.views, i.lights, (unsigned long long)i.bytes, (unsigned long long)i.bytes_each,
-               (double)raw / (double)i.bytes);
+        printf(
+            "model    %s: %s\ntexels   %d x %d\nviews    %d\nlights   %d\nbytes    %llu, %llu of "
+            "each texel; 1:%.0f of the measured values\n",
+            relume_btf_model_name(i.model), relume_btf_model_summary(i.model), i.width, i.height,
+            i.views, i.lights, (unsigned long long)i.bytes, (unsigned long long)i.bytes_each,
+            (double)raw / (double)i.bytes);
     relume_btf_fitted_destroy(&fitted);
     return RELUME_OK;
 }
@@ -439,7 +440,8 @@ static relume_status info(const struct args *args)
 static const struct verb {
     const char *name;
     relume_status (*run)(const struct args *args);
-} verbs[] = {{"fit", fit}, {"eval", eval}, {"compare", compare}, {"info", info}, {"render", render}};
+} verbs[] = {
+    {"fit", fit}, {"eval", eval}, {"compare", compare}, {"info", info}, {"render", render}};
 enum { VERBS = sizeof verbs / sizeof *verbs };
 
 static relume_status run(const struct args *args)

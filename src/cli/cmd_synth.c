@@ -149,14 +149,15 @@ static relume_status synth_btf(const struct args *args)
     if (!status)
         status = relume_btf_synth(
             &btf, material,
-            relume_btf_synth_params(
-                    .log = args_log(args), .size = args_int(args, "--size", 0),
-                    .view = directions, .views = n, .light = directions, .lights = n,
-                    .samples = args_int(args, "--samples", 0),
-                    .bounces = args_has(args, "--bounces") && !args_int(args, "--bounces", 0)
-                                   ? -1
-                                   : args_int(args, "--bounces", 0),
-                    .seed = (uint64_t)args_int(args, "--seed", 0), .threads = args_threads(args)));
+            relume_btf_synth_params(.log = args_log(args), .size = args_int(args, "--size", 0),
+                                    .view = directions, .views = n, .light = directions,
+                                    .lights = n, .samples = args_int(args, "--samples", 0),
+                                    .bounces = args_has(args, "--bounces") &&
+                                                       !args_int(args, "--bounces", 0)
+                                                   ? -1
+                                                   : args_int(args, "--bounces", 0),
+                                    .seed = (uint64_t)args_int(args, "--seed", 0),
+                                    .threads = args_threads(args)));
     if (!status)
         status = relume_btf_save(
             btf, args_text(args, "-o", NULL),

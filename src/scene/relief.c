@@ -56,9 +56,9 @@ double relief_noise(double u, double v, int across, int along, uint64_t seed)
     const double dx = x - fx, dy = y - fy;
     double row[2];
     for (int j = 0; j < 2; j++)
-        row[j] = relief_mix(
-            slope(lattice(ix, iy + j, across, along, seed), dx, dy - j),
-            slope(lattice(ix + 1, iy + j, across, along, seed), dx - 1.0, dy - j), fade(dx));
+        row[j] = relief_mix(slope(lattice(ix, iy + j, across, along, seed), dx, dy - j),
+                            slope(lattice(ix + 1, iy + j, across, along, seed), dx - 1.0, dy - j),
+                            fade(dx));
     return 1.4 * relief_mix(row[0], row[1], fade(dy));
 }
 

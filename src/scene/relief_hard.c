@@ -40,8 +40,8 @@ static void leather(double u, double v, uint64_t seed, struct relief_point *out)
     const double own = relief_scatter(u + warp, v - warp, 11, seed, d);
     const double cushion = relief_step(0.0, 0.45, d[1] - d[0]);
     const double pores = relief_sum(u, v, 64, 2, seed + 9);
-    out->height = 0.016 * cushion + 0.004 * own + 0.012 * relief_noise(u, v, 3, 3, seed + 7) +
-                  0.0006 * pores;
+    out->height =
+        0.016 * cushion + 0.004 * own + 0.012 * relief_noise(u, v, 3, 3, seed + 7) + 0.0006 * pores;
     out->layer = 0;
     relief_color(out->color, brown, (0.55 + 0.5 * cushion) * (1.0 + 0.1 * pores));
 }
@@ -81,7 +81,8 @@ const struct relume_btf_material material_wallpaper = {
 static void aluminium(double u, double v, uint64_t seed, struct relief_point *out)
 {
     static const float grey[3] = {0.06f, 0.06f, 0.06f};
-    const double brush = relief_noise(u, v, 3, 60, seed) + 0.6 * relief_noise(u, v, 5, 120, seed + 1);
+    const double brush =
+        relief_noise(u, v, 3, 60, seed) + 0.6 * relief_noise(u, v, 5, 120, seed + 1);
     out->height = 0.0009 * brush;
     out->layer = 0;
     relief_color(out->color, grey, 1.0 + 0.3 * brush);

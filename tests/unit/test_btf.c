@@ -338,10 +338,14 @@ static void test_bad_pictures(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sets),        cmocka_unit_test(test_domes),
-        cmocka_unit_test(test_sizes),       cmocka_unit_test(test_reference),
-        cmocka_unit_test(test_folder_round_trip), cmocka_unit_test(test_part),
-        cmocka_unit_test(test_pictures),    cmocka_unit_test(test_bad_pictures),
+        cmocka_unit_test(test_sets),
+        cmocka_unit_test(test_domes),
+        cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_reference),
+        cmocka_unit_test(test_folder_round_trip),
+        cmocka_unit_test(test_part),
+        cmocka_unit_test(test_pictures),
+        cmocka_unit_test(test_bad_pictures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

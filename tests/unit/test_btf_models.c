@@ -179,7 +179,7 @@ static void test_lobes(void **state)
         y[i] = lobe_at(&truth[0], d[i]) + lobe_at(&truth[1], d[i]);
     }
     struct lobe found[2] = {{{0.0, 0.0, 0.5}, 1.0}, {{-0.3, 0.3, 0.9}, 10.0}};
-    const struct lobe_samples samples = {(const double (*)[3])d, NULL, y, 81};
+    const struct lobe_samples samples = {(const double(*)[3])d, NULL, y, 81};
     const double error = lobes_fit(found, 2, &samples);
     double energy = 0.0;
     for (int i = 0; i < 81; i++)
@@ -203,10 +203,10 @@ static relume_btf *small_weave(void)
     vec3 d[19];
     relume_btf_set_directions(relume_btf_set_find("coarse"), d);
     relume_btf *btf;
-    CHECK_OK(relume_btf_synth(&btf, relume_btf_material_find("weave"),
-                              relume_btf_synth_params(.size = 12, .samples = 2, .bounces = -1,
-                                                      .view = d, .views = 19, .light = d,
-                                                      .lights = 19)));
+    CHECK_OK(
+        relume_btf_synth(&btf, relume_btf_material_find("weave"),
+                         relume_btf_synth_params(.size = 12, .samples = 2, .bounces = -1, .view = d,
+                                                 .views = 19, .light = d, .lights = 19)));
     return btf;
 }
 
@@ -248,9 +248,8 @@ static void test_held_out(void **state)
     assert_true(seen.delta_e > 0.0 && seen.ssim < 1.0);
     assert_int_equal(unseen.pairs, 19 * 19 - n * n);
     assert_true(unseen.rms > seen.rms);
-    assert_int_equal(
-        relume_btf_judge(&unseen, m, part, relume_btf_judge_params(.unseen = true)),
-        RELUME_EINVAL);
+    assert_int_equal(relume_btf_judge(&unseen, m, part, relume_btf_judge_params(.unseen = true)),
+                     RELUME_EINVAL);
     relume_btf_fitted_destroy(&m);
     relume_btf_destroy(&part);
     relume_btf_destroy(&btf);
@@ -323,9 +322,8 @@ static void test_files(void **state)
                      RELUME_EINVAL);
     assert_non_null(strstr(log.text, "1 to 12 clusters; found 13"));
     btf->own[7] = 0x7e00;  // NaN
-    assert_int_equal(
-        relume_btf_fit(&m, btf, named("rfp"), relume_btf_fit_params(.log = &log.log)),
-        RELUME_EDATA);
+    assert_int_equal(relume_btf_fit(&m, btf, named("rfp"), relume_btf_fit_params(.log = &log.log)),
+                     RELUME_EDATA);
     relume_btf_destroy(&btf);
     test_folder_remove(folder);
 }

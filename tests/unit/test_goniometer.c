@@ -16,8 +16,8 @@ static relume_btf *measure(const char *name, int samples, int bounces, uint64_t 
     CHECK_OK(relume_btf_synth(
         &btf, relume_btf_material_find(name),
         relume_btf_synth_params(.size = SIZE, .samples = samples, .bounces = bounces, .view = d,
-                                .views = DIRECTIONS, .light = d, .lights = DIRECTIONS,
-                                .seed = seed, .threads = threads)));
+                                .views = DIRECTIONS, .light = d, .lights = DIRECTIONS, .seed = seed,
+                                .threads = threads)));
     return btf;
 }
 

@@ -328,12 +328,34 @@ static void test_files(void **state)
     test_folder_remove(folder);
 }
 
+// Whichever allocation fails, the fit ends with RELUME_ENOMEM and leaves nothing behind.
+static void test_no_memory(void **state)
+{
+    (void)state;
+    relume_btf *btf = make(3, 3, "coarse", mixed);
+    const struct relume_btf_fit_params p = {.clusters = 2, .components = 2, .threads = 1};
+    for (const struct relume_btf_model *const *model = relume_btf_models; *model; model++) {
+        bool pending = false;
+        for (long n = 1; !pending; n += 1 + n / 4) {
+            relume_btf_fitted *m;
+            mem_fail_after(n);
+            const relume_status status = relume_btf_fit(&m, btf, *model, &p);
+            pending = mem_fail_pending();
+            mem_fail_after(0);
+            assert_int_equal(status, pending ? RELUME_OK : RELUME_ENOMEM);
+            relume_btf_fitted_destroy(&m);
+        }
+    }
+    relume_btf_destroy(&btf);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_table_of_sizes), cmocka_unit_test(test_exact),
         cmocka_unit_test(test_lobes),          cmocka_unit_test(test_order),
         cmocka_unit_test(test_held_out),       cmocka_unit_test(test_files),
+        cmocka_unit_test(test_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

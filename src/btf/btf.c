@@ -154,13 +154,12 @@ void relume_btf_store(relume_btf *btf, int view, int light, const float *rgb)
                                                      : rgb[i]);
 }
 
-static bool pick(vec3 *to, const vec3 *from, int *at, const int *from_at, const int *which, int n)
+static void pick(vec3 *to, const vec3 *from, int *at, const int *from_at, const int *which, int n)
 {
     for (int i = 0; i < n; i++) {
         to[i] = from[which[i]];
         at[i] = from_at[which[i]];
     }
-    return true;
 }
 
 relume_status relume_btf_part(relume_btf **out, const relume_btf *whole, const int *views,
@@ -173,8 +172,9 @@ relume_status relume_btf_part(relume_btf **out, const relume_btf *whole, const i
     int *v_at = mem_array((size_t)view_count, sizeof *v_at);
     int *l_at = mem_array((size_t)light_count, sizeof *l_at);
     relume_status status = RELUME_ENOMEM;
-    if (v && l && v_at && l_at && pick(v, whole->view, v_at, whole->view_at, views, view_count) &&
-        pick(l, whole->light, l_at, whole->light_at, lights, light_count)) {
+    if (v && l && v_at && l_at) {
+        pick(v, whole->view, v_at, whole->view_at, views, view_count);
+        pick(l, whole->light, l_at, whole->light_at, lights, light_count);
         struct relume_btf_info info = whole->info;
         info.views = view_count, info.view = v;
         info.lights = light_count, info.light = l;

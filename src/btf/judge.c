@@ -1,7 +1,6 @@
 // judge.c - how far a model is from what was measured
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/thread.h"
 #include "btf/model.h"
 
 #include <string.h>

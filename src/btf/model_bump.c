@@ -3,7 +3,6 @@
 // view nearest to the pole, by photometric stereo (Woodham 1980) without the darkest and brightest
 // lights.
 #include "base/memory.h"
-#include "base/thread.h"
 #include "btf/model.h"
 #include "image/half.h"
 #include "math/lsq.h"

@@ -5,7 +5,6 @@
 // Clusters come from k-means, then from a generalised Lloyd iteration (Kambhatla and Leen 1997) in
 // which a texel joins the cluster that reconstructs it best. Both work on reduced texels; the
 // components of the final clusters are those of the values themselves.
-#include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
 #include "btf/reduce.h"

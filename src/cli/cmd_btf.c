@@ -1,10 +1,10 @@
 // cmd_btf.c - relume btf: measured materials, the models that compress them, and how good they are
+#include "btf_inputs.h"
 #include "btf_report.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
 
 static const struct option options[] = {
@@ -35,18 +35,6 @@ static double now_s(void)
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static bool exists(const char *path)
-{
-    struct stat info;
-    return stat(path, &info) == 0;
-}
-
-static bool is_model(const char *path)
-{
-    char file[4096];
-    return snprintf(file, sizeof file, "%s/model.json", path) < (int)sizeof file && exists(file);
 }
 
 // ---------------------------------------------------------------- names
@@ -83,41 +71,6 @@ static relume_status choose_models(const struct relume_btf_model *out[MOST_MODEL
     }
     out[n] = NULL;
     return RELUME_OK;
-}
-
-// ---------------------------------------------------------------- what is looked at
-
-static relume_status synth_material(relume_btf **out, const struct relume_btf_material *material,
-                                    const struct args *args)
-{
-    const char *name = args_text(args, "--directions", "bonn");
-    const struct relume_btf_set *set = relume_btf_set_find(name);
-    const char *const names[] = {"bonn", "dome", "coarse", NULL};
-    if (!set)
-        return unknown_name("set of directions", name, names);
-    struct relume_vec3 *d = malloc((size_t)set->count * sizeof *d);
-    if (!d)
-        return RELUME_ENOMEM;
-    relume_btf_set_directions(set, d);
-    const relume_status status = relume_btf_synth(
-        out, material,
-        relume_btf_synth_params(.log = args_log(args), .size = args_int(args, "--size", 64),
-                                .view = d, .views = set->count, .light = d, .lights = set->count,
-                                .seed = (uint64_t)args_int(args, "--seed", 0),
-                                .threads = args_threads(args)));
-    free(d);
-    return status;
-}
-
-// A folder, or a built-in material when there is none of that name.
-static relume_status open_btf(relume_btf **out, const char *name, const struct args *args)
-{
-    const struct relume_btf_material *material = relume_btf_material_find(name);
-    if (material && !exists(name))
-        return synth_material(out, material, args);
-    return relume_btf_open(out, name,
-                           relume_btf_params(.log = args_log(args), .threads = args_threads(args),
-                                             .fill = args_has(args, "--fill")));
 }
 
 static struct relume_btf_fit_params fit_params(const struct args *args)
@@ -211,7 +164,7 @@ static relume_status compare(const struct args *args)
     relume_btf *btf = NULL, *part = NULL;
     relume_status status = choose_models(models, args);
     if (!status)
-        status = open_btf(&btf, args_input(args, 1), args);
+        status = btf_open(&btf, args_input(args, 1), args);
     if (!status)
         status = make_part(&part, btf, args);
     if (!status && json)
@@ -242,7 +195,7 @@ static relume_status fit(const struct args *args)
         return usage_error("btf fit: expected -o DIR");
     relume_status status = find_model(&model, args_text(args, "--model", "rfnlc"));
     if (!status)
-        status = open_btf(&btf, args_input(args, 1), args);
+        status = btf_open(&btf, args_input(args, 1), args);
     if (!status)
         status = relume_btf_fit(&fitted, btf, model, &p);
     if (!status)
@@ -264,7 +217,7 @@ static relume_status eval(const struct args *args)
     relume_status status = relume_btf_fitted_open(&fitted, args_input(args, 1),
                                                   relume_btf_params(.log = args_log(args)));
     if (!status)
-        status = open_btf(&btf, args_input(args, 2), args);
+        status = btf_open(&btf, args_input(args, 2), args);
     if (!status)
         status = relume_btf_judge(
             &error, fitted, btf,
@@ -284,102 +237,6 @@ static relume_status eval(const struct args *args)
     relume_btf_destroy(&btf);
     // sizes that differ are the inputs' fault here
     return status == RELUME_EINVAL ? RELUME_EDATA : status;
-}
-
-// ---------------------------------------------------------------- render
-
-struct swatch {
-    const relume_btf *btf;  // one of the two
-    const relume_btf_fitted *fitted;
-    struct relume_vec3 eye;
-};
-
-static void add_light(struct relume_image *image, const struct swatch *s,
-                      const struct relume_light *light)
-{
-    for (int y = 0; y < image->height; y++)
-        for (int x = 0; x < image->width; x++) {
-            float rgb[3];
-            if (s->btf)
-                relume_btf_evaluate(s->btf, x, y, s->eye, light->direction, rgb);
-            else
-                relume_btf_fitted_evaluate(s->fitted, x, y, s->eye, light->direction, rgb);
-            float *to = image->data + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
-            for (int c = 0; c < 3; c++)
-                to[c] += rgb[c] * light->rgb[c];
-        }
-}
-
-static struct relume_vec3 unit(struct relume_vec3 v)
-{
-    const double length = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-    return (struct relume_vec3){v.x / length, v.y / length, v.z / length};
-}
-
-static relume_status light_swatch(struct relume_image *image, const struct swatch *s,
-                                  const struct args *args)
-{
-    const int count = args_count(args, "--light");
-    const struct relume_light *lights;
-    relume_rig *rig = NULL;
-    int n = 0;
-    relume_status status = relume_rig_create(&rig);
-    for (int i = 0; i < (count ? count : 1) && !status; i++)
-        status = relume_rig_add(rig, count ? args_nth(args, "--light", i) : "dir 0 0 1", NULL,
-                                args_log(args));
-    if (!status)
-        status = relume_rig_lights(&lights, &n, rig);
-    for (int i = 0; i < n && !status; i++) {
-        struct relume_light light = lights[i];
-        if (light.kind != RELUME_LIGHT_DIRECTIONAL)
-            status = usage_error("btf render: expected lights \"dir x y z\"; found '%s'",
-                                 relume_light_kind_name(light.kind));
-        light.direction = unit(light.direction);
-        if (!status)
-            add_light(image, s, &light);
-    }
-    relume_rig_destroy(&rig);
-    return status;
-}
-
-// The sample as it was photographed: every texel seen from one direction, under distant lights.
-static relume_status render(const struct args *args)
-{
-    struct swatch s = {.eye = {0.0, 0.0, 1.0}};
-    struct relume_image image = {0};
-    relume_btf *btf = NULL;
-    relume_btf_fitted *fitted = NULL;
-    const char *eye = args_text(args, "--eye", NULL);
-    int width = 0, height = 0;
-    if (!args_has(args, "-o"))
-        return usage_error("btf render: expected -o FILE");
-    relume_status status = eye ? args_vec3(&s.eye, "--eye", eye) : RELUME_OK;
-    if (!status && !(s.eye.z > 0.0))
-        status = usage_error("--eye: expected a direction with z > 0; found '%s'", eye);
-    if (!status && is_model(args_input(args, 1))) {
-        status = relume_btf_fitted_open(&fitted, args_input(args, 1),
-                                        relume_btf_params(.log = args_log(args)));
-        if (!status) {
-            const struct relume_btf_fitted_info i = relume_btf_fitted_info(fitted);
-            width = i.width, height = i.height;
-        }
-    } else if (!status) {
-        status = open_btf(&btf, args_input(args, 1), args);
-        if (!status)
-            width = relume_btf_info(btf)->width, height = relume_btf_info(btf)->height;
-    }
-    s.btf = btf, s.fitted = fitted, s.eye = unit(s.eye);
-    if (!status)
-        status = relume_image_create(&image, width, height, 3);
-    if (!status)
-        status = light_swatch(&image, &s, args);
-    if (!status)
-        status = relume_image_save(&image, args_text(args, "-o", NULL),
-                                   relume_image_params(.log = args_log(args)));
-    relume_image_destroy(&image);
-    relume_btf_fitted_destroy(&fitted);
-    relume_btf_destroy(&btf);
-    return status;
 }
 
 // ---------------------------------------------------------------- info
@@ -414,9 +271,9 @@ static relume_status model_info(const struct args *args)
 static relume_status info(const struct args *args)
 {
     relume_btf *btf;
-    if (is_model(args_input(args, 1)))
+    if (btf_is_model(args_input(args, 1)))
         return model_info(args);
-    const relume_status status = open_btf(&btf, args_input(args, 1), args);
+    const relume_status status = btf_open(&btf, args_input(args, 1), args);
     if (status)
         return status;
     const struct relume_btf_info *i = relume_btf_info(btf);
@@ -441,7 +298,7 @@ static const struct verb {
     const char *name;
     relume_status (*run)(const struct args *args);
 } verbs[] = {
-    {"fit", fit}, {"eval", eval}, {"compare", compare}, {"info", info}, {"render", render}};
+    {"fit", fit}, {"eval", eval}, {"compare", compare}, {"info", info}, {"render", btf_render}};
 enum { VERBS = sizeof verbs / sizeof *verbs };
 
 static relume_status run(const struct args *args)

@@ -157,11 +157,9 @@ static relume_status run_bracket(struct bracket *b, const struct choices *c, con
 {
     const char *flat = args_text(args, "--flat", NULL);
     relume_status status = bracket_load(b, args);
-    if (!status && c->align == ALIGN_NONE)
-        status = bracket_check(b, args);
     if (!status)
         status = bracket_align(b, c->align, args);
-    if (!status && c->align != ALIGN_NONE)
+    if (!status)
         status = bracket_check(b, args);
     if (!status)
         status = bracket_merge(b, c->weights, args);

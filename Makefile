@@ -48,7 +48,7 @@ CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 
 LIB_C    := $(wildcard src/base/*.c src/math/*.c src/image/*.c src/capture/*.c src/scene/*.c \
             src/coder/*.c src/pack/*.c src/exchange/*.c src/relight/*.c src/view/*.c src/pass/*.c \
-            src/frame/*.c)
+            src/frame/*.c src/btf/*.c)
 LIB_C    := $(filter-out $(if $(filter kiss,$(FFT)),%/fft.c,%/fft_kiss.c),$(LIB_C))
 # The module that is loaded when the first image needs it (src/image/oiio.h)
 MODULE_CXX := src/image/oiio.cpp

@@ -5,6 +5,7 @@
 #include <relume/align.h>
 #include <relume/base.h>
 #include <relume/ball.h>
+#include <relume/btf.h>
 #include <relume/capture.h>
 #include <relume/codebook.h>
 #include <relume/coder.h>

@@ -3,6 +3,7 @@
 #define RELUME_SCENE_H
 
 #include <relume/base.h>
+#include <relume/btf.h>
 #include <relume/capture.h>
 
 #ifdef __cplusplus
@@ -81,6 +82,41 @@ struct relume_synth_params {
 // Returns RELUME_EINVAL, RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_scene_capture(const relume_scene *scene, const char *dir,
                                                  const struct relume_synth_params *params);
+
+// ------------------------------------------------------------------ the virtual gonioreflectometer
+
+// A built-in material: a periodic relief with colours and gloss. Constant; a NULL-terminated list
+// of all is relume_btf_materials.
+struct relume_btf_material;
+extern RELUME_API const struct relume_btf_material *const relume_btf_materials[];
+// NULL when there is none of that name.
+RELUME_API const struct relume_btf_material *relume_btf_material_find(const char *name);
+RELUME_API const char *relume_btf_material_name(const struct relume_btf_material *material);
+RELUME_API const char *relume_btf_material_summary(const struct relume_btf_material *material);
+
+struct relume_btf_synth_params {
+    const struct relume_log *log;
+    int size;                        // texels a side, [1, 1024]; default 64
+    const struct relume_vec3 *view;  // with `views`; default: the 81 of the Bonn laboratory
+    int views;
+    const struct relume_vec3 *light;  // with `lights`; default: the same
+    int lights;
+    int samples;    // camera rays a texel and view; default 4
+    int bounces;    // of light inside the relief, beside direct light; default 1, negative: none
+    uint64_t seed;  // of the relief and of the sampling
+    int threads;    // default: all cores
+    const char *scratch;  // as in relume_btf_params
+};
+#define relume_btf_synth_params(...) (&(const struct relume_btf_synth_params){__VA_ARGS__})
+
+// Measure one period of the relief under every light from every view: parallel light, orthographic
+// views, rectified to the plane of the relief's mean height (whatever lies off it is shifted by
+// parallax, as in photographs). Values include n.l. The relief's height and normals come along.
+// Same seed, same bytes for any number of threads.
+// Returns RELUME_EINVAL, RELUME_ENOMEM, RELUME_ESYSTEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_btf_synth(relume_btf **out,
+                                             const struct relume_btf_material *material,
+                                             const struct relume_btf_synth_params *params);
 
 #ifdef __cplusplus
 }

@@ -26,6 +26,10 @@ static const struct option options[] = {
     {"--bounces", OPTION_INT, "N", "bounces of indirect light; default 0", 0, 64},
     {"--mesh", OPTION_TEXT, "FILE", "bust: an OBJ or PLY model", 0, 0},
     {"--seed", OPTION_INT, "S", "of random patterns and sampling; default 0", 0, 2147483647},
+    {"--btf", OPTION_TEXT, "MATERIAL",
+     "measure a built-in material as a BTF; --size in texels, default 64", 0, 0},
+    {"--directions", OPTION_TEXT, "SET",
+     "BTF: of views and lights: bonn (default), dome, coarse, or a file of directions", 0, 0},
     {"--force", OPTION_FLAG, NULL, "replace an existing folder", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
@@ -106,6 +110,65 @@ static relume_status make_lights(struct relume_vec3 **out, int *n, bool pole_y,
                              .hemisphere = args_has(args, "--hemisphere"), .pole_y = pole_y));
 }
 
+// ---------------------------------------------------------------- materials
+
+static relume_status choose_material(const struct relume_btf_material **out, const char *name)
+{
+    const char *names[16];
+    int n = 0;
+    for (const struct relume_btf_material *const *m = relume_btf_materials; *m && n < 15; m++)
+        names[n++] = relume_btf_material_name(*m);
+    names[n] = NULL;
+    *out = relume_btf_material_find(name);
+    return *out ? RELUME_OK : unknown_name("material", name, names);
+}
+
+static relume_status choose_directions(struct relume_vec3 **out, int *n, const struct args *args)
+{
+    const char *name = args_text(args, "--directions", "bonn");
+    const struct relume_btf_set *set = relume_btf_set_find(name);
+    if (!set)
+        return relume_lights_read(out, n, name, args_log(args));
+    *n = set->count;
+    *out = malloc((size_t)*n * sizeof **out);
+    if (!*out)
+        return RELUME_ENOMEM;
+    relume_btf_set_directions(set, *out);
+    return RELUME_OK;
+}
+
+static relume_status synth_btf(const struct args *args)
+{
+    const struct relume_btf_material *material;
+    struct relume_vec3 *directions = NULL;
+    relume_btf *btf = NULL;
+    int n = 0;
+    relume_status status = choose_material(&material, args_text(args, "--btf", NULL));
+    if (!status)
+        status = choose_directions(&directions, &n, args);
+    if (!status)
+        status = relume_btf_synth(
+            &btf, material,
+            relume_btf_synth_params(.log = args_log(args), .size = args_int(args, "--size", 0),
+                                    .view = directions, .views = n, .light = directions,
+                                    .lights = n, .samples = args_int(args, "--samples", 0),
+                                    .bounces = args_has(args, "--bounces") &&
+                                                       !args_int(args, "--bounces", 0)
+                                                   ? -1
+                                                   : args_int(args, "--bounces", 0),
+                                    .seed = (uint64_t)args_int(args, "--seed", 0),
+                                    .threads = args_threads(args)));
+    if (!status)
+        status = relume_btf_save(
+            btf, args_text(args, "-o", NULL),
+            relume_btf_params(.log = args_log(args), .force = args_has(args, "--force")));
+    relume_btf_destroy(&btf);
+    free(directions);
+    return status;
+}
+
+// ---------------------------------------------------------------- scenes
+
 static relume_status capture(const struct relume_scene_kind *kind,
                              const struct relume_synth_params *params, const struct args *args)
 {
@@ -135,6 +198,11 @@ static relume_status run(const struct args *args)
     };
     if (!args_has(args, "-o"))
         return usage_error("synth: expected -o DIR");
+    if (args_has(args, "--btf"))
+        return args_inputs(args) ? usage_error("synth: expected a scene or --btf; found both")
+                                 : synth_btf(args);
+    if (!args_inputs(args))
+        return usage_error("synth: expected a scene, or --btf MATERIAL");
     relume_status status = choose_scene(&kind, args_input(args, 0));
     if (!status)
         status = choose_projection(&p, args_text(args, "--projection", NULL));
@@ -159,10 +227,10 @@ static relume_status run(const struct args *args)
 
 const struct command command_synth = {
     .name = "synth",
-    .usage = "SCENE -o DIR",
+    .usage = "SCENE|--btf MATERIAL -o DIR",
     .summary = "render a built-in scene (box, teapot, bust, attic, chessboard) under many lights",
     .example = "relume synth teapot -o teapot --views 5x5 --lights 100",
-    .min_inputs = 1,
+    .min_inputs = 0,
     .max_inputs = 1,
     .options = options,
     .run = run,

@@ -25,6 +25,13 @@ static struct camera_ray planar(const struct relume_geometry *g, double across, 
     return (struct camera_ray){vec3_of(window.x, window.y, g->camera_z), vec3_of(0, 0, -1)};
 }
 
+static struct camera_ray rectified(const struct camera *c, double across, double down)
+{
+    const vec3 back = vec3_scale(c->towards, c->geometry.camera_z / c->towards.z);
+    return (struct camera_ray){vec3_add(vec3_of(across - 0.5, 0.5 - down, 0.0), back),
+                               vec3_scale(c->towards, -1.0)};
+}
+
 static struct camera_ray slab(const struct camera *c, double across, double down)
 {
     const struct relume_geometry *g = &c->geometry;
@@ -56,6 +63,8 @@ struct camera_ray camera_ray_at(const struct camera *camera, double x, double y)
     const struct relume_geometry *g = &camera->geometry;
     const double across = x / camera->width, down = y / camera->height;
     const double phi_rad = 2.0 * M_PI * across - M_PI;
+    if (camera->rectified)
+        return rectified(camera, across, down);
     switch (g->projection) {
     case RELUME_SLAB: return slab(camera, across, down);
     case RELUME_CYLINDRICAL: return around(g, phi_rad, mix(g->v_max, g->v_min, down));

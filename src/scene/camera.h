@@ -10,6 +10,11 @@ struct camera {
     struct relume_geometry geometry;
     int width, height;
     double uv[2];  // slab: where this view's camera stands
+    // A sample of material, seen from the unit direction `towards`: parallel rays through the unit
+    // square about the origin of the plane z = 0, whose places are the picture's. Rays start on the
+    // plane z = geometry.camera_z.
+    bool rectified;
+    vec3 towards;
 };
 
 struct camera_ray {

@@ -1,0 +1,196 @@
+// btf.h - measured materials: bidirectional texture functions, and the models that compress them
+// (Meseth, "Towards Predictive Rendering in Virtual Reality", 2008, chapter 3; Meseth, Mueller,
+// Sattler, Klein, "BTF Rendering for Virtual Environments", 2003)
+//
+// A BTF is a plane of texels seen from a set of view directions under a set of light directions.
+// Directions are unit vectors from the sample towards the eye or the light, in the sample's frame:
+// x right, y up in the picture, z off the plane; all have z > 0. Values are the linear radiance
+// that a directional light of value 1 gives (a white Lambertian facing it shows 1).
+#ifndef RELUME_BTF_H
+#define RELUME_BTF_H
+
+#include <relume/base.h>
+#include <relume/image.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// ---------------------------------------------------------------- directions
+
+// Rings about the z axis. Constant; a NULL-terminated list of all is relume_btf_sets.
+struct relume_btf_set {
+    const char *name;
+    const char *summary;  // one line for help texts
+    int count;            // directions
+    int rings;
+    struct relume_btf_ring {
+        double theta_deg, first_phi_deg;
+        int count;  // at phi = first_phi_deg + 360 i / count
+    } ring[10];
+};
+extern RELUME_API const struct relume_btf_set *const relume_btf_sets[];
+// NULL when there is none of that name.
+RELUME_API const struct relume_btf_set *relume_btf_set_find(const char *name);
+// Fill `out[set->count]`, ring by ring from the pole.
+RELUME_API void relume_btf_set_directions(const struct relume_btf_set *set,
+                                          struct relume_vec3 *out);
+
+// Directions triangulated over the hemisphere. Never changes. Thread-safety: safe.
+typedef struct relume_dome relume_dome;
+// At least 3 unit directions with z > 0, not all on one great circle. RELUME_EDATA, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_dome_create(relume_dome **out,
+                                               const struct relume_vec3 *directions, int n,
+                                               const struct relume_log *log);
+RELUME_API void relume_dome_destroy(relume_dome **dome);
+
+// Which directions stand for one, and how much each: barycentric weights, all > 0, sum 1.
+struct relume_dome_blend {
+    int count;  // 1 to 3
+    int index[3];
+    double weight[3];
+    // The direction that they stand for: the one asked for, or, below the lowest directions, the
+    // one of its azimuth on their rim.
+    struct relume_vec3 direction;
+    double rim;  // z asked for over z of `direction`: below 1 only below the rim, never below 0
+};
+RELUME_API struct relume_dome_blend relume_dome_at(const relume_dome *dome, struct relume_vec3 d);
+
+// ---------------------------------------------------------------- the measured values
+
+// Half-float values, mapped from their file, so that they need not fit into memory.
+// Thread-safety: safe while nobody stores.
+typedef struct relume_btf relume_btf;
+
+struct relume_btf_info {
+    const char *name;   // of the material
+    int width, height;  // texels
+    int views, lights;
+    const struct relume_vec3 *view, *light;
+    // Whether values hold the factor n.l, as photographs do. Evaluation never multiplies twice.
+    bool without_cosine;
+    // Ground truth of synthetic samples, or empty: height over the plane in widths of the sample
+    // (1 channel), unit normals (3 channels: x, y, z).
+    struct relume_image relief, normals;
+};
+
+struct relume_btf_params {
+    const struct relume_log *log;
+    const struct relume_limits *limits;
+    const char *scratch;  // the folder of temporary data; default $TMPDIR or /tmp
+    bool fill;   // folders of pictures: a missing pair is interpolated rather than an error
+    bool force;  // saving: replace an existing folder
+    int threads;
+};
+#define relume_btf_params(...) (&(const struct relume_btf_params){__VA_ARGS__})
+
+// Values all zero, to be stored; copies what `info` points to. RELUME_EINVAL, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_btf_create(relume_btf **out, const struct relume_btf_info *info,
+                                              const struct relume_btf_params *params);
+// Open a folder: btf.json beside values.npy (docs/btf.md), or pictures whose names hold the angles
+// in degrees, tl (light elevation from the pole), pl (light azimuth), tv, pv in any order, like
+// tl030_pl120_tv045_pv020.png. Returns RELUME_EDATA, RELUME_ENOMEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_btf_open(relume_btf **out, const char *path,
+                                            const struct relume_btf_params *params);
+// The folder appears whole or not at all. RELUME_EINVAL (also for a part), RELUME_EIO.
+RELUME_RESULT relume_status relume_btf_save(const relume_btf *btf, const char *path,
+                                            const struct relume_btf_params *params);
+RELUME_API void relume_btf_destroy(relume_btf **btf);
+
+// Belongs to the BTF.
+RELUME_API const struct relume_btf_info *relume_btf_info(const relume_btf *btf);
+// Bytes of its half-float values: 6 a texel and pair of directions.
+RELUME_API uint64_t relume_btf_bytes(int width, int height, int views, int lights);
+// One picture as halfs [height][width][3], row 0 at the top.
+RELUME_API const uint16_t *relume_btf_picture(const relume_btf *btf, int view, int light);
+// Replace one picture of a created BTF; values are clipped to what a half holds.
+RELUME_API void relume_btf_store(relume_btf *btf, int view, int light, const float *rgb);
+
+// Some views and lights of a BTF, which must outlive the part. RELUME_EDATA when too few are left
+// to interpolate, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_btf_part(relume_btf **out, const relume_btf *whole,
+                                            const int *views, int view_count, const int *lights,
+                                            int light_count, const struct relume_log *log);
+
+// The reference: three views times three lights of the measured values, weighted. Below the lowest
+// lights the value falls with the cosine to 0 at the horizon; views and lights below it give 0.
+RELUME_API void relume_btf_evaluate(const relume_btf *btf, int x, int y, struct relume_vec3 view,
+                                    struct relume_vec3 light, float rgb[3]);
+
+// ---------------------------------------------------------------- models
+
+// A way to compress a BTF. Constant; a NULL-terminated list of all is relume_btf_models.
+struct relume_btf_model;
+extern RELUME_API const struct relume_btf_model *const relume_btf_models[];
+RELUME_API const struct relume_btf_model *relume_btf_model_find(const char *name);
+RELUME_API const char *relume_btf_model_name(const struct relume_btf_model *model);
+RELUME_API const char *relume_btf_model_summary(const struct relume_btf_model *model);
+
+struct relume_btf_fit_params {  // zero in a field means its default
+    const struct relume_log *log;
+    int clusters;    // lpca 32, rfnlc 1024; at most one a texel, [1, 65536] (lpca: 256)
+    int components;  // vpca 4, lpca 8, fmf 100; [1, 256]
+    int lobes;       // rfnl, rfnlc, laf, slaf: 2; [1, 4]
+    uint64_t seed;   // equal seeds give equal bytes, whatever the thread count
+    int threads;     // default: all cores
+};
+#define relume_btf_fit_params(...) (&(const struct relume_btf_fit_params){__VA_ARGS__})
+
+// A fitted model. Never changes. Thread-safety: safe.
+typedef struct relume_btf_fitted relume_btf_fitted;
+
+// Returns RELUME_EINVAL for parameters out of range, RELUME_EDATA for values that are not finite,
+// RELUME_ENOMEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
+                                           const struct relume_btf_model *model,
+                                           const struct relume_btf_fit_params *params);
+// A folder with model.json and one .npy file for each array (docs/btf.md). RELUME_EINVAL,
+// RELUME_EIO; RELUME_EDATA.
+RELUME_RESULT relume_status relume_btf_fitted_save(const relume_btf_fitted *fitted,
+                                                   const char *path,
+                                                   const struct relume_btf_params *params);
+RELUME_RESULT relume_status relume_btf_fitted_open(relume_btf_fitted **out, const char *path,
+                                                   const struct relume_btf_params *params);
+RELUME_API void relume_btf_fitted_destroy(relume_btf_fitted **fitted);
+
+struct relume_btf_fitted_info {
+    const struct relume_btf_model *model;
+    int width, height, views, lights;
+    int clusters, components, lobes;  // 0: the model has none
+    uint64_t bytes;                   // of its arrays
+    uint64_t bytes_each;              // of those a texel: the rest is shared by all texels
+};
+RELUME_API struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *fitted);
+
+// The same question as relume_btf_evaluate.
+RELUME_API void relume_btf_fitted_evaluate(const relume_btf_fitted *fitted, int x, int y,
+                                           struct relume_vec3 view, struct relume_vec3 light,
+                                           float rgb[3]);
+
+// How far a model is from a BTF of as many texels (its directions may be others).
+struct relume_btf_error {
+    // |difference| averaged over directions and colours (thesis, Eq. 3.2), over texels
+    double mean_avg, mean_min, mean_max;
+    double rms;       // over everything, absolute: 0.01 is 1 % of a white Lambertian lit head-on
+    double relative;  // rms over the rms of the values
+    double delta_e;   // mean CIEDE2000 of `pictures` pairs; NaN when not asked for
+    double ssim;      // their mean
+    int pictures;
+    size_t pairs;  // of directions compared
+};
+struct relume_btf_judge_params {
+    const struct relume_log *log;
+    bool unseen;   // only pairs with a direction that the model was not fitted to
+    int pictures;  // pairs whose pictures are compared by eye (delta_e, ssim); default 0
+    int threads;
+};
+#define relume_btf_judge_params(...) (&(const struct relume_btf_judge_params){__VA_ARGS__})
+// RELUME_EINVAL when texels differ or no pair is left, RELUME_ENOMEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_btf_judge(struct relume_btf_error *out,
+                                             const relume_btf_fitted *fitted, const relume_btf *btf,
+                                             const struct relume_btf_judge_params *params);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,52 @@
+// btf.h - the inside of a relume_btf, and what its readers and its models share
+#ifndef BTF_BTF_H
+#define BTF_BTF_H
+
+#include "btf/npy.h"
+#include "math/vec.h"
+
+#include <relume/btf.h>
+
+struct relume_btf {
+    struct relume_btf_info info;  // owns what it points to
+    vec3 *view, *light;
+    relume_dome *views, *lights;
+    const uint16_t *values;   // [stored view][stored light][height][width][3]
+    uint16_t *own;            // or NULL: scratch memory behind `values`
+    struct npy_file file;     // or the file behind them
+    int *view_at, *light_at;  // where a view and a light of this BTF are stored
+    int stored_lights;
+};
+
+static inline size_t btf_texels(const relume_btf *btf)
+{
+    return (size_t)btf->info.width * (size_t)btf->info.height;
+}
+
+// Everything of a BTF but its values. RELUME_EDATA for directions that cannot be used.
+relume_status btf_start(relume_btf **out, const struct relume_btf_info *info,
+                        const struct relume_log *log);
+// Zeroed scratch memory as its values.
+relume_status btf_make_room(relume_btf *btf, const struct relume_btf_params *params);
+// A folder of pictures named by their angles.
+relume_status btf_open_pictures(relume_btf **out, const char *path,
+                                const struct relume_btf_params *params);
+
+// Values of `count` texels from `first` on as out[texel][view][light][3].
+void btf_gather(const relume_btf *btf, size_t first, size_t count, float *out);
+
+// Call `body` for every texel with its values [view][light][3]; which worker takes one is open.
+// RELUME_ENOMEM, RELUME_ECANCEL; `what` names the work for progress, NULL: not told.
+relume_status btf_for_texels(const relume_btf *btf, int threads, const struct relume_log *log,
+                             const char *what, void *context,
+                             void (*body)(void *context, size_t texel, const float *values));
+
+// Unit vectors of a JSON array; `*out` is to be freed.
+struct json_t;
+relume_status btf_read_directions(const struct json_t *array, const char *path, const char *what,
+                                  const struct relume_limits *limits, vec3 **out, int *count,
+                                  const struct relume_log *log);
+// ... and as text: "[[x, y, z], ...]", to be freed; NULL: no memory.
+char *btf_directions_text(const vec3 *d, int n);
+
+#endif

@@ -1,0 +1,154 @@
+// dome.c - three measured directions for any direction: the convex hull of the set and the nadir
+#include "base/log.h"
+#include "base/memory.h"
+#include "math/hull.h"
+#include "math/vec.h"
+
+#include <relume/btf.h>
+#include <string.h>
+
+struct relume_dome {
+    vec3 *point;  // [n + 1]; the last is the nadir, which closes the hull below the rim
+    int n;
+    struct hull_triangle *triangle;
+    vec3 (*across)[3];  // [triangles]: the weight of corner c grows along across[c]
+    int triangles;
+};
+
+static const double LOWEST = 1e-3;   // z of a direction that can be measured
+static const double NOTHING = 1e-9;  // weights below are rounding
+
+static relume_status check(const struct relume_vec3 *d, int n, const struct relume_log *log)
+{
+    if (n < 3)
+        return log_fail(log, RELUME_EDATA, "directions: expected 3 or more; found %d", n);
+    for (int i = 0; i < n; i++)
+        if (!(d[i].z >= LOWEST) || !(fabs(vec3_length(d[i]) - 1.0) < 1e-6))
+            return log_fail(log, RELUME_EDATA,
+                            "direction %d: expected a unit vector with z > 0; found %g, %g, %g", i,
+                            d[i].x, d[i].y, d[i].z);
+    return RELUME_OK;
+}
+
+static relume_status triangulate(relume_dome *d, const struct relume_vec3 *directions)
+{
+    d->point = mem_array((size_t)d->n + 1, sizeof *d->point);
+    if (!d->point)
+        return RELUME_ENOMEM;
+    memcpy(d->point, directions, (size_t)d->n * sizeof *d->point);
+    d->point[d->n] = vec3_of(0.0, 0.0, -1.0);
+    const relume_status status = hull_build(d->point, d->n + 1, &d->triangle, &d->triangles);
+    if (status)
+        return status;
+    d->across = mem_array((size_t)d->triangles, sizeof *d->across);
+    for (int i = 0; d->across && i < d->triangles; i++)
+        for (int c = 0; c < 3; c++)
+            d->across[i][c] = vec3_cross(d->point[d->triangle[i].corner[(c + 1) % 3]],
+                                         d->point[d->triangle[i].corner[(c + 2) % 3]]);
+    return d->across ? RELUME_OK : RELUME_ENOMEM;
+}
+
+relume_status relume_dome_create(relume_dome **out, const struct relume_vec3 *directions, int n,
+                                 const struct relume_log *log)
+{
+    *out = NULL;
+    relume_status status = check(directions, n, log);
+    if (status)
+        return status;
+    relume_dome *d = mem_zeroed(1, sizeof *d);
+    if (!d)
+        return RELUME_ENOMEM;
+    d->n = n;
+    status = triangulate(d, directions);
+    if (status == RELUME_EDATA)
+        log_fail(log, status, "directions: expected some not on one great circle");
+    if (status)
+        relume_dome_destroy(&d);
+    *out = d;
+    return status;
+}
+
+void relume_dome_destroy(relume_dome **dome)
+{
+    if (*dome) {
+        free((*dome)->point);
+        free((*dome)->triangle);
+        free((*dome)->across);
+    }
+    free(*dome);
+    *dome = NULL;
+}
+
+// Barycentric weights of the ray's hit; false when the triangle faces away.
+static bool weigh(const vec3 across[3], vec3 d, double weight[3])
+{
+    double sum = 0.0;
+    for (int c = 0; c < 3; c++)
+        sum += weight[c] = vec3_dot(d, across[c]);
+    if (!(sum > 1e-12))
+        return false;
+    for (int c = 0; c < 3; c++)
+        weight[c] /= sum;
+    return true;
+}
+
+// The triangle that `d` meets: the one whose smallest weight is largest, for rays through edges.
+static const struct hull_triangle *find(const relume_dome *dome, vec3 d, double weight[3])
+{
+    const struct hull_triangle *best = &dome->triangle[0];
+    double most = -INFINITY;
+    for (int i = 0; i < dome->triangles && most < NOTHING; i++) {
+        double w[3];
+        if (!weigh(dome->across[i], d, w))
+            continue;
+        const double least = fmin(w[0], fmin(w[1], w[2]));
+        if (least > most) {
+            most = least;
+            best = &dome->triangle[i];
+            memcpy(weight, w, sizeof w);
+        }
+    }
+    return best;
+}
+
+static void keep_real(struct relume_dome_blend *b, const relume_dome *dome,
+                      const struct hull_triangle *t, const double weight[3])
+{
+    for (int c = 0; c < 3; c++)
+        if (t->corner[c] != dome->n && weight[c] > NOTHING) {
+            b->index[b->count] = t->corner[c];
+            b->weight[b->count++] = weight[c];
+        }
+    for (int c = 0; c < 3 && b->count == 0; c++)  // straight down: any of the rim will do
+        if (t->corner[c] != dome->n) {
+            b->index[b->count] = t->corner[c];
+            b->weight[b->count++] = 1.0;
+        }
+}
+
+static bool has_nadir(const relume_dome *dome, const struct hull_triangle *t)
+{
+    return t->corner[0] == dome->n || t->corner[1] == dome->n || t->corner[2] == dome->n;
+}
+
+struct relume_dome_blend relume_dome_at(const relume_dome *dome, struct relume_vec3 d)
+{
+    struct relume_dome_blend b = {.direction = d, .rim = 1.0};
+    double weight[3] = {1.0, 0.0, 0.0}, sum = 0.0;
+    vec3 middle = {0.0, 0.0, 0.0};
+    const struct hull_triangle *t = find(dome, d, weight);
+    keep_real(&b, dome, t, weight);
+    for (int i = 0; i < b.count; i++)
+        sum += b.weight[i];
+    for (int i = 0; i < b.count; i++) {
+        b.weight[i] /= sum;
+        middle = vec3_add(middle, vec3_scale(dome->point[b.index[i]], b.weight[i]));
+    }
+    if (b.count == 1)
+        middle = dome->point[b.index[0]];
+    if (b.count == 1 || has_nadir(dome, t)) {
+        b.direction = vec3_unit(middle);
+        b.rim = has_nadir(dome, t) ? fmin(fmax(d.z, 0.0) / b.direction.z, 1.0) : 1.0;
+    }
+    return b;
+}

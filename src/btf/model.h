@@ -1,0 +1,92 @@
+// model.h - what a model of a BTF is: some arrays, a way to fill them, a way to read a value back
+//
+// A model says which arrays it keeps, of which types and sizes; fitting fills them; what is read
+// back, saved and counted is these arrays and nothing else. So the bytes of the tables are the
+// bytes of the files.
+#ifndef BTF_MODEL_H
+#define BTF_MODEL_H
+
+#include "btf/btf.h"
+
+enum { MODEL_ARRAYS = 6, MODEL_LOBES = 4 };
+
+struct model_array {
+    const char *name;
+    struct npy npy;
+    bool each;     // one entry a texel: shape[0] is their number or [1] with `by_view`
+    size_t below;  // integers: all are below this
+    void *data;
+    struct npy_file file;  // or empty: `data` is malloc'd
+};
+
+struct relume_btf_fitted {
+    const struct relume_btf_model *model;
+    int width, height, views, lights;
+    size_t texels;
+    int clusters, components, lobes;  // 0: the model has none
+    bool without_cosine;
+    vec3 *view, *light;
+    relume_dome *view_dome, *light_dome;
+    struct model_array array[MODEL_ARRAYS];
+    int arrays;
+};
+
+// One value that is asked for. Models that are gridded over views (lights) get measured ones only.
+struct model_at {
+    size_t texel;
+    int view, light;  // of the fitted directions, where the model is gridded
+    vec3 v, l;
+};
+
+// What fitting works with.
+struct fitting {
+    const relume_btf *btf;
+    relume_btf_fitted *out;
+    const struct relume_log *log;
+    uint64_t seed;
+    int threads;
+};
+
+struct relume_btf_model {
+    const char *name;
+    const char *summary;
+    bool view_grid, light_grid;            // known at measured views (lights) only
+    int clusters, components, lobes;       // defaults; 0: the model has none
+    int most_clusters;                     // 0: 65536
+    void (*layout)(relume_btf_fitted *m);  // adds the arrays, with model_add
+    relume_status (*fit)(struct fitting *f);
+    void (*eval)(const relume_btf_fitted *m, const struct model_at *at, float rgb[3]);
+};
+
+extern const struct relume_btf_model model_bump, model_laf, model_slaf, model_rfp, model_rfnl,
+    model_rfnlc, model_vpca, model_lpca, model_fmf;
+
+// An array of up to five sizes; unused ones are 0.
+void model_add(relume_btf_fitted *m, const char *name, enum npy_kind kind, bool each, size_t below,
+               const size_t shape[NPY_DIMS]);
+#define MODEL_SHAPE(...) ((const size_t[NPY_DIMS]){__VA_ARGS__})
+
+static inline uint16_t *model_halfs(const relume_btf_fitted *m, int array)
+{
+    return m->array[array].data;
+}
+
+static inline float *model_floats(const relume_btf_fitted *m, int array)
+{
+    return m->array[array].data;
+}
+
+// Value of the fitted model between its directions.
+struct model_blend {
+    struct relume_dome_blend view, light;
+    vec3 v, l;
+};
+void model_blend(const relume_btf_fitted *m, size_t texel, const struct model_blend *at,
+                 float rgb[3]);
+
+static inline size_t model_pairs(const relume_btf_fitted *m)
+{
+    return (size_t)m->views * (size_t)m->lights;
+}
+
+#endif

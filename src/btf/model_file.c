@@ -1,0 +1,212 @@
+// model_file.c - a fitted model on disk: model.json and one .npy file for each of its arrays
+#include "base/json.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "btf/model.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { VERSION = 1 };
+
+// ---------------------------------------------------------------- writing
+
+static relume_status save_json(const relume_btf_fitted *m, const char *folder,
+                               const struct relume_log *log)
+{
+    char *path = mem_format("%s/model.json", folder);
+    char *view = btf_directions_text(m->view, m->views);
+    char *light = btf_directions_text(m->light, m->lights), *text = NULL;
+    if (path && view && light)
+        text = mem_format("{ \"format\": \"relume-btf-model\", \"version\": %d,\n"
+                          "  \"model\": \"%s\", \"width\": %d, \"height\": %d,\n"
+                          "  \"clusters\": %d, \"components\": %d, \"lobes\": %d,\n"
+                          "  \"includes_cosine\": %s,\n"
+                          "  \"view_directions\": %s,\n  \"light_directions\": %s }\n",
+                          VERSION, m->model->name, m->width, m->height, m->clusters, m->components,
+                          m->lobes, m->without_cosine ? "false" : "true", view, light);
+    const relume_status status = text ? outfile_save(path, text, strlen(text), log) : RELUME_ENOMEM;
+    free(path);
+    free(view);
+    free(light);
+    free(text);
+    return status;
+}
+
+relume_status relume_btf_fitted_save(const relume_btf_fitted *m, const char *path,
+                                     const struct relume_btf_params *params)
+{
+    const struct relume_log *log = params ? params->log : NULL;
+    outdir *dir;
+    relume_status status = outdir_open(&dir, path, params && params->force, log);
+    if (status)
+        return status;
+    for (int i = 0; i < m->arrays && !status; i++) {
+        char *file = mem_format("%s/%s.npy", outdir_path(dir), m->array[i].name);
+        status = file ? npy_save(&m->array[i].npy, m->array[i].data, file, log) : RELUME_ENOMEM;
+        free(file);
+    }
+    if (!status)
+        status = save_json(m, outdir_path(dir), log);
+    if (!status)
+        return outdir_commit(&dir);
+    outdir_abort(&dir);
+    return status;
+}
+
+// ---------------------------------------------------------------- reading
+
+struct reader {
+    const char *folder;
+    char *json;
+    struct relume_limits limits;
+    const struct relume_log *log;
+};
+
+static relume_status wrong(const struct reader *r, const char *what, const char *expected)
+{
+    return log_fail(r->log, RELUME_EDATA, "%s: %s; expected %s", r->json, what, expected);
+}
+
+static relume_status read_model(relume_btf_fitted *m, const jvalue *root, const struct reader *r)
+{
+    const char *format = jvalue_text(jvalue_member(root, "format"));
+    const char *name = jvalue_text(jvalue_member(root, "model"));
+    long long version = 0;
+    if (!format || strcmp(format, "relume-btf-model"))
+        return wrong(r, "format", "relume-btf-model");
+    if (!jvalue_integer(jvalue_member(root, "version"), &version) || version != VERSION)
+        return log_fail(r->log, RELUME_EDATA, "%s: expected version %d; found %lld", r->json,
+                        VERSION, version);
+    m->model = name ? relume_btf_model_find(name) : NULL;
+    return m->model ? RELUME_OK : wrong(r, "model", "the name of a model");
+}
+
+static bool read_count(const jvalue *root, const char *key, long long most, int *out)
+{
+    long long value = 0;
+    if (!jvalue_integer(jvalue_member(root, key), &value) || value < 0 || value > most)
+        return false;
+    *out = (int)value;
+    return true;
+}
+
+static relume_status read_counts(relume_btf_fitted *m, const jvalue *root, const struct reader *r)
+{
+    const struct relume_btf_model *k = m->model;
+    bool cosine = true;
+    if (!read_count(root, "width", r->limits.max_side, &m->width) ||
+        !read_count(root, "height", r->limits.max_side, &m->height) ||
+        !limits_allow(&r->limits, m->width, m->height))
+        return wrong(r, "width, height", "texels within the limits");
+    if (!read_count(root, "clusters", 65536, &m->clusters) ||
+        !read_count(root, "components", 256, &m->components) ||
+        !read_count(root, "lobes", MODEL_LOBES, &m->lobes) || !m->clusters != !k->clusters ||
+        !m->components != !k->components || !m->lobes != !k->lobes)
+        return wrong(r, "clusters, components, lobes", "counts that fit the model");
+    if (!jvalue_truth(jvalue_member(root, "includes_cosine"), &cosine))
+        return wrong(r, "includes_cosine", "true or false");
+    m->texels = (size_t)m->width * (size_t)m->height;
+    m->without_cosine = !cosine;
+    return RELUME_OK;
+}
+
+static relume_status read_directions(relume_btf_fitted *m, const jvalue *root,
+                                     const struct reader *r)
+{
+    relume_status status =
+        btf_read_directions(jvalue_member(root, "view_directions"), r->json, "view_directions",
+                            &r->limits, &m->view, &m->views, r->log);
+    if (!status)
+        status = btf_read_directions(jvalue_member(root, "light_directions"), r->json,
+                                     "light_directions", &r->limits, &m->light, &m->lights, r->log);
+    if (!status)
+        status = relume_dome_create(&m->view_dome, m->view, m->views, r->log);
+    return status ? status : relume_dome_create(&m->light_dome, m->light, m->lights, r->log);
+}
+
+static bool same_shape(const struct npy *a, const struct npy *b)
+{
+    if (a->kind != b->kind || a->dims != b->dims)
+        return false;
+    for (int i = 0; i < a->dims; i++)
+        if (a->shape[i] != b->shape[i])
+            return false;
+    return true;
+}
+
+// Numbers of clusters must exist, floats must be finite.
+static bool values_are_good(const struct model_array *a)
+{
+    const size_t n = npy_bytes(&a->npy) / npy_item(a->npy.kind);
+    for (size_t i = 0; i < n; i++)
+        switch (a->npy.kind) {
+        case NPY_U8:
+            if (((const uint8_t *)a->data)[i] >= a->below)
+                return false;
+            break;
+        case NPY_U16:
+            if (((const uint16_t *)a->data)[i] >= a->below)
+                return false;
+            break;
+        case NPY_HALF:
+            if ((((const uint16_t *)a->data)[i] & 0x7c00u) == 0x7c00u)
+                return false;
+            break;
+        case NPY_FLOAT:
+            if (!isfinite(((const float *)a->data)[i]))
+                return false;
+            break;
+        }
+    return true;
+}
+
+static relume_status read_array(struct model_array *a, const struct reader *r)
+{
+    char *path = mem_format("%s/%s.npy", r->folder, a->name);
+    if (!path)
+        return RELUME_ENOMEM;
+    relume_status status = npy_open(&a->file, path, r->log);
+    a->data = (void *)a->file.data;
+    if (!status && !same_shape(&a->file.npy, &a->npy))
+        status = log_fail(r->log, RELUME_EDATA, "%s: not the array that model.json implies", path);
+    if (!status && !values_are_good(a))
+        status = log_fail(r->log, RELUME_EDATA,
+                          "%s: expected finite values, and clusters that exist", path);
+    free(path);
+    return status;
+}
+
+static relume_status read_all(relume_btf_fitted *m, const jvalue *root, const struct reader *r)
+{
+    relume_status status = read_model(m, root, r);
+    if (!status)
+        status = read_counts(m, root, r);
+    if (!status)
+        status = read_directions(m, root, r);
+    if (!status)
+        m->model->layout(m);
+    for (int i = 0; i < m->arrays && !status; i++)
+        status = read_array(&m->array[i], r);
+    return status;
+}
+
+relume_status relume_btf_fitted_open(relume_btf_fitted **out, const char *path,
+                                     const struct relume_btf_params *params)
+{
+    struct reader r = {path, mem_format("%s/model.json", path),
+                       limits_or_default(params ? params->limits : NULL),
+                       params ? params->log : NULL};
+    relume_btf_fitted *m = mem_zeroed(1, sizeof *m);
+    jvalue *root = NULL;
+    *out = NULL;
+    relume_status status = r.json && m ? jvalue_load(&root, r.json, r.log) : RELUME_ENOMEM;
+    if (!status)
+        status = read_all(m, root, &r);
+    if (status)
+        relume_btf_fitted_destroy(&m);
+    *out = m;
+    jvalue_free(&root);
+    free(r.json);
+    return status;
+}

@@ -1,0 +1,72 @@
+#!/bin/sh
+# Materials measured, described, fitted, compared; what is refused.
+. "$(dirname "$0")/lib.sh"
+expect_ok 'measure a material' - "$RELUME" synth --btf wallpaper -o paper --size 8 --directions coarse --samples 1 --bounces 0 -q
+"$RELUME" info paper 2>/dev/null && not_ok 'info is for files' 'a folder was taken'
+"$RELUME" btf info paper --json >info.json
+for f in 'width 8' 'views 19' 'raw_bytes 138624'; do
+    set -- $f
+    if [ "$(field "$1" info.json)" = "$2" ]; then ok "btf info $1"; else not_ok "btf info $1" "$(cat info.json)"; fi
+done
+if grep -q '"includes_cosine": true' paper/btf.json; then ok 'values include n.l'; else not_ok 'values include n.l' "$(head -4 paper/btf.json)"; fi
+
+# ---- every model: fitted, opened again, judged; compare says the same
+"$RELUME" btf compare paper --pictures 2 --json -q >compare.json 2>err.txt || not_ok 'btf compare' "$(cat err.txt)"
+for m in bump laf slaf rfp rfnl rfnlc vpca lpca fmf; do
+    row=$(grep -o "{\"model\": \"$m\"[^}]*}" compare.json)
+    for f in mae_avg mae_min mae_max rms delta_e bytes bytes_per_texel fit_seconds; do
+        case $row in *"\"$f\": "[0-9]*) ;; *) not_ok "compare $m has $f" "$row" ;; esac
+    done
+done
+ok 'btf compare has every model'
+for m in rfnl lpca; do
+    expect_ok "btf fit $m" - "$RELUME" btf fit paper --model $m -o $m -q
+    "$RELUME" btf eval $m paper --pictures 2 --json >eval.json 2>err.txt
+    grep -o "{\"model\": \"$m\"[^}]*}" compare.json >row.json
+    below "btf eval $m is compare's" "$(awk -v a="$(field rms eval.json)" -v b="$(field rms row.json)" 'BEGIN { print (a - b) ^ 2 }')" 1e-12
+    "$RELUME" btf info $m --json >info.json
+    if [ "$(field bytes info.json)" = "$(field bytes row.json)" ]; then ok "btf info $m"; else not_ok "btf info $m" "$(cat info.json)"; fi
+done
+"$RELUME" btf compare paper --models vpca --leave-out 4 --pictures 0 --json -q >out.json 2>err.txt
+above 'left out is worse' "$(field left_out_rms out.json)" "$(field rms out.json)"
+"$RELUME" synth --btf wallpaper -o again --size 8 --directions coarse --samples 1 --bounces 0 --threads 3 -q
+if diff -r paper again >/dev/null; then ok 'the same for any threads'; else not_ok 'the same for any threads' "$(diff -rq paper again)"; fi
+
+# ---- a measured pair, shown, is the measured picture
+expect_ok 'btf render' - "$RELUME" btf render paper -o shown.exr --light 'dir 0 0 1' -q
+at=$("$mkimage" read shown.exr 2 3)
+expect_ok 'btf render a model' - "$RELUME" btf render lpca -o model.exr --eye 0.3,0,1 --light 'dir 1 0 1' --light 'dir 0 1 1 rgb 1 0 0' -q
+expect_fail 'a light that is near' 2 "expected lights .dir x y z.; found 'point'" x.exr "$RELUME" btf render paper -o x.exr --light 'point 0 0 1'
+
+# ---- from outside: NumPy reads the values in place
+if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
+    check 'NumPy reads the values' /usr/bin/python3 -c '
+import numpy, sys
+v = numpy.load("paper/values.npy", mmap_mode="r")
+assert v.shape == (19, 19, 8, 8, 3) and v.dtype == numpy.float16 and 0 < v.astype("f4").mean() < 1
+assert abs(float(sys.argv[1]) - v[0, 0, 3, 2, 0]) < 1e-6' "$(echo "$at" | cut -d' ' -f1)"
+else
+    skip 'NumPy reads the values' 'no NumPy here'
+fi
+
+# ---- refused
+expect_fail 'unknown material' 2 "unknown material 'ston'; did you mean 'stone'" x "$RELUME" synth --btf ston -o x
+expect_fail 'scene and material' 2 'found both' x "$RELUME" synth box --btf stone -o x
+expect_fail 'unknown model' 2 "unknown model 'rfnk'" - "$RELUME" btf compare paper --models rfnk
+expect_fail 'unknown task' 2 "unknown task 'fitt'; did you mean 'fit'" - "$RELUME" btf fitt paper
+expect_fail 'too many clusters' 2 'expected 1 to 64 clusters; found 65' x "$RELUME" btf fit paper --model rfnlc --clusters 65 -o x
+expect_fail 'no BTF' 1 'expected btf.json, or pictures named like' - "$RELUME" btf info .
+expect_fail 'not a folder' 1 'nothing: cannot be read' - "$RELUME" btf info nothing
+fresh lpca other
+sed -i 's/"version": 1/"version": 2/' other/model.json
+expect_fail 'another version' 1 'other/model.json: expected version 1; found 2' - "$RELUME" btf info other
+fresh lpca other
+truncate -s -1 other/weight.npy
+expect_fail 'a truncated model' 1 'other/weight.npy: expected 1024 bytes of values; found 1023' - "$RELUME" btf info other
+fresh paper other
+truncate -s 5000 other/values.npy
+expect_fail 'a truncated BTF' 1 'other/values.npy: expected 138624 bytes' - "$RELUME" btf info other
+sed -i 's/"width": 8/"width": 9/' other/btf.json
+cp paper/values.npy other/
+expect_fail 'another size' 1 'expected halfs \[19\]\[19\]\[8\]\[9\]\[3\]|8 x 8 pixels; expected 9 x 8' - "$RELUME" btf info other
+finish

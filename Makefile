@@ -170,6 +170,9 @@ $(GL) $(GL_BENCH): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
 
+# Programs open the module when they run.
+$B/relume $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE)
+
 -include $(shell find $B/obj -name '*.d' 2>/dev/null)
 
 # ---------------------------------------------------------------- checking

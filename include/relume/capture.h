@@ -55,7 +55,8 @@ struct relume_manifest {
     int lights;
     const struct relume_vec3 *directions;  // [lights], unit
     const struct relume_vec3 *positions;   // [lights], world units, or NULL: distant lights
-    const float (*intensities)[3];         // [lights], or NULL: all 1
+    bool no_falloff;  // positions: light does not fall with the square of the distance
+    const float (*intensities)[3];  // [lights], or NULL: all 1
     int views;
     const struct relume_manifest_view *view;  // [views]
 };
@@ -98,8 +99,9 @@ RELUME_API bool relume_capture_hemispherical(const relume_capture *capture);
 // clip. Infinite for floating-point files.
 RELUME_API void relume_capture_white(const relume_capture *capture, int light, float rgb[3]);
 
-// One image, linear, light intensity divided out, three channels. NaN and infinity are
-// RELUME_EDATA.
+// One image, linear, light intensity divided out, three channels; so is the fall-off of near
+// lights (positions): as if the light reached every pixel as strongly as the world's origin.
+// NaN and infinity are RELUME_EDATA.
 RELUME_RESULT relume_status relume_capture_image(struct relume_image *out,
                                                  const relume_capture *capture, int view, int light,
                                                  const struct relume_log *log);
@@ -125,7 +127,9 @@ struct relume_table_params {
 // `capture` must outlive the table. Returns RELUME_EDATA, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_table_open(relume_table **out, const relume_capture *capture,
                                               int view, const struct relume_table_params *params);
-// The next `rows` rows of every light: out[light][row][x][rgb], light intensity divided out.
+// The next `rows` rows of every light: out[light][row][x][rgb], light intensity divided out. Where
+// lights are near (positions; planar views, slabs with depth) values are those under distant lights
+// from the manifest's directions.
 // Asking for more rows than are left is RELUME_EINVAL.
 RELUME_RESULT relume_status relume_table_read(relume_table *table, int rows, float *out);
 // Pixels of `light` that have been repaired in the rows read so far.

@@ -3,6 +3,7 @@
 #define RELUME_H
 
 #include <relume/base.h>
+#include <relume/ball.h>
 #include <relume/capture.h>
 #include <relume/codebook.h>
 #include <relume/coder.h>

@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "capture/near.h"
 #include "math/vec.h"
 
 #include <stdio.h>
@@ -233,6 +234,20 @@ void relume_capture_white(const relume_capture *capture, int light, float rgb[3]
         rgb[c] = capture->floats ? INFINITY : 1.0f / (intensities ? intensities[light][c] : 1.0f);
 }
 
+// Fall-off of near lights is divided out.
+static relume_status level(struct relume_image *image, const relume_capture *capture, int view,
+                           int light, const struct relume_log *log)
+{
+    struct near near;
+    if (!near_applies(capture, view))
+        return RELUME_OK;
+    const relume_status status = near_open(&near, capture, view, log);
+    if (!status)
+        near_level(&near, light, image);
+    near_close(&near);
+    return status;
+}
+
 relume_status relume_capture_image(struct relume_image *out, const relume_capture *capture,
                                    int view, int light, const struct relume_log *log)
 {
@@ -249,6 +264,8 @@ relume_status relume_capture_image(struct relume_image *out, const relume_captur
     if (status == RELUME_EDATA)
         (void)log_fail(log, status, "%s: %s", capture->draft.m.view[view].images[light],
                        image_stream_error(&stream));
+    if (!status)
+        status = level(out, capture, view, light, log);
     if (status)
         relume_image_destroy(out);
     image_stream_close(&stream);

@@ -112,6 +112,17 @@ static relume_status read_intensities(const struct parser *p, const jvalue *arra
     return RELUME_OK;
 }
 
+static relume_status read_falloff(const struct parser *p, const jvalue *value)
+{
+    const char *text = jvalue_text(value);
+    if (!value || jvalue_is_null(value))
+        return RELUME_OK;
+    if (!text || (strcmp(text, "inverse-square") && strcmp(text, "none")))
+        return wrong(p, "lights.falloff", "inverse-square or none");
+    p->d->m.no_falloff = !strcmp(text, "none");
+    return RELUME_OK;
+}
+
 static relume_status read_lights(const struct parser *p, const jvalue *lights)
 {
     struct draft *d = p->d;
@@ -137,6 +148,8 @@ static relume_status read_lights(const struct parser *p, const jvalue *lights)
     }
     if (!status && intensities && !jvalue_is_null(intensities))
         status = read_intensities(p, intensities, n);
+    if (!status)
+        status = read_falloff(p, jvalue_member(lights, "falloff"));
     d->m.lights = n;
     return status;
 }
@@ -348,6 +361,8 @@ static void put_lights(FILE *f, const struct relume_manifest *m)
     if (m->positions) {
         fputs(",\n", f);
         put_vectors(f, "positions", m->positions, m->lights);
+        if (m->no_falloff)
+            fputs(",\n    \"falloff\": \"none\"", f);
     }
     fputs("\n  },\n", f);
 }

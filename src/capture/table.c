@@ -3,9 +3,12 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "capture/capture.h"
+#include "capture/distant.h"
 #include "capture/repair.h"
+#include "image/encoder.h"
 
 #include <stdio.h>
+#include <string.h>
 
 struct relume_table {
     const relume_capture *capture;
@@ -19,6 +22,10 @@ struct relume_table {
     float *out;
     size_t *broken, *repaired;  // [lights]: pixels that were not finite, in one band and so far
     bool *whole;                // [lights], for repair_band
+    bool near;                  // lights are near: values become those under distant ones
+    struct near lamps;
+    struct distant *distant;
+    struct encoder *display;  // or NULL: linear
 };
 
 static size_t file_bytes(const struct image_stream *stream)
@@ -58,7 +65,25 @@ void relume_table_destroy(relume_table **table)
     free(t->broken);
     free(t->repaired);
     free(t->whole);
+    distant_destroy(&t->distant);
+    near_close(&t->lamps);
+    free(t->display);
     free(t);
+}
+
+static relume_status open_near(relume_table *t, struct relume_transfer display)
+{
+    const struct relume_manifest *m = &t->capture->draft.m;
+    relume_status status = near_open(&t->lamps, t->capture, t->view, t->log);
+    if (!status)
+        status = distant_create(&t->distant, &t->lamps, m->directions, t->threads);
+    if (!status && display.curve != RELUME_CURVE_LINEAR) {
+        t->display = mem_array(1, sizeof *t->display);
+        status = t->display ? RELUME_OK : RELUME_ENOMEM;
+        if (!status)
+            encoder_init(t->display, display);
+    }
+    return status;
 }
 
 relume_status relume_table_open(relume_table **out, const relume_capture *capture, int view,
@@ -87,6 +112,11 @@ relume_status relume_table_open(relume_table **out, const relume_capture *captur
     t->whole = mem_zeroed((size_t)lights, sizeof *t->whole);
     relume_status status =
         t->stream && t->status && t->broken && t->repaired && t->whole ? RELUME_OK : RELUME_ENOMEM;
+    t->near = near_applies(capture, view);
+    if (!status && t->near) {
+        status = open_near(t, to);
+        to.curve = RELUME_CURVE_LINEAR;
+    }
     while (!status && t->open < lights) {
         status = capture_stream(&t->stream[t->open], capture, view, t->open, to, p.log);
         if (!status)
@@ -120,6 +150,26 @@ static void repair(relume_table *t)
     if (sum)
         repair_band(t->out, t->broken, m->directions, m->lights,
                     (size_t)t->rows * (size_t)t->capture->width, t->whole);
+}
+
+// Linear values of one light are levelled and coded.
+static void level_light(void *context, size_t item, int worker)
+{
+    (void)worker;
+    relume_table *t = context;
+    float *p = t->out + 3 * item * (size_t)t->rows * (size_t)t->lamps.width;
+    for (int y = t->row - t->rows; y < t->row; y++)
+        for (int x = 0; x < t->lamps.width; x++, p += 3) {
+            double gain;
+            near_direction(&gain, &t->lamps, (int)item, near_pixel(&t->lamps, x, y));
+            float value[3];
+            for (int c = 0; c < 3; c++)
+                value[c] = p[c] * (float)gain;
+            if (t->display)
+                encoder_apply(t->display, value, p, 3);
+            else
+                memcpy(p, value, sizeof value);
+        }
 }
 
 size_t relume_table_repaired(const relume_table *table, int light)
@@ -189,5 +239,8 @@ relume_status relume_table_read(relume_table *table, int rows, float *out)
             return table->status[i];
     }
     repair(table);
-    return RELUME_OK;
+    if (!table->near)
+        return RELUME_OK;
+    thread_for(table->threads, (size_t)lights, level_light, table);
+    return distant_resample(table->distant, table->row - rows, rows, out);
 }

@@ -9,7 +9,7 @@ bad=0
 rules="base::base
 math:base:base
 image:base math:base image
-capture:base math image:base image lights capture
+capture:base math image:base image lights capture views lightfield
 coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange

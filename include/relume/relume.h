@@ -22,5 +22,6 @@
 #include <relume/scene.h>
 #include <relume/tone.h>
 #include <relume/view.h>
+#include <relume/views.h>
 
 #endif

@@ -1,6 +1,7 @@
 // cmd_capture.c - relume capture: from photographs to linear images with known lights
 #include "capture_hdr.h"
 #include "capture_lights.h"
+#include "capture_views.h"
 
 static const struct option options[] = {
     {"-o", OPTION_TEXT, "DIR", "the capture folder to make; with --hdr the picture OUT.exr", 0, 0},
@@ -39,7 +40,9 @@ static const struct option options[] = {
     {"--weights", OPTION_TEXT, "W", "--hdr: spline (default), hat or gaussian", 0, 0},
     {"--align", OPTION_TEXT, "A", "none, blocks or homography; default: none", 0, 0},
     {"--ghosts", OPTION_FLAG, NULL, "--hdr: leave out what moved between exposures", 0, 0},
-    // both
+    // many viewpoints
+    CAPTURE_VIEWS_OPTIONS,
+    // all
     {"--skip-bad", OPTION_FLAG, NULL, "leave out photographs that cannot be read or used", 0, 0},
     {"--json", OPTION_FLAG, NULL, "print one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
@@ -47,6 +50,8 @@ static const struct option options[] = {
 
 static relume_status run(const struct args *args)
 {
+    if (capture_views_asked(args))
+        return capture_views(args);
     return args_has(args, "--hdr") ? capture_hdr(args) : capture_lights(args);
 }
 

@@ -14,6 +14,7 @@
 #include <relume/heldout.h>
 #include <relume/image.h>
 #include <relume/light.h>
+#include <relume/lightfield.h>
 #include <relume/lights.h>
 #include <relume/normals.h>
 #include <relume/pack.h>

@@ -1,6 +1,7 @@
 // capture_views.c - relume capture --slab, --colmap, --panorama, --depth-from-views
 #include "capture_views.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 bool capture_views_asked(const struct args *args)
@@ -46,10 +47,69 @@ static relume_status ingest(const struct args *args, const char *const *photos, 
     return status;
 }
 
+static relume_status range_option(double range[2], const struct args *args)
+{
+    const char *text = args_text(args, "--depth-range", NULL);
+    if (!text || parse_numbers(text, range, 2))
+        return RELUME_OK;
+    return usage_error("--depth-range: expected two numbers like 2,5; found '%s'", text);
+}
+
+static void print_depth(const struct relume_slab_depth_report *r, bool json)
+{
+    const bool known = r->compared > 0;
+    if (!json) {
+        printf("views     %d, searched at %d x %d under %d light%s\n", r->views, r->width, r->height,
+               r->lights, r->lights == 1 ? "" : "s");
+        printf("planes    %d, distances %.4g to %.4g\n", r->planes, r->range[0], r->range[1]);
+        printf("trusted   %.1f %% of pixels are confirmed by neighbouring views\n",
+               100.0 * r->trusted);
+        if (known)
+            printf("error     %.2f %% of the known depth (median), %.1f %% off by more than a plane\n",
+                   100.0 * r->median_relative, 100.0 * r->bad);
+        return;
+    }
+    printf("{\"views\":%d,\"lights\":%d,\"width\":%d,\"height\":%d,\"planes\":%d,\"range\":[%.9g,"
+           "%.9g],\"plane_step\":%.9g,\"trusted\":%.9g,\"compared\":%zu,\"median_relative\":",
+           r->views, r->lights, r->width, r->height, r->planes, r->range[0], r->range[1],
+           r->plane_step, r->trusted, r->compared);
+    json_number(stdout, known ? r->median_relative : (double)NAN);
+    printf(",\"bad\":");
+    json_number(stdout, known ? r->bad : (double)NAN);
+    printf("}\n");
+}
+
+static relume_status depth_of(const char *capture, const char *dir, const struct args *args)
+{
+    relume_capture *c;
+    struct relume_slab_depth_report report;
+    struct relume_slab_depth_params p = {
+        .log = args_log(args),
+        .force = args_has(args, "--force"),
+        .threads = args_threads(args),
+    };
+    relume_status status = range_option(p.range, args);
+    if (status)
+        return status;
+    status = relume_capture_open(&c, capture, relume_capture_params(.log = p.log));
+    if (!status)
+        status = relume_slab_depth(&report, c, dir, &p);
+    if (!status && (args_has(args, "--json") || !args_has(args, "-q")))
+        print_depth(&report, args_has(args, "--json"));
+    relume_capture_destroy(&c);
+    return status;
+}
+
 relume_status capture_views(const struct args *args)
 {
     if (!args_has(args, "-o"))
         return usage_error("capture: expected -o DIR");
+    if (args_has(args, "--depth-from-views") && !args_has(args, "--slab")) {
+        if (args_inputs(args) != 1)
+            return usage_error("--depth-from-views: expected one capture; found %d",
+                               args_inputs(args));
+        return depth_of(args_input(args, 0), args_text(args, "-o", NULL), args);
+    }
     const int n = args_inputs(args);
     const char **photos = malloc((size_t)n * sizeof *photos);
     if (!photos)

@@ -3,11 +3,20 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 bool capture_views_asked(const struct args *args)
 {
     return args_has(args, "--slab") || args_has(args, "--colmap") ||
            args_has(args, "--panorama") || args_has(args, "--depth-from-views");
+}
+
+static relume_status range_option(double range[2], const struct args *args)
+{
+    const char *text = args_text(args, "--depth-range", NULL);
+    if (!text || parse_numbers(text, range, 2))
+        return RELUME_OK;
+    return usage_error("--depth-range: expected two numbers like 2,5; found '%s'", text);
 }
 
 static relume_status slab(const struct args *args, const char *const *photos, int n,
@@ -26,6 +35,26 @@ static relume_status slab(const struct args *args, const char *const *photos, in
         p);
 }
 
+static relume_status panorama(const struct args *args, const char *const *photos, int n,
+                              const struct relume_ingest_params *p)
+{
+    static const char *const names[] = {"sphere", "cylinder", "cube", "stitch", NULL};
+    const char *name = args_text(args, "--panorama", NULL);
+    int source = 0;
+    while (names[source] && strcmp(names[source], name))
+        source++;
+    if (!names[source])
+        return unknown_name("panorama", name, names);
+    struct relume_panorama_params panorama = {
+        .depth = args_text(args, "--depth", NULL),
+        .width = args_int(args, "--width", 0),
+    };
+    const relume_status status = range_option(panorama.depth_range, args);
+    return status ? status
+                  : relume_panorama_ingest(args_text(args, "-o", NULL), photos, n,
+                                           (enum relume_panorama_source)source, &panorama, p);
+}
+
 static relume_status ingest(const struct args *args, const char *const *photos, int n)
 {
     struct relume_vec3 *lights = NULL;
@@ -42,17 +71,10 @@ static relume_status ingest(const struct args *args, const char *const *photos, 
         file ? relume_lights_read(&lights, &p.light_count, file, args_log(args)) : RELUME_OK;
     p.lights = lights;
     if (!status)
-        status = slab(args, photos, n, &p);
+        status = args_has(args, "--panorama") ? panorama(args, photos, n, &p)
+                                              : slab(args, photos, n, &p);
     free(lights);
     return status;
-}
-
-static relume_status range_option(double range[2], const struct args *args)
-{
-    const char *text = args_text(args, "--depth-range", NULL);
-    if (!text || parse_numbers(text, range, 2))
-        return RELUME_OK;
-    return usage_error("--depth-range: expected two numbers like 2,5; found '%s'", text);
 }
 
 static void print_depth(const struct relume_slab_depth_report *r, bool json)

@@ -36,8 +36,9 @@ struct relume_slab_ingest_params {
     double focus_disparity;  // pixels that the plane to be st moves from a camera to the next one
                              // (left, for one to its right): the pictures are shifted and cropped
     bool fill;               // a missing camera gets the photographs of the nearest one
-    bool keep_order;         // believe the names; default: the photographs have the last word on
-                             // which way rows and columns run
+    bool turn;               // columns and rows run the other way: to the left, upwards
+    bool keep_order;         // believe the names; default: where the photographs say that one of
+                             // the two runs the other way, rows are turned round
 };
 #define relume_slab_ingest_params(...) (&(const struct relume_slab_ingest_params){__VA_ARGS__})
 
@@ -45,9 +46,11 @@ struct relume_slab_ingest_params {
 // places are read from the names: out_RR_CC_V_U (Stanford archive: row, column and position), any
 // name in which two numbers vary (row and column), or one (row by row of a square grid: Lytro, HCI).
 // Rows count downwards, columns to the right as the cameras see it; u grows to the right, v
-// upwards. What rises towards the cameras moves against them, and hides what lies behind it: where
-// the photographs show that rows or columns run the other way, they are turned round, and the log
-// is told. The scale of depth follows from baseline and distance, which no photograph tells.
+// upwards. Cameras of a grid agree on depth only if rows and columns run as they should or both the
+// other way: the first is checked, and the log told; the second, a world turned inside out (what
+// is near, below, to the left of a camera moves up and right where it should hide what is behind),
+// shows by what hides what, which is looked at and mentioned, no more.
+// The scale of depth follows from baseline and distance, which no photograph tells.
 // RELUME_EINVAL (params), RELUME_EDATA (names that do not match, a camera missing, two for one
 // place, sizes that differ), RELUME_EIO, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_slab_ingest(const char *dir, const char *const *photos, int n,

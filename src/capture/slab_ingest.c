@@ -9,11 +9,12 @@
 #include <stdio.h>
 #include <string.h>
 
-// Less than this is no evidence against the names. Agreement is 0.2 to 0.6 on rendered scenes and
-// 0.36 on the chess pieces of the Stanford archive. Occlusions are a weaker witness: 0.46 on a
-// rendered chess board, 0.02 on the photographed one, and with the wrong sign up to 0.25 on a convex
-// thing before black.
-static const double clear_agreement = 0.05, clear_occlusion = 0.35;
+// Less than this is no evidence against the names: agreement is 0.2 to 0.6 on rendered scenes and
+// 0.36 on the chess pieces of the Stanford archive.
+static const double clear_agreement = 0.05;
+// Occlusions are a weaker witness and only lead to a hint: 0.46 on a rendered chess board, 0.02 on
+// the photographed one, and with the wrong sign up to 0.37 on a convex thing before black.
+static const double clear_occlusion = 0.3;
 
 struct slab {
     const struct relume_slab_ingest_params *p;
@@ -207,7 +208,7 @@ static void turn(double *values, int n)
         values[i] = -values[i];
 }
 
-// The photographs have the last word.
+// Whether rows and columns run alike the photographs know better than the names.
 static relume_status check_order(struct slab *s)
 {
     struct grid_order o;
@@ -216,22 +217,18 @@ static relume_status check_order(struct slab *s)
     const relume_status status = grid_order(&o, &s->set, &grid, s->common);
     if (status)
         return status;
-    const bool inside_out = o.occlusion < -clear_occlusion;
-    const bool mixed = o.turn_u != o.turn_v && o.agreement > clear_agreement;
-    o.turn_u = inside_out && o.turn_u;
-    o.turn_v = mixed != o.turn_u;
-    if (!o.turn_u && !o.turn_v)
-        return RELUME_OK;
-    log_line(log, RELUME_WARNING,
-             "%s%s%s run the other way than the names say (agreement %.2f, occlusion %.2f): turned "
-             "round%s; --keep-order believes the names",
-             o.turn_u ? "columns" : "", o.turn_u && o.turn_v ? " and " : "", o.turn_v ? "rows" : "",
-             o.agreement, o.occlusion,
-             fabs(o.occlusion) > clear_occlusion ? "" : ", believing the columns");
-    if (o.turn_u)
-        turn(s->u, s->columns);
-    if (o.turn_v)
+    if (o.mixed && o.agreement > clear_agreement) {
         turn(s->v, s->rows);
+        log_line(log, RELUME_WARNING,
+                 "rows run the other way than the names say, if columns do not (agreement %.2f): "
+                 "turned round; --keep-order believes the names, --turn turns both",
+                 o.agreement);
+    }
+    if (o.occlusion < -clear_occlusion)
+        log_line(log, RELUME_NOTE,
+                 "far things seem to hide near ones (%.2f): if depth comes out inside out, --turn "
+                 "turns columns and rows round",
+                 o.occlusion);
     return RELUME_OK;
 }
 
@@ -337,6 +334,10 @@ static relume_status ingest(struct slab *s, const char *dir, const char *const *
     status = s->place ? view_places(s->place, &s->set, s->p->names, s->common->log) : RELUME_ENOMEM;
     if (!status)
         status = make_grid(s);
+    if (!status && s->p->turn) {
+        turn(s->u, s->columns);
+        turn(s->v, s->rows);
+    }
     if (!status && !s->p->keep_order)
         status = check_order(s);
     outdir *folder = NULL;

@@ -22,7 +22,7 @@ namespace
 {
 
 const double feature_pixels = 0.8e6;  // pictures are looked at about this large
-const float match_confidence = 0.4f, pair_confidence = 0.9f;
+const float match_confidence = 0.3f, pair_confidence = 0.9f;
 const size_t text_size = 300;
 
 relume_status refuse(char *why, const char *text)

@@ -217,12 +217,10 @@ static relume_status decide(struct grid_order *out, struct orders *o, struct fin
         status = sweep_middle(&f[1], o);
     if (status)
         return status;
-    const bool turned = both_ways && f[1].cost < f[0].cost;
-    const double cost[2] = {f[turned].cost, both_ways ? f[!turned].cost : f[0].cost};
+    out->mixed = both_ways && f[1].cost < f[0].cost;
+    const double cost[2] = {f[out->mixed].cost, both_ways ? f[!out->mixed].cost : f[0].cost};
     out->agreement = cost[1] > 0.0 ? 1.0 - cost[0] / cost[1] : 0.0;
-    out->occlusion = occlusion(&f[turned], o);
-    out->turn_u = out->occlusion < 0.0;
-    out->turn_v = turned != out->turn_u;
+    out->occlusion = occlusion(&f[out->mixed], o);
     return RELUME_OK;
 }
 

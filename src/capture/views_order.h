@@ -13,13 +13,13 @@ struct camera_grid {
 };
 
 struct grid_order {
-    bool turn_u, turn_v;  // columns, rows run the other way
-    double agreement;     // how much better rows and columns agree this way than with one turned:
-                          // 0 nothing, 1 all
-    double occlusion;     // how far near things hide far ones, rather than far ones near: -1 to 1
+    bool mixed;        // the cameras agree better when rows (or columns) run the other way
+    double agreement;  // by how much: 0 nothing, 1 all
+    double occlusion;  // how far near things hide far ones, rather than far ones near, with rows
+                       // turned if mixed: -1 to 1
 };
 
-// Looks at nine cameras at most. With one row or column only occlusions tell.
+// Looks at nine cameras at most. With one row or column nothing is mixed.
 relume_status grid_order(struct grid_order *out, const struct photo_set *set,
                          const struct camera_grid *grid, const struct relume_ingest_params *p);
 

@@ -31,8 +31,27 @@ static relume_status slab(const struct args *args, const char *const *photos, in
                                   .window = args_number(args, "--window", 0.0),
                                   .focus_disparity = args_number(args, "--focus-disparity", 0.0),
                                   .fill = args_has(args, "--fill"),
+                                  .turn = args_has(args, "--turn"),
                                   .keep_order = args_has(args, "--keep-order")),
         p);
+}
+
+static relume_status posed(const struct args *args, const char *photos,
+                           const struct relume_ingest_params *p)
+{
+    struct relume_posed_params posed = {
+        .width = args_int(args, "--width", 0),
+        .distance = args_number(args, "--distance", 0.0),
+    };
+    char rest;
+    const char *grid = args_text(args, "--views", NULL);
+    if (grid && sscanf(grid, "%4dx%4d%c", &posed.grid[0], &posed.grid[1], &rest) != 2)
+        return usage_error("--views: expected a grid like 5x5; found '%s'", grid);
+    if (args_inputs(args) != 1)
+        return usage_error("--colmap: expected the folder of the photographs; found %d inputs",
+                           args_inputs(args));
+    return relume_posed_ingest(args_text(args, "-o", NULL), args_text(args, "--colmap", NULL),
+                               photos, &posed, p);
 }
 
 static relume_status panorama(const struct args *args, const char *const *photos, int n,
@@ -72,6 +91,7 @@ static relume_status ingest(const struct args *args, const char *const *photos, 
     p.lights = lights;
     if (!status)
         status = args_has(args, "--panorama") ? panorama(args, photos, n, &p)
+                 : args_has(args, "--colmap") ? posed(args, photos[0], &p)
                                               : slab(args, photos, n, &p);
     free(lights);
     return status;

@@ -14,12 +14,14 @@ relume_status capture_views(const struct args *args);
     {"--names", OPTION_TEXT, "PATTERN", \
      "--slab: places in the names, with {row}, {column}, {n}, {u}, {v}, *; default: found", 0, 0}, \
     {"--fill", OPTION_FLAG, NULL, "--slab: a missing camera is filled by the nearest", 0, 0}, \
+    {"--turn", OPTION_FLAG, NULL, "--slab: columns run to the left and rows upwards", 0, 0}, \
     {"--keep-order", OPTION_FLAG, NULL, \
-     "--slab: rows and columns run as the names say; default: as the photographs say", 0, 0}, \
+     "--slab: believe the names even where the photographs contradict", 0, 0}, \
     {"--baseline", OPTION_NUMBER, "W", \
      "--slab: world units from the first to the last column of cameras; default 1", 1e-6, 1e6}, \
     {"--distance", OPTION_NUMBER, "D", \
-     "--slab: world units from the cameras to the st plane; default 3", 1e-6, 1e6}, \
+     "--slab: world units from the cameras to the st plane, default 3; --colmap: units of " \
+     "the model", 1e-6, 1e6}, \
     {"--st-z", OPTION_NUMBER, "Z", "--slab: height of the st plane; default 0", -1e6, 1e6}, \
     {"--window", OPTION_NUMBER, "W", "--slab: width of the st window; default 2", 1e-6, 1e6}, \
     {"--focus-disparity", OPTION_NUMBER, "PX", \

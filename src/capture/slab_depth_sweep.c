@@ -133,7 +133,7 @@ static void vote(size_t *votes, const uint8_t *cost, int width, int planes)
     }
 }
 
-// The planes that more than a thousandth of the votes are for, and one more on either side.
+// The planes that more than one in 300 votes is for, and one more on either side.
 static void voted_range(double range[2], const size_t *votes, int planes, double step)
 {
     size_t all = 0;
@@ -141,7 +141,7 @@ static void voted_range(double range[2], const size_t *votes, int planes, double
     for (int q = 0; q < planes; q++)
         all += votes[q];
     for (int q = 0; q < planes; q++)
-        if (votes[q] * 1000 > all) {
+        if (votes[q] * 300 > all) {
             low = q < low ? q : low;
             high = q;
         }

@@ -44,8 +44,8 @@ struct relume_slab_ingest_params {
 
 // Make the folder `dir` with a capture.json of the `n` cameras whose photographs are named. Their
 // places are read from the names: out_RR_CC_V_U (Stanford archive: row, column and position), any
-// name in which two numbers vary (row and column), or one (row by row of a square grid: Lytro, HCI).
-// Rows count downwards, columns to the right as the cameras see it; u grows to the right, v
+// name in which two numbers vary (row and column), or one (row by row of a square grid: Lytro,
+// HCI). Rows count downwards, columns to the right as the cameras see it; u grows to the right, v
 // upwards. Cameras of a grid agree on depth only if rows and columns run as they should or both the
 // other way: the first is checked, and the log told; the second, a world turned inside out (what
 // is near, below, to the left of a camera moves up and right where it should hide what is behind),

@@ -16,11 +16,11 @@ static const struct {
     const char *word;
     enum face face;
 } words[] = {
-    {"posx", PX}, {"negx", NX},  {"posy", PY}, {"negy", NY},   {"posz", PZ},   {"negz", NZ},
-    {"px", PX},   {"nx", NX},    {"py", PY},   {"ny", NY},     {"pz", PZ},     {"nz", NZ},
-    {"+x", PX},   {"-x", NX},    {"+y", PY},   {"-y", NY},     {"+z", PZ},     {"-z", NZ},
-    {"right", PX}, {"left", NX}, {"top", PY},  {"bottom", NY}, {"back", PZ},   {"front", NZ},
-    {"up", PY},   {"down", NY},
+    {"posx", PX},  {"negx", NX}, {"posy", PY}, {"negy", NY},   {"posz", PZ}, {"negz", NZ},
+    {"px", PX},    {"nx", NX},   {"py", PY},   {"ny", NY},     {"pz", PZ},   {"nz", NZ},
+    {"+x", PX},    {"-x", NX},   {"+y", PY},   {"-y", NY},     {"+z", PZ},   {"-z", NZ},
+    {"right", PX}, {"left", NX}, {"top", PY},  {"bottom", NY}, {"back", PZ}, {"front", NZ},
+    {"up", PY},    {"down", NY},
 };
 enum { WORDS = sizeof words / sizeof *words };
 
@@ -132,10 +132,10 @@ static relume_status save_cube(struct panorama_job *job, const int camera[FACES]
             memcpy(out.data + (y * FACES + (size_t)f) * row, faces[f].data + y * row,
                    row * sizeof *out.data);
     if (!status)
-        status = panorama_picture_name(job, light)
-                     ? save_inside(job->folder, job->view.images[light], &out, true,
-                                   job->common->log)
-                     : RELUME_ENOMEM;
+        status =
+            panorama_picture_name(job, light)
+                ? save_inside(job->folder, job->view.images[light], &out, true, job->common->log)
+                : RELUME_ENOMEM;
     free_faces(faces);
     relume_image_destroy(&out);
     return status;

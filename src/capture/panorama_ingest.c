@@ -63,8 +63,8 @@ static relume_status from_cylinder(struct panorama_job *job)
     job->geometry.v_max = given ? job->p->v_max : reach;
     if (job->geometry.v_min < job->geometry.v_max)
         return RELUME_OK;
-    return log_fail(job->common->log, RELUME_EINVAL, "cylinder: expected v_min < v_max; found %g, %g",
-                    job->p->v_min, job->p->v_max);
+    return log_fail(job->common->log, RELUME_EINVAL,
+                    "cylinder: expected v_min < v_max; found %g, %g", job->p->v_min, job->p->v_max);
 }
 
 // ---------------------------------------------------------------- depth
@@ -153,8 +153,7 @@ static relume_status write_manifest(const struct panorama_job *job)
 static relume_status make_folder(struct panorama_job *job, enum relume_panorama_source source)
 {
     outdir *folder;
-    relume_status status =
-        outdir_open(&folder, job->dir, job->common->force, job->common->log);
+    relume_status status = outdir_open(&folder, job->dir, job->common->force, job->common->log);
     if (status)
         return status;
     job->folder = folder;

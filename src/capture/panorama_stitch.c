@@ -220,7 +220,8 @@ static void warp_row(void *context, size_t item, int worker)
     for (int x = 0; x < width; x++) {
         const double phi = ((x + 0.5) / width * 2.0 - 1.0) * pi, across = cos(elevation);
         double xy[2];
-        if (!project(xy, s, s->camera, vec3_of(across * sin(phi), sin(elevation), -across * cos(phi))))
+        if (!project(xy, s, s->camera,
+                     vec3_of(across * sin(phi), sin(elevation), -across * cos(phi))))
             continue;
         const size_t i = item * (size_t)width + (size_t)x;
         const float w = weight_at(s, xy);
@@ -263,10 +264,9 @@ static relume_status warp_lights(struct stitching *s)
     for (int k = 0; k < job->set.lights && !status; k++) {
         status = warp_light(s, &out, k);
         if (!status)
-            status = panorama_picture_name(job, k)
-                         ? save_inside(job->folder, job->view.images[k], &out, true,
-                                       job->common->log)
-                         : RELUME_ENOMEM;
+            status = panorama_picture_name(job, k) ? save_inside(job->folder, job->view.images[k],
+                                                                 &out, true, job->common->log)
+                                                   : RELUME_ENOMEM;
         if (!status && !log_progress(job->common->log, "warping", (k + 1.0) / job->set.lights))
             status = RELUME_ECANCEL;
     }
@@ -274,11 +274,12 @@ static relume_status warp_lights(struct stitching *s)
     for (size_t i = 0; !status && i < n; i++)
         covered += s->weight[i] > 0.0f;
     if (!status)
-        log_line(job->common->log, RELUME_NOTE,
-                 "%d photographs of %.1f degrees cover %.0f %% of the sphere's picture; the rest is "
-                 "black",
-                 s->n, 360.0 / pi * atan(0.5 * job->set.width / s->pose[0].focal),
-                 100.0 * (double)covered / (double)n);
+        log_line(
+            job->common->log, RELUME_NOTE,
+            "%d photographs of %.1f degrees cover %.0f %% of the sphere's picture; the rest is "
+            "black",
+            s->n, 360.0 / pi * atan(0.5 * job->set.width / s->pose[0].focal),
+            100.0 * (double)covered / (double)n);
     free(s->weight);
     relume_image_destroy(&out);
     return status;

@@ -54,7 +54,8 @@ static relume_status choose_axes(struct posed *s)
     if (vec3_length(ahead) < 0.5 * s->model.count || vec3_length(across) < 1e-6)
         return log_fail(s->common->log, RELUME_EDATA,
                         "%s: the cameras look in too many directions for one slab; expected them "
-                        "to look the same way", s->photos);
+                        "to look the same way",
+                        s->photos);
     s->axis[2] = vec3_scale(vec3_unit(ahead), -1.0);
     s->axis[0] = vec3_unit(across);
     s->axis[1] = vec3_cross(s->axis[2], s->axis[0]);
@@ -287,8 +288,8 @@ static void blend_row(void *context, size_t item, int worker)
             xy[0] > b->photo->width || xy[1] > b->photo->height)
             continue;
         const size_t i = item * (size_t)s->width + (size_t)x;
-        const float w = (float)(b->weight * rim(xy[0], b->photo->width) *
-                                rim(xy[1], b->photo->height));
+        const float w =
+            (float)(b->weight * rim(xy[0], b->photo->width) * rim(xy[1], b->photo->height));
         for (size_t c = 0; c < 3; c++)
             b->sum[3 * i + c] += w * photo_value(b->photo, xy[0] - 0.5, xy[1] - 0.5, c);
         b->total[i] += w;
@@ -373,8 +374,8 @@ static relume_status write_slab(struct posed *s, const char *path)
     const int n = s->columns * s->rows;
     struct relume_manifest_view *view = arena_array(&s->model.arena, (size_t)n, sizeof *view);
     outdir *dir;
-    relume_status status = view ? outdir_open(&dir, path, s->common->force, s->common->log)
-                                : RELUME_ENOMEM;
+    relume_status status =
+        view ? outdir_open(&dir, path, s->common->force, s->common->log) : RELUME_ENOMEM;
     if (status)
         return status;
     place_views(s, view);

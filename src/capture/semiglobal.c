@@ -16,7 +16,8 @@ static const int slope = 4, jump = 60, least_jump = 12, edge = 8;
 
 enum { LINES_AT_ONCE = 16 };
 
-// Lines of one direction: the first `across` begin on a horizontal rim, the others on a vertical one.
+// Lines of one direction: the first `across` begin on a horizontal rim, the others on a vertical
+// one.
 struct direction {
     const struct semiglobal *s;
     int dx, dy;

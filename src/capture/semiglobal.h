@@ -6,9 +6,9 @@
 
 struct semiglobal {
     int width, height, planes;
-    const uint8_t *cost;    // [height][width][planes]
-    const uint8_t *guide;   // [height][width]: steps between planes are cheaper where it steps
-    uint16_t *sum;          // [height][width][planes], zeroed: sums over eight directions
+    const uint8_t *cost;   // [height][width][planes]
+    const uint8_t *guide;  // [height][width]: steps between planes are cheaper where it steps
+    uint16_t *sum;         // [height][width][planes], zeroed: sums over eight directions
     int threads;
 };
 // RELUME_ENOMEM.

@@ -55,8 +55,8 @@ static void compare(struct slab_depth *d, int view, const struct relume_image *d
         const double is = (double)depth->data[i], should = (double)truth->data[i];
         if (!isfinite(should) || !isfinite(is) || should <= 0.0)
             continue;
-        const double whole = way_to_plane(d, view, (int)(i % (size_t)depth->width),
-                                          (int)(i / (size_t)depth->width));
+        const double whole =
+            way_to_plane(d, view, (int)(i % (size_t)depth->width), (int)(i / (size_t)depth->width));
         const double bin = fabs(is - should) / should * BINS;
         d->bins[bin < BINS - 1 ? (size_t)bin : BINS - 1]++;
         d->bad += fabs(whole / is - whole / should) > d->step;
@@ -79,9 +79,8 @@ static relume_status save_depth(struct slab_depth *d, int view, const float *pla
                                 const outdir *dir, const char *name)
 {
     struct relume_image depth = {0}, mask = {0}, truth = {0};
-    relume_status status =
-        relume_image_create(&depth, relume_capture_width(d->capture),
-                            relume_capture_height(d->capture), 1);
+    relume_status status = relume_image_create(&depth, relume_capture_width(d->capture),
+                                               relume_capture_height(d->capture), 1);
     if (!status)
         status = relume_capture_mask(&mask, d->capture, view, d->p.log);
     if (!status)
@@ -141,8 +140,7 @@ static relume_status save_views(struct slab_depth *d, const outdir *dir)
 }
 
 // The capture as it was, named from its new place.
-static relume_status write_manifest(const struct slab_depth *d, const char *path,
-                                    const outdir *dir)
+static relume_status write_manifest(const struct slab_depth *d, const char *path, const outdir *dir)
 {
     struct arena arena = {NULL};
     struct relume_manifest m = *d->m;

@@ -77,7 +77,7 @@ static relume_status load_view(struct slab_depth *d, int view)
         relume_image_destroy(&image);
     }
     return log_progress(d->p.log, "reading", (view + 1.0) / d->m->views) ? RELUME_OK
-                                                                        : RELUME_ECANCEL;
+                                                                         : RELUME_ECANCEL;
 }
 
 relume_status slab_depth_load(struct slab_depth *d, const char *near)
@@ -194,9 +194,9 @@ relume_status slab_depth_planes(struct slab_depth *d)
     }
     range[0] = fmax(range[0], -0.98);
     const struct sweep_target target = sweep_target(&d->sweep, middle_view(d), SWEEP_NEIGHBOURS);
-    const double wanted =
-        d->p.planes ? d->p.planes
-                    : ceil((range[1] - range[0]) * sweep_reach(&d->sweep, &target)) + 1.0;
+    const double wanted = d->p.planes
+                              ? d->p.planes
+                              : ceil((range[1] - range[0]) * sweep_reach(&d->sweep, &target)) + 1.0;
     d->planes = (int)fmin(fmax(wanted, LEAST_PLANES), MOST_PLANES);
     d->first = range[0];
     d->step = (range[1] - range[0]) / (d->planes - 1);

@@ -22,7 +22,7 @@ struct slab {
     struct photo_set set;
     struct view_place *place;  // [set.count]
     int rows, columns;
-    int *camera;   // [rows][columns]
+    int *camera;    // [rows][columns]
     double *u, *v;  // [columns], [rows]
     int width, height;
 };
@@ -301,8 +301,8 @@ static relume_status write_slab(struct slab *s, const char *dir, const outdir *f
         status = save_shifted(view, &s->width, &s->height, folder, &s->set, &grid,
                               s->p->focus_disparity, s->common);
     const struct relume_manifest m = {
-        .transfer = shift ? (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f}
-                          : s->common->transfer,
+        .transfer =
+            shift ? (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f} : s->common->transfer,
         .geometry = status ? (struct relume_geometry){0} : geometry_of(s),
         .lights = s->set.lights,
         .directions = s->set.directions,

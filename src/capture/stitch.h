@@ -17,7 +17,8 @@ struct stitch_picture {
     const uint8_t *grey;
 };
 
-// A camera without lens distortion: pixels of its picture, the middle of the upper left one at 0, 0.
+// A camera without lens distortion: pixels of its picture, the middle of the upper left one at 0,
+// 0.
 struct stitch_pose {
     double focal, center[2];
     double rotation[9];  // row by row: the camera's x (right), y (down), z (ahead) -> the world's

@@ -109,7 +109,8 @@ static void add_differences(uint16_t *restrict sum, const uint8_t *restrict here
     const uint16_t w00 = (uint16_t)((16 - m->fx) * (16 - m->fy));
     for (int x = 0; x < n; x++) {
         const uint16_t there = (uint16_t)(top[x] * w00 + top[x + right] * w10 + bottom[x] * w01 +
-                                          bottom[x + right] * w11 + 128) >> 8;
+                                          bottom[x + right] * w11 + 128) >>
+                               8;
         const int16_t d = (int16_t)(here[x] - there);
         const int16_t a = (int16_t)(d < 0 ? -d : d);
         sum[x] = (uint16_t)(sum[x] + (a < SWEEP_MOST ? a : SWEEP_MOST));
@@ -175,8 +176,8 @@ void sweep_row(uint8_t *least, uint8_t *mean, const struct sweep *sweep,
         float best = all;
         for (int k = 0; k < SWEEP_SIDES; k++)
             if (scratch->count[k * w + x])
-                best = fminf(best, mean_cost(scratch->sum[k * w + x], scratch->count[k * w + x],
-                                             scale));
+                best = fminf(best,
+                             mean_cost(scratch->sum[k * w + x], scratch->count[k * w + x], scale));
         least[x] = (uint8_t)lrintf(best);
         if (mean)
             mean[x] = (uint8_t)lrintf(all);

@@ -17,8 +17,8 @@ struct camera_photos {
 struct photo_set {
     struct arena arena;
     int count, lights;
-    struct camera_photos *camera;  // [count]
-    int width, height;             // of every photograph
+    struct camera_photos *camera;          // [count]
+    int width, height;                     // of every photograph
     const struct relume_vec3 *directions;  // [lights]
 };
 
@@ -37,8 +37,8 @@ struct view_place {
     double u, v;  // as written
 };
 // places[set->count]; `names` as relume_slab_ingest_params. RELUME_EINVAL, RELUME_EDATA.
-relume_status view_places(struct view_place *places, const struct photo_set *set,
-                          const char *names, const struct relume_log *log);
+relume_status view_places(struct view_place *places, const struct photo_set *set, const char *names,
+                          const struct relume_log *log);
 
 // A folder with the views of `m`; their pictures are named as seen from inside `final`.
 relume_status save_manifest(const outdir *dir, const struct relume_manifest *m,

@@ -18,8 +18,10 @@ static const struct {
     int count;
     signed char at[8];
 } models[] = {
-    {"SIMPLE_PINHOLE", 3, {0, 0, 1, 2, -1, -1, -1, -1}}, {"PINHOLE", 4, {0, 1, 2, 3, -1, -1, -1, -1}},
-    {"SIMPLE_RADIAL", 4, {0, 0, 1, 2, 3, -1, -1, -1}},   {"RADIAL", 5, {0, 0, 1, 2, 3, 4, -1, -1}},
+    {"SIMPLE_PINHOLE", 3, {0, 0, 1, 2, -1, -1, -1, -1}},
+    {"PINHOLE", 4, {0, 1, 2, 3, -1, -1, -1, -1}},
+    {"SIMPLE_RADIAL", 4, {0, 0, 1, 2, 3, -1, -1, -1}},
+    {"RADIAL", 5, {0, 0, 1, 2, 3, 4, -1, -1}},
     {"OPENCV", 8, {0, 1, 2, 3, 4, 5, 6, 7}},
 };
 enum { MODELS = sizeof models / sizeof *models };
@@ -46,8 +48,10 @@ static relume_status text_open(struct text *t, const char *folder, const char *n
         return RELUME_ENOMEM;
     t->file = fopen(t->path, "re");
     return t->file ? RELUME_OK
-                   : log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s; expected COLMAP's text "
-                                                 "files", t->path, strerror(errno));
+                   : log_fail(log, RELUME_EDATA,
+                              "%s: cannot be opened; %s; expected COLMAP's text "
+                              "files",
+                              t->path, strerror(errno));
 }
 
 static void text_close(struct text *t)
@@ -125,9 +129,8 @@ static relume_status read_lenses(struct lens **out, int *count, const char *fold
     while (!status && text_next(&t)) {
         if (is_blank(t.buffer))
             continue;
-        struct lens *more = *count < MOST_CAMERAS
-                                ? realloc(*out, (size_t)(*count + 1) * sizeof **out)
-                                : NULL;
+        struct lens *more =
+            *count < MOST_CAMERAS ? realloc(*out, (size_t)(*count + 1) * sizeof **out) : NULL;
         if (!more) {
             status = RELUME_ENOMEM;
             break;

@@ -19,8 +19,8 @@ struct posed_camera {
 struct posed_model {
     struct arena arena;
     int count;
-    struct posed_camera *camera;   // [count], in the order of their names
-    struct relume_vec3 *point;     // [points], may be NULL
+    struct posed_camera *camera;  // [count], in the order of their names
+    struct relume_vec3 *point;    // [points], may be NULL
     size_t points;
 };
 

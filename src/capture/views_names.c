@@ -45,7 +45,8 @@ static const char *number_end(double *out, const char *text, bool whole)
     const char *c = text + (!whole && *text == '-');
     const char *digits = c;
     bool point = false;
-    while (isdigit((unsigned char)*c) || (!whole && *c == '.' && !point && isdigit((unsigned char)c[1])))
+    while (isdigit((unsigned char)*c) ||
+           (!whole && *c == '.' && !point && isdigit((unsigned char)c[1])))
         point |= *c++ == '.';
     if (c == digits || (whole && c - digits > MOST_DIGITS) || (!whole && !point))
         return NULL;
@@ -202,8 +203,8 @@ static relume_status by_numbers(struct view_place *places, const struct photo_se
     return count == 1 ? wrap_numbers(places, set, log) : RELUME_OK;
 }
 
-relume_status view_places(struct view_place *places, const struct photo_set *set,
-                          const char *names, const struct relume_log *log)
+relume_status view_places(struct view_place *places, const struct photo_set *set, const char *names,
+                          const struct relume_log *log)
 {
     static const char *const archive[] = {"*_{row}_{column}_{v}_{u}", "*_{row}_{column}_{v}_{u}_"};
     int bad;

@@ -31,7 +31,7 @@ struct findings {
     float *plane, *hidden;  // best plane (negative: many are), cost that only occlusion explains
     double cost;            // mean of the least costs
 };
-static const float as_good = 4.0f;   // of costs
+static const float as_good = 4.0f;  // of costs
 static const int few_planes = 6;
 
 // First, middle and last of n, without repetition.

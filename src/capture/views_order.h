@@ -8,7 +8,7 @@
 // top (v descending).
 struct camera_grid {
     int rows, columns;
-    const int *camera;   // [rows][columns]
+    const int *camera;    // [rows][columns]
     const double *u, *v;  // [columns], [rows]
 };
 

@@ -6,7 +6,7 @@
 #include <math.h>
 
 struct shifting {
-    double per_unit;  // pixels a unit of u and v
+    double per_unit;   // pixels a unit of u and v
     double margin[2];  // pixels lost on each side
     int width, height;
 };
@@ -95,8 +95,8 @@ relume_status save_shifted(struct relume_manifest_view *view, int *width, int *h
                                 s.per_unit * grid->v[i / grid->columns]};
         view[i].images = arena_array(&set->arena, (size_t)set->lights, sizeof *view[i].images);
         for (int k = 0; k < set->lights && !status; k++) {
-            if (!view[i].images || !(view[i].images[k] = arena_format(
-                                         &set->arena, "view%03d_light%04d.exr", i, k))) {
+            if (!view[i].images ||
+                !(view[i].images[k] = arena_format(&set->arena, "view%03d_light%04d.exr", i, k))) {
                 status = RELUME_ENOMEM;
                 break;
             }

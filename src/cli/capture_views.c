@@ -7,8 +7,8 @@
 
 bool capture_views_asked(const struct args *args)
 {
-    return args_has(args, "--slab") || args_has(args, "--colmap") ||
-           args_has(args, "--panorama") || args_has(args, "--depth-from-views");
+    return args_has(args, "--slab") || args_has(args, "--colmap") || args_has(args, "--panorama") ||
+           args_has(args, "--depth-from-views");
 }
 
 static relume_status range_option(double range[2], const struct args *args)
@@ -101,14 +101,15 @@ static void print_depth(const struct relume_slab_depth_report *r, bool json)
 {
     const bool known = r->compared > 0;
     if (!json) {
-        printf("views     %d, searched at %d x %d under %d light%s\n", r->views, r->width, r->height,
-               r->lights, r->lights == 1 ? "" : "s");
+        printf("views     %d, searched at %d x %d under %d light%s\n", r->views, r->width,
+               r->height, r->lights, r->lights == 1 ? "" : "s");
         printf("planes    %d, distances %.4g to %.4g\n", r->planes, r->range[0], r->range[1]);
         printf("trusted   %.1f %% of pixels are confirmed by neighbouring views\n",
                100.0 * r->trusted);
         if (known)
-            printf("error     %.2f %% of the known depth (median), %.1f %% off by more than a plane\n",
-                   100.0 * r->median_relative, 100.0 * r->bad);
+            printf(
+                "error     %.2f %% of the known depth (median), %.1f %% off by more than a plane\n",
+                100.0 * r->median_relative, 100.0 * r->bad);
         return;
     }
     printf("{\"views\":%d,\"lights\":%d,\"width\":%d,\"height\":%d,\"planes\":%d,\"range\":[%.9g,"

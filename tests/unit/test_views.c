@@ -7,7 +7,8 @@ static const double wall = -0.1, square = 0.25;
 
 static double texture(double s, double t, double phase)
 {
-    return 0.5 + 0.2 * sin(23.0 * s + phase) * cos(19.0 * t) + 0.2 * sin(41.0 * t - 7.0 * s * s + phase);
+    return 0.5 + 0.2 * sin(23.0 * s + phase) * cos(19.0 * t) +
+           0.2 * sin(41.0 * t - 7.0 * s * s + phase);
 }
 
 static bool in_square(double s, double t)
@@ -25,7 +26,8 @@ static double camera_v(int row)
     return 0.5 * (MIDDLE - row);
 }
 
-// What the middle camera would see in (s, t) of a plane that the camera at (u, v) sees in pixel x, y.
+// What the middle camera would see in (s, t) of a plane that the camera at (u, v) sees in pixel x,
+// y.
 static void middle_st(double st[2], int x, int y, double u, double v, double q)
 {
     st[0] = (x + 0.5) / SIZE * 2.0 - 1.0 + q * u;
@@ -248,9 +250,9 @@ static void test_depth_refuses(void **state)
     CHECK_OK(relume_slab_ingest(p.out, p.list, GRID * GRID, NULL, NULL));
     CHECK_OK(relume_capture_open(&capture, p.out, NULL));
     snprintf(planar, sizeof planar, "%s/not", p.folder);
-    assert_int_equal(relume_slab_depth(&report, capture, planar,
-                                       relume_slab_depth_params(.range = {4.0, 2.0})),
-                     RELUME_EINVAL);
+    assert_int_equal(
+        relume_slab_depth(&report, capture, planar, relume_slab_depth_params(.range = {4.0, 2.0})),
+        RELUME_EINVAL);
     assert_int_equal(
         relume_slab_depth(&report, capture, planar, relume_slab_depth_params(.planes = 4)),
         RELUME_EINVAL);
@@ -262,8 +264,8 @@ static void test_depth_refuses(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_names),     cmocka_unit_test(test_rows_from_below),
-        cmocka_unit_test(test_bad_grids), cmocka_unit_test(test_depth),
+        cmocka_unit_test(test_names),         cmocka_unit_test(test_rows_from_below),
+        cmocka_unit_test(test_bad_grids),     cmocka_unit_test(test_depth),
         cmocka_unit_test(test_depth_refuses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

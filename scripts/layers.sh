@@ -8,8 +8,8 @@ bad=0
 # folder: private folders it may include | public headers it may include (* = all)
 rules="base::base
 math:base:base
-image:base math:base image
-capture:base math image:base image lights capture views lightfield
+image:base math:base image photograph response
+capture:base math image:base image lights capture ball photometric shoot photograph response align views lightfield
 coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange
@@ -57,8 +57,11 @@ only_in 'dlfcn' src/image/oiio_load.c src/capture/stitch_load.c
 only_in 'opencv' src/capture/stitch.cpp
 only_in 'embree' src/scene/trace.c
 only_in '(cblas|lapacke)' src/math/lsq.c
+only_in 'fftw3' src/math/fft.c
+only_in 'kissfft' src/math/fft_kiss.c
 only_in 'jansson' src/base/json.c
 only_in 'jpeglib' src/image/jpeg.c
+only_in 'lcms2' src/image/profile.c tests/unit/test_photograph.c
 only_in 'cairo' src/cli/plot.c
 only_in 'GLFW' viewer/context_glfw.c
 only_in 'imgui' viewer/panel.cpp

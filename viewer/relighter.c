@@ -471,7 +471,7 @@ static relume_status need_linear(struct relighter *r)
 // The linear twin under the environments alone.
 static relume_status relight_environments(struct relighter *r, struct relit_view *v)
 {
-    static const struct relume_transfer linear = {RELUME_CURVE_LINEAR, 0.0f};
+    static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     static const float one[3] = {1.0f, 1.0f, 1.0f};
     const struct target *twin;
     struct relume_light *environments = malloc((size_t)r->lights * sizeof *environments);

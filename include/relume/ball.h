@@ -42,7 +42,8 @@ struct relume_ball_params {
 RELUME_API struct relume_ball relume_ball_outlined(double x, double y, double radius,
                                                    const struct relume_ball_camera *camera);
 
-// Find `count` balls in `mean`, the mean of photographs under all lights (linear, one channel),
+// Find `count` balls in `mean`, the geometric mean of photographs under all lights (linear,
+// one channel: highlights, which move, hardly show in it),
 // from left to right: circles of edges (Hough 1962, voted along the gradient), each refined by a
 // robust fit to the edge along its radii. With a mask its border is fitted instead. RELUME_EDATA
 // with a sentence where fewer can be seen, RELUME_ENOMEM.

@@ -61,7 +61,8 @@ struct relume_manifest {
     const struct relume_manifest_view *view;  // [views]
 };
 
-// Write `path` (capture.json) whole or not at all. Returns RELUME_EIO, RELUME_ENOMEM.
+// Write `path` (capture.json) whole or not at all. RELUME_EINVAL for the transfer of a response,
+// RELUME_EIO, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_manifest_write(const struct relume_manifest *manifest,
                                                   const char *path, const struct relume_log *log);
 

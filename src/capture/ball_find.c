@@ -13,8 +13,9 @@
 
 enum { LEVELS = 12, RADII = 10, FIRST_RADIUS = 8, PER_LEVEL = 24, MOST = LEVELS * PER_LEVEL };
 static const double SMALLEST = 0.015, LARGEST = 0.6;
-static const double EDGES = 0.88;           // quantile of the gradient above which edges lie
-static const double LEAST_COVERAGE = 0.45;  // below it is no circle but a chance
+static const double EDGES = 0.88;         // quantile of the gradient above which edges lie
+static const double WIDEST = 0.14;        // how far a circle may be off, share of its radius
+static const double LEAST_EXCESS = 0.38;  // of coverage over chance: below it is no circle
 
 struct pyramid {
     int levels;
@@ -60,8 +61,8 @@ static relume_status take_log(struct relume_image *out, const struct relume_imag
     const relume_status status = relume_image_create(out, mean->width, mean->height, 1);
     if (status)
         return status;
-    const float little = fmaxf(0.3f * quantile(mean->data, n, 0.5), 1e-5f);
-    if (isnan(little))
+    const float middle = quantile(mean->data, n, 0.5), little = fmaxf(0.3f * middle, 1e-5f);
+    if (isnan(middle))
         return RELUME_ENOMEM;
     for (size_t i = 0; i < n; i++)
         out->data[i] = logf(fmaxf(mean->data[i], 0.0f) + little);
@@ -204,17 +205,19 @@ static relume_status search_level(const struct relume_image *image, double scale
         .size = mem_zeroed(pixels, sizeof *v.size),
         .count = mem_zeroed(RADII * pixels, sizeof *v.count),
     };
-    const bool good = v.gx && v.gy && v.size && v.count;
-    if (good) {
+    relume_status status = v.gx && v.gy && v.size && v.count ? RELUME_OK : RELUME_ENOMEM;
+    if (!status) {
         find_gradient(&v);
-        vote_all(&v, fmaxf(quantile(v.size, pixels, EDGES), 1e-6f));
+        const float least = quantile(v.size, pixels, EDGES);
+        status = isnan(least) ? RELUME_ENOMEM : RELUME_OK;
+        vote_all(&v, fmaxf(least, 1e-6f));
         collect(&v, scale, list, n);
     }
     free(v.gx);
     free(v.gy);
     free(v.size);
     free(v.count);
-    return good ? RELUME_OK : RELUME_ENOMEM;
+    return status;
 }
 
 // ---------------------------------------------------------------- candidates
@@ -226,21 +229,20 @@ static struct relume_ball_camera scaled_camera(const struct relume_ball_camera *
                                        c->focal_px / scale};
 }
 
-static bool follow_at(struct relume_ball *ball, const struct relume_ball_camera *camera,
-                      const struct pyramid *p, int level, int angles)
+static relume_status follow_at(struct relume_ball *ball, const struct relume_ball_camera *camera,
+                               const struct pyramid *p, int level, int angles)
 {
     const double scale = 1 << level;
     const struct relume_ball_camera small = scaled_camera(camera, scale);
     ball->x /= scale;
     ball->y /= scale;
     ball->radius /= scale;
-    if (!ball_follow(ball, &small, &p->level[level], angles))
-        return false;
+    const relume_status status = ball_follow(ball, &small, &p->level[level], angles, WIDEST);
     ball->x *= scale;
     ball->y *= scale;
     ball->radius *= scale;
     ball->sigma *= scale;
-    return true;
+    return status;
 }
 
 static bool has_highlight(const struct relume_ball *b, const struct relume_image *peak, float least)
@@ -273,6 +275,15 @@ static bool is_plausible(const struct relume_ball *b, const struct relume_image 
            b->y > 0 && b->x < mean->width && b->y < mean->height;
 }
 
+// Coverage beyond that which texture has by chance, [0, 1] (the tolerance and the search of
+// ball_follow).
+static double excess(const struct relume_ball *b, double scale)
+{
+    const double r = b->radius / scale;
+    const double chance = fmax(0.01 * r, 1.0) / fmax(0.08 * r, 5.0);
+    return (b->coverage - chance) / (1.0 - chance);
+}
+
 static int by_score(const void *a, const void *b)
 {
     const struct candidate *p = a, *q = b;
@@ -284,9 +295,10 @@ static int by_score(const void *a, const void *b)
 }
 
 // Follow each at the level where it is some 40 pixels large; what is no circle loses its score.
-static void screen(struct candidate *list, int n, const struct pyramid *p,
-                   const struct relume_image *mean, const struct relume_ball_camera *camera,
-                   const struct relume_ball_params *params)
+static relume_status screen(struct candidate *list, int n, const struct pyramid *p,
+                            const struct relume_image *mean,
+                            const struct relume_ball_camera *camera,
+                            const struct relume_ball_params *params)
 {
     const float least = params->peak ? 0.5f * brightest(params->peak) : 0.0f;
     for (int i = 0; i < n; i++) {
@@ -295,11 +307,30 @@ static void screen(struct candidate *list, int n, const struct pyramid *p,
         while (level + 1 < p->levels && b->radius / (2 << level) >= 30.0)
             level++;
         list[i].score = 0.0;
-        if (follow_at(b, camera, p, level, 120) && is_plausible(b, mean, params) &&
+        const relume_status status = follow_at(b, camera, p, level, 120);
+        if (status == RELUME_ENOMEM)
+            return status;
+        if (!status && is_plausible(b, mean, params) &&
             (!params->peak || has_highlight(b, params->peak, least)))
-            list[i].score = b->coverage;
+            list[i].score = excess(b, 1 << level);
     }
     qsort(list, (size_t)n, sizeof *list, by_score);
+    return RELUME_OK;
+}
+
+// The steepest place of log light lies on the dark side of an edge, that of light itself on it.
+static relume_status settle(struct relume_ball *ball, const struct relume_ball_camera *camera,
+                            const struct relume_image *light)
+{
+    struct relume_ball b = *ball;
+    const double reach = fmax(3.0 / b.radius, 0.02);
+    const relume_status status = ball_follow(&b, camera, light, 360, reach);
+    if (!status && b.coverage >= 0.5 * ball->coverage &&
+        hypot(b.x - ball->x, b.y - ball->y) < 3.0 && fabs(b.radius - ball->radius) < 3.0) {
+        b.coverage = ball->coverage;
+        *ball = b;
+    }
+    return status == RELUME_ENOMEM ? status : RELUME_OK;
 }
 
 static bool is_apart(const struct relume_ball *a, const struct relume_ball *list, int n)
@@ -310,20 +341,28 @@ static bool is_apart(const struct relume_ball *a, const struct relume_ball *list
     return true;
 }
 
-// The `count` best that do not overlap, followed at full size. Returns how many there are.
-static int choose(struct relume_ball *out, int count, struct candidate *list, int n,
-                  const struct pyramid *p, const struct relume_image *mean,
-                  const struct relume_ball_camera *camera, const struct relume_ball_params *params)
+// The `count` best that do not overlap, followed at full size; `*found` are there.
+static relume_status choose(struct relume_ball *out, int count, int *found,
+                            const struct candidate *list, int n, const struct pyramid *p,
+                            const struct relume_image *mean,
+                            const struct relume_ball_camera *camera,
+                            const struct relume_ball_params *params)
 {
-    int found = 0;
-    for (int i = 0; i < n && found < count && list[i].score >= 0.8 * LEAST_COVERAGE; i++) {
+    relume_status status = RELUME_OK;
+    for (int i = 0; i < n && *found < count && list[i].score >= 0.8 * LEAST_EXCESS; i++) {
         struct relume_ball b = list[i].ball;
-        if (is_apart(&b, out, found) && follow_at(&b, camera, p, 0, 360) &&
-            b.coverage >= LEAST_COVERAGE && is_plausible(&b, mean, params) &&
-            is_apart(&b, out, found))
-            out[found++] = b;
+        if (!is_apart(&b, out, *found))
+            continue;
+        status = follow_at(&b, camera, p, 0, 360);
+        if (!status && excess(&b, 1.0) >= LEAST_EXCESS && is_plausible(&b, mean, params) &&
+            is_apart(&b, out, *found)) {
+            status = settle(&b, camera, params->mask ? params->mask : mean);
+            out[(*found)++] = b;
+        }
+        if (status == RELUME_ENOMEM)
+            return status;
     }
-    return found;
+    return RELUME_OK;
 }
 
 static int by_column(const void *a, const void *b)
@@ -348,11 +387,11 @@ relume_status relume_ball_find(struct relume_ball *out, int count, const struct 
         n += here;
     }
     int found = 0;
-    if (!status) {
-        screen(list, n, &pyramid, mean, camera, &p);
-        found = choose(out, count, list, n, &pyramid, mean, camera, &p);
-        qsort(out, (size_t)found, sizeof *out, by_column);
-    }
+    if (!status)
+        status = screen(list, n, &pyramid, mean, camera, &p);
+    if (!status)
+        status = choose(out, count, &found, list, n, &pyramid, mean, camera, &p);
+    qsort(out, (size_t)found, sizeof *out, by_column);
     destroy_pyramid(&pyramid);
     free(list);
     if (!status && found < count)

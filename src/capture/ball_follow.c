@@ -9,7 +9,6 @@
 #include <string.h>
 
 enum { ROUNDS = 8, MOST_STEPS = 256 };
-static const double WIDEST = 0.14;     // search, share of the radius
 static const double LEAST_EDGE = 3.0;  // of the median change along the radii
 static const double NEAR = 0.02;       // share of the radius within which an edge agrees
 
@@ -142,9 +141,8 @@ static void judge(const struct follower *f)
     b->sigma = n > 12 ? sqrt(squares / n * 2.0 * 4.0 / n) : b->radius;
 }
 
-static bool follow(struct follower *f)
+static bool follow(struct follower *f, double reach)
 {
-    double reach = WIDEST * f->ball->radius;
     for (int round = 0; round < ROUNDS; round++) {
         f->step = fmax(reach / (0.5 * (MOST_STEPS - 1)), fmin(1.0, 0.1 * f->ball->radius));
         for (int i = 0; i < f->angles; i++)
@@ -155,7 +153,7 @@ static bool follow(struct follower *f)
                 return false;
             weigh(f, tolerance_of(f, reach));
         }
-        reach = fmax(0.6 * reach, fmax(0.05 * f->ball->radius, 3.0));
+        reach = fmin(reach, fmax(0.6 * reach, fmax(0.05 * f->ball->radius, 3.0)));
     }
     // At the end the search is wide again, so that texture scatters and does not count.
     for (int i = 0; i < f->angles; i++)
@@ -165,8 +163,8 @@ static bool follow(struct follower *f)
     return true;
 }
 
-bool ball_follow(struct relume_ball *ball, const struct relume_ball_camera *camera,
-                 const struct relume_image *edges, int angles)
+relume_status ball_follow(struct relume_ball *ball, const struct relume_ball_camera *camera,
+                          const struct relume_image *edges, int angles, double reach)
 {
     struct follower f = {
         .ball = ball,
@@ -177,9 +175,11 @@ bool ball_follow(struct relume_ball *ball, const struct relume_ball_camera *came
         .change = mem_zeroed((size_t)angles, sizeof *f.change),
         .scratch = mem_zeroed((size_t)angles, sizeof *f.scratch),
     };
-    const bool found = f.point && f.change && f.scratch && follow(&f);
+    relume_status status = f.point && f.change && f.scratch ? RELUME_OK : RELUME_ENOMEM;
+    if (!status && !follow(&f, reach * ball->radius))
+        status = RELUME_EDATA;
     free(f.point);
     free(f.change);
     free(f.scratch);
-    return found;
+    return status;
 }

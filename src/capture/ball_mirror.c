@@ -9,7 +9,8 @@
 #include "base/memory.h"
 
 static const float DARK = 0.02f;         // peaks below are no lamp
-static const double RIM = 0.985;         // of the radius
+static const double RIM = 0.975;         // of the radius
+static const double BORDER = 1.0;        // pixels: what lies behind the ball mixes in
 static const double FULL = 0.15;         // share of the disc
 static const double SECOND = 0.4;        // of the first spot's light
 static const double PIXEL_SIGMA = 0.15;  // how well a spot's middle is told, pixels
@@ -65,7 +66,7 @@ static float find_peak(const struct window *w, const struct relume_ball *ball,
     for (int y = 0; y < w->height; y++)
         for (int x = 0; x < w->width; x++)
             if (value(w, x, y) > peak &&
-                ball_distance(ball, camera, w->x + x + 0.5, w->y + y + 0.5) < 0.0)
+                ball_distance(ball, camera, w->x + x + 0.5, w->y + y + 0.5) < -BORDER)
                 peak = value(w, x, y);
     return peak;
 }
@@ -78,7 +79,7 @@ static double mark_lit(struct window *w, const struct relume_ball *ball,
     for (int y = 0; y < w->height; y++)
         for (int x = 0; x < w->width; x++) {
             const bool is = value(w, x, y) > w->threshold &&
-                            ball_distance(ball, camera, w->x + x + 0.5, w->y + y + 0.5) < 0.0;
+                            ball_distance(ball, camera, w->x + x + 0.5, w->y + y + 0.5) < -BORDER;
             w->todo[y * w->width + x] = is;
             lit += is;
         }

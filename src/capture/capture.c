@@ -6,6 +6,7 @@
 #include "capture/near.h"
 #include "math/vec.h"
 
+#include <relume/response.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -230,8 +231,12 @@ relume_status capture_stream(struct image_stream *out, const relume_capture *cap
 void relume_capture_white(const relume_capture *capture, int light, float rgb[3])
 {
     const float(*intensities)[3] = capture->draft.m.intensities;
+    const struct relume_response *response =
+        capture->transfer.curve == RELUME_CURVE_RESPONSE ? capture->transfer.response : NULL;
     for (int c = 0; c < 3; c++)
-        rgb[c] = capture->floats ? INFINITY : 1.0f / (intensities ? intensities[light][c] : 1.0f);
+        rgb[c] = capture->floats ? INFINITY
+                                 : (response ? relume_response_decode(response, c, 1.0f) : 1.0f) /
+                                       (intensities ? intensities[light][c] : 1.0f);
 }
 
 // Fall-off of near lights is divided out.
@@ -251,7 +256,7 @@ static relume_status level(struct relume_image *image, const relume_capture *cap
 relume_status relume_capture_image(struct relume_image *out, const relume_capture *capture,
                                    int view, int light, const struct relume_log *log)
 {
-    const struct relume_transfer linear = {RELUME_CURVE_LINEAR, 0.0f};
+    const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     *out = (struct relume_image){0};
     struct image_stream stream;
     relume_status status = capture_stream(&stream, capture, view, light, linear, log);
@@ -278,7 +283,7 @@ static relume_status load_plane(struct relume_image *out, const relume_capture *
     *out = (struct relume_image){0};
     if (!path)
         return RELUME_OK;
-    const struct relume_transfer as_stored = {RELUME_CURVE_LINEAR, 0.0f};
+    const struct relume_transfer as_stored = {.curve = RELUME_CURVE_LINEAR};
     const relume_status status = relume_image_load(
         out, path, relume_image_params(.log = log, .channels = 1, .transfer = as_stored));
     if (status || (out->width == capture->width && out->height == capture->height))

@@ -15,14 +15,15 @@
 
 #include <string.h>
 
-enum { MOST = 16, NODE = 32 };
-static const double LAMBERT = 30.0;
+enum { MOST = 16, CELLS = 32, LEAST_CELL = 4, MOST_CELL = 32 };
+static const double LAMBERT = 3000.0;
 static const double NUGGET = 1e-3;
 
 struct distant {
     const struct near *near;
     const vec3 *direction;
-    int lights, most, columns;  // columns of nodes
+    int lights, most;
+    int cell, columns;  // pixels between nodes, columns of nodes
     int threads;
     int *chosen;      // [lights][most]: whose values make light j
     float *node[2];   // [columns][lights][most]: the rows of nodes above and below
@@ -69,6 +70,12 @@ static void choose_nearest(struct distant *d, int light)
     }
 }
 
+static int cell_for(const struct near *near)
+{
+    const int cell = (near->width > near->height ? near->width : near->height) / CELLS;
+    return cell < LEAST_CELL ? LEAST_CELL : cell > MOST_CELL ? MOST_CELL : cell;
+}
+
 relume_status distant_create(struct distant **out, const struct near *near, const vec3 *direction,
                              int threads)
 {
@@ -80,10 +87,11 @@ relume_status distant_create(struct distant **out, const struct near *near, cons
         .direction = direction,
         .lights = near->lights,
         .most = near->lights < MOST ? near->lights : MOST,
-        .columns = (near->width + NODE - 1) / NODE + 1,
+        .cell = cell_for(near),
         .threads = thread_count(threads),
         .node_row = {-1, -1},
     };
+    d->columns = (near->width + d->cell - 1) / d->cell + 1;
     const size_t sparse = (size_t)d->lights * (size_t)d->most, columns = (size_t)d->columns;
     const size_t workers = (size_t)d->threads, most = (size_t)d->most;
     d->chosen = mem_array(sparse, sizeof *d->chosen);
@@ -125,13 +133,13 @@ static void solve_light(const struct distant *d, const vec3 *seen, int light, do
         weights[i] = solved ? (float)b[i] : (float)(chosen[i] == light);
 }
 
+// The last nodes lie beside the picture; their depth is that of its border.
 static vec3 node_point(const struct distant *d, int column, int row)
 {
     const struct near *near = d->near;
-    const int x = column * NODE, y = row * NODE, half = NODE / 2;
-    const double depth = near_depth(near, x - half, y - half, x + half, y + half);
-    return near_point(near, x < near->width ? x : near->width, y < near->height ? y : near->height,
-                      depth);
+    const int x = column * d->cell, y = row * d->cell, half = d->cell / 2;
+    const int cx = x < near->width ? x : near->width, cy = y < near->height ? y : near->height;
+    return near_point(near, x, y, near_depth(near, cx - half, cy - half, cx + half, cy + half));
 }
 
 static void solve_node(void *context, size_t item, int worker)
@@ -199,15 +207,15 @@ static void resample_row(void *context, size_t item, int worker)
 {
     struct distant *d = context;
     const size_t sparse = (size_t)d->lights * (size_t)d->most, width = (size_t)d->near->width;
-    const int y = d->row + (int)item, above = y / NODE;
+    const int y = d->row + (int)item, cell = d->cell, above = y / cell;
     float *column = d->column + (size_t)worker * (size_t)d->columns * sparse;
     float *weights = d->weights + (size_t)worker * sparse;
     float *pixel = d->pixels + (size_t)worker * (size_t)d->lights * 3;
     mix(column, d->node[above % 2], d->node[(above + 1) % 2],
-        ((float)(y - above * NODE) + 0.5f) / NODE, (size_t)d->columns * sparse);
+        ((float)(y - above * cell) + 0.5f) / (float)cell, (size_t)d->columns * sparse);
     for (size_t x = 0; x < width; x++) {
-        const float *left = column + x / NODE * sparse;
-        mix(weights, left, left + sparse, ((float)(x % NODE) + 0.5f) / NODE, sparse);
+        const float *left = column + x / (size_t)cell * sparse;
+        mix(weights, left, left + sparse, ((float)(x % (size_t)cell) + 0.5f) / (float)cell, sparse);
         resample_pixel(d, weights, pixel, d->band + 3 * (item * width + x),
                        3 * (size_t)d->rows * width);
     }
@@ -218,8 +226,9 @@ relume_status distant_resample(struct distant *distant, int row, int rows, float
     const int last = row + rows;
     distant->rows = rows;
     for (int y = row; y < last;) {
-        const int cell = y / NODE, end = (cell + 1) * NODE < last ? (cell + 1) * NODE : last;
-        if (!need_nodes(distant, cell) || !need_nodes(distant, cell + 1))
+        const int node = y / distant->cell, next = (node + 1) * distant->cell;
+        const int end = next < last ? next : last;
+        if (!need_nodes(distant, node) || !need_nodes(distant, node + 1))
             return RELUME_ENOMEM;
         distant->row = y;
         distant->band = band + 3 * (size_t)(y - row) * (size_t)distant->near->width;

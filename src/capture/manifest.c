@@ -8,8 +8,10 @@
 #include "math/vec.h"
 
 #include <libgen.h>
+#include <relume/response.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { VERSION = 1 };
 
@@ -252,6 +254,25 @@ static relume_status read_views(const struct parser *p, const jvalue *views)
     return status;
 }
 
+// A known curve, or the file of a response.
+static relume_status read_transfer(const struct parser *p, const jvalue *value)
+{
+    struct draft *d = p->d;
+    const char *text = jvalue_text(value), *path = NULL;
+    if (!value || jvalue_is_null(value) || (text && !relume_transfer_parse(&d->m.transfer, text)))
+        return RELUME_OK;
+    const relume_status status = text ? get_path(p, value, "transfer", &path) : RELUME_EDATA;
+    if (status == RELUME_ENOMEM)
+        return status;
+    if (status || access(path, F_OK))
+        return wrong(p, "transfer", "linear, srgb, gamma:NUMBER or a response-curve file");
+    struct relume_response *response = arena_array(&d->arena, 1, sizeof *response);
+    if (!response)
+        return RELUME_ENOMEM;
+    d->m.transfer = (struct relume_transfer){.curve = RELUME_CURVE_RESPONSE, .response = response};
+    return relume_response_load(response, path, p->log);
+}
+
 static relume_status read_root(const struct parser *p, const jvalue *root)
 {
     const char *format = jvalue_text(jvalue_member(root, "format"));
@@ -265,13 +286,9 @@ static relume_status read_root(const struct parser *p, const jvalue *root)
                         "%s: version %lld is newer than this program; expected %d", p->path,
                         version, VERSION);
     struct draft *d = p->d;
-    const jvalue *transfer = jvalue_member(root, "transfer");
-    if (transfer && !jvalue_is_null(transfer)) {
-        const char *text = jvalue_text(transfer);
-        if (!text || relume_transfer_parse(&d->m.transfer, text))
-            return wrong(p, "transfer", "linear, srgb or gamma:NUMBER");
-    }
-    relume_status status = read_geometry(p, root);
+    relume_status status = read_transfer(p, jvalue_member(root, "transfer"));
+    if (!status)
+        status = read_geometry(p, root);
     if (!status)
         status = read_lights(p, jvalue_member(root, "lights"));
     if (!status)
@@ -417,6 +434,10 @@ relume_status relume_manifest_write(const struct relume_manifest *manifest, cons
 {
     char *text = NULL;
     size_t size = 0;
+    if (manifest->transfer.curve == RELUME_CURVE_RESPONSE)
+        return log_fail(log, RELUME_EINVAL,
+                        "%s: a response curve lives in a file of its own; expected linear pictures",
+                        path);
     FILE *f = open_memstream(&text, &size);
     if (!f)
         return RELUME_ENOMEM;

@@ -71,11 +71,11 @@ void relume_table_destroy(relume_table **table)
     free(t);
 }
 
-static relume_status open_near(relume_table *t, struct relume_transfer display)
+static relume_status open_near(relume_table *t, struct relume_transfer display, bool as_seen)
 {
     const struct relume_manifest *m = &t->capture->draft.m;
     relume_status status = near_open(&t->lamps, t->capture, t->view, t->log);
-    if (!status)
+    if (!status && !as_seen)
         status = distant_create(&t->distant, &t->lamps, m->directions, t->threads);
     if (!status && display.curve != RELUME_CURVE_LINEAR) {
         t->display = mem_array(1, sizeof *t->display);
@@ -86,8 +86,8 @@ static relume_status open_near(relume_table *t, struct relume_transfer display)
     return status;
 }
 
-relume_status relume_table_open(relume_table **out, const relume_capture *capture, int view,
-                                const struct relume_table_params *params)
+static relume_status open_table(relume_table **out, const relume_capture *capture, int view,
+                                bool as_seen, const struct relume_table_params *params)
 {
     const struct relume_table_params p = params ? *params : (struct relume_table_params){0};
     const int lights = capture->draft.m.lights;
@@ -114,7 +114,7 @@ relume_status relume_table_open(relume_table **out, const relume_capture *captur
         t->stream && t->status && t->broken && t->repaired && t->whole ? RELUME_OK : RELUME_ENOMEM;
     t->near = near_applies(capture, view);
     if (!status && t->near) {
-        status = open_near(t, to);
+        status = open_near(t, to, as_seen);
         to.curve = RELUME_CURVE_LINEAR;
     }
     while (!status && t->open < lights) {
@@ -127,6 +127,18 @@ relume_status relume_table_open(relume_table **out, const relume_capture *captur
         relume_table_destroy(&t);
     *out = t;
     return status;
+}
+
+relume_status relume_table_open(relume_table **out, const relume_capture *capture, int view,
+                                const struct relume_table_params *params)
+{
+    return open_table(out, capture, view, false, params);
+}
+
+relume_status table_open_as_seen(relume_table **out, const relume_capture *capture, int view,
+                                 const struct relume_table_params *params)
+{
+    return open_table(out, capture, view, true, params);
 }
 
 static void read_light(void *context, size_t item, int worker)
@@ -184,7 +196,7 @@ static void count_broken(void *context, size_t item, int worker)
     relume_table *t = context;
     const relume_capture *capture = t->capture;
     const size_t width = (size_t)capture->width;
-    const struct relume_transfer linear = {RELUME_CURVE_LINEAR, 0.0f};
+    const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     struct image_stream stream;
     float *band = mem_array(3 * IMAGE_STREAM_ROWS * width, sizeof *band);
     t->broken[item] = 0;
@@ -242,5 +254,6 @@ relume_status relume_table_read(relume_table *table, int rows, float *out)
     if (!table->near)
         return RELUME_OK;
     thread_for(table->threads, (size_t)lights, level_light, table);
-    return distant_resample(table->distant, table->row - rows, rows, out);
+    return table->distant ? distant_resample(table->distant, table->row - rows, rows, out)
+                          : RELUME_OK;
 }

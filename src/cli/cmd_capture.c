@@ -2,6 +2,7 @@
 #include "capture_hdr.h"
 #include "capture_lights.h"
 #include "capture_views.h"
+#include "frame_options.h"
 
 static const struct option options[] = {
     {"-o", OPTION_TEXT, "DIR", "the capture folder to make; with --hdr the picture OUT.exr", 0, 0},
@@ -10,6 +11,7 @@ static const struct option options[] = {
      "outline of a mirror ball, pixels from the top left; may be repeated; default: found", 0, 0},
     {"--ball-photos", OPTION_TEXT, "PATH",
      "the ball stands in photographs of its own: a folder, or a file, then repeated", 0, 0},
+    {"--balls", OPTION_INT, "N", "how many balls are to be found; default 1", 1, 16},
     {"--ball-mask", OPTION_TEXT, "FILE", "white where the ball is", 0, 0},
     {"--matte", OPTION_FLAG, NULL, "the ball is matte white, not a mirror", 0, 0},
     {"--lights", OPTION_TEXT, "FILE",
@@ -29,7 +31,8 @@ static const struct option options[] = {
     {"--height", OPTION_TEXT, "FILE.exr", "write the surface's height, world units", 0, 0},
     {"--encode", OPTION_TEXT, "FILE.exr", "encode the capture as well", 0, 0},
     {"--relight", OPTION_TEXT, "PICTURE", "and relight that by --light", 0, 0},
-    {"--light", OPTION_TEXT, "SPEC", "for --relight; may be repeated; default: dir 0 0 1", 0, 0},
+    LIGHT_OPTIONS,
+    CPU_OPTION,
     {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; default: by file", 0, 0},
     {"--force", OPTION_FLAG, NULL, "replace an existing folder", 0, 0},
     // brackets
@@ -40,6 +43,9 @@ static const struct option options[] = {
     {"--weights", OPTION_TEXT, "W", "--hdr: spline (default), hat or gaussian", 0, 0},
     {"--align", OPTION_TEXT, "A", "none, blocks or homography; default: none", 0, 0},
     {"--ghosts", OPTION_FLAG, NULL, "--hdr: leave out what moved between exposures", 0, 0},
+    {"--white", OPTION_TEXT, "x,y,w,h", "--hdr: a region that is grey", 0, 0},
+    {"--flat", OPTION_TEXT, "FILE", "--hdr: photograph of an even surface, against vignetting", 0,
+     0},
     // many viewpoints
     CAPTURE_VIEWS_OPTIONS,
     // all

@@ -96,7 +96,7 @@ relume_status relume_samples_read(struct relume_samples *out, const relume_captu
     s.chosen = mem_array(s.count, sizeof *s.chosen);
     out->data = mem_array((size_t)m->lights * s.count * 3, sizeof *out->data);
     relume_status status = s.chosen && out->data ? RELUME_OK : RELUME_ENOMEM;
-    struct relume_transfer display = {RELUME_CURVE_LINEAR, 0.0f};
+    struct relume_transfer display = {.curve = RELUME_CURVE_LINEAR};
     if (relume_encode_domain(capture, p.domain) == RELUME_DOMAIN_DISPLAY)
         display = relume_encode_display(capture);
     if (!status)

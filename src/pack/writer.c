@@ -400,7 +400,7 @@ static bool add_preview(struct builder *b, const struct relume_pack_contents *c,
     const bool is_display = c->domain == RELUME_DOMAIN_DISPLAY;
     p->coefficients = middle;
     curve_init(&p->curve,
-               is_display ? c->display : (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f});
+               is_display ? c->display : (struct relume_transfer){.curve = RELUME_CURVE_LINEAR});
     relume_coder_weights(c->coder, front, p->weights, p->constant);
     p->view = &c->view[c->views / 2];
     if (p->view->books && !relight_books(b, p, p->view->books))

@@ -423,7 +423,7 @@ static void the_ball_is_bright_where_the_light_comes_from(void **state)
 static void the_screen_shows_srgb(void **state)
 {
     (void)state;
-    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     struct program present;
     struct target frame;
     assert_int_equal(draw_present_create(&present, &fixture_gl, &fixture_log), RELUME_OK);
@@ -451,7 +451,7 @@ static void the_screen_shows_srgb(void **state)
 static void tones_are_the_library_s(void **state)
 {
     (void)state;
-    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     static const float values[][3] = {{0, 0, 0},    {0.18f, 0.18f, 0.18f}, {1, 0.5f, 0.25f},
                                       {3, 0.1f, 9}, {-1, 0.4f, 2},         {1e6f, 0, 1}};
     struct program present;

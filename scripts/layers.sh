@@ -14,9 +14,9 @@ coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange
 relight:base math image:base image coder light relight rig normals enhance
-view:base math image:base image light relight view capture
+view:base math image:base image light relight view slabs capture
 pass:base math image:base image tone
-frame:base math:base image capture coder pack light relight view frame evaluate normals enhance
+frame:base math:base image capture coder pack light relight view slabs frame evaluate normals enhance
 scene:base math image:base image lights capture scene
 cli:cli:*
 viewer:viewer:*

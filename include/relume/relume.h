@@ -26,6 +26,7 @@
 #include <relume/rig.h>
 #include <relume/scene.h>
 #include <relume/shoot.h>
+#include <relume/slabs.h>
 #include <relume/tone.h>
 #include <relume/view.h>
 #include <relume/views.h>

@@ -38,10 +38,16 @@ int relume_capture_height(const relume_capture *capture)
     return capture->height;
 }
 
+bool relume_capture_pole_y(const relume_capture *capture)
+{
+    const struct relume_manifest *m = &capture->draft.m;
+    return m->slabs > 0 || m->geometry.projection >= RELUME_CYLINDRICAL;
+}
+
 bool relume_capture_hemispherical(const relume_capture *capture)
 {
     const struct relume_manifest *m = &capture->draft.m;
-    const bool pole_y = m->geometry.projection >= RELUME_CYLINDRICAL;
+    const bool pole_y = relume_capture_pole_y(capture);
     for (int i = 0; i < m->lights; i++)
         if (pole_from_world(m->directions[i], pole_y).z < -0.1)
             return false;

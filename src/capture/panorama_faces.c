@@ -154,7 +154,7 @@ relume_status panorama_from_cube(struct panorama_job *job)
     job->width = FACES * job->set.width;
     job->height = job->set.height;
     job->geometry = relume_geometry_default(RELUME_CUBE, job->width, job->height);
-    job->transfer = (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f};
+    job->transfer = (struct relume_transfer){.curve = RELUME_CURVE_LINEAR};
     for (int k = 0; k < job->set.lights && !status; k++) {
         status = save_cube(job, camera, k);
         if (!status && !log_progress(job->common->log, "writing", (k + 1.0) / job->set.lights))

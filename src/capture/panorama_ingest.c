@@ -107,7 +107,7 @@ static relume_status to_distances(struct relume_image *depth, const struct panor
 static relume_status add_depth(struct panorama_job *job)
 {
     struct relume_image in, out = {0};
-    const struct relume_transfer as_stored = {RELUME_CURVE_LINEAR, 0.0f};
+    const struct relume_transfer as_stored = {.curve = RELUME_CURVE_LINEAR};
     relume_status status = relume_image_load(
         &in, job->p->depth,
         relume_image_params(.log = job->common->log, .channels = 1, .transfer = as_stored));

@@ -295,7 +295,7 @@ static void choose_size(struct stitching *s)
     job->height = job->height < 1 ? 1 : job->height;
     job->width = 2 * job->height;
     job->geometry = relume_geometry_default(RELUME_SPHERICAL, job->width, job->height);
-    job->transfer = (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f};
+    job->transfer = (struct relume_transfer){.curve = RELUME_CURVE_LINEAR};
 }
 
 relume_status panorama_from_stitch(struct panorama_job *job)

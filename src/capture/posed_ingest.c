@@ -381,7 +381,7 @@ static relume_status write_slab(struct posed *s, const char *path)
     place_views(s, view);
     status = render_views(s, view, dir);
     const struct relume_manifest m = {
-        .transfer = {RELUME_CURVE_LINEAR, 0.0f},
+        .transfer = {.curve = RELUME_CURVE_LINEAR},
         .geometry = s->geometry,
         .lights = 1,
         .directions = s->common->lights ? s->common->lights : &front,

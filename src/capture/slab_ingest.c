@@ -302,7 +302,7 @@ static relume_status write_slab(struct slab *s, const char *dir, const outdir *f
                               s->p->focus_disparity, s->common);
     const struct relume_manifest m = {
         .transfer =
-            shift ? (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f} : s->common->transfer,
+            shift ? (struct relume_transfer){.curve = RELUME_CURVE_LINEAR} : s->common->transfer,
         .geometry = status ? (struct relume_geometry){0} : geometry_of(s),
         .lights = s->set.lights,
         .directions = s->set.directions,

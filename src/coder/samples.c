@@ -135,7 +135,7 @@ relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *
     struct relume_coder_params p = coder ? *coder : (struct relume_coder_params){0};
     struct relume_samples samples = {0};
     p.hemispherical = relume_capture_hemispherical(capture);
-    p.pole_y = m->geometry.projection >= RELUME_CYLINDRICAL;
+    p.pole_y = relume_capture_pole_y(capture);
     relume_status status = RELUME_OK;
     *out = NULL;
     if (basis->learned || p.choose) {

@@ -510,7 +510,8 @@ static relume_status begin_distant(struct job *job, const struct relume_light *l
     const int count = job->display ? count_kind(lights, n, RELUME_LIGHT_ENVIRONMENT) : 0;
     if (!count)
         return RELUME_OK;
-    const struct relume_relight_params own = {.cpu_off = p->cpu_off, .threads = p->threads};
+    const struct relume_relight_params own = {
+        .cpu_off = p->cpu_off, .threads = p->threads, .grid = p->grid};
     struct relume_light *environments = mem_array((size_t)count, sizeof *environments);
     job->distant = mem_zeroed(1, sizeof *job->distant);
     relume_status status = environments && job->distant ? RELUME_OK : RELUME_ENOMEM;

@@ -173,7 +173,8 @@ static relume_status check(const struct slab_depth *d)
                         relume_projection_name(d->m->geometry.projection), d->m->views);
     if (d->m->slabs > 1)
         return log_fail(d->p.log, RELUME_EINVAL,
-                        "depth from views: expected one slab; found %d in one capture", d->m->slabs);
+                        "depth from views: expected one slab; found %d in one capture",
+                        d->m->slabs);
     if ((range[0] != 0.0 || range[1] != 0.0) && !(range[0] > 0.0 && range[1] > range[0]))
         return log_fail(d->p.log, RELUME_EINVAL,
                         "depth range: expected 0 < nearest < farthest; found %g, %g", range[0],

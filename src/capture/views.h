@@ -40,7 +40,7 @@ struct view_place {
 relume_status view_places(struct view_place *places, const struct photo_set *set, const char *names,
                           const struct relume_log *log);
 
-// A folder with the views of `m`; their pictures are named as seen from inside `final`.
+// capture.json of the folder under construction; names of pictures are those from inside it.
 relume_status save_manifest(const outdir *dir, const struct relume_manifest *m,
                             const struct relume_log *log);
 // `name` inside the folder under construction.

@@ -147,7 +147,12 @@ relume_status capture_views(const struct args *args)
 {
     if (!args_has(args, "-o"))
         return usage_error("capture: expected -o DIR");
-    if (args_has(args, "--depth-from-views") && !args_has(args, "--slab")) {
+    if (args_has(args, "--slab") + args_has(args, "--colmap") + args_has(args, "--panorama") +
+            args_has(args, "--depth-from-views") >
+        1)
+        return usage_error("capture: expected one of --slab, --colmap, --panorama and "
+                           "--depth-from-views; a capture gets its depth afterwards");
+    if (args_has(args, "--depth-from-views")) {
         if (args_inputs(args) != 1)
             return usage_error("--depth-from-views: expected one capture; found %d",
                                args_inputs(args));

@@ -144,8 +144,10 @@ $B/librelume.a: $(LIB_O)
 	$(Q)rm -f $@
 	$(call say,AR)
 	$(Q)$(AR) rcs $@ $^
-# Where a program or library looks for the module: first where the build left it.
-run_path = '-Wl,-rpath,$$ORIGIN$1'
+# Where a program or library looks for the module: first where the build left it. Sanitizers open
+# libraries in its name, which only the older kind of run path allows.
+run_path = '-Wl,-rpath,$$ORIGIN$1'$(if $(filter asan tsan,$(config)),$(comma)--disable-new-dtags)
+comma := ,
 $B/librelume.so: $(LIB_O)
 	$(call say,LD)
 	$(Q)$(CC) $(MODE) -shared -Wl,-soname,librelume.so.$(MAJOR) $(call run_path) -o $@ $^ $(LDFLAGS) $(LIBS)

@@ -49,8 +49,8 @@ struct relume_aim {
     bool aimed;             // at `at`; else at the middle
     struct relume_vec3 at;  // world
     struct relume_vec3 up;  // zero: +y, for an eye straight above or below -z or +z
-    double
-        field_of_view_deg;  // horizontal, below 180; 0: as above, and pixels are square otherwise
+    // horizontal, below 180, with square pixels; 0: the window above
+    double field_of_view_deg;
 };
 // Whether anything is not zero.
 RELUME_API bool relume_aim_given(const struct relume_aim *aim);

@@ -30,9 +30,9 @@ struct shoot {
     outdir *dir;
     int shots;
     struct shot *shot;
-    int width, height;             // of the photographs
-    struct relume_image first;     // that others are aligned to; empty unless params.align
-    bool has_intensities, linear;  // of the photographs' own values
+    int width, height;          // of the photographs
+    struct relume_image first;  // that others are aligned to; empty unless params.align
+    bool has_intensities;
     // of the photographs in which the balls stand
     struct relume_ball_camera camera;
     struct relume_image mean, peak;

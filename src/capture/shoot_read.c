@@ -149,7 +149,6 @@ static relume_status take(struct shoot *s, int i, struct relume_image *image)
         return status;
     s->width = image->width;
     s->height = image->height;
-    s->linear = shot->notes.linear;
     count_ends(shot, image, shot->notes.floats);
     status = align(s, i, image);
     if (!status)

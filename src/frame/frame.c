@@ -1,5 +1,4 @@
 #include "base/log.h"
-#include "base/memory.h"
 #include "frame/passes.h"
 #include "frame/renderer.h"
 #include "math/vec.h"

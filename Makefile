@@ -52,6 +52,9 @@ LIB_C    := $(wildcard src/base/*.c src/math/*.c src/image/*.c src/capture/*.c s
 LIB_C    := $(filter-out $(if $(filter kiss,$(FFT)),%/fft.c,%/fft_kiss.c),$(LIB_C))
 # The module that is loaded when the first image needs it (src/image/oiio.h)
 MODULE_CXX := src/image/oiio.cpp
+# Built where OpenCV's stitching is (make deps-stitch); opened when photographs are to be stitched
+OPENCV   := $(firstword $(wildcard $(addsuffix /opencv4,/usr/include /usr/local/include)))
+STITCH_CXX := $(if $(wildcard $(OPENCV)/opencv2/stitching/detail/matchers.hpp),src/capture/stitch.cpp)
 CLI_C    := $(wildcard src/cli/*.c)
 VIEWER_C := $(wildcard viewer/*.c)
 VIEWER_CXX := $(wildcard viewer/*.cpp)
@@ -67,6 +70,7 @@ SAMPLES_C := samples/sphere.c samples/figures.c
 
 LIB_O    := $(LIB_C:%.c=$B/obj/%.o)
 MODULE   := $B/librelume-oiio.so.$(MAJOR)
+STITCH   := $(if $(STITCH_CXX),$B/librelume-stitch.so.$(MAJOR))
 CLI_O    := $(CLI_C:%.c=$B/obj/%.o)
 VIEWER_O := $(VIEWER_C:%.c=$B/obj/%.o) $(VIEWER_CXX:%.cpp=$B/obj/%.o) $B/obj/viewer/shaders.o
 UNIT     := $(UNIT_C:%.c=$B/%)
@@ -76,10 +80,13 @@ FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 
-.PHONY: all lib cli viewer deps deps-web demo figures test check check-threads bench fuzz headers layers format install clean
+.PHONY: all lib cli viewer deps deps-web deps-stitch demo figures test check check-threads bench fuzz headers layers format install clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
-lib: $B/librelume.a $B/librelume.so $(MODULE)
+lib: $B/librelume.a $B/librelume.so $(MODULE) $(STITCH)
+ifeq ($(STITCH),)
+	@echo '  OpenCV is not there: built without stitching (make deps-stitch adds it)'
+endif
 cli: $B/relume
 viewer: $(VIEWER)
 
@@ -93,11 +100,15 @@ $(DEPS): scripts/deps.sh
 	@touch $@
 deps-web:
 	@scripts/deps.sh web
+deps-stitch:
+	@scripts/deps.sh stitch
 
 # ---------------------------------------------------------------- compiling
 
 $B/obj/src/image/exr.o: own_flags = $(EXR)
 $B/obj/src/image/oiio.o: own_flags = $(OIIO)
+$B/obj/src/capture/stitch.o: own_flags = -isystem $(OPENCV)
+$B/obj/src/capture/stitch_load.o: own_flags = -DRELUME_MAJOR=$(MAJOR)
 $B/obj/src/image/oiio_load.o: own_flags = -DRELUME_MAJOR=$(MAJOR)
 $B/obj/src/coder/kernels_avx2.o $B/obj/src/relight/kernels_avx2.o: own_flags = -mavx2 -mfma -mf16c
 $B/obj/src/%.o:               own_include = -Isrc
@@ -144,6 +155,9 @@ $B/librelume.so: $(LIB_O)
 $(MODULE): $(MODULE_CXX:%.cpp=$B/obj/%.o) $B/librelume.a
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -shared -Wl,--exclude-libs,ALL -o $@ $^ $(LDFLAGS) $(OIIO_LIBS) $(LIBS)
+$(STITCH): $(STITCH_CXX:%.cpp=$B/obj/%.o)
+	$(call say,LD)
+	$(Q)$(CXX) $(MODE) -shared -o $@ $^ $(LDFLAGS) -Wl,--as-needed -lopencv_stitching -lopencv_features2d -lopencv_calib3d -lopencv_imgproc -lopencv_core
 $B/relume: $(CLI_O) $B/librelume.a
 	$(call say,LD)
 	$(Q)$(CC) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS)
@@ -196,7 +210,7 @@ layers:
 	@scripts/layers.sh
 
 format:
-	clang-format -i $(LIB_C) $(MODULE_CXX) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
+	clang-format -i $(LIB_C) $(MODULE_CXX) $(STITCH_CXX) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
 	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*.h viewer/*.h tests/*.h samples/*.c)
 
 bench: all $(BENCH)

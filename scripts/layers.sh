@@ -9,7 +9,7 @@ bad=0
 rules="base::base
 math:base:base
 image:base math:base image photograph response
-capture:base math image:base image lights capture ball photometric shoot photograph response align
+capture:base math image:base image lights capture ball photometric shoot photograph response align views lightfield
 coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange
@@ -54,7 +54,8 @@ only_in() { # pattern file...: an external header appears in these files only
 }
 only_in 'openexr' src/image/exr.c tests/tools/decode.c
 only_in 'OpenImageIO' src/image/oiio.cpp
-only_in 'dlfcn' src/image/oiio_load.c
+only_in 'dlfcn' src/image/oiio_load.c src/capture/stitch_load.c
+only_in 'opencv' src/capture/stitch.cpp
 only_in 'embree' src/scene/trace.c
 only_in '(cblas|lapacke)' src/math/lsq.c
 only_in 'fftw3' src/math/fft.c

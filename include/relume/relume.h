@@ -16,6 +16,7 @@
 #include <relume/heldout.h>
 #include <relume/image.h>
 #include <relume/light.h>
+#include <relume/lightfield.h>
 #include <relume/lights.h>
 #include <relume/normals.h>
 #include <relume/pack.h>
@@ -29,5 +30,6 @@
 #include <relume/slabs.h>
 #include <relume/tone.h>
 #include <relume/view.h>
+#include <relume/views.h>
 
 #endif

@@ -1,6 +1,7 @@
 // cmd_capture.c - relume capture: from photographs to linear images with known lights
 #include "capture_hdr.h"
 #include "capture_lights.h"
+#include "capture_views.h"
 #include "frame_options.h"
 
 static const struct option options[] = {
@@ -45,7 +46,9 @@ static const struct option options[] = {
     {"--white", OPTION_TEXT, "x,y,w,h", "--hdr: a region that is grey", 0, 0},
     {"--flat", OPTION_TEXT, "FILE", "--hdr: photograph of an even surface, against vignetting", 0,
      0},
-    // both
+    // many viewpoints
+    CAPTURE_VIEWS_OPTIONS,
+    // all
     {"--skip-bad", OPTION_FLAG, NULL, "leave out photographs that cannot be read or used", 0, 0},
     {"--json", OPTION_FLAG, NULL, "print one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
@@ -53,6 +56,8 @@ static const struct option options[] = {
 
 static relume_status run(const struct args *args)
 {
+    if (capture_views_asked(args))
+        return capture_views(args);
     return args_has(args, "--hdr") ? capture_hdr(args) : capture_lights(args);
 }
 

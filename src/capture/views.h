@@ -1,0 +1,50 @@
+// views.h - the photographs of many cameras, found and checked, and the folder they become
+#ifndef CAPTURE_VIEWS_H
+#define CAPTURE_VIEWS_H
+
+#include "base/arena.h"
+#include "base/outfile.h"
+
+#include <relume/capture.h>
+#include <relume/views.h>
+
+// One camera: what was named, and its photographs, one a light.
+struct camera_photos {
+    const char *name;
+    const char **images;
+};
+
+struct photo_set {
+    struct arena arena;
+    int count, lights;
+    struct camera_photos *camera;          // [count]
+    int width, height;                     // of every photograph
+    const struct relume_vec3 *directions;  // [lights]
+};
+
+// A single folder stands for what it holds. Sizes and counts of lights must agree. RELUME_EDATA.
+relume_status photo_set_open(struct photo_set *out, const char *const *photos, int n,
+                             const struct relume_ingest_params *p);
+void photo_set_free(struct photo_set *set);
+
+// How `file` is called from inside the folder `dir`, which need not exist yet. NULL: no memory.
+const char *path_from(struct arena *arena, const char *dir, const char *file);
+
+// Where a file's name puts its camera.
+struct view_place {
+    int row, column;
+    bool has_uv;
+    double u, v;  // as written
+};
+// places[set->count]; `names` as relume_slab_ingest_params. RELUME_EINVAL, RELUME_EDATA.
+relume_status view_places(struct view_place *places, const struct photo_set *set, const char *names,
+                          const struct relume_log *log);
+
+// capture.json of the folder under construction; names of pictures are those from inside it.
+relume_status save_manifest(const outdir *dir, const struct relume_manifest *m,
+                            const struct relume_log *log);
+// `name` inside the folder under construction.
+relume_status save_inside(const outdir *dir, const char *name, const struct relume_image *image,
+                          bool half, const struct relume_log *log);
+
+#endif

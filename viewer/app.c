@@ -4,6 +4,7 @@
 #include "keys.h"
 #include "lamps.h"
 #include "say.h"
+#include "vec.h"
 
 #include <relume/tone.h>
 
@@ -188,16 +189,11 @@ struct app_axes app_frame_axes(const struct app *app)
     };
 }
 
-static double dot(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 struct relume_vec3 app_seen_light(const struct app *app, int light)
 {
     const struct app_axes a = app_frame_axes(app);
     const struct relume_vec3 d = lamps_direction(&app->now.light[light], app_middle(app));
-    return (struct relume_vec3){dot(d, a.right), dot(d, a.up), dot(d, a.back)};
+    return (struct relume_vec3){vec_dot(d, a.right), vec_dot(d, a.up), vec_dot(d, a.back)};
 }
 
 void app_aim_light(struct app *app, int light, struct relume_vec3 seen)

@@ -2,6 +2,17 @@
 
 #include "say.h"
 
+#include <string.h>
+
+static bool is_software(const char *renderer)
+{
+    static const char *const names[] = {"llvmpipe", "softpipe", "swrast", "Software", "SwiftShader"};
+    for (size_t i = 0; renderer && i < sizeof names / sizeof *names; i++)
+        if (strstr(renderer, names[i]))
+            return true;
+    return false;
+}
+
 relume_status gl_load(struct gl *gl, gl_proc (*get_proc)(const char *name),
                       const struct relume_log *log)
 {
@@ -13,6 +24,7 @@ relume_status gl_load(struct gl *gl, gl_proc (*get_proc)(const char *name),
 #undef GL_LOAD
     gl->GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &gl->max_layers);
     gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &gl->max_texture);
+    gl->software = is_software((const char *)gl->GetString(GL_RENDERER));
     return RELUME_OK;
 }
 

@@ -46,6 +46,7 @@
     X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                                         \
     X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                                                 \
     X(PFNGLGETSHADERIVPROC, GetShaderiv)                                                           \
+    X(PFNGLGETSTRINGPROC, GetString)                                                               \
     X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                                             \
     X(PFNGLLINKPROGRAMPROC, LinkProgram)                                                           \
     X(PFNGLPIXELSTOREIPROC, PixelStorei)                                                           \
@@ -72,6 +73,7 @@ struct gl {
 #undef GL_MEMBER
     int max_layers;   // of an array texture, at least 256
     int max_texture;  // pixels along one side
+    bool software;    // it is drawn by the CPU
 };
 
 typedef void (*gl_proc)(void);

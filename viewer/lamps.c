@@ -1,5 +1,7 @@
 #include "lamps.h"
 
+#include "vec.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -29,6 +31,21 @@ int lamps_shining(const struct app_state *state, struct relume_light out[APP_LIG
     return n;
 }
 
+static bool same_vector(struct relume_vec3 a, struct relume_vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+bool lamps_same(const struct relume_light *a, const struct relume_light *b)
+{
+    return a->kind == b->kind && same_vector(a->direction, b->direction) &&
+           same_vector(a->position, b->position) && same_vector(a->u, b->u) &&
+           same_vector(a->v, b->v) && a->disc == b->disc && a->nofall == b->nofall &&
+           a->half_angle_deg == b->half_angle_deg && a->rotate_deg == b->rotate_deg &&
+           a->rgb[0] == b->rgb[0] && a->rgb[1] == b->rgb[1] && a->rgb[2] == b->rgb[2] &&
+           a->image == b->image && a->environment == b->environment && a->ies == b->ies;
+}
+
 bool lamps_add(struct app_state *state, const struct relume_light *light, int entry)
 {
     if (state->lights == APP_LIGHTS)
@@ -54,27 +71,6 @@ bool lamps_remove(struct app_state *state, int light)
 
 // ---------------------------------------------------------------- directions
 
-static double length(struct relume_vec3 a)
-{
-    return sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
-}
-
-static struct relume_vec3 between(struct relume_vec3 from, struct relume_vec3 to)
-{
-    return (struct relume_vec3){to.x - from.x, to.y - from.y, to.z - from.z};
-}
-
-static double dot(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static struct relume_vec3 cross(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return (struct relume_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
-                                a.x * b.y - a.y * b.x};
-}
-
 struct relume_vec3 lamps_direction(const struct relume_light *light, struct relume_vec3 middle)
 {
     const double turn = light->rotate_deg * PI / 180;
@@ -82,8 +78,8 @@ struct relume_vec3 lamps_direction(const struct relume_light *light, struct relu
     if (light->kind == RELUME_LIGHT_ENVIRONMENT)
         d = (struct relume_vec3){sin(turn), 0, -cos(turn)};
     else if (relume_light_is_near(light->kind))
-        d = between(middle, light->position);
-    const double n = length(d);
+        d = vec_sub(light->position, middle);
+    const double n = vec_length(d);
     return n > 0 ? (struct relume_vec3){d.x / n, d.y / n, d.z / n} : (struct relume_vec3){0, 0, 1};
 }
 
@@ -91,12 +87,12 @@ struct relume_vec3 lamps_direction(const struct relume_light *light, struct relu
 static struct relume_vec3 turned(struct relume_vec3 v, struct relume_vec3 from,
                                  struct relume_vec3 to)
 {
-    const struct relume_vec3 axis = cross(from, to);
-    const double c = dot(from, to);
+    const struct relume_vec3 axis = vec_cross(from, to);
+    const double c = vec_dot(from, to);
     if (c < -1 + 1e-9)
         return (struct relume_vec3){-v.x, -v.y, -v.z};
-    const double k = dot(axis, v) / (1 + c);
-    const struct relume_vec3 side = cross(axis, v);
+    const double k = vec_dot(axis, v) / (1 + c);
+    const struct relume_vec3 side = vec_cross(axis, v);
     return (struct relume_vec3){c * v.x + side.x + k * axis.x, c * v.y + side.y + k * axis.y,
                                 c * v.z + side.z + k * axis.z};
 }
@@ -105,7 +101,7 @@ static void aim_near(struct relume_light *l, struct relume_vec3 direction,
                      struct relume_vec3 middle)
 {
     const struct relume_vec3 was = lamps_direction(l, middle);
-    const double far = length(between(middle, l->position));
+    const double far = vec_length(vec_sub(l->position, middle));
     l->position = (struct relume_vec3){
         middle.x + far * direction.x,
         middle.y + far * direction.y,
@@ -128,11 +124,6 @@ void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,
         aim_near(l, direction, middle);
 }
 
-static struct relume_vec3 scaled(struct relume_vec3 a, double s)
-{
-    return (struct relume_vec3){s * a.x, s * a.y, s * a.z};
-}
-
 void lamps_change_kind(struct app_state *state, int light, enum relume_light_kind kind,
                        struct relume_vec3 middle, double far)
 {
@@ -140,16 +131,16 @@ void lamps_change_kind(struct app_state *state, int light, enum relume_light_kin
     const struct relume_vec3 d = lamps_direction(l, middle);
     const struct relume_vec3 pole =
         fabs(d.y) < 0.9 ? (struct relume_vec3){0, 1, 0} : (struct relume_vec3){0, 0, 1};
-    const struct relume_vec3 side = cross(d, pole);
-    const struct relume_vec3 right = scaled(side, 1 / length(side));
+    const struct relume_vec3 side = vec_cross(d, pole);
+    const struct relume_vec3 right = vec_scale(side, 1 / vec_length(side));
     struct relume_light made = {.kind = kind, .direction = d, .half_angle_deg = 25};
     if (relume_light_is_near(kind)) {
         made.position =
             (struct relume_vec3){middle.x + far * d.x, middle.y + far * d.y, middle.z + far * d.z};
-        made.direction = scaled(d, -1);
+        made.direction = vec_scale(d, -1);
         made.nofall = true;  // as bright as it was
-        made.u = scaled(right, 0.25 * far);
-        made.v = cross(made.u, d);  // u x v is -d
+        made.u = vec_scale(right, 0.25 * far);
+        made.v = vec_cross(made.u, d);  // u x v is -d
     }
     memcpy(made.rgb, l->rgb, sizeof made.rgb);
     made.nofall &= kind != RELUME_LIGHT_AREA;

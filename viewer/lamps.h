@@ -10,6 +10,9 @@ double lamps_factor(const struct app_state *state, int light);
 // The lights that shine with the values that they have; returns how many.
 int lamps_shining(const struct app_state *state, struct relume_light out[APP_LIGHTS]);
 
+// Whether two lights are one and the same in everything that shines.
+bool lamps_same(const struct relume_light *a, const struct relume_light *b);
+
 // Append and select. False when the list is full.
 bool lamps_add(struct app_state *state, const struct relume_light *light, int entry);
 // The last light stays. False when nothing was removed.

@@ -289,6 +289,7 @@ int main(int argc, char **argv)
     signal(SIGPIPE, SIG_IGN);
     relume_status status = options_parse(&options, argc, argv, &log);
     session.threads = options.threads;
+    session.relight = options.relight;
     session.vram_bytes = (size_t)(options.vram_mb * 1048576.0);
     const bool offscreen =
         options.offscreen || options.record || (options.script && !options.window);

@@ -1,6 +1,8 @@
 #include "nearby.h"
 
 #include "say.h"
+#include "vec.h"
+#include "weights.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -58,7 +60,7 @@ enum unit {
 
 // As in near.frag.
 enum { FORM_SEPARATE, FORM_JOINT, FORM_LUMINANCE };
-enum { LANES = 4, VECTORS_WIDE = 64 };
+enum { VECTORS_WIDE = 64 };
 
 struct nearby_picture {
     const void *key;
@@ -358,12 +360,6 @@ static void use_facets(const struct nearby *near, const struct nearby_view *view
     upload_floats(near->gl, near->facets, GL_RGB32F, GL_RGB, *n, 3, &texels[0][0][0]);
 }
 
-static struct relume_vec3 unit_vector(struct relume_vec3 v)
-{
-    const double length = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-    return (struct relume_vec3){v.x / length, v.y / length, v.z / length};
-}
-
 static void set_vec3(const struct gl *gl, GLint at, struct relume_vec3 v)
 {
     gl->Uniform3f(at, (float)v.x, (float)v.y, (float)v.z);
@@ -389,7 +385,7 @@ static relume_status set_light(struct nearby *near, const struct nearby_view *vi
     if (l->kind != RELUME_LIGHT_POINT && l->kind != RELUME_LIGHT_AREA) {
         struct relume_vec3 right, up;
         relume_light_frame(&right, &up, l->direction);
-        set_vec3(gl, at[AXIS], unit_vector(l->direction));
+        set_vec3(gl, at[AXIS], vec_unit(l->direction));
         set_vec3(gl, at[RIGHT], right);
         set_vec3(gl, at[UP], up);
     }

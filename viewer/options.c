@@ -187,6 +187,19 @@ static relume_status take_vram(struct options *o, const char *name, const char *
     return take_number(&o->vram_mb, name, text, 1, 1e6, log);
 }
 
+static relume_status take_relight(struct options *o, const char *name, const char *text,
+                                  const struct relume_log *log)
+{
+    static const char *const names[] = {
+        [SESSION_AUTO] = "auto", [SESSION_PASSES] = "passes", [SESSION_LIBRARY] = "library"};
+    for (int i = 0; i < (int)(sizeof names / sizeof *names); i++)
+        if (!strcmp(names[i], text)) {
+            o->relight = (enum session_relight)i;
+            return RELUME_OK;
+        }
+    return say(log, RELUME_EINVAL, "%s: expected auto, passes or library; found '%s'", name, text);
+}
+
 static relume_status take_exposure(struct options *o, const char *name, const char *text,
                                    const struct relume_log *log)
 {
@@ -342,6 +355,9 @@ static const struct option options[] = {
     {"--threads", "N", "threads that read files; default: all cores", take_threads},
     {"--vram", "MB", "graphics memory for views; those not used for long leave; default: 1024",
      take_vram},
+    {"--relight", "BY",
+     "passes of OpenGL, the library, or auto: the library where OpenGL is software; default auto",
+     take_relight},
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},
     {"--script", "EVENTS", "play a text file of events without a window", take_script},

@@ -158,6 +158,9 @@ static relume_status make_renderer(struct session *s)
     if (status)
         return status;
     s->renderer.relighter.budget = s->vram_bytes;
+    s->renderer.relighter.software.threads = s->threads;
+    s->renderer.relighter.by_library =
+        s->relight == SESSION_LIBRARY || (s->relight == SESSION_AUTO && s->gl.software);
     renderer_use_capture(&s->renderer, s->capture);
     if (info->has_depth)
         status = renderer_use_depth(&s->renderer, &depth);

@@ -14,6 +14,9 @@
 
 enum { SESSION_LINES = 10, SESSION_TEXT = 256 };
 
+// What relights views; the library does where OpenGL is software.
+enum session_relight { SESSION_AUTO, SESSION_PASSES, SESSION_LIBRARY };
+
 struct session {
     const struct context_backend *backend;
     void *context;
@@ -35,6 +38,7 @@ struct session {
     char message[SESSION_TEXT];            // what the panel says last
     int threads;                           // that read files
     size_t vram_bytes;                     // for views
+    enum session_relight relight;
     bool streams;                          // frames are drawn with the views that are there
     const struct relume_log *log;
 };

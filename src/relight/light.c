@@ -98,11 +98,15 @@ static double radians(double degrees)
     return degrees * (M_PI / 180.0);
 }
 
-// Full inside 0.9 of the half angle, by angle.
+// Full inside 0.9 of the half angle, by angle. Most of what lies outside is told from cos x >= 1 -
+// x^2 / 2.
 static bool spot_factor(float rgb[3], const struct relume_light *l, vec3 ray)
 {
-    const double angle = vec3_angle(ray, vec3_unit(l->direction));
+    const vec3 axis = vec3_unit(l->direction);
     const double half = radians(l->half_angle_deg);
+    if (vec3_dot(ray, axis) < 1.0 - 0.5 * half * half)
+        return false;
+    const double angle = vec3_angle(ray, axis);
     const float f = (float)(1.0 - smoothstep(0.9 * half, half, angle));
     for (int c = 0; c < 3; c++)
         rgb[c] *= f;

@@ -81,33 +81,49 @@ static bool behind_cameras(const struct app_file *file, double z)
 relume_status app_start(struct app *app, const struct app_file *file, const struct app_state *start,
                         bool look_ahead, const struct relume_log *log)
 {
-    *app = (struct app){.file = *file, .start = *start};
-    struct app_state *s = &app->start;
-    choose_framing(&s->camera, file, look_ahead);
-    const relume_status status = check_camera(&s->camera, file, log);
+    struct relume_camera camera = start->camera;
+    *app = (struct app){.file = *file};
+    choose_framing(&camera, file, look_ahead);
+    const relume_status status = check_camera(&camera, file, log);
     if (status)
         return status;
-    if (!s->focused)
-        s->focus_z = file->geometry.st_z;
-    else if (file->geometry.projection == RELUME_SLAB && behind_cameras(file, s->focus_z))
+    if (start->focused && file->geometry.projection == RELUME_SLAB &&
+        behind_cameras(file, start->focus_z))
         return say(log, RELUME_EINVAL,
                    "--focus: expected a plane in front of the cameras at z = %g; found z = %g",
-                   file->geometry.uv_z, s->focus_z);
+                   file->geometry.uv_z, start->focus_z);
+    struct app_state *s = &app->start;
+    if (!lamps_copy(s, start))
+        return RELUME_ENOMEM;
+    s->camera = camera;
+    if (!s->focused)
+        s->focus_z = file->geometry.st_z;
     if (s->camera.look.zoom <= 0.0)
         s->camera.look.zoom = 1.0;
     s->zoom = 1.0;
     if (s->white <= 0.0)
         s->white = RELUME_TONE_WHITE;
-    if (!s->lights) {
-        s->light[0] = (struct relume_light){.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
-        s->lamp[0].entry = -1;
-        s->lights = 1;
+    const struct relume_light front = {.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
+    if ((!s->lights && !lamps_add(s, &front, -1)) || !lamps_copy(&app->now, s)) {
+        app_release(app);
+        return RELUME_ENOMEM;
     }
     const bool look = s->camera.framing == RELUME_FRAME_LOOK;
     app->width = s->camera.width ? s->camera.width : look ? 1024 : file->width;
     app->height = s->camera.height ? s->camera.height : look ? 512 : file->height;
-    app->now = app->start;
     return RELUME_OK;
+}
+
+void app_release(struct app *app)
+{
+    lamps_release(&app->start);
+    lamps_release(&app->now);
+}
+
+void app_reset(struct app *app)
+{
+    (void)lamps_copy(&app->now, &app->start);
+    app_stand_still(app);
 }
 
 // ---------------------------------------------------------------- picture

@@ -9,7 +9,7 @@
 #include <relume/frame.h>
 #include <relume/relight.h>
 
-enum { APP_LIGHTS = 64 };  // lights at once; display-domain files pay for each
+enum { APP_LIGHTS = 65536 };  // lights at once, as RELUME_RIG_MOST
 
 enum app_event_kind {
     APP_PRESS,
@@ -65,7 +65,7 @@ struct app_lamp {
     int entry;     // of the rig that it came from; -1: none
 };
 
-// What can be reset.
+// What can be reset. A copy by value shares its lights: see lamps_copy.
 struct app_state {
     struct relume_camera camera;              // framing is never DEFAULT
     double zoom;                              // of the picture; 1 fits the frame
@@ -78,9 +78,9 @@ struct app_state {
     bool auto_exposure;  // on top of exposure_ev
     int tone;            // place in relume_tones
     double white;        // as relume_tone_params
-    struct relume_light light[APP_LIGHTS];
-    struct app_lamp lamp[APP_LIGHTS];  // by light
-    int lights;
+    struct relume_light *light;  // [lights], with room for more
+    struct app_lamp *lamp;       // by light
+    int lights, room;
     int selected;  // light that drags and keys change
     bool ball;     // show the light's direction on a ball in the corner
     enum relume_pass pass;
@@ -100,7 +100,7 @@ enum app_wish {
 };
 enum { APP_SPEC = 1024 };
 
-// Thread-safety: plain data.
+// Owns its lists of lights. Thread-safety: plain data.
 struct app {
     struct app_file file;
     struct app_state start, now;
@@ -125,9 +125,13 @@ struct app {
 // A file seen as `start` says; a DEFAULT framing becomes what suits the file: the eye in the middle
 // of a slab, a look ahead in a panorama when `look_ahead`, else view 0. Without lights there is one
 // from the front. The frame is as large as `camera` says, else as the file implies. RELUME_EINVAL
-// when the camera does not fit the file, with a sentence in `log`.
+// when the camera does not fit the file, with a sentence in `log`; RELUME_ENOMEM. `start` is copied.
 relume_status app_start(struct app *app, const struct app_file *file, const struct app_state *start,
                         bool look_ahead, const struct relume_log *log);
+
+void app_release(struct app *app);
+// As it was at the start.
+void app_reset(struct app *app);
 
 // Returns whether the picture changed.
 bool app_handle(struct app *app, const struct app_event *event);

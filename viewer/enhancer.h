@@ -23,6 +23,7 @@ struct enhancer {
     const relume_capture *capture;  // to compare with, or NULL
     struct program program;
     GLuint vertices;
+    GLuint lamps;
     GLuint towards;  // panoramas: vectors to the eye; 0: not made yet
     struct enhanced_view *view;
     int views;

@@ -172,11 +172,18 @@ bool gizmo_of(struct gizmo *out, const struct app *app, int light)
     return true;
 }
 
+int gizmo_first(const struct app *app)
+{
+    const int middle = app->now.selected - GIZMOS / 2, last = app->now.lights - GIZMOS;
+    return middle < 0 || last < 0 ? 0 : middle < last ? middle : last;
+}
+
 int gizmo_hit(const struct app *app, double x, double y)
 {
     int best = -1;
     double nearest = grip;
-    for (int i = 0; i < app->now.lights; i++) {
+    const int first = gizmo_first(app);
+    for (int i = first; i < app->now.lights && i < first + GIZMOS; i++) {
         struct gizmo g;
         if (!gizmo_of(&g, app, i))
             continue;

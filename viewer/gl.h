@@ -61,7 +61,6 @@
     X(PFNGLUNIFORM1IPROC, Uniform1i)                                                               \
     X(PFNGLUNIFORM2FPROC, Uniform2f)                                                               \
     X(PFNGLUNIFORM3FPROC, Uniform3f)                                                               \
-    X(PFNGLUNIFORM3FVPROC, Uniform3fv)                                                             \
     X(PFNGLUNIFORM4FPROC, Uniform4f)                                                               \
     X(PFNGLUSEPROGRAMPROC, UseProgram)                                                             \
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                                           \

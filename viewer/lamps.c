@@ -2,25 +2,35 @@
 
 #include "vec.h"
 
-#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846
 
-double lamps_factor(const struct app_state *state, int light)
+static bool any_solo(const struct app_state *state)
 {
-    const struct app_lamp *lamp = &state->lamp[light];
-    bool solo = false;
     for (int i = 0; i < state->lights; i++)
-        solo |= state->lamp[i].solo;
+        if (state->lamp[i].solo)
+            return true;
+    return false;
+}
+
+static double factor_of(const struct app_lamp *lamp, bool solo)
+{
     return lamp->off || (solo && !lamp->solo) ? 0.0 : exp2(lamp->stops);
 }
 
-int lamps_shining(const struct app_state *state, struct relume_light out[APP_LIGHTS])
+double lamps_factor(const struct app_state *state, int light)
 {
+    return factor_of(&state->lamp[light], any_solo(state));
+}
+
+int lamps_shining(const struct app_state *state, struct relume_light *out)
+{
+    const bool solo = any_solo(state);
     int n = 0;
     for (int i = 0; i < state->lights; i++) {
-        const double factor = lamps_factor(state, i);
+        const double factor = factor_of(&state->lamp[i], solo);
         if (factor == 0.0)
             continue;
         out[n] = state->light[i];
@@ -28,6 +38,15 @@ int lamps_shining(const struct app_state *state, struct relume_light out[APP_LIG
             out[n].rgb[c] *= (float)factor;
         n++;
     }
+    return n;
+}
+
+int lamps_near(const struct app_state *state)
+{
+    const bool solo = any_solo(state);
+    int n = 0;
+    for (int i = 0; i < state->lights; i++)
+        n += factor_of(&state->lamp[i], solo) != 0.0 && relume_light_is_near(state->light[i].kind);
     return n;
 }
 
@@ -46,12 +65,56 @@ bool lamps_same(const struct relume_light *a, const struct relume_light *b)
            a->image == b->image && a->environment == b->environment && a->ies == b->ies;
 }
 
+// ---------------------------------------------------------------- list
+
+static bool make_room(struct app_state *state, int room)
+{
+    struct relume_light *light = realloc(state->light, (size_t)room * sizeof *light);
+    if (light)
+        state->light = light;
+    struct app_lamp *lamp = light ? realloc(state->lamp, (size_t)room * sizeof *lamp) : NULL;
+    if (!lamp)
+        return false;
+    state->lamp = lamp;
+    state->room = room;
+    return true;
+}
+
+bool lamps_copy(struct app_state *to, const struct app_state *from)
+{
+    struct app_state made = *from;
+    made.light = NULL;
+    made.lamp = NULL;
+    if (!make_room(&made, from->lights ? from->lights : 1)) {
+        lamps_release(&made);
+        return false;
+    }
+    for (int i = 0; i < from->lights; i++) {
+        made.light[i] = from->light[i];
+        made.lamp[i] = from->lamp[i];
+    }
+    lamps_release(to);
+    *to = made;
+    return true;
+}
+
+void lamps_release(struct app_state *state)
+{
+    free(state->light);
+    free(state->lamp);
+    state->light = NULL;
+    state->lamp = NULL;
+    state->lights = state->room = 0;
+}
+
 bool lamps_add(struct app_state *state, const struct relume_light *light, int entry)
 {
-    if (state->lights == APP_LIGHTS)
+    const struct relume_light copy = *light;  // it may stand in the list that moves
+    if (state->lights == APP_LIGHTS ||
+        (state->lights == state->room && !make_room(state, 2 * state->room + 8)))
         return false;
     state->selected = state->lights++;
-    state->light[state->selected] = *light;
+    state->light[state->selected] = copy;
     state->lamp[state->selected] = (struct app_lamp){.entry = entry};
     return true;
 }

@@ -7,13 +7,21 @@
 // The factor of a light's value; 0 for one that does not shine (it is off, or another is solo).
 double lamps_factor(const struct app_state *state, int light);
 
-// The lights that shine with the values that they have; returns how many.
-int lamps_shining(const struct app_state *state, struct relume_light out[APP_LIGHTS]);
+// The lights that shine with the values that they have; returns how many. Fills out[state->lights].
+int lamps_shining(const struct app_state *state, struct relume_light *out);
+// How many near lights shine.
+int lamps_near(const struct app_state *state);
 
 // Whether two lights are one and the same in everything that shines.
 bool lamps_same(const struct relume_light *a, const struct relume_light *b);
 
-// Append and select. False when the list is full.
+// `to`, which is released, becomes `from` with lists of its own. False when memory is short; then
+// `to` is as before.
+bool lamps_copy(struct app_state *to, const struct app_state *from);
+// Free the lists.
+void lamps_release(struct app_state *state);
+
+// Append and select. False when the list is full or memory is short.
 bool lamps_add(struct app_state *state, const struct relume_light *light, int entry);
 // The last light stays. False when nothing was removed.
 bool lamps_remove(struct app_state *state, int light);

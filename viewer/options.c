@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include "keys.h"
+#include "lamps.h"
 #include "say.h"
 
 #include <relume/tone.h>
@@ -458,6 +459,7 @@ static bool asks_for_help(int argc, char **argv)
 void options_release(struct options *o)
 {
     relume_rig_destroy(&o->rig);
+    lamps_release(&o->start);
 }
 
 relume_status options_parse(struct options *o, int argc, char **argv, const struct relume_log *log)

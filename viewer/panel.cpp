@@ -33,6 +33,7 @@ struct panel {
     char spec[APP_SPEC];
     char environment[APP_SPEC - 8];  // room for "env "
     std::vector<panel_run> runs;
+    int listed;  // the light that the list has scrolled to
 };
 
 // ---------------------------------------------------------------- making
@@ -209,6 +210,30 @@ static bool list_row(app_state *s, int i)
     return changed;
 }
 
+// A long list scrolls, to the selected light when that is another one.
+const int rows_most = 8;
+static bool list_lights(panel *panel, app_state *s)
+{
+    bool changed = false;
+    if (s->lights <= rows_most) {
+        for (int i = 0; i < s->lights; i++)
+            changed |= list_row(s, i);
+        return changed;
+    }
+    const float row = ImGui::GetFrameHeightWithSpacing();
+    ImGui::BeginChild("##list", ImVec2(0, rows_most * row));
+    if (panel->listed != s->selected)
+        ImGui::SetScrollY((float)(s->selected - rows_most / 2) * row);
+    panel->listed = s->selected;
+    ImGuiListClipper clipper;
+    clipper.Begin(s->lights, row);
+    while (clipper.Step())
+        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; i++)
+            changed |= list_row(s, i);
+    ImGui::EndChild();
+    return changed;
+}
+
 static ImU32 ball_colour(const relume_light &light, bool behind)
 {
     ImVec4 c = colour_of(light);
@@ -241,7 +266,8 @@ static bool ball(app *app, float side)
     draw->AddCircleFilled(middle, radius, IM_COL32(60, 60, 66, 255), 48);
     draw->AddCircle(middle, radius * 0.7071f, IM_COL32(90, 90, 96, 255), 48);
     draw->AddCircle(middle, radius, IM_COL32(130, 130, 138, 255), 48);
-    for (int i = 0; i < s->lights; i++) {
+    const int first = gizmo_first(app);
+    for (int i = first; i < s->lights && i < first + GIZMOS; i++) {
         const relume_vec3 d = app_seen_light(app, i);
         const ImVec2 dot(middle.x + radius * (float)d.x, middle.y - radius * (float)d.y);
         draw->AddCircleFilled(dot, 0.045f * side, ball_colour(s->light[i], d.z < 0));
@@ -378,9 +404,10 @@ static bool light_buttons(panel *panel, app *app)
 
 static bool lights_section(panel *panel, app *app)
 {
-    bool changed = false;
-    for (int i = 0; i < app->now.lights; i++)
-        changed |= list_row(&app->now, i);
+    bool changed = list_lights(panel, &app->now);
+    const int near = lamps_near(&app->now);
+    if (app->now.lights > rows_most || near)
+        ImGui::Text("%d lights, %d of them near", app->now.lights, near);
     ImGui::Separator();
     changed |= edit_light(panel, app);
     changed |= light_buttons(panel, app);
@@ -450,7 +477,7 @@ static bool picture_section(app *app)
         ImGui::SameLine();
     }
     if (ImGui::Button("reset")) {
-        app->now = app->start;
+        app_reset(app);
         changed = true;
     }
     return changed;
@@ -562,7 +589,8 @@ static void draw_gizmos(const app *app, float scale)
     const gizmo_circle disc = gizmo_disc(app);
     draw->AddCircle(ImVec2((float)disc.x, (float)disc.y), (float)disc.radius,
                     IM_COL32(255, 255, 255, 70), 96);
-    for (int i = 0; i < app->now.lights; i++) {
+    const int first = gizmo_first(app);
+    for (int i = first; i < app->now.lights && i < first + GIZMOS; i++) {
         gizmo g;
         if (!gizmo_of(&g, app, i))
             continue;

@@ -25,6 +25,8 @@ struct renderer {
     double (*uv)[2];              // [views]
     bool *needed;                 // [views]
     const struct target **relit;  // [views]; NULL where not needed
+    struct relume_light *light;   // that shine; room for `room`
+    int room;
 };
 
 // `uv` [views] places the cameras of a slab. RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EDATA.

@@ -129,10 +129,12 @@ relume_status session_open(struct session *s, const char *path, const struct app
     if (!status)
         status = check_depth(pack, start, s->log);
     if (status) {
+        app_release(&app);
         relume_pack_destroy(&pack);
         return status;
     }
     close_file(s);
+    app_release(&s->app);
     s->pack = pack;
     s->app = app;
     s->app.compared = s->capture != NULL;
@@ -215,6 +217,7 @@ void session_close(struct session *s)
         s->backend->close(s->context);
     relume_capture_destroy(&s->capture);
     relume_rig_destroy(&s->rig);
+    app_release(&s->app);
 }
 
 static void count_histogram(struct session *s)

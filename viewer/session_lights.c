@@ -22,12 +22,18 @@ static struct app_lamp lamp_of(const struct relume_rig_entry *e, int entry)
     };
 }
 
+// To have been refused by lamps_add.
+static relume_status refused(const struct session *s, const struct app_state *to)
+{
+    return to->lights < APP_LIGHTS ? RELUME_ENOMEM : too_many(s);
+}
+
 static relume_status append_entries(const struct session *s, struct app_state *to, int first)
 {
     for (int i = first; i < relume_rig_count(s->rig); i++) {
         const struct relume_rig_entry *e = relume_rig_entry(s->rig, i);
         if (!lamps_add(to, &e->light, i))
-            return too_many(s);
+            return refused(s, to);
         to->lamp[to->selected] = lamp_of(e, i);
     }
     return RELUME_OK;

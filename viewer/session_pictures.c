@@ -1,6 +1,7 @@
 // session_pictures.c - frames, shots and recordings as files
 #include "session.h"
 
+#include "lamps.h"
 #include "say.h"
 
 #include <relume/tone.h>
@@ -63,13 +64,18 @@ static relume_status add_pictures(struct session *s, struct record *record, enum
 
 relume_status session_record(struct session *s, enum record_kind kind, const char *path, int frames)
 {
-    const struct app_state before = s->app.now;
+    struct app_state before = {0};
     struct record *record;
+    if (!lamps_copy(&before, &s->app.now))
+        return RELUME_ENOMEM;
     relume_status status = record_open(&record, path, s->log);
-    if (status)
+    if (status) {
+        lamps_release(&before);
         return status;
+    }
     s->app.now.ball = false;
     status = add_pictures(s, record, kind, frames);
+    lamps_release(&s->app.now);
     s->app.now = before;
     if (!status)
         return record_commit(&record);

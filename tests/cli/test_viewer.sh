@@ -12,7 +12,7 @@ same() { # name, options...: both programs draw the same linear frame
     name=$1
     shift
     "$RELUME" relight teapot.exr -o cpu.exr --light "$light" "$@" &&
-        "$VIEWER" teapot.exr --offscreen gpu.exr --light "$light" "$@" || {
+        "$VIEWER" teapot.exr --relight passes --offscreen gpu.exr --light "$light" "$@" || {
         not_ok "$name" "a program failed"
         return
     }
@@ -24,6 +24,13 @@ same 'the default frame'
 same 'a captured view' --view 3
 same 'an eye between cameras' --eye 0.1,-0.2,3 --interpolate linear
 same 'the nearest camera' --eye 0.1,-0.2,3 --interpolate constant
+awk 'BEGIN {
+    printf "{ \"format\": \"relume-rig\", \"version\": 1, \"lights\": [\n"
+    for (i = 0; i < 10000; i++)
+        printf "{ \"light\": \"%s %f %f 2\", \"rgb\": [1e-4, 1e-4, %f] }%s\n",
+            i % 200 ? "dir" : "point", cos(i), sin(i), i / 1e8, i < 9999 ? "," : " ] }"
+}' >many.json
+same 'ten thousand lights' --rig many.json
 same 'an aperture' --eye 0.1,-0.2,3 --aperture 0.6 --focus 0.5
 
 # by depth a rounding may send a ray to another texel, a few in a frame: PSNR instead of the worst

@@ -60,7 +60,7 @@ static relume_status draw_with(const struct gl *gl)
     const struct app_file file = {.geometry = geometry, .width = 8, .height = 8, .views = 1};
     const struct app_state start = {0};
     struct renderer r;
-    struct app app;
+    OWNED_APP app;
     said[0] = '\0';
     lines = 0;
     assert_int_equal(app_start(&app, &file, &start, false, &keep), RELUME_OK);

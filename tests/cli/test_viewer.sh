@@ -11,8 +11,8 @@ light="dir 0.5 0.4 0.8"
 same() { # name, options...: both programs draw the same linear frame
     name=$1
     shift
-    "$RELUME" relight teapot.exr -o cpu.exr --light "$light" "$@" &&
-        "$VIEWER" teapot.exr --relight passes --offscreen gpu.exr --light "$light" "$@" || {
+    "$RELUME" relight teapot.exr -o cpu.exr "$@" --light "$light" &&
+        "$VIEWER" teapot.exr --relight passes --offscreen gpu.exr "$@" --light "$light" || {
         not_ok "$name" "a program failed"
         return
     }

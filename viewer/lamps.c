@@ -62,7 +62,8 @@ bool lamps_same(const struct relume_light *a, const struct relume_light *b)
            same_vector(a->v, b->v) && a->disc == b->disc && a->nofall == b->nofall &&
            a->half_angle_deg == b->half_angle_deg && a->rotate_deg == b->rotate_deg &&
            a->rgb[0] == b->rgb[0] && a->rgb[1] == b->rgb[1] && a->rgb[2] == b->rgb[2] &&
-           a->image == b->image && a->environment == b->environment && a->ies == b->ies;
+           a->image == b->image && a->environment == b->environment && a->ies == b->ies &&
+           a->gonio == b->gonio;
 }
 
 // ---------------------------------------------------------------- list

@@ -178,7 +178,7 @@ static ImVec4 colour_of(const relume_light &light)
 static const char *kind_name(relume_light_kind kind)
 {
     static const char *const names[] = {"directional", "environment", "point", "spot",
-                                        "slide",       "area",        "ies"};
+                                        "slide",       "area",        "ies",   "gonio"};
     return names[kind];
 }
 
@@ -312,7 +312,7 @@ static bool edit_geometry(relume_light *light)
     if (relume_light_is_near(light->kind))
         changed |= edit_vector("position", &light->position);
     if (light->kind == RELUME_LIGHT_SPOT || light->kind == RELUME_LIGHT_SLIDE ||
-        light->kind == RELUME_LIGHT_IES)
+        light->kind == RELUME_LIGHT_IES || light->kind == RELUME_LIGHT_GONIO)
         changed |= edit_vector("axis", &light->direction);
     if (light->kind == RELUME_LIGHT_SPOT || light->kind == RELUME_LIGHT_SLIDE)
         changed |= ImGui::SliderScalar("half angle", ImGuiDataType_Double, &light->half_angle_deg,
@@ -335,7 +335,7 @@ static bool choose_kind(app *app)
     const relume_light_kind now = s->light[s->selected].kind;
     bool changed = false;
     if (!app->near_lights || now == RELUME_LIGHT_ENVIRONMENT || now == RELUME_LIGHT_SLIDE ||
-        now == RELUME_LIGHT_IES || !ImGui::BeginCombo("kind", kind_name(now)))
+        now == RELUME_LIGHT_IES || now == RELUME_LIGHT_GONIO || !ImGui::BeginCombo("kind", kind_name(now)))
         return false;
     for (const relume_light_kind kind : kinds) {
         if (ImGui::Selectable(kind_name(kind), kind == now) && kind != now) {

@@ -47,6 +47,7 @@
     X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                                                 \
     X(PFNGLGETSHADERIVPROC, GetShaderiv)                                                           \
     X(PFNGLGETSTRINGPROC, GetString)                                                               \
+    X(PFNGLGETSTRINGIPROC, GetStringi)                                                             \
     X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                                             \
     X(PFNGLLINKPROGRAMPROC, LinkProgram)                                                           \
     X(PFNGLPIXELSTOREIPROC, PixelStorei)                                                           \
@@ -73,6 +74,7 @@ struct gl {
     int max_layers;   // of an array texture, at least 256
     int max_texture;  // pixels along one side
     bool software;    // it is drawn by the CPU
+    PFNGLGETGRAPHICSRESETSTATUSPROC reset_status;  // NULL: no one would tell
 };
 
 typedef void (*gl_proc)(void);
@@ -81,7 +83,8 @@ typedef void (*gl_proc)(void);
 relume_status gl_load(struct gl *gl, gl_proc (*get_proc)(const char *name),
                       const struct relume_log *log);
 
-// RELUME_OK, or what glGetError has to say since it was last asked.
+// RELUME_OK, or what glGetError has to say since it was last asked; a graphics card that was reset
+// has lost everything.
 relume_status gl_check(const struct gl *gl, const char *doing, const struct relume_log *log);
 
 #endif

@@ -158,10 +158,11 @@ static relume_status take_event(struct session *s, const struct context_event *e
         s->app.quit = true;
     if (event->kind == CONTEXT_INPUT)
         *changed |= session_send(s, &event->input);
-    if (event->kind != CONTEXT_DROP)
+    if (event->kind != CONTEXT_DROP && event->kind != CONTEXT_SCALE)
         return RELUME_OK;
     *changed = true;
-    return session_drop(s, event->dropped);
+    return event->kind == CONTEXT_DROP ? session_drop(s, event->dropped)
+                                       : session_scale(s, event->scale);
 }
 
 // Time in seconds since the last call.
@@ -254,9 +255,12 @@ static relume_status open_window(struct session *s, struct options *o,
     s->app.letterbox = true;
     s->app.panel = o->panel || settings->panel;
     status = session_start(s, &context_glfw, s->app.width, s->app.height);
-    if (!status)
-        s->backend->size(s->context, &s->app.width, &s->app.height);
-    return status;
+    if (status)
+        return status;
+    struct app_event opened = {.kind = APP_SIZE};
+    s->backend->size(s->context, &opened.width, &opened.height);
+    (void)app_handle(&s->app, &opened);
+    return RELUME_OK;
 }
 
 static relume_status run_window(struct session *s, struct options *o)
@@ -270,13 +274,14 @@ static relume_status run_window(struct session *s, struct options *o)
         recall_rig(o, &settings);
     }
     relume_status status = open_window(s, o, &settings);
+    const bool opened = !status;
     if (!status && o->script)
         status = script_open(&script, o->script, &host);
     if (!status)
         status = live(s, script);
     script_close(&script);
-    if (!status && !o->no_config)
-        remember(s, &settings);
+    if (opened && !o->no_config)
+        remember(s, &settings);  // also when the graphics card went away
     return status;
 }
 

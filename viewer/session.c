@@ -169,6 +169,12 @@ static relume_status make_renderer(struct session *s)
     return status || !s->streams ? status : renderer_stream(&s->renderer);
 }
 
+static relume_status make_panel(struct session *s, double scale)
+{
+    const relume_status status = panel_create(&s->panel, scale);
+    return status ? status : draw_panel_create(&s->drawing, &s->gl, s->panel, s->log);
+}
+
 relume_status session_start(struct session *s, const struct context_backend *backend, int width,
                             int height)
 {
@@ -178,9 +184,14 @@ relume_status session_start(struct session *s, const struct context_backend *bac
         status = gl_load(&s->gl, backend->get_proc, s->log);
     if (!status)
         status = make_renderer(s);
-    if (!status)
-        status = panel_create(&s->panel, backend->scale(s->context));
-    return status ? status : draw_panel_create(&s->drawing, &s->gl, s->panel, s->log);
+    return status ? status : make_panel(s, backend->scale(s->context));
+}
+
+relume_status session_scale(struct session *s, double scale)
+{
+    draw_panel_destroy(&s->drawing, &s->gl);
+    panel_destroy(&s->panel);
+    return make_panel(s, scale);
 }
 
 relume_status session_drop(struct session *s, const char *path)

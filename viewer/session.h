@@ -51,6 +51,9 @@ relume_status session_compare(struct session *s, const char *capture);
 // Get OpenGL and make what draws. RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EDATA.
 relume_status session_start(struct session *s, const struct context_backend *backend, int width,
                             int height);
+// Letters and margins of the panel for another screen: `scale` as context_backend.scale.
+// RELUME_ESYSTEM, RELUME_ENOMEM.
+relume_status session_scale(struct session *s, double scale);
 // Show another file in the same window; one that cannot be opened is only complained about.
 relume_status session_drop(struct session *s, const char *path);
 void session_close(struct session *s);

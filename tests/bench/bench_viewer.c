@@ -1,11 +1,13 @@
 // bench_viewer.c - frames of a panorama while the light moves: codebook, planes, many lights, near
 // lights. On a graphics card where EGL finds one, else by llvmpipe.
-// Usage: bench_viewer [WIDTHxHEIGHT]; default 1024x512 in software, 3840x2160 on a card
+// Usage: bench_viewer [WIDTHxHEIGHT [library]]; default 1024x512 in software, 3840x2160 on a card
+//        bench_viewer open FILE: a relume file, from the name to the first picture
 #include "bench.h"
 
 #include "context_offscreen.h"
 #include "draw.h"
 #include "relighter.h"
+#include "session.h"
 
 enum { CODES = 4096, RUNS = 9, LIGHTS = 1000, MOST_PLANES = 75 };
 
@@ -225,10 +227,52 @@ static void bench_planes(void)
     free_file(&f);
 }
 
+// ---------------------------------------------------------------- opening
+
+static void say_so(void *user, enum relume_level level, const char *text)
+{
+    (void)user, (void)level;
+    fprintf(stderr, "%s\n", text);
+}
+
+static int bench_opening(const struct context_backend *backend, const char *path)
+{
+    static const struct relume_log log = {.message = say_so};
+    static const char *const what[] = {"open the file", "make OpenGL ready", "first frame",
+                                       "light moved, next frame"};
+    struct bench bench[4] = {{.runs = 0}};
+    for (int run = 0; run < RUNS; run++) {
+        struct session s = {.log = &log, .vram_bytes = (size_t)1 << 30};
+        struct app_state start = {.lights = 0};
+        relume_rig *rig = NULL;
+        double then = bench_now_s();
+        bench_check(session_take_rig(&s, &rig, &start));
+        for (int step = 0; step < 4; step++) {
+            if (step == 0)
+                bench_check(session_open(&s, path, &start, true));
+            else if (step == 1)
+                bench_check(session_start(&s, backend, s.app.width, s.app.height));
+            else
+                bench_check(session_draw(&s));
+            if (step)
+                s.gl.Finish();
+            bench_add(&bench[step], bench_now_s() - then);
+            app_turn_light(&s.app, 10, 0);
+            then = bench_now_s();
+        }
+        session_close(&s);
+    }
+    for (int step = 0; step < 4; step++)
+        bench_print(what[step], &bench[step]);
+    return 0;
+}
+
 int main(int argc, char **argv)
 {
     void *context;
     const struct context_backend *backend = context_offscreen("auto");
+    if (argc == 3 && !strcmp(argv[1], "open"))
+        return bench_opening(backend, argv[2]);
     const bool card = backend == &context_egl_card;
     width = card ? 3840 : 1024;
     height = card ? 2160 : 512;

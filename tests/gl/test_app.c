@@ -1,5 +1,6 @@
 // The viewer's state machine, options and scripts; no OpenGL
 #include "app.h"
+#include "context.h"
 #include "gizmo.h"
 #include "keys.h"
 #include "lamps.h"
@@ -796,6 +797,16 @@ static void arrangements_stand_on_the_pole(void **state)
         assert_float_equal(app.now.light[i].direction.y, sqrt(0.5), 1e-12);
 }
 
+static void pointers_are_in_pixels(void **state)
+{
+    (void)state;
+    assert_true(context_pixels(100, 400, 800) == 200);  // a dense screen
+    assert_true(context_pixels(101, 800, 800) == 101);
+    assert_float_equal(context_pixels(30, 3, 4), 40, 1e-12);  // beyond the edge, dragged
+    assert_true(context_pixels(7, 0, 0) == 7);                // minimised
+    assert_true(context_pixels(7, 200, 0) == 7);
+}
+
 static void every_key_is_bound_once(void **state)
 {
     (void)state;
@@ -1029,6 +1040,7 @@ int main(void)
         cmocka_unit_test(scripts_hold_keys_and_wait),
         cmocka_unit_test(keys_change_the_selected_light),
         cmocka_unit_test(arrangements_stand_on_the_pole),
+        cmocka_unit_test(pointers_are_in_pixels),
         cmocka_unit_test(every_key_is_bound_once),
         cmocka_unit_test(recordings_go_once_around),
         cmocka_unit_test(handles_are_grabbed_and_follow),

@@ -130,6 +130,8 @@ static relume_status run_offscreen(struct session *s, struct options *o)
     s->app.panel = o->panel;
     if (!status && o->script)
         status = script_play(o->script, &host);
+    while (!status && session_is_busy(s))  // with what the script began
+        status = session_draw(s);
     if (!status && o->record)
         status = session_record(s, o->kind, o->output, o->frames);
     if (!status && o->offscreen)
@@ -199,7 +201,7 @@ static relume_status live(struct session *s, struct script *script)
             status = take_events(s, &changed, &time_ms);
         if (!status && changed && !s->app.quit)
             status = show_frame(s);
-        changed = !status && renderer_is_pending(&s->renderer);
+        changed = !status && (renderer_is_pending(&s->renderer) || session_is_busy(s));
     }
     return status;
 }

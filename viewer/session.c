@@ -196,6 +196,7 @@ relume_status session_scale(struct session *s, double scale)
 
 relume_status session_drop(struct session *s, const char *path)
 {
+    session_record_stop(s);
     const struct app was = s->app;
     inspect_destroy(&s->inspector);
     const struct app_state start = {
@@ -218,6 +219,7 @@ relume_status session_drop(struct session *s, const char *path)
 
 void session_close(struct session *s)
 {
+    session_record_stop(s);
     if (s->screen.texture)
         target_destroy(&s->screen, &s->gl);
     inspect_destroy(&s->inspector);
@@ -304,11 +306,22 @@ static relume_status add_histogram(struct session *s)
     return build_panel(s, true);
 }
 
+// Whether an event is for those that hear of it when nothing is recorded.
+static bool passes_recording(struct session *s, const struct app_event *event)
+{
+    const bool escape = event->kind == APP_KEY_DOWN && event->key == APP_KEY_ESCAPE;
+    if (escape || event->kind == APP_SIZE)
+        session_record_stop(s);
+    return event->kind == APP_SIZE || event->kind == APP_RELEASE || event->kind == APP_KEY_UP;
+}
+
 // A panel that has just appeared is made at once, so that the next click finds it. One that has
 // gone still hears of releases: it may have had the press.
 bool session_send(struct session *s, const struct app_event *event)
 {
     const bool shown = panel_shown(&s->app);
+    if (session_records(s) && !passes_recording(s, event))
+        return true;
     if ((shown || event->kind == APP_RELEASE) && panel_takes(s->panel, event))
         return true;
     const bool changed = app_handle(&s->app, event);
@@ -322,16 +335,23 @@ relume_status session_draw(struct session *s)
     relume_status status = panel_shown(&s->app) ? build_panel(s, false) : RELUME_OK;
     if (!status)
         status = session_grant_wish(s);
-    if (!status)
+    const bool recorded = !status && session_records(s) && !session_record_step(s);
+    if (!status && !recorded)
         status = renderer_draw(&s->renderer, &s->app);
-    if (!status && s->app.now.auto_exposure)
+    if (!status && !recorded && s->app.now.auto_exposure)
         status = meter(s);
     return status ? status : add_histogram(s);
 }
 
+bool session_is_busy(const struct session *s)
+{
+    return s->app.wish || session_records(s);
+}
+
 bool session_pass(struct session *s, double seconds)
 {
-    return app_advance(&s->app, seconds);
+    const bool moved = !session_records(s) && app_advance(&s->app, seconds);
+    return moved || session_is_busy(s);
 }
 
 void session_present(struct session *s, GLuint framebuffer)

@@ -17,6 +17,15 @@ enum { SESSION_LINES = 10, SESSION_TEXT = 256 };
 // What relights views; the library does where OpenGL is software.
 enum session_relight { SESSION_AUTO, SESSION_PASSES, SESSION_LIBRARY };
 
+// Pictures that are being recorded, one a frame.
+struct recording {
+    struct record *record;  // NULL: none
+    enum record_kind kind;
+    int frame, frames;
+    struct app_state before;  // the recording
+    char path[SESSION_TEXT + 16];
+};
+
 struct session {
     const struct context_backend *backend;
     void *context;
@@ -30,6 +39,7 @@ struct session {
     struct panel *panel;
     struct panel_drawing drawing;
     struct inspector inspector;  // made when first asked for
+    struct recording recording;
     struct target screen;        // of shots without a window
     uint32_t histogram[256][3];
     char name[SESSION_TEXT];  // of the file, for the title
@@ -68,6 +78,9 @@ void session_present(struct session *s, GLuint framebuffer);
 // Do what the app wishes for, once. What fails is said in the panel and the log, and is no error.
 relume_status session_grant_wish(struct session *s);
 
+// A wish or a recording waits for session_draw.
+bool session_is_busy(const struct session *s);
+
 // Let time pass for what moves by itself; returns whether the picture changed.
 bool session_pass(struct session *s, double seconds);
 
@@ -75,8 +88,19 @@ bool session_pass(struct session *s, double seconds);
 relume_status session_frame(struct session *s, const char *path);
 relume_status session_shot(struct session *s, const char *path);
 
-// Draw a round of `frames` pictures and write it; the app is as before afterwards. Errors of
-// record.h and session_draw.
+// The last frame; `linear` or by the app's tone. RELUME_EDATA when the eye sees nothing.
+relume_status session_read(struct relume_image *image, struct session *s, bool linear);
+
+// Record a round of `frames` pictures: session_draw draws and adds one at a time, and the app is as
+// before afterwards. Until then events wait, but for Esc and a new size of the frame, which end the
+// recording with what there is of it. Errors of record.h.
+relume_status session_record_begin(struct session *s, enum record_kind kind, const char *path,
+                                   int frames);
+bool session_records(const struct session *s);
+// The next picture. On failure nothing is recorded any more, and nothing is left of it.
+relume_status session_record_step(struct session *s);
+void session_record_stop(struct session *s);
+// All of it at once. Errors of record.h and session_draw.
 relume_status session_record(struct session *s, enum record_kind kind, const char *path,
                              int frames);
 

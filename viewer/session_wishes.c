@@ -44,9 +44,8 @@ static relume_status wish_recording(struct session *s, enum record_kind kind, co
 {
     char path[SESSION_TEXT + 16];
     free_name(path, sizeof path, s, ending);
-    const relume_status status = session_record(s, kind, path, RECORD_FRAMES);
-    snprintf(s->message, sizeof s->message, "%.200s %s", path,
-             status ? "was not recorded" : "recorded");
+    if (session_record_begin(s, kind, path, RECORD_FRAMES))
+        snprintf(s->message, sizeof s->message, "%.200s was not recorded", path);
     return RELUME_OK;
 }
 

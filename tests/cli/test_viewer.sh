@@ -93,6 +93,47 @@ chmod +x fake/ffmpeg
 PATH="$PWD/fake:$PATH" "$VIEWER" teapot.exr --record sweep -o 'a film; rm x.mp4' --frames 5
 check 'a film gets every picture' test "$(cat 'a film; rm x.mp4')" -eq $((5 * 24 * 24 * 3))
 
+if command -v ffmpeg >/dev/null 2>&1 && command -v ffprobe >/dev/null 2>&1; then
+    "$VIEWER" teapot.exr --record turntable -o real.mp4 --frames 4 --size 33x20
+    ffprobe -v error -count_frames -select_streams v:0 -of csv=p=0 \
+        -show_entries stream=width,height,nb_read_frames real.mp4 >real.txt 2>&1
+    # yuv420p takes even sizes
+    check 'the film of the real ffmpeg' grep -qx '34,20,4' real.txt
+else
+    skip 'the film of the real ffmpeg' 'ffmpeg is not installed'
+fi
+
+# a recording by key: a picture a frame; Esc keeps those that are whole and the light goes back
+cat >stop.txt <<'END'
+frame before.png
+key k
+wait 0.08
+key esc
+frame after.png
+END
+"$VIEWER" teapot.exr --script stop.txt --light "$light"
+n=$(ls teapot-0001-sweep | wc -l)
+if [ "$n" -ge 3 ] && [ "$n" -lt 10 ]; then ok 'Esc ends a recording'; else not_ok 'Esc ends a recording' "$n pictures"; fi
+"$VIEWER" teapot.exr --record sweep -o all --light "$light" --relight auto
+check 'pictures of a recording' cmp all/0002.png teapot-0001-sweep/0002.png
+check 'the light goes back' cmp before.png after.png
+printf 'key k\n' >whole.txt
+"$VIEWER" teapot.exr --script whole.txt --light "$light"
+check 'a recording is brought to its end' test "$(ls teapot-0002-sweep | wc -l)" -eq 72
+
+# the next frame that is drawn shows what the pointer has done: one frame of latency
+cat >latency.txt <<'END'
+press right 12 12
+frame rest.png
+move 16 14
+frame next.png
+wait
+frame later.png
+END
+"$VIEWER" teapot.exr --script latency.txt --light "$light"
+check 'one frame of latency' cmp next.png later.png
+if cmp -s rest.png next.png; then not_ok 'the pointer moved the light' 'nothing changed'; else ok 'the pointer moved the light'; fi
+
 # Half floats hold the weights of near lights on the GPU: 1/255 is promised.
 "$RELUME" synth box -q -o sky --projection spherical --lights 1 --size 16 --samples 1 || exit 1
 nearly() { # name, light, options...: both programs draw the same frame to 1/255

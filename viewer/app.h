@@ -96,7 +96,8 @@ enum app_wish {
     APP_WISH_SAVE_RIG,
     APP_WISH_SWEEP,      // a recording
     APP_WISH_TURNTABLE,  // a recording
-    APP_WISH_ADD_LIGHT   // of the SPEC app.spec
+    APP_WISH_ADD_LIGHT,  // of the SPEC app.spec
+    APP_WISH_MAP         // the environment map of the file app.spec
 };
 enum { APP_SPEC = 1024 };
 

@@ -29,9 +29,10 @@ struct panel {
     bool held;         // a press belongs to the panel
     bool held_by_app;  // or to the app
     bool histogram;    // is open
+    bool maps;         // the list of environment maps is open
     bool changed;      // the picture, by what the user did in this frame
     char spec[APP_SPEC];
-    char environment[APP_SPEC - 8];  // room for "env "
+    char environment[APP_SPEC];
     std::vector<panel_run> runs;
     int listed;  // the light that the list has scrolled to
 };
@@ -517,17 +518,27 @@ static void file_section(const panel_facts *facts)
         ImGui::TextUnformatted(*line);
 }
 
-static void environment_row(panel *panel, app *app)
+static void wish_map(app *app, const char *folder, const char *name)
 {
-    ImGui::TextUnformatted("environment map");
-    const bool enter =
-        ImGui::InputTextWithHint("##environment", "file.hdr, then Enter", panel->environment,
-                                 sizeof panel->environment, ImGuiInputTextFlags_EnterReturnsTrue);
-    if (!enter || !panel->environment[0])
-        return;
-    char spec[APP_SPEC];
-    std::snprintf(spec, sizeof spec, "env '%s'", panel->environment);
-    wish_light(app, spec);
+    app->wish = APP_WISH_MAP;
+    std::snprintf(app->spec, sizeof app->spec, "%s%s%s", folder, folder[0] ? "/" : "", name);
+}
+
+// A new map takes the place of the selected environment's, else it is one more light.
+static void environment_rows(panel *panel, app *app, const panel_facts *facts)
+{
+    const char *now = facts->map_in_use ? facts->map_in_use : "choose a file";
+    panel->maps = ImGui::BeginCombo("environment", now);
+    if (panel->maps) {
+        for (const char *const *name = facts->map; name && *name; name++)
+            if (ImGui::Selectable(*name, !std::strcmp(*name, now)))
+                wish_map(app, facts->map_folder, *name);
+        ImGui::EndCombo();
+    }
+    if (ImGui::InputTextWithHint("##environment", "or file.hdr, then Enter", panel->environment,
+                                 sizeof panel->environment, ImGuiInputTextFlags_EnterReturnsTrue) &&
+        panel->environment[0])
+        wish_map(app, "", panel->environment);
 }
 
 // ---------------------------------------------------------------- windows
@@ -548,7 +559,7 @@ static bool panel_window(panel *panel, app *app, const panel_facts *facts)
     ImGui::PushItemWidth(0.62f * width);
     if (ImGui::CollapsingHeader("Lights", ImGuiTreeNodeFlags_DefaultOpen)) {
         changed |= lights_section(panel, app);
-        environment_row(panel, app);
+        environment_rows(panel, app, facts);
     }
     if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen))
         changed |= picture_section(app);
@@ -686,6 +697,11 @@ extern "C" bool panel_build(struct panel *panel, struct app *app, const struct p
 extern "C" bool panel_wants_histogram(const struct panel *panel)
 {
     return panel->histogram;
+}
+
+extern "C" bool panel_wants_maps(const struct panel *panel)
+{
+    return panel->maps;
 }
 
 extern "C" bool panel_run_at(struct panel_run *out, const struct panel *panel, int i)

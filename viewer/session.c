@@ -5,6 +5,7 @@
 
 #include <relume/tone.h>
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -30,10 +31,15 @@ static struct app_file describe(const relume_pack *pack)
     return file;
 }
 
+static const char *file_name(const char *path)
+{
+    const char *slash = path ? strrchr(path, '/') : NULL;
+    return slash ? slash + 1 : path;
+}
+
 static void set_name(struct session *s, const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    snprintf(s->name, sizeof s->name, "%s", slash ? slash + 1 : path);
+    snprintf(s->name, sizeof s->name, "%s", file_name(path));
 }
 
 // As relume_relight says it; only for lights that were asked for, not for each one dragged there.
@@ -222,6 +228,7 @@ void session_close(struct session *s)
     session_record_stop(s);
     if (s->screen.texture)
         target_destroy(&s->screen, &s->gl);
+    maps_destroy(&s->maps);
     inspect_destroy(&s->inspector);
     draw_panel_destroy(&s->drawing, &s->gl);
     panel_destroy(&s->panel);
@@ -280,10 +287,25 @@ static relume_status inspect(struct session *s, bool *shown)
     return status;
 }
 
+// Those beside the map in use, else in the working folder.
+static relume_status list_maps(struct session *s)
+{
+    maps_destroy(&s->maps);
+    if (!panel_wants_maps(s->panel))
+        return RELUME_OK;
+    const char *in_use = session_map_in_use(s), *slash = in_use ? strrchr(in_use, '/') : NULL;
+    char folder[PATH_MAX];
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - in_use) : 1,
+             slash ? in_use : ".");
+    return maps_list(&s->maps, folder);
+}
+
 static relume_status build_panel(struct session *s, bool histogram)
 {
     bool plot = false;
-    const relume_status status = s->app.inspect ? inspect(s, &plot) : RELUME_OK;
+    relume_status status = s->app.inspect ? inspect(s, &plot) : RELUME_OK;
+    if (!status)
+        status = list_maps(s);
     const struct panel_facts facts = {
         .file = s->name,
         .line = s->lines,
@@ -291,6 +313,9 @@ static relume_status build_panel(struct session *s, bool histogram)
         .histogram = histogram ? (const uint32_t(*)[3])s->histogram : NULL,
         .plot = plot ? &s->inspector.plot : NULL,
         .plot_text = s->inspector.text,
+        .map_folder = s->maps.folder,
+        .map = (const char *const *)s->maps.name,
+        .map_in_use = file_name(session_map_in_use(s)),
     };
     if (!status)
         (void)panel_build(s->panel, &s->app, &facts);

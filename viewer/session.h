@@ -5,6 +5,7 @@
 #include "context.h"
 #include "draw_panel.h"
 #include "inspect.h"
+#include "maps.h"
 #include "pack_source.h"
 #include "record.h"
 #include "renderer.h"
@@ -38,6 +39,7 @@ struct session {
     struct renderer renderer;
     struct panel *panel;
     struct panel_drawing drawing;
+    struct maps maps;            // to choose from, while the panel does
     struct inspector inspector;  // made when first asked for
     struct recording recording;
     struct target screen;        // of shots without a window
@@ -106,6 +108,10 @@ relume_status session_record(struct session *s, enum record_kind kind, const cha
 
 // A light from words, in place of all or beside them. RELUME_EINVAL, RELUME_EDATA with a sentence.
 relume_status session_light(struct session *s, const char *spec, bool replace);
+// The environment map `path` in place of the selected light's, else as one more light. The same.
+relume_status session_map(struct session *s, const char *path);
+// The file of the selected environment, else NULL.
+const char *session_map_in_use(const struct session *s);
 // The lights of a rig file in place of all; the present ones as a rig file.
 relume_status session_load_rig(struct session *s, const char *path);
 relume_status session_save_rig(struct session *s, const char *path);

@@ -6,6 +6,8 @@
 #include "say.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 static relume_status too_many(const struct session *s)
 {
@@ -72,6 +74,33 @@ relume_status session_light(struct session *s, const char *spec, bool replace)
     if (replace)
         now->lights = 0;
     return append_entries(s, now, entry);
+}
+
+relume_status session_map(struct session *s, const char *path)
+{
+    struct app_state *now = &s->app.now;
+    const int old = now->selected;
+    const bool replaces = now->light[old].kind == RELUME_LIGHT_ENVIRONMENT;
+    const char *quote = strchr(path, '\'') ? "\"" : "'";
+    char spec[APP_SPEC + 16];
+    snprintf(spec, sizeof spec, "env %s%s%s", quote, path, quote);
+    const relume_status status = session_light(s, spec, false);
+    if (status || !replaces)
+        return status;
+    now->light[old].environment = now->light[now->selected].environment;
+    now->lamp[old].entry = now->lamp[now->selected].entry;
+    (void)lamps_remove(now, now->selected);
+    now->selected = old;
+    return RELUME_OK;
+}
+
+const char *session_map_in_use(const struct session *s)
+{
+    const struct app_state *now = &s->app.now;
+    const int entry = now->lamp[now->selected].entry;
+    return now->light[now->selected].kind == RELUME_LIGHT_ENVIRONMENT && entry >= 0
+               ? relume_rig_entry(s->rig, entry)->file
+               : NULL;
 }
 
 // Its files stay with the session's own rig, which lights that were there before still need.

@@ -77,6 +77,13 @@ static relume_status wish_add_light(struct session *s)
     return RELUME_OK;
 }
 
+static relume_status wish_map(struct session *s)
+{
+    const bool shown = !session_map(s, s->app.spec);
+    snprintf(s->message, sizeof s->message, shown ? "%.200s" : "no map: %.200s", s->app.spec);
+    return RELUME_OK;
+}
+
 // What was wished for is done once; what fails is said in the panel and in the log.
 relume_status session_grant_wish(struct session *s)
 {
@@ -87,6 +94,7 @@ relume_status session_grant_wish(struct session *s)
         [APP_WISH_SWEEP] = wish_sweep,
         [APP_WISH_TURNTABLE] = wish_turntable,
         [APP_WISH_ADD_LIGHT] = wish_add_light,
+        [APP_WISH_MAP] = wish_map,
     };
     const enum app_wish wish = s->app.wish;
     s->app.wish = APP_WISH_NONE;

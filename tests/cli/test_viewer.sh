@@ -154,6 +154,24 @@ nearly 'an area light' 'area 0 1.5 1 0.5 0 0 0 0 0.5 rgb 8 8 8'
 nearly 'a slide' 'slide 0 0 3 0 0 -1 25 slide.png rgb 5 5 5'
 nearly 'an environment' 'env sky/view00/light0000.exr 30 rgb 3 3 3'
 
+# the list of maps beside the one in use; the next one takes its place, as it was turned
+mkdir maps
+for map in one two; do cp sky/view00/light0000.exr maps/$map.exr; done
+touch maps/note.txt
+cat >choose.txt <<'END'
+size 500 540
+light env maps/one.exr 25
+key tab
+shot closed.png
+click 186 315
+shot open.png
+shot list.png
+click 60 356
+key w
+END
+"$VIEWER" teapot.exr --script choose.txt
+check 'another map is chosen' grep -q '"env maps/two.exr 25"' teapot-0001.json
+
 # Mesa draws by the same code whether OSMesa or EGL asks; a graphics card rounds in its own way.
 if "$VIEWER" teapot.exr --offscreen egl.exr --gl egl 2>err.txt; then
     "$VIEWER" teapot.exr --offscreen osmesa.exr --gl osmesa

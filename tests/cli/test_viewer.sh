@@ -159,14 +159,16 @@ mkdir maps
 for map in one two; do cp sky/view00/light0000.exr maps/$map.exr; done
 touch maps/note.txt
 cat >choose.txt <<'END'
-size 500 540
+size 500 700
 light env maps/one.exr 25
 key tab
 shot closed.png
 click 186 315
+# the list is made when it is asked for
 shot open.png
 shot list.png
 click 60 356
+shot chosen.png
 key w
 END
 "$VIEWER" teapot.exr --script choose.txt

@@ -81,6 +81,16 @@ static relume_status host_rig(void *user, const char *path, const struct relume_
     return status;
 }
 
+static relume_status host_open(void *user, const char *path, const struct relume_log *log)
+{
+    struct session *s = user;
+    const struct relume_log *usual = s->log;
+    s->log = log;
+    const relume_status status = session_show(s, path);
+    s->log = usual;
+    return status;
+}
+
 static const double frame_s = 1.0 / 60;  // between frames when time is played
 static const double patience_s = 60;     // waiting for what never comes to rest
 
@@ -89,11 +99,14 @@ static relume_status host_wait(void *user, double seconds)
     struct session *s = user;
     const bool until_idle = seconds < 0;
     double left = until_idle ? patience_s : seconds;
+    const double step = s->film ? 1.0 / RECORD_RATE : frame_s;
     bool moves = true;
     relume_status status = RELUME_OK;
-    for (; !status && left > 1e-9 && (moves || !until_idle); left -= frame_s) {
-        moves = session_pass(s, fmin(left, frame_s)) || renderer_is_pending(&s->renderer);
-        if (moves || until_idle)
+    for (; !status && left > 1e-9 && (moves || !until_idle); left -= step) {
+        moves = session_pass(s, fmin(left, step)) || renderer_is_pending(&s->renderer);
+        if (s->film)
+            status = session_film(s);
+        else if (moves || until_idle)
             status = (s->streams ? show_frame : session_draw)(s);
     }
     return status;
@@ -111,28 +124,41 @@ static relume_status host_shot(void *user, const char *path)
 
 static struct script_host host_of(struct session *s)
 {
-    return (struct script_host){s,         &s->app,    host_send, host_light, host_rig,
-                                host_wait, host_frame, host_shot, s->log};
+    return (struct script_host){s,         &s->app,   host_send,  host_light, host_rig,
+                                host_open, host_wait, host_frame, host_shot,  s->log};
 }
 
 // ---------------------------------------------------------------- without a window
 
+// A film of a script shows what a window would.
+static relume_status begin_film(struct session *s, const struct options *o)
+{
+    s->app.letterbox = true;
+    return record_open(&s->film, o->output, s->log);
+}
+
 static relume_status run_offscreen(struct session *s, struct options *o)
 {
     const struct script_host host = host_of(s);
+    const bool film = o->record && o->kind == RECORD_SCRIPT;
+    o->start.ball |= film;
     relume_status status = session_take_rig(s, &o->rig, &o->start);
     if (!status && o->capture)
         status = session_compare(s, o->capture);
     if (!status)
-        status = session_open(s, o->file, &o->start, false);
+        status = session_open(s, o->file, &o->start, film);
     if (!status)
         status = session_start(s, context_offscreen(o->gl), s->app.width, s->app.height);
     s->app.panel = o->panel;
+    if (!status && film)
+        status = begin_film(s, o);
     if (!status && o->script)
         status = script_play(o->script, &host);
     while (!status && session_is_busy(s))  // with what the script began
         status = session_draw(s);
-    if (!status && o->record)
+    if (!status && film)
+        status = record_commit(&s->film);
+    else if (!status && o->record)
         status = session_record(s, o->kind, o->output, o->frames);
     if (!status && o->offscreen)
         status = (o->panel ? session_shot : session_frame)(s, o->offscreen);

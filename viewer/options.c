@@ -280,7 +280,7 @@ static relume_status take_record(struct options *o, const char *name, const char
     o->record = true;
     if (!record_parse(&o->kind, text))
         return RELUME_OK;
-    return say(log, RELUME_EINVAL, "%s: expected sweep or turntable; found '%s'", name, text);
+    return say(log, RELUME_EINVAL, "%s: expected sweep, turntable or script; found '%s'", name, text);
 }
 
 static relume_status take_output(struct options *o, const char *name, const char *text,
@@ -364,7 +364,8 @@ static const struct option options[] = {
     {"--script", "EVENTS", "play a text file of events without a window", take_script},
     {"--gl", "NAME",
      "offscreen by osmesa, egl, or auto: a graphics card, else osmesa; default auto", take_gl},
-    {"--record", "KIND", "record a light sweep or a turntable without a window", take_record},
+    {"--record", "KIND", "record a light sweep, a turntable or --script without a window",
+     take_record},
     {"-o", "OUT", "--record: a folder of PNG files, or FILE.mp4 (by ffmpeg)", take_output},
     {"--frames", "N", "--record: pictures of the round; default 72", take_frames},
     {"--no-config", NULL, "neither read nor write what the window remembers", take_no_config},
@@ -407,6 +408,7 @@ void options_help(void)
          "        click X Y             press, release left|right X Y    move X Y\n"
          "        key K                 hold K, let K                    type TEXT\n"
          "        light SPEC            add SPEC                         rig FILE\n"
+         "        open FILE: another relume file\n"
          "        wait [SECONDS]        frame OUT: the picture           shot OUT: with the "
          "panel\n\n"
          "example:\n"
@@ -481,6 +483,8 @@ relume_status options_parse(struct options *o, int argc, char **argv, const stru
     }
     if (o->record != (o->output != NULL))
         return say(log, RELUME_EINVAL, "expected --record KIND and -o OUT together");
+    if (o->record && o->kind == RECORD_SCRIPT && !o->script)
+        return say(log, RELUME_EINVAL, "--record script: expected --script EVENTS as well");
     if (!o->frames)
         o->frames = RECORD_FRAMES;
     if (!o->file)

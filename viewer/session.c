@@ -200,7 +200,7 @@ relume_status session_scale(struct session *s, double scale)
     return make_panel(s, scale);
 }
 
-relume_status session_drop(struct session *s, const char *path)
+static relume_status replace(struct session *s, const char *path, bool *opened)
 {
     session_record_stop(s);
     const struct app was = s->app;
@@ -211,7 +211,8 @@ relume_status session_drop(struct session *s, const char *path)
         .tone = was.now.tone,
         .white = was.now.white,
     };
-    if (session_open(s, path, &start, true))
+    *opened = !session_open(s, path, &start, true);
+    if (!*opened)
         return RELUME_OK;
     s->app.width = was.width;
     s->app.height = was.height;
@@ -223,9 +224,23 @@ relume_status session_drop(struct session *s, const char *path)
     return make_renderer(s);
 }
 
+relume_status session_drop(struct session *s, const char *path)
+{
+    bool opened;
+    return replace(s, path, &opened);
+}
+
+relume_status session_show(struct session *s, const char *path)
+{
+    bool opened;
+    const relume_status status = replace(s, path, &opened);
+    return status || opened ? status : RELUME_EDATA;
+}
+
 void session_close(struct session *s)
 {
     session_record_stop(s);
+    record_abort(&s->film);
     if (s->screen.texture)
         target_destroy(&s->screen, &s->gl);
     maps_destroy(&s->maps);

@@ -42,6 +42,7 @@ struct session {
     struct maps maps;            // to choose from, while the panel does
     struct inspector inspector;  // made when first asked for
     struct recording recording;
+    struct record *film;         // of a script as it is played, or NULL
     struct target screen;        // of shots without a window
     uint32_t histogram[256][3];
     char name[SESSION_TEXT];  // of the file, for the title
@@ -68,6 +69,8 @@ relume_status session_start(struct session *s, const struct context_backend *bac
 relume_status session_scale(struct session *s, double scale);
 // Show another file in the same window; one that cannot be opened is only complained about.
 relume_status session_drop(struct session *s, const char *path);
+// The same, and then RELUME_EDATA.
+relume_status session_show(struct session *s, const char *path);
 void session_close(struct session *s);
 
 // Hand an event to the panel, else to the app; returns whether something may look different.
@@ -99,6 +102,8 @@ relume_status session_read(struct relume_image *image, struct session *s, bool l
 relume_status session_record_begin(struct session *s, enum record_kind kind, const char *path,
                                    int frames);
 bool session_records(const struct session *s);
+// A picture of the screen into s->film.
+relume_status session_film(struct session *s);
 // The next picture. On failure nothing is recorded any more, and nothing is left of it.
 relume_status session_record_step(struct session *s);
 void session_record_stop(struct session *s);

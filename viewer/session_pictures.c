@@ -69,18 +69,35 @@ static void turn_over_and_decode(struct relume_image *image)
         image->data[i] = relume_transfer_decode(srgb, image->data[i]);
 }
 
-relume_status session_shot(struct session *s, const char *path)
+// Linear, as the screen would show it.
+static relume_status read_screen(struct relume_image *image, struct session *s)
 {
-    struct relume_image image;
     relume_status status = session_draw(s);
     if (!status)
         status = prepare_screen(s);
     if (status)
         return status;
     session_present(s, s->screen.framebuffer);
-    status = target_read(&image, &s->screen, &s->gl);
+    status = target_read(image, &s->screen, &s->gl);
+    if (!status)
+        turn_over_and_decode(image);
+    return status;
+}
+
+relume_status session_shot(struct session *s, const char *path)
+{
+    struct relume_image image;
+    const relume_status status = read_screen(&image, s);
+    return status ? status : save(s, &image, path);
+}
+
+relume_status session_film(struct session *s)
+{
+    struct relume_image image;
+    relume_status status = read_screen(&image, s);
     if (status)
         return status;
-    turn_over_and_decode(&image);
-    return save(s, &image, path);
+    status = record_add(s->film, &image);
+    relume_image_destroy(&image);
+    return status;
 }

@@ -5,6 +5,7 @@
 #include "keys.h"
 #include "lamps.h"
 #include "owned.h"
+#include "say.h"
 #include "options.h"
 #include "script.h"
 
@@ -575,6 +576,12 @@ static relume_status host_rig(void *user, const char *path, const struct relume_
     return RELUME_OK;
 }
 
+static relume_status host_open(void *user, const char *path, const struct relume_log *log)
+{
+    (void)user, (void)log;
+    return strcmp(path, "none.exr") ? RELUME_OK : say(log, RELUME_EDATA, "none.exr: no such file");
+}
+
 static relume_status host_wait(void *user, double seconds)
 {
     struct frames *f = user;
@@ -597,7 +604,7 @@ static relume_status host_frame(void *user, const char *path)
 static struct script_host host_of(struct frames *frames)
 {
     return (struct script_host){frames,    frames->app, host_send,  host_light, host_rig,
-                                host_wait, host_frame,  host_frame, &keep};
+                                host_open, host_wait,   host_frame, host_frame, &keep};
 }
 
 static relume_status play(struct app *app, struct frames *frames, const char *text)
@@ -689,6 +696,8 @@ static void broken_scripts_name_the_line(void **state)
         {"key return", 5},
         {"key", 4},
         {"light \"lamp 1 2 3\"", 7},
+        {"open", 5},
+        {"open none.exr", 14},
         {"frame", 6},
         {"shot  ", 7},
         {"wait -1", 6},

@@ -14,9 +14,14 @@ cd "$out"
 "$relume" encode -q attic -o attic.exr --basis table
 "$relume" synth bust -q -o bust --size 200 --lights 49 --hemisphere --samples 2
 "$relume" encode -q bust -o bust.exr
-"$relume" synth box -q -o sky --projection spherical --lights 1 --size 64 --samples 4
-cp sky/view00/light0000.exr sky.exr
-"$relume" relight attic.exr -o slide.png --pan 0 --size 160x120 --light 'dir 0.5 0.7 -0.6 rgb 3 3 3'
+# blue above, brown below, a low sun to the right
+awk 'BEGIN {
+    print "P3 64 32 255"
+    for (y = 0; y < 32; y++)
+        for (x = 0; x < 64; x++)
+            print (y > 6 && y < 13 && x > 40 && x < 49) ? "255 240 200" : y < 16 ? "40 50 70" : "20 15 10"
+}' >sky.ppm
+"$relume" relight bust.exr -o slide.png --light "dir 1 1 2"
 cat >lamp.ies <<'END'
 IESNA:LM-63-1995
 TILT=NONE

@@ -134,6 +134,21 @@ END
 check 'one frame of latency' cmp next.png later.png
 if cmp -s rest.png next.png; then not_ok 'the pointer moved the light' 'nothing changed'; else ok 'the pointer moved the light'; fi
 
+# a film of a script: 25 pictures a second of what a window would show, from file to file
+cat >film.txt <<'END'
+size 60 40
+wait 0.2
+open pano.exr
+wait 0.12
+END
+"$VIEWER" teapot.exr --script film.txt --record script -o played
+check 'a film of a script' test "$(ls played | wc -l)" -eq 8
+if cmp -s played/0004.png played/0005.png; then not_ok 'another file' 'the same picture'; else ok 'another file'; fi
+printf 'wait 0.1\nopen none.exr\n' >none.txt
+"$VIEWER" teapot.exr --script none.txt --record script -o broken 2>broken.txt
+check 'a film that ends early' grep -q 'none.txt: line 2, column 6; none.exr' broken.txt
+check 'nothing is left of it' test ! -e broken -a ! -e broken.part
+
 # Half floats hold the weights of near lights on the GPU: 1/255 is promised.
 "$RELUME" synth box -q -o sky --projection spherical --lights 1 --size 16 --samples 1 || exit 1
 nearly() { # name, light, options...: both programs draw the same frame to 1/255

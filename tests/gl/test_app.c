@@ -697,7 +697,7 @@ static void broken_scripts_name_the_line(void **state)
         {"key", 4},
         {"light \"lamp 1 2 3\"", 7},
         {"open", 5},
-        {"open none.exr", 14},
+        {"open none.exr", 6},
         {"frame", 6},
         {"shot  ", 7},
         {"wait -1", 6},

@@ -35,9 +35,10 @@ EXR      = $(call once,EXR,pkg-config --cflags OpenEXR)
 OIIO     = $(call once,OIIO,pkg-config --cflags OpenImageIO)
 IMGUI    = $(call once,IMGUI,pkg-config --cflags imgui)
 GLFW     = $(call once,GLFW,pkg-config --cflags glfw3)
-PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenImageIO OpenEXR openblas jansson libjpeg)
+PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenEXR openblas jansson libjpeg)
+OIIO_LIBS = $(call once,OIIO_LIBS,pkg-config --libs OpenImageIO)
 CAIRO    = $(call once,CAIRO,pkg-config --cflags cairo)
-LIBS     = -Wl,--as-needed $(PKG_LIBS) -llapacke -lembree3 -lm
+LIBS     = -Wl,--as-needed $(PKG_LIBS) -llapacke -lembree3 -lm -ldl
 CLI_LIBS = $(call once,CLI_LIBS,pkg-config --libs cairo)
 GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa egl imgui)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
@@ -45,7 +46,8 @@ CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 LIB_C    := $(wildcard src/base/*.c src/math/*.c src/image/*.c src/capture/*.c src/scene/*.c \
             src/coder/*.c src/pack/*.c src/exchange/*.c src/relight/*.c src/view/*.c src/pass/*.c \
             src/frame/*.c)
-LIB_CXX  := $(wildcard src/image/*.cpp)
+# The module that is loaded when the first image needs it (src/image/oiio.h)
+MODULE_CXX := src/image/oiio.cpp
 CLI_C    := $(wildcard src/cli/*.c)
 VIEWER_C := $(wildcard viewer/*.c)
 VIEWER_CXX := $(wildcard viewer/*.cpp)
@@ -59,7 +61,8 @@ TOOLS_C  := $(wildcard tests/tools/*.c)
 # minimal.c is built against the installed library instead (tests/cli/test_install.sh)
 SAMPLES_C := samples/sphere.c samples/figures.c
 
-LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $(LIB_CXX:%.cpp=$B/obj/%.o)
+LIB_O    := $(LIB_C:%.c=$B/obj/%.o)
+MODULE   := $B/librelume-oiio.so.$(MAJOR)
 CLI_O    := $(CLI_C:%.c=$B/obj/%.o)
 VIEWER_O := $(VIEWER_C:%.c=$B/obj/%.o) $(VIEWER_CXX:%.cpp=$B/obj/%.o) $B/obj/viewer/shaders.o
 UNIT     := $(UNIT_C:%.c=$B/%)
@@ -72,7 +75,7 @@ VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 .PHONY: all lib cli viewer deps deps-web demo tour figures test check check-threads bench fuzz headers layers format install clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
-lib: $B/librelume.a $B/librelume.so
+lib: $B/librelume.a $B/librelume.so $(MODULE)
 cli: $B/relume
 viewer: $(VIEWER)
 
@@ -91,6 +94,7 @@ deps-web:
 
 $B/obj/src/image/exr.o: own_flags = $(EXR)
 $B/obj/src/image/oiio.o: own_flags = $(OIIO)
+$B/obj/src/image/oiio_load.o: own_flags = -DRELUME_MAJOR=$(MAJOR)
 $B/obj/src/coder/kernels_avx2.o $B/obj/src/relight/kernels_avx2.o: own_flags = -mavx2 -mfma -mf16c
 $B/obj/src/%.o:               own_include = -Isrc
 $B/obj/src/cli/plot.o: own_flags = $(CAIRO)
@@ -125,35 +129,40 @@ $B/librelume.a: $(LIB_O)
 	$(Q)rm -f $@
 	$(call say,AR)
 	$(Q)$(AR) rcs $@ $^
+# Where a program or library looks for the module: first where the build left it.
+run_path = '-Wl,-rpath,$$ORIGIN$1'
 $B/librelume.so: $(LIB_O)
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) -shared -Wl,-soname,librelume.so.$(MAJOR) -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(Q)$(CC) $(MODE) -shared -Wl,-soname,librelume.so.$(MAJOR) $(call run_path) -o $@ $^ $(LDFLAGS) $(LIBS)
 	$(Q)ln -sfn $(@F) $@.$(MAJOR)
+$(MODULE): $(MODULE_CXX:%.cpp=$B/obj/%.o) $B/librelume.a
+	$(call say,LD)
+	$(Q)$(CXX) $(MODE) -shared -Wl,--exclude-libs,ALL -o $@ $^ $(LDFLAGS) $(OIIO_LIBS) $(LIBS)
 $B/relume: $(CLI_O) $B/librelume.a
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS)
+	$(Q)$(CC) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS)
 $B/relume-view: $(VIEWER_O) $B/librelume.a
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS)
+	$(Q)$(CXX) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS)
 
 $(UNIT): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
+	$(Q)$(CC) $(MODE) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
 # The bench that draws is linked as the tests of GL are.
 GL_BENCH := $B/tests/bench/bench_viewer
 $(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(Q)$(CC) $(MODE) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS)
 $(TOOLS): $B/%: $B/obj/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(Q)$(CC) $(MODE) -pthread $(call run_path,/../..:$$ORIGIN/..) -o $@ $^ $(LDFLAGS) $(LIBS)
 $(GL) $(GL_BENCH): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O)) $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) -pthread -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
+	$(Q)$(CXX) $(MODE) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
 
 -include $(shell find $B/obj -name '*.d' 2>/dev/null)
 
@@ -178,7 +187,7 @@ layers:
 	@scripts/layers.sh
 
 format:
-	clang-format -i $(LIB_C) $(LIB_CXX) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
+	clang-format -i $(LIB_C) $(MODULE_CXX) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
 	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*.h viewer/*.h tests/*.h samples/*.c)
 
 bench: all $(BENCH)

@@ -19,6 +19,7 @@ put 644 "$build/librelume.a" "$dest/lib"
 install -m 755 "$build/librelume.so" "$dest/lib/librelume.so.$version"
 link "librelume.so.$version" "$dest/lib/librelume.so.$major"
 link "librelume.so.$major" "$dest/lib/librelume.so"
+put 755 "$build/librelume-oiio.so.$major" "$dest/lib"
 for header in "$here"/include/relume/*.h; do
     put 644 "$header" "$dest/include/relume"
 done
@@ -35,9 +36,9 @@ libdir=\${prefix}/lib
 Name: relume
 Description: image-based relighting
 Version: $version
-Requires.private: OpenImageIO OpenEXR jansson libjpeg
+Requires.private: OpenEXR jansson libjpeg
 Libs: -L\${libdir} -lrelume
-Libs.private: $(pkg-config --libs openblas) -llapacke -lembree3 -lstdc++ -lm -pthread
+Libs.private: -Wl,-rpath,\${libdir} $(pkg-config --libs openblas) -llapacke -lembree3 -lm -ldl -pthread
 Cflags: -I\${includedir}
 PC
 

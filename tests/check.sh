@@ -26,13 +26,14 @@ is_left_out() { # script
     return 1
 }
 
+# Scripts first: they take longest, and a core should not wait for the last one alone.
 tests() {
-    for t in "$build"/tests/unit/* "$build"/tests/props/* "$build"/tests/kernels/* \
-        "$build"/tests/threads/* "$build"/tests/gl/*; do
-        [ -x "$t" ] && [ -f "$t" ] && echo "$t"
-    done
     [ "${ONLY_BINARIES:-}" ] || for t in "$here"/cli/test_*.sh; do
         [ -x "$t" ] && ! is_left_out "$t" && echo "$t"
+    done
+    for t in "$build"/tests/gl/* "$build"/tests/unit/* "$build"/tests/props/* \
+        "$build"/tests/kernels/* "$build"/tests/threads/*; do
+        [ -x "$t" ] && [ -f "$t" ] && echo "$t"
     done
 }
 

@@ -1,10 +1,9 @@
-// oiio.cpp - the one file that knows OpenImageIO; nothing C++ leaves it
+// oiio.cpp - the one file that knows OpenImageIO: a module, opened by oiio_load.c
 #include "image/oiio.h"
 
 extern "C" {
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/outfile.h"
 }
 
 #include <OpenImageIO/filesystem.h>
@@ -177,7 +176,8 @@ std::unique_ptr<ImageOutput> writer_for(const char *path)
 
 // Through memory where the format can, so that a full disk is noticed by our own writes.
 relume_status write_in_memory(ImageOutput &output, const char *path, const ImageSpec &spec,
-                              TypeDesc type, const void *samples, const relume_log *log)
+                              TypeDesc type, const void *samples, oiio_save *save,
+                              const relume_log *log)
 {
     std::vector<unsigned char> bytes;
     Filesystem::IOVecOutput proxy(bytes);
@@ -185,11 +185,12 @@ relume_status write_in_memory(ImageOutput &output, const char *path, const Image
     if (!output.open(path, spec) || !output.write_image(type, samples) || !output.close())
         return log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path,
                         one_line(output.geterror()).c_str());
-    return outfile_save(path, bytes.data(), bytes.size(), log);
+    return save(path, bytes.data(), bytes.size(), log);
 }
 
 relume_status write_beside(ImageOutput &output, const char *path, const ImageSpec &spec,
-                           TypeDesc type, const void *samples, const relume_log *log)
+                           TypeDesc type, const void *samples, oiio_save *save,
+                           const relume_log *log)
 {
     const std::string beside =
         std::string(path) + ".part-" + std::to_string(getpid()) + Filesystem::extension(path);
@@ -208,11 +209,11 @@ relume_status write_beside(ImageOutput &output, const char *path, const ImageSpe
     std::remove(beside.c_str());
     if (!good)
         return log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path, why.c_str());
-    return outfile_save(path, bytes.data(), bytes.size(), log);
+    return save(path, bytes.data(), bytes.size(), log);
 }
 
 relume_status write_image(const char *path, int width, int height, int channels, TypeDesc type,
-                          const void *samples, const relume_log *log)
+                          const void *samples, oiio_save *save, const relume_log *log)
 {
     try {
         auto output = writer_for(path);
@@ -227,8 +228,8 @@ relume_status write_image(const char *path, int width, int height, int channels,
         // OpenImageIO 2.4 writes unreadable TIFF files through a memory proxy.
         const bool in_memory =
             output->supports("ioproxy") && std::string(output->format_name()) != "tiff";
-        return in_memory ? write_in_memory(*output, path, spec, type, samples, log)
-                         : write_beside(*output, path, spec, type, samples, log);
+        return in_memory ? write_in_memory(*output, path, spec, type, samples, save, log)
+                         : write_beside(*output, path, spec, type, samples, save, log);
     } catch (const std::bad_alloc &) {
         return RELUME_ENOMEM;
     } catch (const std::exception &e) {
@@ -236,10 +237,8 @@ relume_status write_image(const char *path, int width, int height, int channels,
     }
 }
 
-}  // namespace
-
-relume_status oiio_open(oiio_reader **out, const char *path, const relume_limits *limits,
-                        const relume_log *log)
+relume_status bridge_open(oiio_reader **out, const char *path, const relume_limits *limits,
+                          const relume_log *log)
 {
     *out = nullptr;
     try {
@@ -257,46 +256,47 @@ relume_status oiio_open(oiio_reader **out, const char *path, const relume_limits
     }
 }
 
-const oiio_info *oiio_info_of(const oiio_reader *reader)
+const oiio_info *bridge_info_of(const oiio_reader *reader)
 {
     return &reader->info;
 }
 
-relume_status oiio_read_floats(oiio_reader *reader, int row, int rows, float *out)
+relume_status bridge_read_floats(oiio_reader *reader, int row, int rows, float *out)
 {
     return read_rows(reader, row, rows, TypeFloat, out);
 }
 
-relume_status oiio_read_bytes(oiio_reader *reader, int row, int rows, uint8_t *out)
+relume_status bridge_read_bytes(oiio_reader *reader, int row, int rows, uint8_t *out)
 {
     return read_rows(reader, row, rows, TypeUInt8, out);
 }
 
-const char *oiio_error(const oiio_reader *reader)
+const char *bridge_error(const oiio_reader *reader)
 {
     return reader->error.c_str();
 }
 
-void oiio_close(oiio_reader **reader)
+void bridge_close(oiio_reader **reader)
 {
     delete *reader;
     *reader = nullptr;
 }
 
-bool oiio_writes_floats(const char *path)
+relume_status bridge_write_bytes(const char *path, int width, int height, int channels,
+                                 const uint8_t *samples, oiio_save *save, const relume_log *log)
 {
-    const std::string ext = Filesystem::extension(path);
-    return Strutil::iequals(ext, ".hdr") || Strutil::iequals(ext, ".pfm");
+    return write_image(path, width, height, channels, TypeUInt8, samples, save, log);
 }
 
-relume_status oiio_write_bytes(const char *path, int width, int height, int channels,
-                               const uint8_t *samples, const relume_log *log)
+relume_status bridge_write_floats(const char *path, int width, int height, int channels,
+                                  const float *samples, oiio_save *save, const relume_log *log)
 {
-    return write_image(path, width, height, channels, TypeUInt8, samples, log);
+    return write_image(path, width, height, channels, TypeFloat, samples, save, log);
 }
 
-relume_status oiio_write_floats(const char *path, int width, int height, int channels,
-                                const float *samples, const relume_log *log)
-{
-    return write_image(path, width, height, channels, TypeFloat, samples, log);
-}
+}  // namespace
+
+extern "C" RELUME_API const oiio_bridge relume_oiio_bridge;
+const oiio_bridge relume_oiio_bridge = {
+    RELUME_VERSION, bridge_open,  bridge_info_of,     bridge_read_floats, bridge_read_bytes,
+    bridge_error,   bridge_close, bridge_write_bytes, bridge_write_floats};

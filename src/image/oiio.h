@@ -1,4 +1,8 @@
-// oiio.h - every image format but EXR output, through OpenImageIO (C++ sealed in oiio.cpp)
+// oiio.h - every image format but EXR output, through OpenImageIO
+//
+// OpenImageIO brings over 200 shared libraries, a third of a second at every start. So the C++ that
+// knows it (oiio.cpp) is a module of its own, librelume-oiio.so, which oiio_load.c opens when the
+// first image is asked for; nobody else notices.
 #ifndef IMAGE_OIIO_H
 #define IMAGE_OIIO_H
 
@@ -40,6 +44,28 @@ relume_status oiio_write_bytes(const char *path, int width, int height, int chan
                                const uint8_t *samples, const struct relume_log *log);
 relume_status oiio_write_floats(const char *path, int width, int height, int channels,
                                 const float *samples, const struct relume_log *log);
+
+typedef relume_status oiio_save(const char *path, const void *bytes, size_t size,
+                                const struct relume_log *log);
+
+// What the module exports, as `relume_oiio_bridge`; the functions above forward to it.
+struct oiio_bridge {
+    const char *version;  // RELUME_VERSION of its build; another one's is not used
+    relume_status (*open)(oiio_reader **out, const char *path, const struct relume_limits *limits,
+                          const struct relume_log *log);
+    const struct oiio_info *(*info_of)(const oiio_reader *reader);
+    relume_status (*read_floats)(oiio_reader *reader, int row, int rows, float *out);
+    relume_status (*read_bytes)(oiio_reader *reader, int row, int rows, uint8_t *out);
+    const char *(*error)(const oiio_reader *reader);
+    void (*close)(oiio_reader **reader);
+    // `save` is the library's own outfile_save.
+    relume_status (*write_bytes)(const char *path, int width, int height, int channels,
+                                 const uint8_t *samples, oiio_save *save,
+                                 const struct relume_log *log);
+    relume_status (*write_floats)(const char *path, int width, int height, int channels,
+                                  const float *samples, oiio_save *save,
+                                  const struct relume_log *log);
+};
 
 #ifdef __cplusplus
 }

@@ -22,6 +22,7 @@ for file in bin/relume bin/relume-view lib/librelume.a lib/librelume.so lib/libr
 done
 export PKG_CONFIG_PATH="$prefix/lib/pkgconfig"
 check "pkg-config knows the version" test "$(pkg-config --modversion relume)" = "$version"
+check "the module for images is installed" test -s "$prefix/lib/librelume-oiio.so.${version%%.*}"
 check "the installed tool runs" test "$("$prefix/bin/relume" --version)" = "relume $version"
 
 # ---------------------------------------------------------------- a program of the library's user
@@ -53,6 +54,12 @@ if LD_LIBRARY_PATH="$prefix/lib" ./shared nothing.exr out.png 2>err.txt; then
 else
     check "minimal.c says what is wrong" grep -q "nothing.exr: no such file" err.txt
 fi
+
+# ---------------------------------------------------------------- without its module
+mkdir alone && cp "$RELUME" alone/
+check "a tool without its module reads relume files" alone/relume info box.exr
+expect_fail "a tool without its module says so" 3 'module for image formats cannot be loaded' none.png \
+    alone/relume relight box.exr -o none.png
 
 # ---------------------------------------------------------------- headers
 for header in "$prefix"/include/relume/*.h; do

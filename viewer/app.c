@@ -223,6 +223,14 @@ void app_aim_light(struct app *app, int light, struct relume_vec3 seen)
     lamps_aim(&app->now, light, world, app_middle(app));
 }
 
+void app_point_light(struct app *app, int light, double x, double y)
+{
+    const double r = fmax(hypot(x, y), 1);
+    const double side = app_seen_light(app, light).z < 0 ? -1 : 1;
+    const double z = sqrt(fmax(1 - (x * x + y * y) / (r * r), 0));
+    app_aim_light(app, light, (struct relume_vec3){x / r, y / r, side * z});
+}
+
 void app_turn_light(struct app *app, double yaw_deg, double pitch_deg)
 {
     const struct relume_vec3 seen = app_seen_light(app, app->now.selected);

@@ -75,9 +75,9 @@ struct app_state {
     double focus_z;                           // slab: the plane in focus ...
     bool focused;                             // ... at the start; else the st plane
     double exposure_ev;
-    bool auto_exposure;  // on top of exposure_ev
-    int tone;            // place in relume_tones
-    double white;        // as relume_tone_params
+    bool auto_exposure;          // on top of exposure_ev
+    int tone;                    // place in relume_tones
+    double white;                // as relume_tone_params
     struct relume_light *light;  // [lights], with room for more
     struct app_lamp *lamp;       // by light
     int lights, room;
@@ -126,7 +126,8 @@ struct app {
 // A file seen as `start` says; a DEFAULT framing becomes what suits the file: the eye in the middle
 // of a slab, a look ahead in a panorama when `look_ahead`, else view 0. Without lights there is one
 // from the front. The frame is as large as `camera` says, else as the file implies. RELUME_EINVAL
-// when the camera does not fit the file, with a sentence in `log`; RELUME_ENOMEM. `start` is copied.
+// when the camera does not fit the file, with a sentence in `log`; RELUME_ENOMEM. `start` is
+// copied.
 relume_status app_start(struct app *app, const struct app_file *file, const struct app_state *start,
                         bool look_ahead, const struct relume_log *log);
 
@@ -168,6 +169,8 @@ struct app_axes app_frame_axes(const struct app *app);
 struct relume_vec3 app_seen_light(const struct app *app, int light);
 // Let it come from there (unit). Near lights move on a sphere about app_middle.
 void app_aim_light(struct app *app, int light, struct relume_vec3 seen);
+// Let it come from (x, y) of a unit ball seen from the front, on the half that it came from.
+void app_point_light(struct app *app, int light, double x, double y);
 // Turn the selected light about the frame's up (> 0: to the right) and right (> 0: down).
 void app_turn_light(struct app *app, double yaw_deg, double pitch_deg);
 // The eye's distance from the st plane times `factor`, within limits.

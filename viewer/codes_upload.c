@@ -14,7 +14,6 @@ static const struct code_format formats[] = {
     [RELUME_STORE_HALF] = {GL_RGBA16F, GL_HALF_FLOAT, 2, 1.0},
 };
 
-
 const struct code_format *code_format_of(const struct relume_codes *codes)
 {
     return &formats[codes->storage];
@@ -114,4 +113,3 @@ relume_status codes_upload(struct relighter *r, struct relit_view *v,
     const relume_status status = (codes->books ? upload_indices : upload_planes)(r, v, codes);
     return status ? status : gl_check(gl, "uploading a view", r->log);
 }
-

@@ -27,7 +27,7 @@ enum {
     COUNT
 };
 static const char *const uniforms[] = {
-    "rectangle", "frame_size", "view", "normals",       "albedos", "details", "towards",
+    "rectangle", "frame_size", "view",          "normals", "albedos", "details",  "towards",
     "reference", "pass",       "towards_given", "lights",  "lamps",   "strength",
 };
 // Texture units, by their uniform

@@ -199,14 +199,7 @@ int gizmo_hit(const struct app *app, double x, double y)
 static void drag_direction(struct app *app, int light, double x, double y)
 {
     const struct gizmo_circle disc = gizmo_disc(app);
-    const double side = app_seen_light(app, light).z < 0 ? -1 : 1;
-    double dx = (x - disc.x) / disc.radius;
-    double dy = (disc.y - y) / disc.radius;
-    const double r = fmax(hypot(dx, dy), 1.0);
-    dx /= r;
-    dy /= r;
-    const double z = sqrt(fmax(1 - dx * dx - dy * dy, 0));
-    app_aim_light(app, light, (struct relume_vec3){dx, dy, side * z});
+    app_point_light(app, light, (x - disc.x) / disc.radius, (disc.y - y) / disc.radius);
 }
 
 void gizmo_drag(struct app *app, int light, double x, double y)

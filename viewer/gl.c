@@ -6,7 +6,8 @@
 
 static bool is_software(const char *renderer)
 {
-    static const char *const names[] = {"llvmpipe", "softpipe", "swrast", "Software", "SwiftShader"};
+    static const char *const names[] = {"llvmpipe", "softpipe", "swrast", "Software",
+                                        "SwiftShader"};
     for (size_t i = 0; renderer && i < sizeof names / sizeof *names; i++)
         if (strstr(renderer, names[i]))
             return true;

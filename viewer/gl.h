@@ -71,9 +71,9 @@ struct gl {
 #define GL_MEMBER(type, name) type name;
     GL_FUNCTIONS(GL_MEMBER)
 #undef GL_MEMBER
-    int max_layers;   // of an array texture, at least 256
-    int max_texture;  // pixels along one side
-    bool software;    // it is drawn by the CPU
+    int max_layers;                                // of an array texture, at least 256
+    int max_texture;                               // pixels along one side
+    bool software;                                 // it is drawn by the CPU
     PFNGLGETGRAPHICSRESETSTATUSPROC reset_status;  // NULL: no one would tell
 };
 

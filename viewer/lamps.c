@@ -212,6 +212,32 @@ void lamps_change_kind(struct app_state *state, int light, enum relume_light_kin
     state->lamp[light].entry = -1;
 }
 
+// ---------------------------------------------------------------- kinds
+
+static const struct {
+    const char *words;
+    unsigned fields;
+} kinds[] = {
+    [RELUME_LIGHT_DIRECTIONAL] = {"directional", LAMP_CHANGE},
+    [RELUME_LIGHT_ENVIRONMENT] = {"environment", LAMP_TURN},
+    [RELUME_LIGHT_POINT] = {"point", LAMP_PLACE | LAMP_CHANGE},
+    [RELUME_LIGHT_SPOT] = {"spot", LAMP_PLACE | LAMP_AXIS | LAMP_ANGLE | LAMP_CHANGE},
+    [RELUME_LIGHT_SLIDE] = {"slide", LAMP_PLACE | LAMP_AXIS | LAMP_ANGLE},
+    [RELUME_LIGHT_AREA] = {"area", LAMP_PLACE | LAMP_EDGES | LAMP_CHANGE},
+    [RELUME_LIGHT_IES] = {"ies", LAMP_PLACE | LAMP_AXIS},
+    [RELUME_LIGHT_GONIO] = {"gonio", LAMP_PLACE | LAMP_AXIS},
+};
+
+const char *lamps_kind_words(enum relume_light_kind kind)
+{
+    return kinds[kind].words;
+}
+
+unsigned lamps_fields(enum relume_light_kind kind)
+{
+    return kinds[kind].fields;
+}
+
 // ---------------------------------------------------------------- arrangements
 
 const struct lamp_preset lamp_presets[] = {

@@ -38,6 +38,19 @@ struct relume_vec3 lamps_direction(const struct relume_light *light, struct relu
 void lamps_change_kind(struct app_state *state, int light, enum relume_light_kind kind,
                        struct relume_vec3 middle, double far);
 
+// "directional", "point", ... for people.
+const char *lamps_kind_words(enum relume_light_kind kind);
+// What can be said of a kind beside its direction and value; CHANGE: it can become another kind.
+enum {
+    LAMP_TURN = 1,
+    LAMP_PLACE = 2,
+    LAMP_AXIS = 4,
+    LAMP_ANGLE = 8,
+    LAMP_EDGES = 16,
+    LAMP_CHANGE = 32
+};
+unsigned lamps_fields(enum relume_light_kind kind);
+
 // Arrangements of directional lights that replace the list. `up` is the pole of the file: z for
 // planar files and slabs, y for panoramas.
 struct lamp_preset {

@@ -280,7 +280,8 @@ static relume_status take_record(struct options *o, const char *name, const char
     o->record = true;
     if (!record_parse(&o->kind, text))
         return RELUME_OK;
-    return say(log, RELUME_EINVAL, "%s: expected sweep, turntable or script; found '%s'", name, text);
+    return say(log, RELUME_EINVAL, "%s: expected sweep, turntable or script; found '%s'", name,
+               text);
 }
 
 static relume_status take_output(struct options *o, const char *name, const char *text,

@@ -176,13 +176,6 @@ static ImVec4 colour_of(const relume_light &light)
     return ImVec4(light.rgb[0] / most, light.rgb[1] / most, light.rgb[2] / most, 1);
 }
 
-static const char *kind_name(relume_light_kind kind)
-{
-    static const char *const names[] = {"directional", "environment", "point", "spot",
-                                        "slide",       "area",        "ies",   "gonio"};
-    return names[kind];
-}
-
 static bool list_row(app_state *s, int i)
 {
     bool changed = false;
@@ -202,7 +195,7 @@ static bool list_row(app_state *s, int i)
     ImGui::SameLine();
     ImGui::ColorButton("##colour", colour_of(s->light[i]), ImGuiColorEditFlags_NoTooltip);
     ImGui::SameLine();
-    std::snprintf(label, sizeof label, "%d %s", i + 1, kind_name(s->light[i].kind));
+    std::snprintf(label, sizeof label, "%d %s", i + 1, lamps_kind_words(s->light[i].kind));
     if (ImGui::Selectable(label, s->selected == i)) {
         s->selected = i;
         changed = true;
@@ -254,14 +247,7 @@ static bool ball(app *app, float side)
     bool changed = false;
     if (ImGui::IsItemActive()) {
         const ImVec2 at = ImGui::GetIO().MousePos;
-        double x = (at.x - middle.x) / radius;
-        double y = (middle.y - at.y) / radius;
-        const double r = std::max(std::hypot(x, y), 1.0);
-        x /= r;
-        y /= r;
-        const double front = app_seen_light(app, s->selected).z < 0 ? -1 : 1;
-        const double z = front * std::sqrt(std::max(1 - x * x - y * y, 0.0));
-        app_aim_light(app, s->selected, relume_vec3{x, y, z});
+        app_point_light(app, s->selected, (at.x - middle.x) / radius, (middle.y - at.y) / radius);
         changed = true;
     }
     draw->AddCircleFilled(middle, radius, IM_COL32(60, 60, 66, 255), 48);
@@ -306,19 +292,19 @@ static bool edit_geometry(relume_light *light)
 {
     const relume_light was = *light;
     const double least = -180, most = 180, narrow = 0.5, wide = 89.5;
+    const unsigned fields = lamps_fields(light->kind);
     bool changed = false;
-    if (light->kind == RELUME_LIGHT_ENVIRONMENT)
+    if (fields & LAMP_TURN)
         changed |= ImGui::SliderScalar("rotation", ImGuiDataType_Double, &light->rotate_deg, &least,
                                        &most, "%.1f deg");
-    if (relume_light_is_near(light->kind))
+    if (fields & LAMP_PLACE)
         changed |= edit_vector("position", &light->position);
-    if (light->kind == RELUME_LIGHT_SPOT || light->kind == RELUME_LIGHT_SLIDE ||
-        light->kind == RELUME_LIGHT_IES || light->kind == RELUME_LIGHT_GONIO)
+    if (fields & LAMP_AXIS)
         changed |= edit_vector("axis", &light->direction);
-    if (light->kind == RELUME_LIGHT_SPOT || light->kind == RELUME_LIGHT_SLIDE)
+    if (fields & LAMP_ANGLE)
         changed |= ImGui::SliderScalar("half angle", ImGuiDataType_Double, &light->half_angle_deg,
                                        &narrow, &wide, "%.1f deg");
-    if (light->kind == RELUME_LIGHT_AREA) {
+    if (fields & LAMP_EDGES) {
         changed |= edit_vector("half edge u", &light->u);
         changed |= edit_vector("half edge v", &light->v);
     }
@@ -335,11 +321,11 @@ static bool choose_kind(app *app)
     app_state *s = &app->now;
     const relume_light_kind now = s->light[s->selected].kind;
     bool changed = false;
-    if (!app->near_lights || now == RELUME_LIGHT_ENVIRONMENT || now == RELUME_LIGHT_SLIDE ||
-        now == RELUME_LIGHT_IES || now == RELUME_LIGHT_GONIO || !ImGui::BeginCombo("kind", kind_name(now)))
+    if (!app->near_lights || !(lamps_fields(now) & LAMP_CHANGE) ||
+        !ImGui::BeginCombo("kind", lamps_kind_words(now)))
         return false;
     for (const relume_light_kind kind : kinds) {
-        if (ImGui::Selectable(kind_name(kind), kind == now) && kind != now) {
+        if (ImGui::Selectable(lamps_kind_words(kind), kind == now) && kind != now) {
             lamps_change_kind(s, s->selected, kind, app_middle(app), 1.5 * app_reach(app));
             changed = true;
         }
@@ -357,7 +343,7 @@ static bool edit_light(panel *panel, app *app)
     ImGui::SameLine();
     ImGui::BeginGroup();
     ImGui::Text("light %d", s->selected + 1);
-    ImGui::TextUnformatted(kind_name(light->kind));
+    ImGui::TextUnformatted(lamps_kind_words(light->kind));
     changed |= flip_side(app);
     changed |= ImGui::ColorEdit3("colour", light->rgb,
                                  ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_Float |
@@ -494,16 +480,12 @@ static void histogram_section(const panel_facts *facts, float scale)
                         IM_COL32(20, 20, 22, 255));
     if (!facts->histogram)
         return;
-    uint32_t most = 1;
-    for (int i = 0; i < 256; i++)
-        for (int c = 0; c < 3; c++)
-            most = std::max(most, facts->histogram[i][c]);
     static const ImU32 colours[3] = {IM_COL32(255, 70, 70, 200), IM_COL32(80, 220, 80, 200),
                                      IM_COL32(90, 130, 255, 200)};
     for (int c = 0; c < 3; c++) {
         ImVec2 line[256];
         for (int i = 0; i < 256; i++) {
-            const float part = std::log1p((float)facts->histogram[i][c]) / std::log1p((float)most);
+            const float part = facts->histogram[i][c];
             line[i] =
                 ImVec2(corner.x + size.x * ((float)i + 0.5f) / 256, corner.y + size.y * (1 - part));
         }

@@ -55,8 +55,8 @@ relume_status passes_create(struct relighter *r)
         status = program_create(&r->develop, r->gl, "develop.frag", develop_uniforms, DEVELOP_COUNT,
                                 r->log);
     if (!status)
-        status = program_create(&r->lookup, r->gl, "lookup.frag", lookup_uniforms, LOOKUP_COUNT,
-                                r->log);
+        status =
+            program_create(&r->lookup, r->gl, "lookup.frag", lookup_uniforms, LOOKUP_COUNT, r->log);
     r->gl->GenVertexArrays(1, &r->vertices);
     r->gl->GenTextures(1, &r->table);
     r->gl->GenTextures(1, &r->weights);
@@ -144,8 +144,7 @@ static relume_status pass_lookup(const struct relighter *r, const struct relit_v
 
 // `coded` decoded by `display`, times the light, added to what the target in use holds.
 void passes_develop(const struct relighter *r, const struct relit_view *v,
-                         const struct target *coded, struct relume_transfer display,
-                         const float rgb[3])
+                    const struct target *coded, struct relume_transfer display, const float rgb[3])
 {
     const struct gl *gl = r->gl;
     texture_use(gl, 0, GL_TEXTURE_2D, coded->texture);

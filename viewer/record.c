@@ -17,7 +17,7 @@
 #define PI 3.14159265358979323846
 
 enum { PATH = 4096 };
-static const double lowest_deg = 20;   // of a light that sweeps
+static const double lowest_deg = 20;  // of a light that sweeps
 static const double highest_deg = 60;
 
 struct record {

@@ -103,8 +103,8 @@ static relume_status relight_by_library(struct relighter *r, struct relit_view *
                                         const struct target *into)
 {
     const struct relume_image *image;
-    const relume_status status = software_view_relight(&image, &v->software, &r->software,
-                                                       &r->source, lights, n, r->log);
+    const relume_status status =
+        software_view_relight(&image, &v->software, &r->software, &r->source, lights, n, r->log);
     if (!status)
         target_write(into, r->gl, image);
     return status;
@@ -142,7 +142,8 @@ static relume_status add_near_by_library(struct relighter *r, struct relit_view 
 
 static struct nearby_codes nearby_codes_of(const struct relit_view *v)
 {
-    return (struct nearby_codes){&v->codes, v->array[0], v->layers, code_format_of(&v->codes)->unit};
+    return (struct nearby_codes){&v->codes, v->array[0], v->layers,
+                                 code_format_of(&v->codes)->unit};
 }
 
 static relume_status need_surface(struct relighter *r, struct relit_view *v)
@@ -197,9 +198,8 @@ static relume_status relight_by_passes(struct relighter *r, struct relit_view *v
 
 static relume_status relight(struct relighter *r, struct relit_view *v)
 {
-    relume_status status =
-        r->by_library ? relight_by_library(r, v, r->light, r->lights, &v->relit)
-                      : relight_by_passes(r, v);
+    relume_status status = r->by_library ? relight_by_library(r, v, r->light, r->lights, &v->relit)
+                                         : relight_by_passes(r, v);
     if (!status)
         status = gl_check(r->gl, "relighting", r->log);
     v->fresh = !status;

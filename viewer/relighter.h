@@ -48,8 +48,8 @@ struct relighter {
     bool pending;           // this frame asked for a view that is still being read
     struct program dot, develop, lookup;
     struct nearby near;
-    bool by_library;           // not by passes: where OpenGL is software. May be set before the first
-                               // view is asked for
+    bool by_library;  // not by passes: where OpenGL is software. May be set before the first
+                      // view is asked for
     struct software software;
     relume_weight_grid *grid;  // of the coder, for environments; NULL: not made yet
     struct relighter *linear;  // the linear twin, under the environments; NULL: not made yet

@@ -1,11 +1,7 @@
 #include "session.h"
 
-#include "lamps.h"
 #include "say.h"
 
-#include <relume/tone.h>
-
-#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -31,15 +27,10 @@ static struct app_file describe(const relume_pack *pack)
     return file;
 }
 
-static const char *file_name(const char *path)
-{
-    const char *slash = path ? strrchr(path, '/') : NULL;
-    return slash ? slash + 1 : path;
-}
-
 static void set_name(struct session *s, const char *path)
 {
-    snprintf(s->name, sizeof s->name, "%s", file_name(path));
+    const char *slash = strrchr(path, '/');
+    snprintf(s->name, sizeof s->name, "%s", slash ? slash + 1 : path);
 }
 
 // As relume_relight says it; only for lights that were asked for, not for each one dragged there.
@@ -255,27 +246,6 @@ void session_close(struct session *s)
     app_release(&s->app);
 }
 
-static void count_histogram(struct session *s)
-{
-    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
-    const struct relume_tone_params tone = {.tone = relume_tones[s->app.now.tone],
-                                            .white = s->app.now.white};
-    struct relume_image frame;
-    memset(s->histogram, 0, sizeof s->histogram);
-    if (renderer_read(&frame, &s->renderer))
-        return;
-    if (relume_tone_apply(&frame, &tone)) {
-        relume_image_destroy(&frame);
-        return;
-    }
-    const size_t samples = 3 * (size_t)frame.width * (size_t)frame.height;
-    for (size_t i = 0; i < samples; i++) {
-        const float code = relume_transfer_encode(srgb, frame.data[i]);
-        s->histogram[(int)fminf(fmaxf(255 * code + 0.5f, 0), 255)][i % 3]++;
-    }
-    relume_image_destroy(&frame);
-}
-
 // The first frame is drawn once more, with the exposure that it asks for.
 static relume_status meter(struct session *s)
 {
@@ -286,64 +256,6 @@ static relume_status meter(struct session *s)
         return status;
     app_meter(&s->app, ev);
     return app_exposure_ev(&s->app) == before ? RELUME_OK : renderer_draw(&s->renderer, &s->app);
-}
-
-static relume_status inspect(struct session *s, bool *shown)
-{
-    relume_status status = RELUME_OK;
-    const struct code_source source = pack_source_codes(s->source);
-    if (!s->inspector.weights)
-        status = inspect_create(&s->inspector, relume_pack_info(s->pack), &source, s->renderer.grid,
-                                s->capture);
-    if (!status)
-        status = inspect_update(&s->inspector, &s->app, shown);
-    if (!status && *shown)
-        draw_panel_plot(&s->drawing, &s->gl, &s->inspector.plot);
-    return status;
-}
-
-// Those beside the map in use, else in the working folder.
-static relume_status list_maps(struct session *s)
-{
-    maps_destroy(&s->maps);
-    if (!panel_wants_maps(s->panel))
-        return RELUME_OK;
-    const char *in_use = session_map_in_use(s), *slash = in_use ? strrchr(in_use, '/') : NULL;
-    char folder[PATH_MAX];
-    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - in_use) : 1,
-             slash ? in_use : ".");
-    return maps_list(&s->maps, folder);
-}
-
-static relume_status build_panel(struct session *s, bool histogram)
-{
-    bool plot = false;
-    relume_status status = s->app.inspect ? inspect(s, &plot) : RELUME_OK;
-    if (!status)
-        status = list_maps(s);
-    const struct panel_facts facts = {
-        .file = s->name,
-        .line = s->lines,
-        .message = s->message,
-        .histogram = histogram ? (const uint32_t(*)[3])s->histogram : NULL,
-        .plot = plot ? &s->inspector.plot : NULL,
-        .plot_text = s->inspector.text,
-        .map_folder = s->maps.folder,
-        .map = (const char *const *)s->maps.name,
-        .map_in_use = file_name(session_map_in_use(s)),
-    };
-    if (!status)
-        (void)panel_build(s->panel, &s->app, &facts);
-    return status;
-}
-
-// Once more, with the histogram of the frame that has just been drawn.
-static relume_status add_histogram(struct session *s)
-{
-    if (!panel_shown(&s->app) || !panel_wants_histogram(s->panel))
-        return RELUME_OK;
-    count_histogram(s);
-    return build_panel(s, true);
 }
 
 // Whether an event is for those that hear of it when nothing is recorded.
@@ -365,14 +277,14 @@ bool session_send(struct session *s, const struct app_event *event)
     if ((shown || event->kind == APP_RELEASE) && panel_takes(s->panel, event))
         return true;
     const bool changed = app_handle(&s->app, event);
-    if (!shown && panel_shown(&s->app) && build_panel(s, false))
+    if (!shown && panel_shown(&s->app) && session_build_panel(s, false))
         return true;  // what went wrong goes wrong again when it is drawn, and is told there
     return changed || shown || s->app.wish;
 }
 
 relume_status session_draw(struct session *s)
 {
-    relume_status status = panel_shown(&s->app) ? build_panel(s, false) : RELUME_OK;
+    relume_status status = panel_shown(&s->app) ? session_build_panel(s, false) : RELUME_OK;
     if (!status)
         status = session_grant_wish(s);
     const bool recorded = !status && session_records(s) && !session_record_step(s);
@@ -380,7 +292,7 @@ relume_status session_draw(struct session *s)
         status = renderer_draw(&s->renderer, &s->app);
     if (!status && !recorded && s->app.now.auto_exposure)
         status = meter(s);
-    return status ? status : add_histogram(s);
+    return status ? status : session_add_histogram(s);
 }
 
 bool session_is_busy(const struct session *s)

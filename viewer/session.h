@@ -42,9 +42,9 @@ struct session {
     struct maps maps;            // to choose from, while the panel does
     struct inspector inspector;  // made when first asked for
     struct recording recording;
-    struct record *film;         // of a script as it is played, or NULL
-    struct target screen;        // of shots without a window
-    uint32_t histogram[256][3];
+    struct record *film;   // of a script as it is played, or NULL
+    struct target screen;  // of shots without a window
+    float histogram[256][3];
     char name[SESSION_TEXT];  // of the file, for the title
     char line[SESSION_LINES][SESSION_TEXT];
     const char *lines[SESSION_LINES + 1];  // what the panel says of the file
@@ -52,7 +52,7 @@ struct session {
     int threads;                           // that read files
     size_t vram_bytes;                     // for views
     enum session_relight relight;
-    bool streams;                          // frames are drawn with the views that are there
+    bool streams;  // frames are drawn with the views that are there
     const struct relume_log *log;
 };
 
@@ -73,6 +73,10 @@ relume_status session_drop(struct session *s, const char *path);
 relume_status session_show(struct session *s, const char *path);
 void session_close(struct session *s);
 
+// The panel as its events have changed the app, with the histogram of the last frame or without;
+// the same once more, with it, where the panel shows one. RELUME_ENOMEM, RELUME_EDATA.
+relume_status session_build_panel(struct session *s, bool histogram);
+relume_status session_add_histogram(struct session *s);
 // Hand an event to the panel, else to the app; returns whether something may look different.
 bool session_send(struct session *s, const struct app_event *event);
 // Draw the frame, linear, with the panel as its events have changed the app, and do what was

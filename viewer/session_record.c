@@ -69,8 +69,7 @@ relume_status session_record_step(struct session *s)
 {
     struct recording *r = &s->recording;
     struct relume_image image = {0};
-    relume_status status =
-        record_pose(&s->app, r->kind, (double)r->frame / r->frames, s->log);
+    relume_status status = record_pose(&s->app, r->kind, (double)r->frame / r->frames, s->log);
     if (!status)
         status = renderer_draw(&s->renderer, &s->app);
     if (!status && renderer_is_pending(&s->renderer))

@@ -60,10 +60,10 @@ static relume_status need_surface(struct software_view *v, const struct code_sou
 
 static relume_status need_grid(struct software *shared, const relume_coder *coder)
 {
-    return shared->grid ? RELUME_OK
-                        : relume_weight_grid_create(
-                              &shared->grid, coder,
-                              relume_weight_grid_params(.threads = shared->threads));
+    return shared->grid
+               ? RELUME_OK
+               : relume_weight_grid_create(&shared->grid, coder,
+                                           relume_weight_grid_params(.threads = shared->threads));
 }
 
 // What the first view's codes teach serves all views.
@@ -86,9 +86,9 @@ static relume_status need_refit(struct software_view *v, struct software *shared
         return RELUME_OK;
     const relume_status status = learn(shared, v->codes, log);
     return status ? status
-                  : relume_refit_create(&v->refit, v->codes,
-                                        relume_refit_params(.like = shared->refit,
-                                                            .threads = shared->threads));
+                  : relume_refit_create(
+                        &v->refit, v->codes,
+                        relume_refit_params(.like = shared->refit, .threads = shared->threads));
 }
 
 // ---------------------------------------------------------------- groups
@@ -160,10 +160,11 @@ static relume_status relight_group(const struct job *job, struct software_group 
     if (!status)
         status = keep_lights(g, lights, n);
     if (!status)
-        status = relume_relight(&g->image, v->codes, lights, n,
-                                relume_relight_params(.surface = v->surface.data ? &v->surface : NULL,
-                                                      .grid = job->shared->grid, .refit = v->refit,
-                                                      .threads = job->shared->threads));
+        status =
+            relume_relight(&g->image, v->codes, lights, n,
+                           relume_relight_params(.surface = v->surface.data ? &v->surface : NULL,
+                                                 .grid = job->shared->grid, .refit = v->refit,
+                                                 .threads = job->shared->threads));
     if (status)
         empty(g);
     return status;

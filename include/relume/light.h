@@ -28,17 +28,17 @@ typedef struct relume_environment relume_environment;  // a map of distant radia
 // value 1. Environments and areas are radiances E that weigh E dw / pi. Plain data.
 struct relume_light {
     enum relume_light_kind kind;
-    struct relume_vec3 direction;      // directional: towards the light; spot, slide, ies, gonio: the
-                                       // axis along which it shines; any length but 0
-    struct relume_vec3 position;       // near ones, world units; area: the centre
-    struct relume_vec3 u, v;           // area: half edges; it emits towards u x v
-    bool disc;                         // area: the ellipse inside, not the rectangle
-    bool nofall;                       // all near ones but area: the same value at every distance
-    double half_angle_deg;             // (0, 90). spot: full inside 0.9 of it, smoothstep to 0;
-                                       // slide: half the width of the picture
-    double rotate_deg;                 // environment: > 0 turns it from -z towards +x
-    float rgb[3];                      // linear value
-    const struct relume_image *image;  // slide: the picture, linear, three channels; borrowed
+    struct relume_vec3 direction;  // directional: towards the light; spot, slide, ies, gonio: the
+                                   // axis along which it shines; any length but 0
+    struct relume_vec3 position;   // near ones, world units; area: the centre
+    struct relume_vec3 u, v;       // area: half edges; it emits towards u x v
+    bool disc;                     // area: the ellipse inside, not the rectangle
+    bool nofall;                   // all near ones but area: the same value at every distance
+    double half_angle_deg;         // (0, 90). spot: full inside 0.9 of it, smoothstep to 0;
+                                   // slide: half the width of the picture
+    double rotate_deg;             // environment: > 0 turns it from -z towards +x
+    float rgb[3];                  // linear value
+    const struct relume_image *image;       // slide: the picture, linear, three channels; borrowed
     const relume_environment *environment;  // borrowed
     const relume_ies *ies;                  // borrowed
     const relume_gonio *gonio;              // borrowed
@@ -58,14 +58,15 @@ static inline bool relume_light_is_near(enum relume_light_kind kind)
 RELUME_RESULT relume_status relume_light_check(const struct relume_light *light, const char *name,
                                                const struct relume_log *log);
 
-// What a point, spot, slide, ies or gonio light sends to `point`: its value there and the unit direction
-// towards it (Wong 1998, Eq. 7.7 with its sign corrected: L = S - P). False where nothing arrives:
-// outside the cone or picture, at the light itself, at a point that is not finite.
+// What a point, spot, slide, ies or gonio light sends to `point`: its value there and the unit
+// direction towards it (Wong 1998, Eq. 7.7 with its sign corrected: L = S - P). False where nothing
+// arrives: outside the cone or picture, at the light itself, at a point that is not finite.
 RELUME_API bool relume_light_at(struct relume_vec3 *towards, float rgb[3],
                                 const struct relume_light *light, struct relume_vec3 point);
 
-// The frame of a slide, ies or gonio light that shines along `axis`: image right and up, unit vectors. Up
-// is world +y projected, +z where the axis is vertical; seen along the axis, right is right.
+// The frame of a slide, ies or gonio light that shines along `axis`: image right and up, unit
+// vectors. Up is world +y projected, +z where the axis is vertical; seen along the axis, right is
+// right.
 RELUME_API void relume_light_frame(struct relume_vec3 *right, struct relume_vec3 *up,
                                    struct relume_vec3 axis);
 

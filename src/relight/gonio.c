@@ -128,8 +128,8 @@ static void sphere_value(float rgb[3], const struct relume_image *map, vec3 d)
     const int x0 = (int)floor(x), y0 = (int)floor(y);
     const float fx = (float)(x - x0), fy = (float)(y - y0);
     for (int c = 0; c < 3; c++) {
-        const float top = sphere_texel(map, x0, y0)[c] * (1.0f - fx) +
-                          sphere_texel(map, x0 + 1, y0)[c] * fx;
+        const float top =
+            sphere_texel(map, x0, y0)[c] * (1.0f - fx) + sphere_texel(map, x0 + 1, y0)[c] * fx;
         const float low = sphere_texel(map, x0, y0 + 1)[c] * (1.0f - fx) +
                           sphere_texel(map, x0 + 1, y0 + 1)[c] * fx;
         rgb[c] = top * (1.0f - fy) + low * fy;
@@ -182,8 +182,7 @@ relume_status relume_gonio_create(relume_gonio **out, const struct relume_image 
     if (!g)
         return RELUME_ENOMEM;
     g->side = side;
-    const relume_status status =
-        relume_image_create(&g->atlas, FACES * (side + 2), side + 2, 3);
+    const relume_status status = relume_image_create(&g->atlas, FACES * (side + 2), side + 2, 3);
     if (status) {
         relume_gonio_destroy(&g);
         return status;
@@ -229,8 +228,10 @@ void relume_gonio_value(float rgb[3], const relume_gonio *g, struct relume_vec3 
     const int x0 = (int)floor(x), y0 = (int)floor(y);
     const float fx = (float)(x - x0), fy = (float)(y - y0);
     for (int c = 0; c < 3; c++) {
-        const float top = texel(g, face, x0, y0)[c] * (1.0f - fx) + texel(g, face, x0 + 1, y0)[c] * fx;
-        const float low = texel(g, face, x0, y0 + 1)[c] * (1.0f - fx) + texel(g, face, x0 + 1, y0 + 1)[c] * fx;
+        const float top =
+            texel(g, face, x0, y0)[c] * (1.0f - fx) + texel(g, face, x0 + 1, y0)[c] * fx;
+        const float low =
+            texel(g, face, x0, y0 + 1)[c] * (1.0f - fx) + texel(g, face, x0 + 1, y0 + 1)[c] * fx;
         rgb[c] = top * (1.0f - fy) + low * fy;
     }
 }

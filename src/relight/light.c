@@ -56,7 +56,8 @@ static bool has_length(vec3 v)
 
 const char *light_complaint(const struct relume_light *l, bool with_files)
 {
-    const int files = IMAGE | MAP | TABLE | FACES, need = needs[l->kind] & (with_files ? ~0 : ~files);
+    const int files = IMAGE | MAP | TABLE | FACES,
+              need = needs[l->kind] & (with_files ? ~0 : ~files);
     for (int c = 0; c < 3; c++)
         if (!(fabs((double)l->rgb[c]) <= MOST_VALUE))
             return "expected values of at most 1e9";
@@ -180,8 +181,7 @@ static bool gonio_factor(float rgb[3], const struct relume_light *l, vec3 ray)
     float value[3];
     relume_light_frame(&right, &up, l->direction);
     const double ahead = vec3_dot(ray, vec3_unit(l->direction));
-    relume_gonio_value(value, l->gonio,
-                       vec3_of(vec3_dot(ray, right), vec3_dot(ray, up), -ahead));
+    relume_gonio_value(value, l->gonio, vec3_of(vec3_dot(ray, right), vec3_dot(ray, up), -ahead));
     for (int c = 0; c < 3; c++)
         rgb[c] *= value[c];
     return value[0] > 0.0f || value[1] > 0.0f || value[2] > 0.0f;

@@ -216,8 +216,8 @@ static void weigh_one(const struct near *near, struct block *b, const struct emi
     b->lit = false;
     memset(b->constant, 0, sizeof b->constant);
     for (int i = 0; i < b->n; i++) {
-        const bool lit = point_of(&point, near, b->first + (size_t)i) &&
-                         arrives(&towards, rgb, near, e, point);
+        const bool lit =
+            point_of(&point, near, b->first + (size_t)i) && arrives(&towards, rgb, near, e, point);
         for (int c = 0; c < 3; c++)
             b->rgb[c][i] = lit ? rgb[c] : 0.0f;
         if (!lit) {

@@ -648,8 +648,7 @@ static void scripts_play_events(void **state)
     assert_float_equal(frames.at[0].now.camera.eye.x, -0.5, 1e-12);
     assert_float_equal(frames.light[1][0].direction.x, 1, 1e-12);
     assert_true(frames.at[1].now.exposure_ev == 0.25);
-    assert_true(frames.light[2][0].direction.y == 1 &&
-                frames.light[2][0].rgb[0] == 2);
+    assert_true(frames.light[2][0].direction.y == 1 && frames.light[2][0].rgb[0] == 2);
 }
 
 // A drag that takes time throws the panorama; waiting lets it glide.

@@ -96,9 +96,9 @@ static void expect_view(struct relighter *r, struct lender *l, int view,
     const struct target *target;
     assert_int_equal(find_surface(&surface, NULL, view), RELUME_OK);
     assert_int_equal(fixture_fetch(&codes, &l->file, view), RELUME_OK);
-    assert_int_equal(relume_relight(&want, codes, lights, n,
-                                    relume_relight_params(.surface = &surface)),
-                     RELUME_OK);
+    assert_int_equal(
+        relume_relight(&want, codes, lights, n, relume_relight_params(.surface = &surface)),
+        RELUME_OK);
     assert_int_equal(relighter_begin(r, lights, n), RELUME_OK);
     assert_int_equal(relighter_view(&target, r, view), RELUME_OK);
     assert_int_equal(target_read(&got, target, &fixture_gl), RELUME_OK);
@@ -228,8 +228,8 @@ static void without_a_surface(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_as_relight),          cmocka_unit_test(only_what_moves_is_relit),
-        cmocka_unit_test(codes_are_given_back),     cmocka_unit_test(near_lights_on_many_planes),
+        cmocka_unit_test(same_as_relight),      cmocka_unit_test(only_what_moves_is_relit),
+        cmocka_unit_test(codes_are_given_back), cmocka_unit_test(near_lights_on_many_planes),
         cmocka_unit_test(without_a_surface),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);

@@ -84,10 +84,8 @@ static void test_faces(void **state)
         for (int c = 0; c < 3; c++)
             map.data[3 * i + c] = (float)(1 + (i % (6 * SIDE)) / SIDE + 10 * c);
     relume_gonio *g = create(&map);
-    const struct relume_light light = {.kind = RELUME_LIGHT_GONIO,
-                                       .direction = {2, 0, 0},
-                                       .rgb = {1, 1, 1},
-                                       .gonio = g};
+    const struct relume_light light = {
+        .kind = RELUME_LIGHT_GONIO, .direction = {2, 0, 0}, .rgb = {1, 1, 1}, .gonio = g};
     for (int i = 0; i < 6; i++) {
         float rgb[3];
         vec3 towards;
@@ -211,8 +209,8 @@ static void test_bad_maps(void **state)
     map = cube_of(2);
     map.data[0] = NAN;
     map.data[7] = -1;
-    CHECK_OK(relume_gonio_create(
-        &g, &map, relume_gonio_params(.log = &heard.log, .name = "faces.exr")));
+    CHECK_OK(
+        relume_gonio_create(&g, &map, relume_gonio_params(.log = &heard.log, .name = "faces.exr")));
     assert_non_null(strstr(heard.text, "faces.exr: values that are negative, not finite"));
     const struct relume_image *atlas = relume_gonio_map(g);
     assert_int_equal(atlas->width, 24);

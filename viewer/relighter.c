@@ -105,9 +105,14 @@ static relume_status relight_by_library(struct relighter *r, struct relit_view *
     const struct relume_image *image;
     const relume_status status =
         software_view_relight(&image, &v->software, &r->software, &r->source, lights, n, r->log);
-    if (!status)
-        target_write(into, r->gl, image);
-    return status;
+    if (status)
+        return status;
+    target_write(into, r->gl, image);
+    const size_t kept = software_view_bytes(&v->software);
+    r->bytes += kept - v->kept;
+    v->bytes += kept - v->kept;
+    v->kept = kept;
+    return RELUME_OK;
 }
 
 // Near lights on planes that take several array textures, which the shader does not read.

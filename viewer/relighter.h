@@ -22,7 +22,7 @@ struct relit_view {
                     // a layer for each codebook
     int arrays;
     int layers;  // of all arrays together
-    size_t bytes;
+    size_t bytes, kept;  // of all it has, and of that by `software`
     uint64_t used;  // the frame that last asked for it
     bool fresh;     // `relit` shows the present lights
     struct target relit;

@@ -43,6 +43,19 @@ void software_view_destroy(struct software_view *v, const struct code_source *so
     *v = (struct software_view){0};
 }
 
+static size_t image_bytes(const struct relume_image *image)
+{
+    return image->data ? 3 * (size_t)image->width * (size_t)image->height * sizeof *image->data : 0;
+}
+
+size_t software_view_bytes(const struct software_view *v)
+{
+    size_t bytes = image_bytes(&v->surface) + image_bytes(&v->sum);
+    for (int i = 0; i < SOFTWARE_GROUPS; i++)
+        bytes += image_bytes(&v->group[i].image);
+    return bytes;
+}
+
 // ---------------------------------------------------------------- needs
 
 static relume_status need_surface(struct software_view *v, const struct code_source *source,

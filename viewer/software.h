@@ -44,6 +44,9 @@ void software_view_destroy(struct software_view *v, const struct code_source *so
 // What was kept for lights may belong to others.
 void software_view_forget(struct software_view *v);
 
+// Of the pictures that it keeps.
+size_t software_view_bytes(const struct software_view *v);
+
 // The view under `lights`, linear, three channels; valid until the next call. RELUME_EDATA (a near
 // light and no surface), RELUME_ENOMEM.
 relume_status software_view_relight(const struct relume_image **out, struct software_view *v,

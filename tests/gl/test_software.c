@@ -182,6 +182,8 @@ static void codes_are_given_back(void **state)
     for (int i = 0; i < 6; i++) {
         expect_view(&r, &l, i % 3, lights, 2, BOUND, "in turn");
         assert_int_equal(l.lent, 1);
+        // two groups, their sum and the surface, three floats each; the target, four; the codes
+        assert_int_equal(r.bytes, W * H * (4 * 12 + 16 + 4 * ((FIXTURE_PLANES + 3) / 4)));
     }
     relighter_destroy(&r);
     assert_int_equal(l.lent, 0);

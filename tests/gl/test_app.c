@@ -73,8 +73,10 @@ static bool key(struct app *app, int k)
 static void framing_suits_the_file(void **state)
 {
     (void)state;
-    assert_int_equal(make_app(RELUME_PLANAR, true).now.camera.framing, RELUME_FRAME_VIEW);
-    assert_int_equal(make_app(RELUME_SPHERICAL, false).now.camera.framing, RELUME_FRAME_VIEW);
+    OWNED_APP picture = make_app(RELUME_PLANAR, true);
+    assert_int_equal(picture.now.camera.framing, RELUME_FRAME_VIEW);
+    OWNED_APP unfolded = make_app(RELUME_SPHERICAL, false);
+    assert_int_equal(unfolded.now.camera.framing, RELUME_FRAME_VIEW);
     OWNED_APP look = make_app(RELUME_CYLINDRICAL, true);
     assert_int_equal(look.now.camera.framing, RELUME_FRAME_LOOK);
     assert_int_equal(look.width, 1024);

@@ -118,8 +118,9 @@ struct relume_books_params {  // zero in a field means its default
     uint64_t seed;
     int max_rounds;  // default 24
     size_t sample;   // pixels to learn from; default: 40 a code, at least 65536
-    float dither;    // [0, 1]: smooth ramps alternate between neighbouring codes in a fine pattern
-                     // instead of showing contours; 1 follows the ramp, default 0 does nothing
+    float dither;  // [0, 1]: along contours in smooth ramps codes alternate in a fine pattern, the
+                   // longest first, until the indices take about that part more bytes; 1: all,
+                   // default 0: none
     int threads;
 };
 #define relume_books_params(...) (&(const struct relume_books_params){__VA_ARGS__})

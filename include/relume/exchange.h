@@ -51,9 +51,11 @@ struct relume_export_params {
     const struct relume_log *log;
     int view;                   // of a slab
     enum relume_web_type type;  // RELIGHT, DEEPZOOM
-    bool ycc;                   // ptm, hsh, sh: only the luminance follows the light
-    int coefficients;           // planes of bilinear and rbf, at most 45, default: up to 27, as
-                                // many as are worth their bytes; terms of the other types
+    bool ycc;                   // ptm, hsh, sh: only the luminance follows the light; bilinear,
+                                // rbf: planes for luminance and chroma apart (mycc)
+    int coefficients;           // planes of bilinear and rbf, at most 45, default: up to 27
+                                // (mycc: 45), as many as are worth their bytes; terms of the other
+                                // types
     int resolution;  // bilinear: side of the grid of lights, [3, 33]; default 15, for many lights
                      // more
     double bytes_per_pixel;  // of all plane JPEGs together, not exceeded

@@ -15,7 +15,7 @@
     {"--split", OPTION_TEXT, "HOW",                                                                \
      "codebooks: none, luma (luminance, chrominance) or product:G; default: none", 0, 0},          \
     {"--codebook-start", OPTION_TEXT, "S", "codebooks: split or random; default: split", 0, 0},    \
-    {"--dither", OPTION_NUMBER, "D", "codebooks: noise for contours, 0 to 1; default: 0", 0, 1},   \
+    {"--dither", OPTION_NUMBER, "D", "codebooks: part of bytes spent on contours; 1: all", 0, 1},  \
     {"--seed", OPTION_INT, "S", "codebooks: choice of pixels and start; default: 0", 0, 2147483647}
 // clang-format on
 

@@ -7,7 +7,9 @@ static const struct option options[] = {
     {"--to", OPTION_TEXT, "FORMAT", "relight, ptm, lptm, rti or deepzoom; default: relight", 0, 0},
     {"--type", OPTION_TEXT, "T", "relight, deepzoom: bilinear, rbf, ptm, lptm, hsh or sh", 0, 0},
     {"--colorspace", OPTION_TEXT, "C",
-     "ptm, hsh, sh: rgb, or ycc: only the luminance follows the light; default: rgb", 0, 0},
+     "rgb, ycc (ptm, hsh, sh: only the luminance follows the light) or mycc (bilinear, rbf: "
+     "planes for luminance and chroma apart); default: rgb",
+     0, 0},
     {"--coefficients", OPTION_INT, "K",
      "planes (bilinear, rbf; default: up to 27) or terms of the type", 1, 45},
     {"--bytes-per-pixel", OPTION_NUMBER, "B", "size of all plane JPEGs, not exceeded", 0.001, 100},
@@ -38,7 +40,7 @@ static relume_status parse(const struct args *args, enum relume_exchange *format
 {
     static const char *const formats[] = {"relight", "ptm", "lptm", "rti", "deepzoom", NULL};
     static const char *const types[] = {"bilinear", "rbf", "ptm", "lptm", "hsh", "sh", NULL};
-    static const char *const spaces[] = {"rgb", "ycc", NULL};
+    static const char *const spaces[] = {"rgb", "ycc", "mycc", NULL};
     const char *to = args_text(args, "--to", "relight"), *type = args_text(args, "--type", NULL);
     const char *space = args_text(args, "--colorspace", "rgb");
     if (!args_has(args, "-o"))
@@ -47,9 +49,11 @@ static relume_status parse(const struct args *args, enum relume_exchange *format
         return unknown_name("--to", to, formats);
     if (type && relume_web_type_parse(&p->type, type))
         return unknown_name("--type", type, types);
-    if (strcmp(space, "rgb") && strcmp(space, "ycc"))
+    if (strcmp(space, "rgb") && strcmp(space, "ycc") && strcmp(space, "mycc"))
         return unknown_name("--colorspace", space, spaces);
-    p->ycc = !strcmp(space, "ycc");
+    p->ycc = strcmp(space, "rgb");
+    if (!strcmp(space, "mycc") && p->type > RELUME_WEB_RBF)
+        return usage_error("--colorspace mycc: only for --type bilinear and rbf");
     const bool folder = *format == RELUME_EXCHANGE_RELIGHT || *format == RELUME_EXCHANGE_DEEPZOOM;
     static const char *const only_folders[] = {"--type", "--colorspace", "--bytes-per-pixel",
                                                "--psnr", "--quality",    "--resolution"};

@@ -1,10 +1,4 @@
 // books_assign.c - every pixel of a view becomes one index per book
-//
-// Contours (Wong 1998, Fig 9-11) arise where a smooth ramp crosses from one code to the next. With
-// `dither`, a pixel x between its code a and a neighbour b of a takes b in a part t of all places,
-// t = (x - a) . (b - a) / |b - a|^2, by an ordered pattern (Bayer 1973): the mean of an area then
-// follows the ramp along that segment. Errors are not handed on from pixel to pixel (Floyd and
-// Steinberg 1976): what lies off the segment can never be made good, and would pile up.
 #include "coder/books.h"
 
 #include "base/log.h"
@@ -12,6 +6,7 @@
 #include "base/thread.h"
 #include "coder/basis.h"
 #include "coder/coefficients.h"
+#include "coder/dither.h"
 
 #include <math.h>
 #include <string.h>
@@ -28,11 +23,6 @@ struct work {
     float *wanted, *kept;  // [lights][x]
 };
 
-enum { NEIGHBOURS = 8 };
-// Dither only where the coefficients move less than this part of the way to the next code within
-// four pixels: steeper ramps hide their contours.
-static const double MOST_CHANGE = 0.5;
-
 struct assignment {
     const relume_books *books;
     const relume_coefficients *view;
@@ -40,8 +30,7 @@ struct assignment {
     struct captured captured;
     struct work *work;  // [workers]
     double *loss;       // [height]: squared error over the captured lights; negative: not measured
-    int *neighbour[RELUME_MOST_BOOKS];  // dither: [codes][NEIGHBOURS]; NULL where there is none
-    float dither;
+    struct dither dither[RELUME_MOST_BOOKS];  // where a book has one
     relume_status status;
 };
 
@@ -96,55 +85,6 @@ static relume_status begin_row(const struct assignment *a, struct work *w, int y
     return status;
 }
 
-// The vector as it is shown in this place: by its code, or by the neighbour that it has come
-// nearest to on the way there.
-static int choose_of_two(const struct assignment *a, int book, int code, const float *residual,
-                         float threshold, double change)
-{
-    const size_t planes = (size_t)a->books->info.planes;
-    const float *vectors = a->books->vectors[book], *from = vectors + (size_t)code * planes;
-    double part = 0.0, spacing = 0.0;
-    int other = code;
-    for (int i = 0; i < NEIGHBOURS; i++) {
-        const int next = a->neighbour[book][code * NEIGHBOURS + i];
-        const float *to = vectors + (size_t)next * planes;
-        double along = 0.0, square = 0.0;
-        for (size_t p = 0; p < planes; p++) {
-            const double d = (double)to[p] - (double)from[p];
-            along += ((double)residual[p] - (double)from[p]) * d;
-            square += d * d;
-        }
-        if (along > part * square) {
-            part = along / square;
-            spacing = square;
-            other = next;
-        }
-    }
-    if (change > MOST_CHANGE * MOST_CHANGE * spacing)
-        return code;
-    return (double)a->dither * part > (double)threshold ? other : code;
-}
-
-// How far the row's coefficients move in four pixels, squared.
-static double change_at(const struct assignment *a, const float *row, size_t x)
-{
-    const size_t width = (size_t)a->view->info.width, planes = (size_t)a->books->info.planes;
-    const size_t left = x < 2 ? 0 : x - 2, right = x + 2 < width ? x + 2 : width - 1;
-    double sum = 0.0;
-    for (size_t p = 0; p < planes; p++) {
-        const double d = (double)row[p * width + right] - (double)row[p * width + left];
-        sum += d * d;
-    }
-    return sum;
-}
-
-static float threshold_at(size_t x, int y)
-{
-    static const unsigned char order[4][4] = {
-        {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
-    return ((float)order[y % 4][x % 4] + 0.5f) / 16.0f;
-}
-
 // One book after another.
 static void find_codes(const struct assignment *a, struct work *w, int y)
 {
@@ -158,9 +98,8 @@ static void find_codes(const struct assignment *a, struct work *w, int y)
                      w->apart, w->scratch);
         for (size_t x = 0; x < width; x++) {
             float *residual = w->residual + x * planes;
-            if (a->neighbour[b])
-                index[x] = (uint16_t)choose_of_two(a, b, index[x], residual, threshold_at(x, y),
-                                                   change_at(a, w->row, x));
+            if (a->dither[b].other)
+                dither_offer(&a->dither[b], x, (size_t)y, index[x], residual, w->row);
             const float *v = a->books->vectors[b] + (size_t)index[x] * planes;
             for (size_t p = 0; p < planes; p++)
                 residual[p] -= v[p];
@@ -210,49 +149,15 @@ static void assign_row(void *context, size_t item, int worker)
         return;
     }
     find_codes(a, w, y);
-    if (is_measured(a, y))
-        a->loss[y] = measure_row(a, w, y);
 }
 
-// ---------------------------------------------------------------- dither
-
-struct near {
-    double distance;
-    int code;
-};
-
-struct meeting {
-    const struct relume_book *book;
-    const float *vectors;
-    size_t planes;
-    int *neighbour;
-};
-
-// The NEIGHBOURS codes nearest to one, itself where there are not as many.
-static void find_neighbours(void *context, size_t code, int worker)
+static void judge_row(void *context, size_t item, int worker)
 {
-    (void)worker;
-    const struct meeting *m = context;
-    const float *own = m->vectors + code * m->planes;
-    struct near nearest[NEIGHBOURS];
-    for (int i = 0; i < NEIGHBOURS; i++)
-        nearest[i] = (struct near){INFINITY, (int)code};
-    for (int c = 0; c < m->book->codes; c++) {
-        double d = 0.0;
-        for (size_t p = 0; p < m->planes; p++) {
-            const double e = (double)own[p] - (double)m->vectors[(size_t)c * m->planes + p];
-            d += e * e;
-        }
-        int at = NEIGHBOURS;
-        while (at > 0 && d > 0.0 && d < nearest[at - 1].distance)
-            at--;
-        if (at == NEIGHBOURS)
-            continue;
-        memmove(nearest + at + 1, nearest + at, (size_t)(NEIGHBOURS - 1 - at) * sizeof *nearest);
-        nearest[at] = (struct near){d, c};
-    }
-    for (int i = 0; i < NEIGHBOURS; i++)
-        m->neighbour[code * NEIGHBOURS + (size_t)i] = nearest[i].code;
+    struct assignment *a = context;
+    const int y = (int)item;
+    if (is_measured(a, y))
+        a->loss[y] =
+            begin_row(a, &a->work[worker], y) ? (double)NAN : measure_row(a, &a->work[worker], y);
 }
 
 // Only books with none for the same planes after them: a later stage mends the contours of the
@@ -266,32 +171,50 @@ static bool is_last_stage(const struct relume_books_info *info, int book)
     return true;
 }
 
-static relume_status prepare_dither(struct assignment *a, int threads)
+static relume_status prepare_dither(struct assignment *a, const struct relume_books_params *p)
 {
     const struct relume_books_info *info = &a->books->info;
-    for (int b = 0; b < info->books; b++) {
-        if (!is_last_stage(info, b))
-            continue;
-        const size_t codes = (size_t)info->codes[b];
-        struct meeting m = {&info->book[b], info->vectors[b], (size_t)info->planes, NULL};
-        m.neighbour = a->neighbour[b] = mem_array(codes, NEIGHBOURS * sizeof *m.neighbour);
-        if (!m.neighbour)
-            return RELUME_ENOMEM;
-        thread_for(threads, codes, find_neighbours, &m);
-    }
-    return RELUME_OK;
+    const size_t width = (size_t)a->view->info.width, height = (size_t)a->view->info.height;
+    relume_status status = RELUME_OK;
+    for (int b = 0; !status && b < info->books; b++)
+        if (is_last_stage(info, b))
+            status =
+                dither_open(&a->dither[b], info->vectors[b], info->codes[b], (size_t)info->planes,
+                            width, height, (double)p->dither, p->threads);
+    return status;
+}
+
+static relume_status spend_dither(struct assignment *a)
+{
+    relume_status status = RELUME_OK;
+    for (int b = 0; !status && b < a->books->info.books; b++)
+        if (a->dither[b].other)
+            status = dither_spend(&a->dither[b], a->index[b]);
+    return status;
 }
 
 // ---------------------------------------------------------------- interface
 
-static relume_status assign_rows(struct assignment *a, int threads, const struct relume_log *log)
+static relume_status for_rows(struct assignment *a, void (*task)(void *, size_t, int), int threads)
 {
     const int height = a->view->info.height;
-    thread_for(threads, (size_t)height, assign_row, a);
+    thread_for(threads, (size_t)height, task, a);
     for (int y = 0; y < height; y++)
         if (isnan(a->loss[y]))
             return RELUME_EIO;
-    return log_progress(log, "finding codes", 1.0) ? RELUME_OK : RELUME_ECANCEL;
+    return RELUME_OK;
+}
+
+static relume_status assign_rows(struct assignment *a, const struct relume_books_params *p)
+{
+    relume_status status = for_rows(a, assign_row, p->threads);
+    if (!status)
+        status = spend_dither(a);
+    if (!status)
+        status = for_rows(a, judge_row, p->threads);
+    if (!status && !log_progress(p->log, "finding codes", 1.0))
+        status = RELUME_ECANCEL;
+    return status;
 }
 
 static double mean_loss(const struct assignment *a)
@@ -319,7 +242,6 @@ relume_status relume_books_assign(uint16_t *const *index, double *store_rms,
         .index = index,
         .work = mem_zeroed((size_t)workers, sizeof *a.work),
         .loss = mem_array((size_t)view->info.height, sizeof *a.loss),
-        .dither = p.dither,
     };
     const relume_coder *coder = view->info.coder;
     relume_status status =
@@ -328,9 +250,9 @@ relume_status relume_books_assign(uint16_t *const *index, double *store_rms,
     for (int i = 0; !status && i < workers; i++)
         status = alloc_work(&a.work[i], &a) ? RELUME_OK : RELUME_ENOMEM;
     if (!status && p.dither > 0.0f)
-        status = prepare_dither(&a, p.threads);
+        status = prepare_dither(&a, &p);
     if (!status)
-        status = assign_rows(&a, p.threads, p.log);
+        status = assign_rows(&a, &p);
     if (!status && store_rms)
         *store_rms = mean_loss(&a);
     for (int i = 0; a.work && i < workers; i++)
@@ -339,6 +261,6 @@ relume_status relume_books_assign(uint16_t *const *index, double *store_rms,
     free(a.work);
     free(a.loss);
     for (int b = 0; b < RELUME_MOST_BOOKS; b++)
-        free(a.neighbour[b]);
+        dither_close(&a.dither[b]);
     return status;
 }

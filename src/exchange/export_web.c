@@ -12,9 +12,16 @@
 #include "base/memory.h"
 #include "base/outfile.h"
 
+#include <limits.h>
 #include <math.h>
 
-enum { TRIALS = 24, CORRECTIONS = 5, TRIAL_PIXELS = 1 << 19, DEFAULT_PLANES = 27 };
+enum {
+    TRIALS = 24,
+    CORRECTIONS = 5,
+    TRIAL_PIXELS = 1 << 19,
+    DEFAULT_PLANES = 27,
+    DEFAULT_YAB_PLANES = 45
+};
 
 #define LEAST_STEP 1e-4
 #define FIRST_STEP 0.045
@@ -24,7 +31,8 @@ struct maker {
     const struct export *e;
     struct planes planes, sample;
     struct plan plan;
-    bool all;  // the number of planes was asked for
+    bool all;         // the number of planes was asked for
+    int most_chroma;  // mycc
     const char *path;
     double step;
 };
@@ -193,7 +201,7 @@ static relume_status choose_functions(const struct export *e, struct functions *
         return RELUME_OK;
     }
     f->count = p->coefficients ? p->coefficients : f->kind == FUNCTIONS_PTM ? 6 : 9;
-    if (functions_has_count(f->kind, f->count))
+    if (web_has_count(f->kind, f->count))
         return RELUME_OK;
     return log_fail(e->log, RELUME_EINVAL, "%d coefficients; expected %s", f->count,
                     f->kind == FUNCTIONS_PTM ? "3 or 6 for ptm" : "1, 4 or 9 for hsh and sh");
@@ -202,17 +210,24 @@ static relume_status choose_functions(const struct export *e, struct functions *
 static relume_status make_plan(struct maker *m)
 {
     const struct relume_export_params *p = m->e->params;
+    const bool joint = p->type == RELUME_WEB_BILINEAR || p->type == RELUME_WEB_RBF;
     struct functions f;
-    if (p->ycc && p->type != RELUME_WEB_PTM && p->type != RELUME_WEB_HSH &&
-        p->type != RELUME_WEB_SH)
+    if (p->ycc && p->type == RELUME_WEB_LPTM)
         return log_fail(m->e->log, RELUME_EINVAL,
-                        "colour space ycc: expected type ptm, hsh or sh; principal components have "
-                        "their own");
+                        "colour space ycc: expected type bilinear, rbf, ptm, hsh or sh");
+    if (joint && p->ycc && p->coefficients && p->coefficients < 3)
+        return log_fail(m->e->log, RELUME_EINVAL,
+                        "%d coefficients; expected at least 3 in colour space mycc",
+                        p->coefficients);
     const relume_status status = choose_functions(m->e, &f);
     if (status)
         return status;
     m->all = p->coefficients != 0;
-    if (f.kind == FUNCTIONS_GRID || f.kind == FUNCTIONS_GAUSS)
+    if (joint && p->ycc)
+        return plan_yab(&m->plan, m->e->source, &f,
+                        p->coefficients ? p->coefficients : DEFAULT_YAB_PLANES, m->most_chroma,
+                        p->threads);
+    if (joint)
         return plan_components(&m->plan, m->e->source, &f,
                                p->coefficients ? p->coefficients : DEFAULT_PLANES, p->threads);
     const enum foreign_form form = p->type == RELUME_WEB_LPTM ? FOREIGN_LUMINANCE
@@ -226,32 +241,63 @@ static relume_status choose_step(struct maker *m)
     const struct relume_export_params *p = m->e->params;
     if (p->bytes_per_pixel > 0.0)
         return search(m, false, log(p->bytes_per_pixel));
+    if (p->psnr_db > 0.0 && m->plan.chroma > 1)
+        return search(m, true, p->psnr_db);
     m->step = step_of_quality(p->quality ? p->quality : 80);
     return RELUME_OK;
+}
+
+static void free_planes(struct maker *m)
+{
+    planes_free(&m->planes);
+    planes_free(&m->sample);
+    plan_free(&m->plan);
+}
+
+static relume_status prepare(struct maker *m)
+{
+    const struct export *e = m->e;
+    relume_status status = make_plan(m);
+    if (!status)
+        status = planes_make(&m->planes, &m->plan, e->source, m->path, e->params->threads);
+    const int every = status ? 1 : (int)(pixels_of(&m->planes) / TRIAL_PIXELS) + 1;
+    if (!status && every > 1)
+        status = planes_sample(&m->sample, &m->planes, every, m->path, e->log);
+    return status ? status : choose_step(m);
+}
+
+// How many chroma planes are worth their bytes depends on the step; where the plan has more, it is
+// made again with as many.
+static relume_status spare_chroma(struct maker *m)
+{
+    struct web_folder w = {.plan = &m->plan, .planes = m->sample.data ? &m->sample : &m->planes};
+    if (m->all || m->plan.chroma < 2)
+        return RELUME_OK;
+    const relume_status status = web_encode(&w, m->step, true, m->e->params->threads);
+    const int useful = status ? 0 : web_useful_chroma(&w, m->step);
+    web_folder_free(&w);
+    if (status || useful == m->plan.chroma)
+        return status;
+    m->most_chroma = useful;
+    free_planes(m);
+    return prepare(m);
 }
 
 relume_status export_web(const struct export *e, const char *path,
                          struct relume_export_report *report)
 {
-    struct maker m = {.e = e, .path = path};
+    struct maker m = {.e = e, .path = path, .most_chroma = INT_MAX};
     outdir *dir = NULL;
     relume_status status = outdir_open(&dir, path, e->params->force, e->log);
     if (!status)
-        status = make_plan(&m);
+        status = prepare(&m);
     if (!status)
-        status = planes_make(&m.planes, &m.plan, e->source, path, e->params->threads);
-    const int every = status ? 1 : (int)(pixels_of(&m.planes) / TRIAL_PIXELS) + 1;
-    if (!status && every > 1)
-        status = planes_sample(&m.sample, &m.planes, every, path, e->log);
-    if (!status)
-        status = choose_step(&m);
+        status = spare_chroma(&m);
     if (!status)
         status = make_folder(&m, outdir_path(dir), report);
     if (!status)
         status = outdir_commit(&dir);
     outdir_abort(&dir);
-    planes_free(&m.planes);
-    planes_free(&m.sample);
-    plan_free(&m.plan);
+    free_planes(&m);
     return status;
 }

@@ -8,7 +8,7 @@ bool functions_has_count(enum function_kind kind, int count)
 {
     switch (kind) {
     case FUNCTIONS_PTM: return count == 3 || count == 6;
-    case FUNCTIONS_HSH:
+    case FUNCTIONS_HSH: return count == 1 || count == 4 || count == 9 || count == 16;
     case FUNCTIONS_SH: return count == 1 || count == 4 || count == 9;
     default: return count >= 1 && count <= FUNCTIONS_MOST;
     }
@@ -24,7 +24,7 @@ static void ptm(vec3 l, double v[6])
     v[5] = l.y * l.y;
 }
 
-static void hsh(vec3 l, double v[9])
+static void hsh(vec3 l, double v[16])
 {
     const double theta = fmin(acos(fmax(-1.0, fmin(1.0, l.z))), M_PI / 2.0 - 0.01);
     const double phi = atan2(l.y, l.x), c = cos(theta), q = sqrt(c - c * c);
@@ -37,6 +37,13 @@ static void hsh(vec3 l, double v[9])
     v[6] = sqrt(5.0 / (2.0 * M_PI)) * (1.0 - 6.0 * c + 6.0 * c * c);
     v[7] = sqrt(30.0 / M_PI) * (2.0 * c - 1.0) * q * sin(phi);
     v[8] = sqrt(30.0 / M_PI) * (c * c - c) * sin(2.0 * phi);
+    v[9] = 2.0 * sqrt(35.0 / M_PI) * q * q * q * cos(3.0 * phi);
+    v[10] = sqrt(210.0 / M_PI) * (2.0 * c - 1.0) * (c * c - c) * cos(2.0 * phi);
+    v[11] = 2.0 * sqrt(21.0 / M_PI) * q * (1.0 - 5.0 * c + 5.0 * c * c) * cos(phi);
+    v[12] = sqrt(7.0 / (2.0 * M_PI)) * (((20.0 * c - 30.0) * c + 12.0) * c - 1.0);
+    v[13] = 2.0 * sqrt(21.0 / M_PI) * q * (1.0 - 5.0 * c + 5.0 * c * c) * sin(phi);
+    v[14] = sqrt(210.0 / M_PI) * (2.0 * c - 1.0) * (c * c - c) * sin(2.0 * phi);
+    v[15] = 2.0 * sqrt(35.0 / M_PI) * q * q * q * sin(3.0 * phi);
 }
 
 static void sh(vec3 l, double v[9])
@@ -103,7 +110,7 @@ static void grid(int side, vec3 l, double *v)
 
 void functions_at(const struct functions *f, struct relume_vec3 light, double *values)
 {
-    double all[9];
+    double all[FUNCTIONS_MOST_OWN];
     switch (f->kind) {
     case FUNCTIONS_GAUSS: gauss(f, light, values); return;
     case FUNCTIONS_GRID: grid(f->resolution, light, values); return;

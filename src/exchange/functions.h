@@ -10,13 +10,14 @@
 
 enum function_kind { FUNCTIONS_PTM, FUNCTIONS_HSH, FUNCTIONS_SH, FUNCTIONS_GAUSS, FUNCTIONS_GRID };
 
-enum { FUNCTIONS_MOST = 4096 };
+// Of any kind; of the kinds with functions of their own.
+enum { FUNCTIONS_MOST = 4096, FUNCTIONS_MOST_OWN = 16 };
 
 struct functions {
     enum function_kind kind;
-    int count;                         // ptm 3 or 6, hsh and sh 1, 4 or 9, else lights or side^2
-    int resolution;                    // grid: the side
-    double sigma;                      // gauss
+    int count;       // ptm 3 or 6, hsh 1, 4, 9 or 16, sh 1, 4 or 9, else lights or side^2
+    int resolution;  // grid: the side
+    double sigma;    // gauss
     const struct relume_vec3 *lights;  // gauss: [count], unit; borrowed
 };
 

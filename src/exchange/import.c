@@ -174,8 +174,8 @@ static relume_status match_functions(struct material *m, const struct relume_cod
     relume_status status = relume_coder_create(&raw, basis_of(f), m->light, m->lights, &plain);
     if (status)
         return status;
-    double theirs[TRIES][9];
-    float ours[TRIES][3 * 9], constant[3];
+    double theirs[TRIES][FUNCTIONS_MOST_OWN];
+    float ours[TRIES][3 * FUNCTIONS_MOST_OWN], constant[3];
     for (int t = 0; t < TRIES; t++) {
         const double z = 0.2 + 0.1 * t, r = sqrt(1.0 - z * z), phi = 0.4 + 2.0 * t;
         const struct relume_vec3 l = vec3_of(r * cos(phi), r * sin(phi), z);

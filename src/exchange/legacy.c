@@ -32,13 +32,13 @@ static bool same_functions(const struct export *e, const struct target *t)
 {
     const struct relume_coder_info *info = relume_coder_info(e->source->codes->coder);
     const int k = t->functions.count;
-    float w[3 * 9], constant[3];
+    float w[3 * FUNCTIONS_MOST_OWN], constant[3];
     if (info->basis->learned || info->luminance != t->luminance || info->coefficients != k)
         return false;
     for (int i = 0; i < 40; i++) {
         const double z = 0.1 + 0.9 * (i + 0.5) / 40, r = sqrt(1.0 - z * z), phi = 2.4 * i;
         const struct relume_vec3 l = {r * cos(phi), r * sin(phi), z};
-        double values[9];
+        double values[FUNCTIONS_MOST_OWN];
         functions_at(&t->functions, l, values);
         relume_coder_weights(e->source->codes->coder, l, w, constant);
         for (int j = 0; j < 3 * k; j++)
@@ -151,7 +151,7 @@ relume_status export_legacy(const struct export *e, const char *path, enum relum
                         .functions = t.functions,
                         .terms = t.functions.count};
     if (!functions_has_count(t.functions.kind, t.functions.count))
-        return log_fail(e->log, RELUME_EINVAL, "%d coefficients; expected 1, 4 or 9 for hsh",
+        return log_fail(e->log, RELUME_EINVAL, "%d coefficients; expected 1, 4, 9 or 16 for hsh",
                         t.functions.count);
     relume_status status = foreign_create(&f, path, codes->width, codes->height,
                                           t.luminance ? f.terms + 3 : 3 * f.terms, NULL, e->log);

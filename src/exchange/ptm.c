@@ -171,6 +171,10 @@ enum { MOST_JPEGS = 3 * TERMS };
 
 enum field { TRANSFORM, MOTION_X, MOTION_Y, ORDER, REFERENCE, BYTES, SIDE_BYTES, FIELDS };
 
+// How a plane's reference is changed before the plane is added to it. Which way a motion vector
+// points, and what stands outside the picture, is nowhere written; no reader of the field knows.
+enum transform { AS_IT_IS, INVERTED, MOVED, TRANSFORMS };
+
 struct jpegs {
     int count;
     long field[FIELDS][MOST_JPEGS];
@@ -184,9 +188,10 @@ static relume_status check_jpegs(const struct header *h, struct jpegs *j)
         j->at_turn[i] = -1;
     for (int i = 0; i < j->count; i++) {
         const long turn = j->field[ORDER][i];
-        if (j->field[TRANSFORM][i] || j->field[MOTION_X][i] || j->field[MOTION_Y][i])
-            return wrong(h, "planes predicted by inversion or motion are not supported",
-                         "transforms and motion vectors 0");
+        if (j->field[TRANSFORM][i] < 0 || j->field[TRANSFORM][i] >= TRANSFORMS)
+            return wrong(h, "transforms of the planes", "0, 1 (inversion) or 2 (motion)");
+        if (j->field[TRANSFORM][i] == MOVED && (j->field[MOTION_X][i] || j->field[MOTION_Y][i]))
+            return wrong(h, "planes predicted by motion are not supported", "motion vectors 0");
         if (turn < 0 || turn >= j->count || j->at_turn[turn] >= 0)
             return wrong(h, "order of the planes", "every number once");
         j->at_turn[turn] = i;
@@ -250,6 +255,13 @@ static relume_status correct(const struct foreign *f, const struct header *h, in
     return RELUME_OK;
 }
 
+// Modulo 256.
+static void add_reference(uint8_t *to, const uint8_t *reference, int width, bool inverted)
+{
+    for (int x = 0; x < width; x++)
+        to[x] = (uint8_t)(to[x] - 128 + (inverted ? 255 - reference[x] : reference[x]));
+}
+
 static relume_status read_jpeg_plane(const struct foreign *f, const struct header *h,
                                      const struct jpegs *j, int i)
 {
@@ -267,11 +279,11 @@ static relume_status read_jpeg_plane(const struct foreign *f, const struct heade
                           "%s: %d x %d pixels, %d components; expected %d x %d and 1", name,
                           codes.width, codes.height, codes.planes, f->width, f->height);
     for (int y = 0; !status && y < f->height; y++) {
-        const uint8_t *from = codes.data + (size_t)y * (size_t)f->width;
         uint8_t *to = plane_row(f, plane, y);
-        const uint8_t *reference = r < 0 ? NULL : plane_row(f, plane_of(h, (int)r), y);
-        for (int x = 0; x < f->width; x++)
-            to[x] = reference ? (uint8_t)(from[x] - 128 + reference[x]) : from[x];
+        memcpy(to, codes.data + (size_t)y * (size_t)f->width, (size_t)f->width);
+        if (r >= 0)
+            add_reference(to, plane_row(f, plane_of(h, (int)r), y), f->width,
+                          j->field[TRANSFORM][i] == INVERTED);
     }
     if (!status)
         status = correct(f, h, plane, j->side[i], (size_t)j->field[SIDE_BYTES][i] / 5);

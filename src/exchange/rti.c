@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { KIND_HSH = 3, COLOUR_RGB = 2, MOST_TERMS = 9 };
+enum { KIND_HSH = 3, COLOUR_RGB = 2, MOST_TERMS = 16 };
 
 struct header {
     const char *path;
@@ -43,8 +43,9 @@ static relume_status read_text(struct header *h, struct bytes *b)
         return wrong(h, "no layout", "terms, colour type, bytes of an element");
     if (channels != 3 || colour != COLOUR_RGB || size != 1)
         return wrong(h, "layout", "3 channels, colour type 2, elements of 1 byte");
-    if (terms != 1 && terms != 4 && terms != 9)
-        return log_fail(h->log, RELUME_EDATA, "%s: %ld terms; expected 1, 4 or 9", h->path, terms);
+    if (terms < 1 || terms > MOST_TERMS || !functions_has_count(FUNCTIONS_HSH, (int)terms))
+        return log_fail(h->log, RELUME_EDATA, "%s: %ld terms; expected 1, 4, 9 or 16", h->path,
+                        terms);
     h->terms = (int)terms;
     return bytes_line_end(b) ? RELUME_OK : wrong(h, "layout", "the end of the line");
 }

@@ -10,6 +10,12 @@
 relume_status web_read(struct foreign *out, const char *path, const struct relume_limits *limits,
                        const struct relume_log *log);
 
+// Whether folders of the type have that many functions.
+static inline bool web_has_count(enum function_kind kind, int count)
+{
+    return functions_has_count(kind, count) && (kind != FUNCTIONS_HSH || count <= 9);
+}
+
 // A folder being made: planes as JPEGs at a step, the number of planes by what they are worth.
 struct web_folder {
     const struct plan *plan;
@@ -23,6 +29,9 @@ struct web_folder {
 
 // Encode every sheet at `step`. `all`: keep even those that are not worth their bytes.
 relume_status web_encode(struct web_folder *w, double step, bool all, int threads);
+// Of an encoded plan with chroma planes: how many of the pairs say more than a pair of blank planes
+// costs, at least 1.
+int web_useful_chroma(const struct web_folder *w, double step);
 void web_folder_free(struct web_folder *w);
 // info.json and the JPEGs into the folder `path`. RELUME_EIO.
 relume_status web_write(const struct web_folder *w, const char *path, int quality,

@@ -160,7 +160,7 @@ static relume_status count_terms(struct folder *w)
         return RELUME_OK;
     }
     const int n = w->space == SPACE_LRGB ? w->planes - 3 : w->planes / 3;
-    if ((w->space != SPACE_LRGB && w->planes % 3) || !functions_has_count(f->functions.kind, n))
+    if ((w->space != SPACE_LRGB && w->planes % 3) || !web_has_count(f->functions.kind, n))
         return wrong(w, "nplanes", "a number that the type has in this colour space");
     f->functions.count = n;
     f->terms = n;
@@ -282,7 +282,7 @@ static void fill_joint(const struct folder *w)
 // The constant function as a sum of the type's functions: only the first is a constant.
 static double constant_term(const struct functions *f)
 {
-    double values[9];
+    double values[FUNCTIONS_MOST_OWN];
     functions_at(f, vec3_of(0.0, 0.0, 1.0), values);
     return 1.0 / values[0];
 }

@@ -112,6 +112,20 @@ relume_status web_encode(struct web_folder *w, double step, bool all, int thread
     return status;
 }
 
+// A blank plane costs two bits a block: its DC and its end.
+#define BLANK_BITS (2.0 / 64.0)
+
+int web_useful_chroma(const struct web_folder *w, double step)
+{
+    const double cost = SHEET_LAMBDA * step * step * 2.0 * BLANK_BITS;
+    for (int i = w->plan->chroma - 1; i > 0; i--) {
+        const double *energy = w->plan->energy + 3 * i, *distortion = w->sheet[i].distortion;
+        if (energy[1] + energy[2] - distortion[1] - distortion[2] > cost)
+            return i + 1;
+    }
+    return 1;
+}
+
 void web_folder_free(struct web_folder *w)
 {
     for (int i = 0; w->sheet && i < w->sheets; i++)
@@ -192,19 +206,27 @@ static void put_info(FILE *f, const struct web_folder *w, int quality)
 {
     static const char *const kinds[] = {"ptm", "hsh", "sh", "rbf", "bilinear"};
     static const char *const spaces[] = {"rgb", "lrgb", "mrgb", "ycc"};
+    const bool yab = w->plan->chroma > 0;
     const struct plan *plan = w->plan;
     const bool joint = plan->form == FOREIGN_JOINT;
     fprintf(f, "{\n\"width\": %d, \"height\": %d,\n\"format\": \"jpg\",\n", w->planes->width,
             w->planes->height);
     fprintf(f, "\"type\": \"%s\",\n\"colorspace\": \"%s\",\n", kinds[plan->functions.kind],
-            spaces[plan->form]);
+            yab ? "mycc" : spaces[plan->form]);
     if (plan->functions.kind == FUNCTIONS_GRID)
         fprintf(f, "\"resolution\": %d,\n", plan->functions.resolution);
     if (plan->functions.kind == FUNCTIONS_GAUSS) {
         fprintf(f, "\"sigma\": %.6g,\n", plan->functions.sigma);
         put_lights(f, &plan->functions);
     }
-    fprintf(f, "\"nplanes\": %d,\n\"quality\": %d,\n", web_planes(w), quality);
+    if (yab) {
+        const int chroma = min_of(plan->chroma, w->kept);
+        const int luminance = web_planes(w) - 2 * chroma;
+        fprintf(f, "\"yccplanes\": [%d, %d, %d],\n", luminance, chroma, chroma);
+    } else {
+        fprintf(f, "\"nplanes\": %d,\n", web_planes(w));
+    }
+    fprintf(f, "\"quality\": %d,\n", quality);
     if (joint)
         put_basis(f, plan, web_planes(w));
     fputs("\"materials\": [\n{\n", f);

@@ -161,7 +161,8 @@ static struct bytes jpeg_ptm(int planes)
     for (int field = 0; field < 7; field++) {
         for (int i = 0; i < planes; i++)
             fprintf(f, "%d ",
-                    field == 3   ? i
+                    field == 0   ? i % 3
+                    : field == 3 ? i
                     : field == 4 ? (i == 3) - 1
                     : field == 5 ? (int)one_plane.size
                     : field == 6 ? 5 * (i == 3)
@@ -177,14 +178,14 @@ static struct bytes jpeg_ptm(int planes)
     return text(f, &b);
 }
 
-static struct bytes rti(void)
+static struct bytes rti(int terms)
 {
     struct bytes b;
     FILE *f = open_memstream((char **)&b.data, &b.size);
-    fprintf(f, "#HSH1.2\n3\n%d %d 3\n4 2 1\n", W, H);
-    for (int i = 0; i < 8; i++)
+    fprintf(f, "#HSH1.2\n3\n%d %d 3\n%d 2 1\n", W, H, terms);
+    for (int i = 0; i < 2 * terms; i++)
         fwrite(&(float){(float)i - 2.0f}, 1, 4, f);
-    for (int i = 0; i < 12 * W * H; i++)
+    for (int i = 0; i < 3 * terms * W * H; i++)
         fputc(i % 256, f);
     return text(f, &b);
 }
@@ -239,7 +240,8 @@ int main(int argc, char **argv)
     fuzz_add(&f, ptm("LRGB", 9, true));
     fuzz_add(&f, jpeg_ptm(9));
     fuzz_add(&f, jpeg_ptm(18));
-    fuzz_add(&f, rti());
+    fuzz_add(&f, rti(4));
+    fuzz_add(&f, rti(16));
     fuzz_add(&f, info("ptm", "rgb", "\"nplanes\":18,", 18, 0));
     fuzz_add(&f, info("hsh", "lrgb", "\"nplanes\":7,\"colorprofile\":\"RGB\",", 7, 0));
     fuzz_add(&f, info("sh", "ycc", "\"nplanes\":12,", 12, 0));
@@ -250,6 +252,6 @@ int main(int argc, char **argv)
                       4, 3));
     // last, so that info.json is there for mutated pictures
     snprintf(path, sizeof path, "%s/web/info.json", f.folder);
-    fuzz_store(path, f.seed[9]);
+    fuzz_store(path, f.seed[10]);
     return fuzz_run(&f, argc, argv, one);
 }

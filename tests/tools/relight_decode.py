@@ -4,6 +4,7 @@ the formats: what a viewer shows under one light, as 8-bit codes.
 
     relight_decode.py IN X Y Z OUT.ppm             relight's light weights
     relight_decode.py --score FOLDER TEST.lp        mean PSNR over the lights of a .lp, bytes a pixel
+    relight_decode.py --predict IN.ptm OUT.ptm      a raw .ptm as JPEG planes that predict each other
 """
 import io
 import json
@@ -36,7 +37,14 @@ def hsh(l):
         np.sqrt(30 / p) * (2 * c - 1) * q * np.cos(phi),
         np.sqrt(5 / (2 * p)) * (1 - 6 * c + 6 * c * c),
         np.sqrt(30 / p) * (2 * c - 1) * q * np.sin(phi),
-        np.sqrt(30 / p) * (c * c - c) * np.sin(2 * phi)])
+        np.sqrt(30 / p) * (c * c - c) * np.sin(2 * phi),
+        2 * np.sqrt(35 / p) * q ** 3 * np.cos(3 * phi),
+        np.sqrt(210 / p) * (2 * c - 1) * (c * c - c) * np.cos(2 * phi),
+        2 * np.sqrt(21 / p) * q * (1 - 5 * c + 5 * c * c) * np.cos(phi),
+        np.sqrt(7 / (2 * p)) * (20 * c ** 3 - 30 * c * c + 12 * c - 1),
+        2 * np.sqrt(21 / p) * q * (1 - 5 * c + 5 * c * c) * np.sin(phi),
+        np.sqrt(210 / p) * (2 * c - 1) * (c * c - c) * np.sin(2 * phi),
+        2 * np.sqrt(35 / p) * q ** 3 * np.sin(3 * phi)])
 
 
 def sh(l):
@@ -97,7 +105,7 @@ class Folder:
             return rbf(l, self.lights, self.info["sigma"])
         if self.type == "bilinear":
             return bilinear(l, self.info["resolution"])
-        return {"ptm": ptm, "hsh": hsh, "sh": sh}[self.type](l)
+        return {"ptm": ptm, "hsh": hsh, "sh": sh}[self.type](l)[:9]
 
     def render(self, l):
         w, c = self.weights(unit(l)), self.c
@@ -126,7 +134,7 @@ class Folder:
 
 
 class Ptm:
-    """Raw RGB and LRGB, and the JPEG forms without prediction by motion."""
+    """Raw RGB and LRGB, and the JPEG forms without motion."""
 
     def __init__(self, path):
         data = pathlib.Path(path).read_bytes()
@@ -165,7 +173,8 @@ class Ptm:
         for i in np.argsort(table[3]):
             p = np.asarray(Image.open(io.BytesIO(parts[i][0])).convert("L"), int)
             if table[4, i] >= 0:
-                p = (p - 128 + planes[table[4, i]]) % 256
+                reference = planes[table[4, i]]
+                p = (p - 128 + (255 - reference if table[0, i] == 1 else reference)) % 256
             p, side = p.copy().ravel(), parts[i][1]
             for k in range(0, len(side), 5):
                 p[int.from_bytes(side[k:k + 4], "big")] = side[k + 4]
@@ -201,6 +210,42 @@ def open_any(path):
     return Rti(path) if str(path).endswith((".rti", ".hsh")) else Folder(path)
 
 
+def predict(path, out):
+    """Version 1.2's prediction: from the plane before, inverted where that is nearer; side
+    information where JPEG is off by more than 3."""
+    data, f = pathlib.Path(path).read_bytes(), Ptm(path)
+    lines = data.split(b"\n", 6)[:6]
+    scale, bias = np.array(lines[4].split(), float), np.array(lines[5].split(), float)
+    v = np.rint(f.c / scale + bias).reshape(*f.c.shape[:2], -1)
+    v = np.concatenate([v, f.colour], 2) if f.luminance else v
+    v = v[::-1].astype(np.uint8)
+    n = v.shape[2]
+    table, body, before = np.zeros((7, n), int), b"", None
+    table[3], table[4] = range(n), -1
+    for i in range(n):
+        plane = want = v[:, :, i].astype(int)
+        if i:
+            apart = [abs(want - r).mean() for r in (before, 255 - before)]
+            table[0, i], table[4, i] = int(np.argmin(apart)), i - 1
+            reference = 255 - before if table[0, i] else before
+            plane = (want - reference + 128) % 256
+        jpeg = io.BytesIO()
+        Image.fromarray(plane.astype(np.uint8)).save(jpeg, "JPEG", quality=97)
+        got = np.asarray(Image.open(jpeg), int)
+        if i:
+            got = (got - 128 + reference) % 256
+        off = np.flatnonzero(abs(got - want) > 3)
+        side = b"".join(int(k).to_bytes(4, "big") + bytes([want.flat[k]]) for k in off)
+        before = got.copy()
+        before.flat[off] = want.flat[off]
+        table[5, i], table[6, i] = len(jpeg.getvalue()), len(side)
+        body += jpeg.getvalue() + side
+    head = [lines[0], lines[1].replace(b"FORMAT_", b"FORMAT_JPEG_")] + lines[2:] + [b"97"]
+    head += [" ".join(map(str, row)).encode() for row in table]
+    pathlib.Path(out).write_bytes(b"\n".join(head) + b"\n" + body)
+    print(f"{(table[0] == 1).sum()} {(table[6] > 0).sum()}")
+
+
 def codes(v):
     return np.clip(np.rint(255 * v), 0, 255).astype(np.uint8)
 
@@ -218,8 +263,8 @@ def score(folder, lp):
 
 
 def main():
-    if sys.argv[1] == "--score":
-        score(sys.argv[2], sys.argv[3])
+    if sys.argv[1] in ("--score", "--predict"):
+        {"--score": score, "--predict": predict}[sys.argv[1]](sys.argv[2], sys.argv[3])
         return
     picture = codes(open_any(sys.argv[1]).render([float(x) for x in sys.argv[2:5]]))
     Image.fromarray(picture).save(sys.argv[5])

@@ -219,9 +219,15 @@ static void make_jpegs(struct jpegs *j, int n)
         j->field[4][i] = -1;
         j->field[5][i] = (long)size;
     }
-    // plane 1 is predicted from plane 4 and mended in one pixel
+    // plane 1 is predicted from plane 4 and mended in one pixel, plane 0 from the inverse of 1
     j->field[4][1] = 4;
     j->field[6][1] = 5;
+    j->field[0][0] = 1;
+    j->field[4][0] = 1;
+    // no transform without a reference, no motion without a vector, no vector without motion
+    j->field[0][3] = 1;
+    j->field[0][1] = 2;
+    j->field[1][4] = j->field[2][4] = 3;
 }
 
 static const char *save_jpegs(const struct jpegs *j, const char *format)
@@ -266,8 +272,12 @@ static void jpeg_planes_are_read(void **state)
                 n == 9 ? (p < 6 ? place_of_term[p] : p) : p % 3 * 6 + place_of_term[p / 3];
             for (int i = 0; i < PIXELS; i++) {
                 uint8_t want = j.decoded[file_plane][i];
+                const uint8_t second =
+                    i == 10 ? 201 : (uint8_t)(j.decoded[1][i] - 128 + j.decoded[4][i]);
                 if (file_plane == 1)
-                    want = i == 10 ? 201 : (uint8_t)(want - 128 + j.decoded[4][i]);
+                    want = second;
+                if (file_plane == 0)
+                    want = (uint8_t)(want - 128 + (255 - second));
                 const int row = H - 1 - i / W;
                 assert_int_equal(f.codes[p * PIXELS + row * W + i % W], want);
             }
@@ -285,7 +295,8 @@ static void bad_jpeg_tables_are_errors(void **state)
         long value;
         const char *says;
     } cases[] = {
-        {0, 2, 1, "inversion or motion"},       {1, 0, 3, "inversion or motion"},
+        {0, 2, 3, "transforms of the planes"},  {1, 1, 3, "predicted by motion"},
+        {0, 2, -1, "transforms of the planes"}, {2, 1, -2, "predicted by motion"},
         {3, 0, 0, "order of the planes"},       {3, 0, 99, "order of the planes"},
         {4, 3, 9, "reference planes"},          {4, 4, 0, "decoded before"},
         {5, 0, 0, "sizes of the planes"},       {5, 8, 1000000, "truncated in plane 9"},
@@ -389,6 +400,37 @@ static void quantisers_hold_their_range(void **state)
     }
 }
 
+// The functions of .rti files are orthonormal over the hemisphere, and the first of each degree
+// stand where the format has them.
+static void sixteen_harmonics(void **state)
+{
+    (void)state;
+    enum { N = 16, RINGS = 400, STEPS = 32 };
+    const struct functions f = {.kind = FUNCTIONS_HSH, .count = N};
+    double gram[N][N] = {{0}}, v[N];
+    for (int i = 0; i < RINGS; i++)
+        for (int s = 0; s < STEPS; s++) {
+            const double z = (i + 0.5) / RINGS, r = sqrt(1.0 - z * z);
+            const double phi = 2.0 * M_PI * (s + 0.5) / STEPS;
+            functions_at(&f, (struct relume_vec3){r * cos(phi), r * sin(phi), z}, v);
+            for (int a = 0; a < N; a++)
+                for (int b = 0; b < N; b++)
+                    gram[a][b] += v[a] * v[b] * 2.0 * M_PI / (RINGS * STEPS);
+        }
+    for (int a = 0; a < N; a++)
+        for (int b = 0; b < N; b++)
+            CHECK_NEAR(gram[a][b], a == b, 0.03);  // the functions stop at sin 0.01
+    // Gautron et al. 2004 at c = 1/4, phi = 10 degrees: q^2 = 3/16
+    functions_at(&f,
+                 (struct relume_vec3){sqrt(15.0) / 4.0 * cos(M_PI / 18.0),
+                                      sqrt(15.0) / 4.0 * sin(M_PI / 18.0), 0.25},
+                 v);
+    CHECK_NEAR(v[9], 2.0 * sqrt(35.0 / M_PI) * pow(3.0 / 16.0, 1.5) * cos(M_PI / 6.0), 1e-12);
+    CHECK_NEAR(v[10], sqrt(210.0 / M_PI) * 3.0 / 32.0 * cos(M_PI / 9.0), 1e-12);
+    CHECK_NEAR(v[12], sqrt(3.5 / M_PI) * 0.4375, 1e-12);
+    CHECK_NEAR(v[15], 2.0 * sqrt(35.0 / M_PI) * pow(3.0 / 16.0, 1.5) * 0.5, 1e-12);
+}
+
 // Nodes are where they say: the functions at a node are 1 there and 0 elsewhere.
 static void grid_nodes_are_nodes(void **state)
 {
@@ -427,6 +469,7 @@ int main(void)
         cmocka_unit_test(rti_is_read),
         cmocka_unit_test(quantisers_hold_their_range),
         cmocka_unit_test(grid_nodes_are_nodes),
+        cmocka_unit_test(sixteen_harmonics),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -277,7 +277,7 @@ static void test_threads(void **state)
     }
 }
 
-enum { SIDE = 96, AREA = 4 };
+enum { SIDE = 96, AREA = 8 };
 
 // A wall that grows brighter to the right and down, under lights that differ in brightness alone:
 // its coefficients lie on one line.
@@ -326,7 +326,8 @@ static void encode_wall(float dither)
 }
 
 // Between two codes the mean of a small area follows the wall, where without dither it is that of
-// one code: an eighth of the range wide, so that errors are its 1 / sqrt 12.
+// one code or two: an eighth of the range wide. Half the step's height would be half the error; the
+// area's own size, two of the pattern's periods, takes its part of both.
 static void test_dither_keeps_means(void **state)
 {
     (void)state;
@@ -358,7 +359,7 @@ static void test_dither_keeps_means(void **state)
         relume_pack_destroy(&pack);
     }
     print_message("  errors of areas: %g, with dither %g\n", error[0], error[1]);
-    assert_true(error[0] > 0.01);
+    assert_true(error[0] > 0.005);
     assert_true(error[1] < 0.4 * error[0]);
 }
 

@@ -7,4 +7,7 @@
 // The node values of relume_weight_grid_info at a unit direction: out[stride].
 void grid_blend(float *out, const relume_weight_grid *grid, struct relume_vec3 direction);
 
+// That of a refit's coder; belongs to the refit, or to the one it is like.
+const relume_weight_grid *refit_grid(const relume_refit *refit);
+
 #endif

@@ -442,7 +442,7 @@ static void a_focus_behind_the_cameras_is_refused(void **state)
     (void)state;
     const struct app_file file = make_file(RELUME_SLAB);
     struct app_state start = {.focused = true, .focus_z = 3};
-    struct app app;
+    OWNED_APP app;
     said[0] = '\0';
     assert_int_equal(app_start(&app, &file, &start, true, &keep), RELUME_EINVAL);
     assert_non_null(strstr(said, "--focus: expected"));

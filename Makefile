@@ -1,8 +1,10 @@
 # relume - the whole build. `make` builds, `make demo` and `make test` do all set-up by themselves.
 #
 #   config=release (default, into build/) | debug | asan | tsan   (into build/CONFIG/)
+#   FFT=fftw (default) | kiss   (a library without parts under the GPL; after make clean)
 
 config ?= release
+FFT ?= fftw
 PREFIX ?= /usr/local
 FUZZ_S ?= 20
 # make V=1 shows whole commands
@@ -35,7 +37,8 @@ EXR      = $(call once,EXR,pkg-config --cflags OpenEXR)
 OIIO     = $(call once,OIIO,pkg-config --cflags OpenImageIO)
 IMGUI    = $(call once,IMGUI,pkg-config --cflags imgui)
 GLFW     = $(call once,GLFW,pkg-config --cflags glfw3)
-PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenEXR openblas jansson libjpeg)
+FFT_PC   := $(if $(filter kiss,$(FFT)),kissfft-float,fftw3f)
+PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenEXR openblas jansson libjpeg lcms2 $(FFT_PC))
 OIIO_LIBS = $(call once,OIIO_LIBS,pkg-config --libs OpenImageIO)
 CAIRO    = $(call once,CAIRO,pkg-config --cflags cairo)
 LIBS     = -Wl,--as-needed $(PKG_LIBS) -llapacke -lembree3 -lm -ldl
@@ -46,6 +49,7 @@ CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 LIB_C    := $(wildcard src/base/*.c src/math/*.c src/image/*.c src/capture/*.c src/scene/*.c \
             src/coder/*.c src/pack/*.c src/exchange/*.c src/relight/*.c src/view/*.c src/pass/*.c \
             src/frame/*.c)
+LIB_C    := $(filter-out $(if $(filter kiss,$(FFT)),%/fft.c,%/fft_kiss.c),$(LIB_C))
 # The module that is loaded when the first image needs it (src/image/oiio.h)
 MODULE_CXX := src/image/oiio.cpp
 CLI_C    := $(wildcard src/cli/*.c)
@@ -129,8 +133,10 @@ $B/librelume.a: $(LIB_O)
 	$(Q)rm -f $@
 	$(call say,AR)
 	$(Q)$(AR) rcs $@ $^
-# Where a program or library looks for the module: first where the build left it.
-run_path = '-Wl,-rpath,$$ORIGIN$1'
+# Where a program or library looks for the module: first where the build left it. Sanitizers open
+# libraries in its name, which only the older kind of run path allows.
+run_path = '-Wl,-rpath,$$ORIGIN$1'$(if $(filter asan tsan,$(config)),$(comma)--disable-new-dtags)
+comma := ,
 $B/librelume.so: $(LIB_O)
 	$(call say,LD)
 	$(Q)$(CC) $(MODE) -shared -Wl,-soname,librelume.so.$(MAJOR) $(call run_path) -o $@ $^ $(LDFLAGS) $(LIBS)

@@ -8,15 +8,15 @@ bad=0
 # folder: private folders it may include | public headers it may include (* = all)
 rules="base::base
 math:base:base
-image:base math:base image
-capture:base math image:base image lights capture
+image:base math:base image photograph response
+capture:base math image:base image lights capture ball photometric shoot photograph response align
 coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange
 relight:base math image:base image coder light relight rig normals enhance
-view:base math image:base image light relight view capture
+view:base math image:base image light relight view slabs capture
 pass:base math image:base image tone
-frame:base math:base image capture coder pack light relight view frame evaluate normals enhance
+frame:base math:base image capture coder pack light relight view slabs frame evaluate normals enhance
 scene:base math image:base image lights capture scene
 cli:cli:*
 viewer:viewer:*
@@ -56,8 +56,11 @@ only_in 'OpenImageIO' src/image/oiio.cpp
 only_in 'dlfcn' src/image/oiio_load.c
 only_in 'embree' src/scene/trace.c
 only_in '(cblas|lapacke)' src/math/lsq.c
+only_in 'fftw3' src/math/fft.c
+only_in 'kissfft' src/math/fft_kiss.c
 only_in 'jansson' src/base/json.c
 only_in 'jpeglib' src/image/jpeg.c
+only_in 'lcms2' src/image/profile.c tests/unit/test_photograph.c
 only_in 'cairo' src/cli/plot.c
 only_in 'GLFW' viewer/context_glfw.c
 only_in 'imgui' viewer/panel.cpp

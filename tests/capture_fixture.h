@@ -11,6 +11,7 @@
 struct fixture {
     int width, height, lights, views;  // views > 1: a slab of views x 1
     bool hemisphere, depth, mask;
+    int slabs;  // views are of so many slabs around the y axis in turn; 0: of one
 };
 
 // What pixel (x, y) of a view reflects under a light: in the span of four harmonics, plus a kink.
@@ -69,7 +70,20 @@ static inline void fixture_write(const struct fixture *f, const char *folder)
         view[v].depth = f->depth ? "depth.exr" : NULL;
         view[v].mask = f->mask ? "mask.exr" : NULL;
     }
+    struct relume_geometry slab[RELUME_MOST_SLABS];
+    for (int i = 0; i < f->slabs; i++) {
+        const double a = 6.283185307179586 * i / f->slabs;
+        slab[i] = relume_geometry_default(RELUME_SLAB, f->width, f->height);
+        slab[i].pose =
+            (struct relume_pose){.axis = {{cos(a), 0, -sin(a)}, {0, 1, 0}, {sin(a), 0, cos(a)}}};
+    }
+    for (int v = 0; f->slabs && v < f->views; v++) {
+        view[v].slab = v % f->slabs;
+        view[v].uv[0] = (double)(v / f->slabs);
+    }
     struct relume_manifest m = {
+        .slabs = f->slabs,
+        .slab = slab,
         .geometry = relume_geometry_default(f->views > 1 ? RELUME_SLAB : RELUME_PLANAR, f->width,
                                             f->height),
         .lights = f->lights,

@@ -59,7 +59,7 @@ static inline void make(struct setup *s, enum form form, enum relume_domain doma
     s->codes = (struct relume_codes){
         .coder = s->coder,
         .domain = domain,
-        .display = {RELUME_CURVE_SRGB, 0.0f},
+        .display = {.curve = RELUME_CURVE_SRGB},
         .width = SIDE,
         .height = SIDE,
         .planes = relume_coder_info(s->coder)->planes,

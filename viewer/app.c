@@ -3,6 +3,7 @@
 #include "gizmo.h"
 #include "keys.h"
 #include "lamps.h"
+#include "orbit.h"
 #include "say.h"
 #include "vec.h"
 
@@ -50,6 +51,10 @@ static void choose_framing(struct relume_camera *camera, const struct app_file *
     if (file->geometry.projection != RELUME_SLAB)
         return;
     camera->framing = RELUME_FRAME_EYE;
+    if (file->around) {
+        camera->eye = relume_slabs_eye(file->around, 0);
+        return;
+    }
     camera->eye = (struct relume_vec3){
         .x = 0.5 * (file->uv_min[0] + file->uv_max[0]),
         .y = 0.5 * (file->uv_min[1] + file->uv_max[1]),
@@ -72,6 +77,22 @@ static relume_status check_camera(const struct relume_camera *camera, const stru
     return RELUME_OK;
 }
 
+static relume_status check_around(const struct relume_camera *camera, const struct app_file *file,
+                                  const struct app_state *start, const struct relume_log *log)
+{
+    const struct relume_vec3 eye = camera->eye;
+    struct relume_window window;
+    if (!file->around || camera->framing != RELUME_FRAME_EYE)
+        return RELUME_OK;
+    if (start->aperture != 0.0 || start->focused)
+        return say(log, RELUME_EINVAL, "--aperture, --focus: expected one slab; found several");
+    if (!relume_slabs_window(&window, file->around, eye, &camera->aim, file->width, file->height))
+        return say(log, RELUME_EINVAL,
+                   "--eye: expected a place beside what it looks at; found %g,%g,%g", eye.x, eye.y,
+                   eye.z);
+    return RELUME_OK;
+}
+
 static bool behind_cameras(const struct app_file *file, double z)
 {
     const struct relume_geometry *g = &file->geometry;
@@ -84,7 +105,9 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
     struct relume_camera camera = start->camera;
     *app = (struct app){.file = *file};
     choose_framing(&camera, file, look_ahead);
-    const relume_status status = check_camera(&camera, file, log);
+    relume_status status = check_camera(&camera, file, log);
+    if (!status)
+        status = check_around(&camera, file, start, log);
     if (status)
         return status;
     if (start->focused && file->geometry.projection == RELUME_SLAB &&
@@ -135,7 +158,7 @@ struct app_rectangle app_picture(const struct app *app)
         return (struct app_rectangle){0, 0, app->width, app->height};
     double width = app->width;
     double height = app->height;
-    if (app->letterbox) {
+    if (app->letterbox && s->camera.aim.field_of_view_deg == 0.0) {
         const double fit = fmin(width / app->file.width, height / app->file.height);
         width = app->file.width * fit;
         height = app->file.height * fit;
@@ -148,6 +171,12 @@ struct app_rectangle app_picture(const struct app *app)
         x + 0.5 * width * s->zoom,
         y + 0.5 * height * s->zoom,
     };
+}
+
+bool app_window(const struct app *app, struct relume_window *window)
+{
+    return relume_slabs_window(window, app->file.around, app->now.camera.eye, &app->now.camera.aim,
+                               app->width, app->height);
 }
 
 // The point of the picture under (x, y) stays there.
@@ -166,12 +195,15 @@ static void zoom_picture(struct app *app, double x, double y, double factor)
 
 bool app_pole_y(const struct app *app)
 {
-    return panoramic(&app->file);
+    const relume_slabs *around = app->file.around;
+    return (around && relume_slabs_count(around) > 1) || panoramic(&app->file);
 }
 
 struct relume_vec3 app_middle(const struct app *app)
 {
     const struct relume_geometry *g = &app->file.geometry;
+    if (app->file.around)
+        return relume_slabs_middle(app->file.around);
     if (panoramic(&app->file))
         return g->center;
     const bool slab = g->projection == RELUME_SLAB;
@@ -194,6 +226,8 @@ double app_reach(const struct app *app)
 
 struct app_axes app_frame_axes(const struct app *app)
 {
+    if (orbit_is(app))
+        return orbit_axes(app);
     if (app->now.camera.framing != RELUME_FRAME_LOOK)
         return (struct app_axes){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     const double pan = app->now.camera.look.pan_deg * PI / 180;
@@ -251,9 +285,22 @@ static void turn_light(struct app *app, double dx, double dy)
     app_turn_light(app, dx * per_pixel, dy * per_pixel);
 }
 
+static void turn_orbit(struct app *app, double dx, double dy)
+{
+    double turn_deg[2];
+    orbit_drag(turn_deg, app, dx, dy);
+    orbit_turn(app, turn_deg[0], turn_deg[1]);
+    app->turned_deg[0] += turn_deg[0];
+    app->turned_deg[1] += turn_deg[1];
+}
+
 // The object follows the cursor, so the eye goes the other way; it stays among the cameras.
 static void move_eye(struct app *app, double dx, double dy)
 {
+    if (orbit_is(app)) {
+        turn_orbit(app, dx, dy);
+        return;
+    }
     const struct app_file *f = &app->file;
     struct relume_vec3 *eye = &app->now.camera.eye;
     const double wide = f->uv_max[0] - f->uv_min[0];
@@ -264,6 +311,10 @@ static void move_eye(struct app *app, double dx, double dy)
 
 void app_dolly(struct app *app, double factor)
 {
+    if (orbit_is(app)) {
+        orbit_dolly(app, factor);
+        return;
+    }
     const double st_z = app->file.geometry.st_z;
     const double captured = app->file.geometry.uv_z - st_z;
     double *z = &app->now.camera.eye.z;
@@ -272,6 +323,8 @@ void app_dolly(struct app *app, double factor)
 
 static double degrees_per_pixel(const struct app *app)
 {
+    if (orbit_is(app))
+        return orbit_degrees_per_pixel(app);
     const struct relume_look *look = &app->now.camera.look;
     const double field = (look->stereographic ? 4 : 2) * atan(1 / look->zoom) * 180 / PI;
     return field / app->width;
@@ -386,6 +439,8 @@ static bool on_wheel(struct app *app, const struct app_event *e)
     const double factor = pow(wheel_factor, e->wheel);
     if (app->now.camera.framing == RELUME_FRAME_LOOK)
         zoom_look(app, e->x, e->y, factor);
+    else if (orbit_is(app))
+        orbit_dolly(app, 1 / factor);
     else
         zoom_picture(app, e->x, e->y, factor);
     return true;
@@ -451,7 +506,10 @@ static bool glide(struct app *app, double seconds)
         app_stand_still(app);
         return false;
     }
-    turn_by(&app->now.camera.look, speed[0] * way, speed[1] * way);
+    if (orbit_is(app))
+        orbit_turn(app, speed[0] * way, speed[1] * way);
+    else
+        turn_by(&app->now.camera.look, speed[0] * way, speed[1] * way);
     speed[0] *= keep;
     speed[1] *= keep;
     return true;
@@ -471,7 +529,7 @@ bool app_advance(struct app *app, double seconds)
     if (!(seconds > 0))
         return false;
     bool changed = adapt(app, seconds);
-    if (app->now.camera.framing != RELUME_FRAME_LOOK)
+    if (app->now.camera.framing != RELUME_FRAME_LOOK && !orbit_is(app))
         return changed;
     if (app->drag == APP_DRAG_CAMERA)
         follow_hand(app, seconds);

@@ -8,6 +8,7 @@
 #include <relume/enhance.h>
 #include <relume/frame.h>
 #include <relume/relight.h>
+#include <relume/slabs.h>
 
 enum { APP_LIGHTS = 65536 };  // lights at once, as RELUME_RIG_MOST
 
@@ -56,6 +57,7 @@ struct app_file {
     int width, height;  // of a view
     int views;
     double uv_min[2], uv_max[2];  // slab: where cameras stand
+    const relume_slabs *around;   // several slabs, about whose middle the eye goes; NULL: none
 };
 
 // What the viewer adds to a light. All zero is a light that shines as it says.
@@ -116,8 +118,9 @@ struct app {
     enum app_wish wish;
     char spec[APP_SPEC];
     bool quit;
-    double turned_deg[2];           // pan and tilt by the mouse since time last passed
-    double speed_deg_s[2];          // of pan and tilt: of the hand, then of what it let go
+    double turned_deg[2];   // by the mouse since time last passed: pan and tilt, or the eye's way
+                            // around the object, to the right and up
+    double speed_deg_s[2];  // of these: of the hand, then of what it let go
     double adapted_ev, metered_ev;  // automatic exposure: in force, and aimed at
     bool metered;
     struct relume_look before_planet;
@@ -159,6 +162,9 @@ struct app_rectangle {
 };
 struct app_rectangle app_picture(const struct app *app);
 
+// What app_picture shows of several slabs; false where the eye sees nothing.
+bool app_window(const struct app *app, struct relume_window *window);
+
 // Directions of the frame in the world: right, up, and towards the viewer.
 struct app_axes {
     struct relume_vec3 right, up, back;
@@ -173,7 +179,8 @@ void app_aim_light(struct app *app, int light, struct relume_vec3 seen);
 void app_point_light(struct app *app, int light, double x, double y);
 // Turn the selected light about the frame's up (> 0: to the right) and right (> 0: down).
 void app_turn_light(struct app *app, double yaw_deg, double pitch_deg);
-// The eye's distance from the st plane times `factor`, within limits.
+// The eye's distance from the st plane (several slabs: from the middle) times `factor`, within
+// limits.
 void app_dolly(struct app *app, double factor);
 // The middle of what the file shows; of a panorama its eye.
 struct relume_vec3 app_middle(const struct app *app);

@@ -7,24 +7,33 @@
 
 static const size_t budget = (size_t)256 << 20;
 
-relume_status depths_create(struct depths *d, const struct gl *gl, const relume_slab *slab,
-                            const struct depth_source *source)
+static void place_views(struct depths *d, const relume_slab *slab)
 {
     const struct relume_slab_grid grid = relume_slab_grid(slab);
-    const size_t views = (size_t)grid.columns * (size_t)grid.rows;
-    *d = (struct depths){.gl = gl, .source = *source, .slab = slab, .views = (int)views};
+    for (int i = 0; i < grid.columns * grid.rows; i++) {
+        const int view = grid.view[i];
+        d->slab[view] = slab;
+        d->uv[view][0] = grid.u[i % grid.columns];
+        d->uv[view][1] = grid.v[i / grid.columns];
+    }
+}
+
+relume_status depths_create(struct depths *d, const struct gl *gl, const relume_slab *const *slab,
+                            int slabs, const struct depth_source *source)
+{
+    const size_t views = (size_t)relume_slab_grid(slab[0]).views;
+    *d = (struct depths){.gl = gl, .source = *source, .views = (int)views};
+    d->slab = calloc(views, sizeof *d->slab);
     d->texture = calloc(views, sizeof *d->texture);
     d->range = calloc(views, sizeof *d->range);
     d->uv = calloc(views, sizeof *d->uv);
     d->bytes = calloc(views, sizeof *d->bytes);
-    if (!d->texture || !d->range || !d->uv || !d->bytes) {
+    if (!d->slab || !d->texture || !d->range || !d->uv || !d->bytes) {
         depths_destroy(d);
         return RELUME_ENOMEM;
     }
-    for (size_t i = 0; i < views; i++) {
-        d->uv[grid.view[i]][0] = grid.u[i % (size_t)grid.columns];
-        d->uv[grid.view[i]][1] = grid.v[i / (size_t)grid.columns];
-    }
+    for (int i = 0; i < slabs; i++)
+        place_views(d, slab[i]);
     return RELUME_OK;
 }
 
@@ -39,6 +48,7 @@ void depths_destroy(struct depths *d)
 {
     for (int i = 0; d->texture && i < d->views; i++)
         leave(d, i);
+    free(d->slab);
     free(d->texture);
     free(d->range);
     free(d->uv);
@@ -65,7 +75,7 @@ static relume_status load(struct depths *d, int view)
     struct relume_image disparity = {0};
     relume_status status = d->source.depth(&depth, d->source.user, view);
     if (!status)
-        status = relume_slab_disparity(&disparity, d->slab, d->uv[view], &depth);
+        status = relume_slab_disparity(&disparity, d->slab[view], d->uv[view], &depth);
     if (!status)
         upload(d, view, &disparity);
     relume_image_destroy(&depth);

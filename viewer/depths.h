@@ -15,7 +15,7 @@ struct depth_source {
 struct depths {
     const struct gl *gl;
     struct depth_source source;
-    const relume_slab *slab;
+    const relume_slab **slab;  // [views]: the view's
     int views;
     GLuint *texture;     // [views], one channel of float; 0: not uploaded
     double (*range)[2];  // [views]; from above to below: all background
@@ -23,8 +23,10 @@ struct depths {
     size_t *bytes;       // [views]
 };
 
-// `gl`, `slab` and what the source refers to must outlive it. RELUME_ENOMEM.
-relume_status depths_create(struct depths *depths, const struct gl *gl, const relume_slab *slab,
+// Of one slab, or of several that share their view numbers. `gl`, the slabs and what the source
+// refers to must outlive it. RELUME_ENOMEM.
+relume_status depths_create(struct depths *depths, const struct gl *gl,
+                            const relume_slab *const *slab, int slabs,
                             const struct depth_source *source);
 void depths_destroy(struct depths *depths);
 

@@ -8,6 +8,7 @@
 #include "program.h"
 #include "target.h"
 
+#include <relume/slabs.h>
 #include <relume/view.h>
 
 // Where and how bright; pixels from the frame's top left corner.
@@ -47,6 +48,31 @@ relume_status draw_slab_depth_create(struct program *program, const struct gl *g
                                      const struct relume_log *log);
 void draw_slab_depth(const struct program *program, const struct gl *gl, const struct place *place,
                      const struct slab_seen *seen, const GLuint *disparity, const double range[2]);
+// Make four views between which a cell lies, and their disparities if there are any, samplers 0 to
+// 3 and 4 to 7. Views of weight 0 were not relit: another one of the cell stands in. False when
+// none was.
+bool draw_use_cell(const struct gl *gl, const struct target *const *views, const GLuint *disparity,
+                   const int cell[4]);
+
+// Several slabs through a window of the world, which the place's picture shows.
+struct slabs_seen {
+    const relume_slabs *slabs;
+    const struct relume_window *window;
+    const struct target *const *views;  // relit, by view number; NULL where they have no weight
+    const GLuint *disparity;            // by depth: textures by view number, else NULL ...
+    const double (*range)[2];           // ... and the least and the greatest value of each
+};
+// Both add weighted values and their weights (alpha) to a black target, which draw_mean then
+// divides.
+relume_status draw_slabs_create(struct program *program, const struct gl *gl,
+                                const struct relume_log *log);
+void draw_slabs(const struct program *program, const struct gl *gl, const struct place *place,
+                const struct slabs_seen *seen, bool nearest);
+relume_status draw_slabs_depth_create(struct program *program, const struct gl *gl,
+                                      const struct relume_log *log);
+void draw_slabs_depth(const struct program *program, const struct gl *gl, const struct place *place,
+                      const struct slabs_seen *seen);
+
 // Through an aperture: adds weighted values and their weights (alpha) to a black target, which
 // draw_mean then divides. `aperture` and `focus` as relume_view_params.
 relume_status draw_slab_lens_create(struct program *program, const struct gl *gl,

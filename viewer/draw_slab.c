@@ -75,6 +75,21 @@ static bool find_strip(struct strip *strip, const double *lines, int n, int i, d
            clip(strip, window[0], window[1], window);
 }
 
+bool draw_use_cell(const struct gl *gl, const struct target *const *views, const GLuint *disparity,
+                   const int cell[4])
+{
+    int any = -1;
+    for (int i = 0; i < 4; i++)
+        any = views[cell[i]] ? cell[i] : any;
+    for (int i = 0; any >= 0 && i < 4; i++) {
+        const int shown = views[cell[i]] ? cell[i] : any;
+        texture_use(gl, i, GL_TEXTURE_2D, views[shown]->texture);
+        if (disparity)
+            texture_use(gl, 4 + i, GL_TEXTURE_2D, disparity[shown]);
+    }
+    return any >= 0;
+}
+
 struct cells {
     const struct program *program;
     const struct gl *gl;
@@ -83,20 +98,6 @@ struct cells {
     struct relume_slab_grid grid;
     const GLuint *disparity;  // [views], or NULL
 };
-
-// Views of weight 0 were not relit: another one of the cell stands in.
-static void use_views(const struct cells *c, const int view[4])
-{
-    int any = -1;
-    for (int i = 0; i < 4; i++)
-        any = c->seen->views[view[i]] ? view[i] : any;
-    for (int i = 0; any >= 0 && i < 4; i++) {
-        const int shown = c->seen->views[view[i]] ? view[i] : any;
-        texture_use(c->gl, i, GL_TEXTURE_2D, c->seen->views[shown]->texture);
-        if (c->disparity)
-            texture_use(c->gl, 4 + i, GL_TEXTURE_2D, c->disparity[shown]);
-    }
-}
 
 static struct app_rectangle pixels_of(const struct cells *c, const struct strip *across,
                                       const struct strip *down)
@@ -120,7 +121,7 @@ static void draw_cell(const struct cells *c, const struct strip *across, const s
     const int *high = &grid->view[(size_t)down->high * (size_t)grid->columns];
     const int view[4] = {low[across->low], low[across->high], high[across->low],
                          high[across->high]};
-    use_views(c, view);
+    (void)draw_use_cell(c->gl, c->seen->views, c->disparity, view);
     c->gl->Uniform4f(c->program->at[CELL], (float)grid->u[across->low], (float)grid->v[down->low],
                      (float)grid->u[across->high], (float)grid->v[down->high]);
     draw_rectangle(c->gl, c->program, c->place, pixels_of(c, across, down));

@@ -60,6 +60,19 @@ relume_status enhancer_create(struct enhancer *e, const struct gl *gl,
     return program_create(&e->program, gl, "enhance.frag", uniforms, COUNT, log);
 }
 
+void enhancer_use_slabs(struct enhancer *e, const relume_slabs *slabs, const double (*uv)[2],
+                        const int *slab_of)
+{
+    e->around = slabs;
+    e->uv = uv;
+    e->slab_of = slab_of;
+}
+
+static int slab_of(const struct enhancer *e, int view)
+{
+    return e->slab_of ? e->slab_of[view] : 0;
+}
+
 void enhancer_destroy(struct enhancer *e)
 {
     if (!e->gl)
@@ -70,8 +83,8 @@ void enhancer_destroy(struct enhancer *e)
         e->gl->DeleteTextures(4, textures);
         target_destroy(&v->shown, e->gl);
     }
-    e->gl->DeleteTextures(1, &e->towards);
     e->gl->DeleteTextures(1, &e->lamps);
+    e->gl->DeleteTextures(RELUME_MOST_SLABS, e->towards);
     e->gl->DeleteVertexArrays(1, &e->vertices);
     program_destroy(&e->program, e->gl);
     free(e->view);
@@ -117,21 +130,31 @@ static relume_status fit(struct enhancer *e, int view)
     return status;
 }
 
-static relume_status find_towards(struct enhancer *e, const struct target *view)
+// As the library's passes take it.
+static struct relume_vec3 towards_eye(const struct enhancer *e, int slab, const struct target *view,
+                                      int x, int y)
+{
+    if (e->around)
+        return relume_slabs_geometry(e->around, slab)->pose.axis[2];
+    const struct relume_vec3 ray =
+        relume_panorama_ray(&e->geometry, view->width, view->height, x + 0.5, y + 0.5);
+    return (struct relume_vec3){-ray.x, -ray.y, -ray.z};
+}
+
+static relume_status find_towards(struct enhancer *e, int slab, const struct target *view)
 {
     struct relume_image image;
     const relume_status status = relume_image_create(&image, view->width, view->height, 3);
     float *to = image.data;
     for (int y = 0; !status && y < view->height; y++)
         for (int x = 0; x < view->width; x++, to += 3) {
-            const struct relume_vec3 ray =
-                relume_panorama_ray(&e->geometry, view->width, view->height, x + 0.5, y + 0.5);
-            to[0] = (float)-ray.x;
-            to[1] = (float)-ray.y;
-            to[2] = (float)-ray.z;
+            const struct relume_vec3 towards = towards_eye(e, slab, view, x, y);
+            to[0] = (float)towards.x;
+            to[1] = (float)towards.y;
+            to[2] = (float)towards.z;
         }
     if (!status)
-        e->towards = upload(e->gl, 0, &image);
+        e->towards[slab] = upload(e->gl, 0, &image);
     relume_image_destroy(&image);
     return status;
 }
@@ -152,12 +175,15 @@ static int nearest_light(const struct relume_manifest *m, struct relume_vec3 d)
     return best;
 }
 
-static int nearest_view(const struct relume_manifest *m, const double (*uv)[2], int view)
+static int nearest_view(const struct enhancer *e, const struct relume_manifest *m, int view)
 {
+    const double *uv = e->uv ? e->uv[view] : NULL;
     int best = 0;
     double least = INFINITY;
     for (int i = 0; uv && i < m->views; i++) {
-        const double far = hypot(m->view[i].uv[0] - uv[view][0], m->view[i].uv[1] - uv[view][1]);
+        const double far = hypot(m->view[i].uv[0] - uv[0], m->view[i].uv[1] - uv[1]);
+        if (e->around && m->view[i].slab != slab_of(e, view))
+            continue;
         if (far < least)
             best = i;
         least = fmin(far, least);
@@ -183,7 +209,7 @@ static relume_status find_photograph(struct enhancer *e, int view, const struct 
         return RELUME_OK;
     struct relume_image image;
     const relume_status status =
-        relume_capture_image(&image, e->capture, nearest_view(m, e->uv, view), light, e->log);
+        relume_capture_image(&image, e->capture, nearest_view(e, m, view), light, e->log);
     if (!status)
         v->reference = upload(e->gl, v->reference, &image);
     v->light = light;
@@ -202,9 +228,9 @@ static relume_status prepare(struct enhancer *e, int view, const struct target *
         status = target_create(&v->shown, e->gl, relit->width, relit->height, e->log);
     if (!status && relume_pass_needs_normals(pass) && !v->normal)
         status = fit(e, view);
-    if (!status && pass == RELUME_PASS_SPECULAR && !e->towards &&
-        e->geometry.projection >= RELUME_CYLINDRICAL)
-        status = find_towards(e, relit);
+    if (!status && pass == RELUME_PASS_SPECULAR && !e->towards[slab_of(e, view)] &&
+        (e->around || e->geometry.projection >= RELUME_CYLINDRICAL))
+        status = find_towards(e, slab_of(e, view), relit);
     if (!status && pass == RELUME_PASS_DIFFERENCE)
         status = find_photograph(e, view, relit, lights, n);
     return status;
@@ -240,19 +266,20 @@ static relume_status set_lights(const struct enhancer *e, const struct relume_li
     return RELUME_OK;
 }
 
-static void set_textures(const struct enhancer *e, const struct enhanced_view *v,
-                         const struct target *relit)
+static void set_textures(const struct enhancer *e, int view, const struct target *relit)
 {
+    const struct enhanced_view *v = &e->view[view];
+    const GLuint towards = e->towards[slab_of(e, view)];
     const struct gl *gl = e->gl;
     const GLuint textures[] = {
-        [UNIT_VIEW] = relit->texture, [UNIT_NORMALS] = v->normal,  [UNIT_ALBEDOS] = v->albedo,
-        [UNIT_DETAILS] = v->detail,   [UNIT_TOWARDS] = e->towards, [UNIT_REFERENCE] = v->reference,
+        [UNIT_VIEW] = relit->texture, [UNIT_NORMALS] = v->normal, [UNIT_ALBEDOS] = v->albedo,
+        [UNIT_DETAILS] = v->detail,   [UNIT_TOWARDS] = towards,   [UNIT_REFERENCE] = v->reference,
     };
     for (int unit = UNIT_VIEW; unit <= UNIT_REFERENCE; unit++) {
         texture_use(gl, unit, GL_TEXTURE_2D, textures[unit]);
         gl->Uniform1i(e->program.at[VIEW + unit], unit);
     }
-    gl->Uniform1i(e->program.at[TOWARDS_GIVEN], e->towards != 0);
+    gl->Uniform1i(e->program.at[TOWARDS_GIVEN], towards != 0);
 }
 
 relume_status enhancer_view(const struct target **out, struct enhancer *e, int view,
@@ -267,7 +294,7 @@ relume_status enhancer_view(const struct target **out, struct enhancer *e, int v
     gl->BindVertexArray(e->vertices);
     target_begin(&v->shown, gl);
     gl->UseProgram(e->program.id);
-    set_textures(e, v, relit);
+    set_textures(e, view, relit);
     status = set_lights(e, lights, n);
     if (status)
         return status;

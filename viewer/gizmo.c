@@ -1,6 +1,7 @@
 #include "gizmo.h"
 
 #include "lamps.h"
+#include "orbit.h"
 #include "vec.h"
 
 #include <math.h>
@@ -147,6 +148,8 @@ struct scene_framing {
 
 static struct scene_framing framing_of(const struct app *app)
 {
+    if (orbit_is(app))
+        return (struct scene_framing){orbit_place, orbit_move};
     if (app->now.camera.framing == RELUME_FRAME_LOOK)
         return (struct scene_framing){place_in_look, drag_in_look};
     if (app_pole_y(app))

@@ -1,5 +1,7 @@
 #include "inspect.h"
 
+#include "orbit.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -148,6 +150,17 @@ static bool pick_camera(int *view, const struct app *app, const relume_slab *gri
     return n > 0;
 }
 
+static bool pick_around(int *view, int pixel[2], const struct app *app, double x, double y)
+{
+    const struct relume_vec3 way = orbit_ray(app, x, y);
+    double place[2];
+    if (!relume_slabs_nearest(view, place, app->file.around, app->now.camera.eye, way))
+        return false;
+    pixel[0] = clamp_to(place[0] * app->file.width, app->file.width);
+    pixel[1] = clamp_to(place[1] * app->file.height, app->file.height);
+    return true;
+}
+
 bool inspect_pick(int *view, int pixel[2], const struct app *app, const relume_slab *grid, double x,
                   double y)
 {
@@ -156,6 +169,8 @@ bool inspect_pick(int *view, int pixel[2], const struct app *app, const relume_s
         return pick_look(pixel, app, x, y);
     if (!pick_picture(pixel, app, x, y))
         return false;
+    if (orbit_is(app))
+        return pick_around(view, pixel, app, x, y);
     return app->now.camera.framing != RELUME_FRAME_EYE || pick_camera(view, app, grid, pixel);
 }
 
@@ -299,6 +314,8 @@ static int view_in_capture(const struct inspector *in, int view)
     for (int i = 0; info->uv && i < m->views; i++) {
         const double far =
             hypot(m->view[i].uv[0] - info->uv[view][0], m->view[i].uv[1] - info->uv[view][1]);
+        if (info->slabs && m->view[i].slab != info->slab_of[view])
+            continue;
         best = far < least ? i : best;
         least = fmin(far, least);
     }

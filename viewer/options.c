@@ -88,14 +88,40 @@ static relume_status take_view(struct options *o, const char *name, const char *
     return take_framing(o, name, RELUME_FRAME_VIEW, log);
 }
 
-static relume_status take_eye(struct options *o, const char *name, const char *text,
-                              const struct relume_log *log)
+static relume_status take_point(struct relume_vec3 *out, const char *name, const char *text,
+                                const struct relume_log *log)
 {
     double v[3];
     if (!options_numbers(text, v, 3))
-        return say(log, RELUME_EINVAL, "--eye: expected three numbers x,y,z; found '%s'", text);
-    o->start.camera.eye = (struct relume_vec3){v[0], v[1], v[2]};
-    return take_framing(o, name, RELUME_FRAME_EYE, log);
+        return say(log, RELUME_EINVAL, "%s: expected three numbers x,y,z; found '%s'", name, text);
+    *out = (struct relume_vec3){v[0], v[1], v[2]};
+    return RELUME_OK;
+}
+
+static relume_status take_eye(struct options *o, const char *name, const char *text,
+                              const struct relume_log *log)
+{
+    const relume_status status = take_point(&o->start.camera.eye, name, text, log);
+    return status ? status : take_framing(o, name, RELUME_FRAME_EYE, log);
+}
+
+static relume_status take_look_at(struct options *o, const char *name, const char *text,
+                                  const struct relume_log *log)
+{
+    o->start.camera.aim.aimed = true;
+    return take_point(&o->start.camera.aim.at, name, text, log);
+}
+
+static relume_status take_up(struct options *o, const char *name, const char *text,
+                             const struct relume_log *log)
+{
+    return take_point(&o->start.camera.aim.up, name, text, log);
+}
+
+static relume_status take_fov(struct options *o, const char *name, const char *text,
+                              const struct relume_log *log)
+{
+    return take_number(&o->start.camera.aim.field_of_view_deg, name, text, 0.01, 179, log);
 }
 
 static relume_status take_pan(struct options *o, const char *name, const char *text,
@@ -339,6 +365,9 @@ static const struct option options[] = {
      take_light},
     {"--view", "N", "the captured view N itself (panoramas: unfolded)", take_view},
     {"--eye", "x,y,z", "slab: look from there; default the middle of the cameras", take_eye},
+    {"--look-at", "x,y,z", "--eye: where it looks; default the middle of the object", take_look_at},
+    {"--up", "x,y,z", "--eye: what is up in the picture; default 0,1,0", take_up},
+    {"--fov", "DEG", "--eye: horizontal field of view; default the slabs' windows", take_fov},
     {"--pan", "DEG", "panorama: turn right", take_pan},
     {"--tilt", "DEG", "panorama: look up", take_tilt},
     {"--zoom", "F", "panorama: 1 shows 90 degrees", take_zoom},
@@ -391,7 +420,7 @@ void options_help(void)
     }
     puts("\n"
          "mouse:  drag         slab: turn; panorama: look around; picture: move\n"
-         "        wheel        zoom\n"
+         "        wheel        zoom; several slabs: nearer, farther\n"
          "        right drag   turn the light\n"
          "keys:");
     for (const struct key_binding *b = key_bindings; b->key; b++)
@@ -482,6 +511,8 @@ relume_status options_parse(struct options *o, int argc, char **argv, const stru
         if (status)
             return status;
     }
+    if (relume_aim_given(&o->start.camera.aim) && o->start.camera.framing != RELUME_FRAME_EYE)
+        return say(log, RELUME_EINVAL, "expected --eye beside --look-at, --up and --fov");
     if (o->record != (o->output != NULL))
         return say(log, RELUME_EINVAL, "expected --record KIND and -o OUT together");
     if (o->record && o->kind == RECORD_SCRIPT && !o->script)

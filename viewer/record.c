@@ -1,6 +1,7 @@
 #include "record.h"
 
 #include "lamps.h"
+#include "orbit.h"
 #include "say.h"
 
 #include <dirent.h>
@@ -77,12 +78,20 @@ static void pose_eye(struct app *app, double part)
     eye->y = 0.5 * (f->uv_min[1] + f->uv_max[1]) + 0.5 * (f->uv_max[1] - f->uv_min[1]) * sin(angle);
 }
 
+static void pose_around(struct app *app, double part)
+{
+    app->now.camera.eye = app->start.camera.eye;
+    orbit_turn(app, 360 * part, 0);
+}
+
 relume_status record_pose(struct app *app, enum record_kind kind, double part,
                           const struct relume_log *log)
 {
     const enum relume_framing framing = app->now.camera.framing;
     if (kind == RECORD_SWEEP)
         pose_sweep(app, part);
+    else if (orbit_is(app))
+        pose_around(app, part);
     else if (framing == RELUME_FRAME_EYE)
         pose_eye(app, part);
     else if (framing == RELUME_FRAME_LOOK)

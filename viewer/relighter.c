@@ -118,7 +118,7 @@ static relume_status relight_by_library(struct relighter *r, struct relit_view *
 // Near lights on planes that take several array textures, which the shader does not read.
 static relume_status add_near_by_library(struct relighter *r, struct relit_view *v)
 {
-    static const struct relume_transfer linear = {RELUME_CURVE_LINEAR, 0.0f};
+    static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     static const float one[3] = {1.0f, 1.0f, 1.0f};
     const int view = (int)(v - r->view);
     const struct relume_codes *codes;

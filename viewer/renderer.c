@@ -21,6 +21,8 @@ static relume_status create_programs(struct renderer *r)
         {&r->slab, draw_slab_create},
         {&r->slab_depth, draw_slab_depth_create},
         {&r->slab_lens, draw_slab_lens_create},
+        {&r->slabs, draw_slabs_create},
+        {&r->slabs_depth, draw_slabs_depth_create},
         {&r->mean, draw_mean_create},
 
         {&r->ball, draw_ball_create},
@@ -53,7 +55,7 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
         status = enhancer_create(&r->enhancer, gl, source, geometry, uv, views, log);
     if (!status)
         status = create_programs(r);
-    if (!status && geometry->projection == RELUME_SLAB) {
+    if (!status && geometry->projection == RELUME_SLAB && uv) {
         status = relume_slab_create(&r->grid, geometry, uv, views);
         if (status == RELUME_EINVAL)
             status = say(log, RELUME_EDATA, "the slab's cameras do not stand on a grid");
@@ -63,9 +65,22 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
     return status;
 }
 
+void renderer_use_slabs(struct renderer *r, const relume_slabs *slabs, const double (*uv)[2],
+                        const int *slab_of)
+{
+    r->around = slabs;
+    r->slab_of = slab_of;
+    memcpy(r->uv, uv, (size_t)r->views * sizeof *r->uv);
+    enhancer_use_slabs(&r->enhancer, slabs, (const double(*)[2])r->uv, slab_of);
+}
+
 relume_status renderer_use_depth(struct renderer *r, const struct depth_source *source)
 {
-    return r->grid ? depths_create(&r->depths, r->gl, r->grid, source) : RELUME_OK;
+    const relume_slab *slab[RELUME_MOST_SLABS] = {r->grid};
+    int slabs = r->grid != NULL;
+    for (; r->around && slabs < relume_slabs_count(r->around); slabs++)
+        slab[slabs] = relume_slabs_slab(r->around, slabs);
+    return slabs ? depths_create(&r->depths, r->gl, slab, slabs, source) : RELUME_OK;
 }
 
 void renderer_use_capture(struct renderer *r, const relume_capture *capture)
@@ -77,8 +92,9 @@ void renderer_destroy(struct renderer *r)
 {
     if (!r->gl)
         return;
-    struct program *const programs[] = {&r->picture, &r->slab,     &r->slab_depth, &r->slab_lens,
-                                        &r->mean,    &r->panorama, &r->ball,       &r->present};
+    struct program *const programs[] = {&r->picture, &r->slab,        &r->slab_depth, &r->slab_lens,
+                                        &r->slabs,   &r->slabs_depth, &r->mean,       &r->panorama,
+                                        &r->ball,    &r->present};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         program_destroy(programs[i], r->gl);
     relighter_destroy(&r->relighter);
@@ -127,9 +143,21 @@ static struct relume_view_params view_params(const struct app *app)
     };
 }
 
+static void mark_around(struct renderer *r, const struct app *app)
+{
+    const struct relume_view_params params = {.interpolation = app->now.interpolation};
+    struct relume_window window;
+    if (app_window(app, &window))
+        (void)relume_slabs_needs(r->needed, r->around, &window, &params);
+}
+
 static void mark_eye(struct renderer *r, const struct app *app)
 {
     const struct relume_view_params params = view_params(app);
+    if (r->around) {
+        mark_around(r, app);
+        return;
+    }
     (void)relume_slab_needs(r->needed, r->grid, app->now.camera.eye, &params);
 }
 
@@ -151,14 +179,14 @@ static bool takes_lens(const struct app *app)
     return app->now.aperture != 0.0 || focus_of(app) != 0.0;
 }
 
-// An eye at a camera sees its view alone, whatever the depth.
+// An eye at a slab's camera sees its view alone, whatever the depth.
 static bool takes_depth(const struct renderer *r, const struct app *app)
 {
     const enum relume_interpolation i = app->now.interpolation;
     int views = 0;
     for (int k = 0; k < r->views; k++)
         views += r->needed[k];
-    return r->depths.views && views > 1 && !takes_lens(app) &&
+    return r->depths.views && (views > 1 || r->around) && !takes_lens(app) &&
            (i == RELUME_INTERPOLATE_DEFAULT || i == RELUME_INTERPOLATE_DEPTH);
 }
 
@@ -175,6 +203,31 @@ static relume_status draw_lens(struct renderer *r, const struct app *app, const 
     return RELUME_OK;
 }
 
+static relume_status draw_around(struct renderer *r, const struct app *app,
+                                 const struct place *place)
+{
+    struct relume_window window;
+    struct slabs_seen seen = {.slabs = r->around, .window = &window, .views = r->relit};
+    double range[2];
+    relume_status status = prepare_target(&r->sum, r, place->width, place->height);
+    const bool by_depth = takes_depth(r, app);
+    if (!status && by_depth)
+        status = depths_use(&r->depths, r->needed, range);
+    if (status || !app_window(app, &window))
+        return status;
+    seen.disparity = by_depth ? r->depths.texture : NULL;
+    seen.range = (const double(*)[2])r->depths.range;
+    target_begin(&r->sum, r->gl);
+    if (by_depth)
+        draw_slabs_depth(&r->slabs_depth, r->gl, place, &seen);
+    else
+        draw_slabs(&r->slabs, r->gl, place, &seen,
+                   app->now.interpolation == RELUME_INTERPOLATE_CONSTANT);
+    target_resume(&r->frame, r->gl);
+    draw_mean(&r->mean, r->gl, place, &r->sum);
+    return RELUME_OK;
+}
+
 static relume_status draw_framed_eye(struct renderer *r, const struct app *app,
                                      const struct place *place)
 {
@@ -184,6 +237,8 @@ static relume_status draw_framed_eye(struct renderer *r, const struct app *app,
         any |= r->needed[i];
     if (!any)
         return RELUME_OK;
+    if (r->around)
+        return draw_around(r, app, place);
     if (takes_lens(app))
         return draw_lens(r, app, place, &seen);
     if (!takes_depth(r, app)) {
@@ -224,24 +279,35 @@ static double apart(const struct renderer *r, int a, int b)
     return du * du + dv * dv;
 }
 
-// The view on the GPU that stands nearest to a missing one, or -1.
+static bool of_one_slab(const struct renderer *r, int a, int b)
+{
+    return !r->slab_of || r->slab_of[a] == r->slab_of[b];
+}
+
+// The view on the GPU that stands nearest to a missing one of the same slab, or -1.
 static int nearest_present(const struct renderer *r, int missing)
 {
     int nearest = -1;
     for (int i = 0; i < r->views; i++)
-        if (relighter_has(&r->relighter, i) &&
+        if (relighter_has(&r->relighter, i) && of_one_slab(r, i, missing) &&
             (nearest < 0 || apart(r, i, missing) < apart(r, nearest, missing)))
             nearest = i;
     return nearest;
 }
 
+// Of several slabs those that are not there yet say nothing while others do.
 static relume_status stand_in(struct renderer *r)
 {
     relume_status status = RELUME_OK;
+    bool any = false;
+    for (int i = 0; r->slab_of && i < r->views; i++)
+        any |= r->relit[i] != NULL;
     for (int i = 0; !status && i < r->views; i++) {
         if (!r->needed[i] || r->relit[i])
             continue;
         const int nearest = nearest_present(r, i);
+        if (nearest < 0 && any)
+            continue;
         status = nearest < 0 ? relighter_wait(&r->relit[i], &r->relighter, i)
                              : relighter_view(&r->relit[i], &r->relighter, nearest);
     }

@@ -13,13 +13,16 @@ struct renderer {
     const struct relume_log *log;
     struct relighter relighter;
     struct enhancer enhancer;
-    struct program picture, slab, slab_depth, slab_lens, mean, panorama, ball, present;
+    struct program picture, slab, slab_depth, slab_lens, slabs, slabs_depth, mean, panorama, ball,
+        present;
     GLuint vertices;
     struct target frame;
-    struct target small;   // of the frame, to meter
-    struct target sum;     // of an aperture's cameras; made when first needed
-    relume_slab *grid;     // NULL: not a slab
-    struct depths depths;  // empty: not a slab, or without depth
+    struct target small;  // of the frame, to meter
+    struct target sum;    // of an aperture's cameras, of several slabs; made when first needed
+    relume_slab *grid;    // NULL: not a slab, or several
+    const relume_slabs *around;  // several; else NULL
+    const int *slab_of;          // of several: [views]
+    struct depths depths;        // empty: not a slab, or without depth
     struct relume_geometry geometry;
     int views;
     double (*uv)[2];              // [views]
@@ -29,14 +32,19 @@ struct renderer {
     int room;
 };
 
-// `uv` [views] places the cameras of a slab. RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EDATA.
+// `uv` [views] places the cameras of a slab; NULL: there is none, or renderer_use_slabs tells.
+// RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EDATA.
 relume_status renderer_create(struct renderer *renderer, const struct gl *gl,
                               const struct code_source *source,
                               const struct relume_geometry *geometry, const double (*uv)[2],
                               int views, const struct relume_log *log);
 void renderer_destroy(struct renderer *renderer);
 
-// The views of a slab have depth. RELUME_ENOMEM.
+// Several slabs; all of it must outlive the renderer.
+void renderer_use_slabs(struct renderer *renderer, const relume_slabs *slabs, const double (*uv)[2],
+                        const int *slab_of);
+
+// The views of a slab, or of several, have depth. RELUME_ENOMEM.
 relume_status renderer_use_depth(struct renderer *renderer, const struct depth_source *source);
 
 // A capture of the file to compare with, for RELUME_PASS_DIFFERENCE; it must outlive the renderer.

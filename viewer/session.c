@@ -27,6 +27,22 @@ static struct app_file describe(const relume_pack *pack)
     return file;
 }
 
+// Several slabs, or one for a free eye.
+static relume_status find_slabs(relume_slabs **around, const relume_pack *pack, bool free_eye,
+                                const struct relume_log *log)
+{
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    *around = NULL;
+    if (!info->slabs && !(free_eye && info->geometry.projection == RELUME_SLAB))
+        return RELUME_OK;
+    const relume_status status =
+        relume_slabs_create(around, info->slabs ? info->slab : &info->geometry,
+                            info->slabs ? info->slabs : 1, info->uv, info->slab_of, info->views);
+    if (status == RELUME_EINVAL)
+        return say(log, RELUME_EDATA, "the cameras of a slab do not stand on a grid");
+    return status;
+}
+
 static void set_name(struct session *s, const char *path)
 {
     const char *slash = strrchr(path, '/');
@@ -60,7 +76,9 @@ static void describe_lines(struct session *s)
     int n = 0;
     snprintf(s->line[n++], SESSION_TEXT, "%s, %d x %d",
              relume_projection_name(info->geometry.projection), info->width, info->height);
-    if (info->views > 1)
+    if (info->slabs)
+        snprintf(s->line[n++], SESSION_TEXT, "%d slabs, %d views", info->slabs, info->views);
+    else if (info->views > 1)
         snprintf(s->line[n++], SESSION_TEXT, "%d views", info->views);
     snprintf(s->line[n++], SESSION_TEXT, "%s, %d coefficients, %d lights", coder->basis->name,
              coder->coefficients, coder->lights);
@@ -110,29 +128,36 @@ static void close_file(struct session *s)
     renderer_destroy(&s->renderer);
     pack_source_destroy(&s->source);
     relume_pack_destroy(&s->pack);
+    relume_slabs_destroy(&s->around);
 }
 
 relume_status session_open(struct session *s, const char *path, const struct app_state *start,
                            bool look_ahead)
 {
     relume_pack *pack;
+    relume_slabs *around;
     struct app app;
     relume_status status =
         relume_pack_open(&pack, path, relume_pack_params(.log = s->log, .threads = s->threads));
     if (status)
         return status;
-    const struct app_file file = describe(pack);
-    status = app_start(&app, &file, start, look_ahead, s->log);
+    struct app_file file = describe(pack);
+    status = find_slabs(&around, pack, relume_aim_given(&start->camera.aim), s->log);
+    file.around = around;
+    if (!status)
+        status = app_start(&app, &file, start, look_ahead, s->log);
     if (!status)
         status = check_depth(pack, start, s->log);
     if (status) {
         app_release(&app);
         relume_pack_destroy(&pack);
+        relume_slabs_destroy(&around);
         return status;
     }
     close_file(s);
     app_release(&s->app);
     s->pack = pack;
+    s->around = around;
     s->app = app;
     s->app.compared = s->capture != NULL;
     s->app.near_lights = has_surface(s);
@@ -152,10 +177,12 @@ static relume_status make_renderer(struct session *s)
         return status;
     const struct code_source source = pack_source_codes(s->source);
     const struct depth_source depth = pack_source_depth(s->source);
-    status = renderer_create(&s->renderer, &s->gl, &source, &info->geometry, info->uv, info->views,
-                             s->log);
+    status = renderer_create(&s->renderer, &s->gl, &source, &info->geometry,
+                             s->around ? NULL : info->uv, info->views, s->log);
     if (status)
         return status;
+    if (s->around)
+        renderer_use_slabs(&s->renderer, s->around, info->uv, info->slab_of);
     s->renderer.relighter.budget = s->vram_bytes;
     s->renderer.relighter.software.threads = s->threads;
     s->renderer.relighter.by_library =

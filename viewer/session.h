@@ -32,6 +32,7 @@ struct session {
     void *context;
     struct gl gl;
     relume_pack *pack;
+    relume_slabs *around;        // of it, where there are several
     struct pack_source *source;  // of it, for the renderer and its threads
     relume_capture *capture;     // of the file, to compare with, or NULL
     relume_rig *rig;             // owns what lights point at; the app's list says what shines

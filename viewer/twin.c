@@ -49,7 +49,7 @@ static relume_status need_linear(struct relighter *r)
 // The linear twin under the environments alone.
 relume_status twin_relight(struct relighter *r, struct relit_view *v)
 {
-    static const struct relume_transfer linear = {RELUME_CURVE_LINEAR, 0.0f};
+    static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     static const float one[3] = {1.0f, 1.0f, 1.0f};
     const struct target *twin;
     struct relume_light *environments = malloc((size_t)r->lights * sizeof *environments);

@@ -21,6 +21,27 @@ RELUME_API const char *relume_projection_name(enum relume_projection projection)
 // RELUME_EINVAL when `name` is none of these.
 RELUME_RESULT relume_status relume_projection_parse(enum relume_projection *out, const char *name);
 
+// A right-handed frame in the world: (x, y, z) of it lies at origin + x axis[0] + y axis[1] +
+// z axis[2]. All zero is the world itself.
+struct relume_pose {
+    struct relume_vec3 origin;
+    struct relume_vec3 axis[3];
+};
+// Make the axes unit and perpendicular, all zero the world's; false when they are not those of a
+// rotation within 1e-3, or not finite.
+RELUME_API bool relume_pose_normalise(struct relume_pose *pose);
+// Points of the frame in the world, and the inverse. Directions turn alone.
+RELUME_API struct relume_vec3 relume_pose_world(const struct relume_pose *pose,
+                                                struct relume_vec3 local);
+RELUME_API struct relume_vec3 relume_pose_local(const struct relume_pose *pose,
+                                                struct relume_vec3 world);
+RELUME_API struct relume_vec3 relume_pose_turn(const struct relume_pose *pose,
+                                               struct relume_vec3 local);
+RELUME_API struct relume_vec3 relume_pose_turn_back(const struct relume_pose *pose,
+                                                    struct relume_vec3 world);
+
+enum { RELUME_MOST_SLABS = 64 };
+
 // Where the pixels of a view lie in the world. Only the members of `projection` count.
 struct relume_geometry {
     enum relume_projection projection;
@@ -28,9 +49,11 @@ struct relume_geometry {
     double window_min[2], window_max[2];
     bool perspective;  // eye (0, 0, camera_z) through the window; default: orthographic along -z
     double camera_z;
-    // slab: cameras on the plane z = uv_z look through st_min..st_max on the plane z = st_z
+    // slab: cameras on the plane z = uv_z look through st_min..st_max on the plane z = st_z, all in
+    // the frame `pose`
     double uv_z, st_z;
     double st_min[2], st_max[2];
+    struct relume_pose pose;
     // cylindrical: the tangents of the lowest and highest elevation
     double v_min, v_max;
     // panoramas: the eye
@@ -43,6 +66,7 @@ RELUME_API struct relume_geometry relume_geometry_default(enum relume_projection
 
 struct relume_manifest_view {
     double uv[2];         // slab: where the camera stands on the uv plane
+    int slab;             // which of several slabs
     const char **images;  // [lights], relative to the manifest
     const char *depth;    // or NULL
     const char *mask;     // or NULL
@@ -52,15 +76,19 @@ struct relume_manifest_view {
 struct relume_manifest {
     struct relume_transfer transfer;
     struct relume_geometry geometry;
+    int slabs;  // around an object, each with its own pose; 0: `geometry` is all there is
+    const struct relume_geometry *slab;  // [slabs]; the first is `geometry`
     int lights;
     const struct relume_vec3 *directions;  // [lights], unit
     const struct relume_vec3 *positions;   // [lights], world units, or NULL: distant lights
-    const float (*intensities)[3];         // [lights], or NULL: all 1
+    bool no_falloff;  // positions: light does not fall with the square of the distance
+    const float (*intensities)[3];  // [lights], or NULL: all 1
     int views;
     const struct relume_manifest_view *view;  // [views]
 };
 
-// Write `path` (capture.json) whole or not at all. Returns RELUME_EIO, RELUME_ENOMEM.
+// Write `path` (capture.json) whole or not at all. RELUME_EINVAL for the transfer of a response,
+// RELUME_EIO, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_manifest_write(const struct relume_manifest *manifest,
                                                   const char *path, const struct relume_log *log);
 
@@ -91,15 +119,18 @@ RELUME_API void relume_capture_destroy(relume_capture **capture);
 RELUME_API const struct relume_manifest *relume_capture_manifest(const relume_capture *capture);
 RELUME_API int relume_capture_width(const relume_capture *capture);
 RELUME_API int relume_capture_height(const relume_capture *capture);
-// No light lies below -0.1 along the pole (planar, slab: z; panoramas: y).
+// The pole is y (panoramas, several slabs), not z (planar, one slab).
+RELUME_API bool relume_capture_pole_y(const relume_capture *capture);
+// No light lies below -0.1 along the pole.
 RELUME_API bool relume_capture_hemispherical(const relume_capture *capture);
 
 // The largest value that images under `light` can hold, linear, intensity divided out: there they
 // clip. Infinite for floating-point files.
 RELUME_API void relume_capture_white(const relume_capture *capture, int light, float rgb[3]);
 
-// One image, linear, light intensity divided out, three channels. NaN and infinity are
-// RELUME_EDATA.
+// One image, linear, light intensity divided out, three channels; so is the fall-off of near
+// lights (positions): as if the light reached every pixel as strongly as the world's origin.
+// NaN and infinity are RELUME_EDATA.
 RELUME_RESULT relume_status relume_capture_image(struct relume_image *out,
                                                  const relume_capture *capture, int view, int light,
                                                  const struct relume_log *log);
@@ -125,7 +156,9 @@ struct relume_table_params {
 // `capture` must outlive the table. Returns RELUME_EDATA, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_table_open(relume_table **out, const relume_capture *capture,
                                               int view, const struct relume_table_params *params);
-// The next `rows` rows of every light: out[light][row][x][rgb], light intensity divided out.
+// The next `rows` rows of every light: out[light][row][x][rgb], light intensity divided out. Where
+// lights are near (positions; planar views, slabs with depth) values are those under distant lights
+// from the manifest's directions.
 // Asking for more rows than are left is RELUME_EINVAL.
 RELUME_RESULT relume_status relume_table_read(relume_table *table, int rows, float *out);
 // Pixels of `light` that have been repaired in the rows read so far.

@@ -8,6 +8,7 @@
 #include <relume/image.h>
 #include <relume/pack.h>
 #include <relume/relight.h>
+#include <relume/slabs.h>
 #include <relume/view.h>
 
 #ifdef __cplusplus
@@ -17,7 +18,7 @@ extern "C" {
 enum relume_framing {
     RELUME_FRAME_DEFAULT = 0,  // slab: EYE at the middle of the uv grid; else VIEW 0
     RELUME_FRAME_VIEW,         // a captured view at its own size (panoramas: unfolded)
-    RELUME_FRAME_EYE,          // slab: the window from `eye`
+    RELUME_FRAME_EYE,          // slab: the window from `eye`; of several slabs what `aim` says
     RELUME_FRAME_LOOK,         // panorama: a perspective frame
 };
 
@@ -25,6 +26,9 @@ struct relume_camera {
     enum relume_framing framing;
     int view;
     struct relume_vec3 eye;
+    struct relume_aim
+        aim;      // EYE, several slabs: where it looks. Of one slab: all zero is the window
+    int through;  // EYE, several slabs: 1 + the slab whose st window it looks through
     struct relume_look look;
     int width, height;  // default: the view's own size; LOOK: 1024 x 512
 };

@@ -25,19 +25,23 @@ RELUME_API void relume_image_destroy(struct relume_image *image);
 enum relume_curve {
     RELUME_CURVE_AUTO = 0,  // float files linear, integer files sRGB unless they say otherwise
     RELUME_CURVE_LINEAR,
-    RELUME_CURVE_SRGB,   // IEC 61966-2-1, continued above 1 and mirrored below 0
-    RELUME_CURVE_GAMMA,  // code = linear^(1/gamma)
+    RELUME_CURVE_SRGB,      // IEC 61966-2-1, continued above 1 and mirrored below 0
+    RELUME_CURVE_GAMMA,     // code = linear^(1/gamma)
+    RELUME_CURVE_RESPONSE,  // a camera's, measured (relume/response.h)
 };
+struct relume_response;
 struct relume_transfer {
     enum relume_curve curve;
-    float gamma;  // only for RELUME_CURVE_GAMMA, (0.1, 10]
+    float gamma;                             // only for RELUME_CURVE_GAMMA, (0.1, 10]
+    const struct relume_response *response;  // only for RELUME_CURVE_RESPONSE, borrowed
 };
 
 // "linear", "srgb" or "gamma:2.2". RELUME_EINVAL when `text` is none of these.
 RELUME_RESULT relume_status relume_transfer_parse(struct relume_transfer *out, const char *text);
 // The inverse; writes at most `size` bytes, always terminated.
 RELUME_API void relume_transfer_text(struct relume_transfer transfer, char *text, size_t size);
-// Code value -> linear light and back. AUTO behaves as SRGB.
+// Code value -> linear light and back. AUTO behaves as SRGB. Of a response the green curve counts,
+// for pictures each channel's own.
 RELUME_API float relume_transfer_decode(struct relume_transfer transfer, float code);
 RELUME_API float relume_transfer_encode(struct relume_transfer transfer, float linear);
 
@@ -47,6 +51,7 @@ struct relume_image_params {
     const struct relume_limits *limits;
     int channels;  // loading: 1 or 3, converted to; default 3. Alpha is dropped, grey is spread
     bool half;     // saving EXR: half instead of float samples
+    int threads;   // saving EXR: worker threads; default: one
 };
 #define relume_image_params(...) (&(const struct relume_image_params){__VA_ARGS__})
 

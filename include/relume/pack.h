@@ -27,6 +27,7 @@ RELUME_RESULT relume_status relume_compression_parse(enum relume_compression *ou
 struct relume_pack_view {
     const relume_coefficients *coefficients;
     double uv[2];                      // slab: where the camera stands
+    int slab;                          // which of several slabs
     const struct relume_image *depth;  // one channel, or NULL
     const struct relume_image *mask;   // one channel, or NULL
     // Codebooks instead of planes: all views or none, as many books in each. Views that have the
@@ -39,6 +40,8 @@ struct relume_pack_contents {
     enum relume_domain domain;
     struct relume_transfer display;  // the curve of DOMAIN_DISPLAY
     struct relume_geometry geometry;
+    int slabs;                           // as struct relume_manifest
+    const struct relume_geometry *slab;  // [slabs]
     int views;
     const struct relume_pack_view *view;  // [views]
     struct relume_encode_report report;   // over all views; NaN: not known
@@ -94,9 +97,12 @@ struct relume_pack_info {
     enum relume_storage storage;
     const char *compression;  // of the coefficients: "piz", ...
     struct relume_geometry geometry;
-    int width, height;  // of each view
+    int slabs;  // around an object, each with its own pose; 0: `geometry` is all there is
+    const struct relume_geometry *slab;  // [slabs]; the first is `geometry`
+    int width, height;                   // of each view
     int views;
     const double (*uv)[2];  // [views]; slab: camera places
+    const int *slab_of;     // [views]; several slabs: which one; else NULL
     bool has_depth, has_mask;
     int books;                           // codebooks for each pixel, 0: planes
     int codes;                           // vectors of the first book
@@ -105,6 +111,9 @@ struct relume_pack_info {
     uint64_t file_bytes;
 };
 RELUME_API const struct relume_pack_info *relume_pack_info(const relume_pack *pack);
+
+// Where the pixels of a view lie: `geometry`, or its slab.
+RELUME_API const struct relume_geometry *relume_pack_geometry(const relume_pack *pack, int view);
 
 // The codes of one view; they belong to the pack and stay valid until relume_pack_drop or destroy.
 RELUME_RESULT relume_status relume_pack_codes(const struct relume_codes **out, relume_pack *pack,

@@ -103,8 +103,8 @@ struct relume_relight_params {
     // Three channels of the size of the codes: the world position that each pixel sees, not
     // finite for background. Only near lights read it.
     const struct relume_image *surface;
-    const relume_weight_grid *grid;  // of the codes' coder, for near lights and environments;
-                                     // default: made for the call
+    const relume_weight_grid *grid;  // of the codes' coder, for near lights and environments, or of
+                                     // the refit's, for environments; default: made for the call
     const relume_refit *refit;       // of display-domain codes, for environments; default: made
                                      // for the call
     float exposure_ev;               // relume_relight_rgba8: multiply by 2^EV before coding

@@ -2,7 +2,9 @@
 #ifndef RELUME_H
 #define RELUME_H
 
+#include <relume/align.h>
 #include <relume/base.h>
+#include <relume/ball.h>
 #include <relume/capture.h>
 #include <relume/codebook.h>
 #include <relume/coder.h>
@@ -16,9 +18,14 @@
 #include <relume/lights.h>
 #include <relume/normals.h>
 #include <relume/pack.h>
+#include <relume/photograph.h>
+#include <relume/photometric.h>
 #include <relume/relight.h>
+#include <relume/response.h>
 #include <relume/rig.h>
 #include <relume/scene.h>
+#include <relume/shoot.h>
+#include <relume/slabs.h>
 #include <relume/tone.h>
 #include <relume/view.h>
 

@@ -39,6 +39,18 @@ RELUME_RESULT relume_status relume_scene_create(relume_scene **out,
                                                 const struct relume_scene_params *params);
 RELUME_API void relume_scene_destroy(relume_scene **scene);
 
+// Several slabs around the object, each looking at the origin from a distance of 3. Slab 0 is where
+// one slab is, before +z; the others follow to the right as seen from there (towards +x).
+enum relume_ring {
+    RELUME_RING_NONE = 0,  // one slab
+    RELUME_RING_4,
+    RELUME_RING_6,
+    RELUME_RING_8,
+    RELUME_RING_CUBE,  // four, and one from above whose pictures have -z at their top
+};
+// "4", "6", "8", "cube". RELUME_EINVAL when `name` is none of these.
+RELUME_RESULT relume_status relume_ring_parse(enum relume_ring *out, const char *name);
+
 struct relume_synth_params {
     const struct relume_log *log;
     enum relume_projection projection;  // used only when `projection_set`
@@ -47,7 +59,9 @@ struct relume_synth_params {
                     // height of other panoramas (cylindrical: 4:1, spherical: 2:1);
                     // default 256
     int grid[2];    // slab: cameras along u and v; default 5 x 5
-    double spread;  // slab: the grid reaches from -spread to spread; default 0.5
+    double spread;  // slab: the grid reaches from -spread to spread; default 0.5, of several
+                    // slabs so far that neighbours overlap: 1.15 x 3 tan(180 degrees / slabs)
+    enum relume_ring ring;           // slab: several of them, each with the grid
     const struct relume_vec3 *eyes;  // slab: cameras instead of the grid, all of one z;
                                      // panorama: its one centre; planar: (0, 0, z) perspective
     int eye_count;

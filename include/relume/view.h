@@ -60,6 +60,7 @@ struct relume_slab_grid {
     int columns, rows;
     const double *u, *v;  // [columns], [rows], ascending
     const int *view;      // [rows][columns]: which view stands there
+    int views;            // arrays by view number are so long
 };
 RELUME_API struct relume_slab_grid relume_slab_grid(const relume_slab *slab);
 

@@ -3,8 +3,10 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "capture/near.h"
 #include "math/vec.h"
 
+#include <relume/response.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -36,10 +38,16 @@ int relume_capture_height(const relume_capture *capture)
     return capture->height;
 }
 
+bool relume_capture_pole_y(const relume_capture *capture)
+{
+    const struct relume_manifest *m = &capture->draft.m;
+    return m->slabs > 0 || m->geometry.projection >= RELUME_CYLINDRICAL;
+}
+
 bool relume_capture_hemispherical(const relume_capture *capture)
 {
     const struct relume_manifest *m = &capture->draft.m;
-    const bool pole_y = m->geometry.projection >= RELUME_CYLINDRICAL;
+    const bool pole_y = relume_capture_pole_y(capture);
     for (int i = 0; i < m->lights; i++)
         if (pole_from_world(m->directions[i], pole_y).z < -0.1)
             return false;
@@ -229,14 +237,32 @@ relume_status capture_stream(struct image_stream *out, const relume_capture *cap
 void relume_capture_white(const relume_capture *capture, int light, float rgb[3])
 {
     const float(*intensities)[3] = capture->draft.m.intensities;
+    const struct relume_response *response =
+        capture->transfer.curve == RELUME_CURVE_RESPONSE ? capture->transfer.response : NULL;
     for (int c = 0; c < 3; c++)
-        rgb[c] = capture->floats ? INFINITY : 1.0f / (intensities ? intensities[light][c] : 1.0f);
+        rgb[c] = capture->floats ? INFINITY
+                                 : (response ? relume_response_decode(response, c, 1.0f) : 1.0f) /
+                                       (intensities ? intensities[light][c] : 1.0f);
+}
+
+// Fall-off of near lights is divided out.
+static relume_status level(struct relume_image *image, const relume_capture *capture, int view,
+                           int light, const struct relume_log *log)
+{
+    struct near near;
+    if (!near_applies(capture, view))
+        return RELUME_OK;
+    const relume_status status = near_open(&near, capture, view, log);
+    if (!status)
+        near_level(&near, light, image);
+    near_close(&near);
+    return status;
 }
 
 relume_status relume_capture_image(struct relume_image *out, const relume_capture *capture,
                                    int view, int light, const struct relume_log *log)
 {
-    const struct relume_transfer linear = {RELUME_CURVE_LINEAR, 0.0f};
+    const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     *out = (struct relume_image){0};
     struct image_stream stream;
     relume_status status = capture_stream(&stream, capture, view, light, linear, log);
@@ -249,6 +275,8 @@ relume_status relume_capture_image(struct relume_image *out, const relume_captur
     if (status == RELUME_EDATA)
         (void)log_fail(log, status, "%s: %s", capture->draft.m.view[view].images[light],
                        image_stream_error(&stream));
+    if (!status)
+        status = level(out, capture, view, light, log);
     if (status)
         relume_image_destroy(out);
     image_stream_close(&stream);
@@ -261,7 +289,7 @@ static relume_status load_plane(struct relume_image *out, const relume_capture *
     *out = (struct relume_image){0};
     if (!path)
         return RELUME_OK;
-    const struct relume_transfer as_stored = {RELUME_CURVE_LINEAR, 0.0f};
+    const struct relume_transfer as_stored = {.curve = RELUME_CURVE_LINEAR};
     const relume_status status = relume_image_load(
         out, path, relume_image_params(.log = log, .channels = 1, .transfer = as_stored));
     if (status || (out->width == capture->width && out->height == capture->height))

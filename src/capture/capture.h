@@ -23,4 +23,8 @@ struct relume_capture {
 relume_status capture_stream(struct image_stream *out, const relume_capture *capture, int view,
                              int light, struct relume_transfer to, const struct relume_log *log);
 
+// A table whose values under near lights are levelled (near.h) but not those under distant lights.
+relume_status table_open_as_seen(relume_table **out, const relume_capture *capture, int view,
+                                 const struct relume_table_params *params);
+
 #endif

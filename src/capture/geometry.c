@@ -1,5 +1,6 @@
-#include <relume/capture.h>
+#include "math/vec.h"
 
+#include <relume/capture.h>
 #include <string.h>
 
 static const char *const names[] = {
@@ -38,4 +39,63 @@ struct relume_geometry relume_geometry_default(enum relume_projection projection
         .v_min = -1.0,
         .v_max = 1.0,
     };
+}
+
+// ---------------------------------------------------------------- pose
+
+static bool near_to(double found, double wanted)
+{
+    return fabs(found - wanted) <= 1e-3;
+}
+
+static bool is_zero(vec3 v)
+{
+    return v.x == 0.0 && v.y == 0.0 && v.z == 0.0;
+}
+
+bool relume_pose_normalise(struct relume_pose *pose)
+{
+    vec3 *a = pose->axis;
+    if (is_zero(a[0]) && is_zero(a[1]) && is_zero(a[2])) {
+        a[0] = vec3_of(1, 0, 0);
+        a[1] = vec3_of(0, 1, 0);
+        a[2] = vec3_of(0, 0, 1);
+    }
+    for (int i = 0; i < 3; i++) {
+        const vec3 turned = vec3_cross(a[(i + 1) % 3], a[(i + 2) % 3]);
+        if (!near_to(vec3_length(a[i]), 1.0) || !near_to(vec3_dot(turned, a[i]), 1.0) ||
+            !near_to(vec3_dot(a[i], a[(i + 1) % 3]), 0.0))
+            return false;
+    }
+    a[2] = vec3_unit(a[2]);
+    a[0] = vec3_unit(vec3_cross(a[1], a[2]));
+    a[1] = vec3_cross(a[2], a[0]);
+    return isfinite(pose->origin.x) && isfinite(pose->origin.y) && isfinite(pose->origin.z);
+}
+
+vec3 relume_pose_turn(const struct relume_pose *pose, vec3 local)
+{
+    const vec3 *a = pose->axis;
+    if (is_zero(a[0]))  // the world; nobody has normalised
+        return local;
+    return vec3_add(vec3_scale(a[0], local.x),
+                    vec3_add(vec3_scale(a[1], local.y), vec3_scale(a[2], local.z)));
+}
+
+vec3 relume_pose_turn_back(const struct relume_pose *pose, vec3 world)
+{
+    const vec3 *a = pose->axis;
+    if (is_zero(a[0]))
+        return world;
+    return vec3_of(vec3_dot(a[0], world), vec3_dot(a[1], world), vec3_dot(a[2], world));
+}
+
+vec3 relume_pose_world(const struct relume_pose *pose, vec3 local)
+{
+    return vec3_add(pose->origin, relume_pose_turn(pose, local));
+}
+
+vec3 relume_pose_local(const struct relume_pose *pose, vec3 world)
+{
+    return relume_pose_turn_back(pose, vec3_sub(world, pose->origin));
 }

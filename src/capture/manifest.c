@@ -8,8 +8,10 @@
 #include "math/vec.h"
 
 #include <libgen.h>
+#include <relume/response.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { VERSION = 1 };
 
@@ -112,6 +114,17 @@ static relume_status read_intensities(const struct parser *p, const jvalue *arra
     return RELUME_OK;
 }
 
+static relume_status read_falloff(const struct parser *p, const jvalue *value)
+{
+    const char *text = jvalue_text(value);
+    if (!value || jvalue_is_null(value))
+        return RELUME_OK;
+    if (!text || (strcmp(text, "inverse-square") && strcmp(text, "none")))
+        return wrong(p, "lights.falloff", "inverse-square or none");
+    p->d->m.no_falloff = !strcmp(text, "none");
+    return RELUME_OK;
+}
+
 static relume_status read_lights(const struct parser *p, const jvalue *lights)
 {
     struct draft *d = p->d;
@@ -137,8 +150,92 @@ static relume_status read_lights(const struct parser *p, const jvalue *lights)
     }
     if (!status && intensities && !jvalue_is_null(intensities))
         status = read_intensities(p, intensities, n);
+    if (!status)
+        status = read_falloff(p, jvalue_member(lights, "falloff"));
     d->m.lights = n;
     return status;
+}
+
+static relume_status read_planes(const struct parser *p, const jvalue *slab,
+                                 struct relume_geometry *g)
+{
+    const struct {
+        const char *key;
+        double *out;
+        size_t count;
+    } members[] = {
+        {"uv_plane_z", &g->uv_z, 1},
+        {"st_plane_z", &g->st_z, 1},
+        {"st_min", g->st_min, 2},
+        {"st_max", g->st_max, 2},
+    };
+    relume_status status = RELUME_OK;
+    for (size_t i = 0; !status && i < sizeof members / sizeof *members; i++)
+        status = get_numbers(p, slab, members[i].key, members[i].out, members[i].count);
+    if (status)
+        return status;
+    if (!(g->st_min[0] < g->st_max[0] && g->st_min[1] < g->st_max[1]))
+        return wrong(p, "window", "min below max");
+    return g->uv_z == g->st_z ? wrong(p, "slab", "two different planes") : RELUME_OK;
+}
+
+static relume_status read_pose(const struct parser *p, const jvalue *slab, int index,
+                               struct relume_pose *pose)
+{
+    const jvalue *axes = jvalue_member(slab, "axes");
+    double v[4][3] = {{0.0}};
+    char where[48];
+    relume_status status = get_numbers(p, slab, "origin", v[3], 3);
+    snprintf(where, sizeof where, "slabs[%d].axes", index);
+    if (!status && axes && jvalue_count(axes) != 3)
+        status = wrong(p, where, "three vectors: the slab's x, y and z in the world");
+    for (size_t i = 0; !status && axes && i < 3; i++)
+        if (!jvalue_numbers(jvalue_item(axes, i), v[i], 3))
+            status = wrong(p, where, "three vectors: the slab's x, y and z in the world");
+    if (status)
+        return status;
+    pose->origin = vec3_of(v[3][0], v[3][1], v[3][2]);
+    for (int i = 0; i < 3; i++)
+        pose->axis[i] = vec3_of(v[i][0], v[i][1], v[i][2]);
+    return relume_pose_normalise(pose)
+               ? RELUME_OK
+               : wrong(p, where, "a rotation: unit vectors, perpendicular, right-handed");
+}
+
+static relume_status read_slabs(const struct parser *p, const jvalue *slabs)
+{
+    struct draft *d = p->d;
+    const size_t n = jvalue_count(slabs);
+    if (n < 1 || n > RELUME_MOST_SLABS)
+        return wrong(p, "slabs", "an array of 1 to 64 slabs");
+    d->slab = arena_array(&d->arena, n, sizeof *d->slab);
+    if (!d->slab)
+        return RELUME_ENOMEM;
+    relume_status status = RELUME_OK;
+    for (size_t i = 0; !status && i < n; i++) {
+        const jvalue *slab = jvalue_item(slabs, i);
+        d->slab[i] = relume_geometry_default(RELUME_SLAB, 1, 1);
+        status = read_planes(p, slab, &d->slab[i]);
+        if (!status)
+            status = read_pose(p, slab, (int)i, &d->slab[i].pose);
+    }
+    d->m.slabs = (int)n;
+    d->m.slab = d->slab;
+    d->m.geometry = d->slab[0];
+    return status;
+}
+
+static relume_status read_slab(const struct parser *p, const jvalue *root)
+{
+    const jvalue *one = jvalue_member(root, "slab");
+    const jvalue *several = jvalue_member(root, "slabs");
+    if (one && several)
+        return wrong(p, "slab and slabs", "one of them");
+    if (several)
+        return read_slabs(p, several);
+    if (!one)
+        return wrong(p, "slab", "an object with uv_plane_z, st_plane_z, st_min, st_max");
+    return read_planes(p, one, &p->d->m.geometry);
 }
 
 static relume_status read_geometry(const struct parser *p, const jvalue *root)
@@ -154,15 +251,14 @@ static relume_status read_geometry(const struct parser *p, const jvalue *root)
     *g = relume_geometry_default(kind, 1, 1);
 
     const jvalue *window = jvalue_member(root, "window");
-    const jvalue *slab = jvalue_member(root, "slab");
     const jvalue *panorama = jvalue_member(root, "panorama");
     const char *camera = jvalue_text(jvalue_member(window, "camera"));
     if (camera && strcmp(camera, "orthographic") && strcmp(camera, "perspective"))
         return wrong(p, "window.camera", "orthographic or perspective");
     g->perspective = camera && !strcmp(camera, "perspective");
     p->d->has_window = jvalue_member(window, "min") && jvalue_member(window, "max");
-    if (kind == RELUME_SLAB && !slab)
-        return wrong(p, "slab", "an object with uv_plane_z, st_plane_z, st_min, st_max");
+    if (kind == RELUME_SLAB)
+        return read_slab(p, root);
 
     double center[3] = {0.0, 0.0, 0.0};
     relume_status status = get_numbers(p, window, "min", g->window_min, 2);
@@ -173,8 +269,6 @@ static relume_status read_geometry(const struct parser *p, const jvalue *root)
         size_t count;
     } members[] = {
         {window, "max", g->window_max, 2}, {window, "camera_z", &g->camera_z, 1},
-        {slab, "uv_plane_z", &g->uv_z, 1}, {slab, "st_plane_z", &g->st_z, 1},
-        {slab, "st_min", g->st_min, 2},    {slab, "st_max", g->st_max, 2},
         {panorama, "v_min", &g->v_min, 1}, {panorama, "v_max", &g->v_max, 1},
         {panorama, "center", center, 3},
     };
@@ -185,12 +279,27 @@ static relume_status read_geometry(const struct parser *p, const jvalue *root)
     if (status)
         return status;
     for (int i = 0; i < 2; i++)
-        if (!(g->st_min[i] < g->st_max[i]) || !(g->window_min[i] < g->window_max[i]))
+        if (!(g->window_min[i] < g->window_max[i]))
             return wrong(p, "window", "min below max");
     if (!(g->v_min < g->v_max))
         return wrong(p, "panorama", "v_min below v_max");
-    if (g->uv_z == g->st_z)
-        return wrong(p, "slab", "two different planes");
+    return RELUME_OK;
+}
+
+// Which slab a view is of.
+static relume_status read_member(const struct parser *p, const jvalue *object, int index)
+{
+    const struct draft *d = p->d;
+    long long slab;
+    char where[48];
+    char expected[32];
+    if (!d->m.slabs)
+        return RELUME_OK;
+    snprintf(where, sizeof where, "views[%d].slab", index);
+    snprintf(expected, sizeof expected, "0 to %d", d->m.slabs - 1);
+    if (!jvalue_integer(jvalue_member(object, "slab"), &slab) || slab < 0 || slab >= d->m.slabs)
+        return wrong(p, where, expected);
+    d->view[index].slab = (int)slab;
     return RELUME_OK;
 }
 
@@ -216,11 +325,28 @@ static relume_status read_view(const struct parser *p, const jvalue *object, int
         status = get_plane(p, object, "depth", &v->depth);
     if (!status)
         status = get_plane(p, object, "mask", &v->mask);
+    if (!status)
+        status = read_member(p, object, index);
     if (status)
         return status;
     if (d->m.geometry.projection == RELUME_SLAB && !jvalue_member(object, "uv"))
         return wrong(p, "views[].uv", "two numbers for every view of a slab");
     return get_numbers(p, object, "uv", v->uv, 2);
+}
+
+static relume_status check_slabs_seen(const struct parser *p)
+{
+    const struct relume_manifest *m = &p->d->m;
+    bool seen[RELUME_MOST_SLABS] = {false};
+    char where[32];
+    for (int i = 0; i < m->views; i++)
+        seen[p->d->view[i].slab] = true;
+    for (int i = 0; i < m->slabs; i++) {
+        snprintf(where, sizeof where, "slabs[%d]", i);
+        if (!seen[i])
+            return wrong(p, where, "at least one view of every slab");
+    }
+    return RELUME_OK;
 }
 
 static relume_status read_views(const struct parser *p, const jvalue *views)
@@ -236,7 +362,26 @@ static relume_status read_views(const struct parser *p, const jvalue *views)
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < n; i++)
         status = read_view(p, jvalue_item(views, i), (int)i);
-    return status;
+    return status ? status : check_slabs_seen(p);
+}
+
+// A known curve, or the file of a response.
+static relume_status read_transfer(const struct parser *p, const jvalue *value)
+{
+    struct draft *d = p->d;
+    const char *text = jvalue_text(value), *path = NULL;
+    if (!value || jvalue_is_null(value) || (text && !relume_transfer_parse(&d->m.transfer, text)))
+        return RELUME_OK;
+    const relume_status status = text ? get_path(p, value, "transfer", &path) : RELUME_EDATA;
+    if (status == RELUME_ENOMEM)
+        return status;
+    if (status || access(path, F_OK))
+        return wrong(p, "transfer", "linear, srgb, gamma:NUMBER or a response-curve file");
+    struct relume_response *response = arena_array(&d->arena, 1, sizeof *response);
+    if (!response)
+        return RELUME_ENOMEM;
+    d->m.transfer = (struct relume_transfer){.curve = RELUME_CURVE_RESPONSE, .response = response};
+    return relume_response_load(response, path, p->log);
 }
 
 static relume_status read_root(const struct parser *p, const jvalue *root)
@@ -252,13 +397,9 @@ static relume_status read_root(const struct parser *p, const jvalue *root)
                         "%s: version %lld is newer than this program; expected %d", p->path,
                         version, VERSION);
     struct draft *d = p->d;
-    const jvalue *transfer = jvalue_member(root, "transfer");
-    if (transfer && !jvalue_is_null(transfer)) {
-        const char *text = jvalue_text(transfer);
-        if (!text || relume_transfer_parse(&d->m.transfer, text))
-            return wrong(p, "transfer", "linear, srgb or gamma:NUMBER");
-    }
-    relume_status status = read_geometry(p, root);
+    relume_status status = read_transfer(p, jvalue_member(root, "transfer"));
+    if (!status)
+        status = read_geometry(p, root);
     if (!status)
         status = read_lights(p, jvalue_member(root, "lights"));
     if (!status)
@@ -348,12 +489,47 @@ static void put_lights(FILE *f, const struct relume_manifest *m)
     if (m->positions) {
         fputs(",\n", f);
         put_vectors(f, "positions", m->positions, m->lights);
+        if (m->no_falloff)
+            fputs(",\n    \"falloff\": \"none\"", f);
     }
     fputs("\n  },\n", f);
 }
 
-static void put_geometry(FILE *f, const struct relume_geometry *g)
+static void put_planes(FILE *f, const struct relume_geometry *g)
 {
+    fprintf(f,
+            "{\"uv_plane_z\": %.9g, \"st_plane_z\": %.9g, \"st_min\": [%.9g, %.9g], "
+            "\"st_max\": [%.9g, %.9g]",
+            g->uv_z, g->st_z, g->st_min[0], g->st_min[1], g->st_max[0], g->st_max[1]);
+}
+
+static void put_slabs(FILE *f, const struct relume_manifest *m)
+{
+    fputs("  \"slabs\": [", f);
+    for (int i = 0; i < m->slabs; i++) {
+        const struct relume_pose *pose = &m->slab[i].pose;
+        fputs(i ? ",\n    " : "\n    ", f);
+        put_planes(f, &m->slab[i]);
+        fprintf(f, ",\n     \"origin\": [%.9g, %.9g, %.9g], \"axes\": [", pose->origin.x,
+                pose->origin.y, pose->origin.z);
+        for (int a = 0; a < 3; a++)
+            fprintf(f, "%s[%.9g, %.9g, %.9g]", a ? ", " : "", pose->axis[a].x, pose->axis[a].y,
+                    pose->axis[a].z);
+        fputs("]}", f);
+    }
+    fputs("\n  ],\n", f);
+}
+
+static void put_slab(FILE *f, const struct relume_geometry *g)
+{
+    fputs("  \"slab\": ", f);
+    put_planes(f, g);
+    fputs("},\n", f);
+}
+
+static void put_geometry(FILE *f, const struct relume_manifest *m)
+{
+    const struct relume_geometry *g = &m->geometry;
     fprintf(f, "  \"projection\": \"%s\",\n", relume_projection_name(g->projection));
     if (g->projection == RELUME_PLANAR)
         fprintf(f,
@@ -362,11 +538,7 @@ static void put_geometry(FILE *f, const struct relume_geometry *g)
                 g->window_min[0], g->window_min[1], g->window_max[0], g->window_max[1],
                 g->perspective ? "perspective" : "orthographic", g->camera_z);
     else if (g->projection == RELUME_SLAB)
-        fprintf(
-            f,
-            "  \"slab\": {\"uv_plane_z\": %.9g, \"st_plane_z\": %.9g, \"st_min\": [%.9g, %.9g], "
-            "\"st_max\": [%.9g, %.9g]},\n",
-            g->uv_z, g->st_z, g->st_min[0], g->st_min[1], g->st_max[0], g->st_max[1]);
+        m->slabs ? put_slabs(f, m) : put_slab(f, g);
     else
         fprintf(f,
                 "  \"panorama\": {\"v_min\": %.9g, \"v_max\": %.9g, \"center\": [%.9g, %.9g, "
@@ -379,6 +551,8 @@ static void put_view(FILE *f, const struct relume_manifest *m, const struct relu
     fputs("    {", f);
     if (m->geometry.projection == RELUME_SLAB)
         fprintf(f, "\"uv\": [%.9g, %.9g], ", v->uv[0], v->uv[1]);
+    if (m->slabs)
+        fprintf(f, "\"slab\": %d, ", v->slab);
     if (v->depth) {
         fputs("\"depth\": ", f);
         put_text(f, v->depth);
@@ -402,6 +576,10 @@ relume_status relume_manifest_write(const struct relume_manifest *manifest, cons
 {
     char *text = NULL;
     size_t size = 0;
+    if (manifest->transfer.curve == RELUME_CURVE_RESPONSE)
+        return log_fail(log, RELUME_EINVAL,
+                        "%s: a response curve lives in a file of its own; expected linear pictures",
+                        path);
     FILE *f = open_memstream(&text, &size);
     if (!f)
         return RELUME_ENOMEM;
@@ -410,7 +588,7 @@ relume_status relume_manifest_write(const struct relume_manifest *manifest, cons
     fprintf(f, "{\n  \"format\": \"relume-capture\",\n  \"version\": %d,\n", VERSION);
     if (manifest->transfer.curve != RELUME_CURVE_AUTO)
         fprintf(f, "  \"transfer\": \"%s\",\n", transfer);
-    put_geometry(f, &manifest->geometry);
+    put_geometry(f, manifest);
     put_lights(f, manifest);
     fputs("  \"views\": [\n", f);
     for (int i = 0; i < manifest->views; i++) {

@@ -13,6 +13,7 @@ struct draft {
     struct relume_vec3 *directions, *positions;
     float (*intensities)[3];
     struct relume_manifest_view *view;
+    struct relume_geometry *slab;
     bool has_window;  // the manifest states it, else it follows from the image size
 };
 void draft_free(struct draft *draft);

@@ -3,9 +3,12 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "capture/capture.h"
+#include "capture/distant.h"
 #include "capture/repair.h"
+#include "image/encoder.h"
 
 #include <stdio.h>
+#include <string.h>
 
 struct relume_table {
     const relume_capture *capture;
@@ -19,6 +22,10 @@ struct relume_table {
     float *out;
     size_t *broken, *repaired;  // [lights]: pixels that were not finite, in one band and so far
     bool *whole;                // [lights], for repair_band
+    bool near;                  // lights are near: values become those under distant ones
+    struct near lamps;
+    struct distant *distant;
+    struct encoder *display;  // or NULL: linear
 };
 
 static size_t file_bytes(const struct image_stream *stream)
@@ -58,11 +65,29 @@ void relume_table_destroy(relume_table **table)
     free(t->broken);
     free(t->repaired);
     free(t->whole);
+    distant_destroy(&t->distant);
+    near_close(&t->lamps);
+    free(t->display);
     free(t);
 }
 
-relume_status relume_table_open(relume_table **out, const relume_capture *capture, int view,
-                                const struct relume_table_params *params)
+static relume_status open_near(relume_table *t, struct relume_transfer display, bool as_seen)
+{
+    const struct relume_manifest *m = &t->capture->draft.m;
+    relume_status status = near_open(&t->lamps, t->capture, t->view, t->log);
+    if (!status && !as_seen)
+        status = distant_create(&t->distant, &t->lamps, m->directions, t->threads);
+    if (!status && display.curve != RELUME_CURVE_LINEAR) {
+        t->display = mem_array(1, sizeof *t->display);
+        status = t->display ? RELUME_OK : RELUME_ENOMEM;
+        if (!status)
+            encoder_init(t->display, display);
+    }
+    return status;
+}
+
+static relume_status open_table(relume_table **out, const relume_capture *capture, int view,
+                                bool as_seen, const struct relume_table_params *params)
 {
     const struct relume_table_params p = params ? *params : (struct relume_table_params){0};
     const int lights = capture->draft.m.lights;
@@ -87,6 +112,11 @@ relume_status relume_table_open(relume_table **out, const relume_capture *captur
     t->whole = mem_zeroed((size_t)lights, sizeof *t->whole);
     relume_status status =
         t->stream && t->status && t->broken && t->repaired && t->whole ? RELUME_OK : RELUME_ENOMEM;
+    t->near = near_applies(capture, view);
+    if (!status && t->near) {
+        status = open_near(t, to, as_seen);
+        to.curve = RELUME_CURVE_LINEAR;
+    }
     while (!status && t->open < lights) {
         status = capture_stream(&t->stream[t->open], capture, view, t->open, to, p.log);
         if (!status)
@@ -97,6 +127,18 @@ relume_status relume_table_open(relume_table **out, const relume_capture *captur
         relume_table_destroy(&t);
     *out = t;
     return status;
+}
+
+relume_status relume_table_open(relume_table **out, const relume_capture *capture, int view,
+                                const struct relume_table_params *params)
+{
+    return open_table(out, capture, view, false, params);
+}
+
+relume_status table_open_as_seen(relume_table **out, const relume_capture *capture, int view,
+                                 const struct relume_table_params *params)
+{
+    return open_table(out, capture, view, true, params);
 }
 
 static void read_light(void *context, size_t item, int worker)
@@ -122,6 +164,26 @@ static void repair(relume_table *t)
                     (size_t)t->rows * (size_t)t->capture->width, t->whole);
 }
 
+// Linear values of one light are levelled and coded.
+static void level_light(void *context, size_t item, int worker)
+{
+    (void)worker;
+    relume_table *t = context;
+    float *p = t->out + 3 * item * (size_t)t->rows * (size_t)t->lamps.width;
+    for (int y = t->row - t->rows; y < t->row; y++)
+        for (int x = 0; x < t->lamps.width; x++, p += 3) {
+            double gain;
+            near_direction(&gain, &t->lamps, (int)item, near_pixel(&t->lamps, x, y));
+            float value[3];
+            for (int c = 0; c < 3; c++)
+                value[c] = p[c] * (float)gain;
+            if (t->display)
+                encoder_apply(t->display, value, p, 3);
+            else
+                memcpy(p, value, sizeof value);
+        }
+}
+
 size_t relume_table_repaired(const relume_table *table, int light)
 {
     return table->repaired[light];
@@ -134,7 +196,7 @@ static void count_broken(void *context, size_t item, int worker)
     relume_table *t = context;
     const relume_capture *capture = t->capture;
     const size_t width = (size_t)capture->width;
-    const struct relume_transfer linear = {RELUME_CURVE_LINEAR, 0.0f};
+    const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     struct image_stream stream;
     float *band = mem_array(3 * IMAGE_STREAM_ROWS * width, sizeof *band);
     t->broken[item] = 0;
@@ -189,5 +251,9 @@ relume_status relume_table_read(relume_table *table, int rows, float *out)
             return table->status[i];
     }
     repair(table);
-    return RELUME_OK;
+    if (!table->near)
+        return RELUME_OK;
+    thread_for(table->threads, (size_t)lights, level_light, table);
+    return table->distant ? distant_resample(table->distant, table->row - rows, rows, out)
+                          : RELUME_OK;
 }

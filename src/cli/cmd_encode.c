@@ -154,6 +154,13 @@ struct request {
     struct relume_books_params books;
 };
 
+// Near lights are resampled where the places of the pixels are known (capture.h).
+static bool ignores_positions(const struct relume_manifest *m)
+{
+    const enum relume_projection p = m->geometry.projection;
+    return m->positions && p != RELUME_PLANAR && (p != RELUME_SLAB || !m->view[0].depth);
+}
+
 // Learning reads the images once before the encoder does: decoded images of up to this size wait.
 #define KEEP_BYTES ((size_t)640 << 20)
 
@@ -173,7 +180,7 @@ static relume_status encode(const struct args *args, struct request *r)
         return status;
     r->coder.log = prefix_log(&about, args_log(args), args_input(args, 0));
     r->books.log = r->coder.log;
-    if (relume_capture_manifest(capture)->positions)
+    if (ignores_positions(relume_capture_manifest(capture)))
         about.log.message(about.log.user, RELUME_WARNING,
                           "the lights are near; they are taken as distant ones");
     status = relume_coder_learn(&coder, r->basis, capture, &r->coder,

@@ -64,7 +64,7 @@ static void print_text(const struct relume_evaluation *e)
 
 static relume_status run(const struct args *args)
 {
-    struct relume_transfer transfer = {RELUME_CURVE_AUTO, 0.0f};
+    struct relume_transfer transfer = {.curve = RELUME_CURVE_AUTO};
     const char *text = args_text(args, "--transfer", NULL);
     if (text && relume_transfer_parse(&transfer, text))
         return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", text);

@@ -11,6 +11,11 @@ static const struct option options[] = {
     {"--view", OPTION_INT, "N", "a captured view at its own size (panoramas: unfolded)", 0, 65535},
     {"--eye", OPTION_TEXT, "x,y,z", "slab: the window as seen from there; default: the middle", 0,
      0},
+    {"--look-at", OPTION_TEXT, "x,y,z", "--eye: where it looks; default: the middle of the object",
+     0, 0},
+    {"--up", OPTION_TEXT, "x,y,z", "--eye: what is up in the picture; default: 0,1,0", 0, 0},
+    {"--fov", OPTION_NUMBER, "DEG", "--eye: horizontal field of view; default: the slabs' windows",
+     0.01, 179},
     {"--pan", OPTION_NUMBER, "A", "panorama: degrees to the right", 0, 0},
     {"--tilt", OPTION_NUMBER, "A", "panorama: degrees up", 0, 0},
     {"--zoom", OPTION_NUMBER, "F", "panorama: 1 shows 90 degrees; default: 1", 0.01, 1000},
@@ -66,6 +71,25 @@ static relume_status parse_look(const struct args *args, struct relume_look *loo
     return RELUME_OK;
 }
 
+static relume_status parse_vector(const struct args *args, const char *name,
+                                  struct relume_vec3 *out)
+{
+    return args_has(args, name) ? args_vec3(out, name, args_text(args, name, NULL)) : RELUME_OK;
+}
+
+static relume_status parse_eye(const struct args *args, struct relume_camera *camera)
+{
+    camera->framing = RELUME_FRAME_EYE;
+    camera->aim.aimed = args_has(args, "--look-at");
+    camera->aim.field_of_view_deg = args_number(args, "--fov", 0.0);
+    relume_status status = parse_vector(args, "--eye", &camera->eye);
+    if (!status)
+        status = parse_vector(args, "--look-at", &camera->aim.at);
+    if (!status)
+        status = parse_vector(args, "--up", &camera->aim.up);
+    return status;
+}
+
 static relume_status parse_camera(const struct args *args, struct relume_camera *camera)
 {
     const bool look = args_has(args, "--pan") || args_has(args, "--tilt") ||
@@ -75,12 +99,14 @@ static relume_status parse_camera(const struct args *args, struct relume_camera 
     if (args_has(args, "--view") + args_has(args, "--eye") + look > 1)
         return usage_error(
             "relight: expected one of --view, --eye, --pan/--tilt/--zoom/--projection");
+    if (!args_has(args, "--eye") &&
+        (args_has(args, "--look-at") || args_has(args, "--up") || args_has(args, "--fov")))
+        return usage_error("relight: expected --eye beside --look-at, --up and --fov");
     if (args_has(args, "--view")) {
         camera->framing = RELUME_FRAME_VIEW;
         camera->view = args_int(args, "--view", 0);
     } else if (args_has(args, "--eye")) {
-        camera->framing = RELUME_FRAME_EYE;
-        status = args_vec3(&camera->eye, "--eye", args_text(args, "--eye", NULL));
+        status = parse_eye(args, camera);
     } else if (look) {
         camera->framing = RELUME_FRAME_LOOK;
         status = parse_look(args, &camera->look);

@@ -539,7 +539,7 @@ static relume_status sweep_captures(struct sweep *sweep, relume_capture *capture
 
 static relume_status open_capture(const struct args *args, const char *path, relume_capture **out)
 {
-    struct relume_transfer transfer = {RELUME_CURVE_AUTO, 0.0f};
+    struct relume_transfer transfer = {.curve = RELUME_CURVE_AUTO};
     const char *text = args_text(args, "--transfer", NULL);
     if (text && relume_transfer_parse(&transfer, text))
         return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", text);

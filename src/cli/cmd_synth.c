@@ -8,11 +8,15 @@ static const struct option options[] = {
     {"--size", OPTION_INT, "N",
      "width (planar, slab, cube face) or height (panoramas); default 256", 1, 65536},
     {"--views", OPTION_TEXT, "GxG", "slab: grid of cameras; default 5x5", 0, 0},
-    {"--spread", OPTION_NUMBER, "S", "slab: cameras reach from -S to S; default 0.5", 0.001, 1000},
+    {"--spread", OPTION_NUMBER, "S",
+     "slab: cameras reach from -S to S; default 0.5, with --slabs so far that they overlap", 0.001,
+     1000},
+    {"--slabs", OPTION_TEXT, "N",
+     "slab: 4, 6 or 8 around the object, or cube: 4 and one from above; default: one slab", 0, 0},
     {"--lights", OPTION_INT, "N", "number of light directions; default 100", 1, 65536},
     PATTERN_OPTION,
-    {"--hemisphere", OPTION_FLAG, NULL, "lights on the viewer's (panoramas: upper) side only", 0,
-     0},
+    {"--hemisphere", OPTION_FLAG, NULL,
+     "lights on the viewer's (panoramas, --slabs: upper) side only", 0, 0},
     {"--lights-from", OPTION_TEXT, "FILE",
      "directions of a capture.json, a .lp file or lines x y z", 0, 0},
     {"--projection", OPTION_TEXT, "P",
@@ -55,6 +59,14 @@ static relume_status choose_views(struct relume_synth_params *p, const char *tex
     return usage_error("--views: expected a grid like 5x5; found '%s'", text);
 }
 
+static relume_status choose_ring(struct relume_synth_params *p, const char *name)
+{
+    static const char *const names[] = {"4", "6", "8", "cube", NULL};
+    if (!name || !relume_ring_parse(&p->ring, name))
+        return RELUME_OK;
+    return unknown_name("--slabs", name, names);
+}
+
 static relume_status choose_eyes(struct relume_vec3 **eyes, int *count, const struct args *args)
 {
     relume_status status = RELUME_OK;
@@ -74,8 +86,8 @@ static bool is_panorama(enum relume_projection projection)
     return projection != RELUME_PLANAR && projection != RELUME_SLAB;
 }
 
-static relume_status make_lights(struct relume_vec3 **out, int *n,
-                                 enum relume_projection projection, const struct args *args)
+static relume_status make_lights(struct relume_vec3 **out, int *n, bool pole_y,
+                                 const struct args *args)
 {
     const char *file = args_text(args, "--lights-from", NULL);
     if (file)
@@ -88,11 +100,10 @@ static relume_status make_lights(struct relume_vec3 **out, int *n,
     *out = malloc((size_t)*n * sizeof **out);
     if (!*out)
         return RELUME_ENOMEM;
-    return relume_lights_make(*out, *n, pattern,
-                              relume_lights_params(.log = args_log(args),
-                                                   .seed = (uint64_t)args_int(args, "--seed", 0),
-                                                   .hemisphere = args_has(args, "--hemisphere"),
-                                                   .pole_y = is_panorama(projection)));
+    return relume_lights_make(
+        *out, *n, pattern,
+        relume_lights_params(.log = args_log(args), .seed = (uint64_t)args_int(args, "--seed", 0),
+                             .hemisphere = args_has(args, "--hemisphere"), .pole_y = pole_y));
 }
 
 static relume_status capture(const struct relume_scene_kind *kind,
@@ -130,10 +141,13 @@ static relume_status run(const struct args *args)
     if (!status)
         status = choose_views(&p, args_text(args, "--views", NULL));
     if (!status)
+        status = choose_ring(&p, args_text(args, "--slabs", NULL));
+    if (!status)
         status = choose_eyes(&eyes, &p.eye_count, args);
     if (!status)
-        status = make_lights(&lights, &p.light_count,
-                             p.projection_set ? p.projection : kind->projection, args);
+        status = make_lights(
+            &lights, &p.light_count,
+            p.ring || is_panorama(p.projection_set ? p.projection : kind->projection), args);
     p.lights = lights;
     p.eyes = eyes;
     if (!status)

@@ -15,12 +15,22 @@
 
 extern const struct command command_synth, command_lights, command_encode, command_info,
     command_relight, command_query, command_eval, command_compare, command_sweep, command_import,
-    command_export;
+    command_export, command_capture;
 
 const struct command *const commands[] = {
-    &command_synth,   &command_lights, &command_encode, &command_info,
-    &command_relight, &command_query,  &command_eval,   &command_compare,
-    &command_sweep,   &command_import, &command_export, NULL,
+    &command_synth,
+    &command_capture,
+    &command_lights,
+    &command_encode,
+    &command_info,
+    &command_relight,
+    &command_query,
+    &command_eval,
+    &command_compare,
+    &command_sweep,
+    &command_import,
+    &command_export,
+    NULL,
 };
 
 static const struct option common[] = {

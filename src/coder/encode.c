@@ -296,7 +296,7 @@ enum relume_domain relume_encode_domain(const relume_capture *capture, enum relu
 struct relume_transfer relume_encode_display(const relume_capture *capture)
 {
     const struct relume_transfer t = relume_capture_manifest(capture)->transfer;
-    return t.curve == RELUME_CURVE_GAMMA ? t : (struct relume_transfer){RELUME_CURVE_SRGB, 0.0f};
+    return t.curve == RELUME_CURVE_GAMMA ? t : (struct relume_transfer){.curve = RELUME_CURVE_SRGB};
 }
 
 static relume_status alloc_encoder(struct encoder *e)
@@ -352,7 +352,7 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
         .images = m->view[view].images,
         .threads = p.threads,
     };
-    struct relume_transfer display = {RELUME_CURVE_LINEAR, 0.0f};
+    struct relume_transfer display = {.curve = RELUME_CURVE_LINEAR};
     if (relume_encode_domain(capture, p.domain) == RELUME_DOMAIN_DISPLAY)
         display = relume_encode_display(capture);
     status = coefficients_create(&c, coder, relume_capture_width(capture),

@@ -546,7 +546,7 @@ static relume_status describe(relume_heldout *h)
     h->height = relume_capture_height(h->capture);
     h->views = m->views;
     h->hemispherical = relume_capture_hemispherical(h->capture);
-    h->pole_y = m->geometry.projection >= RELUME_CYLINDRICAL;
+    h->pole_y = relume_capture_pole_y(h->capture);
     h->display = relume_encode_display(h->capture);
     h->info.domain = relume_encode_domain(h->capture, h->params.domain);
     h->linear = h->info.domain == RELUME_DOMAIN_LINEAR;

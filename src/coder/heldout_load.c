@@ -131,7 +131,7 @@ static relume_status read_view(struct reading *r)
     const relume_heldout *h = r->h;
     struct relume_transfer display = h->display;
     if (h->linear)
-        display = (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f};
+        display = (struct relume_transfer){.curve = RELUME_CURVE_LINEAR};
     relume_status status =
         relume_table_open(&r->table, r->capture, r->view,
                           relume_table_params(.log = h->params.log, .display = display,

@@ -96,7 +96,7 @@ relume_status relume_samples_read(struct relume_samples *out, const relume_captu
     s.chosen = mem_array(s.count, sizeof *s.chosen);
     out->data = mem_array((size_t)m->lights * s.count * 3, sizeof *out->data);
     relume_status status = s.chosen && out->data ? RELUME_OK : RELUME_ENOMEM;
-    struct relume_transfer display = {RELUME_CURVE_LINEAR, 0.0f};
+    struct relume_transfer display = {.curve = RELUME_CURVE_LINEAR};
     if (relume_encode_domain(capture, p.domain) == RELUME_DOMAIN_DISPLAY)
         display = relume_encode_display(capture);
     if (!status)
@@ -135,7 +135,7 @@ relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *
     struct relume_coder_params p = coder ? *coder : (struct relume_coder_params){0};
     struct relume_samples samples = {0};
     p.hemispherical = relume_capture_hemispherical(capture);
-    p.pole_y = m->geometry.projection >= RELUME_CYLINDRICAL;
+    p.pole_y = relume_capture_pole_y(capture);
     relume_status status = RELUME_OK;
     *out = NULL;
     if (basis->learned || p.choose) {

@@ -57,6 +57,11 @@ static relume_status check(const relume_pack *pack, const char *path,
         return log_fail(p->log, RELUME_EDATA,
                         "%s: a panorama has no such format; expected a planar file or a slab",
                         path);
+    if (info->slabs)
+        return log_fail(p->log, RELUME_EDATA,
+                        "%s: slabs around an object have no such format; expected a planar file or "
+                        "one slab",
+                        path);
     if (p->view < 0 || p->view >= info->views)
         return log_fail(p->log, RELUME_EINVAL, "view %d; expected 0 to %d", p->view,
                         info->views - 1);

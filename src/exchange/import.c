@@ -275,7 +275,7 @@ static relume_status write_pack(const struct material *m, const char *out,
     const struct relume_pack_contents contents = {
         .coder = m->coder,
         .domain = m->f->linear ? RELUME_DOMAIN_LINEAR : RELUME_DOMAIN_DISPLAY,
-        .display = {RELUME_CURVE_SRGB, 0.0f},
+        .display = {.curve = RELUME_CURVE_SRGB},
         .geometry = relume_geometry_default(RELUME_PLANAR, m->f->width, m->f->height),
         .views = 1,
         .view = &view,

@@ -22,7 +22,7 @@ struct judge {
 static float code_of(float v, bool linear)
 {
     if (linear)
-        v = relume_transfer_encode((struct relume_transfer){RELUME_CURVE_SRGB, 0.0f}, v);
+        v = relume_transfer_encode((struct relume_transfer){.curve = RELUME_CURVE_SRGB}, v);
     return rintf(255.0f * fminf(fmaxf(v, 0.0f), 1.0f));
 }
 

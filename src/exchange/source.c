@@ -152,7 +152,7 @@ static relume_status picture_rows(const struct source *s, int row, int rows, flo
     struct relume_image picture = {0};
     struct band band;
     relume_status status = open_band(&band, s, row, rows);
-    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     for (int i = 0; !status && i < s->lights; i++) {
         const struct relume_light light = {.direction = s->light[i], .rgb = {1.0f, 1.0f, 1.0f}};
         status =

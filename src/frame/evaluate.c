@@ -61,9 +61,11 @@ static int matching_view(const struct evaluator *e, int view)
 {
     if (e->info->geometry.projection != RELUME_SLAB)
         return view < e->info->views ? view : -1;
-    const double *uv = e->manifest->view[view].uv;
+    const struct relume_manifest_view *v = &e->manifest->view[view];
+    const double *uv = v->uv;
     for (int i = 0; i < e->info->views; i++)
-        if (fabs(e->info->uv[i][0] - uv[0]) <= 1e-6 && fabs(e->info->uv[i][1] - uv[1]) <= 1e-6)
+        if ((!e->info->slabs || e->info->slab_of[i] == v->slab) &&
+            fabs(e->info->uv[i][0] - uv[0]) <= 1e-6 && fabs(e->info->uv[i][1] - uv[1]) <= 1e-6)
             return i;
     return -1;
 }
@@ -73,9 +75,57 @@ static struct relume_camera camera_for(const struct evaluator *e, int view)
     const int match = matching_view(e, view);
     if (match >= 0)
         return (struct relume_camera){.framing = RELUME_FRAME_VIEW, .view = match};
-    const double *uv = e->manifest->view[view].uv;
+    const struct relume_manifest *m = e->manifest;
+    const struct relume_manifest_view *v = &m->view[view];
+    const struct relume_geometry *g = m->slabs ? &m->slab[v->slab] : &m->geometry;
+    const struct relume_vec3 eye = {v->uv[0], v->uv[1], g->uv_z};
     return (struct relume_camera){.framing = RELUME_FRAME_EYE,
-                                  .eye = {uv[0], uv[1], e->manifest->geometry.uv_z}};
+                                  .eye = relume_pose_world(&g->pose, eye),
+                                  .through = m->slabs ? v->slab + 1 : 0};
+}
+
+static bool same(double a, double b)
+{
+    return fabs(a - b) <= 1e-4 * (1.0 + fabs(a));
+}
+
+static bool same_place(const struct relume_pose *p, const struct relume_pose *q,
+                       struct relume_vec3 local)
+{
+    const struct relume_vec3 a = relume_pose_world(p, local), b = relume_pose_world(q, local);
+    return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z);
+}
+
+// The planes and windows of two slabs lie in the same place; files keep them in single precision.
+static bool same_slab(const struct relume_geometry *a, const struct relume_geometry *b)
+{
+    const struct relume_vec3 corner[] = {
+        {a->st_min[0], a->st_min[1], a->st_z},
+        {a->st_max[0], a->st_min[1], a->st_z},
+        {a->st_min[0], a->st_max[1], a->st_z},
+        {0.0, 0.0, a->uv_z},
+    };
+    for (int i = 0; i < 4; i++)
+        if (!same_place(&a->pose, &b->pose, corner[i]))
+            return false;
+    return same(a->uv_z, b->uv_z) && same(a->st_z, b->st_z) && same(a->st_min[0], b->st_min[0]) &&
+           same(a->st_min[1], b->st_min[1]) && same(a->st_max[0], b->st_max[0]) &&
+           same(a->st_max[1], b->st_max[1]);
+}
+
+static relume_status check_slabs(const struct evaluator *e)
+{
+    const struct relume_manifest *m = e->manifest;
+    if (m->slabs != e->info->slabs)
+        return log_fail(e->params.log, RELUME_EDATA, "%s: %d slabs; expected %d as in the file",
+                        e->params.capture, m->slabs ? m->slabs : 1,
+                        e->info->slabs ? e->info->slabs : 1);
+    for (int i = 0; i < m->slabs; i++)
+        if (!same_slab(&m->slab[i], &e->info->slab[i]))
+            return log_fail(e->params.log, RELUME_EDATA,
+                            "%s: slab %d lies elsewhere; expected it as in the file",
+                            e->params.capture, i);
+    return RELUME_OK;
 }
 
 static void add(struct sums *s, const struct relume_difference *d)
@@ -207,7 +257,7 @@ static relume_status check_fit(const struct evaluator *e)
     if (ours != RELUME_SLAB && e->manifest->views > e->info->views)
         return log_fail(log, RELUME_EDATA, "%s: %d views; expected at most %d as in the file", name,
                         e->manifest->views, e->info->views);
-    return RELUME_OK;
+    return ours == RELUME_SLAB ? check_slabs(e) : RELUME_OK;
 }
 
 static double ratio(double a, double b)

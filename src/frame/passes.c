@@ -3,22 +3,28 @@
 #include "base/log.h"
 #include "math/vec.h"
 
-// Panoramas see the surface from their eye; planar files and slabs from +z, as far as highlights
-// are concerned.
-static relume_status find_towards(struct relume_image *out, const struct relume_pack_info *info)
+// As far as highlights are concerned, panoramas see the surface from their eye, planar files and a
+// slab from +z, one of several from its own.
+static relume_status find_towards(struct relume_image *out, const relume_pack *pack, int view)
 {
-    const struct relume_geometry *g = &info->geometry;
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    const struct relume_geometry *g = relume_pack_geometry(pack, view);
+    const bool panorama = g->projection >= RELUME_CYLINDRICAL;
     *out = (struct relume_image){0};
-    if (g->projection < RELUME_CYLINDRICAL)
+    if (!panorama && !info->slabs)
         return RELUME_OK;
     const relume_status status = relume_image_create(out, info->width, info->height, 3);
     float *to = out->data;
     for (int y = 0; !status && y < info->height; y++)
         for (int x = 0; x < info->width; x++, to += 3) {
-            const vec3 ray = relume_panorama_ray(g, info->width, info->height, x + 0.5, y + 0.5);
-            to[0] = (float)-ray.x;
-            to[1] = (float)-ray.y;
-            to[2] = (float)-ray.z;
+            const vec3 towards =
+                panorama
+                    ? vec3_scale(
+                          relume_panorama_ray(g, info->width, info->height, x + 0.5, y + 0.5), -1.0)
+                    : g->pose.axis[2];
+            to[0] = (float)towards.x;
+            to[1] = (float)towards.y;
+            to[2] = (float)towards.z;
         }
     return status;
 }
@@ -35,12 +41,16 @@ static int find_light(const struct relume_manifest *manifest, vec3 direction)
     return best;
 }
 
-static int find_view(const struct relume_manifest *manifest, const double uv[2])
+static int find_view(const struct relume_manifest *manifest, const struct relume_pack_info *info,
+                     int view)
 {
+    const double *uv = info->uv[view];
     int best = 0;
     double least = INFINITY;
     for (int i = 0; i < manifest->views; i++) {
         const double far = hypot(manifest->view[i].uv[0] - uv[0], manifest->view[i].uv[1] - uv[1]);
+        if (info->slabs && manifest->view[i].slab != info->slab_of[view])
+            continue;
         if (far < least)
             best = i;
         least = fmin(far, least);
@@ -64,9 +74,8 @@ static relume_status find_photograph(struct relume_image *out, const struct relu
                         relume_capture_width(capture), relume_capture_height(capture), info->width,
                         info->height);
     const struct relume_manifest *manifest = relume_capture_manifest(capture);
-    const double origin[2] = {0, 0};
     const relume_status status =
-        relume_capture_image(out, capture, find_view(manifest, info->uv ? info->uv[view] : origin),
+        relume_capture_image(out, capture, find_view(manifest, info, view),
                              find_light(manifest, vec3_unit(lights[0].direction)), params->log);
     const size_t samples = 3 * (size_t)info->width * (size_t)info->height;
     for (size_t i = 0; !status && i < samples; i++)
@@ -91,7 +100,7 @@ relume_status passes_apply(struct relume_image *image, relume_pack *pack, int vi
                                relume_normals_params(.log = params->log, .cpu_off = params->cpu_off,
                                                      .threads = params->threads));
     if (!status && params->pass == RELUME_PASS_SPECULAR)
-        status = find_towards(&towards, info);
+        status = find_towards(&towards, pack, view);
     if (!status && params->pass == RELUME_PASS_DIFFERENCE)
         status = find_photograph(&reference, info, view, lights, n, params);
     p.towards = towards.data ? &towards : NULL;

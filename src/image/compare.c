@@ -56,7 +56,7 @@ static void find_display(const struct job *j, struct block *b)
 // CIEDE2000 looks at display codes as sRGB whatever they are.
 static void find_lab(const struct job *j, const struct block *b, int i, struct lab_block *lab)
 {
-    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     float rgb[3 * CIEDE_BLOCK];
     for (int x = 0; x < 3 * b->n; x++)
         rgb[x] = j->is_srgb ? encoder_clip(b->linear[i][x])

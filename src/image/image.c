@@ -6,6 +6,7 @@
 #include "image/half.h"
 
 #include <math.h>
+#include <relume/response.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -40,14 +41,22 @@ struct relume_transfer image_transfer(struct relume_transfer transfer, const str
 
 static bool is_same(struct relume_transfer a, struct relume_transfer b)
 {
-    return a.curve == b.curve && (a.curve != RELUME_CURVE_GAMMA || a.gamma == b.gamma);
+    return a.curve == b.curve && (a.curve != RELUME_CURVE_GAMMA || a.gamma == b.gamma) &&
+           (a.curve != RELUME_CURVE_RESPONSE || a.response == b.response);
+}
+
+static float decode(struct relume_transfer transfer, int channel, float code)
+{
+    return transfer.curve == RELUME_CURVE_RESPONSE
+               ? relume_response_decode(transfer.response, channel, code)
+               : relume_transfer_decode(transfer, code);
 }
 
 static float recode(const struct image_stream *s, int channel, float code)
 {
     if (s->gain[channel] == 1.0f && is_same(s->from, s->to))
         return code;
-    const float linear = relume_transfer_decode(s->from, code) / s->gain[channel];
+    const float linear = decode(s->from, channel, code) / s->gain[channel];
     return relume_transfer_encode(s->to, linear);
 }
 
@@ -177,7 +186,7 @@ relume_status relume_image_load(struct relume_image *out, const char *path,
     const struct oiio_info info = *oiio_info_of(reader);
     struct image_stream stream;
     status = image_stream_open(&stream, reader, channels, image_transfer(p.transfer, &info),
-                               (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f}, no_gain);
+                               (struct relume_transfer){.curve = RELUME_CURVE_LINEAR}, no_gain);
     if (status)
         return status;
     status = relume_image_create(out, info.width, info.height, channels);
@@ -235,14 +244,14 @@ static relume_status save_exr(const struct relume_image *image, const char *path
     };
     struct relume_log quiet = p->log ? *p->log : (struct relume_log){0};
     quiet.progress = NULL;  // one image is not long work
-    return exr_write(path, &part, 1, 1, &quiet);
+    return exr_write(path, &part, 1, p->threads > 1 ? p->threads : 1, &quiet);
 }
 
 static relume_status save_bytes(const struct relume_image *image, const char *path,
                                 const struct relume_image_params *p)
 {
     const size_t n = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
-    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     uint8_t *bytes = mem_array(n, 1);
     if (!bytes)
         return RELUME_ENOMEM;

@@ -10,7 +10,9 @@ extern "C" {
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/strutil.h>
 
+#include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <memory>
 #include <new>
@@ -96,6 +98,46 @@ bool says_linear(const ImageSpec &spec, const std::string &format)
            Strutil::iequals(space, "scene_linear");
 }
 
+bool is_raw_name(const std::string &path)
+{
+    static const char *const raw[] = {".dng", ".cr2", ".cr3", ".crw", ".nef", ".nrw", ".arw",
+                                      ".orf", ".raf", ".rw2", ".pef", ".srw", ".erf", ".3fr"};
+    for (const char *extension : raw)
+        if (Strutil::iequals(Filesystem::extension(path), extension))
+            return true;
+    return false;
+}
+
+// "YYYY:MM:DD HH:MM:SS" (EXIF 2.3) as seconds since 1970, whatever the time zone; 0: not a date.
+int64_t seconds_of(const std::string &text)
+{
+    int y, m, d, hour, minute, second;
+    if (std::sscanf(text.c_str(), "%d:%d:%d %d:%d:%d", &y, &m, &d, &hour, &minute, &second) != 6 ||
+        y < 1900 || m < 1 || m > 12)
+        return 0;
+    std::tm t = {};
+    t.tm_year = y - 1900;
+    t.tm_mon = m - 1;
+    t.tm_mday = d;
+    t.tm_hour = hour;
+    t.tm_min = minute;
+    t.tm_sec = second;
+    return int64_t(timegm(&t));
+}
+
+double positive(const ImageSpec &spec, const char *name)
+{
+    const float v = spec.get_float_attribute(name, 0.0f);
+    return v > 0.0f && v < 1e9f ? double(v) : 0.0;
+}
+
+double shutter_of(const ImageSpec &spec)
+{
+    const double time = positive(spec, "ExposureTime");
+    const ParamValue *apex = spec.find_attribute("Exif:ShutterSpeedValue");
+    return time > 0.0 ? time : apex ? std::exp2(-double(apex->get_float())) : 0.0;
+}
+
 relume_status open_input(oiio_reader *r, const relume_limits *limits)
 {
     OIIO::attribute("exr_threads", -1);  // our own threads work on many files at once
@@ -106,7 +148,14 @@ relume_status open_input(oiio_reader *r, const relume_limits *limits)
     ImageSpec hints;
     hints["oiio:UnassociatedAlpha"] = 1;
     hints["raw:ColorSpace"] = "Linear";
+    hints["raw:auto_bright"] = 0;  // exposures of a bracket keep their ratios
+    hints["raw:adjust_maximum_thr"] = 0.0f;
+    hints["raw:use_camera_wb"] = 1;
     r->input = ImageInput::open(r->path, &hints);
+    if (!r->input && is_raw_name(r->path))
+        return broken(r, "a RAW photograph that the installed OpenImageIO cannot read; expected a "
+                         "build with LibRaw that knows this camera, or TIFF; " +
+                             one_line(OIIO::geterror()));
     if (!r->input)
         return broken(r, "not a readable image; " + one_line(OIIO::geterror()));
     const ImageSpec &spec = r->input->spec();
@@ -261,6 +310,39 @@ const oiio_info *bridge_info_of(const oiio_reader *reader)
     return &reader->info;
 }
 
+void bridge_notes(const oiio_reader *reader, relume_notes *out)
+{
+    const ImageSpec &spec = reader->input->spec();
+    std::string date = spec.get_string_attribute("Exif:DateTimeOriginal");
+    if (date.empty())
+        date = spec.get_string_attribute("DateTime");
+    const double iso = positive(spec, "Exif:PhotographicSensitivity");
+    *out = relume_notes();
+    out->width = reader->info.width;
+    out->height = reader->info.height;
+    out->time_s = shutter_of(spec);
+    out->f_number = positive(spec, "FNumber");
+    out->iso = iso > 0.0 ? iso : positive(spec, "Exif:ISOSpeedRatings");
+    out->focal_mm = positive(spec, "Exif:FocalLength");
+    out->focal_35mm = positive(spec, "Exif:FocalLengthIn35mmFilm");
+    out->taken_s = seconds_of(date);
+    const int orientation = spec.get_int_attribute("Orientation", 1);
+    out->orientation = orientation >= 1 && orientation <= 8 ? orientation : 1;
+    out->linear = reader->info.linear;
+    out->bytes = reader->info.bytes;
+    out->floats = reader->info.floats;
+    std::snprintf(out->camera, sizeof out->camera, "%s %s",
+                  spec.get_string_attribute("Make").c_str(),
+                  spec.get_string_attribute("Model").c_str());
+}
+
+const void *bridge_profile(const oiio_reader *reader, size_t *size)
+{
+    const ParamValue *p = reader->input->spec().find_attribute("ICCProfile");
+    *size = p ? size_t(p->datasize()) : 0;
+    return p ? p->data() : nullptr;
+}
+
 relume_status bridge_read_floats(oiio_reader *reader, int row, int rows, float *out)
 {
     return read_rows(reader, row, rows, TypeFloat, out);
@@ -297,6 +379,7 @@ relume_status bridge_write_floats(const char *path, int width, int height, int c
 }  // namespace
 
 extern "C" RELUME_API const oiio_bridge relume_oiio_bridge;
-const oiio_bridge relume_oiio_bridge = {
-    RELUME_VERSION, bridge_open,  bridge_info_of,     bridge_read_floats, bridge_read_bytes,
-    bridge_error,   bridge_close, bridge_write_bytes, bridge_write_floats};
+const oiio_bridge relume_oiio_bridge = {RELUME_VERSION,     bridge_open,        bridge_info_of,
+                                        bridge_read_floats, bridge_read_bytes,  bridge_notes,
+                                        bridge_profile,     bridge_error,       bridge_close,
+                                        bridge_write_bytes, bridge_write_floats};

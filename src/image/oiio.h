@@ -7,6 +7,7 @@
 #define IMAGE_OIIO_H
 
 #include <relume/base.h>
+#include <relume/photograph.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -33,6 +34,10 @@ const struct oiio_info *oiio_info_of(const oiio_reader *reader);
 // The log may be NULL where threads must not speak; oiio_error then tells.
 relume_status oiio_read_floats(oiio_reader *reader, int row, int rows, float *out);
 relume_status oiio_read_bytes(oiio_reader *reader, int row, int rows, uint8_t *out);
+// What the camera noted: all but the profile. The ICC profile, NULL when there is none; belongs to
+// the reader.
+void oiio_notes(const oiio_reader *reader, struct relume_notes *out);
+const void *oiio_profile(const oiio_reader *reader, size_t *size);
 // What went wrong last, for a sentence; "" when nothing did. Belongs to the reader.
 const char *oiio_error(const oiio_reader *reader);
 void oiio_close(oiio_reader **reader);
@@ -56,6 +61,8 @@ struct oiio_bridge {
     const struct oiio_info *(*info_of)(const oiio_reader *reader);
     relume_status (*read_floats)(oiio_reader *reader, int row, int rows, float *out);
     relume_status (*read_bytes)(oiio_reader *reader, int row, int rows, uint8_t *out);
+    void (*notes)(const oiio_reader *reader, struct relume_notes *out);
+    const void *(*profile)(const oiio_reader *reader, size_t *size);
     const char *(*error)(const oiio_reader *reader);
     void (*close)(oiio_reader **reader);
     // `save` is the library's own outfile_save.

@@ -63,6 +63,16 @@ relume_status oiio_read_bytes(oiio_reader *reader, int row, int rows, uint8_t *o
     return bridge->read_bytes(reader, row, rows, out);
 }
 
+void oiio_notes(const oiio_reader *reader, struct relume_notes *out)
+{
+    bridge->notes(reader, out);
+}
+
+const void *oiio_profile(const oiio_reader *reader, size_t *size)
+{
+    return bridge->profile(reader, size);
+}
+
 const char *oiio_error(const oiio_reader *reader)
 {
     return bridge->error(reader);

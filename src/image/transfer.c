@@ -1,5 +1,6 @@
 // transfer.c - code values and linear light (IEC 61966-2-1 for sRGB)
 #include <relume/image.h>
+#include <relume/response.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -8,7 +9,7 @@
 
 relume_status relume_transfer_parse(struct relume_transfer *out, const char *text)
 {
-    *out = (struct relume_transfer){RELUME_CURVE_AUTO, 0.0f};
+    *out = (struct relume_transfer){.curve = RELUME_CURVE_AUTO};
     if (!strcmp(text, "linear")) {
         out->curve = RELUME_CURVE_LINEAR;
     } else if (!strcmp(text, "srgb")) {
@@ -18,7 +19,7 @@ relume_status relume_transfer_parse(struct relume_transfer *out, const char *tex
         const float gamma = strtof(text + 6, &end);
         if (end == text + 6 || *end || !(gamma > 0.1f && gamma <= 10.0f))
             return RELUME_EINVAL;
-        *out = (struct relume_transfer){RELUME_CURVE_GAMMA, gamma};
+        *out = (struct relume_transfer){.curve = RELUME_CURVE_GAMMA, .gamma = gamma};
     } else {
         return RELUME_EINVAL;
     }
@@ -30,7 +31,10 @@ void relume_transfer_text(struct relume_transfer transfer, char *text, size_t si
     if (transfer.curve == RELUME_CURVE_GAMMA)
         snprintf(text, size, "gamma:%.7g", (double)transfer.gamma);
     else
-        snprintf(text, size, "%s", transfer.curve == RELUME_CURVE_LINEAR ? "linear" : "srgb");
+        snprintf(text, size, "%s",
+                 transfer.curve == RELUME_CURVE_LINEAR     ? "linear"
+                 : transfer.curve == RELUME_CURVE_RESPONSE ? "response"
+                                                           : "srgb");
 }
 
 static float srgb_decode(float v)
@@ -48,6 +52,8 @@ float relume_transfer_decode(struct relume_transfer transfer, float code)
 {
     if (transfer.curve == RELUME_CURVE_LINEAR)
         return code;
+    if (transfer.curve == RELUME_CURVE_RESPONSE)
+        return relume_response_decode(transfer.response, 1, code);
     const float v = fabsf(code);
     const float linear =
         transfer.curve == RELUME_CURVE_GAMMA ? powf(v, transfer.gamma) : srgb_decode(v);
@@ -58,6 +64,8 @@ float relume_transfer_encode(struct relume_transfer transfer, float linear)
 {
     if (transfer.curve == RELUME_CURVE_LINEAR)
         return linear;
+    if (transfer.curve == RELUME_CURVE_RESPONSE)
+        return relume_response_encode(transfer.response, 1, linear);
     const float v = fabsf(linear);
     const float code =
         transfer.curve == RELUME_CURVE_GAMMA ? powf(v, 1.0f / transfer.gamma) : srgb_encode(v);

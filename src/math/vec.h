@@ -1,7 +1,8 @@
 // vec.h - vectors, and the ONE statement of axes and signs
 //
 // World: right-handed, x right, y up, z towards the viewer. A light direction points towards the
-// light. The pole of planar captures and slabs is +z, of panoramas +y (Wong 1998 leaves it open):
+// light. The pole of planar captures and of a slab is +z, of panoramas and of
+// several slabs +y (Wong 1998 leaves it open):
 //     +z: theta from +z, phi = atan2(y, x)       +y: theta from +y, phi = atan2(x, -z)
 // In the pole's frame the third axis is the pole and phi = atan2(second, first).
 #ifndef MATH_VEC_H

@@ -62,6 +62,7 @@ static relume_status encode_view(struct material *m, int i, const relume_coder *
     m->view[i] = (struct relume_pack_view){
         .coefficients = m->coefficients[i],
         .uv = {manifest->view[i].uv[0], manifest->view[i].uv[1]},
+        .slab = manifest->view[i].slab,
         .depth = m->depth[i].data ? &m->depth[i] : NULL,
         .mask = m->mask[i].data ? &m->mask[i] : NULL,
     };
@@ -161,6 +162,8 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
             .domain = encode.domain,
             .display = relume_encode_display(capture),
             .geometry = manifest->geometry,
+            .slabs = manifest->slabs,
+            .slab = manifest->slab,
             .views = manifest->views,
             .view = m.view,
             .report = total,

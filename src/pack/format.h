@@ -4,7 +4,8 @@
 
 #define FORMAT_NAME "relume"
 
-enum { FORMAT_VERSION = 1 };
+// Several slabs are version 2; everything else stays what readers of version 1 know.
+enum { FORMAT_VERSION = 2, FORMAT_ONE_SLAB = 1 };
 
 // Attributes of the first part
 #define ATTR_FORMAT        "relume.format"
@@ -19,6 +20,7 @@ enum { FORMAT_VERSION = 1 };
 #define ATTR_WINDOW        "relume.window"
 #define ATTR_CAMERA        "relume.camera"
 #define ATTR_SLAB          "relume.slab"
+#define ATTR_POSE          "relume.pose"
 #define ATTR_PANORAMA      "relume.panorama"
 #define ATTR_BASIS         "relume.basis"
 #define ATTR_COEFFICIENTS  "relume.coefficients"
@@ -38,6 +40,7 @@ enum { FORMAT_VERSION = 1 };
 #define ATTR_VIEW   "relume.view"
 #define ATTR_SCALE  "relume.scale"
 #define ATTR_OFFSET "relume.offset"
+#define ATTR_MEMBER "relume.member"
 
 // Attributes of a codebook's part, beside scale and offset
 #define ATTR_BOOK  "relume.book"

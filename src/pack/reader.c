@@ -139,15 +139,9 @@ static relume_status read_geometry(relume_pack *p)
         g->camera_z = (double)v[4];
         g->perspective = !strcmp(camera, "perspective");
     } else if (projection == RELUME_SLAB) {
-        const float *v = reader_floats(p, 0, ATTR_SLAB, 6);
-        if (!v || v[0] == v[1] || !(v[2] < v[4] && v[3] < v[5]))
-            return reader_bad(p, ATTR_SLAB, "uv z, st z, st min, st max");
-        g->uv_z = (double)v[0];
-        g->st_z = (double)v[1];
-        for (int i = 0; i < 2; i++) {
-            g->st_min[i] = (double)v[2 + i];
-            g->st_max[i] = (double)v[4 + i];
-        }
+        const relume_status status = reader_read_slabs(p);
+        if (status)
+            return status;
     } else {
         const float *v = reader_floats(p, 0, ATTR_PANORAMA, 5);
         if (!v || !(v[0] < v[1]))
@@ -333,6 +327,8 @@ static relume_status read_header(relume_pack *p)
     if (!status)
         status = find_parts(p);
     if (!status)
+        status = reader_read_members(p);
+    if (!status)
         status = make_code_table(p);
     return status;
 }
@@ -385,6 +381,12 @@ void relume_pack_destroy(relume_pack **pack)
 const struct relume_pack_info *relume_pack_info(const relume_pack *pack)
 {
     return &pack->info;
+}
+
+const struct relume_geometry *relume_pack_geometry(const relume_pack *pack, int view)
+{
+    const struct relume_pack_info *info = &pack->info;
+    return info->slabs ? &info->slab[info->slab_of[view]] : &info->geometry;
 }
 
 // ---------------------------------------------------------------- samples

@@ -62,6 +62,10 @@ size_t reader_plane(const struct relume_coder_info *info, size_t channel);
 // Numbers of the file's storage: data[planes][height][width], checked.
 relume_status reader_load(relume_pack *p, int part, void *data, size_t planes, const size_t *place);
 
+// Into info.geometry and info.slab; and, once parts are known, which slab each view is of.
+relume_status reader_read_slabs(relume_pack *p);
+relume_status reader_read_members(relume_pack *p);
+
 // The codebooks that begin at *part, which moves behind them: those of `view`, or of all (-1),
 // which may be absent.
 relume_status reader_find_books(relume_pack *p, int view, int *part);

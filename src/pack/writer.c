@@ -290,6 +290,46 @@ static float *copy_doubles(struct arena *arena, const double *from, size_t n)
     return to;
 }
 
+static void put_planes(float to[6], const struct relume_geometry *g)
+{
+    const double slab[] = {g->uv_z,      g->st_z,      g->st_min[0],
+                           g->st_min[1], g->st_max[0], g->st_max[1]};
+    for (int i = 0; i < 6; i++)
+        to[i] = (float)slab[i];
+}
+
+static void put_pose(float to[12], const struct relume_pose *pose)
+{
+    const struct relume_vec3 v[] = {pose->origin, pose->axis[0], pose->axis[1], pose->axis[2]};
+    for (int i = 0; i < 4; i++) {
+        to[3 * i] = (float)v[i].x;
+        to[3 * i + 1] = (float)v[i].y;
+        to[3 * i + 2] = (float)v[i].z;
+    }
+}
+
+static bool describe_slabs(struct builder *b, struct exr_part *part, struct exr_attribute *list,
+                           const struct relume_pack_contents *c)
+{
+    const int slabs = c->slabs ? c->slabs : 1;
+    float *planes = arena_array(&b->arena, 6 * (size_t)slabs, sizeof *planes);
+    float *pose = arena_array(&b->arena, 12 * (size_t)slabs, sizeof *pose);
+    float *uv = arena_array(&b->arena, 2 * (size_t)c->views, sizeof *uv);
+    if (!planes || !pose || !uv)
+        return false;
+    for (int i = 0; i < slabs; i++)
+        put_planes(planes + 6 * i, c->slabs ? &c->slab[i] : &c->geometry);
+    for (int i = 0; i < c->slabs; i++)
+        put_pose(pose + 12 * i, &c->slab[i].pose);
+    for (int i = 0; i < 2 * c->views; i++)
+        uv[i] = (float)c->view[i / 2].uv[i % 2];
+    add_floats(part, list, ATTR_SLAB, planes, 6 * slabs);
+    if (c->slabs)
+        add_floats(part, list, ATTR_POSE, pose, 12 * slabs);
+    add_floats(part, list, ATTR_UV, uv, 2 * c->views);
+    return true;
+}
+
 static bool describe_geometry(struct builder *b, struct exr_part *part, struct exr_attribute *list,
                               const struct relume_pack_contents *c)
 {
@@ -303,15 +343,7 @@ static bool describe_geometry(struct builder *b, struct exr_part *part, struct e
         add_floats(part, list, ATTR_WINDOW, v, 5);
         add_text(part, list, ATTR_CAMERA, g->perspective ? "perspective" : "orthographic");
     } else if (g->projection == RELUME_SLAB) {
-        const double slab[] = {g->uv_z,      g->st_z,      g->st_min[0],
-                               g->st_min[1], g->st_max[0], g->st_max[1]};
-        v = copy_doubles(&b->arena, slab, 6);
-        add_floats(part, list, ATTR_SLAB, v, 6);
-        float *uv = arena_array(&b->arena, 2 * (size_t)c->views, sizeof *uv);
-        for (int i = 0; uv && i < 2 * c->views; i++)
-            uv[i] = (float)c->view[i / 2].uv[i % 2];
-        add_floats(part, list, ATTR_UV, uv, 2 * c->views);
-        return v && uv;
+        return describe_slabs(b, part, list, c);
     } else {
         const double panorama[] = {g->v_min, g->v_max, g->center.x, g->center.y, g->center.z};
         v = copy_doubles(&b->arena, panorama, 5);
@@ -396,11 +428,13 @@ static bool add_preview(struct builder *b, const struct relume_pack_contents *c,
     if (!list || !p || !display || !report)
         return false;
     const bool pole_y = relume_coder_info(c->coder)->pole_y;
-    const struct relume_vec3 front = {0.0, pole_y, !pole_y};
+    const int slab = c->view[c->views / 2].slab;
+    const struct relume_vec3 front =
+        c->slabs ? c->slab[slab].pose.axis[2] : (struct relume_vec3){0.0, pole_y, !pole_y};
     const bool is_display = c->domain == RELUME_DOMAIN_DISPLAY;
     p->coefficients = middle;
     curve_init(&p->curve,
-               is_display ? c->display : (struct relume_transfer){RELUME_CURVE_LINEAR, 0.0f});
+               is_display ? c->display : (struct relume_transfer){.curve = RELUME_CURVE_LINEAR});
     relume_coder_weights(c->coder, front, p->weights, p->constant);
     p->view = &c->view[c->views / 2];
     if (p->view->books && !relight_books(b, p, p->view->books))
@@ -419,7 +453,7 @@ static bool add_preview(struct builder *b, const struct relume_pack_contents *c,
         .context = p,
     };
     add_text(part, list, ATTR_FORMAT, FORMAT_NAME);
-    add_int(part, list, ATTR_VERSION, FORMAT_VERSION);
+    add_int(part, list, ATTR_VERSION, c->slabs ? FORMAT_VERSION : FORMAT_ONE_SLAB);
     add_text(part, list, ATTR_CREATOR, "relume " RELUME_VERSION);
     add_text(part, list, ATTR_DOMAIN, is_display ? "display" : "linear");
     add_text(part, list, ATTR_DISPLAY, display);
@@ -555,7 +589,7 @@ static bool add_view(struct builder *b, const struct relume_pack_contents *c, in
     static const char *const depth_channel[] = {"Z"}, *const mask_channel[] = {"A"};
     const struct relume_pack_view *view = &c->view[index];
     const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
-    struct exr_attribute *list = arena_array(&b->arena, 3, sizeof *list);
+    struct exr_attribute *list = arena_array(&b->arena, 4, sizeof *list);
     const char *name = arena_format(&b->arena, "view%04d", index);
     const char *depth = arena_format(&b->arena, "view%04d.depth", index);
     const char *mask = arena_format(&b->arena, "view%04d.mask", index);
@@ -570,6 +604,8 @@ static bool add_view(struct builder *b, const struct relume_pack_contents *c, in
         .attribute = list,
     };
     add_int(part, list, ATTR_VIEW, index);
+    if (c->slabs)
+        add_int(part, list, ATTR_MEMBER, view->slab);
     if (!(view->books ? fill_with_indices(part, view) : fill_with_planes(b, part, list, view)))
         return false;
     if (view->books && !shares_books(c) && !add_books(b, view->books, index, codec))

@@ -7,7 +7,7 @@
 
 void byte_coder_init(struct byte_coder *coder, float gain)
 {
-    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     coder->gain = gain;
     for (int i = 0; i < BYTE_STEPS + 2; i++) {
         const float root = (float)i / BYTE_STEPS;

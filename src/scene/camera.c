@@ -28,9 +28,12 @@ static struct camera_ray planar(const struct relume_geometry *g, double across, 
 static struct camera_ray slab(const struct camera *c, double across, double down)
 {
     const struct relume_geometry *g = &c->geometry;
-    return towards(vec3_of(c->uv[0], c->uv[1], g->uv_z),
-                   vec3_of(mix(g->st_min[0], g->st_max[0], across),
-                           mix(g->st_max[1], g->st_min[1], down), g->st_z));
+    const struct camera_ray local =
+        towards(vec3_of(c->uv[0], c->uv[1], g->uv_z),
+                vec3_of(mix(g->st_min[0], g->st_max[0], across),
+                        mix(g->st_max[1], g->st_min[1], down), g->st_z));
+    return (struct camera_ray){relume_pose_world(&g->pose, local.origin),
+                               relume_pose_turn(&g->pose, local.direction)};
 }
 
 // Faces +x -x +y -y +z -z side by side; right = direction x up.

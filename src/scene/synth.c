@@ -13,14 +13,24 @@
 // Images of as many lights as fit here are held at once; beyond that a view is walked again.
 static const size_t HELD_BYTES = (size_t)512 << 20;
 
+// How many slabs stand around the object, and how much farther than where they meet they reach.
+static const int ring_around[] = {
+    [RELUME_RING_NONE] = 0, [RELUME_RING_4] = 4,    [RELUME_RING_6] = 6,
+    [RELUME_RING_8] = 8,    [RELUME_RING_CUBE] = 4,
+};
+static const double overlap = 1.15;
+
 struct synth {
     const relume_scene *scene;
     struct relume_synth_params p;  // defaults filled in
     enum relume_projection projection;
     int width, height;
     struct relume_geometry geometry;
+    int slabs;  // 0: one, or no slab at all
+    struct relume_geometry slab[RELUME_MOST_SLABS];
     int views;
     double (*uv)[2];  // [views]
+    int *slab_of;     // [views]
     struct arena arena;
     struct relume_manifest_view *view;
     const char *folder;
@@ -69,6 +79,12 @@ static relume_status check(const struct synth *s)
     for (int i = 0; i < 2; i++)
         if (s->projection == RELUME_SLAB && (p->grid[i] < 1 || p->grid[i] > 256))
             return expected(s, "views", "a grid of 1 to 256 by 1 to 256", p->grid[i]);
+    if (p->ring && s->projection != RELUME_SLAB)
+        return log_fail(p->log, RELUME_EINVAL, "slabs: expected a slab; found a %s capture",
+                        relume_projection_name(s->projection));
+    if (p->ring && p->eye_count)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "slabs: expected a grid of cameras; found eyes of one slab");
     if (!(p->spread >= 0.0 && p->spread <= 1000.0))
         return log_fail(p->log, RELUME_EINVAL, "spread: expected 0 to 1000; found %g", p->spread);
     return RELUME_OK;
@@ -111,32 +127,88 @@ static relume_status place_eyes(struct synth *s)
     return RELUME_OK;
 }
 
-// Rows from the top, as images are read.
-static void place_grid(struct synth *s)
+// Rows from the top, as images are read; slab after slab.
+static void place_grid(struct synth *s, double spread)
 {
     const int columns = s->p.grid[0], rows = s->p.grid[1];
-    const double spread = s->p.spread != 0.0 ? s->p.spread : 0.5;
     for (int i = 0; i < s->views; i++) {
-        const int column = i % columns, row = i / columns;
+        const int column = i % columns, row = i / columns % rows;
+        s->slab_of[i] = i / (columns * rows);
         s->uv[i][0] = columns > 1 ? spread * (2.0 * column / (columns - 1) - 1.0) : 0.0;
         s->uv[i][1] = rows > 1 ? spread * (1.0 - 2.0 * row / (rows - 1)) : 0.0;
     }
 }
 
+// Half the window through which a camera anywhere within `spread` sees a ball of radius 1 around
+// the origin: where the rays that touch it meet the st plane.
+static double window_for(double spread, double distance)
+{
+    const double away = hypot(spread, distance);
+    const double angle = atan2(spread, distance) + asin(1.0 / away);
+    return distance * tan(angle) - spread;
+}
+
+// Quarter turns are exact.
+static double whole(double x)
+{
+    return fabs(x - round(x)) < 1e-12 ? round(x) + 0.0 : x;
+}
+
+static void place_ring(struct synth *s)
+{
+    const int around = ring_around[s->p.ring];
+    const double distance = s->geometry.uv_z;
+    const double spread = overlap * distance * tan(M_PI / around);
+    const double window = window_for(spread, distance);
+    for (int axis = 0; axis < 2; axis++) {
+        s->geometry.st_min[axis] = -window;
+        s->geometry.st_max[axis] = window;
+    }
+    for (int i = 0; i < s->slabs; i++) {
+        const double c = whole(cos(2.0 * M_PI * i / around));
+        const double n = whole(sin(2.0 * M_PI * i / around));
+        s->slab[i] = s->geometry;
+        s->slab[i].pose.axis[0] = vec3_of(c, 0, 0.0 - n);
+        s->slab[i].pose.axis[1] = vec3_of(0, 1, 0);
+        s->slab[i].pose.axis[2] = vec3_of(n, 0, c);
+        if (i >= around)
+            s->slab[i].pose = (struct relume_pose){
+                .axis = {vec3_of(1, 0, 0), vec3_of(0, 0, -1), vec3_of(0, 1, 0)}};
+    }
+    place_grid(s, s->p.spread != 0.0 ? s->p.spread : spread);
+}
+
+static int count_views(const struct synth *s)
+{
+    if (s->projection != RELUME_SLAB)
+        return 1;
+    if (s->p.eye_count)
+        return s->p.eye_count;
+    return s->p.grid[0] * s->p.grid[1] * (s->slabs ? s->slabs : 1);
+}
+
+static relume_status place_slab(struct synth *s)
+{
+    if (s->p.eye_count)
+        return place_eyes(s);
+    if (s->slabs)
+        place_ring(s);
+    else
+        place_grid(s, s->p.spread != 0.0 ? s->p.spread : 0.5);
+    return RELUME_OK;
+}
+
 static relume_status place_views(struct synth *s)
 {
-    const bool slab = s->projection == RELUME_SLAB;
     s->geometry = relume_geometry_default(s->projection, s->width, s->height);
-    s->views = !slab ? 1 : s->p.eye_count ? s->p.eye_count : s->p.grid[0] * s->p.grid[1];
+    s->slabs = ring_around[s->p.ring] + (s->p.ring == RELUME_RING_CUBE);
+    s->views = count_views(s);
     s->uv = arena_array(&s->arena, (size_t)s->views, sizeof *s->uv);
-    if (!s->uv)
+    s->slab_of = arena_array(&s->arena, (size_t)s->views, sizeof *s->slab_of);
+    if (!s->uv || !s->slab_of)
         return RELUME_ENOMEM;
-    if (slab && s->p.eye_count)
-        return place_eyes(s);
-    if (slab) {
-        place_grid(s);
-        return RELUME_OK;
-    }
+    if (s->projection == RELUME_SLAB)
+        return place_slab(s);
     const relume_status status = one_eye_at_most(s);
     if (status || s->projection == RELUME_PLANAR)
         return status ? status : place_planar(s);
@@ -154,6 +226,7 @@ static relume_status name_files(struct synth *s)
         struct relume_manifest_view *view = &s->view[v];
         view->uv[0] = s->uv[v][0];
         view->uv[1] = s->uv[v][1];
+        view->slab = s->slab_of[v];
         view->depth = arena_format(&s->arena, "view%02d/depth.exr", v);
         view->images = arena_array(&s->arena, (size_t)s->p.light_count, sizeof *view->images);
         if (!view->depth || !view->images)
@@ -221,7 +294,7 @@ static struct render_job job_of(const struct synth *s)
 {
     return (struct render_job){
         .scene = s->scene,
-        .camera = {.geometry = s->geometry,
+        .camera = {.geometry = s->slabs ? s->slab[s->slab_of[s->view_now]] : s->geometry,
                    .width = s->width,
                    .height = s->height,
                    .uv = {s->uv[s->view_now][0], s->uv[s->view_now][1]}},
@@ -304,6 +377,8 @@ static relume_status write_manifest(const struct synth *s)
     const struct relume_manifest manifest = {
         .transfer = {.curve = RELUME_CURVE_LINEAR},
         .geometry = s->geometry,
+        .slabs = s->slabs,
+        .slab = s->slab,
         .lights = s->p.light_count,
         .directions = s->p.lights,
         .views = s->views,
@@ -328,6 +403,17 @@ static relume_status write_folder(struct synth *s, const char *path)
         return outdir_commit(&dir);
     outdir_abort(&dir);
     return status;
+}
+
+relume_status relume_ring_parse(enum relume_ring *out, const char *name)
+{
+    static const char *const names[] = {"4", "6", "8", "cube"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (!strcmp(name, names[i])) {
+            *out = (enum relume_ring)(i + 1);
+            return RELUME_OK;
+        }
+    return RELUME_EINVAL;
 }
 
 relume_status relume_scene_capture(const relume_scene *scene, const char *dir,

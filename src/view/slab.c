@@ -51,81 +51,113 @@ static int line_below(const double *lines, int n, double at)
     return low;
 }
 
-static double extent(const double (*uv)[2], int views, int axis)
+// The cameras of one slab: where they stand, and which views they are.
+struct cameras {
+    const double (*uv)[2];  // [views of the file]
+    const int *view;        // [count]
+    int count;
+};
+
+static double extent(const struct cameras *c, int axis)
 {
-    double low = uv[0][axis];
+    double low = c->uv[c->view[0]][axis];
     double high = low;
-    for (int i = 1; i < views; i++) {
-        low = fmin(low, uv[i][axis]);
-        high = fmax(high, uv[i][axis]);
+    for (int i = 1; i < c->count; i++) {
+        low = fmin(low, c->uv[c->view[i]][axis]);
+        high = fmax(high, c->uv[c->view[i]][axis]);
     }
     return high - low;
 }
 
 // The rows and columns of the cameras, and which camera stands at each crossing.
-static relume_status find_grid(relume_slab *slab, const double (*uv)[2], int views)
+static relume_status find_grid(relume_slab *slab, const struct cameras *c)
 {
-    const double size = fmax(extent(uv, views, 0), extent(uv, views, 1));
+    const double size = fmax(extent(c, 0), extent(c, 1));
     const double depth = fabs(slab->geometry.uv_z - slab->geometry.st_z);
     double scale = fmax(size, depth);
-    for (int i = 0; i < views; i++)
-        scale = fmax(scale, fmax(fabs(uv[i][0]), fabs(uv[i][1])));
-    slab->slack = ON_LINE * scale;
-    for (int i = 0; i < views; i++) {
-        slab->u[i] = uv[i][0];
-        slab->v[i] = uv[i][1];
+    for (int i = 0; i < c->count; i++) {
+        const double *uv = c->uv[c->view[i]];
+        scale = fmax(scale, fmax(fabs(uv[0]), fabs(uv[1])));
+        slab->u[i] = uv[0];
+        slab->v[i] = uv[1];
     }
-    slab->columns = keep_distinct(slab->u, views, SAME_LINE * size);
-    slab->rows = keep_distinct(slab->v, views, SAME_LINE * size);
-    if ((int64_t)slab->columns * slab->rows != views)
+    slab->slack = ON_LINE * scale;
+    slab->columns = keep_distinct(slab->u, c->count, SAME_LINE * size);
+    slab->rows = keep_distinct(slab->v, c->count, SAME_LINE * size);
+    if ((int64_t)slab->columns * slab->rows != c->count)
         return RELUME_EINVAL;
-    for (int i = 0; i < views; i++)
+    for (int i = 0; i < c->count; i++)
         slab->view[i] = -1;
-    for (int i = 0; i < views; i++) {
-        const int column = line_below(slab->u, slab->columns, uv[i][0]);
-        const int row = line_below(slab->v, slab->rows, uv[i][1]);
+    for (int i = 0; i < c->count; i++) {
+        const double *uv = c->uv[c->view[i]];
+        const int column = line_below(slab->u, slab->columns, uv[0]);
+        const int row = line_below(slab->v, slab->rows, uv[1]);
         int *at = &slab->view[(size_t)row * (size_t)slab->columns + (size_t)column];
         if (*at >= 0)
             return RELUME_EINVAL;
-        *at = i;
+        *at = c->view[i];
     }
     return RELUME_OK;
 }
 
-static bool usable(const struct relume_geometry *g, const double (*uv)[2], int views)
+static bool usable(const struct relume_geometry *g, const struct cameras *c)
 {
-    if (views < 1 || !isfinite(g->uv_z) || !isfinite(g->st_z) || g->uv_z == g->st_z)
+    if (c->count < 1 || !isfinite(g->uv_z) || !isfinite(g->st_z) || g->uv_z == g->st_z)
         return false;
     for (int axis = 0; axis < 2; axis++)
         if (!isfinite(g->st_min[axis]) || !isfinite(g->st_max[axis]) ||
             !(g->st_min[axis] < g->st_max[axis]))
             return false;
-    for (int i = 0; i < views; i++)
-        if (!isfinite(uv[i][0]) || !isfinite(uv[i][1]))
+    for (int i = 0; i < c->count; i++)
+        if (!isfinite(c->uv[c->view[i]][0]) || !isfinite(c->uv[c->view[i]][1]))
             return false;
     return true;
 }
 
-relume_status relume_slab_create(relume_slab **out, const struct relume_geometry *geometry,
-                                 const double (*uv)[2], int views)
+static relume_status create(relume_slab **out, const struct relume_geometry *geometry,
+                            const struct cameras *cameras, int views)
 {
-    *out = NULL;
-    if (!usable(geometry, uv, views))
+    if (!usable(geometry, cameras))
         return RELUME_EINVAL;
     relume_slab *slab = mem_zeroed(1, sizeof *slab);
     if (!slab)
         return RELUME_ENOMEM;
     slab->geometry = *geometry;
-    slab->u = mem_array((size_t)views, sizeof *slab->u);
-    slab->v = mem_array((size_t)views, sizeof *slab->v);
-    slab->view = mem_array((size_t)views, sizeof *slab->view);
+    slab->views = views;
+    slab->u = mem_array((size_t)cameras->count, sizeof *slab->u);
+    slab->v = mem_array((size_t)cameras->count, sizeof *slab->v);
+    slab->view = mem_array((size_t)cameras->count, sizeof *slab->view);
     relume_status status = RELUME_ENOMEM;
     if (slab->u && slab->v && slab->view)
-        status = find_grid(slab, uv, views);
+        status = find_grid(slab, cameras);
     if (status)
         relume_slab_destroy(&slab);
     *out = slab;
     return status;
+}
+
+relume_status slab_create(relume_slab **out, const struct relume_geometry *geometry,
+                          const double (*uv)[2], const int *slab_of, int which, int views)
+{
+    *out = NULL;
+    if (views < 1)
+        return RELUME_EINVAL;
+    int *view = mem_array((size_t)views, sizeof *view);
+    if (!view)
+        return RELUME_ENOMEM;
+    struct cameras cameras = {uv, view, 0};
+    for (int i = 0; i < views; i++)
+        if (!slab_of || slab_of[i] == which)
+            view[cameras.count++] = i;
+    const relume_status status = create(out, geometry, &cameras, views);
+    free(view);
+    return status;
+}
+
+relume_status relume_slab_create(relume_slab **out, const struct relume_geometry *geometry,
+                                 const double (*uv)[2], int views)
+{
+    return slab_create(out, geometry, uv, NULL, 0, views);
 }
 
 void relume_slab_destroy(relume_slab **slab)
@@ -141,7 +173,14 @@ void relume_slab_destroy(relume_slab **slab)
 
 struct relume_slab_grid relume_slab_grid(const relume_slab *slab)
 {
-    return (struct relume_slab_grid){slab->columns, slab->rows, slab->u, slab->v, slab->view};
+    return (struct relume_slab_grid){
+        .columns = slab->columns,
+        .rows = slab->rows,
+        .u = slab->u,
+        .v = slab->v,
+        .view = slab->view,
+        .views = slab->views,
+    };
 }
 
 struct relume_vec3 relume_slab_middle(const relume_slab *slab)
@@ -247,18 +286,19 @@ static bool line_span(int span[2], const double *lines, int n, double slack, boo
     return true;
 }
 
-int relume_slab_needs(bool *needed, const relume_slab *slab, struct relume_vec3 eye,
-                      const struct relume_view_params *params)
+int slab_mark(bool *needed, const relume_slab *slab, struct relume_vec3 eye, const double st_min[2],
+              const double st_max[2], const struct relume_view_params *params)
 {
     const struct relume_geometry *g = &slab->geometry;
     const bool constant = takes_nearest(params);
     const double radius = params ? 0.5 * fabs(params->aperture) : 0.0;
     const size_t columns = (size_t)slab->columns;
-    memset(needed, 0, columns * (size_t)slab->rows * sizeof *needed);
     double a[2], b[2];
     int across[2], down[2];
-    if (!relume_slab_uv(a, slab, eye, g->st_min[0], g->st_min[1]) ||
-        !relume_slab_uv(b, slab, eye, g->st_max[0], g->st_max[1]) ||
+    if (!relume_slab_uv(a, slab, eye, fmax(st_min[0], g->st_min[0]),
+                        fmax(st_min[1], g->st_min[1])) ||
+        !relume_slab_uv(b, slab, eye, fmin(st_max[0], g->st_max[0]),
+                        fmin(st_max[1], g->st_max[1])) ||
         !line_span(across, slab->u, slab->columns, slab->slack, constant, fmin(a[0], b[0]) - radius,
                    fmax(a[0], b[0]) + radius) ||
         !line_span(down, slab->v, slab->rows, slab->slack, constant, fmin(a[1], b[1]) - radius,
@@ -268,4 +308,11 @@ int relume_slab_needs(bool *needed, const relume_slab *slab, struct relume_vec3 
         for (int column = across[0]; column <= across[1]; column++)
             needed[slab->view[(size_t)row * columns + (size_t)column]] = true;
     return (down[1] - down[0] + 1) * (across[1] - across[0] + 1);
+}
+
+int relume_slab_needs(bool *needed, const relume_slab *slab, struct relume_vec3 eye,
+                      const struct relume_view_params *params)
+{
+    memset(needed, 0, (size_t)slab->views * sizeof *needed);
+    return slab_mark(needed, slab, eye, slab->geometry.st_min, slab->geometry.st_max, params);
 }

@@ -6,12 +6,17 @@
 
 struct relume_slab {
     struct relume_geometry geometry;
+    int views;  // arrays by view number are so long
     int columns, rows;
     double slack;  // ON_LINE in world units
     double *u;
     double *v;
     int *view;
 };
+// As relume_slab_create, of the views of slab `which` only; the numbers of views stay. `slab_of`
+// may be NULL: all are.
+relume_status slab_create(relume_slab **out, const struct relume_geometry *geometry,
+                          const double (*uv)[2], const int *slab_of, int which, int views);
 
 // Up to two neighbours on a line with their weights, none of them 0.
 struct neighbours {
@@ -31,6 +36,15 @@ double slab_hit(double eye, double st, double reach);
 struct neighbours slab_columns_at(const relume_slab *slab, bool constant, double u);
 struct neighbours slab_rows_at(const relume_slab *slab, bool constant, double v);
 
+// Mark the views around the rays from `eye` through a rectangle of the st plane, cut to the window;
+// returns how many.
+int slab_mark(bool *needed, const relume_slab *slab, struct relume_vec3 eye, const double st_min[2],
+              const double st_max[2], const struct relume_view_params *params);
+// Whether needed[n] views are there, of three channels and of one size, which is set; and so their
+// disparities when there are any.
+bool slab_views_fit(int *width, int *height, const bool *needed, const struct relume_image *views,
+                    const struct relume_image *disparity, int n);
+
 // One frame of one slab, as the ways to draw it share it.
 struct slab_frame {
     const relume_slab *slab;
@@ -46,6 +60,15 @@ relume_status slab_frame_depth(const struct slab_frame *frame);
 relume_status slab_frame_lens(const struct slab_frame *frame);
 // What slab_frame_depth gives a pixel that looks at (s, t).
 relume_status slab_value_depth(float rgb[3], const struct slab_frame *frame, const double st[2]);
+// The farthest and the nearest disparity that a frame's rays can meet.
+void slab_depth_range(double range[2], const struct slab_frame *frame);
+struct slab_ray;
+// A ray by depth. Returns the share of the cameras around it that see its surface, 1e-3 of that
+// where what is there is only guessed.
+double slab_depth_shade(float rgb[3], const struct slab_frame *frame, const struct slab_ray *ray,
+                        const double range[2]);
+// A ray by the quadralinear basis, or of the nearest camera.
+void slab_flat_shade(float rgb[3], const struct slab_frame *frame, const struct slab_ray *ray);
 
 static inline bool slab_is_lens(const struct relume_view_params *params)
 {
@@ -70,6 +93,7 @@ struct slab_ray {
     double uv[2], texel[2];
 };
 struct slab_ray slab_ray_of(const struct slab_frame *frame, int column, int row);
+struct slab_ray slab_ray_at(const struct slab_frame *frame, const double st[2]);
 // How far the texel of the ray's point moves in the view of the camera at (u, v) when the point's
 // disparity rises by 1.
 void slab_shift(double shift[2], const struct slab_frame *frame, const struct slab_ray *ray,

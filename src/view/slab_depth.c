@@ -18,6 +18,8 @@ static const int most_steps = 256;
 // Cameras of less weight have no say in where the surface is, so that what is said does not hang on
 // the last bit of a weight.
 static const double negligible = 1e-4;
+// What a ray says, compared with one whose surface has been found.
+static const double guessed = 1e-3;
 
 // One of the cameras around a ray.
 struct camera {
@@ -38,7 +40,7 @@ struct around {
 
 struct frame {
     const struct slab_frame *of;
-    double nearest, farthest;  // of all disparities but the background's
+    double range[2];  // of all disparities but the background's
 };
 
 // ---------------------------------------------------------------- one camera
@@ -155,7 +157,7 @@ static bool gather_all(double sum[5], const struct around *a, double q, double s
 }
 
 // Background is taken where the st plane is; so is what no camera sees as it should be.
-static void shade(float rgb[3], const struct around *a, double nearest, double farthest)
+static double shade(float rgb[3], const struct around *a, double nearest, double farthest)
 {
     double q, sum[5];
     bool seen = false;
@@ -174,6 +176,7 @@ static void shade(float rgb[3], const struct around *a, double nearest, double f
     }
     for (int k = 0; k < 3; k++)
         rgb[k] = sum[4] > 0.0 ? (float)(sum[k] / sum[4]) : 0.0f;
+    return seen ? sum[4] : guessed * sum[4];
 }
 
 static void find_cameras(struct around *a, const struct slab_frame *f, const struct slab_ray *ray)
@@ -194,6 +197,14 @@ static void find_cameras(struct around *a, const struct slab_frame *f, const str
         }
 }
 
+double slab_depth_shade(float rgb[3], const struct slab_frame *frame, const struct slab_ray *ray,
+                        const double range[2])
+{
+    struct around a;
+    find_cameras(&a, frame, ray);
+    return shade(rgb, &a, range[1], range[0]);
+}
+
 static void draw_row(void *context, size_t row, int worker)
 {
     const struct frame *f = context;
@@ -202,9 +213,7 @@ static void draw_row(void *context, size_t row, int worker)
     float *rgb = out->data + 3 * row * (size_t)out->width;
     for (int x = 0; x < out->width; x++, rgb += 3) {
         const struct slab_ray ray = slab_ray_of(f->of, x, (int)row);
-        struct around a;
-        find_cameras(&a, f->of, &ray);
-        shade(rgb, &a, f->nearest, f->farthest);
+        slab_depth_shade(rgb, f->of, &ray, f->range);
     }
 }
 
@@ -212,53 +221,43 @@ static void draw_row(void *context, size_t row, int worker)
 
 static bool usable(const struct slab_frame *f)
 {
-    const int cameras = f->slab->columns * f->slab->rows;
-    for (int i = 0; i < cameras; i++) {
-        const struct relume_image *d = &f->params.disparity[i];
-        if (f->needed[i] &&
-            (!d->data || d->channels != 1 || d->width != f->width || d->height != f->height))
-            return false;
-    }
-    return true;
+    int width = f->width, height = f->height;
+    return slab_views_fit(&width, &height, f->needed, f->views, f->params.disparity,
+                          f->slab->views);
 }
 
-static struct frame frame_of(const struct slab_frame *f)
+void slab_depth_range(double range[2], const struct slab_frame *f)
 {
-    const int cameras = f->slab->columns * f->slab->rows;
-    struct frame frame = {.of = f, .nearest = -INFINITY, .farthest = INFINITY};
-    for (int i = 0; i < cameras; i++) {
-        double range[2];
-        if (!f->needed[i] || !relume_slab_range(range, &f->params.disparity[i]))
+    range[0] = (double)INFINITY;
+    range[1] = -(double)INFINITY;
+    for (int i = 0; i < f->slab->columns * f->slab->rows; i++) {
+        const int view = f->slab->view[i];
+        double one[2];
+        if (!f->needed[view] || !relume_slab_range(one, &f->params.disparity[view]))
             continue;
-        frame.farthest = fmin(frame.farthest, range[0]);
-        frame.nearest = fmax(frame.nearest, range[1]);
+        range[0] = fmin(range[0], one[0]);
+        range[1] = fmax(range[1], one[1]);
     }
-    frame.nearest = fmin(frame.nearest, relume_slab_eye_disparity(f->slab, f->eye));
-    return frame;
+    range[1] = fmin(range[1], relume_slab_eye_disparity(f->slab, f->eye));
 }
 
 relume_status slab_frame_depth(const struct slab_frame *f)
 {
+    struct frame frame = {.of = f};
     if (!usable(f))
         return RELUME_EINVAL;
-    struct frame frame = frame_of(f);
+    slab_depth_range(frame.range, f);
     thread_for(f->params.threads, (size_t)f->out->height, draw_row, &frame);
     return RELUME_OK;
 }
 
 relume_status slab_value_depth(float rgb[3], const struct slab_frame *f, const double st[2])
 {
-    const struct relume_geometry *g = &f->slab->geometry;
+    double range[2];
     if (!usable(f))
         return RELUME_EINVAL;
-    const struct frame frame = frame_of(f);
-    const struct slab_ray ray = {
-        .uv = {slab_hit(f->eye.x, st[0], f->reach), slab_hit(f->eye.y, st[1], f->reach)},
-        .texel = {(st[0] - g->st_min[0]) / (g->st_max[0] - g->st_min[0]) * f->width,
-                  (g->st_max[1] - st[1]) / (g->st_max[1] - g->st_min[1]) * f->height},
-    };
-    struct around a;
-    find_cameras(&a, f, &ray);
-    shade(rgb, &a, frame.nearest, frame.farthest);
+    slab_depth_range(range, f);
+    const struct slab_ray ray = slab_ray_at(f, st);
+    slab_depth_shade(rgb, f, &ray, range);
     return RELUME_OK;
 }

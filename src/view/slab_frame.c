@@ -142,46 +142,46 @@ static relume_status draw(const struct slab_frame *f)
     return p->disparity && !is_camera(f) ? slab_frame_depth(f) : draw_linear(f, false);
 }
 
-// The first needed view when all needed ones are there, of one size and of three channels.
-static const struct relume_image *check_views(const bool *needed, const struct relume_image *views,
-                                              int n)
+static bool is_image(const struct relume_image *image, int width, int height, int channels)
 {
-    const struct relume_image *first = NULL;
+    return image->data && image->channels == channels && image->width == width &&
+           image->height == height;
+}
+
+bool slab_views_fit(int *width, int *height, const bool *needed, const struct relume_image *views,
+                    const struct relume_image *disparity, int n)
+{
     for (int i = 0; i < n; i++) {
         if (!needed[i])
             continue;
-        if (!first)
-            first = &views[i];
-        if (!views[i].data || views[i].channels != 3 || views[i].width != first->width ||
-            views[i].height != first->height)
-            return NULL;
+        if (*width == 0) {
+            *width = views[i].width;
+            *height = views[i].height;
+        }
+        if (!is_image(&views[i], *width, *height, 3) ||
+            (disparity && !is_image(&disparity[i], *width, *height, 1)))
+            return false;
     }
-    return first;
+    return *width > 0;
 }
 
 relume_status relume_slab_frame(struct relume_image *out, const relume_slab *slab,
                                 struct relume_vec3 eye, const struct relume_image *views,
                                 const struct relume_view_params *params)
 {
-    const int cameras = slab->columns * slab->rows;
     struct slab_frame frame = {.slab = slab, .out = out, .views = views, .eye = eye};
     if (params)
         frame.params = *params;
     if (!out->data || out->channels != 3 || !slab_reach(&frame.reach, slab, eye))
         return RELUME_EINVAL;
-    bool *needed = mem_zeroed((size_t)cameras, sizeof *needed);
+    bool *needed = mem_zeroed((size_t)slab->views, sizeof *needed);
     if (!needed)
         return RELUME_ENOMEM;
-    const struct relume_image *view = NULL;
-    if (relume_slab_needs(needed, slab, eye, params))
-        view = check_views(needed, views, cameras);
     relume_status status = RELUME_EINVAL;
-    if (view) {
-        frame.width = view->width;
-        frame.height = view->height;
-        frame.needed = needed;
+    frame.needed = needed;
+    if (relume_slab_needs(needed, slab, eye, params) &&
+        slab_views_fit(&frame.width, &frame.height, needed, views, NULL, slab->views))
         status = draw(&frame);
-    }
     free(needed);
     return status;
 }
@@ -190,28 +190,23 @@ relume_status relume_slab_value(float rgb[3], const relume_slab *slab, struct re
                                 const double st[2], const struct relume_image *views,
                                 const struct relume_view_params *params)
 {
-    const int cameras = slab->columns * slab->rows;
     struct slab_frame frame = {.slab = slab, .views = views, .eye = eye};
     double uv[2], weight[4];
     int around[4];
     if (!params || !params->disparity || !slab_reach(&frame.reach, slab, eye) ||
         !relume_slab_uv(uv, slab, eye, st[0], st[1]))
         return RELUME_EINVAL;
-    bool *needed = mem_zeroed((size_t)cameras, sizeof *needed);
+    bool *needed = mem_zeroed((size_t)slab->views, sizeof *needed);
     if (!needed)
         return RELUME_ENOMEM;
     const int count = relume_slab_blend(around, weight, slab, uv, NULL);
     for (int i = 0; i < count; i++)
         needed[around[i]] = true;
-    const struct relume_image *view = check_views(needed, views, cameras);
     relume_status status = RELUME_EINVAL;
-    if (view) {
-        frame.params = *params;
-        frame.width = view->width;
-        frame.height = view->height;
-        frame.needed = needed;
+    frame.params = *params;
+    frame.needed = needed;
+    if (slab_views_fit(&frame.width, &frame.height, needed, views, NULL, slab->views))
         status = slab_value_depth(rgb, &frame, st);
-    }
     free(needed);
     return status;
 }

@@ -16,8 +16,10 @@ static void pixel_ray(const struct relume_geometry *g, const double uv[2], int w
         *eye = g->center;
         *direction = relume_panorama_ray(g, width, height, column + 0.5, row + 0.5);
     } else if (slab) {
-        *eye = vec3_of(uv[0], uv[1], g->uv_z);
-        *direction = vec3_unit(vec3_sub(vec3_of(x, y, g->st_z), *eye));
+        const vec3 camera = vec3_of(uv[0], uv[1], g->uv_z);
+        const vec3 ray = vec3_unit(vec3_sub(vec3_of(x, y, g->st_z), camera));
+        *eye = relume_pose_world(&g->pose, camera);
+        *direction = relume_pose_turn(&g->pose, ray);
     } else if (g->perspective) {
         *eye = vec3_of(0.0, 0.0, g->camera_z);
         *direction = vec3_unit(vec3_sub(vec3_of(x, y, 0.0), *eye));

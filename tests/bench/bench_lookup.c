@@ -63,7 +63,7 @@ int main(void)
     const struct relume_codes codes = {
         .coder = coder,
         .domain = RELUME_DOMAIN_DISPLAY,
-        .display = {RELUME_CURVE_SRGB, 0.0f},
+        .display = {.curve = RELUME_CURVE_SRGB},
         .width = SIDE,
         .height = SIDE,
         .planes = planes,

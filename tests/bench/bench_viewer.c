@@ -82,7 +82,7 @@ static struct file make_file(bool book)
     f.codes = (struct relume_codes){
         .coder = f.coder,
         .domain = book ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR,
-        .display = {RELUME_CURVE_SRGB, 0.0f},
+        .display = {.curve = RELUME_CURVE_SRGB},
         .width = width,
         .height = height,
         .planes = MOST_PLANES,

@@ -7,11 +7,12 @@ static const struct relume_limits limits = {
     .max_side = 256, .max_pixels = 1 << 14, .max_lights = 200, .max_views = 16};
 
 static const char *const words[] = {
-    "format",    "version", "transfer", "projection", "lights", "directions", "intensities",
-    "positions", "window",  "slab",     "panorama",   "views",  "images",     "depth",
-    "mask",      "uv",      "camera",   "planar",     "cube",   "gamma:2.2",  "v0-0.exr",
-    "null",      "[",       "]",        "{",          "}",      ",",          "1e308",
-    "-0",        "\"",      "\\u0000",  "\n",         " ",      "nan",        NULL};
+    "format",    "version",   "transfer", "projection", "lights", "directions", "intensities",
+    "positions", "window",    "slab",     "panorama",   "views",  "images",     "depth",
+    "mask",      "uv",        "slabs",    "axes",       "origin", "camera",     "planar",
+    "cube",      "gamma:2.2", "v0-0.exr", "null",       "[",      "]",          "{",
+    "}",         ",",         "1e308",    "-0",         "\"",     "\\u0000",    "\n",
+    " ",         "nan",       NULL};
 
 static bool open_as(struct fuzz *f, const char *name, struct bytes b, bool skip)
 {
@@ -64,6 +65,10 @@ int main(int argc, char **argv)
     fuzz_add(&f, fuzz_load(path));
     fixture_write(&plain, f.folder);
     fuzz_add(&f, fuzz_load(path));
+    fixture_write(&(struct fixture){.width = 4, .height = 3, .lights = 2, .views = 4, .slabs = 2},
+                  f.folder);
+    fuzz_add(&f, fuzz_load(path));
+    fixture_write(&plain, f.folder);
     fuzz_add(&f, text("3\nv0-0.exr 0 0 1\nv0-1.exr 1 0 1\nv0-2.exr 0 1 1\n"));
     fuzz_add(&f, text("\xef\xbb\xbf"
                       "2\r\nC:\\a b\\V0-0.EXR 0,5 0 1\r\n\r\nx y.exr .1 2 3 \r\n"));

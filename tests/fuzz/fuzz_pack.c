@@ -14,6 +14,8 @@ static const char *const words[] = {"relume.format",
                                     "relume.uv",
                                     "relume.window",
                                     "relume.slab",
+                                    "relume.pose",
+                                    "relume.member",
                                     "relume.basis",
                                     "relume.coefficients",
                                     "relume.hemispherical",
@@ -72,6 +74,11 @@ static void use(relume_pack *pack)
     const struct relume_camera cameras[] = {
         {.framing = RELUME_FRAME_DEFAULT},
         {.framing = RELUME_FRAME_EYE, .eye = {0.5, 0.1, 3.0}, .width = 7, .height = 5},
+        {.framing = RELUME_FRAME_EYE,
+         .eye = {0.5, 0.1, 3.0},
+         .aim = {.field_of_view_deg = 40.0},
+         .width = 7,
+         .height = 5},
         {.framing = RELUME_FRAME_LOOK, .width = 9, .height = 4, .look = {30.0, 20.0, 1.5}},
     };
     for (int v = 0; v < info->views; v++) {
@@ -148,7 +155,10 @@ int main(int argc, char **argv)
                                  .hemisphere = true,
                                  .depth = true,
                                  .mask = true};
+    const struct fixture around = {
+        .width = 8, .height = 5, .lights = 5, .views = 6, .slabs = 3, .depth = true};
     fuzz_begin(&f, "fuzz_pack", argc, argv);
+    add(&f, &around, &relume_basis_sh, 4, RELUME_STORE_8, RELUME_COMPRESS_NONE);
     add(&f, &plain, &relume_basis_sh, 4, RELUME_STORE_8, RELUME_COMPRESS_PIZ);
     add(&f, &plain, &relume_basis_table, 0, RELUME_STORE_16, RELUME_COMPRESS_ZIP);
     add(&f, &slab, &relume_basis_sh, 4, RELUME_STORE_HALF, RELUME_COMPRESS_RLE);

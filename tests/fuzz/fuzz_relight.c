@@ -108,7 +108,7 @@ static bool one(struct fuzz *f, struct bytes b)
         data[i] = (uint8_t)take(&r, 1) & (storage == RELUME_STORE_HALF ? 0xbb : 0xff);
     const struct relume_codes codes = {.coder = coder,
                                        .domain = 1 + take(&r, 1) % 2,
-                                       .display = {RELUME_CURVE_GAMMA, 0.5f},
+                                       .display = {.curve = RELUME_CURVE_GAMMA, .gamma = 0.5f},
                                        .width = width,
                                        .height = height,
                                        .planes = planes,

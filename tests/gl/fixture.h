@@ -130,7 +130,7 @@ static inline struct fixture_file fixture_make(int views, int width, int height,
         f.codes[i] = (struct relume_codes){
             .coder = f.coder,
             .domain = domain,
-            .display = {RELUME_CURVE_SRGB, 0},
+            .display = {.curve = RELUME_CURVE_SRGB},
             .width = width,
             .height = height,
             .planes = FIXTURE_PLANES,

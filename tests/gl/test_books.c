@@ -33,7 +33,7 @@ static void make(struct books_file *f, int books, enum relume_domain domain)
     f->codes = (struct relume_codes){
         .coder = f->coder,
         .domain = domain,
-        .display = {RELUME_CURVE_SRGB, 0},
+        .display = {.curve = RELUME_CURVE_SRGB},
         .width = W,
         .height = H,
         .planes = FIXTURE_PLANES,

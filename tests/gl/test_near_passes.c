@@ -233,7 +233,7 @@ static void codebooks(void **state)
         const struct relume_codes codes = {
             .coder = coder,
             .domain = k % 2 ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR,
-            .display = {RELUME_CURVE_SRGB, 0},
+            .display = {.curve = RELUME_CURVE_SRGB},
             .width = W,
             .height = H,
             .planes = FIXTURE_PLANES,

@@ -135,7 +135,7 @@ static void gamma_files(void **state)
 {
     (void)state;
     struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, RELUME_DOMAIN_DISPLAY, false);
-    f.codes[0].display = (struct relume_transfer){RELUME_CURVE_GAMMA, 1.8f};
+    f.codes[0].display = (struct relume_transfer){.curve = RELUME_CURVE_GAMMA, .gamma = 1.8f};
     const struct code_source source = {fixture_fetch, NULL, &f, NULL};
     struct relighter r;
     assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);

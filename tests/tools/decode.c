@@ -651,17 +651,59 @@ static void add_books(int part, const char *view, int x, int y)
     }
 }
 
+// ---------------------------------------------------------------- rays
+
+static struct vector turned(const float *axes, double a, double b, double c)
+{
+    const double v[3] = {a, b, c};
+    double w[3] = {0};
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            w[j] += v[i] * (double)axes[3 * i + j];
+    return (struct vector){w[0], w[1], w[2]};
+}
+
+// Where the middle of a pixel of a slab looks, as `relume query` takes it.
+static void print_ray(int view, int part, int x, int y)
+{
+    static const float world[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    exr_attr_box2i_t window;
+    if (exr_get_data_window(file, part, &window))
+        fail("no window");
+    const int width = window.max.x - window.min.x + 1, height = window.max.y - window.min.y + 1;
+    const int several = attribute(0, "relume.pose", EXR_ATTR_FLOAT_VECTOR) != NULL;
+    const int slab = several ? int_of_part(part, "relume.member") : 0;
+    int n;
+    const float *g = floats_of(0, "relume.slab", &n) + 6 * slab;
+    const float *uv = floats_of(0, "relume.uv", &n) + 2 * view;
+    const float *pose = several ? floats_of(0, "relume.pose", &n) + 12 * slab : world;
+    if (several && (int_of("relume.version") != 2 || slab < 0 || slab >= n / 12))
+        fail("slab %d", slab);
+    const double s = g[2] + (x + 0.5) / width * (g[4] - g[2]);
+    const double t = g[5] - (y + 0.5) / height * (g[5] - g[3]);
+    const struct vector eye = turned(pose + 3, uv[0], uv[1], g[0]);
+    const struct vector way = turned(pose + 3, s - uv[0], t - uv[1], g[1] - g[0]);
+    printf("--eye %.9f,%.9f,%.9f --direction=%.9f,%.9f,%.9f\n", eye.x + pose[0], eye.y + pose[1],
+           eye.z + pose[2], way.x, way.y, way.z);
+}
+
 int main(int argc, char **argv)
 {
-    if (argc != 8)
-        fail("usage: decode FILE VIEW X Y LX LY LZ");
+    if (argc != 8 && argc != 5)
+        fail("usage: decode FILE VIEW X Y [LX LY LZ]");
     if (exr_start_read(&file, argv[1], NULL))
         fail("%s cannot be opened", argv[1]);
-    if (strcmp(text_of("relume.format"), "relume") || int_of("relume.version") != 1)
-        fail("%s: no relume file of version 1", argv[1]);
+    if (strcmp(text_of("relume.format"), "relume") || int_of("relume.version") < 1 ||
+        int_of("relume.version") > 2)
+        fail("%s: no relume file of version 1 or 2", argv[1]);
     char view[32];
     snprintf(view, sizeof view, "view%04d", atoi(argv[2]));
     const int part = find_part(view), x = atoi(argv[3]), y = atoi(argv[4]);
+    if (argc == 5) {
+        print_ray(atoi(argv[2]), part, x, y);
+        exr_finish(&file);
+        return 0;
+    }
     k = int_of("relume.coefficients");
     luminance = !strcmp(text_or("relume.colour", "rgb"), "luminance");
     shared = luminance || !strcmp(text_of("relume.basis"), "pca");

@@ -82,7 +82,7 @@ static unsigned code(const struct relume_image *image, size_t pixel, int c, int 
     const bool alpha = channels == 2 ? c == 1 : c == 3;
     if (alpha)
         return (unsigned)(pixel * 37 % 200) * (top / 255) + top / 8;
-    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     const float v = relume_transfer_encode(srgb, image->data[3 * pixel + (size_t)c]);
     // 8-bit codes in 16 bits, so that both depths mean the same picture
     const unsigned byte = (unsigned)(fminf(fmaxf(v, 0.0f), 1.0f) * 255.0f + 0.5f);

@@ -276,6 +276,50 @@ SWEEP(save_png, 4)
 SWEEP(evaluate, 60)
 SWEEP(judge, 60)
 
+static relume_status fit_normals(void)
+{
+    relume_capture *capture;
+    struct relume_photometric p = {0};
+    struct relume_image height = {0};
+    relume_status status = relume_capture_open(&capture, capture_path, NULL);
+    if (!status)
+        status = relume_photometric_fit(&p, capture, 0, relume_photometric_params(.threads = 1));
+    if (!status)
+        status = relume_height_integrate(&height, &p.normal, NULL);
+    relume_image_destroy(&height);
+    relume_photometric_destroy(&p);
+    relume_capture_destroy(&capture);
+    return status;
+}
+
+static void test_fit_normals(void **state)
+{
+    (void)state;
+    assert_true(sweep(fit_normals) > 10);
+}
+
+// A dark disc on a bright ground, small enough for one level and a half.
+static relume_status find_ball(void)
+{
+    enum { SIDE = 48 };
+    const struct relume_ball_camera camera = {SIDE, SIDE, 0.0};
+    struct relume_image image;
+    struct relume_ball ball;
+    relume_status status = relume_image_create(&image, SIDE, SIDE, 1);
+    for (int i = 0; !status && i < SIDE * SIDE; i++)
+        image.data[i] = hypot(i % SIDE - 23.0, i / SIDE - 24.0) < 11.0 ? 0.02f : 0.5f;
+    if (!status)
+        status = relume_ball_find(&ball, 1, &image, &camera, NULL);
+    relume_image_destroy(&image);
+    return status;
+}
+
+static void test_find_ball(void **state)
+{
+    (void)state;
+    assert_true(sweep(find_ball) > 10);
+}
+
 static void test_nothing_is_left(void **state)
 {
     (void)state;
@@ -295,7 +339,8 @@ int main(void)
         cmocka_unit_test(test_evaluate),         cmocka_unit_test(test_judge),
         cmocka_unit_test(test_encode_chosen),    cmocka_unit_test(test_encode_luminance),
         cmocka_unit_test(test_encode_resampled), cmocka_unit_test(test_prepare_interpolants),
-        cmocka_unit_test(test_read_components),  cmocka_unit_test(test_nothing_is_left),
+        cmocka_unit_test(test_read_components),  cmocka_unit_test(test_fit_normals),
+        cmocka_unit_test(test_find_ball),        cmocka_unit_test(test_nothing_is_left),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

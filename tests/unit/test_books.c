@@ -33,7 +33,7 @@ static void make(struct setup *s, int books, enum relume_domain domain)
     s->codes = (struct relume_codes){
         .coder = s->coder,
         .domain = domain,
-        .display = {RELUME_CURVE_SRGB, 0.0f},
+        .display = {.curve = RELUME_CURVE_SRGB},
         .width = W,
         .height = H,
         .planes = planes,

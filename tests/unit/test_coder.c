@@ -236,7 +236,7 @@ static void test_samples_of_the_display_domain(void **state)
     (void)state;
     relume_capture *capture = open_capture();
     struct relume_samples linear, display;
-    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     CHECK_OK(relume_samples_read(&linear, capture, 100, NULL));
     CHECK_OK(relume_samples_read(&display, capture, 100,
                                  relume_encode_params(.domain = RELUME_DOMAIN_DISPLAY)));
@@ -288,7 +288,7 @@ static void test_census(void **state)
     view[0].images = images;
     view[1].images = images + N;
     const float intensities[N][3] = {{1, 1, 1}, {2, 2, 0.5f}, {3, 3, 3}, {1, 1, 1}};
-    struct relume_manifest m = {.transfer = {RELUME_CURVE_SRGB, 0.0f},
+    struct relume_manifest m = {.transfer = {.curve = RELUME_CURVE_SRGB},
                                 .geometry = relume_geometry_default(RELUME_SLAB, W, H),
                                 .lights = N,
                                 .directions = dome,

@@ -37,7 +37,7 @@ static void test_identical(void **state)
 static void test_closed_forms(void **state)
 {
     (void)state;
-    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     const float la = relume_transfer_decode(srgb, 100.0f / 255.0f);
     const float lb = relume_transfer_decode(srgb, 110.0f / 255.0f);
     struct relume_image a = flat(20, 20, la), b = flat(20, 20, lb);
@@ -75,7 +75,7 @@ static void test_ssim_reference(void **state)
 {
     (void)state;
     enum { W = 19, H = 14 };
-    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     struct relume_image a = noise(W, H, 5), b = noise(W, H, 6);
     double luma[2][W * H], sum = 0.0, total = 0.0, g[11];
     int windows = 0;
@@ -178,10 +178,13 @@ static void test_slow_reference(void **state)
 static void test_encoder(void **state)
 {
     (void)state;
-    static const struct relume_transfer curves[] = {
-        {RELUME_CURVE_SRGB, 0.0f},  {RELUME_CURVE_AUTO, 0.0f},  {RELUME_CURVE_LINEAR, 0.0f},
-        {RELUME_CURVE_GAMMA, 1.0f}, {RELUME_CURVE_GAMMA, 2.2f}, {RELUME_CURVE_GAMMA, 10.0f},
-        {RELUME_CURVE_GAMMA, 0.5f}};
+    static const struct relume_transfer curves[] = {{.curve = RELUME_CURVE_SRGB},
+                                                    {.curve = RELUME_CURVE_AUTO},
+                                                    {.curve = RELUME_CURVE_LINEAR},
+                                                    {.curve = RELUME_CURVE_GAMMA, .gamma = 1.0f},
+                                                    {.curve = RELUME_CURVE_GAMMA, .gamma = 2.2f},
+                                                    {.curve = RELUME_CURVE_GAMMA, .gamma = 10.0f},
+                                                    {.curve = RELUME_CURVE_GAMMA, .gamma = 0.5f}};
     static struct encoder e;
     for (size_t k = 0; k < sizeof curves / sizeof *curves; k++) {
         encoder_init(&e, curves[k]);

@@ -29,7 +29,7 @@ static void test_round_trip(void **state)
     for (int p = RELUME_PLANAR; p <= RELUME_CUBE; p++) {
         const struct relume_manifest_view view = {
             .uv = {0.25, -0.5}, .images = images, .depth = "d.exr", .mask = p ? "m.png" : NULL};
-        struct relume_manifest m = {.transfer = {RELUME_CURVE_GAMMA, 2.2f},
+        struct relume_manifest m = {.transfer = {.curve = RELUME_CURVE_GAMMA, .gamma = 2.2f},
                                     .geometry =
                                         relume_geometry_default((enum relume_projection)p, 4, 3),
                                     .lights = 2,

@@ -497,7 +497,7 @@ static void teach(struct taught *t, const struct relume_basis *basis, bool book)
     t->codes = (struct relume_codes){
         .coder = t->l.coder,
         .domain = RELUME_DOMAIN_DISPLAY,
-        .display = {RELUME_CURVE_SRGB, 0.0f},
+        .display = {.curve = RELUME_CURVE_SRGB},
         .width = 20,
         .height = LEARNED_PIXELS / 20,
         .planes = planes,

@@ -6,7 +6,7 @@ enum { W = 96, H = 40 };
 // A grey picture of display levels (of 255) level(x, y).
 static struct relume_image picture(double (*level)(int x, int y))
 {
-    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     struct relume_image image;
     CHECK_OK(relume_image_create(&image, W, H, 3));
     for (int i = 0; i < W * H; i++)

@@ -4,6 +4,7 @@
 
 #include <relume/capture.h>
 #include <relume/lights.h>
+#include <relume/view.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -436,6 +437,48 @@ static void a_capture_reads_back(void **state)
     relume_scene_destroy(&scene);
 }
 
+// The plane z = 0 of the box scene from 45 degrees beside: what a turned camera measures lies on
+// it.
+static void a_ring_looks_at_the_origin(void **state)
+{
+    (void)state;
+    relume_scene *scene = make_scene(relume_scene_find("box"));
+    const struct relume_synth_params p = {.projection = RELUME_SLAB,
+                                          .projection_set = true,
+                                          .size = 8,
+                                          .grid = {2, 1},
+                                          .ring = RELUME_RING_8,
+                                          .lights = two_lights,
+                                          .light_count = 1,
+                                          .samples = 1};
+    assert_int_equal(capture(scene, "ring", &p), RELUME_OK);
+    char path[128];
+    snprintf(path, sizeof path, "%s/ring", folder);
+    relume_capture *c;
+    assert_int_equal(relume_capture_open(&c, path, NULL), RELUME_OK);
+    const struct relume_manifest *m = relume_capture_manifest(c);
+    assert_int_equal(m->slabs, 8);
+    assert_int_equal(m->views, 16);
+    check_near(m->view[1].uv[0], 1.15 * 3 * tan(M_PI / 8), 1e-8);
+    for (int view = 2; view < 4; view++) {
+        const struct relume_geometry *g = &m->slab[m->view[view].slab];
+        struct relume_image depth, surface;
+        assert_int_equal(m->view[view].slab, 1);
+        assert_int_equal(relume_capture_depth(&depth, c, view, NULL), RELUME_OK);
+        assert_int_equal(relume_surface(&surface, g, m->view[view].uv, &depth, 8, 8), RELUME_OK);
+        // the picture's right is on the near side of the plane
+        for (int y = 0; y < 8; y += 7) {
+            check_near(at(&surface, 7, y)[2], 0.0, 1e-5);
+            assert_true(at(&surface, 7, y)[0] > 0.5f);
+        }
+        assert_true(g->pose.axis[2].x > 0.7 && g->pose.axis[2].z > 0.7);
+        relume_image_destroy(&depth);
+        relume_image_destroy(&surface);
+    }
+    relume_capture_destroy(&c);
+    relume_scene_destroy(&scene);
+}
+
 static void wrong_requests_are_refused(void **state)
 {
     (void)state;
@@ -443,8 +486,9 @@ static void wrong_requests_are_refused(void **state)
     const vec3 beside = {1, 0, 4}, uneven[2] = {{0, 0, 3}, {0, 0, 2}};
     const struct relume_synth_params good = {
         .size = 4, .lights = two_lights, .light_count = 2, .samples = 1};
-    struct relume_synth_params p[8];
-    for (int i = 0; i < 8; i++)
+    enum { WRONG = 10 };
+    struct relume_synth_params p[WRONG];
+    for (int i = 0; i < WRONG; i++)
         p[i] = good;
     p[0].light_count = 0;
     p[1].size = -1;
@@ -455,7 +499,10 @@ static void wrong_requests_are_refused(void **state)
     p[6].projection = RELUME_SLAB, p[6].projection_set = true;
     p[6].eyes = uneven, p[6].eye_count = 2;
     p[7].projection = (enum relume_projection)9, p[7].projection_set = true;
-    for (int i = 0; i < 8; i++)
+    p[8].ring = RELUME_RING_4;
+    p[9].projection = RELUME_SLAB, p[9].projection_set = true;
+    p[9].ring = RELUME_RING_4, p[9].eyes = &beside, p[9].eye_count = 1;
+    for (int i = 0; i < WRONG; i++)
         assert_int_equal(capture(scene, "wrong", &p[i]), RELUME_EINVAL);
     assert_false(exists("wrong") || exists("wrong.part"));
     relume_scene_destroy(&scene);
@@ -532,6 +579,7 @@ int main(void)
         cmocka_unit_test(threads_do_not_change_a_bit),
         cmocka_unit_test(every_scene_shows_something),
         cmocka_unit_test_setup_teardown(a_capture_reads_back, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(a_ring_looks_at_the_origin, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(wrong_requests_are_refused, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(short_memory_is_survived, make_folder, remove_folder),
         cmocka_unit_test_setup_teardown(cancelling_and_failing_leave_nothing, make_folder,

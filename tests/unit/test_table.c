@@ -22,7 +22,7 @@ static int teardown(void **state)
 // Every image flat, its value telling light and version.
 static float value_of(int version, int light)
 {
-    const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     return relume_transfer_decode(srgb, (float)(40 + 60 * version + 10 * light) / 255.0f);
 }
 

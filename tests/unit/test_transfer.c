@@ -1,7 +1,7 @@
 #include "test.h"
 
-static const struct relume_transfer linear = {RELUME_CURVE_LINEAR, 0.0f};
-static const struct relume_transfer srgb = {RELUME_CURVE_SRGB, 0.0f};
+static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
+static const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
 
 static void test_srgb_known_values(void **state)
 {
@@ -20,8 +20,10 @@ static void test_srgb_known_values(void **state)
 static void test_round_trips(void **state)
 {
     (void)state;
-    const struct relume_transfer curves[] = {
-        linear, srgb, {RELUME_CURVE_GAMMA, 2.2f}, {RELUME_CURVE_GAMMA, 0.5f}};
+    const struct relume_transfer curves[] = {linear,
+                                             srgb,
+                                             {.curve = RELUME_CURVE_GAMMA, .gamma = 2.2f},
+                                             {.curve = RELUME_CURVE_GAMMA, .gamma = 0.5f}};
     for (size_t i = 0; i < sizeof curves / sizeof *curves; i++)
         for (int v = -300; v <= 300; v++) {
             const float code = (float)v / 100.0f;

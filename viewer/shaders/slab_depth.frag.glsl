@@ -1,176 +1,20 @@
 #version 330 core
-// One cell of a light slab between four cameras, each where it sees the surface of the ray; twin of
-// src/view/slab_depth.c, function by function.
-uniform sampler2D view00;  // low u, low v
-uniform sampler2D view10;  // high u, low v
-uniform sampler2D view01;
-uniform sampler2D view11;
-uniform sampler2D disparity00;
-uniform sampler2D disparity10;
-uniform sampler2D disparity01;
-uniform sampler2D disparity11;
+// One cell of a light slab between four cameras, each where it sees the surface of the ray.
+#include "slab_depth.glsl"
 uniform vec4 picture;  // left, top, right, bottom of the window in the frame
-uniform vec4 st;       // st_min, st_max
-uniform vec4 cell;     // low u, low v, high u, high v
 uniform vec3 eye;      // x, y, and how far towards the st plane the uv plane lies
 uniform vec2 range;    // farthest and nearest disparity
 uniform float exposure;
 out vec4 color;
-
-const float BACKGROUND = -1.0;
-const int MOST_STEPS = 256;
-const float NEGLIGIBLE = 1e-4;
-
-struct Camera {
-    float weight;
-    vec2 shift;  // texels per unit of disparity
-    float speed;
-};
-vec2 texel;  // where the ray's point on the st plane lies in a view
-Camera camera00, camera10, camera01, camera11;
 
 vec2 slab_uv(vec3 from, float s, float t)
 {
     return from.xy + from.z * (vec2(s, t) - from.xy);
 }
 
-// ---------------------------------------------------------------- one camera
-
-vec2 place_at(Camera c, float q)
-{
-    return texel + q * c.shift;
-}
-
-bool within(vec2 at)
-{
-    vec2 size = vec2(textureSize(view00, 0));
-    return all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, size));
-}
-
-ivec2 texel_index(ivec2 at)
-{
-    return clamp(at, ivec2(0), textureSize(view00, 0) - 1);
-}
-
-float disparity_at(sampler2D disparity, Camera c, float q)
-{
-    vec2 at = place_at(c, q);
-    if (!within(at))
-        return BACKGROUND;
-    return texelFetch(disparity, texel_index(ivec2(floor(at))), 0).r;
-}
-
-float agreement(float speed, float q, float other)
-{
-    return clamp(2.0 - abs(q - other) * speed, 0.0, 1.0);
-}
-
-struct Sum {
-    vec3 rgb;
-    float disparity, weight;
-};
-
-void gather(inout Sum sum, sampler2D view, sampler2D disparity, Camera c, float q, float surface)
-{
-    vec2 at = place_at(c, q);
-    if (!within(at))
-        return;
-    ivec2 corner = ivec2(floor(at - 0.5));
-    for (int j = 0; j < 2; j++)
-        for (int i = 0; i < 2; i++) {
-            ivec2 here = corner + ivec2(i, j);
-            vec2 part = 1.0 - abs(at - 0.5 - vec2(here));
-            float found = texelFetch(disparity, texel_index(here), 0).r;
-            float w = c.weight * part.x * part.y * agreement(c.speed, surface, found);
-            sum.rgb += w * texelFetch(view, texel_index(here), 0).rgb;
-            sum.disparity += w * found;
-            sum.weight += w;
-        }
-}
-
-// ---------------------------------------------------------------- one ray
-
-void meet(inout vec2 sum, sampler2D disparity, Camera c, float q, float step)
-{
-    float found = disparity_at(disparity, c, q);
-    if (c.weight > NEGLIGIBLE && found > BACKGROUND && abs(found - q) <= step)
-        sum += c.weight * vec2(found, 1.0);
-}
-
-float walking_speed(Camera c)
-{
-    return c.weight > NEGLIGIBLE ? c.speed : 0.0;
-}
-
-bool walk(out float q, float nearest, float farthest)
-{
-    if (!(nearest >= farthest))
-        return false;
-    float speed = max(max(walking_speed(camera00), walking_speed(camera10)),
-                      max(walking_speed(camera01), walking_speed(camera11)));
-    int steps = clamp(int(ceil((nearest - farthest) * speed)), 1, MOST_STEPS);
-    float step = (nearest - farthest) / float(steps);
-    for (int k = 0; k <= steps; k++) {
-        float at = nearest - float(k) * step;
-        vec2 sum = vec2(0.0);
-        meet(sum, disparity00, camera00, at, step);
-        meet(sum, disparity10, camera10, at, step);
-        meet(sum, disparity01, camera01, at, step);
-        meet(sum, disparity11, camera11, at, step);
-        if (sum.y > 0.0) {
-            q = sum.x / sum.y;
-            return true;
-        }
-    }
-    return false;
-}
-
-bool gather_all(out Sum sum, float q, float surface)
-{
-    sum = Sum(vec3(0.0), 0.0, 0.0);
-    gather(sum, view00, disparity00, camera00, q, surface);
-    gather(sum, view10, disparity10, camera10, q, surface);
-    gather(sum, view01, disparity01, camera01, q, surface);
-    gather(sum, view11, disparity11, camera11, q, surface);
-    return sum.weight > 1e-6;
-}
-
-vec3 shade(float nearest, float farthest)
-{
-    float q;
-    Sum sum;
-    bool seen = false;
-    if (walk(q, nearest, farthest)) {
-        for (int round = 0; round < 2 && gather_all(sum, q, q); round++)
-            q = sum.disparity / sum.weight;
-        seen = gather_all(sum, q, q);
-    }
-    if (!seen)
-        seen = gather_all(sum, 0.0, BACKGROUND);
-    if (!seen) {
-        camera00.speed = camera10.speed = camera01.speed = camera11.speed = 0.0;
-        gather_all(sum, 0.0, 0.0);
-    }
-    return sum.weight > 0.0 ? sum.rgb / sum.weight : vec3(0.0);
-}
-
-Camera find_camera(vec2 uv, vec2 at, vec2 part)
-{
-    vec2 per_st = vec2(textureSize(view00, 0)) / (st.zw - st.xy);
-    vec2 shift = (uv - at) * per_st * vec2(1.0, -1.0);
-    return Camera(part.x * part.y, shift, length(shift));
-}
-
 void main()
 {
     vec2 at = (gl_FragCoord.xy - picture.xy) / (picture.zw - picture.xy);
-    vec2 uv = slab_uv(eye, mix(st.x, st.z, at.x), mix(st.w, st.y, at.y));
-    vec2 size = max(cell.zw - cell.xy, vec2(1e-30));  // one row or column has cells of no width
-    vec2 part = clamp((uv - cell.xy) / size, 0.0, 1.0);
-    texel = at * vec2(textureSize(view00, 0));
-    camera00 = find_camera(uv, cell.xy, 1.0 - part);
-    camera10 = find_camera(uv, cell.zy, vec2(part.x, 1.0 - part.y));
-    camera01 = find_camera(uv, cell.xw, vec2(1.0 - part.x, part.y));
-    camera11 = find_camera(uv, cell.zw, part);
-    color = vec4(exposure * shade(range.y, range.x), 1.0);
+    find_cameras(slab_uv(eye, mix(st.x, st.z, at.x), mix(st.w, st.y, at.y)), at);
+    color = vec4(exposure * shade(range.y, range.x).rgb, 1.0);
 }

@@ -1,0 +1,63 @@
+// photometric.h - surface normals, albedo and height from the photographs of a capture
+//
+// Photometric stereo (Woodham 1980) on the captured images themselves, each pixel with its own
+// directions where lights are near. Shadows and highlights are no Lambertian shading: the darkest
+// and brightest samples of a pixel are left out, the others weighed by how well they fit (Cauchy
+// weights, Holland and Welsch 1977).
+#ifndef RELUME_PHOTOMETRIC_H
+#define RELUME_PHOTOMETRIC_H
+
+#include <relume/base.h>
+#include <relume/capture.h>
+#include <relume/image.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// All of the size of the view. Thread-safety: plain data.
+struct relume_photometric {
+    struct relume_image normal;  // three channels: unit vectors, world; zero where nothing is known
+    struct relume_image albedo;  // three: linear value under a light of 1 from the normal
+    struct relume_image error;   // one: RMS of what the fit misses over the samples that it kept,
+                                 // as share of the albedo
+    double residual;             // the median of `error` over the pixels that are known
+    double *light_residual;      // [lights]: median over pixels of |miss| / albedo, lit ones
+    int lights;
+};
+
+struct relume_photometric_params {
+    const struct relume_log *log;  // progress
+    int threads;                   // default: all cores
+    bool plain;                    // least squares of all samples: no trimming, no weights
+};
+#define relume_photometric_params(...) (&(const struct relume_photometric_params){__VA_ARGS__})
+
+// Fit every pixel of one view that its mask shows; the caller destroys `out`, which is empty on
+// failure. RELUME_EDATA when the lights do not span space, RELUME_ENOMEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_photometric_fit(struct relume_photometric *out,
+                                                   const relume_capture *capture, int view,
+                                                   const struct relume_photometric_params *params);
+RELUME_API void relume_photometric_destroy(struct relume_photometric *photometric);
+
+struct relume_height_params {
+    const struct relume_log *log;
+    double pixel;   // width of a pixel, world units; default 1
+    double screen;  // how strongly the height is held at 0, per pixel^2; default 1e-6: what slopes
+                    // say decides up to some thousand pixels
+};
+#define relume_height_params(...) (&(const struct relume_height_params){__VA_ARGS__})
+
+// Height over the image plane, world units, mean 0 over the known pixels, towards the viewer:
+// least squares of the slopes that the normals tell (screened Poisson, Bhat et al. 2008; Frankot
+// and Chellappa 1988) solved by cosine transforms, seen orthographically. Unknown pixels (zero
+// normals) bridge smoothly; slopes end at 80 degrees. One channel; the caller destroys it.
+// RELUME_EINVAL, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_height_integrate(struct relume_image *out,
+                                                    const struct relume_image *normal,
+                                                    const struct relume_height_params *params);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,94 @@
+// shoot.h - from photographs of one scene, each under one light, to a capture with known lights
+//
+// Reads photographs, finds the lights, checks what can be checked, and writes a capture folder:
+// linear half-float images, capture.json, lights.lp, lights.svg and report.html.
+#ifndef RELUME_SHOOT_H
+#define RELUME_SHOOT_H
+
+#include <relume/ball.h>
+#include <relume/base.h>
+#include <relume/image.h>
+#include <relume/photometric.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct relume_shoot_params {
+    const struct relume_log *log;  // warnings, progress
+    const struct relume_limits *limits;
+    const char *const *photographs;  // [photograph_count]
+    int photograph_count;
+    // The balls stand in photographs of their own: ball_photographs[i] under the light of
+    // photographs[i], both in the order given. NULL: the balls stand in the photographs themselves.
+    const char *const *ball_photographs;
+    int ball_photograph_count;
+    const char *mask;         // of the object, or NULL
+    const char *ball_mask;    // of the ball, or NULL
+    const double (*ball)[3];  // [balls]: x, y, radius of the outlines, pixels; NULL: to be found
+    int balls;                // default 1
+    bool matte;               // matte white balls; default mirrors
+    double fov_deg;           // horizontal field of view; default: orthographic
+    double ball_z;            // height of the balls' middles, world units (window: width 2)
+    const char *lights;       // directions or, with `near`, positions from this file; NULL: balls
+    bool near;                // positions: from two balls or more, or from `lights`
+    bool refine;              // relume_lights_refine afterwards
+    bool align;               // bring photographs on top of the first one by homographies
+    bool skip_bad;            // leave photographs out that cannot be read, show another scene, or
+                              // no highlight; default: an error that names them
+    bool force;               // replace an existing folder
+    struct relume_transfer transfer;  // overrides what the files say
+    int threads;                      // default: all cores
+};
+
+struct relume_shoot_photo {
+    char *path;
+    float saturated, black;          // shares of the pixels
+    float likeness;                  // median to others, relume_likeness; NaN: not measured
+    struct relume_ball_light light;  // as the first ball tells it
+    double sigma_deg;                // estimated error of the direction, degrees; 0: not known
+};
+
+// What came out. Thread-safety: plain data.
+struct relume_shoot {
+    int width, height, lights;
+    struct relume_shoot_photo *photo;  // [lights]: those that were used
+    struct relume_vec3 *direction;     // [lights], unit
+    struct relume_vec3 *position;      // [lights], world units, or NULL
+    float (*intensity)[3];             // [lights], or NULL: all 1
+    double position_error;             // mean standard error / distance, of triangulated positions
+    struct relume_ball *ball;          // [balls] as they were found
+    int balls;
+    double gap_deg;          // of the upper hemisphere: how far the emptiest direction is
+    struct relume_vec3 gap;  // from its nearest light, and which that is
+    struct relume_photometric photometric;  // normals, albedo; empty where lights do not allow it
+    char **warning;                         // [warnings]: sentences, also sent to the log
+    int warnings;
+};
+
+// Make the folder `dir`, whole or not at all. On failure `out` is empty. RELUME_EDATA,
+// RELUME_EINVAL (the folder exists; counts do not match), RELUME_EIO, RELUME_ENOMEM,
+// RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_shoot_make(struct relume_shoot *out, const char *dir,
+                                              const struct relume_shoot_params *params);
+RELUME_API void relume_shoot_destroy(struct relume_shoot *shoot);
+
+struct relume_refine_params {
+    const struct relume_log *log;
+    int threads;
+};
+// Better directions and intensities from the images of a planar capture with distant lights:
+// surface vectors and lights in turn minimise what Lambert's law misses, shadows and highlights
+// left out; the linear map that the images leave open (it contains the bas-relief ambiguity,
+// Belhumeur, Kriegman, Yuille 1999) is the one that brings the lights nearest to those given.
+// direction[lights] are replaced; intensity[lights] gets relative brightness, mean 1; *residual the
+// median miss / albedo before and after. RELUME_EDATA where the lights do not span space or there
+// are fewer than 6, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_lights_refine(struct relume_vec3 *direction, double *intensity,
+                                                 double residual[2], const relume_capture *capture,
+                                                 const struct relume_refine_params *params);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,104 @@
+// height.c - the height whose slopes the normals tell
+//
+// Slopes p = -n_x / n_z to the right and q = -n_y / n_z upwards stand between neighbouring pixels
+// (mean of both ends). The height z minimises
+//     sum (z_right - z - p)^2 + (z_up - z - q)^2 + screen z^2
+// with nothing flowing through the border, which cosine transforms make diagonal:
+//     Z_k = -div_k / (4 - 2 cos(pi i / W) - 2 cos(pi j / H) + screen).
+// Pixels without a normal have no slope of their own and take those of their neighbours where these
+// are known; else 0.
+#include <relume/photometric.h>
+
+#include "base/memory.h"
+#include "math/fft.h"
+
+#include <math.h>
+
+static const float STEEPEST = 5.67f;  // tan 80 degrees
+static const double SCREEN = 1e-6;
+
+// The slope along x (axis 0) or up y (axis 1); false where the normal is unknown.
+static bool slope_of(float *slope, const float *normal, int axis)
+{
+    if (normal[0] == 0.0f && normal[1] == 0.0f && normal[2] == 0.0f)
+        return false;
+    const float n = normal[axis], up = fmaxf(normal[2], 1e-3f);
+    *slope = fminf(fmaxf(-n / up, -STEEPEST), STEEPEST);
+    return true;
+}
+
+static float between(const float *a, const float *b, int axis)
+{
+    float p = 0.0f, q = 0.0f;
+    const bool known_a = slope_of(&p, a, axis), known_b = slope_of(&q, b, axis);
+    return known_a && known_b ? 0.5f * (p + q) : known_a ? p : known_b ? q : 0.0f;
+}
+
+// minus the divergence of the slopes
+static void gather(float *z, const struct relume_image *normal)
+{
+    const int w = normal->width, h = normal->height;
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            const size_t at = (size_t)y * (size_t)w + (size_t)x;
+            const float *n = normal->data + 3 * at;
+            if (x + 1 < w) {
+                const float p = between(n, n + 3, 0);
+                z[at] -= p;
+                z[at + 1] += p;
+            }
+            if (y + 1 < h) {  // rows run down
+                const float q = -between(n, n + 3 * (size_t)w, 1);
+                z[at] -= q;
+                z[at + (size_t)w] += q;
+            }
+        }
+}
+
+static void divide(float *z, int width, int height, double screen)
+{
+    for (int j = 0; j < height; j++)
+        for (int i = 0; i < width; i++) {
+            const double a = 4.0 - 2.0 * cos(M_PI * i / width) - 2.0 * cos(M_PI * j / height);
+            z[(size_t)j * (size_t)width + (size_t)i] *= i || j ? (float)(1.0 / (a + screen)) : 0.0f;
+        }
+}
+
+static void scale(struct relume_image *z, const struct relume_image *normal, double pixel)
+{
+    const size_t pixels = (size_t)z->width * (size_t)z->height;
+    double sum = 0.0;
+    size_t known = 0;
+    float ignored;
+    for (size_t i = 0; i < pixels; i++)
+        if (slope_of(&ignored, normal->data + 3 * i, 0)) {
+            sum += (double)z->data[i];
+            known++;
+        }
+    const double mean = known ? sum / (double)known : 0.0;
+    for (size_t i = 0; i < pixels; i++)
+        z->data[i] = (float)(((double)z->data[i] - mean) * pixel);
+}
+
+relume_status relume_height_integrate(struct relume_image *out, const struct relume_image *normal,
+                                      const struct relume_height_params *params)
+{
+    const struct relume_height_params p = params ? *params : (struct relume_height_params){0};
+    *out = (struct relume_image){0};
+    if (normal->channels != 3 || p.pixel < 0.0 || p.screen < 0.0)
+        return RELUME_EINVAL;
+    relume_status status = relume_image_create(out, normal->width, normal->height, 1);
+    if (!status) {
+        gather(out->data, normal);
+        status = fft_cosine(out->data, out->width, out->height, false);
+    }
+    if (!status) {
+        divide(out->data, out->width, out->height, p.screen > 0.0 ? p.screen : SCREEN);
+        status = fft_cosine(out->data, out->width, out->height, true);
+    }
+    if (status)
+        relume_image_destroy(out);
+    else
+        scale(out, normal, p.pixel > 0.0 ? p.pixel : 1.0);
+    return status;
+}

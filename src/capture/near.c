@@ -1,0 +1,92 @@
+// near.c - directions and fall-off of near lights, pixel by pixel
+#include "capture/near.h"
+
+bool near_applies(const relume_capture *capture, int view)
+{
+    const struct relume_manifest *m = &capture->draft.m;
+    if (!m->positions)
+        return false;
+    return m->geometry.projection == RELUME_PLANAR ||
+           (m->geometry.projection == RELUME_SLAB && m->view[view].depth);
+}
+
+relume_status near_open(struct near *out, const relume_capture *capture, int view,
+                        const struct relume_log *log)
+{
+    const struct relume_manifest *m = &capture->draft.m;
+    *out = (struct near){
+        .lights = m->lights,
+        .width = capture->width,
+        .height = capture->height,
+        .position = m->positions,
+        .falls = !m->no_falloff,
+        .geometry = m->geometry,
+        .uv = {m->view[view].uv[0], m->view[view].uv[1]},
+    };
+    return relume_capture_depth(&out->depth, capture, view, log);
+}
+
+void near_close(struct near *near)
+{
+    relume_image_destroy(&near->depth);
+}
+
+vec3 near_point(const struct near *near, double x, double y, double depth)
+{
+    const struct relume_geometry *g = &near->geometry;
+    const bool slab = g->projection == RELUME_SLAB;
+    const double *min = slab ? g->st_min : g->window_min, *max = slab ? g->st_max : g->window_max;
+    const vec3 on_plane =
+        vec3_of(min[0] + x / near->width * (max[0] - min[0]),
+                max[1] - y / near->height * (max[1] - min[1]), slab ? g->st_z : 0.0);
+    if (!(depth >= 0.0) || isinf(depth))
+        return on_plane;
+    if (!slab && !g->perspective)
+        return vec3_of(on_plane.x, on_plane.y, g->camera_z - depth);
+    const vec3 eye =
+        slab ? vec3_of(near->uv[0], near->uv[1], g->uv_z) : vec3_of(0.0, 0.0, g->camera_z);
+    return vec3_add(eye, vec3_scale(vec3_unit(vec3_sub(on_plane, eye)), depth));
+}
+
+vec3 near_pixel(const struct near *near, int x, int y)
+{
+    const size_t at = (size_t)y * (size_t)near->width + (size_t)x;
+    const double depth = near->depth.data ? (double)near->depth.data[at] : -1.0;
+    return near_point(near, x + 0.5, y + 0.5, depth);
+}
+
+double near_depth(const struct near *near, int x0, int y0, int x1, int y1)
+{
+    double sum = 0.0;
+    size_t n = 0;
+    for (int y = y0 < 0 ? 0 : y0; near->depth.data && y < y1 && y < near->height; y++)
+        for (int x = x0 < 0 ? 0 : x0; x < x1 && x < near->width; x++) {
+            const float d = near->depth.data[(size_t)y * (size_t)near->width + (size_t)x];
+            if (isfinite(d)) {
+                sum += (double)d;
+                n++;
+            }
+        }
+    return n ? sum / (double)n : -1.0;
+}
+
+vec3 near_direction(double *gain, const struct near *near, int light, vec3 point)
+{
+    const vec3 to = vec3_sub(near->position[light], point);
+    const double far = vec3_dot(near->position[light], near->position[light]);
+    const double squared = fmax(vec3_dot(to, to), 1e-6 * far);
+    *gain = near->falls ? squared / far : 1.0;
+    return vec3_scale(to, 1.0 / sqrt(squared));
+}
+
+void near_level(const struct near *near, int light, struct relume_image *image)
+{
+    float *p = image->data;
+    for (int y = 0; near->falls && y < near->height; y++)
+        for (int x = 0; x < near->width; x++, p += 3) {
+            double gain;
+            near_direction(&gain, near, light, near_pixel(near, x, y));
+            for (int c = 0; c < 3; c++)
+                p[c] *= (float)gain;
+        }
+}

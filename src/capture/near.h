@@ -1,0 +1,39 @@
+// near.h - lights that stand near: what each pixel sees of them
+#ifndef CAPTURE_NEAR_H
+#define CAPTURE_NEAR_H
+
+#include "capture/capture.h"
+#include "math/vec.h"
+
+// Where the pixels of one view lie, and the lights around them.
+struct near {
+    int lights, width, height;
+    const vec3 *position;  // [lights]
+    bool falls;            // light falls with the square of the distance
+    struct relume_geometry geometry;
+    double uv[2];
+    struct relume_image depth;  // or empty: the plane z = 0
+};
+
+// Whether the lights are near and the places of the pixels are known: planar views, slabs with
+// depth.
+bool near_applies(const relume_capture *capture, int view);
+relume_status near_open(struct near *out, const relume_capture *capture, int view,
+                        const struct relume_log *log);
+void near_close(struct near *near);
+
+// The world point at a (fractional) place of the picture, pixel centres at +0.5; where `depth` says
+// background, and depth < 0 (not given), that of the plane z = 0 (slabs: the st plane).
+vec3 near_point(const struct near *near, double x, double y, double depth);
+vec3 near_pixel(const struct near *near, int x, int y);
+// The mean of the finite depths in a rectangle of pixels; below 0 when there is none.
+double near_depth(const struct near *near, int x0, int y0, int x1, int y1);
+
+// The unit direction from `point` to a light, and what the pixel's value is to be multiplied by to
+// be that under a light as bright as this one is at the world's origin.
+vec3 near_direction(double *gain, const struct near *near, int light, vec3 point);
+
+// Multiply one image (three channels) by these gains.
+void near_level(const struct near *near, int light, struct relume_image *image);
+
+#endif

@@ -1,0 +1,313 @@
+// photometric.c - normals and albedo from the photographs of a view, band by band
+#include <relume/photometric.h>
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/thread.h"
+#include "capture/near.h"
+#include "math/lambert.h"
+
+static const size_t band_bytes = (size_t)64 << 20;  // of samples
+static const float clipped = 0.995f;                // of the largest value
+enum { LEAST = 4, JUDGED = 4096 };                  // samples of a fit; pixels that judge lights
+
+struct fit {
+    const relume_capture *capture;
+    struct relume_photometric_params params;
+    struct relume_photometric *out;
+    int view, lights, width, height;
+    bool is_near;
+    struct near near;
+    const vec3 *distant;  // [lights]
+    float (*white)[3];    // [lights]
+    struct relume_image mask;
+    int row, rows;                   // of the band
+    float *samples;                  // [lights][rows][width][3]
+    size_t stride;                   // of a light in `samples`
+    struct lambert_sample *scratch;  // [workers][lights]
+    vec3 *towards;                   // [workers][lights]
+    float *bright;                   // [workers][lights]: gains of near lights
+    size_t step;                     // one pixel in `step` judges the lights
+    float *miss;                     // [JUDGED][lights]: |miss| / albedo; NaN: not lit, not known
+};
+
+struct pixel {
+    struct lambert_sample *sample;
+    vec3 *direction;
+    float *gain;
+    size_t at;       // in the band
+    size_t of_view;  // in the view
+};
+
+static const float *sample_of(const struct fit *f, int light, size_t pixel)
+{
+    return f->samples + (size_t)light * f->stride + 3 * pixel;
+}
+
+static float luminance(const float *rgb)
+{
+    return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+}
+
+static void aim(const struct fit *f, const struct pixel *p)
+{
+    const int width = f->width;
+    if (!f->is_near)
+        return;
+    const vec3 point =
+        near_pixel(&f->near, (int)(p->of_view % (size_t)width), (int)(p->of_view / (size_t)width));
+    for (int i = 0; i < f->lights; i++) {
+        double gain;
+        p->direction[i] = near_direction(&gain, &f->near, i, point);
+        p->gain[i] = (float)gain;
+    }
+}
+
+static bool is_clipped(const struct fit *f, const struct pixel *p, int light)
+{
+    const float *rgb = sample_of(f, light, p->at), *white = f->white[light];
+    const float most = clipped * (f->is_near ? p->gain[light] : 1.0f);
+    return rgb[0] >= most * white[0] || rgb[1] >= most * white[1] || rgb[2] >= most * white[2];
+}
+
+// Samples that clip are left out unless too few remain.
+static int gather(const struct fit *f, const struct pixel *p)
+{
+    int n = 0;
+    for (int keep = 0; keep < 2 && n < LEAST; keep++) {
+        n = 0;
+        for (int i = 0; i < f->lights; i++)
+            if (keep || f->params.plain || !is_clipped(f, p, i))
+                p->sample[n++] =
+                    (struct lambert_sample){luminance(sample_of(f, i, p->at)), 1.0f, i};
+    }
+    return n;
+}
+
+static void find_albedo(const struct fit *f, const struct pixel *p, vec3 normal,
+                        const struct lambert_sample *s, int n)
+{
+    double sum[3] = {0}, norm = 0;
+    for (int i = 0; i < n; i++) {
+        const float *rgb = sample_of(f, s[i].light, p->at);
+        const double cosine = vec3_dot(normal, p->direction[s[i].light]);
+        if (cosine <= LAMBERT_GRAZING)
+            continue;
+        norm += (double)s[i].weight * cosine * cosine;
+        for (int c = 0; c < 3; c++)
+            sum[c] += (double)s[i].weight * cosine * (double)rgb[c];
+    }
+    for (int c = 0; c < 3; c++)
+        f->out->albedo.data[3 * p->of_view + (size_t)c] =
+            norm > 0 ? (float)fmax(sum[c] / norm, 0.0) : 0.0f;
+}
+
+static void find_error(const struct fit *f, const struct pixel *p, vec3 g,
+                       const struct lambert_sample *s, int n)
+{
+    double sum = 0.0, weight = 0.0;
+    for (int i = 0; i < n; i++) {
+        const double d = (double)s[i].value - vec3_dot(g, p->direction[s[i].light]);
+        sum += (double)s[i].weight * d * d;
+        weight += (double)s[i].weight;
+    }
+    f->out->error.data[p->of_view] = weight > 0 ? (float)(sqrt(sum / weight) / vec3_length(g)) : 0;
+}
+
+static void judge_lights(const struct fit *f, const struct pixel *p, vec3 g)
+{
+    const size_t judge = p->of_view / f->step;
+    if (p->of_view % f->step || judge >= JUDGED)
+        return;
+    const double albedo = vec3_length(g);
+    for (int i = 0; i < f->lights; i++) {
+        const double expected = vec3_dot(g, p->direction[i]);
+        if (expected > LAMBERT_GRAZING * albedo && !is_clipped(f, p, i))
+            f->miss[judge * (size_t)f->lights + (size_t)i] =
+                (float)(fabs((double)luminance(sample_of(f, i, p->at)) - expected) / albedo);
+    }
+}
+
+static void fit_pixel(const struct fit *f, const struct pixel *p)
+{
+    vec3 g;
+    aim(f, p);
+    int n = gather(f, p);
+    const struct lambert_sample *s = lambert_fit(&g, p->direction, p->sample, &n, f->params.plain);
+    if (!s)
+        return;
+    const vec3 normal = vec3_unit(g);
+    float *to = f->out->normal.data + 3 * p->of_view;
+    to[0] = (float)normal.x;
+    to[1] = (float)normal.y;
+    to[2] = (float)normal.z;
+    find_albedo(f, p, normal, s, n);
+    find_error(f, p, g, s, n);
+    judge_lights(f, p, g);
+}
+
+static void fit_row(void *context, size_t item, int worker)
+{
+    const struct fit *f = context;
+    const size_t width = (size_t)f->width, room = (size_t)worker * (size_t)f->lights;
+    struct pixel p = {
+        .sample = f->scratch + room, .direction = f->towards + room, .gain = f->bright + room};
+    for (int i = 0; i < f->lights; i++)
+        p.direction[i] = f->distant[i];
+    for (size_t x = 0; x < width; x++) {
+        p.at = item * width + x;
+        p.of_view = (size_t)f->row * width + p.at;
+        if (!f->mask.data || f->mask.data[p.of_view] > 0.5f)
+            fit_pixel(f, &p);
+    }
+}
+
+static relume_status fit_bands(struct fit *f)
+{
+    relume_table *table;
+    const int rows = f->rows;
+    relume_status status =
+        table_open_as_seen(&table, f->capture, f->view,
+                           relume_table_params(.log = f->params.log, .threads = f->params.threads));
+    for (f->row = 0; !status && f->row < f->height; f->row += rows) {
+        f->rows = f->height - f->row < rows ? f->height - f->row : rows;
+        f->stride = 3 * (size_t)f->rows * (size_t)f->width;
+        status = relume_table_read(table, f->rows, f->samples);
+        if (!status)
+            thread_for(f->params.threads, (size_t)f->rows, fit_row, f);
+        if (!status &&
+            !log_progress(f->params.log, "normals", (f->row + f->rows) / (double)f->height))
+            status = RELUME_ECANCEL;
+    }
+    relume_table_destroy(&table);
+    return status;
+}
+
+// ---------------------------------------------------------------- how well it went
+
+static int ascending(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(float *v, size_t n)
+{
+    qsort(v, n, sizeof *v, ascending);
+    return n ? (double)v[n / 2] : 0.0;
+}
+
+static relume_status find_residuals(struct fit *f)
+{
+    const size_t pixels = (size_t)f->width * (size_t)f->height;
+    struct relume_photometric *out = f->out;
+    float *some = mem_array(pixels > JUDGED ? pixels : JUDGED, sizeof *some);
+    if (!some)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < f->lights; i++) {
+        size_t n = 0;
+        for (size_t k = 0; k < JUDGED; k++) {
+            const float miss = f->miss[k * (size_t)f->lights + (size_t)i];
+            if (!isnan(miss))
+                some[n++] = miss;
+        }
+        out->light_residual[i] = median(some, n);
+    }
+    size_t n = 0;
+    for (size_t k = 0; k < pixels; k++)
+        if (out->normal.data[3 * k] != 0.0f || out->normal.data[3 * k + 1] != 0.0f ||
+            out->normal.data[3 * k + 2] != 0.0f)
+            some[n++] = out->error.data[k];
+    out->residual = median(some, n);
+    free(some);
+    return RELUME_OK;
+}
+
+static relume_status alloc(struct fit *f)
+{
+    const size_t lights = (size_t)f->lights, workers = (size_t)f->params.threads;
+    const size_t row_bytes = (size_t)f->width * lights * 3 * sizeof(float);
+    const size_t fitting = band_bytes / row_bytes;
+    f->rows = fitting < 1 ? 1 : fitting < (size_t)f->height ? (int)fitting : f->height;
+    f->step = ((size_t)f->width * (size_t)f->height + JUDGED - 1) / JUDGED;
+    f->samples = mem_array(3 * lights * (size_t)f->rows * (size_t)f->width, sizeof *f->samples);
+    f->white = mem_array(lights, sizeof *f->white);
+    f->scratch = mem_array(workers * lights, sizeof *f->scratch);
+    f->towards = mem_array(workers * lights, sizeof *f->towards);
+    f->bright = mem_array(workers * lights, sizeof *f->bright);
+    f->miss = mem_array(JUDGED * lights, sizeof *f->miss);
+    f->out->light_residual = mem_zeroed(lights, sizeof *f->out->light_residual);
+    if (!f->samples || !f->white || !f->scratch || !f->towards || !f->bright || !f->miss ||
+        !f->out->light_residual)
+        return RELUME_ENOMEM;
+    for (size_t i = 0; i < JUDGED * lights; i++)
+        f->miss[i] = NAN;
+    for (int i = 0; i < f->lights; i++)
+        relume_capture_white(f->capture, i, f->white[i]);
+    relume_status status = relume_image_create(&f->out->normal, f->width, f->height, 3);
+    if (!status)
+        status = relume_image_create(&f->out->albedo, f->width, f->height, 3);
+    if (!status)
+        status = relume_image_create(&f->out->error, f->width, f->height, 1);
+    return status;
+}
+
+static void release(struct fit *f)
+{
+    free(f->samples);
+    free(f->white);
+    free(f->scratch);
+    free(f->towards);
+    free(f->bright);
+    free(f->miss);
+    near_close(&f->near);
+    relume_image_destroy(&f->mask);
+}
+
+void relume_photometric_destroy(struct relume_photometric *photometric)
+{
+    relume_image_destroy(&photometric->normal);
+    relume_image_destroy(&photometric->albedo);
+    relume_image_destroy(&photometric->error);
+    free(photometric->light_residual);
+    *photometric = (struct relume_photometric){0};
+}
+
+relume_status relume_photometric_fit(struct relume_photometric *out, const relume_capture *capture,
+                                     int view, const struct relume_photometric_params *params)
+{
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    struct fit f = {
+        .capture = capture,
+        .params = params ? *params : (struct relume_photometric_params){0},
+        .out = out,
+        .lights = m->lights,
+        .width = relume_capture_width(capture),
+        .height = relume_capture_height(capture),
+        .distant = m->directions,
+    };
+    *out = (struct relume_photometric){.lights = m->lights};
+    if (view < 0 || view >= m->views)
+        return RELUME_EINVAL;
+    if (m->lights < 3 || !lambert_spans(m->directions, m->lights))
+        return log_fail(f.params.log, RELUME_EDATA,
+                        "normals need three lights in different planes; the %d lights do not "
+                        "determine them",
+                        m->lights);
+    f.view = view;
+    f.params.threads = thread_count(f.params.threads);
+    f.is_near = near_applies(capture, view);
+    relume_status status = relume_capture_mask(&f.mask, capture, view, f.params.log);
+    if (!status && f.is_near)
+        status = near_open(&f.near, capture, view, f.params.log);
+    if (!status)
+        status = alloc(&f);
+    if (!status)
+        status = fit_bands(&f);
+    if (!status)
+        status = find_residuals(&f);
+    release(&f);
+    if (status)
+        relume_photometric_destroy(out);
+    return status;
+}

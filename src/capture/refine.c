@@ -1,0 +1,274 @@
+// refine.c - lights and surface from the images, in turn
+//
+// The value of a matte pixel under a light is g.l with g = albedo x normal and l = brightness x
+// direction: a bilinear system, solved for all g with l fixed (robustly, math/lambert.h) and for
+// all l with g fixed, by turns. Its solutions are known up to g -> A^-T g, l -> A l. The A that is
+// taken brings the l nearest to the directions given, over all lights: their common error stays,
+// that of one against the others goes.
+#include <relume/shoot.h>
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/thread.h"
+#include "math/lambert.h"
+#include "math/lsq.h"
+
+#include <string.h>
+
+enum { PIXELS = 6000, ROUNDS = 30, LEAST_LIGHTS = 6 };
+static const float DARK = 0.01f;      // median over lights below which a pixel says little
+static const float CLIPPED = 0.995f;  // of white
+
+struct refiner {
+    const relume_capture *capture;
+    int lights, threads;
+    size_t pixels;
+    float *value;                    // [PIXELS][lights]; clipped ones are NaN
+    vec3 *g;                         // [PIXELS]
+    bool *known;                     // [PIXELS]
+    vec3 *light;                     // [lights]
+    struct lambert_sample *scratch;  // [workers][lights]
+};
+
+static float luminance(const float *rgb)
+{
+    return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+}
+
+static bool is_useful(const float *value, int lights)
+{
+    int lit = 0;
+    for (int i = 0; i < lights; i++)
+        lit += value[i] > DARK;
+    return lit >= 4 && 2 * lit >= lights;
+}
+
+static void take(struct refiner *r, const float *band, size_t stride, size_t at, float (*white)[3])
+{
+    float *to = r->value + r->pixels * (size_t)r->lights;
+    for (int i = 0; i < r->lights; i++) {
+        const float *p = band + (size_t)i * stride + 3 * at;
+        const bool clips = p[0] >= CLIPPED * white[i][0] || p[1] >= CLIPPED * white[i][1] ||
+                           p[2] >= CLIPPED * white[i][2];
+        to[i] = clips ? NAN : luminance(p);
+    }
+    if (r->pixels < PIXELS && is_useful(to, r->lights))
+        r->pixels++;
+}
+
+static size_t count_inside(const struct relume_image *mask, size_t all)
+{
+    size_t n = 0;
+    for (size_t i = 0; mask->data && i < all; i++)
+        n += mask->data[i] > 0.5f;
+    return mask->data ? n : all;
+}
+
+// Pixels inside the mask, evenly, row by row.
+static relume_status read_rows(struct refiner *r, const struct relume_image *mask, float *band,
+                               float (*white)[3], const struct relume_log *log)
+{
+    const size_t width = (size_t)relume_capture_width(r->capture);
+    const size_t all = width * (size_t)relume_capture_height(r->capture);
+    const size_t step = count_inside(mask, all) / PIXELS + 1;
+    relume_table *table;
+    relume_status status = relume_table_open(
+        &table, r->capture, 0, relume_table_params(.log = log, .threads = r->threads));
+    size_t inside = 0;
+    for (size_t at = 0; !status && at < all; at++) {
+        if (at % width == 0)
+            status = relume_table_read(table, 1, band);
+        if (!status && (!mask->data || mask->data[at] > 0.5f) && inside++ % step == 0)
+            take(r, band, 3 * width, at % width, white);
+    }
+    relume_table_destroy(&table);
+    return status;
+}
+
+static relume_status read_pixels(struct refiner *r, const struct relume_log *log)
+{
+    struct relume_image mask;
+    float *band =
+        mem_array((size_t)r->lights * 3, (size_t)relume_capture_width(r->capture) * sizeof *band);
+    float(*white)[3] = mem_array((size_t)r->lights, sizeof *white);
+    relume_status status = relume_capture_mask(&mask, r->capture, 0, log);
+    if (!status && !(band && white))
+        status = RELUME_ENOMEM;
+    for (int i = 0; !status && i < r->lights; i++)
+        relume_capture_white(r->capture, i, white[i]);
+    if (!status)
+        status = read_rows(r, &mask, band, white, log);
+    relume_image_destroy(&mask);
+    free(band);
+    free(white);
+    return status;
+}
+
+// ---------------------------------------------------------------- in turn
+
+static void fit_pixel(void *context, size_t item, int worker)
+{
+    struct refiner *r = context;
+    struct lambert_sample *s = r->scratch + (size_t)worker * (size_t)r->lights;
+    const float *value = r->value + item * (size_t)r->lights;
+    int n = 0;
+    for (int i = 0; i < r->lights; i++)
+        if (!isnan(value[i]))
+            s[n++] = (struct lambert_sample){value[i], 1.0f, i};
+    r->known[item] = n >= 4 && lambert_fit(&r->g[item], r->light, s, &n, false) != NULL;
+}
+
+// Reweighted least squares of one light over the pixels that it meets.
+static void fit_light(void *context, size_t item, int worker)
+{
+    (void)worker;
+    const struct refiner *r = context;
+    vec3 light = r->light[item];
+    double scale = 0.1;
+    for (int round = 0; round < 6; round++) {
+        double m[9] = {0.0}, b[3] = {0.0}, sum = 0.0, weight = 0.0;
+        for (size_t k = 0; k < r->pixels; k++) {
+            const double v = (double)r->value[k * (size_t)r->lights + item];
+            const vec3 g = r->g[k];
+            const double size = vec3_length(g), expected = vec3_dot(g, light);
+            if (!r->known[k] || isnan(v) || expected < 0.15 * size * vec3_length(light))
+                continue;
+            const double miss = (v - expected) / size;
+            const double w = 1.0 / (1.0 + miss * miss / (scale * scale)) / (size * size);
+            const double row[3] = {g.x, g.y, g.z};
+            for (int j = 0; j < 9; j++)
+                m[j] += w * row[j / 3] * row[j % 3];
+            for (int j = 0; j < 3; j++)
+                b[j] += w * row[j] * v;
+            sum += w * size * size * miss * miss;
+            weight += w * size * size;
+        }
+        if (weight < 20.0 || !lsq_solve(m, 3, b, 1))
+            return;
+        light = vec3_of(b[0], b[1], b[2]);
+        scale = fmax(2.0 * sqrt(sum / weight), 1e-3);
+    }
+    r->light[item] = light;
+}
+
+// light <- A light with the A that brings the lights nearest to s_i given_i, s_i being free.
+static bool fix_gauge(struct refiner *r, const vec3 *given)
+{
+    double *bright = mem_array((size_t)r->lights, sizeof *bright);
+    if (!bright)
+        return false;
+    for (int i = 0; i < r->lights; i++)
+        bright[i] = vec3_length(r->light[i]);
+    bool good = true;
+    for (int round = 0; good && round < 20; round++) {
+        double m[9] = {0.0}, b[9] = {0.0};  // b: three right sides, the rows of A
+        for (int i = 0; i < r->lights; i++) {
+            const vec3 l = r->light[i], to = vec3_scale(given[i], bright[i]);
+            const double row[3] = {l.x, l.y, l.z}, want[3] = {to.x, to.y, to.z};
+            for (int j = 0; j < 9; j++) {
+                m[j] += row[j / 3] * row[j % 3];
+                b[j] += want[j / 3] * row[j % 3];
+            }
+        }
+        good = lsq_solve(m, 3, b, 3);
+        double mean = 0.0;
+        for (int i = 0; good && i < r->lights; i++) {
+            const vec3 l = r->light[i];
+            r->light[i] =
+                vec3_of(b[0] * l.x + b[1] * l.y + b[2] * l.z, b[3] * l.x + b[4] * l.y + b[5] * l.z,
+                        b[6] * l.x + b[7] * l.y + b[8] * l.z);
+            bright[i] = fmax(vec3_dot(r->light[i], given[i]), 1e-3);
+            mean += vec3_length(r->light[i]) / r->lights;
+        }
+        for (int i = 0; good && i < r->lights; i++) {
+            r->light[i] = vec3_scale(r->light[i], 1.0 / mean);
+            bright[i] /= mean;
+        }
+    }
+    free(bright);
+    return good;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// The median |miss| / albedo of lit samples, with surfaces fitted to the lights as they are.
+static relume_status find_residual(double *residual, struct refiner *r)
+{
+    double *miss = mem_array(r->pixels * (size_t)r->lights, sizeof *miss);
+    size_t n = 0;
+    thread_for(r->threads, r->pixels, fit_pixel, r);
+    for (size_t k = 0; miss && k < r->pixels; k++)
+        for (int i = 0; r->known[k] && i < r->lights; i++) {
+            const double v = (double)r->value[k * (size_t)r->lights + (size_t)i];
+            const double expected = vec3_dot(r->g[k], r->light[i]), size = vec3_length(r->g[k]);
+            if (!isnan(v) && expected > LAMBERT_GRAZING * size)
+                miss[n++] = fabs(v - expected) / size;
+        }
+    if (n)
+        qsort(miss, n, sizeof *miss, ascending);
+    *residual = n ? miss[n / 2] : (double)NAN;
+    const relume_status status = miss ? RELUME_OK : RELUME_ENOMEM;
+    free(miss);
+    return status;
+}
+
+static relume_status solve(struct refiner *r, const vec3 *given, double residual[2],
+                           const struct relume_log *log)
+{
+    relume_status status = find_residual(&residual[0], r);
+    for (int round = 0; !status && round < ROUNDS; round++) {
+        thread_for(r->threads, (size_t)r->lights, fit_light, r);
+        if (!fix_gauge(r, given))
+            return log_fail(log, RELUME_EDATA,
+                            "lights cannot be refined: the surface does not tell them apart");
+        thread_for(r->threads, r->pixels, fit_pixel, r);
+        if (!log_progress(log, "refining", (round + 1.0) / ROUNDS))
+            return RELUME_ECANCEL;
+    }
+    return status ? status : find_residual(&residual[1], r);
+}
+
+relume_status relume_lights_refine(struct relume_vec3 *direction, double *intensity,
+                                   double residual[2], const relume_capture *capture,
+                                   const struct relume_refine_params *params)
+{
+    const struct relume_refine_params p = params ? *params : (struct relume_refine_params){0};
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    struct refiner r = {
+        .capture = capture, .lights = m->lights, .threads = thread_count(p.threads)};
+    if (m->lights < LEAST_LIGHTS || m->positions || !lambert_spans(m->directions, m->lights))
+        return log_fail(p.log, RELUME_EDATA,
+                        "lights cannot be refined: expected %d distant ones or more, in different "
+                        "planes; found %d",
+                        (int)LEAST_LIGHTS, m->lights);
+    r.value = mem_array((size_t)(PIXELS + 1) * (size_t)r.lights, sizeof *r.value);
+    r.g = mem_array(PIXELS, sizeof *r.g);
+    r.known = mem_array(PIXELS, sizeof *r.known);
+    r.light = mem_copy(m->directions, (size_t)r.lights, sizeof *r.light);
+    r.scratch = mem_array((size_t)r.threads * (size_t)r.lights, sizeof *r.scratch);
+    relume_status status =
+        r.value && r.g && r.known && r.light && r.scratch ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        status = read_pixels(&r, p.log);
+    if (!status && r.pixels < 200)
+        status = log_fail(p.log, RELUME_EDATA,
+                          "lights cannot be refined: %zu pixels are lit by half of the lights; "
+                          "expected some hundred",
+                          r.pixels);
+    if (!status)
+        status = solve(&r, m->directions, residual, p.log);
+    for (int i = 0; !status && i < r.lights; i++) {
+        intensity[i] = vec3_length(r.light[i]);
+        direction[i] = vec3_unit(r.light[i]);
+    }
+    free(r.value);
+    free(r.g);
+    free(r.known);
+    free(r.light);
+    free(r.scratch);
+    return status;
+}

@@ -1,0 +1,63 @@
+// shoot.h - a capture being made of photographs
+#ifndef CAPTURE_SHOOT_H
+#define CAPTURE_SHOOT_H
+
+#include "base/outfile.h"
+#include "math/vec.h"
+
+#include <relume/photograph.h>
+#include <relume/shoot.h>
+
+// One photograph and, where balls have photographs of their own, that of the ball under its light.
+struct shot {
+    const char *path, *ball_path;  // borrowed
+    char name[32];                 // of the image in the folder
+    struct relume_notes notes;
+    struct relume_image small;  // three channels, linear, at most SHOT_SMALL pixels a side
+    float saturated, black, likeness;
+    double sigma_deg;
+    struct relume_ball_light light;  // of the first ball
+    vec3 direction, position;
+    float intensity[3];
+    double position_sigma;
+};
+enum { SHOT_SMALL = 168 };
+
+struct shoot {
+    struct relume_shoot_params p;
+    struct relume_shoot *out;
+    outdir *dir;
+    int shots;
+    struct shot *shot;
+    int width, height;             // of the photographs
+    struct relume_image first;     // that others are aligned to; empty unless params.align
+    bool has_intensities, linear;  // of the photographs' own values
+    // of the photographs in which the balls stand
+    struct relume_ball_camera camera;
+    struct relume_image mean, peak;
+    int summed;
+};
+
+// Log a warning and keep it for the report. RELUME_ENOMEM.
+__attribute__((format(printf, 2, 3))) relume_status shoot_warn(struct shoot *s, const char *format,
+                                                               ...);
+// Photograph `i` is of no use: leave it out with a warning where that is allowed, else fail.
+__attribute__((format(printf, 3, 4))) relume_status shoot_drop(struct shoot *s, int i,
+                                                               const char *format, ...);
+const char *shoot_base_name(const char *path);
+
+// Read all photographs into the folder; RELUME_EDATA.
+relume_status shoot_read(struct shoot *s);
+// What can be told wrong of the pictures themselves: other scenes, clipping, blackness.
+relume_status shoot_check_pictures(struct shoot *s);
+// Directions, positions, intensities and their errors, from balls or from a file.
+relume_status shoot_find_lights(struct shoot *s);
+// Uneven coverage, coplanar lights.
+relume_status shoot_check_lights(struct shoot *s);
+
+// lights.svg and report.html into the folder `dir`.
+relume_status shoot_report(const struct shoot *s, const char *dir);
+// The lights on the sphere, as SVG, to be freed; NULL when memory is short.
+char *shoot_light_sphere(const struct relume_shoot *out);
+
+#endif

@@ -1,0 +1,348 @@
+// shoot_lights.c - where the lights of the photographs were
+#include "capture/shoot.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "capture/manifest.h"
+
+#include <relume/lights.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MOST_BALLS = 16 };
+static const double TOO_WIDE = 12.0;  // degrees: what is that wide is no lamp in a mirror
+static const double DISAGREE = 3.0;   // degrees between balls: lights are near
+
+// ---------------------------------------------------------------- balls
+
+static relume_status load_mask(const struct shoot *s, struct relume_image *out)
+{
+    *out = (struct relume_image){0};
+    if (!s->p.ball_mask)
+        return RELUME_OK;
+    relume_status status =
+        relume_image_load(out, s->p.ball_mask, relume_image_params(.log = s->p.log, .channels = 1));
+    if (!status && (out->width != s->camera.width || out->height != s->camera.height)) {
+        status =
+            log_fail(s->p.log, RELUME_EDATA, "%s: %d x %d pixels; expected %d x %d", s->p.ball_mask,
+                     out->width, out->height, s->camera.width, s->camera.height);
+        relume_image_destroy(out);
+    }
+    return status;
+}
+
+static relume_status outline_given(struct shoot *s)
+{
+    struct relume_shoot *out = s->out;
+    for (int b = 0; b < out->balls; b++) {
+        const double *c = s->p.ball[b];
+        out->ball[b] = relume_ball_outlined(c[0], c[1], c[2], &s->camera);
+        if (!(c[2] > 2.0) || !(out->ball[b].radius > 0.0) || c[2] > 4.0 * s->camera.width ||
+            !(c[0] > 0.0 && c[0] < s->camera.width && c[1] > 0.0 && c[1] < s->camera.height))
+            return log_fail(s->p.log, RELUME_EINVAL,
+                            "ball %g,%g,%g: expected a circle of more than 2 pixels with its "
+                            "middle in the picture of %d x %d",
+                            c[0], c[1], c[2], s->camera.width, s->camera.height);
+    }
+    return RELUME_OK;
+}
+
+static relume_status find_balls(struct shoot *s)
+{
+    struct relume_shoot *out = s->out;
+    out->balls = s->p.balls > 0 ? s->p.balls : 1;
+    if (out->balls > MOST_BALLS)
+        return log_fail(s->p.log, RELUME_EINVAL, "%d balls; expected at most %d", out->balls,
+                        (int)MOST_BALLS);
+    out->ball = mem_zeroed((size_t)out->balls, sizeof *out->ball);
+    if (!out->ball)
+        return RELUME_ENOMEM;
+    if (s->p.ball)
+        return outline_given(s);
+    struct relume_image mask;
+    relume_status status = load_mask(s, &mask);
+    if (!status)
+        status =
+            relume_ball_find(out->ball, out->balls, &s->mean, &s->camera,
+                             relume_ball_params(.log = s->p.log, .mask = mask.data ? &mask : NULL,
+                                                .peak = s->p.matte ? NULL : &s->peak));
+    relume_image_destroy(&mask);
+    return status;
+}
+
+static relume_status warn_cut_off(struct shoot *s)
+{
+    relume_status status = RELUME_OK;
+    for (int b = 0; !status && b < s->out->balls; b++) {
+        const struct relume_ball *ball = &s->out->ball[b];
+        const double beside = fmax(fmax(ball->radius - ball->x, ball->radius - ball->y),
+                                   fmax(ball->x + ball->radius - s->camera.width,
+                                        ball->y + ball->radius - s->camera.height));
+        if (beside > 0.02 * ball->radius)
+            status = shoot_warn(s, "ball at %.0f,%.0f: cut off by the picture's border", ball->x,
+                                ball->y);
+    }
+    return status;
+}
+
+// The middle of a ball and its radius in the world.
+static double place_ball(const struct shoot *s, const struct relume_ball *ball, vec3 *middle)
+{
+    const double width = s->camera.width, z = s->p.ball_z;
+    if (!(s->camera.focal_px > 0.0)) {
+        *middle =
+            vec3_of(2.0 * ball->x / width - 1.0, (s->camera.height - 2.0 * ball->y) / width, z);
+        return 2.0 * ball->radius / width;
+    }
+    const double eye = 2.0 * s->camera.focal_px / width;
+    const double along = (eye - z) / -ball->axis.z;
+    *middle = vec3_add(vec3_of(0.0, 0.0, eye), vec3_scale(ball->axis, along));
+    return along * sin(ball->half_angle_rad);
+}
+
+struct sights {
+    int n;
+    struct relume_ball_light light[MOST_BALLS];
+    vec3 origin[MOST_BALLS], direction[MOST_BALLS];
+};
+
+// What is wrong with how ball `b` shows the light; NULL when nothing is.
+static const char *objection(const struct relume_ball_light *l, bool matte)
+{
+    if (l->sight == RELUME_BALL_DARK || l->sight == RELUME_BALL_FULL)
+        return relume_ball_sight_text(l->sight);
+    return !matte && l->spread_deg > TOO_WIDE ? "what shines on it is too wide for a lamp" : NULL;
+}
+
+static relume_status look(struct shoot *s, int i, struct sights *to, const char **why)
+{
+    const char *path = s->shot[i].ball_path ? s->shot[i].ball_path : s->shot[i].path;
+    struct relume_image image;
+    relume_status status =
+        relume_photograph_load(&image, NULL, path,
+                               relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
+                                                        .transfer = s->p.transfer));
+    *to = (struct sights){0};
+    *why = NULL;
+    for (int b = 0; !status && b < s->out->balls; b++) {
+        struct relume_ball_light *l = &to->light[to->n];
+        status = (s->p.matte ? relume_ball_matte : relume_ball_mirror)(l, &s->out->ball[b],
+                                                                       &s->camera, &image);
+        const char *objects = objection(l, s->p.matte);
+        if (objects) {
+            *why = objects;
+            continue;
+        }
+        vec3 middle;
+        const double radius = place_ball(s, &s->out->ball[b], &middle);
+        to->origin[to->n] = vec3_add(middle, vec3_scale(l->origin, radius));
+        to->direction[to->n++] = l->direction;
+        if (!status && (l->sight == RELUME_BALL_RIM || l->sight == RELUME_BALL_TWO))
+            status =
+                shoot_warn(s, "%s: %s of the ball at %.0f,%.0f", path,
+                           relume_ball_sight_text(l->sight), s->out->ball[b].x, s->out->ball[b].y);
+    }
+    relume_image_destroy(&image);
+    return status;
+}
+
+// The mean direction; several balls tell its error by how they disagree.
+static void average(struct shot *shot, const struct sights *seen)
+{
+    vec3 sum = vec3_of(0.0, 0.0, 0.0);
+    double squares = 0.0, formal = 0.0;
+    for (int b = 0; b < seen->n; b++)
+        sum = vec3_add(sum, seen->direction[b]);
+    shot->direction = vec3_unit(sum);
+    for (int b = 0; b < seen->n; b++) {
+        const double off = vec3_angle(seen->direction[b], shot->direction) * 180.0 / M_PI;
+        squares += off * off;
+        formal += seen->light[b].sigma_deg * seen->light[b].sigma_deg;
+    }
+    const double n = seen->n;
+    shot->sigma_deg = fmax(sqrt(formal) / n, n > 1 ? sqrt(squares / (n * (n - 1))) : 0.0);
+    shot->light = seen->light[0];
+    for (int c = 0; c < 3; c++)
+        shot->intensity[c] = seen->light[0].intensity[c];
+}
+
+static relume_status locate(struct shoot *s, int i, const struct sights *seen, double *disagree)
+{
+    struct shot *shot = &s->shot[i];
+    average(shot, seen);
+    for (int b = 0; b < seen->n; b++)
+        *disagree = fmax(*disagree, vec3_angle(seen->direction[b], shot->direction) * 360.0 / M_PI);
+    if (!s->p.near)
+        return RELUME_OK;
+    if (relume_light_triangulate(&shot->position, &shot->position_sigma, seen->origin,
+                                 seen->direction, seen->n))
+        return log_fail(s->p.log, RELUME_EDATA,
+                        "%s: the directions from %d balls do not meet in a light; expected two "
+                        "balls or more that see it, and a light near enough to tell",
+                        shot->path, seen->n);
+    return RELUME_OK;
+}
+
+static relume_status lights_from_balls(struct shoot *s)
+{
+    double disagree = 0.0;
+    int seen_well = 0;
+    if (s->p.near && (s->p.ball || s->p.balls ? s->p.balls : 1) < 2)
+        return log_fail(s->p.log, RELUME_EINVAL,
+                        "positions of near lights need two balls or more; found %d",
+                        s->p.balls > 0 ? s->p.balls : 1);
+    relume_status status = find_balls(s);
+    if (!status)
+        status = warn_cut_off(s);
+    for (int i = 0; !status && i < s->shots;) {
+        struct sights seen;
+        const char *why, *path = s->shot[i].ball_path ? s->shot[i].ball_path : s->shot[i].path;
+        status = look(s, i, &seen, &why);
+        if (!status && !seen.n) {
+            status =
+                shoot_drop(s, i,
+                           "%s: ball at %.0f,%.0f with radius %.0f: %s; expected the "
+                           "lamp's highlight",
+                           path, s->out->ball[0].x, s->out->ball[0].y, s->out->ball[0].radius, why);
+            continue;
+        }
+        if (!status)
+            status = locate(s, i, &seen, &disagree);
+        seen_well++;
+        i++;
+    }
+    if (!status && !seen_well)
+        status = log_fail(s->p.log, RELUME_EDATA, "no photograph shows the lamp in the ball");
+    if (!status && !s->p.near && disagree > DISAGREE)
+        status = shoot_warn(s,
+                            "the balls disagree by up to %.1f degrees; near lights? --near "
+                            "makes positions",
+                            disagree);
+    s->has_intensities = s->p.matte;
+    return status;
+}
+
+// ---------------------------------------------------------------- a file
+
+// Lines "[name] x y z"; a lone count and comments are passed over.
+static relume_status read_positions(struct relume_vec3 **out, int *n, const char *path,
+                                    const struct relume_log *log)
+{
+    FILE *file = fopen(path, "r");
+    if (!file)
+        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; expected lines x y z", path);
+    const int most = limits_or_default(NULL).max_lights;
+    struct relume_vec3 *v = mem_array((size_t)most, sizeof *v);
+    char line[1024];
+    *n = 0;
+    while (v && *n < most && fgets(line, sizeof line, file)) {
+        line[strcspn(line, "#\r\n")] = '\0';
+        struct relume_vec3 *p = &v[*n];
+        if (sscanf(line, "%lf%*[ \t,]%lf%*[ \t,]%lf", &p->x, &p->y, &p->z) != 3 &&
+            sscanf(line, "%*s %lf%*[ \t,]%lf%*[ \t,]%lf", &p->x, &p->y, &p->z) != 3)
+            continue;
+        *n += isfinite(p->x) && isfinite(p->y) && isfinite(p->z) && vec3_length(*p) > 1e-4;
+    }
+    fclose(file);
+    if (v && !*n) {
+        free(v);
+        return log_fail(log, RELUME_EDATA, "%s: no positions; expected lines x y z", path);
+    }
+    *out = v;
+    return v ? RELUME_OK : RELUME_ENOMEM;
+}
+
+static bool is_lp(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && !strcasecmp(dot, ".lp");
+}
+
+static int find_name(const struct draft *lp, const char *path)
+{
+    for (int i = 0; i < lp->m.lights; i++) {
+        const char *listed = strrchr(lp->view[0].images[i], '\\');
+        listed = listed ? listed + 1 : shoot_base_name(lp->view[0].images[i]);
+        if (!strcasecmp(listed, shoot_base_name(path)))
+            return i;
+    }
+    return -1;
+}
+
+// order[shot] = line of the .lp file by name; false when none of the names is known.
+static relume_status match_names(struct shoot *s, int *order, bool *matched)
+{
+    struct draft lp;
+    relume_status status = lp_read(&lp, s->p.lights, s->p.limits, s->p.log);
+    const char *missing = NULL;
+    *matched = false;
+    for (int i = 0; !status && i < s->shots; i++) {
+        order[i] = find_name(&lp, s->shot[i].path);
+        *matched |= order[i] >= 0;
+        if (order[i] < 0 && !missing)
+            missing = s->shot[i].path;
+    }
+    draft_free(&lp);
+    if (!status && *matched && missing)
+        status = log_fail(s->p.log, RELUME_EDATA,
+                          "%s: does not list '%s'; expected a line for every photograph",
+                          s->p.lights, shoot_base_name(missing));
+    return status;
+}
+
+static relume_status lights_from_file(struct shoot *s)
+{
+    struct relume_vec3 *v = NULL;
+    int n = 0;
+    bool matched = false;
+    int *order = mem_array((size_t)s->shots, sizeof *order);
+    relume_status status = order ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; !status && i < s->shots; i++)
+        order[i] = i;
+    if (!status)
+        status = (s->p.near ? read_positions : relume_lights_read)(&v, &n, s->p.lights, s->p.log);
+    if (!status && is_lp(s->p.lights))
+        status = match_names(s, order, &matched);
+    if (!status && !matched && n != s->shots)
+        status = log_fail(s->p.log, RELUME_EDATA, "%s: %d lights; expected %d as photographs",
+                          s->p.lights, n, s->shots);
+    for (int i = 0; !status && i < s->shots; i++) {
+        const vec3 found = v[matched ? order[i] : i];
+        s->shot[i].direction = vec3_unit(found);
+        s->shot[i].position = found;
+    }
+    free(order);
+    free(v);
+    return status;
+}
+
+// ---------------------------------------------------------------- both
+
+// Photographs of other exposures show their lights brighter or darker.
+static relume_status weigh_exposures(struct shoot *s)
+{
+    double least = INFINITY, most = 0.0, sum = 0.0;
+    for (int i = 0; i < s->shots; i++) {
+        const double e = relume_notes_exposure(&s->shot[i].notes);
+        least = fmin(least, e);
+        most = fmax(most, e);
+        sum += e;
+    }
+    if (s->has_intensities || !(least > 0.0) || most < 1.02 * least)
+        return RELUME_OK;
+    for (int i = 0; i < s->shots; i++)
+        for (int c = 0; c < 3; c++)
+            s->shot[i].intensity[c] =
+                (float)(relume_notes_exposure(&s->shot[i].notes) * s->shots / sum);
+    s->has_intensities = true;
+    return shoot_warn(s,
+                      "the photographs are exposed differently, by up to a factor of %.2f; "
+                      "brightness is divided by what the camera noted",
+                      most / least);
+}
+
+relume_status shoot_find_lights(struct shoot *s)
+{
+    relume_status status = s->p.lights ? lights_from_file(s) : lights_from_balls(s);
+    return status ? status : weigh_exposures(s);
+}

@@ -1,0 +1,392 @@
+#include "bracket.h"
+
+#include "photo_list.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { THUMB = 320 };
+static const double least_likeness = 0.15;
+static const double clear_ratio = 1.4, clear_codes = 0.02;  // longer must not be darker
+static const double clear_bias_ev = 0.3;
+
+// ---------------------------------------------------------------- leaving out
+
+// Errors of photographs that are left out are warnings.
+static void say_softly(void *user, enum relume_level level, const char *text)
+{
+    const struct relume_log *log = user;
+    log->message(log->user, level == RELUME_ERROR ? RELUME_WARNING : level, text);
+}
+
+static void drop(struct bracket *b, int i)
+{
+    relume_image_destroy(&b->codes[i]);
+    for (b->n--; i < b->n; i++) {
+        b->path[i] = b->path[i + 1];
+        b->notes[i] = b->notes[i + 1];
+        b->codes[i] = b->codes[i + 1];
+    }
+    b->codes[b->n] = (struct relume_image){0};
+}
+
+static relume_status at_least_one(const struct bracket *b)
+{
+    return b->n > 0 ? RELUME_OK : data_error("capture: no photograph is left; expected some");
+}
+
+// ---------------------------------------------------------------- reading
+
+static relume_status check_size(const struct bracket *b, int i, const struct relume_log *log)
+{
+    char text[1024];
+    const struct relume_image *first = &b->codes[0], *image = &b->codes[i];
+    if (image->width == first->width && image->height == first->height)
+        return RELUME_OK;
+    snprintf(text, sizeof text, "%s: %d x %d pixels; expected %d x %d as in %s", b->path[i],
+             image->width, image->height, first->width, first->height, b->path[0]);
+    log->message(log->user, RELUME_ERROR, text);
+    return RELUME_EDATA;
+}
+
+relume_status bracket_load(struct bracket *b, const struct args *args)
+{
+    const bool skip = args_has(args, "--skip-bad");
+    struct relume_log soft = *args_log(args);
+    soft.message = say_softly;
+    soft.user = (void *)args_log(args);
+    const struct relume_log *log = skip ? &soft : args_log(args);
+    for (int i = 0; i < b->n;) {
+        const struct relume_notes noted = b->notes[i];
+        relume_status status =
+            relume_photograph_load(&b->codes[i], &b->notes[i], b->path[i],
+                                   relume_photograph_params(.log = log, .codes = true));
+        b->notes[i].time_s = noted.time_s;
+        b->notes[i].f_number = noted.f_number;
+        b->notes[i].iso = noted.iso;
+        if (!status)
+            status = check_size(b, i, log);
+        if (status == RELUME_EDATA && skip)
+            drop(b, i);
+        else if (status)
+            return status;
+        else
+            i++;
+    }
+    for (int i = 0; i < b->n; i++)
+        b->exposure[i] = relume_notes_exposure(&b->notes[i]);
+    return at_least_one(b);
+}
+
+// ---------------------------------------------------------------- one scene, plausible times
+
+static relume_status shrink(struct relume_image *out, const struct relume_image *image)
+{
+    const int longer = image->width > image->height ? image->width : image->height;
+    const int step = (longer + THUMB - 1) / THUMB;
+    const relume_status status =
+        relume_image_create(out, image->width / step, image->height / step, 3);
+    if (status)
+        return status;
+    for (int y = 0; y < out->height * step; y++)
+        for (int x = 0; x < out->width * step; x++)
+            for (int c = 0; c < 3; c++)
+                out->data[3 * (y / step * out->width + x / step) + c] +=
+                    image->data[3 * ((size_t)y * (size_t)image->width + (size_t)x) + (size_t)c] /
+                    (float)(step * step);
+    return RELUME_OK;
+}
+
+// Exposures next to each other show the same edges; so do the next but one.
+static relume_status check_scene(struct bracket *b, const int *order, const struct args *args)
+{
+    struct relume_image thumb[MAX_BRACKET] = {{0}};
+    double likeness[MAX_BRACKET];
+    relume_status status = RELUME_OK;
+    int foreign = -1;
+    for (int i = 0; !status && i < b->n; i++)
+        status = shrink(&thumb[i], &b->codes[order[i]]);
+    for (int i = 0; i < b->n; i++)
+        likeness[i] = (double)NAN;
+    for (int i = 0; !status && i < b->n; i++)
+        for (int j = i + 1; j < b->n && j <= i + 2; j++) {
+            const double l = relume_likeness(&thumb[i], &thumb[j]);
+            likeness[i] = fmax(likeness[i], l);
+            likeness[j] = fmax(likeness[j], l);
+        }
+    for (int i = 0; !status && b->n > 1 && i < b->n; i++)
+        if (likeness[i] < least_likeness && (foreign < 0 || likeness[i] < likeness[foreign]))
+            foreign = i;
+    for (int i = 0; i < b->n; i++)
+        relume_image_destroy(&thumb[i]);
+    if (status || foreign < 0)
+        return status;
+    const char *path = b->path[order[foreign]];
+    if (!args_has(args, "--skip-bad"))
+        return data_error(
+            "%s: another scene than the other exposures, or not aligned (likeness "
+            "%.2f); expected %.2f or more; leave it out, or try --align or --skip-bad",
+            path, likeness[foreign], least_likeness);
+    char text[1024];
+    snprintf(text, sizeof text,
+             "%s: another scene than the other exposures (likeness %.2f); left out", path,
+             likeness[foreign]);
+    args_log(args)->message(args_log(args)->user, RELUME_WARNING, text);
+    drop(b, order[foreign]);
+    return at_least_one(b);
+}
+
+static double mean_code(const struct relume_image *codes)
+{
+    const size_t samples = 3 * (size_t)codes->width * (size_t)codes->height;
+    double sum = 0.0;
+    for (size_t i = 0; i < samples; i++)
+        sum += (double)codes->data[i];
+    return sum / (double)samples;
+}
+
+static relume_status check_order(const struct bracket *b, const int *order)
+{
+    double mean[MAX_BRACKET];
+    for (int i = 0; i < b->n; i++)
+        mean[i] = mean_code(&b->codes[order[i]]);
+    for (int i = 0; i + 1 < b->n; i++)
+        if (b->exposure[order[i + 1]] > clear_ratio * b->exposure[order[i]] &&
+            mean[i + 1] < mean[i] - clear_codes)
+            return data_error("%s: darker than %s though its exposure is %.3g times as long; the "
+                              "times contradict the pictures; expected --times with the true ones",
+                              b->path[order[i + 1]], base_name(b->path[order[i]]),
+                              b->exposure[order[i + 1]] / b->exposure[order[i]]);
+    return RELUME_OK;
+}
+
+static void sort_by_exposure(const struct bracket *b, int *order)
+{
+    for (int i = 0; i < b->n; i++) {
+        int at = i;
+        for (; at > 0 && b->exposure[order[at - 1]] > b->exposure[i]; at--)
+            order[at] = order[at - 1];
+        order[at] = i;
+    }
+}
+
+relume_status bracket_check(struct bracket *b, const struct args *args)
+{
+    int order[MAX_BRACKET];
+    sort_by_exposure(b, order);
+    const int before = b->n;
+    relume_status status = check_scene(b, order, args);
+    if (!status && b->n < before) {
+        for (int i = 0; i < b->n; i++)
+            b->exposure[i] = relume_notes_exposure(&b->notes[i]);
+        sort_by_exposure(b, order);
+    }
+    return status ? status : check_order(b, order);
+}
+
+// ---------------------------------------------------------------- alignment
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+static double median_shift(const struct relume_displacements *d)
+{
+    const size_t n = (size_t)d->columns * (size_t)d->rows;
+    double *length = malloc(n * sizeof *length);
+    if (!length)
+        return 0.0;
+    for (size_t i = 0; i < n; i++)
+        length[i] = hypot((double)d->d[i][0], (double)d->d[i][1]);
+    qsort(length, n, sizeof *length, ascending);
+    const double median = length[n / 2];
+    free(length);
+    return median;
+}
+
+static double middle_shift(const struct relume_homography *h, double x, double y)
+{
+    const double z = h->m[2][0] * x + h->m[2][1] * y + h->m[2][2];
+    return hypot((h->m[0][0] * x + h->m[0][1] * y + h->m[0][2]) / z - x,
+                 (h->m[1][0] * x + h->m[1][1] * y + h->m[1][2]) / z - y);
+}
+
+static relume_status align_one(struct bracket *b, int i, enum align_mode mode,
+                               const struct relume_align_params *params)
+{
+    struct relume_image *image = &b->codes[i], *anchor = &b->codes[b->anchor], warped = {0};
+    struct relume_displacements field = {0};
+    struct relume_homography h;
+    relume_status status;
+    if (mode == ALIGN_BLOCKS) {
+        status = relume_align_blocks(&field, anchor, image, params);
+        if (!status)
+            status = relume_warp_displacements(&warped, &b->masks[i], image, &field, params);
+        if (!status)
+            b->shift[i] = median_shift(&field);
+        relume_displacements_destroy(&field);
+    } else {
+        status = relume_align_homography(&h, anchor, image, params);
+        if (!status)
+            status = relume_warp_homography(&warped, &b->masks[i], image, &h, params);
+        if (!status)
+            b->shift[i] = middle_shift(&h, 0.5 * image->width, 0.5 * image->height);
+    }
+    if (!status) {
+        relume_image_destroy(image);
+        *image = warped;
+    }
+    return status;
+}
+
+relume_status bracket_align(struct bracket *b, enum align_mode mode, const struct args *args)
+{
+    relume_status status = RELUME_OK;
+    b->anchor = relume_align_anchor(b->codes, b->n);
+    for (int i = 0; !status && mode != ALIGN_NONE && i < b->n; i++) {
+        struct prefix_log log;
+        if (i == b->anchor)
+            continue;
+        status = align_one(b, i, mode,
+                           relume_align_params(.log = prefix_log(&log, args_log(args), b->path[i]),
+                                               .threads = args_threads(args)));
+        if (!status &&
+            !args_log(args)->progress(args_log(args)->user, "aligning", (i + 1.0) / b->n))
+            status = RELUME_ECANCEL;
+    }
+    return status;
+}
+
+// ---------------------------------------------------------------- merge
+
+static bool all_linear(const struct bracket *b)
+{
+    for (int i = 0; i < b->n; i++)
+        if (!b->notes[i].linear)
+            return false;
+    return true;
+}
+
+static relume_status find_response(struct bracket *b, const struct args *args)
+{
+    const char *file = args_text(args, "--response", NULL);
+    const char *transfer = args_text(args, "--transfer", NULL);
+    struct relume_transfer known = {.curve = RELUME_CURVE_LINEAR};
+    struct prefix_log log;
+    if (file) {
+        b->response_source = file;
+        return relume_response_load(&b->response, file, args_log(args));
+    }
+    if (transfer && relume_transfer_parse(&known, transfer))
+        return usage_error("--transfer: expected linear, srgb or gamma:NUMBER; found '%s'",
+                           transfer);
+    if (transfer || all_linear(b)) {
+        b->response_source = transfer ? transfer : "linear";
+        relume_response_of(&b->response, known);
+        return RELUME_OK;
+    }
+    b->response_source = "recovered";
+    return relume_response_recover(
+        &b->response, b->codes, b->exposure, b->n,
+        relume_recover_params(.log = prefix_log(&log, args_log(args), b->path[0]),
+                              .masks = b->masks));
+}
+
+// The last code that says nothing in any channel, as a part of full scale.
+static double black_level(const struct relume_response *response)
+{
+    int last = 0;
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < RELUME_CODES && !(response->exposure[c][i] > 0.0f); i++)
+            last = i > last ? i : last;
+    return (double)last / (RELUME_CODES - 1);
+}
+
+static void combine(struct relume_image *mask, const struct relume_image *ghosts, double *part)
+{
+    const size_t pixels = (size_t)ghosts->width * (size_t)ghosts->height;
+    double good = 0.0;
+    for (size_t i = 0; i < pixels; i++) {
+        good += (double)ghosts->data[i];
+        mask->data[i] *= ghosts->data[i];
+    }
+    *part = 1.0 - good / (double)pixels;
+}
+
+static relume_status leave_out_ghosts(struct bracket *b, double black, const struct args *args)
+{
+    struct relume_image ghosts[MAX_BRACKET];
+    relume_status status = relume_ghost_masks(
+        ghosts, b->codes, b->exposure, b->n, b->anchor,
+        relume_ghost_params(.log = args_log(args), .threads = args_threads(args), .black = black));
+    for (int i = 0; !status && i < b->n; i++) {
+        if (b->masks[i].data) {
+            combine(&b->masks[i], &ghosts[i], &b->ghosts[i]);
+            relume_image_destroy(&ghosts[i]);
+        } else {
+            combine(&ghosts[i], &ghosts[i], &b->ghosts[i]);
+            b->masks[i] = ghosts[i];
+        }
+    }
+    return status;
+}
+
+// A response that was recovered may show a black level: below it nothing can be told apart.
+static relume_status find_response_and_ghosts(struct bracket *b, const struct args *args)
+{
+    const double dark = 0.05;
+    const bool ghosts = args_has(args, "--ghosts");
+    relume_status status = find_response(b, args);
+    if (status || !ghosts)
+        return status;
+    status = leave_out_ghosts(b, dark + black_level(&b->response), args);
+    return status || strcmp(b->response_source, "recovered") != 0 ? status : find_response(b, args);
+}
+
+static void report_bias(const struct bracket *b, const struct args *args)
+{
+    for (int i = 0; i < b->n; i++) {
+        const double bias = b->report[i].bias_ev;
+        char text[1024];
+        if (!(fabs(bias) > clear_bias_ev))
+            continue;
+        snprintf(text, sizeof text,
+                 "%s: its time of %.4g s contradicts the picture, which fits %.4g s", b->path[i],
+                 b->notes[i].time_s, b->notes[i].time_s * exp2(bias));
+        args_log(args)->message(args_log(args)->user, RELUME_WARNING, text);
+    }
+}
+
+relume_status bracket_merge(struct bracket *b, enum relume_merge_weights weights,
+                            const struct args *args)
+{
+    struct prefix_log log;
+    const char *save = args_text(args, "--save-response", NULL);
+    relume_status status = find_response_and_ghosts(b, args);
+    if (!status && save)
+        status = relume_response_save(&b->response, save, args_log(args));
+    if (!status)
+        status =
+            relume_merge(&b->out, b->report, b->codes, b->exposure, b->n, &b->response,
+                         relume_merge_params(.log = prefix_log(&log, args_log(args), b->path[0]),
+                                             .weights = weights, .masks = b->masks,
+                                             .threads = args_threads(args)));
+    if (status)
+        return status;
+    report_bias(b, args);
+    if (b->notes[b->anchor].profile)
+        relume_primaries_apply(&b->out, b->notes[b->anchor].to_srgb);
+    return RELUME_OK;
+}
+
+void bracket_free(struct bracket *b)
+{
+    for (int i = 0; i < MAX_BRACKET; i++) {
+        relume_image_destroy(&b->codes[i]);
+        relume_image_destroy(&b->masks[i]);
+    }
+    relume_image_destroy(&b->out);
+}

@@ -1,0 +1,35 @@
+// bracket.h - the photographs of one radiance map on their way through `relume capture --hdr`
+#ifndef CLI_BRACKET_H
+#define CLI_BRACKET_H
+
+#include "cli.h"
+
+enum { MAX_BRACKET = 64 };
+
+struct bracket {
+    int n, anchor;
+    const char *path[MAX_BRACKET];
+    struct relume_notes notes[MAX_BRACKET];
+    struct relume_image codes[MAX_BRACKET], masks[MAX_BRACKET];  // masks may be empty: all good
+    double exposure[MAX_BRACKET];
+    double shift[MAX_BRACKET];   // median displacement, pixels; 0 when not aligned
+    double ghosts[MAX_BRACKET];  // part of the pixels
+    struct relume_exposure_report report[MAX_BRACKET];
+    struct relume_response response;
+    const char *response_source;  // "recovered", "linear", or where it was read
+    struct relume_image out;
+};
+
+enum align_mode { ALIGN_NONE, ALIGN_BLOCKS, ALIGN_HOMOGRAPHY };
+
+// Reads the photographs that `path`, `notes` and `n` name. With `skip_bad` those that cannot be
+// read or are of another size are left out with a warning.
+relume_status bracket_load(struct bracket *b, const struct args *args);
+// Exposures in the order of brightness, one scene, more than one exposure.
+relume_status bracket_check(struct bracket *b, const struct args *args);
+relume_status bracket_align(struct bracket *b, enum align_mode mode, const struct args *args);
+relume_status bracket_merge(struct bracket *b, enum relume_merge_weights weights,
+                            const struct args *args);
+void bracket_free(struct bracket *b);
+
+#endif

@@ -1,0 +1,68 @@
+// cmd_capture.c - relume capture: from photographs to linear images with known lights
+#include "capture_hdr.h"
+#include "capture_lights.h"
+#include "frame_options.h"
+
+static const struct option options[] = {
+    {"-o", OPTION_TEXT, "DIR", "the capture folder to make; with --hdr the picture OUT.exr", 0, 0},
+    // where the lights are
+    {"--ball", OPTION_TEXT, "x,y,r",
+     "outline of a mirror ball, pixels from the top left; may be repeated; default: found", 0, 0},
+    {"--ball-photos", OPTION_TEXT, "PATH",
+     "the ball stands in photographs of its own: a folder, or a file, then repeated", 0, 0},
+    {"--balls", OPTION_INT, "N", "how many balls are to be found; default 1", 1, 16},
+    {"--ball-mask", OPTION_TEXT, "FILE", "white where the ball is", 0, 0},
+    {"--matte", OPTION_FLAG, NULL, "the ball is matte white, not a mirror", 0, 0},
+    {"--lights", OPTION_TEXT, "FILE",
+     "the lights are known: a .lp file, a capture.json or lines x y z", 0, 0},
+    {"--near", OPTION_FLAG, NULL,
+     "lights stand near: positions from two balls or more, or those of --lights", 0, 0},
+    {"--ball-z", OPTION_NUMBER, "Z",
+     "height of the balls' middle over the plane z = 0, world units; default 0", -1000, 1000},
+    {"--fov", OPTION_NUMBER, "DEG", "horizontal field of view; default: orthographic", 0.1, 170},
+    {"--focal", OPTION_NUMBER, "MM", "the same as a focal length for 36 mm wide film", 5, 5000},
+    {"--refine-lights", OPTION_FLAG, NULL,
+     "better directions and intensities by the photographs themselves", 0, 0},
+    // what is made
+    {"--mask", OPTION_TEXT, "FILE", "white where the object is", 0, 0},
+    {"--normals", OPTION_TEXT, "FILE.exr", "write surface normals", 0, 0},
+    {"--albedo", OPTION_TEXT, "FILE.exr", "write what the surface reflects", 0, 0},
+    {"--height", OPTION_TEXT, "FILE.exr", "write the surface's height, world units", 0, 0},
+    {"--encode", OPTION_TEXT, "FILE.exr", "encode the capture as well", 0, 0},
+    {"--relight", OPTION_TEXT, "PICTURE", "and relight that by --light", 0, 0},
+    LIGHT_OPTIONS,
+    CPU_OPTION,
+    {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; default: by file", 0, 0},
+    {"--force", OPTION_FLAG, NULL, "replace an existing folder", 0, 0},
+    // brackets
+    {"--hdr", OPTION_FLAG, NULL, "the photographs are exposures of one picture: merge them", 0, 0},
+    {"--times", OPTION_TEXT, "FILE", "--hdr: exposure times, lines 'name seconds'", 0, 0},
+    {"--response", OPTION_TEXT, "FILE", "--hdr: the camera's response is known", 0, 0},
+    {"--save-response", OPTION_TEXT, "FILE", "--hdr: write the response that was found", 0, 0},
+    {"--weights", OPTION_TEXT, "W", "--hdr: spline (default), hat or gaussian", 0, 0},
+    {"--align", OPTION_TEXT, "A", "none, blocks or homography; default: none", 0, 0},
+    {"--ghosts", OPTION_FLAG, NULL, "--hdr: leave out what moved between exposures", 0, 0},
+    {"--white", OPTION_TEXT, "x,y,w,h", "--hdr: a region that is grey", 0, 0},
+    {"--flat", OPTION_TEXT, "FILE", "--hdr: photograph of an even surface, against vignetting", 0,
+     0},
+    // both
+    {"--skip-bad", OPTION_FLAG, NULL, "leave out photographs that cannot be read or used", 0, 0},
+    {"--json", OPTION_FLAG, NULL, "print one JSON object", 0, 0},
+    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+};
+
+static relume_status run(const struct args *args)
+{
+    return args_has(args, "--hdr") ? capture_hdr(args) : capture_lights(args);
+}
+
+const struct command command_capture = {
+    .name = "capture",
+    .usage = "PHOTO... -o DIR|OUT.exr [OPTION ...]",
+    .summary = "make a capture of photographs, finding their lights; or merge exposures (--hdr)",
+    .example = "relume capture statue/*.jpg --ball-photos ball -o statue_capture",
+    .min_inputs = 1,
+    .max_inputs = 4096,
+    .options = options,
+    .run = run,
+};

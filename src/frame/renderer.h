@@ -1,0 +1,62 @@
+// renderer.h - a file under lights, as the files that make frames of it share it
+#ifndef FRAME_RENDERER_H
+#define FRAME_RENDERER_H
+
+#include "math/vec.h"
+
+#include <relume/frame.h>
+
+// What all views of a frame use; made when first needed.
+struct shared {
+    relume_weight_grid *grid;
+    relume_refit *learned;  // of the first view of the display domain under an environment
+};
+
+struct renderer {
+    relume_pack *pack;
+    const struct relume_pack_info *info;
+    const struct relume_light *lights;
+    int light_count;
+    struct relume_frame_params params;
+    struct relume_view_params view;
+    struct shared *shared;
+};
+
+relume_status renderer_relight(const struct renderer *r, int view, struct relume_image *out);
+
+// The views of a slab that a frame needs, relit, and their disparities where it takes depth.
+struct gathered {
+    bool *needed;                    // [views]
+    struct relume_image *images;     // [views]
+    struct relume_image *disparity;  // [views], or NULL
+    int views;
+};
+relume_status gathered_create(struct gathered *g, const struct renderer *r);
+void gathered_destroy(struct gathered *g);
+// Relight what is marked. `slab_of` gives the slab of a view.
+relume_status gathered_fill(struct gathered *g, const struct renderer *r, bool by_depth,
+                            const relume_slab *(*slab_of)(const void *slabs, int view),
+                            const void *slabs);
+// Frames go by depth: the file has it, and nothing else was asked for.
+bool renderer_takes_depth(const struct renderer *r);
+
+// Of a slab, or of several.
+relume_status frame_eye(const struct renderer *r, const struct relume_camera *camera,
+                        struct relume_image *out);
+relume_status frame_around(const struct renderer *r, const struct relume_camera *camera,
+                           struct relume_image *out);
+relume_status query_slab(const struct renderer *r, vec3 eye, vec3 direction, float rgb[3]);
+relume_status query_slabs(const struct renderer *r, vec3 eye, vec3 direction, float rgb[3]);
+
+// ---------------------------------------------------------------- one ray
+relume_status ray_none(const struct renderer *r, const char *why);
+// Bilinear in linear light with the border clamped; pixel centres are at +0.5.
+void ray_sample(float rgb[3], const struct relume_image *image, double x, double y);
+// Where the line of the ray meets the plane z; false when it never does.
+bool ray_meets_plane(vec3 eye, vec3 direction, double z, double xy[2]);
+bool ray_goes_towards(vec3 eye, vec3 direction, double z);
+// Pixel position of a point of a window; false outside.
+bool ray_window_pixel(const double min[2], const double max[2], int width, int height,
+                      const double at[2], double xy[2]);
+
+#endif

@@ -1,0 +1,156 @@
+// photograph.c - one photograph: what the camera noted, its pixels turned upright and linearised
+#include <relume/photograph.h>
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "image/image.h"
+#include "image/profile.h"
+
+#include <math.h>
+#include <string.h>
+
+static const float identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+
+// ---------------------------------------------------------------- notes
+
+static bool is_turned_sideways(int orientation)
+{
+    return orientation >= 5;
+}
+
+// `profile` may be NULL.
+static void notes_of(struct relume_notes *out, const oiio_reader *reader, struct profile *profile)
+{
+    size_t size;
+    const void *icc = oiio_profile(reader, &size);
+    struct profile own;
+    oiio_notes(reader, out);
+    profile = profile ? profile : &own;
+    out->profile = icc && oiio_info_of(reader)->channels >= 3 && profile_read(profile, icc, size);
+    memcpy(out->to_srgb, out->profile ? profile->to_srgb : identity, sizeof out->to_srgb);
+    if (is_turned_sideways(out->orientation)) {
+        out->width = oiio_info_of(reader)->height;
+        out->height = oiio_info_of(reader)->width;
+    }
+}
+
+relume_status relume_notes_read(struct relume_notes *out, const char *path,
+                                const struct relume_log *log)
+{
+    *out = (struct relume_notes){0};
+    oiio_reader *reader;
+    const relume_status status = oiio_open(&reader, path, NULL, log);
+    if (status)
+        return status;
+    notes_of(out, reader, NULL);
+    oiio_close(&reader);
+    return RELUME_OK;
+}
+
+double relume_notes_exposure(const struct relume_notes *notes)
+{
+    const double f = notes->f_number > 0.0 ? notes->f_number : 1.0;
+    const double iso = notes->iso > 0.0 ? notes->iso / 100.0 : 1.0;
+    return notes->time_s * iso / (f * f);
+}
+
+// ---------------------------------------------------------------- pixels
+
+// Where pixel (x, y) of the upright picture lies in the file of `width` x `height` (EXIF 2.3, tag
+// 274).
+static size_t place_in_file(int orientation, int x, int y, int width, int height)
+{
+    const int right = width - 1, bottom = height - 1;
+    const int u[] = {x, right - x, right - x, x, y, y, right - y, right - y};
+    const int v[] = {y, y, bottom - y, bottom - y, x, bottom - x, bottom - x, x};
+    return (size_t)v[orientation - 1] * (size_t)width + (size_t)u[orientation - 1];
+}
+
+static relume_status turn(struct relume_image *image, int orientation)
+{
+    struct relume_image upright;
+    const bool sideways = is_turned_sideways(orientation);
+    const relume_status status =
+        relume_image_create(&upright, sideways ? image->height : image->width,
+                            sideways ? image->width : image->height, 3);
+    if (status)
+        return status;
+    float *out = upright.data;
+    for (int y = 0; y < upright.height; y++)
+        for (int x = 0; x < upright.width; x++, out += 3)
+            memcpy(out,
+                   image->data + 3 * place_in_file(orientation, x, y, image->width, image->height),
+                   3 * sizeof *out);
+    relume_image_destroy(image);
+    *image = upright;
+    return RELUME_OK;
+}
+
+static void follow_profile(struct relume_image *image, const struct profile *profile)
+{
+    const size_t pixels = (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < pixels; i++)
+        for (int c = 0; c < 3; c++)
+            image->data[3 * i + (size_t)c] =
+                profile_decode(profile, c, image->data[3 * i + (size_t)c]);
+    relume_primaries_apply(image, profile->to_srgb);
+}
+
+static relume_status read_pixels(struct relume_image *out, const char *path, oiio_reader *reader,
+                                 struct relume_transfer from, const struct relume_log *log)
+{
+    static const float no_gain[3] = {1.0f, 1.0f, 1.0f};
+    const struct oiio_info info = *oiio_info_of(reader);
+    struct image_stream stream;
+    relume_status status =
+        image_stream_open(&stream, reader, 3, image_transfer(from, &info),
+                          (struct relume_transfer){.curve = RELUME_CURVE_LINEAR}, no_gain);
+    if (status)
+        return status;
+    stream.finite_only = true;
+    status = relume_image_create(out, info.width, info.height, 3);
+    if (!status)
+        status = image_stream_read(&stream, 0, info.height, out->data);
+    if (status == RELUME_EDATA)
+        (void)log_fail(log, status, "%s: %s", path, image_stream_error(&stream));
+    image_stream_close(&stream);
+    return status;
+}
+
+relume_status relume_photograph_load(struct relume_image *out, struct relume_notes *notes,
+                                     const char *path,
+                                     const struct relume_photograph_params *params)
+{
+    const struct relume_photograph_params p =
+        params ? *params : (struct relume_photograph_params){0};
+    struct relume_notes own;
+    oiio_reader *reader;
+    size_t icc_size;
+    *out = (struct relume_image){0};
+    notes = notes ? notes : &own;
+    *notes = (struct relume_notes){0};
+    struct profile *profile = mem_array(1, sizeof *profile);
+    if (!profile)
+        return RELUME_ENOMEM;
+    relume_status status = oiio_open(&reader, path, p.limits, p.log);
+    if (status) {
+        free(profile);
+        return status;
+    }
+    notes_of(notes, reader, profile);
+    const bool follow = notes->profile && !p.codes && p.transfer.curve == RELUME_CURVE_AUTO;
+    if (!notes->profile && oiio_profile(reader, &icc_size))
+        log_line(p.log, RELUME_WARNING,
+                 "%s: its colour profile is not of curves and a matrix; taken for sRGB", path);
+    const struct relume_transfer from =
+        p.codes || follow ? (struct relume_transfer){.curve = RELUME_CURVE_LINEAR} : p.transfer;
+    status = read_pixels(out, path, reader, from, p.log);
+    if (!status && follow)
+        follow_profile(out, profile);
+    if (!status && !p.not_turned && notes->orientation > 1)
+        status = turn(out, notes->orientation);
+    if (status)
+        relume_image_destroy(out);
+    free(profile);
+    return status;
+}

@@ -1,0 +1,19 @@
+// slabs.h - the inside of relume_slabs
+#ifndef VIEW_SLABS_H
+#define VIEW_SLABS_H
+
+#include "math/vec.h"
+#include "view/slab.h"
+
+#include <relume/slabs.h>
+
+struct relume_slabs {
+    int count, views;
+    relume_slab *slab[RELUME_MOST_SLABS];
+};
+
+// The ray from `eye` along `direction` in a slab's own frame: where it meets the two planes. False
+// when it leaves the side on which the cameras stand without meeting the st plane.
+bool slabs_ray(double uv[2], double st[2], const relume_slab *slab, vec3 eye, vec3 direction);
+
+#endif

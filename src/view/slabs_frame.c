@@ -1,0 +1,281 @@
+// slabs_frame.c - a picture of several slabs: each pixel's ray in every slab that it passes
+//
+// A slab is a function of rays (Gortler et al. 1996), whichever way a picture stands to its planes:
+// what a pixel shows is the mean of the slabs that know its ray, weighted so that none of them ends
+// abruptly where another one goes on.
+#include "view/slabs.h"
+
+#include "base/memory.h"
+#include "base/thread.h"
+
+#include <string.h>
+
+// A slab with a picture before it, all in the slab's frame.
+struct seen {
+    struct slab_frame frame;
+    vec3 corner, right, down;  // from the eye
+    double range[2];           // of disparities
+    bool any;                  // views are needed
+};
+
+struct picture {
+    const relume_slabs *slabs;
+    struct relume_image *out;
+    struct seen *seen;  // [slabs]
+    bool by_depth;
+};
+
+bool slabs_ray(double uv[2], double st[2], const relume_slab *slab, vec3 eye, vec3 direction)
+{
+    const struct relume_geometry *g = &slab->geometry;
+    const double way = (g->st_z - eye.z) / direction.z;
+    if (!(way > 0.0) || !isfinite(way))
+        return false;
+    st[0] = eye.x + way * direction.x;
+    st[1] = eye.y + way * direction.y;
+    return relume_slab_uv(uv, slab, eye, st[0], st[1]);
+}
+
+// ---------------------------------------------------------------- which views
+
+// Where the rays of a window meet the st plane of a slab, as a rectangle. The window's corners
+// bound it unless some of them look away from the plane: then it may be anywhere.
+static bool find_reach(double min[2], double max[2], const struct seen *s)
+{
+    const relume_slab *slab = s->frame.slab;
+    int hits = 0;
+    for (int axis = 0; axis < 2; axis++) {
+        min[axis] = (double)INFINITY;
+        max[axis] = -(double)INFINITY;
+    }
+    for (int i = 0; i < 4; i++) {
+        double uv[2], st[2];
+        const vec3 across = vec3_scale(s->right, i % 2);
+        const vec3 down = vec3_scale(s->down, i / 2);
+        if (!slabs_ray(uv, st, slab, s->frame.eye, vec3_add(s->corner, vec3_add(across, down))))
+            continue;
+        hits++;
+        for (int axis = 0; axis < 2; axis++) {
+            min[axis] = fmin(min[axis], st[axis]);
+            max[axis] = fmax(max[axis], st[axis]);
+        }
+    }
+    for (int axis = 0; hits < 4 && axis < 2; axis++) {
+        min[axis] = slab->geometry.st_min[axis];
+        max[axis] = slab->geometry.st_max[axis];
+    }
+    for (int axis = 0; axis < 2; axis++)
+        if (!(min[axis] <= slab->geometry.st_max[axis] && max[axis] >= slab->geometry.st_min[axis]))
+            return false;
+    return hits > 0;
+}
+
+static struct seen see(const relume_slab *slab, const struct relume_window *window)
+{
+    const struct relume_pose *pose = &slab->geometry.pose;
+    struct seen s = {
+        .frame = {.slab = slab, .eye = relume_pose_local(pose, window->eye)},
+        .corner = relume_pose_turn_back(pose, vec3_sub(window->corner, window->eye)),
+        .right = relume_pose_turn_back(pose, window->right),
+        .down = relume_pose_turn_back(pose, window->down),
+    };
+    s.any = slab_reach(&s.frame.reach, slab, s.frame.eye);
+    return s;
+}
+
+static int mark(bool *needed, struct seen *s, const struct relume_view_params *params)
+{
+    double min[2], max[2];
+    const int n = s->any && find_reach(min, max, s)
+                      ? slab_mark(needed, s->frame.slab, s->frame.eye, min, max, params)
+                      : 0;
+    s->any = n > 0;
+    return n;
+}
+
+int relume_slabs_needs(bool *needed, const relume_slabs *slabs, const struct relume_window *window,
+                       const struct relume_view_params *params)
+{
+    int n = 0;
+    memset(needed, 0, (size_t)slabs->views * sizeof *needed);
+    for (int i = 0; i < slabs->count; i++) {
+        struct seen s = see(slabs->slab[i], window);
+        n += mark(needed, &s, params);
+    }
+    return n;
+}
+
+// ---------------------------------------------------------------- one ray
+
+// Adds what a slab says of the ray, times its weight: r, g, b, weight.
+static void add(double sum[4], const struct picture *p, const struct seen *s, double x, double y)
+{
+    const vec3 way = vec3_add(vec3_scale(s->right, x), vec3_scale(s->down, y));
+    double uv[2], st[2];
+    if (!s->any || !slabs_ray(uv, st, s->frame.slab, s->frame.eye, vec3_add(s->corner, way)))
+        return;
+    double weight = relume_slab_weight(s->frame.slab, uv, st);
+    if (!(weight > 0.0))
+        return;
+    const struct slab_ray ray = slab_ray_at(&s->frame, st);
+    float rgb[3];
+    if (p->by_depth)
+        weight *= slab_depth_shade(rgb, &s->frame, &ray, s->range);
+    else
+        slab_flat_shade(rgb, &s->frame, &ray);
+    for (int c = 0; c < 3; c++)
+        sum[c] += weight * (double)rgb[c];
+    sum[3] += weight;
+}
+
+// At (x, y) of the window. False, and black, where no slab has weight.
+static bool shade(float rgb[3], const struct picture *p, double x, double y)
+{
+    double sum[4] = {0.0, 0.0, 0.0, 0.0};
+    for (int i = 0; i < p->slabs->count; i++)
+        add(sum, p, &p->seen[i], x, y);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = sum[3] > 0.0 ? (float)(sum[c] / sum[3]) : 0.0f;
+    return sum[3] > 0.0;
+}
+
+static void draw_row(void *context, size_t row, int worker)
+{
+    const struct picture *p = context;
+    (void)worker;
+    float *rgb = p->out->data + 3 * row * (size_t)p->out->width;
+    for (int x = 0; x < p->out->width; x++, rgb += 3)
+        shade(rgb, p, (x + 0.5) / p->out->width, ((double)row + 0.5) / p->out->height);
+}
+
+// ---------------------------------------------------------------- picture
+
+static bool takes_depth(const struct relume_view_params *p)
+{
+    return p->disparity && (p->interpolation == RELUME_INTERPOLATE_DEFAULT ||
+                            p->interpolation == RELUME_INTERPOLATE_DEPTH);
+}
+
+// RELUME_EINVAL when nothing is to be seen or something needed is missing.
+static relume_status prepare(struct picture *p, bool *needed, const struct relume_window *window,
+                             const struct relume_image *views,
+                             const struct relume_view_params *params)
+{
+    int width = 0, height = 0, n = 0;
+    for (int i = 0; i < p->slabs->count; i++) {
+        p->seen[i] = see(p->slabs->slab[i], window);
+        n += mark(needed, &p->seen[i], params);
+    }
+    if (n == 0 || !slab_views_fit(&width, &height, needed, views,
+                                  p->by_depth ? params->disparity : NULL, p->slabs->views))
+        return RELUME_EINVAL;
+    for (int i = 0; i < p->slabs->count; i++) {
+        struct slab_frame *f = &p->seen[i].frame;
+        f->views = views;
+        f->width = width;
+        f->height = height;
+        f->params = *params;
+        f->needed = needed;
+        if (p->by_depth && p->seen[i].any)
+            slab_depth_range(p->seen[i].range, f);
+    }
+    return RELUME_OK;
+}
+
+struct job {
+    struct picture picture;
+    struct relume_view_params params;
+    bool *needed;
+};
+
+static relume_status begin(struct job *job, const relume_slabs *slabs,
+                           const struct relume_window *window, const struct relume_image *views,
+                           const struct relume_view_params *params)
+{
+    *job = (struct job){.picture = {.slabs = slabs}};
+    if (params)
+        job->params = *params;
+    job->picture.by_depth = takes_depth(&job->params);
+    if (slab_is_lens(params) ||
+        (job->params.interpolation == RELUME_INTERPOLATE_DEPTH && !job->params.disparity))
+        return RELUME_EINVAL;
+    job->needed = mem_zeroed((size_t)slabs->views, sizeof *job->needed);
+    job->picture.seen = mem_array((size_t)slabs->count, sizeof *job->picture.seen);
+    if (!job->needed || !job->picture.seen)
+        return RELUME_ENOMEM;
+    return prepare(&job->picture, job->needed, window, views, &job->params);
+}
+
+static void end(struct job *job)
+{
+    free(job->needed);
+    free(job->picture.seen);
+}
+
+relume_status relume_slabs_frame(struct relume_image *out, const relume_slabs *slabs,
+                                 const struct relume_window *window,
+                                 const struct relume_image *views,
+                                 const struct relume_view_params *params)
+{
+    struct job job;
+    if (!out->data || out->channels != 3)
+        return RELUME_EINVAL;
+    const relume_status status = begin(&job, slabs, window, views, params);
+    job.picture.out = out;
+    if (!status)
+        thread_for(job.params.threads, (size_t)out->height, draw_row, &job.picture);
+    end(&job);
+    return status;
+}
+
+relume_status relume_slabs_value(float rgb[3], const relume_slabs *slabs, vec3 eye, vec3 direction,
+                                 const struct relume_image *views,
+                                 const struct relume_view_params *params)
+{
+    struct job job;
+    const struct relume_window window = {.eye = eye, .corner = vec3_add(eye, direction)};
+    relume_status status = begin(&job, slabs, &window, views, params);
+    if (!status && !shade(rgb, &job.picture, 0.0, 0.0))
+        status = RELUME_EINVAL;
+    end(&job);
+    return status;
+}
+
+// As far as one slab knows it: the weight of its nearest camera.
+static double nearest_in(int *view, double place[2], const relume_slab *slab, vec3 eye,
+                         vec3 direction)
+{
+    const struct relume_geometry *g = &slab->geometry;
+    const vec3 way = relume_pose_turn_back(&g->pose, direction);
+    double uv[2], st[2], weights[4];
+    int views[4], best = 0;
+    if (!slabs_ray(uv, st, slab, relume_pose_local(&g->pose, eye), way))
+        return 0.0;
+    const int n = relume_slab_blend(views, weights, slab, uv, NULL);
+    for (int i = 1; i < n; i++)
+        best = weights[i] > weights[best] ? i : best;
+    if (n == 0)
+        return 0.0;
+    *view = views[best];
+    place[0] = (st[0] - g->st_min[0]) / (g->st_max[0] - g->st_min[0]);
+    place[1] = (g->st_max[1] - st[1]) / (g->st_max[1] - g->st_min[1]);
+    return weights[best] * relume_slab_weight(slab, uv, st);
+}
+
+bool relume_slabs_nearest(int *view, double place[2], const relume_slabs *slabs, vec3 eye,
+                          vec3 direction)
+{
+    double most = 0.0;
+    for (int i = 0; i < slabs->count; i++) {
+        double found[2] = {0.0, 0.0};
+        int which = 0;
+        const double weight = nearest_in(&which, found, slabs->slab[i], eye, direction);
+        if (!(weight > most))
+            continue;
+        most = weight;
+        *view = which;
+        place[0] = found[0];
+        place[1] = found[1];
+    }
+    return most > 0.0;
+}

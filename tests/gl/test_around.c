@@ -1,0 +1,364 @@
+// Several slabs in the viewer: frames against the library's, and the eye on its way around
+#include "fixture.h"
+
+#include "gizmo.h"
+#include "inspect.h"
+#include "orbit.h"
+#include "record.h"
+
+enum { SLABS = 4, COLUMNS = 3, ROWS = 2, GRID = COLUMNS * ROWS, VIEWS = SLABS * GRID };
+enum { W = 40, H = 30 };
+static const double columns[COLUMNS] = {-3.4, 0.3, 3.5};
+static const double rows[ROWS] = {-1.5, 1.7};
+
+static const struct relume_light lamp = {.direction = {0.2, 0.3, 0.8}, .rgb = {1, 0.9f, 0.8f}};
+
+struct around {
+    struct fixture_file file;
+    struct relume_geometry slab[SLABS];
+    relume_slabs *slabs;
+    struct renderer renderer;
+    struct app app;
+    struct relume_image views[VIEWS], disparity[VIEWS];
+    double uv[VIEWS][2];
+    int slab_of[VIEWS];
+};
+
+// A sphere about the origin, as the camera of a view sees it.
+static relume_status make_depth(struct relume_image *out, void *user, int view)
+{
+    const struct around *t = user;
+    const struct relume_geometry *g = &t->slab[t->slab_of[view]];
+    const double *eye = t->uv[view];
+    const double radius = 0.8;
+    assert_int_equal(relume_image_create(out, W, H, 1), RELUME_OK);
+    for (int i = 0; i < W * H; i++) {
+        const double s = g->st_min[0] + (i % W + 0.5) / W * (g->st_max[0] - g->st_min[0]);
+        const double v = g->st_max[1] - (i / W + 0.5) / H * (g->st_max[1] - g->st_min[1]);
+        const double way[3] = {s - eye[0], v - eye[1], g->st_z - g->uv_z};
+        const double a = way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
+        const double b = eye[0] * way[0] + eye[1] * way[1] + g->uv_z * way[2];
+        const double c = eye[0] * eye[0] + eye[1] * eye[1] + g->uv_z * g->uv_z - radius * radius;
+        const double root = b * b - a * c;
+        out->data[i] = root < 0 ? INFINITY : (float)((-b - sqrt(root)) / sqrt(a));
+    }
+    return RELUME_OK;
+}
+
+static struct relume_geometry side(int i)
+{
+    const double angle = 1.5707963267948966 * i;
+    return (struct relume_geometry){
+        .projection = RELUME_SLAB,
+        .uv_z = 3,
+        .st_min = {-1.6, -1.2},
+        .st_max = {1.6, 1.2},
+        .pose = {.axis = {{cos(angle), 0, -sin(angle)}, {0, 1, 0}, {sin(angle), 0, cos(angle)}}},
+    };
+}
+
+static void start_app(struct around *t)
+{
+    const struct app_file file = {
+        .geometry = t->slab[0], .width = W, .height = H, .views = VIEWS, .around = t->slabs};
+    struct app_state start = {.lights = 1};
+    start.light[0] = lamp;
+    assert_int_equal(app_start(&t->app, &file, &start, false, &fixture_log), RELUME_OK);
+}
+
+static void open_app(struct around *t)
+{
+    for (int i = 0; i < SLABS; i++)
+        t->slab[i] = side(i);
+    for (int i = 0; i < VIEWS; i++) {
+        t->slab_of[i] = i % SLABS;
+        t->uv[i][0] = columns[i / SLABS % COLUMNS];
+        t->uv[i][1] = rows[i / SLABS / COLUMNS];
+    }
+    assert_int_equal(relume_slabs_create(&t->slabs, t->slab, SLABS, (const double(*)[2])t->uv,
+                                         t->slab_of, VIEWS),
+                     RELUME_OK);
+    start_app(t);
+}
+
+static void open_around(struct around *t)
+{
+    open_app(t);
+    t->file = fixture_make(VIEWS, W, H, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
+    const struct code_source source = {fixture_fetch, NULL, &t->file, NULL};
+    assert_int_equal(
+        renderer_create(&t->renderer, &fixture_gl, &source, &t->slab[0], NULL, VIEWS, &fixture_log),
+        RELUME_OK);
+    renderer_use_slabs(&t->renderer, t->slabs, (const double(*)[2])t->uv, t->slab_of);
+    for (int i = 0; i < VIEWS; i++) {
+        struct relume_image depth;
+        t->views[i] = fixture_relight(&t->file, i, &lamp, 1);
+        assert_int_equal(make_depth(&depth, t, i), RELUME_OK);
+        assert_int_equal(relume_slab_disparity(&t->disparity[i],
+                                               relume_slabs_slab(t->slabs, t->slab_of[i]), t->uv[i],
+                                               &depth),
+                         RELUME_OK);
+        relume_image_destroy(&depth);
+    }
+}
+
+static void close_around(struct around *t)
+{
+    renderer_destroy(&t->renderer);
+    fixture_free(&t->file);
+    for (int i = 0; i < VIEWS; i++) {
+        relume_image_destroy(&t->views[i]);
+        relume_image_destroy(&t->disparity[i]);
+    }
+    relume_slabs_destroy(&t->slabs);
+}
+
+// ---------------------------------------------------------------- frames
+
+// The share of pixels that differ: what decides between texels, cameras and cells are comparisons
+// of rounded numbers.
+static double share_off(struct around *t, const struct relume_view_params *params)
+{
+    struct relume_image want, got;
+    struct relume_window window;
+    int off = 0;
+    assert_true(app_window(&t->app, &window));
+    assert_int_equal(relume_image_create(&want, t->app.width, t->app.height, 3), RELUME_OK);
+    assert_int_equal(relume_slabs_frame(&want, t->slabs, &window, t->views, params), RELUME_OK);
+    assert_int_equal(renderer_draw(&t->renderer, &t->app), RELUME_OK);
+    assert_int_equal(renderer_read(&got, &t->renderer), RELUME_OK);
+    for (int i = 0; i < 3 * want.width * want.height; i++)
+        off += !(fabs((double)got.data[i] - (double)want.data[i]) < 1e-3);
+    const double share = (double)off / (3.0 * want.width * want.height);
+    relume_image_destroy(&want);
+    relume_image_destroy(&got);
+    return share;
+}
+
+// Before a slab, between two, near, far, high, on a corner of two uv planes and at a camera.
+static const struct relume_vec3 eyes[] = {
+    {0, 0, 3},   {2.2, 0.3, 2.1}, {1.4, -0.2, 1.2}, {-3, 1.9, -4},
+    {3, 0.1, 3}, {0.3, 1.7, 3},   {-0.5, 2.2, 4.1}, {2.9999, 0.4, 0.7},
+};
+
+static void frames_are_the_library_s(void **state)
+{
+    (void)state;
+    struct around *t = calloc(1, sizeof *t);
+    open_around(t);
+    for (size_t i = 0; i < sizeof eyes / sizeof *eyes; i++) {
+        t->app.now.camera.eye = eyes[i];
+        t->app.width = i % 2 ? W : 67;
+        t->app.height = i % 2 ? H : 45;
+        t->app.now.interpolation = RELUME_INTERPOLATE_LINEAR;
+        char text[64];
+        snprintf(text, sizeof text, "eye %g %g %g", eyes[i].x, eyes[i].y, eyes[i].z);
+        assert_below(text, share_off(t, NULL), 0.002);
+        t->app.now.interpolation = RELUME_INTERPOLATE_CONSTANT;
+        assert_below(text,
+                     share_off(t, relume_view_params(.interpolation = RELUME_INTERPOLATE_CONSTANT)),
+                     0.01);
+    }
+    close_around(t);
+    free(t);
+}
+
+static void frames_by_depth_are_the_library_s(void **state)
+{
+    (void)state;
+    struct around *t = calloc(1, sizeof *t);
+    open_around(t);
+    const struct depth_source source = {make_depth, t};
+    assert_int_equal(renderer_use_depth(&t->renderer, &source), RELUME_OK);
+    for (size_t i = 0; i < sizeof eyes / sizeof *eyes; i++) {
+        t->app.now.camera.eye = eyes[i];
+        char text[64];
+        snprintf(text, sizeof text, "by depth, eye %g %g %g", eyes[i].x, eyes[i].y, eyes[i].z);
+        assert_below(text, share_off(t, relume_view_params(.disparity = t->disparity)), 0.01);
+        // and not by accident, but at a camera
+        if (i != 5)
+            assert_true(share_off(t, NULL) > 0.1);
+    }
+    close_around(t);
+    free(t);
+}
+
+static void only_needed_views_are_relit(void **state)
+{
+    (void)state;
+    struct around *t = calloc(1, sizeof *t);
+    open_around(t);
+    t->file.asked = 0;
+    assert_int_equal(renderer_draw(&t->renderer, &t->app), RELUME_OK);
+    for (int i = 0; i < VIEWS; i++)
+        assert_true(!t->renderer.relit[i] || t->slab_of[i] == 0);
+    assert_true(t->file.asked > 0 && t->file.asked <= GRID);
+    close_around(t);
+    free(t);
+}
+
+// ---------------------------------------------------------------- the way around
+
+static double length_of(struct relume_vec3 v)
+{
+    return sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
+
+static void send(struct app *app, enum app_event_kind kind, double x, double y)
+{
+    app_handle(app, &(struct app_event){.kind = kind, .x = x, .y = y});
+}
+
+// Half a frame is a quarter turn: the object follows the hand, the eye goes the other way.
+static void a_drag_turns_the_object(void **state)
+{
+    (void)state;
+    struct around t = {0};
+    open_app(&t);
+    struct app *app = &t.app;
+    const double away = length_of(app->now.camera.eye);
+    app->now.camera.eye = (struct relume_vec3){0, 0, away};
+    send(app, APP_PRESS, 10, 15);
+    send(app, APP_MOVE, 10 + H / 2.0, 15);
+    assert_true(fabs(app->now.camera.eye.x + away) < 1e-9);
+    assert_true(fabs(app->now.camera.eye.z) < 1e-9);
+    send(app, APP_MOVE, 10 + H / 2.0, 15 + H / 9.0);
+    assert_true(fabs(app->now.camera.eye.y - away * sin(0.3490658504)) < 1e-9);  // 20 degrees up
+    // as high as the cameras are and no higher, and at a corner of the ring less high
+    send(app, APP_MOVE, 10 + H / 2.0, 15 + 10.0 * H);
+    assert_true(fabs(app->now.camera.eye.y - away * sin(atan(rows[1] / 3))) < 1e-4);
+    send(app, APP_MOVE, 10 + 0.75 * H, 15 + 10.0 * H);
+    assert_true(fabs(app->now.camera.eye.y - away * sin(atan(rows[1] / 3 * sqrt(0.5)))) < 1e-4);
+    assert_true(fabs(length_of(app->now.camera.eye) - away) < 1e-9);
+    struct relume_window window;
+    assert_true(app_window(app, &window));
+    relume_slabs_destroy(&t.slabs);
+}
+
+// Let go of in motion it glides on and comes to rest, whatever way time is split.
+static void the_object_glides(void **state)
+{
+    (void)state;
+    struct around t = {0};
+    open_app(&t);
+    struct app *app = &t.app;
+    send(app, APP_PRESS, 0, 0);
+    for (int i = 1; i <= 10; i++) {
+        send(app, APP_MOVE, i, 0);
+        app_advance(app, 0.1);
+    }
+    send(app, APP_RELEASE, 10, 0);
+    struct app other = *app;
+    const double before = atan2(app->now.camera.eye.x, app->now.camera.eye.z);
+    assert_true(app_advance(app, 0.2));
+    // 60 degrees a second, of which a glide of 0.35 s goes 9 in that time
+    const double way = before - atan2(app->now.camera.eye.x, app->now.camera.eye.z);
+    assert_true(fabs(way * 180 / 3.14159265358979 - 60 * 0.35 * (1 - exp(-0.2 / 0.35))) < 0.1);
+    for (int i = 0; i < 20; i++)
+        app_advance(&other, 0.01);
+    assert_true(fabs(other.now.camera.eye.x - app->now.camera.eye.x) < 1e-6);
+    int steps = 0;
+    while (app_advance(app, 0.1) && steps < 100)
+        steps++;
+    assert_true(steps > 1 && steps < 60);
+    relume_slabs_destroy(&t.slabs);
+}
+
+static void the_wheel_dollies(void **state)
+{
+    (void)state;
+    struct around t = {0};
+    open_app(&t);
+    const double captured = length_of(relume_slabs_eye(t.slabs, 0));
+    app_handle(&t.app, &(struct app_event){.kind = APP_WHEEL, .wheel = 1, .x = 3, .y = 3});
+    assert_true(fabs(length_of(t.app.now.camera.eye) - captured / 1.1) < 1e-9);
+    for (int i = 0; i < 100; i++)
+        app_handle(&t.app, &(struct app_event){.kind = APP_WHEEL, .wheel = -1});
+    assert_true(fabs(length_of(t.app.now.camera.eye) - 4 * captured) < 1e-9);
+    relume_slabs_destroy(&t.slabs);
+}
+
+// A near light's handle is where the frame shows the light, and goes where it is dragged to.
+static void handles_lie_on_their_lights(void **state)
+{
+    (void)state;
+    struct around t = {0};
+    open_app(&t);
+    struct app *app = &t.app;
+    struct relume_light *light = &app->now.light[0];
+    *light = (struct relume_light){
+        .kind = RELUME_LIGHT_POINT, .position = {0.3, -0.4, 0.2}, .rgb = {1, 1, 1}};
+    app->now.camera.eye = (struct relume_vec3){2, 0.7, -2.4};
+    struct gizmo g;
+    assert_true(gizmo_of(&g, app, 0));
+    const struct relume_vec3 eye = app->now.camera.eye, ray = orbit_ray(app, g.x, g.y);
+    const struct relume_vec3 d = {0.3 - eye.x, -0.4 - eye.y, 0.2 - eye.z};
+    const double cosine =
+        (d.x * ray.x + d.y * ray.y + d.z * ray.z) / (length_of(d) * length_of(ray));
+    assert_true(fabs(cosine - 1) < 1e-12);
+    gizmo_drag(app, 0, 12, 9);
+    assert_true(gizmo_of(&g, app, 0));
+    assert_true(fabs(g.x - 12) < 1e-9 && fabs(g.y - 9) < 1e-9);
+    light->position = (struct relume_vec3){2 * eye.x, 2 * eye.y, 2 * eye.z};
+    assert_false(gizmo_of(&g, app, 0));  // behind the eye
+    relume_slabs_destroy(&t.slabs);
+}
+
+static void a_pixel_is_found_in_its_view(void **state)
+{
+    (void)state;
+    struct around t = {0};
+    int view, pixel[2];
+    open_app(&t);
+    t.app.now.camera.eye = relume_pose_world(&t.slab[2].pose, (struct relume_vec3){0.2, 1.6, 3});
+    assert_true(inspect_pick(&view, pixel, &t.app, NULL, W / 2.0, H / 2.0));
+    assert_int_equal(t.slab_of[view], 2);
+    assert_true(t.uv[view][0] == columns[1] && t.uv[view][1] == rows[1]);
+    assert_true(abs(pixel[0] - W / 2) <= 1 && abs(pixel[1] - H / 2) <= 1);
+    relume_slabs_destroy(&t.slabs);
+}
+
+static void a_turntable_goes_around(void **state)
+{
+    (void)state;
+    struct around t = {0};
+    open_app(&t);
+    assert_int_equal(record_pose(&t.app, RECORD_TURNTABLE, 0.25, &fixture_log), RELUME_OK);
+    const struct relume_vec3 start = t.app.start.camera.eye, now = t.app.now.camera.eye;
+    assert_true(fabs(now.x - start.z) < 1e-9 && fabs(now.z + start.x) < 1e-9);
+    relume_slabs_destroy(&t.slabs);
+}
+
+static void what_only_one_slab_has_is_refused(void **state)
+{
+    (void)state;
+    struct around t = {0};
+    open_app(&t);
+    const struct app_file file = t.app.file;
+    struct app_state wrong[3] = {{.aperture = 0.2}, {.focused = true}, {.lights = 0}};
+    wrong[2].camera.framing = RELUME_FRAME_EYE;  // where it would look
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(app_start(&t.app, &file, &wrong[i], false, NULL), RELUME_EINVAL);
+    start_app(&t);
+    for (const char *key = "a,."; *key; key++)
+        app_handle(&t.app, &(struct app_event){.kind = APP_KEY_DOWN, .key = *key});
+    assert_true(t.app.now.aperture == 0 && t.app.now.focus_z == t.app.start.focus_z);
+    relume_slabs_destroy(&t.slabs);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(frames_are_the_library_s),
+        cmocka_unit_test(frames_by_depth_are_the_library_s),
+        cmocka_unit_test(only_needed_views_are_relit),
+        cmocka_unit_test(a_drag_turns_the_object),
+        cmocka_unit_test(the_object_glides),
+        cmocka_unit_test(the_wheel_dollies),
+        cmocka_unit_test(handles_lie_on_their_lights),
+        cmocka_unit_test(a_pixel_is_found_in_its_view),
+        cmocka_unit_test(a_turntable_goes_around),
+        cmocka_unit_test(what_only_one_slab_has_is_refused),
+    };
+    return cmocka_run_group_tests(tests, fixture_open, fixture_close);
+}

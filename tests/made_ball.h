@@ -1,0 +1,132 @@
+// made_ball.h - photographs of balls under one lamp, ray by ray: the truth that ball.h is held to
+#ifndef MADE_BALL_H
+#define MADE_BALL_H
+
+#include <math.h>
+#include <relume/relume.h>
+#include <stdlib.h>
+
+enum { MADE_WIDTH = 320, MADE_HEIGHT = 240, MADE_RAYS = 3, MADE_BALLS = 4 };
+
+struct made_scene {
+    double fov_deg;  // 0: orthographic
+    int balls;
+    struct relume_vec3 middle[MADE_BALLS];  // world: the window is 2 wide on z = 0
+    double radius[MADE_BALLS];
+    bool matte;
+    struct relume_vec3 lamp;  // its place; a direction where `distant`
+    bool distant;
+    double brightness;
+    struct relume_vec3 second;  // another lamp, likewise; zero: none
+};
+
+static inline struct relume_vec3 made_add(struct relume_vec3 a, struct relume_vec3 b, double s)
+{
+    return (struct relume_vec3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+static inline double made_dot(struct relume_vec3 a, struct relume_vec3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+static inline struct relume_vec3 made_unit(struct relume_vec3 a)
+{
+    return made_add((struct relume_vec3){0, 0, 0}, a, 1.0 / sqrt(made_dot(a, a)));
+}
+
+static inline void made_ray(const struct made_scene *s, double x, double y,
+                            struct relume_vec3 *from, struct relume_vec3 *ray)
+{
+    const struct relume_vec3 on = {2.0 * x / MADE_WIDTH - 1.0, (MADE_HEIGHT - 2.0 * y) / MADE_WIDTH,
+                                   0.0};
+    if (s->fov_deg <= 0.0) {
+        *from = (struct relume_vec3){on.x, on.y, 100.0};
+        *ray = (struct relume_vec3){0, 0, -1};
+        return;
+    }
+    *from = (struct relume_vec3){0, 0, 1.0 / tan(s->fov_deg * M_PI / 360.0)};
+    *ray = made_unit(made_add(on, *from, -1.0));
+}
+
+// Whether the ray meets ball `b`, where and with which normal.
+static inline bool made_hit(const struct made_scene *s, int b, struct relume_vec3 from,
+                            struct relume_vec3 ray, struct relume_vec3 *at, struct relume_vec3 *n)
+{
+    const struct relume_vec3 to = made_add(s->middle[b], from, -1.0);
+    const double along = made_dot(to, ray), r = s->radius[b];
+    const double inside = along * along - made_dot(to, to) + r * r;
+    if (inside <= 0.0)
+        return false;
+    *at = made_add(from, ray, along - sqrt(inside));
+    *n = made_unit(made_add(*at, s->middle[b], -1.0));
+    return true;
+}
+
+static inline struct relume_vec3 made_towards(const struct made_scene *s, struct relume_vec3 lamp,
+                                              struct relume_vec3 at)
+{
+    return made_unit(s->distant ? lamp : made_add(lamp, at, -1.0));
+}
+
+// A lamp that looks 3 degrees wide in the mirror.
+static inline double made_glint(const struct made_scene *s, struct relume_vec3 lamp,
+                                struct relume_vec3 at, struct relume_vec3 mirrored)
+{
+    return made_dot(made_towards(s, lamp, at), mirrored) > cos(1.5 * M_PI / 180.0) ? s->brightness
+                                                                                   : 0.0;
+}
+
+static inline double made_shade(const struct made_scene *s, struct relume_vec3 ray,
+                                struct relume_vec3 at, struct relume_vec3 n)
+{
+    if (s->matte)
+        return s->brightness * fmax(made_dot(n, made_towards(s, s->lamp, at)), 0.0);
+    const struct relume_vec3 mirrored = made_add(ray, n, -2.0 * made_dot(ray, n));
+    double v = 0.01 + 0.01 * mirrored.y + made_glint(s, s->lamp, at, mirrored);
+    if (made_dot(s->second, s->second) > 0.0)
+        v += made_glint(s, s->second, at, mirrored);
+    return v;
+}
+
+// What a ray sees of the balls; false where it sees the cloth behind them.
+static inline bool made_value(double *value, const struct made_scene *s, double x, double y)
+{
+    struct relume_vec3 from, ray, at, n;
+    made_ray(s, x, y, &from, &ray);
+    for (int b = 0; b < s->balls; b++)
+        if (made_hit(s, b, from, ray, &at, &n)) {
+            *value = made_shade(s, ray, at, n);
+            return true;
+        }
+    return false;
+}
+
+static inline double made_cloth(int x, int y)
+{
+    return 0.12 + 0.04 * sin(0.7 * x + 2.0 * sin(0.11 * y)) * sin(0.45 * y);
+}
+
+// Three channels, clipped at 1 as a camera does, with noise of `noise`.
+static inline relume_status made_photograph(struct relume_image *out, const struct made_scene *s,
+                                            double noise)
+{
+    uint32_t random = 12345;
+    const relume_status status = relume_image_create(out, MADE_WIDTH, MADE_HEIGHT, 3);
+    for (int i = 0; !status && i < MADE_WIDTH * MADE_HEIGHT; i++) {
+        const int x = i % MADE_WIDTH, y = i / MADE_WIDTH;
+        const double cloth = made_cloth(x, y);
+        double sum = 0.0;
+        for (int k = 0; k < MADE_RAYS * MADE_RAYS; k++) {
+            double value = cloth;
+            made_value(&value, s, x + (k % MADE_RAYS + 0.5) / MADE_RAYS,
+                       y + (k / MADE_RAYS + 0.5) / MADE_RAYS);
+            sum += value;
+        }
+        random = random * 1664525u + 1013904223u;
+        const double v = sum / (MADE_RAYS * MADE_RAYS) + noise * (random / 2147483648.0 - 1.0);
+        for (int c = 0; c < 3; c++)
+            out->data[3 * i + c] = (float)fmin(fmax(v, 0.0), 1.0);
+    }
+    return status;
+}
+
+#endif

@@ -1,0 +1,101 @@
+// Near lights: what a table makes of them is what distant ones would show
+#include "lambert_fixture.h"
+
+// The largest difference between the table of a near capture and `n.D` under distant lights, over
+// lights that meet the plane at more than `least`.
+static double table_error(const struct bump *s, double least)
+{
+    char folder[64];
+    relume_capture *capture = bump_open(s, folder);
+    relume_table *table;
+    const size_t pixels = BUMP_SIDE * BUMP_SIDE;
+    float *v = calloc(3 * BUMP_LIGHTS * pixels, sizeof *v);
+    double worst = 0.0;
+    CHECK_OK(relume_table_open(&table, capture, 0, NULL));
+    CHECK_OK(relume_table_read(table, BUMP_SIDE, v));
+    for (int i = 0; i < BUMP_LIGHTS; i++)
+        for (size_t k = 0; k < pixels; k++) {
+            const struct relume_vec3 n =
+                bump_normal(s, bump_point((int)k % BUMP_SIDE, (int)k / BUMP_SIDE));
+            const double want = 0.7 * bump_dot(n, bump_light(i));
+            if (want > 0.7 * least)
+                worst = fmax(worst, fabs((double)v[3 * ((size_t)i * pixels + k)] - want));
+        }
+    relume_table_destroy(&table);
+    bump_close(&capture, folder);
+    free(v);
+    return worst;
+}
+
+// A matte plane is linear in the light: only the nugget, 1e-3 beside 3000, and the weights between
+// nodes (directions are not linear over 4 of 40 pixels) lose anything.
+static void a_plane_becomes_exact(void **state)
+{
+    (void)state;
+    const struct bump s = {.near = true, .flat = true, .normal_of_plane = {0.05, -0.03, 1}};
+    CHECK_NEAR(table_error(&s, 0.3), 0.0, 0.005);
+}
+
+static void without_falloff(void **state)
+{
+    (void)state;
+    const struct bump s = {
+        .near = true, .flat = true, .no_falloff = true, .normal_of_plane = {0.05, -0.03, 1}};
+    CHECK_NEAR(table_error(&s, 0.3), 0.0, 0.005);
+}
+
+// Images come levelled: as if each pixel were as far from the light as the origin is.
+static void images_are_levelled(void **state)
+{
+    (void)state;
+    char folder[64];
+    const struct bump s = {.near = true};
+    const struct bump level = {.near = true, .no_falloff = true};
+    relume_capture *capture = bump_open(&s, folder);
+    struct relume_image image;
+    CHECK_OK(relume_capture_image(&image, capture, 0, 2, NULL));
+    for (int k = 0; k < BUMP_SIDE * BUMP_SIDE; k++)
+        CHECK_NEAR((double)image.data[3 * k], bump_value(&level, 2, k % BUMP_SIDE, k / BUMP_SIDE),
+                   1e-5);
+    relume_image_destroy(&image);
+    bump_close(&capture, folder);
+}
+
+// Bands of any height and any number of threads give the same bits.
+static void bands_and_threads_agree(void **state)
+{
+    (void)state;
+    char folder[64];
+    relume_capture *capture = bump_open(&(struct bump){.near = true, .gloss = 0.3}, folder);
+    const size_t row = 3 * BUMP_SIDE;
+    float *whole = calloc(BUMP_LIGHTS * BUMP_SIDE * row, sizeof *whole);
+    float *band = calloc(BUMP_LIGHTS * BUMP_SIDE * row, sizeof *band);
+    relume_table *table;
+    CHECK_OK(relume_table_open(&table, capture, 0, relume_table_params(.threads = 1)));
+    CHECK_OK(relume_table_read(table, BUMP_SIDE, whole));
+    relume_table_destroy(&table);
+    CHECK_OK(relume_table_open(&table, capture, 0, relume_table_params(.threads = 3)));
+    for (int y = 0, rows = 7; y < BUMP_SIDE; y += rows) {
+        rows = BUMP_SIDE - y < 7 ? BUMP_SIDE - y : 7;
+        CHECK_OK(relume_table_read(table, rows, band));
+        for (size_t i = 0; i < BUMP_LIGHTS; i++)
+            assert_memory_equal(band + i * (size_t)rows * row,
+                                whole + (i * BUMP_SIDE + (size_t)y) * row,
+                                (size_t)rows * row * sizeof *band);
+    }
+    relume_table_destroy(&table);
+    bump_close(&capture, folder);
+    free(whole);
+    free(band);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_plane_becomes_exact),
+        cmocka_unit_test(without_falloff),
+        cmocka_unit_test(images_are_levelled),
+        cmocka_unit_test(bands_and_threads_agree),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

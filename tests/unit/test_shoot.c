@@ -1,0 +1,123 @@
+// The whole way from ray-traced photographs of balls to a capture with known lights
+#include "made_ball.h"
+#include "test.h"
+
+enum { LAMPS = 4 };
+
+static struct relume_vec3 lamp_at(int i, double distance)
+{
+    const double z = 0.6 + 0.3 * i / LAMPS, phi = 2.4 * i, r = sqrt(1.0 - z * z);
+    return (struct relume_vec3){distance * r * cos(phi), distance * r * sin(phi), distance * z};
+}
+
+struct photographs {
+    char folder[64], out[96];
+    char path[LAMPS][96];
+    const char *list[LAMPS];
+};
+
+// `dark`: one of them shows no lamp; -1: none.
+static void photograph(struct photographs *p, struct made_scene s, double distance, int dark)
+{
+    test_folder(p->folder);
+    snprintf(p->out, sizeof p->out, "%s/out", p->folder);
+    for (int i = 0; i < LAMPS; i++) {
+        struct relume_image image;
+        s.lamp = i == dark ? (struct relume_vec3){0, 0, -9} : lamp_at(i, distance);
+        CHECK_OK(made_photograph(&image, &s, 0.003));
+        char *path = p->path[i];
+        snprintf(path, sizeof p->path[i], "%.63s/p%d.png", p->folder, i);
+        p->list[i] = p->path[i];
+        CHECK_OK(relume_image_save(&image, p->path[i], NULL));
+        relume_image_destroy(&image);
+    }
+}
+
+static struct relume_shoot_params params_of(const struct photographs *p)
+{
+    return (struct relume_shoot_params){.photographs = p->list, .photograph_count = LAMPS};
+}
+
+static void check_positions(double fov_deg, double tolerance)
+{
+    struct made_scene s = {.fov_deg = fov_deg,
+                           .balls = 3,
+                           .middle = {{-0.65, -0.35, 0}, {0.0, 0.38, 0}, {0.65, -0.3, 0}},
+                           .radius = {0.26, 0.26, 0.26},
+                           .brightness = 4.0};
+    struct photographs p;
+    struct relume_shoot shoot;
+    double squares = 0.0;
+    photograph(&p, s, 3.0, -1);
+    struct relume_shoot_params params = params_of(&p);
+    params.near = true;
+    params.balls = 3;
+    params.fov_deg = fov_deg;
+    CHECK_OK(relume_shoot_make(&shoot, p.out, &params));
+    assert_int_equal(shoot.lights, LAMPS);
+    for (int i = 0; i < LAMPS; i++) {
+        const struct relume_vec3 off = made_add(shoot.position[i], lamp_at(i, 3.0), -1.0);
+        squares += made_dot(off, off) / LAMPS;
+    }
+    CHECK_NEAR(sqrt(squares) / 3.0, 0.0, tolerance);
+    assert_true(shoot.position_error < 0.05);
+    relume_capture *capture;
+    CHECK_OK(relume_capture_open(&capture, p.out, NULL));
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    assert_non_null(m->positions);
+    assert_int_equal(m->geometry.perspective, fov_deg > 0.0);
+    CHECK_NEAR(m->positions[2].z, shoot.position[2].z, 1e-6);
+    relume_capture_destroy(&capture);
+    relume_shoot_destroy(&shoot);
+    test_folder_remove(p.folder);
+}
+
+// The target is 2 %; balls of 42 pixels are less than half of what the guide asks for.
+static void positions_orthographic(void **state)
+{
+    (void)state;
+    check_positions(0.0, 0.02);
+}
+
+static void positions_perspective(void **state)
+{
+    (void)state;
+    check_positions(40.0, 0.02);
+}
+
+static void a_dark_photograph(void **state)
+{
+    (void)state;
+    const struct made_scene s = {
+        .balls = 1, .middle = {{0.2, 0, 0}}, .radius = {0.4}, .brightness = 12.0, .distant = true};
+    struct photographs p;
+    struct relume_shoot shoot;
+    struct test_log log;
+    photograph(&p, s, 1.0, 2);
+    struct relume_shoot_params params = params_of(&p);
+    test_log_init(&log);
+    params.log = &log.log;
+    assert_int_equal(relume_shoot_make(&shoot, p.out, &params), RELUME_EDATA);
+    assert_non_null(strstr(log.text, "p2.png"));
+    assert_null(shoot.photo);
+    assert_int_equal(access(p.out, F_OK), -1);
+    params.skip_bad = true;
+    CHECK_OK(relume_shoot_make(&shoot, p.out, &params));
+    assert_int_equal(shoot.lights, LAMPS - 1);
+    assert_true(shoot.warnings > 0);
+    assert_non_null(strstr(shoot.photo[2].path, "p3.png"));
+    relume_shoot_destroy(&shoot);
+    // what exists is not replaced unasked
+    assert_int_equal(relume_shoot_make(&shoot, p.out, &params), RELUME_EINVAL);
+    test_folder_remove(p.folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(positions_orthographic),
+        cmocka_unit_test(positions_perspective),
+        cmocka_unit_test(a_dark_photograph),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,28 @@
+#version 330 core
+// One cell of one of several slabs: the quadralinear basis, times the slab's weight, and the weight.
+#include "texels.glsl"
+#include "slabs_ray.glsl"
+uniform sampler2D view00;  // low u, low v
+uniform sampler2D view10;  // high u, low v
+uniform sampler2D view01;
+uniform sampler2D view11;
+uniform vec4 st;       // st_min, st_max
+uniform vec4 cell;     // low u, low v, high u, high v
+uniform bool nearest;  // the nearest camera instead
+out vec4 color;
+
+void main()
+{
+    vec2 at = (gl_FragCoord.xy - picture.xy) / (picture.zw - picture.xy);
+    vec2 uv, hit;
+    if (!slabs_ray(uv, hit, eye, direction_at(at)) || !in_cell(uv, cell))
+        discard;
+    vec2 part = clamp((uv - cell.xy) / max(cell.zw - cell.xy, vec2(1e-30)), 0.0, 1.0);
+    if (nearest)
+        part = step(0.5, part);
+    vec2 place = (hit - st.xy) / (st.zw - st.xy);
+    vec2 position = vec2(place.x, 1.0 - place.y) * vec2(textureSize(view00, 0));
+    vec3 low = mix(texels_bilinear(view00, position), texels_bilinear(view10, position), part.x);
+    vec3 high = mix(texels_bilinear(view01, position), texels_bilinear(view11, position), part.x);
+    color = slab_weight(uv, hit, st) * vec4(mix(low, high, part.y), 1.0);
+}

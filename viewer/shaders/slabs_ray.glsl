@@ -1,0 +1,56 @@
+// The ray of a pixel in one of several slabs, and what that slab has to say of it; twin of
+// src/view/slabs.c and slabs_frame.c.
+uniform vec4 picture;  // left, top, right, bottom of the picture in the frame
+uniform vec3 eye;      // all of them in the slab's own frame
+uniform vec3 corner;   // of the picture, and its sides, from the eye
+uniform vec3 right;
+uniform vec3 down;
+uniform vec2 planes;  // z of uv and st
+uniform vec4 grid;    // the first and the last lines of the cameras: low u, low v, high u, high v
+uniform float slack;  // cells at the border are open so much wider
+
+const float FADE_UV = 0.25;
+const float FADE_ST = 0.0625;
+const float LEAST = 1e-4;
+
+vec3 direction_at(vec2 at)
+{
+    return corner + at.x * right + at.y * down;
+}
+
+bool slabs_ray(out vec2 uv, out vec2 hit, vec3 from, vec3 direction)
+{
+    float way = (planes.y - from.z) / direction.z;
+    hit = from.xy + way * direction.xy;
+    uv = from.xy + (planes.x - from.z) / (planes.y - from.z) * (hit - from.xy);
+    return way > 0.0;
+}
+
+// Every place of the grid is in one cell.
+bool in_cell(vec2 uv, vec4 of)
+{
+    vec2 low = of.xy - slack * vec2(equal(of.xy, grid.xy));
+    bvec2 last = equal(of.zw, grid.zw);
+    vec2 high = of.zw + slack * vec2(last);
+    return all(greaterThanEqual(uv, low)) && (uv.x < high.x || last.x && uv.x <= high.x) &&
+           (uv.y < high.y || last.y && uv.y <= high.y);
+}
+
+float fade(float inside, float width)
+{
+    return smoothstep(0.0, 1.0, inside / width);
+}
+
+float line_weight(float at, float low, float high)
+{
+    return high > low ? fade(min(at - low, high - at), FADE_UV * (high - low)) : 1.0;
+}
+
+// Within the grid.
+float slab_weight(vec2 uv, vec2 hit, vec4 window)
+{
+    float inside = line_weight(uv.x, grid.x, grid.z) * line_weight(uv.y, grid.y, grid.w);
+    vec2 border = min(hit - window.xy, window.zw - hit);
+    vec2 width = FADE_ST * (window.zw - window.xy);
+    return max(inside, LEAST) * fade(border.x, width.x) * fade(border.y, width.y);
+}

@@ -84,10 +84,10 @@ struct relume_ghost_params {
 };
 #define relume_ghost_params(...) (&(const struct relume_ghost_params){__VA_ARGS__})
 
-// masks[i], one channel: 0 where image i of an aligned bracket disagrees with its reference, else 1.
-// The reference of a pixel is the anchor, or where that is black or saturated the next exposure
-// towards image i that is not; what only image i resolves stays. masks[anchor] is all 1. On failure
-// all masks are empty. RELUME_EINVAL for wrong sizes, RELUME_ENOMEM.
+// masks[i], one channel: 0 where image i of an aligned bracket disagrees with its reference,
+// else 1. The reference of a pixel is the anchor, or where that is black or saturated the next
+// exposure towards image i that is not; what only image i resolves stays. masks[anchor] is all 1.
+// On failure all masks are empty. RELUME_EINVAL for wrong sizes, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_ghost_masks(struct relume_image *masks,
                                                const struct relume_image *codes,
                                                const double *exposures, int n, int anchor,

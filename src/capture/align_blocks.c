@@ -11,16 +11,15 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "capture/blocks.h"
+#include "capture/correlate.h"
 #include "capture/pyramid.h"
 #include "capture/tones.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { SAMPLES = 64, VISITED = 16, FILLED = 32 };
-static const double least_part = 0.1;      // of its parent's score: below, a block stays
-static const double good_match = 0.5;      // correlation of a block that its surroundings follow
-static const double least_overlap = 0.25;  // of a block, with the other picture
+static const double least_part = 0.1;  // of its parent's score: below, a block stays
+static const double good_match = 0.5;  // correlation of a block that its surroundings follow
 
 struct search {
     const struct relume_image *anchor, *image;  // sharpened, at this pyramid level
@@ -31,112 +30,7 @@ struct search {
     bool finest;
 };
 
-// ---------------------------------------------------------------- sharpening
-
-static void sharpen_row(void *context, size_t y, int worker)
-{
-    struct relume_image *const *io = context;
-    (void)worker;
-    const struct relume_image *in = io[0];
-    const size_t n = (size_t)in->channels, width = (size_t)in->width, stride = n * width;
-    const float *row = in->data + y * stride;
-    const float *up = y > 0 ? row - stride : row;
-    const float *down = y + 1 < (size_t)in->height ? row + stride : row;
-    float *out = io[1]->data + y * stride;
-    for (size_t x = 0; x < width; x++)
-        for (size_t c = 0; c < n; c++) {
-            const size_t i = x * n + c, left = x > 0 ? i - n : i, right = x + 1 < width ? i + n : i;
-            out[i] = 2.0f * row[i] - 0.25f * (row[left] + row[right] + up[i] + down[i]);
-        }
-}
-
-// In place, with the kernel 0 -1/4 0, -1/4 2 -1/4, 0 -1/4 0.
-static relume_status sharpen(struct relume_image *image, int threads)
-{
-    struct relume_image out;
-    const relume_status status =
-        relume_image_create(&out, image->width, image->height, image->channels);
-    if (status)
-        return status;
-    struct relume_image *io[2] = {image, &out};
-    thread_for(threads, (size_t)image->height, sharpen_row, io);
-    relume_image_destroy(image);
-    *image = out;
-    return RELUME_OK;
-}
-
 // ---------------------------------------------------------------- the score
-
-struct rectangle {
-    int x, y, width, height;
-};
-
-static struct rectangle clipped(struct rectangle r, int x, int y, int width, int height)
-{
-    const int x1 = r.x + r.width < x + width ? r.x + r.width : x + width;
-    const int y1 = r.y + r.height < y + height ? r.y + r.height : y + height;
-    r.x = r.x > x ? r.x : x;
-    r.y = r.y > y ? r.y : y;
-    r.width = x1 > r.x ? x1 - r.x : 0;
-    r.height = y1 > r.y ? y1 - r.y : 0;
-    return r;
-}
-
-// Sums of a block's samples and products, four at a time (a vector type of GCC and Clang: from
-// loops over arrays neither makes good code); a block has few enough samples for single precision.
-typedef float four __attribute__((vector_size(16)));
-
-struct sums {
-    four b, bb, ab;
-};
-
-static four load(const float *from)
-{
-    four v;
-    memcpy(&v, from, sizeof v);
-    return v;
-}
-
-static void add_row(struct sums *s, const float *a, const float *b, int n)
-{
-    struct sums even = *s, odd = {{0}, {0}, {0}};
-    int i = 0;
-    for (; i + 8 <= n; i += 8) {
-        const four a0 = load(a + i), a1 = load(a + i + 4), b0 = load(b + i), b1 = load(b + i + 4);
-        even.b += b0;
-        even.bb += b0 * b0;
-        even.ab += a0 * b0;
-        odd.b += b1;
-        odd.bb += b1 * b1;
-        odd.ab += a1 * b1;
-    }
-    for (; i < n; i++) {
-        odd.b[0] += b[i];
-        odd.bb[0] += b[i] * b[i];
-        odd.ab[0] += a[i] * b[i];
-    }
-    *s = (struct sums){even.b + odd.b, even.bb + odd.bb, even.ab + odd.ab};
-}
-
-static double total(four v)
-{
-    return ((double)v[0] + (double)v[1]) + ((double)v[2] + (double)v[3]);
-}
-
-struct moments {
-    double a, aa;  // sum of samples, and of squares
-};
-
-static struct moments moments_of(const struct relume_image *image, const struct rectangle *r)
-{
-    const size_t stride = 3 * (size_t)image->width;
-    struct sums sum = {{0}, {0}, {0}};
-    for (int y = r->y; y < r->y + r->height; y++) {
-        const float *row = image->data + (size_t)y * stride + 3 * (size_t)r->x;
-        add_row(&sum, row, row, 3 * r->width);
-    }
-    return (struct moments){total(sum.b), total(sum.bb)};
-}
 
 struct block {
     struct rectangle r;  // inside of the anchor, pixels of the pyramid level
@@ -144,25 +38,10 @@ struct block {
     double contrast;  // |cr| / N, what the correlation is multiplied by
 };
 
-// The correlation of the block with the image at shift (dx, dy), times its contrast: blocks without
-// detail score low. -INFINITY when hardly any of it lies inside of the image.
+// Blocks without detail score low.
 static double score(const struct search *s, const struct block *b, int dx, int dy)
 {
-    const struct rectangle r = clipped(b->r, -dx, -dy, s->image->width, s->image->height);
-    if ((double)r.width * r.height < least_overlap * b->r.width * b->r.height)
-        return (double)-INFINITY;
-    const size_t stride = 3 * (size_t)s->anchor->width;
-    const bool whole = r.width == b->r.width && r.height == b->r.height;
-    const struct moments m = whole ? b->anchor : moments_of(s->anchor, &r);
-    struct sums sum = {{0}, {0}, {0}};
-    for (int y = r.y; y < r.y + r.height; y++)
-        add_row(&sum, s->anchor->data + (size_t)y * stride + 3 * (size_t)r.x,
-                s->image->data + (size_t)(y + dy) * stride + 3 * (size_t)(r.x + dx), 3 * r.width);
-    const double n = 3.0 * r.width * r.height, b1 = total(sum.b);
-    const double aa = m.aa - m.a * m.a / n, bb = total(sum.bb) - b1 * b1 / n;
-    if (!(aa > 1e-6 * n) || !(bb > 1e-6 * n))  // a thousandth of full scale: noise of 8 bits
-        return 0.0;
-    return b->contrast * (total(sum.ab) - m.a * b1 / n) / sqrt(aa * bb);
+    return b->contrast * block_correlation(s->anchor, s->image, &b->r, b->anchor, dx, dy);
 }
 
 // Its scale is that of level 0, whatever the pyramid level.
@@ -299,11 +178,11 @@ static void match_block(const struct search *s, int column, int row)
     const int side = g->side / s->scale;
     start_of(s, column, row, node->d, &above);
     node->score = above;
-    struct block b = {.r = clipped((struct rectangle){x, y, side, side}, 0, 0, s->anchor->width,
-                                   s->anchor->height)};
+    struct block b = {.r = rectangle_clip((struct rectangle){x, y, side, side}, 0, 0,
+                                          s->anchor->width, s->anchor->height)};
     if (b.r.width < 4 || b.r.height < 4)
         return;
-    b.anchor = moments_of(s->anchor, &b.r);
+    b.anchor = block_moments(s->anchor, &b.r);
     b.contrast = contrast_of(s, &b);
     const struct guess best =
         s->parent ? search_block(s, &b, column, row, node->d) : search_root(s, &b);

@@ -20,7 +20,7 @@ relume_status near_open(struct near *out, const relume_capture *capture, int vie
         .height = capture->height,
         .position = m->positions,
         .falls = !m->no_falloff,
-        .geometry = m->geometry,
+        .geometry = m->slabs ? m->slab[m->view[view].slab] : m->geometry,
         .uv = {m->view[view].uv[0], m->view[view].uv[1]},
     };
     return relume_capture_depth(&out->depth, capture, view, log);
@@ -31,7 +31,7 @@ void near_close(struct near *near)
     relume_image_destroy(&near->depth);
 }
 
-vec3 near_point(const struct near *near, double x, double y, double depth)
+static vec3 local_point(const struct near *near, double x, double y, double depth)
 {
     const struct relume_geometry *g = &near->geometry;
     const bool slab = g->projection == RELUME_SLAB;
@@ -46,6 +46,13 @@ vec3 near_point(const struct near *near, double x, double y, double depth)
     const vec3 eye =
         slab ? vec3_of(near->uv[0], near->uv[1], g->uv_z) : vec3_of(0.0, 0.0, g->camera_z);
     return vec3_add(eye, vec3_scale(vec3_unit(vec3_sub(on_plane, eye)), depth));
+}
+
+vec3 near_point(const struct near *near, double x, double y, double depth)
+{
+    const vec3 local = local_point(near, x, y, depth);
+    return near->geometry.projection == RELUME_SLAB ? relume_pose_world(&near->geometry.pose, local)
+                                                    : local;
 }
 
 vec3 near_pixel(const struct near *near, int x, int y)

@@ -27,6 +27,7 @@ struct refiner {
     vec3 *g;                         // [PIXELS]
     bool *known;                     // [PIXELS]
     vec3 *light;                     // [lights]
+    double *bright;                  // [lights]
     struct lambert_sample *scratch;  // [workers][lights]
 };
 
@@ -154,9 +155,7 @@ static void fit_light(void *context, size_t item, int worker)
 // light <- A light with the A that brings the lights nearest to s_i given_i, s_i being free.
 static bool fix_gauge(struct refiner *r, const vec3 *given)
 {
-    double *bright = mem_array((size_t)r->lights, sizeof *bright);
-    if (!bright)
-        return false;
+    double *bright = r->bright;
     for (int i = 0; i < r->lights; i++)
         bright[i] = vec3_length(r->light[i]);
     bool good = true;
@@ -185,7 +184,6 @@ static bool fix_gauge(struct refiner *r, const vec3 *given)
             bright[i] /= mean;
         }
     }
-    free(bright);
     return good;
 }
 
@@ -249,9 +247,10 @@ relume_status relume_lights_refine(struct relume_vec3 *direction, double *intens
     r.g = mem_array(PIXELS, sizeof *r.g);
     r.known = mem_array(PIXELS, sizeof *r.known);
     r.light = mem_copy(m->directions, (size_t)r.lights, sizeof *r.light);
+    r.bright = mem_array((size_t)r.lights, sizeof *r.bright);
     r.scratch = mem_array((size_t)r.threads * (size_t)r.lights, sizeof *r.scratch);
     relume_status status =
-        r.value && r.g && r.known && r.light && r.scratch ? RELUME_OK : RELUME_ENOMEM;
+        r.value && r.g && r.known && r.light && r.bright && r.scratch ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = read_pixels(&r, p.log);
     if (!status && r.pixels < 200)
@@ -269,6 +268,7 @@ relume_status relume_lights_refine(struct relume_vec3 *direction, double *intens
     free(r.g);
     free(r.known);
     free(r.light);
+    free(r.bright);
     free(r.scratch);
     return status;
 }

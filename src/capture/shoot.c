@@ -328,6 +328,7 @@ relume_status relume_shoot_make(struct relume_shoot *out, const char *dir,
         return status;
     s.shot = mem_zeroed((size_t)s.shots, sizeof *s.shot);
     for (int i = 0; s.shot && i < s.shots; i++) {
+        s.shot[i].number = i;
         s.shot[i].path = params->photographs[i];
         s.shot[i].ball_path = params->ball_photographs ? params->ball_photographs[i] : NULL;
     }

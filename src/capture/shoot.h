@@ -11,6 +11,7 @@
 // One photograph and, where balls have photographs of their own, that of the ball under its light.
 struct shot {
     const char *path, *ball_path;  // borrowed
+    int number;                    // among those that were given
     char name[32];                 // of the image in the folder
     struct relume_notes notes;
     struct relume_image small;  // three channels, linear, at most SHOT_SMALL pixels a side
@@ -29,9 +30,9 @@ struct shoot {
     outdir *dir;
     int shots;
     struct shot *shot;
-    int width, height;             // of the photographs
-    struct relume_image first;     // that others are aligned to; empty unless params.align
-    bool has_intensities, linear;  // of the photographs' own values
+    int width, height;          // of the photographs
+    struct relume_image first;  // that others are aligned to; empty unless params.align
+    bool has_intensities;
     // of the photographs in which the balls stand
     struct relume_ball_camera camera;
     struct relume_image mean, peak;

@@ -58,9 +58,7 @@ static relume_status check_scene(struct shoot *s)
             continue;
         }
         if (s->p.skip_bad) {
-            status = shoot_drop(s, i,
-                                "shows another scene, likeness %.2f where %.2f is usual; "
-                                "left out",
+            status = shoot_drop(s, i, "shows another scene, likeness %.2f where %.2f is usual",
                                 like, usual);
             continue;
         }

@@ -47,6 +47,11 @@ static relume_status outline_given(struct shoot *s)
     return RELUME_OK;
 }
 
+static const char *ball_photo(const struct shot *shot)
+{
+    return shot->ball_path ? shot->ball_path : shot->path;
+}
+
 static relume_status find_balls(struct shoot *s)
 {
     struct relume_shoot *out = s->out;
@@ -60,12 +65,18 @@ static relume_status find_balls(struct shoot *s)
     if (s->p.ball)
         return outline_given(s);
     struct relume_image mask;
-    relume_status status = load_mask(s, &mask);
-    if (!status)
+    const relume_status loaded = load_mask(s, &mask);
+    if (loaded)
+        return loaded;
+    relume_status status = relume_ball_find(
+        out->ball, out->balls, &s->mean, &s->camera,
+        relume_ball_params(.mask = mask.data ? &mask : NULL, .peak = s->p.matte ? NULL : &s->peak));
+    if (status == RELUME_EDATA)
         status =
-            relume_ball_find(out->ball, out->balls, &s->mean, &s->camera,
-                             relume_ball_params(.log = s->p.log, .mask = mask.data ? &mask : NULL,
-                                                .peak = s->p.matte ? NULL : &s->peak));
+            log_fail(s->p.log, status,
+                     "%s: fewer than %d ball%s found in it and the other photographs; expected "
+                     "round outlines against the background, or --ball x,y,r",
+                     ball_photo(&s->shot[0]), out->balls, out->balls > 1 ? "s" : "");
     relume_image_destroy(&mask);
     return status;
 }
@@ -116,7 +127,7 @@ static const char *objection(const struct relume_ball_light *l, bool matte)
 
 static relume_status look(struct shoot *s, int i, struct sights *to, const char **why)
 {
-    const char *path = s->shot[i].ball_path ? s->shot[i].ball_path : s->shot[i].path;
+    const char *path = ball_photo(&s->shot[i]);
     struct relume_image image;
     relume_status status =
         relume_photograph_load(&image, NULL, path,
@@ -196,7 +207,7 @@ static relume_status lights_from_balls(struct shoot *s)
         status = warn_cut_off(s);
     for (int i = 0; !status && i < s->shots;) {
         struct sights seen;
-        const char *why, *path = s->shot[i].ball_path ? s->shot[i].ball_path : s->shot[i].path;
+        const char *why, *path = ball_photo(&s->shot[i]);
         status = look(s, i, &seen, &why);
         if (!status && !seen.n) {
             status =
@@ -269,7 +280,7 @@ static int find_name(const struct draft *lp, const char *path)
     return -1;
 }
 
-// order[shot] = line of the .lp file by name; false when none of the names is known.
+// order[shot] = line of the .lp file by name; as they were given when none of the names is known.
 static relume_status match_names(struct shoot *s, int *order, bool *matched)
 {
     struct draft lp;
@@ -283,6 +294,8 @@ static relume_status match_names(struct shoot *s, int *order, bool *matched)
             missing = s->shot[i].path;
     }
     draft_free(&lp);
+    for (int i = 0; !*matched && i < s->shots; i++)
+        order[i] = s->shot[i].number;
     if (!status && *matched && missing)
         status = log_fail(s->p.log, RELUME_EDATA,
                           "%s: does not list '%s'; expected a line for every photograph",
@@ -298,16 +311,16 @@ static relume_status lights_from_file(struct shoot *s)
     int *order = mem_array((size_t)s->shots, sizeof *order);
     relume_status status = order ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; !status && i < s->shots; i++)
-        order[i] = i;
+        order[i] = s->shot[i].number;
     if (!status)
         status = (s->p.near ? read_positions : relume_lights_read)(&v, &n, s->p.lights, s->p.log);
     if (!status && is_lp(s->p.lights))
         status = match_names(s, order, &matched);
-    if (!status && !matched && n != s->shots)
+    if (!status && !matched && n != s->p.photograph_count)
         status = log_fail(s->p.log, RELUME_EDATA, "%s: %d lights; expected %d as photographs",
-                          s->p.lights, n, s->shots);
+                          s->p.lights, n, s->p.photograph_count);
     for (int i = 0; !status && i < s->shots; i++) {
-        const vec3 found = v[matched ? order[i] : i];
+        const vec3 found = v[order[i]];
         s->shot[i].direction = vec3_unit(found);
         s->shot[i].position = found;
     }

@@ -149,7 +149,6 @@ static relume_status take(struct shoot *s, int i, struct relume_image *image)
         return status;
     s->width = image->width;
     s->height = image->height;
-    s->linear = shot->notes.linear;
     count_ends(shot, image, shot->notes.floats);
     status = align(s, i, image);
     if (!status)
@@ -172,7 +171,7 @@ relume_status shoot_read(struct shoot *s)
             status = take(s, i, &image);
         relume_image_destroy(&image);
         if (status == RELUME_EDATA && s->p.skip_bad)
-            status = shoot_drop(s, i, "cannot be used; left out");
+            status = shoot_drop(s, i, "cannot be used");
         else
             i++;
         if (!status && !log_progress(s->p.log, "reading", (done + 1.0) / all))

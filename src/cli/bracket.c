@@ -6,9 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { THUMB = 320 };
-static const double least_likeness = 0.15;
-static const double clear_ratio = 1.4, clear_codes = 0.02;  // longer must not be darker
 static const double clear_bias_ev = 0.3;
 
 // ---------------------------------------------------------------- leaving out
@@ -20,18 +17,31 @@ static void say_softly(void *user, enum relume_level level, const char *text)
     log->message(log->user, level == RELUME_ERROR ? RELUME_WARNING : level, text);
 }
 
-static void drop(struct bracket *b, int i)
+static struct relume_log softly(const struct args *args)
+{
+    struct relume_log soft = *args_log(args);
+    soft.message = say_softly;
+    soft.user = (void *)args_log(args);
+    return soft;
+}
+
+void bracket_drop(struct bracket *b, int i)
 {
     relume_image_destroy(&b->codes[i]);
+    relume_image_destroy(&b->masks[i]);
+    b->anchor -= i < b->anchor;
     for (b->n--; i < b->n; i++) {
         b->path[i] = b->path[i + 1];
         b->notes[i] = b->notes[i + 1];
         b->codes[i] = b->codes[i + 1];
+        b->masks[i] = b->masks[i + 1];
+        b->exposure[i] = b->exposure[i + 1];
+        b->shift[i] = b->shift[i + 1];
     }
-    b->codes[b->n] = (struct relume_image){0};
+    b->codes[b->n] = b->masks[b->n] = (struct relume_image){0};
 }
 
-static relume_status at_least_one(const struct bracket *b)
+relume_status bracket_remains(const struct bracket *b)
 {
     return b->n > 0 ? RELUME_OK : data_error("capture: no photograph is left; expected some");
 }
@@ -53,9 +63,7 @@ static relume_status check_size(const struct bracket *b, int i, const struct rel
 relume_status bracket_load(struct bracket *b, const struct args *args)
 {
     const bool skip = args_has(args, "--skip-bad");
-    struct relume_log soft = *args_log(args);
-    soft.message = say_softly;
-    soft.user = (void *)args_log(args);
+    const struct relume_log soft = softly(args);
     const struct relume_log *log = skip ? &soft : args_log(args);
     for (int i = 0; i < b->n;) {
         const struct relume_notes noted = b->notes[i];
@@ -68,7 +76,7 @@ relume_status bracket_load(struct bracket *b, const struct args *args)
         if (!status)
             status = check_size(b, i, log);
         if (status == RELUME_EDATA && skip)
-            drop(b, i);
+            bracket_drop(b, i);
         else if (status)
             return status;
         else
@@ -76,113 +84,7 @@ relume_status bracket_load(struct bracket *b, const struct args *args)
     }
     for (int i = 0; i < b->n; i++)
         b->exposure[i] = relume_notes_exposure(&b->notes[i]);
-    return at_least_one(b);
-}
-
-// ---------------------------------------------------------------- one scene, plausible times
-
-static relume_status shrink(struct relume_image *out, const struct relume_image *image)
-{
-    const int longer = image->width > image->height ? image->width : image->height;
-    const int step = (longer + THUMB - 1) / THUMB;
-    const relume_status status =
-        relume_image_create(out, image->width / step, image->height / step, 3);
-    if (status)
-        return status;
-    for (int y = 0; y < out->height * step; y++)
-        for (int x = 0; x < out->width * step; x++)
-            for (int c = 0; c < 3; c++)
-                out->data[3 * (y / step * out->width + x / step) + c] +=
-                    image->data[3 * ((size_t)y * (size_t)image->width + (size_t)x) + (size_t)c] /
-                    (float)(step * step);
-    return RELUME_OK;
-}
-
-// Exposures next to each other show the same edges; so do the next but one.
-static relume_status check_scene(struct bracket *b, const int *order, const struct args *args)
-{
-    struct relume_image thumb[MAX_BRACKET] = {{0}};
-    double likeness[MAX_BRACKET];
-    relume_status status = RELUME_OK;
-    int foreign = -1;
-    for (int i = 0; !status && i < b->n; i++)
-        status = shrink(&thumb[i], &b->codes[order[i]]);
-    for (int i = 0; i < b->n; i++)
-        likeness[i] = (double)NAN;
-    for (int i = 0; !status && i < b->n; i++)
-        for (int j = i + 1; j < b->n && j <= i + 2; j++) {
-            const double l = relume_likeness(&thumb[i], &thumb[j]);
-            likeness[i] = fmax(likeness[i], l);
-            likeness[j] = fmax(likeness[j], l);
-        }
-    for (int i = 0; !status && b->n > 1 && i < b->n; i++)
-        if (likeness[i] < least_likeness && (foreign < 0 || likeness[i] < likeness[foreign]))
-            foreign = i;
-    for (int i = 0; i < b->n; i++)
-        relume_image_destroy(&thumb[i]);
-    if (status || foreign < 0)
-        return status;
-    const char *path = b->path[order[foreign]];
-    if (!args_has(args, "--skip-bad"))
-        return data_error(
-            "%s: another scene than the other exposures, or not aligned (likeness "
-            "%.2f); expected %.2f or more; leave it out, or try --align or --skip-bad",
-            path, likeness[foreign], least_likeness);
-    char text[1024];
-    snprintf(text, sizeof text,
-             "%s: another scene than the other exposures (likeness %.2f); left out", path,
-             likeness[foreign]);
-    args_log(args)->message(args_log(args)->user, RELUME_WARNING, text);
-    drop(b, order[foreign]);
-    return at_least_one(b);
-}
-
-static double mean_code(const struct relume_image *codes)
-{
-    const size_t samples = 3 * (size_t)codes->width * (size_t)codes->height;
-    double sum = 0.0;
-    for (size_t i = 0; i < samples; i++)
-        sum += (double)codes->data[i];
-    return sum / (double)samples;
-}
-
-static relume_status check_order(const struct bracket *b, const int *order)
-{
-    double mean[MAX_BRACKET];
-    for (int i = 0; i < b->n; i++)
-        mean[i] = mean_code(&b->codes[order[i]]);
-    for (int i = 0; i + 1 < b->n; i++)
-        if (b->exposure[order[i + 1]] > clear_ratio * b->exposure[order[i]] &&
-            mean[i + 1] < mean[i] - clear_codes)
-            return data_error("%s: darker than %s though its exposure is %.3g times as long; the "
-                              "times contradict the pictures; expected --times with the true ones",
-                              b->path[order[i + 1]], base_name(b->path[order[i]]),
-                              b->exposure[order[i + 1]] / b->exposure[order[i]]);
-    return RELUME_OK;
-}
-
-static void sort_by_exposure(const struct bracket *b, int *order)
-{
-    for (int i = 0; i < b->n; i++) {
-        int at = i;
-        for (; at > 0 && b->exposure[order[at - 1]] > b->exposure[i]; at--)
-            order[at] = order[at - 1];
-        order[at] = i;
-    }
-}
-
-relume_status bracket_check(struct bracket *b, const struct args *args)
-{
-    int order[MAX_BRACKET];
-    sort_by_exposure(b, order);
-    const int before = b->n;
-    relume_status status = check_scene(b, order, args);
-    if (!status && b->n < before) {
-        for (int i = 0; i < b->n; i++)
-            b->exposure[i] = relume_notes_exposure(&b->notes[i]);
-        sort_by_exposure(b, order);
-    }
-    return status ? status : check_order(b, order);
+    return bracket_remains(b);
 }
 
 // ---------------------------------------------------------------- alignment
@@ -244,20 +146,26 @@ static relume_status align_one(struct bracket *b, int i, enum align_mode mode,
 
 relume_status bracket_align(struct bracket *b, enum align_mode mode, const struct args *args)
 {
-    relume_status status = RELUME_OK;
+    const bool skip = args_has(args, "--skip-bad");
+    const struct relume_log soft = softly(args), *log = skip ? &soft : args_log(args);
     b->anchor = relume_align_anchor(b->codes, b->n);
-    for (int i = 0; !status && mode != ALIGN_NONE && i < b->n; i++) {
-        struct prefix_log log;
+    b->aligned = mode != ALIGN_NONE;
+    for (int i = 0; b->aligned && i < b->n; i++) {
+        struct prefix_log about;
         if (i == b->anchor)
             continue;
-        status = align_one(b, i, mode,
-                           relume_align_params(.log = prefix_log(&log, args_log(args), b->path[i]),
-                                               .threads = args_threads(args)));
-        if (!status &&
-            !args_log(args)->progress(args_log(args)->user, "aligning", (i + 1.0) / b->n))
-            status = RELUME_ECANCEL;
+        const relume_status status =
+            align_one(b, i, mode,
+                      relume_align_params(.log = prefix_log(&about, log, b->path[i]),
+                                          .threads = args_threads(args)));
+        if (status == RELUME_EDATA && skip)
+            bracket_drop(b, i--);
+        else if (status)
+            return status;
+        if (!log->progress(args_log(args)->user, "aligning", (i + 1.0) / b->n))
+            return RELUME_ECANCEL;
     }
-    return status;
+    return RELUME_OK;
 }
 
 // ---------------------------------------------------------------- merge

@@ -8,6 +8,7 @@ enum { MAX_BRACKET = 64 };
 
 struct bracket {
     int n, anchor;
+    bool aligned;  // to the anchor
     const char *path[MAX_BRACKET];
     struct relume_notes notes[MAX_BRACKET];
     struct relume_image codes[MAX_BRACKET], masks[MAX_BRACKET];  // masks may be empty: all good
@@ -25,11 +26,14 @@ enum align_mode { ALIGN_NONE, ALIGN_BLOCKS, ALIGN_HOMOGRAPHY };
 // Reads the photographs that `path`, `notes` and `n` name. With `skip_bad` those that cannot be
 // read or are of another size are left out with a warning.
 relume_status bracket_load(struct bracket *b, const struct args *args);
-// Exposures in the order of brightness, one scene, more than one exposure.
+// One scene, and longer exposures are brighter.
 relume_status bracket_check(struct bracket *b, const struct args *args);
 relume_status bracket_align(struct bracket *b, enum align_mode mode, const struct args *args);
 relume_status bracket_merge(struct bracket *b, enum relume_merge_weights weights,
                             const struct args *args);
+// Leave photograph i out; RELUME_EDATA with a sentence when none remains.
+void bracket_drop(struct bracket *b, int i);
+relume_status bracket_remains(const struct bracket *b);
 void bracket_free(struct bracket *b);
 
 #endif

@@ -157,11 +157,9 @@ static relume_status run_bracket(struct bracket *b, const struct choices *c, con
 {
     const char *flat = args_text(args, "--flat", NULL);
     relume_status status = bracket_load(b, args);
-    if (!status && c->align == ALIGN_NONE)
-        status = bracket_check(b, args);
     if (!status)
         status = bracket_align(b, c->align, args);
-    if (!status && c->align != ALIGN_NONE)
+    if (!status)
         status = bracket_check(b, args);
     if (!status)
         status = bracket_merge(b, c->weights, args);
@@ -172,9 +170,9 @@ static relume_status run_bracket(struct bracket *b, const struct choices *c, con
     if (!status)
         status = relume_image_save(
             &b->out, output,
-            relume_image_params(.log = args_log(args),
-                                .threads = args_threads(args) > 0 ? args_threads(args)
-                                                                  : relume_cpu_count()));
+            relume_image_params(.log = args_log(args), .threads = args_threads(args) > 0
+                                                                      ? args_threads(args)
+                                                                      : relume_cpu_count()));
     if (status)
         return status;
     if (args_has(args, "--json"))

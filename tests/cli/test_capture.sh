@@ -44,6 +44,7 @@ bad() { # name, pattern, options...
     shift 2
     expect_fail "$name" 1 "$pattern" out "$RELUME" capture "$@" -o out
 }
+bad 'a matte sphere is no mirror' 'photos/.*bright all over' photos
 bad 'highlight off the ball' 'light.*0000.*ball at 15' photos --ball 15,15,8
 head -n 11 lights.txt >few.txt
 bad 'too few lights' 'few.txt: 11 lights; expected 12' photos --lights few.txt
@@ -66,8 +67,12 @@ expect_fail 'positions of one ball' 2 'two balls' out "$RELUME" capture photos -
 expect_fail 'an option of brackets' 2 'goes with --hdr' out "$RELUME" capture photos --ghosts -o out
 expect_fail 'a folder that is there' 2 'known' - "$RELUME" capture photos --lights lights.txt -o known
 # a line of numbers for each light, the broken one's too
-expect_ok 'a broken one is left out' 'left out' "$RELUME" capture mixed --matte --ball 48,48,21.6 -o out --skip-bad
+expect_ok 'a broken one is left out' 'left out' "$RELUME" capture mixed --lights lights.txt -o out --skip-bad
 check 'eleven are left' test "$(head -n 1 out/lights.lp)" = 11
+sed 5d lights.txt >eleven.txt
+mv lights.txt twelve.txt && mv eleven.txt lights.txt
+below 'the others keep their lights' "$(angles out)" 0.01
+mv twelve.txt lights.txt
 rm -rf out
 
 # ---- names of a .lp file decide, whatever the order

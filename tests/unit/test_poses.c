@@ -274,7 +274,7 @@ static void wrong_files_are_refused(void **state)
         }
         struct relume_pack_contents contents = {.coder = coder,
                                                 .domain = RELUME_DOMAIN_LINEAR,
-                                                .display = {RELUME_CURVE_SRGB, 0},
+                                                .display = {.curve = RELUME_CURVE_SRGB},
                                                 .slabs = SLABS,
                                                 .slab = slab,
                                                 .views = VIEWS,

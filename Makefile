@@ -80,7 +80,8 @@ FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 
-.PHONY: all lib cli viewer deps deps-web deps-stitch demo figures test check check-threads bench fuzz headers layers format install clean
+.PHONY: all lib cli viewer deps deps-web deps-stitch demo tour figures test check check-threads bench fuzz headers layers format install \
+        clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
 lib: $B/librelume.a $B/librelume.so $(MODULE) $(STITCH)
@@ -221,6 +222,10 @@ fuzz: $(FUZZ)
 
 demo: all
 	@scripts/demo.sh $B build/demo
+
+# A film of everything the viewer does: build/tour/film.mp4, or a folder of pictures without ffmpeg
+tour: all
+	@scripts/tour.sh $B build/tour
 
 # The pictures of docs/figures.md
 figures: cli $B/samples/figures

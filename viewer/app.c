@@ -5,6 +5,7 @@
 #include "lamps.h"
 #include "orbit.h"
 #include "say.h"
+#include "vec.h"
 
 #include <relume/tone.h>
 
@@ -101,35 +102,51 @@ static bool behind_cameras(const struct app_file *file, double z)
 relume_status app_start(struct app *app, const struct app_file *file, const struct app_state *start,
                         bool look_ahead, const struct relume_log *log)
 {
-    *app = (struct app){.file = *file, .start = *start};
-    struct app_state *s = &app->start;
-    choose_framing(&s->camera, file, look_ahead);
-    relume_status status = check_camera(&s->camera, file, log);
+    struct relume_camera camera = start->camera;
+    *app = (struct app){.file = *file};
+    choose_framing(&camera, file, look_ahead);
+    relume_status status = check_camera(&camera, file, log);
     if (!status)
-        status = check_around(&s->camera, file, start, log);
+        status = check_around(&camera, file, start, log);
     if (status)
         return status;
-    if (!s->focused)
-        s->focus_z = file->geometry.st_z;
-    else if (file->geometry.projection == RELUME_SLAB && behind_cameras(file, s->focus_z))
+    if (start->focused && file->geometry.projection == RELUME_SLAB &&
+        behind_cameras(file, start->focus_z))
         return say(log, RELUME_EINVAL,
                    "--focus: expected a plane in front of the cameras at z = %g; found z = %g",
-                   file->geometry.uv_z, s->focus_z);
+                   file->geometry.uv_z, start->focus_z);
+    struct app_state *s = &app->start;
+    if (!lamps_copy(s, start))
+        return RELUME_ENOMEM;
+    s->camera = camera;
+    if (!s->focused)
+        s->focus_z = file->geometry.st_z;
     if (s->camera.look.zoom <= 0.0)
         s->camera.look.zoom = 1.0;
     s->zoom = 1.0;
     if (s->white <= 0.0)
         s->white = RELUME_TONE_WHITE;
-    if (!s->lights) {
-        s->light[0] = (struct relume_light){.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
-        s->lamp[0].entry = -1;
-        s->lights = 1;
+    const struct relume_light front = {.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
+    if ((!s->lights && !lamps_add(s, &front, -1)) || !lamps_copy(&app->now, s)) {
+        app_release(app);
+        return RELUME_ENOMEM;
     }
     const bool look = s->camera.framing == RELUME_FRAME_LOOK;
     app->width = s->camera.width ? s->camera.width : look ? 1024 : file->width;
     app->height = s->camera.height ? s->camera.height : look ? 512 : file->height;
-    app->now = app->start;
     return RELUME_OK;
+}
+
+void app_release(struct app *app)
+{
+    lamps_release(&app->start);
+    lamps_release(&app->now);
+}
+
+void app_reset(struct app *app)
+{
+    (void)lamps_copy(&app->now, &app->start);
+    app_stand_still(app);
 }
 
 // ---------------------------------------------------------------- picture
@@ -222,16 +239,11 @@ struct app_axes app_frame_axes(const struct app *app)
     };
 }
 
-static double dot(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 struct relume_vec3 app_seen_light(const struct app *app, int light)
 {
     const struct app_axes a = app_frame_axes(app);
     const struct relume_vec3 d = lamps_direction(&app->now.light[light], app_middle(app));
-    return (struct relume_vec3){dot(d, a.right), dot(d, a.up), dot(d, a.back)};
+    return (struct relume_vec3){vec_dot(d, a.right), vec_dot(d, a.up), vec_dot(d, a.back)};
 }
 
 void app_aim_light(struct app *app, int light, struct relume_vec3 seen)
@@ -243,6 +255,14 @@ void app_aim_light(struct app *app, int light, struct relume_vec3 seen)
         seen.x * a.right.z + seen.y * a.up.z + seen.z * a.back.z,
     };
     lamps_aim(&app->now, light, world, app_middle(app));
+}
+
+void app_point_light(struct app *app, int light, double x, double y)
+{
+    const double r = fmax(hypot(x, y), 1);
+    const double side = app_seen_light(app, light).z < 0 ? -1 : 1;
+    const double z = sqrt(fmax(1 - (x * x + y * y) / (r * r), 0));
+    app_aim_light(app, light, (struct relume_vec3){x / r, y / r, side * z});
 }
 
 void app_turn_light(struct app *app, double yaw_deg, double pitch_deg)

@@ -10,7 +10,7 @@
 #include <relume/relight.h>
 #include <relume/slabs.h>
 
-enum { APP_LIGHTS = 64 };  // lights at once; display-domain files pay for each
+enum { APP_LIGHTS = 65536 };  // lights at once, as RELUME_RIG_MOST
 
 enum app_event_kind {
     APP_PRESS,
@@ -67,7 +67,7 @@ struct app_lamp {
     int entry;     // of the rig that it came from; -1: none
 };
 
-// What can be reset.
+// What can be reset. A copy by value shares its lights: see lamps_copy.
 struct app_state {
     struct relume_camera camera;              // framing is never DEFAULT
     double zoom;                              // of the picture; 1 fits the frame
@@ -77,12 +77,12 @@ struct app_state {
     double focus_z;                           // slab: the plane in focus ...
     bool focused;                             // ... at the start; else the st plane
     double exposure_ev;
-    bool auto_exposure;  // on top of exposure_ev
-    int tone;            // place in relume_tones
-    double white;        // as relume_tone_params
-    struct relume_light light[APP_LIGHTS];
-    struct app_lamp lamp[APP_LIGHTS];  // by light
-    int lights;
+    bool auto_exposure;          // on top of exposure_ev
+    int tone;                    // place in relume_tones
+    double white;                // as relume_tone_params
+    struct relume_light *light;  // [lights], with room for more
+    struct app_lamp *lamp;       // by light
+    int lights, room;
     int selected;  // light that drags and keys change
     bool ball;     // show the light's direction on a ball in the corner
     enum relume_pass pass;
@@ -98,11 +98,12 @@ enum app_wish {
     APP_WISH_SAVE_RIG,
     APP_WISH_SWEEP,      // a recording
     APP_WISH_TURNTABLE,  // a recording
-    APP_WISH_ADD_LIGHT   // of the SPEC app.spec
+    APP_WISH_ADD_LIGHT,  // of the SPEC app.spec
+    APP_WISH_MAP         // the environment map of the file app.spec
 };
 enum { APP_SPEC = 1024 };
 
-// Thread-safety: plain data.
+// Owns its lists of lights. Thread-safety: plain data.
 struct app {
     struct app_file file;
     struct app_state start, now;
@@ -128,9 +129,14 @@ struct app {
 // A file seen as `start` says; a DEFAULT framing becomes what suits the file: the eye in the middle
 // of a slab, a look ahead in a panorama when `look_ahead`, else view 0. Without lights there is one
 // from the front. The frame is as large as `camera` says, else as the file implies. RELUME_EINVAL
-// when the camera does not fit the file, with a sentence in `log`.
+// when the camera does not fit the file, with a sentence in `log`; RELUME_ENOMEM. `start` is
+// copied.
 relume_status app_start(struct app *app, const struct app_file *file, const struct app_state *start,
                         bool look_ahead, const struct relume_log *log);
+
+void app_release(struct app *app);
+// As it was at the start.
+void app_reset(struct app *app);
 
 // Returns whether the picture changed.
 bool app_handle(struct app *app, const struct app_event *event);
@@ -169,6 +175,8 @@ struct app_axes app_frame_axes(const struct app *app);
 struct relume_vec3 app_seen_light(const struct app *app, int light);
 // Let it come from there (unit). Near lights move on a sphere about app_middle.
 void app_aim_light(struct app *app, int light, struct relume_vec3 seen);
+// Let it come from (x, y) of a unit ball seen from the front, on the half that it came from.
+void app_point_light(struct app *app, int light, double x, double y);
 // Turn the selected light about the frame's up (> 0: to the right) and right (> 0: down).
 void app_turn_light(struct app *app, double yaw_deg, double pitch_deg);
 // The eye's distance from the st plane (several slabs: from the middle) times `factor`, within

@@ -7,10 +7,18 @@
 
 // What the user did; `dropped` is a file put onto the window, valid until the next call.
 struct context_event {
-    enum { CONTEXT_INPUT, CONTEXT_DROP, CONTEXT_CLOSE } kind;
+    enum { CONTEXT_INPUT, CONTEXT_DROP, CONTEXT_SCALE, CONTEXT_CLOSE } kind;
     struct app_event input;
     const char *dropped;
+    double scale;  // SCALE: as context_backend.scale from now on
 };
+
+// Screens may have more pixels than window units: a place along one axis of a window, in pixels of
+// its picture. A window without extent (minimised) maps one to one.
+static inline double context_pixels(double at, int units, int pixels)
+{
+    return units > 0 && pixels > 0 ? at * pixels / units : at;
+}
 
 // A source of contexts. Thread-safety: main thread only; one open context at a time.
 struct context_backend {
@@ -22,7 +30,7 @@ struct context_backend {
     gl_proc (*get_proc)(const char *name);
     // Pixels of the picture that `show` shows.
     void (*size)(void *context, int *width, int *height);
-    // Pixels per unit of the desktop; 1 on ordinary screens.
+    // How many pixels are as large as one on ordinary screens: for letters.
     double (*scale)(void *context);
     void (*show)(void *context, const char *title);
     // The next event; false when there is none (with `wait` only after sleeping for one).

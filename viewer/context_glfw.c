@@ -34,20 +34,16 @@ static void push_input(GLFWwindow *handle, struct app_event input)
     push(handle, (struct context_event){.kind = CONTEXT_INPUT, .input = input});
 }
 
-// Screens may have more pixels than window units.
-static double pixels_per_unit(GLFWwindow *handle)
-{
-    int units = 1, pixels = 1;
-    glfwGetWindowSize(handle, &units, NULL);
-    glfwGetFramebufferSize(handle, &pixels, NULL);
-    return units > 0 ? (double)pixels / units : 1.0;
-}
-
 static struct app_event at_cursor(GLFWwindow *handle, enum app_event_kind kind)
 {
     const struct window *w = glfwGetWindowUserPointer(handle);
-    const double scale = pixels_per_unit(handle);
-    return (struct app_event){.kind = kind, .x = w->cursor[0] * scale, .y = w->cursor[1] * scale};
+    struct app_event e = {.kind = kind};
+    int units[2], pixels[2];
+    glfwGetWindowSize(handle, &units[0], &units[1]);
+    glfwGetFramebufferSize(handle, &pixels[0], &pixels[1]);
+    e.x = context_pixels(w->cursor[0], units[0], pixels[0]);
+    e.y = context_pixels(w->cursor[1], units[1], pixels[1]);
+    return e;
 }
 
 static void on_move(GLFWwindow *handle, double x, double y)
@@ -145,6 +141,12 @@ static void on_drop(GLFWwindow *handle, int count, const char **paths)
     push(handle, (struct context_event){.kind = CONTEXT_DROP, .dropped = w->dropped});
 }
 
+static void on_scale(GLFWwindow *handle, float across, float down)
+{
+    (void)down;
+    push(handle, (struct context_event){.kind = CONTEXT_SCALE, .scale = (double)across});
+}
+
 static void on_close(GLFWwindow *handle)
 {
     push(handle, (struct context_event){.kind = CONTEXT_CLOSE});
@@ -160,6 +162,7 @@ static void listen(GLFWwindow *handle)
     glfwSetFramebufferSizeCallback(handle, on_size);
     glfwSetWindowRefreshCallback(handle, on_refresh);
     glfwSetDropCallback(handle, on_drop);
+    glfwSetWindowContentScaleCallback(handle, on_scale);
     glfwSetWindowCloseCallback(handle, on_close);
 }
 
@@ -199,6 +202,7 @@ static relume_status open_window(void **out, int width, int height, const char *
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);
     w->handle = glfwCreateWindow(width, height, title, NULL, NULL);
     if (!w->handle) {
         const relume_status status = no_window(log, "no window with OpenGL 3.3");
@@ -228,7 +232,9 @@ static void size(void *context, int *width, int *height)
 static double scale(void *context)
 {
     const struct window *w = context;
-    return pixels_per_unit(w->handle);
+    float across = 1.0f;
+    glfwGetWindowContentScale(w->handle, &across, NULL);
+    return (double)across;
 }
 
 static void show(void *context, const char *title)

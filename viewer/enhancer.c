@@ -2,9 +2,11 @@
 
 #include "app.h"
 #include "say.h"
+#include "vec.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { DETAIL = 4 };  // pixels: what is finer counts as detail
 
@@ -20,17 +22,25 @@ enum {
     PASS,
     TOWARDS_GIVEN,
     LIGHTS,
-    DIRECTION,
-    VALUE,
+    LAMPS,
     STRENGTH,
     COUNT
 };
 static const char *const uniforms[] = {
-    "rectangle", "frame_size", "view",          "normals", "albedos",   "details", "towards",
-    "reference", "pass",       "towards_given", "lights",  "direction", "value",   "strength",
+    "rectangle", "frame_size", "view",          "normals", "albedos", "details",  "towards",
+    "reference", "pass",       "towards_given", "lights",  "lamps",   "strength",
 };
 // Texture units, by their uniform
-enum { UNIT_VIEW, UNIT_NORMALS, UNIT_ALBEDOS, UNIT_DETAILS, UNIT_TOWARDS, UNIT_REFERENCE };
+enum {
+    UNIT_VIEW,
+    UNIT_NORMALS,
+    UNIT_ALBEDOS,
+    UNIT_DETAILS,
+    UNIT_TOWARDS,
+    UNIT_REFERENCE,
+    UNIT_LAMPS
+};
+enum { LAMPS_WIDE = 512 };
 
 // gain, specular, exponent, top: the defaults of relume_pass_params
 static const float strength[4] = {2.0f, 0.6f, 40.0f, 1.0f};
@@ -46,6 +56,7 @@ relume_status enhancer_create(struct enhancer *e, const struct gl *gl,
     if (!e->view)
         return RELUME_ENOMEM;
     gl->GenVertexArrays(1, &e->vertices);
+    gl->GenTextures(1, &e->lamps);
     return program_create(&e->program, gl, "enhance.frag", uniforms, COUNT, log);
 }
 
@@ -72,6 +83,7 @@ void enhancer_destroy(struct enhancer *e)
         e->gl->DeleteTextures(4, textures);
         target_destroy(&v->shown, e->gl);
     }
+    e->gl->DeleteTextures(1, &e->lamps);
     e->gl->DeleteTextures(RELUME_MOST_SLABS, e->towards);
     e->gl->DeleteVertexArrays(1, &e->vertices);
     program_destroy(&e->program, e->gl);
@@ -224,28 +236,34 @@ static relume_status prepare(struct enhancer *e, int view, const struct target *
     return status;
 }
 
-static void set_lights(const struct enhancer *e, const struct relume_light *lights, int n)
+// The directional ones, as enhance.frag reads them. RELUME_ENOMEM.
+static relume_status set_lights(const struct enhancer *e, const struct relume_light *lights, int n)
 {
-    float direction[APP_LIGHTS][3];
-    float value[APP_LIGHTS][3];
+    const struct gl *gl = e->gl;
+    const int rows = 2 * (n / LAMPS_WIDE + 1);
+    float(*texel)[3] = calloc((size_t)rows * LAMPS_WIDE, sizeof *texel);
     int count = 0;
-    for (int i = 0; i < n && count < APP_LIGHTS; i++) {
-        const struct relume_vec3 d = lights[i].direction;
-        const double scale = 1 / sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+    if (!texel)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < n; i++) {
+        const struct relume_vec3 d = vec_unit(lights[i].direction);
         if (lights[i].kind != RELUME_LIGHT_DIRECTIONAL)
             continue;
-        direction[count][0] = (float)(d.x * scale);
-        direction[count][1] = (float)(d.y * scale);
-        direction[count][2] = (float)(d.z * scale);
-        for (int c = 0; c < 3; c++)
-            value[count][c] = lights[i].rgb[c];
+        float *direction = texel[2 * (count / LAMPS_WIDE) * LAMPS_WIDE + count % LAMPS_WIDE];
+        direction[0] = (float)d.x;
+        direction[1] = (float)d.y;
+        direction[2] = (float)d.z;
+        memcpy(direction + 3 * LAMPS_WIDE, lights[i].rgb, sizeof lights[i].rgb);
         count++;
     }
-    e->gl->Uniform1i(e->program.at[LIGHTS], count);
-    if (!count)
-        return;
-    e->gl->Uniform3fv(e->program.at[DIRECTION], count, direction[0]);
-    e->gl->Uniform3fv(e->program.at[VALUE], count, value[0]);
+    texture_use(gl, UNIT_LAMPS, GL_TEXTURE_2D, e->lamps);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGB32F, LAMPS_WIDE, rows, 0, GL_RGB, GL_FLOAT, texel);
+    texture_settings(gl, GL_TEXTURE_2D);
+    gl->Uniform1i(e->program.at[LIGHTS], count);
+    gl->Uniform1i(e->program.at[LAMPS], UNIT_LAMPS);
+    free(texel);
+    return RELUME_OK;
 }
 
 static void set_textures(const struct enhancer *e, int view, const struct target *relit)
@@ -270,14 +288,16 @@ relume_status enhancer_view(const struct target **out, struct enhancer *e, int v
 {
     const struct gl *gl = e->gl;
     const struct enhanced_view *v = &e->view[view];
-    const relume_status status = prepare(e, view, relit, pass, lights, n);
+    relume_status status = prepare(e, view, relit, pass, lights, n);
     if (status)
         return status;
     gl->BindVertexArray(e->vertices);
     target_begin(&v->shown, gl);
     gl->UseProgram(e->program.id);
     set_textures(e, view, relit);
-    set_lights(e, lights, n);
+    status = set_lights(e, lights, n);
+    if (status)
+        return status;
     gl->Uniform1i(e->program.at[PASS], (GLint)pass);
     gl->Uniform4f(e->program.at[STRENGTH], strength[0], strength[1], strength[2], strength[3]);
     gl->Uniform4f(e->program.at[RECTANGLE], 0, 0, (float)relit->width, (float)relit->height);

@@ -2,6 +2,7 @@
 
 #include "lamps.h"
 #include "orbit.h"
+#include "vec.h"
 
 #include <math.h>
 
@@ -86,26 +87,16 @@ static void drag_before_window(struct relume_vec3 *p, const struct app *app, dou
     p->y = scale == 1 ? t : eye.y + (t - eye.y) / scale;
 }
 
-static struct relume_vec3 minus(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return (struct relume_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
-static double dot(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 static bool place_in_look(double xy[2], const struct app *app, struct relume_vec3 p)
 {
     const struct app_axes a = app_frame_axes(app);
-    const struct relume_vec3 d = minus(p, app_middle(app));
-    const double ahead = -dot(d, a.back);
+    const struct relume_vec3 d = vec_sub(p, app_middle(app));
+    const double ahead = -vec_dot(d, a.back);
     const double scale = 0.5 * app->width * app->now.camera.look.zoom / ahead;
     if (!(ahead > 1e-9))
         return false;
-    xy[0] = 0.5 * app->width + scale * dot(d, a.right);
-    xy[1] = 0.5 * app->height - scale * dot(d, a.up);
+    xy[0] = 0.5 * app->width + scale * vec_dot(d, a.right);
+    xy[1] = 0.5 * app->height - scale * vec_dot(d, a.up);
     return true;
 }
 
@@ -113,7 +104,7 @@ static void drag_in_look(struct relume_vec3 *p, const struct app *app, double x,
 {
     const struct app_axes a = app_frame_axes(app);
     const struct relume_vec3 middle = app_middle(app);
-    const double ahead = -dot(minus(*p, middle), a.back);
+    const double ahead = -vec_dot(vec_sub(*p, middle), a.back);
     const double scale = ahead / (0.5 * app->width * app->now.camera.look.zoom);
     const double right = scale * (x - 0.5 * app->width);
     const double up = scale * (0.5 * app->height - y);
@@ -128,7 +119,7 @@ static bool place_unfolded(double xy[2], const struct app *app, struct relume_ve
 {
     const struct app_rectangle r = app_picture(app);
     if (!relume_panorama_pixel(xy, &app->file.geometry, app->file.width, app->file.height,
-                               minus(p, app_middle(app))))
+                               vec_sub(p, app_middle(app))))
         return false;
     xy[0] = r.left + xy[0] / app->file.width * (r.right - r.left);
     xy[1] = r.top + xy[1] / app->file.height * (r.bottom - r.top);
@@ -139,8 +130,8 @@ static void drag_unfolded(struct relume_vec3 *p, const struct app *app, double x
 {
     const struct app_rectangle r = app_picture(app);
     const struct relume_vec3 middle = app_middle(app);
-    const struct relume_vec3 was = minus(*p, middle);
-    const double far = sqrt(dot(was, was));
+    const struct relume_vec3 was = vec_sub(*p, middle);
+    const double far = sqrt(vec_dot(was, was));
     const struct relume_vec3 ray =
         relume_panorama_ray(&app->file.geometry, app->file.width, app->file.height,
                             (x - r.left) / (r.right - r.left) * app->file.width,
@@ -184,11 +175,18 @@ bool gizmo_of(struct gizmo *out, const struct app *app, int light)
     return true;
 }
 
+int gizmo_first(const struct app *app)
+{
+    const int middle = app->now.selected - GIZMOS / 2, last = app->now.lights - GIZMOS;
+    return middle < 0 || last < 0 ? 0 : middle < last ? middle : last;
+}
+
 int gizmo_hit(const struct app *app, double x, double y)
 {
     int best = -1;
     double nearest = grip;
-    for (int i = 0; i < app->now.lights; i++) {
+    const int first = gizmo_first(app);
+    for (int i = first; i < app->now.lights && i < first + GIZMOS; i++) {
         struct gizmo g;
         if (!gizmo_of(&g, app, i))
             continue;
@@ -204,14 +202,7 @@ int gizmo_hit(const struct app *app, double x, double y)
 static void drag_direction(struct app *app, int light, double x, double y)
 {
     const struct gizmo_circle disc = gizmo_disc(app);
-    const double side = app_seen_light(app, light).z < 0 ? -1 : 1;
-    double dx = (x - disc.x) / disc.radius;
-    double dy = (disc.y - y) / disc.radius;
-    const double r = fmax(hypot(dx, dy), 1.0);
-    dx /= r;
-    dy /= r;
-    const double z = sqrt(fmax(1 - dx * dx - dy * dy, 0));
-    app_aim_light(app, light, (struct relume_vec3){dx, dy, side * z});
+    app_point_light(app, light, (x - disc.x) / disc.radius, (disc.y - y) / disc.radius);
 }
 
 void gizmo_drag(struct app *app, int light, double x, double y)

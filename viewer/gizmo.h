@@ -19,6 +19,10 @@ struct gizmo_circle gizmo_disc(const struct app *app);
 // False when the light has no place in the frame.
 bool gizmo_of(struct gizmo *out, const struct app *app, int light);
 
+// Of a long list the lights about the selected one have handles, GIZMOS from this one on.
+enum { GIZMOS = 256 };
+int gizmo_first(const struct app *app);
+
 // The light whose handle is at (x, y), the nearest; -1 when there is none.
 int gizmo_hit(const struct app *app, double x, double y);
 

@@ -46,6 +46,8 @@
     X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                                         \
     X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                                                 \
     X(PFNGLGETSHADERIVPROC, GetShaderiv)                                                           \
+    X(PFNGLGETSTRINGPROC, GetString)                                                               \
+    X(PFNGLGETSTRINGIPROC, GetStringi)                                                             \
     X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                                             \
     X(PFNGLLINKPROGRAMPROC, LinkProgram)                                                           \
     X(PFNGLPIXELSTOREIPROC, PixelStorei)                                                           \
@@ -60,7 +62,6 @@
     X(PFNGLUNIFORM1IPROC, Uniform1i)                                                               \
     X(PFNGLUNIFORM2FPROC, Uniform2f)                                                               \
     X(PFNGLUNIFORM3FPROC, Uniform3f)                                                               \
-    X(PFNGLUNIFORM3FVPROC, Uniform3fv)                                                             \
     X(PFNGLUNIFORM4FPROC, Uniform4f)                                                               \
     X(PFNGLUSEPROGRAMPROC, UseProgram)                                                             \
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                                           \
@@ -70,8 +71,10 @@ struct gl {
 #define GL_MEMBER(type, name) type name;
     GL_FUNCTIONS(GL_MEMBER)
 #undef GL_MEMBER
-    int max_layers;   // of an array texture, at least 256
-    int max_texture;  // pixels along one side
+    int max_layers;                                // of an array texture, at least 256
+    int max_texture;                               // pixels along one side
+    bool software;                                 // it is drawn by the CPU
+    PFNGLGETGRAPHICSRESETSTATUSPROC reset_status;  // NULL: no one would tell
 };
 
 typedef void (*gl_proc)(void);
@@ -80,7 +83,8 @@ typedef void (*gl_proc)(void);
 relume_status gl_load(struct gl *gl, gl_proc (*get_proc)(const char *name),
                       const struct relume_log *log);
 
-// RELUME_OK, or what glGetError has to say since it was last asked.
+// RELUME_OK, or what glGetError has to say since it was last asked; a graphics card that was reset
+// has lost everything.
 relume_status gl_check(const struct gl *gl, const char *doing, const struct relume_log *log);
 
 #endif

@@ -37,8 +37,7 @@ static bool press_help(struct app *app, int key)
 static bool press_reset(struct app *app, int key)
 {
     (void)key;
-    app->now = app->start;
-    app_stand_still(app);
+    app_reset(app);
     return true;
 }
 

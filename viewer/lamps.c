@@ -1,24 +1,36 @@
 #include "lamps.h"
 
-#include <math.h>
+#include "vec.h"
+
+#include <stdlib.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846
 
-double lamps_factor(const struct app_state *state, int light)
+static bool any_solo(const struct app_state *state)
 {
-    const struct app_lamp *lamp = &state->lamp[light];
-    bool solo = false;
     for (int i = 0; i < state->lights; i++)
-        solo |= state->lamp[i].solo;
+        if (state->lamp[i].solo)
+            return true;
+    return false;
+}
+
+static double factor_of(const struct app_lamp *lamp, bool solo)
+{
     return lamp->off || (solo && !lamp->solo) ? 0.0 : exp2(lamp->stops);
 }
 
-int lamps_shining(const struct app_state *state, struct relume_light out[APP_LIGHTS])
+double lamps_factor(const struct app_state *state, int light)
 {
+    return factor_of(&state->lamp[light], any_solo(state));
+}
+
+int lamps_shining(const struct app_state *state, struct relume_light *out)
+{
+    const bool solo = any_solo(state);
     int n = 0;
     for (int i = 0; i < state->lights; i++) {
-        const double factor = lamps_factor(state, i);
+        const double factor = factor_of(&state->lamp[i], solo);
         if (factor == 0.0)
             continue;
         out[n] = state->light[i];
@@ -29,12 +41,81 @@ int lamps_shining(const struct app_state *state, struct relume_light out[APP_LIG
     return n;
 }
 
+int lamps_near(const struct app_state *state)
+{
+    const bool solo = any_solo(state);
+    int n = 0;
+    for (int i = 0; i < state->lights; i++)
+        n += factor_of(&state->lamp[i], solo) != 0.0 && relume_light_is_near(state->light[i].kind);
+    return n;
+}
+
+static bool same_vector(struct relume_vec3 a, struct relume_vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+bool lamps_same(const struct relume_light *a, const struct relume_light *b)
+{
+    return a->kind == b->kind && same_vector(a->direction, b->direction) &&
+           same_vector(a->position, b->position) && same_vector(a->u, b->u) &&
+           same_vector(a->v, b->v) && a->disc == b->disc && a->nofall == b->nofall &&
+           a->half_angle_deg == b->half_angle_deg && a->rotate_deg == b->rotate_deg &&
+           a->rgb[0] == b->rgb[0] && a->rgb[1] == b->rgb[1] && a->rgb[2] == b->rgb[2] &&
+           a->image == b->image && a->environment == b->environment && a->ies == b->ies &&
+           a->gonio == b->gonio;
+}
+
+// ---------------------------------------------------------------- list
+
+static bool make_room(struct app_state *state, int room)
+{
+    struct relume_light *light = realloc(state->light, (size_t)room * sizeof *light);
+    if (light)
+        state->light = light;
+    struct app_lamp *lamp = light ? realloc(state->lamp, (size_t)room * sizeof *lamp) : NULL;
+    if (!lamp)
+        return false;
+    state->lamp = lamp;
+    state->room = room;
+    return true;
+}
+
+bool lamps_copy(struct app_state *to, const struct app_state *from)
+{
+    struct app_state made = *from;
+    made.light = NULL;
+    made.lamp = NULL;
+    if (!make_room(&made, from->lights ? from->lights : 1)) {
+        lamps_release(&made);
+        return false;
+    }
+    for (int i = 0; i < from->lights; i++) {
+        made.light[i] = from->light[i];
+        made.lamp[i] = from->lamp[i];
+    }
+    lamps_release(to);
+    *to = made;
+    return true;
+}
+
+void lamps_release(struct app_state *state)
+{
+    free(state->light);
+    free(state->lamp);
+    state->light = NULL;
+    state->lamp = NULL;
+    state->lights = state->room = 0;
+}
+
 bool lamps_add(struct app_state *state, const struct relume_light *light, int entry)
 {
-    if (state->lights == APP_LIGHTS)
+    const struct relume_light copy = *light;  // it may stand in the list that moves
+    if (state->lights == APP_LIGHTS ||
+        (state->lights == state->room && !make_room(state, 2 * state->room + 8)))
         return false;
     state->selected = state->lights++;
-    state->light[state->selected] = *light;
+    state->light[state->selected] = copy;
     state->lamp[state->selected] = (struct app_lamp){.entry = entry};
     return true;
 }
@@ -54,27 +135,6 @@ bool lamps_remove(struct app_state *state, int light)
 
 // ---------------------------------------------------------------- directions
 
-static double length(struct relume_vec3 a)
-{
-    return sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
-}
-
-static struct relume_vec3 between(struct relume_vec3 from, struct relume_vec3 to)
-{
-    return (struct relume_vec3){to.x - from.x, to.y - from.y, to.z - from.z};
-}
-
-static double dot(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static struct relume_vec3 cross(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return (struct relume_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
-                                a.x * b.y - a.y * b.x};
-}
-
 struct relume_vec3 lamps_direction(const struct relume_light *light, struct relume_vec3 middle)
 {
     const double turn = light->rotate_deg * PI / 180;
@@ -82,8 +142,8 @@ struct relume_vec3 lamps_direction(const struct relume_light *light, struct relu
     if (light->kind == RELUME_LIGHT_ENVIRONMENT)
         d = (struct relume_vec3){sin(turn), 0, -cos(turn)};
     else if (relume_light_is_near(light->kind))
-        d = between(middle, light->position);
-    const double n = length(d);
+        d = vec_sub(light->position, middle);
+    const double n = vec_length(d);
     return n > 0 ? (struct relume_vec3){d.x / n, d.y / n, d.z / n} : (struct relume_vec3){0, 0, 1};
 }
 
@@ -91,12 +151,12 @@ struct relume_vec3 lamps_direction(const struct relume_light *light, struct relu
 static struct relume_vec3 turned(struct relume_vec3 v, struct relume_vec3 from,
                                  struct relume_vec3 to)
 {
-    const struct relume_vec3 axis = cross(from, to);
-    const double c = dot(from, to);
+    const struct relume_vec3 axis = vec_cross(from, to);
+    const double c = vec_dot(from, to);
     if (c < -1 + 1e-9)
         return (struct relume_vec3){-v.x, -v.y, -v.z};
-    const double k = dot(axis, v) / (1 + c);
-    const struct relume_vec3 side = cross(axis, v);
+    const double k = vec_dot(axis, v) / (1 + c);
+    const struct relume_vec3 side = vec_cross(axis, v);
     return (struct relume_vec3){c * v.x + side.x + k * axis.x, c * v.y + side.y + k * axis.y,
                                 c * v.z + side.z + k * axis.z};
 }
@@ -105,7 +165,7 @@ static void aim_near(struct relume_light *l, struct relume_vec3 direction,
                      struct relume_vec3 middle)
 {
     const struct relume_vec3 was = lamps_direction(l, middle);
-    const double far = length(between(middle, l->position));
+    const double far = vec_length(vec_sub(l->position, middle));
     l->position = (struct relume_vec3){
         middle.x + far * direction.x,
         middle.y + far * direction.y,
@@ -128,11 +188,6 @@ void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,
         aim_near(l, direction, middle);
 }
 
-static struct relume_vec3 scaled(struct relume_vec3 a, double s)
-{
-    return (struct relume_vec3){s * a.x, s * a.y, s * a.z};
-}
-
 void lamps_change_kind(struct app_state *state, int light, enum relume_light_kind kind,
                        struct relume_vec3 middle, double far)
 {
@@ -140,21 +195,47 @@ void lamps_change_kind(struct app_state *state, int light, enum relume_light_kin
     const struct relume_vec3 d = lamps_direction(l, middle);
     const struct relume_vec3 pole =
         fabs(d.y) < 0.9 ? (struct relume_vec3){0, 1, 0} : (struct relume_vec3){0, 0, 1};
-    const struct relume_vec3 side = cross(d, pole);
-    const struct relume_vec3 right = scaled(side, 1 / length(side));
+    const struct relume_vec3 side = vec_cross(d, pole);
+    const struct relume_vec3 right = vec_scale(side, 1 / vec_length(side));
     struct relume_light made = {.kind = kind, .direction = d, .half_angle_deg = 25};
     if (relume_light_is_near(kind)) {
         made.position =
             (struct relume_vec3){middle.x + far * d.x, middle.y + far * d.y, middle.z + far * d.z};
-        made.direction = scaled(d, -1);
+        made.direction = vec_scale(d, -1);
         made.nofall = true;  // as bright as it was
-        made.u = scaled(right, 0.25 * far);
-        made.v = cross(made.u, d);  // u x v is -d
+        made.u = vec_scale(right, 0.25 * far);
+        made.v = vec_cross(made.u, d);  // u x v is -d
     }
     memcpy(made.rgb, l->rgb, sizeof made.rgb);
     made.nofall &= kind != RELUME_LIGHT_AREA;
     *l = made;
     state->lamp[light].entry = -1;
+}
+
+// ---------------------------------------------------------------- kinds
+
+static const struct {
+    const char *words;
+    unsigned fields;
+} kinds[] = {
+    [RELUME_LIGHT_DIRECTIONAL] = {"directional", LAMP_CHANGE},
+    [RELUME_LIGHT_ENVIRONMENT] = {"environment", LAMP_TURN},
+    [RELUME_LIGHT_POINT] = {"point", LAMP_PLACE | LAMP_CHANGE},
+    [RELUME_LIGHT_SPOT] = {"spot", LAMP_PLACE | LAMP_AXIS | LAMP_ANGLE | LAMP_CHANGE},
+    [RELUME_LIGHT_SLIDE] = {"slide", LAMP_PLACE | LAMP_AXIS | LAMP_ANGLE},
+    [RELUME_LIGHT_AREA] = {"area", LAMP_PLACE | LAMP_EDGES | LAMP_CHANGE},
+    [RELUME_LIGHT_IES] = {"ies", LAMP_PLACE | LAMP_AXIS},
+    [RELUME_LIGHT_GONIO] = {"gonio", LAMP_PLACE | LAMP_AXIS},
+};
+
+const char *lamps_kind_words(enum relume_light_kind kind)
+{
+    return kinds[kind].words;
+}
+
+unsigned lamps_fields(enum relume_light_kind kind)
+{
+    return kinds[kind].fields;
 }
 
 // ---------------------------------------------------------------- arrangements

@@ -7,10 +7,21 @@
 // The factor of a light's value; 0 for one that does not shine (it is off, or another is solo).
 double lamps_factor(const struct app_state *state, int light);
 
-// The lights that shine with the values that they have; returns how many.
-int lamps_shining(const struct app_state *state, struct relume_light out[APP_LIGHTS]);
+// The lights that shine with the values that they have; returns how many. Fills out[state->lights].
+int lamps_shining(const struct app_state *state, struct relume_light *out);
+// How many near lights shine.
+int lamps_near(const struct app_state *state);
 
-// Append and select. False when the list is full.
+// Whether two lights are one and the same in everything that shines.
+bool lamps_same(const struct relume_light *a, const struct relume_light *b);
+
+// `to`, which is released, becomes `from` with lists of its own. False when memory is short; then
+// `to` is as before.
+bool lamps_copy(struct app_state *to, const struct app_state *from);
+// Free the lists.
+void lamps_release(struct app_state *state);
+
+// Append and select. False when the list is full or memory is short.
 bool lamps_add(struct app_state *state, const struct relume_light *light, int entry);
 // The last light stays. False when nothing was removed.
 bool lamps_remove(struct app_state *state, int light);
@@ -26,6 +37,19 @@ struct relume_vec3 lamps_direction(const struct relume_light *light, struct relu
 // came from: near ones stand `far` from `middle` and shine towards it.
 void lamps_change_kind(struct app_state *state, int light, enum relume_light_kind kind,
                        struct relume_vec3 middle, double far);
+
+// "directional", "point", ... for people.
+const char *lamps_kind_words(enum relume_light_kind kind);
+// What can be said of a kind beside its direction and value; CHANGE: it can become another kind.
+enum {
+    LAMP_TURN = 1,
+    LAMP_PLACE = 2,
+    LAMP_AXIS = 4,
+    LAMP_ANGLE = 8,
+    LAMP_EDGES = 16,
+    LAMP_CHANGE = 32
+};
+unsigned lamps_fields(enum relume_light_kind kind);
 
 // Arrangements of directional lights that replace the list. `up` is the pole of the file: z for
 // planar files and slabs, y for panoramas.

@@ -81,6 +81,16 @@ static relume_status host_rig(void *user, const char *path, const struct relume_
     return status;
 }
 
+static relume_status host_open(void *user, const char *path, const struct relume_log *log)
+{
+    struct session *s = user;
+    const struct relume_log *usual = s->log;
+    s->log = log;
+    const relume_status status = session_show(s, path);
+    s->log = usual;
+    return status;
+}
+
 static const double frame_s = 1.0 / 60;  // between frames when time is played
 static const double patience_s = 60;     // waiting for what never comes to rest
 
@@ -89,11 +99,14 @@ static relume_status host_wait(void *user, double seconds)
     struct session *s = user;
     const bool until_idle = seconds < 0;
     double left = until_idle ? patience_s : seconds;
+    const double step = s->film ? 1.0 / RECORD_RATE : frame_s;
     bool moves = true;
     relume_status status = RELUME_OK;
-    for (; !status && left > 1e-9 && (moves || !until_idle); left -= frame_s) {
-        moves = session_pass(s, fmin(left, frame_s)) || renderer_is_pending(&s->renderer);
-        if (moves || until_idle)
+    for (; !status && left > 1e-9 && (moves || !until_idle); left -= step) {
+        moves = session_pass(s, fmin(left, step)) || renderer_is_pending(&s->renderer);
+        if (s->film)
+            status = session_film(s);
+        else if (moves || until_idle)
             status = (s->streams ? show_frame : session_draw)(s);
     }
     return status;
@@ -111,26 +124,41 @@ static relume_status host_shot(void *user, const char *path)
 
 static struct script_host host_of(struct session *s)
 {
-    return (struct script_host){s,         &s->app,    host_send, host_light, host_rig,
-                                host_wait, host_frame, host_shot, s->log};
+    return (struct script_host){s,         &s->app,   host_send,  host_light, host_rig,
+                                host_open, host_wait, host_frame, host_shot,  s->log};
 }
 
 // ---------------------------------------------------------------- without a window
 
+// A film of a script shows what a window would.
+static relume_status begin_film(struct session *s, const struct options *o)
+{
+    s->app.letterbox = true;
+    return record_open(&s->film, o->output, s->log);
+}
+
 static relume_status run_offscreen(struct session *s, struct options *o)
 {
     const struct script_host host = host_of(s);
+    const bool film = o->record && o->kind == RECORD_SCRIPT;
+    o->start.ball |= film;
     relume_status status = session_take_rig(s, &o->rig, &o->start);
     if (!status && o->capture)
         status = session_compare(s, o->capture);
     if (!status)
-        status = session_open(s, o->file, &o->start, false);
+        status = session_open(s, o->file, &o->start, film);
     if (!status)
         status = session_start(s, context_offscreen(o->gl), s->app.width, s->app.height);
     s->app.panel = o->panel;
+    if (!status && film)
+        status = begin_film(s, o);
     if (!status && o->script)
         status = script_play(o->script, &host);
-    if (!status && o->record)
+    while (!status && session_is_busy(s))  // with what the script began
+        status = session_draw(s);
+    if (!status && film)
+        status = record_commit(&s->film);
+    else if (!status && o->record)
         status = session_record(s, o->kind, o->output, o->frames);
     if (!status && o->offscreen)
         status = (o->panel ? session_shot : session_frame)(s, o->offscreen);
@@ -158,10 +186,11 @@ static relume_status take_event(struct session *s, const struct context_event *e
         s->app.quit = true;
     if (event->kind == CONTEXT_INPUT)
         *changed |= session_send(s, &event->input);
-    if (event->kind != CONTEXT_DROP)
+    if (event->kind != CONTEXT_DROP && event->kind != CONTEXT_SCALE)
         return RELUME_OK;
     *changed = true;
-    return session_drop(s, event->dropped);
+    return event->kind == CONTEXT_DROP ? session_drop(s, event->dropped)
+                                       : session_scale(s, event->scale);
 }
 
 // Time in seconds since the last call.
@@ -198,7 +227,7 @@ static relume_status live(struct session *s, struct script *script)
             status = take_events(s, &changed, &time_ms);
         if (!status && changed && !s->app.quit)
             status = show_frame(s);
-        changed = !status && renderer_is_pending(&s->renderer);
+        changed = !status && (renderer_is_pending(&s->renderer) || session_is_busy(s));
     }
     return status;
 }
@@ -254,9 +283,12 @@ static relume_status open_window(struct session *s, struct options *o,
     s->app.letterbox = true;
     s->app.panel = o->panel || settings->panel;
     status = session_start(s, &context_glfw, s->app.width, s->app.height);
-    if (!status)
-        s->backend->size(s->context, &s->app.width, &s->app.height);
-    return status;
+    if (status)
+        return status;
+    struct app_event opened = {.kind = APP_SIZE};
+    s->backend->size(s->context, &opened.width, &opened.height);
+    (void)app_handle(&s->app, &opened);
+    return RELUME_OK;
 }
 
 static relume_status run_window(struct session *s, struct options *o)
@@ -270,13 +302,14 @@ static relume_status run_window(struct session *s, struct options *o)
         recall_rig(o, &settings);
     }
     relume_status status = open_window(s, o, &settings);
+    const bool opened = !status;
     if (!status && o->script)
         status = script_open(&script, o->script, &host);
     if (!status)
         status = live(s, script);
     script_close(&script);
-    if (!status && !o->no_config)
-        remember(s, &settings);
+    if (opened && !o->no_config)
+        remember(s, &settings);  // also when the graphics card went away
     return status;
 }
 
@@ -289,6 +322,7 @@ int main(int argc, char **argv)
     signal(SIGPIPE, SIG_IGN);
     relume_status status = options_parse(&options, argc, argv, &log);
     session.threads = options.threads;
+    session.relight = options.relight;
     session.vram_bytes = (size_t)(options.vram_mb * 1048576.0);
     const bool offscreen =
         options.offscreen || options.record || (options.script && !options.window);

@@ -1,6 +1,8 @@
 #include "nearby.h"
 
 #include "say.h"
+#include "vec.h"
+#include "weights.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -58,7 +60,7 @@ enum unit {
 
 // As in near.frag.
 enum { FORM_SEPARATE, FORM_JOINT, FORM_LUMINANCE };
-enum { LANES = 4, VECTORS_WIDE = 64 };
+enum { VECTORS_WIDE = 64 };
 
 struct nearby_picture {
     const void *key;
@@ -303,16 +305,36 @@ static relume_status upload_slide(const struct nearby *near, GLuint texture,
     const int most = near->gl->max_texture;
     if (image->width > most || image->height > most)
         return say(near->log, RELUME_ESYSTEM,
-                   "a slide of %d x %d: OpenGL takes at most %d x %d "
+                   "a light's picture of %d x %d: OpenGL takes at most %d x %d "
                    "here",
                    image->width, image->height, most, most);
     upload_floats(near->gl, texture, GL_RGB32F, GL_RGB, image->width, image->height, image->data);
     return RELUME_OK;
 }
 
+static const void *key_of(const struct relume_light *light)
+{
+    switch (light->kind) {
+    case RELUME_LIGHT_SLIDE: return light->image;
+    case RELUME_LIGHT_IES: return light->ies;
+    case RELUME_LIGHT_GONIO: return light->gonio;
+    default: return NULL;
+    }
+}
+
+static relume_status upload_light(const struct nearby *near, GLuint texture,
+                                  const struct relume_light *light)
+{
+    if (light->kind == RELUME_LIGHT_IES)
+        return upload_lamp(near->gl, texture, light->ies);
+    return upload_slide(near, texture,
+                        light->kind == RELUME_LIGHT_SLIDE ? light->image
+                                                          : relume_gonio_map(light->gonio));
+}
+
 static relume_status use_picture(struct nearby *near, const struct relume_light *light)
 {
-    const void *key = light->kind == RELUME_LIGHT_SLIDE ? (const void *)light->image : light->ies;
+    const void *key = key_of(light);
     struct nearby_picture *p = near->picture;
     while (p && p->key != key)
         p = p->next;
@@ -322,8 +344,7 @@ static relume_status use_picture(struct nearby *near, const struct relume_light 
         if (!p)
             return RELUME_ENOMEM;
         near->gl->GenTextures(1, &p->texture);
-        status = light->kind == RELUME_LIGHT_SLIDE ? upload_slide(near, p->texture, light->image)
-                                                   : upload_lamp(near->gl, p->texture, light->ies);
+        status = upload_light(near, p->texture, light);
         p->next = near->picture;
         near->picture = p;
         p->key = status ? NULL : key;
@@ -358,12 +379,6 @@ static void use_facets(const struct nearby *near, const struct nearby_view *view
     upload_floats(near->gl, near->facets, GL_RGB32F, GL_RGB, *n, 3, &texels[0][0][0]);
 }
 
-static struct relume_vec3 unit_vector(struct relume_vec3 v)
-{
-    const double length = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-    return (struct relume_vec3){v.x / length, v.y / length, v.z / length};
-}
-
 static void set_vec3(const struct gl *gl, GLint at, struct relume_vec3 v)
 {
     gl->Uniform3f(at, (float)v.x, (float)v.y, (float)v.z);
@@ -376,7 +391,7 @@ static relume_status set_light(struct nearby *near, const struct nearby_view *vi
     const GLint *at = near->program.at;
     relume_status status = RELUME_OK;
     int facets = 0;
-    if (l->kind == RELUME_LIGHT_SLIDE || l->kind == RELUME_LIGHT_IES)
+    if (key_of(l))
         status = use_picture(near, l);
     else if (l->kind == RELUME_LIGHT_AREA)
         use_facets(near, view, l, &facets);
@@ -389,7 +404,7 @@ static relume_status set_light(struct nearby *near, const struct nearby_view *vi
     if (l->kind != RELUME_LIGHT_POINT && l->kind != RELUME_LIGHT_AREA) {
         struct relume_vec3 right, up;
         relume_light_frame(&right, &up, l->direction);
-        set_vec3(gl, at[AXIS], unit_vector(l->direction));
+        set_vec3(gl, at[AXIS], vec_unit(l->direction));
         set_vec3(gl, at[RIGHT], right);
         set_vec3(gl, at[UP], up);
     }

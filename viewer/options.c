@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include "keys.h"
+#include "lamps.h"
 #include "say.h"
 
 #include <relume/tone.h>
@@ -213,6 +214,19 @@ static relume_status take_vram(struct options *o, const char *name, const char *
     return take_number(&o->vram_mb, name, text, 1, 1e6, log);
 }
 
+static relume_status take_relight(struct options *o, const char *name, const char *text,
+                                  const struct relume_log *log)
+{
+    static const char *const names[] = {
+        [SESSION_AUTO] = "auto", [SESSION_PASSES] = "passes", [SESSION_LIBRARY] = "library"};
+    for (int i = 0; i < (int)(sizeof names / sizeof *names); i++)
+        if (!strcmp(names[i], text)) {
+            o->relight = (enum session_relight)i;
+            return RELUME_OK;
+        }
+    return say(log, RELUME_EINVAL, "%s: expected auto, passes or library; found '%s'", name, text);
+}
+
 static relume_status take_exposure(struct options *o, const char *name, const char *text,
                                    const struct relume_log *log)
 {
@@ -292,7 +306,8 @@ static relume_status take_record(struct options *o, const char *name, const char
     o->record = true;
     if (!record_parse(&o->kind, text))
         return RELUME_OK;
-    return say(log, RELUME_EINVAL, "%s: expected sweep or turntable; found '%s'", name, text);
+    return say(log, RELUME_EINVAL, "%s: expected sweep, turntable or script; found '%s'", name,
+               text);
 }
 
 static relume_status take_output(struct options *o, const char *name, const char *text,
@@ -371,12 +386,16 @@ static const struct option options[] = {
     {"--threads", "N", "threads that read files; default: all cores", take_threads},
     {"--vram", "MB", "graphics memory for views; those not used for long leave; default: 1024",
      take_vram},
+    {"--relight", "BY",
+     "passes of OpenGL, the library, or auto: the library where OpenGL is software; default auto",
+     take_relight},
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},
     {"--script", "EVENTS", "play a text file of events without a window", take_script},
     {"--gl", "NAME",
      "offscreen by osmesa, egl, or auto: a graphics card, else osmesa; default auto", take_gl},
-    {"--record", "KIND", "record a light sweep or a turntable without a window", take_record},
+    {"--record", "KIND", "record a light sweep, a turntable or --script without a window",
+     take_record},
     {"-o", "OUT", "--record: a folder of PNG files, or FILE.mp4 (by ffmpeg)", take_output},
     {"--frames", "N", "--record: pictures of the round; default 72", take_frames},
     {"--no-config", NULL, "neither read nor write what the window remembers", take_no_config},
@@ -419,6 +438,7 @@ void options_help(void)
          "        click X Y             press, release left|right X Y    move X Y\n"
          "        key K                 hold K, let K                    type TEXT\n"
          "        light SPEC            add SPEC                         rig FILE\n"
+         "        open FILE: another relume file\n"
          "        wait [SECONDS]        frame OUT: the picture           shot OUT: with the "
          "panel\n\n"
          "example:\n"
@@ -471,6 +491,7 @@ static bool asks_for_help(int argc, char **argv)
 void options_release(struct options *o)
 {
     relume_rig_destroy(&o->rig);
+    lamps_release(&o->start);
 }
 
 relume_status options_parse(struct options *o, int argc, char **argv, const struct relume_log *log)
@@ -494,6 +515,8 @@ relume_status options_parse(struct options *o, int argc, char **argv, const stru
         return say(log, RELUME_EINVAL, "expected --eye beside --look-at, --up and --fov");
     if (o->record != (o->output != NULL))
         return say(log, RELUME_EINVAL, "expected --record KIND and -o OUT together");
+    if (o->record && o->kind == RECORD_SCRIPT && !o->script)
+        return say(log, RELUME_EINVAL, "--record script: expected --script EVENTS as well");
     if (!o->frames)
         o->frames = RECORD_FRAMES;
     if (!o->file)

@@ -4,6 +4,7 @@
 
 #include "app.h"
 #include "record.h"
+#include "session.h"
 
 #include <relume/rig.h>
 
@@ -25,6 +26,7 @@ struct options {
     const char *gl;   // what offscreen frames are drawn by: a name that context_offscreen knows
     int threads;      // that read files; 0: all cores
     double vram_mb;   // graphics memory for views
+    enum session_relight relight;
 };
 
 // RELUME_EINVAL with a sentence in `log`: unknown options, wrong values, no FILE. RELUME_EDATA,

@@ -29,10 +29,12 @@ struct panel {
     bool held;         // a press belongs to the panel
     bool held_by_app;  // or to the app
     bool histogram;    // is open
+    bool maps;         // the list of environment maps is open
     bool changed;      // the picture, by what the user did in this frame
     char spec[APP_SPEC];
-    char environment[APP_SPEC - 8];  // room for "env "
+    char environment[APP_SPEC];
     std::vector<panel_run> runs;
+    int listed;  // the light that the list has scrolled to
 };
 
 // ---------------------------------------------------------------- making
@@ -174,13 +176,6 @@ static ImVec4 colour_of(const relume_light &light)
     return ImVec4(light.rgb[0] / most, light.rgb[1] / most, light.rgb[2] / most, 1);
 }
 
-static const char *kind_name(relume_light_kind kind)
-{
-    static const char *const names[] = {"directional", "environment", "point", "spot",
-                                        "slide",       "area",        "ies"};
-    return names[kind];
-}
-
 static bool list_row(app_state *s, int i)
 {
     bool changed = false;
@@ -200,12 +195,36 @@ static bool list_row(app_state *s, int i)
     ImGui::SameLine();
     ImGui::ColorButton("##colour", colour_of(s->light[i]), ImGuiColorEditFlags_NoTooltip);
     ImGui::SameLine();
-    std::snprintf(label, sizeof label, "%d %s", i + 1, kind_name(s->light[i].kind));
+    std::snprintf(label, sizeof label, "%d %s", i + 1, lamps_kind_words(s->light[i].kind));
     if (ImGui::Selectable(label, s->selected == i)) {
         s->selected = i;
         changed = true;
     }
     ImGui::PopID();
+    return changed;
+}
+
+// A long list scrolls, to the selected light when that is another one.
+const int rows_most = 8;
+static bool list_lights(panel *panel, app_state *s)
+{
+    bool changed = false;
+    if (s->lights <= rows_most) {
+        for (int i = 0; i < s->lights; i++)
+            changed |= list_row(s, i);
+        return changed;
+    }
+    const float row = ImGui::GetFrameHeightWithSpacing();
+    ImGui::BeginChild("##list", ImVec2(0, rows_most * row));
+    if (panel->listed != s->selected)
+        ImGui::SetScrollY((float)(s->selected - rows_most / 2) * row);
+    panel->listed = s->selected;
+    ImGuiListClipper clipper;
+    clipper.Begin(s->lights, row);
+    while (clipper.Step())
+        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; i++)
+            changed |= list_row(s, i);
+    ImGui::EndChild();
     return changed;
 }
 
@@ -228,20 +247,14 @@ static bool ball(app *app, float side)
     bool changed = false;
     if (ImGui::IsItemActive()) {
         const ImVec2 at = ImGui::GetIO().MousePos;
-        double x = (at.x - middle.x) / radius;
-        double y = (middle.y - at.y) / radius;
-        const double r = std::max(std::hypot(x, y), 1.0);
-        x /= r;
-        y /= r;
-        const double front = app_seen_light(app, s->selected).z < 0 ? -1 : 1;
-        const double z = front * std::sqrt(std::max(1 - x * x - y * y, 0.0));
-        app_aim_light(app, s->selected, relume_vec3{x, y, z});
+        app_point_light(app, s->selected, (at.x - middle.x) / radius, (middle.y - at.y) / radius);
         changed = true;
     }
     draw->AddCircleFilled(middle, radius, IM_COL32(60, 60, 66, 255), 48);
     draw->AddCircle(middle, radius * 0.7071f, IM_COL32(90, 90, 96, 255), 48);
     draw->AddCircle(middle, radius, IM_COL32(130, 130, 138, 255), 48);
-    for (int i = 0; i < s->lights; i++) {
+    const int first = gizmo_first(app);
+    for (int i = first; i < s->lights && i < first + GIZMOS; i++) {
         const relume_vec3 d = app_seen_light(app, i);
         const ImVec2 dot(middle.x + radius * (float)d.x, middle.y - radius * (float)d.y);
         draw->AddCircleFilled(dot, 0.045f * side, ball_colour(s->light[i], d.z < 0));
@@ -279,19 +292,19 @@ static bool edit_geometry(relume_light *light)
 {
     const relume_light was = *light;
     const double least = -180, most = 180, narrow = 0.5, wide = 89.5;
+    const unsigned fields = lamps_fields(light->kind);
     bool changed = false;
-    if (light->kind == RELUME_LIGHT_ENVIRONMENT)
+    if (fields & LAMP_TURN)
         changed |= ImGui::SliderScalar("rotation", ImGuiDataType_Double, &light->rotate_deg, &least,
                                        &most, "%.1f deg");
-    if (relume_light_is_near(light->kind))
+    if (fields & LAMP_PLACE)
         changed |= edit_vector("position", &light->position);
-    if (light->kind == RELUME_LIGHT_SPOT || light->kind == RELUME_LIGHT_SLIDE ||
-        light->kind == RELUME_LIGHT_IES)
+    if (fields & LAMP_AXIS)
         changed |= edit_vector("axis", &light->direction);
-    if (light->kind == RELUME_LIGHT_SPOT || light->kind == RELUME_LIGHT_SLIDE)
+    if (fields & LAMP_ANGLE)
         changed |= ImGui::SliderScalar("half angle", ImGuiDataType_Double, &light->half_angle_deg,
                                        &narrow, &wide, "%.1f deg");
-    if (light->kind == RELUME_LIGHT_AREA) {
+    if (fields & LAMP_EDGES) {
         changed |= edit_vector("half edge u", &light->u);
         changed |= edit_vector("half edge v", &light->v);
     }
@@ -308,11 +321,11 @@ static bool choose_kind(app *app)
     app_state *s = &app->now;
     const relume_light_kind now = s->light[s->selected].kind;
     bool changed = false;
-    if (!app->near_lights || now == RELUME_LIGHT_ENVIRONMENT || now == RELUME_LIGHT_SLIDE ||
-        now == RELUME_LIGHT_IES || !ImGui::BeginCombo("kind", kind_name(now)))
+    if (!app->near_lights || !(lamps_fields(now) & LAMP_CHANGE) ||
+        !ImGui::BeginCombo("kind", lamps_kind_words(now)))
         return false;
     for (const relume_light_kind kind : kinds) {
-        if (ImGui::Selectable(kind_name(kind), kind == now) && kind != now) {
+        if (ImGui::Selectable(lamps_kind_words(kind), kind == now) && kind != now) {
             lamps_change_kind(s, s->selected, kind, app_middle(app), 1.5 * app_reach(app));
             changed = true;
         }
@@ -330,7 +343,7 @@ static bool edit_light(panel *panel, app *app)
     ImGui::SameLine();
     ImGui::BeginGroup();
     ImGui::Text("light %d", s->selected + 1);
-    ImGui::TextUnformatted(kind_name(light->kind));
+    ImGui::TextUnformatted(lamps_kind_words(light->kind));
     changed |= flip_side(app);
     changed |= ImGui::ColorEdit3("colour", light->rgb,
                                  ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_Float |
@@ -378,9 +391,10 @@ static bool light_buttons(panel *panel, app *app)
 
 static bool lights_section(panel *panel, app *app)
 {
-    bool changed = false;
-    for (int i = 0; i < app->now.lights; i++)
-        changed |= list_row(&app->now, i);
+    bool changed = list_lights(panel, &app->now);
+    const int near = lamps_near(&app->now);
+    if (app->now.lights > rows_most || near)
+        ImGui::Text("%d lights, %d of them near", app->now.lights, near);
     ImGui::Separator();
     changed |= edit_light(panel, app);
     changed |= light_buttons(panel, app);
@@ -450,7 +464,7 @@ static bool picture_section(app *app)
         ImGui::SameLine();
     }
     if (ImGui::Button("reset")) {
-        app->now = app->start;
+        app_reset(app);
         changed = true;
     }
     return changed;
@@ -466,16 +480,12 @@ static void histogram_section(const panel_facts *facts, float scale)
                         IM_COL32(20, 20, 22, 255));
     if (!facts->histogram)
         return;
-    uint32_t most = 1;
-    for (int i = 0; i < 256; i++)
-        for (int c = 0; c < 3; c++)
-            most = std::max(most, facts->histogram[i][c]);
     static const ImU32 colours[3] = {IM_COL32(255, 70, 70, 200), IM_COL32(80, 220, 80, 200),
                                      IM_COL32(90, 130, 255, 200)};
     for (int c = 0; c < 3; c++) {
         ImVec2 line[256];
         for (int i = 0; i < 256; i++) {
-            const float part = std::log1p((float)facts->histogram[i][c]) / std::log1p((float)most);
+            const float part = facts->histogram[i][c];
             line[i] =
                 ImVec2(corner.x + size.x * ((float)i + 0.5f) / 256, corner.y + size.y * (1 - part));
         }
@@ -490,17 +500,27 @@ static void file_section(const panel_facts *facts)
         ImGui::TextUnformatted(*line);
 }
 
-static void environment_row(panel *panel, app *app)
+static void wish_map(app *app, const char *folder, const char *name)
 {
-    ImGui::TextUnformatted("environment map");
-    const bool enter =
-        ImGui::InputTextWithHint("##environment", "file.hdr, then Enter", panel->environment,
-                                 sizeof panel->environment, ImGuiInputTextFlags_EnterReturnsTrue);
-    if (!enter || !panel->environment[0])
-        return;
-    char spec[APP_SPEC];
-    std::snprintf(spec, sizeof spec, "env '%s'", panel->environment);
-    wish_light(app, spec);
+    app->wish = APP_WISH_MAP;
+    std::snprintf(app->spec, sizeof app->spec, "%s%s%s", folder, folder[0] ? "/" : "", name);
+}
+
+// A new map takes the place of the selected environment's, else it is one more light.
+static void environment_rows(panel *panel, app *app, const panel_facts *facts)
+{
+    const char *now = facts->map_in_use ? facts->map_in_use : "choose a file";
+    panel->maps = ImGui::BeginCombo("environment", now);
+    if (panel->maps) {
+        for (const char *const *name = facts->map; name && *name; name++)
+            if (ImGui::Selectable(*name, !std::strcmp(*name, now)))
+                wish_map(app, facts->map_folder, *name);
+        ImGui::EndCombo();
+    }
+    if (ImGui::InputTextWithHint("##environment", "or file.hdr, then Enter", panel->environment,
+                                 sizeof panel->environment, ImGuiInputTextFlags_EnterReturnsTrue) &&
+        panel->environment[0])
+        wish_map(app, "", panel->environment);
 }
 
 // ---------------------------------------------------------------- windows
@@ -521,7 +541,7 @@ static bool panel_window(panel *panel, app *app, const panel_facts *facts)
     ImGui::PushItemWidth(0.62f * width);
     if (ImGui::CollapsingHeader("Lights", ImGuiTreeNodeFlags_DefaultOpen)) {
         changed |= lights_section(panel, app);
-        environment_row(panel, app);
+        environment_rows(panel, app, facts);
     }
     if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen))
         changed |= picture_section(app);
@@ -562,7 +582,8 @@ static void draw_gizmos(const app *app, float scale)
     const gizmo_circle disc = gizmo_disc(app);
     draw->AddCircle(ImVec2((float)disc.x, (float)disc.y), (float)disc.radius,
                     IM_COL32(255, 255, 255, 70), 96);
-    for (int i = 0; i < app->now.lights; i++) {
+    const int first = gizmo_first(app);
+    for (int i = first; i < app->now.lights && i < first + GIZMOS; i++) {
         gizmo g;
         if (!gizmo_of(&g, app, i))
             continue;
@@ -658,6 +679,11 @@ extern "C" bool panel_build(struct panel *panel, struct app *app, const struct p
 extern "C" bool panel_wants_histogram(const struct panel *panel)
 {
     return panel->histogram;
+}
+
+extern "C" bool panel_wants_maps(const struct panel *panel)
+{
+    return panel->maps;
 }
 
 extern "C" bool panel_run_at(struct panel_run *out, const struct panel *panel, int i)

@@ -29,15 +29,21 @@ struct panel_facts {
     const char *file;                 // its name
     const char *const *line;          // what is known of the file, ends with NULL
     const char *message;              // the last thing said to the user, or NULL
-    const uint32_t (*histogram)[3];   // [256] of display values, or NULL
+    const float (*histogram)[3];      // [256] of display values, as high as they are drawn, 0 to
+                                      // 1; NULL: none
     const struct relume_image *plot;  // of the inspector, drawn as PANEL_PLOT; NULL: none
     const char *plot_text;
+    const char *map_folder;  // of environment maps to choose from, or NULL
+    const char *const *map;  // their names, ends with NULL
+    const char *map_in_use;  // of the selected light, or NULL
 };
 // Work through the events and make the triangles of the frame; changes `app` as the user asks.
 // Returns whether the picture changed.
 bool panel_build(struct panel *panel, struct app *app, const struct panel_facts *facts);
 // Whether the histogram is open, and worth making.
 bool panel_wants_histogram(const struct panel *panel);
+// Whether maps are being chosen from.
+bool panel_wants_maps(const struct panel *panel);
 
 // The letters, one byte a pixel, to be made a texture.
 struct panel_letters {

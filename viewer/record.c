@@ -18,8 +18,7 @@
 #define PI 3.14159265358979323846
 
 enum { PATH = 4096 };
-static const char *const rate = "25";  // pictures a second
-static const double lowest_deg = 20;   // of a light that sweeps
+static const double lowest_deg = 20;  // of a light that sweeps
 static const double highest_deg = 60;
 
 struct record {
@@ -35,8 +34,14 @@ struct record {
 
 relume_status record_parse(enum record_kind *out, const char *name)
 {
-    *out = strcmp(name, "turntable") ? RECORD_SWEEP : RECORD_TURNTABLE;
-    return *out == RECORD_TURNTABLE || !strcmp(name, "sweep") ? RELUME_OK : RELUME_EINVAL;
+    static const char *const names[] = {
+        [RECORD_SWEEP] = "sweep", [RECORD_TURNTABLE] = "turntable", [RECORD_SCRIPT] = "script"};
+    for (int i = 0; i < (int)(sizeof names / sizeof *names); i++)
+        if (!strcmp(names[i], name)) {
+            *out = (enum record_kind)i;
+            return RELUME_OK;
+        }
+    return RELUME_EINVAL;
 }
 
 // ---------------------------------------------------------------- poses
@@ -154,7 +159,8 @@ static bool is_film(const char *path)
 // reading them as anything else.
 static void become_ffmpeg(const struct record *r, int input)
 {
-    char size[32], to[PATH + 8];
+    char size[32], rate[16], to[PATH + 8];
+    snprintf(rate, sizeof rate, "%d", RECORD_RATE);
     snprintf(size, sizeof size, "%dx%d", r->width, r->height);
     snprintf(to, sizeof to, "file:%s", r->part);
     const char *format = strrchr(r->path, '.');

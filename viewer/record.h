@@ -4,10 +4,10 @@
 
 #include "app.h"
 
-enum { RECORD_FRAMES = 72 };  // where nobody says how many
+enum { RECORD_FRAMES = 72, RECORD_RATE = 25 };  // where nobody says how many; a second
 
-enum record_kind { RECORD_SWEEP, RECORD_TURNTABLE };
-// "sweep", "turntable". RELUME_EINVAL when `name` is neither.
+enum record_kind { RECORD_SWEEP, RECORD_TURNTABLE, RECORD_SCRIPT };
+// "sweep", "turntable", "script". RELUME_EINVAL when `name` is none of them.
 relume_status record_parse(enum record_kind *out, const char *name);
 
 // Set the app to the moment `part` in [0, 1) of a closed round. Sweep: the selected light goes once

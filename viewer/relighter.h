@@ -3,29 +3,33 @@
 // Linear-domain codes fold all distant lights into one weight vector and one pass; display-domain
 // codes take two small passes for each light: the dot product, then decoding and adding in linear
 // light. Environments meet a linear twin of display-domain codes, made once (relume_refit). Near
-// lights are a pass each (nearby.h).
+// lights are a pass each (nearby.h). Where OpenGL is software the library does all of it, several
+// times faster (software.h).
 #ifndef VIEWER_RELIGHTER_H
 #define VIEWER_RELIGHTER_H
 
 #include "loader.h"
 #include "nearby.h"
 #include "program.h"
+#include "software.h"
 #include "target.h"
 
 #include <relume/relight.h>
 
 struct relit_view {
+    bool present;
     GLuint *array;  // [arrays]: array textures of codes, four planes a texel, or one of indices,
-                    // a layer for each codebook; NULL: not uploaded
+                    // a layer for each codebook
     int arrays;
     int layers;  // of all arrays together
-    size_t bytes;
+    size_t bytes, kept;  // of all it has, and of that by `software`
     uint64_t used;  // the frame that last asked for it
     bool fresh;     // `relit` shows the present lights
     struct target relit;
     struct relume_codes codes;  // planes and indices are gone; the rest is ours
     float *scale;
     struct nearby_view near;
+    struct software_view software;  // begun when the library relights it
 };
 
 // The codes of the linear twin come from those of the file.
@@ -44,6 +48,9 @@ struct relighter {
     bool pending;           // this frame asked for a view that is still being read
     struct program dot, develop, lookup;
     struct nearby near;
+    bool by_library;  // not by passes: where OpenGL is software. May be set before the first
+                      // view is asked for
+    struct software software;
     relume_weight_grid *grid;  // of the coder, for environments; NULL: not made yet
     struct relighter *linear;  // the linear twin, under the environments; NULL: not made yet
     struct linear_source linear_source;

@@ -109,6 +109,7 @@ void renderer_destroy(struct renderer *r)
     free(r->uv);
     free(r->needed);
     free(r->relit);
+    free(r->light);
     *r = (struct renderer){0};
 }
 
@@ -313,14 +314,28 @@ static relume_status stand_in(struct renderer *r)
     return status;
 }
 
+static relume_status need_lights(struct renderer *r, int n)
+{
+    if (n <= r->room)
+        return RELUME_OK;
+    struct relume_light *light = realloc(r->light, (size_t)n * sizeof *light);
+    if (!light)
+        return RELUME_ENOMEM;
+    r->light = light;
+    r->room = n;
+    return RELUME_OK;
+}
+
 static relume_status relight_needed(struct renderer *r, const struct app *app)
 {
     const struct framing *framing = &framings[app->now.camera.framing];
     memset(r->needed, 0, (size_t)r->views * sizeof *r->needed);
     framing->mark(r, app);
-    struct relume_light lights[APP_LIGHTS];
-    const int count = lamps_shining(&app->now, lights);
-    relume_status status = relighter_begin(&r->relighter, lights, count);
+    relume_status status = need_lights(r, app->now.lights);
+    if (status)
+        return status;
+    const int count = lamps_shining(&app->now, r->light);
+    status = relighter_begin(&r->relighter, r->light, count);
     relume_status (*const look_up)(const struct target **, struct relighter *, int) =
         app->now.pass == RELUME_PASS_COLOUR ? relighter_view : relighter_wait;  // no stand-ins
     for (int i = 0; !status && i < r->views; i++) {
@@ -329,7 +344,7 @@ static relume_status relight_needed(struct renderer *r, const struct app *app)
             status = look_up(&r->relit[i], &r->relighter, i);
         if (!status && r->needed[i] && app->now.pass != RELUME_PASS_COLOUR)
             status = enhancer_view(&r->relit[i], &r->enhancer, i, r->relit[i], app->now.pass,
-                                   lights, count);
+                                   r->light, count);
     }
     return status ? status : stand_in(r);
 }

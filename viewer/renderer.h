@@ -28,6 +28,8 @@ struct renderer {
     double (*uv)[2];              // [views]
     bool *needed;                 // [views]
     const struct target **relit;  // [views]; NULL where not needed
+    struct relume_light *light;   // that shine; room for `room`
+    int room;
 };
 
 // `uv` [views] places the cameras of a slab; NULL: there is none, or renderer_use_slabs tells.

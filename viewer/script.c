@@ -145,7 +145,7 @@ static relume_status play_drag(struct script *s)
     if (!take_button(s, &button) || !take_numbers(s, n, 4) ||
         (!at_end(s) && (!take_numbers(s, n + 4, 1) || n[4] < 0 || n[4] > 3600)))
         return wrong(s, "drag left|right x0 y0 x1 y1 [SECONDS]");
-    const int moves = n[4] > 0 ? 8 : 1;
+    const int moves = n[4] > 0 ? (int)fmax(8, 25 * n[4]) : 1;  // as a film has pictures
     send(s, (struct app_event){.kind = APP_MOVE, .x = n[0], .y = n[1]});
     send(s, (struct app_event){.kind = APP_PRESS, .button = button, .x = n[0], .y = n[1]});
     for (int i = 1; !status && i <= moves; i++) {
@@ -299,12 +299,25 @@ static relume_status with_path(struct script *s, relume_status (*act)(void *, co
     return path ? act(s->host.user, path) : wrong(s, expected);
 }
 
-static relume_status play_rig(struct script *s)
+static relume_status with_file(struct script *s,
+                               relume_status (*act)(void *, const char *,
+                                                    const struct relume_log *),
+                               const char *expected)
 {
     const struct relume_log log = {.message = say_place, .user = s};
     char copy[LINE];
     const char *path = take_rest(s, copy);
-    return path ? blame_script(s, s->host.rig(s->host.user, path, &log)) : wrong(s, "rig FILE");
+    return path ? blame_script(s, act(s->host.user, path, &log)) : wrong(s, expected);
+}
+
+static relume_status play_rig(struct script *s)
+{
+    return with_file(s, s->host.rig, "rig FILE");
+}
+
+static relume_status play_open(struct script *s)
+{
+    return with_file(s, s->host.open, "open FILE");
 }
 
 static relume_status play_frame(struct script *s)
@@ -340,7 +353,7 @@ static const struct word {
     {"wheel", play_wheel, false}, {"key", play_key, false},   {"hold", play_hold, false},
     {"let", play_let, false},     {"type", play_type, true},  {"light", play_light, true},
     {"add", play_add, true},      {"rig", play_rig, true},    {"wait", play_wait, false},
-    {"frame", play_frame, true},  {"shot", play_shot, true},
+    {"frame", play_frame, true},  {"shot", play_shot, true},  {"open", play_open, true},
 };
 
 static relume_status play_line(struct script *s)
@@ -356,7 +369,7 @@ static relume_status play_line(struct script *s)
         return status || words[i].whole || at_end(s) ? status : wrong(s, "the end of the line");
     }
     return wrong(s, "size, drag, click, press, move, release, wheel, key, hold, let, type, light, "
-                    "add, rig, wait, frame or shot");
+                    "add, rig, open, wait, frame or shot");
 }
 
 relume_status script_open(struct script **out, const char *path, const struct script_host *host)

@@ -15,6 +15,8 @@ struct script_host {
     relume_status (*light)(void *user, const char *spec, bool replace,
                            const struct relume_log *log);
     relume_status (*rig)(void *user, const char *path, const struct relume_log *log);
+    // Show another file.
+    relume_status (*open)(void *user, const char *path, const struct relume_log *log);
     // Let time pass: `seconds` of it, or until nothing moves when negative.
     relume_status (*wait)(void *user, double seconds);
     relume_status (*frame)(void *user, const char *path);  // the picture alone

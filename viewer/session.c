@@ -1,9 +1,6 @@
 #include "session.h"
 
-#include "lamps.h"
 #include "say.h"
-
-#include <relume/tone.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -152,11 +149,13 @@ relume_status session_open(struct session *s, const char *path, const struct app
     if (!status)
         status = check_depth(pack, start, s->log);
     if (status) {
+        app_release(&app);
         relume_pack_destroy(&pack);
         relume_slabs_destroy(&around);
         return status;
     }
     close_file(s);
+    app_release(&s->app);
     s->pack = pack;
     s->around = around;
     s->app = app;
@@ -185,10 +184,19 @@ static relume_status make_renderer(struct session *s)
     if (s->around)
         renderer_use_slabs(&s->renderer, s->around, info->uv, info->slab_of);
     s->renderer.relighter.budget = s->vram_bytes;
+    s->renderer.relighter.software.threads = s->threads;
+    s->renderer.relighter.by_library =
+        s->relight == SESSION_LIBRARY || (s->relight == SESSION_AUTO && s->gl.software);
     renderer_use_capture(&s->renderer, s->capture);
     if (info->has_depth)
         status = renderer_use_depth(&s->renderer, &depth);
     return status || !s->streams ? status : renderer_stream(&s->renderer);
+}
+
+static relume_status make_panel(struct session *s, double scale)
+{
+    const relume_status status = panel_create(&s->panel, scale);
+    return status ? status : draw_panel_create(&s->drawing, &s->gl, s->panel, s->log);
 }
 
 relume_status session_start(struct session *s, const struct context_backend *backend, int width,
@@ -200,13 +208,19 @@ relume_status session_start(struct session *s, const struct context_backend *bac
         status = gl_load(&s->gl, backend->get_proc, s->log);
     if (!status)
         status = make_renderer(s);
-    if (!status)
-        status = panel_create(&s->panel, backend->scale(s->context));
-    return status ? status : draw_panel_create(&s->drawing, &s->gl, s->panel, s->log);
+    return status ? status : make_panel(s, backend->scale(s->context));
 }
 
-relume_status session_drop(struct session *s, const char *path)
+relume_status session_scale(struct session *s, double scale)
 {
+    draw_panel_destroy(&s->drawing, &s->gl);
+    panel_destroy(&s->panel);
+    return make_panel(s, scale);
+}
+
+static relume_status replace(struct session *s, const char *path, bool *opened)
+{
+    session_record_stop(s);
     const struct app was = s->app;
     inspect_destroy(&s->inspector);
     const struct app_state start = {
@@ -215,7 +229,8 @@ relume_status session_drop(struct session *s, const char *path)
         .tone = was.now.tone,
         .white = was.now.white,
     };
-    if (session_open(s, path, &start, true))
+    *opened = !session_open(s, path, &start, true);
+    if (!*opened)
         return RELUME_OK;
     s->app.width = was.width;
     s->app.height = was.height;
@@ -227,10 +242,26 @@ relume_status session_drop(struct session *s, const char *path)
     return make_renderer(s);
 }
 
+relume_status session_drop(struct session *s, const char *path)
+{
+    bool opened;
+    return replace(s, path, &opened);
+}
+
+relume_status session_show(struct session *s, const char *path)
+{
+    bool opened;
+    const relume_status status = replace(s, path, &opened);
+    return status || opened ? status : RELUME_EDATA;
+}
+
 void session_close(struct session *s)
 {
+    session_record_stop(s);
+    record_abort(&s->film);
     if (s->screen.texture)
         target_destroy(&s->screen, &s->gl);
+    maps_destroy(&s->maps);
     inspect_destroy(&s->inspector);
     draw_panel_destroy(&s->drawing, &s->gl);
     panel_destroy(&s->panel);
@@ -239,27 +270,7 @@ void session_close(struct session *s)
         s->backend->close(s->context);
     relume_capture_destroy(&s->capture);
     relume_rig_destroy(&s->rig);
-}
-
-static void count_histogram(struct session *s)
-{
-    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
-    const struct relume_tone_params tone = {.tone = relume_tones[s->app.now.tone],
-                                            .white = s->app.now.white};
-    struct relume_image frame;
-    memset(s->histogram, 0, sizeof s->histogram);
-    if (renderer_read(&frame, &s->renderer))
-        return;
-    if (relume_tone_apply(&frame, &tone)) {
-        relume_image_destroy(&frame);
-        return;
-    }
-    const size_t samples = 3 * (size_t)frame.width * (size_t)frame.height;
-    for (size_t i = 0; i < samples; i++) {
-        const float code = relume_transfer_encode(srgb, frame.data[i]);
-        s->histogram[(int)fminf(fmaxf(255 * code + 0.5f, 0), 255)][i % 3]++;
-    }
-    relume_image_destroy(&frame);
+    app_release(&s->app);
 }
 
 // The first frame is drawn once more, with the exposure that it asks for.
@@ -274,44 +285,13 @@ static relume_status meter(struct session *s)
     return app_exposure_ev(&s->app) == before ? RELUME_OK : renderer_draw(&s->renderer, &s->app);
 }
 
-static relume_status inspect(struct session *s, bool *shown)
+// Whether an event is for those that hear of it when nothing is recorded.
+static bool passes_recording(struct session *s, const struct app_event *event)
 {
-    relume_status status = RELUME_OK;
-    const struct code_source source = pack_source_codes(s->source);
-    if (!s->inspector.weights)
-        status = inspect_create(&s->inspector, relume_pack_info(s->pack), &source, s->renderer.grid,
-                                s->capture);
-    if (!status)
-        status = inspect_update(&s->inspector, &s->app, shown);
-    if (!status && *shown)
-        draw_panel_plot(&s->drawing, &s->gl, &s->inspector.plot);
-    return status;
-}
-
-static relume_status build_panel(struct session *s, bool histogram)
-{
-    bool plot = false;
-    const relume_status status = s->app.inspect ? inspect(s, &plot) : RELUME_OK;
-    const struct panel_facts facts = {
-        .file = s->name,
-        .line = s->lines,
-        .message = s->message,
-        .histogram = histogram ? (const uint32_t(*)[3])s->histogram : NULL,
-        .plot = plot ? &s->inspector.plot : NULL,
-        .plot_text = s->inspector.text,
-    };
-    if (!status)
-        (void)panel_build(s->panel, &s->app, &facts);
-    return status;
-}
-
-// Once more, with the histogram of the frame that has just been drawn.
-static relume_status add_histogram(struct session *s)
-{
-    if (!panel_shown(&s->app) || !panel_wants_histogram(s->panel))
-        return RELUME_OK;
-    count_histogram(s);
-    return build_panel(s, true);
+    const bool escape = event->kind == APP_KEY_DOWN && event->key == APP_KEY_ESCAPE;
+    if (escape || event->kind == APP_SIZE)
+        session_record_stop(s);
+    return event->kind == APP_SIZE || event->kind == APP_RELEASE || event->kind == APP_KEY_UP;
 }
 
 // A panel that has just appeared is made at once, so that the next click finds it. One that has
@@ -319,29 +299,38 @@ static relume_status add_histogram(struct session *s)
 bool session_send(struct session *s, const struct app_event *event)
 {
     const bool shown = panel_shown(&s->app);
+    if (session_records(s) && !passes_recording(s, event))
+        return true;
     if ((shown || event->kind == APP_RELEASE) && panel_takes(s->panel, event))
         return true;
     const bool changed = app_handle(&s->app, event);
-    if (!shown && panel_shown(&s->app) && build_panel(s, false))
+    if (!shown && panel_shown(&s->app) && session_build_panel(s, false))
         return true;  // what went wrong goes wrong again when it is drawn, and is told there
     return changed || shown || s->app.wish;
 }
 
 relume_status session_draw(struct session *s)
 {
-    relume_status status = panel_shown(&s->app) ? build_panel(s, false) : RELUME_OK;
+    relume_status status = panel_shown(&s->app) ? session_build_panel(s, false) : RELUME_OK;
     if (!status)
         status = session_grant_wish(s);
-    if (!status)
+    const bool recorded = !status && session_records(s) && !session_record_step(s);
+    if (!status && !recorded)
         status = renderer_draw(&s->renderer, &s->app);
-    if (!status && s->app.now.auto_exposure)
+    if (!status && !recorded && s->app.now.auto_exposure)
         status = meter(s);
-    return status ? status : add_histogram(s);
+    return status ? status : session_add_histogram(s);
+}
+
+bool session_is_busy(const struct session *s)
+{
+    return s->app.wish || session_records(s);
 }
 
 bool session_pass(struct session *s, double seconds)
 {
-    return app_advance(&s->app, seconds);
+    const bool moved = !session_records(s) && app_advance(&s->app, seconds);
+    return moved || session_is_busy(s);
 }
 
 void session_present(struct session *s, GLuint framebuffer)

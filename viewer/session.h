@@ -5,6 +5,7 @@
 #include "context.h"
 #include "draw_panel.h"
 #include "inspect.h"
+#include "maps.h"
 #include "pack_source.h"
 #include "record.h"
 #include "renderer.h"
@@ -13,6 +14,18 @@
 #include <relume/rig.h>
 
 enum { SESSION_LINES = 10, SESSION_TEXT = 256 };
+
+// What relights views; the library does where OpenGL is software.
+enum session_relight { SESSION_AUTO, SESSION_PASSES, SESSION_LIBRARY };
+
+// Pictures that are being recorded, one a frame.
+struct recording {
+    struct record *record;  // NULL: none
+    enum record_kind kind;
+    int frame, frames;
+    struct app_state before;  // the recording
+    char path[SESSION_TEXT + 16];
+};
 
 struct session {
     const struct context_backend *backend;
@@ -27,16 +40,20 @@ struct session {
     struct renderer renderer;
     struct panel *panel;
     struct panel_drawing drawing;
+    struct maps maps;            // to choose from, while the panel does
     struct inspector inspector;  // made when first asked for
-    struct target screen;        // of shots without a window
-    uint32_t histogram[256][3];
+    struct recording recording;
+    struct record *film;   // of a script as it is played, or NULL
+    struct target screen;  // of shots without a window
+    float histogram[256][3];
     char name[SESSION_TEXT];  // of the file, for the title
     char line[SESSION_LINES][SESSION_TEXT];
     const char *lines[SESSION_LINES + 1];  // what the panel says of the file
     char message[SESSION_TEXT];            // what the panel says last
     int threads;                           // that read files
     size_t vram_bytes;                     // for views
-    bool streams;                          // frames are drawn with the views that are there
+    enum session_relight relight;
+    bool streams;  // frames are drawn with the views that are there
     const struct relume_log *log;
 };
 
@@ -48,10 +65,19 @@ relume_status session_compare(struct session *s, const char *capture);
 // Get OpenGL and make what draws. RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EDATA.
 relume_status session_start(struct session *s, const struct context_backend *backend, int width,
                             int height);
+// Letters and margins of the panel for another screen: `scale` as context_backend.scale.
+// RELUME_ESYSTEM, RELUME_ENOMEM.
+relume_status session_scale(struct session *s, double scale);
 // Show another file in the same window; one that cannot be opened is only complained about.
 relume_status session_drop(struct session *s, const char *path);
+// The same, and then RELUME_EDATA.
+relume_status session_show(struct session *s, const char *path);
 void session_close(struct session *s);
 
+// The panel as its events have changed the app, with the histogram of the last frame or without;
+// the same once more, with it, where the panel shows one. RELUME_ENOMEM, RELUME_EDATA.
+relume_status session_build_panel(struct session *s, bool histogram);
+relume_status session_add_histogram(struct session *s);
 // Hand an event to the panel, else to the app; returns whether something may look different.
 bool session_send(struct session *s, const struct app_event *event);
 // Draw the frame, linear, with the panel as its events have changed the app, and do what was
@@ -62,6 +88,9 @@ void session_present(struct session *s, GLuint framebuffer);
 // Do what the app wishes for, once. What fails is said in the panel and the log, and is no error.
 relume_status session_grant_wish(struct session *s);
 
+// A wish or a recording waits for session_draw.
+bool session_is_busy(const struct session *s);
+
 // Let time pass for what moves by itself; returns whether the picture changed.
 bool session_pass(struct session *s, double seconds);
 
@@ -69,13 +98,30 @@ bool session_pass(struct session *s, double seconds);
 relume_status session_frame(struct session *s, const char *path);
 relume_status session_shot(struct session *s, const char *path);
 
-// Draw a round of `frames` pictures and write it; the app is as before afterwards. Errors of
-// record.h and session_draw.
+// The last frame; `linear` or by the app's tone. RELUME_EDATA when the eye sees nothing.
+relume_status session_read(struct relume_image *image, struct session *s, bool linear);
+
+// Record a round of `frames` pictures: session_draw draws and adds one at a time, and the app is as
+// before afterwards. Until then events wait, but for Esc and a new size of the frame, which end the
+// recording with what there is of it. Errors of record.h.
+relume_status session_record_begin(struct session *s, enum record_kind kind, const char *path,
+                                   int frames);
+bool session_records(const struct session *s);
+// A picture of the screen into s->film.
+relume_status session_film(struct session *s);
+// The next picture. On failure nothing is recorded any more, and nothing is left of it.
+relume_status session_record_step(struct session *s);
+void session_record_stop(struct session *s);
+// All of it at once. Errors of record.h and session_draw.
 relume_status session_record(struct session *s, enum record_kind kind, const char *path,
                              int frames);
 
 // A light from words, in place of all or beside them. RELUME_EINVAL, RELUME_EDATA with a sentence.
 relume_status session_light(struct session *s, const char *spec, bool replace);
+// The environment map `path` in place of the selected light's, else as one more light. The same.
+relume_status session_map(struct session *s, const char *path);
+// The file of the selected environment, else NULL.
+const char *session_map_in_use(const struct session *s);
 // The lights of a rig file in place of all; the present ones as a rig file.
 relume_status session_load_rig(struct session *s, const char *path);
 relume_status session_save_rig(struct session *s, const char *path);

@@ -6,6 +6,8 @@
 #include "say.h"
 
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 static relume_status too_many(const struct session *s)
 {
@@ -22,12 +24,18 @@ static struct app_lamp lamp_of(const struct relume_rig_entry *e, int entry)
     };
 }
 
+// To have been refused by lamps_add.
+static relume_status refused(const struct session *s, const struct app_state *to)
+{
+    return to->lights < APP_LIGHTS ? RELUME_ENOMEM : too_many(s);
+}
+
 static relume_status append_entries(const struct session *s, struct app_state *to, int first)
 {
     for (int i = first; i < relume_rig_count(s->rig); i++) {
         const struct relume_rig_entry *e = relume_rig_entry(s->rig, i);
         if (!lamps_add(to, &e->light, i))
-            return too_many(s);
+            return refused(s, to);
         to->lamp[to->selected] = lamp_of(e, i);
     }
     return RELUME_OK;
@@ -66,6 +74,33 @@ relume_status session_light(struct session *s, const char *spec, bool replace)
     if (replace)
         now->lights = 0;
     return append_entries(s, now, entry);
+}
+
+relume_status session_map(struct session *s, const char *path)
+{
+    struct app_state *now = &s->app.now;
+    const int old = now->selected;
+    const bool replaces = now->light[old].kind == RELUME_LIGHT_ENVIRONMENT;
+    const char *quote = strchr(path, '\'') ? "\"" : "'";
+    char spec[APP_SPEC + 16];
+    snprintf(spec, sizeof spec, "env %s%s%s", quote, path, quote);
+    const relume_status status = session_light(s, spec, false);
+    if (status || !replaces)
+        return status;
+    now->light[old].environment = now->light[now->selected].environment;
+    now->lamp[old].entry = now->lamp[now->selected].entry;
+    (void)lamps_remove(now, now->selected);
+    now->selected = old;
+    return RELUME_OK;
+}
+
+const char *session_map_in_use(const struct session *s)
+{
+    const struct app_state *now = &s->app.now;
+    const int entry = now->lamp[now->selected].entry;
+    return now->light[now->selected].kind == RELUME_LIGHT_ENVIRONMENT && entry >= 0
+               ? relume_rig_entry(s->rig, entry)->file
+               : NULL;
 }
 
 // Its files stay with the session's own rig, which lights that were there before still need.

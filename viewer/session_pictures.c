@@ -1,4 +1,4 @@
-// session_pictures.c - frames, shots and recordings as files
+// session_pictures.c - frames and shots as files
 #include "session.h"
 
 #include "say.h"
@@ -20,8 +20,7 @@ static relume_status save(struct session *s, struct relume_image *image, const c
     return status;
 }
 
-// The last frame; `linear` or by the app's tone.
-static relume_status read_frame(struct relume_image *image, struct session *s, bool linear)
+relume_status session_read(struct relume_image *image, struct session *s, bool linear)
 {
     const struct relume_tone_params tone = {.tone = relume_tones[s->app.now.tone],
                                             .white = s->app.now.white};
@@ -39,42 +38,8 @@ relume_status session_frame(struct session *s, const char *path)
     struct relume_image image;
     relume_status status = session_draw(s);
     if (!status)
-        status = read_frame(&image, s, relume_image_saves_linear(path));
+        status = session_read(&image, s, relume_image_saves_linear(path));
     return status ? status : save(s, &image, path);
-}
-
-static relume_status add_pictures(struct session *s, struct record *record, enum record_kind kind,
-                                  int frames)
-{
-    relume_status status = RELUME_OK;
-    for (int i = 0; !status && i < frames; i++) {
-        struct relume_image image = {0};
-        status = record_pose(&s->app, kind, (double)i / frames, s->log);
-        if (!status)
-            status = renderer_draw(&s->renderer, &s->app);
-        if (!status)
-            status = read_frame(&image, s, false);
-        if (!status)
-            status = record_add(record, &image);
-        relume_image_destroy(&image);
-    }
-    return status;
-}
-
-relume_status session_record(struct session *s, enum record_kind kind, const char *path, int frames)
-{
-    const struct app_state before = s->app.now;
-    struct record *record;
-    relume_status status = record_open(&record, path, s->log);
-    if (status)
-        return status;
-    s->app.now.ball = false;
-    status = add_pictures(s, record, kind, frames);
-    s->app.now = before;
-    if (!status)
-        return record_commit(&record);
-    record_abort(&record);
-    return status;
 }
 
 static relume_status prepare_screen(struct session *s)
@@ -104,18 +69,35 @@ static void turn_over_and_decode(struct relume_image *image)
         image->data[i] = relume_transfer_decode(srgb, image->data[i]);
 }
 
-relume_status session_shot(struct session *s, const char *path)
+// Linear, as the screen would show it.
+static relume_status read_screen(struct relume_image *image, struct session *s)
 {
-    struct relume_image image;
     relume_status status = session_draw(s);
     if (!status)
         status = prepare_screen(s);
     if (status)
         return status;
     session_present(s, s->screen.framebuffer);
-    status = target_read(&image, &s->screen, &s->gl);
+    status = target_read(image, &s->screen, &s->gl);
+    if (!status)
+        turn_over_and_decode(image);
+    return status;
+}
+
+relume_status session_shot(struct session *s, const char *path)
+{
+    struct relume_image image;
+    const relume_status status = read_screen(&image, s);
+    return status ? status : save(s, &image, path);
+}
+
+relume_status session_film(struct session *s)
+{
+    struct relume_image image;
+    relume_status status = read_screen(&image, s);
     if (status)
         return status;
-    turn_over_and_decode(&image);
-    return save(s, &image, path);
+    status = record_add(s->film, &image);
+    relume_image_destroy(&image);
+    return status;
 }

@@ -44,9 +44,8 @@ static relume_status wish_recording(struct session *s, enum record_kind kind, co
 {
     char path[SESSION_TEXT + 16];
     free_name(path, sizeof path, s, ending);
-    const relume_status status = session_record(s, kind, path, RECORD_FRAMES);
-    snprintf(s->message, sizeof s->message, "%.200s %s", path,
-             status ? "was not recorded" : "recorded");
+    if (session_record_begin(s, kind, path, RECORD_FRAMES))
+        snprintf(s->message, sizeof s->message, "%.200s was not recorded", path);
     return RELUME_OK;
 }
 
@@ -78,6 +77,13 @@ static relume_status wish_add_light(struct session *s)
     return RELUME_OK;
 }
 
+static relume_status wish_map(struct session *s)
+{
+    const bool shown = !session_map(s, s->app.spec);
+    snprintf(s->message, sizeof s->message, shown ? "%.200s" : "no map: %.200s", s->app.spec);
+    return RELUME_OK;
+}
+
 // What was wished for is done once; what fails is said in the panel and in the log.
 relume_status session_grant_wish(struct session *s)
 {
@@ -88,6 +94,7 @@ relume_status session_grant_wish(struct session *s)
         [APP_WISH_SWEEP] = wish_sweep,
         [APP_WISH_TURNTABLE] = wish_turntable,
         [APP_WISH_ADD_LIGHT] = wish_add_light,
+        [APP_WISH_MAP] = wish_map,
     };
     const enum app_wish wish = s->app.wish;
     s->app.wish = APP_WISH_NONE;

@@ -72,3 +72,12 @@ relume_status target_read(struct relume_image *out, const struct target *target,
     gl->ReadPixels(0, 0, target->width, target->height, GL_RGB, GL_FLOAT, out->data);
     return RELUME_OK;
 }
+
+void target_write(const struct target *target, const struct gl *gl,
+                  const struct relume_image *image)
+{
+    texture_use(gl, 0, GL_TEXTURE_2D, target->texture);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, target->width, target->height, 0, GL_RGB, GL_FLOAT,
+                   image->data);
+}

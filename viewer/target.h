@@ -25,6 +25,10 @@ void target_resume(const struct target *target, const struct gl *gl);
 relume_status target_read(struct relume_image *out, const struct target *target,
                           const struct gl *gl);
 
+// Replace its pixels; `image` has three channels and its size.
+void target_write(const struct target *target, const struct gl *gl,
+                  const struct relume_image *image);
+
 // Settings that every texture of the viewer has: no filter, no wrap, no mip levels. Shaders fetch
 // texels and weigh them themselves, as the library does.
 void texture_settings(const struct gl *gl, GLenum kind);

@@ -1,6 +1,7 @@
 #include "weights.h"
 
-#include <math.h>
+#include "vec.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -38,12 +39,6 @@ static float *weight_of(const struct weights *w, int plane, int channel)
     return &w->plane[(plane / LANES * CHANNELS + channel) * LANES + plane % LANES];
 }
 
-static struct relume_vec3 unit_vector(struct relume_vec3 v)
-{
-    const double length = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-    return (struct relume_vec3){v.x / length, v.y / length, v.z / length};
-}
-
 // The basis [3][K] in `w`, and what it adds to each channel, times `rgb`.
 static void add_basis(struct weights *w, const struct relume_codes *codes, double unit,
                       const float constant[3], const float rgb[3])
@@ -71,7 +66,7 @@ void weights_add(struct weights *w, const struct relume_codes *codes, double uni
                  struct relume_vec3 direction, const float rgb[3])
 {
     float constant[3];
-    relume_coder_weights(codes->coder, unit_vector(direction), w->basis, constant);
+    relume_coder_weights(codes->coder, vec_unit(direction), w->basis, constant);
     add_basis(w, codes, unit, constant, rgb);
 }
 

@@ -17,28 +17,31 @@ enum relume_light_kind {
     RELUME_LIGHT_SLIDE,
     RELUME_LIGHT_AREA,
     RELUME_LIGHT_IES,
+    RELUME_LIGHT_GONIO,
 };
 
-typedef struct relume_ies relume_ies;                  // a goniometric distribution
+typedef struct relume_ies relume_ies;                  // a goniometric distribution: a table
+typedef struct relume_gonio relume_gonio;              // ... and as a picture
 typedef struct relume_environment relume_environment;  // a map of distant radiance
 
 // A light of value 1 (near ones: at distance 1) gives a white Lambertian surface facing it the
 // value 1. Environments and areas are radiances E that weigh E dw / pi. Plain data.
 struct relume_light {
     enum relume_light_kind kind;
-    struct relume_vec3 direction;      // directional: towards the light; spot, slide, ies: the axis
-                                       // along which it shines; any length but 0
-    struct relume_vec3 position;       // near ones, world units; area: the centre
-    struct relume_vec3 u, v;           // area: half edges; it emits towards u x v
-    bool disc;                         // area: the ellipse inside, not the rectangle
-    bool nofall;                       // point, spot, slide, ies: the same value at every distance
-    double half_angle_deg;             // (0, 90). spot: full inside 0.9 of it, smoothstep to 0;
-                                       // slide: half the width of the picture
-    double rotate_deg;                 // environment: > 0 turns it from -z towards +x
-    float rgb[3];                      // linear value
-    const struct relume_image *image;  // slide: the picture, linear, three channels; borrowed
+    struct relume_vec3 direction;  // directional: towards the light; spot, slide, ies, gonio: the
+                                   // axis along which it shines; any length but 0
+    struct relume_vec3 position;   // near ones, world units; area: the centre
+    struct relume_vec3 u, v;       // area: half edges; it emits towards u x v
+    bool disc;                     // area: the ellipse inside, not the rectangle
+    bool nofall;                   // all near ones but area: the same value at every distance
+    double half_angle_deg;         // (0, 90). spot: full inside 0.9 of it, smoothstep to 0;
+                                   // slide: half the width of the picture
+    double rotate_deg;             // environment: > 0 turns it from -z towards +x
+    float rgb[3];                  // linear value
+    const struct relume_image *image;       // slide: the picture, linear, three channels; borrowed
     const relume_environment *environment;  // borrowed
     const relume_ies *ies;                  // borrowed
+    const relume_gonio *gonio;              // borrowed
 };
 
 // "dir", "env", "point", ... as in a SPEC (rig.h); never NULL.
@@ -55,14 +58,15 @@ static inline bool relume_light_is_near(enum relume_light_kind kind)
 RELUME_RESULT relume_status relume_light_check(const struct relume_light *light, const char *name,
                                                const struct relume_log *log);
 
-// What a point, spot, slide or ies light sends to `point`: its value there and the unit direction
-// towards it (Wong 1998, Eq. 7.7 with its sign corrected: L = S - P). False where nothing arrives:
-// outside the cone or picture, at the light itself, at a point that is not finite.
+// What a point, spot, slide, ies or gonio light sends to `point`: its value there and the unit
+// direction towards it (Wong 1998, Eq. 7.7 with its sign corrected: L = S - P). False where nothing
+// arrives: outside the cone or picture, at the light itself, at a point that is not finite.
 RELUME_API bool relume_light_at(struct relume_vec3 *towards, float rgb[3],
                                 const struct relume_light *light, struct relume_vec3 point);
 
-// The frame of a slide or ies light that shines along `axis`: image right and up, unit vectors. Up
-// is world +y projected, +z where the axis is vertical; seen along the axis, right is right.
+// The frame of a slide, ies or gonio light that shines along `axis`: image right and up, unit
+// vectors. Up is world +y projected, +z where the axis is vertical; seen along the axis, right is
+// right.
 RELUME_API void relume_light_frame(struct relume_vec3 *right, struct relume_vec3 *up,
                                    struct relume_vec3 axis);
 
@@ -111,6 +115,33 @@ RELUME_API double relume_ies_value(const relume_ies *ies, double vertical_deg,
                                    double horizontal_deg);
 // The largest intensity of the file, candela.
 RELUME_API double relume_ies_candela(const relume_ies *ies);
+
+// ------------------------------------------------------------------ gonio
+struct relume_gonio_params {
+    const struct relume_log *log;
+    const char *name;  // how sentences call the map; default: "distribution"
+};
+#define relume_gonio_params(...) (&(const struct relume_gonio_params){__VA_ARGS__})
+
+// A goniometric distribution of `map`, three channels, 1 being the light's own value. Six square
+// faces side by side (+x -x +y -y +z -z, laid out as the cube of a panorama) or, twice as wide as
+// high, a sphere (lat-long; resampled to faces half as high, at most 1024). The map is seen from
+// the light: its middle -z is the axis, +x right, +y up (relume_light_frame). NaN, infinite and
+// negative values become 0 with a warning. `map` is copied. RELUME_EINVAL with a sentence,
+// RELUME_ENOMEM. Never changes. Thread-safety: safe.
+RELUME_RESULT relume_status relume_gonio_create(relume_gonio **out, const struct relume_image *map,
+                                                const struct relume_gonio_params *params);
+// The same from a file that relume_image_load reads. RELUME_EDATA, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_gonio_load(relume_gonio **out, const char *path,
+                                              const struct relume_log *log);
+RELUME_API void relume_gonio_destroy(relume_gonio **gonio);
+
+// The value in a direction of the map's frame, any length but 0: bilinear within a face and
+// continuous over the edges.
+RELUME_API void relume_gonio_value(float rgb[3], const relume_gonio *gonio,
+                                   struct relume_vec3 direction);
+// Its faces of n x n texels, each in a border of one texel from its neighbours: 6 (n + 2) x (n + 2)
+RELUME_API const struct relume_image *relume_gonio_map(const relume_gonio *gonio);
 
 // ------------------------------------------------------------------ environment
 struct relume_environment_params {

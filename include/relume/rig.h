@@ -9,7 +9,8 @@
 //     area px py pz ux uy uz vx vy vz [disc]           centre and half edges, emits towards u x v
 //     env map [rotate_deg]
 //     ies px py pz dx dy dz file
-// each followed, in any order, by: rgb r g b (default 1 1 1); nofall (point, spot, slide, ies).
+//     gonio px py pz dx dy dz map                      intensity over direction, a picture
+// each followed, in any order, by: rgb r g b (default 1 1 1); nofall (all near ones but area).
 // File names with blanks stand in ' ' or " ".
 #ifndef RELUME_RIG_H
 #define RELUME_RIG_H
@@ -29,7 +30,7 @@ typedef struct relume_rig relume_rig;
 struct relume_rig_entry {
     const char *name;  // for people; never NULL
     const char *spec;  // as relume_rig_add understands it, without rgb
-    const char *file;  // of slide, env, ies, as it was opened; else NULL
+    const char *file;  // of slide, env, ies, gonio, as it was opened; else NULL
     bool on, solo;
     double intensity;           // factor of rgb, >= 0
     struct relume_light light;  // rgb as written, without intensity

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "math/vec.h"
+#include "relight/grid.h"
 
 #include <string.h>
 
@@ -193,6 +194,13 @@ static void blend(float *restrict to, const struct corners *at, int first, int n
     const float *restrict r = at->node[2] + first, *restrict s = at->node[3] + first;
     for (int i = 0; i < n; i++)
         to[i] += a * p[i] + b * q[i] + c * r[i] + d * s[i];
+}
+
+void grid_blend(float *out, const relume_weight_grid *grid, struct relume_vec3 direction)
+{
+    const struct corners at = corners_at(grid, direction);
+    memset(out, 0, (size_t)grid->info.stride * sizeof *out);
+    blend(out, &at, 0, grid->info.stride, 1.0f);
 }
 
 enum { RUN = 64 };

@@ -8,7 +8,7 @@ static const char *const kind_names[] = {
     [RELUME_LIGHT_DIRECTIONAL] = "dir", [RELUME_LIGHT_ENVIRONMENT] = "env",
     [RELUME_LIGHT_POINT] = "point",     [RELUME_LIGHT_SPOT] = "spot",
     [RELUME_LIGHT_SLIDE] = "slide",     [RELUME_LIGHT_AREA] = "area",
-    [RELUME_LIGHT_IES] = "ies",
+    [RELUME_LIGHT_IES] = "ies",         [RELUME_LIGHT_GONIO] = "gonio",
 };
 
 const char *relume_light_kind_name(enum relume_light_kind kind)
@@ -18,7 +18,16 @@ const char *relume_light_kind_name(enum relume_light_kind kind)
 
 // ---------------------------------------------------------------- checks
 
-enum needs { DIRECTION = 1, POSITION = 2, ANGLE = 4, EDGES = 8, IMAGE = 16, MAP = 32, TABLE = 64 };
+enum needs {
+    DIRECTION = 1,
+    POSITION = 2,
+    ANGLE = 4,
+    EDGES = 8,
+    IMAGE = 16,
+    MAP = 32,
+    TABLE = 64,
+    FACES = 128
+};
 
 static const int needs[] = {
     [RELUME_LIGHT_DIRECTIONAL] = DIRECTION,
@@ -28,6 +37,7 @@ static const int needs[] = {
     [RELUME_LIGHT_SLIDE] = POSITION | DIRECTION | ANGLE | IMAGE,
     [RELUME_LIGHT_AREA] = POSITION | EDGES,
     [RELUME_LIGHT_IES] = POSITION | DIRECTION | TABLE,
+    [RELUME_LIGHT_GONIO] = POSITION | DIRECTION | FACES,
 };
 
 // Sums of products of values and 1 / distance^2 stay far from the largest float.
@@ -46,7 +56,8 @@ static bool has_length(vec3 v)
 
 const char *light_complaint(const struct relume_light *l, bool with_files)
 {
-    const int files = IMAGE | MAP | TABLE, need = needs[l->kind] & (with_files ? ~0 : ~files);
+    const int files = IMAGE | MAP | TABLE | FACES,
+              need = needs[l->kind] & (with_files ? ~0 : ~files);
     for (int c = 0; c < 3; c++)
         if (!(fabs((double)l->rgb[c]) <= MOST_VALUE))
             return "expected values of at most 1e9";
@@ -64,7 +75,7 @@ const char *light_complaint(const struct relume_light *l, bool with_files)
         return "expected a finite rotation";
     if (need & MAP && !l->environment)
         return "expected an environment map";
-    if (need & TABLE && !l->ies)
+    if ((need & TABLE && !l->ies) || (need & FACES && !l->gonio))
         return "expected a distribution";
     return NULL;
 }
@@ -98,11 +109,15 @@ static double radians(double degrees)
     return degrees * (M_PI / 180.0);
 }
 
-// Full inside 0.9 of the half angle, by angle.
+// Full inside 0.9 of the half angle, by angle. Most of what lies outside is told from cos x >= 1 -
+// x^2 / 2.
 static bool spot_factor(float rgb[3], const struct relume_light *l, vec3 ray)
 {
-    const double angle = vec3_angle(ray, vec3_unit(l->direction));
+    const vec3 axis = vec3_unit(l->direction);
     const double half = radians(l->half_angle_deg);
+    if (vec3_dot(ray, axis) < 1.0 - 0.5 * half * half)
+        return false;
+    const double angle = vec3_angle(ray, axis);
     const float f = (float)(1.0 - smoothstep(0.9 * half, half, angle));
     for (int c = 0; c < 3; c++)
         rgb[c] *= f;
@@ -159,6 +174,19 @@ static bool ies_factor(float rgb[3], const struct relume_light *l, vec3 ray)
     return f > 0.0f;
 }
 
+// The axis is ahead (-z) in the map.
+static bool gonio_factor(float rgb[3], const struct relume_light *l, vec3 ray)
+{
+    vec3 right, up;
+    float value[3];
+    relume_light_frame(&right, &up, l->direction);
+    const double ahead = vec3_dot(ray, vec3_unit(l->direction));
+    relume_gonio_value(value, l->gonio, vec3_of(vec3_dot(ray, right), vec3_dot(ray, up), -ahead));
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= value[c];
+    return value[0] > 0.0f || value[1] > 0.0f || value[2] > 0.0f;
+}
+
 // Nearer than this a light is taken to be in the surface, and nothing arrives.
 static const double LEAST_DISTANCE = 1e-6;
 
@@ -185,6 +213,7 @@ bool relume_light_at(struct relume_vec3 *towards, float rgb[3], const struct rel
     case RELUME_LIGHT_SPOT: return spot_factor(rgb, light, ray);
     case RELUME_LIGHT_SLIDE: return slide_factor(rgb, light, ray);
     case RELUME_LIGHT_IES: return ies_factor(rgb, light, ray);
+    case RELUME_LIGHT_GONIO: return gonio_factor(rgb, light, ray);
     case RELUME_LIGHT_DIRECTIONAL:
     case RELUME_LIGHT_ENVIRONMENT:
     case RELUME_LIGHT_AREA: break;

@@ -1,17 +1,19 @@
-// near.c - point, spot, slide, area and ies lights: every pixel sees them from a direction of its
-// own (Wong 1998, 7.5.5)
+// near.c - point, spot, slide, area and goniometric lights: every pixel sees them from a direction
+// of its own (Wong 1998, 7.5.5)
 //
-// In the linear domain a pixel's lights meet in one weight vector as distant ones do, and its
-// coefficients are read once; in the display domain each light is decoded and made linear.
+// Pixels go in blocks, planes outside and pixels inside: each pixel's weights stand in a lane. In
+// the linear domain the weights of many lights meet in a pixel before its coefficients are looked
+// at, as those of distant lights do; in the display domain each light is decoded and made linear.
 #include "relight/near.h"
 
 #include "base/memory.h"
 #include "image/half.h"
 #include "math/vec.h"
+#include "relight/grid.h"
 
 #include <string.h>
 
-enum { MOST_WEIGHTS = 3 * 4096, MOST_TOGETHER = 64 };
+enum { MOST_WEIGHTS = 3 * 4096, LANES = 64, LEAST_LANES = 4, ROOM = MOST_WEIGHTS * LEAST_LANES };
 
 // ---------------------------------------------------------------- emitters
 
@@ -74,129 +76,237 @@ static bool arrives(vec3 *towards, float rgb[3], const struct near *near, const 
     return relume_facet_at(towards, rgb, &e->facet, point) && is_captured(near, *towards);
 }
 
+// ---------------------------------------------------------------- blocks
+
+// Pixels that are relit together; [n] stands for `lanes` floats.
+struct block {
+    size_t first;
+    int n, lanes;
+    bool read;  // vectors of codebooks are in `coefficient`
+    bool lit;   // something arrives at one of them
+    float rgb[3][LANES];
+    float constant[3][LANES];
+    float weight[ROOM];       // [3 or 1][coefficients][n]
+    float coefficient[ROOM];  // [planes][n]
+};
+
+static void put_lane(float *to, int lanes, const float *from, int n)
+{
+    for (int i = 0; i < n; i++)
+        to[i * lanes] = from[i];
+}
+
+static void clear_lane(float *to, int lanes, int n)
+{
+    for (int i = 0; i < n; i++)
+        to[i * lanes] = 0.0f;
+}
+
+static bool point_of(vec3 *point, const struct near *near, size_t pixel)
+{
+    const float *p = near->surface->data + 3 * pixel;
+    *point = vec3_of((double)p[0], (double)p[1], (double)p[2]);
+    return isfinite(point->x) && isfinite(point->y) && isfinite(point->z);
+}
+
 // ---------------------------------------------------------------- coefficients
 
-static float code_value(const struct relume_codes *codes, int plane, size_t pixel)
-{
-    if (codes->storage == RELUME_STORE_8)
-        return ((const uint8_t *)codes->plane[plane])[pixel];
-    const uint16_t word = ((const uint16_t *)codes->plane[plane])[pixel];
-    return codes->storage == RELUME_STORE_HALF ? float_from_half(word) : word;
-}
-
-static void read_planes(float *out, const struct relume_codes *codes, size_t first, size_t n)
-{
-    for (int p = 0; p < codes->planes; p++)
-        for (size_t i = 0; i < n; i++)
-            out[i * (size_t)codes->planes + (size_t)p] =
-                code_value(codes, p, first + i) * codes->scale[p] + codes->offset[p];
-}
-
-static void read_vectors(float *out, const struct relume_codes *codes, size_t first, size_t n)
+static void read_vectors(struct block *b, const struct relume_codes *codes)
 {
     const size_t planes = (size_t)codes->planes;
-    memset(out, 0, n * planes * sizeof *out);
-    for (int b = 0; b < codes->books; b++)
-        for (size_t i = 0; i < n; i++) {
-            const float *v = codes->vectors[b] + (size_t)codes->index[b][first + i] * planes;
+    if (b->read)
+        return;
+    b->read = true;
+    memset(b->coefficient, 0, planes * (size_t)b->lanes * sizeof *b->coefficient);
+    for (int book = 0; book < codes->books; book++)
+        for (int i = 0; i < b->n; i++) {
+            const float *v =
+                codes->vectors[book] + (size_t)codes->index[book][b->first + (size_t)i] * planes;
             for (size_t p = 0; p < planes; p++)
-                out[i * planes + p] += v[p];
+                b->coefficient[p * (size_t)b->lanes + (size_t)i] += v[p];
         }
 }
 
-// out[n][planes]: pixels side by side, so that a pixel's sums run through memory.
-static void read_coefficients(float *out, const struct relume_codes *codes, size_t first, size_t n)
+static void scale(float *out, int n, float factor, float offset)
 {
-    (codes->books ? read_vectors : read_planes)(out, codes, first, n);
+    for (int i = 0; i < n; i++)
+        out[i] = out[i] * factor + offset;
 }
 
-// ---------------------------------------------------------------- pixels
-
-static float dot(const float *weights, const float *coefficient, int k, int stride)
+// The coefficients [n] of a plane: in `room`, or where they are already.
+static const float *read_plane(float room[LANES], struct block *b, const struct relume_codes *codes,
+                               int plane)
 {
-    float sum = 0.0f;
-    for (int i = 0; i < k; i++)
-        sum += weights[i] * coefficient[i * stride];
-    return sum;
+    if (codes->books) {
+        read_vectors(b, codes);
+        return b->coefficient + plane * b->lanes;
+    }
+    const void *from = codes->plane[plane];
+    const uint8_t *bytes = (const uint8_t *)from + b->first;
+    const uint16_t *words = (const uint16_t *)from + b->first;
+    if (codes->storage == RELUME_STORE_8)
+        for (int i = 0; i < b->n; i++)
+            room[i] = bytes[i];
+    else if (codes->storage == RELUME_STORE_HALF)
+        for (int i = 0; i < b->n; i++)
+            room[i] = float_from_half(words[i]);
+    else
+        for (int i = 0; i < b->n; i++)
+            room[i] = words[i];
+    scale(room, b->n, codes->scale[plane], codes->offset[plane]);
+    return room;
 }
 
-static void decode(float value[3], const struct near *near, const float *weights,
-                   const float constant[3], const float *coefficient)
+static void add_product(float *restrict sum, const float *restrict a, const float *restrict b,
+                        int n)
 {
-    const struct relume_coder_info *info = relume_coder_info(near->codes->coder);
+    for (int i = 0; i < n; i++)
+        sum[i] += a[i] * b[i];
+}
+
+static void multiply(float *restrict to, const float *restrict by, int n)
+{
+    for (int i = 0; i < n; i++)
+        to[i] *= by[i];
+}
+
+static bool all_zero(const float *w, int n)
+{
+    int some = 0;
+    for (int i = 0; i < n; i++)
+        some |= w[i] != 0.0f;
+    return !some;
+}
+
+// What the weights, `sets` of them, make of the coefficients: value[3][n]. Interpolation leaves
+// most of them out.
+static void decode(float value[3][LANES], const struct near *near, struct block *b, int sets)
+{
+    const struct relume_codes *codes = near->codes;
+    const struct relume_coder_info *info = relume_coder_info(codes->coder);
     const int k = info->coefficients;
-    for (int c = 0; c < 3; c++) {
-        const float *from = info->joint ? coefficient : coefficient + c;
-        value[c] = constant[c] + dot(weights + c * k, from, k, info->joint ? 1 : 3);
-        if (info->luminance)
-            value[c] *= coefficient[k + c];
-    }
-}
-
-struct scratch {
-    float weights[MOST_WEIGHTS];
-    float constant[3];
-};
-
-static void clear(struct scratch *s, const struct near *near)
-{
-    const size_t k = (size_t)relume_coder_info(near->codes->coder)->coefficients;
-    memset(s->weights, 0, 3 * k * sizeof *s->weights);
-    memset(s->constant, 0, sizeof s->constant);
-}
-
-static void add_linear(const struct near *near, vec3 point, const float *coefficient,
-                       struct scratch *s, float out[3])
-{
-    float value[3], rgb[3];
-    vec3 towards;
-    clear(s, near);
-    for (int i = 0; i < near->count; i++)
-        if (arrives(&towards, rgb, near, &near->emitter[i], point))
-            relume_weight_grid_add(s->weights, s->constant, near->grid, towards, rgb);
-    decode(value, near, s->weights, s->constant, coefficient);
-    for (int c = 0; c < 3; c++)
-        out[c] += value[c];
-}
-
-static void add_displayed(const struct near *near, vec3 point, const float *coefficient,
-                          struct scratch *s, float out[3])
-{
-    static const float one[3] = {1.0f, 1.0f, 1.0f};
-    float value[3], rgb[3];
-    vec3 towards;
-    for (int i = 0; i < near->count; i++) {
-        if (!arrives(&towards, rgb, near, &near->emitter[i], point))
+    float room[LANES];
+    memcpy(value, b->constant, sizeof b->constant);
+    for (int i = 0; i < k; i++) {
+        const float *shared = b->weight + i * b->lanes, *plane = NULL;
+        if (sets == 1 && all_zero(shared, b->n))
             continue;
-        clear(s, near);
-        relume_weight_grid_add(s->weights, s->constant, near->grid, towards, one);
-        decode(value, near, s->weights, s->constant, coefficient);
+        for (int c = 0; c < 3; c++) {
+            const float *w = sets == 1 ? shared : shared + c * k * b->lanes;
+            if (sets == 3 && all_zero(w, b->n))
+                continue;
+            if (!plane || !info->joint)
+                plane = read_plane(room, b, codes, relume_coder_plane(info, i, c));
+            add_product(value[c], w, plane, b->n);
+        }
+    }
+    for (int c = 0; info->luminance && c < 3; c++)
+        multiply(value[c], read_plane(room, b, codes, k + c), b->n);
+}
+
+// ---------------------------------------------------------------- lights
+
+// The basis at the direction towards one emitter, in every lane; what it sends stays apart.
+static void weigh_one(const struct near *near, struct block *b, const struct emitter *e)
+{
+    const struct relume_weight_grid_info *grid = relume_weight_grid_info(near->grid);
+    const int used = grid->sets * grid->coefficients;
+    float at[MOST_WEIGHTS + 3], rgb[3];
+    vec3 point, towards;
+    b->lit = false;
+    memset(b->constant, 0, sizeof b->constant);
+    for (int i = 0; i < b->n; i++) {
+        const bool lit =
+            point_of(&point, near, b->first + (size_t)i) && arrives(&towards, rgb, near, e, point);
         for (int c = 0; c < 3; c++)
-            out[c] += rgb[c] * curve_decode(near->display, value[c]);
+            b->rgb[c][i] = lit ? rgb[c] : 0.0f;
+        if (!lit) {
+            clear_lane(b->weight + i, b->lanes, used);
+            continue;
+        }
+        b->lit = true;
+        grid_blend(at, near->grid, towards);
+        put_lane(b->weight + i, b->lanes, at, used);
+        for (int c = 0; grid->sets == 3 && c < 3; c++)
+            b->constant[c][i] = at[used + c];
     }
 }
 
-static void add_some(const struct near *near, size_t first, size_t n, struct scratch *s, float *out)
+static void add_each(const struct near *near, struct block *b, float *out)
 {
-    const size_t planes = (size_t)near->codes->planes;
-    float coefficients[MOST_WEIGHTS];
-    read_coefficients(coefficients, near->codes, first, n);
-    for (size_t i = 0; i < n; i++) {
-        const float *p = near->surface->data + 3 * (first + i);
-        const vec3 point = vec3_of((double)p[0], (double)p[1], (double)p[2]);
-        if (isfinite(point.x) && isfinite(point.y) && isfinite(point.z))
-            (near->display ? add_displayed : add_linear)(near, point, coefficients + i * planes, s,
-                                                         out + 3 * i);
+    const int sets = relume_weight_grid_info(near->grid)->sets;
+    float value[3][LANES];
+    for (int e = 0; e < near->count; e++) {
+        weigh_one(near, b, &near->emitter[e]);
+        if (!b->lit)
+            continue;
+        decode(value, near, b, sets);
+        for (int i = 0; i < b->n; i++)
+            for (int c = 0; c < 3; c++)
+                out[3 * i + c] +=
+                    b->rgb[c][i] *
+                    (near->display ? curve_decode(near->display, value[c][i]) : value[c][i]);
     }
+}
+
+// All emitters in one weight vector of every lane. False where none arrives.
+static bool weigh_all(float *weights, float constant[3], const struct near *near, vec3 point)
+{
+    const size_t used = 3 * (size_t)relume_coder_info(near->codes->coder)->coefficients;
+    bool lit = false;
+    float rgb[3];
+    vec3 towards;
+    memset(weights, 0, used * sizeof *weights);
+    constant[0] = constant[1] = constant[2] = 0.0f;
+    for (int e = 0; e < near->count; e++)
+        if (arrives(&towards, rgb, near, &near->emitter[e], point)) {
+            relume_weight_grid_add(weights, constant, near->grid, towards, rgb);
+            lit = true;
+        }
+    return lit;
+}
+
+static void add_folded(const struct near *near, struct block *b, float *out)
+{
+    const int used = 3 * relume_coder_info(near->codes->coder)->coefficients;
+    float value[3][LANES], weights[MOST_WEIGHTS], constant[3];
+    vec3 point;
+    b->lit = false;
+    memset(b->constant, 0, sizeof b->constant);
+    for (int i = 0; i < b->n; i++) {
+        if (!point_of(&point, near, b->first + (size_t)i) ||
+            !weigh_all(weights, constant, near, point)) {
+            clear_lane(b->weight + i, b->lanes, used);
+            continue;
+        }
+        b->lit = true;
+        put_lane(b->weight + i, b->lanes, weights, used);
+        for (int c = 0; c < 3; c++)
+            b->constant[c][i] = constant[c];
+    }
+    if (!b->lit)
+        return;
+    decode(value, near, b, 3);
+    for (int i = 0; i < b->n; i++)
+        for (int c = 0; c < 3; c++)
+            out[3 * i + c] += value[c][i];
+}
+
+static int lanes_for(const struct relume_codes *codes)
+{
+    const int k = relume_coder_info(codes->coder)->coefficients;
+    const int most = 3 * k > codes->planes ? 3 * k : codes->planes;
+    return ROOM / most < LANES ? ROOM / most : LANES;
 }
 
 void near_add(const struct near *near, size_t first, size_t n, float *out)
 {
-    struct scratch scratch;
-    const size_t fit = (size_t)MOST_WEIGHTS / (size_t)near->codes->planes;
-    const size_t step = fit < 1 ? 1 : fit < MOST_TOGETHER ? fit : MOST_TOGETHER;
-    for (size_t done = 0; done < n; done += step) {
-        const size_t some = n - done < step ? n - done : step;
-        add_some(near, first + done, some, &scratch, out + 3 * done);
+    struct block b = {.lanes = lanes_for(near->codes)};
+    const bool fold = !near->display && near->count > 1;
+    for (size_t done = 0; done < n; done += (size_t)b.n) {
+        b.first = first + done;
+        b.n = n - done < (size_t)b.lanes ? (int)(n - done) : b.lanes;
+        b.read = false;
+        (fold ? add_folded : add_each)(near, &b, out + 3 * done);
     }
 }

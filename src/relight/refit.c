@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/half.h"
+#include "relight/grid.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,6 +18,8 @@ enum { SAMPLES = 16384, BAND = 4096 };
 struct relume_refit {
     relume_coder *learned;  // or NULL: another refit's
     const relume_coder *coder;
+    relume_weight_grid *made;        // or NULL: another refit's
+    const relume_weight_grid *grid;  // of the coder
     struct relume_codes codes;
     void **plane;  // [planes], or with a codebook
     float *scale, *offset;
@@ -50,6 +53,7 @@ void relume_refit_destroy(relume_refit **refit)
     if (!*refit)
         return;
     relume_refit_forget(*refit);
+    relume_weight_grid_destroy(&(*refit)->made);
     relume_coder_destroy(&(*refit)->learned);
     free(*refit);
     *refit = NULL;
@@ -311,6 +315,22 @@ static relume_status refit_codes(relume_refit *refit, struct work *w,
     return status;
 }
 
+// Of the coder that was learned, or of the one that learned it.
+static relume_status take_grid(relume_refit *refit, const struct relume_refit_params *p)
+{
+    const relume_status status =
+        p->like ? RELUME_OK
+                : relume_weight_grid_create(&refit->made, refit->coder,
+                                            relume_weight_grid_params(.threads = p->threads));
+    refit->grid = p->like ? p->like->grid : refit->made;
+    return status;
+}
+
+const relume_weight_grid *refit_grid(const relume_refit *refit)
+{
+    return refit->grid;
+}
+
 relume_status relume_refit_create(relume_refit **out, const struct relume_codes *codes,
                                   const struct relume_refit_params *params)
 {
@@ -333,6 +353,8 @@ relume_status relume_refit_create(relume_refit **out, const struct relume_codes 
     w.pixels = (size_t)vectors.width * (size_t)vectors.height;
     if (!status)
         status = refit_codes(refit, &w, &vectors, book);
+    if (!status)
+        status = take_grid(refit, &w.params);
     if (!status)
         log_line(w.params.log, RELUME_NOTE,
                  "codes of the display domain fitted again by pca %d in linear light; loss %.2g of "

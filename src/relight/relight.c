@@ -13,6 +13,7 @@
 #include "math/vec.h"
 #include "relight/books.h"
 #include "relight/bytes.h"
+#include "relight/grid.h"
 #include "relight/kernels.h"
 #include "relight/near.h"
 
@@ -510,21 +511,24 @@ static relume_status begin_distant(struct job *job, const struct relume_light *l
     const int count = job->display ? count_kind(lights, n, RELUME_LIGHT_ENVIRONMENT) : 0;
     if (!count)
         return RELUME_OK;
-    const struct relume_relight_params own = {
-        .cpu_off = p->cpu_off, .threads = p->threads, .grid = p->grid};
+    struct relume_relight_params own = {.cpu_off = p->cpu_off, .threads = p->threads};
+    const relume_refit *refit = p->refit;
     struct relume_light *environments = mem_array((size_t)count, sizeof *environments);
     job->distant = mem_zeroed(1, sizeof *job->distant);
     relume_status status = environments && job->distant ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0, next = 0; !status && i < n; i++)
         if (lights[i].kind == RELUME_LIGHT_ENVIRONMENT)
             environments[next++] = lights[i];
-    if (!status && !p->refit)
+    if (!status && !refit) {
         status = relume_refit_create(
             &job->refit, job->codes,
             relume_refit_params(.log = p->log, .cpu_off = p->cpu_off, .threads = p->threads));
-    if (!status)
-        status = begin_job(job->distant, relume_refit_codes(p->refit ? p->refit : job->refit),
-                           environments, count, &own);
+        refit = job->refit;
+    }
+    if (!status) {
+        own.grid = refit_grid(refit);
+        status = begin_job(job->distant, relume_refit_codes(refit), environments, count, &own);
+    }
     free(environments);
     if (!status && job->codes->books == 1)
         join_single_book(job);

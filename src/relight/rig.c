@@ -15,6 +15,7 @@ struct resource {
     struct relume_image image;
     relume_environment *environment;
     relume_ies *ies;
+    relume_gonio *gonio;
 };
 
 struct relume_rig {
@@ -44,6 +45,7 @@ static void resource_free(struct resource *r)
     relume_image_destroy(&r->image);
     relume_environment_destroy(&r->environment);
     relume_ies_destroy(&r->ies);
+    relume_gonio_destroy(&r->gonio);
     free(r->path);
     free(r);
 }
@@ -97,6 +99,7 @@ static relume_status open_resource(struct resource *r, const struct relume_log *
         return relume_image_load(&r->image, r->path, relume_image_params(.log = log));
     case RELUME_LIGHT_ENVIRONMENT: return relume_environment_load(&r->environment, r->path, log);
     case RELUME_LIGHT_IES: return relume_ies_load(&r->ies, r->path, log);
+    case RELUME_LIGHT_GONIO: return relume_gonio_load(&r->gonio, r->path, log);
     case RELUME_LIGHT_DIRECTIONAL:
     case RELUME_LIGHT_POINT:
     case RELUME_LIGHT_SPOT:
@@ -164,6 +167,7 @@ static relume_status attach(relume_rig *rig, struct relume_rig_entry *e,
     e->light.image = r->image.data ? &r->image : NULL;
     e->light.environment = r->environment;
     e->light.ies = r->ies;
+    e->light.gonio = r->gonio;
     return RELUME_OK;
 }
 
@@ -256,6 +260,7 @@ static struct relume_light changed(const struct relume_rig_entry *old,
     light.image = old->light.image;
     light.environment = old->light.environment;
     light.ies = old->light.ies;
+    light.gonio = old->light.gonio;
     return light;
 }
 

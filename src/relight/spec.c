@@ -56,6 +56,14 @@ static const struct grammar grammars[] = {
      true,
      false,
      true},
+    {RELUME_LIGHT_GONIO,
+     "gonio px py pz dx dy dz map",
+     {AT(position), AT(direction)},
+     2,
+     false,
+     true,
+     false,
+     true},
 };
 enum { GRAMMARS = sizeof grammars / sizeof *grammars };
 
@@ -166,7 +174,7 @@ static relume_status unknown_kind(const char *text, const struct relume_log *log
     const char *near = relume_name_nearest(given, names);
     return log_fail(log, RELUME_EINVAL,
                     "light '%.200s': unknown kind%s%s%s; expected dir, point, spot, slide, area, "
-                    "env or ies",
+                    "env, ies or gonio",
                     text, near ? ", did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 

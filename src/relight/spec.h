@@ -7,7 +7,7 @@
 // What the words of a SPEC say; the file is still to be opened.
 struct spec {
     struct relume_light light;
-    char *file;  // of slide, env, ies, as it was written; else NULL. To be freed
+    char *file;  // of slide, env, ies, gonio, as it was written; else NULL. To be freed
 };
 
 // Words of the contract (rig.h). RELUME_EINVAL with a sentence, RELUME_ENOMEM.

@@ -1,15 +1,18 @@
 // bench_viewer.c - frames of a panorama while the light moves: codebook, planes, many lights, near
 // lights. On a graphics card where EGL finds one, else by llvmpipe.
-// Usage: bench_viewer [WIDTHxHEIGHT]; default 1024x512 in software, 3840x2160 on a card
+// Usage: bench_viewer [WIDTHxHEIGHT [library]]; default 1024x512 in software, 3840x2160 on a card
+//        bench_viewer open FILE: a relume file, from the name to the first picture
 #include "bench.h"
 
 #include "context_offscreen.h"
 #include "draw.h"
 #include "relighter.h"
+#include "session.h"
 
-enum { CODES = 4096, RUNS = 15, LIGHTS = 1000, MOST_PLANES = 75 };
+enum { CODES = 4096, RUNS = 9, LIGHTS = 1000, MOST_PLANES = 75 };
 
 static struct gl gl;
+static bool by_library;
 static int width, height;
 
 struct file {
@@ -103,11 +106,13 @@ static void free_file(struct file *f)
     free(f->bytes);
 }
 
+static int moving = LIGHTS;  // so many of them, the first
+
 // Lights that differ from run to run, as a hand would move them.
 static void move_lights(struct relume_light *lights, int n, enum relume_light_kind kind, int run)
 {
     for (int i = 0; i < n; i++) {
-        const double a = 0.7 * i + 0.05 * run;
+        const double a = 0.7 * i + (i < moving ? 0.05 * run : 0.0);
         lights[i] = (struct relume_light){
             .kind = kind,
             .direction = {cos(a), 0.3, sin(a)},
@@ -133,6 +138,7 @@ static double draw_frame(struct scene *s, const struct relume_light *lights, int
     const double start = bench_now_s();
     bench_check(relighter_begin(&s->relighter, lights, n));
     bench_check(relighter_view(&view, &s->relighter, 0));
+    gl.BindVertexArray(s->relighter.vertices);
     target_begin(&s->frame, &gl);
     draw_panorama(&s->panorama, &gl, &place, &g, (struct relume_look){.zoom = 1.0}, view);
     gl.Finish();
@@ -162,6 +168,7 @@ static void open_scene(struct scene *s, struct file *f)
     const struct code_source source = {fetch, NULL, f, find_surface};
     *s = (struct scene){.frame = {0}};
     bench_check(relighter_create(&s->relighter, &gl, &source, 1, NULL));
+    s->relighter.by_library = by_library;
     bench_check(draw_panorama_create(&s->panorama, &gl, RELUME_SPHERICAL, NULL));
     bench_check(target_create(&s->frame, &gl, width, height, NULL));
 }
@@ -209,16 +216,63 @@ static void bench_planes(void)
     printf("    %.1f GB/s of coefficients\n", (double)width * height * MOST_PLANES / all * 1e-9);
     const double near = measure(&s, "75 planes, 8 spots", 8, RELUME_LIGHT_SPOT, NULL);
     printf("    %.1f frames/s (target 60 on a graphics card)\n", 1.0 / near);
+    measure(&s, "75 planes, 8 points", 8, RELUME_LIGHT_POINT, NULL);
+    moving = 1;
+    measure(&s, "75 planes, 8 spots, one of them moves", 8, RELUME_LIGHT_SPOT, NULL);
+    measure(&s, "75 planes, 8 points, one of them moves", 8, RELUME_LIGHT_POINT, NULL);
+    moving = LIGHTS;
     close_scene(&s);
     relume_environment_destroy(&sky);
     relume_image_destroy(&map);
     free_file(&f);
 }
 
+// ---------------------------------------------------------------- opening
+
+static void say_so(void *user, enum relume_level level, const char *text)
+{
+    (void)user, (void)level;
+    fprintf(stderr, "%s\n", text);
+}
+
+static int bench_opening(const struct context_backend *backend, const char *path)
+{
+    static const struct relume_log log = {.message = say_so};
+    static const char *const what[] = {"open the file", "make OpenGL ready", "first frame",
+                                       "light moved, next frame"};
+    struct bench bench[4] = {{.runs = 0}};
+    for (int run = 0; run < RUNS; run++) {
+        struct session s = {.log = &log, .vram_bytes = (size_t)1 << 30};
+        struct app_state start = {.lights = 0};
+        relume_rig *rig = NULL;
+        double then = bench_now_s();
+        bench_check(session_take_rig(&s, &rig, &start));
+        for (int step = 0; step < 4; step++) {
+            if (step == 0)
+                bench_check(session_open(&s, path, &start, true));
+            else if (step == 1)
+                bench_check(session_start(&s, backend, s.app.width, s.app.height));
+            else
+                bench_check(session_draw(&s));
+            if (step)
+                s.gl.Finish();
+            bench_add(&bench[step], bench_now_s() - then);
+            app_turn_light(&s.app, 10, 0);
+            then = bench_now_s();
+        }
+        session_close(&s);
+    }
+    for (int step = 0; step < 4; step++)
+        bench_print(what[step], &bench[step]);
+    return 0;
+}
+
 int main(int argc, char **argv)
 {
     void *context;
     const struct context_backend *backend = context_offscreen("auto");
+    if (argc == 3 && !strcmp(argv[1], "open"))
+        return bench_opening(backend, argv[2]);
     const bool card = backend == &context_egl_card;
     width = card ? 3840 : 1024;
     height = card ? 2160 : 512;
@@ -228,8 +282,12 @@ int main(int argc, char **argv)
     bench_check(gl_load(&gl, backend->get_proc, NULL));
     printf("viewer: panorama of %d x %d, frame of the same size, drawn by %s\n", width, height,
            backend->name);
-    bench_codebook();
-    bench_planes();
+    for (int i = argc > 2; i < 2; i++) {  // a second argument: by the library alone
+        by_library = i;
+        printf("%s\n", by_library ? "relit by the library" : "relit by passes");
+        bench_codebook();
+        bench_planes();
+    }
     backend->close(context);
     return 0;
 }

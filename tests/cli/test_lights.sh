@@ -51,6 +51,14 @@ at -0.5 0.1 --light "$slide" >left.txt
 at 0.5 0.1 --light "$slide" >right.txt
 check 'slide: red is left' awk '{ exit !($1 > 0.01 && $2 < $1 / 20) }' left.txt
 check 'slide: green is right' awk '{ exit !($2 > 0.01 && $1 < $2 / 20) }' right.txt
+# six faces +x -x +y -y +z -z, white (1) where the point light shall be the same; only the last is ahead
+printf 'P3\n6 1\n255\n%s\n' "$(yes '255 255 255' | head -n 6)" >ball.ppm
+printf 'P3\n6 1\n255\n%s\n255 255 255\n' "$(yes '0 0 0' | head -n 5)" >ahead.ppm
+relume relight full.exr -o point.exr --light "point 0 0 3"
+relume relight full.exr -o gonio.exr --light "gonio 0 0 3 1 2 3 ball.ppm"
+below 'gonio: all directions alike' "$(diff point.exr gonio.exr)" 1e-6
+above 'gonio: ahead' "$(green 0 0 --light "gonio 0 0 3 0 0 -1 ahead.ppm")" 0.01
+nothing 'gonio: behind' "$(at 0 0 --light "gonio 0 0 3 0 0 1 ahead.ppm")"
 
 # ---- environments: white in the half of +x; turned by 90 degrees it is that of +z
 "$sphere" lambert --size 32 --lights 100 --hemisphere --shade lambert
@@ -115,6 +123,7 @@ differ 'the depth that is assumed matters' b.exr c.exr
 relume relight slab.exr -o c.exr --light 'point 0.3 0.3 2' --assume-depth 2.5
 same 'and does not where there is depth' a.exr c.exr
 # ---- refusals
+printf 'P3\n3 1\n255\n%s\n' "$(yes '0 0 0' | head -n 3)" >wide.ppm
 bad() { # name, status, pattern, light
     expect_fail "$1" "$2" "$3" x.exr "$RELUME" relight full.exr -o x.exr --light "$4"
 }
@@ -122,6 +131,7 @@ bad 'unknown kind' 2 "unknown kind, did you mean 'spot'" 'spott 0 0 3 0 0 -1 15'
 bad 'half angle of 90' 2 'half angle between 0 and 90' 'spot 0 0 3 0 0 -1 90'
 bad 'no slide' 1 'none.png: no such file' 'slide 0 0 3 0 0 -1 20 none.png'
 bad 'no ies' 1 'none.ies: cannot be opened' 'ies 0 0 3 0 0 -1 none.ies'
+bad 'gonio of another shape' 1 'wide.ppm: 3 x 1 pixels; expected six square faces' "gonio 0 0 3 0 0 -1 wide.ppm"
 bad 'no image' 1 'lamp.ies' 'env lamp.ies'
 sed 's/^1 1000 1 3 1/1 1000 1 9999999 1/' lamp.ies >huge.ies
 bad 'ies: huge counts' 1 'huge.ies: number of vertical angles; expected 1 to 4096' 'ies 0 0 3 0 0 -1 huge.ies'

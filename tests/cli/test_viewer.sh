@@ -11,8 +11,8 @@ light="dir 0.5 0.4 0.8"
 same() { # name, options...: both programs draw the same linear frame
     name=$1
     shift
-    "$RELUME" relight teapot.exr -o cpu.exr --light "$light" "$@" &&
-        "$VIEWER" teapot.exr --offscreen gpu.exr --light "$light" "$@" || {
+    "$RELUME" relight teapot.exr -o cpu.exr "$@" --light "$light" &&
+        "$VIEWER" teapot.exr --relight passes --offscreen gpu.exr "$@" --light "$light" || {
         not_ok "$name" "a program failed"
         return
     }
@@ -24,6 +24,13 @@ same 'the default frame'
 same 'a captured view' --view 3
 same 'an eye between cameras' --eye 0.1,-0.2,3 --interpolate linear
 same 'the nearest camera' --eye 0.1,-0.2,3 --interpolate constant
+awk 'BEGIN {
+    printf "{ \"format\": \"relume-rig\", \"version\": 1, \"lights\": [\n"
+    for (i = 0; i < 10000; i++)
+        printf "{ \"light\": \"%s %f %f 2\", \"rgb\": [1e-4, 1e-4, %f] }%s\n",
+            i % 200 ? "dir" : "point", cos(i), sin(i), i / 1e8, i < 9999 ? "," : " ] }"
+}' >many.json
+same 'ten thousand lights' --rig many.json
 same 'an aperture' --eye 0.1,-0.2,3 --aperture 0.6 --focus 0.5
 
 # by depth a rounding may send a ray to another texel, a few in a frame: PSNR instead of the worst
@@ -86,6 +93,62 @@ chmod +x fake/ffmpeg
 PATH="$PWD/fake:$PATH" "$VIEWER" teapot.exr --record sweep -o 'a film; rm x.mp4' --frames 5
 check 'a film gets every picture' test "$(cat 'a film; rm x.mp4')" -eq $((5 * 24 * 24 * 3))
 
+if command -v ffmpeg >/dev/null 2>&1 && command -v ffprobe >/dev/null 2>&1; then
+    "$VIEWER" teapot.exr --record turntable -o real.mp4 --frames 4 --size 33x20
+    ffprobe -v error -count_frames -select_streams v:0 -of csv=p=0 \
+        -show_entries stream=width,height,nb_read_frames real.mp4 >real.txt 2>&1
+    # yuv420p takes even sizes
+    check 'the film of the real ffmpeg' grep -qx '34,20,4' real.txt
+else
+    skip 'the film of the real ffmpeg' 'ffmpeg is not installed'
+fi
+
+# a recording by key: a picture a frame; Esc keeps those that are whole and the light goes back
+cat >stop.txt <<'END'
+frame before.png
+key k
+wait 0.08
+key esc
+frame after.png
+END
+"$VIEWER" teapot.exr --script stop.txt --light "$light"
+n=$(ls teapot-0001-sweep | wc -l)
+if [ "$n" -ge 3 ] && [ "$n" -lt 10 ]; then ok 'Esc ends a recording'; else not_ok 'Esc ends a recording' "$n pictures"; fi
+"$VIEWER" teapot.exr --record sweep -o all --light "$light" --relight auto
+check 'pictures of a recording' cmp all/0002.png teapot-0001-sweep/0002.png
+check 'the light goes back' cmp before.png after.png
+printf 'key k\n' >whole.txt
+"$VIEWER" teapot.exr --script whole.txt --light "$light"
+check 'a recording is brought to its end' test "$(ls teapot-0002-sweep | wc -l)" -eq 72
+
+# the next frame that is drawn shows what the pointer has done: one frame of latency
+cat >latency.txt <<'END'
+press right 12 12
+frame rest.png
+move 16 14
+frame next.png
+wait
+frame later.png
+END
+"$VIEWER" teapot.exr --script latency.txt --light "$light"
+check 'one frame of latency' cmp next.png later.png
+if cmp -s rest.png next.png; then not_ok 'the pointer moved the light' 'nothing changed'; else ok 'the pointer moved the light'; fi
+
+# a film of a script: 25 pictures a second of what a window would show, from file to file
+cat >film.txt <<'END'
+size 60 40
+wait 0.2
+open pano.exr
+wait 0.12
+END
+"$VIEWER" teapot.exr --script film.txt --record script -o played
+check 'a film of a script' test "$(ls played | wc -l)" -eq 8
+if cmp -s played/0004.png played/0005.png; then not_ok 'another file' 'the same picture'; else ok 'another file'; fi
+printf 'wait 0.1\nopen none.exr\n' >none.txt
+"$VIEWER" teapot.exr --script none.txt --record script -o broken 2>broken.txt
+check 'a film that ends early' grep -q 'none.txt: line 2, column 6; none.exr' broken.txt
+check 'nothing is left of it' test ! -e broken -a ! -e broken.part
+
 # Half floats hold the weights of near lights on the GPU: 1/255 is promised.
 "$RELUME" synth box -q -o sky --projection spherical --lights 1 --size 16 --samples 1 || exit 1
 nearly() { # name, light, options...: both programs draw the same frame to 1/255
@@ -105,6 +168,26 @@ nearly 'an area light' 'area 0 1.5 1 0.5 0 0 0 0 0.5 rgb 8 8 8'
 "$RELUME" relight teapot.exr -o slide.png --light 'dir 0 0 1'
 nearly 'a slide' 'slide 0 0 3 0 0 -1 25 slide.png rgb 5 5 5'
 nearly 'an environment' 'env sky/view00/light0000.exr 30 rgb 3 3 3'
+
+# the list of maps beside the one in use; the next one takes its place, as it was turned
+mkdir maps
+for map in one two; do cp sky/view00/light0000.exr maps/$map.exr; done
+touch maps/note.txt
+cat >choose.txt <<'END'
+size 500 700
+light env maps/one.exr 25
+key tab
+shot closed.png
+click 186 315
+# the list is made when it is asked for
+shot open.png
+shot list.png
+click 60 356
+shot chosen.png
+key w
+END
+"$VIEWER" teapot.exr --script choose.txt
+check 'another map is chosen' grep -q '"env maps/two.exr 25"' teapot-0001.json
 
 # Mesa draws by the same code whether OSMesa or EGL asks; a graphics card rounds in its own way.
 if "$VIEWER" teapot.exr --offscreen egl.exr --gl egl 2>err.txt; then

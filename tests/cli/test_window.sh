@@ -13,7 +13,7 @@ done
 size=256
 "$sphere" photos --size $size --lights 40 --hemisphere && "$RELUME" encode -q photos -o ball.exr || exit 1
 
-Xvfb -displayfd 3 -screen 0 800x800x24 -nolisten tcp 3>display.txt 2>xvfb.txt &
+Xvfb -displayfd 3 -screen 0 800x800x24 -noreset -nolisten tcp 3>display.txt 2>xvfb.txt &
 server=$!
 viewer=
 trap 'kill $viewer $server 2>/dev/null; wait 2>/dev/null; cd /; rm -rf "$work"' EXIT
@@ -84,6 +84,20 @@ if kill -0 $viewer 2>/dev/null; then not_ok 'Esc quits' 'it is still there'; els
     status=$?
     viewer=
     if [ $status -eq 0 ]; then ok 'Esc quits'; else not_ok 'Esc quits' "status $status: $(cat view.txt)"; fi
+fi
+
+# a screen with twice the pixels: the panel is twice as large, and its ball takes the pointer there
+if command -v xprop >/dev/null 2>&1; then
+    xprop -root -f RESOURCE_MANAGER 8s -set RESOURCE_MANAGER 'Xft.dpi: 192'
+    printf 'key tab\ndrag left 152 252 218 252\nkey w\nkey esc\n' >dense.txt
+    timeout 60 "$VIEWER" ball.exr --size 512x512 --no-config --script dense.txt --window >view.txt 2>&1
+    x=$(sed -n 's/.*"dir \([^ ]*\) .*/\1/p' ball-0001.json)
+    if awk "BEGIN { exit !(${x:-9} > 0.57 && ${x:-9} < 0.63) }"; then ok 'a dense screen'; else
+        not_ok 'a dense screen' "x = '$x', expected 0.6; $(cat view.txt)"
+    fi
+    xprop -root -remove RESOURCE_MANAGER
+else
+    skip 'a dense screen' 'xprop is not installed'
 fi
 
 # the window remembers; settings that cannot be read or written are no reason to fail

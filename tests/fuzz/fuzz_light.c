@@ -3,7 +3,7 @@
 #include "fuzz.h"
 
 static const char *const words[] = {
-    "dir",    "point", "spot",   "slide",  "area",       "env",     "ies",       "rgb",
+    "dir",    "point", "spot",   "slide",  "area",       "env",     "ies",       "gonio", "rgb",
     "nofall", "disc",  "format", "lights", "relume-rig", "version", "light",     "name",
     "on",     "solo",  "TILT=",  "NONE",   "INCLUDE",    "IESNA",   "intensity", "true",
     "null",   "1e308", "-0",     "nan",    "inf",        "0",       "-1",        "90",

@@ -3,6 +3,7 @@
 #define TESTS_GL_FIXTURE_H
 
 #include "context.h"
+#include "owned.h"
 #include "renderer.h"
 
 #include <relume/relume.h>

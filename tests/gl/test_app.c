@@ -1,8 +1,11 @@
 // The viewer's state machine, options and scripts; no OpenGL
 #include "app.h"
+#include "context.h"
 #include "gizmo.h"
 #include "keys.h"
 #include "lamps.h"
+#include "owned.h"
+#include "say.h"
 #include "options.h"
 #include "script.h"
 
@@ -70,13 +73,15 @@ static bool key(struct app *app, int k)
 static void framing_suits_the_file(void **state)
 {
     (void)state;
-    assert_int_equal(make_app(RELUME_PLANAR, true).now.camera.framing, RELUME_FRAME_VIEW);
-    assert_int_equal(make_app(RELUME_SPHERICAL, false).now.camera.framing, RELUME_FRAME_VIEW);
-    const struct app look = make_app(RELUME_CYLINDRICAL, true);
+    OWNED_APP picture = make_app(RELUME_PLANAR, true);
+    assert_int_equal(picture.now.camera.framing, RELUME_FRAME_VIEW);
+    OWNED_APP unfolded = make_app(RELUME_SPHERICAL, false);
+    assert_int_equal(unfolded.now.camera.framing, RELUME_FRAME_VIEW);
+    OWNED_APP look = make_app(RELUME_CYLINDRICAL, true);
     assert_int_equal(look.now.camera.framing, RELUME_FRAME_LOOK);
     assert_int_equal(look.width, 1024);
     assert_int_equal(look.height, 512);
-    const struct app slab = make_app(RELUME_SLAB, true);
+    OWNED_APP slab = make_app(RELUME_SLAB, true);
     assert_int_equal(slab.now.camera.framing, RELUME_FRAME_EYE);
     assert_true(slab.now.camera.eye.x == 0 && slab.now.camera.eye.z == 3);
     assert_int_equal(slab.width, 400);
@@ -112,7 +117,7 @@ static void cameras_that_do_not_fit_are_refused(void **state)
 static void the_slab_turns_with_the_cursor(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_SLAB, true);
+    OWNED_APP app = make_app(RELUME_SLAB, true);
     drag(&app, APP_LEFT, 100, 0);  // a quarter of the frame: a quarter of the cameras' width
     assert_float_equal(app.now.camera.eye.x, -0.5, 1e-12);
     drag(&app, APP_LEFT, 0, 50);  // the object's front goes down: the eye sees it from above
@@ -129,7 +134,7 @@ static void the_slab_turns_with_the_cursor(void **state)
 static void the_panorama_follows_the_cursor(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_SPHERICAL, true);
+    OWNED_APP app = make_app(RELUME_SPHERICAL, true);
     drag(&app, APP_LEFT, -512, 0);  // half a frame of 90 degrees
     assert_float_equal(app.now.camera.look.pan_deg, 45, 1e-9);
     drag(&app, APP_LEFT, 0, 256);
@@ -162,7 +167,7 @@ static void a_panorama_zooms_about_the_cursor(void **state)
     static const double cursors[][2] = {{512, 256}, {100, 400}, {1000, 30}, {700, 256}};
     for (size_t i = 0; i < sizeof looks / sizeof *looks; i++)
         for (size_t k = 0; k < sizeof cursors / sizeof *cursors; k++) {
-            struct app app = make_app(RELUME_SPHERICAL, true);
+            OWNED_APP app = make_app(RELUME_SPHERICAL, true);
             app.now.camera.look = looks[i];
             const double x = cursors[k][0], y = cursors[k][1];
             const struct relume_vec3 before = seen_at(&app, x, y);
@@ -170,7 +175,7 @@ static void a_panorama_zooms_about_the_cursor(void **state)
             assert_float_equal(app.now.camera.look.zoom, looks[i].zoom * 1.331, 1e-9);
             assert_true(angle(before, seen_at(&app, x, y)) < 0.05);
         }
-    struct app app = make_app(RELUME_SPHERICAL, true);
+    OWNED_APP app = make_app(RELUME_SPHERICAL, true);
     app.now.camera.look = (struct relume_look){0, -90, 0.5, true};
     app_handle(&app, &(struct app_event){.kind = APP_WHEEL, .wheel = 3, .x = 512, .y = 400});
     assert_true(app.now.camera.look.tilt_deg == -90);
@@ -182,7 +187,7 @@ static void fields_of_view_have_limits(void **state)
     for (int stereographic = 0; stereographic < 2; stereographic++) {
         const double widest = stereographic ? 340 : 150;
         const double field = stereographic ? 4 : 2;
-        struct app app = make_app(RELUME_SPHERICAL, true);
+        OWNED_APP app = make_app(RELUME_SPHERICAL, true);
         app.now.camera.look.stereographic = stereographic;
         const struct relume_look *look = &app.now.camera.look;
         const struct app_event out = {.kind = APP_WHEEL, .wheel = -100, .x = 512, .y = 256};
@@ -211,7 +216,7 @@ static void throw_panorama(struct app *app, double dx, double dy)
 static void a_panorama_glides_to_a_stop(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_SPHERICAL, true);
+    OWNED_APP app = make_app(RELUME_SPHERICAL, true);
     throw_panorama(&app, -100, 0);
     const double released = app.now.camera.look.pan_deg;
     assert_float_equal(released, 100 * 90.0 / 1024, 1e-9);
@@ -237,7 +242,8 @@ static void a_panorama_glides_to_a_stop(void **state)
 static void a_glide_does_not_depend_on_frames(void **state)
 {
     (void)state;
-    struct app fast = make_app(RELUME_SPHERICAL, true), slow = fast;
+    OWNED_APP fast = make_app(RELUME_SPHERICAL, true);
+    struct app slow = fast;
     throw_panorama(&fast, -100, 40);
     throw_panorama(&slow, -100, 40);
     for (int i = 0; i < 60; i++)
@@ -251,7 +257,7 @@ static void a_glide_does_not_depend_on_frames(void **state)
 static void a_hand_that_rests_lets_go_of_nothing(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_SPHERICAL, true);
+    OWNED_APP app = make_app(RELUME_SPHERICAL, true);
     app_handle(&app, &(struct app_event){.kind = APP_PRESS, .x = 500, .y = 250});
     app_handle(&app, &(struct app_event){.kind = APP_MOVE, .x = 400, .y = 250});
     app_advance(&app, 0.02);
@@ -263,7 +269,7 @@ static void a_hand_that_rests_lets_go_of_nothing(void **state)
     assert_true(app_advance(&app, 0.01));
     drag(&app, APP_LEFT, 10, 0);
     assert_false(app_advance(&app, 0.1));
-    struct app slab = make_app(RELUME_SLAB, true);
+    OWNED_APP slab = make_app(RELUME_SLAB, true);
     drag(&slab, APP_LEFT, 10, 0);
     assert_false(app_advance(&slab, 0.1));
     assert_false(app_advance(&slab, 0));
@@ -273,7 +279,7 @@ static void a_hand_that_rests_lets_go_of_nothing(void **state)
 static void automatic_exposure_adapts(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_PLANAR, true);
+    OWNED_APP app = make_app(RELUME_PLANAR, true);
     app.now.auto_exposure = true;
     app.now.exposure_ev = 1;
     app_meter(&app, 2);  // the first frame: at once, and a stop brighter as the user wants it
@@ -302,7 +308,7 @@ static void automatic_exposure_adapts(void **state)
 static void the_picture_moves_and_zooms_about_the_cursor(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_PLANAR, true);
+    OWNED_APP app = make_app(RELUME_PLANAR, true);
     struct app_rectangle p = app_picture(&app);
     assert_true(p.left == 0 && p.top == 0 && p.right == 400 && p.bottom == 200);
     drag(&app, APP_LEFT, 30, -20);
@@ -320,7 +326,7 @@ static void the_picture_moves_and_zooms_about_the_cursor(void **state)
 static void windows_keep_the_proportions(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_PLANAR, true);
+    OWNED_APP app = make_app(RELUME_PLANAR, true);
     assert_true(
         app_handle(&app, &(struct app_event){.kind = APP_SIZE, .width = 800, .height = 800}));
     struct app_rectangle p = app_picture(&app);
@@ -334,7 +340,7 @@ static void windows_keep_the_proportions(void **state)
 static void the_light_turns_like_a_ball(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_PLANAR, true);
+    OWNED_APP app = make_app(RELUME_PLANAR, true);
     drag(&app, APP_RIGHT, 100, 0);  // half the frame's shorter side: a quarter turn to the right
     struct relume_vec3 d = app.now.light[0].direction;
     assert_float_equal(d.x, 1, 1e-12);
@@ -349,7 +355,7 @@ static void the_light_turns_like_a_ball(void **state)
 static void l_and_drag_turn_the_light_too(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_PLANAR, true);
+    OWNED_APP app = make_app(RELUME_PLANAR, true);
     app_handle(&app, &(struct app_event){.kind = APP_KEY_DOWN, .key = 'l'});
     drag(&app, APP_LEFT, -100, 0);
     assert_float_equal(app.now.light[0].direction.x, -1, 1e-12);
@@ -362,7 +368,7 @@ static void l_and_drag_turn_the_light_too(void **state)
 static void the_light_turns_as_seen_in_a_panorama(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_SPHERICAL, true);
+    OWNED_APP app = make_app(RELUME_SPHERICAL, true);
     app.now.camera.look = (struct relume_look){90, 30, 1, false};
     const struct relume_vec3 before = app_seen_light(&app, 0);
     assert_float_equal(before.x, 1, 1e-12);  // looking to +x, the light at +z is on the right
@@ -379,7 +385,7 @@ static void the_light_turns_as_seen_in_a_panorama(void **state)
 static void keys(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_PLANAR, true);
+    OWNED_APP app = make_app(RELUME_PLANAR, true);
     assert_true(key(&app, '+') && key(&app, '+') && key(&app, '-'));
     assert_float_equal(app.now.exposure_ev, 0.25, 1e-12);
     assert_true(key(&app, 'b'));
@@ -401,7 +407,7 @@ static void keys(void **state)
 static void keys_of_a_slab(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_SLAB, true);
+    OWNED_APP app = make_app(RELUME_SLAB, true);
     double want = 0.25;  // an eighth of the cameras' extent of 2
     for (int i = 0; i < 4; i++, want *= 2)
         assert_true(key(&app, 'a') && app.now.aperture == want);
@@ -421,7 +427,7 @@ static void keys_of_a_slab(void **state)
 static void a_planet_and_back(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_CUBE, true);
+    OWNED_APP app = make_app(RELUME_CUBE, true);
     app.now.camera.look = (struct relume_look){30, 10, 2, false};
     assert_true(key(&app, 'o'));
     const struct relume_look planet = app.now.camera.look;
@@ -436,7 +442,7 @@ static void a_focus_behind_the_cameras_is_refused(void **state)
     (void)state;
     const struct app_file file = make_file(RELUME_SLAB);
     struct app_state start = {.focused = true, .focus_z = 3};
-    struct app app;
+    OWNED_APP app;
     said[0] = '\0';
     assert_int_equal(app_start(&app, &file, &start, true, &keep), RELUME_EINVAL);
     assert_non_null(strstr(said, "--focus: expected"));
@@ -545,6 +551,7 @@ struct frames {
     int count;
     char path[4][64];
     struct app at[4];
+    struct relume_light light[4][2];  // the first of them
     double waited;
 };
 
@@ -574,6 +581,12 @@ static relume_status host_rig(void *user, const char *path, const struct relume_
     return RELUME_OK;
 }
 
+static relume_status host_open(void *user, const char *path, const struct relume_log *log)
+{
+    (void)user, (void)log;
+    return strcmp(path, "none.exr") ? RELUME_OK : say(log, RELUME_EDATA, "none.exr: no such file");
+}
+
 static relume_status host_wait(void *user, double seconds)
 {
     struct frames *f = user;
@@ -587,6 +600,8 @@ static relume_status host_frame(void *user, const char *path)
 {
     struct frames *f = user;
     snprintf(f->path[f->count], sizeof f->path[0], "%s", path);
+    for (int i = 0; i < 2 && i < f->app->now.lights; i++)
+        f->light[f->count][i] = f->app->now.light[i];
     f->at[f->count++] = *f->app;
     return RELUME_OK;
 }
@@ -594,7 +609,7 @@ static relume_status host_frame(void *user, const char *path)
 static struct script_host host_of(struct frames *frames)
 {
     return (struct script_host){frames,    frames->app, host_send,  host_light, host_rig,
-                                host_wait, host_frame,  host_frame, &keep};
+                                host_open, host_wait,   host_frame, host_frame, &keep};
 }
 
 static relume_status play(struct app *app, struct frames *frames, const char *text)
@@ -615,7 +630,7 @@ static relume_status play(struct app *app, struct frames *frames, const char *te
 static void scripts_play_events(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_SLAB, false);
+    OWNED_APP app = make_app(RELUME_SLAB, false);
     static struct frames frames;
     assert_int_equal(play(&app, &frames,
                           "# a comment\r\n\n"
@@ -636,17 +651,16 @@ static void scripts_play_events(void **state)
     assert_string_equal(frames.path[1], "two words.png");
     assert_int_equal(frames.at[0].width, 800);
     assert_float_equal(frames.at[0].now.camera.eye.x, -0.5, 1e-12);
-    assert_float_equal(frames.at[1].now.light[0].direction.x, 1, 1e-12);
+    assert_float_equal(frames.light[1][0].direction.x, 1, 1e-12);
     assert_true(frames.at[1].now.exposure_ev == 0.25);
-    assert_true(frames.at[2].now.light[0].direction.y == 1 &&
-                frames.at[2].now.light[0].rgb[0] == 2);
+    assert_true(frames.light[2][0].direction.y == 1 && frames.light[2][0].rgb[0] == 2);
 }
 
 // A drag that takes time throws the panorama; waiting lets it glide.
 static void scripts_let_time_pass(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_SPHERICAL, true);
+    OWNED_APP app = make_app(RELUME_SPHERICAL, true);
     static struct frames frames;
     assert_int_equal(play(&app, &frames,
                           "drag left 500 250 400 250 0.2\n"
@@ -686,6 +700,8 @@ static void broken_scripts_name_the_line(void **state)
         {"key return", 5},
         {"key", 4},
         {"light \"lamp 1 2 3\"", 7},
+        {"open", 5},
+        {"open none.exr", 6},
         {"frame", 6},
         {"shot  ", 7},
         {"wait -1", 6},
@@ -698,14 +714,14 @@ static void broken_scripts_name_the_line(void **state)
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         char text[128];
         char place[64];
-        struct app app = make_app(RELUME_PLANAR, false);
+        OWNED_APP app = make_app(RELUME_PLANAR, false);
         snprintf(text, sizeof text, "size 8 8\n%s\n", wrong[i].line);
         snprintf(place, sizeof place, "line 2, column %d; ", wrong[i].column);
         assert_int_equal(play(&app, &frames, text), RELUME_EDATA);
         if (!strstr(said, place))
             fail_msg("'%s' said '%s'", wrong[i].line, said);
     }
-    struct app app = make_app(RELUME_PLANAR, false);
+    OWNED_APP app = make_app(RELUME_PLANAR, false);
     frames.app = &app;
     const struct script_host host = host_of(&frames);
     assert_int_equal(script_play("/nonexistent/script", &host), RELUME_EDATA);
@@ -717,7 +733,7 @@ static void long_lines_are_refused(void **state)
     (void)state;
     static char text[8192];
     static struct frames frames;
-    struct app app = make_app(RELUME_PLANAR, false);
+    OWNED_APP app = make_app(RELUME_PLANAR, false);
     memset(text, ' ', sizeof text - 1);
     assert_int_equal(play(&app, &frames, text), RELUME_EDATA);
     assert_non_null(strstr(said, "longer"));
@@ -727,12 +743,12 @@ static void scripts_hold_keys_and_wait(void **state)
 {
     (void)state;
     static struct frames frames;
-    struct app app = make_app(RELUME_PLANAR, false);
+    OWNED_APP app = make_app(RELUME_PLANAR, false);
     assert_int_equal(play(&app, &frames,
                           "hold l\ndrag left 0 0 100 0\nlet l\nwait 0.5\nframe a.png\n"
                           "drag left 0 0 100 0\nkey right\nkey tab\nadd \"dir 0 1 0\"\nshot b.png"),
                      RELUME_OK);
-    assert_float_equal(frames.at[0].now.light[0].direction.x, 1, 1e-12);
+    assert_float_equal(frames.light[0][0].direction.x, 1, 1e-12);
     assert_true(frames.at[0].now.shift[0] == 0);
     assert_true(frames.waited == 0.5);
     assert_true(frames.at[1].now.shift[0] == 100);
@@ -745,7 +761,7 @@ static void scripts_hold_keys_and_wait(void **state)
 static void keys_change_the_selected_light(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_PLANAR, false);
+    OWNED_APP app = make_app(RELUME_PLANAR, false);
     struct app_state *s = &app.now;
     assert_true(key(&app, 'm'));
     assert_true(s->lights == 2 && s->selected == 1);
@@ -754,7 +770,7 @@ static void keys_change_the_selected_light(void **state)
     assert_true(s->light[0].direction.z == 1);
     key(&app, APP_KEY_UP_ARROW);
     assert_true(s->light[1].direction.y > 0.05);
-    struct relume_light shining[APP_LIGHTS];
+    struct relume_light shining[2];
     key(&app, APP_KEY_PAGE_UP);
     assert_int_equal(lamps_shining(s, shining), 2);
     assert_float_equal(shining[1].rgb[0], exp2(0.25), 1e-6);
@@ -771,21 +787,37 @@ static void keys_change_the_selected_light(void **state)
     for (int i = 1; i < APP_LIGHTS; i++)
         assert_true(key(&app, 'm'));
     assert_false(key(&app, 'm'));
+    assert_int_equal(s->lights, APP_LIGHTS);
+    assert_int_equal(gizmo_first(&app), APP_LIGHTS - GIZMOS);  // the last one is selected
+    key(&app, 'r');
+    assert_int_equal(s->lights, 1);
+    assert_int_equal(gizmo_first(&app), 0);
 }
 
 static void arrangements_stand_on_the_pole(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_PLANAR, false);
+    OWNED_APP app = make_app(RELUME_PLANAR, false);
     key(&app, '1');
     assert_int_equal(app.now.lights, 1);
     assert_float_equal(app.now.light[0].direction.z, sin(12 * M_PI / 180), 1e-12);
     assert_true(app.now.light[0].direction.x < -0.9);
+    app_release(&app);
     app = make_app(RELUME_SPHERICAL, false);
     key(&app, '3');
     assert_int_equal(app.now.lights, 8);
     for (int i = 0; i < 8; i++)
         assert_float_equal(app.now.light[i].direction.y, sqrt(0.5), 1e-12);
+}
+
+static void pointers_are_in_pixels(void **state)
+{
+    (void)state;
+    assert_true(context_pixels(100, 400, 800) == 200);  // a dense screen
+    assert_true(context_pixels(101, 800, 800) == 101);
+    assert_float_equal(context_pixels(30, 3, 4), 40, 1e-12);  // beyond the edge, dragged
+    assert_true(context_pixels(7, 0, 0) == 7);                // minimised
+    assert_true(context_pixels(7, 200, 0) == 7);
 }
 
 static void every_key_is_bound_once(void **state)
@@ -803,7 +835,7 @@ static void every_key_is_bound_once(void **state)
 static void recordings_go_once_around(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_PLANAR, false);  // light from the front: lowered to 60 degrees
+    OWNED_APP app = make_app(RELUME_PLANAR, false);  // light from the front: lowered to 60 degrees
     for (int i = 0; i < 4; i++) {
         static const double sign[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
         assert_int_equal(record_pose(&app, RECORD_SWEEP, i / 4.0, &keep), RELUME_OK);
@@ -815,10 +847,12 @@ static void recordings_go_once_around(void **state)
     said[0] = '\0';
     assert_int_equal(record_pose(&app, RECORD_TURNTABLE, 0, &keep), RELUME_EINVAL);
     assert_non_null(strstr(said, "turntable"));
+    app_release(&app);
     app = make_app(RELUME_SLAB, false);
     record_pose(&app, RECORD_TURNTABLE, 0.25, &keep);  // at the upper end of the cameras
     assert_float_equal(app.now.camera.eye.x, 0, 1e-12);
     assert_float_equal(app.now.camera.eye.y, 0.5, 1e-12);
+    app_release(&app);
     app = make_app(RELUME_CYLINDRICAL, true);
     record_pose(&app, RECORD_TURNTABLE, 0.25, &keep);
     assert_float_equal(app.now.camera.look.pan_deg, 90, 1e-12);
@@ -829,7 +863,7 @@ static void recordings_go_once_around(void **state)
 static void handles_are_grabbed_and_follow(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_PLANAR, false);  // 400 x 200
+    OWNED_APP app = make_app(RELUME_PLANAR, false);  // 400 x 200
     key(&app, 'm');
     app_aim_light(&app, 1, (struct relume_vec3){0.6, 0, -0.8});
     const struct gizmo_circle disc = gizmo_disc(&app);
@@ -858,7 +892,7 @@ static struct relume_light point_at(double x, double y, double z)
 static void near_lights_stand_where_they_are(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_PLANAR, false);
+    OWNED_APP app = make_app(RELUME_PLANAR, false);
     struct relume_geometry *g = &app.file.geometry;
     *g = (struct relume_geometry){.window_min = {-1, -0.5}, .window_max = {1, 0.5}, .camera_z = 4};
     struct gizmo at;
@@ -884,7 +918,7 @@ static void near_lights_stand_where_they_are(void **state)
 static void near_lights_stand_in_panoramas(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_SPHERICAL, true);
+    OWNED_APP app = make_app(RELUME_SPHERICAL, true);
     struct gizmo at;
     app.now.light[0] = point_at(1, 0.25, -1);
     assert_true(gizmo_of(&at, &app, 0));
@@ -895,6 +929,7 @@ static void near_lights_stand_in_panoramas(void **state)
     assert_float_equal(app.now.light[0].position.z, -1, 1e-12);
     app.now.camera.look.pan_deg = 180;
     assert_false(gizmo_of(&at, &app, 0));
+    app_release(&app);
     app = make_app(RELUME_SPHERICAL, false);  // unfolded: 400 x 200
     app.now.light[0] = point_at(2, 0, 0);
     assert_true(gizmo_of(&at, &app, 0));
@@ -908,7 +943,7 @@ static void near_lights_stand_in_panoramas(void **state)
 static void near_lights_turn_about_the_middle(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_PLANAR, false);
+    OWNED_APP app = make_app(RELUME_PLANAR, false);
     app.now.light[0] = point_at(0, 0, 2);
     app.now.light[0].kind = RELUME_LIGHT_SPOT;
     app.now.light[0].direction = (struct relume_vec3){0, 0, -1};
@@ -934,7 +969,7 @@ static void kinds_become_one_another(void **state)
                                                    RELUME_LIGHT_AREA, RELUME_LIGHT_DIRECTIONAL};
     const struct relume_vec3 middle = {1, 2, 3};
     const struct relume_vec3 from = {0.6, 0, 0.8};
-    struct app app = make_app(RELUME_PLANAR, false);
+    OWNED_APP app = make_app(RELUME_PLANAR, false);
     app.now.light[0].direction = from;
     app.now.light[0].rgb[1] = 7;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
@@ -957,7 +992,7 @@ static void kinds_become_one_another(void **state)
 static void held_keys_repeat_steps_only(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_PLANAR, false);
+    OWNED_APP app = make_app(RELUME_PLANAR, false);
     struct app_event e = {.kind = APP_KEY_DOWN, .key = APP_KEY_TAB, .repeat = true};
     assert_false(app_handle(&app, &e));
     assert_false(app.panel);
@@ -970,7 +1005,7 @@ static void held_keys_repeat_steps_only(void **state)
 static void handles_are_dragged_only_when_shown(void **state)
 {
     (void)state;
-    struct app app = make_app(RELUME_PLANAR, false);
+    OWNED_APP app = make_app(RELUME_PLANAR, false);
     const struct app_event press = {.kind = APP_PRESS, .x = 200, .y = 100};
     const struct app_event move = {.kind = APP_MOVE, .x = 242, .y = 100};
     const struct app_event release = {.kind = APP_RELEASE};
@@ -1018,6 +1053,7 @@ int main(void)
         cmocka_unit_test(scripts_hold_keys_and_wait),
         cmocka_unit_test(keys_change_the_selected_light),
         cmocka_unit_test(arrangements_stand_on_the_pole),
+        cmocka_unit_test(pointers_are_in_pixels),
         cmocka_unit_test(every_key_is_bound_once),
         cmocka_unit_test(recordings_go_once_around),
         cmocka_unit_test(handles_are_grabbed_and_follow),

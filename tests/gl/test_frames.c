@@ -15,8 +15,11 @@ static const double look_bound = 1e-3;
 
 static struct app make_app(const struct app_file *file, const struct relume_camera *camera)
 {
-    struct app_state start = {.camera = *camera, .lights = LIGHTS};
-    memcpy(start.light, lights, sizeof lights);
+    struct relume_light light[LIGHTS];
+    struct app_lamp lamp[LIGHTS] = {{.off = false}};
+    memcpy(light, lights, sizeof lights);
+    const struct app_state start = {
+        .camera = *camera, .light = light, .lamp = lamp, .lights = LIGHTS};
     struct app app;
     assert_int_equal(app_start(&app, file, &start, false, &fixture_log), RELUME_OK);
     return app;
@@ -47,7 +50,7 @@ static void a_view_is_drawn_texel_by_texel(void **state)
         renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 2, &fixture_log),
         RELUME_OK);
     const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW, .view = 1};
-    struct app app = make_app(&file, &camera);
+    OWNED_APP app = make_app(&file, &camera);
     struct relume_image want = fixture_relight(&f, 1, lights, LIGHTS);
     assert_below("view", compare_frame(&r, &app, &want), same_grid_bound);
     app.now.exposure_ev = -2;
@@ -73,7 +76,7 @@ static void a_reduced_view_is_averaged(void **state)
         RELUME_OK);
     const struct relume_camera camera = {
         .framing = RELUME_FRAME_VIEW, .width = W / 2, .height = H / 2};
-    struct app app = make_app(&file, &camera);
+    OWNED_APP app = make_app(&file, &camera);
     struct relume_image full = fixture_relight(&f, 0, lights, LIGHTS), want;
     assert_int_equal(relume_image_create(&want, W / 2, H / 2, 3), RELUME_OK);
     for (int y = 0; y < H; y++)
@@ -160,7 +163,7 @@ static void slab_frames_are_the_library_s(void **state)
         assert_int_equal(relume_slab_frame(&want, slab, eyes[i], t.views, NULL), RELUME_OK);
         const struct relume_camera camera = {
             .framing = RELUME_FRAME_EYE, .eye = eyes[i], .width = width, .height = height};
-        const struct app app = make_app(&t.about, &camera);
+        OWNED_APP app = make_app(&t.about, &camera);
         assert_below(text, compare_frame(&t.renderer, &app, &want), same_grid_bound);
         relume_image_destroy(&want);
     }
@@ -237,7 +240,7 @@ static void slab_frames_by_depth_are_the_library_s(void **state)
                          RELUME_OK);
         const struct relume_camera camera = {
             .framing = RELUME_FRAME_EYE, .eye = eyes[i], .width = 67, .height = 45};
-        struct app app = make_app(&t.about, &camera);
+        OWNED_APP app = make_app(&t.about, &camera);
         assert_int_equal(renderer_draw(&t.renderer, &app), RELUME_OK);
         assert_int_equal(renderer_read(&got, &t.renderer), RELUME_OK);
         compare_most(text, &got, &want);
@@ -278,7 +281,7 @@ static void other_ways_to_see_a_slab_are_the_library_s(void **state)
                              RELUME_OK);
             const struct relume_camera camera = {
                 .framing = RELUME_FRAME_EYE, .eye = eyes[e], .width = 67, .height = 45};
-            struct app app = make_app(&t.about, &camera);
+            OWNED_APP app = make_app(&t.about, &camera);
             app.now.interpolation = ways[i].interpolation;
             app.now.aperture = ways[i].aperture;
             app.now.focus_z = ways[i].focus;
@@ -295,7 +298,7 @@ static void only_views_that_matter_are_relit(void **state)
     open_slab(&t, 8, 8);
     t.file.asked = 0;
     const struct relume_camera camera = {.framing = RELUME_FRAME_EYE, .eye = {1, 0.5, 3}};
-    struct app app = make_app(&t.about, &camera);
+    OWNED_APP app = make_app(&t.about, &camera);
     assert_int_equal(renderer_draw(&t.renderer, &app), RELUME_OK);
     assert_int_equal(t.file.asked, 1);
     app.now.camera.eye = (struct relume_vec3){0.5, 0.4, 3};
@@ -323,7 +326,7 @@ static void one_row_and_one_camera_are_drawn(void **state)
         assert_int_equal(renderer_create(&r, &fixture_gl, &source, &g, uv, n, &fixture_log),
                          RELUME_OK);
         const struct relume_camera camera = {.framing = RELUME_FRAME_EYE, .eye = {0.5, 0.2, 3}};
-        const struct app app = make_app(&file, &camera);
+        OWNED_APP app = make_app(&file, &camera);
         struct relume_image want = fixture_relight(&f, 0, lights, LIGHTS);
         assert_below("camera itself", compare_frame(&r, &app, &want), same_grid_bound);
         relume_image_destroy(&want);
@@ -365,7 +368,7 @@ static void compare_panorama(const struct relume_geometry *g, int width, int hei
         assert_int_equal(relume_panorama_frame(&want, g, &image, looks[i], NULL), RELUME_OK);
         const struct relume_camera camera = {
             .framing = RELUME_FRAME_LOOK, .look = looks[i], .width = 90, .height = 60};
-        const struct app app = make_app(&file, &camera);
+        OWNED_APP app = make_app(&file, &camera);
         assert_below(text, compare_frame(&r, &app, &want), look_bound);
     }
     relume_image_destroy(&want);
@@ -400,7 +403,7 @@ static void the_ball_is_bright_where_the_light_comes_from(void **state)
         renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 1, &fixture_log),
         RELUME_OK);
     const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW};
-    struct app app = make_app(&file, &camera);
+    OWNED_APP app = make_app(&file, &camera);
     app.now.ball = true;
     app.now.lights = 1;
     app.now.light[0] = (struct relume_light){.direction = {-1, 1, 0.5}, .rgb = {1, 1, 1}};
@@ -493,7 +496,7 @@ static void the_meter_sees_a_small_frame(void **state)
         renderer_create(&r, &fixture_gl, &source, &file.geometry, NULL, 1, &fixture_log),
         RELUME_OK);
     const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW};
-    struct app app = make_app(&file, &camera);
+    OWNED_APP app = make_app(&file, &camera);
     double ev[2];
     for (int i = 0; i < 2; i++) {
         app.now.exposure_ev = 3 * i;

@@ -56,7 +56,7 @@ static bool drag(struct panel *panel, struct app *app, double x0, double y0, dou
 static void the_ball_turns_the_light(void **state)
 {
     (void)state;
-    struct app app = make_app();
+    OWNED_APP app = make_app();
     struct panel *panel = make_panel(&app);
     assert_true(drag(panel, &app, 76, 126, 76 + 33, 126 - 22));
     const struct relume_vec3 d = app.now.light[0].direction;
@@ -69,7 +69,7 @@ static void the_ball_turns_the_light(void **state)
 static void a_click_turns_the_light_off(void **state)
 {
     (void)state;
-    struct app app = make_app();
+    OWNED_APP app = make_app();
     struct panel *panel = make_panel(&app);
     assert_true(drag(panel, &app, 25, 49, 25, 49));
     assert_true(app.now.lamp[0].off);
@@ -82,7 +82,7 @@ static void a_click_turns_the_light_off(void **state)
 static void the_picture_keeps_its_events(void **state)
 {
     (void)state;
-    struct app app = make_app();
+    OWNED_APP app = make_app();
     struct panel *panel = make_panel(&app);
     assert_false(tell(panel, APP_PRESS, 500, 300));
     assert_false(tell(panel, APP_MOVE, 76, 126));
@@ -98,7 +98,7 @@ static void text_goes_into_the_field(void **state)
 {
     (void)state;
     static const struct panel_facts none = {0};
-    struct app app = make_app();
+    OWNED_APP app = make_app();
     struct panel *panel = make_panel(&app);
     drag(panel, &app, 60, 269, 60, 269);  // the field for a SPEC
     for (const char *c = "dir 1 0 1"; *c; c++) {
@@ -117,7 +117,7 @@ static void tiny_frames_do_no_harm(void **state)
 {
     (void)state;
     static const struct panel_facts none = {0};
-    struct app app = make_app();
+    OWNED_APP app = make_app();
     struct panel *panel = make_panel(&app);
     app.help = app.inspect = app.gizmos = true;
     for (int side = 1; side < 100; side += 7) {
@@ -132,7 +132,7 @@ static void tiny_frames_do_no_harm(void **state)
 static void the_panel_is_drawn_where_it_is(void **state)
 {
     (void)state;
-    struct app app = make_app();
+    OWNED_APP app = make_app();
     struct panel *panel = make_panel(&app);
     struct panel_drawing drawing;
     struct target target;
@@ -266,7 +266,7 @@ static void the_inspector_decodes_as_the_library(void **state)
 static void the_cursor_finds_its_pixel(void **state)
 {
     (void)state;
-    struct app app = make_app();  // 400 x 400 in 640 x 560, not letterboxed
+    OWNED_APP app = make_app();  // 400 x 400 in 640 x 560, not letterboxed
     int view, pixel[2];
     assert_true(inspect_pick(&view, pixel, &app, NULL, 320, 280));
     assert_true(view == 0 && pixel[0] == 200 && pixel[1] == 200);

@@ -52,6 +52,9 @@ static GLenum APIENTRY no_memory(void)
     return GL_OUT_OF_MEMORY;
 }
 
+// Before the second frame, which is drawn when there is one.
+static void (*meanwhile)(void);
+
 static relume_status draw_with(const struct gl *gl)
 {
     struct fixture_file f = fixture_make(1, 8, 8, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
@@ -60,13 +63,17 @@ static relume_status draw_with(const struct gl *gl)
     const struct app_file file = {.geometry = geometry, .width = 8, .height = 8, .views = 1};
     const struct app_state start = {0};
     struct renderer r;
-    struct app app;
+    OWNED_APP app;
     said[0] = '\0';
     lines = 0;
     assert_int_equal(app_start(&app, &file, &start, false, &keep), RELUME_OK);
     relume_status status = renderer_create(&r, gl, &source, &geometry, NULL, 1, &keep);
     if (!status)
         status = renderer_draw(&r, &app);
+    if (!status && meanwhile) {
+        meanwhile();
+        status = renderer_draw(&r, &app);
+    }
     renderer_destroy(&r);
     fixture_free(&f);
     (void)fixture_gl.GetError();
@@ -119,6 +126,54 @@ static void memory_that_is_full(void **state)
     expect_one_line("the graphics memory is full");
 }
 
+static GLenum APIENTRY guilty(void)
+{
+    return GL_GUILTY_CONTEXT_RESET;
+}
+
+static GLenum APIENTRY lost(void)
+{
+    return GL_CONTEXT_LOST;
+}
+
+static void cards_that_are_reset(void **state)
+{
+    (void)state;
+    struct gl gl = fixture_gl;
+    gl.reset_status = guilty;
+    assert_int_equal(draw_with(&gl), RELUME_ESYSTEM);
+    expect_one_line("the graphics card was reset");
+    gl = fixture_gl;
+    gl.GetError = lost;
+    assert_int_equal(draw_with(&gl), RELUME_ESYSTEM);
+    expect_one_line("the graphics card was reset");
+}
+
+// A card that goes away after a frame: the next one says so, and all that is left can be put away.
+static GLenum later;
+
+static GLenum APIENTRY reset_later(void)
+{
+    return later;
+}
+
+static void reset_now(void)
+{
+    later = GL_UNKNOWN_CONTEXT_RESET;
+}
+
+static void cards_that_are_reset_later(void **state)
+{
+    (void)state;
+    struct gl gl = fixture_gl;
+    gl.reset_status = reset_later;
+    later = GL_NO_ERROR;
+    meanwhile = reset_now;
+    assert_int_equal(draw_with(&gl), RELUME_ESYSTEM);
+    meanwhile = NULL;
+    expect_one_line("drawing: the graphics card was reset");
+}
+
 static gl_proc nothing_of(const char *name)
 {
     return strcmp(name, "glDrawElements") ? context_osmesa.get_proc(name) : NULL;
@@ -142,6 +197,8 @@ int main(void)
         cmocka_unit_test(pictures_that_are_too_large),
         cmocka_unit_test(targets_that_cannot_be_drawn_into),
         cmocka_unit_test(memory_that_is_full),
+        cmocka_unit_test(cards_that_are_reset),
+        cmocka_unit_test(cards_that_are_reset_later),
         cmocka_unit_test(functions_that_are_missing),
     };
     return cmocka_run_group_tests(tests, fixture_open, fixture_close);

@@ -60,6 +60,7 @@ static const char *const specs[] = {
     "env \"my map.exr\" -30.5",
     "env 'my map.exr'",
     "ies 1 2 3 0 -1 0 a.ies",
+    "gonio 1 2 3 0 -1 0 'my map.exr' nofall",
 };
 enum { SPECS = sizeof specs / sizeof *specs };
 
@@ -124,6 +125,7 @@ static void test_wrong_words(void **state)
         {"env none.hdr", "none.hdr: no such file", RELUME_EDATA},
         {"env 'my map.exr' ten", "found 'ten'", RELUME_EINVAL},
         {"ies 1 2 3 0 -1 0 none.ies", "none.ies: cannot be opened", RELUME_EDATA},
+        {"gonio 1 2 3 0 -1 0 none.exr", "none.exr", RELUME_EDATA},
         {"ies 1 2 3 0 -1 0 'my map.exr'", "TILT=", RELUME_EDATA},
     };
     relume_rig *rig = create();
@@ -201,6 +203,7 @@ static void same(const struct relume_rig_entry *a, const struct relume_rig_entry
     assert_true(!memcmp(&p->position, &q->position, sizeof p->position));
     assert_true(!memcmp(&p->u, &q->u, sizeof p->u) && !memcmp(&p->v, &q->v, sizeof p->v));
     assert_true(!p->image == !q->image && !p->environment == !q->environment && !p->ies == !q->ies);
+    assert_true(!p->gonio == !q->gonio);
 }
 
 // Bit by bit, from the folder itself and from one beside the files.

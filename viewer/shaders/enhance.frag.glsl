@@ -1,7 +1,6 @@
 #version 330 core
 // What a pass shows of a relit view; twin of src/relight/enhance.c, function by function.
 #include "transfer.glsl"
-const int LIGHTS = 64;
 uniform sampler2D view;
 uniform sampler2D normals;
 uniform sampler2D albedos;
@@ -11,8 +10,7 @@ uniform sampler2D reference;
 uniform int pass;             // enum relume_pass
 uniform bool towards_given;   // else +z
 uniform int lights;
-uniform vec3 direction[LIGHTS];  // unit
-uniform vec3 value[LIGHTS];
+uniform sampler2D lamps;      // 512 lights in two rows: unit directions, values; then the next ones
 uniform vec4 strength;        // gain, specular, exponent, top
 out vec4 color;
 
@@ -34,6 +32,16 @@ vec3 vector_at(sampler2D image, ivec2 at)
     return texelFetch(image, at, 0).rgb;
 }
 
+vec3 direction(int light)
+{
+    return vector_at(lamps, ivec2(light & 511, 2 * (light >> 9)));
+}
+
+vec3 value(int light)
+{
+    return vector_at(lamps, ivec2(light & 511, 2 * (light >> 9) + 1));
+}
+
 // As codes (n + 1) / 2 once the screen's curve is applied.
 vec3 show_normals(ivec2 at)
 {
@@ -48,13 +56,13 @@ vec3 show_specular(ivec2 at, vec3 rgb)
     vec3 normal = vector_at(normals, at);
     vec3 eye = towards_given ? vector_at(towards, at) : vec3(0.0, 0.0, 1.0);
     for (int i = 0; i < lights; i++) {
-        vec3 halfway = direction[i] + eye;
+        vec3 halfway = direction(i) + eye;
         float size = length(halfway);
         if (!(size > 1e-6))
             continue;
         float cosine = dot(normal, halfway) / size;
         float lobe = cosine > 0.0 ? strength.y * pow(cosine, strength.z) : 0.0;
-        rgb += lobe * value[i];
+        rgb += lobe * value(i);
     }
     return rgb;
 }
@@ -63,7 +71,7 @@ vec3 show_diffuse_gain(ivec2 at, vec3 rgb)
 {
     vec3 light = vec3(0.0);
     for (int i = 0; i < lights; i++)
-        light += value[i];
+        light += value(i);
     vec3 most = light * vector_at(albedos, at);
     return max(most + strength.x * (rgb - most), vec3(0.0));
 }
@@ -73,7 +81,7 @@ vec3 show_unsharp(ivec2 at, vec3 rgb)
     vec3 detail = vector_at(details, at);
     vec3 change = vec3(0.0);
     for (int i = 0; i < lights; i++)
-        change += strength.x * dot(detail, direction[i]) * value[i];
+        change += strength.x * dot(detail, direction(i)) * value(i);
     return max(rgb + vector_at(albedos, at) * change, vec3(0.0));
 }
 

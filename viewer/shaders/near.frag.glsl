@@ -3,11 +3,12 @@
 // with its sign corrected). Twins: relume_light_at, relume_facet_at, relume_weight_grid_place.
 #include "transfer.glsl"
 #include "texels.glsl"
+#include "cube.glsl"
 
 const float PI = 3.14159265358979;
 
 // enum relume_light_kind
-const int SPOT = 3, SLIDE = 4, AREA = 5, IES = 6;
+const int SPOT = 3, SLIDE = 4, AREA = 5, IES = 6, GONIO = 7;
 struct Light {
     int kind;
     vec3 rgb;
@@ -17,7 +18,8 @@ struct Light {
     float half_angle;      // radians
 };
 uniform Light light;
-uniform sampler2D picture;  // slide: its picture; ies: intensities [vertical][horizontal]; area:
+uniform sampler2D picture;  // slide: its picture; ies: intensities [vertical][horizontal];
+                            // gonio: relume_gonio_map; area:
                             // a column for each facet: position, normal, radiance
 uniform int facets;
 
@@ -74,6 +76,22 @@ vec3 ies_factor(vec3 ray)
     return texels_bilinear(picture, at).rrr;
 }
 
+// Twin: relume_gonio_value. Faces stand in borders of one texel.
+vec3 gonio_value(vec3 d)
+{
+    float side = float(textureSize(picture, 0).y - 2);
+    int face = cube_face_of(d);
+    float ahead = dot(d, face_ahead[face]);
+    vec2 ab = vec2(dot(d, face_right[face]), -dot(d, face_up[face])) / ahead;
+    vec2 at = clamp((0.5 + 0.5 * ab) * side, 0.0, side) + 1.0;
+    return texels_bilinear(picture, at + vec2(float(face) * (side + 2.0), 0.0));
+}
+
+vec3 gonio_factor(vec3 ray)
+{
+    return gonio_value(vec3(dot(ray, light.right), dot(ray, light.up), -dot(ray, light.axis)));
+}
+
 bool light_at(out vec3 towards, out vec3 rgb, vec3 point)
 {
     float distance;
@@ -85,6 +103,8 @@ bool light_at(out vec3 towards, out vec3 rgb, vec3 point)
         rgb *= slide_factor(-towards);
     else if (light.kind == IES)
         rgb *= ies_factor(-towards);
+    else if (light.kind == GONIO)
+        rgb *= gonio_factor(-towards);
     return arrives;
 }
 

@@ -9,6 +9,7 @@ enum { W = 33, H = 21, MOST_CODES = 300 };
 static struct relume_image slide;
 static relume_ies *lamp;
 static relume_environment *sky;
+static relume_gonio *faces;
 
 static const char lamp_text[] = "IESNA:LM-63-1995\nTILT=NONE\n"
                                 "1 1000 1 4 4 1 2 0 0 0\n1 1 10\n"
@@ -25,7 +26,11 @@ static int open_all(void **state)
         slide.data[i] = 0.2f + 0.1f * (float)(i * 7 % 9);
     for (int i = 0; i < 32 * 16 * 3; i++)
         map.data[i] = i % 97 == 3 ? 20.0f : 0.1f * (float)(i % 5);
-    const relume_status status = relume_environment_create(&sky, &map, NULL);
+    relume_status status = relume_environment_create(&sky, &map, NULL);
+    for (int i = 0; i < 32 * 16 * 3; i++)
+        map.data[i] = 0.2f + 0.1f * (float)(i * 7 % 11);
+    if (!status)
+        status = relume_gonio_create(&faces, &map, NULL);
     relume_image_destroy(&map);
     return status || relume_ies_parse(&lamp, lamp_text, sizeof lamp_text - 1, "lamp", &fixture_log);
 }
@@ -34,6 +39,7 @@ static int close_all(void **state)
 {
     relume_image_destroy(&slide);
     relume_ies_destroy(&lamp);
+    relume_gonio_destroy(&faces);
     relume_environment_destroy(&sky);
     return fixture_close(state);
 }
@@ -69,6 +75,7 @@ static struct relume_light light_of(enum relume_light_kind kind)
         .image = &slide,
         .environment = sky,
         .ies = lamp,
+        .gonio = faces,
     };
 }
 
@@ -125,7 +132,7 @@ static void check_codes(const struct relume_codes *codes, const char *name)
     if (codes->domain == RELUME_DOMAIN_DISPLAY)
         assert_int_equal(relume_refit_create(&refit, codes, NULL), RELUME_OK);
     assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
-    for (int kind = RELUME_LIGHT_ENVIRONMENT; kind <= RELUME_LIGHT_IES; kind++)
+    for (int kind = RELUME_LIGHT_ENVIRONMENT; kind <= RELUME_LIGHT_GONIO; kind++)
         check_kind(&r, codes, name, (enum relume_light_kind)kind,
                    relume_relight_params(.grid = grid, .refit = refit));
     relighter_destroy(&r);

@@ -1,0 +1,13 @@
+// grid.h - weight grids, one direction at a time
+#ifndef RELIGHT_GRID_H
+#define RELIGHT_GRID_H
+
+#include <relume/relight.h>
+
+// The node values of relume_weight_grid_info at a unit direction: out[stride].
+void grid_blend(float *out, const relume_weight_grid *grid, struct relume_vec3 direction);
+
+// That of a refit's coder; belongs to the refit, or to the one it is like.
+const relume_weight_grid *refit_grid(const relume_refit *refit);
+
+#endif

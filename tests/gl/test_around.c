@@ -61,8 +61,9 @@ static void start_app(struct around *t)
 {
     const struct app_file file = {
         .geometry = t->slab[0], .width = W, .height = H, .views = VIEWS, .around = t->slabs};
-    struct app_state start = {.lights = 1};
-    start.light[0] = lamp;
+    struct relume_light light = lamp;
+    struct app_lamp shown = {.off = false};
+    const struct app_state start = {.light = &light, .lamp = &shown, .lights = 1};
     assert_int_equal(app_start(&t->app, &file, &start, false, &fixture_log), RELUME_OK);
 }
 
@@ -79,6 +80,12 @@ static void open_app(struct around *t)
                                          t->slab_of, VIEWS),
                      RELUME_OK);
     start_app(t);
+}
+
+static void close_app(struct around *t)
+{
+    app_release(&t->app);
+    relume_slabs_destroy(&t->slabs);
 }
 
 static void open_around(struct around *t)
@@ -110,7 +117,7 @@ static void close_around(struct around *t)
         relume_image_destroy(&t->views[i]);
         relume_image_destroy(&t->disparity[i]);
     }
-    relume_slabs_destroy(&t->slabs);
+    close_app(t);
 }
 
 // ---------------------------------------------------------------- frames
@@ -232,7 +239,7 @@ static void a_drag_turns_the_object(void **state)
     assert_true(fabs(length_of(app->now.camera.eye) - away) < 1e-9);
     struct relume_window window;
     assert_true(app_window(app, &window));
-    relume_slabs_destroy(&t.slabs);
+    close_app(&t);
 }
 
 // Let go of in motion it glides on and comes to rest, whatever way time is split.
@@ -261,7 +268,7 @@ static void the_object_glides(void **state)
     while (app_advance(app, 0.1) && steps < 100)
         steps++;
     assert_true(steps > 1 && steps < 60);
-    relume_slabs_destroy(&t.slabs);
+    close_app(&t);
 }
 
 static void the_wheel_dollies(void **state)
@@ -275,7 +282,7 @@ static void the_wheel_dollies(void **state)
     for (int i = 0; i < 100; i++)
         app_handle(&t.app, &(struct app_event){.kind = APP_WHEEL, .wheel = -1});
     assert_true(fabs(length_of(t.app.now.camera.eye) - 4 * captured) < 1e-9);
-    relume_slabs_destroy(&t.slabs);
+    close_app(&t);
 }
 
 // A near light's handle is where the frame shows the light, and goes where it is dragged to.
@@ -301,7 +308,7 @@ static void handles_lie_on_their_lights(void **state)
     assert_true(fabs(g.x - 12) < 1e-9 && fabs(g.y - 9) < 1e-9);
     light->position = (struct relume_vec3){2 * eye.x, 2 * eye.y, 2 * eye.z};
     assert_false(gizmo_of(&g, app, 0));  // behind the eye
-    relume_slabs_destroy(&t.slabs);
+    close_app(&t);
 }
 
 static void a_pixel_is_found_in_its_view(void **state)
@@ -315,7 +322,7 @@ static void a_pixel_is_found_in_its_view(void **state)
     assert_int_equal(t.slab_of[view], 2);
     assert_true(t.uv[view][0] == columns[1] && t.uv[view][1] == rows[1]);
     assert_true(abs(pixel[0] - W / 2) <= 1 && abs(pixel[1] - H / 2) <= 1);
-    relume_slabs_destroy(&t.slabs);
+    close_app(&t);
 }
 
 static void a_turntable_goes_around(void **state)
@@ -326,7 +333,7 @@ static void a_turntable_goes_around(void **state)
     assert_int_equal(record_pose(&t.app, RECORD_TURNTABLE, 0.25, &fixture_log), RELUME_OK);
     const struct relume_vec3 start = t.app.start.camera.eye, now = t.app.now.camera.eye;
     assert_true(fabs(now.x - start.z) < 1e-9 && fabs(now.z + start.x) < 1e-9);
-    relume_slabs_destroy(&t.slabs);
+    close_app(&t);
 }
 
 static void what_only_one_slab_has_is_refused(void **state)
@@ -337,13 +344,13 @@ static void what_only_one_slab_has_is_refused(void **state)
     const struct app_file file = t.app.file;
     struct app_state wrong[3] = {{.aperture = 0.2}, {.focused = true}, {.lights = 0}};
     wrong[2].camera.framing = RELUME_FRAME_EYE;  // where it would look
+    struct app refused;
     for (int i = 0; i < 3; i++)
-        assert_int_equal(app_start(&t.app, &file, &wrong[i], false, NULL), RELUME_EINVAL);
-    start_app(&t);
+        assert_int_equal(app_start(&refused, &file, &wrong[i], false, NULL), RELUME_EINVAL);
     for (const char *key = "a,."; *key; key++)
         app_handle(&t.app, &(struct app_event){.kind = APP_KEY_DOWN, .key = *key});
     assert_true(t.app.now.aperture == 0 && t.app.now.focus_z == t.app.start.focus_z);
-    relume_slabs_destroy(&t.slabs);
+    close_app(&t);
 }
 
 int main(void)

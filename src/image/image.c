@@ -236,7 +236,7 @@ static relume_status save_exr(const struct relume_image *image, const char *path
         .width = image->width,
         .height = image->height,
         .sample = p->half ? EXR_SAMPLE_HALF : EXR_SAMPLE_FLOAT,
-        .codec = EXR_CODEC_ZIP,
+        .codec = EXR_CODEC_PIZ,
         .channels = image->channels,
         .channel = image->channels == 3 ? rgb : grey,
         .rows = exr_rows,

@@ -21,10 +21,10 @@ struct relit_view {
     GLuint *array;  // [arrays]: array textures of codes, four planes a texel, or one of indices,
                     // a layer for each codebook
     int arrays;
-    int layers;  // of all arrays together
+    int layers;          // of all arrays together
     size_t bytes, kept;  // of all it has, and of that by `software`
-    uint64_t used;  // the frame that last asked for it
-    bool fresh;     // `relit` shows the present lights
+    uint64_t used;       // the frame that last asked for it
+    bool fresh;          // `relit` shows the present lights
     struct target relit;
     struct relume_codes codes;  // planes and indices are gone; the rest is ours
     float *scale;

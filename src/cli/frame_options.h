@@ -9,7 +9,8 @@
     {"--light",                                                                                    \
      OPTION_TEXT,                                                                                  \
      "SPEC",                                                                                       \
-     "\"dir x y z\", point, spot, slide, area, env, ies, gonio (docs/lights.md); repeats; default: "      \
+     "\"dir x y z\", point, spot, slide, area, env, ies, gonio (docs/lights.md); repeats; "        \
+     "default: "                                                                                   \
      "\"dir 0 0 1\"",                                                                              \
      0,                                                                                            \
      0},                                                                                           \

@@ -3,12 +3,12 @@
 #include "fuzz.h"
 
 static const char *const words[] = {
-    "dir",    "point", "spot",   "slide",  "area",       "env",     "ies",       "gonio", "rgb",
-    "nofall", "disc",  "format", "lights", "relume-rig", "version", "light",     "name",
-    "on",     "solo",  "TILT=",  "NONE",   "INCLUDE",    "IESNA",   "intensity", "true",
-    "null",   "1e308", "-0",     "nan",    "inf",        "0",       "-1",        "90",
-    "180",    "360",   "4096",   "1e-300", "'",          "\"",      "[",         "]",
-    "{",      "}",     ",",      "\n",     "map.exr",    "a.ies",   NULL};
+    "dir",  "point",  "spot",  "slide",  "area",   "env",        "ies",     "gonio",
+    "rgb",  "nofall", "disc",  "format", "lights", "relume-rig", "version", "light",
+    "name", "on",     "solo",  "TILT=",  "NONE",   "INCLUDE",    "IESNA",   "intensity",
+    "true", "null",   "1e308", "-0",     "nan",    "inf",        "0",       "-1",
+    "90",   "180",    "360",   "4096",   "1e-300", "'",          "\"",      "[",
+    "]",    "{",      "}",     ",",      "\n",     "map.exr",    "a.ies",   NULL};
 
 static const struct relume_vec3 axes[6] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
                                            {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};

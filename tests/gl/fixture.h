@@ -71,7 +71,7 @@ struct fixture_file {
     relume_coder *coder;
     struct relume_codes *codes;
     int views;
-    int asked; // how often codes were fetched
+    int asked;  // how often codes were fetched
     void **memory;
     const void **plane;
     float scale[FIXTURE_PLANES], offset[FIXTURE_PLANES];
@@ -105,8 +105,8 @@ static void fill_codes(void *memory, size_t n, enum relume_storage storage, uint
 
 // Values under a light of 1 lie around [-0.5, 2]: the first harmonic lifts them, the rest vary.
 static inline struct fixture_file fixture_make(int views, int width, int height,
-                                        enum relume_storage storage, enum relume_domain domain,
-                                        bool pole_y)
+                                               enum relume_storage storage,
+                                               enum relume_domain domain, bool pole_y)
 {
     struct fixture_file f = {.coder = fixture_coder(pole_y), .views = views};
     const size_t pixels = (size_t)width * (size_t)height;
@@ -163,7 +163,7 @@ static inline void fixture_free(struct fixture_file *f)
 }
 
 static inline struct relume_image fixture_relight(struct fixture_file *f, int view,
-                                           const struct relume_light *lights, int n)
+                                                  const struct relume_light *lights, int n)
 {
     struct relume_image image = {0};
     const struct relume_codes *codes;

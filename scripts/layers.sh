@@ -54,7 +54,7 @@ only_in() { # pattern file...: an external header appears in these files only
 }
 only_in 'openexr' src/image/exr.c tests/tools/decode.c
 only_in 'OpenImageIO' src/image/oiio.cpp
-only_in 'dlfcn' src/image/oiio_load.c src/capture/stitch_load.c
+only_in 'dlfcn' src/base/module.c
 only_in 'opencv' src/capture/stitch.cpp
 only_in 'embree' src/scene/trace.c
 only_in '(cblas|lapacke)' src/math/lsq.c

@@ -1,30 +1,16 @@
 // stitch_load.c - opens the module that knows OpenCV when photographs are to be stitched
 #include "base/log.h"
+#include "base/module.h"
 #include "capture/stitch.h"
 
-#include <dlfcn.h>
 #include <pthread.h>
-#include <stdio.h>
-#include <string.h>
-
-#define TEXT(x)  #x
-#define QUOTE(x) TEXT(x)
-static const char module_name[] = "librelume-stitch.so." QUOTE(RELUME_MAJOR);
 
 static const struct stitch_bridge *bridge;
-static char why_not[400];
+static char why_not[MODULE_WHY];
 
 static void load(void)
 {
-    void *module = dlopen(module_name, RTLD_LAZY | RTLD_LOCAL);
-    const struct stitch_bridge *found = module ? dlsym(module, "relume_stitch_bridge") : NULL;
-    if (!found)
-        snprintf(why_not, sizeof why_not, "%s", dlerror());
-    else if (strcmp(found->version, RELUME_VERSION) != 0)
-        snprintf(why_not, sizeof why_not, "%s is of version %s; expected %s", module_name,
-                 found->version, RELUME_VERSION);
-    else
-        bridge = found;
+    bridge = module_open("stitch", why_not);
 }
 
 relume_status stitch_find(struct stitch_pose *poses, int *stray, char *why,

@@ -1,33 +1,19 @@
 // oiio_load.c - opens the module that knows OpenImageIO when the first image needs it
 #include "base/log.h"
+#include "base/module.h"
 #include "base/outfile.h"
 #include "image/oiio.h"
 
-#include <dlfcn.h>
 #include <pthread.h>
-#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
-#define TEXT(x)  #x
-#define QUOTE(x) TEXT(x)
-// Of this major version, found as the library itself is (run path, LD_LIBRARY_PATH, ld.so.conf).
-static const char module_name[] = "librelume-oiio.so." QUOTE(RELUME_MAJOR);
-
 static const struct oiio_bridge *bridge;
-static char why_not[400];
+static char why_not[MODULE_WHY];
 
 static void load(void)
 {
-    void *module = dlopen(module_name, RTLD_LAZY | RTLD_LOCAL);
-    const struct oiio_bridge *found = module ? dlsym(module, "relume_oiio_bridge") : NULL;
-    if (!found)
-        snprintf(why_not, sizeof why_not, "%s", dlerror());
-    else if (strcmp(found->version, RELUME_VERSION) != 0)
-        snprintf(why_not, sizeof why_not, "%s is of version %s; expected %s", module_name,
-                 found->version, RELUME_VERSION);
-    else
-        bridge = found;
+    bridge = module_open("oiio", why_not);
 }
 
 static relume_status need_bridge(const char *path, const struct relume_log *log)

@@ -113,6 +113,7 @@ struct app {
     double cursor[2];
     bool light_key;                     // L is held
     bool panel, help, inspect, gizmos;  // shown
+    double inspect_zoom;                // of the inspector's disc; 0 and 1: all of it
     bool compared;                      // there is a capture to compare with
     bool near_lights;  // it is known where the surface is, so that near lights can shine on it
     enum app_wish wish;

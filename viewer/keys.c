@@ -69,6 +69,17 @@ static bool press_inspect(struct app *app, int key)
     return true;
 }
 
+static bool press_magnify(struct app *app, int key)
+{
+    (void)key;
+    if (!app->inspect)
+        return false;
+    app->inspect_zoom = app->inspect_zoom < 1    ? 2
+                        : app->inspect_zoom < 16 ? 2 * app->inspect_zoom
+                                                 : 1;
+    return true;
+}
+
 static bool press_exposure(struct app *app, int key)
 {
     app->now.exposure_ev += key == '+' ? exposure_step : -exposure_step;
@@ -296,6 +307,8 @@ const struct key_binding key_bindings[] = {
     {'b', "B", "ball that shows the light", press_ball, false},
     {'g', "G", "handles of the lights in the picture", press_gizmos, false},
     {'i', "I", "inspector: the reflectance under the cursor", press_inspect, false},
+    {'y', "Y", "inspector: twice as large about the light; at last all of it", press_magnify,
+     false},
     {'s', "S", "save the picture, PNG", press_png, false},
     {'p', "P", "save the picture, EXR", press_exr, false},
     {'w', "W", "write the lights, a rig file", press_save_rig, false},

@@ -17,6 +17,8 @@ struct nearby {
     struct program program;
     bool has_grid;                   // has been uploaded
     GLuint grid;                     // array texture of the weights by direction
+    GLuint triangles;                // between its nodes, and where to begin to look for one
+    int triangle_count;              // 0: the nodes are a grid
     GLuint facets;                   // a column for each facet of the area light in use
     struct nearby_picture *picture;  // what slides and lamps need, by their pointers
 };

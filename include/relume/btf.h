@@ -112,6 +112,11 @@ RELUME_RESULT relume_status relume_btf_part(relume_btf **out, const relume_btf *
                                             const int *views, int view_count, const int *lights,
                                             int light_count, const struct relume_log *log);
 
+// A BTF of half the sides: every texel the mean of two by two (three at an odd end; a side of 1
+// stays), without ground truth. RELUME_ENOMEM, RELUME_ESYSTEM.
+RELUME_RESULT relume_status relume_btf_halve(relume_btf **out, const relume_btf *btf,
+                                             const struct relume_btf_params *params);
+
 // The reference: three views times three lights of the measured values, weighted. Below the lowest
 // lights the value falls with the cosine to 0 at the horizon; views and lights below it give 0.
 RELUME_API void relume_btf_evaluate(const relume_btf *btf, int x, int y, struct relume_vec3 view,
@@ -133,6 +138,9 @@ struct relume_btf_fit_params {  // zero in a field means its default
     int lobes;       // rfnl, rfnlc, laf, slaf: 2; [1, 4]
     uint64_t seed;   // equal seeds give equal bytes, whatever the thread count
     int threads;     // default: all cores
+    // Levels of detail: each is fitted to means of 2 x 2 texels of the level before, with a quarter
+    // of its clusters. Default 1: the BTF alone; -1: down to one texel.
+    int levels;
 };
 #define relume_btf_fit_params(...) (&(const struct relume_btf_fit_params){__VA_ARGS__})
 
@@ -159,8 +167,14 @@ struct relume_btf_fitted_info {
     int clusters, components, lobes;  // 0: the model has none
     uint64_t bytes;                   // of its arrays
     uint64_t bytes_each;              // of those a texel: the rest is shared by all texels
+    int levels;                       // at least 1
+    uint64_t bytes_levels;            // of the arrays of all levels
 };
 RELUME_API struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *fitted);
+
+// A level of detail, 0 being the model itself, beyond the last one the last; belongs to the model.
+RELUME_API const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fitted *fitted,
+                                                            int level);
 
 // The same question as relume_btf_evaluate.
 RELUME_API void relume_btf_fitted_evaluate(const relume_btf_fitted *fitted, int x, int y,

@@ -14,6 +14,7 @@ static const struct option options[] = {
     {"--clusters", OPTION_INT, "N", "lpca: default 32; rfnlc: default 1024", 1, 65536},
     {"--components", OPTION_INT, "N", "vpca: default 4; lpca: 8; fmf: 100", 1, 256},
     {"--lobes", OPTION_INT, "N", "rfnl, rfnlc, laf, slaf: default 2", 1, 4},
+    {"--levels", OPTION_INT, "N", "fit: levels of detail, each half as wide; default 1", 1, 17},
     {"--leave-out", OPTION_INT, "K",
      "compare: also without every K-th view and light, judged on pairs with one of these", 2, 64},
     {"--pictures", OPTION_INT, "N",
@@ -82,6 +83,7 @@ static struct relume_btf_fit_params fit_params(const struct args *args)
         .lobes = args_int(args, "--lobes", 0),
         .seed = (uint64_t)args_int(args, "--seed", 0),
         .threads = args_threads(args),
+        .levels = args_int(args, "--levels", 1),
     };
 }
 
@@ -251,19 +253,20 @@ static relume_status model_info(const struct args *args)
     const struct relume_btf_fitted_info i = relume_btf_fitted_info(fitted);
     const uint64_t raw = relume_btf_bytes(i.width, i.height, i.views, i.lights);
     if (args_has(args, "--json"))
-        printf("{\"model\": \"%s\", \"width\": %d, \"height\": %d, \"views\": %d, \"lights\": %d, "
-               "\"clusters\": %d, \"components\": %d, \"lobes\": %d, \"bytes\": %llu, "
-               "\"bytes_each\": %llu, \"raw_bytes\": %llu}\n",
-               relume_btf_model_name(i.model), i.width, i.height, i.views, i.lights, i.clusters,
-               i.components, i.lobes, (unsigned long long)i.bytes, (unsigned long long)i.bytes_each,
-               (unsigned long long)raw);
+        printf(
+            "{\"model\": \"%s\", \"width\": %d, \"height\": %d, \"views\": %d, \"lights\": %d, "
+            "\"clusters\": %d, \"components\": %d, \"lobes\": %d, \"bytes\": %llu, "
+            "\"bytes_each\": %llu, \"levels\": %d, \"bytes_levels\": %llu, \"raw_bytes\": %llu}\n",
+            relume_btf_model_name(i.model), i.width, i.height, i.views, i.lights, i.clusters,
+            i.components, i.lobes, (unsigned long long)i.bytes, (unsigned long long)i.bytes_each,
+            i.levels, (unsigned long long)i.bytes_levels, (unsigned long long)raw);
     else
         printf(
             "model    %s: %s\ntexels   %d x %d\nviews    %d\nlights   %d\nbytes    %llu, %llu of "
-            "each texel; 1:%.0f of the measured values\n",
+            "each texel; 1:%.0f of the measured values\nlevels   %d, %llu bytes\n",
             relume_btf_model_name(i.model), relume_btf_model_summary(i.model), i.width, i.height,
             i.views, i.lights, (unsigned long long)i.bytes, (unsigned long long)i.bytes_each,
-            (double)raw / (double)i.bytes);
+            (double)raw / (double)i.bytes, i.levels, (unsigned long long)i.bytes_levels);
     relume_btf_fitted_destroy(&fitted);
     return RELUME_OK;
 }

@@ -55,6 +55,9 @@ struct relume_dome_blend {
     double rim;  // z asked for over z of `direction`: below 1 only below the rim, never below 0
 };
 RELUME_API struct relume_dome_blend relume_dome_at(const relume_dome *dome, struct relume_vec3 d);
+// The triangles of directions that cover the sphere, `*n` of them, for clients that look directions
+// up themselves: corner n is the nadir, which stands for no direction. They belong to the dome.
+RELUME_API const int (*relume_dome_triangles(const relume_dome *dome, int *n))[3];
 
 // ---------------------------------------------------------------- the measured values
 
@@ -122,6 +125,11 @@ RELUME_RESULT relume_status relume_btf_halve(relume_btf **out, const relume_btf 
 RELUME_API void relume_btf_evaluate(const relume_btf *btf, int x, int y, struct relume_vec3 view,
                                     struct relume_vec3 light, float rgb[3]);
 
+// The value at (x, y) in texels from the upper left corner (centres at +0.5) of a sample that is
+// repeated without end: bilinear, or of the nearest texel.
+RELUME_API void relume_btf_sample(const relume_btf *btf, double x, double y, bool bilinear,
+                                  struct relume_vec3 view, struct relume_vec3 light, float rgb[3]);
+
 // ---------------------------------------------------------------- models
 
 // A way to compress a BTF. Constant; a NULL-terminated list of all is relume_btf_models.
@@ -180,6 +188,29 @@ RELUME_API const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fit
 RELUME_API void relume_btf_fitted_evaluate(const relume_btf_fitted *fitted, int x, int y,
                                            struct relume_vec3 view, struct relume_vec3 light,
                                            float rgb[3]);
+// The same question as relume_btf_sample.
+RELUME_API void relume_btf_fitted_sample(const relume_btf_fitted *fitted, double x, double y,
+                                         bool bilinear, struct relume_vec3 view,
+                                         struct relume_vec3 light, float rgb[3]);
+
+// What a model keeps, for clients that evaluate it themselves: the arrays of its folder
+// (docs/btf.md). Pointers belong to the model.
+struct relume_btf_array {
+    const char *name;
+    enum { RELUME_BTF_U8, RELUME_BTF_U16, RELUME_BTF_HALF, RELUME_BTF_FLOAT } kind;
+    int dims;
+    size_t shape[5];
+    const void *data;
+};
+// Array number `i`; false when there are fewer.
+RELUME_API bool relume_btf_fitted_array(struct relume_btf_array *out,
+                                        const relume_btf_fitted *fitted, int i);
+struct relume_btf_directions {
+    const struct relume_vec3 *view, *light;  // as many as relume_btf_fitted_info says
+    bool without_cosine;                     // as relume_btf_info
+};
+RELUME_API struct relume_btf_directions relume_btf_fitted_directions(
+    const relume_btf_fitted *fitted);
 
 // How far a model is from a BTF of as many texels (its directions may be others).
 struct relume_btf_error {

@@ -70,6 +70,6 @@ only_in 'GLFW' viewer/context_glfw.c
 only_in 'imgui' viewer/panel.cpp
 only_in 'GL/osmesa' viewer/context_osmesa.c
 only_in 'EGL/' viewer/context_egl.c
-only_in 'immintrin' src/relight/kernels_avx2.c src/coder/kernels_avx2.c src/pass/kernels_avx2.c
+only_in 'immintrin' src/*/*_avx2.c
 [ $bad = 0 ] && echo "layers: fine"
 exit $bad

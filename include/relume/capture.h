@@ -173,6 +173,14 @@ RELUME_RESULT relume_status relume_table_open(relume_table **out, const relume_c
 // from the manifest's directions.
 // Asking for more rows than are left is RELUME_EINVAL.
 RELUME_RESULT relume_status relume_table_read(relume_table *table, int rows, float *out);
+// The next `rows` rows, at most RELUME_TABLE_ROWS, kept inside the table, 8-bit photographs as they
+// are: relume_table_planes then gives what relume_table_read would.
+enum { RELUME_TABLE_ROWS = 16 };
+RELUME_RESULT relume_status relume_table_fetch(relume_table *table, int rows);
+// `count` pixels from `first` on of the rows fetched last, under one light:
+// out[channel * stride + pixel]. Thread-safety: any number of threads between fetches.
+RELUME_API void relume_table_planes(const relume_table *table, int light, size_t first,
+                                    size_t count, float *out, size_t stride);
 // Pixels of `light` that have been repaired in the rows read so far.
 RELUME_API size_t relume_table_repaired(const relume_table *table, int light);
 RELUME_API void relume_table_destroy(relume_table **table);

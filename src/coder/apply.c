@@ -83,8 +83,14 @@ static void multiply(const relume_coder *coder, float *separated, size_t n, floa
 void coder_apply(const relume_coder *coder, const float *samples, size_t stride, size_t n,
                  float *planes, size_t plane_stride, float *work)
 {
+    separate(work, samples, stride, coder->info.lights, n);
+    coder_apply_separated(coder, n, planes, plane_stride, work);
+}
+
+void coder_apply_separated(const relume_coder *coder, size_t n, float *planes, size_t plane_stride,
+                           float *work)
+{
     const size_t lights = (size_t)coder->info.lights;
-    separate(work, samples, stride, (int)lights, n);
     multiply(coder, work, n, planes, plane_stride);
     if (coder->robust)
         robust_apply(coder->robust, coder, work, n, planes, plane_stride,

@@ -74,8 +74,8 @@ struct app_state {
     double shift[2];                          // of the picture's middle from the frame's, pixels
     enum relume_interpolation interpolation;  // slab
     double aperture;                          // slab: diameter, world units
-    double focus_z;                           // slab: the plane in focus ...
-    bool focused;                             // ... at the start; else the st plane
+    double focus_z;  // slab: the plane in focus; of a free eye how far before what it looks at ...
+    bool focused;    // ... at the start; else the st plane
     double exposure_ev;
     bool auto_exposure;          // on top of exposure_ev
     int tone;                    // place in relume_tones
@@ -148,6 +148,9 @@ bool app_advance(struct app *app, double seconds);
 
 // Let no glide go on.
 void app_stand_still(struct app *app);
+
+// Under the hand, or gliding on: pictures that take long may be rougher.
+bool app_moves(const struct app *app);
 
 // The exposure to draw with, EV.
 double app_exposure_ev(const struct app *app);

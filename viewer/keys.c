@@ -135,7 +135,7 @@ static bool press_aperture(struct app *app, int key)
     const double most = fmax(f->uv_max[0] - f->uv_min[0], f->uv_max[1] - f->uv_min[1]);
     double *a = &app->now.aperture;
     (void)key;
-    if (app->now.camera.framing != RELUME_FRAME_EYE || app->file.around)
+    if (app->now.camera.framing != RELUME_FRAME_EYE)
         return false;
     *a = *a <= 0 ? most / 8 : *a < 0.75 * most ? *a * 2 : 0;
     return true;
@@ -144,10 +144,13 @@ static bool press_aperture(struct app *app, int key)
 static bool press_focus(struct app *app, int key)
 {
     const struct relume_geometry *g = &app->file.geometry;
+    struct relume_window window;
     double *z = &app->now.focus_z;
-    if (app->now.camera.framing != RELUME_FRAME_EYE || app->file.around)
+    if (app->now.camera.framing != RELUME_FRAME_EYE ||
+        (app->file.around && !app_window(app, &window)))
         return false;
-    *z = g->uv_z + (*z - g->uv_z) * (key == '.' ? focus_factor : 1 / focus_factor);
+    const double from = app->file.around ? relume_window_distance(&window) : g->uv_z;
+    *z = from + (*z - from) * (key == '.' ? focus_factor : 1 / focus_factor);
     return true;
 }
 

@@ -102,6 +102,7 @@ void renderer_destroy(struct renderer *r)
     target_destroy(&r->frame, r->gl);
     target_destroy(&r->small, r->gl);
     target_destroy(&r->sum, r->gl);
+    target_destroy(&r->pinholes, r->gl);
     if (r->depths.views)
         depths_destroy(&r->depths);
     r->gl->DeleteVertexArrays(1, &r->vertices);
@@ -129,9 +130,18 @@ static void mark_view(struct renderer *r, const struct app *app)
     r->needed[app->now.camera.view] = true;
 }
 
+// Of the pinholes of a lens, while something moves.
+enum { MOVING_SHARE = 8 };
+
 static double focus_of(const struct app *app)
 {
-    return app->now.focus_z - app->file.geometry.st_z;
+    return app->now.focus_z - (app->file.around ? 0 : app->file.geometry.st_z);
+}
+
+static int picture_width(const struct app *app)
+{
+    const struct app_rectangle p = app_picture(app);
+    return (int)lround(p.right - p.left);
 }
 
 static struct relume_view_params view_params(const struct app *app)
@@ -145,10 +155,10 @@ static struct relume_view_params view_params(const struct app *app)
 
 static void mark_around(struct renderer *r, const struct app *app)
 {
-    const struct relume_view_params params = {.interpolation = app->now.interpolation};
+    const struct relume_view_params params = view_params(app);
     struct relume_window window;
     if (app_window(app, &window))
-        (void)relume_slabs_needs(r->needed, r->around, &window, &params);
+        (void)relume_slabs_needs(r->needed, r->around, &window, picture_width(app), &params);
 }
 
 static void mark_eye(struct renderer *r, const struct app *app)
@@ -186,7 +196,7 @@ static bool takes_depth(const struct renderer *r, const struct app *app)
     int views = 0;
     for (int k = 0; k < r->views; k++)
         views += r->needed[k];
-    return r->depths.views && (views > 1 || r->around) && !takes_lens(app) &&
+    return r->depths.views && (r->around || (views > 1 && !takes_lens(app))) &&
            (i == RELUME_INTERPOLATE_DEFAULT || i == RELUME_INTERPOLATE_DEPTH);
 }
 
@@ -203,11 +213,57 @@ static relume_status draw_lens(struct renderer *r, const struct app *app, const 
     return RELUME_OK;
 }
 
+// The mean of all slabs through one window, added to what `onto` holds.
+static void add_around(struct renderer *r, const struct app *app, const struct place *place,
+                       const struct target *onto, const struct relume_window *window, bool by_depth)
+{
+    const struct slabs_seen seen = {
+        .slabs = r->around,
+        .window = window,
+        .views = r->relit,
+        .disparity = by_depth ? r->depths.texture : NULL,
+        .range = (const double(*)[2])r->depths.range,
+    };
+    target_begin(&r->sum, r->gl);
+    if (by_depth)
+        draw_slabs_depth(&r->slabs_depth, r->gl, place, &seen);
+    else
+        draw_slabs(&r->slabs, r->gl, place, &seen,
+                   app->now.interpolation == RELUME_INTERPOLATE_CONSTANT);
+    target_resume(onto, r->gl);
+    r->gl->Enable(GL_BLEND);
+    draw_mean(&r->mean, r->gl, place, &r->sum);
+    r->gl->Disable(GL_BLEND);
+}
+
+// Twin of relume_slabs_frame: the mean over the pinholes that show anything.
+static relume_status draw_around_lens(struct renderer *r, const struct app *app,
+                                      const struct place *place, const struct relume_window *window,
+                                      bool by_depth)
+{
+    const double aperture = app->now.aperture, focus = focus_of(app);
+    const int width = picture_width(app);
+    struct place plain = *place;
+    const relume_status status = prepare_target(&r->pinholes, r, place->width, place->height);
+    if (status || !relume_lens_fits(window, aperture, focus))
+        return status;
+    plain.exposure = 1;
+    target_begin(&r->pinholes, r->gl);
+    const int all = relume_lens_points(window, aperture, focus, width);
+    const int n = app_moves(app) ? (all + MOVING_SHARE - 1) / MOVING_SHARE : all;
+    for (int i = 0; i < n; i++) {
+        const struct relume_window from = relume_lens_window(window, aperture, focus, i, n);
+        add_around(r, app, &plain, &r->pinholes, &from, by_depth);
+    }
+    target_resume(&r->frame, r->gl);
+    draw_mean(&r->mean, r->gl, place, &r->pinholes);
+    return RELUME_OK;
+}
+
 static relume_status draw_around(struct renderer *r, const struct app *app,
                                  const struct place *place)
 {
     struct relume_window window;
-    struct slabs_seen seen = {.slabs = r->around, .window = &window, .views = r->relit};
     double range[2];
     relume_status status = prepare_target(&r->sum, r, place->width, place->height);
     const bool by_depth = takes_depth(r, app);
@@ -215,16 +271,9 @@ static relume_status draw_around(struct renderer *r, const struct app *app,
         status = depths_use(&r->depths, r->needed, range);
     if (status || !app_window(app, &window))
         return status;
-    seen.disparity = by_depth ? r->depths.texture : NULL;
-    seen.range = (const double(*)[2])r->depths.range;
-    target_begin(&r->sum, r->gl);
-    if (by_depth)
-        draw_slabs_depth(&r->slabs_depth, r->gl, place, &seen);
-    else
-        draw_slabs(&r->slabs, r->gl, place, &seen,
-                   app->now.interpolation == RELUME_INTERPOLATE_CONSTANT);
-    target_resume(&r->frame, r->gl);
-    draw_mean(&r->mean, r->gl, place, &r->sum);
+    if (takes_lens(app))
+        return draw_around_lens(r, app, place, &window, by_depth);
+    add_around(r, app, place, &r->frame, &window, by_depth);
     return RELUME_OK;
 }
 

@@ -17,9 +17,10 @@ struct renderer {
         present;
     GLuint vertices;
     struct target frame;
-    struct target small;  // of the frame, to meter
-    struct target sum;    // of an aperture's cameras, of several slabs; made when first needed
-    relume_slab *grid;    // NULL: not a slab, or several
+    struct target small;     // of the frame, to meter
+    struct target sum;       // of an aperture's cameras, of several slabs; made when first needed
+    struct target pinholes;  // of a lens before several slabs, their sum; likewise
+    relume_slab *grid;       // NULL: not a slab, or several
     const relume_slabs *around;  // several; else NULL
     const int *slab_of;          // of several: [views]
     struct depths depths;        // empty: not a slab, or without depth

@@ -161,6 +161,16 @@ RELUME_RESULT relume_status relume_table_open(relume_table **out, const relume_c
 // from the manifest's directions.
 // Asking for more rows than are left is RELUME_EINVAL.
 RELUME_RESULT relume_status relume_table_read(relume_table *table, int rows, float *out);
+// The same, and in `seen`, of the same size, what near lights really show at each pixel: fall-off
+// is divided out, directions are the pixel's own. Where lights are distant both are the same.
+RELUME_RESULT relume_status relume_table_read_seen(relume_table *table, int rows, float *out,
+                                                   float *seen);
+// Whether the table's lights are near.
+RELUME_API bool relume_table_is_near(const relume_table *table);
+// Unit directions to the lights, from where the surface lies at a place of the picture (pixel
+// centres at + 0.5), the mean over `reach` pixels around it: direction[lights].
+RELUME_API void relume_table_directions(const relume_table *table, double x, double y, int reach,
+                                        struct relume_vec3 *direction);
 // Pixels of `light` that have been repaired in the rows read so far.
 RELUME_API size_t relume_table_repaired(const relume_table *table, int light);
 RELUME_API void relume_table_destroy(relume_table **table);

@@ -62,7 +62,8 @@ vec3 near_pixel(const struct near *near, int x, int y)
     return near_point(near, x + 0.5, y + 0.5, depth);
 }
 
-double near_depth(const struct near *near, int x0, int y0, int x1, int y1)
+// The mean of the finite depths in a rectangle of pixels; below 0 when there is none.
+static double mean_depth(const struct near *near, int x0, int y0, int x1, int y1)
 {
     double sum = 0.0;
     size_t n = 0;
@@ -75,6 +76,12 @@ double near_depth(const struct near *near, int x0, int y0, int x1, int y1)
             }
         }
     return n ? sum / (double)n : -1.0;
+}
+
+vec3 near_around(const struct near *near, double x, double y, int reach)
+{
+    const int cx = (int)fmin(x, near->width), cy = (int)fmin(y, near->height);
+    return near_point(near, x, y, mean_depth(near, cx - reach, cy - reach, cx + reach, cy + reach));
 }
 
 vec3 near_direction(double *gain, const struct near *near, int light, vec3 point)

@@ -26,8 +26,9 @@ void near_close(struct near *near);
 // background, and depth < 0 (not given), that of the plane z = 0 (slabs: the st plane).
 vec3 near_point(const struct near *near, double x, double y, double depth);
 vec3 near_pixel(const struct near *near, int x, int y);
-// The mean of the finite depths in a rectangle of pixels; below 0 when there is none.
-double near_depth(const struct near *near, int x0, int y0, int x1, int y1);
+// The same for a place that may lie beside the picture, with the mean of the finite depths up to
+// `reach` pixels away.
+vec3 near_around(const struct near *near, double x, double y, int reach);
 
 // The unit direction from `point` to a light, and what the pixel's value is to be multiplied by to
 // be that under a light as bright as this one is at the world's origin.

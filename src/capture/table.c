@@ -231,7 +231,8 @@ static relume_status refuse_broken(relume_table *t, int first)
                     m->view[t->view].images[first], n, n == 1 ? " is" : "s are", more);
 }
 
-relume_status relume_table_read(relume_table *table, int rows, float *out)
+// `seen` may be NULL.
+static relume_status read(relume_table *table, int rows, float *out, float *seen)
 {
     const int lights = table->capture->draft.m.lights;
     if (rows < 1 || rows > table->capture->height - table->row)
@@ -251,9 +252,36 @@ relume_status relume_table_read(relume_table *table, int rows, float *out)
             return table->status[i];
     }
     repair(table);
-    if (!table->near)
-        return RELUME_OK;
-    thread_for(table->threads, (size_t)lights, level_light, table);
+    if (table->near)
+        thread_for(table->threads, (size_t)lights, level_light, table);
+    if (seen)
+        memcpy(seen, out,
+               3 * (size_t)lights * (size_t)rows * (size_t)table->capture->width * sizeof *out);
     return table->distant ? distant_resample(table->distant, table->row - rows, rows, out)
                           : RELUME_OK;
+}
+
+relume_status relume_table_read(relume_table *table, int rows, float *out)
+{
+    return read(table, rows, out, NULL);
+}
+
+relume_status relume_table_read_seen(relume_table *table, int rows, float *out, float *seen)
+{
+    return read(table, rows, out, seen);
+}
+
+bool relume_table_is_near(const relume_table *table)
+{
+    return table->near;
+}
+
+void relume_table_directions(const relume_table *table, double x, double y, int reach,
+                             struct relume_vec3 *direction)
+{
+    const struct near *near = &table->lamps;
+    const vec3 point = near_around(near, x, y, reach);
+    double gain;
+    for (int i = 0; i < near->lights; i++)
+        direction[i] = near_direction(&gain, near, i, point);
 }

@@ -58,6 +58,14 @@ static void split_colour(const relume_coder *coder, float *work, size_t n, float
     }
 }
 
+void coder_part(const relume_coder *coder, float *parted, const float *samples, size_t stride,
+                size_t n, float *planes, size_t plane_stride)
+{
+    separate(parted, samples, stride, coder->info.lights, n);
+    if (coder->info.luminance)
+        split_colour(coder, parted, n, planes, plane_stride);
+}
+
 // `separated` as [channel][light][pixel].
 static void multiply(const relume_coder *coder, float *separated, size_t n, float *planes,
                      size_t plane_stride)
@@ -72,8 +80,6 @@ static void multiply(const relume_coder *coder, float *separated, size_t n, floa
                 planes[(size_t)i * plane_stride + x] += coder->base[i];
         return;
     }
-    if (info->luminance)
-        split_colour(coder, separated, n, planes, plane_stride);
     const int sets = info->luminance ? 1 : 3;
     for (int c = 0; c < sets; c++)
         lsq_multiply(k, columns, lights, coder->map, lights, separated + (size_t)(c * lights) * n,
@@ -84,7 +90,7 @@ void coder_apply(const relume_coder *coder, const float *samples, size_t stride,
                  float *planes, size_t plane_stride, float *work)
 {
     const size_t lights = (size_t)coder->info.lights;
-    separate(work, samples, stride, (int)lights, n);
+    coder_part(coder, work, samples, stride, n, planes, plane_stride);
     multiply(coder, work, n, planes, plane_stride);
     if (coder->robust)
         robust_apply(coder->robust, coder, work, n, planes, plane_stride,

@@ -38,6 +38,11 @@ size_t coder_work(const relume_coder *coder);
 void coder_apply(const relume_coder *coder, const float *samples, size_t stride, size_t n,
                  float *planes, size_t plane_stride, float *work);
 
+// Samples as [channel][light][pixel]; luminance coders: the luminances [light][pixel], and the
+// pixels' colours into their planes.
+void coder_part(const relume_coder *coder, float *parted, const float *samples, size_t stride,
+                size_t n, float *planes, size_t plane_stride);
+
 // The stored functions at some lights: basis[3][lights][K] and constant[3][lights].
 struct captured {
     int lights;

@@ -10,6 +10,7 @@
 #include "coder/basis.h"
 #include "coder/census.h"
 #include "coder/coefficients.h"
+#include "coder/seen.h"
 #include "image/half.h"
 
 #include <errno.h>
@@ -23,6 +24,8 @@ struct encoder {
     int lights, width, height, planes;
     int row, rows;        // of the band in progress
     float *samples;       // [lights][rows][x][3]
+    float *own;           // the same as pixels really saw them, with `seen`
+    struct seen *seen;    // or NULL: lights are distant, or the coder wants distant ones
     float *values;        // [planes][rows][x]
     float *work;          // [workers][coder_work]
     uint16_t *packed[2];  // [rows][planes][x]: one is filled while the other is written
@@ -53,8 +56,9 @@ static void apply_chunk(void *context, size_t item, int worker)
     struct encoder *e = context;
     const size_t pixels = (size_t)e->rows * (size_t)e->width, first = item * CODER_CHUNK;
     const size_t n = pixels - first < CODER_CHUNK ? pixels - first : CODER_CHUNK;
-    coder_apply(e->coder, e->samples + 3 * first, 3 * pixels, n, e->values + first, pixels,
-                e->work + (size_t)worker * coder_work(e->coder));
+    if (!e->seen)
+        coder_apply(e->coder, e->samples + 3 * first, 3 * pixels, n, e->values + first, pixels,
+                    e->work + (size_t)worker * coder_work(e->coder));
     const size_t at = (size_t)e->row * (size_t)e->width + first;
     census_add(&e->census, worker, e->samples + 3 * first, 3 * pixels, n,
                e->mask->data ? e->mask->data + at : NULL);
@@ -123,6 +127,27 @@ static relume_status measure_fit(struct encoder *e)
     return RELUME_OK;
 }
 
+// The same of near lights: a pixel in 8.
+static relume_status measure_seen(struct encoder *e)
+{
+    const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
+    float *again = mem_array(3 * (size_t)e->lights, sizeof *again);
+    if (!again)
+        return RELUME_ENOMEM;
+    for (size_t x = 0; x < width; x += 8) {
+        if (!is_inside(e->mask, (size_t)e->row * width + x))
+            continue;
+        seen_predict(e->seen, (int)x, e->row, e->values + x, pixels, again);
+        for (size_t i = 0; i < 3 * (size_t)e->lights; i++) {
+            const double d = (double)e->own[(i / 3 * pixels + x) * 3 + i % 3] - (double)again[i];
+            e->error_sum += d * d;
+            e->error_count++;
+        }
+    }
+    free(again);
+    return RELUME_OK;
+}
+
 // Ranges and steps are differences of coefficients, which must not overflow; halves end at 65504.
 static relume_status check_size(const struct encoder *e, const struct relume_encode_params *p)
 {
@@ -175,12 +200,15 @@ static relume_status encode_band(struct encoder *e, relume_table *table,
                                  const struct relume_encode_params *p)
 {
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
-    relume_status status = relume_table_read(table, e->rows, e->samples);
+    relume_status status = e->seen ? relume_table_read_seen(table, e->rows, e->samples, e->own)
+                                   : relume_table_read(table, e->rows, e->samples);
+    if (!status && e->seen)
+        status = seen_apply(e->seen, e->row, e->rows, e->own, e->samples, e->values);
     if (status)
         return status;
     thread_for(e->threads, (pixels + CODER_CHUNK - 1) / CODER_CHUNK, apply_chunk, e);
     if (is_measured(e->out, e->row))
-        status = measure_fit(e);
+        status = e->seen ? measure_seen(e) : measure_fit(e);
     if (status)
         return status;
     apply_mask(e);
@@ -199,6 +227,13 @@ static void say_repaired(struct encoder *e, int light, size_t pixels, const stru
                  e->images[light], pixels, pixels > 1 ? "s are" : " is");
 }
 
+static relume_status see_near(struct encoder *e, const relume_table *table)
+{
+    e->own = mem_array(3 * (size_t)e->lights * BAND_ROWS, (size_t)e->width * sizeof *e->own);
+    return e->own ? seen_create(&e->seen, e->coder, table, e->width, e->height, e->threads)
+                  : RELUME_ENOMEM;
+}
+
 static relume_status encode_bands(struct encoder *e, const relume_capture *capture, int view,
                                   struct relume_transfer display,
                                   const struct relume_encode_params *p)
@@ -207,6 +242,8 @@ static relume_status encode_bands(struct encoder *e, const relume_capture *captu
     relume_status status = relume_table_open(
         &table, capture, view,
         relume_table_params(.log = p->log, .display = display, .threads = p->threads));
+    if (!status && relume_table_is_near(table) && seen_suits(e->coder))
+        status = see_near(e, table);
     for (e->row = 0; !status && e->row < e->height; e->row += BAND_ROWS) {
         e->rows = e->height - e->row < BAND_ROWS ? e->height - e->row : BAND_ROWS;
         status = encode_band(e, table, p);
@@ -217,6 +254,7 @@ static relume_status encode_bands(struct encoder *e, const relume_capture *captu
     }
     for (int i = 0; !status && i < e->lights; i++)
         say_repaired(e, i, relume_table_repaired(table, i), p->log);
+    seen_destroy(&e->seen);
     relume_table_destroy(&table);
     if (!status)
         return finish_writing(e, p);
@@ -318,6 +356,7 @@ static relume_status alloc_encoder(struct encoder *e)
 static void free_encoder(struct encoder *e)
 {
     free(e->samples);
+    free(e->own);
     free(e->values);
     free(e->work);
     free(e->packed[0]);

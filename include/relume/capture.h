@@ -103,6 +103,9 @@ struct relume_capture_params {
     bool repair;  // tables replace pixels that hold NaN or infinity instead of failing: by those
                   // of the same place under the three nearest lights where it is whole, weighted
                   // by 1 / angle; black where there is none
+    double assume_depth;  // near lights: where a view has no depth its surface is so far from the
+                          // eye, world units; default: it lies on the plane z = 0 (planar), on the
+                          // st plane (slabs), or not near at all (panoramas)
     size_t keep_bytes;  // images of 8 bits that a table has read stay decoded in memory up to this
                         // many bytes, so that later tables of the view are cheap; default: none
 };
@@ -150,6 +153,7 @@ struct relume_table_params {
     const struct relume_log *log;
     struct relume_transfer display;  // values are coded by this curve; default: linear light
     int threads;                     // default: all cores
+    bool as_seen;  // near lights: values as each pixel sees them, only fall-off is divided out
 };
 #define relume_table_params(...) (&(const struct relume_table_params){__VA_ARGS__})
 
@@ -157,9 +161,9 @@ struct relume_table_params {
 RELUME_RESULT relume_status relume_table_open(relume_table **out, const relume_capture *capture,
                                               int view, const struct relume_table_params *params);
 // The next `rows` rows of every light: out[light][row][x][rgb], light intensity divided out. Where
-// lights are near (positions; planar views, slabs with depth) values are those under distant lights
-// from the manifest's directions.
-// Asking for more rows than are left is RELUME_EINVAL.
+// lights are near (positions; planar views, slabs, spheres and cylinders with depth) values are
+// those under distant lights from the manifest's directions. Asking for more rows than are left is
+// RELUME_EINVAL.
 RELUME_RESULT relume_status relume_table_read(relume_table *table, int rows, float *out);
 // The same, and in `seen`, of the same size, what near lights really show at each pixel: fall-off
 // is divided out, directions are the pixel's own. Where lights are distant both are the same.

@@ -86,8 +86,8 @@ static relume_status open_near(relume_table *t, struct relume_transfer display, 
     return status;
 }
 
-static relume_status open_table(relume_table **out, const relume_capture *capture, int view,
-                                bool as_seen, const struct relume_table_params *params)
+relume_status relume_table_open(relume_table **out, const relume_capture *capture, int view,
+                                const struct relume_table_params *params)
 {
     const struct relume_table_params p = params ? *params : (struct relume_table_params){0};
     const int lights = capture->draft.m.lights;
@@ -114,7 +114,7 @@ static relume_status open_table(relume_table **out, const relume_capture *captur
         t->stream && t->status && t->broken && t->repaired && t->whole ? RELUME_OK : RELUME_ENOMEM;
     t->near = near_applies(capture, view);
     if (!status && t->near) {
-        status = open_near(t, to, as_seen);
+        status = open_near(t, to, p.as_seen);
         to.curve = RELUME_CURVE_LINEAR;
     }
     while (!status && t->open < lights) {
@@ -127,18 +127,6 @@ static relume_status open_table(relume_table **out, const relume_capture *captur
         relume_table_destroy(&t);
     *out = t;
     return status;
-}
-
-relume_status relume_table_open(relume_table **out, const relume_capture *capture, int view,
-                                const struct relume_table_params *params)
-{
-    return open_table(out, capture, view, false, params);
-}
-
-relume_status table_open_as_seen(relume_table **out, const relume_capture *capture, int view,
-                                 const struct relume_table_params *params)
-{
-    return open_table(out, capture, view, true, params);
 }
 
 static void read_light(void *context, size_t item, int worker)

@@ -57,6 +57,7 @@ void relume_btf_fitted_destroy(relume_btf_fitted **fitted)
     if (!m)
         return;
     free_arrays(m);
+    free(m->prepared);
     relume_dome_destroy(&m->view_dome);
     relume_dome_destroy(&m->light_dome);
     free(m->view);
@@ -166,6 +167,8 @@ relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
         status = model_make_arrays(m);
     if (!status)
         status = model->fit(&f);
+    if (!status && model->prepare)
+        status = model->prepare(m);
     if (status)
         relume_btf_fitted_destroy(&m);
     *out = m;
@@ -192,6 +195,11 @@ struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *m)
         info.bytes_each += m->array[i].each ? bytes / m->texels : 0;
     }
     return info;
+}
+
+struct relume_btf_cost relume_btf_fitted_cost(const relume_btf_fitted *m)
+{
+    return m->model->cost(m);
 }
 
 // What stands for a direction where the model is not gridded: itself.

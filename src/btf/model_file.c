@@ -195,7 +195,7 @@ static relume_status read_all(relume_btf_fitted *m, const jvalue *root, const st
         status = read_array(&m->array[i], r);
     if (!status && m->model->is_sound && !m->model->is_sound(m))
         status = wrong(r, "arrays do not fit together", "rows of bits as long as their widths");
-    return status;
+    return status || !m->model->prepare ? status : m->model->prepare(m);
 }
 
 relume_status relume_btf_fitted_open(relume_btf_fitted **out, const char *path,

@@ -31,6 +31,7 @@ struct relume_btf_fitted {
     struct model_array array[MODEL_ARRAYS];
     int arrays;
     void *prepared;  // what the model's `prepare` made of them, or NULL
+    relume_btf_fitted *half;  // the next level of detail, or NULL
 };
 
 // One value that is asked for. Models that are gridded over views (lights) get measured ones only.
@@ -86,6 +87,10 @@ static inline float *model_floats(const relume_btf_fitted *m, int array)
 {
     return m->array[array].data;
 }
+
+// Write the files of a model and of its levels of detail into an existing folder.
+relume_status model_save_into(const relume_btf_fitted *m, const char *folder,
+                              const struct relume_log *log);
 
 // Value of the fitted model between its directions.
 struct model_blend {

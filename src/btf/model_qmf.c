@@ -13,7 +13,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
-#include "btf/levels.h"
+#include "btf/scalar.h"
 #include "btf/reduce.h"
 #include "math/lsq.h"
 

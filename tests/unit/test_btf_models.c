@@ -3,7 +3,7 @@
 #include "test.h"
 
 #include "base/memory.h"
-#include "btf/levels.h"
+#include "btf/scalar.h"
 #include "btf/lobes.h"
 #include "btf/reduce.h"
 #include "image/half.h"

@@ -279,7 +279,9 @@ static bool is_sound(const relume_btf_fitted *m)
     size_t score_bits = 0, pattern_bits = 0;
     for (int i = 0; i < m->components * PLANES; i++)
         *(i % PLANES ? &pattern_bits : &score_bits) += width[i];
-    return score_bits <= 8 * (size_t)m->texel_bytes && pattern_bits <= 8 * (size_t)m->pair_bytes;
+    // components without a bit are not written: so many cannot be
+    return score_bits <= 8 * (size_t)m->texel_bytes && pattern_bits <= 8 * (size_t)m->pair_bytes &&
+           m->components <= 8 * m->texel_bytes;
 }
 
 // Patterns as floats [pair][component][3], their colours turned back: they are read far more often

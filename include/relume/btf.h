@@ -183,6 +183,16 @@ struct relume_btf_fitted_info {
 };
 RELUME_API struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *fitted);
 
+// What a graphics processor has to do for a pixel between the measured directions (2003 paper,
+// Tab. 3): vector operations (of up to four numbers; a power counts as one) and texture fetches (up
+// to four numbers or 16 bytes of one place, bilinear ones as one). Looking up which directions
+// stand for one costs two fetches, from cube maps (thesis, chapter 9).
+struct relume_btf_cost {
+    int ops, fetches;              // once
+    int light_ops, light_fetches;  // and for each light
+};
+RELUME_API struct relume_btf_cost relume_btf_fitted_cost(const relume_btf_fitted *fitted);
+
 // A level of detail, 0 being the model itself, beyond the last one the last; belongs to the model.
 RELUME_API const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fitted *fitted,
                                                             int level);

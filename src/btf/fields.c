@@ -251,3 +251,9 @@ void fields_eval(const relume_btf_fitted *m, size_t entry, const struct model_at
     for (int c = 0; c < 3; c++)
         rgb[c] = float_from_half(diffuse[c]) + float_from_half(specular[c]) * sum;
 }
+
+struct relume_btf_cost fields_cost(const relume_btf_fitted *m)
+{
+    return (struct relume_btf_cost){
+        .ops = 1, .fetches = 2 + 1 + 3 * (1 + m->lobes), .light_ops = 3 * (1 + 3 * m->lobes)};
+}

@@ -57,6 +57,7 @@ void relume_btf_fitted_destroy(relume_btf_fitted **fitted)
     if (!m)
         return;
     free_arrays(m);
+    free(m->prepared);
     relume_btf_fitted_destroy(&m->half);
     relume_dome_destroy(&m->view_dome);
     relume_dome_destroy(&m->light_dome);
@@ -177,12 +178,12 @@ static relume_status fit_level(relume_btf_fitted **out, const relume_btf *btf,
     if (!status && p->ratio != 0.0 && !(p->ratio >= 1.0 && p->ratio <= 1e6))
         status =
             log_fail(p->log, RELUME_EINVAL, "ratio: expected 1 to 1000000; found %g", p->ratio);
-    if (!status && !before)
-        status = check_values(btf, p->log);
     if (!status)
         status = model_make_arrays(m);
     if (!status)
         status = model->fit(&f);
+    if (!status && model->prepare)
+        status = model->prepare(m);
     if (status)
         relume_btf_fitted_destroy(&m);
     *out = m;
@@ -251,6 +252,11 @@ struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *m)
         info.bytes_levels += half.bytes_levels;
     }
     return info;
+}
+
+struct relume_btf_cost relume_btf_fitted_cost(const relume_btf_fitted *m)
+{
+    return m->model->cost(m);
 }
 
 const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fitted *m, int level)

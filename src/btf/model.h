@@ -30,6 +30,7 @@ struct relume_btf_fitted {
     relume_dome *view_dome, *light_dome;
     struct model_array array[MODEL_ARRAYS];
     int arrays;
+    void *prepared;  // what the model's `prepare` made of them, or NULL
     relume_btf_fitted *half;  // the next level of detail, or NULL
 };
 
@@ -60,6 +61,9 @@ struct relume_btf_model {
     void (*layout)(relume_btf_fitted *m);  // adds the arrays, with model_add
     relume_status (*fit)(struct fitting *f);
     void (*eval)(const relume_btf_fitted *m, const struct model_at *at, float rgb[3]);
+    // Whatever makes reading faster, into m->prepared, to be freed with free(); NULL: nothing does.
+    relume_status (*prepare)(relume_btf_fitted *m);
+    struct relume_btf_cost (*cost)(const relume_btf_fitted *m);
     // Whether arrays that are fine by themselves fit together; NULL: they do.
     bool (*is_sound)(const relume_btf_fitted *m);
 };

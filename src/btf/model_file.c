@@ -224,7 +224,7 @@ static relume_status read_all(relume_btf_fitted *m, const jvalue *root, const st
         status = read_array(&m->array[i], r);
     if (!status && m->model->is_sound && !m->model->is_sound(m))
         status = wrong(r, "arrays do not fit together", "rows of bits as long as their widths");
-    return status;
+    return status || !m->model->prepare ? status : m->model->prepare(m);
 }
 
 // `levels` is left as it is where the file does not say.

@@ -310,6 +310,20 @@ static void eval_scaled(const relume_btf_fitted *m, const struct model_at *at, f
         rgb[c] *= factor;
 }
 
+// For each lobe a scalar product, a power, its colour; then n.l.
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    return (struct relume_btf_cost){.fetches = 1 + 2 * m->lobes, .light_ops = 2 + 3 * m->lobes};
+}
+
+// And three factors, blended.
+static struct relume_btf_cost cost_scaled(const relume_btf_fitted *m)
+{
+    struct relume_btf_cost both = cost(m);
+    both.ops += 3, both.fetches += 2 + 3, both.light_ops++;
+    return both;
+}
+
 const struct relume_btf_model model_laf = {
     .name = "laf",
     .summary = "Lafortune lobes for each texel",
@@ -317,6 +331,7 @@ const struct relume_btf_model model_laf = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
 };
 
 const struct relume_btf_model model_slaf = {
@@ -327,4 +342,5 @@ const struct relume_btf_model model_slaf = {
     .layout = layout_scaled,
     .fit = fit_scaled,
     .eval = eval_scaled,
+    .cost = cost_scaled,
 };

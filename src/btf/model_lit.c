@@ -43,10 +43,18 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
         rgb[c] = float_from_half(texture[c]) * (float)cosine(m, at->l);
 }
 
+// A colour; n.l.
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    (void)m;
+    return (struct relume_btf_cost){.fetches = 1, .light_ops = 2};
+}
+
 const struct relume_btf_model model_lit = {
     .name = "lit",
     .summary = "a lit texture: a colour for each texel times n.l",
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
 };

@@ -9,7 +9,7 @@
 // one sum of bytes (Shoham and Gersho 1988).
 //
 // A texel is one row of bits, a pair of directions another, and all rows are laid out alike: any
-// value is read in place.
+// value can be read in place. Here only texels are: patterns are unpacked once.
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -279,7 +279,33 @@ static bool is_sound(const relume_btf_fitted *m)
     size_t score_bits = 0, pattern_bits = 0;
     for (int i = 0; i < m->components * PLANES; i++)
         *(i % PLANES ? &pattern_bits : &score_bits) += width[i];
-    return score_bits <= 8 * (size_t)m->texel_bytes && pattern_bits <= 8 * (size_t)m->pair_bytes;
+    // components without a bit are not written: so many cannot be
+    return score_bits <= 8 * (size_t)m->texel_bytes && pattern_bits <= 8 * (size_t)m->pair_bytes &&
+           m->components <= 8 * m->texel_bytes;
+}
+
+// Patterns as floats [pair][component][3], their colours turned back: they are read far more often
+// than there are of them.
+static relume_status prepare(relume_btf_fitted *m)
+{
+    const size_t pairs = model_pairs(m), count = (size_t)m->components;
+    const float *color = model_floats(m, COLOR);
+    float *to = mem_array(pairs * count, sizeof(float[3]));
+    m->prepared = to;
+    for (size_t pair = 0; pair < pairs && to; pair++) {
+        const uint8_t *width = m->array[WIDTH].data;
+        const struct levels *levels = m->array[LEVELS].data;
+        struct bit_reader row = {.next = (const uint8_t *)m->array[PATTERN].data +
+                                         pair * (size_t)m->pair_bytes};
+        for (size_t k = 0; k < count; k++, width += PLANES, levels += PLANES, to += 3) {
+            float p[3];
+            for (int c = 1; c < PLANES; c++)
+                p[c - 1] = levels_value(&levels[c], width[c], bit_reader_take(&row, width[c]));
+            for (int c = 0; c < 3; c++)
+                to[c] = color[c] * p[0] + color[3 + c] * p[1] + color[6 + c] * p[2];
+        }
+    }
+    return to ? RELUME_OK : RELUME_ENOMEM;
 }
 
 static void eval(const relume_btf_fitted *m, const struct model_at *at, float rgb[3])
@@ -287,20 +313,29 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     const size_t pair = (size_t)at->view * (size_t)m->lights + (size_t)at->light;
     const uint8_t *width = m->array[WIDTH].data;
     const struct levels *levels = m->array[LEVELS].data;
-    const float *color = model_floats(m, COLOR);
-    struct bit_reader score = {.next = (const uint8_t *)m->array[SCORE].data +
-                                       at->texel * (size_t)m->texel_bytes};
-    struct bit_reader pattern = {.next = (const uint8_t *)m->array[PATTERN].data +
-                                         pair * (size_t)m->pair_bytes};
-    float sum[3] = {0.0f, 0.0f, 0.0f};
-    for (int k = 0; k < m->components; k++, width += PLANES, levels += PLANES) {
-        const float w = levels_value(&levels[0], width[0], bit_reader_take(&score, width[0]));
+    const float *pattern = (const float *)m->prepared + 3 * pair * (size_t)m->components;
+    struct bit_reader row = {.next = (const uint8_t *)m->array[SCORE].data +
+                                     at->texel * (size_t)m->texel_bytes};
+    rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    for (int k = 0; k < m->components; k++, width += PLANES, levels += PLANES, pattern += 3) {
+        const float w = levels_value(levels, *width, bit_reader_take(&row, *width));
         for (int c = 0; c < 3; c++)
-            sum[c] += w * levels_value(&levels[c + 1], width[c + 1],
-                                       bit_reader_take(&pattern, width[c + 1]));
+            rgb[c] += w * pattern[c];
     }
-    for (int c = 0; c < 3; c++)
-        rgb[c] = color[c] * sum[0] + color[3 + c] * sum[1] + color[6 + c] * sum[2];
+}
+
+// Rows of bits, 16 bytes at a time; levels and widths lie in constant memory.
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    const uint8_t *width = m->array[WIDTH].data;
+    int scores = 0, numbers = 0;
+    for (int i = 0; i < m->components * PLANES; i++)
+        *(i % PLANES ? &numbers : &scores) += width[i] > 0;
+    const int decode = 5;  // shift, mask, to a number, the square, two multiply-adds
+    return (struct relume_btf_cost){.ops = decode * scores,
+                                    .fetches = 2 + (m->texel_bytes + 15) / 16,
+                                    .light_ops = 9 * (decode + 1) * numbers + 3,
+                                    .light_fetches = 2 + 9 * ((m->pair_bytes + 15) / 16)};
 }
 
 const struct relume_btf_model model_qmf = {
@@ -313,5 +348,7 @@ const struct relume_btf_model model_qmf = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
     .is_sound = is_sound,
+    .prepare = prepare,
 };

@@ -34,6 +34,11 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     fields_eval(m, at->texel, at, rgb);
 }
 
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    return fields_cost(m);
+}
+
 const struct relume_btf_model model_rfnl = {
     .name = "rfnl",
     .summary = "cosine lobes of the light for each view",
@@ -42,4 +47,5 @@ const struct relume_btf_model model_rfnl = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
 };

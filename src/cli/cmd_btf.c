@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 static const struct option options[] = {
     {"-o", OPTION_TEXT, "DIR", "fit: the folder of the model to make; render: the picture", 0, 0},
@@ -46,13 +45,6 @@ static const struct option options[] = {
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 // ---------------------------------------------------------------- names
 
@@ -150,26 +142,39 @@ static relume_status judge_left_out(struct relume_btf_error *out, const relume_b
     return status;
 }
 
+static relume_status judge(struct btf_row *row, const relume_btf_fitted *fitted,
+                           const relume_btf *btf, const struct args *args)
+{
+    const relume_status status = relume_btf_judge(
+        &row->error, fitted, btf,
+        relume_btf_judge_params(.log = args_log(args), .threads = args_threads(args),
+                                .pictures = args_int(args, "--pictures", 25)));
+    if (status)
+        return status;
+    row->info = relume_btf_fitted_info(fitted);
+    row->cost = relume_btf_fitted_cost(fitted);
+    row->evaluations = btf_speed(fitted);
+    return RELUME_OK;
+}
+
 static relume_status compare_one(const relume_btf *btf, const relume_btf *part,
                                  const struct relume_btf_model *model, const struct args *args)
 {
     const struct relume_btf_fit_params p = fit_params(args);
-    struct relume_btf_error error, held_out;
+    struct btf_row row = {.held_out = NULL};
+    struct relume_btf_error held_out;
     relume_btf_fitted *fitted;
-    const double start = now_s();
+    const double start = btf_now_s();
     relume_status status = relume_btf_fit(&fitted, btf, model, &p);
-    const double fit_s = now_s() - start;
+    row.fit_s = btf_now_s() - start;
     if (!status)
-        status = relume_btf_judge(
-            &error, fitted, btf,
-            relume_btf_judge_params(.log = args_log(args), .threads = args_threads(args),
-                                    .pictures = args_int(args, "--pictures", 25)));
-    if (!status && part)
+        status = judge(&row, fitted, btf, args);
+    if (!status && part) {
         status = judge_left_out(&held_out, part, btf, model, args);
+        row.held_out = &held_out;
+    }
     if (!status) {
-        const struct relume_btf_fitted_info info = relume_btf_fitted_info(fitted);
-        (args_has(args, "--json") ? btf_json_row : btf_row)(&info, &error, fit_s,
-                                                            part ? &held_out : NULL);
+        (args_has(args, "--json") ? btf_print_json : btf_print)(&row);
         fflush(stdout);
     }
     relume_btf_fitted_destroy(&fitted);
@@ -230,7 +235,7 @@ static relume_status eval(const struct args *args)
 {
     relume_btf *btf = NULL;
     relume_btf_fitted *fitted = NULL;
-    struct relume_btf_error error;
+    struct btf_row row = {.fit_s = (double)NAN};
     if (args_inputs(args) != 3)
         return usage_error("btf eval: expected a model and a BTF");
     relume_status status = relume_btf_fitted_open(&fitted, args_input(args, 1),
@@ -238,19 +243,13 @@ static relume_status eval(const struct args *args)
     if (!status)
         status = btf_open(&btf, args_input(args, 2), args);
     if (!status)
-        status = relume_btf_judge(
-            &error, fitted, btf,
-            relume_btf_judge_params(.log = args_log(args), .threads = args_threads(args),
-                                    .pictures = args_int(args, "--pictures", 25)));
-    if (!status) {
-        const struct relume_btf_fitted_info info = relume_btf_fitted_info(fitted);
-        if (args_has(args, "--json")) {
-            btf_json_row(&info, &error, (double)NAN, NULL);
-            puts("");
-        } else {
-            btf_heading(false);
-            btf_row(&info, &error, (double)NAN, NULL);
-        }
+        status = judge(&row, fitted, btf, args);
+    if (!status && args_has(args, "--json")) {
+        btf_print_json(&row);
+        puts("");
+    } else if (!status) {
+        btf_heading(false);
+        btf_print(&row);
     }
     relume_btf_fitted_destroy(&fitted);
     relume_btf_destroy(&btf);

@@ -193,6 +193,10 @@ static bool press_split(struct app *app, int key)
     (void)key;
     if (!app->file.objects)
         return false;
+    // a material is compared with another one, not with itself
+    const int shown = relume_objects_info(app->file.objects)->part[0].material;
+    if (app->now.split == APP_SPLIT_NONE && app->now.other == shown)
+        app->now.other = next_material(app, shown);
     app->now.split = (enum app_split)((app->now.split + 1) % APP_SPLITS);
     return true;
 }

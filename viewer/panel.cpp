@@ -549,8 +549,9 @@ static void material_cost(const struct relume_objects_info *info, const panel_fa
                           int material, double ms)
 {
     const size_t bytes = material < facts->materials ? facts->material_bytes[material] : 0;
-    ImGui::Text("%s: %.2f MB, drawn from %.2f MB, %.1f ms", info->material[material].model,
-                (double)info->material[material].bytes * 1e-6, (double)bytes * 1e-6, ms);
+    ImGui::Text("%s: %.2f MB, as drawn %.2f", info->material[material].model,
+                (double)info->material[material].bytes * 1e-6, (double)bytes * 1e-6);
+    ImGui::Text("  %.1f ms a frame", ms);
 }
 
 static bool objects_section(app *app, const panel_facts *facts)
@@ -570,10 +571,9 @@ static bool objects_section(app *app, const panel_facts *facts)
     for (int i = 0; i < APP_SPLITS; i++) {
         if (i)
             ImGui::SameLine();
-        if (ImGui::RadioButton(splits[i], app->now.split == i)) {
-            app->now.split = (app_split)i;
-            changed = true;
-        }
+        const bool chosen = ImGui::RadioButton(splits[i], app->now.split == i);
+        while (chosen && app->now.split != i)
+            changed |= keys_press(app, 'q', false);
     }
     if (app->now.split != APP_SPLIT_NONE)
         changed |= choose_material("other", info, &app->now.other);

@@ -103,28 +103,40 @@ static double light_between(double from_deg, double to_deg, double age, double p
     return sum;
 }
 
+enum { VEIL_STEPS = 2048 };  // from the axis to 10 degrees: the veil bends over whole degrees
 struct veil {
     float *out[3];
     int reach;
-    double deg;         // of a pixel
-    double fade, edge;  // degrees: it comes where the pattern goes
-    double age, pigment, solid;
+    double pixel_steps;  // steps of the table in a pixel
+    float table[VEIL_STEPS + 2];
 };
+
+// What comes where the pattern goes: light in one pixel by angle.
+static void make_table(struct veil *v, double fade_deg, double edge_deg, double solid, double age,
+                       double pigment)
+{
+    for (int i = 0; i < VEIL_STEPS; i++) {
+        const double t = i * veil_deg / VEIL_STEPS;
+        const double s = fmin(fmax((t - fade_deg) / (edge_deg - fade_deg), 0.0), 1.0);
+        v->table[i] = (float)(s * s * (3.0 - 2.0 * s) * solid * relume_cie_glare(t, age, pigment));
+    }
+    v->table[VEIL_STEPS] = v->table[VEIL_STEPS + 1] = 0.0f;
+}
 
 static void veil_row(void *context, size_t item, int worker)
 {
     const struct veil *v = context;
-    const int side = 2 * v->reach + 1, y = (int)item - v->reach;
+    const size_t side = 2 * (size_t)v->reach + 1;
+    const int y = (int)item - v->reach;
     (void)worker;
     for (int x = -v->reach; x <= v->reach; x++) {
-        const double t = v->deg * sqrt((double)x * x + (double)y * y);
-        if (t <= v->fade || t >= veil_deg)
+        const double at = v->pixel_steps * sqrt((double)x * x + (double)y * y);
+        if (at >= VEIL_STEPS)
             continue;
-        const double s = fmin((t - v->fade) / (v->edge - v->fade), 1.0);
-        const float light =
-            (float)(s * s * (3.0 - 2.0 * s) * v->solid * relume_cie_glare(t, v->age, v->pigment));
+        const int i = (int)at;
+        const float light = v->table[i] + (float)(at - i) * (v->table[i + 1] - v->table[i]);
         for (int c = 0; c < 3; c++)
-            v->out[c][item * (size_t)side + (size_t)(x + v->reach)] += light;
+            v->out[c][item * side + (size_t)(x + v->reach)] += light;
     }
 }
 
@@ -197,14 +209,11 @@ relume_status kernel_create(struct kernel *out, const relume_psf *psf, double pi
         normalise(out, 1.0);
         return RELUME_OK;
     }
-    struct veil v = {.reach = out->reach,
-                     .deg = deg,
-                     .fade = shape->fade * 180.0 / M_PI,
-                     .edge = edge,
-                     .solid = fine * fine};
-    psf_observer(psf, &v.age, &v.pigment);
-    const double far = light_between(edge, veil_deg, v.age, v.pigment);
-    normalise(out, 1.0 - far);
+    struct veil v = {.reach = out->reach, .pixel_steps = deg * VEIL_STEPS / veil_deg};
+    double age, pigment;
+    psf_observer(psf, &age, &pigment);
+    make_table(&v, shape->fade * 180.0 / M_PI, edge, fine * fine, age, pigment);
+    normalise(out, 1.0 - light_between(edge, veil_deg, age, pigment));
     for (int c = 0; c < 3; c++)
         v.out[c] = out->v[c];
     thread_for(p->threads, side, veil_row, &v);

@@ -104,8 +104,9 @@ static void check_kernel(void **state)
                     if (hypot(x, y) > edge + 2.0)
                         beyond += (double)kernel.data[3 * ((y + half) * kernel.width + x + half)];
             const double pixel = relume_glare_pixel(40.0, 160) / magnify * 180.0 / M_PI;
-            // The ring is cut from whole pixels.
-            CHECK_NEAR(beyond, veil ? observed((edge + 2.0) * pixel, 10.0) : 0.0, 3e-3);
+            const double want = veil ? observed((edge + 2.0) * pixel, 10.0) : 0.0;
+            // The ring is cut from whole pixels, and some of the veil lies within the pattern.
+            CHECK_NEAR(beyond, want, 0.06 * want + 1e-9);
             relume_image_destroy(&kernel);
         }
     struct relume_image kernel;

@@ -19,6 +19,7 @@ pass:base math image:base image tone eye psf glare
 btf:base math image:base image lights btf
 frame:base math:base image capture coder pack light relight view slabs frame evaluate normals enhance
 scene:base math image:base image lights capture btf scene
+object:base math image scene:base image capture light relight view slabs pack frame btf object
 cli:cli:*
 viewer:viewer:*
 samples::*"
@@ -57,6 +58,7 @@ only_in 'OpenImageIO' src/image/oiio.cpp
 only_in 'dlfcn' src/base/module.c
 only_in 'opencv' src/capture/stitch.cpp
 only_in 'embree' src/scene/trace.c
+only_in 'assimp' src/scene/mesh_assimp.c
 only_in '(cblas|lapacke)' src/math/lsq.c
 only_in 'fftw3' src/math/fft.c
 only_in 'kissfft' src/math/fft_kiss.c

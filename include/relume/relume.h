@@ -21,6 +21,7 @@
 #include <relume/lightfield.h>
 #include <relume/lights.h>
 #include <relume/normals.h>
+#include <relume/object.h>
 #include <relume/pack.h>
 #include <relume/photograph.h>
 #include <relume/photometric.h>

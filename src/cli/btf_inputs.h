@@ -13,4 +13,10 @@ relume_status btf_open(relume_btf **out, const char *name, const struct args *ar
 // The sample as it was photographed: every texel seen from --eye, under distant lights.
 relume_status btf_render(const struct args *args);
 
+// Whether `btf render` is asked for objects: --mesh, or a description in JSON.
+bool btf_is_objects(const struct args *args);
+// These, ray traced.
+relume_status btf_render_objects(const struct args *args);
+relume_status objects_open(relume_objects **out, const char *path, const struct args *args);
+
 #endif

@@ -65,6 +65,8 @@ relume_status btf_render(const struct args *args)
     relume_btf_fitted *fitted = NULL;
     const char *eye = args_text(args, "--eye", NULL);
     int width = 0, height = 0;
+    if (btf_is_objects(args))
+        return btf_render_objects(args);
     if (!args_has(args, "-o"))
         return usage_error("btf render: expected -o FILE");
     relume_status status = eye ? args_vec3(&s.eye, "--eye", eye) : RELUME_OK;

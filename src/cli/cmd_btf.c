@@ -11,15 +11,32 @@ static const struct option options[] = {
     {"-o", OPTION_TEXT, "DIR", "fit: the folder of the model to make; render: the picture", 0, 0},
     {"--model", OPTION_TEXT, "NAME", "fit: rfp, rfnl, rfnlc, vpca, lpca, ...; default rfnlc", 0, 0},
     {"--models", OPTION_TEXT, "A,B,...", "compare: only these", 0, 0},
-    {"--clusters", OPTION_INT, "N", "lpca: default 32; rfnlc: default 1024", 1, 65536},
-    {"--components", OPTION_INT, "N", "vpca: default 4; lpca: 8; fmf: 100", 1, 256},
+    {"--clusters", OPTION_INT, "N", "lpca: default 32; cmf: 512; rfnlc: 1024", 1, 65536},
+    {"--components", OPTION_INT, "N", "vpca: default 4; lpca: 8; fmf: 100; qmf: at most, 512", 1,
+     1024},
+    {"--ratio", OPTION_INT, "R",
+     "qmf: bytes of the measured values to one of the model; default 200", 1, 1000000},
     {"--lobes", OPTION_INT, "N", "rfnl, rfnlc, laf, slaf: default 2", 1, 4},
+    {"--levels", OPTION_INT, "N", "fit: levels of detail, each half as wide; default 1", 1, 17},
     {"--leave-out", OPTION_INT, "K",
      "compare: also without every K-th view and light, judged on pairs with one of these", 2, 64},
     {"--pictures", OPTION_INT, "N",
      "compare, eval: pictures judged by CIEDE2000 and SSIM; default 25", 0, 65536},
-    {"--eye", OPTION_TEXT, "x,y,z", "render: the direction towards the eye; default 0,0,1", 0, 0},
-    {"--light", OPTION_TEXT, "SPEC", "render: \"dir x y z\" [rgb r g b]; may be repeated", 0, 0},
+    {"--eye", OPTION_TEXT, "x,y,z",
+     "render: the direction towards the eye; default 0,0,1. Of objects: where the eye is", 0, 0},
+    {"--light", OPTION_TEXT, "SPEC",
+     "render: \"dir x y z\" [rgb r g b], of objects any light (docs/lights.md); may be repeated", 0,
+     0},
+    {"--mesh", OPTION_TEXT, "FILE", "render: an object of it: .obj, .ply, .gltf, .glb, ...", 0, 0},
+    {"--repeat", OPTION_NUMBER, "N", "--mesh: samples along its texture; default 1", 0.001, 10000},
+    {"--look-at", OPTION_TEXT, "x,y,z", "render objects: default their middle", 0, 0},
+    {"--up", OPTION_TEXT, "x,y,z", "render objects: up in the picture; default 0,1,0", 0, 0},
+    {"--fov", OPTION_NUMBER, "DEG", "render objects: horizontal; default: all of them", 0.01, 179},
+    {"--picture", OPTION_TEXT, "WxH", "render objects: size; default 512x512", 0, 0},
+    {"--samples", OPTION_INT, "N", "render objects: N x N rays a pixel; default 3", 1, 16},
+    {"--no-shadows", OPTION_FLAG, NULL, "render objects: all lights reach all of them", 0, 0},
+    {"--rig", OPTION_TEXT, "FILE", "render objects: lights of a rig, before --light", 0, 0},
+    {"--save-rig", OPTION_TEXT, "FILE", "render objects: write all lights as a rig", 0, 0},
     {"--size", OPTION_INT, "N", "of a built-in material, texels; default 64", 1, 1024},
     {"--directions", OPTION_TEXT, "SET", "of a built-in material: bonn (default), dome, coarse", 0,
      0},
@@ -82,6 +99,8 @@ static struct relume_btf_fit_params fit_params(const struct args *args)
         .lobes = args_int(args, "--lobes", 0),
         .seed = (uint64_t)args_int(args, "--seed", 0),
         .threads = args_threads(args),
+        .levels = args_int(args, "--levels", 1),
+        .ratio = args_int(args, "--ratio", 0),
     };
 }
 
@@ -251,19 +270,20 @@ static relume_status model_info(const struct args *args)
     const struct relume_btf_fitted_info i = relume_btf_fitted_info(fitted);
     const uint64_t raw = relume_btf_bytes(i.width, i.height, i.views, i.lights);
     if (args_has(args, "--json"))
-        printf("{\"model\": \"%s\", \"width\": %d, \"height\": %d, \"views\": %d, \"lights\": %d, "
-               "\"clusters\": %d, \"components\": %d, \"lobes\": %d, \"bytes\": %llu, "
-               "\"bytes_each\": %llu, \"raw_bytes\": %llu}\n",
-               relume_btf_model_name(i.model), i.width, i.height, i.views, i.lights, i.clusters,
-               i.components, i.lobes, (unsigned long long)i.bytes, (unsigned long long)i.bytes_each,
-               (unsigned long long)raw);
+        printf(
+            "{\"model\": \"%s\", \"width\": %d, \"height\": %d, \"views\": %d, \"lights\": %d, "
+            "\"clusters\": %d, \"components\": %d, \"lobes\": %d, \"bytes\": %llu, "
+            "\"bytes_each\": %llu, \"levels\": %d, \"bytes_levels\": %llu, \"raw_bytes\": %llu}\n",
+            relume_btf_model_name(i.model), i.width, i.height, i.views, i.lights, i.clusters,
+            i.components, i.lobes, (unsigned long long)i.bytes, (unsigned long long)i.bytes_each,
+            i.levels, (unsigned long long)i.bytes_levels, (unsigned long long)raw);
     else
         printf(
             "model    %s: %s\ntexels   %d x %d\nviews    %d\nlights   %d\nbytes    %llu, %llu of "
-            "each texel; 1:%.0f of the measured values\n",
+            "each texel; 1:%.0f of the measured values\nlevels   %d, %llu bytes\n",
             relume_btf_model_name(i.model), relume_btf_model_summary(i.model), i.width, i.height,
             i.views, i.lights, (unsigned long long)i.bytes, (unsigned long long)i.bytes_each,
-            (double)raw / (double)i.bytes);
+            (double)raw / (double)i.bytes, i.levels, (unsigned long long)i.bytes_levels);
     relume_btf_fitted_destroy(&fitted);
     return RELUME_OK;
 }
@@ -318,7 +338,7 @@ static relume_status run(const struct args *args)
 
 const struct command command_btf = {
     .name = "btf",
-    .usage = "fit|eval|compare|info|render BTF|MATERIAL|MODEL [BTF]",
+    .usage = "fit|eval|compare|info|render BTF|MATERIAL|MODEL|OBJECTS.json [BTF]",
     .summary = "measured materials: fit models to a BTF, measure and show them",
     .example = "relume btf compare corduroy --size 32 --models rfnl,lpca --json",
     .min_inputs = 2,

@@ -1,4 +1,5 @@
 #include "cli.h"
+#include "btf_inputs.h"
 #include "frame_options.h"
 
 #include <math.h>
@@ -36,6 +37,9 @@ static const struct option options[] = {
      1e6},
     {"--pass", OPTION_TEXT, "NAME",
      "colour, normals, specular, diffuse-gain, unsharp, luminance, false-colour, difference", 0, 0},
+    {"--objects", OPTION_TEXT, "FILE",
+     "objects covered with BTFs, in the scene (docs/objects.md); needs a file with depth", 0, 0},
+    {"--samples", OPTION_INT, "N", "--objects: N x N rays a pixel; default 3", 1, 16},
     {"--capture", OPTION_TEXT, "CAPTURE", "--pass difference: the photographs", 0, 0},
     CPU_OPTION,
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
@@ -205,6 +209,25 @@ static void show_normals(struct relume_image *frame, const char *path)
         frame->data[i] = relume_transfer_decode(srgb, 0.5f * frame->data[i] + 0.5f);
 }
 
+static relume_status make_frame(struct relume_image *frame, relume_pack *pack,
+                                const struct args *args, const struct relume_camera *camera,
+                                const struct relume_frame_params *params,
+                                const struct relume_light *lights, int count)
+{
+    const char *path = args_text(args, "--objects", NULL);
+    relume_objects *objects;
+    if (!path)
+        return relume_frame(frame, pack, camera, lights, count, params);
+    relume_status status = objects_open(&objects, path, args);
+    if (!status)
+        status = relume_objects_frame(
+            frame, objects, pack, camera, lights, count, params,
+            relume_render_params(.log = args_log(args), .samples = args_int(args, "--samples", 3),
+                                 .threads = args_threads(args)));
+    relume_objects_destroy(&objects);
+    return status;
+}
+
 static relume_status render(const struct args *args, const struct relume_camera *camera,
                             struct relume_frame_params params, struct developing developing,
                             const struct relume_light *lights, int count)
@@ -225,7 +248,7 @@ static relume_status render(const struct args *args, const struct relume_camera 
     status = open_capture(args, &capture);
     params.capture = capture;
     if (!status)
-        status = relume_frame(&frame, pack, camera, lights, count, &params);
+        status = make_frame(&frame, pack, args, camera, &params, lights, count);
     if (!status && params.pass == RELUME_PASS_NORMALS)
         show_normals(&frame, output);
     else if (!status)

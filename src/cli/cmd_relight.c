@@ -1,5 +1,6 @@
 #include "cli.h"
 #include "btf_inputs.h"
+#include "develop.h"
 #include "frame_options.h"
 
 #include <math.h>
@@ -30,11 +31,7 @@ static const struct option options[] = {
      "slab: average the cameras within A/2 of the eye; default: 0", 0, 1e9},
     {"--focus", OPTION_NUMBER, "Z", "slab: the plane at z = Z is sharp; default: the st plane", 0,
      0},
-    {"--exposure", OPTION_TEXT, "EV", "multiply by 2^EV, or auto: a mid grey; default: 0", 0, 0},
-    {"--tone", OPTION_TEXT, "T",
-     "linear (clip, default), reinhard or filmic; .exr, .hdr and .pfm stay linear", 0, 0},
-    {"--white", OPTION_NUMBER, "L", "reinhard: the luminance that becomes white; default: 4", 1e-3,
-     1e6},
+    DEVELOP_OPTIONS,
     {"--pass", OPTION_TEXT, "NAME",
      "colour, normals, specular, diffuse-gain, unsharp, luminance, false-colour, difference", 0, 0},
     {"--objects", OPTION_TEXT, "FILE",
@@ -148,48 +145,6 @@ static relume_status parse_pass(const struct args *args, struct relume_frame_par
     const bool difference = params->pass == RELUME_PASS_DIFFERENCE;
     if (difference != args_has(args, "--capture"))
         return usage_error("relight: expected --pass difference and --capture together");
-    return RELUME_OK;
-}
-
-// ---------------------------------------------------------------- exposure and tone
-
-struct developing {
-    struct relume_tone_params tone;
-    bool automatic;
-};
-
-static relume_status parse_developing(const struct args *args, struct developing *d)
-{
-    const char *exposure = args_text(args, "--exposure", "0");
-    const char *tone = args_text(args, "--tone", relume_tone_linear.name);
-    const char *names[16] = {NULL};
-    *d = (struct developing){.automatic = !strcmp(exposure, "auto")};
-    if (!d->automatic && (!parse_numbers(exposure, &d->tone.exposure_ev, 1) ||
-                          !(fabs(d->tone.exposure_ev) <= 100.0)))
-        return usage_error("--exposure: expected a number from -100 to 100, or auto; found '%s'",
-                           exposure);
-    for (int i = 0; relume_tones[i]; i++)
-        names[i] = relume_tones[i]->name;
-    d->tone.white = args_number(args, "--white", 0.0);
-    d->tone.tone = relume_tone_find(tone);
-    return d->tone.tone ? RELUME_OK : unknown_name("--tone", tone, names);
-}
-
-static void expose(struct relume_image *frame, double ev)
-{
-    const float gain = exp2f((float)ev);
-    const size_t samples = (size_t)frame->width * (size_t)frame->height * 3;
-    for (size_t i = 0; i < samples; i++)
-        frame->data[i] *= gain;
-}
-
-static relume_status develop(struct relume_image *frame, struct developing d, const char *path)
-{
-    if (d.automatic)
-        d.tone.exposure_ev = relume_tone_meter(frame);
-    if (!relume_image_saves_linear(path))
-        return relume_tone_apply(frame, &d.tone);
-    expose(frame, d.tone.exposure_ev);
     return RELUME_OK;
 }
 

@@ -246,7 +246,7 @@ static relume_status draw_around_lens(struct renderer *r, const struct app *app,
     const double aperture = app->now.aperture, focus = focus_of(app);
     const int width = picture_width(app);
     struct place plain = *place;
-    const relume_status status = prepare_target(&r->pinholes, r, place->width, place->height);
+    const relume_status status = renderer_prepare(&r->pinholes, r, place->width, place->height);
     if (status || !relume_lens_fits(window, aperture, focus))
         return status;
     plain.exposure = 1;

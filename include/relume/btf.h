@@ -172,6 +172,11 @@ struct relume_btf_fitted_info {
 };
 RELUME_API struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *fitted);
 
+// The measured values as a model that is exact, for what takes models. Nothing is copied: the BTF
+// must outlive it; it cannot be saved. RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_btf_as_model(relume_btf_fitted **out, const relume_btf *btf,
+                                                const struct relume_log *log);
+
 // A level of detail, 0 being the model itself, beyond the last one the last; belongs to the model.
 RELUME_API const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fitted *fitted,
                                                             int level);

@@ -28,6 +28,7 @@
 #include <relume/scene.h>
 #include <relume/shoot.h>
 #include <relume/slabs.h>
+#include <relume/surface.h>
 #include <relume/tone.h>
 #include <relume/view.h>
 #include <relume/views.h>

@@ -211,6 +211,12 @@ relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
     return status;
 }
 
+relume_status relume_btf_as_model(relume_btf_fitted **out, const relume_btf *btf,
+                                  const struct relume_log *log)
+{
+    return fit_level(out, btf, &model_table, relume_btf_fit_params(.log = log), NULL);
+}
+
 // ---------------------------------------------------------------- reading back
 
 struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *m)

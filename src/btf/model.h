@@ -30,6 +30,7 @@ struct relume_btf_fitted {
     struct model_array array[MODEL_ARRAYS];
     int arrays;
     relume_btf_fitted *half;  // the next level of detail, or NULL
+    const relume_btf *table;  // the measured values, where they are the model
 };
 
 // One value that is asked for. Models that are gridded over views (lights) get measured ones only.
@@ -60,7 +61,7 @@ struct relume_btf_model {
 };
 
 extern const struct relume_btf_model model_bump, model_laf, model_slaf, model_rfp, model_rfnl,
-    model_rfnlc, model_vpca, model_lpca, model_fmf;
+    model_rfnlc, model_vpca, model_lpca, model_fmf, model_table;
 
 // An array of up to five sizes; unused ones are 0.
 void model_add(relume_btf_fitted *m, const char *name, enum npy_kind kind, bool each, size_t below,

@@ -20,7 +20,21 @@ static const struct option options[] = {
     {"--pictures", OPTION_INT, "N",
      "compare, eval: pictures judged by CIEDE2000 and SSIM; default 25", 0, 65536},
     {"--eye", OPTION_TEXT, "x,y,z", "render: the direction towards the eye; default 0,0,1", 0, 0},
-    {"--light", OPTION_TEXT, "SPEC", "render: \"dir x y z\" [rgb r g b]; may be repeated", 0, 0},
+    {"--camera", OPTION_TEXT, "x,y,z",
+     "render: in perspective, from this point over the surface, whose width is -1 to 1", 0, 0},
+    {"--at", OPTION_TEXT, "x,y,z", "render: where the camera looks; default 0,0,0", 0, 0},
+    {"--fov", OPTION_NUMBER, "DEG", "render: of the camera, across; default 40", 1, 170},
+    {"--frame", OPTION_TEXT, "WxH", "render: pixels; default a texel each, of a camera 640x400", 0,
+     0},
+    {"--light", OPTION_TEXT, "SPEC",
+     "render: \"dir x y z\", env, point, spot, ... (docs/lights.md), not area; may be repeated", 0,
+     0},
+    {"--tiles", OPTION_INT, "N", "tile: how many; default 10", 1, 256},
+    {"--tile", OPTION_INT, "TEXELS", "tile: a side, a multiple of 8; default half the sample", 16,
+     4096},
+    {"--matrix", OPTION_TEXT, "WxH", "tile: how they are laid out; default 16x16", 0, 0},
+    {"--map", OPTION_TEXT, "FILE", "tile: by an index map, a .npy or a picture, without tiles", 0,
+     0},
     {"--size", OPTION_INT, "N", "of a built-in material, texels; default 64", 1, 1024},
     {"--directions", OPTION_TEXT, "SET", "of a built-in material: bonn (default), dome, coarse", 0,
      0},
@@ -187,19 +201,24 @@ static relume_status compare(const struct args *args)
 
 // ---------------------------------------------------------------- fit, eval
 
-static relume_status fit(const struct args *args)
+relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, const struct args *args)
 {
     const struct relume_btf_fit_params p = fit_params(args);
     const struct relume_btf_model *model;
+    *out = NULL;
+    const relume_status status = find_model(&model, args_text(args, "--model", "rfnlc"));
+    return status ? status : relume_btf_fit(out, btf, model, &p);
+}
+
+static relume_status fit(const struct args *args)
+{
     relume_btf *btf = NULL;
     relume_btf_fitted *fitted = NULL;
     if (!args_has(args, "-o"))
         return usage_error("btf fit: expected -o DIR");
-    relume_status status = find_model(&model, args_text(args, "--model", "rfnlc"));
+    relume_status status = btf_open(&btf, args_input(args, 1), args);
     if (!status)
-        status = btf_open(&btf, args_input(args, 1), args);
-    if (!status)
-        status = relume_btf_fit(&fitted, btf, model, &p);
+        status = btf_fit(&fitted, btf, args);
     if (!status)
         status = relume_btf_fitted_save(
             fitted, args_text(args, "-o", NULL),
@@ -300,8 +319,8 @@ static relume_status info(const struct args *args)
 static const struct verb {
     const char *name;
     relume_status (*run)(const struct args *args);
-} verbs[] = {
-    {"fit", fit}, {"eval", eval}, {"compare", compare}, {"info", info}, {"render", btf_render}};
+} verbs[] = {{"fit", fit},   {"eval", eval},         {"compare", compare},
+             {"info", info}, {"render", btf_render}, {"tile", btf_tile}};
 enum { VERBS = sizeof verbs / sizeof *verbs };
 
 static relume_status run(const struct args *args)
@@ -321,7 +340,7 @@ static relume_status run(const struct args *args)
 
 const struct command command_btf = {
     .name = "btf",
-    .usage = "fit|eval|compare|info|render BTF|MATERIAL|MODEL [BTF]",
+    .usage = "fit|eval|compare|info|render|tile BTF|MATERIAL|MODEL|SURFACE [BTF]",
     .summary = "measured materials: fit models to a BTF, measure and show them",
     .example = "relume btf compare corduroy --size 32 --models rfnl,lpca --json",
     .min_inputs = 2,

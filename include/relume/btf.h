@@ -169,6 +169,7 @@ struct relume_btf_fitted_info {
     uint64_t bytes_each;              // of those a texel: the rest is shared by all texels
     int levels;                       // at least 1
     uint64_t bytes_levels;            // of the arrays of all levels
+    double rim;  // mean cosine of the lowest measured lights, below which values fall to 0
 };
 RELUME_API struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *fitted);
 

@@ -8,6 +8,7 @@
 #ifndef RELUME_SURFACE_H
 #define RELUME_SURFACE_H
 
+#include <relume/ambient.h>
 #include <relume/base.h>
 #include <relume/btf.h>
 #include <relume/image.h>
@@ -112,6 +113,7 @@ RELUME_API struct relume_btf_surface_info relume_btf_surface_info(
 // From where a point is looked at and lit: unit vectors in the frame of the surface.
 struct relume_btf_ray {
     struct relume_vec3 view, light;
+    const relume_btf_ambient *ambient;  // or NULL: an environment in place of the light
 };
 
 // The value at (x, y) texels, as relume_btf_evaluate: the four texels around the point are fetched
@@ -151,7 +153,8 @@ struct relume_btf_draw_params {
 #define relume_btf_draw_params(...) (&(const struct relume_btf_draw_params){__VA_ARGS__})
 
 // Fill `image` (three channels, of any size) with the surface under all `lights`; area lights are
-// not drawn. RELUME_EINVAL with a sentence, RELUME_ENOMEM, RELUME_ECANCEL.
+// not drawn; the map of an environment has +z before the surface. RELUME_EINVAL with a sentence,
+// RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_btf_draw(struct relume_image *image,
                                             const relume_btf_surface *surface,
                                             const struct relume_btf_camera *camera,

@@ -25,5 +25,7 @@ void fields_end(struct fields *s);
 bool fields_fit(const struct fields *s, size_t entry, const float *values);
 
 void fields_eval(const relume_btf_fitted *m, size_t entry, const struct model_at *at, float rgb[3]);
+void fields_lit(const relume_btf_fitted *m, size_t entry, const struct model_at *at,
+                const struct relume_btf_ambient *ambient, float rgb[3]);
 
 #endif

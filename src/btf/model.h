@@ -49,6 +49,8 @@ struct fitting {
     int threads;
 };
 
+struct relume_btf_ambient;
+
 struct relume_btf_model {
     const char *name;
     const char *summary;
@@ -58,6 +60,9 @@ struct relume_btf_model {
     void (*layout)(relume_btf_fitted *m);  // adds the arrays, with model_add
     relume_status (*fit)(struct fitting *f);
     void (*eval)(const relume_btf_fitted *m, const struct model_at *at, float rgb[3]);
+    // Under an environment (btf/ambient.h); NULL: the sum over the measured lights.
+    void (*lit)(const relume_btf_fitted *m, const struct model_at *at,
+                const struct relume_btf_ambient *ambient, float rgb[3]);
 };
 
 extern const struct relume_btf_model model_bump, model_laf, model_slaf, model_rfp, model_rfnl,

@@ -99,6 +99,12 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     fields_eval(m, ((const uint16_t *)m->array[CLUSTER].data)[at->texel], at, rgb);
 }
 
+static void lit(const relume_btf_fitted *m, const struct model_at *at,
+                const struct relume_btf_ambient *ambient, float rgb[3])
+{
+    fields_lit(m, ((const uint16_t *)m->array[CLUSTER].data)[at->texel], at, ambient, rgb);
+}
+
 const struct relume_btf_model model_rfnlc = {
     .name = "rfnlc",
     .summary = "cosine lobes for each view of clusters of texels",
@@ -108,4 +114,5 @@ const struct relume_btf_model model_rfnlc = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .lit = lit,
 };

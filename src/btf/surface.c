@@ -154,16 +154,34 @@ struct relume_btf_surface_info relume_btf_surface_info(const relume_btf_surface 
 
 // ---------------------------------------------------------------- lookups
 
-static struct model_blend blend_of(const relume_btf_surface *s, const struct relume_btf_ray *ray)
+// A ray between the measured directions.
+struct blend {
+    struct model_blend at;  // its light is unused under an environment
+    const relume_btf_ambient *ambient;
+};
+
+static struct blend blend_of(const relume_btf_surface *s, const struct relume_btf_ray *ray)
 {
     const relume_btf_fitted *m = s->level[0].model;
-    return (struct model_blend){relume_dome_at(m->view_dome, ray->view),
-                                relume_dome_at(m->light_dome, ray->light), ray->view, ray->light};
+    struct blend b = {
+        .at = {.view = relume_dome_at(m->view_dome, ray->view), .v = ray->view, .l = ray->light},
+        .ambient = ray->ambient};
+    if (!ray->ambient)
+        b.at.light = relume_dome_at(m->light_dome, ray->light);
+    return b;
+}
+
+static void value_of(const relume_btf_fitted *m, size_t texel, const struct blend *b, float rgb[3])
+{
+    if (b->ambient)
+        ambient_blend(b->ambient, m, texel, &b->at.view, rgb);
+    else
+        model_blend(m, texel, &b->at, rgb);
 }
 
 // One level, bilinear; (x, y) in texels of the finest.
 static void add_level(const struct surface_level *level, const struct relume_btf_map_info *finest,
-                      double x, double y, const struct model_blend *at, float weight, float rgb[3])
+                      double x, double y, const struct blend *at, float weight, float rgb[3])
 {
     const double u = x * level->map.width / finest->width - 0.5;
     const double v = y * level->map.height / finest->height - 0.5;
@@ -174,15 +192,15 @@ static void add_level(const struct surface_level *level, const struct relume_btf
         float value[3];
         if (!(w > 0.0f))
             continue;
-        model_blend(level->model, map_at(&level->map, (int64_t)left + i % 2, (int64_t)top + i / 2),
-                    at, value);
+        value_of(level->model, map_at(&level->map, (int64_t)left + i % 2, (int64_t)top + i / 2), at,
+                 value);
         for (int c = 0; c < 3; c++)
             rgb[c] += w * value[c];
     }
 }
 
 static void add_point(const relume_btf_surface *s, double x, double y, double level,
-                      const struct model_blend *at, float weight, float rgb[3])
+                      const struct blend *at, float weight, float rgb[3])
 {
     const struct relume_btf_map_info *finest = &s->level[0].map;
     const double l = fmin(fmax(level, 0.0), s->levels - 1);
@@ -201,7 +219,7 @@ static void add_point(const relume_btf_surface *s, double x, double y, double le
 
 static bool is_dark(const struct relume_btf_ray *ray)
 {
-    return !(ray->view.z > 0.0) || !(ray->light.z > 0.0);
+    return !(ray->view.z > 0.0) || (!ray->ambient && !(ray->light.z > 0.0));
 }
 
 void relume_btf_surface_evaluate(const relume_btf_surface *s, double x, double y, double level,
@@ -210,7 +228,7 @@ void relume_btf_surface_evaluate(const relume_btf_surface *s, double x, double y
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     if (is_dark(ray) || !isfinite(x) || !isfinite(y))
         return;
-    const struct model_blend at = blend_of(s, ray);
+    const struct blend at = blend_of(s, ray);
     add_point(s, x, y, level, &at, 1.0f, rgb);
 }
 
@@ -221,7 +239,7 @@ void relume_btf_surface_filter(const relume_btf_surface *s, const struct relume_
     const double right = hypot(f->right[0], f->right[1]), down = hypot(f->down[0], f->down[1]);
     if (is_dark(ray) || !isfinite(f->x) || !isfinite(f->y) || !isfinite(right) || !isfinite(down))
         return;
-    const struct model_blend at = blend_of(s, ray);
+    const struct blend at = blend_of(s, ray);
     const double *way = right > down ? f->right : f->down;
     const double longer = fmax(right, down), shorter = fmax(fmin(right, down), 1.0);
     const int taps = (int)fmin(fmax(ceil(longer / shorter), 1.0), MOST_TAPS);

@@ -2,7 +2,7 @@
 #ifndef BTF_SURFACE_H
 #define BTF_SURFACE_H
 
-#include "btf/model.h"
+#include "btf/ambient.h"
 
 #include <relume/surface.h>
 

@@ -16,6 +16,8 @@ struct drawing {
     const struct relume_btf_camera *camera;
     struct lens lens;
     const struct relume_light *lights;
+    relume_btf_ambient **ambient;  // of each light, NULL: no environment
+    relume_prefilter **prefilter;
     int count;
     double unit;           // texels of a world unit
     double width, height;  // of the surface, texels
@@ -91,8 +93,10 @@ static void draw_pixel(const struct drawing *d, int x, int y, float *to)
     for (int i = 0; i < d->count; i++) {
         const struct relume_light *light = &d->lights[i];
         float sent[3] = {light->rgb[0], light->rgb[1], light->rgb[2]}, value[3];
-        ray.light = light->direction;
-        if (light->kind == RELUME_LIGHT_DIRECTIONAL)
+        ray.ambient = d->ambient[i];
+        if (ray.ambient)  // has the colour of the light
+            sent[0] = sent[1] = sent[2] = 1.0f;
+        else if (light->kind == RELUME_LIGHT_DIRECTIONAL)
             ray.light = vec3_unit(light->direction);
         else if (!relume_light_at(&ray.light, sent, light, point))
             continue;
@@ -154,12 +158,46 @@ static relume_status check_lights(const struct relume_light *lights, int count,
     relume_status status = RELUME_OK;
     for (int i = 0; i < count && !status; i++) {
         status = relume_light_check(&lights[i], "light", log);
-        if (!status &&
-            (lights[i].kind == RELUME_LIGHT_AREA || lights[i].kind == RELUME_LIGHT_ENVIRONMENT))
-            status = log_fail(log, RELUME_EINVAL, "light: '%s' is not drawn on materials",
-                              relume_light_kind_name(lights[i].kind));
+        if (!status && lights[i].kind == RELUME_LIGHT_AREA)
+            status = log_fail(log, RELUME_EINVAL, "light: area lights are not drawn on materials");
     }
     return status;
+}
+
+// ---------------------------------------------------------------- environments
+
+static relume_status make_ambient(struct drawing *d, int i, const struct relume_btf_draw_params *p)
+{
+    // the surface lies in the world as in its own frame
+    const struct relume_btf_frame frame = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    const relume_btf_fitted *model = d->surface->level[0].model;
+    const relume_status status = relume_prefilter_create(
+        &d->prefilter[i], &d->lights[i],
+        relume_prefilter_params(.log = p->log, .rim = relume_btf_fitted_info(model).rim,
+                                .threads = p->threads));
+    return status ? status
+                  : relume_btf_ambient_create(&d->ambient[i], model, d->prefilter[i], &frame);
+}
+
+static relume_status make_ambients(struct drawing *d, const struct relume_btf_draw_params *p)
+{
+    d->ambient = mem_zeroed((size_t)d->count, sizeof *d->ambient);
+    d->prefilter = mem_zeroed((size_t)d->count, sizeof *d->prefilter);
+    relume_status status = d->ambient && d->prefilter ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; i < d->count && !status; i++)
+        if (d->lights[i].kind == RELUME_LIGHT_ENVIRONMENT)
+            status = make_ambient(d, i, p);
+    return status;
+}
+
+static void free_ambients(struct drawing *d)
+{
+    for (int i = 0; i < d->count && d->ambient && d->prefilter; i++) {
+        relume_btf_ambient_destroy(&d->ambient[i]);
+        relume_prefilter_destroy(&d->prefilter[i]);
+    }
+    free(d->ambient);
+    free(d->prefilter);
 }
 
 relume_status relume_btf_draw(struct relume_image *image, const relume_btf_surface *surface,
@@ -186,5 +224,9 @@ relume_status relume_btf_draw(struct relume_image *image, const relume_btf_surfa
                         .height = info.height};
     if (camera->perspective)
         d.lens = make_lens(camera, image->width, image->height);
-    return draw_rows(&d, &p);
+    status = make_ambients(&d, &p);
+    if (!status)
+        status = draw_rows(&d, &p);
+    free_ambients(&d);
+    return status;
 }

@@ -23,19 +23,30 @@ static const struct option options[] = {
      "compare, eval: pictures judged by CIEDE2000 and SSIM; default 25", 0, 65536},
     {"--eye", OPTION_TEXT, "x,y,z",
      "render: the direction towards the eye; default 0,0,1. Of objects: where the eye is", 0, 0},
-    {"--light", OPTION_TEXT, "SPEC",
-     "render: \"dir x y z\" [rgb r g b], of objects any light (docs/lights.md); may be repeated", 0,
-     0},
-    {"--mesh", OPTION_TEXT, "FILE", "render: an object of it: .obj, .ply, .gltf, .glb, ...", 0, 0},
-    {"--repeat", OPTION_NUMBER, "N", "--mesh: samples along its texture; default 1", 0.001, 10000},
-    {"--look-at", OPTION_TEXT, "x,y,z", "render objects: default their middle", 0, 0},
+    {"--camera", OPTION_TEXT, "x,y,z",
+     "render a surface in perspective, from this point; its width is -1 to 1", 0, 0},
+    {"--look-at", OPTION_TEXT, "x,y,z",
+     "render objects: default their middle; with --camera: default 0,0,0", 0, 0},
     {"--up", OPTION_TEXT, "x,y,z", "render objects: up in the picture; default 0,1,0", 0, 0},
-    {"--fov", OPTION_NUMBER, "DEG", "render objects: horizontal; default: all of them", 0.01, 179},
-    {"--picture", OPTION_TEXT, "WxH", "render objects: size; default 512x512", 0, 0},
-    {"--samples", OPTION_INT, "N", "render objects: N x N rays a pixel; default 3", 1, 16},
-    {"--no-shadows", OPTION_FLAG, NULL, "render objects: all lights reach all of them", 0, 0},
+    {"--fov", OPTION_NUMBER, "DEG",
+     "render: horizontal; default: all of the objects, with --camera 40", 0.01, 179},
+    {"--picture", OPTION_TEXT, "WxH",
+     "render: pixels; default a texel each, of objects 512x512, with --camera 640x400", 0, 0},
+    {"--light", OPTION_TEXT, "SPEC",
+     "render: dir, env, point, spot, ... (docs/lights.md), area on objects only; may be repeated",
+     0, 0},
     {"--rig", OPTION_TEXT, "FILE", "render objects: lights of a rig, before --light", 0, 0},
     {"--save-rig", OPTION_TEXT, "FILE", "render objects: write all lights as a rig", 0, 0},
+    {"--mesh", OPTION_TEXT, "FILE", "render: an object of it: .obj, .ply, .gltf, .glb, ...", 0, 0},
+    {"--repeat", OPTION_NUMBER, "N", "--mesh: samples along its texture; default 1", 0.001, 10000},
+    {"--samples", OPTION_INT, "N", "render objects: N x N rays a pixel; default 3", 1, 16},
+    {"--no-shadows", OPTION_FLAG, NULL, "render objects: all lights reach all of them", 0, 0},
+    {"--tiles", OPTION_INT, "N", "tile: how many; default 10", 1, 256},
+    {"--tile", OPTION_INT, "TEXELS", "tile: a side, a multiple of 8; default half the sample", 16,
+     4096},
+    {"--matrix", OPTION_TEXT, "WxH", "tile: how they are laid out; default 16x16", 0, 0},
+    {"--map", OPTION_TEXT, "FILE", "tile: by an index map, a .npy or a picture, without tiles", 0,
+     0},
     {"--size", OPTION_INT, "N", "of a built-in material, texels; default 64", 1, 1024},
     {"--directions", OPTION_TEXT, "SET", "of a built-in material: bonn (default), dome, coarse", 0,
      0},
@@ -209,19 +220,24 @@ static relume_status compare(const struct args *args)
 
 // ---------------------------------------------------------------- fit, eval
 
-static relume_status fit(const struct args *args)
+relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, const struct args *args)
 {
     const struct relume_btf_fit_params p = fit_params(args);
     const struct relume_btf_model *model;
+    *out = NULL;
+    const relume_status status = find_model(&model, args_text(args, "--model", "rfnlc"));
+    return status ? status : relume_btf_fit(out, btf, model, &p);
+}
+
+static relume_status fit(const struct args *args)
+{
     relume_btf *btf = NULL;
     relume_btf_fitted *fitted = NULL;
     if (!args_has(args, "-o"))
         return usage_error("btf fit: expected -o DIR");
-    relume_status status = find_model(&model, args_text(args, "--model", "rfnlc"));
+    relume_status status = btf_open(&btf, args_input(args, 1), args);
     if (!status)
-        status = btf_open(&btf, args_input(args, 1), args);
-    if (!status)
-        status = relume_btf_fit(&fitted, btf, model, &p);
+        status = btf_fit(&fitted, btf, args);
     if (!status)
         status = relume_btf_fitted_save(
             fitted, args_text(args, "-o", NULL),
@@ -316,8 +332,8 @@ static relume_status info(const struct args *args)
 static const struct verb {
     const char *name;
     relume_status (*run)(const struct args *args);
-} verbs[] = {
-    {"fit", fit}, {"eval", eval}, {"compare", compare}, {"info", info}, {"render", btf_render}};
+} verbs[] = {{"fit", fit},   {"eval", eval},         {"compare", compare},
+             {"info", info}, {"render", btf_render}, {"tile", btf_tile}};
 enum { VERBS = sizeof verbs / sizeof *verbs };
 
 static relume_status run(const struct args *args)
@@ -337,7 +353,7 @@ static relume_status run(const struct args *args)
 
 const struct command command_btf = {
     .name = "btf",
-    .usage = "fit|eval|compare|info|render BTF|MATERIAL|MODEL|OBJECTS.json [BTF]",
+    .usage = "fit|eval|compare|info|render|tile BTF|MATERIAL|MODEL|SURFACE|OBJECTS.json [BTF]",
     .summary = "measured materials: fit models to a BTF, measure and show them",
     .example = "relume btf compare corduroy --size 32 --models rfnl,lpca --json",
     .min_inputs = 2,

@@ -87,6 +87,7 @@ struct relume_coder_params {
                   // `samples` predict each other best
     double parameter[4];                   // of the interpolant; 0 means its default
     const struct relume_samples *samples;  // what a learned basis and `choose` learn from
+    int threads;                           // while learning; default: all cores
     bool decode;             // only weights will be asked for: no encoding map is made
     const float *transform;  // decoding: stored functions = transform x raw functions, [K][raw], or
                              // [3][K][raw] for learned bases. Default: the identity

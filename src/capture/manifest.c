@@ -1,7 +1,6 @@
 // manifest.c - capture.json, read
 #include "capture/manifest.h"
 
-#include "base/json.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/vec.h"
@@ -446,27 +445,28 @@ relume_status manifest_read(struct draft *out, const char *path, const struct re
     return status;
 }
 
-relume_status manifest_directions(const char *path, struct relume_vec3 **out, int *n,
-                                  const struct relume_log *log)
+relume_status manifest_lights(struct relume_light_list *out, const jvalue *root, const char *path,
+                              const struct relume_log *log)
 {
-    *out = NULL;
-    *n = 0;
-    jvalue *root;
-    relume_status status = jvalue_load(&root, path, log);
-    if (status)
-        return status;
     struct draft draft = {0};
     char no_folder[] = ".";
     const struct parser p = {&draft, path, no_folder, limits_or_default(NULL), log};
     const jvalue *lights = jvalue_member(root, "lights");
+    *out = (struct relume_light_list){0};
     // The output of `relume lights --json` has the directions at its top.
-    status = read_lights(&p, lights ? lights : root);
+    relume_status status = read_lights(&p, lights ? lights : root);
     if (!status) {
-        *n = draft.m.lights;
-        *out = mem_copy(draft.directions, (size_t)*n, sizeof **out);
-        status = *out ? RELUME_OK : RELUME_ENOMEM;
+        const size_t n = (size_t)draft.m.lights;
+        out->count = draft.m.lights;
+        out->direction = mem_copy(draft.directions, n, sizeof *out->direction);
+        if (draft.positions)
+            out->position = mem_copy(draft.positions, n, sizeof *out->position);
+        if (draft.intensities)
+            out->intensity = mem_copy(draft.intensities, n, sizeof *out->intensity);
+        if (!out->direction || (draft.positions && !out->position) ||
+            (draft.intensities && !out->intensity))
+            status = RELUME_ENOMEM;
     }
     draft_free(&draft);
-    jvalue_free(&root);
     return status;
 }

@@ -24,6 +24,6 @@ bool interpolant_predictor(const struct relume_interpolant *interpolant, const v
 // The parameters of `chord` with which the lights of `samples` predict each other best, and with
 // what error: the geometric mean over lights of each one's RMS.
 relume_status interpolant_choose(double *parameter, double *rms, const struct relume_vec3 *lights,
-                                 const struct relume_samples *samples);
+                                 const struct relume_samples *samples, int threads);
 
 #endif

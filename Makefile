@@ -114,7 +114,7 @@ $B/obj/src/image/exr.o: own_flags = $(EXR)
 $B/obj/src/image/oiio.o: own_flags = $(OIIO)
 $B/obj/src/capture/stitch.o: own_flags = -isystem $(OPENCV)
 $B/obj/src/base/module.o: own_flags = -DRELUME_MAJOR=$(MAJOR)
-$B/obj/src/coder/kernels_avx2.o $B/obj/src/relight/kernels_avx2.o: own_flags = -mavx2 -mfma -mf16c
+$B/obj/src/coder/kernels_avx2.o $B/obj/src/relight/kernels_avx2.o $B/obj/src/pass/kernels_avx2.o: own_flags = -mavx2 -mfma -mf16c
 $B/obj/src/%.o:               own_include = -Isrc
 $B/obj/src/cli/plot.o: own_flags = $(CAIRO)
 $B/obj/src/cli/%.o:           own_include = -Isrc/cli

@@ -15,7 +15,7 @@ pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange
 relight:base math image:base image coder light relight rig normals enhance
 view:base math image:base image light relight view slabs capture
-pass:base math image:base image tone
+pass:base math image:base image tone eye psf glare
 btf:base math image:base image lights btf
 frame:base math:base image capture coder pack light relight view slabs frame evaluate normals enhance
 scene:base math image:base image lights capture btf scene
@@ -70,6 +70,6 @@ only_in 'GLFW' viewer/context_glfw.c
 only_in 'imgui' viewer/panel.cpp
 only_in 'GL/osmesa' viewer/context_osmesa.c
 only_in 'EGL/' viewer/context_egl.c
-only_in 'immintrin' src/relight/kernels_avx2.c src/coder/kernels_avx2.c
+only_in 'immintrin' src/relight/kernels_avx2.c src/coder/kernels_avx2.c src/pass/kernels_avx2.c
 [ $bad = 0 ] && echo "layers: fine"
 exit $bad

@@ -12,7 +12,9 @@
 #include <relume/enhance.h>
 #include <relume/evaluate.h>
 #include <relume/exchange.h>
+#include <relume/eye.h>
 #include <relume/frame.h>
+#include <relume/glare.h>
 #include <relume/heldout.h>
 #include <relume/image.h>
 #include <relume/light.h>
@@ -23,6 +25,7 @@
 #include <relume/pack.h>
 #include <relume/photograph.h>
 #include <relume/photometric.h>
+#include <relume/psf.h>
 #include <relume/relight.h>
 #include <relume/response.h>
 #include <relume/rig.h>

@@ -5,6 +5,8 @@
 #ifndef VIEWER_APP_H
 #define VIEWER_APP_H
 
+#include "sight.h"
+
 #include <relume/enhance.h>
 #include <relume/frame.h>
 #include <relume/relight.h>
@@ -86,6 +88,7 @@ struct app_state {
     int selected;  // light that drags and keys change
     bool ball;     // show the light's direction on a ball in the corner
     enum relume_pass pass;
+    struct sight sight;  // how an eye sees the frame
 };
 
 enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT, APP_DRAG_GIZMO };
@@ -123,6 +126,7 @@ struct app {
     double speed_deg_s[2];  // of these: of the hand, then of what it let go
     double adapted_ev, metered_ev;  // automatic exposure: in force, and aimed at
     bool metered;
+    double eye_s;  // that the eye has lived: only while it looks, and not while it is paused
     struct relume_look before_planet;
 };
 
@@ -145,6 +149,9 @@ bool app_handle(struct app *app, const struct app_event *event);
 // Returns whether the picture changed; false for good once all is at rest. What a span does, any
 // way to split it does.
 bool app_advance(struct app *app, double seconds);
+
+// The same for the living eye alone (struct sight), which never rests.
+void app_live(struct app *app, double seconds);
 
 // Let no glide go on.
 void app_stand_still(struct app *app);

@@ -42,6 +42,7 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
                               int views, const struct relume_log *log)
 {
     *r = (struct renderer){.gl = gl, .log = log, .geometry = *geometry, .views = views};
+    glare_begin(&r->glare, gl, log);
     gl->GenVertexArrays(1, &r->vertices);
     r->uv = calloc((size_t)views, sizeof *r->uv);
     if (r->uv && uv)
@@ -99,6 +100,7 @@ void renderer_destroy(struct renderer *r)
         program_destroy(programs[i], r->gl);
     relighter_destroy(&r->relighter);
     enhancer_destroy(&r->enhancer);
+    glare_end(&r->glare);
     target_destroy(&r->frame, r->gl);
     target_destroy(&r->small, r->gl);
     target_destroy(&r->sum, r->gl);
@@ -349,6 +351,17 @@ static relume_status relight_needed(struct renderer *r, const struct app *app)
     return status ? status : stand_in(r);
 }
 
+// Normals and the like are for looking up, not at.
+static relume_status see(struct renderer *r, const struct app *app, double exposure)
+{
+    r->shown = &r->frame;
+    if (!app->now.sight.on || app->now.pass != RELUME_PASS_COLOUR)
+        return RELUME_OK;
+    const relume_status status = glare_see(&r->glare, &r->frame, app, exposure);
+    r->shown = &r->glare.seen;
+    return status;
+}
+
 relume_status renderer_draw(struct renderer *r, const struct app *app)
 {
     const struct place place = {
@@ -365,8 +378,12 @@ relume_status renderer_draw(struct renderer *r, const struct app *app)
     r->gl->BindVertexArray(r->vertices);
     target_begin(&r->frame, r->gl);
     status = framings[app->now.camera.framing].draw(r, app, &place);
+    if (!status)
+        status = see(r, app, (double)place.exposure);
     if (status)
         return status;
+    target_resume(r->shown, r->gl);
+    r->gl->BindVertexArray(r->vertices);
     if (app->now.ball)
         draw_ball(&r->ball, r->gl, &place, app_seen_light(app, app->now.selected),
                   app->now.light[app->now.selected].rgb);
@@ -385,7 +402,7 @@ bool renderer_is_pending(const struct renderer *r)
 
 relume_status renderer_read(struct relume_image *out, const struct renderer *r)
 {
-    return target_read(out, &r->frame, r->gl);
+    return target_read(out, r->shown, r->gl);
 }
 
 relume_status renderer_meter(double *ev, struct renderer *r)
@@ -412,5 +429,5 @@ relume_status renderer_meter(double *ev, struct renderer *r)
 void renderer_present(const struct renderer *r, const struct app *app, GLuint framebuffer)
 {
     r->gl->BindVertexArray(r->vertices);
-    draw_present(&r->present, r->gl, &r->frame, app->now.tone, app->now.white, framebuffer);
+    draw_present(&r->present, r->gl, r->shown, app->now.tone, app->now.white, framebuffer);
 }

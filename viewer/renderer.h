@@ -6,6 +6,7 @@
 #include "depths.h"
 #include "draw.h"
 #include "enhancer.h"
+#include "glare.h"
 #include "relighter.h"
 
 struct renderer {
@@ -13,10 +14,12 @@ struct renderer {
     const struct relume_log *log;
     struct relighter relighter;
     struct enhancer enhancer;
+    struct glare glare;
     struct program picture, slab, slab_depth, slab_lens, slabs, slabs_depth, mean, panorama, ball,
         present;
     GLuint vertices;
     struct target frame;
+    const struct target *shown;  // `frame`, or what an eye sees of it; NULL: nothing drawn yet
     struct target small;  // of the frame, to meter
     struct target sum;    // of an aperture's cameras, of several slabs; made when first needed
     relume_slab *grid;    // NULL: not a slab, or several

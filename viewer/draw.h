@@ -6,6 +6,7 @@
 
 #include "app.h"
 #include "program.h"
+#include "sources.h"
 #include "target.h"
 
 #include <relume/slabs.h>
@@ -96,6 +97,12 @@ relume_status draw_ball_create(struct program *program, const struct gl *gl,
                                const struct relume_log *log);
 void draw_ball(const struct program *program, const struct gl *gl, const struct place *place,
                struct relume_vec3 light, const float rgb[3]);
+
+// Lights that are in view, added to the frame.
+relume_status draw_source_create(struct program *program, const struct gl *gl,
+                                 const struct relume_log *log);
+void draw_sources(const struct program *program, const struct gl *gl, const struct place *place,
+                  const struct source *sources, int n);
 
 // A linear frame onto a framebuffer whose first row is the lowest (0: the screen), through
 // relume_tones[tone], coded as sRGB; `white` > 0.

@@ -26,6 +26,7 @@ static relume_status create_programs(struct renderer *r)
         {&r->mean, draw_mean_create},
 
         {&r->ball, draw_ball_create},
+        {&r->source, draw_source_create},
         {&r->present, draw_present_create},
     };
     relume_status status = RELUME_OK;
@@ -49,6 +50,8 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
         memcpy(r->uv, uv, (size_t)views * sizeof *r->uv);
     r->needed = calloc((size_t)views, sizeof *r->needed);
     r->relit = calloc((size_t)views, sizeof *r->relit);
+    r->scene = (struct source_scene){
+        .source = *source, .uv = (const double(*)[2])r->uv, .views = views};
     relume_status status = r->uv && r->needed && r->relit ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = relighter_create(&r->relighter, gl, source, views, log);
@@ -95,12 +98,13 @@ void renderer_destroy(struct renderer *r)
         return;
     struct program *const programs[] = {&r->picture, &r->slab,        &r->slab_depth, &r->slab_lens,
                                         &r->slabs,   &r->slabs_depth, &r->mean,       &r->panorama,
-                                        &r->ball,    &r->present};
+                                        &r->ball,    &r->source,      &r->present};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         program_destroy(programs[i], r->gl);
     relighter_destroy(&r->relighter);
     enhancer_destroy(&r->enhancer);
     glare_end(&r->glare);
+    source_scene_forget(&r->scene);
     target_destroy(&r->frame, r->gl);
     target_destroy(&r->small, r->gl);
     target_destroy(&r->sum, r->gl);
@@ -336,7 +340,7 @@ static relume_status relight_needed(struct renderer *r, const struct app *app)
     relume_status status = need_lights(r, app->now.lights);
     if (status)
         return status;
-    const int count = lamps_shining(&app->now, r->light);
+    const int count = r->lights = lamps_shining(&app->now, r->light);
     status = relighter_begin(&r->relighter, r->light, count);
     relume_status (*const look_up)(const struct target **, struct relighter *, int) =
         app->now.pass == RELUME_PASS_COLOUR ? relighter_view : relighter_wait;  // no stand-ins
@@ -362,6 +366,20 @@ static relume_status see(struct renderer *r, const struct app *app, double expos
     return status;
 }
 
+static relume_status draw_lights_in_view(struct renderer *r, const struct app *app,
+                                         const struct place *place)
+{
+    if (!app->now.sight.sources || app->now.pass != RELUME_PASS_COLOUR)
+        return RELUME_OK;
+    struct source *sources = malloc(SOURCES_MOST * sizeof *sources);
+    if (!sources)
+        return RELUME_ENOMEM;
+    const int n = sources_find(sources, app, r->light, r->lights, &r->scene);
+    draw_sources(&r->source, r->gl, place, sources, n);
+    free(sources);
+    return RELUME_OK;
+}
+
 relume_status renderer_draw(struct renderer *r, const struct app *app)
 {
     const struct place place = {
@@ -378,6 +396,8 @@ relume_status renderer_draw(struct renderer *r, const struct app *app)
     r->gl->BindVertexArray(r->vertices);
     target_begin(&r->frame, r->gl);
     status = framings[app->now.camera.framing].draw(r, app, &place);
+    if (!status)
+        status = draw_lights_in_view(r, app, &place);
     if (!status)
         status = see(r, app, (double)place.exposure);
     if (status)

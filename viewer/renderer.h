@@ -16,7 +16,7 @@ struct renderer {
     struct enhancer enhancer;
     struct glare glare;
     struct program picture, slab, slab_depth, slab_lens, slabs, slabs_depth, mean, panorama, ball,
-        present;
+        source, present;
     GLuint vertices;
     struct target frame;
     const struct target *shown;  // `frame`, or what an eye sees of it; NULL: nothing drawn yet
@@ -32,7 +32,8 @@ struct renderer {
     bool *needed;                 // [views]
     const struct target **relit;  // [views]; NULL where not needed
     struct relume_light *light;   // that shine; room for `room`
-    int room;
+    int lights, room;
+    struct source_scene scene;  // that hides lights
 };
 
 // `uv` [views] places the cameras of a slab; NULL: there is none, or renderer_use_slabs tells.

@@ -1,4 +1,5 @@
-// gl.h - the functions of OpenGL 3.3 core that the viewer uses, loaded from the context
+// gl.h - the functions of OpenGL 3.3 core that the viewer uses, loaded from the context; compute
+// passes of 4.3 where there are any
 //
 // No loader library: libepoxy and its kin do not see an OSMesa context. The list below is the whole
 // of OpenGL here; a call is gl->DrawArrays(...).
@@ -12,11 +13,13 @@
     X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                                                       \
     X(PFNGLATTACHSHADERPROC, AttachShader)                                                         \
     X(PFNGLBINDBUFFERPROC, BindBuffer)                                                             \
+    X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)                                                     \
     X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                                                   \
     X(PFNGLBINDTEXTUREPROC, BindTexture)                                                           \
     X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                                                   \
     X(PFNGLBLENDFUNCPROC, BlendFunc)                                                               \
     X(PFNGLBUFFERDATAPROC, BufferData)                                                             \
+    X(PFNGLBUFFERSUBDATAPROC, BufferSubData)                                                       \
     X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)                                     \
     X(PFNGLCLEARPROC, Clear)                                                                       \
     X(PFNGLCLEARCOLORPROC, ClearColor)                                                             \
@@ -31,6 +34,7 @@
     X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)                                             \
     X(PFNGLDISABLEPROC, Disable)                                                                   \
     X(PFNGLDRAWARRAYSPROC, DrawArrays)                                                             \
+    X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)                                           \
     X(PFNGLDRAWELEMENTSPROC, DrawElements)                                                         \
     X(PFNGLENABLEPROC, Enable)                                                                     \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray)                                   \
@@ -40,6 +44,7 @@
     X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                                                   \
     X(PFNGLGENTEXTURESPROC, GenTextures)                                                           \
     X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                                                   \
+    X(PFNGLGETBUFFERSUBDATAPROC, GetBufferSubData)                                                 \
     X(PFNGLGETERRORPROC, GetError)                                                                 \
     X(PFNGLGETINTEGERVPROC, GetIntegerv)                                                           \
     X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                                               \
@@ -64,13 +69,24 @@
     X(PFNGLUNIFORM3FPROC, Uniform3f)                                                               \
     X(PFNGLUNIFORM4FPROC, Uniform4f)                                                               \
     X(PFNGLUSEPROGRAMPROC, UseProgram)                                                             \
+    X(PFNGLVERTEXATTRIBDIVISORPROC, VertexAttribDivisor)                                           \
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                                           \
     X(PFNGLVIEWPORTPROC, Viewport)
+
+// Of OpenGL 4.3, for compute passes: all of them or none.
+#define GL_COMPUTE_FUNCTIONS(X)                                                                    \
+    X(PFNGLBINDIMAGETEXTUREPROC, BindImageTexture)                                                 \
+    X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute)                                                   \
+    X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)
 
 struct gl {
 #define GL_MEMBER(type, name) type name;
     GL_FUNCTIONS(GL_MEMBER)
+    GL_COMPUTE_FUNCTIONS(GL_MEMBER)
 #undef GL_MEMBER
+    bool compute;        // GL_COMPUTE_FUNCTIONS are there
+    int shared_bytes;    // compute: of a work group
+    long storage_bytes;  // compute: of a buffer that passes read and write
     int max_layers;                                // of an array texture, at least 256
     int max_texture;                               // pixels along one side
     bool software;                                 // it is drawn by the CPU

@@ -16,9 +16,10 @@
 #include <time.h>
 
 static const double default_width_mm = 9.0;
-static const double field_nm = 400.0;  // the shortest wavelength that matters; fields are its
-static const double fade_from = 0.9;   // of the radius
-static const double retina_mm = 24.0;  // d as printed
+static const double field_nm = 400.0;    // the shortest wavelength that matters; fields are its
+static const double fade_from = 0.9;     // of the radius
+static const double retina_mm = 24.0;    // d as printed
+static const double least_light = 1e-3;  // of the pupil; lids that leave less are shut
 enum { DEFAULT_SIZE = 1024, DEFAULT_WAVELENGTHS = 32, SPARE = 16 };
 
 struct relume_psf {
@@ -367,22 +368,18 @@ static double now_s(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-relume_status relume_psf_update(relume_psf *psf, const relume_eye *eye)
+relume_status psf_update_aperture(relume_psf *psf, const struct relume_aperture *aperture,
+                                  double dioptres)
 {
-    const struct relume_aperture *const aperture = relume_eye_aperture(eye);
-    const struct relume_subject *const subject = relume_eye_subject(eye);
-    const double dioptres = subject->optics.defocus_dpt;
     const bool real = dioptres == 0.0 && !psf->params.retina_distance;
     const double start = now_s();
-    psf->age = subject->optics.age;
-    psf->pigment = subject->optics.pigment;
     relume_status status = prepare_canvas(psf, aperture);
     if (!status)
         status = canvas_draw(&psf->canvas, aperture, psf->params.parts_off, psf->params.threads);
     if (status)
         return status;
     psf->light = psf->canvas.light;
-    if (psf->light < 1e-3)
+    if (psf->light < least_light)
         return RELUME_OK;
     const double drawn = now_s();
     make_phase(psf, dioptres);
@@ -394,6 +391,14 @@ relume_status relume_psf_update(relume_psf *psf, const relume_eye *eye)
     colour(psf);
     psf->times = (struct relume_psf_times){drawn - start, diffracted - drawn, now_s() - diffracted};
     return RELUME_OK;
+}
+
+relume_status relume_psf_update(relume_psf *psf, const relume_eye *eye)
+{
+    const struct relume_subject *const subject = relume_eye_subject(eye);
+    psf->age = subject->optics.age;
+    psf->pigment = subject->optics.pigment;
+    return psf_update_aperture(psf, relume_eye_aperture(eye), subject->optics.defocus_dpt);
 }
 
 // ---------------------------------------------------------------- results

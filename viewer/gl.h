@@ -66,7 +66,10 @@
     X(PFNGLUNIFORM1FPROC, Uniform1f)                                                               \
     X(PFNGLUNIFORM1IPROC, Uniform1i)                                                               \
     X(PFNGLUNIFORM2FPROC, Uniform2f)                                                               \
+    X(PFNGLUNIFORM1FVPROC, Uniform1fv)                                                             \
+    X(PFNGLUNIFORM2IPROC, Uniform2i)                                                               \
     X(PFNGLUNIFORM3FPROC, Uniform3f)                                                               \
+    X(PFNGLUNIFORM3IPROC, Uniform3i)                                                               \
     X(PFNGLUNIFORM4FPROC, Uniform4f)                                                               \
     X(PFNGLUSEPROGRAMPROC, UseProgram)                                                             \
     X(PFNGLVERTEXATTRIBDIVISORPROC, VertexAttribDivisor)                                           \
@@ -87,9 +90,9 @@ struct gl {
     bool compute;        // GL_COMPUTE_FUNCTIONS are there
     int shared_bytes;    // compute: of a work group
     long storage_bytes;  // compute: of a buffer that passes read and write
-    int max_layers;                                // of an array texture, at least 256
-    int max_texture;                               // pixels along one side
-    bool software;                                 // it is drawn by the CPU
+    int max_layers;      // of an array texture, at least 256
+    int max_texture;     // pixels along one side
+    bool software;       // it is drawn by the CPU
     PFNGLGETGRAPHICSRESETSTATUSPROC reset_status;  // NULL: no one would tell
 };
 

@@ -76,6 +76,6 @@ struct relume_glare_params glare_view(const struct app *app,
     const double pixel = relume_glare_pixel(p.fov_deg, app->width);
     const double most = fmax(fmax(app->width, app->height), 64) * pixel;
     p.no_veil = veil_deg * PI / 180 * p.magnify > most;
-    p.magnify = fmax(fmin(p.magnify, most / pattern->radius), 0.01);
+    p.magnify = fmax(fmin(p.magnify, 0.5 * most / pattern->radius), 0.01);
     return p;
 }

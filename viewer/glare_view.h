@@ -10,8 +10,8 @@
 #define GLARE_SCREEN_DEG 45.0
 double glare_fov_deg(const struct app *app);
 
-// Magnification and veil as the app wants them, as far as a pattern of that geometry reaches no
-// further than the frame is wide or high: first the veil is left out, then the magnification falls.
+// Magnification and veil as the app wants them, as far as they fit: a veil that would reach further
+// than the frame is wide is left out, and a pattern of that geometry gets no wider than the frame.
 struct relume_glare_params glare_view(const struct app *app,
                                       const struct relume_psf_geometry *pattern);
 

@@ -44,8 +44,9 @@ static relume_status compile(GLuint *out, const struct gl *gl, GLenum stage, con
     return say(log, RELUME_ESYSTEM, "shader %s does not compile; %s", name, text);
 }
 
-static relume_status link_program(struct program *program, const struct gl *gl, const GLuint stages[2],
-                                  const char *name, const struct relume_log *log)
+static relume_status link_program(struct program *program, const struct gl *gl,
+                                  const GLuint stages[2], const char *name,
+                                  const struct relume_log *log)
 {
     GLint done = 0;
     program->id = gl->CreateProgram();

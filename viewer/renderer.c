@@ -50,8 +50,8 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
         memcpy(r->uv, uv, (size_t)views * sizeof *r->uv);
     r->needed = calloc((size_t)views, sizeof *r->needed);
     r->relit = calloc((size_t)views, sizeof *r->relit);
-    r->scene = (struct source_scene){
-        .source = *source, .uv = (const double(*)[2])r->uv, .views = views};
+    r->scene =
+        (struct lamp_scene){.source = *source, .uv = (const double(*)[2])r->uv, .views = views};
     relume_status status = r->uv && r->needed && r->relit ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = relighter_create(&r->relighter, gl, source, views, log);
@@ -104,7 +104,7 @@ void renderer_destroy(struct renderer *r)
     relighter_destroy(&r->relighter);
     enhancer_destroy(&r->enhancer);
     glare_end(&r->glare);
-    source_scene_forget(&r->scene);
+    lamp_scene_forget(&r->scene);
     target_destroy(&r->frame, r->gl);
     target_destroy(&r->small, r->gl);
     target_destroy(&r->sum, r->gl);
@@ -371,10 +371,10 @@ static relume_status draw_lights_in_view(struct renderer *r, const struct app *a
 {
     if (!app->now.sight.sources || app->now.pass != RELUME_PASS_COLOUR)
         return RELUME_OK;
-    struct source *sources = malloc(SOURCES_MOST * sizeof *sources);
+    struct lamp_seen *sources = malloc(LAMPS_SEEN_MOST * sizeof *sources);
     if (!sources)
         return RELUME_ENOMEM;
-    const int n = sources_find(sources, app, r->light, r->lights, &r->scene);
+    const int n = lamps_seen(sources, app, r->light, r->lights, &r->scene);
     draw_sources(&r->source, r->gl, place, sources, n);
     free(sources);
     return RELUME_OK;

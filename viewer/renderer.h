@@ -20,9 +20,9 @@ struct renderer {
     GLuint vertices;
     struct target frame;
     const struct target *shown;  // `frame`, or what an eye sees of it; NULL: nothing drawn yet
-    struct target small;  // of the frame, to meter
-    struct target sum;    // of an aperture's cameras, of several slabs; made when first needed
-    relume_slab *grid;    // NULL: not a slab, or several
+    struct target small;         // of the frame, to meter
+    struct target sum;  // of an aperture's cameras, of several slabs; made when first needed
+    relume_slab *grid;  // NULL: not a slab, or several
     const relume_slabs *around;  // several; else NULL
     const int *slab_of;          // of several: [views]
     struct depths depths;        // empty: not a slab, or without depth
@@ -33,7 +33,7 @@ struct renderer {
     const struct target **relit;  // [views]; NULL where not needed
     struct relume_light *light;   // that shine; room for `room`
     int lights, room;
-    struct source_scene scene;  // that hides lights
+    struct lamp_scene scene;  // that hides lights
 };
 
 // `uv` [views] places the cameras of a slab; NULL: there is none, or renderer_use_slabs tells.

@@ -1,4 +1,4 @@
-#include "sources.h"
+#include "lamps_seen.h"
 
 #include "gizmo.h"
 #include "glare_view.h"
@@ -13,7 +13,7 @@ static const double slack = 0.02;  // of a distance, that a surface may lie befo
 static const double far_away = 1e6;
 enum { FACETS = 8 };  // of an area light, along one side
 
-void source_scene_forget(struct source_scene *s)
+void lamp_scene_forget(struct lamp_scene *s)
 {
     relume_image_destroy(&s->surface);
     s->known = false;
@@ -71,7 +71,7 @@ static bool place(double xy[2], const struct app *app, struct relume_vec3 p)
 
 // ---------------------------------------------------------------- what hides it
 
-static int nearest_view(const struct app *app, const struct source_scene *s)
+static int nearest_view(const struct app *app, const struct lamp_scene *s)
 {
     int best = app->now.camera.framing == RELUME_FRAME_VIEW ? app->now.camera.view : 0;
     const struct relume_vec3 eye = app->now.camera.eye;
@@ -108,7 +108,7 @@ static bool place_in_picture(double at[2], const struct app *app, struct relume_
 }
 
 // The view that best knows what lies on the way to `p`, and the place in [0, 1] where it shows it.
-static bool find_view(int *view, double at[2], const struct app *app, const struct source_scene *s,
+static bool find_view(int *view, double at[2], const struct app *app, const struct lamp_scene *s,
                       struct relume_vec3 eye, struct relume_vec3 p)
 {
     const struct app_file *f = &app->file;
@@ -126,17 +126,17 @@ static bool find_view(int *view, double at[2], const struct app *app, const stru
     return true;
 }
 
-static bool need_surface(struct source_scene *s, int view)
+static bool need_surface(struct lamp_scene *s, int view)
 {
     if (s->known && s->view == view)
         return s->surface.data != NULL;
-    source_scene_forget(s);
+    lamp_scene_forget(s);
     s->known = true;
     s->view = view;
     return s->source.surface && !s->source.surface(&s->surface, s->source.user, view);
 }
 
-static bool hidden(const struct app *app, struct source_scene *s, struct relume_vec3 eye,
+static bool hidden(const struct app *app, struct lamp_scene *s, struct relume_vec3 eye,
                    struct relume_vec3 p)
 {
     double at[2];
@@ -158,21 +158,21 @@ static bool hidden(const struct app *app, struct source_scene *s, struct relume_
 
 struct finding {
     const struct app *app;
-    struct source_scene *scene;
+    struct lamp_scene *scene;
     struct relume_vec3 eye;
     double factor;  // pi over a pixel's solid angle
-    struct source *out;
+    struct lamp_seen *out;
     int n;
 };
 
 static void add(struct finding *f, struct relume_vec3 p, const float rgb[3])
 {
     double xy[2];
-    if (f->n == SOURCES_MOST || !(rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0) ||
+    if (f->n == LAMPS_SEEN_MOST || !(rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0) ||
         !place(xy, f->app, p) || hidden(f->app, f->scene, f->eye, p))
         return;
-    struct source *s = &f->out[f->n++];
-    *s = (struct source){.x = xy[0], .y = xy[1]};
+    struct lamp_seen *s = &f->out[f->n++];
+    *s = (struct lamp_seen){.x = xy[0], .y = xy[1]};
     for (int c = 0; c < 3; c++)
         s->rgb[c] = (float)fmin((double)rgb[c] * f->factor, 1e30);
 }
@@ -199,8 +199,8 @@ static void add_distant(struct finding *f, const struct relume_light *light)
         light->rgb);
 }
 
-int sources_find(struct source *out, const struct app *app, const struct relume_light *lights,
-                 int n, struct source_scene *scene)
+int lamps_seen(struct lamp_seen *out, const struct app *app, const struct relume_light *lights, int n,
+               struct lamp_scene *scene)
 {
     const double pixel = relume_glare_pixel(glare_fov_deg(app), app->width);
     struct finding f = {app, scene, eye_of(app), PI / (pixel * pixel), out, 0};

@@ -1,0 +1,327 @@
+// Glare: the compute passes against the library, the eye's time, and what is kept from frame to
+// frame
+#include "fixture.h"
+
+#include "gl_glare.h"
+#include "glare.h"
+#include "glare_view.h"
+#include "lamps.h"
+#include "lamps_seen.h"
+#include "sight.h"
+
+static struct relume_eye *made_eye(double seconds)
+{
+    relume_eye *eye;
+    assert_int_equal(relume_eye_create(&eye, NULL, 30), RELUME_OK);
+    assert_int_equal(relume_eye_advance(eye, seconds, 30), RELUME_OK);
+    return eye;
+}
+
+// ---------------------------------------------------------------- transforms
+
+static double worst_against_dft(const float *in, const float *out, int n, bool inverse)
+{
+    double most = 0;
+    for (int k = 0; k < n; k++) {
+        double re = 0, im = 0;
+        for (int i = 0; i < n; i++) {
+            const double a = (inverse ? 2 : -2) * acos(-1) * ((double)i * k / n);
+            re += in[2 * i] * cos(a) - in[2 * i + 1] * sin(a);
+            im += in[2 * i] * sin(a) + in[2 * i + 1] * cos(a);
+        }
+        most = fmax(most, hypot(re - (double)out[2 * k], im - (double)out[2 * k + 1]));
+    }
+    return most;
+}
+
+// Columns of a picture, the second to the last but one; the others stay.
+static void transform_length(int n, bool inverse)
+{
+    enum { LINES = 4 };
+    struct gl_fft fft = {0};
+    const size_t size = 2 * (size_t)n * LINES * sizeof(float);
+    float *in = malloc(size), *out = malloc(size), column[2][2 * 512];
+    uint64_t random = (uint64_t)n;
+    for (int i = 0; i < 2 * n * LINES; i++)
+        in[i] = (float)uniform(&random) - 0.5f;
+    const GLuint buffer = gl_storage(&fixture_gl, size, in);
+    fixture_gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer);
+    const struct gl_fft_lines lines = {n, 1, LINES - 2, 1, {LINES, 1, 0}, inverse};
+    assert_int_equal(gl_fft_run(&fft, &fixture_gl, &lines, &fixture_log), RELUME_OK);
+    fixture_gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    fixture_gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
+    fixture_gl.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)size, out);
+    for (int line = 0; line < LINES; line++) {
+        for (int i = 0; i < 2 * n; i++) {
+            const int at = 2 * (i / 2 * LINES + line) + i % 2;
+            column[0][i] = in[at];
+            column[1][i] = out[at];
+        }
+        const bool kept = line == 0 || line == LINES - 1;
+        if (kept)
+            assert_memory_equal(column[0], column[1], 2 * (size_t)n * sizeof(float));
+        else  // sums of n floats near 1/2, log2 n roundings each
+            assert_below("transform", worst_against_dft(column[0], column[1], n, inverse),
+                         6e-8 * n);
+    }
+    fixture_gl.DeleteBuffers(1, &buffer);
+    gl_fft_destroy(&fft, &fixture_gl);
+    free(in);
+    free(out);
+}
+
+static void transforms_of_every_radix_are_exact(void **state)
+{
+    (void)state;
+    static const int lengths[] = {64, 80, 96, 128, 320, 384};
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++)
+        transform_length(lengths[i], i % 2 == 1);
+}
+
+static void lengths_are_the_least_that_suit(void **state)
+{
+    (void)state;
+    struct gl small = fixture_gl;
+    assert_int_equal(gl_fft_length(&fixture_gl, 1), 64);
+    assert_int_equal(gl_fft_length(&fixture_gl, 65), 80);
+    assert_int_equal(gl_fft_length(&fixture_gl, 321), 384);
+    assert_int_equal(gl_fft_length(&fixture_gl, 1025), 1280);
+    small.shared_bytes = 1024 * 8;
+    assert_int_equal(gl_fft_length(&small, 1024), 1024);
+    assert_int_equal(gl_fft_length(&small, 1025), 0);
+    small.compute = false;
+    assert_false(gl_psf_fits(&small, 64));
+    assert_false(gl_psf_fits(&fixture_gl, 100));
+}
+
+// ---------------------------------------------------------------- the pattern
+
+static struct relume_image read_texture(const struct gl_aperture *a)
+{
+    struct relume_image image;
+    assert_int_equal(relume_image_create(&image, a->size, a->size, 1), RELUME_OK);
+    fixture_gl.BindFramebuffer(GL_FRAMEBUFFER, a->framebuffer);
+    fixture_gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
+    fixture_gl.ReadPixels(0, 0, a->size, a->size, GL_RED, GL_FLOAT, image.data);
+    return image;
+}
+
+static double most_apart(const struct relume_image *a, const struct relume_image *b)
+{
+    double most = 0;
+    assert_int_equal(a->width, b->width);
+    assert_int_equal(a->channels, b->channels);
+    for (int i = 0; i < a->width * a->height * a->channels; i++) {
+        const double d = fabs((double)a->data[i] - (double)b->data[i]);
+        most = d > most || isnan(d) ? d : most;
+    }
+    return most;
+}
+
+struct pair {
+    relume_eye *eye;
+    relume_psf *library;
+    struct gl_glare card;
+};
+
+static struct pair make_pair(int size, unsigned parts_off, double seconds)
+{
+    const struct relume_psf_params params = {
+        .log = &fixture_log, .size = size, .parts_off = parts_off};
+    struct pair p = {.eye = made_eye(seconds)};
+    assert_int_equal(relume_psf_create(&p.library, &params), RELUME_OK);
+    assert_int_equal(relume_psf_update(p.library, p.eye), RELUME_OK);
+    assert_int_equal(gl_glare_prepare(&p.card, &fixture_gl, &params), RELUME_OK);
+    assert_int_equal(gl_glare_update(&p.card, &fixture_gl, p.eye, &fixture_log), RELUME_OK);
+    return p;
+}
+
+static void free_pair(struct pair *p)
+{
+    gl_glare_destroy(&p->card, &fixture_gl);
+    relume_psf_destroy(&p->library);
+    relume_eye_destroy(&p->eye);
+}
+
+// Both cover texels exactly along x and by lines along y: 4 to 24 of them, here 8 or 16, whose ends
+// differ by up to an eighth of a texel at the top of a disc.
+static void apertures_agree(void **state)
+{
+    (void)state;
+    static const unsigned parts[] = {0, RELUME_EYE_ALL, RELUME_EYE_ALL & ~RELUME_EYE_LIDS};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        struct pair p = make_pair(128, parts[i], 0.2);
+        struct relume_image theirs, ours = read_texture(&p.card.psf.aperture);
+        assert_int_equal(relume_psf_aperture(&theirs, p.library), RELUME_OK);
+        assert_below("transmittance", most_apart(&ours, &theirs), 0.13);
+        double sum[2] = {0, 0};
+        for (int k = 0; k < 128 * 128; k++) {
+            sum[0] += (double)ours.data[k];
+            sum[1] += (double)theirs.data[k];
+        }
+        assert_below("light, relative", fabs(sum[0] / sum[1] - 1), 1e-3);
+        assert_below("lids", fabs(p.card.psf.light - relume_psf_light(p.library)), 1e-3);
+        relume_image_destroy(&ours);
+        relume_image_destroy(&theirs);
+        free_pair(&p);
+    }
+}
+
+static struct relume_image read_colours(const struct gl_psf *psf)
+{
+    const int field = psf->shape.field;
+    struct relume_image image;
+    float(*rgba)[4] = malloc((size_t)field * (size_t)field * sizeof *rgba);
+    double sum[3] = {0, 0, 0};
+    assert_int_equal(relume_image_create(&image, field, field, 3), RELUME_OK);
+    fixture_gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    fixture_gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, psf->colours);
+    fixture_gl.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0,
+                                field * field * (GLsizeiptr)sizeof *rgba, rgba);
+    for (int i = 0; i < field * field; i++)
+        for (int c = 0; c < 3; c++)
+            sum[c] += (double)rgba[i][c];
+    for (int i = 0; i < field * field; i++)
+        for (int c = 0; c < 3; c++)
+            image.data[3 * i + c] = (float)((double)rgba[i][c] / sum[c]);
+    free(rgba);
+    return image;
+}
+
+// The whole of both patterns is 1; what apertures differ by is spread over the field.
+static void patterns_agree(void **state)
+{
+    (void)state;
+    static const unsigned parts[] = {0, RELUME_EYE_ALL};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+        struct pair p = make_pair(128, parts[i], 0.4);
+        struct relume_image theirs, ours = read_colours(&p.card.psf);
+        assert_int_equal(relume_psf_image(&theirs, p.library), RELUME_OK);
+        double apart = 0;
+        for (int k = 0; k < 3 * theirs.width * theirs.height; k++)
+            apart += fabs((double)ours.data[k] - (double)theirs.data[k]) / 3;
+        assert_below("pattern, sum of differences", apart, 5e-3);
+        relume_image_destroy(&ours);
+        relume_image_destroy(&theirs);
+        free_pair(&p);
+    }
+}
+
+// ---------------------------------------------------------------- frames
+
+static struct relume_image made_frame(int width, int height)
+{
+    struct relume_image image;
+    uint64_t random = 7;
+    assert_int_equal(relume_image_create(&image, width, height, 3), RELUME_OK);
+    for (int i = 0; i < 3 * width * height; i++)
+        image.data[i] = (float)uniform(&random);
+    return image;
+}
+
+static void set(struct relume_image *image, int x, int y, float r, float g, float b)
+{
+    float *p = image->data + 3 * (y * image->width + x);
+    p[0] = r;
+    p[1] = g;
+    p[2] = b;
+}
+
+static struct relume_image seen_by_card(struct pair *p, const struct relume_image *frame,
+                                        const struct relume_glare_params *view)
+{
+    struct target from, seen;
+    struct gl_glare_facts facts;
+    struct relume_image image;
+    bool fits;
+    assert_int_equal(target_create(&from, &fixture_gl, frame->width, frame->height, NULL), 0);
+    assert_int_equal(target_create(&seen, &fixture_gl, frame->width, frame->height, NULL), 0);
+    target_write(&from, &fixture_gl, frame);
+    assert_int_equal(gl_glare_watch(&facts, &p->card, &fixture_gl, &from, &fixture_log), 0);
+    assert_float_equal(facts.luminance / relume_glare_luminance(frame), 1, 1e-5);
+    assert_int_equal(gl_glare_apply(&p->card, &fixture_gl, &seen, &from, &facts, p->eye, view,
+                                    &fits, &fixture_log),
+                     RELUME_OK);
+    assert_true(fits);
+    assert_int_equal(target_read(&image, &seen, &fixture_gl), RELUME_OK);
+    target_destroy(&from, &fixture_gl);
+    target_destroy(&seen, &fixture_gl);
+    return image;
+}
+
+static struct relume_image seen_by_library(struct pair *p, const struct relume_image *frame,
+                                           const struct relume_glare_params *view)
+{
+    struct relume_image image;
+    relume_glare *work;
+    assert_int_equal(relume_glare_create(&work), RELUME_OK);
+    assert_int_equal(relume_glare_apply(&image, work, frame, false, p->library, view), RELUME_OK);
+    relume_glare_destroy(&work);
+    return image;
+}
+
+// Differences of the patterns (5e-3 in all) weigh what one pixel holds; the sources are 1000.
+static void glared_frames_agree(void **state)
+{
+    (void)state;
+    static const struct relume_glare_params views[] = {
+        {.fov_deg = 40}, {.fov_deg = 2, .no_veil = true}, {.fov_deg = 20, .magnify = 3}};
+    for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
+        struct pair p = make_pair(128, 0, 0.3);
+        struct relume_image frame = made_frame(90, 70);
+        set(&frame, 40, 30, 1000, 0, 0);
+        set(&frame, 2, 60, 0, 1000, 500);
+        struct relume_image ours = seen_by_card(&p, &frame, &views[i]);
+        struct relume_image theirs = seen_by_library(&p, &frame, &views[i]);
+        double sum[2] = {0, 0};
+        for (int k = 0; k < 3 * 90 * 70; k++) {
+            sum[0] += (double)ours.data[k];
+            sum[1] += (double)theirs.data[k];
+        }
+        assert_below("frame, most", most_apart(&ours, &theirs), 1.0);
+        assert_below("frame, light", fabs(sum[0] / sum[1] - 1), 1e-3);
+        relume_image_destroy(&ours);
+        relume_image_destroy(&theirs);
+        relume_image_destroy(&frame);
+        free_pair(&p);
+    }
+}
+
+static void spoiled_and_tiny_frames_are_seen(void **state)
+{
+    (void)state;
+    static const struct relume_glare_params view = {.fov_deg = 30};
+    struct pair p = make_pair(64, 0, 0.1);
+    struct relume_image frame = made_frame(33, 17);
+    set(&frame, 3, 3, NAN, 1, 1);
+    set(&frame, 8, 8, INFINITY, -INFINITY, 2);
+    struct relume_image ours = seen_by_card(&p, &frame, &view);
+    struct relume_image theirs = seen_by_library(&p, &frame, &view);
+    assert_below("spoiled frame", most_apart(&ours, &theirs), 0.01);
+    relume_image_destroy(&ours);
+    relume_image_destroy(&theirs);
+    relume_image_destroy(&frame);
+    frame = made_frame(1, 1);
+    ours = seen_by_card(&p, &frame, &view);
+    theirs = seen_by_library(&p, &frame, &view);
+    assert_below("one pixel", most_apart(&ours, &theirs), 0.01);
+    set(&frame, 0, 0, 0, 0, 0);
+    relume_image_destroy(&ours);
+    relume_image_destroy(&theirs);
+    ours = (struct relume_image){0};
+    relume_image_destroy(&frame);
+    free_pair(&p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(transforms_of_every_radix_are_exact),
+        cmocka_unit_test(lengths_are_the_least_that_suit),
+        cmocka_unit_test(apertures_agree),
+        cmocka_unit_test(patterns_agree),
+        cmocka_unit_test(glared_frames_agree),
+        cmocka_unit_test(spoiled_and_tiny_frames_are_seen),
+    };
+    return cmocka_run_group_tests(tests, fixture_open, fixture_close);
+}

@@ -36,6 +36,7 @@ struct panel_facts {
     const char *map_folder;  // of environment maps to choose from, or NULL
     const char *const *map;  // their names, ends with NULL
     const char *map_in_use;  // of the selected light, or NULL
+    const char *eye;         // what is known of the eye that looks, or NULL
 };
 // Work through the events and make the triangles of the frame; changes `app` as the user asks.
 // Returns whether the picture changed.

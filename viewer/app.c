@@ -526,7 +526,7 @@ static bool adapt(struct app *app, double seconds)
 
 void app_live(struct app *app, double seconds)
 {
-    if (sight_lives(&app->now.sight) && seconds > 0)
+    if (gaze_lives(&app->now.gaze) && seconds > 0)
         app->eye_s += seconds;
 }
 

@@ -5,7 +5,7 @@
 #ifndef VIEWER_APP_H
 #define VIEWER_APP_H
 
-#include "sight.h"
+#include "gaze.h"
 
 #include <relume/enhance.h>
 #include <relume/frame.h>
@@ -88,7 +88,7 @@ struct app_state {
     int selected;  // light that drags and keys change
     bool ball;     // show the light's direction on a ball in the corner
     enum relume_pass pass;
-    struct sight sight;  // how an eye sees the frame
+    struct gaze gaze;  // how an eye sees the frame
 };
 
 enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT, APP_DRAG_GIZMO };
@@ -150,7 +150,7 @@ bool app_handle(struct app *app, const struct app_event *event);
 // way to split it does.
 bool app_advance(struct app *app, double seconds);
 
-// The same for the living eye alone (struct sight), which never rests.
+// The same for the living eye alone (struct gaze), which never rests.
 void app_live(struct app *app, double seconds);
 
 // Let no glide go on.

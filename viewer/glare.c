@@ -59,19 +59,19 @@ static bool can_pass(struct glare *g)
     return !g->by_library;
 }
 
-static bool wants_passes(struct glare *g, const struct sight *sight)
+static bool wants_passes(struct glare *g, const struct gaze *gaze)
 {
-    return (sight->mode == SIGHT_AUTO || sight->mode == SIGHT_FFT) && can_pass(g);
+    return (gaze->mode == GAZE_AUTO || gaze->mode == GAZE_FFT) && can_pass(g);
 }
 
-static relume_status prepare(struct glare *g, const struct sight *sight, bool passes)
+static relume_status prepare(struct glare *g, const struct gaze *gaze, bool passes)
 {
-    if (g->ready && g->passes == passes && g->parts_off == sight->parts_off)
+    if (g->ready && g->passes == passes && g->parts_off == gaze->parts_off)
         return RELUME_OK;
     const struct relume_psf_params params = {.log = g->log,
                                              .threads = g->threads,
                                              .size = size_of(g, passes),
-                                             .parts_off = sight->parts_off};
+                                             .parts_off = gaze->parts_off};
     forget_pattern(g);
     relume_status status =
         passes ? gl_glare_prepare(&g->card, g->gl, &params) : relume_glare_create(&g->library.work);
@@ -79,7 +79,7 @@ static relume_status prepare(struct glare *g, const struct sight *sight, bool pa
         status = relume_psf_create(&g->library.psf, &params);
     g->ready = !status;
     g->passes = passes;
-    g->parts_off = sight->parts_off;
+    g->parts_off = gaze->parts_off;
     return status;
 }
 
@@ -89,7 +89,7 @@ static relume_status prepare(struct glare *g, const struct sight *sight, bool pa
 static relume_status live(struct glare *g, const struct app *app, double luminance, bool *moved)
 {
     const double own = g->subject ? g->subject->lids.squint : 0;
-    const double squint = fmin(fmax(own, app->now.sight.squint), 0.99);
+    const double squint = fmin(fmax(own, app->now.gaze.squint), 0.99);
     relume_status status = RELUME_OK;
     *moved = !g->eye || app->eye_s > g->eye_s;
     if (!g->eye)
@@ -107,7 +107,7 @@ static relume_status live(struct glare *g, const struct app *app, double luminan
 static relume_status live_and_update(struct glare *g, const struct app *app, double luminance,
                                      double exposure)
 {
-    const double nits = luminance / exposure * sight_nits(&app->now.sight);
+    const double nits = luminance / exposure * gaze_nits(&app->now.gaze);
     bool moved;
     relume_status status = live(g, app, nits >= 0 ? fmin(nits, most_nits) : 0, &moved);
     if (status || (!moved && g->fresh))
@@ -165,13 +165,13 @@ static relume_status take_frame(struct glare *g, const struct target *frame, boo
 }
 
 // Few bright pixels by themselves and a coarse veil of the rest are faster for large frames.
-static enum relume_glare_mode mode_of(const struct sight *sight, const struct target *frame)
+static enum relume_glare_mode mode_of(const struct gaze *gaze, const struct target *frame)
 {
     enum { LARGE = 640 * 360 };
-    switch (sight->mode) {
-    case SIGHT_FFT: return RELUME_GLARE_FFT;
-    case SIGHT_BILLBOARD: return RELUME_GLARE_BILLBOARD;
-    case SIGHT_HYBRID: return RELUME_GLARE_HYBRID;
+    switch (gaze->mode) {
+    case GAZE_FFT: return RELUME_GLARE_FFT;
+    case GAZE_BILLBOARD: return RELUME_GLARE_BILLBOARD;
+    case GAZE_HYBRID: return RELUME_GLARE_HYBRID;
     default: break;
     }
     return frame->width * frame->height > LARGE ? RELUME_GLARE_HYBRID : RELUME_GLARE_FFT;
@@ -202,7 +202,7 @@ static relume_status see_by_library(struct glare *g, const struct target *frame,
     if (status)
         return status;
     struct relume_glare_params view = glare_view(app, relume_psf_shape(g->library.psf));
-    view.mode = mode_of(&app->now.sight, frame);
+    view.mode = mode_of(&app->now.gaze, frame);
     if (g->fresh && same && same_view(&view, &g->view))
         return RELUME_OK;
     g->view = view;
@@ -231,11 +231,11 @@ static relume_status see_by_passes(struct glare *g, const struct target *frame,
 relume_status glare_see(struct glare *g, const struct target *frame, const struct app *app,
                         double exposure)
 {
-    const bool passes = wants_passes(g, &app->now.sight);
+    const bool passes = wants_passes(g, &app->now.gaze);
     bool fits = true;
     relume_status status = need_seen(g, frame->width, frame->height);
     if (!status)
-        status = prepare(g, &app->now.sight, passes);
+        status = prepare(g, &app->now.gaze, passes);
     if (!status)
         status = passes ? see_by_passes(g, frame, app, exposure, &fits)
                         : see_by_library(g, frame, app, exposure);

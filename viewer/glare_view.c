@@ -71,7 +71,7 @@ struct relume_glare_params glare_view(const struct app *app,
 {
     struct relume_glare_params p = {
         .fov_deg = glare_fov_deg(app),
-        .magnify = sight_magnify(&app->now.sight),
+        .magnify = gaze_magnify(&app->now.gaze),
     };
     const double pixel = relume_glare_pixel(p.fov_deg, app->width);
     const double most = fmax(fmax(app->width, app->height), 64) * pixel;

@@ -154,7 +154,7 @@ static bool press_focus(struct app *app, int key)
 static bool press_glare(struct app *app, int key)
 {
     (void)key;
-    app->now.sight.on = !app->now.sight.on;
+    app->now.gaze.on = !app->now.gaze.on;
     return true;
 }
 

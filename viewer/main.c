@@ -94,7 +94,7 @@ static relume_status host_open(void *user, const char *path, const struct relume
 static relume_status host_glare(void *user, const char *words, const char **expected)
 {
     struct session *s = user;
-    return sight_say(&s->app.now.sight, words, expected) ? RELUME_OK : RELUME_EDATA;
+    return gaze_say(&s->app.now.gaze, words, expected) ? RELUME_OK : RELUME_EDATA;
 }
 
 static const double frame_s = 1.0 / 60;  // between frames when time is played
@@ -112,7 +112,7 @@ static relume_status host_wait(void *user, double seconds)
         moves = session_pass(s, fmin(left, step)) || renderer_is_pending(&s->renderer);
         if (s->film)
             status = session_film(s);
-        else if (moves || until_idle || sight_lives(&s->app.now.sight))
+        else if (moves || until_idle || gaze_lives(&s->app.now.gaze))
             status = (s->streams ? show_frame : session_draw)(s);
     }
     return status;
@@ -234,7 +234,7 @@ static relume_status live(struct session *s, struct script *script)
         if (!status && changed && !s->app.quit)
             status = show_frame(s);
         changed = !status && (renderer_is_pending(&s->renderer) || session_is_busy(s) ||
-                              sight_lives(&s->app.now.sight));
+                              gaze_lives(&s->app.now.gaze));
     }
     return status;
 }

@@ -239,7 +239,7 @@ static relume_status take_glare(struct options *o, const char *name, const char 
                                 const struct relume_log *log)
 {
     (void)name, (void)text, (void)log;
-    o->start.sight.on = true;
+    o->start.gaze.on = true;
     return RELUME_OK;
 }
 
@@ -247,7 +247,7 @@ static relume_status take_sources(struct options *o, const char *name, const cha
                                   const struct relume_log *log)
 {
     (void)name, (void)text, (void)log;
-    o->start.sight.sources = true;
+    o->start.gaze.sources = true;
     return RELUME_OK;
 }
 
@@ -285,7 +285,7 @@ static relume_status take_sight(struct options *o, const char *name, const char 
     const char *expected;
     char words[80];
     snprintf(words, sizeof words, "%s %.60s", strrchr(name, '-') + 1, text);
-    if (sight_say(&o->start.sight, words, &expected))
+    if (gaze_say(&o->start.gaze, words, &expected))
         return RELUME_OK;
     return say(log, RELUME_EINVAL, "%s: expected %s; found '%s'", name, expected, text);
 }

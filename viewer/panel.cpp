@@ -470,26 +470,26 @@ static bool picture_section(app *app)
     return changed;
 }
 
-static bool choose_mode(sight *s)
+static bool choose_mode(gaze *s)
 {
     bool changed = false;
-    if (!ImGui::BeginCombo("mode", sight_mode_name(s->mode)))
+    if (!ImGui::BeginCombo("mode", gaze_mode_name(s->mode)))
         return false;
-    for (int i = 0; i < SIGHT_MODES; i++)
-        if (ImGui::Selectable(sight_mode_name((sight_mode)i), s->mode == i)) {
-            s->mode = (sight_mode)i;
+    for (int i = 0; i < GAZE_MODES; i++)
+        if (ImGui::Selectable(gaze_mode_name((gaze_mode)i), s->mode == i)) {
+            s->mode = (gaze_mode)i;
             changed = true;
         }
     ImGui::EndCombo();
     return changed;
 }
 
-static bool parts_row(sight *s)
+static bool parts_row(gaze *s)
 {
     bool changed = false;
-    for (const sight_part *p = sight_parts; p->name; p++) {
+    for (const gaze_part *p = gaze_parts; p->name; p++) {
         bool on = !(s->parts_off & p->part);
-        if (p != sight_parts && p != sight_parts + 3)
+        if (p != gaze_parts && p != gaze_parts + 3)
             ImGui::SameLine();
         if (ImGui::Checkbox(p->name, &on)) {
             s->parts_off ^= p->part;
@@ -503,9 +503,9 @@ static bool parts_row(sight *s)
 
 static bool glare_section(app *app, const panel_facts *facts)
 {
-    sight *s = &app->now.sight;
+    gaze *s = &app->now.gaze;
     const double least[] = {0.1, 1e-2, 0}, most[] = {20, 1e5, 0.95};
-    double magnify = sight_magnify(s), nits = sight_nits(s);
+    double magnify = gaze_magnify(s), nits = gaze_nits(s);
     bool changed = false;
     if (ImGui::Checkbox("glare", &s->on))
         changed = true;
@@ -609,7 +609,7 @@ static bool panel_window(panel *panel, app *app, const panel_facts *facts)
     }
     if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen))
         changed |= picture_section(app);
-    if (ImGui::CollapsingHeader("Glare", app->now.sight.on ? ImGuiTreeNodeFlags_DefaultOpen : 0))
+    if (ImGui::CollapsingHeader("Glare", app->now.gaze.on ? ImGuiTreeNodeFlags_DefaultOpen : 0))
         changed |= glare_section(app, facts);
     panel->histogram = ImGui::CollapsingHeader("Histogram");
     if (panel->histogram)

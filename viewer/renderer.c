@@ -359,7 +359,7 @@ static relume_status relight_needed(struct renderer *r, const struct app *app)
 static relume_status see(struct renderer *r, const struct app *app, double exposure)
 {
     r->shown = &r->frame;
-    if (!app->now.sight.on || app->now.pass != RELUME_PASS_COLOUR)
+    if (!app->now.gaze.on || app->now.pass != RELUME_PASS_COLOUR)
         return RELUME_OK;
     const relume_status status = glare_see(&r->glare, &r->frame, app, exposure);
     r->shown = &r->glare.seen;
@@ -369,7 +369,7 @@ static relume_status see(struct renderer *r, const struct app *app, double expos
 static relume_status draw_lights_in_view(struct renderer *r, const struct app *app,
                                          const struct place *place)
 {
-    if (!app->now.sight.sources || app->now.pass != RELUME_PASS_COLOUR)
+    if (!app->now.gaze.sources || app->now.pass != RELUME_PASS_COLOUR)
         return RELUME_OK;
     struct lamp_seen *sources = malloc(LAMPS_SEEN_MOST * sizeof *sources);
     if (!sources)

@@ -233,7 +233,7 @@ static relume_status replace(struct session *s, const char *path, bool *opened)
         .auto_exposure = was.now.auto_exposure,
         .tone = was.now.tone,
         .white = was.now.white,
-        .sight = was.now.sight,
+        .gaze = was.now.gaze,
     };
     *opened = !session_open(s, path, &start, true);
     if (!*opened)

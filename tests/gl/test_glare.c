@@ -7,7 +7,7 @@
 #include "glare_view.h"
 #include "lamps.h"
 #include "lamps_seen.h"
-#include "sight.h"
+#include "gaze.h"
 
 static struct relume_eye *made_eye(double seconds)
 {
@@ -323,7 +323,7 @@ static void open_stage(struct stage *s, bool by_library)
     const struct app_file file = {
         .geometry = {.projection = RELUME_SPHERICAL}, .width = 64, .height = 32, .views = 1};
     const struct app_state start = {.camera = {.width = 48, .height = 40, .look = {.zoom = 40}},
-                                    .sight = {.on = true, .mode = SIGHT_FFT}};
+                                    .gaze = {.on = true, .mode = GAZE_FFT}};
     *s = (struct stage){.image = made_frame(48, 40)};
     assert_int_equal(app_start(&s->app, &file, &start, true, NULL), RELUME_OK);
     glare_begin(&s->glare, &fixture_gl, &fixture_log);
@@ -369,15 +369,15 @@ static void the_eye_lives_with_the_app(void **state)
     (void)app_advance(&s.app, 0.25);
     assert_true(changed(&s, &seen) > 0.01);
     assert_float_equal(relume_eye_state(s.glare.eye)->time_s, 0.25, 1e-12);
-    s.app.now.sight.paused = true;
+    s.app.now.gaze.paused = true;
     (void)app_advance(&s.app, 5);
     assert_true(changed(&s, &seen) == 0);
     assert_float_equal(relume_eye_state(s.glare.eye)->time_s, 0.25, 1e-12);
-    s.app.now.sight.squint = 0.6;
+    s.app.now.gaze.squint = 0.6;
     assert_true(changed(&s, &seen) > 0.01);
-    s.app.now.sight.magnify = 4;
+    s.app.now.gaze.magnify = 4;
     assert_true(changed(&s, &seen) > 0.01);
-    s.app.now.sight.parts_off = RELUME_EYE_LENS;
+    s.app.now.gaze.parts_off = RELUME_EYE_LENS;
     assert_true(changed(&s, &seen) > 0.01);
     relume_image_destroy(&seen);
     close_stage(&s);
@@ -449,7 +449,7 @@ static void fields_of_view_follow_the_camera(void **state)
     app.now.camera.look.zoom = 1e9;
     assert_float_equal(glare_fov_deg(&app), 0.01, 1e-9);
     app.now.camera.look.zoom = 57;
-    app.now.sight.magnify = 1000;
+    app.now.gaze.magnify = 1000;
     const struct relume_glare_params p = glare_view(&app, &pattern);
     assert_true(p.no_veil &&
                 p.magnify * pattern.radius <= 51 * relume_glare_pixel(p.fov_deg, app.width));
@@ -463,16 +463,16 @@ static void words_change_the_sight_or_nothing(void **state)
                                         "nits 0", "squint 1", "mode quick", "lens",
                                         "on off", "lids of"};
     const char *expected;
-    struct sight s = {0};
-    assert_true(sight_say(&s, "on", &expected) && s.on);
-    assert_true(sight_say(&s, " magnify 3 ", &expected) && s.magnify == 3);
-    assert_true(sight_say(&s, "lens off", &expected) && s.parts_off == RELUME_EYE_LENS);
-    assert_true(sight_say(&s, "lens on", &expected) && s.parts_off == 0);
-    assert_true(sight_say(&s, "mode hybrid", &expected) && s.mode == SIGHT_HYBRID);
-    assert_true(sight_say(&s, "pause", &expected) && s.paused && !sight_lives(&s));
-    const struct sight before = s;
+    struct gaze s = {0};
+    assert_true(gaze_say(&s, "on", &expected) && s.on);
+    assert_true(gaze_say(&s, " magnify 3 ", &expected) && s.magnify == 3);
+    assert_true(gaze_say(&s, "lens off", &expected) && s.parts_off == RELUME_EYE_LENS);
+    assert_true(gaze_say(&s, "lens on", &expected) && s.parts_off == 0);
+    assert_true(gaze_say(&s, "mode hybrid", &expected) && s.mode == GAZE_HYBRID);
+    assert_true(gaze_say(&s, "pause", &expected) && s.paused && !gaze_lives(&s));
+    const struct gaze before = s;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        assert_false(sight_say(&s, wrong[i], &expected));
+        assert_false(gaze_say(&s, wrong[i], &expected));
         assert_true(expected[0] && !memcmp(&s, &before, sizeof s));
     }
 }

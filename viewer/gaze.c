@@ -1,4 +1,4 @@
-#include "sight.h"
+#include "gaze.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -7,17 +7,17 @@
 
 static const double usual_nits = 100;  // white of an ordinary screen
 
-double sight_magnify(const struct sight *s)
+double gaze_magnify(const struct gaze *s)
 {
     return s->magnify > 0 ? s->magnify : 1;
 }
 
-double sight_nits(const struct sight *s)
+double gaze_nits(const struct gaze *s)
 {
     return s->nits > 0 ? s->nits : usual_nits;
 }
 
-const struct sight_part sight_parts[] = {
+const struct gaze_part gaze_parts[] = {
     {"cornea", "flat cells of the cornea", RELUME_EYE_CORNEA},
     {"fibres", "fibres of the lens: the coloured ring", RELUME_EYE_FIBRES},
     {"lens", "particles of the lens: the needles", RELUME_EYE_LENS},
@@ -28,7 +28,7 @@ const struct sight_part sight_parts[] = {
 
 static const char *const mode_names[] = {"auto", "fft", "billboard", "hybrid"};
 
-const char *sight_mode_name(enum sight_mode mode)
+const char *gaze_mode_name(enum gaze_mode mode)
 {
     return mode_names[mode];
 }
@@ -66,12 +66,12 @@ static bool take_number(double *out, const char *text, double least, double most
     return true;
 }
 
-static bool take_mode(struct sight *s, const char *text)
+static bool take_mode(struct gaze *s, const char *text)
 {
-    for (int i = 0; i < SIGHT_MODES; i++) {
+    for (int i = 0; i < GAZE_MODES; i++) {
         const char *at = text;
         if (word_is(&at, mode_names[i]) && at_end(at)) {
-            s->mode = (enum sight_mode)i;
+            s->mode = (enum gaze_mode)i;
             return true;
         }
     }
@@ -83,12 +83,12 @@ static const struct number {
     size_t offset;
     double least, most;
 } numbers[] = {
-    {"magnify", "a magnification from 0.01 to 1000", offsetof(struct sight, magnify), 0.01, 1000},
-    {"nits", "cd/m^2 of a pixel of value 1, 1e-6 to 1e9", offsetof(struct sight, nits), 1e-6, 1e9},
-    {"squint", "how far the lids are closed, 0 to 0.95", offsetof(struct sight, squint), 0, 0.95},
+    {"magnify", "a magnification from 0.01 to 1000", offsetof(struct gaze, magnify), 0.01, 1000},
+    {"nits", "cd/m^2 of a pixel of value 1, 1e-6 to 1e9", offsetof(struct gaze, nits), 1e-6, 1e9},
+    {"squint", "how far the lids are closed, 0 to 0.95", offsetof(struct gaze, squint), 0, 0.95},
 };
 
-bool sight_say(struct sight *s, const char *words, const char **expected)
+bool gaze_say(struct gaze *s, const char *words, const char **expected)
 {
     bool on;
     *expected = "on or off";
@@ -96,7 +96,7 @@ bool sight_say(struct sight *s, const char *words, const char **expected)
         s->on = on;
         return true;
     }
-    for (const struct sight_part *p = sight_parts; p->name; p++) {
+    for (const struct gaze_part *p = gaze_parts; p->name; p++) {
         if (!word_is(&words, p->name))
             continue;
         if (!take_switch(&on, words))

@@ -8,8 +8,9 @@
 
 #include <math.h>
 
-static const double veil_deg = 10.0;  // the pattern ends there
-enum { MOST_REACH = 8192 };           // pixels
+// The veil is the observer's up to the first of these angles and has faded out at the second.
+static const double veil_fade_deg = 7.5, veil_deg = 12.5;
+enum { MOST_REACH = 8192 };  // pixels
 
 // CIE 135/1-1999, total glare function of the standard observer (Vos and van den Berg).
 double relume_cie_glare(double angle_deg, double age, double pigment)
@@ -89,6 +90,12 @@ static void resample_row(void *context, size_t item, int worker)
 
 // ---------------------------------------------------------------- veil
 
+static double smooth(double x, double from, double to)
+{
+    const double t = fmin(fmax((x - from) / (to - from), 0.0), 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
 // Share of the observer's light between two angles: the ring's solid angle is 2 pi sin t dt.
 static double light_between(double from_deg, double to_deg, double age, double pigment)
 {
@@ -97,13 +104,13 @@ static double light_between(double from_deg, double to_deg, double age, double p
     double sum = 0.0;
     for (int i = 0; i < STEPS; i++) {
         const double t = from_deg * exp((i + 0.5) * ratio);
-        sum += relume_cie_glare(t, age, pigment) * 2.0 * M_PI * sin(t * M_PI / 180.0) * t * ratio *
-               M_PI / 180.0;
+        sum += (1.0 - smooth(t, veil_fade_deg, veil_deg)) * relume_cie_glare(t, age, pigment) *
+               2.0 * M_PI * sin(t * M_PI / 180.0) * t * ratio * M_PI / 180.0;
     }
     return sum;
 }
 
-enum { VEIL_STEPS = 2048 };  // from the axis to 10 degrees: the veil bends over whole degrees
+enum { VEIL_STEPS = 2048 };  // from the axis to the end: the veil bends over whole degrees
 struct veil {
     float *const out[3];
     int reach;
@@ -117,8 +124,9 @@ static void make_table(struct veil *v, double fade_deg, double edge_deg, double 
 {
     for (int i = 0; i < VEIL_STEPS; i++) {
         const double t = i * veil_deg / VEIL_STEPS;
-        const double s = fmin(fmax((t - fade_deg) / (edge_deg - fade_deg), 0.0), 1.0);
-        v->table[i] = (float)(s * s * (3.0 - 2.0 * s) * solid * relume_cie_glare(t, age, pigment));
+        const double share =
+            smooth(t, fade_deg, edge_deg) * (1.0 - smooth(t, veil_fade_deg, veil_deg));
+        v->table[i] = (float)(share * solid * relume_cie_glare(t, age, pigment));
     }
     v->table[VEIL_STEPS] = v->table[VEIL_STEPS + 1] = 0.0f;
 }

@@ -35,11 +35,13 @@
     X(PFNGLDISABLEPROC, Disable)                                                                   \
     X(PFNGLDRAWARRAYSPROC, DrawArrays)                                                             \
     X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)                                           \
+    X(PFNGLDRAWBUFFERSPROC, DrawBuffers)                                                           \
     X(PFNGLDRAWELEMENTSPROC, DrawElements)                                                         \
     X(PFNGLENABLEPROC, Enable)                                                                     \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray)                                   \
     X(PFNGLFINISHPROC, Finish)                                                                     \
     X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)                                         \
+    X(PFNGLFRAMEBUFFERTEXTURELAYERPROC, FramebufferTextureLayer)                                   \
     X(PFNGLGENBUFFERSPROC, GenBuffers)                                                             \
     X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                                                   \
     X(PFNGLGENTEXTURESPROC, GenTextures)                                                           \
@@ -56,21 +58,25 @@
     X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)                                             \
     X(PFNGLLINKPROGRAMPROC, LinkProgram)                                                           \
     X(PFNGLPIXELSTOREIPROC, PixelStorei)                                                           \
+    X(PFNGLREADBUFFERPROC, ReadBuffer)                                                             \
     X(PFNGLREADPIXELSPROC, ReadPixels)                                                             \
     X(PFNGLSCISSORPROC, Scissor)                                                                   \
     X(PFNGLSHADERSOURCEPROC, ShaderSource)                                                         \
+    X(PFNGLTEXBUFFERPROC, TexBuffer)                                                               \
     X(PFNGLTEXIMAGE2DPROC, TexImage2D)                                                             \
     X(PFNGLTEXIMAGE3DPROC, TexImage3D)                                                             \
     X(PFNGLTEXPARAMETERIPROC, TexParameteri)                                                       \
     X(PFNGLTEXSUBIMAGE3DPROC, TexSubImage3D)                                                       \
     X(PFNGLUNIFORM1FPROC, Uniform1f)                                                               \
+    X(PFNGLUNIFORM1FVPROC, Uniform1fv)                                                             \
     X(PFNGLUNIFORM1IPROC, Uniform1i)                                                               \
     X(PFNGLUNIFORM2FPROC, Uniform2f)                                                               \
-    X(PFNGLUNIFORM1FVPROC, Uniform1fv)                                                             \
     X(PFNGLUNIFORM2IPROC, Uniform2i)                                                               \
     X(PFNGLUNIFORM3FPROC, Uniform3f)                                                               \
     X(PFNGLUNIFORM3IPROC, Uniform3i)                                                               \
     X(PFNGLUNIFORM4FPROC, Uniform4f)                                                               \
+    X(PFNGLUNIFORM4IPROC, Uniform4i)                                                               \
+    X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)                                                 \
     X(PFNGLUSEPROGRAMPROC, UseProgram)                                                             \
     X(PFNGLVERTEXATTRIBDIVISORPROC, VertexAttribDivisor)                                           \
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                                           \
@@ -87,12 +93,13 @@ struct gl {
     GL_FUNCTIONS(GL_MEMBER)
     GL_COMPUTE_FUNCTIONS(GL_MEMBER)
 #undef GL_MEMBER
-    bool compute;        // GL_COMPUTE_FUNCTIONS are there
-    int shared_bytes;    // compute: of a work group
-    long storage_bytes;  // compute: of a buffer that passes read and write
-    int max_layers;      // of an array texture, at least 256
-    int max_texture;     // pixels along one side
-    bool software;       // it is drawn by the CPU
+    bool compute;                                  // GL_COMPUTE_FUNCTIONS are there
+    int shared_bytes;                              // compute: of a work group
+    long storage_bytes;                            // compute: of a buffer of a pass
+    int max_layers;                                // of an array texture, at least 256
+    int max_texture;                               // pixels along one side
+    int max_buffer;                                // texels of a buffer texture
+    bool software;                                 // it is drawn by the CPU
     PFNGLGETGRAPHICSRESETSTATUSPROC reset_status;  // NULL: no one would tell
 };
 

@@ -4,7 +4,6 @@
 
 #define PI 3.14159265358979323846
 
-static const double veil_deg = 10;
 enum { EXACT_REACH = 2048 };
 
 // ---------------------------------------------------------------- sizes
@@ -25,7 +24,7 @@ static struct gl_convolver plan(const struct gl *gl, const struct relume_psf_geo
 {
     struct gl_convolver c = {.width = width, .height = height};
     c.reach = reach_of(shape, view, shape->radius);
-    const int all = view->veiled ? reach_of(shape, view, veil_deg * PI / 180) : c.reach;
+    const int all = view->veiled ? reach_of(shape, view, RELUME_VEIL_DEG * PI / 180) : c.reach;
     c.most[0] = least(all, width - 1);
     c.most[1] = least(all, height - 1);
     c.size[0] = gl_fft_length(gl, width + c.most[0]);
@@ -44,7 +43,7 @@ bool gl_convolver_fits(const struct gl_convolver *c, const struct relume_psf_geo
                        const struct gl_convolver_view *view, int width, int height)
 {
     const int reach = reach_of(shape, view, shape->radius);
-    const int all = view->veiled ? reach_of(shape, view, veil_deg * PI / 180) : reach;
+    const int all = view->veiled ? reach_of(shape, view, RELUME_VEIL_DEG * PI / 180) : reach;
     return c->spectrum && c->width == width && c->height == height && c->reach == reach &&
            c->most[0] == least(all, width - 1) && c->most[1] == least(all, height - 1);
 }

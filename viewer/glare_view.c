@@ -6,8 +6,6 @@
 
 #define PI 3.14159265358979323846
 
-static const double veil_deg = 10;  // where the pattern with its veil ends
-
 // Half the frame's width, at distance 1, of a picture whose whole width is `picture` at distance 1.
 static double half_frame(const struct app *app, double picture)
 {
@@ -75,7 +73,7 @@ struct relume_glare_params glare_view(const struct app *app,
     };
     const double pixel = relume_glare_pixel(p.fov_deg, app->width);
     const double most = fmax(fmax(app->width, app->height), 64) * pixel;
-    p.no_veil = veil_deg * PI / 180 * p.magnify > most;
+    p.no_veil = RELUME_VEIL_DEG * PI / 180 * p.magnify > most;
     p.magnify = fmax(fmin(p.magnify, 0.5 * most / pattern->radius), 0.01);
     return p;
 }

@@ -156,11 +156,22 @@ static bool hidden(const struct app *app, struct lamp_scene *s, struct relume_ve
 
 // ---------------------------------------------------------------- lights
 
+// The solid angle of a pixel at a place, as a part of that of the middle.
+static double pixel_part(const struct app *app, const double xy[2], double pixel)
+{
+    const enum relume_framing framing = app->now.camera.framing;
+    const bool flat = app->file.geometry.projection == RELUME_PLANAR && !orthographic(app);
+    const double a = pixel * (xy[0] - 0.5 * app->width), b = pixel * (xy[1] - 0.5 * app->height);
+    if (framing == RELUME_FRAME_LOOK && app->now.camera.look.stereographic)
+        return pow(1 + 0.25 * (a * a + b * b), -2);
+    return framing == RELUME_FRAME_VIEW && !flat ? 1 : pow(1 + a * a + b * b, -1.5);
+}
+
 struct finding {
     const struct app *app;
     struct lamp_scene *scene;
     struct relume_vec3 eye;
-    double factor;  // pi over a pixel's solid angle
+    double pixel;  // radians, in the middle
     struct lamp_seen *out;
     int n;
 };
@@ -173,8 +184,9 @@ static void add(struct finding *f, struct relume_vec3 p, const float rgb[3])
         return;
     struct lamp_seen *s = &f->out[f->n++];
     *s = (struct lamp_seen){.x = xy[0], .y = xy[1]};
+    const double solid = f->pixel * f->pixel * pixel_part(f->app, xy, f->pixel);
     for (int c = 0; c < 3; c++)
-        s->rgb[c] = (float)fmin((double)rgb[c] * f->factor, 1e30);
+        s->rgb[c] = (float)fmin(PI * (double)rgb[c] / solid, 1e30);
 }
 
 static void add_area(struct finding *f, const struct relume_light *light)
@@ -199,11 +211,11 @@ static void add_distant(struct finding *f, const struct relume_light *light)
         light->rgb);
 }
 
-int lamps_seen(struct lamp_seen *out, const struct app *app, const struct relume_light *lights, int n,
-               struct lamp_scene *scene)
+int lamps_seen(struct lamp_seen *out, const struct app *app, const struct relume_light *lights,
+               int n, struct lamp_scene *scene)
 {
     const double pixel = relume_glare_pixel(glare_fov_deg(app), app->width);
-    struct finding f = {app, scene, eye_of(app), PI / (pixel * pixel), out, 0};
+    struct finding f = {app, scene, eye_of(app), pixel, out, 0};
     for (int i = 0; i < n; i++) {
         struct relume_vec3 towards;
         float rgb[3];

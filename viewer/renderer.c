@@ -33,7 +33,7 @@ static relume_status create_programs(struct renderer *r)
     for (size_t i = 0; !status && i < sizeof list / sizeof *list; i++)
         status = list[i].create(list[i].program, r->gl, r->log);
     if (!status && r->geometry.projection >= RELUME_CYLINDRICAL)
-        status = draw_panorama_create(&r->panorama, r->gl, r->geometry.projection, r->log);
+        status = draw_panorama_create(&r->panorama, r->gl, &r->geometry, r->log);
     return status;
 }
 

@@ -141,14 +141,17 @@ RELUME_API const char *relume_btf_model_summary(const struct relume_btf_model *m
 
 struct relume_btf_fit_params {  // zero in a field means its default
     const struct relume_log *log;
-    int clusters;    // lpca 32, rfnlc 1024; at most one a texel, [1, 65536] (lpca: 256)
-    int components;  // vpca 4, lpca 8, fmf 100; [1, 256]
+    int clusters;    // lpca 32, cmf 512, rfnlc 1024; at most one a texel, [1, 65536] (lpca: 256)
+    int components;  // vpca 4, lpca 8, fmf 100; [1, 256]; qmf: at most, 512; [1, 1024]
     int lobes;       // rfnl, rfnlc, laf, slaf: 2; [1, 4]
     uint64_t seed;   // equal seeds give equal bytes, whatever the thread count
     int threads;     // default: all cores
     // Levels of detail: each is fitted to means of 2 x 2 texels of the level before, with a quarter
     // of its clusters. Default 1: the BTF alone; -1: down to one texel.
     int levels;
+    // qmf: bytes measured over bytes of the model, at least where one component allows; 200;
+    // [1, 1e6]
+    double ratio;
 };
 #define relume_btf_fit_params(...) (&(const struct relume_btf_fit_params){__VA_ARGS__})
 

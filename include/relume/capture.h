@@ -54,8 +54,13 @@ struct relume_geometry {
     double uv_z, st_z;
     double st_min[2], st_max[2];
     struct relume_pose pose;
-    // cylindrical: the tangents of the lowest and highest elevation
+    // cylindrical: the tangents of the lowest and highest elevation, and the cylinder's end discs:
+    // below its rows the image goes on by `disc` rows, which hold two squares of that side, at the
+    // left the disc at the height v_max, beside it the one at v_min. Each is seen from the eye,
+    // touches the borders of its square, right = direction x up, up is +z for the upper, -z for the
+    // lower one. What lies beside the discs is no part of the picture. 0: no discs.
     double v_min, v_max;
+    int disc;
     // panoramas: the eye
     struct relume_vec3 center;
 };
@@ -63,6 +68,13 @@ struct relume_geometry {
 // The geometry that a manifest without one implies for images of this size.
 RELUME_API struct relume_geometry relume_geometry_default(enum relume_projection projection,
                                                           int width, int height);
+
+// Whether such a cylinder with discs can be: v_min < 0 < v_max, squares that fit, rows above them.
+// True of everything without discs.
+RELUME_API bool relume_geometry_fits(const struct relume_geometry *geometry, int width, int height);
+// False for pixels whose centres lie beside a cylinder's discs.
+RELUME_API bool relume_geometry_shows(const struct relume_geometry *geometry, int width, int height,
+                                      int column, int row);
 
 struct relume_manifest_view {
     double uv[2];         // slab: where the camera stands on the uv plane

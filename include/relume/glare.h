@@ -4,6 +4,7 @@
 
 #include <relume/base.h>
 #include <relume/image.h>
+#include <relume/light.h>
 #include <relume/psf.h>
 
 #ifdef __cplusplus
@@ -37,7 +38,7 @@ struct relume_glare_params {
     // there are at most `sources`.
     double threshold;
     int sources;      // [1, 1048576]; default 256
-    bool no_veil;     // leave out the analytic veil from the pattern's edge to 10 degrees
+    bool no_veil;     // leave out the analytic veil beyond the pattern
     bool keep_light;  // closing lids do not darken the frame
 };
 #define relume_glare_params(...) (&(const struct relume_glare_params){__VA_ARGS__})
@@ -46,14 +47,16 @@ struct relume_glare_params {
 RELUME_API double relume_glare_pixel(double fov_deg, int width);
 
 // The pattern at the frame's scale, odd size, every channel summing to 1: that of `psf` resampled
-// from psf->step to `pixel` radians over `magnify`, and the CIE veil beyond it. the subject that
+// from psf->step to `pixel` radians over `magnify`, and the CIE veil beyond it, which
+// is the observer's up to 7.5 degrees and fades out until 12.5. The subject that
 // was seen last gives the veil's age and pigment. RELUME_EINVAL, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_glare_kernel(struct relume_image *out, const relume_psf *psf,
                                                 double pixel,
                                                 const struct relume_glare_params *params);
 
-// The CIE's observer from where a pattern fades out to 10 degrees, for kernels made elsewhere:
-// pattern (1 - share) + light * a pixel's solid angle, and all of it divided by its sum.
+// That veil from where a pattern fades out to RELUME_VEIL_DEG, for kernels made elsewhere: pattern
+// (1 - share) + light * a pixel's solid angle, and all of it divided by its sum.
+#define RELUME_VEIL_DEG 12.5
 enum { RELUME_VEIL_STEPS = 2048 };
 struct relume_veil {
     double step;                         // radians from number to number
@@ -81,6 +84,20 @@ RELUME_RESULT relume_status relume_glare_apply(struct relume_image *out, relume_
 // Mean BT.709 luminance of a frame, never negative; times cd/m^2 per unit it is what an eye adapts
 // to.
 RELUME_API double relume_glare_luminance(const struct relume_image *frame);
+
+// ------------------------------------------------------------------ lamps in view
+
+// A perspective frame's camera in the world: unit vectors, at right angles.
+struct relume_sight {
+    struct relume_vec3 eye, ahead, right, up;
+    double fov_deg;  // horizontal, (0, 180); square pixels
+};
+// Add to `frame` the lamps themselves, shared out among the four pixels around the place where the
+// sight meets them: the radiance that gives the eye what relume_light_at says it gets, and what a
+// directional light is worth. Areas and environments are left out, and nothing hides a lamp.
+// Returns how many are in view.
+RELUME_API int relume_glare_lamps(struct relume_image *frame, const struct relume_sight *sight,
+                                  const struct relume_light *lights, int n);
 
 #ifdef __cplusplus
 }

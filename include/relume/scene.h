@@ -57,8 +57,10 @@ struct relume_synth_params {
     enum relume_projection projection;  // used only when `projection_set`
     bool projection_set;                // default: the scene's own projection
     int size;       // pixels: width of planar and slab images and of a cube face,
-                    // height of other panoramas (cylindrical: 4:1, spherical: 2:1);
+                    // height of other panoramas (cylindrical: 4:1, without
+                    // its discs; spherical: 2:1);
                     // default 256
+    bool discs;     // cylindrical: with end discs as fine as the cylinder, in further rows below it
     int grid[2];    // slab: cameras along u and v; default 5 x 5
     double spread;  // slab: the grid reaches from -spread to spread; default 0.5, of several
                     // slabs so far that neighbours overlap: 1.15 x 3 tan(180 degrees / slabs)

@@ -178,6 +178,17 @@ static relume_status check_images(relume_capture *c, const struct relume_capture
     return RELUME_OK;
 }
 
+static relume_status check_discs(const relume_capture *c, const struct relume_log *log)
+{
+    const struct relume_geometry *g = &c->draft.m.geometry;
+    if (relume_geometry_fits(g, c->width, c->height))
+        return RELUME_OK;
+    return log_fail(log, RELUME_EDATA,
+                    "%s: panorama.discs; expected at most half of the %d columns and fewer than "
+                    "the %d rows; found %d",
+                    c->path, c->width, c->height, g->disc);
+}
+
 relume_status relume_capture_open(relume_capture **out, const char *path,
                                   const struct relume_capture_params *params)
 {
@@ -194,6 +205,8 @@ relume_status relume_capture_open(relume_capture **out, const char *path,
         c->draft.m.transfer = p.transfer;
     if (!status)
         status = check_images(c, &p);
+    if (!status)
+        status = check_discs(c, p.log);
     if (!status)
         status = kept_create(&c->kept, c->draft.m.views * c->draft.m.lights, p.keep_bytes);
     if (status) {
@@ -322,5 +335,17 @@ relume_status relume_capture_depth(struct relume_image *out, const relume_captur
 relume_status relume_capture_mask(struct relume_image *out, const relume_capture *capture, int view,
                                   const struct relume_log *log)
 {
-    return load_plane(out, capture, capture->draft.m.view[view].mask, log);
+    const struct relume_geometry *g = &capture->draft.m.geometry;
+    const int width = capture->width, height = capture->height;
+    relume_status status = load_plane(out, capture, capture->draft.m.view[view].mask, log);
+    if (status || !g->disc)
+        return status;
+    if (!out->data && !(status = relume_image_create(out, width, height, 1)))
+        for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
+            out->data[i] = 1.0f;
+    for (int y = height - g->disc; !status && y < height; y++)
+        for (int x = 0; x < width; x++)
+            if (!relume_geometry_shows(g, width, height, x, y))
+                out->data[(size_t)y * (size_t)width + (size_t)x] = 0.0f;
+    return status;
 }

@@ -8,6 +8,8 @@
 #include <relume/capture.h>
 #include <relume/lights.h>
 
+enum { MANIFEST_VERSION = 1 };
+
 // A manifest whose arrays live in `arena` and may still be changed.
 struct draft {
     struct arena arena;

@@ -11,8 +11,11 @@ static const struct option options[] = {
     {"-o", OPTION_TEXT, "DIR", "fit: the folder of the model to make; render: the picture", 0, 0},
     {"--model", OPTION_TEXT, "NAME", "fit: rfp, rfnl, rfnlc, vpca, lpca, ...; default rfnlc", 0, 0},
     {"--models", OPTION_TEXT, "A,B,...", "compare: only these", 0, 0},
-    {"--clusters", OPTION_INT, "N", "lpca: default 32; rfnlc: default 1024", 1, 65536},
-    {"--components", OPTION_INT, "N", "vpca: default 4; lpca: 8; fmf: 100", 1, 256},
+    {"--clusters", OPTION_INT, "N", "lpca: default 32; cmf: 512; rfnlc: 1024", 1, 65536},
+    {"--components", OPTION_INT, "N", "vpca: default 4; lpca: 8; fmf: 100; qmf: at most, 512", 1,
+     1024},
+    {"--ratio", OPTION_INT, "R",
+     "qmf: bytes of the measured values to one of the model; default 200", 1, 1000000},
     {"--lobes", OPTION_INT, "N", "rfnl, rfnlc, laf, slaf: default 2", 1, 4},
     {"--levels", OPTION_INT, "N", "fit: levels of detail, each half as wide; default 1", 1, 17},
     {"--leave-out", OPTION_INT, "K",
@@ -97,6 +100,7 @@ static struct relume_btf_fit_params fit_params(const struct args *args)
         .seed = (uint64_t)args_int(args, "--seed", 0),
         .threads = args_threads(args),
         .levels = args_int(args, "--levels", 1),
+        .ratio = args_int(args, "--ratio", 0),
     };
 }
 

@@ -53,20 +53,30 @@ static int by_ends(const void *a, const void *b)
     return memcmp(a, b, sizeof(struct edge));
 }
 
+static void add_edge(struct edge *to, const float a[3], const float b[3])
+{
+    const bool turned = memcmp(a, b, 3 * sizeof *a) > 0;
+    memcpy(to->end[turned], a, 3 * sizeof *a);
+    memcpy(to->end[!turned], b, 3 * sizeof *b);
+}
+
 // Edges that more than two triangles share, by the places of their ends.
 static relume_status count_fins(size_t *out, const struct mesh *m)
 {
-    const size_t n = 3 * m->triangle_count;
-    struct edge *edge = mem_array(n, sizeof *edge);
+    struct edge *edge = mem_array(3 * m->triangle_count, sizeof *edge);
+    size_t n = 0;
     *out = 0;
     if (!edge)
         return RELUME_ENOMEM;
-    for (size_t i = 0; i < n; i++) {
-        const uint32_t *v = m->triangles[i / 3].vertex;
-        const float *a = m->vertices[v[i % 3]].position, *b = m->vertices[v[(i + 1) % 3]].position;
-        const bool turned = memcmp(a, b, 3 * sizeof *a) > 0;
-        memcpy(edge[i].end[turned], a, 3 * sizeof *a);
-        memcpy(edge[i].end[!turned], b, 3 * sizeof *b);
+    for (size_t i = 0; i < m->triangle_count; i++) {
+        const float *p[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = m->vertices[m->triangles[i].vertex[k]].position;
+        const size_t size = sizeof m->vertices->position;
+        if (!memcmp(p[0], p[1], size) || !memcmp(p[1], p[2], size) || !memcmp(p[2], p[0], size))
+            continue;
+        for (int k = 0; k < 3; k++)
+            add_edge(&edge[n++], p[k], p[(k + 1) % 3]);
     }
     qsort(edge, n, sizeof *edge, by_ends);
     for (size_t i = 0, end; i < n; i = end) {

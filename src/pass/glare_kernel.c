@@ -8,8 +8,9 @@
 
 #include <math.h>
 
-static const double veil_deg = 10.0;  // the pattern ends there
-enum { MOST_REACH = 8192 };           // pixels
+// The veil is the observer's up to the first of these angles and has faded out at the second.
+static const double veil_fade_deg = 7.5, veil_deg = RELUME_VEIL_DEG;
+enum { MOST_REACH = 8192 };  // pixels
 
 // CIE 135/1-1999, total glare function of the standard observer (Vos and van den Berg).
 double relume_cie_glare(double angle_deg, double age, double pigment)
@@ -89,6 +90,12 @@ static void resample_row(void *context, size_t item, int worker)
 
 // ---------------------------------------------------------------- veil
 
+static double smooth(double x, double from, double to)
+{
+    const double t = fmin(fmax((x - from) / (to - from), 0.0), 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
 // Share of the observer's light between two angles: the ring's solid angle is 2 pi sin t dt.
 static double light_between(double from_deg, double to_deg, double age, double pigment)
 {
@@ -97,8 +104,8 @@ static double light_between(double from_deg, double to_deg, double age, double p
     double sum = 0.0;
     for (int i = 0; i < STEPS; i++) {
         const double t = from_deg * exp((i + 0.5) * ratio);
-        sum += relume_cie_glare(t, age, pigment) * 2.0 * M_PI * sin(t * M_PI / 180.0) * t * ratio *
-               M_PI / 180.0;
+        sum += (1.0 - smooth(t, veil_fade_deg, veil_deg)) * relume_cie_glare(t, age, pigment) *
+               2.0 * M_PI * sin(t * M_PI / 180.0) * t * ratio * M_PI / 180.0;
     }
     return sum;
 }
@@ -113,8 +120,8 @@ void relume_veil(struct relume_veil *out, const struct relume_psf_geometry *patt
     out->share = light_between(edge, veil_deg, age, pigment);
     for (int i = 0; i < RELUME_VEIL_STEPS; i++) {
         const double t = i * veil_deg / RELUME_VEIL_STEPS;
-        const double s = fmin(fmax((t - fade) / (edge - fade), 0.0), 1.0);
-        out->light[i] = (float)(s * s * (3.0 - 2.0 * s) * relume_cie_glare(t, age, pigment));
+        const double share = smooth(t, fade, edge) * (1.0 - smooth(t, veil_fade_deg, veil_deg));
+        out->light[i] = (float)(share * relume_cie_glare(t, age, pigment));
     }
 }
 

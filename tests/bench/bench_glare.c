@@ -52,7 +52,7 @@ static void patterns(void)
     stages("1024, one thread", relume_psf_params(.threads = 1), &living);
     stages("1280, half field 3 deg", relume_psf_params(.size = 1280, .half_field_deg = 3.0),
            &living);
-    stages("1536, half field 3.6 deg", relume_psf_params(.size = 1536, .half_field_deg = 3.6),
+    stages("1536, half field 4 deg", relume_psf_params(.size = 1536, .half_field_deg = 4.0),
            &living);
 }
 

@@ -419,6 +419,63 @@ static void check_lids(void **state)
     relume_psf_destroy(&psf);
 }
 
+// Between planes no light is lost but what discs take, and a wave that meets nothing in the
+// vitreous body arrives as from one plane.
+static void check_planes(void **state)
+{
+    struct relume_eye_disc disc[40];
+    struct relume_aperture a = round_pupil(3.0);
+    struct relume_image image[2];
+    (void)state;
+    fill_discs(disc, 40, 0.0);
+    a.disc = disc;
+    a.lens.count = 20;
+    for (int k = 0; k < 2; k++) {
+        relume_psf *psf = make_psf(
+            (struct relume_psf_params){.size = 256, .wavelengths = 1, .planes = k ? 4 : 0});
+        image[k] = monochrome(psf, &a, 0.25);
+        relume_psf_destroy(&psf);
+    }
+    for (size_t i = 0; i < 256 * 256; i++)
+        CHECK_NEAR((double)image[1].data[i], (double)image[0].data[i], 1e-7);
+    relume_image_destroy(&image[0]);
+    relume_image_destroy(&image[1]);
+    // A disc in the middle of the second of four planes, at 8.25 mm, has the pattern of one that is
+    // larger by d / (d - z): the middle is darker by as much as it blocks.
+    a.lens.count = 0;
+    a.vitreous = (struct relume_eye_range){0, 1};
+    disc[0] = (struct relume_eye_disc){.radius = 0.2f, .opacity = 1, .depth = 8.25f};
+    relume_psf *psf =
+        make_psf((struct relume_psf_params){.size = 512, .wavelengths = 1, .planes = 4});
+    struct relume_image deep = monochrome(psf, &a, 0.0);
+    relume_psf_destroy(&psf);
+    const double r = 0.2 * 24.0 / (24.0 - 8.25) / 1.5;
+    // Energy in the middle texel: the square of the open share, of a total that is the open share.
+    relume_psf *none = make_psf(
+        (struct relume_psf_params){.size = 512, .wavelengths = 1, .parts_off = RELUME_EYE_ALL});
+    struct relume_image empty = monochrome(none, &a, 0.0);
+    CHECK_NEAR(at(&deep, 256, 256) / at(&empty, 256, 256), 1.0 - r * r, 5e-3);
+    relume_psf_destroy(&none);
+    relume_image_destroy(&deep);
+    relume_image_destroy(&empty);
+}
+
+// The printed d = 24 mm leaves nothing of a pattern: a blur as wide as the texture.
+static void check_literal_distance(void **state)
+{
+    relume_psf *psf = make_psf(
+        (struct relume_psf_params){.size = 256, .wavelengths = 1, .retina_distance = true});
+    const struct relume_aperture pupil = round_pupil(6.0);
+    struct relume_image image = monochrome(psf, &pupil, 0.0);
+    double most = 0.0;
+    (void)state;
+    for (size_t i = 0; i < 256 * 256; i++)
+        most = fmax(most, (double)image.data[i]);
+    assert_true(most < 1e-3);  // Fraunhofer: 0.3
+    relume_image_destroy(&image);
+    relume_psf_destroy(&psf);
+}
+
 // ---------------------------------------------------------------- machine
 
 static struct relume_image pattern(struct relume_psf_params params)
@@ -491,6 +548,8 @@ int main(void)
         cmocka_unit_test(check_drift),
         cmocka_unit_test(check_coverage),
         cmocka_unit_test(check_lids),
+        cmocka_unit_test(check_planes),
+        cmocka_unit_test(check_literal_distance),
         cmocka_unit_test(check_threads_and_kernels),
         cmocka_unit_test(check_parameters),
     };

@@ -86,7 +86,8 @@ void draw_mean(const struct program *program, const struct gl *gl, const struct 
 
 // A perspective look into a panorama.
 relume_status draw_panorama_create(struct program *program, const struct gl *gl,
-                                   enum relume_projection projection, const struct relume_log *log);
+                                   const struct relume_geometry *geometry,
+                                   const struct relume_log *log);
 void draw_panorama(const struct program *program, const struct gl *gl, const struct place *place,
                    const struct relume_geometry *geometry, struct relume_look look,
                    const struct target *view);

@@ -47,6 +47,7 @@ relume_status gl_load(struct gl *gl, gl_proc (*get_proc)(const char *name),
 #undef GL_LOAD
     gl->GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &gl->max_layers);
     gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &gl->max_texture);
+    gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &gl->max_buffer);
     gl->reset_status = find_reset_status(gl, get_proc);
     gl->software = is_software((const char *)gl->GetString(GL_RENDERER));
     return RELUME_OK;

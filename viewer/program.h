@@ -5,7 +5,7 @@
 #include "gl.h"
 #include "shaders.h"
 
-enum { PROGRAM_UNIFORMS = 32 };
+enum { PROGRAM_UNIFORMS = 48 };
 
 struct program {
     GLuint id;

@@ -1,6 +1,7 @@
 #include "renderer.h"
 
 #include "lamps.h"
+#include "renderer_parts.h"
 #include "say.h"
 
 #include <relume/tone.h>
@@ -32,7 +33,7 @@ static relume_status create_programs(struct renderer *r)
     for (size_t i = 0; !status && i < sizeof list / sizeof *list; i++)
         status = list[i].create(list[i].program, r->gl, r->log);
     if (!status && r->geometry.projection >= RELUME_CYLINDRICAL)
-        status = draw_panorama_create(&r->panorama, r->gl, r->geometry.projection, r->log);
+        status = draw_panorama_create(&r->panorama, r->gl, &r->geometry, r->log);
     return status;
 }
 
@@ -102,6 +103,8 @@ void renderer_destroy(struct renderer *r)
     target_destroy(&r->frame, r->gl);
     target_destroy(&r->small, r->gl);
     target_destroy(&r->sum, r->gl);
+    target_destroy(&r->pinholes, r->gl);
+    renderer_objects_destroy(r);
     if (r->depths.views)
         depths_destroy(&r->depths);
     r->gl->DeleteVertexArrays(1, &r->vertices);
@@ -115,8 +118,8 @@ void renderer_destroy(struct renderer *r)
 
 // ---------------------------------------------------------------- framings
 
-static relume_status prepare_target(struct target *target, const struct renderer *r, int width,
-                                    int height)
+relume_status renderer_prepare(struct target *target, const struct renderer *r, int width,
+                               int height)
 {
     if (target->width == width && target->height == height)
         return RELUME_OK;
@@ -129,9 +132,18 @@ static void mark_view(struct renderer *r, const struct app *app)
     r->needed[app->now.camera.view] = true;
 }
 
+// Of the pinholes of a lens, while something moves.
+enum { MOVING_SHARE = 8 };
+
 static double focus_of(const struct app *app)
 {
-    return app->now.focus_z - app->file.geometry.st_z;
+    return app->now.focus_z - (app->file.around ? 0 : app->file.geometry.st_z);
+}
+
+static int picture_width(const struct app *app)
+{
+    const struct app_rectangle p = app_picture(app);
+    return (int)lround(p.right - p.left);
 }
 
 static struct relume_view_params view_params(const struct app *app)
@@ -145,10 +157,10 @@ static struct relume_view_params view_params(const struct app *app)
 
 static void mark_around(struct renderer *r, const struct app *app)
 {
-    const struct relume_view_params params = {.interpolation = app->now.interpolation};
+    const struct relume_view_params params = view_params(app);
     struct relume_window window;
     if (app_window(app, &window))
-        (void)relume_slabs_needs(r->needed, r->around, &window, &params);
+        (void)relume_slabs_needs(r->needed, r->around, &window, picture_width(app), &params);
 }
 
 static void mark_eye(struct renderer *r, const struct app *app)
@@ -186,14 +198,14 @@ static bool takes_depth(const struct renderer *r, const struct app *app)
     int views = 0;
     for (int k = 0; k < r->views; k++)
         views += r->needed[k];
-    return r->depths.views && (views > 1 || r->around) && !takes_lens(app) &&
+    return r->depths.views && (r->around || (views > 1 && !takes_lens(app))) &&
            (i == RELUME_INTERPOLATE_DEFAULT || i == RELUME_INTERPOLATE_DEPTH);
 }
 
 static relume_status draw_lens(struct renderer *r, const struct app *app, const struct place *place,
                                const struct slab_seen *seen)
 {
-    relume_status status = prepare_target(&r->sum, r, place->width, place->height);
+    relume_status status = renderer_prepare(&r->sum, r, place->width, place->height);
     if (status)
         return status;
     target_begin(&r->sum, r->gl);
@@ -203,28 +215,67 @@ static relume_status draw_lens(struct renderer *r, const struct app *app, const 
     return RELUME_OK;
 }
 
-static relume_status draw_around(struct renderer *r, const struct app *app,
-                                 const struct place *place)
+// The mean of all slabs through one window, added to what `onto` holds.
+static void add_around(struct renderer *r, const struct app *app, const struct place *place,
+                       const struct target *onto, const struct relume_window *window, bool by_depth)
 {
-    struct relume_window window;
-    struct slabs_seen seen = {.slabs = r->around, .window = &window, .views = r->relit};
-    double range[2];
-    relume_status status = prepare_target(&r->sum, r, place->width, place->height);
-    const bool by_depth = takes_depth(r, app);
-    if (!status && by_depth)
-        status = depths_use(&r->depths, r->needed, range);
-    if (status || !app_window(app, &window))
-        return status;
-    seen.disparity = by_depth ? r->depths.texture : NULL;
-    seen.range = (const double(*)[2])r->depths.range;
+    const struct slabs_seen seen = {
+        .slabs = r->around,
+        .window = window,
+        .views = r->relit,
+        .disparity = by_depth ? r->depths.texture : NULL,
+        .range = (const double(*)[2])r->depths.range,
+    };
     target_begin(&r->sum, r->gl);
     if (by_depth)
         draw_slabs_depth(&r->slabs_depth, r->gl, place, &seen);
     else
         draw_slabs(&r->slabs, r->gl, place, &seen,
                    app->now.interpolation == RELUME_INTERPOLATE_CONSTANT);
-    target_resume(&r->frame, r->gl);
+    target_resume(onto, r->gl);
+    r->gl->Enable(GL_BLEND);
     draw_mean(&r->mean, r->gl, place, &r->sum);
+    r->gl->Disable(GL_BLEND);
+}
+
+// Twin of relume_slabs_frame: the mean over the pinholes that show anything.
+static relume_status draw_around_lens(struct renderer *r, const struct app *app,
+                                      const struct place *place, const struct relume_window *window,
+                                      bool by_depth)
+{
+    const double aperture = app->now.aperture, focus = focus_of(app);
+    const int width = picture_width(app);
+    struct place plain = *place;
+    const relume_status status = renderer_prepare(&r->pinholes, r, place->width, place->height);
+    if (status || !relume_lens_fits(window, aperture, focus))
+        return status;
+    plain.exposure = 1;
+    target_begin(&r->pinholes, r->gl);
+    const int all = relume_lens_points(window, aperture, focus, width);
+    const int n = app_moves(app) ? (all + MOVING_SHARE - 1) / MOVING_SHARE : all;
+    for (int i = 0; i < n; i++) {
+        const struct relume_window from = relume_lens_window(window, aperture, focus, i, n);
+        add_around(r, app, &plain, &r->pinholes, &from, by_depth);
+    }
+    target_resume(&r->frame, r->gl);
+    draw_mean(&r->mean, r->gl, place, &r->pinholes);
+    return RELUME_OK;
+}
+
+static relume_status draw_around(struct renderer *r, const struct app *app,
+                                 const struct place *place)
+{
+    struct relume_window window;
+    double range[2];
+    relume_status status = renderer_prepare(&r->sum, r, place->width, place->height);
+    const bool by_depth = takes_depth(r, app);
+    if (!status && by_depth)
+        status = depths_use(&r->depths, r->needed, range);
+    if (status || !app_window(app, &window))
+        return status;
+    if (takes_lens(app))
+        return draw_around_lens(r, app, place, &window, by_depth);
+    add_around(r, app, place, &r->frame, &window, by_depth);
     return RELUME_OK;
 }
 
@@ -326,16 +377,10 @@ static relume_status need_lights(struct renderer *r, int n)
     return RELUME_OK;
 }
 
-static relume_status relight_needed(struct renderer *r, const struct app *app)
+relume_status renderer_relight_views(struct renderer *r, const struct app *app,
+                                     const struct relume_light *lights, int count)
 {
-    const struct framing *framing = &framings[app->now.camera.framing];
-    memset(r->needed, 0, (size_t)r->views * sizeof *r->needed);
-    framing->mark(r, app);
-    relume_status status = need_lights(r, app->now.lights);
-    if (status)
-        return status;
-    const int count = lamps_shining(&app->now, r->light);
-    status = relighter_begin(&r->relighter, r->light, count);
+    relume_status status = relighter_begin(&r->relighter, lights, count);
     relume_status (*const look_up)(const struct target **, struct relighter *, int) =
         app->now.pass == RELUME_PASS_COLOUR ? relighter_view : relighter_wait;  // no stand-ins
     for (int i = 0; !status && i < r->views; i++) {
@@ -344,9 +389,29 @@ static relume_status relight_needed(struct renderer *r, const struct app *app)
             status = look_up(&r->relit[i], &r->relighter, i);
         if (!status && r->needed[i] && app->now.pass != RELUME_PASS_COLOUR)
             status = enhancer_view(&r->relit[i], &r->enhancer, i, r->relit[i], app->now.pass,
-                                   r->light, count);
+                                   lights, count);
     }
     return status ? status : stand_in(r);
+}
+
+relume_status renderer_frame(struct renderer *r, const struct app *app, const struct place *place)
+{
+    r->gl->BindVertexArray(r->vertices);
+    target_begin(&r->frame, r->gl);
+    return framings[app->now.camera.framing].draw(r, app, place);
+}
+
+// The lights that shine, and what the frame needs.
+static relume_status prepare(struct renderer *r, const struct app *app, int *lights)
+{
+    relume_status status = renderer_prepare(&r->frame, r, app->width, app->height);
+    memset(r->needed, 0, (size_t)r->views * sizeof *r->needed);
+    if (!r->stage)
+        framings[app->now.camera.framing].mark(r, app);
+    if (!status)
+        status = need_lights(r, app->now.lights);
+    *lights = status ? 0 : lamps_shining(&app->now, r->light);
+    return status;
 }
 
 relume_status renderer_draw(struct renderer *r, const struct app *app)
@@ -357,14 +422,14 @@ relume_status renderer_draw(struct renderer *r, const struct app *app)
         .picture = app_picture(app),
         .exposure = (float)exp2(app_exposure_ev(app)),
     };
-    relume_status status = prepare_target(&r->frame, r, app->width, app->height);
-    if (!status)
-        status = relight_needed(r, app);
-    if (status)
-        return status;
-    r->gl->BindVertexArray(r->vertices);
-    target_begin(&r->frame, r->gl);
-    status = framings[app->now.camera.framing].draw(r, app, &place);
+    int lights;
+    relume_status status = prepare(r, app, &lights);
+    if (!status && r->things.gl)
+        status = renderer_draw_objects(r, app, &place, r->light, lights);
+    else if (!status)
+        status = renderer_relight_views(r, app, r->light, lights);
+    if (!status && !r->things.gl)
+        status = renderer_frame(r, app, &place);
     if (status)
         return status;
     if (app->now.ball)
@@ -396,7 +461,7 @@ relume_status renderer_meter(double *ev, struct renderer *r)
     const struct place place = {width, height, {0, 0, width, height}, 1};
     struct relume_image image;
     *ev = 0;
-    relume_status status = prepare_target(&r->small, r, width, height);
+    relume_status status = renderer_prepare(&r->small, r, width, height);
     if (status)
         return status;
     r->gl->BindVertexArray(r->vertices);

@@ -3,6 +3,7 @@
 #define RELUME_H
 
 #include <relume/align.h>
+#include <relume/ambient.h>
 #include <relume/base.h>
 #include <relume/ball.h>
 #include <relume/btf.h>
@@ -12,22 +13,27 @@
 #include <relume/enhance.h>
 #include <relume/evaluate.h>
 #include <relume/exchange.h>
+#include <relume/eye.h>
 #include <relume/frame.h>
+#include <relume/glare.h>
 #include <relume/heldout.h>
 #include <relume/image.h>
 #include <relume/light.h>
 #include <relume/lightfield.h>
 #include <relume/lights.h>
 #include <relume/normals.h>
+#include <relume/object.h>
 #include <relume/pack.h>
 #include <relume/photograph.h>
 #include <relume/photometric.h>
+#include <relume/psf.h>
 #include <relume/relight.h>
 #include <relume/response.h>
 #include <relume/rig.h>
 #include <relume/scene.h>
 #include <relume/shoot.h>
 #include <relume/slabs.h>
+#include <relume/surface.h>
 #include <relume/tone.h>
 #include <relume/view.h>
 #include <relume/views.h>

@@ -39,6 +39,14 @@ struct relume_shoot_params {
     bool force;               // replace an existing folder
     struct relume_transfer transfer;  // overrides what the files say
     int threads;                      // default: all cores
+    // Photographs of an even surface, which the others are divided by: one against vignetting, or
+    // one under each light; `radial`: by an even polynomial of the distance from the middle that is
+    // fitted to them, else pixel by pixel.
+    const char *const *flats;  // [flat_count]
+    int flat_count;
+    bool radial;
+    int white[4];  // x, y, width, height of a region that is grey, which tells the lamps' colour;
+                   // width 0: none
 };
 
 struct relume_shoot_photo {

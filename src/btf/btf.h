@@ -32,6 +32,9 @@ relume_status btf_make_room(relume_btf *btf, const struct relume_btf_params *par
 relume_status btf_open_pictures(relume_btf **out, const char *path,
                                 const struct relume_btf_params *params);
 
+// The side of the next level of detail.
+int btf_half_side(int side);
+
 // Values of `count` texels from `first` on as out[texel][view][light][3].
 void btf_gather(const relume_btf *btf, size_t first, size_t count, float *out);
 

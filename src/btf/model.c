@@ -7,8 +7,8 @@
 #include <string.h>
 
 const struct relume_btf_model *const relume_btf_models[] = {
-    &model_bump,  &model_laf,  &model_slaf, &model_rfp, &model_rfnl,
-    &model_rfnlc, &model_vpca, &model_lpca, &model_fmf, NULL,
+    &model_lit, &model_bump, &model_laf,  &model_slaf, &model_rfp, &model_rfnl, &model_rfnlc,
+    &model_cmf, &model_vpca, &model_lpca, &model_fmf,  &model_qmf, NULL,
 };
 
 const struct relume_btf_model *relume_btf_model_find(const char *name)
@@ -40,17 +40,25 @@ void model_add(relume_btf_fitted *m, const char *name, enum npy_kind kind, bool 
     }
 }
 
+static void free_arrays(relume_btf_fitted *m)
+{
+    for (int i = 0; i < m->arrays; i++) {
+        if (!m->array[i].file.map)
+            free(m->array[i].data);
+        npy_close(&m->array[i].file);
+    }
+    m->arrays = 0;
+}
+
 void relume_btf_fitted_destroy(relume_btf_fitted **fitted)
 {
     relume_btf_fitted *m = *fitted;
     *fitted = NULL;
     if (!m)
         return;
-    for (int i = 0; i < m->arrays; i++) {
-        if (!m->array[i].file.map)
-            free(m->array[i].data);
-        npy_close(&m->array[i].file);
-    }
+    free_arrays(m);
+    free(m->prepared);
+    relume_btf_fitted_destroy(&m->half);
     relume_dome_destroy(&m->view_dome);
     relume_dome_destroy(&m->light_dome);
     free(m->view);
@@ -76,21 +84,34 @@ static int least(size_t a, size_t b)
     return (int)(a < b ? a : b);
 }
 
+// As many components as there are pictures to be told apart.
+static int most_components(const relume_btf_fitted *m)
+{
+    const int most = m->model->most_components ? m->model->most_components : 256;
+    return least((size_t)most, m->model == &model_vpca ? (size_t)m->lights : m->texels);
+}
+
 static relume_status choose_counts(struct fitting *f, const struct relume_btf_fit_params *p)
 {
     relume_btf_fitted *m = f->out;
     const struct relume_btf_model *k = m->model;
     const size_t most_clusters = k->most_clusters ? (size_t)k->most_clusters : 65536;
-    // as many components as there are pictures to be told apart
-    const size_t most_components = k == &model_vpca ? (size_t)m->lights : m->texels;
     relume_status status = choose(&m->clusters, "clusters", p->clusters, k->clusters,
                                   least(most_clusters, m->texels), f);
     if (!status)
         status = choose(&m->components, "components", p->components, k->components,
-                        least(256, most_components), f);
+                        most_components(m), f);
     if (!status)
         status = choose(&m->lobes, "lobes", p->lobes, k->lobes, MODEL_LOBES, f);
     return status;
+}
+
+// Those of the level before, where texels are left for them: a cluster keeps its share of texels.
+static void inherit_counts(relume_btf_fitted *m, const relume_btf_fitted *from)
+{
+    m->clusters = from->clusters > 4 ? from->clusters / 4 : from->clusters > 0;
+    m->components = least((size_t)from->components, (size_t)most_components(m));
+    m->lobes = from->lobes;
 }
 
 static relume_status check_values(const relume_btf *btf, const struct relume_log *log)
@@ -122,8 +143,9 @@ static relume_status copy_directions(relume_btf_fitted *m, const relume_btf *btf
     return status ? status : relume_dome_create(&m->light_dome, m->light, m->lights, log);
 }
 
-static relume_status make_arrays(relume_btf_fitted *m)
+relume_status model_make_arrays(relume_btf_fitted *m)
 {
+    free_arrays(m);
     m->model->layout(m);
     for (int i = 0; i < m->arrays; i++) {
         m->array[i].data = mem_zeroed(1, npy_bytes(&m->array[i].npy));
@@ -133,11 +155,12 @@ static relume_status make_arrays(relume_btf_fitted *m)
     return RELUME_OK;
 }
 
-relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
-                             const struct relume_btf_model *model,
-                             const struct relume_btf_fit_params *params)
+// One level of detail; `before` is the level before it, or NULL.
+static relume_status fit_level(relume_btf_fitted **out, const relume_btf *btf,
+                               const struct relume_btf_model *model,
+                               const struct relume_btf_fit_params *p,
+                               const relume_btf_fitted *before)
 {
-    const struct relume_btf_fit_params p = params ? *params : (struct relume_btf_fit_params){0};
     *out = NULL;
     relume_btf_fitted *m = mem_zeroed(1, sizeof *m);
     if (!m)
@@ -146,23 +169,81 @@ relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
     m->width = btf->info.width, m->height = btf->info.height;
     m->texels = btf_texels(btf);
     m->without_cosine = btf->info.without_cosine;
-    struct fitting f = {btf, m, p.log, p.seed, p.threads};
-    relume_status status = copy_directions(m, btf, p.log);
+    struct fitting f = {btf, m, p->log, p->seed, p->threads, p->ratio};
+    relume_status status = copy_directions(m, btf, p->log);
+    if (!status && before)
+        inherit_counts(m, before);
+    else if (!status)
+        status = choose_counts(&f, p);
+    if (!status && p->ratio != 0.0 && !(p->ratio >= 1.0 && p->ratio <= 1e6))
+        status =
+            log_fail(p->log, RELUME_EINVAL, "ratio: expected 1 to 1000000; found %g", p->ratio);
     if (!status)
-        status = choose_counts(&f, &p);
-    if (!status)
-        status = check_values(btf, p.log);
-    if (!status)
-        status = make_arrays(m);
+        status = model_make_arrays(m);
     if (!status)
         status = model->fit(&f);
+    if (!status && model->prepare)
+        status = model->prepare(m);
     if (status)
         relume_btf_fitted_destroy(&m);
     *out = m;
     return status;
 }
 
+static relume_status fit_levels(relume_btf_fitted *m, const relume_btf *btf,
+                                const struct relume_btf_fit_params *p)
+{
+    const struct relume_btf_params room = {.log = p->log, .threads = p->threads};
+    relume_btf *half = NULL;
+    relume_status status = RELUME_OK;
+    for (int i = 1; !status && (p->levels < 0 || i < p->levels) && m->texels > 1; i++) {
+        relume_btf *next;
+        status = relume_btf_halve(&next, half ? half : btf, &room);
+        relume_btf_destroy(&half);
+        half = next;
+        if (!status)
+            status = fit_level(&m->half, half, m->model, p, m);
+        m = m->half;
+    }
+    relume_btf_destroy(&half);
+    return status;
+}
+
+relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
+                             const struct relume_btf_model *model,
+                             const struct relume_btf_fit_params *params)
+{
+    const struct relume_btf_fit_params p = params ? *params : (struct relume_btf_fit_params){0};
+    *out = NULL;
+    relume_status status = check_values(btf, p.log);
+    if (!status)
+        status = fit_level(out, btf, model, &p, NULL);
+    if (!status)
+        status = fit_levels(*out, btf, &p);
+    if (status)
+        relume_btf_fitted_destroy(out);
+    return status;
+}
+
+relume_status relume_btf_as_model(relume_btf_fitted **out, const relume_btf *btf,
+                                  const struct relume_log *log)
+{
+    return fit_level(out, btf, &model_table, relume_btf_fit_params(.log = log), NULL);
+}
+
 // ---------------------------------------------------------------- reading back
+
+// All around, a hair above the horizon.
+static double mean_rim(const relume_dome *lights)
+{
+    enum { AROUND = 48 };
+    double sum = 0.0;
+    for (int i = 0; i < AROUND; i++) {
+        const double phi = 2.0 * M_PI * i / AROUND;
+        sum += relume_dome_at(lights, vec3_of(cos(phi), sin(phi), 1e-9)).direction.z;
+    }
+    return sum / AROUND;
+}
 
 struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *m)
 {
@@ -181,7 +262,28 @@ struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *m)
         info.bytes += bytes;
         info.bytes_each += m->array[i].each ? bytes / m->texels : 0;
     }
+    // layouts alone have no directions
+    info.rim = m->light_dome ? mean_rim(m->light_dome) : 0.0;
+    info.levels = 1;
+    info.bytes_levels = info.bytes;
+    if (m->half) {
+        const struct relume_btf_fitted_info half = relume_btf_fitted_info(m->half);
+        info.levels += half.levels;
+        info.bytes_levels += half.bytes_levels;
+    }
     return info;
+}
+
+struct relume_btf_cost relume_btf_fitted_cost(const relume_btf_fitted *m)
+{
+    return m->model->cost(m);
+}
+
+const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fitted *m, int level)
+{
+    for (; level > 0 && m->half; level--)
+        m = m->half;
+    return m;
 }
 
 // What stands for a direction where the model is not gridded: itself.

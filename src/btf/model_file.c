@@ -4,12 +4,20 @@
 #include "base/memory.h"
 #include "btf/model.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
-enum { VERSION = 1 };
+enum { VERSION = 1, MOST_LEVELS = 17 };
 
 // ---------------------------------------------------------------- writing
+
+// Where a level of detail lies: in the folder itself, then in level1, level2, ...
+static char *level_folder(const char *folder, int level)
+{
+    return level ? mem_format("%s/level%d", folder, level) : mem_text(folder);
+}
 
 static relume_status save_json(const relume_btf_fitted *m, const char *folder,
                                const struct relume_log *log)
@@ -20,11 +28,12 @@ static relume_status save_json(const relume_btf_fitted *m, const char *folder,
     if (path && view && light)
         text = mem_format("{ \"format\": \"relume-btf-model\", \"version\": %d,\n"
                           "  \"model\": \"%s\", \"width\": %d, \"height\": %d,\n"
-                          "  \"clusters\": %d, \"components\": %d, \"lobes\": %d,\n"
-                          "  \"includes_cosine\": %s,\n"
+                          "  \"clusters\": %d, \"components\": %d, \"lobes\": %d, \"levels\": %d,\n"
+                          "  \"texel_bytes\": %d, \"pair_bytes\": %d, \"includes_cosine\": %s,\n"
                           "  \"view_directions\": %s,\n  \"light_directions\": %s }\n",
                           VERSION, m->model->name, m->width, m->height, m->clusters, m->components,
-                          m->lobes, m->without_cosine ? "false" : "true", view, light);
+                          m->lobes, relume_btf_fitted_info(m).levels, m->texel_bytes, m->pair_bytes,
+                          m->without_cosine ? "false" : "true", view, light);
     const relume_status status = text ? outfile_save(path, text, strlen(text), log) : RELUME_ENOMEM;
     free(path);
     free(view);
@@ -33,21 +42,44 @@ static relume_status save_json(const relume_btf_fitted *m, const char *folder,
     return status;
 }
 
+static relume_status save_level(const relume_btf_fitted *m, const char *folder,
+                                const struct relume_log *log)
+{
+    relume_status status = RELUME_OK;
+    for (int i = 0; i < m->arrays && !status; i++) {
+        char *file = mem_format("%s/%s.npy", folder, m->array[i].name);
+        status = file ? npy_save(&m->array[i].npy, m->array[i].data, file, log) : RELUME_ENOMEM;
+        free(file);
+    }
+    return status ? status : save_json(m, folder, log);
+}
+
+relume_status model_save_into(const relume_btf_fitted *m, const char *folder,
+                              const struct relume_log *log)
+{
+    relume_status status = RELUME_OK;
+    for (int level = 0; m && !status; level++, m = m->half) {
+        char *path = level_folder(folder, level);
+        if (path && level && mkdir(path, 0777))
+            status = log_fail(log, RELUME_EIO, "%s: cannot be created; %s", path, strerror(errno));
+        if (!status)
+            status = path ? save_level(m, path, log) : RELUME_ENOMEM;
+        free(path);
+    }
+    return status;
+}
+
 relume_status relume_btf_fitted_save(const relume_btf_fitted *m, const char *path,
                                      const struct relume_btf_params *params)
 {
     const struct relume_log *log = params ? params->log : NULL;
     outdir *dir;
+    if (m->table)
+        return log_fail(log, RELUME_EINVAL, "%s: measured values are no model to save", path);
     relume_status status = outdir_open(&dir, path, params && params->force, log);
     if (status)
         return status;
-    for (int i = 0; i < m->arrays && !status; i++) {
-        char *file = mem_format("%s/%s.npy", outdir_path(dir), m->array[i].name);
-        status = file ? npy_save(&m->array[i].npy, m->array[i].data, file, log) : RELUME_ENOMEM;
-        free(file);
-    }
-    if (!status)
-        status = save_json(m, outdir_path(dir), log);
+    status = model_save_into(m, outdir_path(dir), log);
     if (!status)
         return outdir_commit(&dir);
     outdir_abort(&dir);
@@ -100,10 +132,14 @@ static relume_status read_counts(relume_btf_fitted *m, const jvalue *root, const
         !limits_allow(&r->limits, m->width, m->height))
         return wrong(r, "width, height", "texels within the limits");
     if (!read_count(root, "clusters", 65536, &m->clusters) ||
-        !read_count(root, "components", 256, &m->components) ||
+        !read_count(root, "components", 1024, &m->components) ||
         !read_count(root, "lobes", MODEL_LOBES, &m->lobes) || !m->clusters != !k->clusters ||
         !m->components != !k->components || !m->lobes != !k->lobes)
         return wrong(r, "clusters, components, lobes", "counts that fit the model");
+    if (k->is_sound && (!read_count(root, "texel_bytes", 1 << 16, &m->texel_bytes) ||
+                        !read_count(root, "pair_bytes", 1 << 16, &m->pair_bytes) ||
+                        !m->texel_bytes || !m->pair_bytes))
+        return wrong(r, "texel_bytes, pair_bytes", "counts of bytes");
     if (!jvalue_truth(jvalue_member(root, "includes_cosine"), &cosine))
         return wrong(r, "includes_cosine", "true or false");
     m->texels = (size_t)m->width * (size_t)m->height;
@@ -149,6 +185,10 @@ static bool values_are_good(const struct model_array *a)
             if (((const uint16_t *)a->data)[i] >= a->below)
                 return false;
             break;
+        case NPY_U32:
+            if (((const uint32_t *)a->data)[i] >= a->below)
+                return false;
+            break;
         case NPY_HALF:
             if ((((const uint16_t *)a->data)[i] & 0x7c00u) == 0x7c00u)
                 return false;
@@ -188,13 +228,16 @@ static relume_status read_all(relume_btf_fitted *m, const jvalue *root, const st
         m->model->layout(m);
     for (int i = 0; i < m->arrays && !status; i++)
         status = read_array(&m->array[i], r);
-    return status;
+    if (!status && m->model->is_sound && !m->model->is_sound(m))
+        status = wrong(r, "arrays do not fit together", "rows of bits as long as their widths");
+    return status || !m->model->prepare ? status : m->model->prepare(m);
 }
 
-relume_status relume_btf_fitted_open(relume_btf_fitted **out, const char *path,
-                                     const struct relume_btf_params *params)
+// `levels` is left as it is where the file does not say.
+static relume_status open_level(relume_btf_fitted **out, const char *folder, int *levels,
+                                const struct relume_btf_params *params)
 {
-    struct reader r = {path, mem_format("%s/model.json", path),
+    struct reader r = {folder, mem_format("%s/model.json", folder),
                        limits_or_default(params ? params->limits : NULL),
                        params ? params->log : NULL};
     relume_btf_fitted *m = mem_zeroed(1, sizeof *m);
@@ -203,10 +246,48 @@ relume_status relume_btf_fitted_open(relume_btf_fitted **out, const char *path,
     relume_status status = r.json && m ? jvalue_load(&root, r.json, r.log) : RELUME_ENOMEM;
     if (!status)
         status = read_all(m, root, &r);
+    const jvalue *count = jvalue_member(root, "levels");
+    if (!status && count && (!read_count(root, "levels", MOST_LEVELS, levels) || *levels < 1))
+        status = wrong(&r, "levels", "at least 1");
     if (status)
         relume_btf_fitted_destroy(&m);
     *out = m;
     jvalue_free(&root);
     free(r.json);
+    return status;
+}
+
+static bool is_half_of(const relume_btf_fitted *m, const relume_btf_fitted *half)
+{
+    return half->model == m->model && half->without_cosine == m->without_cosine &&
+           half->width == btf_half_side(m->width) && half->height == btf_half_side(m->height) &&
+           half->views == m->views && half->lights == m->lights;
+}
+
+static relume_status open_half(relume_btf_fitted *m, const char *folder, int level,
+                               const struct relume_btf_params *params)
+{
+    int ignored = 1;
+    char *path = level_folder(folder, level);
+    relume_status status = path ? open_level(&m->half, path, &ignored, params) : RELUME_ENOMEM;
+    if (!status && !is_half_of(m, m->half))
+        status = log_fail(params ? params->log : NULL, RELUME_EDATA,
+                          "%s: %s of %d x %d texels; expected %s of %d x %d and as many directions",
+                          path, m->half->model->name, m->half->width, m->half->height,
+                          m->model->name, btf_half_side(m->width), btf_half_side(m->height));
+    free(path);
+    return status;
+}
+
+relume_status relume_btf_fitted_open(relume_btf_fitted **out, const char *path,
+                                     const struct relume_btf_params *params)
+{
+    int levels = 1;
+    relume_status status = open_level(out, path, &levels, params);
+    relume_btf_fitted *m = *out;
+    for (int level = 1; level < levels && !status; level++, m = m->half)
+        status = open_half(m, path, level, params);
+    if (status)
+        relume_btf_fitted_destroy(out);
     return status;
 }

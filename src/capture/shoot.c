@@ -281,6 +281,8 @@ static relume_status run(struct shoot *s)
     if (!status)
         status = shoot_find_lights(s);
     if (!status)
+        status = shoot_whiten(s);
+    if (!status)
         status = fill_result(s);
     if (!status)
         status = shoot_check_lights(s);
@@ -302,6 +304,13 @@ static relume_status check_params(const struct relume_shoot_params *p)
         return log_fail(p->log, RELUME_EDATA,
                         "%d photographs of the ball; expected %d, one for each of the object",
                         p->ball_photograph_count, p->photograph_count);
+    if (p->flat_count > 1 && p->flat_count != p->photograph_count)
+        return log_fail(p->log, RELUME_EDATA,
+                        "%d flat fields; expected 1, or %d as photographs, each under its light",
+                        p->flat_count, p->photograph_count);
+    if (p->white[2] && p->matte && !p->lights)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "a matte ball tells the lamps' colour already; expected no grey region");
     if (p->refine && p->near)
         return log_fail(p->log, RELUME_EINVAL,
                         "near lights cannot be refined; expected distant ones");
@@ -314,6 +323,8 @@ static void release(struct shoot *s)
         relume_image_destroy(&s->shot[i].small);
     free(s->shot);
     relume_image_destroy(&s->first);
+    relume_image_destroy(&s->gain);
+    relume_image_destroy(&s->grey);
     relume_image_destroy(&s->mean);
     relume_image_destroy(&s->peak);
 }

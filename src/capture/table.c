@@ -91,8 +91,8 @@ static relume_status open_near(relume_table *t, struct relume_transfer display, 
     return status;
 }
 
-static relume_status open_table(relume_table **out, const relume_capture *capture, int view,
-                                bool as_seen, const struct relume_table_params *params)
+relume_status relume_table_open(relume_table **out, const relume_capture *capture, int view,
+                                const struct relume_table_params *params)
 {
     const struct relume_table_params p = params ? *params : (struct relume_table_params){0};
     const int lights = capture->draft.m.lights;
@@ -123,7 +123,7 @@ static relume_status open_table(relume_table **out, const relume_capture *captur
     t->near = near_applies(capture, view);
     t->bytes = !t->near;
     if (!status && t->near) {
-        status = open_near(t, to, as_seen);
+        status = open_near(t, to, p.as_seen);
         to.curve = RELUME_CURVE_LINEAR;
     }
     while (!status && t->open < lights) {
@@ -137,18 +137,6 @@ static relume_status open_table(relume_table **out, const relume_capture *captur
         relume_table_destroy(&t);
     *out = t;
     return status;
-}
-
-relume_status relume_table_open(relume_table **out, const relume_capture *capture, int view,
-                                const struct relume_table_params *params)
-{
-    return open_table(out, capture, view, false, params);
-}
-
-relume_status table_open_as_seen(relume_table **out, const relume_capture *capture, int view,
-                                 const struct relume_table_params *params)
-{
-    return open_table(out, capture, view, true, params);
 }
 
 static void read_light(void *context, size_t item, int worker)
@@ -256,7 +244,8 @@ static relume_status check_lights(relume_table *table)
     return RELUME_OK;
 }
 
-relume_status relume_table_read(relume_table *table, int rows, float *out)
+// `seen` may be NULL.
+static relume_status read(relume_table *table, int rows, float *out, float *seen)
 {
     const int lights = table->capture->draft.m.lights;
     if (rows < 1 || rows > table->capture->height - table->row)
@@ -269,11 +258,38 @@ relume_status relume_table_read(relume_table *table, int rows, float *out)
     if (status)
         return status;
     repair(table);
-    if (!table->near)
-        return RELUME_OK;
-    thread_for(table->threads, (size_t)lights, level_light, table);
+    if (table->near)
+        thread_for(table->threads, (size_t)lights, level_light, table);
+    if (seen)
+        memcpy(seen, out,
+               3 * (size_t)lights * (size_t)rows * (size_t)table->capture->width * sizeof *out);
     return table->distant ? distant_resample(table->distant, table->row - rows, rows, out)
                           : RELUME_OK;
+}
+
+relume_status relume_table_read(relume_table *table, int rows, float *out)
+{
+    return read(table, rows, out, NULL);
+}
+
+relume_status relume_table_read_seen(relume_table *table, int rows, float *out, float *seen)
+{
+    return read(table, rows, out, seen);
+}
+
+bool relume_table_is_near(const relume_table *table)
+{
+    return table->near;
+}
+
+void relume_table_directions(const relume_table *table, double x, double y, int reach,
+                             struct relume_vec3 *direction)
+{
+    const struct near *near = &table->lamps;
+    const vec3 point = near_around(near, x, y, reach);
+    double gain;
+    for (int i = 0; i < near->lights; i++)
+        direction[i] = near_direction(&gain, near, i, point);
 }
 
 static void fetch_light(void *context, size_t item, int worker)

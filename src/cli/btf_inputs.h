@@ -10,7 +10,31 @@ bool btf_is_model(const char *path);
 // A folder, or a built-in material when there is none of that name.
 relume_status btf_open(relume_btf **out, const char *name, const struct args *args);
 
-// The sample as it was photographed: every texel seen from --eye, under distant lights.
+// Whether the folder holds a surface.
+bool btf_is_surface(const char *path);
+
+// A BTF or a model: what takes models takes both.
+struct btf_sample {
+    relume_btf *btf;  // NULL where a model was given
+    relume_btf_fitted *model;
+};
+relume_status btf_open_sample(struct btf_sample *out, const char *name, const struct args *args);
+void btf_close_sample(struct btf_sample *sample);
+
+// The model of --model, --clusters, ... fitted to the BTF.
+relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, const struct args *args);
+
+// "WxH" of an option; what is not given stays. RELUME_EINVAL with a sentence.
+relume_status btf_pair(int out[2], const struct args *args, const char *option, int most);
+
+// The tasks that have files of their own.
 relume_status btf_render(const struct args *args);
+relume_status btf_tile(const struct args *args);
+
+// Whether `btf render` is asked for objects: --mesh, or a description in JSON.
+bool btf_is_objects(const struct args *args);
+// These, ray traced.
+relume_status btf_render_objects(const struct args *args);
+relume_status objects_open(relume_objects **out, const char *path, const struct args *args);
 
 #endif

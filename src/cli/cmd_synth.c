@@ -21,6 +21,8 @@ static const struct option options[] = {
      "directions of a capture.json, a .lp file or lines x y z", 0, 0},
     {"--projection", OPTION_TEXT, "P",
      "planar, slab, cylindrical, spherical, cube; default: the scene's own", 0, 0},
+    {"--discs", OPTION_FLAG, NULL, "cylindrical: with its end discs, so that it shows everything",
+     0, 0},
     {"--eye", OPTION_TEXT, "x,y,z", "where the eye is; may be repeated for a slab", 0, 0},
     {"--samples", OPTION_INT, "N", "camera rays per pixel; default 16", 1, 65536},
     {"--bounces", OPTION_INT, "N", "bounces of indirect light; default 0", 0, 64},
@@ -28,6 +30,8 @@ static const struct option options[] = {
     {"--seed", OPTION_INT, "S", "of random patterns and sampling; default 0", 0, 2147483647},
     {"--btf", OPTION_TEXT, "MATERIAL",
      "measure a built-in material as a BTF; --size in texels, default 64", 0, 0},
+    {"--extent", OPTION_INT, "N", "of a material: N times as many stones, threads, ... a side", 1,
+     16},
     {"--directions", OPTION_TEXT, "SET",
      "BTF: of views and lights: bonn (default), dome, coarse, or a file of directions", 0, 0},
     {"--force", OPTION_FLAG, NULL, "replace an existing folder", 0, 0},
@@ -150,8 +154,9 @@ static relume_status synth_btf(const struct args *args)
         status = relume_btf_synth(
             &btf, material,
             relume_btf_synth_params(.log = args_log(args), .size = args_int(args, "--size", 0),
-                                    .view = directions, .views = n, .light = directions,
-                                    .lights = n, .samples = args_int(args, "--samples", 0),
+                                    .extent = args_int(args, "--extent", 0), .view = directions,
+                                    .views = n, .light = directions, .lights = n,
+                                    .samples = args_int(args, "--samples", 0),
                                     .bounces = args_has(args, "--bounces") &&
                                                        !args_int(args, "--bounces", 0)
                                                    ? -1
@@ -194,6 +199,7 @@ static relume_status run(const struct args *args)
         .spread = args_number(args, "--spread", 0.0),
         .seed = (uint64_t)args_int(args, "--seed", 0),
         .threads = args_threads(args),
+        .discs = args_has(args, "--discs"),
         .force = args_has(args, "--force"),
     };
     if (!args_has(args, "-o"))

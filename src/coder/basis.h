@@ -42,6 +42,13 @@ void coder_apply(const relume_coder *coder, const float *samples, size_t stride,
 void coder_apply_separated(const relume_coder *coder, size_t n, float *planes, size_t plane_stride,
                            float *work);
 
+// samples[light][pixel][channel] -> to[channel][light][pixel], lights `stride` apart.
+void coder_separate(float *to, const float *samples, size_t stride, int lights, size_t n);
+// The same; luminance coders: the luminances [light][pixel], and the
+// pixels' colours into their planes.
+void coder_part(const relume_coder *coder, float *parted, const float *samples, size_t stride,
+                size_t n, float *planes, size_t plane_stride);
+
 // The stored functions at some lights: basis[3][lights][K] and constant[3][lights].
 struct captured {
     int lights;

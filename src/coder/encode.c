@@ -10,6 +10,7 @@
 #include "coder/basis.h"
 #include "coder/census.h"
 #include "coder/coefficients.h"
+#include "coder/seen.h"
 #include "image/half.h"
 
 #include <errno.h>
@@ -23,6 +24,9 @@ struct encoder {
     int lights, width, height, planes;
     int row, rows;  // of the band in progress
     relume_table *table;
+    struct seen *seen;    // or NULL: lights are distant, or the coder wants distant ones
+    float *samples;       // [lights][rows][x][3], with `seen`
+    float *own;           // the same as pixels really saw them
     float *values;        // [planes][rows][x]
     struct range *chunk;  // [chunks of a band][planes]
     float *work;          // [workers][coder_work]
@@ -69,17 +73,28 @@ static struct range band_range(const struct encoder *e, size_t plane)
     return range_settle(r);
 }
 
+// Samples of `n` pixels of the band: [channel][light][pixel].
+static void gather(const struct encoder *e, size_t first, size_t n, float *separated)
+{
+    const size_t pixels = (size_t)e->rows * (size_t)e->width, lights = (size_t)e->lights;
+    if (e->seen)
+        coder_separate(separated, e->samples + 3 * first, 3 * pixels, e->lights, n);
+    else
+        for (size_t i = 0; i < lights; i++)
+            relume_table_planes(e->table, (int)i, first, n, separated + i * n, lights * n);
+}
+
 static void apply_chunk(void *context, size_t item, int worker)
 {
     struct encoder *e = context;
     const size_t pixels = (size_t)e->rows * (size_t)e->width, first = item * CODER_CHUNK;
     const size_t n = pixels - first < CODER_CHUNK ? pixels - first : CODER_CHUNK;
-    const size_t at = (size_t)e->row * (size_t)e->width + first, lights = (size_t)e->lights;
+    const size_t at = (size_t)e->row * (size_t)e->width + first;
     float *work = e->work + (size_t)worker * coder_work(e->coder);
-    for (size_t i = 0; i < lights; i++)
-        relume_table_planes(e->table, (int)i, first, n, work + i * n, lights * n);
+    gather(e, first, n, work);
     census_add(&e->census, worker, work, n, e->mask->data ? e->mask->data + at : NULL);
-    coder_apply_separated(e->coder, n, e->values + first, pixels, work);
+    if (!e->seen)
+        coder_apply_separated(e->coder, n, e->values + first, pixels, work);
     apply_mask(e, first, n);
     for (size_t p = 0; p < (size_t)e->planes; p++)
         e->chunk[item * (size_t)e->planes + p] = range_of(e->values + p * pixels + first, n);
@@ -139,6 +154,27 @@ static relume_status measure_fit(struct encoder *e)
     return RELUME_OK;
 }
 
+// The same of near lights: a pixel in 8.
+static relume_status measure_seen(struct encoder *e)
+{
+    const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
+    float *again = mem_array(3 * (size_t)e->lights, sizeof *again);
+    if (!again)
+        return RELUME_ENOMEM;
+    for (size_t x = 0; x < width; x += 8) {
+        if (!is_inside(e->mask, (size_t)e->row * width + x))
+            continue;
+        seen_predict(e->seen, (int)x, e->row, e->values + x, pixels, again);
+        for (size_t i = 0; i < 3 * (size_t)e->lights; i++) {
+            const double d = (double)e->own[(i / 3 * pixels + x) * 3 + i % 3] - (double)again[i];
+            e->error_sum += d * d;
+            e->error_count++;
+        }
+    }
+    free(again);
+    return RELUME_OK;
+}
+
 // Ranges and steps are differences of coefficients, which must not overflow; halves end at 65504.
 static relume_status check_size(const struct encoder *e, const struct relume_encode_params *p)
 {
@@ -190,12 +226,15 @@ static relume_status write_band(struct encoder *e, size_t pixels,
 static relume_status encode_band(struct encoder *e, const struct relume_encode_params *p)
 {
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
-    relume_status status = relume_table_fetch(e->table, e->rows);
+    relume_status status = e->seen ? relume_table_read_seen(e->table, e->rows, e->samples, e->own)
+                                   : relume_table_fetch(e->table, e->rows);
+    if (!status && e->seen)
+        status = seen_apply(e->seen, e->row, e->rows, e->own, e->samples, e->values);
     if (status)
         return status;
     thread_for(e->threads, (pixels + CODER_CHUNK - 1) / CODER_CHUNK, apply_chunk, e);
     if (is_measured(e->out, e->row))
-        status = measure_fit(e);
+        status = e->seen ? measure_seen(e) : measure_fit(e);
     if (status)
         return status;
     thread_for(e->threads, (size_t)e->planes, pack_plane, e);
@@ -213,6 +252,16 @@ static void say_repaired(struct encoder *e, int light, size_t pixels, const stru
                  e->images[light], pixels, pixels > 1 ? "s are" : " is");
 }
 
+static relume_status see_near(struct encoder *e)
+{
+    const size_t lights = 3 * (size_t)e->lights * BAND_ROWS, row = (size_t)e->width;
+    e->samples = mem_array(lights, row * sizeof *e->samples);
+    e->own = mem_array(lights, row * sizeof *e->own);
+    if (!e->samples || !e->own)
+        return RELUME_ENOMEM;
+    return seen_create(&e->seen, e->coder, e->table, e->width, e->height, e->threads);
+}
+
 static relume_status encode_bands(struct encoder *e, const relume_capture *capture, int view,
                                   struct relume_transfer display,
                                   const struct relume_encode_params *p)
@@ -220,6 +269,8 @@ static relume_status encode_bands(struct encoder *e, const relume_capture *captu
     relume_status status = relume_table_open(
         &e->table, capture, view,
         relume_table_params(.log = p->log, .display = display, .threads = p->threads));
+    if (!status && relume_table_is_near(e->table) && seen_suits(e->coder))
+        status = see_near(e);
     for (e->row = 0; !status && e->row < e->height; e->row += BAND_ROWS) {
         e->rows = e->height - e->row < BAND_ROWS ? e->height - e->row : BAND_ROWS;
         status = encode_band(e, p);
@@ -230,6 +281,7 @@ static relume_status encode_bands(struct encoder *e, const relume_capture *captu
     }
     for (int i = 0; !status && i < e->lights; i++)
         say_repaired(e, i, relume_table_repaired(e->table, i), p->log);
+    seen_destroy(&e->seen);
     relume_table_destroy(&e->table);
     if (!status)
         return finish_writing(e, p);
@@ -330,6 +382,8 @@ static relume_status alloc_encoder(struct encoder *e)
 
 static void free_encoder(struct encoder *e)
 {
+    free(e->samples);
+    free(e->own);
     free(e->values);
     free(e->chunk);
     free(e->work);

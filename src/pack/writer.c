@@ -345,9 +345,11 @@ static bool describe_geometry(struct builder *b, struct exr_part *part, struct e
     } else if (g->projection == RELUME_SLAB) {
         return describe_slabs(b, part, list, c);
     } else {
-        const double panorama[] = {g->v_min, g->v_max, g->center.x, g->center.y, g->center.z};
-        v = copy_doubles(&b->arena, panorama, 5);
-        add_floats(part, list, ATTR_PANORAMA, v, 5);
+        const double panorama[] = {g->v_min,    g->v_max,    g->center.x,
+                                   g->center.y, g->center.z, g->disc};
+        const int count = g->disc ? 6 : 5;
+        v = copy_doubles(&b->arena, panorama, (size_t)count);
+        add_floats(part, list, ATTR_PANORAMA, v, count);
     }
     return v != NULL;
 }
@@ -453,7 +455,10 @@ static bool add_preview(struct builder *b, const struct relume_pack_contents *c,
         .context = p,
     };
     add_text(part, list, ATTR_FORMAT, FORMAT_NAME);
-    add_int(part, list, ATTR_VERSION, c->slabs ? FORMAT_VERSION : FORMAT_ONE_SLAB);
+    add_int(part, list, ATTR_VERSION,
+            c->slabs           ? FORMAT_SLABS
+            : c->geometry.disc ? FORMAT_DISCS
+                               : FORMAT_PLAIN);
     add_text(part, list, ATTR_CREATOR, "relume " RELUME_VERSION);
     add_text(part, list, ATTR_DOMAIN, is_display ? "display" : "linear");
     add_text(part, list, ATTR_DISPLAY, display);

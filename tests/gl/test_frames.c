@@ -384,6 +384,10 @@ static void panorama_frames_are_the_library_s(void **state)
     compare_panorama(
         &(struct relume_geometry){.projection = RELUME_CYLINDRICAL, .v_min = -80, .v_max = 80}, 64,
         48);
+    compare_panorama(
+        &(struct relume_geometry){
+            .projection = RELUME_CYLINDRICAL, .v_min = -0.75, .v_max = 1, .disc = 20},
+        64, 18 + 20);
     compare_panorama(&(struct relume_geometry){.projection = RELUME_SPHERICAL}, 64, 32);
     compare_panorama(&(struct relume_geometry){.projection = RELUME_SPHERICAL}, 63, 32);
     compare_panorama(&(struct relume_geometry){.projection = RELUME_CUBE}, 6 * 16, 16);

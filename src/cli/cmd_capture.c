@@ -24,6 +24,8 @@ static const struct option options[] = {
     {"--focal", OPTION_NUMBER, "MM", "the same as a focal length for 36 mm wide film", 5, 5000},
     {"--refine-lights", OPTION_FLAG, NULL,
      "better directions and intensities by the photographs themselves", 0, 0},
+    {"--integrable", OPTION_FLAG, NULL,
+     "--refine-lights: also so that the surface is one of heights", 0, 0},
     {"--white", OPTION_TEXT, "x,y,w,h", "a region that is grey: the lamps' colour is divided out",
      0, 0},
     {"--flat", OPTION_TEXT, "PATH",

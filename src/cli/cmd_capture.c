@@ -15,7 +15,9 @@ static const struct option options[] = {
     {"--ball-mask", OPTION_TEXT, "FILE", "white where the ball is", 0, 0},
     {"--matte", OPTION_FLAG, NULL, "the ball is matte white, not a mirror", 0, 0},
     {"--lights", OPTION_TEXT, "FILE",
-     "the lights are known: a .lp, .dome or capture.json file, or lines x y z", 0, 0},
+     "the lights are known: a .lp, .dome or capture.json file, lines x y z, or COLMAP poses of a "
+     "camera on the lamp",
+     0, 0},
     {"--near", OPTION_FLAG, NULL,
      "lights stand near: positions from two balls or more, or those of --lights", 0, 0},
     {"--ball-z", OPTION_NUMBER, "Z",

@@ -7,6 +7,7 @@
 
 #include <relume/enhance.h>
 #include <relume/frame.h>
+#include <relume/object.h>
 #include <relume/relight.h>
 #include <relume/slabs.h>
 
@@ -58,6 +59,7 @@ struct app_file {
     int views;
     double uv_min[2], uv_max[2];  // slab: where cameras stand
     const relume_slabs *around;   // several slabs, about whose middle the eye goes; NULL: none
+    relume_objects *objects;      // in the scene, or all that there is; NULL: none
 };
 
 // What the viewer adds to a light. All zero is a light that shines as it says.
@@ -65,6 +67,14 @@ struct app_lamp {
     bool off, solo;
     double stops;  // its value is multiplied by 2^stops
     int entry;     // of the rig that it came from; -1: none
+};
+
+// How objects are shown in two materials at once.
+enum app_split {
+    APP_SPLIT_NONE = 0,
+    APP_SPLIT_SIDES,       // the other one in the right half
+    APP_SPLIT_DIFFERENCE,  // absolute
+    APP_SPLITS
 };
 
 // What can be reset. A copy by value shares its lights: see lamps_copy.
@@ -86,6 +96,8 @@ struct app_state {
     int selected;  // light that drags and keys change
     bool ball;     // show the light's direction on a ball in the corner
     enum relume_pass pass;
+    enum app_split split;  // objects ...
+    int other;             // ... in this of their materials as well
 };
 
 enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT, APP_DRAG_GIZMO };

@@ -162,6 +162,48 @@ static bool press_next_pass(struct app *app, int key)
     return true;
 }
 
+// ---------------------------------------------------------------- objects
+
+static int next_material(const struct app *app, int material)
+{
+    return (material + 1) % relume_objects_info(app->file.objects)->materials;
+}
+
+// All parts go on to the material after that of the first.
+static bool press_material(struct app *app, int key)
+{
+    (void)key;
+    if (!app->file.objects)
+        return false;
+    const struct relume_objects_info *info = relume_objects_info(app->file.objects);
+    const int next = next_material(app, info->part[0].material);
+    for (int i = 0; i < info->parts; i++)
+        (void)!relume_objects_choose(app->file.objects, i, next);
+    return true;
+}
+
+static bool press_other(struct app *app, int key)
+{
+    (void)key;
+    if (!app->file.objects)
+        return false;
+    app->now.other = next_material(app, app->now.other);
+    return true;
+}
+
+static bool press_split(struct app *app, int key)
+{
+    (void)key;
+    if (!app->file.objects)
+        return false;
+    // a material is compared with another one, not with itself
+    const int shown = relume_objects_info(app->file.objects)->part[0].material;
+    if (app->now.split == APP_SPLIT_NONE && app->now.other == shown)
+        app->now.other = next_material(app, shown);
+    app->now.split = (enum app_split)((app->now.split + 1) % APP_SPLITS);
+    return true;
+}
+
 // ---------------------------------------------------------------- lights
 
 static bool press_next_light(struct app *app, int key)
@@ -293,6 +335,9 @@ const struct key_binding key_bindings[] = {
     {'1', "1 2 3", "raking, double raking, dome", press_preset, false},
     {'2', NULL, NULL, press_preset, false},
     {'3', NULL, NULL, press_preset, false},
+    {'c', "C", "objects: next material", press_material, false},
+    {'q', "Q", "objects: beside another material, their difference", press_split, false},
+    {'u', "U", "objects: the next of these other materials", press_other, false},
     {'b', "B", "ball that shows the light", press_ball, false},
     {'g', "G", "handles of the lights in the picture", press_gizmos, false},
     {'i', "I", "inspector: the reflectance under the cursor", press_inspect, false},

@@ -1,6 +1,7 @@
 #include "renderer.h"
 
 #include "lamps.h"
+#include "renderer_parts.h"
 #include "say.h"
 
 #include <relume/tone.h>
@@ -103,6 +104,7 @@ void renderer_destroy(struct renderer *r)
     target_destroy(&r->small, r->gl);
     target_destroy(&r->sum, r->gl);
     target_destroy(&r->pinholes, r->gl);
+    renderer_objects_destroy(r);
     if (r->depths.views)
         depths_destroy(&r->depths);
     r->gl->DeleteVertexArrays(1, &r->vertices);
@@ -116,8 +118,8 @@ void renderer_destroy(struct renderer *r)
 
 // ---------------------------------------------------------------- framings
 
-static relume_status prepare_target(struct target *target, const struct renderer *r, int width,
-                                    int height)
+relume_status renderer_prepare(struct target *target, const struct renderer *r, int width,
+                               int height)
 {
     if (target->width == width && target->height == height)
         return RELUME_OK;
@@ -203,7 +205,7 @@ static bool takes_depth(const struct renderer *r, const struct app *app)
 static relume_status draw_lens(struct renderer *r, const struct app *app, const struct place *place,
                                const struct slab_seen *seen)
 {
-    relume_status status = prepare_target(&r->sum, r, place->width, place->height);
+    relume_status status = renderer_prepare(&r->sum, r, place->width, place->height);
     if (status)
         return status;
     target_begin(&r->sum, r->gl);
@@ -244,7 +246,7 @@ static relume_status draw_around_lens(struct renderer *r, const struct app *app,
     const double aperture = app->now.aperture, focus = focus_of(app);
     const int width = picture_width(app);
     struct place plain = *place;
-    const relume_status status = prepare_target(&r->pinholes, r, place->width, place->height);
+    const relume_status status = renderer_prepare(&r->pinholes, r, place->width, place->height);
     if (status || !relume_lens_fits(window, aperture, focus))
         return status;
     plain.exposure = 1;
@@ -265,7 +267,7 @@ static relume_status draw_around(struct renderer *r, const struct app *app,
 {
     struct relume_window window;
     double range[2];
-    relume_status status = prepare_target(&r->sum, r, place->width, place->height);
+    relume_status status = renderer_prepare(&r->sum, r, place->width, place->height);
     const bool by_depth = takes_depth(r, app);
     if (!status && by_depth)
         status = depths_use(&r->depths, r->needed, range);
@@ -375,16 +377,10 @@ static relume_status need_lights(struct renderer *r, int n)
     return RELUME_OK;
 }
 
-static relume_status relight_needed(struct renderer *r, const struct app *app)
+relume_status renderer_relight_views(struct renderer *r, const struct app *app,
+                                     const struct relume_light *lights, int count)
 {
-    const struct framing *framing = &framings[app->now.camera.framing];
-    memset(r->needed, 0, (size_t)r->views * sizeof *r->needed);
-    framing->mark(r, app);
-    relume_status status = need_lights(r, app->now.lights);
-    if (status)
-        return status;
-    const int count = lamps_shining(&app->now, r->light);
-    status = relighter_begin(&r->relighter, r->light, count);
+    relume_status status = relighter_begin(&r->relighter, lights, count);
     relume_status (*const look_up)(const struct target **, struct relighter *, int) =
         app->now.pass == RELUME_PASS_COLOUR ? relighter_view : relighter_wait;  // no stand-ins
     for (int i = 0; !status && i < r->views; i++) {
@@ -393,9 +389,29 @@ static relume_status relight_needed(struct renderer *r, const struct app *app)
             status = look_up(&r->relit[i], &r->relighter, i);
         if (!status && r->needed[i] && app->now.pass != RELUME_PASS_COLOUR)
             status = enhancer_view(&r->relit[i], &r->enhancer, i, r->relit[i], app->now.pass,
-                                   r->light, count);
+                                   lights, count);
     }
     return status ? status : stand_in(r);
+}
+
+relume_status renderer_frame(struct renderer *r, const struct app *app, const struct place *place)
+{
+    r->gl->BindVertexArray(r->vertices);
+    target_begin(&r->frame, r->gl);
+    return framings[app->now.camera.framing].draw(r, app, place);
+}
+
+// The lights that shine, and what the frame needs.
+static relume_status prepare(struct renderer *r, const struct app *app, int *lights)
+{
+    relume_status status = renderer_prepare(&r->frame, r, app->width, app->height);
+    memset(r->needed, 0, (size_t)r->views * sizeof *r->needed);
+    if (!r->stage)
+        framings[app->now.camera.framing].mark(r, app);
+    if (!status)
+        status = need_lights(r, app->now.lights);
+    *lights = status ? 0 : lamps_shining(&app->now, r->light);
+    return status;
 }
 
 relume_status renderer_draw(struct renderer *r, const struct app *app)
@@ -406,14 +422,14 @@ relume_status renderer_draw(struct renderer *r, const struct app *app)
         .picture = app_picture(app),
         .exposure = (float)exp2(app_exposure_ev(app)),
     };
-    relume_status status = prepare_target(&r->frame, r, app->width, app->height);
-    if (!status)
-        status = relight_needed(r, app);
-    if (status)
-        return status;
-    r->gl->BindVertexArray(r->vertices);
-    target_begin(&r->frame, r->gl);
-    status = framings[app->now.camera.framing].draw(r, app, &place);
+    int lights;
+    relume_status status = prepare(r, app, &lights);
+    if (!status && r->things.gl)
+        status = renderer_draw_objects(r, app, &place, r->light, lights);
+    else if (!status)
+        status = renderer_relight_views(r, app, r->light, lights);
+    if (!status && !r->things.gl)
+        status = renderer_frame(r, app, &place);
     if (status)
         return status;
     if (app->now.ball)
@@ -445,7 +461,7 @@ relume_status renderer_meter(double *ev, struct renderer *r)
     const struct place place = {width, height, {0, 0, width, height}, 1};
     struct relume_image image;
     *ev = 0;
-    relume_status status = prepare_target(&r->small, r, width, height);
+    relume_status status = renderer_prepare(&r->small, r, width, height);
     if (status)
         return status;
     r->gl->BindVertexArray(r->vertices);

@@ -97,14 +97,17 @@ struct sum {
 
 static void fade_out(float *const row[3], int half, int v, double fade, double radius)
 {
-    for (int u = -half; u <= half; u++) {
+    const double chord = fade * fade - (double)v * v;
+    const int kept = chord > 0.0 ? (int)sqrt(chord) : -1;
+    for (int u = kept + 1; u <= half; u++) {
         const double r = sqrt((double)u * u + (double)v * v);
-        if (r <= fade)
-            continue;
-        const double t = fmin((r - fade) / (radius - fade), 1.0);
+        const double t = fmin(fmax((r - fade) / (radius - fade), 0.0), 1.0);
         const float keep = (float)(1.0 - t * t * (3.0 - 2.0 * t));
-        for (int c = 0; c < 3; c++)
+        for (int c = 0; c < 3; c++) {
             row[c][half + u] *= keep;
+            if (u)
+                row[c][half - u] *= keep;
+        }
     }
 }
 

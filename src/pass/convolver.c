@@ -24,7 +24,6 @@ struct convolver {
     float *kernel;      // spectrum
     float *picture[3];  // spectra of the only tile; [0] serves all when there are many
     bool kept;          // picture[] are of the last picture
-    float *product;
 };
 
 static void plan_one(convolver *c, int margin)
@@ -37,9 +36,9 @@ static void plan_one(convolver *c, int margin)
     c->fft_h = fft_good_size(c->height + c->reach + margin);
 }
 
-static void plan_many(convolver *c)
+static void plan_many(convolver *c, int least)
 {
-    const int side = 4 * c->reach > TILE ? 4 * c->reach : TILE;
+    const int side = 4 * c->reach > least ? 4 * c->reach : least;
     c->margin = c->reach;
     c->fft_w = fft_good_size(side < c->width + 2 * c->reach ? side : c->width + 2 * c->reach);
     c->fft_h = fft_good_size(side < c->height + 2 * c->reach ? side : c->height + 2 * c->reach);
@@ -47,30 +46,43 @@ static void plan_many(convolver *c)
     c->core_h = c->fft_h - 2 * c->reach;
 }
 
-relume_status convolver_create(convolver **out, int width, int height, int reach,
-                               enum relume_glare_border border, int threads)
+static relume_status create(convolver **out, convolver plan)
 {
     convolver *const c = mem_zeroed(1, sizeof *c);
-    *out = NULL;
+    *out = c;
     if (!c)
         return RELUME_ENOMEM;
-    *c = (convolver){
-        .width = width, .height = height, .reach = reach, .threads = threads, .border = border};
-    plan_one(c, border == RELUME_GLARE_ZERO ? 0 : reach);
-    if ((int64_t)c->fft_w * c->fft_h > ONE_TILE)
-        plan_many(c);
-    c->tiles_x = (width + c->core_w - 1) / c->core_w;
-    c->tiles_y = (height + c->core_h - 1) / c->core_h;
+    *c = plan;
+    c->tiles_x = (c->width + c->core_w - 1) / c->core_w;
+    c->tiles_y = (c->height + c->core_h - 1) / c->core_h;
     const int kept = c->tiles_x * c->tiles_y == 1 ? 3 : 1;
-    bool good = !fft2d_create(&c->fft, c->fft_w, c->fft_h, true, threads);
+    bool good = !fft2d_create(&c->fft, c->fft_w, c->fft_h, true, c->threads);
     for (int k = 0; good && k < kept; k++)
         good = (c->picture[k] = mem_array(fft2d_size(c->fft), sizeof(float))) != NULL;
-    // One tile's kernel may be overwritten by the product.
     good = good && (c->kernel = mem_array(fft2d_size(c->fft), sizeof(float)));
-    *out = c;
     if (!good)
         convolver_destroy(out);
     return good ? RELUME_OK : RELUME_ENOMEM;
+}
+
+relume_status convolver_create(convolver **out, int width, int height, int reach,
+                               enum relume_glare_border border, int threads)
+{
+    convolver c = {
+        .width = width, .height = height, .reach = reach, .threads = threads, .border = border};
+    plan_one(&c, border == RELUME_GLARE_ZERO ? 0 : reach);
+    if ((int64_t)c.fft_w * c.fft_h > ONE_TILE)
+        plan_many(&c, TILE);
+    return create(out, c);
+}
+
+relume_status convolver_create_tiled(convolver **out, int width, int height, int reach,
+                                     enum relume_glare_border border, int threads, int side)
+{
+    convolver c = {
+        .width = width, .height = height, .reach = reach, .threads = threads, .border = border};
+    plan_many(&c, side);
+    return create(out, c);
 }
 
 void convolver_destroy(convolver **c)

@@ -53,8 +53,8 @@ static void texels_of(const struct axis *a, int pixel, int *from, int *to)
 struct resampling {
     struct axis axis;
     const relume_psf *psf;
-    float *out[3];  // [side][side]
-    float *work;    // [threads][field]
+    float *const out[3];  // [side][side]
+    float *work;          // [threads][field]
 };
 
 static void resample_row(void *context, size_t item, int worker)
@@ -103,28 +103,40 @@ static double light_between(double from_deg, double to_deg, double age, double p
     return sum;
 }
 
+enum { VEIL_STEPS = 2048 };  // from the axis to 10 degrees: the veil bends over whole degrees
 struct veil {
-    float *out[3];
+    float *const out[3];
     int reach;
-    double deg;         // of a pixel
-    double fade, edge;  // degrees: it comes where the pattern goes
-    double age, pigment, solid;
+    double pixel_steps;  // steps of the table in a pixel
+    float table[VEIL_STEPS + 2];
 };
+
+// What comes where the pattern goes: light in one pixel by angle.
+static void make_table(struct veil *v, double fade_deg, double edge_deg, double solid, double age,
+                       double pigment)
+{
+    for (int i = 0; i < VEIL_STEPS; i++) {
+        const double t = i * veil_deg / VEIL_STEPS;
+        const double s = fmin(fmax((t - fade_deg) / (edge_deg - fade_deg), 0.0), 1.0);
+        v->table[i] = (float)(s * s * (3.0 - 2.0 * s) * solid * relume_cie_glare(t, age, pigment));
+    }
+    v->table[VEIL_STEPS] = v->table[VEIL_STEPS + 1] = 0.0f;
+}
 
 static void veil_row(void *context, size_t item, int worker)
 {
     const struct veil *v = context;
-    const int side = 2 * v->reach + 1, y = (int)item - v->reach;
+    const size_t side = 2 * (size_t)v->reach + 1;
+    const int y = (int)item - v->reach;
     (void)worker;
     for (int x = -v->reach; x <= v->reach; x++) {
-        const double t = v->deg * sqrt((double)x * x + (double)y * y);
-        if (t <= v->fade || t >= veil_deg)
+        const double at = v->pixel_steps * sqrt((double)x * x + (double)y * y);
+        if (at >= VEIL_STEPS)
             continue;
-        const double s = fmin((t - v->fade) / (v->edge - v->fade), 1.0);
-        const float light =
-            (float)(s * s * (3.0 - 2.0 * s) * v->solid * relume_cie_glare(t, v->age, v->pigment));
+        const int i = (int)at;
+        const float light = v->table[i] + (float)(at - i) * (v->table[i + 1] - v->table[i]);
         for (int c = 0; c < 3; c++)
-            v->out[c][item * (size_t)side + (size_t)(x + v->reach)] += light;
+            v->out[c][item * side + (size_t)(x + v->reach)] += light;
     }
 }
 
@@ -162,54 +174,73 @@ static void normalise(struct kernel *kernel, double light)
     }
 }
 
-relume_status kernel_create(struct kernel *out, const relume_psf *psf, double pixel,
-                            const struct relume_glare_params *p)
+static relume_status allocate(struct kernel *out, int reach)
 {
-    const struct relume_psf_geometry *const shape = relume_psf_shape(psf);
-    const double fine = pixel / (p->magnify > 0.0 ? p->magnify : 1.0);
-    const double deg = fine * 180.0 / M_PI, edge = shape->radius * 180.0 / M_PI;
-    const bool veiled = !p->no_veil && edge < veil_deg;
-    struct resampling r = {.psf = psf};
-    *out = (struct kernel){0};
-    relume_status status = reach_of(&r.axis.reach, veiled ? veil_deg * M_PI / 180.0 : shape->radius,
-                                    shape->step, fine, p->log);
-    if (status)
-        return status;
-    const size_t side = 2 * (size_t)r.axis.reach + 1;
-    r.axis.half = shape->field / 2;
-    r.axis.pixels = shape->step / fine;
-    r.axis.spread = fmax(r.axis.pixels, 1.0);
-    out->reach = r.axis.reach;
+    const size_t side = 2 * (size_t)reach + 1;
+    out->reach = reach;
     out->v[0] = mem_zeroed(3 * side * side, sizeof *out->v[0]);
-    r.work = mem_array((size_t)thread_count(p->threads) * (size_t)shape->field, sizeof *r.work);
-    if (!out->v[0] || !r.work) {
-        free(r.work);
-        kernel_destroy(out);
+    if (!out->v[0])
         return RELUME_ENOMEM;
-    }
     out->v[1] = out->v[0] + side * side;
     out->v[2] = out->v[1] + side * side;
-    for (int c = 0; c < 3; c++)
-        r.out[c] = out->v[c];
-    thread_for(p->threads, side, resample_row, &r);
-    free(r.work);
-    if (!veiled) {
-        normalise(out, 1.0);
-        return RELUME_OK;
-    }
-    struct veil v = {.reach = out->reach,
-                     .deg = deg,
-                     .fade = shape->fade * 180.0 / M_PI,
-                     .edge = edge,
-                     .solid = fine * fine};
-    psf_observer(psf, &v.age, &v.pigment);
-    const double far = light_between(edge, veil_deg, v.age, v.pigment);
-    normalise(out, 1.0 - far);
-    for (int c = 0; c < 3; c++)
-        v.out[c] = out->v[c];
-    thread_for(p->threads, side, veil_row, &v);
-    normalise(out, 1.0);
     return RELUME_OK;
+}
+
+static relume_status add_pattern(struct kernel *out, const relume_psf *psf, double fine,
+                                 int threads)
+{
+    const struct relume_psf_geometry *const shape = relume_psf_shape(psf);
+    struct resampling r = {
+        .psf = psf,
+        .axis = {.reach = out->reach, .half = shape->field / 2, .pixels = shape->step / fine},
+        .out = {out->v[0], out->v[1], out->v[2]},
+        .work = mem_array((size_t)thread_count(threads) * (size_t)shape->field, sizeof(float)),
+    };
+    r.axis.spread = fmax(r.axis.pixels, 1.0);
+    if (!r.work)
+        return RELUME_ENOMEM;
+    thread_for(threads, 2 * (size_t)out->reach + 1, resample_row, &r);
+    free(r.work);
+    return RELUME_OK;
+}
+
+static void add_veil(struct kernel *out, double fade_deg, double edge_deg, double fine, double age,
+                     double pigment, int threads)
+{
+    struct veil v = {.out = {out->v[0], out->v[1], out->v[2]},
+                     .reach = out->reach,
+                     .pixel_steps = fine * 180.0 / M_PI * VEIL_STEPS / veil_deg};
+    make_table(&v, fade_deg, edge_deg, fine * fine, age, pigment);
+    thread_for(threads, 2 * (size_t)out->reach + 1, veil_row, &v);
+}
+
+relume_status kernel_create(struct kernel *out, const relume_psf *psf, double pixel,
+                            enum kernel_part part, const struct relume_glare_params *p)
+{
+    const struct relume_psf_geometry *const shape = relume_psf_shape(psf);
+    const double fine = pixel / p->magnify;
+    const double edge = shape->radius * 180.0 / M_PI, fade = shape->fade * 180.0 / M_PI;
+    const bool veiled = !p->no_veil && edge < veil_deg;
+    const double widest = veiled && part & KERNEL_VEIL ? veil_deg * M_PI / 180.0 : shape->radius;
+    double age, pigment;
+    int reach = 0;
+    *out = (struct kernel){0};
+    relume_status status = reach_of(&reach, widest, shape->step, fine, p->log);
+    if (!status)
+        status = allocate(out, reach);
+    if (!status && part & KERNEL_PATTERN)
+        status = add_pattern(out, psf, fine, p->threads);
+    psf_observer(psf, &age, &pigment);
+    const double far = veiled ? light_between(edge, veil_deg, age, pigment) : 0.0;
+    if (!status && part & KERNEL_PATTERN)
+        normalise(out, 1.0 - far);
+    if (!status && veiled && part & KERNEL_VEIL)
+        add_veil(out, fade, edge, fine, age, pigment, p->threads);
+    if (!status && part != KERNEL_PATTERN)
+        normalise(out, part == KERNEL_VEIL ? far : 1.0);
+    if (status)
+        kernel_destroy(out);
+    return status;
 }
 
 relume_status relume_glare_kernel(struct relume_image *out, const relume_psf *psf, double pixel,
@@ -220,7 +251,7 @@ relume_status relume_glare_kernel(struct relume_image *out, const relume_psf *ps
     *out = (struct relume_image){0};
     relume_status status = glare_defaults(&p, params);
     if (!status)
-        status = kernel_create(&kernel, psf, pixel, &p);
+        status = kernel_create(&kernel, psf, pixel, KERNEL_ALL, &p);
     if (status)
         return status;
     const int side = 2 * kernel.reach + 1;

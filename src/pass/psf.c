@@ -10,15 +10,17 @@
 #include "math/fft2d.h"
 #include "pass/aperture.h"
 #include "pass/psf.h"
+#include "pass/slices.h"
 
 #include <math.h>
 #include <string.h>
 #include <time.h>
 
 static const double default_width_mm = 9.0;
-static const double field_nm = 400.0;  // the shortest wavelength that matters; fields are its
-static const double fade_from = 0.9;   // of the radius
-static const double retina_mm = 24.0;  // d as printed
+static const double field_nm = 400.0;    // the shortest wavelength that matters; fields are its
+static const double fade_from = 0.9;     // of the radius
+static const double retina_mm = 24.0;    // d as printed
+static const double least_light = 1e-3;  // of the pupil; lids that leave less are shut
 enum { DEFAULT_SIZE = 1024, DEFAULT_WAVELENGTHS = 32, SPARE = 16 };
 
 struct relume_psf {
@@ -28,6 +30,8 @@ struct relume_psf {
     const struct psf_kernels *kernels;
     struct canvas canvas;
     fft2d *real, *complex;  // made when first needed
+    struct slices *slices;  // likewise
+    const float *wave;      // behind the last of several planes; NULL: one plane
     float *field;           // a spectrum of either
     size_t field_size;
     float *phase;  // [canvas.n][2]: E along one axis; the other is the same
@@ -163,6 +167,7 @@ void relume_psf_destroy(relume_psf **psf)
     canvas_destroy(&p->canvas);
     fft2d_destroy(&p->real);
     fft2d_destroy(&p->complex);
+    slices_destroy(&p->slices);
     free(p->field);
     free(p->phase);
     free(p->texel);
@@ -254,6 +259,21 @@ static void fill_complex(void *context, int row, float *line)
     }
 }
 
+static void fill_wave(void *context, int row, float *line)
+{
+    const relume_psf *psf = context;
+    const int n = psf->shape.size, m = psf->canvas.n;
+    const int start = ((n / 2 - m / 2) % n + n) % n;
+    memset(line, 0, 2 * (size_t)n * sizeof *line);
+    for (int y = (row + m / 2 - n / 2) % n; y < m; y += n) {
+        const float *const wave = psf->wave + 2 * (size_t)y * (size_t)m;
+        for (int x = 0, at = start; x < m; x++, at = at + 1 < n ? at + 1 : 0) {
+            line[2 * at] += wave[2 * x];
+            line[2 * at + 1] += wave[2 * x + 1];
+        }
+    }
+}
+
 // Power of a column's coefficients at its place; the mirrored ones too when only half is there.
 static bool store_power(void *context, int column, int count, float *lines)
 {
@@ -300,10 +320,14 @@ static relume_status diffract(relume_psf *psf, bool real)
         return status;
     // Rows that the pupil folds onto.
     const int shift = psf->canvas.n / 2 - n / 2;
-    const bool folded = psf->canvas.n > n;
+    const bool folded = psf->canvas.n > n || psf->wave;
     const int from = folded ? 0 : psf->canvas.from - shift;
     const int to = folded ? n : psf->canvas.to - shift;
-    fft2d_rows(*fft, psf->field, from, to, real ? fill_real : fill_complex, psf);
+    fft2d_rows(*fft, psf->field, from, to,
+               psf->wave ? fill_wave
+               : real    ? fill_real
+                         : fill_complex,
+               psf);
     const struct fft2d_pass pass = {
         .from = from, .to = to, .end = fft2d_columns(*fft), .visit = store_power, .context = psf};
     fft2d_pass_columns(*fft, psf->field, &pass);
@@ -367,26 +391,31 @@ static double now_s(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-relume_status relume_psf_update(relume_psf *psf, const relume_eye *eye)
+relume_status psf_update_aperture(relume_psf *psf, const struct relume_aperture *aperture,
+                                  double dioptres)
 {
-    const struct relume_aperture *const aperture = relume_eye_aperture(eye);
-    const struct relume_subject *const subject = relume_eye_subject(eye);
-    const double dioptres = subject->optics.defocus_dpt;
-    const bool real = dioptres == 0.0 && !psf->params.retina_distance;
+    const struct relume_psf_params *const p = &psf->params;
+    const bool several = p->planes > 1 && !(p->parts_off & RELUME_EYE_VITREOUS);
+    const bool real = dioptres == 0.0 && !p->retina_distance && !several;
     const double start = now_s();
-    psf->age = subject->optics.age;
-    psf->pigment = subject->optics.pigment;
     relume_status status = prepare_canvas(psf, aperture);
     if (!status)
-        status = canvas_draw(&psf->canvas, aperture, psf->params.parts_off, psf->params.threads);
+        status = canvas_draw(&psf->canvas, aperture,
+                             p->parts_off | (several ? RELUME_EYE_VITREOUS : 0u), p->threads);
     if (status)
         return status;
     psf->light = psf->canvas.light;
-    if (psf->light < 1e-3)
+    if (psf->light < least_light)
         return RELUME_OK;
     const double drawn = now_s();
+    float *wave = NULL;
     make_phase(psf, dioptres);
-    status = diffract(psf, real);
+    if (several)
+        status = slices_run(&wave, &psf->slices, &psf->canvas, psf->phase, aperture, p->planes,
+                            p->threads);
+    psf->wave = wave;
+    if (!status)
+        status = diffract(psf, real);
     if (status)
         return status;
     const double diffracted = now_s();
@@ -394,6 +423,14 @@ relume_status relume_psf_update(relume_psf *psf, const relume_eye *eye)
     colour(psf);
     psf->times = (struct relume_psf_times){drawn - start, diffracted - drawn, now_s() - diffracted};
     return RELUME_OK;
+}
+
+relume_status relume_psf_update(relume_psf *psf, const relume_eye *eye)
+{
+    const struct relume_subject *const subject = relume_eye_subject(eye);
+    psf->age = subject->optics.age;
+    psf->pigment = subject->optics.pigment;
+    return psf_update_aperture(psf, relume_eye_aperture(eye), subject->optics.defocus_dpt);
 }
 
 // ---------------------------------------------------------------- results

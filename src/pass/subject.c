@@ -11,14 +11,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Chosen so that the pattern of a 4 mm pupil follows the CIE's standard observer (docs/glare.md).
+// Particles are chosen so that the pattern follows the CIE's standard observer (docs/glare.md).
 struct relume_subject relume_subject_default(void)
 {
     return (struct relume_subject){
         .seed = 1,
         .pupil = {.hippus = 0.08, .adaptation_s = 1.0},
-        .cornea = {.count = 300, .radius_mm = 0.03, .spread = 4.0, .opacity = 1.0},
-        .lens = {.particles = {.count = 750, .radius_mm = 0.04, .spread = 2.5, .opacity = 1.0},
+        .cornea = {.count = 8000, .radius_mm = 0.011, .spread = 3.0, .opacity = 1.0},
+        .lens = {.particles = {.count = 750, .radius_mm = 0.045, .spread = 3.0, .opacity = 1.0},
                  .radius_mm = 4.5,
                  .thickness_mm = 4.0,
                  .nucleus = 0.8,
@@ -28,8 +28,8 @@ struct relume_subject relume_subject_default(void)
                    .inner_mm = 1.4,
                    .outer_mm = 2.4,
                    .width_mm = 0.003,
-                   .opacity = 0.5},
-        .vitreous = {.particles = {.count = 400, .radius_mm = 0.04, .spread = 2.0, .opacity = 1.0},
+                   .opacity = 0.3},
+        .vitreous = {.particles = {.count = 400, .radius_mm = 0.055, .spread = 2.5, .opacity = 1.0},
                      .radius_mm = 11.0,
                      .damping = 3.0,
                      .saccades_per_s = 3.0,

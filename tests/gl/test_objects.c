@@ -124,7 +124,7 @@ static struct relume_image draw(struct things *t, const struct relume_window *w,
     assert_int_equal(things_shade(t, &sight, SIDE, SIDE, -1), RELUME_OK);
     assert_int_equal(target_create(&frame, gl, SIDE, SIDE, &fixture_log), RELUME_OK);
     target_begin(&frame, gl);
-    things_over(t, &place, 0);
+    things_over(t, &place, 0, false);
     assert_int_equal(target_read(&image, &frame, gl), RELUME_OK);
     target_destroy(&frame, gl);
     gl->DeleteVertexArrays(1, &array);

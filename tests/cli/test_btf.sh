@@ -60,14 +60,14 @@ done
 "$RELUME" btf tile hide -o wide1 --model rfp --tile 16 --tiles 3 --matrix 5x4 --threads 1 --json -q >tile.json
 below 'cuts show less than unrelated texels' "$(field step_across tile.json)" "$(field step_unrelated tile.json)"
 if diff -r wide wide1 >/dev/null; then ok 'tiles for any threads'; else not_ok 'tiles for any threads' "$(diff -rq wide wide1)"; fi
-"$RELUME" btf render hide -o sky.exr --frame 64x32 -q
+"$RELUME" btf render hide -o sky.exr --picture 64x32 -q
 "$mkimage" poke sky.exr odd.exr 3 4 nan
 expect_ok 'an environment' - "$RELUME" btf render wide -o lit.exr --light 'env sky.exr 30' --light 'dir 0 0 1' -q
 "$RELUME" btf render wide -o odd-lit.exr --light 'env odd.exr' -q 2>err.txt
 if grep -q '3 samples are negative, not finite' err.txt; then ok 'NaN in an environment is told of'; else not_ok 'NaN in an environment is told of' "$(cat err.txt)"; fi
 expect_fail 'no environment' 1 'nothing.hdr: no such file' x.exr "$RELUME" btf render wide -o x.exr --light 'env nothing.hdr'
 { printf '\223NUMPY\001\000v\000'; printf '%-117s\n' "{'descr': '<u2', 'fortran_order': False, 'shape': (1, 2), }"; printf '\001\000\100\000'; } >large.npy
-expect_ok 'a surface from a camera' - "$RELUME" btf render wide -o view.png --camera 0,-1.5,0.7 --frame 64x40 --light 'dir -1 0 1' --light 'spot 0 1 1 0 -1 -1 30' -q
+expect_ok 'a surface from a camera' - "$RELUME" btf render wide -o view.png --camera 0,-1.5,0.7 --picture 64x40 --light 'dir -1 0 1' --light 'spot 0 1 1 0 -1 -1 30' -q
 expect_ok 'an index map' - "$RELUME" btf tile levels -o same --map wide/matrix.npy -q
 expect_fail 'an index map of a larger sample' 1 'expected a texel of 8 x 8; found number' x "$RELUME" btf tile levels -o x --map large.npy
 expect_fail 'a sample smaller than a patch' 1 'expected a sample of at least 16 x 16 texels; found 8 x 8' x "$RELUME" btf tile levels -o x

@@ -12,14 +12,14 @@ if grep -q '"includes_cosine": true' paper/btf.json; then ok 'values include n.l
 
 # ---- every model: fitted, opened again, judged; compare says the same
 "$RELUME" btf compare paper --pictures 2 --json -q >compare.json 2>err.txt || not_ok 'btf compare' "$(cat err.txt)"
-for m in bump laf slaf rfp rfnl rfnlc vpca lpca fmf; do
+for m in lit bump laf slaf rfp rfnl rfnlc cmf vpca lpca fmf qmf; do
     row=$(grep -o "{\"model\": \"$m\"[^}]*}" compare.json)
-    for f in mae_avg mae_min mae_max rms delta_e bytes bytes_per_texel fit_seconds; do
+    for f in mae_avg mae_min mae_max rms delta_e bytes bytes_per_texel fit_seconds ops fetches light_ops light_fetches evaluations_per_second; do
         case $row in *"\"$f\": "[0-9]*) ;; *) not_ok "compare $m has $f" "$row" ;; esac
     done
 done
 ok 'btf compare has every model'
-for m in rfnl lpca; do
+for m in rfnl lpca qmf; do
     expect_ok "btf fit $m" - "$RELUME" btf fit paper --model $m -o $m -q
     "$RELUME" btf eval $m paper --pictures 2 --json >eval.json 2>err.txt
     grep -o "{\"model\": \"$m\"[^}]*}" compare.json >row.json
@@ -29,6 +29,13 @@ for m in rfnl lpca; do
 done
 "$RELUME" btf compare paper --models vpca --leave-out 4 --pictures 0 --json -q >out.json 2>err.txt
 above 'left out is worse' "$(field left_out_rms out.json)" "$(field rms out.json)"
+expect_ok 'btf fit without every fourth direction' - "$RELUME" btf fit paper --model vpca --leave-out 4 -o part -q
+"$RELUME" btf eval part paper --unseen --pictures 0 --json >unseen.json 2>err.txt
+below 'btf eval --unseen is what compare leaves out' "$(awk -v a="$(field rms unseen.json)" -v b="$(field left_out_rms out.json)" 'BEGIN { print (a - b) ^ 2 }')" 1e-12
+expect_fail 'nothing unseen' 1 'the model was fitted to all its directions' - "$RELUME" btf eval rfnl paper --unseen
+expect_ok 'btf fit --ratio' - "$RELUME" btf fit paper --model qmf --ratio 20 -o small -q
+"$RELUME" btf info small --json >info.json
+below 'a wanted ratio is kept' "$(field bytes info.json)" $((138624 / 20 + 1))
 "$RELUME" synth --btf wallpaper -o again --size 8 --directions coarse --samples 1 --bounces 0 --threads 3 -q
 if diff -r paper again >/dev/null; then ok 'the same for any threads'; else not_ok 'the same for any threads' "$(diff -rq paper again)"; fi
 
@@ -96,6 +103,7 @@ expect_fail 'scene and material' 2 'found both' x "$RELUME" synth box --btf ston
 expect_fail 'unknown model' 2 "unknown model 'rfnk'" - "$RELUME" btf compare paper --models rfnk
 expect_fail 'unknown task' 2 "unknown task 'fitt'; did you mean 'fit'" - "$RELUME" btf fitt paper
 expect_fail 'too many clusters' 2 'expected 1 to 64 clusters; found 65' x "$RELUME" btf fit paper --model rfnlc --clusters 65 -o x
+expect_fail 'a ratio below 1' 2 'ratio' x "$RELUME" btf fit paper --model qmf --ratio 0 -o x
 expect_fail 'no BTF' 1 'expected btf.json, or pictures named like' - "$RELUME" btf info .
 expect_fail 'not a folder' 1 'nothing: cannot be read' - "$RELUME" btf info nothing
 fresh lpca other

@@ -67,6 +67,7 @@ static GLenum format_of(const struct relume_btf_array *a, int numbers)
     case RELUME_BTF_U8: return GL_R8UI;
     case RELUME_BTF_U16: return GL_R16UI;
     case RELUME_BTF_HALF: return numbers == 1 ? GL_R16F : GL_RGBA16F;
+    case RELUME_BTF_U32: return GL_R32UI;
     case RELUME_BTF_FLOAT: break;
     }
     return numbers == 1 ? GL_R32F : GL_RGBA32F;
@@ -75,8 +76,11 @@ static GLenum format_of(const struct relume_btf_array *a, int numbers)
 static relume_status upload_array(struct btf_material *m, const struct gl *gl, int i,
                                   const struct relume_btf_array *a, const struct relume_log *log)
 {
-    static const size_t sizes[] = {
-        [RELUME_BTF_U8] = 1, [RELUME_BTF_U16] = 2, [RELUME_BTF_HALF] = 2, [RELUME_BTF_FLOAT] = 4};
+    static const size_t sizes[] = {[RELUME_BTF_U8] = 1,
+                                   [RELUME_BTF_U16] = 2,
+                                   [RELUME_BTF_HALF] = 2,
+                                   [RELUME_BTF_FLOAT] = 4,
+                                   [RELUME_BTF_U32] = 4};
     const int numbers = m->twin->numbers[i];
     size_t count = 1;
     for (int d = 0; d < a->dims; d++)

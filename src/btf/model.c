@@ -225,7 +225,25 @@ relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
     return status;
 }
 
+relume_status relume_btf_as_model(relume_btf_fitted **out, const relume_btf *btf,
+                                  const struct relume_log *log)
+{
+    return fit_level(out, btf, &model_table, relume_btf_fit_params(.log = log), NULL);
+}
+
 // ---------------------------------------------------------------- reading back
+
+// All around, a hair above the horizon.
+static double mean_rim(const relume_dome *lights)
+{
+    enum { AROUND = 48 };
+    double sum = 0.0;
+    for (int i = 0; i < AROUND; i++) {
+        const double phi = 2.0 * M_PI * i / AROUND;
+        sum += relume_dome_at(lights, vec3_of(cos(phi), sin(phi), 1e-9)).direction.z;
+    }
+    return sum / AROUND;
+}
 
 struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *m)
 {
@@ -244,6 +262,8 @@ struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *m)
         info.bytes += bytes;
         info.bytes_each += m->array[i].each ? bytes / m->texels : 0;
     }
+    // layouts alone have no directions
+    info.rim = m->light_dome ? mean_rim(m->light_dome) : 0.0;
     info.levels = 1;
     info.bytes_levels = info.bytes;
     if (m->half) {

@@ -74,6 +74,8 @@ relume_status relume_btf_fitted_save(const relume_btf_fitted *m, const char *pat
 {
     const struct relume_log *log = params ? params->log : NULL;
     outdir *dir;
+    if (m->table)
+        return log_fail(log, RELUME_EINVAL, "%s: measured values are no model to save", path);
     relume_status status = outdir_open(&dir, path, params && params->force, log);
     if (status)
         return status;
@@ -181,6 +183,10 @@ static bool values_are_good(const struct model_array *a)
             break;
         case NPY_U16:
             if (((const uint16_t *)a->data)[i] >= a->below)
+                return false;
+            break;
+        case NPY_U32:
+            if (((const uint32_t *)a->data)[i] >= a->below)
                 return false;
             break;
         case NPY_HALF:

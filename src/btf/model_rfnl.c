@@ -39,6 +39,12 @@ static struct relume_btf_cost cost(const relume_btf_fitted *m)
     return fields_cost(m);
 }
 
+static void lit(const relume_btf_fitted *m, const struct model_at *at,
+                const struct relume_btf_ambient *ambient, float rgb[3])
+{
+    fields_lit(m, at->texel, at, ambient, rgb);
+}
+
 const struct relume_btf_model model_rfnl = {
     .name = "rfnl",
     .summary = "cosine lobes of the light for each view",
@@ -48,4 +54,5 @@ const struct relume_btf_model model_rfnl = {
     .fit = fit,
     .eval = eval,
     .cost = cost,
+    .lit = lit,
 };

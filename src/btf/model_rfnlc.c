@@ -89,6 +89,12 @@ static struct relume_btf_cost cost(const relume_btf_fitted *m)
     return cost;
 }
 
+static void lit(const relume_btf_fitted *m, const struct model_at *at,
+                const struct relume_btf_ambient *ambient, float rgb[3])
+{
+    fields_lit(m, ((const uint16_t *)m->array[CLUSTER].data)[at->texel], at, ambient, rgb);
+}
+
 const struct relume_btf_model model_rfnlc = {
     .name = "rfnlc",
     .summary = "cosine lobes for each view of clusters of texels",
@@ -99,4 +105,5 @@ const struct relume_btf_model model_rfnlc = {
     .fit = fit,
     .eval = eval,
     .cost = cost,
+    .lit = lit,
 };

@@ -54,6 +54,19 @@ RELUME_RESULT relume_status relume_glare_kernel(struct relume_image *out, const 
                                                 double pixel,
                                                 const struct relume_glare_params *params);
 
+// That veil from where a pattern fades out to RELUME_VEIL_DEG, for kernels made elsewhere: pattern
+// (1 - share) + light * a pixel's solid angle, and all of it divided by its sum.
+#define RELUME_VEIL_DEG 12.5
+enum { RELUME_VEIL_STEPS = 2048 };
+struct relume_veil {
+    double step;                         // radians from number to number
+    float light[RELUME_VEIL_STEPS + 2];  // per steradian at that angle, linear between; the last
+                                         // two are 0
+    double share;                        // of all light; 0: the pattern reaches as far itself
+};
+RELUME_API void relume_veil(struct relume_veil *out, const struct relume_psf_geometry *pattern,
+                            double age, double pigment);
+
 // Work on frames of one size keeps what does not change: plans, and the spectrum of a frame that
 // rests. Thread-safety: one thread at a time.
 typedef struct relume_glare relume_glare;

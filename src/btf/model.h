@@ -60,6 +60,7 @@ struct relume_btf_model {
     void (*layout)(relume_btf_fitted *m);  // adds the arrays, with model_add
     relume_status (*fit)(struct fitting *f);
     void (*eval)(const relume_btf_fitted *m, const struct model_at *at, float rgb[3]);
+    bool lobes_times_cosine;  // where values include n.l
     // Under an environment (btf/ambient.h); NULL: the sum over the measured lights.
     void (*lit)(const relume_btf_fitted *m, const struct model_at *at,
                 const struct relume_btf_ambient *ambient, float rgb[3]);

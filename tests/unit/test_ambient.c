@@ -171,7 +171,8 @@ static void test_brute_force(void **state)
                 print_error("%s, cosine %s: %g\n", name, bare ? "left out" : "in values", error);
             assert_true(error < most);
             // with maps of the orientation only their pixels and exponents are left
-            assert_true(!has_lobes(name) || worst(m, p, &light, true) < 0.005);
+            const bool try_own = !strcmp(name, "rfnl") || (!bare && !strcmp(name, "laf"));
+            assert_true(!try_own || worst(m, p, &light, true) < 0.005);
             relume_btf_fitted_destroy(&m);
         }
         relume_btf_destroy(&btf);

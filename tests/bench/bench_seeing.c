@@ -1,6 +1,6 @@
 // bench_seeing.c - glare in the viewer: compute passes of OpenGL against the library, stage by
 // stage On a graphics card where EGL finds one, else by llvmpipe. Usage: bench_seeing [WIDTHxHEIGHT
-// [SIZE]]; default 1280x720 with a pattern of 512 in software, 1920x1080 with 1024 on a card
+// [SIZE]]; default 1280x720 with a pattern of 512 in software, 1920x1080 with 1536 on a card
 #include "bench.h"
 
 #include "context_offscreen.h"
@@ -10,6 +10,7 @@ enum { RUNS = 5 };
 
 static struct gl gl;
 static int width = 1280, height = 720, size = 512;
+static const double field_deg = 4.0;
 
 enum { APERTURE, PATTERN, FRAME, SAME_FRAME, ALL, STAGES };
 static const char *const names[STAGES] = {"aperture", "diffraction and colours",
@@ -38,7 +39,7 @@ static const struct relume_glare_params view = {.fov_deg = 45};
 static void run_passes(struct bench bench[STAGES], relume_eye *eye,
                        const struct relume_image *frame)
 {
-    const struct relume_psf_params params = {.size = size};
+    const struct relume_psf_params params = {.size = size, .half_field_deg = field_deg};
     struct gl_glare card = {.room = 0};
     struct target from, seen;
     bench_check(target_create(&from, &gl, width, height, NULL));
@@ -78,7 +79,8 @@ static void run_library(struct bench bench[STAGES], relume_eye *eye,
     relume_psf *psf;
     relume_glare *work;
     params.mode = mode;
-    bench_check(relume_psf_create(&psf, relume_psf_params(.size = size)));
+    bench_check(
+        relume_psf_create(&psf, relume_psf_params(.size = size, .half_field_deg = field_deg)));
     bench_check(relume_glare_create(&work));
     for (int run = -1; run < RUNS; run++) {
         bench_check(relume_eye_advance(eye, 0.04, 100));
@@ -111,7 +113,7 @@ int main(int argc, char **argv)
     if (backend == &context_egl_card) {
         width = 1920;
         height = 1080;
-        size = 1024;
+        size = 1536;
     }
     if ((argc > 1 && sscanf(argv[1], "%5dx%5d", &width, &height) != 2) ||
         (argc > 2 && sscanf(argv[2], "%5d", &size) != 1))
@@ -122,7 +124,8 @@ int main(int argc, char **argv)
            backend->name);
     bench_check(relume_eye_create(&eye, NULL, 100));
     fill(&frame);
-    if (gl_psf_fits(&gl, size))
+    const struct relume_psf_params pattern = {.size = size, .half_field_deg = field_deg};
+    if (gl_psf_fits(&gl, &pattern))
         run_passes(passes, eye, &frame);
     run_library(library[0], eye, &frame, RELUME_GLARE_FFT);
     run_library(library[1], eye, &frame, RELUME_GLARE_HYBRID);

@@ -533,6 +533,13 @@ static void wrong_options_are_refused(void **state)
         {"a.exr --projection planet --eye 0,0,3", "found two"},
         {"a.exr --interpolate cubic", "constant, linear or depth"},
         {"a.exr --aperture -1", "from"},
+        {"a.exr --glare-magnify 0", "from 0.01 to 1000"},
+        {"a.exr --nits nan", "found 'nan'"},
+        {"a.exr --squint 1", "0 to 0.95"},
+        {"a.exr --glare-mode quick", "hybrid"},
+        {"a.exr --glare-size 63", "from 128"},
+        {"a.exr --glare-size 129", "even"},
+        {"a.exr --glare-by hand", "passes"},
         {"a.exr --light up", ""},
     };
     struct options o;

@@ -114,7 +114,7 @@ $B/obj/src/image/exr.o: own_flags = $(EXR)
 $B/obj/src/image/oiio.o: own_flags = $(OIIO)
 $B/obj/src/capture/stitch.o: own_flags = -isystem $(OPENCV)
 $B/obj/src/base/module.o: own_flags = -DRELUME_MAJOR=$(MAJOR)
-$B/obj/src/coder/kernels_avx2.o $B/obj/src/relight/kernels_avx2.o $B/obj/src/pass/kernels_avx2.o: own_flags = -mavx2 -mfma -mf16c
+$B/obj/src/%_avx2.o: own_flags = -mavx2 -mfma -mf16c
 $B/obj/src/%.o:               own_include = -Isrc
 $B/obj/src/cli/plot.o: own_flags = $(CAIRO)
 $B/obj/src/cli/%.o:           own_include = -Isrc/cli
@@ -177,7 +177,7 @@ $(UNIT): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	$(call say,LD)
 	$(Q)$(CC) $(MODE) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
 # Benches that draw are linked as the tests of GL are.
-GL_BENCH := $B/tests/bench/bench_viewer $B/tests/bench/bench_seeing
+GL_BENCH := $(addprefix $B/tests/bench/,bench_viewer bench_objects bench_seeing)
 $(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)

@@ -16,7 +16,7 @@ exchange:base math image:base image lights codebook coder capture pack relight e
 relight:base math image:base image coder light relight rig normals enhance
 view:base math image:base image light relight view slabs capture
 pass:base math image:base image light tone eye psf glare
-btf:base math image:base image lights btf
+btf:base math image:base image light lights btf surface ambient
 frame:base math:base image capture coder pack light relight view slabs frame evaluate normals enhance
 scene:base math image:base image lights capture btf scene
 object:base math image scene:base image capture light relight view slabs pack frame btf object
@@ -70,6 +70,6 @@ only_in 'GLFW' viewer/context_glfw.c
 only_in 'imgui' viewer/panel.cpp
 only_in 'GL/osmesa' viewer/context_osmesa.c
 only_in 'EGL/' viewer/context_egl.c
-only_in 'immintrin' src/relight/kernels_avx2.c src/coder/kernels_avx2.c src/pass/kernels_avx2.c
+only_in 'immintrin' src/*/*_avx2.c
 [ $bad = 0 ] && echo "layers: fine"
 exit $bad

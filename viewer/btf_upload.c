@@ -8,17 +8,13 @@
 #include <string.h>
 
 const struct btf_twin btf_twins[] = {
-    {"measured", "btf_measured.frag", {3}},
-    {"bump", "btf_bump.frag", {3, 3, 3}},
-    {"laf", "btf_laf.frag", {3, 3, 4}},
-    {"slaf", "btf_slaf.frag", {3, 3, 4, 1}},
-    {"rfp", "btf_rfp.frag", {3}},
-    {"rfnl", "btf_rfnl.frag", {3, 3, 4}},
-    {"rfnlc", "btf_rfnlc.frag", {3, 3, 4, 1}},
-    {"vpca", "btf_vpca.frag", {3, 3, 1}},
-    {"lpca", "btf_lpca.frag", {3, 3, 1, 1}},
-    {"fmf", "btf_fmf.frag", {1, 3}},
-    {NULL, NULL, {0}},
+    {"measured", "btf_measured.frag", {3}},   {"lit", "btf_lit.frag", {3}},
+    {"bump", "btf_bump.frag", {3, 3, 3}},     {"laf", "btf_laf.frag", {3, 3, 4}},
+    {"slaf", "btf_slaf.frag", {3, 3, 4, 1}},  {"rfp", "btf_rfp.frag", {3}},
+    {"rfnl", "btf_rfnl.frag", {3, 3, 4}},     {"rfnlc", "btf_rfnlc.frag", {3, 3, 4, 1}},
+    {"cmf", "btf_cmf.frag", {3, 1}},          {"vpca", "btf_vpca.frag", {3, 3, 1}},
+    {"lpca", "btf_lpca.frag", {3, 3, 1, 1}},  {"fmf", "btf_fmf.frag", {1, 3}},
+    {"qmf", "btf_qmf.frag", {1, 1, 1, 1, 1}}, {NULL, NULL, {0}},
 };
 
 const struct btf_twin *btf_twin_find(const char *model)
@@ -65,6 +61,7 @@ static GLenum format_of(const struct relume_btf_array *a, int numbers)
     case RELUME_BTF_U8: return GL_R8UI;
     case RELUME_BTF_U16: return GL_R16UI;
     case RELUME_BTF_HALF: return numbers == 1 ? GL_R16F : GL_RGBA16F;
+    case RELUME_BTF_U32: return GL_R32UI;
     case RELUME_BTF_FLOAT: break;
     }
     return numbers == 1 ? GL_R32F : GL_RGBA32F;
@@ -73,8 +70,11 @@ static GLenum format_of(const struct relume_btf_array *a, int numbers)
 static relume_status upload_array(struct btf_material *m, const struct gl *gl, int i,
                                   const struct relume_btf_array *a, const struct relume_log *log)
 {
-    static const size_t sizes[] = {
-        [RELUME_BTF_U8] = 1, [RELUME_BTF_U16] = 2, [RELUME_BTF_HALF] = 2, [RELUME_BTF_FLOAT] = 4};
+    static const size_t sizes[] = {[RELUME_BTF_U8] = 1,
+                                   [RELUME_BTF_U16] = 2,
+                                   [RELUME_BTF_HALF] = 2,
+                                   [RELUME_BTF_FLOAT] = 4,
+                                   [RELUME_BTF_U32] = 4};
     const int numbers = m->twin->numbers[i];
     size_t count = 1;
     for (int d = 0; d < a->dims; d++)

@@ -152,6 +152,8 @@ static relume_status run_offscreen(struct session *s, struct options *o)
     if (!status && o->capture)
         status = session_compare(s, o->capture);
     if (!status)
+        status = session_take_objects(s, &o->objects);
+    if (!status)
         status = session_open(s, o->file, &o->start, film);
     if (!status)
         status = session_start(s, context_offscreen(o->gl), s->app.width, s->app.height);
@@ -278,6 +280,8 @@ static relume_status open_window(struct session *s, struct options *o,
     if (!status && o->capture)
         status = session_compare(s, o->capture);
     if (!status)
+        status = session_take_objects(s, &o->objects);
+    if (!status)
         status = session_open(s, o->file, &o->start, true);
     if (status)
         return status;
@@ -336,7 +340,7 @@ int main(int argc, char **argv)
     session.vram_bytes = (size_t)(options.vram_mb * 1048576.0);
     const bool offscreen =
         options.offscreen || options.record || (options.script && !options.window);
-    if (!status && !options.file)
+    if (!status && !options.file && !options.stage)
         options_help();
     else if (!status)
         status = (offscreen ? run_offscreen : run_window)(&session, &options);

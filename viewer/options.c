@@ -390,6 +390,37 @@ static relume_status take_frames(struct options *o, const char *name, const char
     return status;
 }
 
+static relume_status take_objects(struct options *o, const char *name, const char *text,
+                                  const struct relume_log *log)
+{
+    (void)name, (void)log;
+    o->objects.description = text;
+    return RELUME_OK;
+}
+
+static relume_status take_mesh(struct options *o, const char *name, const char *text,
+                               const struct relume_log *log)
+{
+    (void)name, (void)log;
+    o->objects.mesh = text;
+    return RELUME_OK;
+}
+
+static relume_status take_material(struct options *o, const char *name, const char *text,
+                                   const struct relume_log *log)
+{
+    if (o->objects.materials == SESSION_MATERIALS)
+        return say(log, RELUME_EINVAL, "%s: expected at most %d", name, SESSION_MATERIALS);
+    o->objects.material[o->objects.materials++] = text;
+    return RELUME_OK;
+}
+
+static relume_status take_repeat(struct options *o, const char *name, const char *text,
+                                 const struct relume_log *log)
+{
+    return take_number(&o->objects.repeat, name, text, 0.001, 10000, log);
+}
+
 static relume_status take_no_config(struct options *o, const char *name, const char *text,
                                     const struct relume_log *log)
 {
@@ -437,14 +468,22 @@ static const struct option options[] = {
     {"--projection", "P", "panorama: perspective, stereographic or planet", take_projection},
     {"--interpolate", "I", "slab: constant, linear or depth; default: depth if there is any",
      take_interpolation},
-    {"--aperture", "A", "slab: average the cameras within A/2 of the eye", take_aperture},
-    {"--focus", "Z", "slab: the plane at z = Z is sharp", take_focus},
+    {"--aperture", "A", "slab: average the cameras within A/2 of the eye; free eye: a lens",
+     take_aperture},
+    {"--focus", "Z", "slab: the plane at z = Z is sharp; free eye: Z before the middle",
+     take_focus},
     {"--size", "WxH", "pixels of the window or picture", take_size},
     {"--exposure", "EV", "brighter by 2^EV, or auto", take_exposure},
     {"--tone", "T", "linear, reinhard or filmic; .exr, .hdr and .pfm stay linear", take_tone},
     {"--white", "L", "reinhard: the luminance that becomes white; default: 4", take_white},
     {"--pass", "NAME", "colour, normals, specular, diffuse-gain, unsharp, luminance, ...",
      take_pass},
+    {"--objects", "FILE", "objects covered with BTFs (docs/objects.md), in the scene or alone",
+     take_objects},
+    {"--mesh", "FILE", "the same for one mesh: .obj, .ply, .gltf, .glb, ...", take_mesh},
+    {"--material", "DIR", "--mesh: a BTF or a model of one; repeat for more to choose from",
+     take_material},
+    {"--repeat", "N", "--mesh: samples along its texture; default 1", take_repeat},
     {"--capture", "CAPTURE", "the photographs, for --pass difference", take_capture},
     {"--threads", "N", "threads that read files; default: all cores", take_threads},
     {"--vram", "MB", "graphics memory for views; those not used for long leave; default: 1024",
@@ -572,6 +611,33 @@ void options_release(struct options *o)
     lamps_release(&o->start);
 }
 
+static bool is_description(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && !strcmp(dot, ".json");
+}
+
+// FILE is a scene; or a description of objects; or, beside --mesh without --material, a material.
+static relume_status choose_objects(struct options *o, const struct relume_log *log)
+{
+    struct session_objects *w = &o->objects;
+    if (o->file && is_description(o->file) && !w->description && !w->mesh) {
+        w->description = o->file;
+        o->file = NULL;
+    } else if (o->file && w->mesh && !w->materials) {
+        w->material[w->materials++] = o->file;
+        o->file = NULL;
+    }
+    if (w->mesh && w->description)
+        return say(log, RELUME_EINVAL, "expected one of --objects and --mesh; found both");
+    if (w->mesh && !w->materials)
+        return say(log, RELUME_EINVAL, "--mesh: expected a material for it; see --material");
+    if (!w->mesh && (w->materials || w->repeat != 0.0))
+        return say(log, RELUME_EINVAL, "expected --mesh beside --material and --repeat");
+    o->stage = !o->file && (w->mesh || w->description);
+    return RELUME_OK;
+}
+
 relume_status options_parse(struct options *o, int argc, char **argv, const struct relume_log *log)
 {
     *o = (struct options){.gl = "auto", .vram_mb = 1024, .subject = relume_subject_default()};
@@ -597,6 +663,9 @@ relume_status options_parse(struct options *o, int argc, char **argv, const stru
         return say(log, RELUME_EINVAL, "--record script: expected --script EVENTS as well");
     if (!o->frames)
         o->frames = RECORD_FRAMES;
+    const relume_status status = choose_objects(o, log);
+    if (status || o->stage)
+        return status;
     if (!o->file)
         return say(log, RELUME_EINVAL, "expected 'relume-view FILE'; see 'relume-view --help'");
     return RELUME_OK;

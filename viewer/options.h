@@ -9,7 +9,9 @@
 #include <relume/rig.h>
 
 struct options {
-    const char *file;       // NULL: only help was asked for
+    const char *file;  // NULL: only help was asked for, or `stage`
+    bool stage;        // there are objects alone
+    struct session_objects objects;
     const char *offscreen;  // picture to write without a window, or NULL
     const char *script;     // events to play, or NULL
     const char *capture;    // to compare with, or NULL

@@ -587,6 +587,68 @@ static void environment_rows(panel *panel, app *app, const panel_facts *facts)
         wish_map(app, "", panel->environment);
 }
 
+static bool choose_material(const char *label, const struct relume_objects_info *info,
+                            int *material)
+{
+    char text[128];
+    bool changed = false;
+    std::snprintf(text, sizeof text, "%s (%s)", info->material[*material].name,
+                  info->material[*material].model);
+    if (!ImGui::BeginCombo(label, text))
+        return false;
+    for (int i = 0; i < info->materials; i++) {
+        std::snprintf(text, sizeof text, "%s (%s)##%d", info->material[i].name,
+                      info->material[i].model, i);
+        if (ImGui::Selectable(text, i == *material)) {
+            *material = i;
+            changed = true;
+        }
+    }
+    ImGui::EndCombo();
+    return changed;
+}
+
+// What a material takes on disk and of graphics memory, and the time of its last frame.
+static void material_cost(const struct relume_objects_info *info, const panel_facts *facts,
+                          int material, double ms)
+{
+    const size_t bytes = material < facts->materials ? facts->material_bytes[material] : 0;
+    ImGui::Text("%s: %.2f MB, as drawn %.2f", info->material[material].model,
+                (double)info->material[material].bytes * 1e-6, (double)bytes * 1e-6);
+    ImGui::Text("  %.1f ms a frame", ms);
+}
+
+static bool objects_section(app *app, const panel_facts *facts)
+{
+    static const char *const splits[APP_SPLITS] = {"one", "side by side", "difference"};
+    const struct relume_objects_info *info = relume_objects_info(app->file.objects);
+    bool changed = false;
+    for (int i = 0; i < info->parts; i++) {
+        int material = info->part[i].material;
+        ImGui::PushID(i);
+        if (choose_material(info->part[i].name, info, &material)) {
+            (void)!relume_objects_choose(app->file.objects, i, material);
+            changed = true;
+        }
+        ImGui::PopID();
+    }
+    for (int i = 0; i < APP_SPLITS; i++) {
+        if (i)
+            ImGui::SameLine();
+        const bool chosen = ImGui::RadioButton(splits[i], app->now.split == i);
+        while (chosen && app->now.split != i)
+            changed |= keys_press(app, 'q', false);
+    }
+    if (app->now.split != APP_SPLIT_NONE)
+        changed |= choose_material("other", info, &app->now.other);
+    if (!facts->material_bytes)
+        return changed;
+    material_cost(info, facts, info->part[0].material, facts->objects_ms[0]);
+    if (app->now.split != APP_SPLIT_NONE)
+        material_cost(info, facts, app->now.other, facts->objects_ms[1]);
+    return changed;
+}
+
 // ---------------------------------------------------------------- windows
 
 static bool panel_window(panel *panel, app *app, const panel_facts *facts)
@@ -607,6 +669,8 @@ static bool panel_window(panel *panel, app *app, const panel_facts *facts)
         changed |= lights_section(panel, app);
         environment_rows(panel, app, facts);
     }
+    if (app->file.objects && ImGui::CollapsingHeader("Objects", ImGuiTreeNodeFlags_DefaultOpen))
+        changed |= objects_section(app, facts);
     if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen))
         changed |= picture_section(app);
     if (ImGui::CollapsingHeader("Glare", app->now.gaze.on ? ImGuiTreeNodeFlags_DefaultOpen : 0))

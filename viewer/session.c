@@ -129,6 +129,7 @@ static void close_file(struct session *s)
     pack_source_destroy(&s->source);
     relume_pack_destroy(&s->pack);
     relume_slabs_destroy(&s->around);
+    relume_slabs_destroy(&s->stage);
 }
 
 relume_status session_open(struct session *s, const char *path, const struct app_state *start,
@@ -137,6 +138,8 @@ relume_status session_open(struct session *s, const char *path, const struct app
     relume_pack *pack;
     relume_slabs *around;
     struct app app;
+    if (!path)
+        return session_open_stage(s, start);
     relume_status status =
         relume_pack_open(&pack, path, relume_pack_params(.log = s->log, .threads = s->threads));
     if (status)
@@ -144,6 +147,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
     struct app_file file = describe(pack);
     status = find_slabs(&around, pack, relume_aim_given(&start->camera.aim), s->log);
     file.around = around;
+    file.objects = s->objects;
     if (!status)
         status = app_start(&app, &file, start, look_ahead, s->log);
     if (!status)
@@ -171,6 +175,8 @@ relume_status session_open(struct session *s, const char *path, const struct app
 
 static relume_status make_renderer(struct session *s)
 {
+    if (!s->pack)
+        return session_make_stage(s);
     const struct relume_pack_info *info = relume_pack_info(s->pack);
     relume_status status = pack_source_create(&s->source, s->pack);
     if (status)
@@ -195,7 +201,9 @@ static relume_status make_renderer(struct session *s)
     renderer_use_capture(&s->renderer, s->capture);
     if (info->has_depth)
         status = renderer_use_depth(&s->renderer, &depth);
-    return status || !s->streams ? status : renderer_stream(&s->renderer);
+    if (!status && s->objects)
+        status = session_add_objects(s);
+    return status || !s->streams || s->objects ? status : renderer_stream(&s->renderer);
 }
 
 static relume_status make_panel(struct session *s, double scale)
@@ -272,6 +280,7 @@ void session_close(struct session *s)
     draw_panel_destroy(&s->drawing, &s->gl);
     panel_destroy(&s->panel);
     close_file(s);
+    relume_objects_destroy(&s->objects);
     if (s->context)
         s->backend->close(s->context);
     relume_capture_destroy(&s->capture);

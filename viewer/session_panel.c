@@ -87,9 +87,13 @@ relume_status session_build_panel(struct session *s, bool histogram)
 {
     char eye[160];
     bool plot = false;
-    relume_status status = s->app.inspect ? inspect(s, &plot) : RELUME_OK;
+    relume_status status = s->app.inspect && s->pack ? inspect(s, &plot) : RELUME_OK;
     if (!status)
         status = list_maps(s);
+    for (int i = 0; s->renderer.things.gl && i < relume_objects_info(s->objects)->materials &&
+                    i < SESSION_MATERIALS;
+         i++)
+        s->material_bytes[i] = things_bytes(&s->renderer.things, i);
     const struct panel_facts facts = {
         .file = s->name,
         .line = s->lines,
@@ -100,6 +104,9 @@ relume_status session_build_panel(struct session *s, bool histogram)
         .map_folder = s->maps.folder,
         .map = (const char *const *)s->maps.name,
         .map_in_use = file_name(session_map_in_use(s)),
+        .material_bytes = s->objects ? s->material_bytes : NULL,
+        .materials = SESSION_MATERIALS,
+        .objects_ms = s->renderer.things_ms,
         .eye = describe_eye(eye, sizeof eye, &s->renderer.glare),
     };
     if (!status)

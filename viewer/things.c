@@ -36,6 +36,8 @@ static const char *const surface_uniforms[] = {"clip", "part"};
 enum {
     OVER_PLACE = DRAW_OWN,
     OVER_SHADED,
+    OVER_OTHER,
+    DIFFERENCE,
     OVER_SCENE,
     IN_SCENE,
     GRID,
@@ -43,11 +45,18 @@ enum {
     EXPOSURE,
     OVER_COUNT
 };
-static const char *const over_uniforms[] = {"rectangle", "frame_size", "place", "shaded",  "scene",
-                                            "in_scene",  "grid",       "eye",   "exposure"};
-enum { CAST_SCENE = DRAW_OWN, CAST_LONE, CAST_SHADOW, CAST_COUNT = CAST_SHADOW + SHADOW_UNIFORMS };
-static const char *const cast_uniforms[] = {"rectangle", "frame_size", "scene", "lone",
-                                            SHADOW_NAMES};
+static const char *const over_uniforms[] = {"rectangle", "frame_size", "place",   "shaded",
+                                            "other",     "difference", "scene",   "in_scene",
+                                            "grid",      "eye",        "exposure"};
+enum {
+    CAST_SCENE = DRAW_OWN,
+    CAST_LONE,
+    WEIGHT,
+    CAST_SHADOW,
+    CAST_COUNT = CAST_SHADOW + SHADOW_UNIFORMS
+};
+static const char *const cast_uniforms[] = {"rectangle", "frame_size", "scene",
+                                            "lone",      "weight",     SHADOW_NAMES};
 
 // Where OpenGL is software, a smaller map and no finer grid.
 enum { SHADOW_SIDE = 2048, SHADOW_SIDE_SOFTWARE = 1024, FINER = 2 };
@@ -127,7 +136,7 @@ relume_status things_create(struct things *t, const struct gl *gl, relume_object
 
 static void destroy_targets(struct things *t)
 {
-    struct target *const targets[] = {&t->place, &t->normal, &t->tangent, &t->shaded};
+    struct target *const targets[] = {&t->place, &t->normal, &t->tangent, &t->shaded, &t->other};
     for (size_t i = 0; i < sizeof targets / sizeof *targets; i++)
         target_destroy(targets[i], t->gl);
     t->gl->DeleteFramebuffers(1, &t->surface_buffer);
@@ -174,7 +183,7 @@ size_t things_bytes(const struct things *t, int material)
 static relume_status need_targets(struct things *t, int width, int height)
 {
     const struct gl *gl = t->gl;
-    struct target *const targets[] = {&t->place, &t->normal, &t->tangent, &t->shaded};
+    struct target *const targets[] = {&t->place, &t->normal, &t->tangent, &t->shaded, &t->other};
     relume_status status = RELUME_OK;
     width *= t->grid, height *= t->grid;
     if (t->place.width == width && t->place.height == height)
@@ -376,7 +385,14 @@ static void draw_whole(const struct gl *gl, const struct program *program,
     draw_rectangle(gl, program, place, (struct app_rectangle){0, 0, place->width, place->height});
 }
 
-void things_over(const struct things *t, const struct place *place, GLuint scene)
+void things_swap(struct things *t)
+{
+    const struct target shaded = t->shaded;
+    t->shaded = t->other;
+    t->other = shaded;
+}
+
+void things_over(const struct things *t, const struct place *place, GLuint scene, bool difference)
 {
     const struct gl *gl = t->gl;
     const GLint *at = t->over.at;
@@ -384,6 +400,9 @@ void things_over(const struct things *t, const struct place *place, GLuint scene
     texture_use(gl, 0, GL_TEXTURE_2D, t->place.texture);
     texture_use(gl, 1, GL_TEXTURE_2D, t->shaded.texture);
     texture_use(gl, 2, GL_TEXTURE_2D, scene);
+    texture_use(gl, 3, GL_TEXTURE_2D, t->other.texture);
+    gl->Uniform1i(at[OVER_OTHER], 3);
+    gl->Uniform1i(at[DIFFERENCE], difference);
     gl->Uniform1i(at[OVER_PLACE], 0);
     gl->Uniform1i(at[OVER_SHADED], 1);
     gl->Uniform1i(at[OVER_SCENE], 2);
@@ -395,6 +414,20 @@ void things_over(const struct things *t, const struct place *place, GLuint scene
     gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     draw_whole(gl, &t->over, place);
     gl->Disable(GL_BLEND);
+}
+
+static float value_of(const struct relume_lamp *lamp)
+{
+    const float *rgb = lamp->is_facet ? lamp->facet.rgb : lamp->light.rgb;
+    return rgb[0] + rgb[1] + rgb[2];
+}
+
+static float share_of(const struct things *t, int lamp)
+{
+    float sum = 0.0f;
+    for (int i = 0; i < t->lamps; i++)
+        sum += value_of(&t->lamp[i]);
+    return sum > 0.0f ? value_of(&t->lamp[lamp]) / sum : 0.0f;
 }
 
 void things_cast(struct things *t, const struct place *place, int lamp, GLuint scene,
@@ -412,6 +445,7 @@ void things_cast(struct things *t, const struct place *place, int lamp, GLuint s
     texture_use(gl, 1, GL_TEXTURE_2D, lone->texture);
     gl->Uniform1i(t->cast.at[CAST_SCENE], 0);
     gl->Uniform1i(t->cast.at[CAST_LONE], 1);
+    gl->Uniform1f(t->cast.at[WEIGHT], share_of(t, lamp));
     shadow_map_use(t->shadow.layers ? &t->shadow : NULL, gl, t->cast.at + CAST_SHADOW, 2);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);

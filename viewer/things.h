@@ -27,7 +27,8 @@ struct things {
     struct btf_material *material;  // [materials]; without a twin until it is shown
     struct shine shine;
     struct shadow_map shadow;
-    struct target place, normal, tangent, shaded;  // of the frame, `grid` times finer
+    // Of the frame, `grid` times finer; `other` is in another material, to compare with.
+    struct target place, normal, tangent, shaded, other;
     GLuint surface_buffer, depth_texture;
     int grid;
     bool no_shadows;
@@ -52,12 +53,15 @@ relume_status things_light(struct things *things, const struct relume_light *lig
 // `only` >= 0: with all parts in this material. RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status things_shade(struct things *things, const struct sight *sight, int width, int height,
                            int only);
-// What was shaded over the target in use, of the same frame; `scene` are the positions that the
-// frame shows, or 0: it shows nothing else.
-void things_over(const struct things *things, const struct place *place, GLuint scene);
+// What was shaded becomes the other, and the other way round.
+void things_swap(struct things *things);
+// What was shaded over the target in use, of the same frame, or its difference from the other;
+// `scene` are the positions that the frame shows, or 0: it shows nothing else.
+void things_over(const struct things *things, const struct place *place, GLuint scene,
+                 bool difference);
 
 // The shadow of one lamp on the scene: adds to the target in use what `lone` shows, where the lamp
-// reaches `scene`.
+// reaches `scene`, times the lamp's share of the light of all lamps.
 void things_cast(struct things *things, const struct place *place, int lamp, GLuint scene,
                  const struct target *lone);
 

@@ -180,8 +180,24 @@ struct relume_btf_fitted_info {
     uint64_t bytes_each;              // of those a texel: the rest is shared by all texels
     int levels;                       // at least 1
     uint64_t bytes_levels;            // of the arrays of all levels
+    double rim;  // mean cosine of the lowest measured lights, below which values fall to 0
 };
 RELUME_API struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *fitted);
+
+// What a graphics processor has to do for a pixel between the measured directions (2003 paper,
+// Tab. 3): vector operations (of up to four numbers; a power counts as one) and texture fetches (up
+// to four numbers or 16 bytes of one place, bilinear ones as one). Looking up which directions
+// stand for one costs two fetches, from cube maps (thesis, chapter 9).
+struct relume_btf_cost {
+    int ops, fetches;              // once
+    int light_ops, light_fetches;  // and for each light
+};
+RELUME_API struct relume_btf_cost relume_btf_fitted_cost(const relume_btf_fitted *fitted);
+
+// The measured values as a model that is exact, for what takes models. Nothing is copied: the BTF
+// must outlive it; it cannot be saved. RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_btf_as_model(relume_btf_fitted **out, const relume_btf *btf,
+                                                const struct relume_log *log);
 
 // A level of detail, 0 being the model itself, beyond the last one the last; belongs to the model.
 RELUME_API const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fitted *fitted,
@@ -200,7 +216,7 @@ RELUME_API void relume_btf_fitted_sample(const relume_btf_fitted *fitted, double
 // (docs/btf.md). Pointers belong to the model.
 struct relume_btf_array {
     const char *name;
-    enum { RELUME_BTF_U8, RELUME_BTF_U16, RELUME_BTF_HALF, RELUME_BTF_FLOAT } kind;
+    enum { RELUME_BTF_U8, RELUME_BTF_U16, RELUME_BTF_HALF, RELUME_BTF_FLOAT, RELUME_BTF_U32 } kind;
     int dims;
     size_t shape[5];
     const void *data;

@@ -3,6 +3,7 @@
 #define RELUME_H
 
 #include <relume/align.h>
+#include <relume/ambient.h>
 #include <relume/base.h>
 #include <relume/ball.h>
 #include <relume/btf.h>
@@ -32,6 +33,7 @@
 #include <relume/scene.h>
 #include <relume/shoot.h>
 #include <relume/slabs.h>
+#include <relume/surface.h>
 #include <relume/tone.h>
 #include <relume/view.h>
 #include <relume/views.h>

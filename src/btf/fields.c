@@ -1,6 +1,7 @@
 #include "btf/fields.h"
 
 #include "base/memory.h"
+#include "btf/ambient.h"
 #include "image/half.h"
 #include "math/lsq.h"
 
@@ -250,4 +251,29 @@ void fields_eval(const relume_btf_fitted *m, size_t entry, const struct model_at
     }
     for (int c = 0; c < 3; c++)
         rgb[c] = float_from_half(diffuse[c]) + float_from_half(specular[c]) * sum;
+}
+
+struct relume_btf_cost fields_cost(const relume_btf_fitted *m)
+{
+    return (struct relume_btf_cost){
+        .ops = 1, .fetches = 2 + 1 + 3 * (1 + m->lobes), .light_ops = 3 * (1 + 3 * m->lobes)};
+}
+
+void fields_lit(const relume_btf_fitted *m, size_t entry, const struct model_at *at,
+                const struct relume_btf_ambient *ambient, float rgb[3])
+{
+    const size_t slice = entry * (size_t)m->views + (size_t)at->view;
+    const float *lobe = model_floats(m, FIELD_LOBE) + slice * (size_t)m->lobes * 4;
+    const uint16_t *diffuse = model_halfs(m, FIELD_DIFFUSE) + 3 * entry;
+    const uint16_t *specular = model_halfs(m, FIELD_SPECULAR) + 3 * slice;
+    float even[3], sum[3] = {0.0f, 0.0f, 0.0f};
+    ambient_even(ambient, m->without_cosine, even);
+    for (int j = 0; j < m->lobes; j++, lobe += 4) {
+        float one[3];
+        ambient_lobe(ambient, lobe, lobe[3], m->without_cosine, one);
+        for (int c = 0; c < 3; c++)
+            sum[c] += one[c];
+    }
+    for (int c = 0; c < 3; c++)
+        rgb[c] = float_from_half(diffuse[c]) * even[c] + float_from_half(specular[c]) * sum[c];
 }

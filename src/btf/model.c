@@ -57,6 +57,7 @@ void relume_btf_fitted_destroy(relume_btf_fitted **fitted)
     if (!m)
         return;
     free_arrays(m);
+    free(m->prepared);
     relume_btf_fitted_destroy(&m->half);
     relume_dome_destroy(&m->view_dome);
     relume_dome_destroy(&m->light_dome);
@@ -177,12 +178,12 @@ static relume_status fit_level(relume_btf_fitted **out, const relume_btf *btf,
     if (!status && p->ratio != 0.0 && !(p->ratio >= 1.0 && p->ratio <= 1e6))
         status =
             log_fail(p->log, RELUME_EINVAL, "ratio: expected 1 to 1000000; found %g", p->ratio);
-    if (!status && !before)
-        status = check_values(btf, p->log);
     if (!status)
         status = model_make_arrays(m);
     if (!status)
         status = model->fit(&f);
+    if (!status && model->prepare)
+        status = model->prepare(m);
     if (status)
         relume_btf_fitted_destroy(&m);
     *out = m;
@@ -224,7 +225,25 @@ relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
     return status;
 }
 
+relume_status relume_btf_as_model(relume_btf_fitted **out, const relume_btf *btf,
+                                  const struct relume_log *log)
+{
+    return fit_level(out, btf, &model_table, relume_btf_fit_params(.log = log), NULL);
+}
+
 // ---------------------------------------------------------------- reading back
+
+// All around, a hair above the horizon.
+static double mean_rim(const relume_dome *lights)
+{
+    enum { AROUND = 48 };
+    double sum = 0.0;
+    for (int i = 0; i < AROUND; i++) {
+        const double phi = 2.0 * M_PI * i / AROUND;
+        sum += relume_dome_at(lights, vec3_of(cos(phi), sin(phi), 1e-9)).direction.z;
+    }
+    return sum / AROUND;
+}
 
 struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *m)
 {
@@ -243,6 +262,8 @@ struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *m)
         info.bytes += bytes;
         info.bytes_each += m->array[i].each ? bytes / m->texels : 0;
     }
+    // layouts alone have no directions
+    info.rim = m->light_dome ? mean_rim(m->light_dome) : 0.0;
     info.levels = 1;
     info.bytes_levels = info.bytes;
     if (m->half) {
@@ -251,6 +272,11 @@ struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *m)
         info.bytes_levels += half.bytes_levels;
     }
     return info;
+}
+
+struct relume_btf_cost relume_btf_fitted_cost(const relume_btf_fitted *m)
+{
+    return m->model->cost(m);
 }
 
 const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fitted *m, int level)

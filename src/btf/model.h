@@ -30,7 +30,9 @@ struct relume_btf_fitted {
     relume_dome *view_dome, *light_dome;
     struct model_array array[MODEL_ARRAYS];
     int arrays;
+    void *prepared;           // what the model's `prepare` made of them, or NULL
     relume_btf_fitted *half;  // the next level of detail, or NULL
+    const relume_btf *table;  // the measured values, where they are the model
 };
 
 // One value that is asked for. Models that are gridded over views (lights) get measured ones only.
@@ -50,6 +52,8 @@ struct fitting {
     double ratio;  // asked for; 0: the model's choice
 };
 
+struct relume_btf_ambient;
+
 struct relume_btf_model {
     const char *name;
     const char *summary;
@@ -60,12 +64,18 @@ struct relume_btf_model {
     void (*layout)(relume_btf_fitted *m);  // adds the arrays, with model_add
     relume_status (*fit)(struct fitting *f);
     void (*eval)(const relume_btf_fitted *m, const struct model_at *at, float rgb[3]);
+    // Whatever makes reading faster, into m->prepared, to be freed with free(); NULL: nothing does.
+    relume_status (*prepare)(relume_btf_fitted *m);
+    struct relume_btf_cost (*cost)(const relume_btf_fitted *m);
     // Whether arrays that are fine by themselves fit together; NULL: they do.
     bool (*is_sound)(const relume_btf_fitted *m);
+    // Under an environment (btf/ambient.h); NULL: the sum over the measured lights.
+    void (*lit)(const relume_btf_fitted *m, const struct model_at *at,
+                const struct relume_btf_ambient *ambient, float rgb[3]);
 };
 
 extern const struct relume_btf_model model_lit, model_bump, model_laf, model_slaf, model_rfp,
-    model_rfnl, model_rfnlc, model_cmf, model_vpca, model_lpca, model_fmf, model_qmf;
+    model_rfnl, model_rfnlc, model_cmf, model_vpca, model_lpca, model_fmf, model_qmf, model_table;
 
 // An array of up to five sizes; unused ones are 0.
 void model_add(relume_btf_fitted *m, const char *name, enum npy_kind kind, bool each, size_t below,

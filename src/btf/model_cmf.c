@@ -264,6 +264,14 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     }
 }
 
+// Three views and lights, two maps; the half vector and the frame it stands upright in.
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    (void)m;
+    return (struct relume_btf_cost){
+        .ops = 3, .fetches = 1 + 2 + 3, .light_ops = 3 + 8 + 3, .light_fetches = 2 + 3 + 2};
+}
+
 const struct relume_btf_model model_cmf = {
     .name = "cmf",
     .summary = "products of factors of view, light and half vector for clusters of texels",
@@ -273,4 +281,5 @@ const struct relume_btf_model model_cmf = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
 };

@@ -74,6 +74,8 @@ relume_status relume_btf_fitted_save(const relume_btf_fitted *m, const char *pat
 {
     const struct relume_log *log = params ? params->log : NULL;
     outdir *dir;
+    if (m->table)
+        return log_fail(log, RELUME_EINVAL, "%s: measured values are no model to save", path);
     relume_status status = outdir_open(&dir, path, params && params->force, log);
     if (status)
         return status;
@@ -183,6 +185,10 @@ static bool values_are_good(const struct model_array *a)
             if (((const uint16_t *)a->data)[i] >= a->below)
                 return false;
             break;
+        case NPY_U32:
+            if (((const uint32_t *)a->data)[i] >= a->below)
+                return false;
+            break;
         case NPY_HALF:
             if ((((const uint16_t *)a->data)[i] & 0x7c00u) == 0x7c00u)
                 return false;
@@ -224,7 +230,7 @@ static relume_status read_all(relume_btf_fitted *m, const jvalue *root, const st
         status = read_array(&m->array[i], r);
     if (!status && m->model->is_sound && !m->model->is_sound(m))
         status = wrong(r, "arrays do not fit together", "rows of bits as long as their widths");
-    return status;
+    return status || !m->model->prepare ? status : m->model->prepare(m);
 }
 
 // `levels` is left as it is where the file does not say.

@@ -6,6 +6,7 @@
 // are BRDFs: where values include n.l, they are multiplied by it, else not even a white Lambertian
 // surface could be fitted.
 #include "base/memory.h"
+#include "btf/ambient.h"
 #include "btf/lobes.h"
 #include "image/half.h"
 #include "math/lsq.h"
@@ -310,6 +311,51 @@ static void eval_scaled(const relume_btf_fitted *m, const struct model_at *at, f
         rgb[c] *= factor;
 }
 
+// For each lobe a scalar product, a power, its colour; then n.l.
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    return (struct relume_btf_cost){.fetches = 1 + 2 * m->lobes, .light_ops = 2 + 3 * m->lobes};
+}
+
+// And three factors, blended.
+static struct relume_btf_cost cost_scaled(const relume_btf_fitted *m)
+{
+    struct relume_btf_cost both = cost(m);
+    both.ops += 3, both.fetches += 2 + 3, both.light_ops++;
+    return both;
+}
+
+// For one view a Lafortune lobe is a cosine lobe of the light; all of the sum is times n.l.
+static void lit(const relume_btf_fitted *m, const struct model_at *at,
+                const struct relume_btf_ambient *ambient, float rgb[3])
+{
+    const size_t lobes = (size_t)m->lobes;
+    const uint16_t *diffuse = model_halfs(m, DIFFUSE) + 3 * at->texel;
+    const uint16_t *specular = model_halfs(m, SPECULAR) + 3 * at->texel * lobes;
+    const uint16_t *lobe = model_halfs(m, LOBE) + 4 * at->texel * lobes;
+    ambient_even(ambient, true, rgb);
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= float_from_half(diffuse[c]);
+    for (size_t j = 0; j < lobes; j++, lobe += 4, specular += 3) {
+        const float t[3] = {float_from_half(lobe[0]) * (float)at->v.x,
+                            float_from_half(lobe[1]) * (float)at->v.y,
+                            float_from_half(lobe[2]) * (float)at->v.z};
+        float one[3];
+        ambient_lobe(ambient, t, float_from_half(lobe[3]), true, one);
+        for (int c = 0; c < 3; c++)
+            rgb[c] += float_from_half(specular[c]) * one[c];
+    }
+}
+
+static void lit_scaled(const relume_btf_fitted *m, const struct model_at *at,
+                       const struct relume_btf_ambient *ambient, float rgb[3])
+{
+    const float factor = model_floats(m, FACTOR)[at->texel * (size_t)m->views + (size_t)at->view];
+    lit(m, at, ambient, rgb);
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= factor;
+}
+
 const struct relume_btf_model model_laf = {
     .name = "laf",
     .summary = "Lafortune lobes for each texel",
@@ -317,6 +363,8 @@ const struct relume_btf_model model_laf = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
+    .lit = lit,
 };
 
 const struct relume_btf_model model_slaf = {
@@ -327,4 +375,6 @@ const struct relume_btf_model model_slaf = {
     .layout = layout_scaled,
     .fit = fit_scaled,
     .eval = eval_scaled,
+    .cost = cost_scaled,
+    .lit = lit_scaled,
 };

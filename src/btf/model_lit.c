@@ -1,7 +1,7 @@
 // model_lit.c - a lit texture, the plainest of the papers' comparisons (2003 paper, Figs. 5 and 6):
 //     BTF(x, v, l) ~ texture(x) n.l
 // The texture is the least squares of all pairs.
-#include "btf/model.h"
+#include "btf/ambient.h"
 #include "image/half.h"
 
 enum { TEXTURE };
@@ -43,10 +43,28 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
         rgb[c] = float_from_half(texture[c]) * (float)cosine(m, at->l);
 }
 
+// A colour; n.l.
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    (void)m;
+    return (struct relume_btf_cost){.fetches = 1, .light_ops = 2};
+}
+
+static void under(const relume_btf_fitted *m, const struct model_at *at,
+                  const struct relume_btf_ambient *ambient, float rgb[3])
+{
+    const uint16_t *texture = model_halfs(m, TEXTURE) + 3 * at->texel;
+    ambient_even(ambient, true, rgb);
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= float_from_half(texture[c]);
+}
+
 const struct relume_btf_model model_lit = {
     .name = "lit",
     .summary = "a lit texture: a colour for each texel times n.l",
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
+    .lit = under,
 };

@@ -82,6 +82,19 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     fields_eval(m, ((const uint16_t *)m->array[CLUSTER].data)[at->texel], at, rgb);
 }
 
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    struct relume_btf_cost cost = fields_cost(m);
+    cost.fetches++;  // which cluster
+    return cost;
+}
+
+static void lit(const relume_btf_fitted *m, const struct model_at *at,
+                const struct relume_btf_ambient *ambient, float rgb[3])
+{
+    fields_lit(m, ((const uint16_t *)m->array[CLUSTER].data)[at->texel], at, ambient, rgb);
+}
+
 const struct relume_btf_model model_rfnlc = {
     .name = "rfnlc",
     .summary = "cosine lobes for each view of clusters of texels",
@@ -91,4 +104,6 @@ const struct relume_btf_model model_rfnlc = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
+    .lit = lit,
 };

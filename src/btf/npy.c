@@ -18,7 +18,8 @@ static const struct {
 } kinds[] = {[NPY_HALF] = {"<f2", 2},
              [NPY_FLOAT] = {"<f4", 4},
              [NPY_U8] = {"|u1", 1},
-             [NPY_U16] = {"<u2", 2}};
+             [NPY_U16] = {"<u2", 2},
+             [NPY_U32] = {"<u4", 4}};
 enum { KINDS = sizeof kinds / sizeof *kinds, PREFIX = 10, ALIGN = 64, WRITE_AT_ONCE = 1 << 24 };
 static const char MAGIC[] = "\x93NUMPY\x01";
 
@@ -124,7 +125,7 @@ relume_status npy_open(struct npy_file *file, const char *path, const struct rel
     if (!status && !read_header(file, &offset))
         status = log_fail(log, RELUME_EDATA,
                           "%s: not an array that is read here; expected NumPy format 1.0, rows "
-                          "first, of half, float, uint8 or uint16",
+                          "first, of half, float, uint8, uint16 or uint32",
                           path);
     if (!status && file->map_size - offset != npy_bytes(&file->npy))
         status = log_fail(log, RELUME_EDATA, "%s: expected %zu bytes of values; found %zu", path,

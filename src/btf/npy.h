@@ -7,7 +7,7 @@
 
 #include "base/outfile.h"
 
-enum npy_kind { NPY_HALF, NPY_FLOAT, NPY_U8, NPY_U16 };
+enum npy_kind { NPY_HALF, NPY_FLOAT, NPY_U8, NPY_U16, NPY_U32 };
 enum { NPY_DIMS = 5 };
 
 struct npy {

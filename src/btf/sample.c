@@ -77,6 +77,7 @@ bool relume_btf_fitted_array(struct relume_btf_array *out, const relume_btf_fitt
     switch (a->npy.kind) {
     case NPY_U8: out->kind = RELUME_BTF_U8; break;
     case NPY_U16: out->kind = RELUME_BTF_U16; break;
+    case NPY_U32: out->kind = RELUME_BTF_U32; break;
     case NPY_HALF: out->kind = RELUME_BTF_HALF; break;
     case NPY_FLOAT: out->kind = RELUME_BTF_FLOAT; break;
     }

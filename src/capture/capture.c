@@ -198,6 +198,7 @@ relume_status relume_capture_open(relume_capture **out, const char *path,
     if (!c)
         return RELUME_ENOMEM;
     c->repair = p.repair;
+    c->assume_depth = p.assume_depth;
     relume_status status = read_description(c, path, &p);
     if (!status && p.skip_missing)
         status = skip_missing(c, p.log);
@@ -221,6 +222,7 @@ relume_status relume_capture_open(relume_capture **out, const char *path,
         memcpy(g->window_max, d.window_max, sizeof g->window_max);
     }
     c->draft.m.transfer = c->transfer;
+    near_warn(c, p.log);
     *out = c;
     return RELUME_OK;
 }

@@ -15,6 +15,12 @@ bool btf_is_model(const char *path)
     return snprintf(file, sizeof file, "%s/model.json", path) < (int)sizeof file && exists(file);
 }
 
+bool btf_is_surface(const char *path)
+{
+    char file[4096];
+    return snprintf(file, sizeof file, "%s/surface.json", path) < (int)sizeof file && exists(file);
+}
+
 static relume_status synth_material(relume_btf **out, const struct relume_btf_material *material,
                                     const struct args *args)
 {
@@ -45,4 +51,19 @@ relume_status btf_open(relume_btf **out, const char *name, const struct args *ar
     return relume_btf_open(out, name,
                            relume_btf_params(.log = args_log(args), .threads = args_threads(args),
                                              .fill = args_has(args, "--fill")));
+}
+
+relume_status btf_open_sample(struct btf_sample *out, const char *name, const struct args *args)
+{
+    *out = (struct btf_sample){.btf = NULL};
+    if (btf_is_model(name))
+        return relume_btf_fitted_open(&out->model, name, relume_btf_params(.log = args_log(args)));
+    const relume_status status = btf_open(&out->btf, name, args);
+    return status ? status : relume_btf_as_model(&out->model, out->btf, args_log(args));
+}
+
+void btf_close_sample(struct btf_sample *sample)
+{
+    relume_btf_fitted_destroy(&sample->model);
+    relume_btf_destroy(&sample->btf);
 }

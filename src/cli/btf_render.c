@@ -3,97 +3,100 @@
 
 #include <math.h>
 
-struct swatch {
-    const relume_btf *btf;  // one of the two
-    const relume_btf_fitted *fitted;
-    struct relume_vec3 eye;
-};
-
-static void add_light(struct relume_image *image, const struct swatch *s,
-                      const struct relume_light *light)
+static relume_status parse_pair(int out[2], const char *option, const char *text, int most)
 {
-    for (int y = 0; y < image->height; y++)
-        for (int x = 0; x < image->width; x++) {
-            float rgb[3];
-            if (s->btf)
-                relume_btf_evaluate(s->btf, x, y, s->eye, light->direction, rgb);
-            else
-                relume_btf_fitted_evaluate(s->fitted, x, y, s->eye, light->direction, rgb);
-            float *to = image->data + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
-            for (int c = 0; c < 3; c++)
-                to[c] += rgb[c] * light->rgb[c];
-        }
+    char rest;
+    if (sscanf(text, "%6dx%6d%c", &out[0], &out[1], &rest) == 2 && out[0] >= 1 && out[1] >= 1 &&
+        out[0] <= most && out[1] <= most)
+        return RELUME_OK;
+    return usage_error("%s: expected WxH, 1 to %d; found '%s'", option, most, text);
 }
 
-static struct relume_vec3 unit(struct relume_vec3 v)
+relume_status btf_pair(int out[2], const struct args *args, const char *option, int most)
 {
-    const double length = sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-    return (struct relume_vec3){v.x / length, v.y / length, v.z / length};
+    const char *text = args_text(args, option, NULL);
+    return text ? parse_pair(out, option, text, most) : RELUME_OK;
 }
 
-static relume_status light_swatch(struct relume_image *image, const struct swatch *s,
-                                  const struct args *args)
+// Rectified from --eye, or a perspective view from --camera.
+static relume_status parse_camera(struct relume_btf_camera *camera, const struct args *args)
 {
-    const int count = args_count(args, "--light");
+    const char *eye = args_text(args, "--eye", NULL), *place = args_text(args, "--camera", NULL);
+    const char *at = args_text(args, "--look-at", NULL);
+    *camera = (struct relume_btf_camera){.eye = {0.0, 0.0, 1.0},
+                                         .perspective = place != NULL,
+                                         .fov_deg = args_number(args, "--fov", 40.0)};
+    if (eye && place)
+        return usage_error("btf render: expected --eye or --camera; found both");
+    if (at && !place)
+        return usage_error("--look-at: expected a --camera");
+    relume_status status = RELUME_OK;
+    if (eye || place)
+        status = args_vec3(&camera->eye, eye ? "--eye" : "--camera", eye ? eye : place);
+    if (!status && at)
+        status = args_vec3(&camera->at, "--look-at", at);
+    if (!status && !(camera->eye.z > 0.0))
+        status = usage_error("%s: expected z > 0; found '%s'", eye ? "--eye" : "--camera",
+                             eye ? eye : place);
+    return status;
+}
+
+static relume_status draw(const relume_btf_surface *surface, const struct args *args)
+{
+    const struct relume_btf_surface_info info = relume_btf_surface_info(surface);
     const struct relume_light *lights;
+    struct relume_btf_camera camera;
+    struct relume_image image = {0};
     relume_rig *rig = NULL;
     int n = 0;
-    relume_status status = relume_rig_create(&rig);
+    relume_status status = parse_camera(&camera, args);
+    int size[2] = {camera.perspective ? 640 : info.width, camera.perspective ? 400 : info.height};
+    if (!status)
+        status = btf_pair(size, args, "--picture", 65536);
+    if (!status)
+        status = relume_rig_create(&rig);
+    const int count = args_count(args, "--light");
     for (int i = 0; i < (count ? count : 1) && !status; i++)
         status = relume_rig_add(rig, count ? args_nth(args, "--light", i) : "dir 0 0 1", NULL,
                                 args_log(args));
     if (!status)
         status = relume_rig_lights(&lights, &n, rig);
-    for (int i = 0; i < n && !status; i++) {
-        struct relume_light light = lights[i];
-        if (light.kind != RELUME_LIGHT_DIRECTIONAL)
-            status = usage_error("btf render: expected lights \"dir x y z\"; found '%s'",
-                                 relume_light_kind_name(light.kind));
-        light.direction = unit(light.direction);
-        if (!status)
-            add_light(image, s, &light);
-    }
+    if (!status)
+        status = relume_image_create(&image, size[0], size[1], 3);
+    if (!status)
+        status = relume_btf_draw(
+            &image, surface, &camera, lights, n,
+            relume_btf_draw_params(.log = args_log(args), .threads = args_threads(args)));
+    if (!status)
+        status = relume_image_save(&image, args_text(args, "-o", NULL),
+                                   relume_image_params(.log = args_log(args)));
+    relume_image_destroy(&image);
     relume_rig_destroy(&rig);
     return status;
 }
 
 relume_status btf_render(const struct args *args)
 {
-    struct swatch s = {.eye = {0.0, 0.0, 1.0}};
-    struct relume_image image = {0};
-    relume_btf *btf = NULL;
-    relume_btf_fitted *fitted = NULL;
-    const char *eye = args_text(args, "--eye", NULL);
-    int width = 0, height = 0;
+    struct btf_sample sample;
+    relume_btf_surface *surface = NULL;
     if (btf_is_objects(args))
         return btf_render_objects(args);
     if (!args_has(args, "-o"))
         return usage_error("btf render: expected -o FILE");
-    relume_status status = eye ? args_vec3(&s.eye, "--eye", eye) : RELUME_OK;
-    if (!status && !(s.eye.z > 0.0))
-        status = usage_error("--eye: expected a direction with z > 0; found '%s'", eye);
-    if (!status && btf_is_model(args_input(args, 1))) {
-        status = relume_btf_fitted_open(&fitted, args_input(args, 1),
-                                        relume_btf_params(.log = args_log(args)));
-        if (!status) {
-            const struct relume_btf_fitted_info i = relume_btf_fitted_info(fitted);
-            width = i.width, height = i.height;
-        }
-    } else if (!status) {
-        status = btf_open(&btf, args_input(args, 1), args);
+    if (btf_is_surface(args_input(args, 1))) {
+        relume_status status = relume_btf_surface_open(&surface, args_input(args, 1),
+                                                       relume_btf_params(.log = args_log(args)));
         if (!status)
-            width = relume_btf_info(btf)->width, height = relume_btf_info(btf)->height;
+            status = draw(surface, args);
+        relume_btf_surface_destroy(&surface);
+        return status;
     }
-    s.btf = btf, s.fitted = fitted, s.eye = unit(s.eye);
+    relume_status status = btf_open_sample(&sample, args_input(args, 1), args);
     if (!status)
-        status = relume_image_create(&image, width, height, 3);
+        status = relume_btf_surface_create(&surface, sample.model, NULL, args_log(args));
     if (!status)
-        status = light_swatch(&image, &s, args);
-    if (!status)
-        status = relume_image_save(&image, args_text(args, "-o", NULL),
-                                   relume_image_params(.log = args_log(args)));
-    relume_image_destroy(&image);
-    relume_btf_fitted_destroy(&fitted);
-    relume_btf_destroy(&btf);
+        status = draw(surface, args);
+    relume_btf_surface_destroy(&surface);
+    btf_close_sample(&sample);
     return status;
 }

@@ -30,9 +30,12 @@ static const struct option options[] = {
      "slab: constant, linear or depth; default: depth where the file has it, else linear", 0, 0},
     {"--nearest", OPTION_FLAG, NULL, "slab: the same as --interpolate constant", 0, 0},
     {"--aperture", OPTION_NUMBER, "A",
-     "slab: average the cameras within A/2 of the eye; default: 0", 0, 1e9},
-    {"--focus", OPTION_NUMBER, "Z", "slab: the plane at z = Z is sharp; default: the st plane", 0,
-     0},
+     "slab: average the cameras within A/2 of the eye, of a free eye a lens as wide; default: 0", 0,
+     1e9},
+    {"--focus", OPTION_NUMBER, "Z",
+     "slab: the plane at z = Z is sharp, of a free eye the one so much before what it looks at; "
+     "default: the st plane, what it looks at",
+     0, 0},
     DEVELOP_OPTIONS,
     {"--pass", OPTION_TEXT, "NAME",
      "colour, normals, specular, diffuse-gain, unsharp, luminance, false-colour, difference, glare",
@@ -134,8 +137,6 @@ static relume_status parse_slab(const struct args *args, struct relume_frame_par
         return usage_error("relight: expected one of --interpolate, --nearest, --aperture/--focus");
     if (nearest)
         params->interpolation = RELUME_INTERPOLATE_CONSTANT;
-    else if (lens)
-        params->interpolation = RELUME_INTERPOLATE_LINEAR;
     params->aperture = args_number(args, "--aperture", 0.0);
     if (named &&
         relume_interpolation_parse(&params->interpolation, args_text(args, "--interpolate", NULL)))
@@ -292,9 +293,13 @@ static relume_status render(const struct args *args, const struct relume_camera 
                          relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
     if (status)
         return status;
-    const double st_z = relume_pack_info(pack)->geometry.st_z;
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    const bool free_eye = info->slabs || relume_aim_given(&camera->aim);
+    const double plane_z = free_eye ? 0.0 : info->geometry.st_z;
     params.log = prefix_log(&about, args_log(args), args_input(args, 0));
-    params.focus = args_number(args, "--focus", st_z) - st_z;
+    params.focus = args_number(args, "--focus", plane_z) - plane_z;
+    if (!free_eye && (args_has(args, "--aperture") || args_has(args, "--focus")))
+        params.interpolation = RELUME_INTERPOLATE_LINEAR;
     status = open_capture(args, &capture);
     params.capture = capture;
     if (!status)

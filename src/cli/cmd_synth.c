@@ -30,6 +30,8 @@ static const struct option options[] = {
     {"--seed", OPTION_INT, "S", "of random patterns and sampling; default 0", 0, 2147483647},
     {"--btf", OPTION_TEXT, "MATERIAL",
      "measure a built-in material as a BTF; --size in texels, default 64", 0, 0},
+    {"--extent", OPTION_INT, "N", "of a material: N times as many stones, threads, ... a side", 1,
+     16},
     {"--directions", OPTION_TEXT, "SET",
      "BTF: of views and lights: bonn (default), dome, coarse, or a file of directions", 0, 0},
     {"--force", OPTION_FLAG, NULL, "replace an existing folder", 0, 0},
@@ -152,8 +154,9 @@ static relume_status synth_btf(const struct args *args)
         status = relume_btf_synth(
             &btf, material,
             relume_btf_synth_params(.log = args_log(args), .size = args_int(args, "--size", 0),
-                                    .view = directions, .views = n, .light = directions,
-                                    .lights = n, .samples = args_int(args, "--samples", 0),
+                                    .extent = args_int(args, "--extent", 0), .view = directions,
+                                    .views = n, .light = directions, .lights = n,
+                                    .samples = args_int(args, "--samples", 0),
                                     .bounces = args_has(args, "--bounces") &&
                                                        !args_int(args, "--bounces", 0)
                                                    ? -1

@@ -121,18 +121,19 @@ struct shadows {
 };
 
 // The share of a light that reaches a point. One lamp does or does not; of the lamps of an area or
-// an environment each counts by what it sends.
+// an environment each counts by its value.
 static double share(const struct shadows *s, vec3 point)
 {
     double sent = 0.0, arrived = 0.0;
     for (int i = 0; i < s->n; i++) {
-        float rgb[3];
+        float unused[3];
         double distance;
         vec3 towards;
-        if (!relume_lamp_at(&towards, rgb, &distance, &s->lamps[i], point))
-            continue;
+        const struct relume_lamp *lamp = &s->lamps[i];
+        const float *rgb = lamp->is_facet ? lamp->facet.rgb : lamp->light.rgb;
         const double value = (double)(rgb[0] + rgb[1] + rgb[2]);
         sent += value;
+        (void)relume_lamp_at(&towards, unused, &distance, lamp, point);
         if (objects_reached(s->o, point, vec3_of(0, 0, 0), towards, distance))
             arrived += value;
     }
@@ -193,8 +194,10 @@ static void layered_value(float rgb[3], const void *context, double x, double y)
     vec3 origin, direction;
     ray_of(l->rays, x, y, &origin, &direction);
     const vec3 to = vec3_sub(vec3_of((double)p[0], (double)p[1], (double)p[2]), origin);
+    const bool nothing = p[0] == 0.0f && p[1] == 0.0f && p[2] == 0.0f;  // no view sees so far
     memcpy(rgb, l->scene->data + pixel, 3 * sizeof *rgb);
-    if (objects_hit(&point, l->o, origin, direction) && point.distance < vec3_dot(to, direction))
+    if (objects_hit(&point, l->o, origin, direction) &&
+        (nothing || point.distance < vec3_dot(to, direction)))
         objects_shade(rgb, l->o, &point, vec3_scale(direction, -1.0), l->lamps, l->n,
                       l->no_shadows);
 }

@@ -88,16 +88,16 @@ static relume_status view_rows(void *context, int row, int rows, void *samples)
     const size_t width = (size_t)info->width, planes = (size_t)info->planes;
     const size_t code = info->storage == RELUME_STORE_8 ? 1 : 2;
     const size_t sample = is_wide(info->storage) ? 4 : 2;
-    char *codes = mem_array((size_t)rows * planes * width, code);
-    if (!codes)
-        return RELUME_ENOMEM;
-    const relume_status status = relume_coefficients_read(source->coefficients, row, rows, codes);
-    for (size_t y = 0; !status && y < (size_t)rows; y++)
-        for (size_t p = 0; p < planes; p++) {
+    char *codes = mem_array(planes * width, code);  // a row stays in the cache
+    relume_status status = codes ? RELUME_OK : RELUME_ENOMEM;
+    for (size_t y = 0; !status && y < (size_t)rows; y++) {
+        status = relume_coefficients_read(source->coefficients, row + (int)y, 1, codes);
+        for (size_t p = 0; !status && p < planes; p++) {
             const size_t channel = (size_t)file_channel(relume_coder_info(info->coder), (int)p);
-            store_row(info->storage, source->half_of_code, codes + (y * planes + p) * width * code,
-                      width, (char *)samples + (y * planes + channel) * width * sample);
+            store_row(info->storage, source->half_of_code, codes + p * width * code, width,
+                      (char *)samples + (y * planes + channel) * width * sample);
         }
+    }
     free(codes);
     return status;
 }

@@ -73,10 +73,10 @@ static relume_status sample_relief(struct goniometer *g)
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++) {
             struct relief_point at;
-            g->material->at((double)i / n, (double)j / n, random_mix(g->p.seed), &at);
-            g->height[corner(g, i, j)] = at.height;
+            g->material->at((double)i / n, (double)j / n, g->p.extent, random_mix(g->p.seed), &at);
+            g->height[corner(g, i, j)] = at.height / g->p.extent;
             g->layer[corner(g, i, j)] = (unsigned char)at.layer;
-            sum += at.height;
+            sum += g->height[corner(g, i, j)];
             // texture_image has its pixel centres at + 0.5 and row 0 at the top
             float *pixel = stage->pictures[0].data + 3 * corner(g, i, n - 1 - j);
             memcpy(pixel, at.color, sizeof at.color);
@@ -299,6 +299,7 @@ static relume_status complete(struct goniometer *g, const struct relume_btf_synt
     if (params)
         g->p = *params;
     g->p.size = g->p.size ? g->p.size : 64;
+    g->p.extent = g->p.extent ? g->p.extent : 1;
     g->p.samples = g->p.samples ? g->p.samples : 4;
     g->p.bounces = g->p.bounces < 0 ? 0 : g->p.bounces ? g->p.bounces : 1;
     if (!g->p.views)
@@ -308,6 +309,8 @@ static relume_status complete(struct goniometer *g, const struct relume_btf_synt
     if (g->p.size < 1 || g->p.size > 1024)
         return log_fail(g->p.log, RELUME_EINVAL, "size: expected 1 to 1024 texels; found %d",
                         g->p.size);
+    if (g->p.extent < 1 || g->p.extent > 16)
+        return log_fail(g->p.log, RELUME_EINVAL, "extent: expected 1 to 16; found %d", g->p.extent);
     g->cells = g->p.size * (g->p.size >= CELLS / 2 ? 2 : CELLS / g->p.size);
     return RELUME_OK;
 }

@@ -17,8 +17,9 @@ struct relief_point {
 struct relume_btf_material {
     const char *name;
     const char *summary;
-    // Periodic in u and v, both in [0, 1).
-    void (*at)(double u, double v, uint64_t seed, struct relief_point *out);
+    // Periodic in u and v, both in [0, 1); `extent` times as many of everything along each, heights
+    // in widths of one of these parts.
+    void (*at)(double u, double v, int extent, uint64_t seed, struct relief_point *out);
     struct relief_gloss {
         float f0[3], alpha;  // as in struct material
     } gloss[RELIEF_LAYERS];

@@ -649,7 +649,7 @@ static void scripts_let_an_eye_live(void **state)
     static struct frames frames;
     assert_int_equal(play(&app, &frames,
                           "wait 1\nglare on\nglare squint 0.3\nwait 0.5\nglare pause\nwait 1\n"
-                          "glare run\nkey y\nwait 1\nglare on\nwait 0.25\nframe a\n"),
+                          "glare run\nkey h\nwait 1\nglare on\nwait 0.25\nframe a\n"),
                      RELUME_OK);
     assert_float_equal(frames.at[0].eye_s, 0.75, 1e-9);
     assert_true(frames.at[0].now.gaze.on && frames.at[0].now.gaze.squint == 0.3);

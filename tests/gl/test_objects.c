@@ -7,8 +7,8 @@
 
 enum { SIDE = 48, TEXELS = 8 };
 static char folder[64];
-static const char *const models[] = {"bump",  "laf",  "slaf", "rfp", "rfnl",
-                                     "rfnlc", "vpca", "lpca", "fmf", NULL};
+static const char *const models[] = {"lit", "bump", "laf",  "slaf", "rfp", "rfnl", "rfnlc",
+                                     "cmf", "vpca", "lpca", "fmf",  "qmf", NULL};
 
 static const char *path_of(const char *name)
 {
@@ -124,7 +124,7 @@ static struct relume_image draw(struct things *t, const struct relume_window *w,
     assert_int_equal(things_shade(t, &sight, SIDE, SIDE, -1), RELUME_OK);
     assert_int_equal(target_create(&frame, gl, SIDE, SIDE, &fixture_log), RELUME_OK);
     target_begin(&frame, gl);
-    things_over(t, &place, 0);
+    things_over(t, &place, 0, false);
     assert_int_equal(target_read(&image, &frame, gl), RELUME_OK);
     target_destroy(&frame, gl);
     gl->DeleteVertexArrays(1, &array);
@@ -248,7 +248,7 @@ static void lights_agree(void **state)
                                  "env sky.exr 30",
                                  NULL};
     // what differs between lights is shared by all models
-    choose(t.objects, 5);
+    choose(t.objects, 6);
     for (int i = 0; specs[i]; i++) {
         relume_rig *rig = rig_of((const char *const[]){specs[i], NULL});
         compare(&t, rig, specs[i]);
@@ -268,7 +268,7 @@ static void shadows_agree(void **state)
     struct things t;
     start(&t);
     const char *const specs[] = {sunlight, "point 0.3 0.9 3.4", "point -0.6 -0.5 0.9", NULL};
-    choose(t.objects, 5);
+    choose(t.objects, 6);
     for (int i = 0; specs[i]; i++) {
         const struct relume_light *lights;
         double brightest;

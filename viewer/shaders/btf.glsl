@@ -1,6 +1,6 @@
 // What all models share: a pixel of the surface, the lamp of the pass, and the measured directions
 // around any direction. Before it: view_grid and light_grid (struct relume_btf_model); after it:
-// model_eval.
+// model_eval, or, where OWN_BLEND is defined, model_blend.
 uniform sampler2D place, normal_s, tangent_t;  // btf_surface.frag
 uniform int part;                              // that is drawn
 uniform vec4 eye;                              // its place, 1; or the direction towards it, 0
@@ -73,6 +73,9 @@ Blend dome_at(isamplerBuffer cells, samplerBuffer triangles, vec3 d)
 
 // ---------------------------------------------------------------- the model
 
+#ifdef OWN_BLEND
+vec3 model_blend(int texel, Blend v, Blend l);
+#else
 // At one texel, at a measured view (light) where the model is gridded over them.
 vec3 model_eval(int texel, int view, int light, vec3 v, vec3 l);
 
@@ -88,6 +91,7 @@ vec3 model_blend(int texel, Blend v, Blend l)
         }
     return sum;
 }
+#endif
 
 // Twin: relume_btf_fitted_sample.
 vec3 btf_sample(vec2 at, Blend v, Blend l)

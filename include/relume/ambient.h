@@ -1,0 +1,104 @@
+// ambient.h - environment light on measured materials: prefiltered maps for models of lobes, sums
+// over the measured lights for all others (Meseth 2008, 9.4; McAllister, Lastra, Heidrich 2002)
+#ifndef RELUME_AMBIENT_H
+#define RELUME_AMBIENT_H
+
+#include <relume/base.h>
+#include <relume/btf.h>
+#include <relume/light.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// ---------------------------------------------------------------- prefiltered maps
+
+// An environment as lobes see it. Never changes. Thread-safety: safe.
+typedef struct relume_prefilter relume_prefilter;
+
+enum {
+    RELUME_PREFILTER_EXPONENTS = 11,  // 2^(i / 2): 1, 1.41, 2, ... 32
+    RELUME_PREFILTER_STEPS = 33,      // of a cosine from -1 to 1
+};
+
+struct relume_prefilter_params {
+    const struct relume_log *log;
+    int height;  // of the maps, pixels; they are twice as wide; default 48, [4, 512]
+    // The cosine of the lowest measured lights, below which values fall to 0 at the horizon
+    // (relume_btf_fitted_info.rim); default 0: they do not fall.
+    double rim;
+    int threads;  // default: all cores
+};
+#define relume_prefilter_params(...) (&(const struct relume_prefilter_params){__VA_ARGS__})
+
+// `light` is an environment; its colour and rotation are taken over. RELUME_EINVAL, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_prefilter_create(relume_prefilter **out,
+                                                    const struct relume_light *light,
+                                                    const struct relume_prefilter_params *params);
+RELUME_API void relume_prefilter_destroy(relume_prefilter **prefilter);
+
+// Plain arrays for other renderers; they belong to the prefilter. Maps are spherical (row 0 is up
+// +y, the middle column -z, +x to its right, pixel centres at +0.5), so that bilinear lookups
+// repeat in columns and clamp in rows. E is the radiance of the environment.
+struct relume_prefilter_info {
+    int width, height;
+    // [height][width][3]: the sum of E fall(n.l) dw / pi over n.l > 0, fall(z) being
+    // min(z / rim, 1): what a value of 1 for all lights shows on a surface facing the direction n.
+    const float *diffuse;
+    // [11][height][width][3]: the mean of E under the lobe max(d.l, 0)^e about the direction d:
+    // (e + 1) / (2 pi) times the sum of E max(d.l, 0)^e dw. Means change little from exponent to
+    // exponent: between them they are linear in log2(e), beyond them the last ones.
+    const float *specular;
+    // [2][11][33]: what part of a lobe, by the cosine between its axis and the normal, arrives:
+    // [0] where values include n.l, by fall(z); [1] times z, where they do not.
+    const float *part;
+};
+RELUME_API struct relume_prefilter_info relume_prefilter_info(const relume_prefilter *prefilter);
+
+// The maps in a unit direction of the world, `exponent` > 0.
+RELUME_API void relume_prefilter_diffuse(float rgb[3], const relume_prefilter *prefilter,
+                                         struct relume_vec3 normal);
+RELUME_API void relume_prefilter_specular(float rgb[3], const relume_prefilter *prefilter,
+                                          struct relume_vec3 axis, double exponent);
+// What a lobe height * max(0, axis.l)^exponent shows on a surface facing `normal`. `cosine`: values
+// do not include n.l.
+RELUME_API void relume_prefilter_lobe(float rgb[3], const relume_prefilter *prefilter,
+                                      struct relume_vec3 normal, struct relume_vec3 axis,
+                                      double exponent, bool cosine);
+
+// ---------------------------------------------------------------- a material in one orientation
+
+// What an environment sends to a surface that lies one way in the world: each measured light stands
+// for the directions around it, with the weights that interpolation gives it, so that the sum over
+// lights is the integral over the sphere. Thread-safety: safe.
+typedef struct relume_btf_ambient relume_btf_ambient;
+
+// Axes of the sample's frame in the world: unit vectors, orthogonal. Left-handed frames (mirrored
+// texture coordinates) are fine.
+struct relume_btf_frame {
+    struct relume_vec3 right, up, normal;
+};
+
+// Some 2000 directions are interpolated: about half a millisecond. Both objects must outlive it.
+// RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_btf_ambient_create(relume_btf_ambient **out,
+                                                      const relume_btf_fitted *model,
+                                                      const relume_prefilter *prefilter,
+                                                      const struct relume_btf_frame *frame);
+RELUME_API void relume_btf_ambient_destroy(relume_btf_ambient **ambient);
+
+// The weights of the measured lights [lights][3]: red, green, blue of the light i times a value
+// under that light, summed over i, is the value under the environment. For renderers of linear
+// models.
+RELUME_API const float *relume_btf_ambient_weights(const relume_btf_ambient *ambient);
+
+// One texel of a level of detail from a direction in the frame of the sample, under the
+// environment. Models of lobes (laf, slaf, rfnl, rfnlc) look their lobes up in the prefiltered
+// maps, rfp in sums of its six terms, all others are summed over the measured lights.
+RELUME_API void relume_btf_ambient_evaluate(const relume_btf_ambient *ambient, int level, int x,
+                                            int y, struct relume_vec3 view, float rgb[3]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,39 @@
+// ambient.h - the inside of prefiltered environments, and how models are lit by them
+#ifndef BTF_AMBIENT_H
+#define BTF_AMBIENT_H
+
+#include "btf/model.h"
+
+#include <relume/ambient.h>
+
+enum { AMBIENT_TERMS = 6 };
+
+struct relume_prefilter {
+    int width, height;
+    double rim;
+    float *diffuse, *specular, *part;
+    struct relume_environment_cell *cell;  // in the world: E dw / pi
+    int cells;
+};
+
+struct relume_btf_ambient {
+    const relume_btf_fitted *model;
+    const relume_prefilter *prefilter;
+    struct relume_btf_frame frame;
+    float *weight;                 // [lights][3]
+    float even[2][3];              // ambient_even, without and with the cosine
+    float term[AMBIENT_TERMS][3];  // sums of x^2, y^2, xy, x, y, 1 of the light
+};
+
+// What a value of 1 for all lights shows; `cosine`: values do not include n.l.
+void ambient_even(const relume_btf_ambient *a, bool cosine, float rgb[3]);
+
+// What a lobe of a model, in the frame of the sample, shows.
+void ambient_lobe(const relume_btf_ambient *a, const float t[3], float exponent, bool cosine,
+                  float rgb[3]);
+
+// The value under the environment from a view that is blended already.
+void ambient_blend(const relume_btf_ambient *a, const relume_btf_fitted *level, size_t texel,
+                   const struct relume_dome_blend *view, float rgb[3]);
+
+#endif

@@ -1,0 +1,301 @@
+// prefilter.c - an environment under lobes of all directions and eleven exponents (thesis, 9.4)
+//
+// Kept are means under lobes, not sums: a sum falls with the exponent as 1 / (e + 1), and linear
+// interpolation of it errs even under a uniform sky. The factor n.l, which the thesis takes at the
+// axis of the lobe (its Eq. prints the axis without making it a unit vector), and the horizon,
+// which it leaves out, are the mean over the lobe here, in a table: exact under a uniform sky.
+#include "btf/ambient.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/thread.h"
+
+#include <string.h>
+
+enum { EXPONENTS = RELUME_PREFILTER_EXPONENTS, STEPS = RELUME_PREFILTER_STEPS };
+enum { CELL_COLUMNS = 96, CELL_ROWS = 48 };  // cells of 3.75 degrees: the sharpest lobe has 24
+enum { TABLE = 2048 };
+
+static double exponent_of(int i)
+{
+    return pow(2.0, 0.5 * i);
+}
+
+// ---------------------------------------------------------------- the environment in few cells
+
+static vec3 direction_of(double column, double row)  // parts of the map
+{
+    const double phi = (2.0 * column - 1.0) * M_PI, theta = row * M_PI;
+    return vec3_of(sin(theta) * sin(phi), cos(theta), -sin(theta) * cos(phi));
+}
+
+static void place_of(vec3 d, double out[2])
+{
+    out[0] = 0.5 + atan2(d.x, -d.z) / (2.0 * M_PI);
+    out[1] = acos(fmin(fmax(d.y, -1.0), 1.0)) / M_PI;
+}
+
+static double luminance(const float rgb[3])
+{
+    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
+}
+
+// Neighbouring cells become one, from where their energy comes.
+static void gather(relume_prefilter *p, const struct relume_light *light)
+{
+    int n;
+    const struct relume_environment_cell *from = relume_environment_cells(&n, light->environment);
+    vec3 middle[CELL_COLUMNS * CELL_ROWS];
+    memset(middle, 0, sizeof middle);
+    for (int i = 0; i < n; i++) {
+        double at[2];
+        const vec3 d = relume_environment_turn(from[i].direction, light->rotate_deg);
+        place_of(d, at);
+        const int x = (int)(at[0] * CELL_COLUMNS) % CELL_COLUMNS;
+        const int y = at[1] < 1.0 ? (int)(at[1] * CELL_ROWS) : CELL_ROWS - 1;
+        const int to = y * CELL_COLUMNS + x;
+        middle[to] = vec3_add(middle[to], vec3_scale(d, luminance(from[i].rgb)));
+        for (int c = 0; c < 3; c++)
+            p->cell[to].rgb[c] += light->rgb[c] * from[i].rgb[c];
+    }
+    for (int i = 0; i < CELL_COLUMNS * CELL_ROWS; i++)
+        if (vec3_length(middle[i]) > 0.0) {
+            struct relume_environment_cell one = p->cell[i];
+            one.direction = vec3_unit(middle[i]);
+            p->cell[p->cells++] = one;
+        }
+}
+
+// ---------------------------------------------------------------- maps
+
+struct filtering {
+    relume_prefilter *p;
+    float (*power)[EXPONENTS];  // [TABLE + 1]: (i / TABLE)^e
+};
+
+static void filter_pixel(const struct filtering *f, vec3 d, float diffuse[3],
+                         float specular[EXPONENTS][3])
+{
+    const relume_prefilter *p = f->p;
+    for (int i = 0; i < p->cells; i++) {
+        const struct relume_environment_cell *cell = &p->cell[i];
+        const double z = vec3_dot(d, cell->direction);
+        if (!(z > 0.0))
+            continue;
+        const float fall = p->rim > 0.0 ? fminf((float)(z / p->rim), 1.0f) : 1.0f;
+        const double at = fmin(z, 1.0) * TABLE;
+        const int low = at < TABLE ? (int)at : TABLE - 1;
+        const float part = (float)(at - low);
+        for (int c = 0; c < 3; c++)
+            diffuse[c] += fall * cell->rgb[c];
+        for (int e = 0; e < EXPONENTS; e++) {
+            const float w = f->power[low][e] + part * (f->power[low + 1][e] - f->power[low][e]);
+            for (int c = 0; c < 3; c++)
+                specular[e][c] += w * cell->rgb[c];
+        }
+    }
+}
+
+static void filter_row(void *context, size_t row, int worker)
+{
+    (void)worker;
+    const struct filtering *f = context;
+    relume_prefilter *p = f->p;
+    const size_t width = (size_t)p->width, plane = width * (size_t)p->height;
+    for (size_t x = 0; x < width; x++) {
+        float specular[EXPONENTS][3] = {{0.0f}};
+        const size_t at = row * width + x;
+        const vec3 d = direction_of(((double)x + 0.5) / p->width, ((double)row + 0.5) / p->height);
+        filter_pixel(f, d, p->diffuse + 3 * at, specular);
+        for (int e = 0; e < EXPONENTS; e++)
+            for (size_t c = 0; c < 3; c++)
+                p->specular[3 * ((size_t)e * plane + at) + c] =
+                    (float)(0.5 * (exponent_of(e) + 1.0)) * specular[e][c];
+    }
+}
+
+static relume_status filter(relume_prefilter *p, int threads)
+{
+    struct filtering f = {p, mem_array(TABLE + 1, sizeof *f.power)};
+    if (!f.power)
+        return RELUME_ENOMEM;
+    for (int i = 0; i <= TABLE; i++)
+        for (int e = 0; e < EXPONENTS; e++)
+            f.power[i][e] = (float)pow((double)i / TABLE, exponent_of(e));
+    thread_for(threads, (size_t)p->height, filter_row, &f);
+    free(f.power);
+    return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- parts of lobes
+
+// The mean over a lobe whose axis has the cosine `axis` to the normal, by equal shares of it.
+static void part_of_lobe(double axis, double exponent, double rim, float out[2])
+{
+    enum { SHARES = 48 };
+    const double across = sqrt(1.0 - axis * axis);
+    double fall = 0.0, cosine = 0.0;
+    for (int i = 0; i < SHARES; i++) {
+        const double mu = pow((i + 0.5) / SHARES, 1.0 / (exponent + 1.0));
+        for (int j = 0; j < SHARES; j++) {
+            const double phi = (j + 0.5) / SHARES * M_PI;
+            const double z = axis * mu + across * sqrt(1.0 - mu * mu) * cos(phi);
+            fall += z > 0.0 ? rim > 0.0 ? fmin(z / rim, 1.0) : 1.0 : 0.0;
+            cosine += fmax(z, 0.0);
+        }
+    }
+    out[0] = (float)(fall / (SHARES * SHARES));
+    out[1] = (float)(cosine / (SHARES * SHARES));
+}
+
+static void fill_parts(relume_prefilter *p)
+{
+    for (int e = 0; e < EXPONENTS; e++)
+        for (int i = 0; i < STEPS; i++) {
+            float part[2];
+            part_of_lobe(2.0 * i / (STEPS - 1) - 1.0, exponent_of(e), p->rim, part);
+            p->part[e * STEPS + i] = part[0];
+            p->part[(EXPONENTS + e) * STEPS + i] = part[1];
+        }
+}
+
+// ---------------------------------------------------------------- making one
+
+static relume_status check(const struct relume_light *light,
+                           const struct relume_prefilter_params *p)
+{
+    if (light->kind != RELUME_LIGHT_ENVIRONMENT)
+        return log_fail(p->log, RELUME_EINVAL, "prefilter: expected an environment; found '%s'",
+                        relume_light_kind_name(light->kind));
+    if (p->height && (p->height < 4 || p->height > 512))
+        return log_fail(p->log, RELUME_EINVAL, "prefilter: expected a height of 4 to 512; found %d",
+                        p->height);
+    if (!(p->rim >= 0.0 && p->rim <= 1.0))
+        return log_fail(p->log, RELUME_EINVAL, "prefilter: expected a rim of 0 to 1; found %g",
+                        p->rim);
+    return relume_light_check(light, "environment", p->log);
+}
+
+relume_status relume_prefilter_create(relume_prefilter **out, const struct relume_light *light,
+                                      const struct relume_prefilter_params *params)
+{
+    const struct relume_prefilter_params q =
+        params ? *params : (struct relume_prefilter_params){.height = 0};
+    *out = NULL;
+    relume_status status = check(light, &q);
+    if (status)
+        return status;
+    relume_prefilter *p = mem_zeroed(1, sizeof *p);
+    if (!p)
+        return RELUME_ENOMEM;
+    p->height = q.height ? q.height : 48;
+    p->width = 2 * p->height;
+    p->rim = q.rim;
+    const size_t plane = 3 * (size_t)p->width * (size_t)p->height;
+    p->diffuse = mem_zeroed(plane, sizeof *p->diffuse);
+    p->specular = mem_zeroed(EXPONENTS * plane, sizeof *p->specular);
+    p->part = mem_zeroed((size_t)2 * EXPONENTS * STEPS, sizeof *p->part);
+    p->cell = mem_zeroed((size_t)CELL_COLUMNS * CELL_ROWS, sizeof *p->cell);
+    status = p->diffuse && p->specular && p->part && p->cell ? RELUME_OK : RELUME_ENOMEM;
+    if (!status) {
+        gather(p, light);
+        fill_parts(p);
+        status = filter(p, q.threads);
+    }
+    if (status)
+        relume_prefilter_destroy(&p);
+    *out = p;
+    return status;
+}
+
+void relume_prefilter_destroy(relume_prefilter **prefilter)
+{
+    relume_prefilter *p = *prefilter;
+    *prefilter = NULL;
+    if (!p)
+        return;
+    free(p->diffuse);
+    free(p->specular);
+    free(p->part);
+    free(p->cell);
+    free(p);
+}
+
+struct relume_prefilter_info relume_prefilter_info(const relume_prefilter *p)
+{
+    return (struct relume_prefilter_info){p->width, p->height, p->diffuse, p->specular, p->part};
+}
+
+// ---------------------------------------------------------------- lookups
+
+// Bilinear; columns repeat, rows end at the poles.
+static void add_map(const relume_prefilter *p, const float *map, const double at[2], float weight,
+                    float rgb[3])
+{
+    const double u = at[0] * p->width - 0.5, v = fmax(at[1] * p->height - 0.5, 0.0);
+    const double left = floor(u);
+    const int top = (int)v, x = ((int)left + p->width) % p->width;
+    const float right = (float)(u - left), below = top + 1 < p->height ? (float)(v - top) : 0.0f;
+    for (int i = 0; i < 4; i++) {
+        const float w = weight * (i % 2 ? right : 1.0f - right) * (i / 2 ? below : 1.0f - below);
+        if (!(w > 0.0f))
+            continue;
+        const size_t row = (size_t)(top + i / 2), column = (size_t)((x + i % 2) % p->width);
+        for (size_t c = 0; c < 3; c++)
+            rgb[c] += w * map[3 * (row * (size_t)p->width + column) + c];
+    }
+}
+
+// Between which exponents, and how far.
+static int layer_of(double exponent, float *part)
+{
+    const double at = fmin(fmax(2.0 * log2(exponent), 0.0), EXPONENTS - 1);
+    const int low = at < EXPONENTS - 1 ? (int)at : EXPONENTS - 2;
+    *part = (float)(at - low);
+    return low;
+}
+
+void relume_prefilter_diffuse(float rgb[3], const relume_prefilter *p, struct relume_vec3 normal)
+{
+    double at[2];
+    place_of(normal, at);
+    rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    add_map(p, p->diffuse, at, 1.0f, rgb);
+}
+
+void relume_prefilter_specular(float rgb[3], const relume_prefilter *p, struct relume_vec3 axis,
+                               double exponent)
+{
+    double at[2];
+    float part;
+    const int low = layer_of(exponent, &part);
+    const size_t plane = 3 * (size_t)p->width * (size_t)p->height;
+    const float *map = p->specular + (size_t)low * plane;
+    place_of(axis, at);
+    rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    add_map(p, map, at, 1.0f - part, rgb);
+    add_map(p, map + plane, at, part, rgb);
+}
+
+static float part_at(const relume_prefilter *p, double cosine, double exponent, bool with_cosine)
+{
+    float part;
+    const int low = layer_of(exponent, &part);
+    const double at = fmin(fmax(0.5 * (cosine + 1.0), 0.0), 1.0) * (STEPS - 1);
+    const int step = at < STEPS - 1 ? (int)at : STEPS - 2;
+    const float along = (float)(at - step);
+    const float *row = p->part + ((with_cosine ? EXPONENTS : 0) + low) * STEPS + step;
+    const float a = row[0] + along * (row[1] - row[0]);
+    const float b = row[STEPS] + along * (row[STEPS + 1] - row[STEPS]);
+    return a + part * (b - a);
+}
+
+void relume_prefilter_lobe(float rgb[3], const relume_prefilter *p, struct relume_vec3 normal,
+                           struct relume_vec3 axis, double exponent, bool cosine)
+{
+    relume_prefilter_specular(rgb, p, axis, exponent);
+    const float scale =
+        (float)(2.0 / (exponent + 1.0)) * part_at(p, vec3_dot(normal, axis), exponent, cosine);
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= scale;
+}

@@ -20,6 +20,7 @@ const struct btf_twin btf_twins[] = {
     {"vpca", "btf_vpca.frag", {3, 3, 1}},
     {"lpca", "btf_lpca.frag", {3, 3, 1, 1}},
     {"fmf", "btf_fmf.frag", {1, 3}},
+    {"qmf", "btf_qmf.frag", {1, 1, 1, 1, 1}},
     {NULL, NULL, {0}},
 };
 

@@ -7,8 +7,8 @@
 
 enum { SIDE = 48, TEXELS = 8 };
 static char folder[64];
-static const char *const models[] = {"lit",   "bump", "laf",  "slaf", "rfp", "rfnl",
-                                     "rfnlc", "vpca", "lpca", "fmf",  "cmf", NULL};
+static const char *const models[] = {"lit", "bump", "laf",  "slaf", "rfp", "rfnl", "rfnlc",
+                                     "cmf", "vpca", "lpca", "fmf",  "qmf", NULL};
 
 static const char *path_of(const char *name)
 {

@@ -7,6 +7,7 @@ const bool view_grid = true, light_grid = true;
 #include "light.glsl"
 #include "shadow.glsl"
 #include "btf.glsl"
+#include "btf_upright.glsl"
 
 uniform samplerBuffer array0;   // factor [clusters][views + lights + 2 * CELLS_OF_MAP]
 uniform usamplerBuffer array1;  // cluster [texels]

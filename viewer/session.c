@@ -100,21 +100,24 @@ static void describe_lines(struct session *s)
     s->lines[n] = NULL;
 }
 
-static relume_status check_depth(const relume_pack *pack, const struct app_state *start,
-                                 const struct relume_log *log)
+// Planar files without depth lie on z = 0.
+static bool has_surface(const relume_pack *pack)
 {
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    return info->has_depth || info->geometry.projection == RELUME_PLANAR;
+}
+
+static relume_status check_depth(const relume_pack *pack, const struct app_state *start,
+                                 const relume_objects *objects, const struct relume_log *log)
+{
+    if (objects && !has_surface(pack))
+        return say(log, RELUME_EDATA,
+                   "objects need to know where the scene is; expected a file with depth");
     if (start->interpolation != RELUME_INTERPOLATE_DEPTH || relume_pack_info(pack)->has_depth)
         return RELUME_OK;
     return say(log, RELUME_EDATA,
                "interpolation by depth needs to know where the surface is; expected a file with "
                "depth");
-}
-
-// Planar files without depth lie on z = 0.
-static bool has_surface(const struct session *s)
-{
-    const struct relume_pack_info *info = relume_pack_info(s->pack);
-    return info->has_depth || info->geometry.projection == RELUME_PLANAR;
 }
 
 relume_status session_compare(struct session *s, const char *capture)
@@ -151,7 +154,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
     if (!status)
         status = app_start(&app, &file, start, look_ahead, s->log);
     if (!status)
-        status = check_depth(pack, start, s->log);
+        status = check_depth(pack, start, s->objects, s->log);
     if (status) {
         app_release(&app);
         relume_pack_destroy(&pack);
@@ -164,7 +167,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
     s->around = around;
     s->app = app;
     s->app.compared = s->capture != NULL;
-    s->app.near_lights = has_surface(s);
+    s->app.near_lights = has_surface(pack);
     set_name(s, path);
     describe_lines(s);
     warn_below_horizon(s);

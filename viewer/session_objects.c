@@ -4,7 +4,6 @@
 #include "vec.h"
 
 #include <stdio.h>
-#include <string.h>
 
 relume_status session_take_objects(struct session *s, const struct session_objects *wanted)
 {

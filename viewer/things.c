@@ -176,11 +176,6 @@ void things_destroy(struct things *t)
     *t = (struct things){0};
 }
 
-void things_forget(struct things *t)
-{
-    shine_forget(&t->shine);
-}
-
 size_t things_bytes(const struct things *t, int material)
 {
     return t->material[material].bytes;

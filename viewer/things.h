@@ -43,8 +43,6 @@ struct things {
 relume_status things_create(struct things *things, const struct gl *gl, relume_objects *objects,
                             const struct relume_log *log);
 void things_destroy(struct things *things);
-// Pictures of lights may have gone.
-void things_forget(struct things *things);
 
 // The lights of the next frames. RELUME_ENOMEM, RELUME_EINVAL.
 relume_status things_light(struct things *things, const struct relume_light *lights, int n);

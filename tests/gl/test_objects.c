@@ -97,14 +97,11 @@ static void make_materials(void)
         RELUME_OK);
     assert_int_equal(relume_btf_save(btf, path_of("measured"), NULL), RELUME_OK);
     for (const char *const *m = models; *m; m++) {
-        // few, so that texels share them
-        const bool clustered = strchr(*m, 'c') && strcmp(*m, "vpca");
-        const int clusters = clustered ? 12 : 0;
-        relume_btf_fitted *fitted;
-        assert_int_equal(
-            relume_btf_fit(&fitted, btf, relume_btf_model_find(*m),
-                           relume_btf_fit_params(.log = &fixture_log, .clusters = clusters)),
-            RELUME_OK);
+        relume_btf_fitted *fitted;  // of few clusters, so that texels share them
+        assert_int_equal(relume_btf_fit(&fitted, btf, relume_btf_model_find(*m),
+                                        relume_btf_fit_params(.log = &fixture_log, .components = 6,
+                                                              .clusters = 12)),
+                         RELUME_OK);
         assert_int_equal(relume_btf_fitted_save(fitted, path_of(*m), NULL), RELUME_OK);
         if (!strcmp(*m, "vpca"))
             make_surface(fitted);

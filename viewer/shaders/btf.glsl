@@ -76,14 +76,6 @@ Blend dome_at(isamplerBuffer cells, samplerBuffer triangles, vec3 d)
 
 // ---------------------------------------------------------------- the model
 
-// Twin: vec3_upright. Turned by the shortest way that brings `n` to +z.
-vec3 upright(vec3 a, vec3 n)
-{
-    vec3 middle = vec3(n.xy, n.z + 1.0);
-    vec3 b = a - middle * (dot(a, middle) / (1.0 + n.z));
-    return vec3(b.xy, b.z + 2.0 * dot(n, a));
-}
-
 #ifdef OWN_BLEND
 vec3 model_blend(int texel, Blend v, Blend l);
 #else

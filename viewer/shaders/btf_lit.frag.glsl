@@ -1,5 +1,5 @@
 #version 330 core
-// A lit texture. Twin: model_lit.c.
+// A colour for each texel times n.l. Twin: model_lit.c.
 const bool view_grid = false, light_grid = false;
 #include "texels.glsl"
 #include "cube.glsl"

@@ -60,7 +60,7 @@ float pattern(int plane, int at, int bits, Blend v, Blend l)
 
 vec3 model_blend(int texel, Blend v, Blend l)
 {
-    int row = texel * (textureSize(array0) / (texels.x * texels.y)), score_at = 0, pattern_at = 0;
+    int row = texel * (textureSize(array0) / area), score_at = 0, pattern_at = 0;
     vec3 sum = vec3(0.0);
     for (int plane = 0; plane < 4 * counts.z; plane += 4) {
         int bits = int(texelFetch(array2, plane).r);

@@ -155,8 +155,11 @@ static void draw_opening(const struct gl_aperture *a, const struct gl *gl,
 {
     const struct program *p = &a->opening;
     texture_use(gl, 0, GL_TEXTURE_2D, a->fixed);
+    const float from = (float)a->from, to = (float)a->to;
+    gl->ClearColor(0, 0, 0, 0);
+    gl->Clear(GL_COLOR_BUFFER_BIT);
     gl->UseProgram(p->id);
-    gl->Uniform4f(p->at[RECTANGLE], 0, 0, (float)a->size, (float)a->size);
+    gl->Uniform4f(p->at[RECTANGLE], from, from, to, to);
     gl->Uniform2f(p->at[FRAME], (float)a->size, (float)a->size);
     gl->Uniform2f(p->at[OPENING_SIZE], (float)a->size, (float)(1 / a->texel_mm));
     gl->Uniform1i(p->at[FIXED], 0);
@@ -179,6 +182,8 @@ static void draw_fixed(struct gl_aperture *a, const struct gl *gl, const struct 
 void gl_aperture_draw(struct gl_aperture *a, const struct gl *gl, const struct relume_aperture *m)
 {
     const double middle = 0.5 * a->size + 0.5, radius = (double)m->pupil_radius / a->texel_mm;
+    a->from = (int)fmax(floor(middle - radius), 0);
+    a->to = (int)fmin(ceil(middle + radius), a->size);
     gl->BindVertexArray(a->vertices);
     if (!a->drawn)
         draw_fixed(a, gl, m);
@@ -187,7 +192,5 @@ void gl_aperture_draw(struct gl_aperture *a, const struct gl *gl, const struct r
     draw_discs(a, gl, m, m->lens, RELUME_EYE_LENS);
     draw_discs(a, gl, m, m->vitreous, RELUME_EYE_VITREOUS);
     draw_strokes(a, gl, m, m->lashes, RELUME_EYE_LIDS);
-    a->from = (int)fmax(floor(middle - radius), 0);
-    a->to = (int)fmin(ceil(middle + radius), a->size);
     a->light = a->parts_off & RELUME_EYE_LIDS ? 1 : fmin(gl_aperture_light(m), 1);
 }

@@ -7,6 +7,7 @@
 
 #define PI 3.14159265358979323846
 
+static const double widest_mm = 9;       // of a pupil
 static const double least_light = 1e-3;  // of the pupil; lids that leave less are shut
 
 GLuint gl_storage(const struct gl *gl, size_t bytes, const void *data)
@@ -24,17 +25,28 @@ void gl_compute(const struct gl *gl, int width, int height)
     gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-bool gl_psf_fits(const struct gl *gl, int size)
+// The widest pupil, in an odd number of tiles: their middle is the middle of one.
+static int tiles_of(const struct relume_psf_geometry *shape)
 {
-    const double wave = 2.0 * sizeof(float) * size * size;
-    return gl->compute && size >= 64 && !(size & (size - 1)) && gl_fft_length(gl, size) == size &&
-           2 * wave <= (double)gl->storage_bytes;
+    const int tiles = (int)ceil(widest_mm / shape->width_mm);
+    return tiles + (tiles + 1) % 2;
+}
+
+bool gl_psf_fits(const struct gl *gl, const struct relume_psf_params *params)
+{
+    struct relume_psf_geometry shape;
+    if (!gl->compute || relume_psf_geometry(&shape, params))
+        return false;
+    const int n = shape.size;
+    return gl_fft_length(gl, n) == n && params->planes < 2 && !params->retina_distance &&
+           tiles_of(&shape) * n <= gl->max_texture &&
+           4.0 * sizeof(float) * n * n <= (double)gl->storage_bytes;
 }
 
 // ---------------------------------------------------------------- making
 
-enum { WAVE_APERTURE, WAVE_SIZE, WAVE_COUNT };
-static const char *const wave_uniforms[] = {"aperture", "size"};
+enum { WAVE_APERTURE, WAVE_SIZE, WAVE_TILES, WAVE_COUNT };
+static const char *const wave_uniforms[] = {"aperture", "size", "tiles"};
 enum { POWER_SIZE, POWER_COUNT };
 static const char *const power_uniforms[] = {"size"};
 enum { SMEAR_SIZE, SMEAR_FINE, SMEAR_FINES, SMEAR_COUNT };
@@ -92,7 +104,7 @@ static void make_buffers(struct gl_psf *psf, const struct gl *gl)
 {
     const size_t n = (size_t)psf->shape.size, field = (size_t)psf->shape.field;
     psf->waves = gl_storage(gl, 2 * n * n * sizeof(float), NULL);
-    psf->phase = gl_storage(gl, 2 * n * sizeof(float), NULL);
+    psf->phase = gl_storage(gl, 2 * n * (size_t)psf->tiles * sizeof(float), NULL);
     psf->mono = gl_storage(gl, (n + 1) * (n + 1) * sizeof(float), NULL);
     psf->smeared = gl_storage(gl, (n + 1) * (n + 1) * sizeof(float), NULL);
     psf->colours = gl_storage(gl, 4 * field * field * sizeof(float), NULL);
@@ -107,8 +119,10 @@ relume_status gl_psf_create(struct gl_psf *psf, const struct gl *gl,
     if (!status)
         status = relume_psf_spectrum(&psf->spectrum, params);
     if (!status)
-        status = gl_aperture_create(&psf->aperture, gl, psf->shape.size, psf->shape.texel_mm,
-                                    params->parts_off, params->log);
+        psf->tiles = tiles_of(&psf->shape);
+    if (!status)
+        status = gl_aperture_create(&psf->aperture, gl, psf->tiles * psf->shape.size,
+                                    psf->shape.texel_mm, params->parts_off, params->log);
     if (!status)
         status = make_programs(psf, gl, params->log);
     if (!status)
@@ -145,7 +159,7 @@ static void bind(const struct gl *gl, GLuint binding, GLuint buffer)
 
 static relume_status make_phase(struct gl_psf *psf, const struct gl *gl, double dioptres)
 {
-    const int n = psf->shape.size;
+    const int n = psf->tiles * psf->shape.size;
     if (psf->dioptres == dioptres)
         return RELUME_OK;
     float *phase = malloc(2 * (size_t)n * sizeof *phase);
@@ -170,6 +184,7 @@ static void make_wave(const struct gl_psf *psf, const struct gl *gl)
     gl->UseProgram(psf->wave.id);
     gl->Uniform1i(psf->wave.at[WAVE_APERTURE], 0);
     gl->Uniform1i(psf->wave.at[WAVE_SIZE], n);
+    gl->Uniform1i(psf->wave.at[WAVE_TILES], psf->tiles);
     texture_use(gl, 0, GL_TEXTURE_2D, psf->aperture.texture);
     bind(gl, 0, psf->waves);
     bind(gl, 1, psf->phase);
@@ -180,7 +195,9 @@ static void make_wave(const struct gl_psf *psf, const struct gl *gl)
 static relume_status transform(struct gl_psf *psf, const struct gl *gl, struct gl_fft *fft,
                                const struct relume_log *log)
 {
-    const int n = psf->shape.size, from = psf->aperture.from, to = psf->aperture.to;
+    const int n = psf->shape.size;
+    const int from = psf->tiles > 1 ? 0 : psf->aperture.from;
+    const int to = psf->tiles > 1 ? n : psf->aperture.to;
     bind(gl, 0, psf->waves);
     const struct gl_fft_lines rows = {
         .length = n, .first = from, .lines = to - from, .planes = 1, .stride = {1, n, 0}};

@@ -10,18 +10,18 @@
 struct gl_psf {
     struct relume_psf_geometry shape;
     struct relume_psf_spectrum spectrum;
+    int tiles;  // of the transform's size along a side of the aperture, odd
     struct gl_aperture aperture;
     struct program wave, power, smear, colour;
-    GLuint waves, phase, texel;  // buffers: complex [size]^2, complex [size], [size]
+    GLuint waves, phase, texel;  // buffers: complex [size]^2, complex [tiles size], [size]
     GLuint mono, smeared;        // [size + 1]^2
     GLuint taps, colours;        // [taps] of (scale, rgb); [field]^2 of rgb, not normalised
     double dioptres;             // that `phase` is of
     double light;                // share that the lids let through
 };
 
-// Whether the card can: `size` is a power of two, and its buffers have room.
-bool gl_psf_fits(const struct gl *gl, int size);
-// `params` with a size that fits, one plane, and a width that any pupil fits into (9 mm).
+// Whether the card can: it has transforms of that size, all is in one plane, buffers have room.
+bool gl_psf_fits(const struct gl *gl, const struct relume_psf_params *params);
 // RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EINVAL.
 relume_status gl_psf_create(struct gl_psf *psf, const struct gl *gl,
                             const struct relume_psf_params *params);

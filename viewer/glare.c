@@ -6,7 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LIBRARY_SIZE = 512, PASSES_SIZE = 1024 };
+enum { LIBRARY_SIZE = 512, PASSES_SIZE = 1536 };
+static const double field_deg = 4;  // of the pattern: the ring of the lens's fibres is within
 static const double most_nits = 1e12;
 
 void glare_begin(struct glare *g, const struct gl *gl, const struct relume_log *log)
@@ -50,28 +51,37 @@ static void leave_it_to_library(struct glare *g, const char *why)
         g->log->message(g->log->user, RELUME_WARNING, text);
 }
 
-static bool can_pass(struct glare *g)
+static struct relume_psf_params pattern_of(const struct glare *g, const struct gaze *gaze,
+                                           bool passes)
 {
+    return (struct relume_psf_params){.log = g->log,
+                                      .threads = g->threads,
+                                      .size = size_of(g, passes),
+                                      .half_field_deg = g->field_deg > 0 ? g->field_deg : field_deg,
+                                      .parts_off = gaze->parts_off};
+}
+
+static bool can_pass(struct glare *g, const struct gaze *gaze)
+{
+    const struct relume_psf_params params = pattern_of(g, gaze, true);
+
     if (!g->by_library && !g->gl->compute)
         leave_it_to_library(g, "OpenGL has no compute passes here (version 4.3)");
-    else if (!g->by_library && !gl_psf_fits(g->gl, size_of(g, true)))
+    else if (!g->by_library && !gl_psf_fits(g->gl, &params))
         leave_it_to_library(g, "the graphics card has no room for the pattern");
     return !g->by_library;
 }
 
 static bool wants_passes(struct glare *g, const struct gaze *gaze)
 {
-    return (gaze->mode == GAZE_AUTO || gaze->mode == GAZE_FFT) && can_pass(g);
+    return (gaze->mode == GAZE_AUTO || gaze->mode == GAZE_FFT) && can_pass(g, gaze);
 }
 
 static relume_status prepare(struct glare *g, const struct gaze *gaze, bool passes)
 {
     if (g->ready && g->passes == passes && g->parts_off == gaze->parts_off)
         return RELUME_OK;
-    const struct relume_psf_params params = {.log = g->log,
-                                             .threads = g->threads,
-                                             .size = size_of(g, passes),
-                                             .parts_off = gaze->parts_off};
+    const struct relume_psf_params params = pattern_of(g, gaze, passes);
     forget_pattern(g);
     relume_status status =
         passes ? gl_glare_prepare(&g->card, g->gl, &params) : relume_glare_create(&g->library.work);

@@ -23,6 +23,7 @@ struct glare {
     const struct relume_subject *subject;  // NULL: the default one
     int threads;                           // 0: all cores
     int size;                              // texels of the pattern; 0: what suits
+    double field_deg;                      // to either side of it; 0: 4
     bool by_library;                       // not by passes
 
     relume_eye *eye;     // NULL: nothing was looked at yet

@@ -336,7 +336,7 @@ const struct key_binding key_bindings[] = {
     {'.', NULL, NULL, press_focus, true},
     {'o', "O", "panorama: little planet", press_planet, false},
     {'v', "V", "next view: colour, normals, ...", press_next_pass, false},
-    {'y', "Y", "glare: the picture as an eye sees it", press_glare, false},
+    {'h', "H", "glare: halos, the picture as an eye sees it", press_glare, false},
     {'r', "R", "reset", press_reset, false},
     {'l', "L", "hold: drags turn the light", press_hold_light, false},
     {APP_KEY_LEFT, "arrows", "turn the light", press_turn, true},

@@ -268,12 +268,12 @@ static relume_status take_glare_size(struct options *o, const char *name, const 
                                      const struct relume_log *log)
 {
     double n;
-    const relume_status status = take_number(&n, name, text, 64, 4096, log);
+    const relume_status status = take_number(&n, name, text, 128, 4096, log);
     if (status)
         return status;
     o->glare_size = (int)n;
-    if (n != o->glare_size || o->glare_size & (o->glare_size - 1))
-        return say(log, RELUME_EINVAL, "%s: expected a power of two from 64 to 4096; found '%s'",
+    if (n != o->glare_size || o->glare_size % 2)
+        return say(log, RELUME_EINVAL, "%s: expected an even number from 128 to 4096; found '%s'",
                    name, text);
     return RELUME_OK;
 }
@@ -493,12 +493,13 @@ static const struct option options[] = {
      take_relight},
     {"--glare", NULL, "the frame as a living eye sees it", take_glare},
     {"--subject", "FILE", "--glare: whose eye it is (JSON, docs/glare.md)", take_subject},
-    {"--glare-magnify", "X", "--glare: the pattern's size against the frame; default 1", take_sight},
+    {"--glare-magnify", "X", "--glare: the pattern's size against the frame; default 1",
+     take_sight},
     {"--nits", "N", "--glare: cd/m^2 of a pixel of value 1; default 100", take_sight},
     {"--squint", "S", "--glare: how far the lids are held closed, 0 to 0.95", take_sight},
     {"--glare-mode", "M", "--glare: auto, fft, billboard or hybrid; default auto", take_sight},
     {"--glare-size", "N",
-     "--glare: texels of the pattern; default 1024 by passes, 512 by the library", take_glare_size},
+     "--glare: texels of the pattern; default 1536 by passes, 512 by the library", take_glare_size},
     {"--glare-by", "BY", "--glare: by passes of OpenGL 4.3, the library, or auto, as --relight",
      take_glare_by},
     {"--sources", NULL, "draw the lights that are in view, as small as they are", take_sources},

@@ -86,6 +86,41 @@ fresh wide other
 rm other/surface.json
 expect_fail 'a surface without its head' 1 'expected btf.json' - "$RELUME" btf info other
 
+# ---- objects: alone, and in a relit scene; the viewer shows what the reference does
+cat >quad.obj <<'OBJ'
+v -0.3 -0.3 0.3
+v 0.3 -0.3 0.3
+v 0.3 0.3 0.3
+v -0.3 0.3 0.3
+vt 0 0
+vt 1 0
+vt 1 1
+vt 0 1
+vn 0 0 1
+f 1/1/1 2/2/1 3/3/1 4/4/1
+OBJ
+echo '{"format":"relume-objects","version":1,"objects":[{"mesh":"quad.obj","parts":[{"material":["rfnl","lpca"],"repeat":2}]}]}' >quad.json
+expect_ok 'btf render --mesh' - "$RELUME" btf render rfnl --mesh quad.obj --repeat 2 -o quad.exr --eye 0,0,2 --light 'dir 0.3 0.2 1' --picture 40x40 -q
+expect_ok 'btf render a description' - "$RELUME" btf render quad.json -o again.exr --eye 0,0,2 --light 'dir 0.3 0.2 1' --picture 40x40 -q
+check 'a mesh and its description are the same' cmp quad.exr again.exr
+"$VIEWER" quad.json --eye 0,0,2 --light 'dir 0.3 0.2 1' --size 40x40 --offscreen stage.png 2>err.txt || not_ok 'relume-view of objects' "$(cat err.txt)"
+"$VIEWER" rfnl --mesh quad.obj --repeat 2 --eye 0,0,2 --light 'dir 0.3 0.2 1' --size 40x40 --offscreen mesh.png 2>err.txt || not_ok 'relume-view --mesh' "$(cat err.txt)"
+check 'relume-view of a mesh and its description' cmp stage.png mesh.png
+"$RELUME" synth box -o box --size 40 --views 2x2 --lights 12 --samples 1 -q && "$RELUME" encode box -o box.exr -q
+for light in 'dir 0.4 0.3 1' 'point 0.4 0.3 1.5'; do
+    "$RELUME" relight box.exr --objects quad.json -o cpu.png --light "$light" -q 2>err.txt || not_ok 'relight --objects' "$(cat err.txt)"
+    "$VIEWER" box.exr --objects quad.json --light "$light" --size 40x40 --offscreen gl.png 2>err.txt || not_ok 'relume-view --objects' "$(cat err.txt)"
+    "$RELUME" relight box.exr -o bare.png --light "$light" -q
+    above "the viewer's is the reference's, $light" "$("$RELUME" compare cpu.png gl.png | sed -n 's/^psnr_db *//p')" 32
+    below "the object is seen, $light" "$("$RELUME" compare cpu.png bare.png | sed -n 's/^psnr_db *//p')" 30
+done
+sed 's/"material"/"part":"lid","material"/' quad.json >bad.json
+head -c 100 paper/values.npy >broken.glb
+expect_fail 'a part without material' 1 "part 'all' has no material" x.exr "$RELUME" relight box.exr --objects bad.json -o x.exr
+expect_fail 'objects in a pass' 2 'expected no pass' x.exr "$RELUME" relight box.exr --objects quad.json --pass normals -o x.exr
+expect_fail 'no such mesh' 1 'nothing.obj: cannot be opened' x.exr "$RELUME" btf render rfnl --mesh nothing.obj -o x.exr
+expect_fail 'no model at all' 1 'broken.glb: not read as a model' x.exr "$RELUME" btf render rfnl --mesh broken.glb -o x.exr
+
 # ---- from outside: NumPy reads the values in place
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
     check 'NumPy reads the values' /usr/bin/python3 -c '

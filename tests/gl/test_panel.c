@@ -148,7 +148,7 @@ static void the_panel_is_drawn_where_it_is(void **state)
         for (int x = 0; x < app.width; x++) {
             const float *rgb = image.data + 3 * ((app.height - 1 - y) * app.width + x);
             const double sum = (double)(rgb[0] + rgb[1] + rgb[2]);
-            if (x < 300 && y < 540)
+            if (x < 300 && y < 564)
                 inside += sum;
             else
                 beside += sum;

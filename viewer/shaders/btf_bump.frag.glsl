@@ -7,7 +7,6 @@ const bool view_grid = false, light_grid = false;
 #include "shadow.glsl"
 #include "btf.glsl"
 
-#include "btf_upright.glsl"
 
 uniform samplerBuffer array0, array1;  // color, normal [texels]
 uniform samplerBuffer array2;          // mean [views][lights]

@@ -7,7 +7,6 @@ const bool view_grid = true, light_grid = true;
 #include "shadow.glsl"
 #include "btf.glsl"
 
-#include "btf_upright.glsl"
 
 uniform samplerBuffer array0;   // factor [clusters][views + lights + 2 maps]
 uniform usamplerBuffer array1;  // cluster [texels]

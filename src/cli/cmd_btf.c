@@ -20,7 +20,11 @@ static const struct option options[] = {
     {"--levels", OPTION_INT, "N",
      "fit, tile: levels of detail, each half as wide; default 1, of tile all", 1, 17},
     {"--leave-out", OPTION_INT, "K",
-     "compare: also without every K-th view and light, judged on pairs with one of these", 2, 64},
+     "compare: also without every K-th view and light, judged on pairs with one of these; fit: "
+     "without them",
+     2, 64},
+    {"--unseen", OPTION_FLAG, NULL,
+     "eval: only pairs with a direction that the model was not fitted to", 0, 0},
     {"--pictures", OPTION_INT, "N",
      "compare, eval: pictures judged by CIEDE2000 and SSIM; default 25", 0, 65536},
     {"--eye", OPTION_TEXT, "x,y,z",
@@ -160,6 +164,7 @@ static relume_status judge(struct btf_row *row, const relume_btf_fitted *fitted,
     const relume_status status = relume_btf_judge(
         &row->error, fitted, btf,
         relume_btf_judge_params(.log = args_log(args), .threads = args_threads(args),
+                                .unseen = args_has(args, "--unseen"),
                                 .pictures = args_int(args, "--pictures", 25)));
     if (status)
         return status;
@@ -234,18 +239,21 @@ relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, int levels
 
 static relume_status fit(const struct args *args)
 {
-    relume_btf *btf = NULL;
+    relume_btf *btf = NULL, *part = NULL;
     relume_btf_fitted *fitted = NULL;
     if (!args_has(args, "-o"))
         return usage_error("btf fit: expected -o DIR");
     relume_status status = btf_open(&btf, args_input(args, 1), args);
     if (!status)
-        status = btf_fit(&fitted, btf, 1, args);
+        status = make_part(&part, btf, args);
+    if (!status)
+        status = btf_fit(&fitted, part ? part : btf, 1, args);
     if (!status)
         status = relume_btf_fitted_save(
             fitted, args_text(args, "-o", NULL),
             relume_btf_params(.log = args_log(args), .force = args_has(args, "--force")));
     relume_btf_fitted_destroy(&fitted);
+    relume_btf_destroy(&part);
     relume_btf_destroy(&btf);
     return status;
 }

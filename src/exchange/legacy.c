@@ -157,14 +157,12 @@ static relume_status write_raw(const struct foreign *f, const struct export *e, 
                                               : ptm_write(f, path, e->log);
 }
 
-// RTIViewer reads rows of JPEG planes as if they filled whole blocks.
 static void warn_of_width(const struct foreign *f, const struct export *e, const char *path)
 {
     if (f->width % 8)
         log_line(e->log, RELUME_WARNING,
-                 "%s: width %d is not a multiple of 8; RTIViewer shows such a file askew, without "
-                 "--quality it does not",
-                 path, f->width);
+                 "%s: width %d is not a multiple of 8, as RTIViewer wants it for JPEG planes", path,
+                 f->width);
 }
 
 static relume_status write_jpeg(const struct foreign *f, const struct export *e, const char *path,

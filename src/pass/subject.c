@@ -28,7 +28,7 @@ struct relume_subject relume_subject_default(void)
                    .inner_mm = 1.4,
                    .outer_mm = 2.4,
                    .width_mm = 0.003,
-                   .opacity = 0.3},
+                   .opacity = 0.25},
         .vitreous = {.particles = {.count = 400, .radius_mm = 0.055, .spread = 2.5, .opacity = 1.0},
                      .radius_mm = 11.0,
                      .damping = 3.0,

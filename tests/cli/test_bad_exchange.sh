@@ -70,6 +70,7 @@ no 'unknown format' 2 "did you mean 'rti'" --to rto
 no 'unknown type' 2 "did you mean 'bilinear'" --type bilinaer
 no 'type of a file' 2 'only for --to relight' --to ptm --type rbf
 no 'a quality of .rti' 2 'no JPEG form' --to rti --quality 80
+no 'other terms of .ptm' 2 '.ptm has six' --to lptm --coefficients 3
 no 'a size of .ptm' 2 'only for --to relight' --to ptm --bytes-per-pixel 1
 no 'two targets' 2 'expected one of' --psnr 30 --quality 3
 no 'a view that is not there' 2 'view 3; expected 0 to 0' --view 3

@@ -284,7 +284,7 @@ static void check_sources(void **state)
     (void)state;
     for (int i = 0; i < 3 * W * H; i++)
         rest[i] = 0.5f;
-    CHECK_NEAR(sources_threshold(rest, W * H, 4), exp2(-31.0 / 32.0), 1e-6);
+    CHECK_NEAR(sources_threshold(rest, W * H, 4), 0.5 * 33.0 / 32.0, 1e-6);
     // A bent spot of three, one of one.
     static const int bright[][2] = {{3, 2}, {4, 3}, {5, 3}, {12, 7}};
     for (int k = 0; k < 4; k++)

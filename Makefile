@@ -176,8 +176,8 @@ $(UNIT): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
 	$(Q)$(CC) $(MODE) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
-# The bench that draws is linked as the tests of GL are.
-GL_BENCH := $B/tests/bench/bench_viewer $B/tests/bench/bench_objects
+# Benches that draw are linked as the tests of GL are.
+GL_BENCH := $(addprefix $B/tests/bench/,bench_viewer bench_objects bench_seeing)
 $(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)

@@ -19,7 +19,7 @@ pass:base math image:base image light tone eye psf glare
 btf:base math image:base image light lights btf surface ambient
 frame:base math:base image capture coder pack light relight view slabs frame evaluate normals enhance
 scene:base math image:base image lights capture btf scene
-object:base math image scene:base image capture light relight view slabs pack frame btf object
+object:base math image scene:base image capture light relight view slabs pack frame btf ambient surface object
 cli:cli:*
 viewer:viewer:*
 samples::*"

@@ -533,11 +533,18 @@ static bool adapt(struct app *app, double seconds)
     return true;
 }
 
+void app_live(struct app *app, double seconds)
+{
+    if (gaze_lives(&app->now.gaze) && seconds > 0)
+        app->eye_s += seconds;
+}
+
 bool app_advance(struct app *app, double seconds)
 {
     if (!(seconds > 0))
         return false;
     bool changed = adapt(app, seconds);
+    app_live(app, seconds);
     if (app->now.camera.framing != RELUME_FRAME_LOOK && !orbit_is(app))
         return changed;
     if (app->drag == APP_DRAG_CAMERA)

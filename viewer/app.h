@@ -5,6 +5,8 @@
 #ifndef VIEWER_APP_H
 #define VIEWER_APP_H
 
+#include "gaze.h"
+
 #include <relume/enhance.h>
 #include <relume/frame.h>
 #include <relume/object.h>
@@ -98,6 +100,7 @@ struct app_state {
     enum relume_pass pass;
     enum app_split split;  // objects ...
     int other;             // ... in this of their materials as well
+    struct gaze gaze;  // how an eye sees the frame
 };
 
 enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT, APP_DRAG_GIZMO };
@@ -125,6 +128,7 @@ struct app {
     double cursor[2];
     bool light_key;                     // L is held
     bool panel, help, inspect, gizmos;  // shown
+    double inspect_zoom;                // of the inspector's disc; 0 and 1: all of it
     bool compared;                      // there is a capture to compare with
     bool near_lights;  // it is known where the surface is, so that near lights can shine on it
     enum app_wish wish;
@@ -135,6 +139,7 @@ struct app {
     double speed_deg_s[2];  // of these: of the hand, then of what it let go
     double adapted_ev, metered_ev;  // automatic exposure: in force, and aimed at
     bool metered;
+    double eye_s;  // that the eye has lived: only while it looks, and not while it is paused
     struct relume_look before_planet;
 };
 
@@ -157,6 +162,9 @@ bool app_handle(struct app *app, const struct app_event *event);
 // Returns whether the picture changed; false for good once all is at rest. What a span does, any
 // way to split it does.
 bool app_advance(struct app *app, double seconds);
+
+// The same for the living eye alone (struct gaze), which never rests.
+void app_live(struct app *app, double seconds);
 
 // Let no glide go on.
 void app_stand_still(struct app *app);

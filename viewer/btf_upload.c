@@ -8,17 +8,13 @@
 #include <string.h>
 
 const struct btf_twin btf_twins[] = {
-    {"measured", "btf_measured.frag", {3}},
-    {"bump", "btf_bump.frag", {3, 3, 3}},
-    {"laf", "btf_laf.frag", {3, 3, 4}},
-    {"slaf", "btf_slaf.frag", {3, 3, 4, 1}},
-    {"rfp", "btf_rfp.frag", {3}},
-    {"rfnl", "btf_rfnl.frag", {3, 3, 4}},
-    {"rfnlc", "btf_rfnlc.frag", {3, 3, 4, 1}},
-    {"vpca", "btf_vpca.frag", {3, 3, 1}},
-    {"lpca", "btf_lpca.frag", {3, 3, 1, 1}},
-    {"fmf", "btf_fmf.frag", {1, 3}},
-    {NULL, NULL, {0}},
+    {"measured", "btf_measured.frag", {3}},   {"lit", "btf_lit.frag", {3}},
+    {"bump", "btf_bump.frag", {3, 3, 3}},     {"laf", "btf_laf.frag", {3, 3, 4}},
+    {"slaf", "btf_slaf.frag", {3, 3, 4, 1}},  {"rfp", "btf_rfp.frag", {3}},
+    {"rfnl", "btf_rfnl.frag", {3, 3, 4}},     {"rfnlc", "btf_rfnlc.frag", {3, 3, 4, 1}},
+    {"cmf", "btf_cmf.frag", {3, 1}},          {"vpca", "btf_vpca.frag", {3, 3, 1}},
+    {"lpca", "btf_lpca.frag", {3, 3, 1, 1}},  {"fmf", "btf_fmf.frag", {1, 3}},
+    {"qmf", "btf_qmf.frag", {1, 1, 1, 1, 1}}, {NULL, NULL, {0}},
 };
 
 const struct btf_twin *btf_twin_find(const char *model)
@@ -243,6 +239,31 @@ static relume_status upload_dome(struct btf_material *m, const struct gl *gl, in
     return status;
 }
 
+// ---------------------------------------------------------------- the map of a surface
+
+// The matrix, then the texels of all tiles; a single zero where there is no map.
+static relume_status upload_map(struct btf_material *m, const struct gl *gl,
+                                const relume_btf_surface *surface, const struct relume_log *log)
+{
+    static const uint32_t none = 0;
+    if (!surface)
+        return fill(m, gl, BTF_UNIT_MAP, GL_R32UI, 1, sizeof none, &none, log);
+    const struct relume_btf_map_info *i = relume_btf_surface_info(surface).map;
+    const size_t cells = (size_t)i->columns * (size_t)i->rows;
+    const size_t texels = (size_t)i->tiles * (size_t)i->width * (size_t)i->height;
+    uint32_t *list = malloc((cells + texels) * sizeof *list);
+    if (!list)
+        return RELUME_ENOMEM;
+    for (size_t k = 0; k < cells; k++)
+        list[k] = i->matrix[k];
+    memcpy(list + cells, i->texel, texels * sizeof *list);
+    memcpy(m->map, (int[4]){i->columns, i->rows, i->width, i->height}, sizeof m->map);
+    const relume_status status = fill(m, gl, BTF_UNIT_MAP, GL_R32UI, cells + texels,
+                                      (cells + texels) * sizeof *list, list, log);
+    free(list);
+    return status;
+}
+
 // ---------------------------------------------------------------- the material
 
 static relume_status upload_fitted(struct btf_material *m, const struct gl *gl,
@@ -268,14 +289,15 @@ relume_status btf_upload(struct btf_material *out, const struct gl *gl,
     if (material->fitted) {
         const struct relume_btf_fitted_info i = relume_btf_fitted_info(material->fitted);
         d = relume_btf_fitted_directions(material->fitted);
-        m->width = i.width, m->height = i.height;
+        m->area = i.width * i.height;
         memcpy(m->counts, (int[4]){i.views, i.lights, i.components, i.lobes}, sizeof m->counts);
     } else {
         const struct relume_btf_info *i = relume_btf_info(material->btf);
         d = (struct relume_btf_directions){i->view, i->light, i->without_cosine};
-        m->width = i->width, m->height = i->height;
+        m->area = i->width * i->height;
         memcpy(m->counts, (int[4]){i->views, i->lights, 0, 0}, sizeof m->counts);
     }
+    m->width = material->width, m->height = material->height;
     m->without_cosine = d.without_cosine;
     relume_status status = material->fitted ? upload_fitted(m, gl, material->fitted, log)
                                             : upload_measured(m, gl, material->btf, log);
@@ -283,6 +305,8 @@ relume_status btf_upload(struct btf_material *out, const struct gl *gl,
         status = upload_dome(m, gl, BTF_UNIT_DOMES, d.view, m->counts[0], log);
     if (!status)
         status = upload_dome(m, gl, BTF_UNIT_DOMES + 2, d.light, m->counts[1], log);
+    if (!status)
+        status = upload_map(m, gl, material->surface, log);
     if (status)
         btf_release(m, gl);
     return status;
@@ -290,14 +314,14 @@ relume_status btf_upload(struct btf_material *out, const struct gl *gl,
 
 void btf_release(struct btf_material *m, const struct gl *gl)
 {
-    gl->DeleteTextures(BTF_ARRAYS + BTF_DOMES, m->texture);
-    gl->DeleteBuffers(BTF_ARRAYS + BTF_DOMES, m->buffer);
+    gl->DeleteTextures(BTF_BUFFERS, m->texture);
+    gl->DeleteBuffers(BTF_BUFFERS, m->buffer);
     *m = (struct btf_material){.twin = NULL};
 }
 
 void btf_use(const struct btf_material *m, const struct gl *gl)
 {
-    for (int i = 0; i < BTF_ARRAYS + BTF_DOMES; i++)
+    for (int i = 0; i < BTF_BUFFERS; i++)
         if (m->texture[i])
             texture_use(gl, i, GL_TEXTURE_BUFFER, m->texture[i]);
 }

@@ -8,7 +8,7 @@
 
 #include <relume/object.h>
 
-enum { BTF_ARRAYS = 6, BTF_DOMES = 4 };
+enum { BTF_ARRAYS = 6, BTF_DOMES = 4, BTF_BUFFERS = BTF_ARRAYS + BTF_DOMES + 1 };
 
 // How a model is drawn.
 struct btf_twin {
@@ -23,7 +23,8 @@ const struct btf_twin *btf_twin_find(const char *model);
 // Texture units of its programs.
 enum {
     BTF_UNIT_DOMES = BTF_ARRAYS,
-    BTF_UNIT_PLACE = BTF_UNIT_DOMES + BTF_DOMES,
+    BTF_UNIT_MAP = BTF_UNIT_DOMES + BTF_DOMES,
+    BTF_UNIT_PLACE,
     BTF_UNIT_NORMAL,
     BTF_UNIT_TANGENT,
     BTF_UNIT_SHADOW,
@@ -32,8 +33,8 @@ enum {
 
 struct btf_material {
     const struct btf_twin *twin;
-    GLuint texture[BTF_ARRAYS + BTF_DOMES], buffer[BTF_ARRAYS + BTF_DOMES];
-    int width, height, counts[4];  // as btf.glsl
+    GLuint texture[BTF_BUFFERS], buffer[BTF_BUFFERS];
+    int width, height, area, counts[4], map[4];  // as btf.glsl
     bool without_cosine;
     size_t bytes;  // of graphics memory
 };

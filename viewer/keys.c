@@ -69,6 +69,17 @@ static bool press_inspect(struct app *app, int key)
     return true;
 }
 
+static bool press_magnify(struct app *app, int key)
+{
+    (void)key;
+    if (!app->inspect)
+        return false;
+    app->inspect_zoom = app->inspect_zoom < 1    ? 2
+                        : app->inspect_zoom < 16 ? 2 * app->inspect_zoom
+                                                 : 1;
+    return true;
+}
+
 static bool press_exposure(struct app *app, int key)
 {
     app->now.exposure_ev += key == '+' ? exposure_step : -exposure_step;
@@ -151,6 +162,13 @@ static bool press_focus(struct app *app, int key)
         return false;
     const double from = app->file.around ? relume_window_distance(&window) : g->uv_z;
     *z = from + (*z - from) * (key == '.' ? focus_factor : 1 / focus_factor);
+    return true;
+}
+
+static bool press_glare(struct app *app, int key)
+{
+    (void)key;
+    app->now.gaze.on = !app->now.gaze.on;
     return true;
 }
 
@@ -318,6 +336,7 @@ const struct key_binding key_bindings[] = {
     {'.', NULL, NULL, press_focus, true},
     {'o', "O", "panorama: little planet", press_planet, false},
     {'v', "V", "next view: colour, normals, ...", press_next_pass, false},
+    {'h', "H", "glare: halos, the picture as an eye sees it", press_glare, false},
     {'r', "R", "reset", press_reset, false},
     {'l', "L", "hold: drags turn the light", press_hold_light, false},
     {APP_KEY_LEFT, "arrows", "turn the light", press_turn, true},
@@ -341,6 +360,8 @@ const struct key_binding key_bindings[] = {
     {'b', "B", "ball that shows the light", press_ball, false},
     {'g', "G", "handles of the lights in the picture", press_gizmos, false},
     {'i', "I", "inspector: the reflectance under the cursor", press_inspect, false},
+    {'y', "Y", "inspector: twice as large about the light; at last all of it", press_magnify,
+     false},
     {'s', "S", "save the picture, PNG", press_png, false},
     {'p', "P", "save the picture, EXR", press_exr, false},
     {'w', "W", "write the lights, a rig file", press_save_rig, false},

@@ -14,6 +14,8 @@ enum uniform {
     PICTURE,
     SURFACE,
     GRID,
+    TRIANGLES,
+    TRIANGLE_COUNT,
     AFFINE,
     INDICES,
     VECTORS,
@@ -31,10 +33,10 @@ enum uniform {
     UNIFORMS
 };
 static const char *const uniforms[] = {
-    "rectangle", "frame_size", "codes",   "picture",       "surface",
-    "grid",      "affine",     "indices", "vectors",       SHINE_NAMES,
-    "facets",    "hemisphere", "pole_y",  "form",          "coefficients",
-    "layers",    "books",      "coded",   "display.curve", "display.gamma",
+    "rectangle", "frame_size",     "codes",         "picture",       "surface",      "grid",
+    "triangles", "triangle_count", "affine",        "indices",       "vectors",      SHINE_NAMES,
+    "facets",    "hemisphere",     "pole_y",        "form",          "coefficients", "layers",
+    "books",     "coded",          "display.curve", "display.gamma",
 };
 
 // Texture units; each sampler has its own.
@@ -43,6 +45,7 @@ enum unit {
     UNIT_PICTURE,
     UNIT_SURFACE,
     UNIT_GRID,
+    UNIT_TRIANGLES,
     UNIT_AFFINE,
     UNIT_INDICES,
     UNIT_VECTORS
@@ -56,6 +59,7 @@ relume_status nearby_create(struct nearby *near, const struct gl *gl, const stru
 {
     *near = (struct nearby){.gl = gl, .log = log, .shine = {.gl = gl, .log = log}};
     gl->GenTextures(1, &near->grid);
+    gl->GenTextures(1, &near->triangles);
     gl->GenTextures(1, &near->facets);
     return program_create(&near->program, gl, "near.frag", uniforms, UNIFORMS, log);
 }
@@ -71,6 +75,7 @@ void nearby_destroy(struct nearby *near)
         return;
     nearby_forget(near);
     near->gl->DeleteTextures(1, &near->grid);
+    near->gl->DeleteTextures(1, &near->triangles);
     near->gl->DeleteTextures(1, &near->facets);
     program_destroy(&near->program, near->gl);
     *near = (struct nearby){0};
@@ -135,14 +140,67 @@ static relume_status upload_grid(struct nearby *near, const struct relume_weight
     return gl_check(gl, "uploading weights", near->log);
 }
 
+// As near.frag: a row of four texels holds a triangle, then 16 cells of the map of starts.
+enum { TRIANGLE_TEXELS = 4, TRIANGLE_FLOATS = 4 * TRIANGLE_TEXELS };
+enum { STARTS = RELUME_WEIGHT_STARTS * RELUME_WEIGHT_STARTS };
+
+static int triangle_rows(const struct relume_weight_grid_info *g)
+{
+    return g->triangles + STARTS / TRIANGLE_FLOATS;
+}
+
+static void gather_triangle(float to[TRIANGLE_FLOATS], const struct relume_weight_triangle *t)
+{
+    for (int i = 0; i < 3; i++) {
+        float *row = to + 4 * (i + 1);
+        to[i] = (float)t->node[i];
+        memcpy(row, t->inverse[i], sizeof t->inverse[i]);
+        row[3] = (float)t->across[i];
+    }
+}
+
+static relume_status upload_triangles(struct nearby *near, const struct relume_weight_grid_info *g)
+{
+    const struct gl *gl = near->gl;
+    const int rows = triangle_rows(g);
+    float *texels = calloc((size_t)rows, TRIANGLE_FLOATS * sizeof *texels);
+    if (!texels)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < g->triangles; i++)
+        gather_triangle(texels + (size_t)i * TRIANGLE_FLOATS, &g->triangle[i]);
+    for (int i = 0; i < STARTS; i++)
+        texels[(size_t)g->triangles * TRIANGLE_FLOATS + (size_t)i] = (float)g->start[i];
+    texture_use(gl, UNIT_TRIANGLES, GL_TEXTURE_2D, near->triangles);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, TRIANGLE_TEXELS, rows, 0, GL_RGBA, GL_FLOAT,
+                   texels);
+    texture_settings(gl, GL_TEXTURE_2D);
+    free(texels);
+    near->triangle_count = g->triangles;
+    return gl_check(gl, "uploading triangles", near->log);
+}
+
+// More triangles than a texture has rows give way to a grid.
+static relume_status make_grid(relume_weight_grid **grid, const struct gl *gl,
+                               const relume_coder *coder)
+{
+    const relume_status status = relume_weight_grid_create(grid, coder, NULL);
+    if (status || triangle_rows(relume_weight_grid_info(*grid)) <= gl->max_texture)
+        return status;
+    relume_weight_grid_destroy(grid);
+    return relume_weight_grid_create(grid, coder, relume_weight_grid_params(.steps = 16));
+}
+
 static relume_status need_grid(struct nearby *near, const relume_coder *coder)
 {
     if (near->has_grid)
         return RELUME_OK;
     relume_weight_grid *grid;
-    relume_status status = relume_weight_grid_create(&grid, coder, NULL);
+    relume_status status = make_grid(&grid, near->gl, coder);
+    const struct relume_weight_grid_info *info = grid ? relume_weight_grid_info(grid) : NULL;
+    if (!status && info->triangles)
+        status = upload_triangles(near, info);
     if (!status)
-        status = upload_grid(near, relume_weight_grid_info(grid));
+        status = upload_grid(near, info);
     relume_weight_grid_destroy(&grid);
     return status;
 }
@@ -301,16 +359,18 @@ static void set_codes(const struct nearby *near, const struct nearby_view *view,
     static const struct {
         enum uniform sampler;
         enum unit unit;
-    } units[] = {{CODES, UNIT_CODES},    {PICTURE, UNIT_PICTURE}, {SURFACE, UNIT_SURFACE},
-                 {GRID, UNIT_GRID},      {AFFINE, UNIT_AFFINE},   {INDICES, UNIT_INDICES},
-                 {VECTORS, UNIT_VECTORS}};
+    } units[] = {{CODES, UNIT_CODES},     {PICTURE, UNIT_PICTURE},     {SURFACE, UNIT_SURFACE},
+                 {GRID, UNIT_GRID},       {TRIANGLES, UNIT_TRIANGLES}, {AFFINE, UNIT_AFFINE},
+                 {INDICES, UNIT_INDICES}, {VECTORS, UNIT_VECTORS}};
     for (size_t i = 0; i < sizeof units / sizeof *units; i++)
         gl->Uniform1i(at[units[i].sampler], units[i].unit);
     texture_use(gl, codes->books ? UNIT_INDICES : UNIT_CODES, GL_TEXTURE_2D_ARRAY, c->array);
     texture_use(gl, UNIT_SURFACE, GL_TEXTURE_2D, view->positions);
     texture_use(gl, UNIT_GRID, GL_TEXTURE_2D_ARRAY, near->grid);
+    texture_use(gl, UNIT_TRIANGLES, GL_TEXTURE_2D, near->triangles);
     texture_use(gl, UNIT_AFFINE, GL_TEXTURE_2D, view->affine);
     texture_use(gl, UNIT_VECTORS, GL_TEXTURE_2D_ARRAY, view->vectors);
+    gl->Uniform1i(at[TRIANGLE_COUNT], near->triangle_count);
     gl->Uniform1i(at[HEMISPHERE], info->hemispherical);
     gl->Uniform1i(at[POLE_Y], info->pole_y);
     gl->Uniform1i(at[FORM], form_of(info));

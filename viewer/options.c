@@ -214,17 +214,80 @@ static relume_status take_vram(struct options *o, const char *name, const char *
     return take_number(&o->vram_mb, name, text, 1, 1e6, log);
 }
 
-static relume_status take_relight(struct options *o, const char *name, const char *text,
-                                  const struct relume_log *log)
+static relume_status take_who(enum session_relight *out, const char *name, const char *text,
+                              const struct relume_log *log)
 {
     static const char *const names[] = {
         [SESSION_AUTO] = "auto", [SESSION_PASSES] = "passes", [SESSION_LIBRARY] = "library"};
     for (int i = 0; i < (int)(sizeof names / sizeof *names); i++)
         if (!strcmp(names[i], text)) {
-            o->relight = (enum session_relight)i;
+            *out = (enum session_relight)i;
             return RELUME_OK;
         }
     return say(log, RELUME_EINVAL, "%s: expected auto, passes or library; found '%s'", name, text);
+}
+
+static relume_status take_relight(struct options *o, const char *name, const char *text,
+                                  const struct relume_log *log)
+{
+    return take_who(&o->relight, name, text, log);
+}
+
+// ---------------------------------------------------------------- glare
+
+static relume_status take_glare(struct options *o, const char *name, const char *text,
+                                const struct relume_log *log)
+{
+    (void)name, (void)text, (void)log;
+    o->start.gaze.on = true;
+    return RELUME_OK;
+}
+
+static relume_status take_sources(struct options *o, const char *name, const char *text,
+                                  const struct relume_log *log)
+{
+    (void)name, (void)text, (void)log;
+    o->start.gaze.sources = true;
+    return RELUME_OK;
+}
+
+static relume_status take_subject(struct options *o, const char *name, const char *text,
+                                  const struct relume_log *log)
+{
+    (void)name;
+    return relume_subject_load(&o->subject, text, log);
+}
+
+static relume_status take_glare_by(struct options *o, const char *name, const char *text,
+                                   const struct relume_log *log)
+{
+    return take_who(&o->glare, name, text, log);
+}
+
+static relume_status take_glare_size(struct options *o, const char *name, const char *text,
+                                     const struct relume_log *log)
+{
+    double n;
+    const relume_status status = take_number(&n, name, text, 128, 4096, log);
+    if (status)
+        return status;
+    o->glare_size = (int)n;
+    if (n != o->glare_size || o->glare_size % 2)
+        return say(log, RELUME_EINVAL, "%s: expected an even number from 128 to 4096; found '%s'",
+                   name, text);
+    return RELUME_OK;
+}
+
+// As a script says it: the option's name without what stands before its last word.
+static relume_status take_sight(struct options *o, const char *name, const char *text,
+                                const struct relume_log *log)
+{
+    const char *expected;
+    char words[80];
+    snprintf(words, sizeof words, "%s %.60s", strrchr(name, '-') + 1, text);
+    if (gaze_say(&o->start.gaze, words, &expected))
+        return RELUME_OK;
+    return say(log, RELUME_EINVAL, "%s: expected %s; found '%s'", name, expected, text);
 }
 
 static relume_status take_exposure(struct options *o, const char *name, const char *text,
@@ -428,6 +491,18 @@ static const struct option options[] = {
     {"--relight", "BY",
      "passes of OpenGL, the library, or auto: the library where OpenGL is software; default auto",
      take_relight},
+    {"--glare", NULL, "the frame as a living eye sees it", take_glare},
+    {"--subject", "FILE", "--glare: whose eye it is (JSON, docs/glare.md)", take_subject},
+    {"--glare-magnify", "X", "--glare: the pattern's size against the frame; default 1",
+     take_sight},
+    {"--nits", "N", "--glare: cd/m^2 of a pixel of value 1; default 100", take_sight},
+    {"--squint", "S", "--glare: how far the lids are held closed, 0 to 0.95", take_sight},
+    {"--glare-mode", "M", "--glare: auto, fft, billboard or hybrid; default auto", take_sight},
+    {"--glare-size", "N",
+     "--glare: texels of the pattern; default 1536 by passes, 512 by the library", take_glare_size},
+    {"--glare-by", "BY", "--glare: by passes of OpenGL 4.3, the library, or auto, as --relight",
+     take_glare_by},
+    {"--sources", NULL, "draw the lights that are in view, as small as they are", take_sources},
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},
     {"--script", "EVENTS", "play a text file of events without a window", take_script},
@@ -478,6 +553,9 @@ void options_help(void)
          "        key K                 hold K, let K                    type TEXT\n"
          "        light SPEC            add SPEC                         rig FILE\n"
          "        open FILE: another relume file\n"
+         "        glare on|off|pause|run, glare magnify|nits|squint X, glare mode M, glare sources "
+         "on|off\n"
+         "        glare cornea|fibres|lens|vitreous|lids on|off: parts of the eye\n"
          "        wait [SECONDS]        frame OUT: the picture           shot OUT: with the "
          "panel\n\n"
          "example:\n"
@@ -562,7 +640,7 @@ static relume_status choose_objects(struct options *o, const struct relume_log *
 
 relume_status options_parse(struct options *o, int argc, char **argv, const struct relume_log *log)
 {
-    *o = (struct options){.gl = "auto", .vram_mb = 1024};
+    *o = (struct options){.gl = "auto", .vram_mb = 1024, .subject = relume_subject_default()};
     if (asks_for_help(argc, argv))
         return RELUME_OK;
     for (int i = 1; i < argc; i++) {

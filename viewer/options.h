@@ -28,7 +28,9 @@ struct options {
     const char *gl;   // what offscreen frames are drawn by: a name that context_offscreen knows
     int threads;      // that read files; 0: all cores
     double vram_mb;   // graphics memory for views
-    enum session_relight relight;
+    enum session_relight relight, glare;
+    int glare_size;
+    struct relume_subject subject;
 };
 
 // RELUME_EINVAL with a sentence in `log`: unknown options, wrong values, no FILE. RELUME_EDATA,

@@ -470,6 +470,70 @@ static bool picture_section(app *app)
     return changed;
 }
 
+static bool choose_mode(gaze *s)
+{
+    bool changed = false;
+    if (!ImGui::BeginCombo("mode", gaze_mode_name(s->mode)))
+        return false;
+    for (int i = 0; i < GAZE_MODES; i++)
+        if (ImGui::Selectable(gaze_mode_name((gaze_mode)i), s->mode == i)) {
+            s->mode = (gaze_mode)i;
+            changed = true;
+        }
+    ImGui::EndCombo();
+    return changed;
+}
+
+static bool parts_row(gaze *s)
+{
+    bool changed = false;
+    for (const gaze_part *p = gaze_parts; p->name; p++) {
+        bool on = !(s->parts_off & p->part);
+        if (p != gaze_parts && p != gaze_parts + 3)
+            ImGui::SameLine();
+        if (ImGui::Checkbox(p->name, &on)) {
+            s->parts_off ^= p->part;
+            changed = true;
+        }
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("%s", p->what);
+    }
+    return changed;
+}
+
+static bool glare_section(app *app, const panel_facts *facts)
+{
+    gaze *s = &app->now.gaze;
+    const double least[] = {0.1, 1e-2, 0}, most[] = {20, 1e5, 0.95};
+    double magnify = gaze_magnify(s), nits = gaze_nits(s);
+    bool changed = false;
+    if (ImGui::Checkbox("glare", &s->on))
+        changed = true;
+    ImGui::SameLine();
+    changed |= ImGui::Checkbox("paused", &s->paused);
+    ImGui::SameLine();
+    changed |= ImGui::Checkbox("sources", &s->sources);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("lights that are in view are drawn as small sources");
+    if (ImGui::SliderScalar("magnify", ImGuiDataType_Double, &magnify, &least[0], &most[0], "%.2f",
+                            ImGuiSliderFlags_Logarithmic)) {
+        s->magnify = magnify;
+        changed = true;
+    }
+    if (ImGui::SliderScalar("cd/m2", ImGuiDataType_Double, &nits, &least[1], &most[1], "%.3g",
+                            ImGuiSliderFlags_Logarithmic)) {
+        s->nits = nits;
+        changed = true;
+    }
+    changed |= ImGui::SliderScalar("squint", ImGuiDataType_Double, &s->squint, &least[2], &most[2],
+                                   "%.2f");
+    changed |= choose_mode(s);
+    changed |= parts_row(s);
+    if (facts->eye)
+        ImGui::TextUnformatted(facts->eye);
+    return changed;
+}
+
 static void histogram_section(const panel_facts *facts, float scale)
 {
     const ImVec2 size(ImGui::GetContentRegionAvail().x, 80 * scale);
@@ -609,6 +673,8 @@ static bool panel_window(panel *panel, app *app, const panel_facts *facts)
         changed |= objects_section(app, facts);
     if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen))
         changed |= picture_section(app);
+    if (ImGui::CollapsingHeader("Glare", app->now.gaze.on ? ImGuiTreeNodeFlags_DefaultOpen : 0))
+        changed |= glare_section(app, facts);
     panel->histogram = ImGui::CollapsingHeader("Histogram");
     if (panel->histogram)
         histogram_section(facts, panel->scale);

@@ -27,6 +27,7 @@ static relume_status create_programs(struct renderer *r)
         {&r->mean, draw_mean_create},
 
         {&r->ball, draw_ball_create},
+        {&r->source, draw_source_create},
         {&r->present, draw_present_create},
     };
     relume_status status = RELUME_OK;
@@ -43,12 +44,15 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
                               int views, const struct relume_log *log)
 {
     *r = (struct renderer){.gl = gl, .log = log, .geometry = *geometry, .views = views};
+    glare_begin(&r->glare, gl, log);
     gl->GenVertexArrays(1, &r->vertices);
     r->uv = calloc((size_t)views, sizeof *r->uv);
     if (r->uv && uv)
         memcpy(r->uv, uv, (size_t)views * sizeof *r->uv);
     r->needed = calloc((size_t)views, sizeof *r->needed);
     r->relit = calloc((size_t)views, sizeof *r->relit);
+    r->backdrop =
+        (struct lamp_scene){.source = *source, .uv = (const double(*)[2])r->uv, .views = views};
     relume_status status = r->uv && r->needed && r->relit ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = relighter_create(&r->relighter, gl, source, views, log);
@@ -95,11 +99,13 @@ void renderer_destroy(struct renderer *r)
         return;
     struct program *const programs[] = {&r->picture, &r->slab,        &r->slab_depth, &r->slab_lens,
                                         &r->slabs,   &r->slabs_depth, &r->mean,       &r->panorama,
-                                        &r->ball,    &r->present};
+                                        &r->ball,    &r->source,      &r->present};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         program_destroy(programs[i], r->gl);
     relighter_destroy(&r->relighter);
     enhancer_destroy(&r->enhancer);
+    glare_end(&r->glare);
+    lamp_scene_forget(&r->backdrop);
     target_destroy(&r->frame, r->gl);
     target_destroy(&r->small, r->gl);
     target_destroy(&r->sum, r->gl);
@@ -402,7 +408,7 @@ relume_status renderer_frame(struct renderer *r, const struct app *app, const st
 }
 
 // The lights that shine, and what the frame needs.
-static relume_status prepare(struct renderer *r, const struct app *app, int *lights)
+static relume_status prepare(struct renderer *r, const struct app *app)
 {
     relume_status status = renderer_prepare(&r->frame, r, app->width, app->height);
     memset(r->needed, 0, (size_t)r->views * sizeof *r->needed);
@@ -410,8 +416,33 @@ static relume_status prepare(struct renderer *r, const struct app *app, int *lig
         framings[app->now.camera.framing].mark(r, app);
     if (!status)
         status = need_lights(r, app->now.lights);
-    *lights = status ? 0 : lamps_shining(&app->now, r->light);
+    r->lights = status ? 0 : lamps_shining(&app->now, r->light);
     return status;
+}
+
+// Normals and the like are for looking up, not at.
+static relume_status see(struct renderer *r, const struct app *app, double exposure)
+{
+    r->shown = &r->frame;
+    if (!app->now.gaze.on || app->now.pass != RELUME_PASS_COLOUR)
+        return RELUME_OK;
+    const relume_status status = glare_see(&r->glare, &r->frame, app, exposure);
+    r->shown = &r->glare.seen;
+    return status;
+}
+
+static relume_status draw_lights_in_view(struct renderer *r, const struct app *app,
+                                         const struct place *place)
+{
+    if (!app->now.gaze.sources || app->now.pass != RELUME_PASS_COLOUR)
+        return RELUME_OK;
+    struct lamp_seen *sources = malloc(LAMPS_SEEN_MOST * sizeof *sources);
+    if (!sources)
+        return RELUME_ENOMEM;
+    const int n = lamps_seen(sources, app, r->light, r->lights, &r->backdrop);
+    draw_sources(&r->source, r->gl, place, sources, n);
+    free(sources);
+    return RELUME_OK;
 }
 
 relume_status renderer_draw(struct renderer *r, const struct app *app)
@@ -422,16 +453,21 @@ relume_status renderer_draw(struct renderer *r, const struct app *app)
         .picture = app_picture(app),
         .exposure = (float)exp2(app_exposure_ev(app)),
     };
-    int lights;
-    relume_status status = prepare(r, app, &lights);
+    relume_status status = prepare(r, app);
     if (!status && r->things.gl)
-        status = renderer_draw_objects(r, app, &place, r->light, lights);
+        status = renderer_draw_objects(r, app, &place, r->light, r->lights);
     else if (!status)
-        status = renderer_relight_views(r, app, r->light, lights);
+        status = renderer_relight_views(r, app, r->light, r->lights);
     if (!status && !r->things.gl)
         status = renderer_frame(r, app, &place);
+    if (!status)
+        status = draw_lights_in_view(r, app, &place);
+    if (!status)
+        status = see(r, app, (double)place.exposure);
     if (status)
         return status;
+    target_resume(r->shown, r->gl);
+    r->gl->BindVertexArray(r->vertices);
     if (app->now.ball)
         draw_ball(&r->ball, r->gl, &place, app_seen_light(app, app->now.selected),
                   app->now.light[app->now.selected].rgb);
@@ -450,7 +486,7 @@ bool renderer_is_pending(const struct renderer *r)
 
 relume_status renderer_read(struct relume_image *out, const struct renderer *r)
 {
-    return target_read(out, &r->frame, r->gl);
+    return target_read(out, r->shown, r->gl);
 }
 
 relume_status renderer_meter(double *ev, struct renderer *r)
@@ -477,5 +513,5 @@ relume_status renderer_meter(double *ev, struct renderer *r)
 void renderer_present(const struct renderer *r, const struct app *app, GLuint framebuffer)
 {
     r->gl->BindVertexArray(r->vertices);
-    draw_present(&r->present, r->gl, &r->frame, app->now.tone, app->now.white, framebuffer);
+    draw_present(&r->present, r->gl, r->shown, app->now.tone, app->now.white, framebuffer);
 }

@@ -6,6 +6,7 @@
 #include "depths.h"
 #include "draw.h"
 #include "enhancer.h"
+#include "glare.h"
 #include "relighter.h"
 #include "things.h"
 
@@ -14,11 +15,13 @@ struct renderer {
     const struct relume_log *log;
     struct relighter relighter;
     struct enhancer enhancer;
+    struct glare glare;
     struct program picture, slab, slab_depth, slab_lens, slabs, slabs_depth, mean, panorama, ball,
-        present;
+        source, present;
     GLuint vertices;
     struct target frame;
-    struct target small;     // of the frame, to meter
+    const struct target *shown;  // `frame`, or what an eye sees of it; NULL: nothing drawn yet
+    struct target small;         // of the frame, to meter
     struct target sum;       // of an aperture's cameras, of several slabs; made when first needed
     struct target pinholes;  // of a lens before several slabs, their sum; likewise
     relume_slab *grid;       // NULL: not a slab, or several
@@ -31,14 +34,15 @@ struct renderer {
     bool *needed;                 // [views]
     const struct target **relit;  // [views]; NULL where not needed
     struct relume_light *light;   // that shine; room for `room`
-    int room;
+    int lights, room;
     struct things things;  // objects; empty: none
     bool stage;            // there is nothing but objects
     // Of a scene with objects: where it is, what one light shows of it, and of each view what its
     // pixels see; made when first needed.
     struct depth_source place_source;
     struct target scene, lit, *place;
-    double things_ms[2];  // what the objects took in the last frame, and in another material
+    double things_ms[2];         // what the objects took in the last frame, and in another material
+    struct lamp_scene backdrop;  // that hides lights
 };
 
 // `uv` [views] places the cameras of a slab; NULL: there is none, or renderer_use_slabs tells.

@@ -193,6 +193,11 @@ static relume_status make_renderer(struct session *s)
     s->renderer.relighter.software.threads = s->threads;
     s->renderer.relighter.by_library =
         s->relight == SESSION_LIBRARY || (s->relight == SESSION_AUTO && s->gl.software);
+    s->renderer.glare.subject = s->subject;
+    s->renderer.glare.threads = s->threads;
+    s->renderer.glare.size = s->glare_size;
+    s->renderer.glare.by_library =
+        s->glare == SESSION_LIBRARY || (s->glare == SESSION_AUTO && s->gl.software);
     renderer_use_capture(&s->renderer, s->capture);
     if (info->has_depth)
         status = renderer_use_depth(&s->renderer, &depth);
@@ -236,6 +241,7 @@ static relume_status replace(struct session *s, const char *path, bool *opened)
         .auto_exposure = was.now.auto_exposure,
         .tone = was.now.tone,
         .white = was.now.white,
+        .gaze = was.now.gaze,
     };
     *opened = !session_open(s, path, &start, true);
     if (!*opened)

@@ -24,6 +24,7 @@ struct recording {
     struct record *record;  // NULL: none
     enum record_kind kind;
     int frame, frames;
+    int posed;  // the frame that was drawn last: a picture that is drawn again is no later
     struct app_state before;  // the recording
     char path[SESSION_TEXT + 16];
 };
@@ -66,6 +67,9 @@ struct session {
     int threads;                           // that read files
     size_t vram_bytes;                     // for views
     enum session_relight relight;
+    enum session_relight glare;     // by passes or by the library, likewise
+    int glare_size;                 // as glare.size
+    const struct relume_subject *subject;  // whose eye looks; NULL: the default one
     bool streams;  // frames are drawn with the views that are there
     const struct relume_log *log;
 };

@@ -73,8 +73,19 @@ static relume_status list_maps(struct session *s)
     return maps_list(&s->maps, folder);
 }
 
+static const char *describe_eye(char *text, size_t size, const struct glare *glare)
+{
+    if (!glare->eye)
+        return NULL;
+    const struct relume_eye_state *eye = relume_eye_state(glare->eye);
+    snprintf(text, size, "pupil %.2f mm, field %.3g cd/m2\n%.1f s, by %s", eye->pupil_mm,
+             eye->luminance, eye->time_s, glare->passes ? "passes" : "the library");
+    return text;
+}
+
 relume_status session_build_panel(struct session *s, bool histogram)
 {
+    char eye[160];
     bool plot = false;
     relume_status status = s->app.inspect && s->pack ? inspect(s, &plot) : RELUME_OK;
     if (!status)
@@ -96,6 +107,7 @@ relume_status session_build_panel(struct session *s, bool histogram)
         .material_bytes = s->objects ? s->material_bytes : NULL,
         .materials = SESSION_MATERIALS,
         .objects_ms = s->renderer.things_ms,
+        .eye = describe_eye(eye, sizeof eye, &s->renderer.glare),
     };
     if (!status)
         (void)panel_build(s->panel, &s->app, &facts);

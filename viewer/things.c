@@ -21,15 +21,23 @@ enum {
     BILINEAR,
     WITHOUT_COSINE,
     COUNTS,
+    AREA,
+    MAP,
+    MAP_TEXELS,
     LIGHT,
     SHADOW = LIGHT + SHINE_UNIFORMS,
     BTF_COUNT = SHADOW + SHADOW_UNIFORMS
 };
 static const char *const btf_uniforms[] = {
-    "rectangle", "frame_size", "array0",         "array1",         "array2",      "array3",
-    "array4",    "array5",     "view_cells",     "view_triangles", "light_cells", "light_triangles",
-    "place",     "normal_s",   "tangent_t",      "picture",        "part",        "eye",
-    "texels",    "bilinear",   "without_cosine", "counts",         SHINE_NAMES,   SHADOW_NAMES,
+    "rectangle",      "frame_size",  "array0",
+    "array1",         "array2",      "array3",
+    "array4",         "array5",      "view_cells",
+    "view_triangles", "light_cells", "light_triangles",
+    "place",          "normal_s",    "tangent_t",
+    "picture",        "part",        "eye",
+    "texels",         "bilinear",    "without_cosine",
+    "counts",         "area",        "map",
+    "map_texels",     SHINE_NAMES,   SHADOW_NAMES,
 };
 enum { SURFACE_CLIP, SURFACE_PART, SURFACE_COUNT };
 static const char *const surface_uniforms[] = {"clip", "part"};
@@ -316,6 +324,9 @@ static void set_uniforms(const struct things *t, const struct program *program, 
     gl->Uniform2i(at[TEXELS], m->width, m->height);
     gl->Uniform1i(at[BILINEAR], relume_objects_info(t->objects)->part[part].bilinear);
     gl->Uniform1i(at[WITHOUT_COSINE], m->without_cosine);
+    gl->Uniform1i(at[AREA], m->area);
+    gl->Uniform4i(at[MAP], m->map[0], m->map[1], m->map[2], m->map[3]);
+    gl->Uniform1i(at[MAP_TEXELS], BTF_UNIT_MAP);
     gl->Uniform4i(at[COUNTS], m->counts[0], m->counts[1], m->counts[2], m->counts[3]);
 }
 

@@ -143,6 +143,10 @@ RELUME_API void relume_eye_destroy(relume_eye **eye);
 // 10 s only the last 10 s are computed. RELUME_EINVAL when a number is negative or not finite.
 RELUME_RESULT relume_status relume_eye_advance(relume_eye *eye, double dt_s, double luminance);
 
+// Hold the lids closed by another amount from now on, [0, 0.99]; what lies outside is taken as the
+// nearest.
+RELUME_API void relume_eye_squint(relume_eye *eye, double squint);
+
 RELUME_API const struct relume_subject *relume_eye_subject(const relume_eye *eye);
 RELUME_API const struct relume_eye_state *relume_eye_state(const relume_eye *eye);
 // Valid until the eye advances or ends.

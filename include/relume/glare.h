@@ -38,7 +38,7 @@ struct relume_glare_params {
     // there are at most `sources`.
     double threshold;
     int sources;      // [1, 1048576]; default 256
-    bool no_veil;     // leave out the analytic veil from the pattern's edge to 10 degrees
+    bool no_veil;     // leave out the analytic veil beyond the pattern
     bool keep_light;  // closing lids do not darken the frame
 };
 #define relume_glare_params(...) (&(const struct relume_glare_params){__VA_ARGS__})
@@ -47,11 +47,25 @@ struct relume_glare_params {
 RELUME_API double relume_glare_pixel(double fov_deg, int width);
 
 // The pattern at the frame's scale, odd size, every channel summing to 1: that of `psf` resampled
-// from psf->step to `pixel` radians over `magnify`, and the CIE veil beyond it. the subject that
+// from psf->step to `pixel` radians over `magnify`, and the CIE veil beyond it, which
+// is the observer's up to 7.5 degrees and fades out until 12.5. The subject that
 // was seen last gives the veil's age and pigment. RELUME_EINVAL, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_glare_kernel(struct relume_image *out, const relume_psf *psf,
                                                 double pixel,
                                                 const struct relume_glare_params *params);
+
+// That veil from where a pattern fades out to RELUME_VEIL_DEG, for kernels made elsewhere: pattern
+// (1 - share) + light * a pixel's solid angle, and all of it divided by its sum.
+#define RELUME_VEIL_DEG 12.5
+enum { RELUME_VEIL_STEPS = 2048 };
+struct relume_veil {
+    double step;                         // radians from number to number
+    float light[RELUME_VEIL_STEPS + 2];  // per steradian at that angle, linear between; the last
+                                         // two are 0
+    double share;                        // of all light; 0: the pattern reaches as far itself
+};
+RELUME_API void relume_veil(struct relume_veil *out, const struct relume_psf_geometry *pattern,
+                            double age, double pigment);
 
 // Work on frames of one size keeps what does not change: plans, and the spectrum of a frame that
 // rests. Thread-safety: one thread at a time.

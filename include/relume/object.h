@@ -15,6 +15,7 @@
 #include <relume/light.h>
 #include <relume/pack.h>
 #include <relume/slabs.h>
+#include <relume/surface.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -34,9 +35,9 @@ struct relume_objects_params {
 #define relume_objects_params(...) (&(const struct relume_objects_params){__VA_ARGS__})
 
 // Read a description (docs/objects.md). Meshes are OBJ, PLY or what Assimp reads, such as glTF;
-// materials are folders of BTFs or of fitted models. What a mesh lacks is made, with a warning:
-// normals, texture coordinates (from the three axes). RELUME_EDATA with a sentence, RELUME_ENOMEM,
-// RELUME_ESYSTEM when Embree or the reader of a format is missing.
+// materials are folders of BTFs, of fitted models or of surfaces. What a mesh lacks is made, with a
+// warning: normals, texture coordinates (from the three axes). RELUME_EDATA with a sentence,
+// RELUME_ENOMEM, RELUME_ESYSTEM when Embree or the reader of a format is missing.
 RELUME_RESULT relume_status relume_objects_open(relume_objects **out, const char *path,
                                                 const struct relume_objects_params *params);
 // One mesh, all of it of the first of `count` materials, its texture repeated `repeat` times (0: 1)
@@ -59,6 +60,8 @@ struct relume_object_material {
     const char *model;      // "measured", or what relume_btf_model_name says
     const relume_btf *btf;  // one of the two
     const relume_btf_fitted *fitted;
+    const relume_btf_surface *surface;  // or NULL: the sample alone. `fitted` is its model
+    int width, height;                  // texels of one repeat
     uint64_t bytes;
 };
 

@@ -21,6 +21,8 @@
 
 enum { SCORE, PATTERN, WIDTH, LEVELS, COLOR };
 enum { PLANES = 4 };  // of a component: its scores, its pattern in three colours
+// Bytes that hold a number of LEVELS_BITS bits wherever it begins: the least a texel has.
+enum { WINDOW = 3 };
 static const double USUAL_RATIO = 200.0;
 // Components looked at, from the bytes wanted: those that are worth it have more bits than this in
 // scores and patterns together, for each texel and pair.
@@ -138,7 +140,7 @@ static size_t bytes_of(const struct work *w, size_t *texel, size_t *pair)
         pattern_bits += (size_t)(p[1].bits + p[2].bits + p[3].bits);
         used += p[0].bits > 0;
     }
-    *texel = score_bits ? (score_bits + 7) / 8 : 1;
+    *texel = (score_bits + 7) / 8 > WINDOW ? (score_bits + 7) / 8 : WINDOW;
     *pair = pattern_bits ? (pattern_bits + 7) / 8 : 1;
     return w->texels * *texel + w->pairs * *pair + used * PLANES * (1 + sizeof(struct levels)) +
            sizeof(float[9]);
@@ -281,44 +283,85 @@ static bool is_sound(const relume_btf_fitted *m)
         *(i % PLANES ? &pattern_bits : &score_bits) += width[i];
     // components without a bit are not written: so many cannot be
     return score_bits <= 8 * (size_t)m->texel_bytes && pattern_bits <= 8 * (size_t)m->pair_bytes &&
-           m->components <= 8 * m->texel_bytes;
+           m->components <= 8 * m->texel_bytes && m->texel_bytes >= WINDOW;
 }
 
-// Patterns as floats [pair][component][3], their colours turned back: they are read far more often
-// than there are of them.
+// Where a component's number lies in the row of a texel, and what it stands for.
+struct score {
+    int byte, shift;  // of a window that ends inside the row
+    unsigned mask;
+    float step, first;  // t = step number + first
+    struct levels levels;
+};
+
+// What reading needs again and again.
+struct ready {
+    struct score score[1024];
+    float pattern[];  // [pair][component][3], colours turned back
+};
+
+static void find_scores(const relume_btf_fitted *m, struct score *out)
+{
+    const uint8_t *width = m->array[WIDTH].data;
+    const struct levels *levels = m->array[LEVELS].data;
+    for (int k = 0, at = 0; k < m->components; k++, width += PLANES, levels += PLANES) {
+        const int last = m->texel_bytes - WINDOW, byte = at / 8 < last ? at / 8 : last;
+        out[k] = (struct score){.byte = byte, .shift = at - 8 * byte, .levels = *levels};
+        if (*width) {
+            out[k].mask = (1u << *width) - 1;
+            out[k].step = 2.0f / (float)out[k].mask;
+            out[k].first = -1.0f;
+        }
+        at += *width;
+    }
+}
+
+static void unpack_pair(const relume_btf_fitted *m, size_t pair, float *to)
+{
+    const float *color = model_floats(m, COLOR);
+    const uint8_t *width = m->array[WIDTH].data;
+    const struct levels *levels = m->array[LEVELS].data;
+    struct bit_reader row = {.next = (const uint8_t *)m->array[PATTERN].data +
+                                     pair * (size_t)m->pair_bytes};
+    for (int k = 0; k < m->components; k++, width += PLANES, levels += PLANES, to += 3) {
+        float p[3];
+        for (int c = 1; c < PLANES; c++)
+            p[c - 1] = levels_value(&levels[c], width[c], bit_reader_take(&row, width[c]));
+        for (int c = 0; c < 3; c++)
+            to[c] = color[c] * p[0] + color[3 + c] * p[1] + color[6 + c] * p[2];
+    }
+}
+
 static relume_status prepare(relume_btf_fitted *m)
 {
-    const size_t pairs = model_pairs(m), count = (size_t)m->components;
-    const float *color = model_floats(m, COLOR);
-    float *to = mem_array(pairs * count, sizeof(float[3]));
-    m->prepared = to;
-    for (size_t pair = 0; pair < pairs && to; pair++) {
-        const uint8_t *width = m->array[WIDTH].data;
-        const struct levels *levels = m->array[LEVELS].data;
-        struct bit_reader row = {.next = (const uint8_t *)m->array[PATTERN].data +
-                                         pair * (size_t)m->pair_bytes};
-        for (size_t k = 0; k < count; k++, width += PLANES, levels += PLANES, to += 3) {
-            float p[3];
-            for (int c = 1; c < PLANES; c++)
-                p[c - 1] = levels_value(&levels[c], width[c], bit_reader_take(&row, width[c]));
-            for (int c = 0; c < 3; c++)
-                to[c] = color[c] * p[0] + color[3 + c] * p[1] + color[6 + c] * p[2];
-        }
-    }
-    return to ? RELUME_OK : RELUME_ENOMEM;
+    const size_t pairs = model_pairs(m), each = 3 * (size_t)m->components;
+    struct ready *ready = mem_array(sizeof *ready + pairs * each * sizeof(float), 1);
+    if (!ready)
+        return RELUME_ENOMEM;
+    find_scores(m, ready->score);
+    for (size_t pair = 0; pair < pairs; pair++)
+        unpack_pair(m, pair, ready->pattern + pair * each);
+    m->prepared = ready;
+    return RELUME_OK;
+}
+
+static inline float score_in(const uint8_t *row, const struct score *s)
+{
+    const uint8_t *at = row + s->byte;
+    const unsigned window = at[0] | (unsigned)at[1] << 8 | (unsigned)at[2] << 16;
+    const float t = s->step * (float)(window >> s->shift & s->mask) + s->first;
+    return s->levels.middle + t * (s->levels.linear + s->levels.cubic * t * t);
 }
 
 static void eval(const relume_btf_fitted *m, const struct model_at *at, float rgb[3])
 {
     const size_t pair = (size_t)at->view * (size_t)m->lights + (size_t)at->light;
-    const uint8_t *width = m->array[WIDTH].data;
-    const struct levels *levels = m->array[LEVELS].data;
-    const float *pattern = (const float *)m->prepared + 3 * pair * (size_t)m->components;
-    struct bit_reader row = {.next = (const uint8_t *)m->array[SCORE].data +
-                                     at->texel * (size_t)m->texel_bytes};
+    const struct ready *ready = m->prepared;
+    const float *pattern = ready->pattern + 3 * pair * (size_t)m->components;
+    const uint8_t *row = (const uint8_t *)m->array[SCORE].data + at->texel * (size_t)m->texel_bytes;
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
-    for (int k = 0; k < m->components; k++, width += PLANES, levels += PLANES, pattern += 3) {
-        const float w = levels_value(levels, *width, bit_reader_take(&row, *width));
+    for (int k = 0; k < m->components; k++, pattern += 3) {
+        const float w = score_in(row, &ready->score[k]);
         for (int c = 0; c < 3; c++)
             rgb[c] += w * pattern[c];
     }

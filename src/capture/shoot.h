@@ -62,6 +62,9 @@ relume_status shoot_whiten(struct shoot *s);
 relume_status shoot_check_pictures(struct shoot *s);
 // Directions, positions, intensities and their errors, from balls or from a file.
 relume_status shoot_find_lights(struct shoot *s);
+// The same from a folder: the text files of COLMAP, with cameras that are tied to the lamp.
+bool shoot_has_poses(const char *path);
+relume_status shoot_lights_from_poses(struct shoot *s);
 // Uneven coverage, coplanar lights.
 relume_status shoot_check_lights(struct shoot *s);
 

@@ -339,6 +339,8 @@ static relume_status weigh_exposures(struct shoot *s)
 
 relume_status shoot_find_lights(struct shoot *s)
 {
-    relume_status status = s->p.lights ? lights_from_file(s) : lights_from_balls(s);
+    relume_status status = !s->p.lights                   ? lights_from_balls(s)
+                           : shoot_has_poses(s->p.lights) ? shoot_lights_from_poses(s)
+                                                          : lights_from_file(s);
     return status ? status : weigh_exposures(s);
 }

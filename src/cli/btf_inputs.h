@@ -21,11 +21,17 @@ struct btf_sample {
 relume_status btf_open_sample(struct btf_sample *out, const char *name, const struct args *args);
 void btf_close_sample(struct btf_sample *sample);
 
-// The model of --model, --clusters, ... fitted to the BTF.
-relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, const struct args *args);
+// The model of --model, --clusters, ... fitted to the BTF, with `levels` where --levels is not
+// given.
+relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, int levels,
+                      const struct args *args);
 
 // "WxH" of an option; what is not given stays. RELUME_EINVAL with a sentence.
 relume_status btf_pair(int out[2], const struct args *args, const char *option, int most);
+
+// What a surface is; `seams` may be NULL.
+void btf_say_surface(const struct relume_btf_surface_info *info,
+                     const struct relume_btf_seams *seams, bool json);
 
 // The tasks that have files of their own.
 relume_status btf_render(const struct args *args);

@@ -1,8 +1,6 @@
 // btf_tile.c - relume btf tile: a large surface from a sample
 #include "btf_inputs.h"
 
-#include <string.h>
-
 // The model that the surface keeps: the one given, or one fitted to the BTF.
 static relume_status choose_model(relume_btf_fitted **own, const relume_btf_fitted **model,
                                   const struct btf_sample *sample, const struct args *args)
@@ -11,7 +9,7 @@ static relume_status choose_model(relume_btf_fitted **own, const relume_btf_fitt
     *model = sample->model;
     if (!sample->btf)
         return RELUME_OK;
-    const relume_status status = btf_fit(own, sample->btf, args);
+    const relume_status status = btf_fit(own, sample->btf, -1, args);
     *model = *own;
     return status;
 }
@@ -36,26 +34,33 @@ static relume_status make_map(relume_btf_map **out, const relume_btf_fitted *sam
                                 .threads = args_threads(args)));
 }
 
-static void say(const struct relume_btf_surface_info *i, const struct relume_btf_seams *s,
-                bool json)
+void btf_say_surface(const struct relume_btf_surface_info *i, const struct relume_btf_seams *s,
+                     bool json)
 {
+    const char *model = relume_btf_model_name(relume_btf_fitted_info(i->model).model);
     const double whole = (double)i->width * i->height;
     if (json)
         printf("{\"width\": %d, \"height\": %d, \"tiles\": %d, \"tile_width\": %d, "
-               "\"tile_height\": %d, \"columns\": %d, \"rows\": %d, \"levels\": %d, "
-               "\"bytes\": %llu, \"step_inside\": %.6f, \"step_across\": %.6f, "
-               "\"step_unrelated\": %.6f, \"seam_share\": %.6f}\n",
+               "\"tile_height\": %d, \"columns\": %d, \"rows\": %d, \"model\": \"%s\", "
+               "\"levels\": %d, \"bytes\": %llu",
                i->width, i->height, i->map->tiles, i->map->width, i->map->height, i->map->columns,
-               i->map->rows, i->levels, (unsigned long long)i->bytes, s->inside, s->across,
-               s->unrelated, s->share);
+               i->map->rows, model, i->levels, (unsigned long long)i->bytes);
     else
-        printf("surface  %d x %d texels\ntiles    %d of %d x %d, laid out %d x %d\nbytes    %llu "
-               "with %d levels of the model, %.4f a texel of the surface\nseams    %.1f %% of "
-               "neighbours; steps %.2f of the sample's (unrelated texels: %.2f)\n",
+        printf("surface  %d x %d texels\ntiles    %d of %d x %d, laid out %d x %d\nmodel    %s, %d "
+               "levels of detail\nbytes    %llu, %.4f a texel of the surface\n",
                i->width, i->height, i->map->tiles, i->map->width, i->map->height, i->map->columns,
-               i->map->rows, (unsigned long long)i->bytes, i->levels, (double)i->bytes / whole,
-               100.0 * s->share, s->inside > 0.0 ? s->across / s->inside : 0.0,
-               s->inside > 0.0 ? s->unrelated / s->inside : 0.0);
+               i->map->rows, model, i->levels, (unsigned long long)i->bytes,
+               (double)i->bytes / whole);
+    if (s && json)
+        printf(", \"step_inside\": %.6f, \"step_across\": %.6f, \"step_unrelated\": %.6f, "
+               "\"seam_share\": %.6f",
+               s->inside, s->across, s->unrelated, s->share);
+    else if (s && s->inside > 0.0)
+        printf("seams    %.1f %% of neighbours; steps over them %.2f of those in the sample "
+               "(unrelated texels: %.2f)\n",
+               100.0 * s->share, s->across / s->inside, s->unrelated / s->inside);
+    if (json)
+        puts("}");
 }
 
 static relume_status save(const relume_btf_fitted *model, const relume_btf_map *map,
@@ -69,7 +74,7 @@ static relume_status save(const relume_btf_fitted *model, const relume_btf_map *
             relume_btf_params(.log = args_log(args), .force = args_has(args, "--force")));
     if (!status) {
         const struct relume_btf_surface_info info = relume_btf_surface_info(surface);
-        say(&info, seams, args_has(args, "--json"));
+        btf_say_surface(&info, seams, args_has(args, "--json"));
     }
     relume_btf_surface_destroy(&surface);
     return status;

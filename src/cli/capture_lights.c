@@ -130,6 +130,8 @@ static relume_status check_options(const struct args *args)
         return usage_error("capture: expected -o DIR");
     if (args_has(args, "--fov") && args_has(args, "--focal"))
         return usage_error("capture: expected one of --fov and --focal");
+    if (args_has(args, "--integrable") && !args_has(args, "--refine-lights"))
+        return usage_error("capture: --integrable needs --refine-lights");
     if (args_has(args, "--radial") && !args_has(args, "--flat"))
         return usage_error("capture: --radial needs --flat FILE");
     if (args_has(args, "--relight") && !args_has(args, "--encode"))
@@ -158,6 +160,7 @@ static relume_status read_options(const struct args *args, struct job *job)
         .radial = args_has(args, "--radial"),
         .near = args_has(args, "--near"),
         .refine = args_has(args, "--refine-lights"),
+        .integrable = args_has(args, "--integrable"),
         .skip_bad = args_has(args, "--skip-bad"),
         .force = args_has(args, "--force"),
         .threads = args_threads(args),

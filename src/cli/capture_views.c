@@ -146,9 +146,10 @@ static relume_status depth_of(const char *capture, const char *dir, const struct
 static relume_status refuse_others(const struct args *args)
 {
     static const char *const of_lights[] = {
-        "--ball", "--ball-photos", "--matte",  "--near",   "--refine-lights", "--white",
-        "--flat", "--normals",     "--albedo", "--height", "--encode",        "--relight",
-        "--hdr",  "--times",       "--ghosts", "--align",  "--mask",          NULL};
+        "--ball",       "--ball-photos", "--matte",   "--near",    "--refine-lights",
+        "--integrable", "--white",       "--flat",    "--normals", "--albedo",
+        "--height",     "--encode",      "--relight", "--hdr",     "--times",
+        "--ghosts",     "--align",       "--mask",    NULL};
     for (int i = 0; of_lights[i]; i++)
         if (args_has(args, of_lights[i]))
             return usage_error("capture: %s does not go with photographs of many views",

@@ -7,8 +7,9 @@
 #include <string.h>
 
 static const struct option options[] = {
-    {"-o", OPTION_TEXT, "DIR", "fit: the folder of the model to make; render: the picture", 0, 0},
-    {"--model", OPTION_TEXT, "NAME", "fit: rfp, rfnl, rfnlc, vpca, lpca, ...; default rfnlc", 0, 0},
+    {"-o", OPTION_TEXT, "DIR", "fit, tile: the folder to make; render: the picture", 0, 0},
+    {"--model", OPTION_TEXT, "NAME", "fit, tile: rfp, rfnl, rfnlc, vpca, lpca, ...; default rfnlc",
+     0, 0},
     {"--models", OPTION_TEXT, "A,B,...", "compare: only these", 0, 0},
     {"--clusters", OPTION_INT, "N", "lpca: default 32; cmf: 512; rfnlc: 1024", 1, 65536},
     {"--components", OPTION_INT, "N", "vpca: default 4; lpca: 8; fmf: 100; qmf: at most, 512", 1,
@@ -16,9 +17,14 @@ static const struct option options[] = {
     {"--ratio", OPTION_INT, "R",
      "qmf: bytes of the measured values to one of the model; default 200", 1, 1000000},
     {"--lobes", OPTION_INT, "N", "rfnl, rfnlc, laf, slaf: default 2", 1, 4},
-    {"--levels", OPTION_INT, "N", "fit: levels of detail, each half as wide; default 1", 1, 17},
+    {"--levels", OPTION_INT, "N",
+     "fit, tile: levels of detail, each half as wide; default 1, of tile all", 1, 17},
     {"--leave-out", OPTION_INT, "K",
-     "compare: also without every K-th view and light, judged on pairs with one of these", 2, 64},
+     "compare: also without every K-th view and light, judged on pairs with one of these; fit: "
+     "without them",
+     2, 64},
+    {"--unseen", OPTION_FLAG, NULL,
+     "eval: only pairs with a direction that the model was not fitted to", 0, 0},
     {"--pictures", OPTION_INT, "N",
      "compare, eval: pictures judged by CIEDE2000 and SSIM; default 25", 0, 65536},
     {"--eye", OPTION_TEXT, "x,y,z",
@@ -51,8 +57,8 @@ static const struct option options[] = {
     {"--directions", OPTION_TEXT, "SET", "of a built-in material: bonn (default), dome, coarse", 0,
      0},
     {"--fill", OPTION_FLAG, NULL, "interpolate pictures that are missing in a folder", 0, 0},
-    {"--seed", OPTION_INT, "S", "of materials and clusters; default 0", 0, 2147483647},
-    {"--force", OPTION_FLAG, NULL, "fit: replace an existing folder", 0, 0},
+    {"--seed", OPTION_INT, "S", "of materials, clusters and tiles; default 0", 0, 2147483647},
+    {"--force", OPTION_FLAG, NULL, "fit, tile: replace an existing folder", 0, 0},
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
@@ -102,7 +108,6 @@ static struct relume_btf_fit_params fit_params(const struct args *args)
         .lobes = args_int(args, "--lobes", 0),
         .seed = (uint64_t)args_int(args, "--seed", 0),
         .threads = args_threads(args),
-        .levels = args_int(args, "--levels", 1),
         .ratio = args_int(args, "--ratio", 0),
     };
 }
@@ -159,6 +164,7 @@ static relume_status judge(struct btf_row *row, const relume_btf_fitted *fitted,
     const relume_status status = relume_btf_judge(
         &row->error, fitted, btf,
         relume_btf_judge_params(.log = args_log(args), .threads = args_threads(args),
+                                .unseen = args_has(args, "--unseen"),
                                 .pictures = args_int(args, "--pictures", 25)));
     if (status)
         return status;
@@ -220,9 +226,11 @@ static relume_status compare(const struct args *args)
 
 // ---------------------------------------------------------------- fit, eval
 
-relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, const struct args *args)
+relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, int levels,
+                      const struct args *args)
 {
-    const struct relume_btf_fit_params p = fit_params(args);
+    struct relume_btf_fit_params p = fit_params(args);
+    p.levels = args_int(args, "--levels", levels);
     const struct relume_btf_model *model;
     *out = NULL;
     const relume_status status = find_model(&model, args_text(args, "--model", "rfnlc"));
@@ -231,18 +239,21 @@ relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, const stru
 
 static relume_status fit(const struct args *args)
 {
-    relume_btf *btf = NULL;
+    relume_btf *btf = NULL, *part = NULL;
     relume_btf_fitted *fitted = NULL;
     if (!args_has(args, "-o"))
         return usage_error("btf fit: expected -o DIR");
     relume_status status = btf_open(&btf, args_input(args, 1), args);
     if (!status)
-        status = btf_fit(&fitted, btf, args);
+        status = make_part(&part, btf, args);
+    if (!status)
+        status = btf_fit(&fitted, part ? part : btf, 1, args);
     if (!status)
         status = relume_btf_fitted_save(
             fitted, args_text(args, "-o", NULL),
             relume_btf_params(.log = args_log(args), .force = args_has(args, "--force")));
     relume_btf_fitted_destroy(&fitted);
+    relume_btf_destroy(&part);
     relume_btf_destroy(&btf);
     return status;
 }
@@ -303,9 +314,24 @@ static relume_status model_info(const struct args *args)
     return RELUME_OK;
 }
 
+static relume_status surface_info(const struct args *args)
+{
+    relume_btf_surface *surface;
+    const relume_status status = relume_btf_surface_open(&surface, args_input(args, 1),
+                                                         relume_btf_params(.log = args_log(args)));
+    if (status)
+        return status;
+    const struct relume_btf_surface_info i = relume_btf_surface_info(surface);
+    btf_say_surface(&i, NULL, args_has(args, "--json"));
+    relume_btf_surface_destroy(&surface);
+    return RELUME_OK;
+}
+
 static relume_status info(const struct args *args)
 {
     relume_btf *btf;
+    if (btf_is_surface(args_input(args, 1)))
+        return surface_info(args);
     if (btf_is_model(args_input(args, 1)))
         return model_info(args);
     const relume_status status = btf_open(&btf, args_input(args, 1), args);

@@ -35,8 +35,8 @@ static const struct option options[] = {
     {"--without", OPTION_TEXT, "PART", "leave out cornea, fibres, lens, vitreous or lids; repeats",
      0, 0},
     {"--literal", OPTION_FLAG, NULL, "sum wavelengths as the thesis prints it", 0, 0},
-    {"--no-veil", OPTION_FLAG, NULL, "leave out the veil beyond the pattern, up to 10 degrees", 0,
-     0},
+    {"--retina-distance", OPTION_FLAG, NULL, "defocus by the printed d = 24 mm: a blur", 0, 0},
+    {"--no-veil", OPTION_FLAG, NULL, "leave out the veil beyond the pattern", 0, 0},
     {"--keep-light", OPTION_FLAG, NULL, "closing lids do not darken the picture", 0, 0},
     {"--threshold", OPTION_NUMBER, "L", "billboard, hybrid: brighter pixels are sources", 0, 1e9},
     DEVELOP_OPTIONS,
@@ -74,6 +74,7 @@ static relume_status parse_psf(const struct args *args, struct relume_psf_params
         .temperature_k = args_number(args, "--temperature", 0.0),
         .planes = args_int(args, "--planes", 0),
         .literal = args_has(args, "--literal"),
+        .retina_distance = args_has(args, "--retina-distance"),
     };
     return parse_parts(args, &p->parts_off);
 }

@@ -92,6 +92,7 @@ void mesh_destroy(mesh **m);
 // `d` unit, in the frame of the lights. Always sums to 1; outside the captured region the weights
 // are those of its border.
 struct blend mesh_blend(const mesh *m, vec3 d);
+struct relume_coder_triangles mesh_triangles(const mesh *m);
 
 // The direction at which the basis is really evaluated: below the horizon of a hemispherical
 // capture that is the horizon at the same azimuth.

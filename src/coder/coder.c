@@ -243,6 +243,15 @@ void coder_interpolate(const relume_coder *coder, struct relume_vec3 light, doub
     coder->info.interpolant->evaluate(coder->interpolant, light, values);
 }
 
+bool relume_coder_triangles(struct relume_coder_triangles *out, const relume_coder *coder)
+{
+    *out = (struct relume_coder_triangles){.points = 0};
+    if (coder->info.interpolant != &interpolant_delaunay)
+        return false;
+    *out = interpolant_triangles(coder->interpolant);
+    return true;
+}
+
 static double dot(const float *a, const double *b, int n)
 {
     double sum = 0.0;

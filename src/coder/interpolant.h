@@ -13,6 +13,9 @@ extern const struct relume_interpolant interpolant_hsh;
 extern const struct relume_interpolant interpolant_natural;
 extern const struct relume_interpolant interpolant_octahedral;
 
+// Of the data of `delaunay`.
+struct relume_coder_triangles interpolant_triangles(const void *delaunay);
+
 // For the kernels (chord, angular, tps): the N x N matrix B by which light i, predicted from all
 // others, is missed by (B t)_i / B_ii (Dubrule 1983). False for the others.
 bool interpolant_predictor(const struct relume_interpolant *interpolant, const void *data,

@@ -24,7 +24,9 @@ void relume_objects_destroy(relume_objects **objects)
         free((void *)o->part[i].name);
     for (int i = 0; i < o->info.materials; i++) {
         relume_btf_destroy((relume_btf **)&o->material[i].btf);
-        relume_btf_fitted_destroy((relume_btf_fitted **)&o->material[i].fitted);
+        if (!o->material[i].surface)
+            relume_btf_fitted_destroy((relume_btf_fitted **)&o->material[i].fitted);
+        relume_btf_surface_destroy((relume_btf_surface **)&o->material[i].surface);
         free((void *)o->material[i].name);
         free(o->folder[i]);
     }
@@ -52,9 +54,9 @@ relume_status relume_objects_choose(relume_objects *objects, int part, int mater
 
 // ---------------------------------------------------------------- materials
 
-static bool is_model(const char *folder)
+static bool holds(const char *folder, const char *name)
 {
-    char *file = mem_format("%s/model.json", folder);
+    char *file = mem_format("%s/%s", folder, name);
     struct stat s;
     const bool is = file && !stat(file, &s);
     free(file);
@@ -73,6 +75,22 @@ static char *name_of(const char *folder)
     return mem_format("%.*s", (int)(end - start), folder + start);
 }
 
+static relume_status open_surface(struct relume_object_material *m, const char *folder,
+                                  const struct relume_btf_params *p)
+{
+    relume_btf_surface *surface;
+    const relume_status status = relume_btf_surface_open(&surface, folder, p);
+    m->surface = surface;
+    if (status)
+        return status;
+    const struct relume_btf_surface_info info = relume_btf_surface_info(surface);
+    m->fitted = info.model;
+    m->model = relume_btf_model_name(relume_btf_fitted_info(info.model).model);
+    m->width = info.width, m->height = info.height;
+    m->bytes = info.bytes;
+    return RELUME_OK;
+}
+
 static relume_status open_material(struct relume_object_material *m, const char *folder,
                                    const struct relume_objects_params *params)
 {
@@ -85,13 +103,18 @@ static relume_status open_material(struct relume_object_material *m, const char 
     *m = (struct relume_object_material){.name = name_of(folder), .model = "measured"};
     if (!m->name)
         return RELUME_ENOMEM;
-    if (!is_model(folder)) {
+    if (holds(folder, "surface.json"))
+        return open_surface(m, folder, &p);
+    if (!holds(folder, "model.json")) {
         relume_btf *btf;
         const relume_status status = relume_btf_open(&btf, folder, &p);
         m->btf = btf;
         const struct relume_btf_info *i = status ? NULL : relume_btf_info(btf);
-        m->bytes = i ? relume_btf_bytes(i->width, i->height, i->views, i->lights) : 0;
-        return status;
+        if (status)
+            return status;
+        m->width = i->width, m->height = i->height;
+        m->bytes = relume_btf_bytes(i->width, i->height, i->views, i->lights);
+        return RELUME_OK;
     }
     relume_btf_fitted *fitted;
     const relume_status status = relume_btf_fitted_open(&fitted, folder, &p);
@@ -100,6 +123,7 @@ static relume_status open_material(struct relume_object_material *m, const char 
         return status;
     const struct relume_btf_fitted_info info = relume_btf_fitted_info(fitted);
     m->model = relume_btf_model_name(info.model);
+    m->width = info.width, m->height = info.height;
     m->bytes = info.bytes;
     return RELUME_OK;
 }

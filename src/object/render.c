@@ -107,15 +107,16 @@ static void ask(float rgb[3], const relume_objects *o, const struct surface_poin
 {
     const struct relume_object_part *part = &o->part[p->part];
     const struct relume_object_material *m = &o->material[part->material];
-    if (m->fitted) {
-        const struct relume_btf_fitted_info i = relume_btf_fitted_info(m->fitted);
-        relume_btf_fitted_sample(m->fitted, p->s * i.width, p->t * i.height, part->bilinear, view,
-                                 light, rgb);
-    } else {
-        const struct relume_btf_info *i = relume_btf_info(m->btf);
-        relume_btf_sample(m->btf, p->s * i->width, p->t * i->height, part->bilinear, view, light,
-                          rgb);
-    }
+    const double x = p->s * m->width, y = p->t * m->height;
+    const struct relume_btf_ray ray = {.view = view, .light = light};
+    if (m->surface && part->bilinear)
+        relume_btf_surface_evaluate(m->surface, x, y, 0.0, &ray, rgb);
+    else if (m->surface)
+        relume_btf_surface_evaluate(m->surface, floor(x) + 0.5, floor(y) + 0.5, 0.0, &ray, rgb);
+    else if (m->fitted)
+        relume_btf_fitted_sample(m->fitted, x, y, part->bilinear, view, light, rgb);
+    else
+        relume_btf_sample(m->btf, x, y, part->bilinear, view, light, rgb);
 }
 
 void objects_shade(float rgb[3], const relume_objects *o, const struct surface_point *p,

@@ -171,6 +171,12 @@ void relume_eye_destroy(relume_eye **eye)
     *eye = NULL;
 }
 
+void relume_eye_squint(relume_eye *eye, double squint)
+{
+    eye->subject.lids.squint = squint > 0.0 ? fmin(squint, 0.99) : 0.0;
+    place(eye);
+}
+
 const struct relume_subject *relume_eye_subject(const relume_eye *eye)
 {
     return &eye->subject;

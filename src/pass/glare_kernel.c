@@ -8,8 +8,9 @@
 
 #include <math.h>
 
-static const double veil_deg = 10.0;  // the pattern ends there
-enum { MOST_REACH = 8192 };           // pixels
+// The veil is the observer's up to the first of these angles and has faded out at the second.
+static const double veil_fade_deg = 7.5, veil_deg = RELUME_VEIL_DEG;
+enum { MOST_REACH = 8192 };  // pixels
 
 // CIE 135/1-1999, total glare function of the standard observer (Vos and van den Berg).
 double relume_cie_glare(double angle_deg, double age, double pigment)
@@ -89,6 +90,12 @@ static void resample_row(void *context, size_t item, int worker)
 
 // ---------------------------------------------------------------- veil
 
+static double smooth(double x, double from, double to)
+{
+    const double t = fmin(fmax((x - from) / (to - from), 0.0), 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
 // Share of the observer's light between two angles: the ring's solid angle is 2 pi sin t dt.
 static double light_between(double from_deg, double to_deg, double age, double pigment)
 {
@@ -97,31 +104,34 @@ static double light_between(double from_deg, double to_deg, double age, double p
     double sum = 0.0;
     for (int i = 0; i < STEPS; i++) {
         const double t = from_deg * exp((i + 0.5) * ratio);
-        sum += relume_cie_glare(t, age, pigment) * 2.0 * M_PI * sin(t * M_PI / 180.0) * t * ratio *
-               M_PI / 180.0;
+        sum += (1.0 - smooth(t, veil_fade_deg, veil_deg)) * relume_cie_glare(t, age, pigment) *
+               2.0 * M_PI * sin(t * M_PI / 180.0) * t * ratio * M_PI / 180.0;
     }
     return sum;
 }
 
-enum { VEIL_STEPS = 2048 };  // from the axis to 10 degrees: the veil bends over whole degrees
+void relume_veil(struct relume_veil *out, const struct relume_psf_geometry *pattern, double age,
+                 double pigment)
+{
+    const double edge = pattern->radius * 180.0 / M_PI, fade = pattern->fade * 180.0 / M_PI;
+    *out = (struct relume_veil){.step = veil_deg / RELUME_VEIL_STEPS * M_PI / 180.0};
+    if (!(edge < veil_deg))
+        return;
+    out->share = light_between(edge, veil_deg, age, pigment);
+    for (int i = 0; i < RELUME_VEIL_STEPS; i++) {
+        const double t = i * veil_deg / RELUME_VEIL_STEPS;
+        const double share = smooth(t, fade, edge) * (1.0 - smooth(t, veil_fade_deg, veil_deg));
+        out->light[i] = (float)(share * relume_cie_glare(t, age, pigment));
+    }
+}
+
 struct veil {
     float *const out[3];
     int reach;
     double pixel_steps;  // steps of the table in a pixel
-    float table[VEIL_STEPS + 2];
+    float solid;         // angle of a pixel
+    const float *light;
 };
-
-// What comes where the pattern goes: light in one pixel by angle.
-static void make_table(struct veil *v, double fade_deg, double edge_deg, double solid, double age,
-                       double pigment)
-{
-    for (int i = 0; i < VEIL_STEPS; i++) {
-        const double t = i * veil_deg / VEIL_STEPS;
-        const double s = fmin(fmax((t - fade_deg) / (edge_deg - fade_deg), 0.0), 1.0);
-        v->table[i] = (float)(s * s * (3.0 - 2.0 * s) * solid * relume_cie_glare(t, age, pigment));
-    }
-    v->table[VEIL_STEPS] = v->table[VEIL_STEPS + 1] = 0.0f;
-}
 
 static void veil_row(void *context, size_t item, int worker)
 {
@@ -131,10 +141,11 @@ static void veil_row(void *context, size_t item, int worker)
     (void)worker;
     for (int x = -v->reach; x <= v->reach; x++) {
         const double at = v->pixel_steps * sqrt((double)x * x + (double)y * y);
-        if (at >= VEIL_STEPS)
+        if (at >= RELUME_VEIL_STEPS)
             continue;
         const int i = (int)at;
-        const float light = v->table[i] + (float)(at - i) * (v->table[i + 1] - v->table[i]);
+        const float light =
+            v->solid * (v->light[i] + (float)(at - i) * (v->light[i + 1] - v->light[i]));
         for (int c = 0; c < 3; c++)
             v->out[c][item * side + (size_t)(x + v->reach)] += light;
     }
@@ -204,13 +215,13 @@ static relume_status add_pattern(struct kernel *out, const relume_psf *psf, doub
     return RELUME_OK;
 }
 
-static void add_veil(struct kernel *out, double fade_deg, double edge_deg, double fine, double age,
-                     double pigment, int threads)
+static void add_veil(struct kernel *out, const struct relume_veil *veil, double fine, int threads)
 {
     struct veil v = {.out = {out->v[0], out->v[1], out->v[2]},
                      .reach = out->reach,
-                     .pixel_steps = fine * 180.0 / M_PI * VEIL_STEPS / veil_deg};
-    make_table(&v, fade_deg, edge_deg, fine * fine, age, pigment);
+                     .pixel_steps = fine / veil->step,
+                     .solid = (float)(fine * fine),
+                     .light = veil->light};
     thread_for(threads, 2 * (size_t)out->reach + 1, veil_row, &v);
 }
 
@@ -219,25 +230,26 @@ relume_status kernel_create(struct kernel *out, const relume_psf *psf, double pi
 {
     const struct relume_psf_geometry *const shape = relume_psf_shape(psf);
     const double fine = pixel / p->magnify;
-    const double edge = shape->radius * 180.0 / M_PI, fade = shape->fade * 180.0 / M_PI;
-    const bool veiled = !p->no_veil && edge < veil_deg;
-    const double widest = veiled && part & KERNEL_VEIL ? veil_deg * M_PI / 180.0 : shape->radius;
+    struct relume_veil veil;
     double age, pigment;
     int reach = 0;
     *out = (struct kernel){0};
+    psf_observer(psf, &age, &pigment);
+    relume_veil(&veil, shape, age, pigment);
+    const bool veiled = !p->no_veil && veil.share > 0.0;
+    const double widest = veiled && part & KERNEL_VEIL ? veil_deg * M_PI / 180.0 : shape->radius;
     relume_status status = reach_of(&reach, widest, shape->step, fine, p->log);
     if (!status)
         status = allocate(out, reach);
     if (!status && part & KERNEL_PATTERN)
         status = add_pattern(out, psf, fine, p->threads);
-    psf_observer(psf, &age, &pigment);
-    const double far = veiled ? light_between(edge, veil_deg, age, pigment) : 0.0;
+    const double share = veiled ? veil.share : 0.0;
     if (!status && part & KERNEL_PATTERN)
-        normalise(out, 1.0 - far);
+        normalise(out, 1.0 - share);
     if (!status && veiled && part & KERNEL_VEIL)
-        add_veil(out, fade, edge, fine, age, pigment, p->threads);
+        add_veil(out, &veil, fine, p->threads);
     if (!status && part != KERNEL_PATTERN)
-        normalise(out, part == KERNEL_VEIL ? far : 1.0);
+        normalise(out, part == KERNEL_VEIL ? share : 1.0);
     if (status)
         kernel_destroy(out);
     return status;

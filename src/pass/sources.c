@@ -14,21 +14,32 @@ static float luminance(const float *rgb)
 
 // ---------------------------------------------------------------- threshold
 
-enum { PER_EV = 32, RANGE_EV = 64, BINS = 2 * RANGE_EV * PER_EV };
+// Positive floats sort as their bits do: exponent and five bits after it are bins of at most 1/32.
+enum { SHIFT = 18, BINS = 1 << (31 - SHIFT) };
+
+static uint32_t bits_of(float x)
+{
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
 
 double sources_threshold(const float *in, size_t pixels, int most)
 {
     size_t bin[BINS] = {0}, above = 0;
     for (size_t i = 0; i < pixels; i++) {
         const float y = luminance(in + 3 * i);
-        const double place = y > 0.0f ? (log2((double)y) + RANGE_EV) * PER_EV : -1.0;
-        if (place >= 0.0)
-            bin[place < BINS ? (int)place : BINS - 1]++;
+        if (y > 0.0f)
+            bin[bits_of(y) >> SHIFT]++;
     }
     for (int i = BINS - 1; i >= 0; i--) {
         above += bin[i];
-        if (above > (size_t)most)
-            return i == BINS - 1 ? (double)INFINITY : exp2((i + 1.0) / PER_EV - RANGE_EV);
+        if (above <= (size_t)most)
+            continue;
+        const uint32_t bits = ((uint32_t)i + 1) << SHIFT;
+        float edge;
+        memcpy(&edge, &bits, sizeof edge);
+        return (double)edge;
     }
     return 0.0;
 }

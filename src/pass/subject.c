@@ -17,7 +17,7 @@ struct relume_subject relume_subject_default(void)
     return (struct relume_subject){
         .seed = 1,
         .pupil = {.hippus = 0.08, .adaptation_s = 1.0},
-        .cornea = {.count = 8000, .radius_mm = 0.011, .spread = 3.0, .opacity = 1.0},
+        .cornea = {.count = 16000, .radius_mm = 0.008, .spread = 2.5, .opacity = 1.0},
         .lens = {.particles = {.count = 750, .radius_mm = 0.045, .spread = 3.0, .opacity = 1.0},
                  .radius_mm = 4.5,
                  .thickness_mm = 4.0,
@@ -28,7 +28,7 @@ struct relume_subject relume_subject_default(void)
                    .inner_mm = 1.4,
                    .outer_mm = 2.4,
                    .width_mm = 0.003,
-                   .opacity = 0.3},
+                   .opacity = 0.25},
         .vitreous = {.particles = {.count = 400, .radius_mm = 0.055, .spread = 2.5, .opacity = 1.0},
                      .radius_mm = 11.0,
                      .damping = 3.0,

@@ -62,31 +62,6 @@ static void make(char path[][128], int *n)
     relume_btf_destroy(&btf);
 }
 
-// Texel fetches of the model itself.
-static int fetches(const struct relume_object_material *m)
-{
-    const struct relume_btf_fitted_info i =
-        m->fitted ? relume_btf_fitted_info(m->fitted) : (struct relume_btf_fitted_info){0};
-    const int k = i.components, lobes = i.lobes;
-    const struct {
-        const char *model;
-        int count;
-    } list[] = {{"measured", 9},
-                {"bump", 11},
-                {"laf", 1 + 2 * lobes},
-                {"slaf", 3 * (2 + 2 * lobes)},
-                {"rfp", 18},
-                {"rfnl", 3 * (2 + lobes)},
-                {"rfnlc", 3 * (3 + lobes)},
-                {"vpca", 3 * (1 + 4 * k)},
-                {"lpca", 10 + 10 * k},
-                {"fmf", 10 * k}};
-    for (size_t j = 0; j < sizeof list / sizeof *list; j++)
-        if (!strcmp(list[j].model, m->model))
-            return list[j].count;
-    return 0;
-}
-
 static void measure(struct things *t, int width, int height)
 {
     const struct gl *gl = t->gl;
@@ -111,10 +86,14 @@ static void measure(struct things *t, int width, int height)
             if (i >= 0)
                 bench_add(&b, bench_now_s() - start);
         }
-        printf("%-9s %8.1f ms (%.1f to %.1f), %6.1f frames/s, %4d fetches, %7.3f MB\n",
-               info->material[m].model, 1e3 * bench_median(&b), 1e3 * b.s[0], 1e3 * b.s[b.runs - 1],
-               1 / bench_median(&b), fetches(&info->material[m]),
-               (double)things_bytes(t, m) * 1e-6);
+        const struct relume_object_material *material = &info->material[m];
+        const struct relume_btf_cost c = material->fitted ? relume_btf_fitted_cost(material->fitted)
+                                                          : (struct relume_btf_cost){0, 0, 9, 9};
+        printf(
+            "%-9s %8.1f ms (%.1f to %.1f), %6.1f frames/s, %4d operations, %4d fetches, %7.3f MB\n",
+            info->material[m].model, 1e3 * bench_median(&b), 1e3 * b.s[0], 1e3 * b.s[b.runs - 1],
+            1 / bench_median(&b), c.ops + c.light_ops, c.fetches + c.light_fetches,
+            (double)things_bytes(t, m) * 1e-6);
     }
     gl->DeleteVertexArrays(1, &array);
 }

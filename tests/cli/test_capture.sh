@@ -49,6 +49,10 @@ expect_fail 'too many flat fields' 1 '12 photographs|expected 1, or 12' out "$RE
     --lights lights.txt --flat "$(find photos -name '*0000*')" --flat "$(find photos -name '*0001*')" -o out
 expect_fail 'grey outside' 2 'white region 90,90' out "$RELUME" capture photos --lights lights.txt --white 90,90,9,9 -o out
 expect_fail 'no grey region' 2 'x,y,width,height' out "$RELUME" capture photos --lights lights.txt --white 9,9 -o out
+expect_fail 'an integrable surface of given lights' 2 'needs --refine-lights' out "$RELUME" capture photos \
+    --lights lights.txt --integrable -o out
+expect_ok 'refined, integrable' 'curl is' "$RELUME" capture photos --lights lights.txt --refine-lights --integrable -o curl
+below 'lights that were right stay so' "$(angles curl)" 2
 expect_fail 'a polynomial of nothing' 2 'needs --flat' out "$RELUME" capture photos --lights lights.txt --radial -o out
 
 # ---- the same from the ball

@@ -533,6 +533,13 @@ static void wrong_options_are_refused(void **state)
         {"a.exr --projection planet --eye 0,0,3", "found two"},
         {"a.exr --interpolate cubic", "constant, linear or depth"},
         {"a.exr --aperture -1", "from"},
+        {"a.exr --glare-magnify 0", "from 0.01 to 1000"},
+        {"a.exr --nits nan", "found 'nan'"},
+        {"a.exr --squint 1", "0 to 0.95"},
+        {"a.exr --glare-mode quick", "hybrid"},
+        {"a.exr --glare-size 63", "from 128"},
+        {"a.exr --glare-size 129", "even"},
+        {"a.exr --glare-by hand", "passes"},
         {"a.exr --light up", ""},
     };
     struct options o;
@@ -606,10 +613,17 @@ static relume_status host_frame(void *user, const char *path)
     return RELUME_OK;
 }
 
+static relume_status host_glare(void *user, const char *words, const char **expected)
+{
+    struct app *app = ((struct frames *)user)->app;
+    return gaze_say(&app->now.gaze, words, expected) ? RELUME_OK : RELUME_EDATA;
+}
+
 static struct script_host host_of(struct frames *frames)
 {
-    return (struct script_host){frames,    frames->app, host_send,  host_light, host_rig,
-                                host_open, host_wait,   host_frame, host_frame, &keep};
+    return (struct script_host){frames,     frames->app, host_send, host_light,
+                                host_rig,   host_open,   host_wait, host_frame,
+                                host_frame, &keep,       host_glare};
 }
 
 static relume_status play(struct app *app, struct frames *frames, const char *text)
@@ -625,6 +639,25 @@ static relume_status play(struct app *app, struct frames *frames, const char *te
     const relume_status status = script_play(path, &host);
     unlink(path);
     return status;
+}
+
+// The eye's time is that of the app while it looks.
+static void scripts_let_an_eye_live(void **state)
+{
+    (void)state;
+    OWNED_APP app = make_app(RELUME_SPHERICAL, true);
+    static struct frames frames;
+    assert_int_equal(play(&app, &frames,
+                          "wait 1\nglare on\nglare squint 0.3\nwait 0.5\nglare pause\nwait 1\n"
+                          "glare run\nkey h\nwait 1\nglare on\nwait 0.25\nframe a\n"),
+                     RELUME_OK);
+    assert_float_equal(frames.at[0].eye_s, 0.75, 1e-9);
+    assert_true(frames.at[0].now.gaze.on && frames.at[0].now.gaze.squint == 0.3);
+    app_reset(&app);
+    assert_false(app.now.gaze.on);
+    assert_int_equal(play(&app, &frames, "glare\n"), RELUME_EDATA);
+    assert_int_equal(play(&app, &frames, "\nglare squint 2\n"), RELUME_EDATA);
+    assert_non_null(strstr(said, "line 2, column 7; expected how far"));
 }
 
 static void scripts_play_events(void **state)
@@ -1047,6 +1080,7 @@ int main(void)
         cmocka_unit_test(options_are_read),
         cmocka_unit_test(wrong_options_are_refused),
         cmocka_unit_test(scripts_play_events),
+        cmocka_unit_test(scripts_let_an_eye_live),
         cmocka_unit_test(scripts_let_time_pass),
         cmocka_unit_test(broken_scripts_name_the_line),
         cmocka_unit_test(long_lines_are_refused),

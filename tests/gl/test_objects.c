@@ -7,8 +7,8 @@
 
 enum { SIDE = 48, TEXELS = 8 };
 static char folder[64];
-static const char *const models[] = {"bump",  "laf",  "slaf", "rfp", "rfnl",
-                                     "rfnlc", "vpca", "lpca", "fmf", NULL};
+static const char *const models[] = {"lit", "bump", "laf",  "slaf", "rfp", "rfnl", "rfnlc",
+                                     "cmf", "vpca", "lpca", "fmf",  "qmf", NULL};
 
 static const char *path_of(const char *name)
 {
@@ -54,6 +54,34 @@ static void write_mesh(const char *path)
     fclose(file);
 }
 
+// A surface of two tiles of the sample, in a matrix of 3 x 2.
+static void make_surface(const relume_btf_fitted *model)
+{
+    enum { TILE = 5 };
+    static const uint16_t matrix[6] = {0, 1, 1, 1, 0, 0};
+    uint32_t texel[2 * TILE * TILE];
+    for (int i = 0; i < 2 * TILE * TILE; i++)
+        texel[i] = (uint32_t)(i * 11 % (TEXELS * TEXELS));
+    const struct relume_btf_map_info info = {
+        .sample_width = TEXELS,
+        .sample_height = TEXELS,
+        .tiles = 2,
+        .width = TILE,
+        .height = TILE,
+        .texel = texel,
+        .columns = 3,
+        .rows = 2,
+        .matrix = matrix,
+    };
+    relume_btf_map *map;
+    relume_btf_surface *surface;
+    assert_int_equal(relume_btf_map_create(&map, &info, &fixture_log), RELUME_OK);
+    assert_int_equal(relume_btf_surface_create(&surface, model, map, &fixture_log), RELUME_OK);
+    assert_int_equal(relume_btf_surface_save(surface, path_of("surface"), NULL), RELUME_OK);
+    relume_btf_surface_destroy(&surface);
+    relume_btf_map_destroy(&map);
+}
+
 // Every model of one small sample, and the sample.
 static void make_materials(void)
 {
@@ -69,11 +97,17 @@ static void make_materials(void)
         RELUME_OK);
     assert_int_equal(relume_btf_save(btf, path_of("measured"), NULL), RELUME_OK);
     for (const char *const *m = models; *m; m++) {
+        // few, so that texels share them
+        const bool clustered = strchr(*m, 'c') && strcmp(*m, "vpca");
+        const int clusters = clustered ? 12 : 0;
         relume_btf_fitted *fitted;
-        assert_int_equal(relume_btf_fit(&fitted, btf, relume_btf_model_find(*m),
-                                        relume_btf_fit_params(.log = &fixture_log)),
-                         RELUME_OK);
+        assert_int_equal(
+            relume_btf_fit(&fitted, btf, relume_btf_model_find(*m),
+                           relume_btf_fit_params(.log = &fixture_log, .clusters = clusters)),
+            RELUME_OK);
         assert_int_equal(relume_btf_fitted_save(fitted, path_of(*m), NULL), RELUME_OK);
+        if (!strcmp(*m, "vpca"))
+            make_surface(fitted);
         relume_btf_fitted_destroy(&fitted);
     }
     relume_btf_destroy(&btf);
@@ -88,6 +122,7 @@ static relume_objects *open_objects(void)
     snprintf(kept[n++], sizeof kept[0], "%s", path_of("measured"));
     for (const char *const *m = models; *m; m++)
         snprintf(kept[n++], sizeof kept[0], "%s", path_of(*m));
+    snprintf(kept[n++], sizeof kept[0], "%s", path_of("surface"));
     for (int i = 0; i < n; i++)
         materials[i] = kept[i];
     relume_objects *o;
@@ -248,7 +283,7 @@ static void lights_agree(void **state)
                                  "env sky.exr 30",
                                  NULL};
     // what differs between lights is shared by all models
-    choose(t.objects, 5);
+    choose(t.objects, 6);
     for (int i = 0; specs[i]; i++) {
         relume_rig *rig = rig_of((const char *const[]){specs[i], NULL});
         compare(&t, rig, specs[i]);
@@ -268,7 +303,7 @@ static void shadows_agree(void **state)
     struct things t;
     start(&t);
     const char *const specs[] = {sunlight, "point 0.3 0.9 3.4", "point -0.6 -0.5 0.9", NULL};
-    choose(t.objects, 5);
+    choose(t.objects, 6);
     for (int i = 0; specs[i]; i++) {
         const struct relume_light *lights;
         double brightest;

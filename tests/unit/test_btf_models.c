@@ -181,6 +181,18 @@ static void test_exact(void **state)
     relume_btf_destroy(&btf);
 }
 
+// A black sample is black again, whatever a model divides by.
+static void test_black(void **state)
+{
+    (void)state;
+    relume_btf *btf = make(3, 2, "coarse", NULL);
+    for (const struct relume_btf_model *const *m = relume_btf_models; *m; m++)
+        CHECK_NEAR(
+            error_of(btf, relume_btf_model_name(*m), (struct relume_btf_fit_params){0}).mean_max,
+            0.0, 1e-6);
+    relume_btf_destroy(&btf);
+}
+
 // ---------------------------------------------------------------- few bits
 
 // Levels are the best of what is tried, so never worse than the plain quantiser of the whole reach,
@@ -449,10 +461,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_table_of_sizes), cmocka_unit_test(test_exact),
-        cmocka_unit_test(test_levels),         cmocka_unit_test(test_ratio),
-        cmocka_unit_test(test_lobes),          cmocka_unit_test(test_order),
-        cmocka_unit_test(test_held_out),       cmocka_unit_test(test_files),
-        cmocka_unit_test(test_no_memory),
+        cmocka_unit_test(test_black),          cmocka_unit_test(test_levels),
+        cmocka_unit_test(test_ratio),          cmocka_unit_test(test_lobes),
+        cmocka_unit_test(test_order),          cmocka_unit_test(test_held_out),
+        cmocka_unit_test(test_files),          cmocka_unit_test(test_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -476,6 +476,46 @@ static void check_literal_distance(void **state)
     relume_psf_destroy(&psf);
 }
 
+// Light of the default eye in rings, against the CIE's standard observer from 0.1 degrees to the
+// pattern's edge: within a factor of 2, which two seeds of an eye differ by as well.
+static void check_observer(void **state)
+{
+    enum { RINGS = 8 };
+    struct relume_subject s = relume_subject_default();
+    const double from = 0.1, to = 1.6;
+    double light[RINGS] = {0.0};
+    relume_eye *eye;
+    (void)state;
+    s.lids.blink_interval_s = 0.0;
+    CHECK_OK(relume_eye_create(&eye, &s, 10.0));
+    relume_psf *psf = make_psf((struct relume_psf_params){
+        .size = 512, .half_field_deg = 1.8, .parts_off = RELUME_EYE_FIBRES});
+    struct relume_image image;
+    CHECK_OK(relume_psf_update(psf, eye));
+    CHECK_OK(relume_psf_image(&image, psf));
+    const int half = image.width / 2;
+    for (int y = -half; y <= half; y++)
+        for (int x = -half; x <= half; x++) {
+            const double t = hypot(x, y) * relume_psf_shape(psf)->step / deg;
+            const float *const rgb = image.data + 3 * ((y + half) * image.width + x + half);
+            if (t >= from && t < to)
+                light[(int)(RINGS * log(t / from) / log(to / from))] +=
+                    0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
+        }
+    for (int i = 0; i < RINGS; i++) {
+        double cie = 0.0;
+        for (int k = 0; k < 100; k++) {
+            const double step = log(to / from) / RINGS / 100.0;
+            const double t = from * exp((100 * i + k + 0.5) * step);
+            cie += relume_cie_glare(t, 35.0, 0.5) * 2.0 * M_PI * t * t * step * deg * deg;
+        }
+        CHECK_NEAR(log(light[i] / cie), 0.0, log(2.0));
+    }
+    relume_image_destroy(&image);
+    relume_psf_destroy(&psf);
+    relume_eye_destroy(&eye);
+}
+
 // ---------------------------------------------------------------- machine
 
 static struct relume_image pattern(struct relume_psf_params params)
@@ -547,6 +587,7 @@ int main(void)
         cmocka_unit_test(check_spectrum),
         cmocka_unit_test(check_drift),
         cmocka_unit_test(check_coverage),
+        cmocka_unit_test(check_observer),
         cmocka_unit_test(check_lids),
         cmocka_unit_test(check_planes),
         cmocka_unit_test(check_literal_distance),

@@ -4,7 +4,10 @@
 uniform sampler2D place, normal_s, tangent_t;  // btf_surface.frag
 uniform int part;                              // that is drawn
 uniform vec4 eye;                              // its place, 1; or the direction towards it, 0
-uniform ivec2 texels;                          // of the sample
+uniform ivec2 texels;                          // of a repeat
+uniform int area;                              // texels of the sample
+uniform ivec4 map;                             // columns, rows; width, height of a tile; 0: none
+uniform usamplerBuffer map_texels;             // the matrix of tiles, then their texels
 uniform bool bilinear, without_cosine;
 uniform ivec4 counts;  // views, lights, components, lobes
 uniform isamplerBuffer view_cells, light_cells;
@@ -73,6 +76,14 @@ Blend dome_at(isamplerBuffer cells, samplerBuffer triangles, vec3 d)
 
 // ---------------------------------------------------------------- the model
 
+// Twin: vec3_upright. Turned by the shortest way that brings `n` to +z.
+vec3 upright(vec3 a, vec3 n)
+{
+    vec3 middle = vec3(n.xy, n.z + 1.0);
+    vec3 b = a - middle * (dot(a, middle) / (1.0 + n.z));
+    return vec3(b.xy, b.z + 2.0 * dot(n, a));
+}
+
 #ifdef OWN_BLEND
 vec3 model_blend(int texel, Blend v, Blend l);
 #else
@@ -93,6 +104,17 @@ vec3 model_blend(int texel, Blend v, Blend l)
 }
 #endif
 
+// Twin: relume_btf_surface_evaluate. The texel of the sample that stands there.
+int texel_of(ivec2 at)
+{
+    if (map.x == 0)
+        return at.y * texels.x + at.x;
+    ivec2 tile = at / map.zw, inside = at - tile * map.zw;
+    int number = int(texelFetch(map_texels, tile.y * map.x + tile.x).r);
+    return int(texelFetch(map_texels,
+                          map.x * map.y + (number * map.w + inside.y) * map.z + inside.x).r);
+}
+
 // Twin: relume_btf_fitted_sample.
 vec3 btf_sample(vec2 at, Blend v, Blend l)
 {
@@ -104,7 +126,7 @@ vec3 btf_sample(vec2 at, Blend v, Blend l)
         vec2 share = mix(1.0 - part_of, part_of, step_to);
         vec2 inside = corner + step_to - vec2(texels) * floor((corner + step_to) / vec2(texels));
         ivec2 texel = min(ivec2(inside), texels - 1);
-        sum += share.x * share.y * model_blend(texel.y * texels.x + texel.x, v, l);
+        sum += share.x * share.y * model_blend(texel_of(texel), v, l);
     }
     return sum;
 }

@@ -7,22 +7,15 @@ const bool view_grid = false, light_grid = false;
 #include "shadow.glsl"
 #include "btf.glsl"
 
+
 uniform samplerBuffer array0, array1;  // color, normal [texels]
 uniform samplerBuffer array2;          // mean [views][lights]
-
-// Turned by the shortest way that brings `n` to +z.
-vec3 turned(vec3 a, vec3 n)
-{
-    vec3 middle = vec3(n.xy, n.z + 1.0);
-    vec3 b = a - middle * (dot(a, middle) / (1.0 + n.z));
-    return vec3(b.xy, b.z + 2.0 * dot(n, a));
-}
 
 vec3 model_eval(int texel, int view, int light, vec3 v, vec3 l)
 {
     vec3 n = normalize(texelFetch(array1, texel).xyz);
-    Blend bv = dome_at(view_cells, view_triangles, turned(v, n));
-    Blend bl = dome_at(light_cells, light_triangles, turned(l, n));
+    Blend bv = dome_at(view_cells, view_triangles, upright(v, n));
+    Blend bl = dome_at(light_cells, light_triangles, upright(l, n));
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)

@@ -11,5 +11,5 @@ uniform samplerBuffer array0;  // values [views][lights][texels]
 
 vec3 model_eval(int texel, int view, int light, vec3 v, vec3 l)
 {
-    return texelFetch(array0, (view * counts.y + light) * texels.x * texels.y + texel).rgb;
+    return texelFetch(array0, (view * counts.y + light) * area + texel).rgb;
 }

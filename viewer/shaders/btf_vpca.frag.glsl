@@ -15,7 +15,6 @@ uniform samplerBuffer array2;  // weight [views][lights][components]
 // Weights of the three lights are blended first: they meet the texel's textures once.
 vec3 model_blend(int texel, Blend v, Blend l)
 {
-    int area = texels.x * texels.y;
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 3; i++) {
         int view = v.index[i];

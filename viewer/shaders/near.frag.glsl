@@ -1,6 +1,7 @@
 #version 330 core
 // A light that stands near: the basis at every pixel's own direction towards it (Wong 1998, Eq. 7.7
-// with its sign corrected). Twins: relume_light_at, relume_facet_at, relume_weight_grid_place.
+// with its sign corrected). Twins: relume_light_at, relume_facet_at, relume_weight_grid_place,
+// src/relight/triangles.c.
 #include "transfer.glsl"
 #include "texels.glsl"
 #include "cube.glsl"
@@ -11,6 +12,9 @@ uniform int facets;  // of an area light: `picture` has a column for each: posit
 uniform sampler2D surface;     // where the pixel's surface is; alpha 0: nowhere
 uniform sampler2DArray grid;   // weights by direction, four coefficients a texel; the last layer
                                // holds the constants
+uniform sampler2D triangles;   // rows of nodes, then inverse and neighbour of each corner; then
+                               // starts, 16 a row
+uniform int triangle_count;    // 0: the weights are a grid, else those of nodes in a row
 uniform bool hemisphere, pole_y;
 
 const int JOINT = 1, LUMINANCE = 2;  // else each channel has coefficients of its own
@@ -39,10 +43,9 @@ bool facet_at(out vec3 towards, out vec3 rgb, int facet, vec3 point)
 
 // ---------------------------------------------------------------- what is reflected
 
-// In texels of the grid.
-vec2 weight_grid_place(vec3 direction)
+// In texels of the grid; `d` in the pole's frame.
+vec2 weight_grid_place(vec3 d)
 {
-    vec3 d = pole_y ? vec3(-direction.z, direction.x, direction.y) : direction;
     ivec2 size = textureSize(grid, 0).xy;
     float down = float(hemisphere ? size.y - 1 : size.y / 2 - 1);
     bool below = d.z < 0.0;
@@ -51,6 +54,59 @@ vec2 weight_grid_place(vec3 direction)
     float row = down * (1.0 - sqrt(max(1.0 - theta / (0.5 * PI), 0.0)));
     float column = (atan(d.y, d.x) / (2.0 * PI) + 0.5) * float(size.x - 1);
     return vec2(column, below && !hemisphere ? float(size.y - 1) - row : row) + 0.5;
+}
+
+int start_cell(vec3 d)
+{
+    vec2 at = d.xy / (abs(d.x) + abs(d.y) + abs(d.z));
+    vec2 folded = (1.0 - abs(at.yx)) * vec2(at.x < 0.0 ? -1.0 : 1.0, at.y < 0.0 ? -1.0 : 1.0);
+    ivec2 cell = clamp(ivec2((0.5 * (d.z >= 0.0 ? at : folded) + 0.5) * 32.0), 0, 31);
+    return cell.y * 32 + cell.x;
+}
+
+// Nodes and their shares.
+void triangles_find(out ivec3 node, out vec3 share, vec3 d)
+{
+    int start = start_cell(d);
+    ivec2 at = ivec2(start >> 2 & 3, triangle_count + (start >> 4));
+    int t = int(texelFetch(triangles, at, 0)[start & 3]);
+    vec4 inverse[3];
+    for (int i = 0; i <= 64; i++) {
+        for (int c = 0; c < 3; c++)
+            inverse[c] = texelFetch(triangles, ivec2(c + 1, t), 0);
+        share = vec3(dot(inverse[0].xyz, d), dot(inverse[1].xyz, d), dot(inverse[2].xyz, d));
+        float least = min(share.x, min(share.y, share.z));
+        if (least >= -1e-6)
+            break;
+        t = int(share.x == least ? inverse[0].w : share.y == least ? inverse[1].w : inverse[2].w);
+    }
+    vec3 corner = texelFetch(triangles, ivec2(0, t), 0).xyz;
+    vec3 says = vec3(greaterThanEqual(corner, vec3(0.0)));
+    share = max(share, 0.0) * says;
+    float sum = share.x + share.y + share.z;
+    share = sum > 0.0 ? share / sum : says / (says.x + says.y + says.z);
+    node = ivec3(max(corner, 0.0));
+}
+
+// Where the weights of a direction are: in the grid, or at three nodes.
+struct Place {
+    vec2 at;
+    ivec3 node;
+    vec3 share;
+};
+
+Place weight_place(vec3 direction)
+{
+    vec3 d = pole_y ? vec3(-direction.z, direction.x, direction.y) : direction;
+    Place place = Place(vec2(0.0), ivec3(0), vec3(0.0));
+    if (triangle_count == 0) {
+        place.at = weight_grid_place(d) / vec2(textureSize(grid, 0).xy);
+        return place;
+    }
+    if (hemisphere && d.z < 0.0)
+        d = length(d.xy) > 0.0 ? vec3(normalize(d.xy), 0.0) : vec3(1.0, 0.0, 0.0);
+    triangles_find(place.node, place.share, d);
+    return place;
 }
 
 vec4 coefficients_at(ivec2 at, int layer)
@@ -71,13 +127,17 @@ float plane_at(ivec2 at, int plane)
     return coefficients_at(at, plane >> 2)[plane & 3];
 }
 
-vec4 weights_at(vec2 place, int layer)
+vec4 weights_at(Place place, int layer)
 {
-    return texture(grid, vec3(place, float(layer)));
+    if (triangle_count == 0)
+        return texture(grid, vec3(place.at, float(layer)));
+    return place.share.x * texelFetch(grid, ivec3(place.node.x, 0, layer), 0) +
+           place.share.y * texelFetch(grid, ivec3(place.node.y, 0, layer), 0) +
+           place.share.z * texelFetch(grid, ivec3(place.node.z, 0, layer), 0);
 }
 
 // Four coefficients of three channels stand in three layers: r0 g0 b0 r1, g1 b1 r2 g2, b2 r3 g3 b3.
-vec3 dot_separate(ivec2 at, vec2 place)
+vec3 dot_separate(ivec2 at, Place place)
 {
     vec3 sum = vec3(0.0);
     for (int group = 0; 4 * group < coefficients; group++) {
@@ -92,7 +152,7 @@ vec3 dot_separate(ivec2 at, vec2 place)
     return sum;
 }
 
-vec3 dot_joint(ivec2 at, vec2 place)
+vec3 dot_joint(ivec2 at, Place place)
 {
     vec3 sum = vec3(0.0);
     for (int i = 0; i < layers; i++) {
@@ -103,7 +163,7 @@ vec3 dot_joint(ivec2 at, vec2 place)
     return sum;
 }
 
-vec3 dot_luminance(ivec2 at, vec2 place)
+vec3 dot_luminance(ivec2 at, Place place)
 {
     float sum = 0.0;
     for (int i = 0; 4 * i < coefficients; i++)
@@ -114,9 +174,9 @@ vec3 dot_luminance(ivec2 at, vec2 place)
 
 vec3 reflectance(ivec2 at, vec3 towards)
 {
-    ivec3 size = textureSize(grid, 0);
-    vec2 place = weight_grid_place(towards) / vec2(size.xy);
-    vec3 value = form == JOINT       ? dot_joint(at, place) + weights_at(place, size.z - 1).rgb
+    Place place = weight_place(towards);
+    int last = textureSize(grid, 0).z - 1;
+    vec3 value = form == JOINT       ? dot_joint(at, place) + weights_at(place, last).rgb
                  : form == LUMINANCE ? dot_luminance(at, place)
                                      : dot_separate(at, place);
     if (!coded)

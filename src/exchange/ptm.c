@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 const int ptm_term_of_place[PTM_TERMS] = {3, 5, 4, 1, 2, 0};
@@ -59,7 +58,7 @@ static relume_status read_header(struct ptm_header *h, struct bytes *b)
         if (!bytes_number(b, &h->scale[i]) || fabs(h->scale[i]) > 1e6)
             return ptm_wrong(h, "scale", "six numbers, at most 1e6");
     for (int i = 0; i < PTM_TERMS; i++)
-        if (!bytes_integer(b, &h->bias[i]) || labs(h->bias[i]) > 1000000)
+        if (!bytes_integer(b, &h->bias[i]) || h->bias[i] < -1000000 || h->bias[i] > 1000000)
             return ptm_wrong(h, "bias", "six whole numbers from 0 to 255");
     return RELUME_OK;
 }

@@ -36,6 +36,8 @@ printf 'PTM_1.2\nPTM_FORMAT_LUM\n4\n4\n' >lum.ptm
 bad '.ptm of another format' 'lum.ptm: format PTM_FORMAT_LUM is not supported' lum.ptm
 printf 'PTM_1.2\nPTM_FORMAT_RGB\n4\n4\n1 1 nan 1 1 1\n0 0 0 0 0 0\n' >nan.ptm
 bad '.ptm with nan' 'nan.ptm: scale' nan.ptm
+printf 'PTM_1.2\nPTM_FORMAT_RGB\n4\n4\n1 1 1 1 1 1\n0 0 0 -9223372036854775808 0 0\n' >least.ptm
+bad '.ptm with a bias that has no negative' 'least.ptm: bias' least.ptm
 head -c $(($(wc -c <rti.rti) / 2)) rti.rti >cut.rti
 bad '.rti cut in half' 'cut.rti: truncated; expected 43200 bytes of pixels' cut.rti
 printf '#HSH1.2\n2\n4 4 3\n9 2 1\n' >sh.rti

@@ -48,10 +48,13 @@ CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 
 LIB_C    := $(wildcard src/base/*.c src/math/*.c src/image/*.c src/capture/*.c src/scene/*.c \
             src/coder/*.c src/pack/*.c src/exchange/*.c src/relight/*.c src/view/*.c src/pass/*.c \
-            src/frame/*.c src/btf/*.c)
+            src/frame/*.c src/btf/*.c src/object/*.c)
+LIB_C    := $(filter-out src/scene/mesh_assimp.c,$(LIB_C))
 LIB_C    := $(filter-out $(if $(filter kiss,$(FFT)),%/fft.c,%/fft_kiss.c),$(LIB_C))
 # The module that is loaded when the first image needs it (src/image/oiio.h)
 MODULE_CXX := src/image/oiio.cpp
+# The module that is loaded when the first model needs it (src/scene/mesh_other.h)
+MESHES_C := src/scene/mesh_assimp.c
 # Built where OpenCV's stitching is (make deps-stitch); opened when photographs are to be stitched
 OPENCV   := $(firstword $(wildcard $(addsuffix /opencv4,/usr/include /usr/local/include)))
 STITCH_CXX := $(if $(wildcard $(OPENCV)/opencv2/stitching/detail/matchers.hpp),src/capture/stitch.cpp)
@@ -70,6 +73,7 @@ SAMPLES_C := samples/sphere.c samples/figures.c
 
 LIB_O    := $(LIB_C:%.c=$B/obj/%.o)
 MODULE   := $B/librelume-oiio.so.$(MAJOR)
+MESHES   := $B/librelume-assimp.so.$(MAJOR)
 STITCH   := $(if $(STITCH_CXX),$B/librelume-stitch.so.$(MAJOR))
 CLI_O    := $(CLI_C:%.c=$B/obj/%.o)
 VIEWER_O := $(VIEWER_C:%.c=$B/obj/%.o) $(VIEWER_CXX:%.cpp=$B/obj/%.o) $B/obj/viewer/shaders.o
@@ -84,7 +88,7 @@ VIEWER   := $(if $(VIEWER_C),$B/relume-view)
         clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
-lib: $B/librelume.a $B/librelume.so $(MODULE) $(STITCH)
+lib: $B/librelume.a $B/librelume.so $(MODULE) $(MESHES) $(STITCH)
 ifeq ($(STITCH),)
 	@echo '  OpenCV is not there: built without stitching (make deps-stitch adds it)'
 endif
@@ -110,7 +114,7 @@ $B/obj/src/image/exr.o: own_flags = $(EXR)
 $B/obj/src/image/oiio.o: own_flags = $(OIIO)
 $B/obj/src/capture/stitch.o: own_flags = -isystem $(OPENCV)
 $B/obj/src/base/module.o: own_flags = -DRELUME_MAJOR=$(MAJOR)
-$B/obj/src/coder/kernels_avx2.o $B/obj/src/relight/kernels_avx2.o: own_flags = -mavx2 -mfma -mf16c
+$B/obj/src/%_avx2.o: own_flags = -mavx2 -mfma -mf16c
 $B/obj/src/%.o:               own_include = -Isrc
 $B/obj/src/cli/plot.o: own_flags = $(CAIRO)
 $B/obj/src/cli/%.o:           own_include = -Isrc/cli
@@ -155,6 +159,9 @@ $B/librelume.so: $(LIB_O)
 $(MODULE): $(MODULE_CXX:%.cpp=$B/obj/%.o) $B/librelume.a
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -shared -Wl,--exclude-libs,ALL -o $@ $^ $(LDFLAGS) $(OIIO_LIBS) $(LIBS)
+$(MESHES): $(MESHES_C:%.c=$B/obj/%.o) $B/librelume.a
+	$(call say,LD)
+	$(Q)$(CC) $(MODE) -shared -Wl,--exclude-libs,ALL -o $@ $^ $(LDFLAGS) -Wl,--as-needed -lassimp -lm
 $(STITCH): $(STITCH_CXX:%.cpp=$B/obj/%.o)
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -shared -o $@ $^ $(LDFLAGS) -Wl,--as-needed -lopencv_stitching -lopencv_features2d -lopencv_calib3d -lopencv_imgproc -lopencv_core
@@ -170,7 +177,7 @@ $(UNIT): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	$(call say,LD)
 	$(Q)$(CC) $(MODE) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
 # The bench that draws is linked as the tests of GL are.
-GL_BENCH := $B/tests/bench/bench_viewer
+GL_BENCH := $B/tests/bench/bench_viewer $B/tests/bench/bench_objects
 $(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
@@ -185,7 +192,7 @@ $(GL) $(GL_BENCH): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O
 	$(Q)$(CXX) $(MODE) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
 
 # Programs open the module when they run.
-$B/relume $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE)
+$B/relume $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE) $(MESHES)
 
 -include $(shell find $B/obj -name '*.d' 2>/dev/null)
 
@@ -210,7 +217,7 @@ layers:
 	@scripts/layers.sh
 
 format:
-	clang-format -i $(LIB_C) $(MODULE_CXX) $(STITCH_CXX) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
+	clang-format -i $(LIB_C) $(MODULE_CXX) $(MESHES_C) $(STITCH_CXX) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
 	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*.h viewer/*.h tests/*.h samples/*.c)
 
 bench: all $(BENCH)

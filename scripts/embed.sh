@@ -22,7 +22,7 @@ expand() {
 echo '#include "shaders.h"'
 names=
 for file in "$@"; do
-    case $file in *.frag.glsl | *.vert.glsl) ;; *) continue ;; esac
+    case $file in *.frag.glsl | *.vert.glsl | *.comp.glsl) ;; *) continue ;; esac
     name=$(basename "$file" .glsl)
     symbol=$(echo "$name" | tr -c 'A-Za-z0-9\n' '_')
     names="$names $name:$symbol"

@@ -15,10 +15,11 @@ pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange
 relight:base math image:base image coder light relight rig normals enhance
 view:base math image:base image light relight view slabs capture
-pass:base math image:base image tone
+pass:base math image:base image light tone eye psf glare
 btf:base math image:base image light lights btf surface ambient
 frame:base math:base image capture coder pack light relight view slabs frame evaluate normals enhance
 scene:base math image:base image lights capture btf scene
+object:base math image scene:base image capture light relight view slabs pack frame btf ambient surface object
 cli:cli:*
 viewer:viewer:*
 samples::*"
@@ -57,6 +58,7 @@ only_in 'OpenImageIO' src/image/oiio.cpp
 only_in 'dlfcn' src/base/module.c
 only_in 'opencv' src/capture/stitch.cpp
 only_in 'embree' src/scene/trace.c
+only_in 'assimp' src/scene/mesh_assimp.c
 only_in '(cblas|lapacke)' src/math/lsq.c
 only_in 'fftw3' src/math/fft.c
 only_in 'kissfft' src/math/fft_kiss.c
@@ -68,6 +70,6 @@ only_in 'GLFW' viewer/context_glfw.c
 only_in 'imgui' viewer/panel.cpp
 only_in 'GL/osmesa' viewer/context_osmesa.c
 only_in 'EGL/' viewer/context_egl.c
-only_in 'immintrin' src/relight/kernels_avx2.c src/coder/kernels_avx2.c
+only_in 'immintrin' src/*/*_avx2.c
 [ $bad = 0 ] && echo "layers: fine"
 exit $bad

@@ -84,12 +84,14 @@ static relume_status check_around(const struct relume_camera *camera, const stru
     struct relume_window window;
     if (!file->around || camera->framing != RELUME_FRAME_EYE)
         return RELUME_OK;
-    if (start->aperture != 0.0 || start->focused)
-        return say(log, RELUME_EINVAL, "--aperture, --focus: expected one slab; found several");
     if (!relume_slabs_window(&window, file->around, eye, &camera->aim, file->width, file->height))
         return say(log, RELUME_EINVAL,
                    "--eye: expected a place beside what it looks at; found %g,%g,%g", eye.x, eye.y,
                    eye.z);
+    if (!relume_lens_fits(&window, start->aperture, start->focused ? start->focus_z : 0.0))
+        return say(log, RELUME_EINVAL,
+                   "--focus: expected less than %g before what the eye looks at; found %g",
+                   relume_window_distance(&window), start->focus_z);
     return RELUME_OK;
 }
 
@@ -110,7 +112,7 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
         status = check_around(&camera, file, start, log);
     if (status)
         return status;
-    if (start->focused && file->geometry.projection == RELUME_SLAB &&
+    if (start->focused && file->geometry.projection == RELUME_SLAB && !file->around &&
         behind_cameras(file, start->focus_z))
         return say(log, RELUME_EINVAL,
                    "--focus: expected a plane in front of the cameras at z = %g; found z = %g",
@@ -120,7 +122,7 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
         return RELUME_ENOMEM;
     s->camera = camera;
     if (!s->focused)
-        s->focus_z = file->geometry.st_z;
+        s->focus_z = file->around ? 0.0 : file->geometry.st_z;
     if (s->camera.look.zoom <= 0.0)
         s->camera.look.zoom = 1.0;
     s->zoom = 1.0;
@@ -410,11 +412,17 @@ static bool on_press(struct app *app, const struct app_event *e)
     return true;
 }
 
+// What is drawn roughly while it moves is drawn once more when it rests.
+static bool is_rough(const struct app *app)
+{
+    return orbit_is(app) && app->now.aperture > 0;
+}
+
 static bool on_release(struct app *app, const struct app_event *e)
 {
     (void)e;
     app->drag = APP_DRAG_NONE;
-    return false;
+    return is_rough(app);
 }
 
 static bool on_move(struct app *app, const struct app_event *e)
@@ -503,8 +511,9 @@ static bool glide(struct app *app, double seconds)
     const double keep = exp(-seconds / glide_s);
     const double way = glide_s * (1 - keep);
     if (hypot(speed[0], speed[1]) < still_px_s * degrees_per_pixel(app)) {
+        const bool moved = app_moves(app);
         app_stand_still(app);
-        return false;
+        return moved && is_rough(app);
     }
     if (orbit_is(app))
         orbit_turn(app, speed[0] * way, speed[1] * way);
@@ -524,11 +533,18 @@ static bool adapt(struct app *app, double seconds)
     return true;
 }
 
+void app_live(struct app *app, double seconds)
+{
+    if (gaze_lives(&app->now.gaze) && seconds > 0)
+        app->eye_s += seconds;
+}
+
 bool app_advance(struct app *app, double seconds)
 {
     if (!(seconds > 0))
         return false;
     bool changed = adapt(app, seconds);
+    app_live(app, seconds);
     if (app->now.camera.framing != RELUME_FRAME_LOOK && !orbit_is(app))
         return changed;
     if (app->drag == APP_DRAG_CAMERA)
@@ -536,6 +552,11 @@ bool app_advance(struct app *app, double seconds)
     else
         changed |= glide(app, seconds);
     return changed;
+}
+
+bool app_moves(const struct app *app)
+{
+    return app->drag != APP_DRAG_NONE || app->speed_deg_s[0] != 0 || app->speed_deg_s[1] != 0;
 }
 
 double app_exposure_ev(const struct app *app)

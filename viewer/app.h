@@ -5,8 +5,11 @@
 #ifndef VIEWER_APP_H
 #define VIEWER_APP_H
 
+#include "gaze.h"
+
 #include <relume/enhance.h>
 #include <relume/frame.h>
+#include <relume/object.h>
 #include <relume/relight.h>
 #include <relume/slabs.h>
 
@@ -58,6 +61,7 @@ struct app_file {
     int views;
     double uv_min[2], uv_max[2];  // slab: where cameras stand
     const relume_slabs *around;   // several slabs, about whose middle the eye goes; NULL: none
+    relume_objects *objects;      // in the scene, or all that there is; NULL: none
 };
 
 // What the viewer adds to a light. All zero is a light that shines as it says.
@@ -67,6 +71,14 @@ struct app_lamp {
     int entry;     // of the rig that it came from; -1: none
 };
 
+// How objects are shown in two materials at once.
+enum app_split {
+    APP_SPLIT_NONE = 0,
+    APP_SPLIT_SIDES,       // the other one in the right half
+    APP_SPLIT_DIFFERENCE,  // absolute
+    APP_SPLITS
+};
+
 // What can be reset. A copy by value shares its lights: see lamps_copy.
 struct app_state {
     struct relume_camera camera;              // framing is never DEFAULT
@@ -74,8 +86,8 @@ struct app_state {
     double shift[2];                          // of the picture's middle from the frame's, pixels
     enum relume_interpolation interpolation;  // slab
     double aperture;                          // slab: diameter, world units
-    double focus_z;                           // slab: the plane in focus ...
-    bool focused;                             // ... at the start; else the st plane
+    double focus_z;  // slab: the plane in focus; of a free eye how far before what it looks at ...
+    bool focused;    // ... at the start; else the st plane
     double exposure_ev;
     bool auto_exposure;          // on top of exposure_ev
     int tone;                    // place in relume_tones
@@ -86,6 +98,9 @@ struct app_state {
     int selected;  // light that drags and keys change
     bool ball;     // show the light's direction on a ball in the corner
     enum relume_pass pass;
+    enum app_split split;  // objects ...
+    int other;             // ... in this of their materials as well
+    struct gaze gaze;  // how an eye sees the frame
 };
 
 enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT, APP_DRAG_GIZMO };
@@ -113,6 +128,7 @@ struct app {
     double cursor[2];
     bool light_key;                     // L is held
     bool panel, help, inspect, gizmos;  // shown
+    double inspect_zoom;                // of the inspector's disc; 0 and 1: all of it
     bool compared;                      // there is a capture to compare with
     bool near_lights;  // it is known where the surface is, so that near lights can shine on it
     enum app_wish wish;
@@ -123,6 +139,7 @@ struct app {
     double speed_deg_s[2];  // of these: of the hand, then of what it let go
     double adapted_ev, metered_ev;  // automatic exposure: in force, and aimed at
     bool metered;
+    double eye_s;  // that the eye has lived: only while it looks, and not while it is paused
     struct relume_look before_planet;
 };
 
@@ -146,8 +163,14 @@ bool app_handle(struct app *app, const struct app_event *event);
 // way to split it does.
 bool app_advance(struct app *app, double seconds);
 
+// The same for the living eye alone (struct gaze), which never rests.
+void app_live(struct app *app, double seconds);
+
 // Let no glide go on.
 void app_stand_still(struct app *app);
+
+// Under the hand, or gliding on: pictures that take long may be rougher.
+bool app_moves(const struct app *app);
 
 // The exposure to draw with, EV.
 double app_exposure_ev(const struct app *app);

@@ -6,6 +6,7 @@
 
 #include "app.h"
 #include "program.h"
+#include "lamps_seen.h"
 #include "target.h"
 
 #include <relume/slabs.h>
@@ -86,7 +87,8 @@ void draw_mean(const struct program *program, const struct gl *gl, const struct 
 
 // A perspective look into a panorama.
 relume_status draw_panorama_create(struct program *program, const struct gl *gl,
-                                   enum relume_projection projection, const struct relume_log *log);
+                                   const struct relume_geometry *geometry,
+                                   const struct relume_log *log);
 void draw_panorama(const struct program *program, const struct gl *gl, const struct place *place,
                    const struct relume_geometry *geometry, struct relume_look look,
                    const struct target *view);
@@ -96,6 +98,12 @@ relume_status draw_ball_create(struct program *program, const struct gl *gl,
                                const struct relume_log *log);
 void draw_ball(const struct program *program, const struct gl *gl, const struct place *place,
                struct relume_vec3 light, const float rgb[3]);
+
+// Lights that are in view, added to the frame.
+relume_status draw_source_create(struct program *program, const struct gl *gl,
+                                 const struct relume_log *log);
+void draw_sources(const struct program *program, const struct gl *gl, const struct place *place,
+                  const struct lamp_seen *sources, int n);
 
 // A linear frame onto a framebuffer whose first row is the lowest (0: the screen), through
 // relume_tones[tone], coded as sRGB; `white` > 0.

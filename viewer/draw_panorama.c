@@ -2,18 +2,20 @@
 
 #define PI 3.14159265358979323846
 
-enum { VIEW = DRAW_OWN, ELEVATION, LOOK, STEREOGRAPHIC, LOOK_SIZE, EXPOSURE, COUNT };
+enum { VIEW = DRAW_OWN, ELEVATION, LOOK, STEREOGRAPHIC, LOOK_SIZE, EXPOSURE, DISC, COUNT };
 static const char *const uniforms[] = {
-    "rectangle", "frame_size",    "view",      "elevation",
-    "look",      "stereographic", "look_size", "exposure",
+    "rectangle",     "frame_size", "view",     "elevation", "look",
+    "stereographic", "look_size",  "exposure", "disc",
 };
 
 relume_status draw_panorama_create(struct program *program, const struct gl *gl,
-                                   enum relume_projection projection, const struct relume_log *log)
+                                   const struct relume_geometry *geometry,
+                                   const struct relume_log *log)
 {
-    const char *name = projection == RELUME_CUBE        ? "panorama_cube.frag"
-                       : projection == RELUME_SPHERICAL ? "panorama_sphere.frag"
-                                                        : "panorama_cylinder.frag";
+    const char *name = geometry->projection == RELUME_CUBE        ? "panorama_cube.frag"
+                       : geometry->projection == RELUME_SPHERICAL ? "panorama_sphere.frag"
+                       : geometry->disc                           ? "panorama_discs.frag"
+                                                                  : "panorama_cylinder.frag";
     return program_create(program, gl, name, uniforms, COUNT, log);
 }
 
@@ -31,5 +33,6 @@ void draw_panorama(const struct program *program, const struct gl *gl, const str
     gl->Uniform1i(at[STEREOGRAPHIC], look.stereographic);
     gl->Uniform2f(at[LOOK_SIZE], (float)place->width, (float)place->height);
     gl->Uniform1f(at[EXPOSURE], place->exposure);
+    gl->Uniform1i(at[DISC], geometry->disc);
     draw_rectangle(gl, program, place, (struct app_rectangle){0, 0, place->width, place->height});
 }

@@ -164,12 +164,17 @@ static bool is_near(const struct app *app, int light)
     return relume_light_is_near(app->now.light[light].kind);
 }
 
+bool gizmo_place(double xy[2], const struct app *app, struct relume_vec3 point)
+{
+    return framing_of(app).place(xy, app, point);
+}
+
 bool gizmo_of(struct gizmo *out, const struct app *app, int light)
 {
     double xy[2];
     if (!is_near(app, light))
         return place_direction(out, app, light);
-    if (!framing_of(app).place(xy, app, app->now.light[light].position))
+    if (!gizmo_place(xy, app, app->now.light[light].position))
         return false;
     *out = (struct gizmo){.x = xy[0], .y = xy[1], .near = true};
     return true;

@@ -19,6 +19,9 @@ struct gizmo_circle gizmo_disc(const struct app *app);
 // False when the light has no place in the frame.
 bool gizmo_of(struct gizmo *out, const struct app *app, int light);
 
+// Where a point of the scene lies in the frame, pixels; a look is taken as perspective.
+bool gizmo_place(double xy[2], const struct app *app, struct relume_vec3 point);
+
 // Of a long list the lights about the selected one have handles, GIZMOS from this one on.
 enum { GIZMOS = 256 };
 int gizmo_first(const struct app *app);

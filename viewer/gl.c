@@ -36,6 +36,24 @@ static PFNGLGETGRAPHICSRESETSTATUSPROC find_reset_status(const struct gl *gl,
     return name ? (PFNGLGETGRAPHICSRESETSTATUSPROC)get_proc(name) : NULL;
 }
 
+static void load_compute(struct gl *gl, gl_proc (*get_proc)(const char *name))
+{
+    GLint major = 0, minor = 0, bytes = 0;
+    gl->GetIntegerv(GL_MAJOR_VERSION, &major);
+    gl->GetIntegerv(GL_MINOR_VERSION, &minor);
+    gl->compute = major > 4 || (major == 4 && minor >= 3);
+#define GL_LOAD(type, name)                                                                        \
+    gl->name = gl->compute ? (type)get_proc("gl" #name) : NULL;                                    \
+    gl->compute &= gl->name != NULL;
+    GL_COMPUTE_FUNCTIONS(GL_LOAD)
+#undef GL_LOAD
+    if (!gl->compute)
+        return;
+    gl->GetIntegerv(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, &gl->shared_bytes);
+    gl->GetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
+    gl->storage_bytes = bytes < 0 ? 0x7fffffff : bytes;  // more than an int can say
+}
+
 relume_status gl_load(struct gl *gl, gl_proc (*get_proc)(const char *name),
                       const struct relume_log *log)
 {
@@ -47,6 +65,8 @@ relume_status gl_load(struct gl *gl, gl_proc (*get_proc)(const char *name),
 #undef GL_LOAD
     gl->GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &gl->max_layers);
     gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &gl->max_texture);
+    load_compute(gl, get_proc);
+    gl->GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &gl->max_buffer);
     gl->reset_status = find_reset_status(gl, get_proc);
     gl->software = is_software((const char *)gl->GetString(GL_RENDERER));
     return RELUME_OK;

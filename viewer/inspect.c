@@ -23,20 +23,34 @@ static bool disc_direction(struct relume_vec3 *out, double x, double y, bool pol
     return true;
 }
 
-// The inverse, in pixels of the plot; false below the horizon.
-static bool disc_place(int at[2], struct relume_vec3 d, bool pole_y)
+// The inverse; false below the horizon.
+static bool direction_place(double place[2], struct relume_vec3 d, bool pole_y)
 {
-    const double scale = 0.5 * INSPECT_SIDE / sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
-    if ((pole_y ? d.y : d.z) < 0)
-        return false;
-    at[0] = (int)(0.5 * INSPECT_SIDE + scale * d.x);
-    at[1] = (int)(0.5 * INSPECT_SIDE - scale * (pole_y ? -d.z : d.y));
-    return true;
+    const double length = sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+    place[0] = d.x / length;
+    place[1] = (pole_y ? -d.z : d.y) / length;
+    return (pole_y ? d.y : d.z) >= 0;
 }
 
-static double grid_place(int i)
+// In pixels of the plot; false where that does not show it.
+static bool disc_place(int at[2], const struct inspector *in, struct relume_vec3 d, bool pole_y)
 {
-    return 2 * (i + 0.5) / INSPECT_GRID - 1;
+    double place[2];
+    if (!direction_place(place, d, pole_y))
+        return false;
+    const double x = in->zoom * (place[0] - in->at[0]), y = in->zoom * (place[1] - in->at[1]);
+    at[0] = (int)(0.5 * INSPECT_SIDE * (1 + x));
+    at[1] = (int)(0.5 * INSPECT_SIDE * (1 - y));
+    return fabs(x) <= 1 && fabs(y) <= 1;
+}
+
+// The direction in the middle of a cell of the plot; false outside the disc.
+static bool cell_direction(struct relume_vec3 *out, const struct inspector *in, int cell,
+                           bool pole_y)
+{
+    const double x = 2 * (cell % INSPECT_GRID + 0.5) / INSPECT_GRID - 1;
+    const double y = 1 - 2 * (cell / INSPECT_GRID + 0.5) / INSPECT_GRID;
+    return disc_direction(out, in->at[0] + x / in->zoom, in->at[1] + y / in->zoom, pole_y);
 }
 
 // ---------------------------------------------------------------- making
@@ -47,8 +61,7 @@ static void make_weights(struct inspector *in, const relume_coder *coder)
     const size_t size = 3 * (size_t)info->coefficients;
     for (int i = 0; i < INSPECT_GRID * INSPECT_GRID; i++) {
         struct relume_vec3 d;
-        if (disc_direction(&d, grid_place(i % INSPECT_GRID), -grid_place(i / INSPECT_GRID),
-                           info->pole_y))
+        if (cell_direction(&d, in, i, info->pole_y))
             relume_coder_weights(coder, d, in->weights + (size_t)i * size, in->constant[i]);
     }
 }
@@ -69,7 +82,7 @@ relume_status inspect_create(struct inspector *in, const struct relume_pack_info
     const size_t size = 3 * (size_t)relume_coder_info(coder)->coefficients;
     const size_t places = (size_t)INSPECT_GRID * INSPECT_GRID;
     *in = (struct inspector){
-        .info = info, .source = *source, .grid = grid, .view = -1, .measured_view = -1};
+        .info = info, .source = *source, .grid = grid, .view = -1, .measured_view = -1, .zoom = 1};
     in->capture = capture && fits(capture, info) ? capture : NULL;
     in->weights = calloc(places * size, sizeof *in->weights);
     in->constant = calloc(places, sizeof *in->constant);
@@ -263,8 +276,7 @@ static void fill_disc(struct inspector *in, const struct app *app, const struct 
     for (int i = 0; i < INSPECT_GRID * INSPECT_GRID; i++) {
         struct relume_vec3 ignored;
         float rgb[3];
-        if (!disc_direction(&ignored, grid_place(i % INSPECT_GRID), grid_place(i / INSPECT_GRID),
-                            false)) {
+        if (!cell_direction(&ignored, in, i, false)) {
             fill_cell(in, i, outside);
             continue;
         }
@@ -281,7 +293,7 @@ static void mark(struct inspector *in, struct relume_vec3 d, bool pole_y, int re
                  const float rgb[3])
 {
     int at[2];
-    if (!disc_place(at, d, pole_y))
+    if (!disc_place(at, in, d, pole_y))
         return;
     for (int k = -reach; k <= reach; k++) {
         memcpy(plot_pixel(in, clamp_to(at[0] + k, INSPECT_SIDE), clamp_to(at[1], INSPECT_SIDE)),
@@ -366,7 +378,7 @@ static void mark_photographs(struct inspector *in, const struct app *app, bool p
         int at[2];
         for (int c = 0; c < 3; c++)
             rgb[c] = fminf(fmaxf(relume_transfer_encode(srgb, gain * pixel[c]), 0), 1);
-        if (disc_place(at, m->directions[i], pole_y))
+        if (disc_place(at, in, m->directions[i], pole_y))
             mark_measured(in, at, rgb);
     }
 }
@@ -383,6 +395,24 @@ static relume_status hold_codes(struct inspector *in, int view)
     return status;
 }
 
+// Around the selected light where that is distant and above the horizon, else around the middle;
+// all of the plot lies within the disc's square.
+static void magnify(struct inspector *in, const struct app *app)
+{
+    const bool pole_y = relume_coder_info(in->info->coder)->pole_y;
+    const struct relume_light *light = &app->now.light[app->now.selected];
+    const double zoom = app->inspect_zoom > 1 ? app->inspect_zoom : 1, most = 1 - 1 / zoom;
+    if (zoom == in->zoom)
+        return;
+    in->zoom = zoom;
+    if (light->kind != RELUME_LIGHT_DIRECTIONAL ||
+        !direction_place(in->at, light->direction, pole_y))
+        in->at[0] = in->at[1] = 0;
+    for (int i = 0; i < 2; i++)
+        in->at[i] = fmin(fmax(in->at[i], -most), most);
+    make_weights(in, in->info->coder);
+}
+
 relume_status inspect_update(struct inspector *in, const struct app *app, bool *shown)
 {
     int view, pixel[2];
@@ -396,10 +426,13 @@ relume_status inspect_update(struct inspector *in, const struct app *app, bool *
         return status;
     in->x = pixel[0];
     in->y = pixel[1];
+    magnify(in, app);
     fill_disc(in, app, in->codes);
     if (in->capture)
         mark_photographs(in, app, relume_coder_info(in->codes->coder)->pole_y);
     mark_directions(in, app, relume_coder_info(in->codes->coder));
-    snprintf(in->text, sizeof in->text, "view %d, pixel %d, %d", view, in->x, in->y);
+    const int n = snprintf(in->text, sizeof in->text, "view %d, pixel %d, %d", view, in->x, in->y);
+    if (in->zoom > 1)
+        snprintf(in->text + n, sizeof in->text - (size_t)n, ", x %g", in->zoom);
     return RELUME_OK;
 }

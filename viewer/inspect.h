@@ -3,7 +3,7 @@
 // The disc's middle is light along the pole (from the viewer; in panoramas from above), its rim
 // light from the horizon. Colours are what the pixel shows under a light of 1 from there; dots
 // stand at the captured directions, filled with what was measured there when the photographs are at
-// hand; crosses at the directional lights.
+// hand; crosses at the directional lights. Magnified, a part of the disc around the selected light.
 #ifndef VIEWER_INSPECT_H
 #define VIEWER_INSPECT_H
 
@@ -22,6 +22,7 @@ struct inspector {
     struct code_source source;
     const struct relume_codes *codes;  // of `view`, held until another one is looked at
     const relume_slab *grid;           // of a slab, or NULL
+    double zoom, at[2];                // 1: the whole disc; the middle of what is shown, -1 to 1
     float *weights;                    // [INSPECT_GRID^2][3][K], zero outside the disc
     float (*constant)[3];              // [INSPECT_GRID^2]
     float *coefficient;                // [3][K] of the pixel

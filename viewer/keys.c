@@ -69,6 +69,17 @@ static bool press_inspect(struct app *app, int key)
     return true;
 }
 
+static bool press_magnify(struct app *app, int key)
+{
+    (void)key;
+    if (!app->inspect)
+        return false;
+    app->inspect_zoom = app->inspect_zoom < 1    ? 2
+                        : app->inspect_zoom < 16 ? 2 * app->inspect_zoom
+                                                 : 1;
+    return true;
+}
+
 static bool press_exposure(struct app *app, int key)
 {
     app->now.exposure_ev += key == '+' ? exposure_step : -exposure_step;
@@ -135,7 +146,7 @@ static bool press_aperture(struct app *app, int key)
     const double most = fmax(f->uv_max[0] - f->uv_min[0], f->uv_max[1] - f->uv_min[1]);
     double *a = &app->now.aperture;
     (void)key;
-    if (app->now.camera.framing != RELUME_FRAME_EYE || app->file.around)
+    if (app->now.camera.framing != RELUME_FRAME_EYE)
         return false;
     *a = *a <= 0 ? most / 8 : *a < 0.75 * most ? *a * 2 : 0;
     return true;
@@ -144,10 +155,20 @@ static bool press_aperture(struct app *app, int key)
 static bool press_focus(struct app *app, int key)
 {
     const struct relume_geometry *g = &app->file.geometry;
+    struct relume_window window;
     double *z = &app->now.focus_z;
-    if (app->now.camera.framing != RELUME_FRAME_EYE || app->file.around)
+    if (app->now.camera.framing != RELUME_FRAME_EYE ||
+        (app->file.around && !app_window(app, &window)))
         return false;
-    *z = g->uv_z + (*z - g->uv_z) * (key == '.' ? focus_factor : 1 / focus_factor);
+    const double from = app->file.around ? relume_window_distance(&window) : g->uv_z;
+    *z = from + (*z - from) * (key == '.' ? focus_factor : 1 / focus_factor);
+    return true;
+}
+
+static bool press_glare(struct app *app, int key)
+{
+    (void)key;
+    app->now.gaze.on = !app->now.gaze.on;
     return true;
 }
 
@@ -156,6 +177,48 @@ static bool press_next_pass(struct app *app, int key)
     (void)key;
     const int passes = app->compared ? RELUME_PASSES : RELUME_PASS_DIFFERENCE;
     app->now.pass = (enum relume_pass)((app->now.pass + 1) % passes);
+    return true;
+}
+
+// ---------------------------------------------------------------- objects
+
+static int next_material(const struct app *app, int material)
+{
+    return (material + 1) % relume_objects_info(app->file.objects)->materials;
+}
+
+// All parts go on to the material after that of the first.
+static bool press_material(struct app *app, int key)
+{
+    (void)key;
+    if (!app->file.objects)
+        return false;
+    const struct relume_objects_info *info = relume_objects_info(app->file.objects);
+    const int next = next_material(app, info->part[0].material);
+    for (int i = 0; i < info->parts; i++)
+        (void)!relume_objects_choose(app->file.objects, i, next);
+    return true;
+}
+
+static bool press_other(struct app *app, int key)
+{
+    (void)key;
+    if (!app->file.objects)
+        return false;
+    app->now.other = next_material(app, app->now.other);
+    return true;
+}
+
+static bool press_split(struct app *app, int key)
+{
+    (void)key;
+    if (!app->file.objects)
+        return false;
+    // a material is compared with another one, not with itself
+    const int shown = relume_objects_info(app->file.objects)->part[0].material;
+    if (app->now.split == APP_SPLIT_NONE && app->now.other == shown)
+        app->now.other = next_material(app, shown);
+    app->now.split = (enum app_split)((app->now.split + 1) % APP_SPLITS);
     return true;
 }
 
@@ -273,6 +336,7 @@ const struct key_binding key_bindings[] = {
     {'.', NULL, NULL, press_focus, true},
     {'o', "O", "panorama: little planet", press_planet, false},
     {'v', "V", "next view: colour, normals, ...", press_next_pass, false},
+    {'y', "Y", "glare: the picture as an eye sees it", press_glare, false},
     {'r', "R", "reset", press_reset, false},
     {'l', "L", "hold: drags turn the light", press_hold_light, false},
     {APP_KEY_LEFT, "arrows", "turn the light", press_turn, true},
@@ -290,9 +354,14 @@ const struct key_binding key_bindings[] = {
     {'1', "1 2 3", "raking, double raking, dome", press_preset, false},
     {'2', NULL, NULL, press_preset, false},
     {'3', NULL, NULL, press_preset, false},
+    {'c', "C", "objects: next material", press_material, false},
+    {'q', "Q", "objects: beside another material, their difference", press_split, false},
+    {'u', "U", "objects: the next of these other materials", press_other, false},
     {'b', "B", "ball that shows the light", press_ball, false},
     {'g', "G", "handles of the lights in the picture", press_gizmos, false},
     {'i', "I", "inspector: the reflectance under the cursor", press_inspect, false},
+    {'y', "Y", "inspector: twice as large about the light; at last all of it", press_magnify,
+     false},
     {'s', "S", "save the picture, PNG", press_png, false},
     {'p', "P", "save the picture, EXR", press_exr, false},
     {'w', "W", "write the lights, a rig file", press_save_rig, false},

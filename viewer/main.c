@@ -91,6 +91,12 @@ static relume_status host_open(void *user, const char *path, const struct relume
     return status;
 }
 
+static relume_status host_glare(void *user, const char *words, const char **expected)
+{
+    struct session *s = user;
+    return gaze_say(&s->app.now.gaze, words, expected) ? RELUME_OK : RELUME_EDATA;
+}
+
 static const double frame_s = 1.0 / 60;  // between frames when time is played
 static const double patience_s = 60;     // waiting for what never comes to rest
 
@@ -106,7 +112,7 @@ static relume_status host_wait(void *user, double seconds)
         moves = session_pass(s, fmin(left, step)) || renderer_is_pending(&s->renderer);
         if (s->film)
             status = session_film(s);
-        else if (moves || until_idle)
+        else if (moves || until_idle || gaze_lives(&s->app.now.gaze))
             status = (s->streams ? show_frame : session_draw)(s);
     }
     return status;
@@ -124,8 +130,8 @@ static relume_status host_shot(void *user, const char *path)
 
 static struct script_host host_of(struct session *s)
 {
-    return (struct script_host){s,         &s->app,   host_send,  host_light, host_rig,
-                                host_open, host_wait, host_frame, host_shot,  s->log};
+    return (struct script_host){s,         &s->app,   host_send,  host_light, host_rig,  host_open,
+                                host_wait, host_frame, host_shot, s->log, host_glare};
 }
 
 // ---------------------------------------------------------------- without a window
@@ -145,6 +151,8 @@ static relume_status run_offscreen(struct session *s, struct options *o)
     relume_status status = session_take_rig(s, &o->rig, &o->start);
     if (!status && o->capture)
         status = session_compare(s, o->capture);
+    if (!status)
+        status = session_take_objects(s, &o->objects);
     if (!status)
         status = session_open(s, o->file, &o->start, film);
     if (!status)
@@ -227,7 +235,8 @@ static relume_status live(struct session *s, struct script *script)
             status = take_events(s, &changed, &time_ms);
         if (!status && changed && !s->app.quit)
             status = show_frame(s);
-        changed = !status && (renderer_is_pending(&s->renderer) || session_is_busy(s));
+        changed = !status && (renderer_is_pending(&s->renderer) || session_is_busy(s) ||
+                              gaze_lives(&s->app.now.gaze));
     }
     return status;
 }
@@ -270,6 +279,8 @@ static relume_status open_window(struct session *s, struct options *o,
     relume_status status = session_take_rig(s, &o->rig, &o->start);
     if (!status && o->capture)
         status = session_compare(s, o->capture);
+    if (!status)
+        status = session_take_objects(s, &o->objects);
     if (!status)
         status = session_open(s, o->file, &o->start, true);
     if (status)
@@ -323,10 +334,13 @@ int main(int argc, char **argv)
     relume_status status = options_parse(&options, argc, argv, &log);
     session.threads = options.threads;
     session.relight = options.relight;
+    session.glare = options.glare;
+    session.glare_size = options.glare_size;
+    session.subject = &options.subject;
     session.vram_bytes = (size_t)(options.vram_mb * 1048576.0);
     const bool offscreen =
         options.offscreen || options.record || (options.script && !options.window);
-    if (!status && !options.file)
+    if (!status && !options.file && !options.stage)
         options_help();
     else if (!status)
         status = (offscreen ? run_offscreen : run_window)(&session, &options);

@@ -1,7 +1,6 @@
 #include "nearby.h"
 
 #include "say.h"
-#include "vec.h"
 #include "weights.h"
 
 #include <math.h>
@@ -15,18 +14,13 @@ enum uniform {
     PICTURE,
     SURFACE,
     GRID,
+    TRIANGLES,
+    TRIANGLE_COUNT,
     AFFINE,
     INDICES,
     VECTORS,
-    KIND,
-    RGB,
-    NOFALL,
-    POSITION,
-    AXIS,
-    RIGHT,
-    UP,
-    HALF_ANGLE,
-    FACETS,
+    LIGHT,
+    FACETS = LIGHT + SHINE_UNIFORMS,
     HEMISPHERE,
     POLE_Y,
     FORM,
@@ -39,12 +33,10 @@ enum uniform {
     UNIFORMS
 };
 static const char *const uniforms[] = {
-    "rectangle",     "frame_size",       "codes",          "picture",    "surface",
-    "grid",          "affine",           "indices",        "vectors",    "light.kind",
-    "light.rgb",     "light.nofall",     "light.position", "light.axis", "light.right",
-    "light.up",      "light.half_angle", "facets",         "hemisphere", "pole_y",
-    "form",          "coefficients",     "layers",         "books",      "coded",
-    "display.curve", "display.gamma",
+    "rectangle", "frame_size",     "codes",         "picture",       "surface",      "grid",
+    "triangles", "triangle_count", "affine",        "indices",       "vectors",      SHINE_NAMES,
+    "facets",    "hemisphere",     "pole_y",        "form",          "coefficients", "layers",
+    "books",     "coded",          "display.curve", "display.gamma",
 };
 
 // Texture units; each sampler has its own.
@@ -53,6 +45,7 @@ enum unit {
     UNIT_PICTURE,
     UNIT_SURFACE,
     UNIT_GRID,
+    UNIT_TRIANGLES,
     UNIT_AFFINE,
     UNIT_INDICES,
     UNIT_VECTORS
@@ -62,28 +55,18 @@ enum unit {
 enum { FORM_SEPARATE, FORM_JOINT, FORM_LUMINANCE };
 enum { VECTORS_WIDE = 64 };
 
-struct nearby_picture {
-    const void *key;
-    GLuint texture;
-    struct nearby_picture *next;
-};
-
 relume_status nearby_create(struct nearby *near, const struct gl *gl, const struct relume_log *log)
 {
-    *near = (struct nearby){.gl = gl, .log = log};
+    *near = (struct nearby){.gl = gl, .log = log, .shine = {.gl = gl, .log = log}};
     gl->GenTextures(1, &near->grid);
+    gl->GenTextures(1, &near->triangles);
     gl->GenTextures(1, &near->facets);
     return program_create(&near->program, gl, "near.frag", uniforms, UNIFORMS, log);
 }
 
 void nearby_forget(struct nearby *near)
 {
-    while (near->picture) {
-        struct nearby_picture *p = near->picture;
-        near->picture = p->next;
-        near->gl->DeleteTextures(1, &p->texture);
-        free(p);
-    }
+    shine_forget(&near->shine);
 }
 
 void nearby_destroy(struct nearby *near)
@@ -92,6 +75,7 @@ void nearby_destroy(struct nearby *near)
         return;
     nearby_forget(near);
     near->gl->DeleteTextures(1, &near->grid);
+    near->gl->DeleteTextures(1, &near->triangles);
     near->gl->DeleteTextures(1, &near->facets);
     program_destroy(&near->program, near->gl);
     *near = (struct nearby){0};
@@ -156,28 +140,72 @@ static relume_status upload_grid(struct nearby *near, const struct relume_weight
     return gl_check(gl, "uploading weights", near->log);
 }
 
+// As near.frag: a row of four texels holds a triangle, then 16 cells of the map of starts.
+enum { TRIANGLE_TEXELS = 4, TRIANGLE_FLOATS = 4 * TRIANGLE_TEXELS };
+enum { STARTS = RELUME_WEIGHT_STARTS * RELUME_WEIGHT_STARTS };
+
+static int triangle_rows(const struct relume_weight_grid_info *g)
+{
+    return g->triangles + STARTS / TRIANGLE_FLOATS;
+}
+
+static void gather_triangle(float to[TRIANGLE_FLOATS], const struct relume_weight_triangle *t)
+{
+    for (int i = 0; i < 3; i++) {
+        float *row = to + 4 * (i + 1);
+        to[i] = (float)t->node[i];
+        memcpy(row, t->inverse[i], sizeof t->inverse[i]);
+        row[3] = (float)t->across[i];
+    }
+}
+
+static relume_status upload_triangles(struct nearby *near, const struct relume_weight_grid_info *g)
+{
+    const struct gl *gl = near->gl;
+    const int rows = triangle_rows(g);
+    float *texels = calloc((size_t)rows, TRIANGLE_FLOATS * sizeof *texels);
+    if (!texels)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < g->triangles; i++)
+        gather_triangle(texels + (size_t)i * TRIANGLE_FLOATS, &g->triangle[i]);
+    for (int i = 0; i < STARTS; i++)
+        texels[(size_t)g->triangles * TRIANGLE_FLOATS + (size_t)i] = (float)g->start[i];
+    texture_use(gl, UNIT_TRIANGLES, GL_TEXTURE_2D, near->triangles);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, TRIANGLE_TEXELS, rows, 0, GL_RGBA, GL_FLOAT,
+                   texels);
+    texture_settings(gl, GL_TEXTURE_2D);
+    free(texels);
+    near->triangle_count = g->triangles;
+    return gl_check(gl, "uploading triangles", near->log);
+}
+
+// More triangles than a texture has rows give way to a grid.
+static relume_status make_grid(relume_weight_grid **grid, const struct gl *gl,
+                               const relume_coder *coder)
+{
+    const relume_status status = relume_weight_grid_create(grid, coder, NULL);
+    if (status || triangle_rows(relume_weight_grid_info(*grid)) <= gl->max_texture)
+        return status;
+    relume_weight_grid_destroy(grid);
+    return relume_weight_grid_create(grid, coder, relume_weight_grid_params(.steps = 16));
+}
+
 static relume_status need_grid(struct nearby *near, const relume_coder *coder)
 {
     if (near->has_grid)
         return RELUME_OK;
     relume_weight_grid *grid;
-    relume_status status = relume_weight_grid_create(&grid, coder, NULL);
+    relume_status status = make_grid(&grid, near->gl, coder);
+    const struct relume_weight_grid_info *info = grid ? relume_weight_grid_info(grid) : NULL;
+    if (!status && info->triangles)
+        status = upload_triangles(near, info);
     if (!status)
-        status = upload_grid(near, relume_weight_grid_info(grid));
+        status = upload_grid(near, info);
     relume_weight_grid_destroy(&grid);
     return status;
 }
 
 // ---------------------------------------------------------------- views
-
-static void upload_floats(const struct gl *gl, GLuint texture, GLint internal, GLenum format,
-                          int width, int height, const float *values)
-{
-    texture_use(gl, UNIT_PICTURE, GL_TEXTURE_2D, texture);
-    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    gl->TexImage2D(GL_TEXTURE_2D, 0, internal, width, height, 0, format, GL_FLOAT, values);
-    texture_settings(gl, GL_TEXTURE_2D);
-}
 
 static relume_status upload_positions(struct nearby_view *v, const struct gl *gl)
 {
@@ -193,8 +221,8 @@ static relume_status upload_positions(struct nearby_view *v, const struct gl *gl
         texels[4 * i + 3] = finite ? 1.0f : 0.0f;
     }
     gl->GenTextures(1, &v->positions);
-    upload_floats(gl, v->positions, GL_RGBA32F, GL_RGBA, v->surface.width, v->surface.height,
-                  texels);
+    shine_upload(gl, UNIT_PICTURE, v->positions, GL_RGBA32F, GL_RGBA, v->surface.width,
+                 v->surface.height, texels);
     free(texels);
     return RELUME_OK;
 }
@@ -212,7 +240,7 @@ static relume_status upload_affine(struct nearby_view *v, const struct gl *gl,
         layer[LANES] = c->codes->offset[p];
     }
     gl->GenTextures(1, &v->affine);
-    upload_floats(gl, v->affine, GL_RGBA32F, GL_RGBA, 2, c->layers, texels);
+    shine_upload(gl, UNIT_PICTURE, v->affine, GL_RGBA32F, GL_RGBA, 2, c->layers, texels);
     free(texels);
     return RELUME_OK;
 }
@@ -284,75 +312,6 @@ void nearby_view_destroy(struct nearby_view *view, const struct gl *gl)
 
 // ---------------------------------------------------------------- lights
 
-// Every half degree; the file's own angles are rarely finer.
-static relume_status upload_lamp(const struct gl *gl, GLuint texture, const relume_ies *ies)
-{
-    enum { ACROSS = 721, DOWN = 361 };
-    float *texels = malloc((size_t)ACROSS * DOWN * sizeof *texels);
-    if (!texels)
-        return RELUME_ENOMEM;
-    for (int y = 0; y < DOWN; y++)
-        for (int x = 0; x < ACROSS; x++)
-            texels[y * ACROSS + x] = (float)relume_ies_value(ies, 0.5 * y, 0.5 * x);
-    upload_floats(gl, texture, GL_R32F, GL_RED, ACROSS, DOWN, texels);
-    free(texels);
-    return RELUME_OK;
-}
-
-static relume_status upload_slide(const struct nearby *near, GLuint texture,
-                                  const struct relume_image *image)
-{
-    const int most = near->gl->max_texture;
-    if (image->width > most || image->height > most)
-        return say(near->log, RELUME_ESYSTEM,
-                   "a light's picture of %d x %d: OpenGL takes at most %d x %d "
-                   "here",
-                   image->width, image->height, most, most);
-    upload_floats(near->gl, texture, GL_RGB32F, GL_RGB, image->width, image->height, image->data);
-    return RELUME_OK;
-}
-
-static const void *key_of(const struct relume_light *light)
-{
-    switch (light->kind) {
-    case RELUME_LIGHT_SLIDE: return light->image;
-    case RELUME_LIGHT_IES: return light->ies;
-    case RELUME_LIGHT_GONIO: return light->gonio;
-    default: return NULL;
-    }
-}
-
-static relume_status upload_light(const struct nearby *near, GLuint texture,
-                                  const struct relume_light *light)
-{
-    if (light->kind == RELUME_LIGHT_IES)
-        return upload_lamp(near->gl, texture, light->ies);
-    return upload_slide(near, texture,
-                        light->kind == RELUME_LIGHT_SLIDE ? light->image
-                                                          : relume_gonio_map(light->gonio));
-}
-
-static relume_status use_picture(struct nearby *near, const struct relume_light *light)
-{
-    const void *key = key_of(light);
-    struct nearby_picture *p = near->picture;
-    while (p && p->key != key)
-        p = p->next;
-    relume_status status = RELUME_OK;
-    if (!p) {
-        p = calloc(1, sizeof *p);
-        if (!p)
-            return RELUME_ENOMEM;
-        near->gl->GenTextures(1, &p->texture);
-        status = upload_light(near, p->texture, light);
-        p->next = near->picture;
-        near->picture = p;
-        p->key = status ? NULL : key;
-    }
-    texture_use(near->gl, UNIT_PICTURE, GL_TEXTURE_2D, p->texture);
-    return status;
-}
-
 static void put_vec3(float *texel, struct relume_vec3 v)
 {
     texel[0] = (float)v.x;
@@ -376,39 +335,18 @@ static void use_facets(const struct nearby *near, const struct nearby_view *view
     }
     for (int row = 1; row < 3; row++)
         memmove(&texels[0][0][0] + row * *n * 3, texels[row], (size_t)*n * sizeof *texels[row]);
-    upload_floats(near->gl, near->facets, GL_RGB32F, GL_RGB, *n, 3, &texels[0][0][0]);
-}
-
-static void set_vec3(const struct gl *gl, GLint at, struct relume_vec3 v)
-{
-    gl->Uniform3f(at, (float)v.x, (float)v.y, (float)v.z);
+    shine_upload(near->gl, UNIT_PICTURE, near->facets, GL_RGB32F, GL_RGB, *n, 3, &texels[0][0][0]);
 }
 
 static relume_status set_light(struct nearby *near, const struct nearby_view *view,
                                const struct relume_light *l)
 {
-    const struct gl *gl = near->gl;
     const GLint *at = near->program.at;
-    relume_status status = RELUME_OK;
     int facets = 0;
-    if (key_of(l))
-        status = use_picture(near, l);
-    else if (l->kind == RELUME_LIGHT_AREA)
+    if (l->kind == RELUME_LIGHT_AREA)
         use_facets(near, view, l, &facets);
-    gl->Uniform1i(at[KIND], (GLint)l->kind);
-    gl->Uniform3f(at[RGB], l->rgb[0], l->rgb[1], l->rgb[2]);
-    gl->Uniform1i(at[NOFALL], l->nofall);
-    set_vec3(gl, at[POSITION], l->position);
-    gl->Uniform1f(at[HALF_ANGLE], (float)(l->half_angle_deg * (3.14159265358979 / 180.0)));
-    gl->Uniform1i(at[FACETS], facets);
-    if (l->kind != RELUME_LIGHT_POINT && l->kind != RELUME_LIGHT_AREA) {
-        struct relume_vec3 right, up;
-        relume_light_frame(&right, &up, l->direction);
-        set_vec3(gl, at[AXIS], vec_unit(l->direction));
-        set_vec3(gl, at[RIGHT], right);
-        set_vec3(gl, at[UP], up);
-    }
-    return status;
+    near->gl->Uniform1i(at[FACETS], facets);
+    return shine_set(&near->shine, at + LIGHT, UNIT_PICTURE, l);
 }
 
 static void set_codes(const struct nearby *near, const struct nearby_view *view,
@@ -421,16 +359,18 @@ static void set_codes(const struct nearby *near, const struct nearby_view *view,
     static const struct {
         enum uniform sampler;
         enum unit unit;
-    } units[] = {{CODES, UNIT_CODES},    {PICTURE, UNIT_PICTURE}, {SURFACE, UNIT_SURFACE},
-                 {GRID, UNIT_GRID},      {AFFINE, UNIT_AFFINE},   {INDICES, UNIT_INDICES},
-                 {VECTORS, UNIT_VECTORS}};
+    } units[] = {{CODES, UNIT_CODES},     {PICTURE, UNIT_PICTURE},     {SURFACE, UNIT_SURFACE},
+                 {GRID, UNIT_GRID},       {TRIANGLES, UNIT_TRIANGLES}, {AFFINE, UNIT_AFFINE},
+                 {INDICES, UNIT_INDICES}, {VECTORS, UNIT_VECTORS}};
     for (size_t i = 0; i < sizeof units / sizeof *units; i++)
         gl->Uniform1i(at[units[i].sampler], units[i].unit);
     texture_use(gl, codes->books ? UNIT_INDICES : UNIT_CODES, GL_TEXTURE_2D_ARRAY, c->array);
     texture_use(gl, UNIT_SURFACE, GL_TEXTURE_2D, view->positions);
     texture_use(gl, UNIT_GRID, GL_TEXTURE_2D_ARRAY, near->grid);
+    texture_use(gl, UNIT_TRIANGLES, GL_TEXTURE_2D, near->triangles);
     texture_use(gl, UNIT_AFFINE, GL_TEXTURE_2D, view->affine);
     texture_use(gl, UNIT_VECTORS, GL_TEXTURE_2D_ARRAY, view->vectors);
+    gl->Uniform1i(at[TRIANGLE_COUNT], near->triangle_count);
     gl->Uniform1i(at[HEMISPHERE], info->hemispherical);
     gl->Uniform1i(at[POLE_Y], info->pole_y);
     gl->Uniform1i(at[FORM], form_of(info));

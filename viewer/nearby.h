@@ -4,21 +4,22 @@
 #define VIEWER_NEARBY_H
 
 #include "program.h"
+#include "shine.h"
 #include "target.h"
 
 #include <relume/relight.h>
-
-struct nearby_picture;
 
 // What all views of a file share.
 struct nearby {
     const struct gl *gl;
     const struct relume_log *log;
     struct program program;
-    bool has_grid;                   // has been uploaded
-    GLuint grid;                     // array texture of the weights by direction
-    GLuint facets;                   // a column for each facet of the area light in use
-    struct nearby_picture *picture;  // what slides and lamps need, by their pointers
+    bool has_grid;       // has been uploaded
+    GLuint grid;         // array texture of the weights by direction
+    GLuint triangles;    // between its nodes, and where to begin to look for one
+    int triangle_count;  // 0: the nodes are a grid
+    GLuint facets;       // a column for each facet of the area light in use
+    struct shine shine;
 };
 
 // What the passes need to know of a view.

@@ -214,17 +214,80 @@ static relume_status take_vram(struct options *o, const char *name, const char *
     return take_number(&o->vram_mb, name, text, 1, 1e6, log);
 }
 
-static relume_status take_relight(struct options *o, const char *name, const char *text,
-                                  const struct relume_log *log)
+static relume_status take_who(enum session_relight *out, const char *name, const char *text,
+                              const struct relume_log *log)
 {
     static const char *const names[] = {
         [SESSION_AUTO] = "auto", [SESSION_PASSES] = "passes", [SESSION_LIBRARY] = "library"};
     for (int i = 0; i < (int)(sizeof names / sizeof *names); i++)
         if (!strcmp(names[i], text)) {
-            o->relight = (enum session_relight)i;
+            *out = (enum session_relight)i;
             return RELUME_OK;
         }
     return say(log, RELUME_EINVAL, "%s: expected auto, passes or library; found '%s'", name, text);
+}
+
+static relume_status take_relight(struct options *o, const char *name, const char *text,
+                                  const struct relume_log *log)
+{
+    return take_who(&o->relight, name, text, log);
+}
+
+// ---------------------------------------------------------------- glare
+
+static relume_status take_glare(struct options *o, const char *name, const char *text,
+                                const struct relume_log *log)
+{
+    (void)name, (void)text, (void)log;
+    o->start.gaze.on = true;
+    return RELUME_OK;
+}
+
+static relume_status take_sources(struct options *o, const char *name, const char *text,
+                                  const struct relume_log *log)
+{
+    (void)name, (void)text, (void)log;
+    o->start.gaze.sources = true;
+    return RELUME_OK;
+}
+
+static relume_status take_subject(struct options *o, const char *name, const char *text,
+                                  const struct relume_log *log)
+{
+    (void)name;
+    return relume_subject_load(&o->subject, text, log);
+}
+
+static relume_status take_glare_by(struct options *o, const char *name, const char *text,
+                                   const struct relume_log *log)
+{
+    return take_who(&o->glare, name, text, log);
+}
+
+static relume_status take_glare_size(struct options *o, const char *name, const char *text,
+                                     const struct relume_log *log)
+{
+    double n;
+    const relume_status status = take_number(&n, name, text, 64, 4096, log);
+    if (status)
+        return status;
+    o->glare_size = (int)n;
+    if (n != o->glare_size || o->glare_size & (o->glare_size - 1))
+        return say(log, RELUME_EINVAL, "%s: expected a power of two from 64 to 4096; found '%s'",
+                   name, text);
+    return RELUME_OK;
+}
+
+// As a script says it: the option's name without what stands before its last word.
+static relume_status take_sight(struct options *o, const char *name, const char *text,
+                                const struct relume_log *log)
+{
+    const char *expected;
+    char words[80];
+    snprintf(words, sizeof words, "%s %.60s", strrchr(name, '-') + 1, text);
+    if (gaze_say(&o->start.gaze, words, &expected))
+        return RELUME_OK;
+    return say(log, RELUME_EINVAL, "%s: expected %s; found '%s'", name, expected, text);
 }
 
 static relume_status take_exposure(struct options *o, const char *name, const char *text,
@@ -327,6 +390,37 @@ static relume_status take_frames(struct options *o, const char *name, const char
     return status;
 }
 
+static relume_status take_objects(struct options *o, const char *name, const char *text,
+                                  const struct relume_log *log)
+{
+    (void)name, (void)log;
+    o->objects.description = text;
+    return RELUME_OK;
+}
+
+static relume_status take_mesh(struct options *o, const char *name, const char *text,
+                               const struct relume_log *log)
+{
+    (void)name, (void)log;
+    o->objects.mesh = text;
+    return RELUME_OK;
+}
+
+static relume_status take_material(struct options *o, const char *name, const char *text,
+                                   const struct relume_log *log)
+{
+    if (o->objects.materials == SESSION_MATERIALS)
+        return say(log, RELUME_EINVAL, "%s: expected at most %d", name, SESSION_MATERIALS);
+    o->objects.material[o->objects.materials++] = text;
+    return RELUME_OK;
+}
+
+static relume_status take_repeat(struct options *o, const char *name, const char *text,
+                                 const struct relume_log *log)
+{
+    return take_number(&o->objects.repeat, name, text, 0.001, 10000, log);
+}
+
 static relume_status take_no_config(struct options *o, const char *name, const char *text,
                                     const struct relume_log *log)
 {
@@ -374,14 +468,22 @@ static const struct option options[] = {
     {"--projection", "P", "panorama: perspective, stereographic or planet", take_projection},
     {"--interpolate", "I", "slab: constant, linear or depth; default: depth if there is any",
      take_interpolation},
-    {"--aperture", "A", "slab: average the cameras within A/2 of the eye", take_aperture},
-    {"--focus", "Z", "slab: the plane at z = Z is sharp", take_focus},
+    {"--aperture", "A", "slab: average the cameras within A/2 of the eye; free eye: a lens",
+     take_aperture},
+    {"--focus", "Z", "slab: the plane at z = Z is sharp; free eye: Z before the middle",
+     take_focus},
     {"--size", "WxH", "pixels of the window or picture", take_size},
     {"--exposure", "EV", "brighter by 2^EV, or auto", take_exposure},
     {"--tone", "T", "linear, reinhard or filmic; .exr, .hdr and .pfm stay linear", take_tone},
     {"--white", "L", "reinhard: the luminance that becomes white; default: 4", take_white},
     {"--pass", "NAME", "colour, normals, specular, diffuse-gain, unsharp, luminance, ...",
      take_pass},
+    {"--objects", "FILE", "objects covered with BTFs (docs/objects.md), in the scene or alone",
+     take_objects},
+    {"--mesh", "FILE", "the same for one mesh: .obj, .ply, .gltf, .glb, ...", take_mesh},
+    {"--material", "DIR", "--mesh: a BTF or a model of one; repeat for more to choose from",
+     take_material},
+    {"--repeat", "N", "--mesh: samples along its texture; default 1", take_repeat},
     {"--capture", "CAPTURE", "the photographs, for --pass difference", take_capture},
     {"--threads", "N", "threads that read files; default: all cores", take_threads},
     {"--vram", "MB", "graphics memory for views; those not used for long leave; default: 1024",
@@ -389,6 +491,17 @@ static const struct option options[] = {
     {"--relight", "BY",
      "passes of OpenGL, the library, or auto: the library where OpenGL is software; default auto",
      take_relight},
+    {"--glare", NULL, "the frame as a living eye sees it", take_glare},
+    {"--subject", "FILE", "--glare: whose eye it is (JSON, docs/glare.md)", take_subject},
+    {"--glare-magnify", "X", "--glare: the pattern's size against the frame; default 1", take_sight},
+    {"--nits", "N", "--glare: cd/m^2 of a pixel of value 1; default 100", take_sight},
+    {"--squint", "S", "--glare: how far the lids are held closed, 0 to 0.95", take_sight},
+    {"--glare-mode", "M", "--glare: auto, fft, billboard or hybrid; default auto", take_sight},
+    {"--glare-size", "N",
+     "--glare: texels of the pattern; default 1024 by passes, 512 by the library", take_glare_size},
+    {"--glare-by", "BY", "--glare: by passes of OpenGL 4.3, the library, or auto, as --relight",
+     take_glare_by},
+    {"--sources", NULL, "draw the lights that are in view, as small as they are", take_sources},
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},
     {"--script", "EVENTS", "play a text file of events without a window", take_script},
@@ -439,6 +552,9 @@ void options_help(void)
          "        key K                 hold K, let K                    type TEXT\n"
          "        light SPEC            add SPEC                         rig FILE\n"
          "        open FILE: another relume file\n"
+         "        glare on|off|pause|run, glare magnify|nits|squint X, glare mode M, glare sources "
+         "on|off\n"
+         "        glare cornea|fibres|lens|vitreous|lids on|off: parts of the eye\n"
          "        wait [SECONDS]        frame OUT: the picture           shot OUT: with the "
          "panel\n\n"
          "example:\n"
@@ -494,9 +610,36 @@ void options_release(struct options *o)
     lamps_release(&o->start);
 }
 
+static bool is_description(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && !strcmp(dot, ".json");
+}
+
+// FILE is a scene; or a description of objects; or, beside --mesh without --material, a material.
+static relume_status choose_objects(struct options *o, const struct relume_log *log)
+{
+    struct session_objects *w = &o->objects;
+    if (o->file && is_description(o->file) && !w->description && !w->mesh) {
+        w->description = o->file;
+        o->file = NULL;
+    } else if (o->file && w->mesh && !w->materials) {
+        w->material[w->materials++] = o->file;
+        o->file = NULL;
+    }
+    if (w->mesh && w->description)
+        return say(log, RELUME_EINVAL, "expected one of --objects and --mesh; found both");
+    if (w->mesh && !w->materials)
+        return say(log, RELUME_EINVAL, "--mesh: expected a material for it; see --material");
+    if (!w->mesh && (w->materials || w->repeat != 0.0))
+        return say(log, RELUME_EINVAL, "expected --mesh beside --material and --repeat");
+    o->stage = !o->file && (w->mesh || w->description);
+    return RELUME_OK;
+}
+
 relume_status options_parse(struct options *o, int argc, char **argv, const struct relume_log *log)
 {
-    *o = (struct options){.gl = "auto", .vram_mb = 1024};
+    *o = (struct options){.gl = "auto", .vram_mb = 1024, .subject = relume_subject_default()};
     if (asks_for_help(argc, argv))
         return RELUME_OK;
     for (int i = 1; i < argc; i++) {
@@ -519,6 +662,9 @@ relume_status options_parse(struct options *o, int argc, char **argv, const stru
         return say(log, RELUME_EINVAL, "--record script: expected --script EVENTS as well");
     if (!o->frames)
         o->frames = RECORD_FRAMES;
+    const relume_status status = choose_objects(o, log);
+    if (status || o->stage)
+        return status;
     if (!o->file)
         return say(log, RELUME_EINVAL, "expected 'relume-view FILE'; see 'relume-view --help'");
     return RELUME_OK;

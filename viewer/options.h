@@ -9,7 +9,9 @@
 #include <relume/rig.h>
 
 struct options {
-    const char *file;       // NULL: only help was asked for
+    const char *file;  // NULL: only help was asked for, or `stage`
+    bool stage;        // there are objects alone
+    struct session_objects objects;
     const char *offscreen;  // picture to write without a window, or NULL
     const char *script;     // events to play, or NULL
     const char *capture;    // to compare with, or NULL
@@ -26,7 +28,9 @@ struct options {
     const char *gl;   // what offscreen frames are drawn by: a name that context_offscreen knows
     int threads;      // that read files; 0: all cores
     double vram_mb;   // graphics memory for views
-    enum session_relight relight;
+    enum session_relight relight, glare;
+    int glare_size;
+    struct relume_subject subject;
 };
 
 // RELUME_EINVAL with a sentence in `log`: unknown options, wrong values, no FILE. RELUME_EDATA,

@@ -1,5 +1,7 @@
 #include "pack_source.h"
 
+#include <relume/frame.h>
+
 #include <pthread.h>
 #include <stdlib.h>
 
@@ -73,6 +75,22 @@ static relume_status find_surface(struct relume_image *out, void *user, int view
                                 depth.data ? &depth : NULL, info->width, info->height);
     relume_image_destroy(&depth);
     return status;
+}
+
+static relume_status find_places(struct relume_image *out, void *user, int view)
+{
+    struct pack_source *s = user;
+    const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW, .view = view};
+    pthread_mutex_lock(&s->lock);
+    const relume_status status =
+        relume_frame(out, s->pack, &camera, NULL, 0, relume_frame_params(.places = true));
+    pthread_mutex_unlock(&s->lock);
+    return status;
+}
+
+struct depth_source pack_source_places(struct pack_source *source)
+{
+    return (struct depth_source){find_places, source};
 }
 
 struct code_source pack_source_codes(struct pack_source *source)

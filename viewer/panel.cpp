@@ -470,6 +470,70 @@ static bool picture_section(app *app)
     return changed;
 }
 
+static bool choose_mode(gaze *s)
+{
+    bool changed = false;
+    if (!ImGui::BeginCombo("mode", gaze_mode_name(s->mode)))
+        return false;
+    for (int i = 0; i < GAZE_MODES; i++)
+        if (ImGui::Selectable(gaze_mode_name((gaze_mode)i), s->mode == i)) {
+            s->mode = (gaze_mode)i;
+            changed = true;
+        }
+    ImGui::EndCombo();
+    return changed;
+}
+
+static bool parts_row(gaze *s)
+{
+    bool changed = false;
+    for (const gaze_part *p = gaze_parts; p->name; p++) {
+        bool on = !(s->parts_off & p->part);
+        if (p != gaze_parts && p != gaze_parts + 3)
+            ImGui::SameLine();
+        if (ImGui::Checkbox(p->name, &on)) {
+            s->parts_off ^= p->part;
+            changed = true;
+        }
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("%s", p->what);
+    }
+    return changed;
+}
+
+static bool glare_section(app *app, const panel_facts *facts)
+{
+    gaze *s = &app->now.gaze;
+    const double least[] = {0.1, 1e-2, 0}, most[] = {20, 1e5, 0.95};
+    double magnify = gaze_magnify(s), nits = gaze_nits(s);
+    bool changed = false;
+    if (ImGui::Checkbox("glare", &s->on))
+        changed = true;
+    ImGui::SameLine();
+    changed |= ImGui::Checkbox("paused", &s->paused);
+    ImGui::SameLine();
+    changed |= ImGui::Checkbox("sources", &s->sources);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("lights that are in view are drawn as small sources");
+    if (ImGui::SliderScalar("magnify", ImGuiDataType_Double, &magnify, &least[0], &most[0], "%.2f",
+                            ImGuiSliderFlags_Logarithmic)) {
+        s->magnify = magnify;
+        changed = true;
+    }
+    if (ImGui::SliderScalar("cd/m2", ImGuiDataType_Double, &nits, &least[1], &most[1], "%.3g",
+                            ImGuiSliderFlags_Logarithmic)) {
+        s->nits = nits;
+        changed = true;
+    }
+    changed |= ImGui::SliderScalar("squint", ImGuiDataType_Double, &s->squint, &least[2], &most[2],
+                                   "%.2f");
+    changed |= choose_mode(s);
+    changed |= parts_row(s);
+    if (facts->eye)
+        ImGui::TextUnformatted(facts->eye);
+    return changed;
+}
+
 static void histogram_section(const panel_facts *facts, float scale)
 {
     const ImVec2 size(ImGui::GetContentRegionAvail().x, 80 * scale);
@@ -523,6 +587,68 @@ static void environment_rows(panel *panel, app *app, const panel_facts *facts)
         wish_map(app, "", panel->environment);
 }
 
+static bool choose_material(const char *label, const struct relume_objects_info *info,
+                            int *material)
+{
+    char text[128];
+    bool changed = false;
+    std::snprintf(text, sizeof text, "%s (%s)", info->material[*material].name,
+                  info->material[*material].model);
+    if (!ImGui::BeginCombo(label, text))
+        return false;
+    for (int i = 0; i < info->materials; i++) {
+        std::snprintf(text, sizeof text, "%s (%s)##%d", info->material[i].name,
+                      info->material[i].model, i);
+        if (ImGui::Selectable(text, i == *material)) {
+            *material = i;
+            changed = true;
+        }
+    }
+    ImGui::EndCombo();
+    return changed;
+}
+
+// What a material takes on disk and of graphics memory, and the time of its last frame.
+static void material_cost(const struct relume_objects_info *info, const panel_facts *facts,
+                          int material, double ms)
+{
+    const size_t bytes = material < facts->materials ? facts->material_bytes[material] : 0;
+    ImGui::Text("%s: %.2f MB, as drawn %.2f", info->material[material].model,
+                (double)info->material[material].bytes * 1e-6, (double)bytes * 1e-6);
+    ImGui::Text("  %.1f ms a frame", ms);
+}
+
+static bool objects_section(app *app, const panel_facts *facts)
+{
+    static const char *const splits[APP_SPLITS] = {"one", "side by side", "difference"};
+    const struct relume_objects_info *info = relume_objects_info(app->file.objects);
+    bool changed = false;
+    for (int i = 0; i < info->parts; i++) {
+        int material = info->part[i].material;
+        ImGui::PushID(i);
+        if (choose_material(info->part[i].name, info, &material)) {
+            (void)!relume_objects_choose(app->file.objects, i, material);
+            changed = true;
+        }
+        ImGui::PopID();
+    }
+    for (int i = 0; i < APP_SPLITS; i++) {
+        if (i)
+            ImGui::SameLine();
+        const bool chosen = ImGui::RadioButton(splits[i], app->now.split == i);
+        while (chosen && app->now.split != i)
+            changed |= keys_press(app, 'q', false);
+    }
+    if (app->now.split != APP_SPLIT_NONE)
+        changed |= choose_material("other", info, &app->now.other);
+    if (!facts->material_bytes)
+        return changed;
+    material_cost(info, facts, info->part[0].material, facts->objects_ms[0]);
+    if (app->now.split != APP_SPLIT_NONE)
+        material_cost(info, facts, app->now.other, facts->objects_ms[1]);
+    return changed;
+}
+
 // ---------------------------------------------------------------- windows
 
 static bool panel_window(panel *panel, app *app, const panel_facts *facts)
@@ -543,8 +669,12 @@ static bool panel_window(panel *panel, app *app, const panel_facts *facts)
         changed |= lights_section(panel, app);
         environment_rows(panel, app, facts);
     }
+    if (app->file.objects && ImGui::CollapsingHeader("Objects", ImGuiTreeNodeFlags_DefaultOpen))
+        changed |= objects_section(app, facts);
     if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen))
         changed |= picture_section(app);
+    if (ImGui::CollapsingHeader("Glare", app->now.gaze.on ? ImGuiTreeNodeFlags_DefaultOpen : 0))
+        changed |= glare_section(app, facts);
     panel->histogram = ImGui::CollapsingHeader("Histogram");
     if (panel->histogram)
         histogram_section(facts, panel->scale);

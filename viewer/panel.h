@@ -36,6 +36,12 @@ struct panel_facts {
     const char *map_folder;  // of environment maps to choose from, or NULL
     const char *const *map;  // their names, ends with NULL
     const char *map_in_use;  // of the selected light, or NULL
+    // Of objects, else NULL: the graphics memory of each of their first `materials` materials, 0
+    // where it was not shown, and the time that both halves of the last frame took.
+    const size_t *material_bytes;
+    int materials;
+    const double *objects_ms;
+    const char *eye;         // what is known of the eye that looks, or NULL
 };
 // Work through the events and make the triangles of the frame; changes `app` as the user asks.
 // Returns whether the picture changed.

@@ -14,13 +14,26 @@ static const struct shader_source *find_source(const char *name)
     return s;
 }
 
+// The first line says the version; `defines` follow it.
+static void set_source(const struct gl *gl, GLuint shader, const struct shader_source *source,
+                       const char *defines)
+{
+    enum { MOST = 512 };
+    const char *line[MOST + 1];
+    assert(source->lines <= MOST);
+    line[0] = source->line[0];
+    line[1] = defines ? defines : "";
+    memcpy(line + 2, source->line + 1, (source->lines - 1) * sizeof *line);
+    gl->ShaderSource(shader, (GLsizei)source->lines + 1, line, NULL);
+}
+
 static relume_status compile(GLuint *out, const struct gl *gl, GLenum stage, const char *name,
-                             const struct relume_log *log)
+                             const char *defines, const struct relume_log *log)
 {
     const struct shader_source *source = find_source(name);
     GLint done = 0;
     *out = gl->CreateShader(stage);
-    gl->ShaderSource(*out, (GLsizei)source->lines, source->line, NULL);
+    set_source(gl, *out, source, defines);
     gl->CompileShader(*out);
     gl->GetShaderiv(*out, GL_COMPILE_STATUS, &done);
     if (done)
@@ -31,13 +44,15 @@ static relume_status compile(GLuint *out, const struct gl *gl, GLenum stage, con
     return say(log, RELUME_ESYSTEM, "shader %s does not compile; %s", name, text);
 }
 
-static relume_status link_program(struct program *program, const struct gl *gl, GLuint vertex,
-                                  GLuint fragment, const char *name, const struct relume_log *log)
+static relume_status link_program(struct program *program, const struct gl *gl,
+                                  const GLuint stages[2], const char *name,
+                                  const struct relume_log *log)
 {
     GLint done = 0;
     program->id = gl->CreateProgram();
-    gl->AttachShader(program->id, vertex);
-    gl->AttachShader(program->id, fragment);
+    for (int i = 0; i < 2; i++)
+        if (stages[i])
+            gl->AttachShader(program->id, stages[i]);
     gl->LinkProgram(program->id);
     gl->GetProgramiv(program->id, GL_LINK_STATUS, &done);
     if (done)
@@ -48,23 +63,41 @@ static relume_status link_program(struct program *program, const struct gl *gl, 
     return say(log, RELUME_ESYSTEM, "shader %s does not link; %s", name, text);
 }
 
-relume_status program_create_with(struct program *program, const struct gl *gl, const char *vertex,
-                                  const char *fragment, const char *const *uniforms, int n,
-                                  const struct relume_log *log)
+// The stages belong to it.
+static relume_status finish(struct program *program, const struct gl *gl, const GLuint stages[2],
+                            const char *name, const char *const *uniforms, int n,
+                            relume_status status, const struct relume_log *log)
 {
     assert(n <= PROGRAM_UNIFORMS);
     *program = (struct program){0};
-    GLuint stages[2] = {0, 0};
-    relume_status status = compile(&stages[0], gl, GL_VERTEX_SHADER, vertex, log);
     if (!status)
-        status = compile(&stages[1], gl, GL_FRAGMENT_SHADER, fragment, log);
-    if (!status)
-        status = link_program(program, gl, stages[0], stages[1], fragment, log);
+        status = link_program(program, gl, stages, name, log);
     gl->DeleteShader(stages[0]);
     gl->DeleteShader(stages[1]);
     for (int i = 0; !status && i < n; i++)
         program->at[i] = gl->GetUniformLocation(program->id, uniforms[i]);
     return status;
+}
+
+relume_status program_create_with(struct program *program, const struct gl *gl, const char *vertex,
+                                  const char *fragment, const char *const *uniforms, int n,
+                                  const struct relume_log *log)
+{
+    GLuint stages[2] = {0, 0};
+    relume_status status = compile(&stages[0], gl, GL_VERTEX_SHADER, vertex, NULL, log);
+    if (!status)
+        status = compile(&stages[1], gl, GL_FRAGMENT_SHADER, fragment, NULL, log);
+    return finish(program, gl, stages, fragment, uniforms, n, status, log);
+}
+
+relume_status program_create_compute(struct program *program, const struct gl *gl,
+                                     const char *compute, const char *defines,
+                                     const char *const *uniforms, int n,
+                                     const struct relume_log *log)
+{
+    GLuint stages[2] = {0, 0};
+    const relume_status status = compile(&stages[0], gl, GL_COMPUTE_SHADER, compute, defines, log);
+    return finish(program, gl, stages, compute, uniforms, n, status, log);
 }
 
 relume_status program_create(struct program *program, const struct gl *gl, const char *fragment,

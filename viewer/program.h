@@ -5,7 +5,7 @@
 #include "gl.h"
 #include "shaders.h"
 
-enum { PROGRAM_UNIFORMS = 32 };
+enum { PROGRAM_UNIFORMS = 48 };
 
 struct program {
     GLuint id;
@@ -20,6 +20,11 @@ relume_status program_create(struct program *program, const struct gl *gl, const
 relume_status program_create_with(struct program *program, const struct gl *gl, const char *vertex,
                                   const char *fragment, const char *const *uniforms, int n,
                                   const struct relume_log *log);
+// A compute pass ("glare_power.comp"); `defines` (may be NULL) are lines that follow the first.
+relume_status program_create_compute(struct program *program, const struct gl *gl,
+                                     const char *compute, const char *defines,
+                                     const char *const *uniforms, int n,
+                                     const struct relume_log *log);
 void program_destroy(struct program *program, const struct gl *gl);
 
 #endif

@@ -1,6 +1,7 @@
 #include "renderer.h"
 
 #include "lamps.h"
+#include "renderer_parts.h"
 #include "say.h"
 
 #include <relume/tone.h>
@@ -26,13 +27,14 @@ static relume_status create_programs(struct renderer *r)
         {&r->mean, draw_mean_create},
 
         {&r->ball, draw_ball_create},
+        {&r->source, draw_source_create},
         {&r->present, draw_present_create},
     };
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < sizeof list / sizeof *list; i++)
         status = list[i].create(list[i].program, r->gl, r->log);
     if (!status && r->geometry.projection >= RELUME_CYLINDRICAL)
-        status = draw_panorama_create(&r->panorama, r->gl, r->geometry.projection, r->log);
+        status = draw_panorama_create(&r->panorama, r->gl, &r->geometry, r->log);
     return status;
 }
 
@@ -42,12 +44,15 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
                               int views, const struct relume_log *log)
 {
     *r = (struct renderer){.gl = gl, .log = log, .geometry = *geometry, .views = views};
+    glare_begin(&r->glare, gl, log);
     gl->GenVertexArrays(1, &r->vertices);
     r->uv = calloc((size_t)views, sizeof *r->uv);
     if (r->uv && uv)
         memcpy(r->uv, uv, (size_t)views * sizeof *r->uv);
     r->needed = calloc((size_t)views, sizeof *r->needed);
     r->relit = calloc((size_t)views, sizeof *r->relit);
+    r->backdrop =
+        (struct lamp_scene){.source = *source, .uv = (const double(*)[2])r->uv, .views = views};
     relume_status status = r->uv && r->needed && r->relit ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = relighter_create(&r->relighter, gl, source, views, log);
@@ -94,14 +99,18 @@ void renderer_destroy(struct renderer *r)
         return;
     struct program *const programs[] = {&r->picture, &r->slab,        &r->slab_depth, &r->slab_lens,
                                         &r->slabs,   &r->slabs_depth, &r->mean,       &r->panorama,
-                                        &r->ball,    &r->present};
+                                        &r->ball,    &r->source,      &r->present};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         program_destroy(programs[i], r->gl);
     relighter_destroy(&r->relighter);
     enhancer_destroy(&r->enhancer);
+    glare_end(&r->glare);
+    lamp_scene_forget(&r->backdrop);
     target_destroy(&r->frame, r->gl);
     target_destroy(&r->small, r->gl);
     target_destroy(&r->sum, r->gl);
+    target_destroy(&r->pinholes, r->gl);
+    renderer_objects_destroy(r);
     if (r->depths.views)
         depths_destroy(&r->depths);
     r->gl->DeleteVertexArrays(1, &r->vertices);
@@ -115,8 +124,8 @@ void renderer_destroy(struct renderer *r)
 
 // ---------------------------------------------------------------- framings
 
-static relume_status prepare_target(struct target *target, const struct renderer *r, int width,
-                                    int height)
+relume_status renderer_prepare(struct target *target, const struct renderer *r, int width,
+                               int height)
 {
     if (target->width == width && target->height == height)
         return RELUME_OK;
@@ -129,9 +138,18 @@ static void mark_view(struct renderer *r, const struct app *app)
     r->needed[app->now.camera.view] = true;
 }
 
+// Of the pinholes of a lens, while something moves.
+enum { MOVING_SHARE = 8 };
+
 static double focus_of(const struct app *app)
 {
-    return app->now.focus_z - app->file.geometry.st_z;
+    return app->now.focus_z - (app->file.around ? 0 : app->file.geometry.st_z);
+}
+
+static int picture_width(const struct app *app)
+{
+    const struct app_rectangle p = app_picture(app);
+    return (int)lround(p.right - p.left);
 }
 
 static struct relume_view_params view_params(const struct app *app)
@@ -145,10 +163,10 @@ static struct relume_view_params view_params(const struct app *app)
 
 static void mark_around(struct renderer *r, const struct app *app)
 {
-    const struct relume_view_params params = {.interpolation = app->now.interpolation};
+    const struct relume_view_params params = view_params(app);
     struct relume_window window;
     if (app_window(app, &window))
-        (void)relume_slabs_needs(r->needed, r->around, &window, &params);
+        (void)relume_slabs_needs(r->needed, r->around, &window, picture_width(app), &params);
 }
 
 static void mark_eye(struct renderer *r, const struct app *app)
@@ -186,14 +204,14 @@ static bool takes_depth(const struct renderer *r, const struct app *app)
     int views = 0;
     for (int k = 0; k < r->views; k++)
         views += r->needed[k];
-    return r->depths.views && (views > 1 || r->around) && !takes_lens(app) &&
+    return r->depths.views && (r->around || (views > 1 && !takes_lens(app))) &&
            (i == RELUME_INTERPOLATE_DEFAULT || i == RELUME_INTERPOLATE_DEPTH);
 }
 
 static relume_status draw_lens(struct renderer *r, const struct app *app, const struct place *place,
                                const struct slab_seen *seen)
 {
-    relume_status status = prepare_target(&r->sum, r, place->width, place->height);
+    relume_status status = renderer_prepare(&r->sum, r, place->width, place->height);
     if (status)
         return status;
     target_begin(&r->sum, r->gl);
@@ -203,28 +221,67 @@ static relume_status draw_lens(struct renderer *r, const struct app *app, const 
     return RELUME_OK;
 }
 
-static relume_status draw_around(struct renderer *r, const struct app *app,
-                                 const struct place *place)
+// The mean of all slabs through one window, added to what `onto` holds.
+static void add_around(struct renderer *r, const struct app *app, const struct place *place,
+                       const struct target *onto, const struct relume_window *window, bool by_depth)
 {
-    struct relume_window window;
-    struct slabs_seen seen = {.slabs = r->around, .window = &window, .views = r->relit};
-    double range[2];
-    relume_status status = prepare_target(&r->sum, r, place->width, place->height);
-    const bool by_depth = takes_depth(r, app);
-    if (!status && by_depth)
-        status = depths_use(&r->depths, r->needed, range);
-    if (status || !app_window(app, &window))
-        return status;
-    seen.disparity = by_depth ? r->depths.texture : NULL;
-    seen.range = (const double(*)[2])r->depths.range;
+    const struct slabs_seen seen = {
+        .slabs = r->around,
+        .window = window,
+        .views = r->relit,
+        .disparity = by_depth ? r->depths.texture : NULL,
+        .range = (const double(*)[2])r->depths.range,
+    };
     target_begin(&r->sum, r->gl);
     if (by_depth)
         draw_slabs_depth(&r->slabs_depth, r->gl, place, &seen);
     else
         draw_slabs(&r->slabs, r->gl, place, &seen,
                    app->now.interpolation == RELUME_INTERPOLATE_CONSTANT);
-    target_resume(&r->frame, r->gl);
+    target_resume(onto, r->gl);
+    r->gl->Enable(GL_BLEND);
     draw_mean(&r->mean, r->gl, place, &r->sum);
+    r->gl->Disable(GL_BLEND);
+}
+
+// Twin of relume_slabs_frame: the mean over the pinholes that show anything.
+static relume_status draw_around_lens(struct renderer *r, const struct app *app,
+                                      const struct place *place, const struct relume_window *window,
+                                      bool by_depth)
+{
+    const double aperture = app->now.aperture, focus = focus_of(app);
+    const int width = picture_width(app);
+    struct place plain = *place;
+    const relume_status status = renderer_prepare(&r->pinholes, r, place->width, place->height);
+    if (status || !relume_lens_fits(window, aperture, focus))
+        return status;
+    plain.exposure = 1;
+    target_begin(&r->pinholes, r->gl);
+    const int all = relume_lens_points(window, aperture, focus, width);
+    const int n = app_moves(app) ? (all + MOVING_SHARE - 1) / MOVING_SHARE : all;
+    for (int i = 0; i < n; i++) {
+        const struct relume_window from = relume_lens_window(window, aperture, focus, i, n);
+        add_around(r, app, &plain, &r->pinholes, &from, by_depth);
+    }
+    target_resume(&r->frame, r->gl);
+    draw_mean(&r->mean, r->gl, place, &r->pinholes);
+    return RELUME_OK;
+}
+
+static relume_status draw_around(struct renderer *r, const struct app *app,
+                                 const struct place *place)
+{
+    struct relume_window window;
+    double range[2];
+    relume_status status = renderer_prepare(&r->sum, r, place->width, place->height);
+    const bool by_depth = takes_depth(r, app);
+    if (!status && by_depth)
+        status = depths_use(&r->depths, r->needed, range);
+    if (status || !app_window(app, &window))
+        return status;
+    if (takes_lens(app))
+        return draw_around_lens(r, app, place, &window, by_depth);
+    add_around(r, app, place, &r->frame, &window, by_depth);
     return RELUME_OK;
 }
 
@@ -326,16 +383,10 @@ static relume_status need_lights(struct renderer *r, int n)
     return RELUME_OK;
 }
 
-static relume_status relight_needed(struct renderer *r, const struct app *app)
+relume_status renderer_relight_views(struct renderer *r, const struct app *app,
+                                     const struct relume_light *lights, int count)
 {
-    const struct framing *framing = &framings[app->now.camera.framing];
-    memset(r->needed, 0, (size_t)r->views * sizeof *r->needed);
-    framing->mark(r, app);
-    relume_status status = need_lights(r, app->now.lights);
-    if (status)
-        return status;
-    const int count = lamps_shining(&app->now, r->light);
-    status = relighter_begin(&r->relighter, r->light, count);
+    relume_status status = relighter_begin(&r->relighter, lights, count);
     relume_status (*const look_up)(const struct target **, struct relighter *, int) =
         app->now.pass == RELUME_PASS_COLOUR ? relighter_view : relighter_wait;  // no stand-ins
     for (int i = 0; !status && i < r->views; i++) {
@@ -344,9 +395,54 @@ static relume_status relight_needed(struct renderer *r, const struct app *app)
             status = look_up(&r->relit[i], &r->relighter, i);
         if (!status && r->needed[i] && app->now.pass != RELUME_PASS_COLOUR)
             status = enhancer_view(&r->relit[i], &r->enhancer, i, r->relit[i], app->now.pass,
-                                   r->light, count);
+                                   lights, count);
     }
     return status ? status : stand_in(r);
+}
+
+relume_status renderer_frame(struct renderer *r, const struct app *app, const struct place *place)
+{
+    r->gl->BindVertexArray(r->vertices);
+    target_begin(&r->frame, r->gl);
+    return framings[app->now.camera.framing].draw(r, app, place);
+}
+
+// The lights that shine, and what the frame needs.
+static relume_status prepare(struct renderer *r, const struct app *app)
+{
+    relume_status status = renderer_prepare(&r->frame, r, app->width, app->height);
+    memset(r->needed, 0, (size_t)r->views * sizeof *r->needed);
+    if (!r->stage)
+        framings[app->now.camera.framing].mark(r, app);
+    if (!status)
+        status = need_lights(r, app->now.lights);
+    r->lights = status ? 0 : lamps_shining(&app->now, r->light);
+    return status;
+}
+
+// Normals and the like are for looking up, not at.
+static relume_status see(struct renderer *r, const struct app *app, double exposure)
+{
+    r->shown = &r->frame;
+    if (!app->now.gaze.on || app->now.pass != RELUME_PASS_COLOUR)
+        return RELUME_OK;
+    const relume_status status = glare_see(&r->glare, &r->frame, app, exposure);
+    r->shown = &r->glare.seen;
+    return status;
+}
+
+static relume_status draw_lights_in_view(struct renderer *r, const struct app *app,
+                                         const struct place *place)
+{
+    if (!app->now.gaze.sources || app->now.pass != RELUME_PASS_COLOUR)
+        return RELUME_OK;
+    struct lamp_seen *sources = malloc(LAMPS_SEEN_MOST * sizeof *sources);
+    if (!sources)
+        return RELUME_ENOMEM;
+    const int n = lamps_seen(sources, app, r->light, r->lights, &r->backdrop);
+    draw_sources(&r->source, r->gl, place, sources, n);
+    free(sources);
+    return RELUME_OK;
 }
 
 relume_status renderer_draw(struct renderer *r, const struct app *app)
@@ -357,16 +453,21 @@ relume_status renderer_draw(struct renderer *r, const struct app *app)
         .picture = app_picture(app),
         .exposure = (float)exp2(app_exposure_ev(app)),
     };
-    relume_status status = prepare_target(&r->frame, r, app->width, app->height);
+    relume_status status = prepare(r, app);
+    if (!status && r->things.gl)
+        status = renderer_draw_objects(r, app, &place, r->light, r->lights);
+    else if (!status)
+        status = renderer_relight_views(r, app, r->light, r->lights);
+    if (!status && !r->things.gl)
+        status = renderer_frame(r, app, &place);
     if (!status)
-        status = relight_needed(r, app);
+        status = draw_lights_in_view(r, app, &place);
+    if (!status)
+        status = see(r, app, (double)place.exposure);
     if (status)
         return status;
+    target_resume(r->shown, r->gl);
     r->gl->BindVertexArray(r->vertices);
-    target_begin(&r->frame, r->gl);
-    status = framings[app->now.camera.framing].draw(r, app, &place);
-    if (status)
-        return status;
     if (app->now.ball)
         draw_ball(&r->ball, r->gl, &place, app_seen_light(app, app->now.selected),
                   app->now.light[app->now.selected].rgb);
@@ -385,7 +486,7 @@ bool renderer_is_pending(const struct renderer *r)
 
 relume_status renderer_read(struct relume_image *out, const struct renderer *r)
 {
-    return target_read(out, &r->frame, r->gl);
+    return target_read(out, r->shown, r->gl);
 }
 
 relume_status renderer_meter(double *ev, struct renderer *r)
@@ -396,7 +497,7 @@ relume_status renderer_meter(double *ev, struct renderer *r)
     const struct place place = {width, height, {0, 0, width, height}, 1};
     struct relume_image image;
     *ev = 0;
-    relume_status status = prepare_target(&r->small, r, width, height);
+    relume_status status = renderer_prepare(&r->small, r, width, height);
     if (status)
         return status;
     r->gl->BindVertexArray(r->vertices);
@@ -412,5 +513,5 @@ relume_status renderer_meter(double *ev, struct renderer *r)
 void renderer_present(const struct renderer *r, const struct app *app, GLuint framebuffer)
 {
     r->gl->BindVertexArray(r->vertices);
-    draw_present(&r->present, r->gl, &r->frame, app->now.tone, app->now.white, framebuffer);
+    draw_present(&r->present, r->gl, r->shown, app->now.tone, app->now.white, framebuffer);
 }

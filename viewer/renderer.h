@@ -6,20 +6,25 @@
 #include "depths.h"
 #include "draw.h"
 #include "enhancer.h"
+#include "glare.h"
 #include "relighter.h"
+#include "things.h"
 
 struct renderer {
     const struct gl *gl;
     const struct relume_log *log;
     struct relighter relighter;
     struct enhancer enhancer;
+    struct glare glare;
     struct program picture, slab, slab_depth, slab_lens, slabs, slabs_depth, mean, panorama, ball,
-        present;
+        source, present;
     GLuint vertices;
     struct target frame;
-    struct target small;  // of the frame, to meter
-    struct target sum;    // of an aperture's cameras, of several slabs; made when first needed
-    relume_slab *grid;    // NULL: not a slab, or several
+    const struct target *shown;  // `frame`, or what an eye sees of it; NULL: nothing drawn yet
+    struct target small;         // of the frame, to meter
+    struct target sum;       // of an aperture's cameras, of several slabs; made when first needed
+    struct target pinholes;  // of a lens before several slabs, their sum; likewise
+    relume_slab *grid;       // NULL: not a slab, or several
     const relume_slabs *around;  // several; else NULL
     const int *slab_of;          // of several: [views]
     struct depths depths;        // empty: not a slab, or without depth
@@ -29,7 +34,15 @@ struct renderer {
     bool *needed;                 // [views]
     const struct target **relit;  // [views]; NULL where not needed
     struct relume_light *light;   // that shine; room for `room`
-    int room;
+    int lights, room;
+    struct things things;  // objects; empty: none
+    bool stage;            // there is nothing but objects
+    // Of a scene with objects: where it is, what one light shows of it, and of each view what its
+    // pixels see; made when first needed.
+    struct depth_source place_source;
+    struct target scene, lit, *place;
+    double things_ms[2];         // what the objects took in the last frame, and in another material
+    struct lamp_scene backdrop;  // that hides lights
 };
 
 // `uv` [views] places the cameras of a slab; NULL: there is none, or renderer_use_slabs tells.
@@ -49,6 +62,12 @@ relume_status renderer_use_depth(struct renderer *renderer, const struct depth_s
 
 // A capture of the file to compare with, for RELUME_PASS_DIFFERENCE; it must outlive the renderer.
 void renderer_use_capture(struct renderer *renderer, const relume_capture *capture);
+
+// Objects covered with measured materials, which must outlive the renderer: into the scene whose
+// views' places `places` tells (three channels), or alone on a stage when that is NULL.
+// RELUME_ESYSTEM, RELUME_ENOMEM.
+relume_status renderer_use_objects(struct renderer *renderer, relume_objects *objects,
+                                   const struct depth_source *places);
 
 // Draw the frame that `app` describes, linear, into renderer->frame. After renderer_stream, views
 // that are still being read are stood in for by their nearest neighbours, and renderer_is_pending

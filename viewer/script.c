@@ -320,6 +320,14 @@ static relume_status play_open(struct script *s)
     return with_file(s, s->host.open, "open FILE");
 }
 
+static relume_status play_glare(struct script *s)
+{
+    char copy[LINE];
+    const char *words = take_rest(s, copy), *expected = "glare on|off|...";
+    const relume_status status = s->host.glare(s->host.user, words ? words : "", &expected);
+    return status ? wrong(s, expected) : RELUME_OK;
+}
+
 static relume_status play_frame(struct script *s)
 {
     return with_path(s, s->host.frame, "frame FILE");
@@ -354,6 +362,7 @@ static const struct word {
     {"let", play_let, false},     {"type", play_type, true},  {"light", play_light, true},
     {"add", play_add, true},      {"rig", play_rig, true},    {"wait", play_wait, false},
     {"frame", play_frame, true},  {"shot", play_shot, true},  {"open", play_open, true},
+    {"glare", play_glare, true},
 };
 
 static relume_status play_line(struct script *s)
@@ -369,7 +378,7 @@ static relume_status play_line(struct script *s)
         return status || words[i].whole || at_end(s) ? status : wrong(s, "the end of the line");
     }
     return wrong(s, "size, drag, click, press, move, release, wheel, key, hold, let, type, light, "
-                    "add, rig, open, wait, frame or shot");
+                    "add, rig, open, glare, wait, frame or shot");
 }
 
 relume_status script_open(struct script **out, const char *path, const struct script_host *host)

@@ -129,6 +129,7 @@ static void close_file(struct session *s)
     pack_source_destroy(&s->source);
     relume_pack_destroy(&s->pack);
     relume_slabs_destroy(&s->around);
+    relume_slabs_destroy(&s->stage);
 }
 
 relume_status session_open(struct session *s, const char *path, const struct app_state *start,
@@ -137,6 +138,8 @@ relume_status session_open(struct session *s, const char *path, const struct app
     relume_pack *pack;
     relume_slabs *around;
     struct app app;
+    if (!path)
+        return session_open_stage(s, start);
     relume_status status =
         relume_pack_open(&pack, path, relume_pack_params(.log = s->log, .threads = s->threads));
     if (status)
@@ -144,6 +147,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
     struct app_file file = describe(pack);
     status = find_slabs(&around, pack, relume_aim_given(&start->camera.aim), s->log);
     file.around = around;
+    file.objects = s->objects;
     if (!status)
         status = app_start(&app, &file, start, look_ahead, s->log);
     if (!status)
@@ -171,6 +175,8 @@ relume_status session_open(struct session *s, const char *path, const struct app
 
 static relume_status make_renderer(struct session *s)
 {
+    if (!s->pack)
+        return session_make_stage(s);
     const struct relume_pack_info *info = relume_pack_info(s->pack);
     relume_status status = pack_source_create(&s->source, s->pack);
     if (status)
@@ -187,10 +193,17 @@ static relume_status make_renderer(struct session *s)
     s->renderer.relighter.software.threads = s->threads;
     s->renderer.relighter.by_library =
         s->relight == SESSION_LIBRARY || (s->relight == SESSION_AUTO && s->gl.software);
+    s->renderer.glare.subject = s->subject;
+    s->renderer.glare.threads = s->threads;
+    s->renderer.glare.size = s->glare_size;
+    s->renderer.glare.by_library =
+        s->glare == SESSION_LIBRARY || (s->glare == SESSION_AUTO && s->gl.software);
     renderer_use_capture(&s->renderer, s->capture);
     if (info->has_depth)
         status = renderer_use_depth(&s->renderer, &depth);
-    return status || !s->streams ? status : renderer_stream(&s->renderer);
+    if (!status && s->objects)
+        status = session_add_objects(s);
+    return status || !s->streams || s->objects ? status : renderer_stream(&s->renderer);
 }
 
 static relume_status make_panel(struct session *s, double scale)
@@ -228,6 +241,7 @@ static relume_status replace(struct session *s, const char *path, bool *opened)
         .auto_exposure = was.now.auto_exposure,
         .tone = was.now.tone,
         .white = was.now.white,
+        .gaze = was.now.gaze,
     };
     *opened = !session_open(s, path, &start, true);
     if (!*opened)
@@ -266,6 +280,7 @@ void session_close(struct session *s)
     draw_panel_destroy(&s->drawing, &s->gl);
     panel_destroy(&s->panel);
     close_file(s);
+    relume_objects_destroy(&s->objects);
     if (s->context)
         s->backend->close(s->context);
     relume_capture_destroy(&s->capture);

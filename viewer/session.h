@@ -10,6 +10,7 @@
 #include "record.h"
 #include "renderer.h"
 
+#include <relume/object.h>
 #include <relume/pack.h>
 #include <relume/rig.h>
 
@@ -23,15 +24,27 @@ struct recording {
     struct record *record;  // NULL: none
     enum record_kind kind;
     int frame, frames;
+    int posed;  // the frame that was drawn last: a picture that is drawn again is no later
     struct app_state before;  // the recording
     char path[SESSION_TEXT + 16];
+};
+
+// Objects that are asked for: a description, or a mesh and its materials.
+enum { SESSION_MATERIALS = 32 };
+struct session_objects {
+    const char *description, *mesh;  // NULL: none
+    const char *material[SESSION_MATERIALS];
+    int materials;
+    double repeat;  // 0: 1
 };
 
 struct session {
     const struct context_backend *backend;
     void *context;
     struct gl gl;
-    relume_pack *pack;
+    relume_pack *pack;           // NULL: there are objects alone, on a stage
+    relume_objects *objects;     // or NULL
+    relume_slabs *stage;         // what the eye goes around there
     relume_slabs *around;        // of it, where there are several
     struct pack_source *source;  // of it, for the renderer and its threads
     relume_capture *capture;     // of the file, to compare with, or NULL
@@ -46,13 +59,17 @@ struct session {
     struct record *film;   // of a script as it is played, or NULL
     struct target screen;  // of shots without a window
     float histogram[256][3];
-    char name[SESSION_TEXT];  // of the file, for the title
+    char name[SESSION_TEXT];                   // of the file, for the title
+    size_t material_bytes[SESSION_MATERIALS];  // of graphics memory
     char line[SESSION_LINES][SESSION_TEXT];
     const char *lines[SESSION_LINES + 1];  // what the panel says of the file
     char message[SESSION_TEXT];            // what the panel says last
     int threads;                           // that read files
     size_t vram_bytes;                     // for views
     enum session_relight relight;
+    enum session_relight glare;     // by passes or by the library, likewise
+    int glare_size;                 // as glare.size
+    const struct relume_subject *subject;  // whose eye looks; NULL: the default one
     bool streams;  // frames are drawn with the views that are there
     const struct relume_log *log;
 };
@@ -62,6 +79,14 @@ relume_status session_open(struct session *s, const char *path, const struct app
                            bool look_ahead);
 // A capture to compare the file with, before session_open. RELUME_EDATA, RELUME_ENOMEM.
 relume_status session_compare(struct session *s, const char *capture);
+// Objects to show, before session_open: in the scene of the file, or alone when its path is NULL.
+// What relume_objects_open says.
+relume_status session_take_objects(struct session *s, const struct session_objects *wanted);
+// For session_open: the app of a stage.
+relume_status session_open_stage(struct session *s, const struct app_state *start);
+// The renderer of a stage, and objects in the renderer of a file. RELUME_ESYSTEM, RELUME_ENOMEM.
+relume_status session_make_stage(struct session *s);
+relume_status session_add_objects(struct session *s);
 // Get OpenGL and make what draws. RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EDATA.
 relume_status session_start(struct session *s, const struct context_backend *backend, int width,
                             int height);

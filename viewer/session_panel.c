@@ -73,12 +73,27 @@ static relume_status list_maps(struct session *s)
     return maps_list(&s->maps, folder);
 }
 
+static const char *describe_eye(char *text, size_t size, const struct glare *glare)
+{
+    if (!glare->eye)
+        return NULL;
+    const struct relume_eye_state *eye = relume_eye_state(glare->eye);
+    snprintf(text, size, "pupil %.2f mm, field %.3g cd/m2\n%.1f s, by %s", eye->pupil_mm,
+             eye->luminance, eye->time_s, glare->passes ? "passes" : "the library");
+    return text;
+}
+
 relume_status session_build_panel(struct session *s, bool histogram)
 {
+    char eye[160];
     bool plot = false;
-    relume_status status = s->app.inspect ? inspect(s, &plot) : RELUME_OK;
+    relume_status status = s->app.inspect && s->pack ? inspect(s, &plot) : RELUME_OK;
     if (!status)
         status = list_maps(s);
+    for (int i = 0; s->renderer.things.gl && i < relume_objects_info(s->objects)->materials &&
+                    i < SESSION_MATERIALS;
+         i++)
+        s->material_bytes[i] = things_bytes(&s->renderer.things, i);
     const struct panel_facts facts = {
         .file = s->name,
         .line = s->lines,
@@ -89,6 +104,10 @@ relume_status session_build_panel(struct session *s, bool histogram)
         .map_folder = s->maps.folder,
         .map = (const char *const *)s->maps.name,
         .map_in_use = file_name(session_map_in_use(s)),
+        .material_bytes = s->objects ? s->material_bytes : NULL,
+        .materials = SESSION_MATERIALS,
+        .objects_ms = s->renderer.things_ms,
+        .eye = describe_eye(eye, sizeof eye, &s->renderer.glare),
     };
     if (!status)
         (void)panel_build(s->panel, &s->app, &facts);

@@ -10,7 +10,7 @@ static bool sees_something(const struct session *s)
     for (int i = 0; i < s->renderer.views; i++)
         if (s->renderer.needed[i])
             return true;
-    return false;
+    return s->renderer.stage;
 }
 
 static relume_status save(struct session *s, struct relume_image *image, const char *path)

@@ -69,6 +69,9 @@ relume_status session_record_step(struct session *s)
 {
     struct recording *r = &s->recording;
     struct relume_image image = {0};
+    if (r->frame != r->posed)
+        app_live(&s->app, 1.0 / RECORD_RATE);
+    r->posed = r->frame;
     relume_status status = record_pose(&s->app, r->kind, (double)r->frame / r->frames, s->log);
     if (!status)
         status = renderer_draw(&s->renderer, &s->app);

@@ -55,6 +55,9 @@ struct relume_dome_blend {
     double rim;  // z asked for over z of `direction`: below 1 only below the rim, never below 0
 };
 RELUME_API struct relume_dome_blend relume_dome_at(const relume_dome *dome, struct relume_vec3 d);
+// The triangles of directions that cover the sphere, `*n` of them, for clients that look directions
+// up themselves: corner n is the nadir, which stands for no direction. They belong to the dome.
+RELUME_API const int (*relume_dome_triangles(const relume_dome *dome, int *n))[3];
 
 // ---------------------------------------------------------------- the measured values
 
@@ -122,6 +125,11 @@ RELUME_RESULT relume_status relume_btf_halve(relume_btf **out, const relume_btf 
 RELUME_API void relume_btf_evaluate(const relume_btf *btf, int x, int y, struct relume_vec3 view,
                                     struct relume_vec3 light, float rgb[3]);
 
+// The value at (x, y) in texels from the upper left corner (centres at +0.5) of a sample that is
+// repeated without end: bilinear, or of the nearest texel.
+RELUME_API void relume_btf_sample(const relume_btf *btf, double x, double y, bool bilinear,
+                                  struct relume_vec3 view, struct relume_vec3 light, float rgb[3]);
+
 // ---------------------------------------------------------------- models
 
 // A way to compress a BTF. Constant; a NULL-terminated list of all is relume_btf_models.
@@ -133,14 +141,17 @@ RELUME_API const char *relume_btf_model_summary(const struct relume_btf_model *m
 
 struct relume_btf_fit_params {  // zero in a field means its default
     const struct relume_log *log;
-    int clusters;    // lpca 32, rfnlc 1024; at most one a texel, [1, 65536] (lpca: 256)
-    int components;  // vpca 4, lpca 8, fmf 100; [1, 256]
+    int clusters;    // lpca 32, cmf 512, rfnlc 1024; at most one a texel, [1, 65536] (lpca: 256)
+    int components;  // vpca 4, lpca 8, fmf 100; [1, 256]; qmf: at most, 512; [1, 1024]
     int lobes;       // rfnl, rfnlc, laf, slaf: 2; [1, 4]
     uint64_t seed;   // equal seeds give equal bytes, whatever the thread count
     int threads;     // default: all cores
     // Levels of detail: each is fitted to means of 2 x 2 texels of the level before, with a quarter
     // of its clusters. Default 1: the BTF alone; -1: down to one texel.
     int levels;
+    // qmf: bytes measured over bytes of the model, at least where one component allows; 200;
+    // [1, 1e6]
+    double ratio;
 };
 #define relume_btf_fit_params(...) (&(const struct relume_btf_fit_params){__VA_ARGS__})
 
@@ -173,6 +184,16 @@ struct relume_btf_fitted_info {
 };
 RELUME_API struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *fitted);
 
+// What a graphics processor has to do for a pixel between the measured directions (2003 paper,
+// Tab. 3): vector operations (of up to four numbers; a power counts as one) and texture fetches (up
+// to four numbers or 16 bytes of one place, bilinear ones as one). Looking up which directions
+// stand for one costs two fetches, from cube maps (thesis, chapter 9).
+struct relume_btf_cost {
+    int ops, fetches;              // once
+    int light_ops, light_fetches;  // and for each light
+};
+RELUME_API struct relume_btf_cost relume_btf_fitted_cost(const relume_btf_fitted *fitted);
+
 // The measured values as a model that is exact, for what takes models. Nothing is copied: the BTF
 // must outlive it; it cannot be saved. RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_as_model(relume_btf_fitted **out, const relume_btf *btf,
@@ -186,6 +207,29 @@ RELUME_API const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fit
 RELUME_API void relume_btf_fitted_evaluate(const relume_btf_fitted *fitted, int x, int y,
                                            struct relume_vec3 view, struct relume_vec3 light,
                                            float rgb[3]);
+// The same question as relume_btf_sample.
+RELUME_API void relume_btf_fitted_sample(const relume_btf_fitted *fitted, double x, double y,
+                                         bool bilinear, struct relume_vec3 view,
+                                         struct relume_vec3 light, float rgb[3]);
+
+// What a model keeps, for clients that evaluate it themselves: the arrays of its folder
+// (docs/btf.md). Pointers belong to the model.
+struct relume_btf_array {
+    const char *name;
+    enum { RELUME_BTF_U8, RELUME_BTF_U16, RELUME_BTF_HALF, RELUME_BTF_FLOAT, RELUME_BTF_U32 } kind;
+    int dims;
+    size_t shape[5];
+    const void *data;
+};
+// Array number `i`; false when there are fewer.
+RELUME_API bool relume_btf_fitted_array(struct relume_btf_array *out,
+                                        const relume_btf_fitted *fitted, int i);
+struct relume_btf_directions {
+    const struct relume_vec3 *view, *light;  // as many as relume_btf_fitted_info says
+    bool without_cosine;                     // as relume_btf_info
+};
+RELUME_API struct relume_btf_directions relume_btf_fitted_directions(
+    const relume_btf_fitted *fitted);
 
 // How far a model is from a BTF of as many texels (its directions may be others).
 struct relume_btf_error {

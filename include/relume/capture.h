@@ -54,8 +54,13 @@ struct relume_geometry {
     double uv_z, st_z;
     double st_min[2], st_max[2];
     struct relume_pose pose;
-    // cylindrical: the tangents of the lowest and highest elevation
+    // cylindrical: the tangents of the lowest and highest elevation, and the cylinder's end discs:
+    // below its rows the image goes on by `disc` rows, which hold two squares of that side, at the
+    // left the disc at the height v_max, beside it the one at v_min. Each is seen from the eye,
+    // touches the borders of its square, right = direction x up, up is +z for the upper, -z for the
+    // lower one. What lies beside the discs is no part of the picture. 0: no discs.
     double v_min, v_max;
+    int disc;
     // panoramas: the eye
     struct relume_vec3 center;
 };
@@ -63,6 +68,13 @@ struct relume_geometry {
 // The geometry that a manifest without one implies for images of this size.
 RELUME_API struct relume_geometry relume_geometry_default(enum relume_projection projection,
                                                           int width, int height);
+
+// Whether such a cylinder with discs can be: v_min < 0 < v_max, squares that fit, rows above them.
+// True of everything without discs.
+RELUME_API bool relume_geometry_fits(const struct relume_geometry *geometry, int width, int height);
+// False for pixels whose centres lie beside a cylinder's discs.
+RELUME_API bool relume_geometry_shows(const struct relume_geometry *geometry, int width, int height,
+                                      int column, int row);
 
 struct relume_manifest_view {
     double uv[2];         // slab: where the camera stands on the uv plane
@@ -103,6 +115,9 @@ struct relume_capture_params {
     bool repair;  // tables replace pixels that hold NaN or infinity instead of failing: by those
                   // of the same place under the three nearest lights where it is whole, weighted
                   // by 1 / angle; black where there is none
+    double assume_depth;  // near lights: where a view has no depth its surface is so far from the
+                          // eye, world units; default: it lies on the plane z = 0 (planar), on the
+                          // st plane (slabs), or not near at all (panoramas)
     size_t keep_bytes;  // images of 8 bits that a table has read stay decoded in memory up to this
                         // many bytes, so that later tables of the view are cheap; default: none
 };
@@ -150,6 +165,7 @@ struct relume_table_params {
     const struct relume_log *log;
     struct relume_transfer display;  // values are coded by this curve; default: linear light
     int threads;                     // default: all cores
+    bool as_seen;  // near lights: values as each pixel sees them, only fall-off is divided out
 };
 #define relume_table_params(...) (&(const struct relume_table_params){__VA_ARGS__})
 
@@ -157,10 +173,28 @@ struct relume_table_params {
 RELUME_RESULT relume_status relume_table_open(relume_table **out, const relume_capture *capture,
                                               int view, const struct relume_table_params *params);
 // The next `rows` rows of every light: out[light][row][x][rgb], light intensity divided out. Where
-// lights are near (positions; planar views, slabs with depth) values are those under distant lights
-// from the manifest's directions.
-// Asking for more rows than are left is RELUME_EINVAL.
+// lights are near (positions; planar views, slabs, spheres and cylinders with depth) values are
+// those under distant lights from the manifest's directions. Asking for more rows than are left is
+// RELUME_EINVAL.
 RELUME_RESULT relume_status relume_table_read(relume_table *table, int rows, float *out);
+// The same, and in `seen`, of the same size, what near lights really show at each pixel: fall-off
+// is divided out, directions are the pixel's own. Where lights are distant both are the same.
+RELUME_RESULT relume_status relume_table_read_seen(relume_table *table, int rows, float *out,
+                                                   float *seen);
+// Whether the table's lights are near.
+RELUME_API bool relume_table_is_near(const relume_table *table);
+// Unit directions to the lights, from where the surface lies at a place of the picture (pixel
+// centres at + 0.5), the mean over `reach` pixels around it: direction[lights].
+RELUME_API void relume_table_directions(const relume_table *table, double x, double y, int reach,
+                                        struct relume_vec3 *direction);
+// The next `rows` rows, at most RELUME_TABLE_ROWS, kept inside the table, 8-bit photographs as they
+// are: relume_table_planes then gives what relume_table_read would.
+enum { RELUME_TABLE_ROWS = 16 };
+RELUME_RESULT relume_status relume_table_fetch(relume_table *table, int rows);
+// `count` pixels from `first` on of the rows fetched last, under one light:
+// out[channel * stride + pixel]. Thread-safety: any number of threads between fetches.
+RELUME_API void relume_table_planes(const relume_table *table, int light, size_t first,
+                                    size_t count, float *out, size_t stride);
 // Pixels of `light` that have been repaired in the rows read so far.
 RELUME_API size_t relume_table_repaired(const relume_table *table, int light);
 RELUME_API void relume_table_destroy(relume_table **table);

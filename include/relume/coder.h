@@ -87,6 +87,7 @@ struct relume_coder_params {
                   // `samples` predict each other best
     double parameter[4];                   // of the interpolant; 0 means its default
     const struct relume_samples *samples;  // what a learned basis and `choose` learn from
+    int threads;                           // while learning; default: all cores
     bool decode;             // only weights will be asked for: no encoding map is made
     const float *transform;  // decoding: stored functions = transform x raw functions, [K][raw], or
                              // [3][K][raw] for learned bases. Default: the identity
@@ -122,6 +123,19 @@ struct relume_coder_info {
                            // lights, 1 = white; else 0
 };
 RELUME_API const struct relume_coder_info *relume_coder_info(const relume_coder *coder);
+
+// The triangles of `delaunay`: in a direction d = sum of w_i p_i over the corners p_i of its
+// triangle, all w_i >= 0, functions are linear in w over the corners that are lights, w made to sum
+// to 1 over these. Points from the number of lights on fill gaps between lights and have no value.
+// Pointers belong to the coder.
+struct relume_coder_triangles {
+    int points, triangles;
+    const struct relume_vec3 *point;  // [points], unit, in the pole's frame
+    const int (*corner)[3];           // [triangles], counter-clockwise seen from outside
+};
+// False where the coder's interpolant is another one.
+RELUME_API bool relume_coder_triangles(struct relume_coder_triangles *out,
+                                       const relume_coder *coder);
 
 // The plane that holds coefficient k of channel c.
 static inline int relume_coder_plane(const struct relume_coder_info *info, int k, int c)

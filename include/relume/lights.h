@@ -43,9 +43,26 @@ RELUME_RESULT relume_status relume_lights_discrepancy(double *out, const struct 
                                                       int n,
                                                       const struct relume_lights_params *params);
 
-// Read unit directions from a capture.json or the JSON of `relume lights`, from a .lp file, or from
-// lines `x y z` ('#' starts a comment). The images that a file names need not exist. `*out` is to
-// be freed with free(). Returns RELUME_EDATA, RELUME_ENOMEM.
+// Lights that a file tells. Thread-safety: plain data.
+struct relume_light_list {
+    int count;
+    struct relume_vec3 *direction;  // [count], unit, in the order of the file
+    struct relume_vec3 *position;   // [count], world units, or NULL: only directions are told
+    float (*intensity)[3];          // [count], or NULL: all 1
+};
+
+// Read lights from a capture.json or the JSON of `relume lights`, a .dome file (RelightLab: mm from
+// the middle of the picture become world units by its imageWidth, which is 2 world units wide; an
+// LED that is multiplied by its ledAdjust has the intensity 1 / ledAdjust), a .lp file, or lines
+// `[name] x y z` ('#' starts a comment, a lone count may come first). With `positions` the vectors
+// of lines and .lp files are positions in world units, and a file that tells none is an error.
+// Images that a file names need not exist. The caller destroys `out`, which is empty on failure.
+// RELUME_EDATA, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_lights_load(struct relume_light_list *out, const char *path,
+                                               bool positions, const struct relume_log *log);
+RELUME_API void relume_light_list_destroy(struct relume_light_list *list);
+
+// Only the directions; `*out` is to be freed with free().
 RELUME_RESULT relume_status relume_lights_read(struct relume_vec3 **out, int *n, const char *path,
                                                const struct relume_log *log);
 

@@ -15,12 +15,15 @@ extern "C" {
 // The basis of a coder at a grid of directions, between which it is bilinear: near lights and
 // environments ask for thousands of directions a pixel. Rows go by the angle from the pole, columns
 // by azimuth, so that no crease of the map cuts a cell. A full sphere has two rows at the horizon,
-// for bases that jump there. Never changes. Thread-safety: safe.
+// for bases that jump there. What is linear over triangles of lights (`delaunay`) has creases
+// everywhere and no grid: its nodes are the lights, between which it is exact. Never changes.
+// Thread-safety: safe.
 typedef struct relume_weight_grid relume_weight_grid;
 
 struct relume_weight_grid_params {
-    int steps;    // columns in 90 degrees, [2, 1024]; default 96, fewer where that takes more than
-                  // 256 MB. Then reflectance of smooth bases is met to 1e-3 of white
+    int steps;    // a grid, with so many columns in 90 degrees, [2, 1024]; default: triangles where
+                  // the basis has them, else 96, fewer where that takes more than 256 MB. Then
+                  // reflectance of smooth bases is met to 1e-3 of white
     int threads;  // default: all cores
 };
 #define relume_weight_grid_params(...) (&(const struct relume_weight_grid_params){__VA_ARGS__})
@@ -30,6 +33,17 @@ RELUME_RESULT relume_status
 relume_weight_grid_create(relume_weight_grid **out, const relume_coder *coder,
                           const struct relume_weight_grid_params *params);
 RELUME_API void relume_weight_grid_destroy(relume_weight_grid **grid);
+
+// A triangle between nodes.
+struct relume_weight_triangle {
+    int node[3];          // -1: has no say; one at least has
+    int across[3];        // the triangle beyond the edge opposite to the corner
+    float inverse[3][3];  // row i times a direction of the pole's frame: w_i of corner i, all >= 0
+                          // within the triangle; shares are w_i over the sum of those with a say
+};
+// Rows and columns of an octahedral map of the pole's frame: (x, y) / (|x| + |y| + |z|), the lower
+// half folded outwards, from (-1, -1).
+enum { RELUME_WEIGHT_STARTS = 32 };
 
 // Pointers belong to the grid.
 struct relume_weight_grid_info {
@@ -41,6 +55,9 @@ struct relume_weight_grid_info {
     int stride;         // floats from node to node
     const float *data;  // [rows][columns][stride]: the weights [sets][K], then the constants
                         // [3] where sets is 3 (else they are 0)
+    int triangles;      // 0: a grid as above. Else nodes are the columns of a single row, ...
+    const struct relume_weight_triangle *triangle;
+    const int *start;  // ... found by walking from this triangle over edges behind which w < 0
 };
 RELUME_API const struct relume_weight_grid_info *relume_weight_grid_info(
     const relume_weight_grid *grid);
@@ -49,7 +66,7 @@ RELUME_API const struct relume_weight_grid_info *relume_weight_grid_info(
 // [0, rows - 1]. With phi and theta in the pole's frame (0 <= theta <= 90 degrees from the nearer
 // pole) and m cells from pole to horizon: x = (phi + 180) (columns - 1) / 360 and
 // y = m (1 - sqrt(1 - theta / 90)), counted from the last row below the horizon. Below the horizon
-// of a hemispherical capture: at the horizon.
+// of a hemispherical capture: at the horizon. Only of a grid without triangles.
 RELUME_API void relume_weight_grid_place(double xy[2], const relume_weight_grid *grid,
                                          struct relume_vec3 direction);
 

@@ -57,8 +57,10 @@ struct relume_synth_params {
     enum relume_projection projection;  // used only when `projection_set`
     bool projection_set;                // default: the scene's own projection
     int size;       // pixels: width of planar and slab images and of a cube face,
-                    // height of other panoramas (cylindrical: 4:1, spherical: 2:1);
+                    // height of other panoramas (cylindrical: 4:1, without
+                    // its discs; spherical: 2:1);
                     // default 256
+    bool discs;     // cylindrical: with end discs as fine as the cylinder, in further rows below it
     int grid[2];    // slab: cameras along u and v; default 5 x 5
     double spread;  // slab: the grid reaches from -spread to spread; default 0.5, of several
                     // slabs so far that neighbours overlap: 1.15 x 3 tan(180 degrees / slabs)
@@ -102,7 +104,7 @@ struct relume_btf_synth_params {
     int views;
     const struct relume_vec3 *light;  // with `lights`; default: the same
     int lights;
-    int samples;    // camera rays a texel and view; default 4
+    int samples;    // camera rays a texel and view; default 4; fewer: texels are not resampled
     int bounces;    // of light inside the relief, beside direct light; default 1, negative: none
     uint64_t seed;  // of the relief and of the sampling
     int threads;    // default: all cores
@@ -112,7 +114,8 @@ struct relume_btf_synth_params {
 
 // Measure one period of the relief under every light from every view: parallel light, orthographic
 // views, rectified to the plane of the relief's mean height (whatever lies off it is shifted by
-// parallax, as in photographs). Values include n.l. The relief's height and normals come along.
+// parallax, as in photographs), and resampled to texels by a tent of one texel's reach: the sample
+// is taken for periodic. Values include n.l. The relief's height and normals come along.
 // Same seed, same bytes for any number of threads.
 // Returns RELUME_EINVAL, RELUME_ENOMEM, RELUME_ESYSTEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_btf_synth(relume_btf **out,

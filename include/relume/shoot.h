@@ -30,15 +30,27 @@ struct relume_shoot_params {
     bool matte;               // matte white balls; default mirrors
     double fov_deg;           // horizontal field of view; default: orthographic
     double ball_z;            // height of the balls' middles, world units (window: width 2)
-    const char *lights;       // directions or, with `near`, positions from this file; NULL: balls
-    bool near;                // positions: from two balls or more, or from `lights`
-    bool refine;              // relume_lights_refine afterwards
-    bool align;               // bring photographs on top of the first one by homographies
-    bool skip_bad;            // leave photographs out that cannot be read, show another scene, or
-                              // no highlight; default: an error that names them
-    bool force;               // replace an existing folder
+    // The lights are known: a file as relume_lights_load reads it, positions with `near`; or a
+    // folder of COLMAP's text files that pose a camera tied to the lamp, one photograph for every
+    // light in the order of their names, and one of `photographs`. NULL: balls.
+    const char *lights;
+    bool near;        // positions: from two balls or more, or from `lights`
+    bool refine;      // relume_lights_refine afterwards
+    bool integrable;  // the same with its `integrable`
+    bool align;       // bring photographs on top of the first one by homographies
+    bool skip_bad;    // leave photographs out that cannot be read, show another scene, or
+                      // no highlight; default: an error that names them
+    bool force;       // replace an existing folder
     struct relume_transfer transfer;  // overrides what the files say
     int threads;                      // default: all cores
+    // Photographs of an even surface, which the others are divided by: one against vignetting, or
+    // one under each light; `radial`: by an even polynomial of the distance from the middle that is
+    // fitted to them, else pixel by pixel.
+    const char *const *flats;  // [flat_count]
+    int flat_count;
+    bool radial;
+    int white[4];  // x, y, width, height of a region that is grey, which tells the lamps' colour;
+                   // width 0: none
 };
 
 struct relume_shoot_photo {
@@ -76,6 +88,12 @@ RELUME_API void relume_shoot_destroy(struct relume_shoot *shoot);
 struct relume_refine_params {
     const struct relume_log *log;
     int threads;
+    // Of the linear map that the images leave open, what makes the surface one of heights (its
+    // slopes have no curl; Yuille, Snow 1997) counts more than nearness to the lights given, within
+    // some degrees.
+    bool integrable;
+    double *curl;  // [2], or NULL: RMS of the curl before and after, relative to the surface's
+                   // curvature
 };
 // Better directions and intensities from the images of a planar capture with distant lights:
 // surface vectors and lights in turn minimise what Lambert's law misses, shadows and highlights

@@ -62,31 +62,47 @@ RELUME_API bool relume_slabs_window(struct relume_window *out, const relume_slab
 RELUME_API struct relume_window relume_slab_window(const struct relume_geometry *slab,
                                                    struct relume_vec3 eye);
 
+// A lens before the eye, parallel to the window: a disc of the diameter `aperture`, world units,
+// with the plane in focus so much nearer to the eye than the window's.
+// Whether that can be: `aperture` not negative, the plane before the eye, all finite.
+RELUME_API bool relume_lens_fits(const struct relume_window *window, double aperture, double focus);
+// How many pinholes stand for it in a picture so many pixels wide: by the blur of what lies half
+// as far again as the window, 8 to 64; 1 without an aperture.
+RELUME_API int relume_lens_points(const struct relume_window *window, double aperture, double focus,
+                                  int width);
+// Pinhole i of n, and its window on the plane in focus.
+RELUME_API struct relume_window relume_lens_window(const struct relume_window *window,
+                                                   double aperture, double focus, int i, int n);
+// From the eye to the window's plane.
+RELUME_API double relume_window_distance(const struct relume_window *window);
+
 // How much a slab has to say of a ray that passes its uv plane in `uv` and its st plane in `st`: 1
 // inside, smoothly falling towards the border of the camera grid (over the outer quarter of its
 // extent, to 1e-4) and of the window (over its outer sixteenth, to 0), 0 beyond.
 RELUME_API double relume_slab_weight(const relume_slab *slab, const double uv[2],
                                      const double st[2]);
 
-// Mark in needed[views] what a frame can touch; returns how many, 0 when nothing is to be seen.
+// Mark in needed[views] what a frame so many pixels wide can touch; returns how many, 0 when
+// nothing is to be seen.
 RELUME_API int relume_slabs_needs(bool *needed, const relume_slabs *slabs,
-                                  const struct relume_window *window,
+                                  const struct relume_window *window, int width,
                                   const struct relume_view_params *params);
 
 // Every pixel is the weighted mean of what the slabs show in its ray (relume_slab_weight), by depth
 // where disparities are given, times the share of the cameras around the ray that see the surface;
-// black where no slab has any weight. `views` and disparities are by view number, read where
-// needed; `out` has the wanted size already. RELUME_EINVAL for a needed view or disparity that is
-// missing or of another size, for an aperture or a focus, and when nothing is to be seen;
-// RELUME_ENOMEM.
+// black where no slab has any weight. With an aperture or a focus (relume_lens_window) the mean of
+// what the pinholes of that lens show, each as above, of those that show anything. `views` and
+// disparities are by view number, read where needed; `out` has the wanted size already.
+// RELUME_EINVAL for a needed view or disparity that is missing or of another size, for a lens that
+// does not fit, and when nothing is to be seen; RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_slabs_frame(struct relume_image *out, const relume_slabs *slabs,
                                                const struct relume_window *window,
                                                const struct relume_image *views,
                                                const struct relume_view_params *params);
 
 // One ray of such a frame. Its views are those that relume_slabs_needs marks for a window without
-// extent: `corner` = eye + direction, `right` and `down` zero. RELUME_EINVAL likewise and when no
-// slab has any weight.
+// extent: `corner` = eye + direction, `right` and `down` zero. RELUME_EINVAL likewise, when no
+// slab has any weight, and for an aperture or a focus.
 RELUME_RESULT relume_status relume_slabs_value(float rgb[3], const relume_slabs *slabs,
                                                struct relume_vec3 eye, struct relume_vec3 direction,
                                                const struct relume_image *views,

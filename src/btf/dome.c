@@ -79,6 +79,12 @@ void relume_dome_destroy(relume_dome **dome)
     *dome = NULL;
 }
 
+const int (*relume_dome_triangles(const relume_dome *dome, int *n))[3]
+{
+    *n = dome->triangles;
+    return (const int(*)[3])dome->triangle;
+}
+
 // Barycentric weights of the ray's hit; false when the triangle faces away.
 static bool weigh(const vec3 across[3], vec3 d, double weight[3])
 {

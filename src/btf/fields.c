@@ -253,6 +253,12 @@ void fields_eval(const relume_btf_fitted *m, size_t entry, const struct model_at
         rgb[c] = float_from_half(diffuse[c]) + float_from_half(specular[c]) * sum;
 }
 
+struct relume_btf_cost fields_cost(const relume_btf_fitted *m)
+{
+    return (struct relume_btf_cost){
+        .ops = 1, .fetches = 2 + 1 + 3 * (1 + m->lobes), .light_ops = 3 * (1 + 3 * m->lobes)};
+}
+
 void fields_lit(const relume_btf_fitted *m, size_t entry, const struct model_at *at,
                 const struct relume_btf_ambient *ambient, float rgb[3])
 {

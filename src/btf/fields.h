@@ -24,6 +24,8 @@ void fields_end(struct fields *s);
 // Fit entry `entry` to values [view][light][3]; false: no memory. Safe on several cores.
 bool fields_fit(const struct fields *s, size_t entry, const float *values);
 
+// For three views: the colours, and for each lobe a scalar product, a power, a sum.
+struct relume_btf_cost fields_cost(const relume_btf_fitted *m);
 void fields_eval(const relume_btf_fitted *m, size_t entry, const struct model_at *at, float rgb[3]);
 void fields_lit(const relume_btf_fitted *m, size_t entry, const struct model_at *at,
                 const struct relume_btf_ambient *ambient, float rgb[3]);

@@ -7,8 +7,8 @@
 #include <string.h>
 
 const struct relume_btf_model *const relume_btf_models[] = {
-    &model_bump,  &model_laf,  &model_slaf, &model_rfp, &model_rfnl,
-    &model_rfnlc, &model_vpca, &model_lpca, &model_fmf, NULL,
+    &model_lit, &model_bump, &model_laf,  &model_slaf, &model_rfp, &model_rfnl, &model_rfnlc,
+    &model_cmf, &model_vpca, &model_lpca, &model_fmf,  &model_qmf, NULL,
 };
 
 const struct relume_btf_model *relume_btf_model_find(const char *name)
@@ -40,17 +40,24 @@ void model_add(relume_btf_fitted *m, const char *name, enum npy_kind kind, bool 
     }
 }
 
+static void free_arrays(relume_btf_fitted *m)
+{
+    for (int i = 0; i < m->arrays; i++) {
+        if (!m->array[i].file.map)
+            free(m->array[i].data);
+        npy_close(&m->array[i].file);
+    }
+    m->arrays = 0;
+}
+
 void relume_btf_fitted_destroy(relume_btf_fitted **fitted)
 {
     relume_btf_fitted *m = *fitted;
     *fitted = NULL;
     if (!m)
         return;
-    for (int i = 0; i < m->arrays; i++) {
-        if (!m->array[i].file.map)
-            free(m->array[i].data);
-        npy_close(&m->array[i].file);
-    }
+    free_arrays(m);
+    free(m->prepared);
     relume_btf_fitted_destroy(&m->half);
     relume_dome_destroy(&m->view_dome);
     relume_dome_destroy(&m->light_dome);
@@ -80,7 +87,8 @@ static int least(size_t a, size_t b)
 // As many components as there are pictures to be told apart.
 static int most_components(const relume_btf_fitted *m)
 {
-    return least(256, m->model == &model_vpca ? (size_t)m->lights : m->texels);
+    const int most = m->model->most_components ? m->model->most_components : 256;
+    return least((size_t)most, m->model == &model_vpca ? (size_t)m->lights : m->texels);
 }
 
 static relume_status choose_counts(struct fitting *f, const struct relume_btf_fit_params *p)
@@ -135,8 +143,9 @@ static relume_status copy_directions(relume_btf_fitted *m, const relume_btf *btf
     return status ? status : relume_dome_create(&m->light_dome, m->light, m->lights, log);
 }
 
-static relume_status make_arrays(relume_btf_fitted *m)
+relume_status model_make_arrays(relume_btf_fitted *m)
 {
+    free_arrays(m);
     m->model->layout(m);
     for (int i = 0; i < m->arrays; i++) {
         m->array[i].data = mem_zeroed(1, npy_bytes(&m->array[i].npy));
@@ -160,16 +169,21 @@ static relume_status fit_level(relume_btf_fitted **out, const relume_btf *btf,
     m->width = btf->info.width, m->height = btf->info.height;
     m->texels = btf_texels(btf);
     m->without_cosine = btf->info.without_cosine;
-    struct fitting f = {btf, m, p->log, p->seed, p->threads};
+    struct fitting f = {btf, m, p->log, p->seed, p->threads, p->ratio};
     relume_status status = copy_directions(m, btf, p->log);
     if (!status && before)
         inherit_counts(m, before);
     else if (!status)
         status = choose_counts(&f, p);
+    if (!status && p->ratio != 0.0 && !(p->ratio >= 1.0 && p->ratio <= 1e6))
+        status =
+            log_fail(p->log, RELUME_EINVAL, "ratio: expected 1 to 1000000; found %g", p->ratio);
     if (!status)
-        status = make_arrays(m);
+        status = model_make_arrays(m);
     if (!status)
         status = model->fit(&f);
+    if (!status && model->prepare)
+        status = model->prepare(m);
     if (status)
         relume_btf_fitted_destroy(&m);
     *out = m;
@@ -258,6 +272,11 @@ struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *m)
         info.bytes_levels += half.bytes_levels;
     }
     return info;
+}
+
+struct relume_btf_cost relume_btf_fitted_cost(const relume_btf_fitted *m)
+{
+    return m->model->cost(m);
 }
 
 const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fitted *m, int level)

@@ -24,11 +24,13 @@ struct relume_btf_fitted {
     int width, height, views, lights;
     size_t texels;
     int clusters, components, lobes;  // 0: the model has none
+    int texel_bytes, pair_bytes;      // of a row of bits, where the model has such
     bool without_cosine;
     vec3 *view, *light;
     relume_dome *view_dome, *light_dome;
     struct model_array array[MODEL_ARRAYS];
     int arrays;
+    void *prepared;           // what the model's `prepare` made of them, or NULL
     relume_btf_fitted *half;  // the next level of detail, or NULL
     const relume_btf *table;  // the measured values, where they are the model
 };
@@ -47,6 +49,7 @@ struct fitting {
     const struct relume_log *log;
     uint64_t seed;
     int threads;
+    double ratio;  // asked for; 0: the model's choice
 };
 
 struct relume_btf_ambient;
@@ -57,21 +60,29 @@ struct relume_btf_model {
     bool view_grid, light_grid;            // known at measured views (lights) only
     int clusters, components, lobes;       // defaults; 0: the model has none
     int most_clusters;                     // 0: 65536
+    int most_components;                   // 0: 256
     void (*layout)(relume_btf_fitted *m);  // adds the arrays, with model_add
     relume_status (*fit)(struct fitting *f);
     void (*eval)(const relume_btf_fitted *m, const struct model_at *at, float rgb[3]);
     bool lobes_times_cosine;  // where values include n.l
+    // Whatever makes reading faster, into m->prepared, to be freed with free(); NULL: nothing does.
+    relume_status (*prepare)(relume_btf_fitted *m);
+    struct relume_btf_cost (*cost)(const relume_btf_fitted *m);
+    // Whether arrays that are fine by themselves fit together; NULL: they do.
+    bool (*is_sound)(const relume_btf_fitted *m);
     // Under an environment (btf/ambient.h); NULL: the sum over the measured lights.
     void (*lit)(const relume_btf_fitted *m, const struct model_at *at,
                 const struct relume_btf_ambient *ambient, float rgb[3]);
 };
 
-extern const struct relume_btf_model model_bump, model_laf, model_slaf, model_rfp, model_rfnl,
-    model_rfnlc, model_vpca, model_lpca, model_fmf, model_table;
+extern const struct relume_btf_model model_lit, model_bump, model_laf, model_slaf, model_rfp,
+    model_rfnl, model_rfnlc, model_cmf, model_vpca, model_lpca, model_fmf, model_qmf, model_table;
 
 // An array of up to five sizes; unused ones are 0.
 void model_add(relume_btf_fitted *m, const char *name, enum npy_kind kind, bool each, size_t below,
                const size_t shape[NPY_DIMS]);
+// Zeroed arrays as the layout says, in place of what there is. RELUME_ENOMEM.
+relume_status model_make_arrays(relume_btf_fitted *m);
 #define MODEL_SHAPE(...) ((const size_t[NPY_DIMS]){__VA_ARGS__})
 
 static inline uint16_t *model_halfs(const relume_btf_fitted *m, int array)

@@ -120,14 +120,6 @@ static relume_status fit(struct fitting *f)
     return status;
 }
 
-// Turned by the shortest way that brings `n` to +z.
-static vec3 turned(vec3 a, vec3 n)
-{
-    const vec3 half = vec3_of(n.x, n.y, n.z + 1.0);
-    const vec3 b = vec3_sub(a, vec3_scale(half, vec3_dot(a, half) / (1.0 + n.z)));
-    return vec3_of(b.x, b.y, b.z + 2.0 * vec3_dot(n, a));
-}
-
 static void eval(const relume_btf_fitted *m, const struct model_at *at, float rgb[3])
 {
     const uint16_t *color = model_halfs(m, COLOR) + 3 * at->texel;
@@ -135,8 +127,8 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     const vec3 n =
         vec3_unit(vec3_of((double)float_from_half(normal[0]), (double)float_from_half(normal[1]),
                           (double)float_from_half(normal[2])));
-    const struct relume_dome_blend v = relume_dome_at(m->view_dome, turned(at->v, n));
-    const struct relume_dome_blend l = relume_dome_at(m->light_dome, turned(at->l, n));
+    const struct relume_dome_blend v = relume_dome_at(m->view_dome, vec3_upright(at->v, n));
+    const struct relume_dome_blend l = relume_dome_at(m->light_dome, vec3_upright(at->l, n));
     double sum[3] = {0.0, 0.0, 0.0};
     for (int i = 0; i < v.count; i++)
         for (int j = 0; j < l.count; j++) {
@@ -149,10 +141,19 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
         rgb[c] = float_from_half(color[c]) * (float)(l.rim * sum[c]);
 }
 
+// Eye and light turn with the normal; nine pairs of the table are blended.
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    (void)m;
+    return (struct relume_btf_cost){
+        .ops = 4, .fetches = 2 + 2, .light_ops = 4 + 9 + 1, .light_fetches = 2 + 9};
+}
+
 const struct relume_btf_model model_bump = {
     .name = "bump",
     .summary = "a colour and a normal for each texel, one mean BRDF",
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
 };

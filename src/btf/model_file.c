@@ -29,10 +29,10 @@ static relume_status save_json(const relume_btf_fitted *m, const char *folder,
         text = mem_format("{ \"format\": \"relume-btf-model\", \"version\": %d,\n"
                           "  \"model\": \"%s\", \"width\": %d, \"height\": %d,\n"
                           "  \"clusters\": %d, \"components\": %d, \"lobes\": %d, \"levels\": %d,\n"
-                          "  \"includes_cosine\": %s,\n"
+                          "  \"texel_bytes\": %d, \"pair_bytes\": %d, \"includes_cosine\": %s,\n"
                           "  \"view_directions\": %s,\n  \"light_directions\": %s }\n",
                           VERSION, m->model->name, m->width, m->height, m->clusters, m->components,
-                          m->lobes, relume_btf_fitted_info(m).levels,
+                          m->lobes, relume_btf_fitted_info(m).levels, m->texel_bytes, m->pair_bytes,
                           m->without_cosine ? "false" : "true", view, light);
     const relume_status status = text ? outfile_save(path, text, strlen(text), log) : RELUME_ENOMEM;
     free(path);
@@ -132,10 +132,14 @@ static relume_status read_counts(relume_btf_fitted *m, const jvalue *root, const
         !limits_allow(&r->limits, m->width, m->height))
         return wrong(r, "width, height", "texels within the limits");
     if (!read_count(root, "clusters", 65536, &m->clusters) ||
-        !read_count(root, "components", 256, &m->components) ||
+        !read_count(root, "components", 1024, &m->components) ||
         !read_count(root, "lobes", MODEL_LOBES, &m->lobes) || !m->clusters != !k->clusters ||
         !m->components != !k->components || !m->lobes != !k->lobes)
         return wrong(r, "clusters, components, lobes", "counts that fit the model");
+    if (k->is_sound && (!read_count(root, "texel_bytes", 1 << 16, &m->texel_bytes) ||
+                        !read_count(root, "pair_bytes", 1 << 16, &m->pair_bytes) ||
+                        !m->texel_bytes || !m->pair_bytes))
+        return wrong(r, "texel_bytes, pair_bytes", "counts of bytes");
     if (!jvalue_truth(jvalue_member(root, "includes_cosine"), &cosine))
         return wrong(r, "includes_cosine", "true or false");
     m->texels = (size_t)m->width * (size_t)m->height;
@@ -224,7 +228,9 @@ static relume_status read_all(relume_btf_fitted *m, const jvalue *root, const st
         m->model->layout(m);
     for (int i = 0; i < m->arrays && !status; i++)
         status = read_array(&m->array[i], r);
-    return status;
+    if (!status && m->model->is_sound && !m->model->is_sound(m))
+        status = wrong(r, "arrays do not fit together", "rows of bits as long as their widths");
+    return status || !m->model->prepare ? status : m->model->prepare(m);
 }
 
 // `levels` is left as it is where the file does not say.

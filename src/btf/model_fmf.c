@@ -47,6 +47,14 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     }
 }
 
+// Patterns of nine pairs.
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    const int k = m->components;
+    return (struct relume_btf_cost){
+        .fetches = (k + 3) / 4 + 2, .light_ops = 9 * k, .light_fetches = 2 + 9 * k};
+}
+
 const struct relume_btf_model model_fmf = {
     .name = "fmf",
     .summary = "full matrix factorisation of all values",
@@ -56,4 +64,5 @@ const struct relume_btf_model model_fmf = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
 };

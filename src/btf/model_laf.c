@@ -311,6 +311,20 @@ static void eval_scaled(const relume_btf_fitted *m, const struct model_at *at, f
         rgb[c] *= factor;
 }
 
+// For each lobe a scalar product, a power, its colour; then n.l.
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    return (struct relume_btf_cost){.fetches = 1 + 2 * m->lobes, .light_ops = 2 + 3 * m->lobes};
+}
+
+// And three factors, blended.
+static struct relume_btf_cost cost_scaled(const relume_btf_fitted *m)
+{
+    struct relume_btf_cost both = cost(m);
+    both.ops += 3, both.fetches += 2 + 3, both.light_ops++;
+    return both;
+}
+
 // For one view a Lafortune lobe is a cosine lobe of the light; all of the sum is times n.l.
 static void lit(const relume_btf_fitted *m, const struct model_at *at,
                 const struct relume_btf_ambient *ambient, float rgb[3])
@@ -350,6 +364,7 @@ const struct relume_btf_model model_laf = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
     .lit = lit,
 };
 
@@ -362,5 +377,6 @@ const struct relume_btf_model model_slaf = {
     .layout = layout_scaled,
     .fit = fit_scaled,
     .eval = eval_scaled,
+    .cost = cost_scaled,
     .lit = lit_scaled,
 };

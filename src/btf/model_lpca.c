@@ -345,6 +345,14 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     }
 }
 
+// Mean and components of nine pairs.
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    const int k = m->components;
+    return (struct relume_btf_cost){
+        .fetches = 1 + (k + 3) / 4 + 2, .light_ops = 9 * (k + 1), .light_fetches = 2 + 9 * (k + 1)};
+}
+
 const struct relume_btf_model model_lpca = {
     .name = "lpca",
     .summary = "principal components within clusters of texels",
@@ -356,4 +364,5 @@ const struct relume_btf_model model_lpca = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
 };

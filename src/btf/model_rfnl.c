@@ -34,6 +34,11 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     fields_eval(m, at->texel, at, rgb);
 }
 
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    return fields_cost(m);
+}
+
 static void lit(const relume_btf_fitted *m, const struct model_at *at,
                 const struct relume_btf_ambient *ambient, float rgb[3])
 {
@@ -48,5 +53,6 @@ const struct relume_btf_model model_rfnl = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
     .lit = lit,
 };

@@ -28,20 +28,9 @@ struct work {
 
 static bool fit_center(const struct work *w, size_t cluster)
 {
-    const size_t n = 3 * model_pairs(w->f->out);
-    const size_t from = w->members->first[cluster], end = w->members->first[cluster + 1];
-    double *sum = mem_zeroed(n, sizeof *sum);
-    float *values = mem_array(n, sizeof *values);
-    bool good = sum && values;
-    for (size_t i = from; i < end && good; i++) {
-        btf_gather(w->f->btf, w->members->texel[i], 1, values);
-        for (size_t k = 0; k < n; k++)
-            sum[k] += (double)values[k] / (double)(end - from);
-    }
-    for (size_t k = 0; k < n && good; k++)
-        values[k] = (float)sum[k];
-    good = good && fields_fit(&w->fields, cluster, values);
-    free(sum);
+    float *values = mem_array(3 * model_pairs(w->f->out), sizeof *values);
+    const bool good = values && members_mean(w->members, cluster, w->f->btf, values) &&
+                      fields_fit(&w->fields, cluster, values);
     free(values);
     return good;
 }
@@ -75,20 +64,14 @@ static relume_status fit_clusters(struct work *w)
 static relume_status fit(struct fitting *f)
 {
     relume_btf_fitted *m = f->out;
-    struct reduced r = {.score = NULL};
     struct members members = {NULL, NULL};
     struct work w = {.f = f, .members = &members};
     int *which = mem_array(m->texels, sizeof *which);
-    relume_status status = which ? reduce_make(&r, f, REDUCED) : RELUME_ENOMEM;
-    if (!status)
-        status = reduce_cluster(&r, f, m->clusters, which);
-    if (!status)
-        status = members_make(&members, which, m->texels, m->clusters);
+    relume_status status = which ? cluster_texels(f, REDUCED, which, &members) : RELUME_ENOMEM;
     if (!status)
         status = fit_clusters(&w);
     for (size_t i = 0; i < m->texels && !status; i++)
         ((uint16_t *)m->array[CLUSTER].data)[i] = (uint16_t)which[i];
-    reduce_free(&r);
     members_free(&members);
     free(which);
     return status;
@@ -97,6 +80,13 @@ static relume_status fit(struct fitting *f)
 static void eval(const relume_btf_fitted *m, const struct model_at *at, float rgb[3])
 {
     fields_eval(m, ((const uint16_t *)m->array[CLUSTER].data)[at->texel], at, rgb);
+}
+
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    struct relume_btf_cost cost = fields_cost(m);
+    cost.fetches++;  // which cluster
+    return cost;
 }
 
 static void lit(const relume_btf_fitted *m, const struct model_at *at,
@@ -114,5 +104,6 @@ const struct relume_btf_model model_rfnlc = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
     .lit = lit,
 };

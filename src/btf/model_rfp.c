@@ -84,6 +84,13 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     }
 }
 
+// Six terms, in colour, for three views.
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    (void)m;
+    return (struct relume_btf_cost){.fetches = 2 + 3 * TERMS, .light_ops = 3 + 3 * (TERMS + 1)};
+}
+
 static void lit(const relume_btf_fitted *m, const struct model_at *at,
                 const struct relume_btf_ambient *ambient, float rgb[3])
 {
@@ -103,5 +110,6 @@ const struct relume_btf_model model_rfp = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
     .lit = lit,
 };

@@ -20,6 +20,13 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
         rgb[c] = float_from_half(p[c]);
 }
 
+// Nine values, weighed.
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    (void)m;
+    return (struct relume_btf_cost){.fetches = 2, .light_ops = 9, .light_fetches = 2 + 9};
+}
+
 const struct relume_btf_model model_table = {
     .name = "table",
     .summary = "all measured values",
@@ -28,4 +35,5 @@ const struct relume_btf_model model_table = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
 };

@@ -144,6 +144,16 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     }
 }
 
+// Weights of nine pairs, four at a time, are blended before they meet the textures of three views.
+static struct relume_btf_cost cost(const relume_btf_fitted *m)
+{
+    const int k = m->components, quads = (k + 3) / 4;
+    return (struct relume_btf_cost){.ops = 3,
+                                    .fetches = 2 + 3 * (1 + k),
+                                    .light_ops = 9 * quads + 3 * k,
+                                    .light_fetches = 2 + 9 * quads};
+}
+
 const struct relume_btf_model model_vpca = {
     .name = "vpca",
     .summary = "principal components of each view's pictures",
@@ -153,4 +163,5 @@ const struct relume_btf_model model_vpca = {
     .layout = layout,
     .fit = fit,
     .eval = eval,
+    .cost = cost,
 };

@@ -18,7 +18,8 @@ struct angles {
 struct picture {
     char *name;
     struct angles light, view;
-    int at[2];  // view, light
+    int at[2];         // view, light
+    size_t saturated;  // pixels with a value at the end of the scale
 };
 
 struct pictures {
@@ -239,10 +240,23 @@ static bool is_finite(const struct relume_image *image)
     return true;
 }
 
+// Pictures of integers end at 1, where light that was brighter is cut off; halfs at 65504.
+static size_t saturated(const struct relume_image *image)
+{
+    const size_t n = (size_t)image->width * (size_t)image->height;
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++) {
+        const float *rgb = image->data + 3 * i;
+        const float most = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
+        count += most == 1.0f || most > 65504.0f;
+    }
+    return count;
+}
+
 static relume_status store(const struct pictures *p, relume_btf *btf, size_t index,
                            const struct relume_log *log)
 {
-    const struct picture *one = &p->all[index];
+    struct picture *one = &p->all[index];
     struct relume_image image = {0};
     relume_status status = load(p, index, &image, log);
     if (!status && (image.width != btf->info.width || image.height != btf->info.height))
@@ -252,10 +266,26 @@ static relume_status store(const struct pictures *p, relume_btf *btf, size_t ind
     if (!status && !is_finite(&image))
         status = log_fail(log, RELUME_EDATA, "%s/%s: NaN or infinity; expected finite values",
                           p->path, one->name);
-    if (!status)
+    if (!status) {
+        one->saturated = saturated(&image);
         relume_btf_store(btf, one->at[0], one->at[1], image.data);
+    }
     relume_image_destroy(&image);
     return status;
+}
+
+static void tell_saturated(const struct pictures *p, const relume_btf *btf)
+{
+    size_t count = 0, worst = 0;
+    for (size_t i = 0; i < p->count; i++) {
+        count += p->all[i].saturated;
+        worst = p->all[i].saturated > p->all[worst].saturated ? i : worst;
+    }
+    if (count)
+        log_line(p->log, RELUME_WARNING,
+                 "%s: %.2g %% of all texels are saturated, most in %s; highlights are cut off",
+                 p->path, 100.0 * (double)count / ((double)p->count * (double)btf_texels(btf)),
+                 p->all[worst].name);
 }
 
 struct storing {
@@ -381,6 +411,8 @@ relume_status btf_open_pictures(relume_btf **out, const char *path,
         status = store_all(&p, *out);
     if (!status)
         status = fill_gaps(&p, *out);
+    if (!status)
+        tell_saturated(&p, *out);
     if (status)
         relume_btf_destroy(out);
     for (size_t i = 0; i < p.count; i++)

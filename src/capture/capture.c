@@ -178,6 +178,17 @@ static relume_status check_images(relume_capture *c, const struct relume_capture
     return RELUME_OK;
 }
 
+static relume_status check_discs(const relume_capture *c, const struct relume_log *log)
+{
+    const struct relume_geometry *g = &c->draft.m.geometry;
+    if (relume_geometry_fits(g, c->width, c->height))
+        return RELUME_OK;
+    return log_fail(log, RELUME_EDATA,
+                    "%s: panorama.discs; expected at most half of the %d columns and fewer than "
+                    "the %d rows; found %d",
+                    c->path, c->width, c->height, g->disc);
+}
+
 relume_status relume_capture_open(relume_capture **out, const char *path,
                                   const struct relume_capture_params *params)
 {
@@ -187,6 +198,7 @@ relume_status relume_capture_open(relume_capture **out, const char *path,
     if (!c)
         return RELUME_ENOMEM;
     c->repair = p.repair;
+    c->assume_depth = p.assume_depth;
     relume_status status = read_description(c, path, &p);
     if (!status && p.skip_missing)
         status = skip_missing(c, p.log);
@@ -194,6 +206,8 @@ relume_status relume_capture_open(relume_capture **out, const char *path,
         c->draft.m.transfer = p.transfer;
     if (!status)
         status = check_images(c, &p);
+    if (!status)
+        status = check_discs(c, p.log);
     if (!status)
         status = kept_create(&c->kept, c->draft.m.views * c->draft.m.lights, p.keep_bytes);
     if (status) {
@@ -208,6 +222,7 @@ relume_status relume_capture_open(relume_capture **out, const char *path,
         memcpy(g->window_max, d.window_max, sizeof g->window_max);
     }
     c->draft.m.transfer = c->transfer;
+    near_warn(c, p.log);
     *out = c;
     return RELUME_OK;
 }
@@ -322,5 +337,17 @@ relume_status relume_capture_depth(struct relume_image *out, const relume_captur
 relume_status relume_capture_mask(struct relume_image *out, const relume_capture *capture, int view,
                                   const struct relume_log *log)
 {
-    return load_plane(out, capture, capture->draft.m.view[view].mask, log);
+    const struct relume_geometry *g = &capture->draft.m.geometry;
+    const int width = capture->width, height = capture->height;
+    relume_status status = load_plane(out, capture, capture->draft.m.view[view].mask, log);
+    if (status || !g->disc)
+        return status;
+    if (!out->data && !(status = relume_image_create(out, width, height, 1)))
+        for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
+            out->data[i] = 1.0f;
+    for (int y = height - g->disc; !status && y < height; y++)
+        for (int x = 0; x < width; x++)
+            if (!relume_geometry_shows(g, width, height, x, y))
+                out->data[(size_t)y * (size_t)width + (size_t)x] = 0.0f;
+    return status;
 }

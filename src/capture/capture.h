@@ -13,6 +13,7 @@ struct relume_capture {
     int x, y;     // origin of the images' data windows
     bool floats;  // an image holds floating-point numbers
     bool repair;
+    double assume_depth;  // of near lights' views without depth; 0: none
     struct kept *kept;
     struct relume_transfer stated;    // for all images; AUTO: each file's own
     struct relume_transfer transfer;  // of the first image, never AUTO
@@ -22,9 +23,5 @@ struct relume_capture {
 // unless the capture is to be repaired.
 relume_status capture_stream(struct image_stream *out, const relume_capture *capture, int view,
                              int light, struct relume_transfer to, const struct relume_log *log);
-
-// A table whose values under near lights are levelled (near.h) but not those under distant lights.
-relume_status table_open_as_seen(relume_table **out, const relume_capture *capture, int view,
-                                 const struct relume_table_params *params);
 
 #endif

@@ -133,20 +133,12 @@ static void solve_light(const struct distant *d, const vec3 *seen, int light, do
         weights[i] = solved ? (float)b[i] : (float)(chosen[i] == light);
 }
 
-// The last nodes lie beside the picture; their depth is that of its border.
-static vec3 node_point(const struct distant *d, int column, int row)
-{
-    const struct near *near = d->near;
-    const int x = column * d->cell, y = row * d->cell, half = d->cell / 2;
-    const int cx = x < near->width ? x : near->width, cy = y < near->height ? y : near->height;
-    return near_point(near, x, y, near_depth(near, cx - half, cy - half, cx + half, cy + half));
-}
-
 static void solve_node(void *context, size_t item, int worker)
 {
     struct distant *d = context;
     const int n = d->most, row = d->node_row[d->filling];
-    const vec3 point = node_point(d, (int)item, row);
+    const vec3 point =
+        near_around(d->near, (double)item * d->cell, (double)row * d->cell, d->cell / 2);
     vec3 *seen = mem_array((size_t)d->lights, sizeof *seen);
     float *to = d->node[d->filling] + item * (size_t)(d->lights * n);
     double *work = d->work + (size_t)worker * (size_t)(n * n + n);

@@ -41,6 +41,28 @@ struct relume_geometry relume_geometry_default(enum relume_projection projection
     };
 }
 
+// ---------------------------------------------------------------- discs
+
+bool relume_geometry_fits(const struct relume_geometry *g, int width, int height)
+{
+    if (g->projection != RELUME_CYLINDRICAL || !g->disc)
+        return g->disc == 0;
+    return g->disc > 0 && g->disc < height && g->disc <= width / 2 && g->v_min < 0.0 &&
+           g->v_max > 0.0;
+}
+
+bool relume_geometry_shows(const struct relume_geometry *g, int width, int height, int column,
+                           int row)
+{
+    (void)width;
+    const int top = height - g->disc;
+    if (g->projection != RELUME_CYLINDRICAL || !g->disc || row < top)
+        return true;
+    const double a = (column % g->disc + 0.5) / g->disc - 0.5;
+    const double b = (row - top + 0.5) / g->disc - 0.5;
+    return column < 2 * g->disc && a * a + b * b <= 0.25;
+}
+
 // ---------------------------------------------------------------- pose
 
 static bool near_to(double found, double wanted)

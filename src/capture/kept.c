@@ -3,6 +3,7 @@
 #include "base/memory.h"
 
 #include <stdlib.h>
+#include <sys/mman.h>
 
 relume_status kept_create(struct kept **out, int images, size_t budget)
 {
@@ -44,13 +45,26 @@ static void give_back(struct kept *kept, size_t bytes)
     pthread_mutex_unlock(&kept->lock);
 }
 
+// Memory of its own pages, large ones where the system has them: far fewer faults.
+static void *large(size_t bytes)
+{
+    enum { LARGE_PAGE = 2 << 20 };
+    if (bytes < LARGE_PAGE)
+        return malloc(bytes);
+    void *memory = NULL;
+    if (posix_memalign(&memory, LARGE_PAGE, bytes))
+        return NULL;
+    madvise(memory, bytes, MADV_HUGEPAGE);
+    return memory;
+}
+
 uint8_t *kept_reserve(struct kept *kept, size_t bytes)
 {
     pthread_mutex_lock(&kept->lock);
     const bool fits = bytes <= kept->left;
     kept->left -= fits ? bytes : 0;
     pthread_mutex_unlock(&kept->lock);
-    uint8_t *rows = fits ? malloc(bytes) : NULL;
+    uint8_t *rows = fits ? large(bytes) : NULL;
     if (fits && !rows)
         give_back(kept, bytes);
     return rows;

@@ -1,4 +1,4 @@
-// lights_read.c - light directions from whatever file holds some
+// lights_read.c - lights from whatever file holds some
 #include "base/log.h"
 #include "base/memory.h"
 #include "capture/manifest.h"
@@ -10,119 +10,181 @@
 
 enum kind { KIND_LINES, KIND_LP, KIND_JSON };
 
-// JSON starts with a brace, a .lp file with a lone count.
-static enum kind kind_of(const char *line)
+// The first line that says something, without blanks and comments before it; "" at the end.
+static const char *next_line(char line[256], FILE *file)
+{
+    while (fgets(line, 256, file)) {
+        const char *start = line + strspn(line, " \t\r\n\xef\xbb\xbf");
+        if (*start && *start != '#')
+            return start;
+    }
+    return "";
+}
+
+static bool is_count(const char *line)
 {
     double number;
     char rest;
-    if (line[strspn(line, " \t\r\n\xef\xbb\xbf")] == '{')
-        return KIND_JSON;
-    const bool count = sscanf(line, " %lf %c", &number, &rest) == 1;
-    return count ? KIND_LP : KIND_LINES;
+    return sscanf(line, " %lf %c", &number, &rest) == 1;
 }
 
+// JSON starts with a brace, a .lp file with a lone count before lines that start with names.
 static relume_status look(enum kind *kind, const char *path, const struct relume_log *log)
 {
     FILE *file = fopen(path, "r");
     if (!file)
         return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
-    char line[256] = "";
-    const char *start = line;
-    do {
-        if (!fgets(line, sizeof line, file))
-            break;
-        start = line + strspn(line, " \t\r\n");
-    } while (!*start);
+    char line[256];
+    double v[3];
+    const char *start = next_line(line, file);
+    const bool some = *start;
+    *kind = *start == '{' ? KIND_JSON : KIND_LINES;
+    if (is_count(start)) {
+        start = next_line(line, file);
+        if (sscanf(start, "%lf%*[ \t,]%lf%*[ \t,]%lf", &v[0], &v[1], &v[2]) != 3)
+            *kind = KIND_LP;
+    }
     fclose(file);
-    *kind = kind_of(line);
-    if (!*start)
+    if (!some)
         return log_fail(log, RELUME_EDATA, "%s: no light directions; expected lines x y z", path);
     return RELUME_OK;
 }
 
-static relume_status from_lp(struct relume_vec3 **out, int *n, const char *path,
+static relume_status from_json(struct relume_light_list *out, const char *path,
+                               const struct relume_log *log)
+{
+    jvalue *root;
+    relume_status status = jvalue_load(&root, path, log);
+    if (!status)
+        status = (is_dome(root) ? dome_lights : manifest_lights)(out, root, path, log);
+    jvalue_free(&root);
+    return status;
+}
+
+static relume_status from_lp(struct relume_light_list *out, const char *path,
                              const struct relume_log *log)
 {
     struct draft draft = {0};
     relume_status status = lp_read(&draft, path, NULL, log);
     if (!status) {
-        *n = draft.m.lights;
-        *out = mem_copy(draft.directions, (size_t)*n, sizeof **out);
-        status = *out ? RELUME_OK : RELUME_ENOMEM;
+        const size_t n = (size_t)draft.m.lights;
+        out->count = draft.m.lights;
+        out->direction = mem_copy(draft.directions, n, sizeof *out->direction);
+        out->position = mem_copy(draft.positions, n, sizeof *out->position);
+        status = out->direction && out->position ? RELUME_OK : RELUME_ENOMEM;
     }
     draft_free(&draft);
     return status;
 }
 
-// 1: a direction; 0: a blank line or a comment; -1: neither.
+// 1: a vector, perhaps behind a name; 0: a blank line or a comment; -1: neither.
 static int parse_line(char *line, struct relume_vec3 *v)
 {
+    char rest, name[256];
     line[strcspn(line, "#\r\n")] = '\0';
-    char rest;
     if (!line[strspn(line, " \t")])
         return 0;
-    const int found = sscanf(line, "%lf%*[ \t,]%lf%*[ \t,]%lf %c", &v->x, &v->y, &v->z, &rest);
-    return found == 3 && direction_normalise(v) ? 1 : -1;
+    if (sscanf(line, "%lf%*[ \t,]%lf%*[ \t,]%lf %c", &v->x, &v->y, &v->z, &rest) == 3)
+        return 1;
+    return sscanf(line, "%255s %lf%*[ \t,]%lf%*[ \t,]%lf %c", name, &v->x, &v->y, &v->z, &rest) ==
+                       4 &&
+                   !is_count(name)
+               ? 1
+               : -1;
 }
 
-static relume_status read_lines(struct relume_vec3 **out, int *n, FILE *file, const char *path,
+static relume_status read_lines(struct relume_light_list *out, FILE *file, const char *path,
                                 const struct relume_log *log)
 {
     const int most = limits_or_default(NULL).max_lights;
-    struct relume_vec3 *v = mem_array((size_t)most, sizeof *v);
-    if (!v)
-        return RELUME_ENOMEM;
-    relume_status status = RELUME_OK;
     char line[512];
-    for (int number = 1; !status && fgets(line, sizeof line, file); number++) {
-        struct relume_vec3 one;
-        const int found = parse_line(line, &one);
-        if (found < 0)
-            status = log_fail(log, RELUME_EDATA,
-                              "%s: line %d; expected three numbers x y z, not "
-                              "all 0; found '%.40s'",
-                              path, number, line);
-        else if (found && *n == most)
-            status =
-                log_fail(log, RELUME_EDATA, "%s: too many lights; expected at most %d", path, most);
-        else if (found)
-            v[(*n)++] = one;
+    double stated = 0.0;
+    bool first = true;
+    out->direction = mem_array((size_t)most, sizeof *out->direction);
+    out->position = mem_array((size_t)most, sizeof *out->position);
+    if (!out->direction || !out->position)
+        return RELUME_ENOMEM;
+    for (int number = 1; fgets(line, sizeof line, file); number++) {
+        struct relume_vec3 v;
+        const bool count = first && is_count(line);
+        if (count)
+            stated = atof(line);
+        const int found = count ? 0 : parse_line(line, &v);
+        first &= !count && !found;
+        if (!found)
+            continue;
+        struct relume_vec3 unit = v;
+        if (found < 0 || !direction_normalise(&unit))
+            return log_fail(log, RELUME_EDATA,
+                            "%s: line %d; expected three numbers x y z, not all 0; found '%.40s'",
+                            path, number, line);
+        if (out->count == most)
+            return log_fail(log, RELUME_EDATA, "%s: too many lights; expected at most %d", path,
+                            most);
+        out->direction[out->count] = unit;
+        out->position[out->count++] = v;
     }
-    if (!status && !*n)
-        status = log_fail(log, RELUME_EDATA, "%s: no light directions; expected lines x y z", path);
-    if (status) {
-        free(v);
-        return status;
-    }
-    *out = v;
-    return RELUME_OK;
+    if (stated > 0.0 && out->count && stated != out->count)
+        log_line(log, RELUME_WARNING, "%s: says %g lights; found %d, which are used", path, stated,
+                 out->count);
+    return out->count
+               ? RELUME_OK
+               : log_fail(log, RELUME_EDATA, "%s: no light directions; expected lines x y z", path);
 }
 
-static relume_status from_lines(struct relume_vec3 **out, int *n, const char *path,
+static relume_status from_lines(struct relume_light_list *out, const char *path,
                                 const struct relume_log *log)
 {
     FILE *file = fopen(path, "r");
     if (!file)
         return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
-    const relume_status status = read_lines(out, n, file, path, log);
+    const relume_status status = read_lines(out, file, path, log);
     fclose(file);
+    return status;
+}
+
+void relume_light_list_destroy(struct relume_light_list *list)
+{
+    free(list->direction);
+    free(list->position);
+    free(list->intensity);
+    *list = (struct relume_light_list){0};
+}
+
+relume_status relume_lights_load(struct relume_light_list *out, const char *path, bool positions,
+                                 const struct relume_log *log)
+{
+    static relume_status (*const read[])(struct relume_light_list *, const char *,
+                                         const struct relume_log *) = {
+        [KIND_LINES] = from_lines,
+        [KIND_LP] = from_lp,
+        [KIND_JSON] = from_json,
+    };
+    *out = (struct relume_light_list){0};
+    enum kind kind;
+    relume_status status = look(&kind, path, log);
+    if (!status)
+        status = read[kind](out, path, log);
+    if (!status && kind != KIND_JSON && !positions) {
+        free(out->position);
+        out->position = NULL;
+    }
+    if (!status && positions && !out->position)
+        status = log_fail(log, RELUME_EDATA,
+                          "%s: tells directions only; expected positions of near lights", path);
+    if (status)
+        relume_light_list_destroy(out);
     return status;
 }
 
 relume_status relume_lights_read(struct relume_vec3 **out, int *n, const char *path,
                                  const struct relume_log *log)
 {
-    *out = NULL;
-    *n = 0;
-    enum kind kind;
-    relume_status status = look(&kind, path, log);
-    if (!status && kind == KIND_JSON)
-        status = manifest_directions(path, out, n, log);
-    else if (!status && kind == KIND_LP)
-        status = from_lp(out, n, path, log);
-    else if (!status)
-        status = from_lines(out, n, path, log);
-    if (status)
-        *n = 0;
+    struct relume_light_list list;
+    const relume_status status = relume_lights_load(&list, path, false, log);
+    *out = list.direction;
+    *n = list.count;
+    list.direction = NULL;
+    relume_light_list_destroy(&list);
     return status;
 }

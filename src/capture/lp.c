@@ -121,9 +121,10 @@ static relume_status parse_lines(struct draft *d, char *text, const char *path,
     for (const char *c = text; *c; c++)
         most += *c == '\n';
     d->directions = arena_array(&d->arena, (size_t)most, sizeof *d->directions);
+    d->positions = arena_array(&d->arena, (size_t)most, sizeof *d->positions);
     const char **images = arena_array(&d->arena, (size_t)most, sizeof *images);
     d->view = arena_array(&d->arena, 1, sizeof *d->view);
-    if (!d->directions || !images || !d->view)
+    if (!d->directions || !d->positions || !images || !d->view)
         return RELUME_ENOMEM;
 
     long stated = -1;
@@ -153,6 +154,7 @@ static relume_status parse_lines(struct draft *d, char *text, const char *path,
         if (!parse_light(line, &name, &v))
             return log_fail(log, RELUME_EDATA, "%s: line %d; expected 'image x y z', found '%s'",
                             path, number, shown);
+        d->positions[n] = v;
         if (!direction_normalise(&v))
             return log_fail(log, RELUME_EDATA,
                             "%s: line %d; expected a light direction, found '%s' (zero or not a "

@@ -1,10 +1,8 @@
-// manifest.c - capture.json, read and written
+// manifest.c - capture.json, read
 #include "capture/manifest.h"
 
-#include "base/json.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/outfile.h"
 #include "math/vec.h"
 
 #include <libgen.h>
@@ -12,10 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-
-enum { VERSION = 1 };
-
-// ---------------------------------------------------------------- reading
 
 struct parser {
     struct draft *d;
@@ -238,6 +232,24 @@ static relume_status read_slab(const struct parser *p, const jvalue *root)
     return read_planes(p, one, &p->d->m.geometry);
 }
 
+// Of a cylinder. Whether they fit shows with the first image.
+static relume_status read_discs(const struct parser *p, const jvalue *panorama)
+{
+    struct relume_geometry *g = &p->d->m.geometry;
+    const jvalue *value = jvalue_member(panorama, "discs");
+    long long side = 0;
+    if (!value || jvalue_is_null(value))
+        return RELUME_OK;
+    if (!jvalue_integer(value, &side) || side < 0 || side > p->limits.max_side)
+        return wrong(p, "panorama.discs", "the side of a disc's square in pixels, or 0");
+    if (side && g->projection != RELUME_CYLINDRICAL)
+        return wrong(p, "panorama.discs", "none but of a cylinder");
+    if (side && !(g->v_min < 0.0 && g->v_max > 0.0))
+        return wrong(p, "panorama.discs", "v_min below 0 and v_max above it");
+    g->disc = (int)side;
+    return RELUME_OK;
+}
+
 static relume_status read_geometry(const struct parser *p, const jvalue *root)
 {
     struct relume_geometry *g = &p->d->m.geometry;
@@ -283,7 +295,7 @@ static relume_status read_geometry(const struct parser *p, const jvalue *root)
             return wrong(p, "window", "min below max");
     if (!(g->v_min < g->v_max))
         return wrong(p, "panorama", "v_min below v_max");
-    return RELUME_OK;
+    return read_discs(p, panorama);
 }
 
 // Which slab a view is of.
@@ -392,10 +404,10 @@ static relume_status read_root(const struct parser *p, const jvalue *root)
     long long version;
     if (!jvalue_integer(jvalue_member(root, "version"), &version) || version < 1)
         return wrong(p, "version", "1");
-    if (version > VERSION)
+    if (version > MANIFEST_VERSION)
         return log_fail(p->log, RELUME_EDATA,
                         "%s: version %lld is newer than this program; expected %d", p->path,
-                        version, VERSION);
+                        version, MANIFEST_VERSION);
     struct draft *d = p->d;
     relume_status status = read_transfer(p, jvalue_member(root, "transfer"));
     if (!status)
@@ -433,171 +445,28 @@ relume_status manifest_read(struct draft *out, const char *path, const struct re
     return status;
 }
 
-relume_status manifest_directions(const char *path, struct relume_vec3 **out, int *n,
-                                  const struct relume_log *log)
+relume_status manifest_lights(struct relume_light_list *out, const jvalue *root, const char *path,
+                              const struct relume_log *log)
 {
-    *out = NULL;
-    *n = 0;
-    jvalue *root;
-    relume_status status = jvalue_load(&root, path, log);
-    if (status)
-        return status;
     struct draft draft = {0};
     char no_folder[] = ".";
     const struct parser p = {&draft, path, no_folder, limits_or_default(NULL), log};
     const jvalue *lights = jvalue_member(root, "lights");
+    *out = (struct relume_light_list){0};
     // The output of `relume lights --json` has the directions at its top.
-    status = read_lights(&p, lights ? lights : root);
+    relume_status status = read_lights(&p, lights ? lights : root);
     if (!status) {
-        *n = draft.m.lights;
-        *out = mem_copy(draft.directions, (size_t)*n, sizeof **out);
-        status = *out ? RELUME_OK : RELUME_ENOMEM;
+        const size_t n = (size_t)draft.m.lights;
+        out->count = draft.m.lights;
+        out->direction = mem_copy(draft.directions, n, sizeof *out->direction);
+        if (draft.positions)
+            out->position = mem_copy(draft.positions, n, sizeof *out->position);
+        if (draft.intensities)
+            out->intensity = mem_copy(draft.intensities, n, sizeof *out->intensity);
+        if (!out->direction || (draft.positions && !out->position) ||
+            (draft.intensities && !out->intensity))
+            status = RELUME_ENOMEM;
     }
     draft_free(&draft);
-    jvalue_free(&root);
-    return status;
-}
-
-// ---------------------------------------------------------------- writing
-
-static void put_text(FILE *f, const char *text)
-{
-    char *quoted = jvalue_quote(text);
-    fputs(quoted ? quoted : "\"\"", f);
-    free(quoted);
-}
-
-static void put_vectors(FILE *f, const char *key, const struct relume_vec3 *v, int n)
-{
-    fprintf(f, "    \"%s\": [", key);
-    for (int i = 0; i < n; i++)
-        fprintf(f, "%s\n      [%.9g, %.9g, %.9g]", i ? "," : "", v[i].x, v[i].y, v[i].z);
-    fputs("\n    ]", f);
-}
-
-static void put_lights(FILE *f, const struct relume_manifest *m)
-{
-    fputs("  \"lights\": {\n", f);
-    put_vectors(f, "directions", m->directions, m->lights);
-    if (m->intensities) {
-        fputs(",\n    \"intensities\": [", f);
-        for (int i = 0; i < m->lights; i++)
-            fprintf(f, "%s\n      [%.9g, %.9g, %.9g]", i ? "," : "", (double)m->intensities[i][0],
-                    (double)m->intensities[i][1], (double)m->intensities[i][2]);
-        fputs("\n    ]", f);
-    }
-    if (m->positions) {
-        fputs(",\n", f);
-        put_vectors(f, "positions", m->positions, m->lights);
-        if (m->no_falloff)
-            fputs(",\n    \"falloff\": \"none\"", f);
-    }
-    fputs("\n  },\n", f);
-}
-
-static void put_planes(FILE *f, const struct relume_geometry *g)
-{
-    fprintf(f,
-            "{\"uv_plane_z\": %.9g, \"st_plane_z\": %.9g, \"st_min\": [%.9g, %.9g], "
-            "\"st_max\": [%.9g, %.9g]",
-            g->uv_z, g->st_z, g->st_min[0], g->st_min[1], g->st_max[0], g->st_max[1]);
-}
-
-static void put_slabs(FILE *f, const struct relume_manifest *m)
-{
-    fputs("  \"slabs\": [", f);
-    for (int i = 0; i < m->slabs; i++) {
-        const struct relume_pose *pose = &m->slab[i].pose;
-        fputs(i ? ",\n    " : "\n    ", f);
-        put_planes(f, &m->slab[i]);
-        fprintf(f, ",\n     \"origin\": [%.9g, %.9g, %.9g], \"axes\": [", pose->origin.x,
-                pose->origin.y, pose->origin.z);
-        for (int a = 0; a < 3; a++)
-            fprintf(f, "%s[%.9g, %.9g, %.9g]", a ? ", " : "", pose->axis[a].x, pose->axis[a].y,
-                    pose->axis[a].z);
-        fputs("]}", f);
-    }
-    fputs("\n  ],\n", f);
-}
-
-static void put_slab(FILE *f, const struct relume_geometry *g)
-{
-    fputs("  \"slab\": ", f);
-    put_planes(f, g);
-    fputs("},\n", f);
-}
-
-static void put_geometry(FILE *f, const struct relume_manifest *m)
-{
-    const struct relume_geometry *g = &m->geometry;
-    fprintf(f, "  \"projection\": \"%s\",\n", relume_projection_name(g->projection));
-    if (g->projection == RELUME_PLANAR)
-        fprintf(f,
-                "  \"window\": {\"min\": [%.9g, %.9g], \"max\": [%.9g, %.9g], \"camera\": \"%s\", "
-                "\"camera_z\": %.9g},\n",
-                g->window_min[0], g->window_min[1], g->window_max[0], g->window_max[1],
-                g->perspective ? "perspective" : "orthographic", g->camera_z);
-    else if (g->projection == RELUME_SLAB)
-        m->slabs ? put_slabs(f, m) : put_slab(f, g);
-    else
-        fprintf(f,
-                "  \"panorama\": {\"v_min\": %.9g, \"v_max\": %.9g, \"center\": [%.9g, %.9g, "
-                "%.9g]},\n",
-                g->v_min, g->v_max, g->center.x, g->center.y, g->center.z);
-}
-
-static void put_view(FILE *f, const struct relume_manifest *m, const struct relume_manifest_view *v)
-{
-    fputs("    {", f);
-    if (m->geometry.projection == RELUME_SLAB)
-        fprintf(f, "\"uv\": [%.9g, %.9g], ", v->uv[0], v->uv[1]);
-    if (m->slabs)
-        fprintf(f, "\"slab\": %d, ", v->slab);
-    if (v->depth) {
-        fputs("\"depth\": ", f);
-        put_text(f, v->depth);
-        fputs(", ", f);
-    }
-    if (v->mask) {
-        fputs("\"mask\": ", f);
-        put_text(f, v->mask);
-        fputs(", ", f);
-    }
-    fputs("\"images\": [", f);
-    for (int i = 0; i < m->lights; i++) {
-        fputs(i ? ", " : "", f);
-        put_text(f, v->images[i]);
-    }
-    fputs("]}", f);
-}
-
-relume_status relume_manifest_write(const struct relume_manifest *manifest, const char *path,
-                                    const struct relume_log *log)
-{
-    char *text = NULL;
-    size_t size = 0;
-    if (manifest->transfer.curve == RELUME_CURVE_RESPONSE)
-        return log_fail(log, RELUME_EINVAL,
-                        "%s: a response curve lives in a file of its own; expected linear pictures",
-                        path);
-    FILE *f = open_memstream(&text, &size);
-    if (!f)
-        return RELUME_ENOMEM;
-    char transfer[32];
-    relume_transfer_text(manifest->transfer, transfer, sizeof transfer);
-    fprintf(f, "{\n  \"format\": \"relume-capture\",\n  \"version\": %d,\n", VERSION);
-    if (manifest->transfer.curve != RELUME_CURVE_AUTO)
-        fprintf(f, "  \"transfer\": \"%s\",\n", transfer);
-    put_geometry(f, manifest);
-    put_lights(f, manifest);
-    fputs("  \"views\": [\n", f);
-    for (int i = 0; i < manifest->views; i++) {
-        put_view(f, manifest, &manifest->view[i]);
-        fputs(i + 1 < manifest->views ? ",\n" : "\n", f);
-    }
-    fputs("  ]\n}\n", f);
-    const bool failed = fclose(f) != 0;
-    const relume_status status = failed ? RELUME_ENOMEM : outfile_save(path, text, size, log);
-    free(text);
     return status;
 }

@@ -3,8 +3,12 @@
 #define CAPTURE_MANIFEST_H
 
 #include "base/arena.h"
+#include "base/json.h"
 
 #include <relume/capture.h>
+#include <relume/lights.h>
+
+enum { MANIFEST_VERSION = 1 };
 
 // A manifest whose arrays live in `arena` and may still be changed.
 struct draft {
@@ -18,7 +22,8 @@ struct draft {
 };
 void draft_free(struct draft *draft);
 
-// A .lp file. Image names are as written; lp_resolve finds the files.
+// A .lp file. Image names are as written; lp_resolve finds the files. `positions` holds the vectors
+// as written, `m.positions` is NULL.
 relume_status lp_read(struct draft *out, const char *path, const struct relume_limits *limits,
                       const struct relume_log *log);
 // Replace the names by existing paths (docs/user-guide: "Names decide"); missing files stay as
@@ -30,9 +35,13 @@ relume_status lp_resolve(struct draft *draft, const char *path, bool skip_missin
 relume_status manifest_read(struct draft *out, const char *path, const struct relume_limits *limits,
                             const struct relume_log *log);
 
-// Only the light directions of a capture.json; `*out` is to be freed.
-relume_status manifest_directions(const char *path, struct relume_vec3 **out, int *n,
-                                  const struct relume_log *log);
+// Only the lights of the tree of a capture.json or of `relume lights --json`.
+relume_status manifest_lights(struct relume_light_list *out, const jvalue *root, const char *path,
+                              const struct relume_log *log);
+// Those of a .dome file; the vectors that it says are in use.
+bool is_dome(const jvalue *root);
+relume_status dome_lights(struct relume_light_list *out, const jvalue *root, const char *path,
+                          const struct relume_log *log);
 
 // Normalise; false for a vector that is zero, infinite or NaN.
 bool direction_normalise(struct relume_vec3 *v);

@@ -1,13 +1,44 @@
 // near.c - directions and fall-off of near lights, pixel by pixel
 #include "capture/near.h"
 
+#include "base/log.h"
+
+static bool is_panorama(enum relume_projection p)
+{
+    return p == RELUME_SPHERICAL || p == RELUME_CYLINDRICAL;
+}
+
+static bool has_depth(const relume_capture *capture, int view)
+{
+    return capture->draft.m.view[view].depth || capture->assume_depth > 0.0;
+}
+
 bool near_applies(const relume_capture *capture, int view)
 {
     const struct relume_manifest *m = &capture->draft.m;
+    const enum relume_projection p = m->geometry.projection;
     if (!m->positions)
         return false;
-    return m->geometry.projection == RELUME_PLANAR ||
-           (m->geometry.projection == RELUME_SLAB && m->view[view].depth);
+    return p == RELUME_PLANAR || p == RELUME_SLAB || (is_panorama(p) && has_depth(capture, view));
+}
+
+void near_warn(const relume_capture *capture, const struct relume_log *log)
+{
+    const struct relume_manifest *m = &capture->draft.m;
+    const enum relume_projection p = m->geometry.projection;
+    int without = 0;
+    for (int i = 0; m->positions && p != RELUME_PLANAR && i < m->views; i++)
+        without += p == RELUME_CUBE || !has_depth(capture, i);
+    if (without && p == RELUME_SLAB)
+        log_line(log, RELUME_WARNING,
+                 "%s: lights are near, but %d of %d views have no depth; their surfaces are taken "
+                 "to lie on the st plane",
+                 capture->path, without, m->views);
+    else if (without)
+        log_line(log, RELUME_WARNING, "%s: lights are near, but %s; they are taken as distant ones",
+                 capture->path,
+                 p == RELUME_CUBE ? "in a cube near lights are not supported"
+                                  : "the panorama has no depth (--assume-depth)");
 }
 
 relume_status near_open(struct near *out, const relume_capture *capture, int view,
@@ -22,6 +53,7 @@ relume_status near_open(struct near *out, const relume_capture *capture, int vie
         .falls = !m->no_falloff,
         .geometry = m->slabs ? m->slab[m->view[view].slab] : m->geometry,
         .uv = {m->view[view].uv[0], m->view[view].uv[1]},
+        .assumed = capture->assume_depth > 0.0 ? capture->assume_depth : -1.0,
     };
     return relume_capture_depth(&out->depth, capture, view, log);
 }
@@ -48,8 +80,25 @@ static vec3 local_point(const struct near *near, double x, double y, double dept
     return vec3_add(eye, vec3_scale(vec3_unit(vec3_sub(on_plane, eye)), depth));
 }
 
+// docs/conventions.md, panoramas.
+static vec3 panorama_point(const struct near *near, double x, double y, double depth)
+{
+    const struct relume_geometry *g = &near->geometry;
+    const double phi = (2.0 * x / near->width - 1.0) * M_PI, down = y / near->height;
+    const double elevation = (0.5 - down) * M_PI;
+    const vec3 ray =
+        g->projection == RELUME_SPHERICAL
+            ? vec3_of(cos(elevation) * sin(phi), sin(elevation), -cos(elevation) * cos(phi))
+            : vec3_unit(vec3_of(sin(phi), g->v_max - down * (g->v_max - g->v_min), -cos(phi)));
+    if (!(depth >= 0.0) || isinf(depth))
+        return vec3_of(0.0, 0.0, 0.0);
+    return vec3_add(g->center, vec3_scale(ray, depth));
+}
+
 vec3 near_point(const struct near *near, double x, double y, double depth)
 {
+    if (is_panorama(near->geometry.projection))
+        return panorama_point(near, x, y, depth);
     const vec3 local = local_point(near, x, y, depth);
     return near->geometry.projection == RELUME_SLAB ? relume_pose_world(&near->geometry.pose, local)
                                                     : local;
@@ -58,11 +107,13 @@ vec3 near_point(const struct near *near, double x, double y, double depth)
 vec3 near_pixel(const struct near *near, int x, int y)
 {
     const size_t at = (size_t)y * (size_t)near->width + (size_t)x;
-    const double depth = near->depth.data ? (double)near->depth.data[at] : -1.0;
+    const double depth = near->depth.data ? (double)near->depth.data[at] : near->assumed;
     return near_point(near, x + 0.5, y + 0.5, depth);
 }
 
-double near_depth(const struct near *near, int x0, int y0, int x1, int y1)
+// The mean of the finite depths in a rectangle of pixels, below 0 when there is none; where no
+// depth is known, what is assumed.
+static double mean_depth(const struct near *near, int x0, int y0, int x1, int y1)
 {
     double sum = 0.0;
     size_t n = 0;
@@ -74,7 +125,13 @@ double near_depth(const struct near *near, int x0, int y0, int x1, int y1)
                 n++;
             }
         }
-    return n ? sum / (double)n : -1.0;
+    return n ? sum / (double)n : near->depth.data ? -1.0 : near->assumed;
+}
+
+vec3 near_around(const struct near *near, double x, double y, int reach)
+{
+    const int cx = (int)fmin(x, near->width), cy = (int)fmin(y, near->height);
+    return near_point(near, x, y, mean_depth(near, cx - reach, cy - reach, cx + reach, cy + reach));
 }
 
 vec3 near_direction(double *gain, const struct near *near, int light, vec3 point)

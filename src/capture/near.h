@@ -12,22 +12,27 @@ struct near {
     bool falls;            // light falls with the square of the distance
     struct relume_geometry geometry;
     double uv[2];
-    struct relume_image depth;  // or empty: the plane z = 0
+    struct relume_image depth;  // or empty
+    double assumed;             // depth of all pixels where there is none; below 0: the plane z = 0
 };
 
-// Whether the lights are near and the places of the pixels are known: planar views, slabs with
-// depth.
+// Whether the lights are near and the places of the pixels are known: planar views and slabs (by
+// depth, else on the plane z = 0, the st plane), spheres and cylinders with depth.
 bool near_applies(const relume_capture *capture, int view);
+// Warn of views whose surfaces are not known well enough.
+void near_warn(const relume_capture *capture, const struct relume_log *log);
 relume_status near_open(struct near *out, const relume_capture *capture, int view,
                         const struct relume_log *log);
 void near_close(struct near *near);
 
-// The world point at a (fractional) place of the picture, pixel centres at +0.5; where `depth` says
-// background, and depth < 0 (not given), that of the plane z = 0 (slabs: the st plane).
+// The world point at a (fractional) place of the picture, pixel centres at +0.5. Where `depth` says
+// background, and depth < 0 (not given), that of the plane z = 0 (slabs: the st plane); panoramas:
+// the world's origin, from where directions and brightness are those of distant lights.
 vec3 near_point(const struct near *near, double x, double y, double depth);
 vec3 near_pixel(const struct near *near, int x, int y);
-// The mean of the finite depths in a rectangle of pixels; below 0 when there is none.
-double near_depth(const struct near *near, int x0, int y0, int x1, int y1);
+// The same for a place that may lie beside the picture, with the mean of the finite depths up to
+// `reach` pixels away.
+vec3 near_around(const struct near *near, double x, double y, int reach);
 
 // The unit direction from `point` to a light, and what the pixel's value is to be multiplied by to
 // be that under a light as bright as this one is at the world's origin.

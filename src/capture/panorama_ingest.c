@@ -13,13 +13,26 @@ const char *panorama_picture_name(struct panorama_job *job, int light)
 relume_status panorama_load(struct relume_image *out, const struct panorama_job *job, int camera,
                             int light)
 {
-    return relume_image_load(out, job->set.camera[camera].images[light],
-                             relume_image_params(.log = job->common->log,
-                                                 .limits = job->common->limits,
-                                                 .transfer = job->common->transfer));
+    return photo_load(out, &job->set, camera, light, job->common);
 }
 
 // ---------------------------------------------------------------- one picture
+
+static relume_status save_upright(struct panorama_job *job)
+{
+    relume_status status = RELUME_OK;
+    job->transfer = (struct relume_transfer){.curve = RELUME_CURVE_LINEAR};
+    for (int k = 0; !status && k < job->set.lights; k++) {
+        struct relume_image image;
+        status = panorama_load(&image, job, 0, k);
+        if (!status)
+            status = panorama_picture_name(job, k) ? save_inside(job->folder, job->view.images[k],
+                                                                 &image, true, job->common->log)
+                                                   : RELUME_ENOMEM;
+        relume_image_destroy(&image);
+    }
+    return status;
+}
 
 static relume_status one_picture(struct panorama_job *job)
 {
@@ -31,6 +44,8 @@ static relume_status one_picture(struct panorama_job *job)
     job->width = job->set.width;
     job->height = job->set.height;
     job->transfer = job->common->transfer;
+    if (job->set.turned)
+        return save_upright(job);
     for (int k = 0; k < job->set.lights; k++)
         if (!(job->view.images[k] = path_from(&job->set.arena, job->dir, c->images[k])))
             return RELUME_ENOMEM;

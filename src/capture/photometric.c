@@ -166,9 +166,9 @@ static relume_status fit_bands(struct fit *f)
 {
     relume_table *table;
     const int rows = f->rows;
-    relume_status status =
-        table_open_as_seen(&table, f->capture, f->view,
-                           relume_table_params(.log = f->params.log, .threads = f->params.threads));
+    relume_status status = relume_table_open(
+        &table, f->capture, f->view,
+        relume_table_params(.as_seen = true, .log = f->params.log, .threads = f->params.threads));
     for (f->row = 0; !status && f->row < f->height; f->row += rows) {
         f->rows = f->height - f->row < rows ? f->height - f->row : rows;
         f->stride = 3 * (size_t)f->rows * (size_t)f->width;

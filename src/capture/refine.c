@@ -4,25 +4,30 @@
 // direction: a bilinear system, solved for all g with l fixed (robustly, math/lambert.h) and for
 // all l with g fixed, by turns. Its solutions are known up to g -> A^-T g, l -> A l. The A that is
 // taken brings the l nearest to the directions given, over all lights: their common error stays,
-// that of one against the others goes.
+// that of one against the others goes. Where it is asked for, integrability (integrable.h) then
+// corrects part of the common error as well.
 #include <relume/shoot.h>
 
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
+#include "capture/integrable.h"
 #include "math/lambert.h"
 #include "math/lsq.h"
 
 #include <string.h>
 
 enum { PIXELS = 6000, ROUNDS = 30, LEAST_LIGHTS = 6 };
-static const float DARK = 0.01f;      // median over lights below which a pixel says little
-static const float CLIPPED = 0.995f;  // of white
+static const float DARK = 0.01f;       // median over lights below which a pixel says little
+static const float CLIPPED = 0.995f;   // of white
+static const double MOST_MOVED = 5.0;  // degrees, by integrability
 
 struct refiner {
     const relume_capture *capture;
     int lights, threads;
     size_t pixels;
+    int step, columns, rows;         // of the lattice of pixels
+    int *slot;                       // [rows][columns]: which pixel; -1: none
     float *value;                    // [PIXELS][lights]; clipped ones are NaN
     vec3 *g;                         // [PIXELS]
     bool *known;                     // [PIXELS]
@@ -44,7 +49,7 @@ static bool is_useful(const float *value, int lights)
     return lit >= 4 && 2 * lit >= lights;
 }
 
-static void take(struct refiner *r, const float *band, size_t stride, size_t at, float (*white)[3])
+static int take(struct refiner *r, const float *band, size_t stride, size_t at, float (*white)[3])
 {
     float *to = r->value + r->pixels * (size_t)r->lights;
     for (int i = 0; i < r->lights; i++) {
@@ -53,8 +58,7 @@ static void take(struct refiner *r, const float *band, size_t stride, size_t at,
                            p[2] >= CLIPPED * white[i][2];
         to[i] = clips ? NAN : luminance(p);
     }
-    if (r->pixels < PIXELS && is_useful(to, r->lights))
-        r->pixels++;
+    return r->pixels < PIXELS && is_useful(to, r->lights) ? (int)r->pixels++ : -1;
 }
 
 static size_t count_inside(const struct relume_image *mask, size_t all)
@@ -65,22 +69,34 @@ static size_t count_inside(const struct relume_image *mask, size_t all)
     return mask->data ? n : all;
 }
 
-// Pixels inside the mask, evenly, row by row.
+// A square lattice with about PIXELS crossings inside the mask.
+static relume_status lay_lattice(struct refiner *r, const struct relume_image *mask)
+{
+    const int width = relume_capture_width(r->capture), height = relume_capture_height(r->capture);
+    const size_t inside = count_inside(mask, (size_t)width * (size_t)height);
+    r->step = (int)ceil(sqrt((double)inside / (0.95 * PIXELS)));
+    r->step = r->step < 1 ? 1 : r->step;
+    r->columns = (width + r->step - 1) / r->step;
+    r->rows = (height + r->step - 1) / r->step;
+    r->slot = mem_array((size_t)r->columns * (size_t)r->rows, sizeof *r->slot);
+    return r->slot ? RELUME_OK : RELUME_ENOMEM;
+}
+
 static relume_status read_rows(struct refiner *r, const struct relume_image *mask, float *band,
                                float (*white)[3], const struct relume_log *log)
 {
-    const size_t width = (size_t)relume_capture_width(r->capture);
-    const size_t all = width * (size_t)relume_capture_height(r->capture);
-    const size_t step = count_inside(mask, all) / PIXELS + 1;
+    const size_t width = (size_t)relume_capture_width(r->capture), step = (size_t)r->step;
+    const size_t height = (size_t)relume_capture_height(r->capture);
     relume_table *table;
     relume_status status = relume_table_open(
         &table, r->capture, 0, relume_table_params(.log = log, .threads = r->threads));
-    size_t inside = 0;
-    for (size_t at = 0; !status && at < all; at++) {
-        if (at % width == 0)
-            status = relume_table_read(table, 1, band);
-        if (!status && (!mask->data || mask->data[at] > 0.5f) && inside++ % step == 0)
-            take(r, band, 3 * width, at % width, white);
+    for (size_t y = 0; !status && y < height; y++) {
+        status = relume_table_read(table, 1, band);
+        for (size_t x = 0; !status && y % step == 0 && x < width; x += step)
+            r->slot[y / step * (size_t)r->columns + x / step] =
+                mask->data && mask->data[y * width + x] <= 0.5f
+                    ? -1
+                    : take(r, band, 3 * width, x, white);
     }
     relume_table_destroy(&table);
     return status;
@@ -95,6 +111,8 @@ static relume_status read_pixels(struct refiner *r, const struct relume_log *log
     relume_status status = relume_capture_mask(&mask, r->capture, 0, log);
     if (!status && !(band && white))
         status = RELUME_ENOMEM;
+    if (!status)
+        status = lay_lattice(r, &mask);
     for (int i = 0; !status && i < r->lights; i++)
         relume_capture_white(r->capture, i, white[i]);
     if (!status)
@@ -214,6 +232,43 @@ static relume_status find_residual(double *residual, struct refiner *r)
     return status;
 }
 
+// The lights by which the surface has no curl; brightness keeps its mean.
+static relume_status integrate(struct refiner *r, double curl[2], const struct relume_log *log)
+{
+    const struct lattice lattice = {r->columns, r->rows, r->slot, r->g, r->known};
+    double a[9], mean = 0.0, angle = 0.0;
+    vec3 *moved = mem_array((size_t)r->lights, sizeof *moved);
+    if (!moved)
+        return RELUME_ENOMEM;
+    if (!integrable_map(a, curl, &lattice)) {
+        free(moved);
+        return log_fail(log, RELUME_EDATA,
+                        "lights cannot be made to fit a surface of heights: too little of it is "
+                        "connected");
+    }
+    for (int i = 0; i < r->lights; i++) {
+        const vec3 l = r->light[i];
+        moved[i] =
+            vec3_of(a[0] * l.x + a[1] * l.y + a[2] * l.z, a[3] * l.x + a[4] * l.y + a[5] * l.z,
+                    a[6] * l.x + a[7] * l.y + a[8] * l.z);
+        mean += vec3_length(moved[i]) / r->lights;
+        angle += vec3_angle(moved[i], l) * 180.0 / M_PI / r->lights;
+    }
+    if (angle > MOST_MOVED) {
+        log_line(log, RELUME_WARNING,
+                 "the surface has a curl that no lights within %.0f degrees explain (%.1f would be "
+                 "needed): it is not matte, or the codes are not what --transfer says; lights are "
+                 "left as the images fit them best",
+                 MOST_MOVED, angle);
+        curl[1] = curl[0];
+    } else {
+        for (int i = 0; i < r->lights; i++)
+            r->light[i] = vec3_scale(moved[i], 1.0 / mean);
+    }
+    free(moved);
+    return RELUME_OK;
+}
+
 static relume_status solve(struct refiner *r, const vec3 *given, double residual[2],
                            const struct relume_log *log)
 {
@@ -236,6 +291,7 @@ relume_status relume_lights_refine(struct relume_vec3 *direction, double *intens
 {
     const struct relume_refine_params p = params ? *params : (struct relume_refine_params){0};
     const struct relume_manifest *m = relume_capture_manifest(capture);
+    double curl[2];
     struct refiner r = {
         .capture = capture, .lights = m->lights, .threads = thread_count(p.threads)};
     if (m->lights < LEAST_LIGHTS || m->positions || !lambert_spans(m->directions, m->lights))
@@ -260,10 +316,13 @@ relume_status relume_lights_refine(struct relume_vec3 *direction, double *intens
                           r.pixels);
     if (!status)
         status = solve(&r, m->directions, residual, p.log);
+    if (!status && p.integrable)
+        status = integrate(&r, p.curl ? p.curl : curl, p.log);
     for (int i = 0; !status && i < r.lights; i++) {
         intensity[i] = vec3_length(r.light[i]);
         direction[i] = vec3_unit(r.light[i]);
     }
+    free(r.slot);
     free(r.value);
     free(r.g);
     free(r.known);

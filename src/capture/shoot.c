@@ -219,11 +219,13 @@ static relume_status describe(const struct shoot *s)
 static relume_status refine(struct shoot *s, const relume_capture *capture)
 {
     struct relume_shoot *out = s->out;
-    double residual[2], *bright = mem_array((size_t)out->lights, sizeof *bright);
-    relume_status status =
-        bright ? relume_lights_refine(out->direction, bright, residual, capture,
-                                      &(struct relume_refine_params){s->p.log, s->p.threads})
-               : RELUME_ENOMEM;
+    double residual[2], curl[2] = {0.0, 0.0};
+    double *bright = mem_array((size_t)out->lights, sizeof *bright);
+    const struct relume_refine_params p = {
+        .log = s->p.log, .threads = s->p.threads, .integrable = s->p.integrable, .curl = curl};
+    relume_status status = bright
+                               ? relume_lights_refine(out->direction, bright, residual, capture, &p)
+                               : RELUME_ENOMEM;
     for (int i = 0; !status && i < out->lights; i++)
         for (int c = 0; c < 3; c++)
             out->intensity[i][c] *= (float)bright[i];
@@ -232,6 +234,10 @@ static relume_status refine(struct shoot *s, const relume_capture *capture)
         log_line(s->p.log, RELUME_NOTE,
                  "lights refined: the images miss Lambert's law by %.3f of the albedo, %.3f before",
                  residual[1], residual[0]);
+    if (!status && s->p.integrable)
+        log_line(s->p.log, RELUME_NOTE,
+                 "lights refined: the surface's curl is %.3f of its curvature, %.3f before",
+                 curl[1], curl[0]);
     return status ? status : describe(s);
 }
 
@@ -281,6 +287,8 @@ static relume_status run(struct shoot *s)
     if (!status)
         status = shoot_find_lights(s);
     if (!status)
+        status = shoot_whiten(s);
+    if (!status)
         status = fill_result(s);
     if (!status)
         status = shoot_check_lights(s);
@@ -302,6 +310,16 @@ static relume_status check_params(const struct relume_shoot_params *p)
         return log_fail(p->log, RELUME_EDATA,
                         "%d photographs of the ball; expected %d, one for each of the object",
                         p->ball_photograph_count, p->photograph_count);
+    if (p->flat_count > 1 && p->flat_count != p->photograph_count)
+        return log_fail(p->log, RELUME_EDATA,
+                        "%d flat fields; expected 1, or %d as photographs, each under its light",
+                        p->flat_count, p->photograph_count);
+    if (p->white[2] && p->matte && !p->lights)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "a matte ball tells the lamps' colour already; expected no grey region");
+    if (p->integrable && !p->refine)
+        return log_fail(p->log, RELUME_EINVAL,
+                        "lights are made to fit a surface only where they are refined");
     if (p->refine && p->near)
         return log_fail(p->log, RELUME_EINVAL,
                         "near lights cannot be refined; expected distant ones");
@@ -314,6 +332,8 @@ static void release(struct shoot *s)
         relume_image_destroy(&s->shot[i].small);
     free(s->shot);
     relume_image_destroy(&s->first);
+    relume_image_destroy(&s->gain);
+    relume_image_destroy(&s->grey);
     relume_image_destroy(&s->mean);
     relume_image_destroy(&s->peak);
 }

@@ -32,6 +32,8 @@ struct shoot {
     struct shot *shot;
     int width, height;          // of the photographs
     struct relume_image first;  // that others are aligned to; empty unless params.align
+    struct relume_image gain;   // that evens out the light, of one flat field; empty: none yet
+    struct relume_image grey;   // sum of what photographs show in params.white
     bool has_intensities;
     // of the photographs in which the balls stand
     struct relume_ball_camera camera;
@@ -49,10 +51,20 @@ const char *shoot_base_name(const char *path);
 
 // Read all photographs into the folder; RELUME_EDATA.
 relume_status shoot_read(struct shoot *s);
+relume_status shoot_check_size(const struct shoot *s, const struct relume_image *image,
+                               const char *path, int width, int height);
+// Multiply a photograph by what its flat field says. RELUME_EDATA.
+relume_status shoot_flatten(struct shoot *s, const struct shot *shot, struct relume_image *image);
+// Remember the grey region of a photograph; make its mean the colour of all lights.
+relume_status shoot_add_grey(struct shoot *s, const struct relume_image *image);
+relume_status shoot_whiten(struct shoot *s);
 // What can be told wrong of the pictures themselves: other scenes, clipping, blackness.
 relume_status shoot_check_pictures(struct shoot *s);
 // Directions, positions, intensities and their errors, from balls or from a file.
 relume_status shoot_find_lights(struct shoot *s);
+// The same from a folder: the text files of COLMAP, with cameras that are tied to the lamp.
+bool shoot_has_poses(const char *path);
+relume_status shoot_lights_from_poses(struct shoot *s);
 // Uneven coverage, coplanar lights.
 relume_status shoot_check_lights(struct shoot *s);
 

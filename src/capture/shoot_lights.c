@@ -235,34 +235,6 @@ static relume_status lights_from_balls(struct shoot *s)
 
 // ---------------------------------------------------------------- a file
 
-// Lines "[name] x y z"; a lone count and comments are passed over.
-static relume_status read_positions(struct relume_vec3 **out, int *n, const char *path,
-                                    const struct relume_log *log)
-{
-    FILE *file = fopen(path, "r");
-    if (!file)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; expected lines x y z", path);
-    const int most = limits_or_default(NULL).max_lights;
-    struct relume_vec3 *v = mem_array((size_t)most, sizeof *v);
-    char line[1024];
-    *n = 0;
-    while (v && *n < most && fgets(line, sizeof line, file)) {
-        line[strcspn(line, "#\r\n")] = '\0';
-        struct relume_vec3 *p = &v[*n];
-        if (sscanf(line, "%lf%*[ \t,]%lf%*[ \t,]%lf", &p->x, &p->y, &p->z) != 3 &&
-            sscanf(line, "%*s %lf%*[ \t,]%lf%*[ \t,]%lf", &p->x, &p->y, &p->z) != 3)
-            continue;
-        *n += isfinite(p->x) && isfinite(p->y) && isfinite(p->z) && vec3_length(*p) > 1e-4;
-    }
-    fclose(file);
-    if (v && !*n) {
-        free(v);
-        return log_fail(log, RELUME_EDATA, "%s: no positions; expected lines x y z", path);
-    }
-    *out = v;
-    return v ? RELUME_OK : RELUME_ENOMEM;
-}
-
 static bool is_lp(const char *path)
 {
     const char *dot = strrchr(path, '.');
@@ -303,35 +275,45 @@ static relume_status match_names(struct shoot *s, int *order, bool *matched)
     return status;
 }
 
+// `order` says which light of the list is that of a shot.
+static void take_lights(struct shoot *s, const struct relume_light_list *list, const int *order)
+{
+    for (int i = 0; i < s->shots; i++) {
+        const int k = order[i];
+        s->shot[i].direction = list->direction[k];
+        s->shot[i].position = list->position ? list->position[k] : list->direction[k];
+        for (int c = 0; c < 3; c++)
+            s->shot[i].intensity[c] = list->intensity ? list->intensity[k][c] : 1.0f;
+    }
+    s->has_intensities = list->intensity != NULL;
+}
+
 static relume_status lights_from_file(struct shoot *s)
 {
-    struct relume_vec3 *v = NULL;
-    int n = 0;
+    struct relume_light_list list = {0};
     bool matched = false;
     int *order = mem_array((size_t)s->shots, sizeof *order);
     relume_status status = order ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; !status && i < s->shots; i++)
         order[i] = s->shot[i].number;
     if (!status)
-        status = (s->p.near ? read_positions : relume_lights_read)(&v, &n, s->p.lights, s->p.log);
+        status = relume_lights_load(&list, s->p.lights, s->p.near, s->p.log);
     if (!status && is_lp(s->p.lights))
         status = match_names(s, order, &matched);
-    if (!status && !matched && n != s->p.photograph_count)
+    if (!status && !matched && list.count != s->p.photograph_count)
         status = log_fail(s->p.log, RELUME_EDATA, "%s: %d lights; expected %d as photographs",
-                          s->p.lights, n, s->p.photograph_count);
-    for (int i = 0; !status && i < s->shots; i++) {
-        const vec3 found = v[order[i]];
-        s->shot[i].direction = vec3_unit(found);
-        s->shot[i].position = found;
-    }
+                          s->p.lights, list.count, s->p.photograph_count);
+    if (!status)
+        take_lights(s, &list, order);
     free(order);
-    free(v);
+    relume_light_list_destroy(&list);
     return status;
 }
 
 // ---------------------------------------------------------------- both
 
-// Photographs of other exposures show their lights brighter or darker.
+// Photographs of other exposures show their lights brighter or darker; what a matte ball tells
+// includes that.
 static relume_status weigh_exposures(struct shoot *s)
 {
     double least = INFINITY, most = 0.0, sum = 0.0;
@@ -341,12 +323,13 @@ static relume_status weigh_exposures(struct shoot *s)
         most = fmax(most, e);
         sum += e;
     }
-    if (s->has_intensities || !(least > 0.0) || most < 1.02 * least)
+    if ((s->p.matte && !s->p.lights) || !(least > 0.0) || most < 1.02 * least)
         return RELUME_OK;
     for (int i = 0; i < s->shots; i++)
-        for (int c = 0; c < 3; c++)
-            s->shot[i].intensity[c] =
-                (float)(relume_notes_exposure(&s->shot[i].notes) * s->shots / sum);
+        for (int c = 0; c < 3; c++) {
+            const float e = (float)(relume_notes_exposure(&s->shot[i].notes) * s->shots / sum);
+            s->shot[i].intensity[c] = (s->has_intensities ? s->shot[i].intensity[c] : 1.0f) * e;
+        }
     s->has_intensities = true;
     return shoot_warn(s,
                       "the photographs are exposed differently, by up to a factor of %.2f; "
@@ -356,6 +339,8 @@ static relume_status weigh_exposures(struct shoot *s)
 
 relume_status shoot_find_lights(struct shoot *s)
 {
-    relume_status status = s->p.lights ? lights_from_file(s) : lights_from_balls(s);
+    relume_status status = !s->p.lights                   ? lights_from_balls(s)
+                           : shoot_has_poses(s->p.lights) ? shoot_lights_from_poses(s)
+                                                          : lights_from_file(s);
     return status ? status : weigh_exposures(s);
 }

@@ -118,8 +118,8 @@ static relume_status save(const struct shoot *s, const struct shot *shot,
     return status;
 }
 
-static relume_status check_size(struct shoot *s, const struct relume_image *image, const char *path,
-                                int width, int height)
+relume_status shoot_check_size(const struct shoot *s, const struct relume_image *image,
+                               const char *path, int width, int height)
 {
     if (!width || (image->width == width && image->height == height))
         return RELUME_OK;
@@ -132,7 +132,7 @@ static relume_status take_ball(struct shoot *s, int i)
     struct relume_image image;
     relume_status status = load(s, &image, NULL, s->shot[i].ball_path);
     if (!status && s->mean.data)
-        status = check_size(s, &image, s->shot[i].ball_path, s->mean.width, s->mean.height);
+        status = shoot_check_size(s, &image, s->shot[i].ball_path, s->mean.width, s->mean.height);
     if (!status)
         status = add_to_mean(s, &image);
     relume_image_destroy(&image);
@@ -142,7 +142,7 @@ static relume_status take_ball(struct shoot *s, int i)
 static relume_status take(struct shoot *s, int i, struct relume_image *image)
 {
     struct shot *shot = &s->shot[i];
-    relume_status status = check_size(s, image, shot->path, s->width, s->height);
+    relume_status status = shoot_check_size(s, image, shot->path, s->width, s->height);
     if (!status && shot->ball_path)
         status = take_ball(s, i);
     if (status)
@@ -150,7 +150,11 @@ static relume_status take(struct shoot *s, int i, struct relume_image *image)
     s->width = image->width;
     s->height = image->height;
     count_ends(shot, image, shot->notes.floats);
-    status = align(s, i, image);
+    status = shoot_flatten(s, shot, image);
+    if (!status)
+        status = shoot_add_grey(s, image);
+    if (!status)
+        status = align(s, i, image);
     if (!status)
         status = shrink(&shot->small, image);
     if (!status && !shot->ball_path && !s->p.lights)

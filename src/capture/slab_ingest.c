@@ -287,7 +287,7 @@ static relume_status write_slab(struct slab *s, const char *dir, const outdir *f
     const int n = s->rows * s->columns;
     struct relume_manifest_view *view = arena_array(&s->set.arena, (size_t)n, sizeof *view);
     relume_status status = view ? RELUME_OK : RELUME_ENOMEM;
-    const bool shift = s->p->focus_disparity != 0.0;
+    const bool shift = s->p->focus_disparity != 0.0 || s->set.turned;
     const struct camera_grid grid = {s->rows, s->columns, s->camera, s->u, s->v};
     s->width = s->set.width;
     s->height = s->set.height;

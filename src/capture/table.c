@@ -26,6 +26,9 @@ struct relume_table {
     struct near lamps;
     struct distant *distant;
     struct encoder *display;  // or NULL: linear
+    bool bytes;               // all images are 8 bits and mean what they say
+    const uint8_t **fetched;  // [lights]: rows fetched last, or
+    float *band;              // [lights][rows][x][3]
 };
 
 static size_t file_bytes(const struct image_stream *stream)
@@ -68,6 +71,8 @@ void relume_table_destroy(relume_table **table)
     distant_destroy(&t->distant);
     near_close(&t->lamps);
     free(t->display);
+    free(t->fetched);
+    free(t->band);
     free(t);
 }
 
@@ -86,8 +91,8 @@ static relume_status open_near(relume_table *t, struct relume_transfer display, 
     return status;
 }
 
-static relume_status open_table(relume_table **out, const relume_capture *capture, int view,
-                                bool as_seen, const struct relume_table_params *params)
+relume_status relume_table_open(relume_table **out, const relume_capture *capture, int view,
+                                const struct relume_table_params *params)
 {
     const struct relume_table_params p = params ? *params : (struct relume_table_params){0};
     const int lights = capture->draft.m.lights;
@@ -110,35 +115,28 @@ static relume_status open_table(relume_table **out, const relume_capture *captur
     t->broken = mem_zeroed((size_t)lights, sizeof *t->broken);
     t->repaired = mem_zeroed((size_t)lights, sizeof *t->repaired);
     t->whole = mem_zeroed((size_t)lights, sizeof *t->whole);
+    t->fetched = mem_zeroed((size_t)lights, sizeof *t->fetched);
     relume_status status =
-        t->stream && t->status && t->broken && t->repaired && t->whole ? RELUME_OK : RELUME_ENOMEM;
+        t->stream && t->status && t->broken && t->repaired && t->whole && t->fetched
+            ? RELUME_OK
+            : RELUME_ENOMEM;
     t->near = near_applies(capture, view);
+    t->bytes = !t->near;
     if (!status && t->near) {
-        status = open_near(t, to, as_seen);
+        status = open_near(t, to, p.as_seen);
         to.curve = RELUME_CURVE_LINEAR;
     }
     while (!status && t->open < lights) {
         status = capture_stream(&t->stream[t->open], capture, view, t->open, to, p.log);
         if (!status)
             use_kept(t, &t->stream[t->open], t->open);
+        t->bytes = t->bytes && !status && oiio_info_of(t->stream[t->open].reader)->bytes;
         t->open += !status;
     }
     if (status)
         relume_table_destroy(&t);
     *out = t;
     return status;
-}
-
-relume_status relume_table_open(relume_table **out, const relume_capture *capture, int view,
-                                const struct relume_table_params *params)
-{
-    return open_table(out, capture, view, false, params);
-}
-
-relume_status table_open_as_seen(relume_table **out, const relume_capture *capture, int view,
-                                 const struct relume_table_params *params)
-{
-    return open_table(out, capture, view, true, params);
 }
 
 static void read_light(void *context, size_t item, int worker)
@@ -231,16 +229,9 @@ static relume_status refuse_broken(relume_table *t, int first)
                     m->view[t->view].images[first], n, n == 1 ? " is" : "s are", more);
 }
 
-relume_status relume_table_read(relume_table *table, int rows, float *out)
+static relume_status check_lights(relume_table *table)
 {
-    const int lights = table->capture->draft.m.lights;
-    if (rows < 1 || rows > table->capture->height - table->row)
-        return RELUME_EINVAL;
-    table->rows = rows;
-    table->out = out;
-    thread_for(table->threads, (size_t)lights, read_light, table);
-    table->row += rows;
-    for (int i = 0; i < lights; i++) {
+    for (int i = 0; i < table->capture->draft.m.lights; i++) {
         if (table->status[i] == RELUME_EDATA && image_stream_is_broken(&table->stream[i]))
             return refuse_broken(table, i);
         if (table->status[i] == RELUME_EDATA)
@@ -250,10 +241,96 @@ relume_status relume_table_read(relume_table *table, int rows, float *out)
         if (table->status[i])
             return table->status[i];
     }
+    return RELUME_OK;
+}
+
+// `seen` may be NULL.
+static relume_status read(relume_table *table, int rows, float *out, float *seen)
+{
+    const int lights = table->capture->draft.m.lights;
+    if (rows < 1 || rows > table->capture->height - table->row)
+        return RELUME_EINVAL;
+    table->rows = rows;
+    table->out = out;
+    thread_for(table->threads, (size_t)lights, read_light, table);
+    table->row += rows;
+    const relume_status status = check_lights(table);
+    if (status)
+        return status;
     repair(table);
-    if (!table->near)
-        return RELUME_OK;
-    thread_for(table->threads, (size_t)lights, level_light, table);
+    if (table->near)
+        thread_for(table->threads, (size_t)lights, level_light, table);
+    if (seen)
+        memcpy(seen, out,
+               3 * (size_t)lights * (size_t)rows * (size_t)table->capture->width * sizeof *out);
     return table->distant ? distant_resample(table->distant, table->row - rows, rows, out)
                           : RELUME_OK;
+}
+
+relume_status relume_table_read(relume_table *table, int rows, float *out)
+{
+    return read(table, rows, out, NULL);
+}
+
+relume_status relume_table_read_seen(relume_table *table, int rows, float *out, float *seen)
+{
+    return read(table, rows, out, seen);
+}
+
+bool relume_table_is_near(const relume_table *table)
+{
+    return table->near;
+}
+
+void relume_table_directions(const relume_table *table, double x, double y, int reach,
+                             struct relume_vec3 *direction)
+{
+    const struct near *near = &table->lamps;
+    const vec3 point = near_around(near, x, y, reach);
+    double gain;
+    for (int i = 0; i < near->lights; i++)
+        direction[i] = near_direction(&gain, near, i, point);
+}
+
+static void fetch_light(void *context, size_t item, int worker)
+{
+    (void)worker;
+    relume_table *t = context;
+    t->status[item] = image_stream_fetch(&t->stream[item], t->row, t->rows, &t->fetched[item]);
+}
+
+static relume_status fetch_floats(relume_table *t, int rows)
+{
+    if (!t->band)
+        t->band = mem_array((size_t)t->capture->draft.m.lights * (size_t)t->capture->width,
+                            3 * RELUME_TABLE_ROWS * sizeof *t->band);
+    return t->band ? relume_table_read(t, rows, t->band) : RELUME_ENOMEM;
+}
+
+relume_status relume_table_fetch(relume_table *table, int rows)
+{
+    if (rows < 1 || rows > RELUME_TABLE_ROWS || rows > table->capture->height - table->row)
+        return RELUME_EINVAL;
+    if (!table->bytes)
+        return fetch_floats(table, rows);
+    table->rows = rows;
+    thread_for(table->threads, (size_t)table->capture->draft.m.lights, fetch_light, table);
+    table->row += rows;
+    return check_lights(table);
+}
+
+void relume_table_planes(const relume_table *table, int light, size_t first, size_t count,
+                         float *out, size_t stride)
+{
+    const struct image_stream *stream = &table->stream[light];
+    if (table->bytes) {
+        const size_t channels = (size_t)oiio_info_of(stream->reader)->channels;
+        image_stream_planes(stream, table->fetched[light] + first * channels, count, out, stride);
+        return;
+    }
+    const size_t pixels = (size_t)table->rows * (size_t)table->capture->width;
+    const float *from = table->band + 3 * ((size_t)light * pixels + first);
+    for (size_t x = 0; x < count; x++)
+        for (size_t c = 0; c < 3; c++)
+            out[c * stride + x] = from[3 * x + c];
 }

@@ -18,7 +18,8 @@ struct photo_set {
     struct arena arena;
     int count, lights;
     struct camera_photos *camera;          // [count]
-    int width, height;                     // of every photograph
+    int width, height;                     // of every photograph, upright
+    bool turned;  // some lie on their side in their files: no reader of those shows them upright
     const struct relume_vec3 *directions;  // [lights]
 };
 
@@ -26,6 +27,10 @@ struct photo_set {
 relume_status photo_set_open(struct photo_set *out, const char *const *photos, int n,
                              const struct relume_ingest_params *p);
 void photo_set_free(struct photo_set *set);
+
+// One photograph, upright and linear, three channels. RELUME_EDATA, RELUME_ENOMEM.
+relume_status photo_load(struct relume_image *out, const struct photo_set *set, int camera,
+                         int light, const struct relume_ingest_params *p);
 
 // How `file` is called from inside the folder `dir`, which need not exist yet. NULL: no memory.
 const char *path_from(struct arena *arena, const char *dir, const char *file);

@@ -13,6 +13,7 @@
 #include "capture/sweep_picture.h"
 
 #include <math.h>
+#include <relume/photograph.h>
 #include <string.h>
 
 enum { MOST_WIDTH = 320, AROUND = 9, WINDOW = 2, NEAR = 5 };
@@ -52,9 +53,9 @@ static int three_of(int out[3], int n)
 static relume_status load(struct orders *o, const char *path, const struct relume_ingest_params *p)
 {
     struct relume_image image;
-    relume_status status = relume_image_load(
-        &image, path,
-        relume_image_params(.log = p->log, .limits = p->limits, .transfer = p->transfer));
+    const relume_status status = relume_photograph_load(
+        &image, NULL, path,
+        relume_photograph_params(.log = p->log, .limits = p->limits, .transfer = p->transfer));
     if (status)
         return status;
     const int factor = sweep_factor(image.width, MOST_WIDTH);

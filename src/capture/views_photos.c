@@ -3,7 +3,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
-#include "image/oiio.h"
+#include "image/photograph.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -100,17 +100,19 @@ static relume_status check_size(struct photo_set *set, const char *path,
     const relume_status status = oiio_open(&reader, path, p->limits, p->log);
     if (status)
         return status;
-    const struct oiio_info info = *oiio_info_of(reader);
+    struct relume_notes notes;
+    photograph_notes(&notes, reader);
     oiio_close(&reader);
+    set->turned |= notes.orientation > 1;
     if (!set->width) {
-        set->width = info.width;
-        set->height = info.height;
+        set->width = notes.width;
+        set->height = notes.height;
     }
-    if (info.width == set->width && info.height == set->height)
+    if (notes.width == set->width && notes.height == set->height)
         return RELUME_OK;
     return log_fail(p->log, RELUME_EDATA,
                     "%s: %d x %d pixels; expected %d x %d as in the other photographs", path,
-                    info.width, info.height, set->width, set->height);
+                    notes.width, notes.height, set->width, set->height);
 }
 
 static relume_status check_sizes(struct photo_set *set, const struct relume_ingest_params *p)
@@ -161,6 +163,14 @@ relume_status photo_set_open(struct photo_set *out, const char *const *photos, i
     if (status)
         photo_set_free(out);
     return status;
+}
+
+relume_status photo_load(struct relume_image *out, const struct photo_set *set, int camera,
+                         int light, const struct relume_ingest_params *p)
+{
+    return relume_photograph_load(
+        out, NULL, set->camera[camera].images[light],
+        relume_photograph_params(.log = p->log, .limits = p->limits, .transfer = p->transfer));
 }
 
 // ---------------------------------------------------------------- paths

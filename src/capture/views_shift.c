@@ -41,14 +41,12 @@ static float bilinear(const struct relume_image *image, double x, double y, int 
     return a * (1.0f - fy) + b * fy;
 }
 
-static relume_status save_one(const struct shifting *s, const char *path, const char *name,
-                              const double move[2], const outdir *folder,
-                              const struct relume_ingest_params *p)
+static relume_status save_one(const struct shifting *s, const struct photo_set *set, int camera,
+                              int light, const char *name, const double move[2],
+                              const outdir *folder, const struct relume_ingest_params *p)
 {
     struct relume_image in, out = {0};
-    relume_status status = relume_image_load(
-        &in, path,
-        relume_image_params(.log = p->log, .limits = p->limits, .transfer = p->transfer));
+    relume_status status = photo_load(&in, set, camera, light, p);
     if (!status)
         status = relume_image_create(&out, s->width, s->height, 3);
     for (int y = 0; y < s->height && !status; y++)
@@ -100,8 +98,7 @@ relume_status save_shifted(struct relume_manifest_view *view, int *width, int *h
                 status = RELUME_ENOMEM;
                 break;
             }
-            status = save_one(&s, set->camera[grid->camera[i]].images[k], view[i].images[k], move,
-                              folder, p);
+            status = save_one(&s, set, grid->camera[i], k, view[i].images[k], move, folder, p);
         }
         if (!status && !log_progress(p->log, "moving", (i + 1.0) / n))
             status = RELUME_ECANCEL;

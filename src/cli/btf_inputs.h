@@ -37,4 +37,10 @@ void btf_say_surface(const struct relume_btf_surface_info *info,
 relume_status btf_render(const struct args *args);
 relume_status btf_tile(const struct args *args);
 
+// Whether `btf render` is asked for objects: --mesh, or a description in JSON.
+bool btf_is_objects(const struct args *args);
+// These, ray traced.
+relume_status btf_render_objects(const struct args *args);
+relume_status objects_open(relume_objects **out, const char *path, const struct args *args);
+
 #endif

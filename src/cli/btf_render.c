@@ -22,19 +22,19 @@ relume_status btf_pair(int out[2], const struct args *args, const char *option, 
 static relume_status parse_camera(struct relume_btf_camera *camera, const struct args *args)
 {
     const char *eye = args_text(args, "--eye", NULL), *place = args_text(args, "--camera", NULL);
-    const char *at = args_text(args, "--at", NULL);
+    const char *at = args_text(args, "--look-at", NULL);
     *camera = (struct relume_btf_camera){.eye = {0.0, 0.0, 1.0},
                                          .perspective = place != NULL,
                                          .fov_deg = args_number(args, "--fov", 40.0)};
     if (eye && place)
         return usage_error("btf render: expected --eye or --camera; found both");
     if (at && !place)
-        return usage_error("--at: expected a --camera");
+        return usage_error("--look-at: expected a --camera");
     relume_status status = RELUME_OK;
     if (eye || place)
         status = args_vec3(&camera->eye, eye ? "--eye" : "--camera", eye ? eye : place);
     if (!status && at)
-        status = args_vec3(&camera->at, "--at", at);
+        status = args_vec3(&camera->at, "--look-at", at);
     if (!status && !(camera->eye.z > 0.0))
         status = usage_error("%s: expected z > 0; found '%s'", eye ? "--eye" : "--camera",
                              eye ? eye : place);
@@ -52,7 +52,7 @@ static relume_status draw(const relume_btf_surface *surface, const struct args *
     relume_status status = parse_camera(&camera, args);
     int size[2] = {camera.perspective ? 640 : info.width, camera.perspective ? 400 : info.height};
     if (!status)
-        status = btf_pair(size, args, "--frame", 65536);
+        status = btf_pair(size, args, "--picture", 65536);
     if (!status)
         status = relume_rig_create(&rig);
     const int count = args_count(args, "--light");
@@ -79,6 +79,8 @@ relume_status btf_render(const struct args *args)
 {
     struct btf_sample sample;
     relume_btf_surface *surface = NULL;
+    if (btf_is_objects(args))
+        return btf_render_objects(args);
     if (!args_has(args, "-o"))
         return usage_error("btf render: expected -o FILE");
     if (btf_is_surface(args_input(args, 1))) {

@@ -135,7 +135,14 @@ static relume_status divide_flat(struct bracket *b, const char *flat, const stru
     const size_t samples = 3 * (size_t)image.width * (size_t)image.height;
     for (size_t i = 0; i < samples; i++)
         image.data[i] = relume_response_decode(&b->response, (int)(i % 3), image.data[i]);
-    status = relume_flat_divide(&b->out, &image, prefix_log(&log, args_log(args), flat));
+    if (args_has(args, "--radial")) {
+        struct relume_falloff falloff;
+        status = relume_falloff_fit(&falloff, &image, prefix_log(&log, args_log(args), flat));
+        if (!status)
+            relume_falloff_divide(&b->out, &falloff);
+    } else {
+        status = relume_flat_divide(&b->out, &image, prefix_log(&log, args_log(args), flat));
+    }
     relume_image_destroy(&image);
     return status == RELUME_EINVAL ? RELUME_EDATA : status;
 }

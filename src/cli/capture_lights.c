@@ -9,7 +9,7 @@
 #include <string.h>
 
 struct job {
-    struct photo_list photos, balls;
+    struct photo_list photos, balls, flats;
     char *mask, *ball_mask;  // found among them, or NULL
     double (*outline)[3];
     struct relume_shoot_params p;
@@ -20,6 +20,7 @@ static void free_job(struct job *job)
 {
     photo_list_free(&job->photos);
     photo_list_free(&job->balls);
+    photo_list_free(&job->flats);
     free(job->mask);
     free(job->ball_mask);
     free(job->outline);
@@ -60,10 +61,13 @@ static relume_status gather(const struct args *args, struct job *job)
     relume_status status = photo_list_make(&job->photos, args);
     for (int i = 0; !status && i < args_count(args, "--ball-photos"); i++)
         status = photo_list_add(&job->balls, args_nth(args, "--ball-photos", i));
+    for (int i = 0; !status && i < args_count(args, "--flat"); i++)
+        status = photo_list_add(&job->flats, args_nth(args, "--flat", i));
     split_masks(&job->photos, &job->mask);
     split_masks(&job->balls, &job->ball_mask);
     put_in_order(&job->photos);
     put_in_order(&job->balls);
+    put_in_order(&job->flats);
     return status;
 }
 
@@ -83,6 +87,19 @@ static relume_status read_outlines(const struct args *args, struct job *job)
                                args_nth(args, "--ball", i));
     job->p.ball = (const double(*)[3])job->outline;
     job->p.balls = n;
+    return RELUME_OK;
+}
+
+static relume_status read_white(const struct args *args, struct job *job)
+{
+    const char *text = args_text(args, "--white", NULL);
+    double region[4];
+    if (!text)
+        return RELUME_OK;
+    if (!parse_numbers(text, region, 4) || !(region[2] >= 1.0 && region[3] >= 1.0))
+        return usage_error("--white: expected x,y,width,height; found '%s'", text);
+    for (int i = 0; i < 4; i++)
+        job->p.white[i] = region[i] > -1e6 && region[i] < 1e6 ? (int)region[i] : -1;
     return RELUME_OK;
 }
 
@@ -113,6 +130,10 @@ static relume_status check_options(const struct args *args)
         return usage_error("capture: expected -o DIR");
     if (args_has(args, "--fov") && args_has(args, "--focal"))
         return usage_error("capture: expected one of --fov and --focal");
+    if (args_has(args, "--integrable") && !args_has(args, "--refine-lights"))
+        return usage_error("capture: --integrable needs --refine-lights");
+    if (args_has(args, "--radial") && !args_has(args, "--flat"))
+        return usage_error("capture: --radial needs --flat FILE");
     if (args_has(args, "--relight") && !args_has(args, "--encode"))
         return usage_error("capture: --relight needs --encode FILE.exr");
     return RELUME_OK;
@@ -134,15 +155,21 @@ static relume_status read_options(const struct args *args, struct job *job)
         .fov_deg = field_of_view(args),
         .ball_z = args_number(args, "--ball-z", 0.0),
         .lights = args_text(args, "--lights", NULL),
+        .flats = (const char *const *)job->flats.path,
+        .flat_count = job->flats.count,
+        .radial = args_has(args, "--radial"),
         .near = args_has(args, "--near"),
         .refine = args_has(args, "--refine-lights"),
+        .integrable = args_has(args, "--integrable"),
         .skip_bad = args_has(args, "--skip-bad"),
         .force = args_has(args, "--force"),
         .threads = args_threads(args),
     };
     if (transfer && relume_transfer_parse(&job->p.transfer, transfer))
         return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", transfer);
-    const relume_status status = read_outlines(args, job);
+    relume_status status = read_outlines(args, job);
+    if (!status)
+        status = read_white(args, job);
     return status ? status : read_align(args, job);
 }
 

@@ -143,8 +143,25 @@ static relume_status depth_of(const char *capture, const char *dir, const struct
     return status;
 }
 
+static relume_status refuse_others(const struct args *args)
+{
+    static const char *const of_lights[] = {
+        "--ball",       "--ball-photos", "--matte",   "--near",    "--refine-lights",
+        "--integrable", "--white",       "--flat",    "--normals", "--albedo",
+        "--height",     "--encode",      "--relight", "--hdr",     "--times",
+        "--ghosts",     "--align",       "--mask",    NULL};
+    for (int i = 0; of_lights[i]; i++)
+        if (args_has(args, of_lights[i]))
+            return usage_error("capture: %s does not go with photographs of many views",
+                               of_lights[i]);
+    return RELUME_OK;
+}
+
 relume_status capture_views(const struct args *args)
 {
+    const relume_status refused = refuse_others(args);
+    if (refused)
+        return refused;
     if (!args_has(args, "-o"))
         return usage_error("capture: expected -o DIR");
     if (args_has(args, "--slab") + args_has(args, "--colmap") + args_has(args, "--panorama") +

@@ -5,32 +5,48 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 static const struct option options[] = {
     {"-o", OPTION_TEXT, "DIR", "fit, tile: the folder to make; render: the picture", 0, 0},
     {"--model", OPTION_TEXT, "NAME", "fit, tile: rfp, rfnl, rfnlc, vpca, lpca, ...; default rfnlc",
      0, 0},
     {"--models", OPTION_TEXT, "A,B,...", "compare: only these", 0, 0},
-    {"--clusters", OPTION_INT, "N", "lpca: default 32; rfnlc: default 1024", 1, 65536},
-    {"--components", OPTION_INT, "N", "vpca: default 4; lpca: 8; fmf: 100", 1, 256},
+    {"--clusters", OPTION_INT, "N", "lpca: default 32; cmf: 512; rfnlc: 1024", 1, 65536},
+    {"--components", OPTION_INT, "N", "vpca: default 4; lpca: 8; fmf: 100; qmf: at most, 512", 1,
+     1024},
+    {"--ratio", OPTION_INT, "R",
+     "qmf: bytes of the measured values to one of the model; default 200", 1, 1000000},
     {"--lobes", OPTION_INT, "N", "rfnl, rfnlc, laf, slaf: default 2", 1, 4},
     {"--levels", OPTION_INT, "N",
      "fit, tile: levels of detail, each half as wide; default 1, of tile all", 1, 17},
     {"--leave-out", OPTION_INT, "K",
-     "compare: also without every K-th view and light, judged on pairs with one of these", 2, 64},
+     "compare: also without every K-th view and light, judged on pairs with one of these; fit: "
+     "without them",
+     2, 64},
+    {"--unseen", OPTION_FLAG, NULL,
+     "eval: only pairs with a direction that the model was not fitted to", 0, 0},
     {"--pictures", OPTION_INT, "N",
      "compare, eval: pictures judged by CIEDE2000 and SSIM; default 25", 0, 65536},
-    {"--eye", OPTION_TEXT, "x,y,z", "render: the direction towards the eye; default 0,0,1", 0, 0},
+    {"--eye", OPTION_TEXT, "x,y,z",
+     "render: the direction towards the eye; default 0,0,1. Of objects: where the eye is", 0, 0},
     {"--camera", OPTION_TEXT, "x,y,z",
-     "render: in perspective, from this point over the surface, whose width is -1 to 1", 0, 0},
-    {"--at", OPTION_TEXT, "x,y,z", "render: where the camera looks; default 0,0,0", 0, 0},
-    {"--fov", OPTION_NUMBER, "DEG", "render: of the camera, across; default 40", 1, 170},
-    {"--frame", OPTION_TEXT, "WxH", "render: pixels; default a texel each, of a camera 640x400", 0,
-     0},
+     "render a surface in perspective, from this point; its width is -1 to 1", 0, 0},
+    {"--look-at", OPTION_TEXT, "x,y,z",
+     "render objects: default their middle; with --camera: default 0,0,0", 0, 0},
+    {"--up", OPTION_TEXT, "x,y,z", "render objects: up in the picture; default 0,1,0", 0, 0},
+    {"--fov", OPTION_NUMBER, "DEG",
+     "render: horizontal; default: all of the objects, with --camera 40", 0.01, 179},
+    {"--picture", OPTION_TEXT, "WxH",
+     "render: pixels; default a texel each, of objects 512x512, with --camera 640x400", 0, 0},
     {"--light", OPTION_TEXT, "SPEC",
-     "render: \"dir x y z\", env, point, spot, ... (docs/lights.md), not area; may be repeated", 0,
-     0},
+     "render: dir, env, point, spot, ... (docs/lights.md), area on objects only; may be repeated",
+     0, 0},
+    {"--rig", OPTION_TEXT, "FILE", "render objects: lights of a rig, before --light", 0, 0},
+    {"--save-rig", OPTION_TEXT, "FILE", "render objects: write all lights as a rig", 0, 0},
+    {"--mesh", OPTION_TEXT, "FILE", "render: an object of it: .obj, .ply, .gltf, .glb, ...", 0, 0},
+    {"--repeat", OPTION_NUMBER, "N", "--mesh: samples along its texture; default 1", 0.001, 10000},
+    {"--samples", OPTION_INT, "N", "render objects: N x N rays a pixel; default 3", 1, 16},
+    {"--no-shadows", OPTION_FLAG, NULL, "render objects: all lights reach all of them", 0, 0},
     {"--tiles", OPTION_INT, "N", "tile: how many; default 10", 1, 256},
     {"--tile", OPTION_INT, "TEXELS", "tile: a side, a multiple of 8; default half the sample", 16,
      4096},
@@ -46,13 +62,6 @@ static const struct option options[] = {
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 // ---------------------------------------------------------------- names
 
@@ -99,6 +108,7 @@ static struct relume_btf_fit_params fit_params(const struct args *args)
         .lobes = args_int(args, "--lobes", 0),
         .seed = (uint64_t)args_int(args, "--seed", 0),
         .threads = args_threads(args),
+        .ratio = args_int(args, "--ratio", 0),
     };
 }
 
@@ -148,26 +158,40 @@ static relume_status judge_left_out(struct relume_btf_error *out, const relume_b
     return status;
 }
 
+static relume_status judge(struct btf_row *row, const relume_btf_fitted *fitted,
+                           const relume_btf *btf, const struct args *args)
+{
+    const relume_status status = relume_btf_judge(
+        &row->error, fitted, btf,
+        relume_btf_judge_params(.log = args_log(args), .threads = args_threads(args),
+                                .unseen = args_has(args, "--unseen"),
+                                .pictures = args_int(args, "--pictures", 25)));
+    if (status)
+        return status;
+    row->info = relume_btf_fitted_info(fitted);
+    row->cost = relume_btf_fitted_cost(fitted);
+    row->evaluations = btf_speed(fitted);
+    return RELUME_OK;
+}
+
 static relume_status compare_one(const relume_btf *btf, const relume_btf *part,
                                  const struct relume_btf_model *model, const struct args *args)
 {
     const struct relume_btf_fit_params p = fit_params(args);
-    struct relume_btf_error error, held_out;
+    struct btf_row row = {.held_out = NULL};
+    struct relume_btf_error held_out;
     relume_btf_fitted *fitted;
-    const double start = now_s();
+    const double start = btf_now_s();
     relume_status status = relume_btf_fit(&fitted, btf, model, &p);
-    const double fit_s = now_s() - start;
+    row.fit_s = btf_now_s() - start;
     if (!status)
-        status = relume_btf_judge(
-            &error, fitted, btf,
-            relume_btf_judge_params(.log = args_log(args), .threads = args_threads(args),
-                                    .pictures = args_int(args, "--pictures", 25)));
-    if (!status && part)
+        status = judge(&row, fitted, btf, args);
+    if (!status && part) {
         status = judge_left_out(&held_out, part, btf, model, args);
+        row.held_out = &held_out;
+    }
     if (!status) {
-        const struct relume_btf_fitted_info info = relume_btf_fitted_info(fitted);
-        (args_has(args, "--json") ? btf_json_row : btf_row)(&info, &error, fit_s,
-                                                            part ? &held_out : NULL);
+        (args_has(args, "--json") ? btf_print_json : btf_print)(&row);
         fflush(stdout);
     }
     relume_btf_fitted_destroy(&fitted);
@@ -215,18 +239,21 @@ relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, int levels
 
 static relume_status fit(const struct args *args)
 {
-    relume_btf *btf = NULL;
+    relume_btf *btf = NULL, *part = NULL;
     relume_btf_fitted *fitted = NULL;
     if (!args_has(args, "-o"))
         return usage_error("btf fit: expected -o DIR");
     relume_status status = btf_open(&btf, args_input(args, 1), args);
     if (!status)
-        status = btf_fit(&fitted, btf, 1, args);
+        status = make_part(&part, btf, args);
+    if (!status)
+        status = btf_fit(&fitted, part ? part : btf, 1, args);
     if (!status)
         status = relume_btf_fitted_save(
             fitted, args_text(args, "-o", NULL),
             relume_btf_params(.log = args_log(args), .force = args_has(args, "--force")));
     relume_btf_fitted_destroy(&fitted);
+    relume_btf_destroy(&part);
     relume_btf_destroy(&btf);
     return status;
 }
@@ -235,7 +262,7 @@ static relume_status eval(const struct args *args)
 {
     relume_btf *btf = NULL;
     relume_btf_fitted *fitted = NULL;
-    struct relume_btf_error error;
+    struct btf_row row = {.fit_s = (double)NAN};
     if (args_inputs(args) != 3)
         return usage_error("btf eval: expected a model and a BTF");
     relume_status status = relume_btf_fitted_open(&fitted, args_input(args, 1),
@@ -243,19 +270,13 @@ static relume_status eval(const struct args *args)
     if (!status)
         status = btf_open(&btf, args_input(args, 2), args);
     if (!status)
-        status = relume_btf_judge(
-            &error, fitted, btf,
-            relume_btf_judge_params(.log = args_log(args), .threads = args_threads(args),
-                                    .pictures = args_int(args, "--pictures", 25)));
-    if (!status) {
-        const struct relume_btf_fitted_info info = relume_btf_fitted_info(fitted);
-        if (args_has(args, "--json")) {
-            btf_json_row(&info, &error, (double)NAN, NULL);
-            puts("");
-        } else {
-            btf_heading(false);
-            btf_row(&info, &error, (double)NAN, NULL);
-        }
+        status = judge(&row, fitted, btf, args);
+    if (!status && args_has(args, "--json")) {
+        btf_print_json(&row);
+        puts("");
+    } else if (!status) {
+        btf_heading(false);
+        btf_print(&row);
     }
     relume_btf_fitted_destroy(&fitted);
     relume_btf_destroy(&btf);
@@ -358,7 +379,7 @@ static relume_status run(const struct args *args)
 
 const struct command command_btf = {
     .name = "btf",
-    .usage = "fit|eval|compare|info|render|tile BTF|MATERIAL|MODEL|SURFACE [BTF]",
+    .usage = "fit|eval|compare|info|render|tile BTF|MATERIAL|MODEL|SURFACE|OBJECTS.json [BTF]",
     .summary = "measured materials: fit models to a BTF, measure and show them",
     .example = "relume btf compare corduroy --size 32 --models rfnl,lpca --json",
     .min_inputs = 2,

@@ -15,7 +15,9 @@ static const struct option options[] = {
     {"--ball-mask", OPTION_TEXT, "FILE", "white where the ball is", 0, 0},
     {"--matte", OPTION_FLAG, NULL, "the ball is matte white, not a mirror", 0, 0},
     {"--lights", OPTION_TEXT, "FILE",
-     "the lights are known: a .lp file, a capture.json or lines x y z", 0, 0},
+     "the lights are known: a .lp, .dome or capture.json file, lines x y z, or COLMAP poses of a "
+     "camera on the lamp",
+     0, 0},
     {"--near", OPTION_FLAG, NULL,
      "lights stand near: positions from two balls or more, or those of --lights", 0, 0},
     {"--ball-z", OPTION_NUMBER, "Z",
@@ -24,6 +26,14 @@ static const struct option options[] = {
     {"--focal", OPTION_NUMBER, "MM", "the same as a focal length for 36 mm wide film", 5, 5000},
     {"--refine-lights", OPTION_FLAG, NULL,
      "better directions and intensities by the photographs themselves", 0, 0},
+    {"--integrable", OPTION_FLAG, NULL,
+     "--refine-lights: also so that the surface is one of heights", 0, 0},
+    {"--white", OPTION_TEXT, "x,y,w,h", "a region that is grey: the lamps' colour is divided out",
+     0, 0},
+    {"--flat", OPTION_TEXT, "PATH",
+     "photograph of an even surface, divided out; one, or one under each light", 0, 0},
+    {"--radial", OPTION_FLAG, NULL, "--flat: as a polynomial of the distance from the middle", 0,
+     0},
     // what is made
     {"--mask", OPTION_TEXT, "FILE", "white where the object is", 0, 0},
     {"--normals", OPTION_TEXT, "FILE.exr", "write surface normals", 0, 0},
@@ -43,9 +53,6 @@ static const struct option options[] = {
     {"--weights", OPTION_TEXT, "W", "--hdr: spline (default), hat or gaussian", 0, 0},
     {"--align", OPTION_TEXT, "A", "none, blocks or homography; default: none", 0, 0},
     {"--ghosts", OPTION_FLAG, NULL, "--hdr: leave out what moved between exposures", 0, 0},
-    {"--white", OPTION_TEXT, "x,y,w,h", "--hdr: a region that is grey", 0, 0},
-    {"--flat", OPTION_TEXT, "FILE", "--hdr: photograph of an even surface, against vignetting", 0,
-     0},
     // many viewpoints
     CAPTURE_VIEWS_OPTIONS,
     // all

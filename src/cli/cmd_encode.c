@@ -26,6 +26,8 @@ static const struct option options[] = {
     {"--ridge", OPTION_NUMBER, "R", "smoothing of the fit, 0 to 1; default: 1e-6", 0, 1},
     BOOK_OPTIONS,
     {"--no-depth", OPTION_FLAG, NULL, "leave depth out: no near lights, no eyes by depth", 0, 0},
+    {"--assume-depth", OPTION_NUMBER, "D",
+     "near lights: views without depth are this far from the eye", 1e-6, 1e9},
     {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
     {"--repair", OPTION_FLAG, NULL,
      "replace pixels that are NaN or infinite by those under the nearest lights", 0, 0},
@@ -175,6 +177,7 @@ static relume_status encode(const struct args *args, struct request *r)
         &capture, args_input(args, 0),
         relume_capture_params(.log = args_log(args), .transfer = r->transfer,
                               .skip_missing = args_has(args, "--skip-missing"),
+                              .assume_depth = args_number(args, "--assume-depth", 0.0),
                               .repair = args_has(args, "--repair"), .keep_bytes = keep));
     if (status)
         return status;

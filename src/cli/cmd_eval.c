@@ -4,6 +4,8 @@
 
 static const struct option options[] = {
     {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
+    {"--assume-depth", OPTION_NUMBER, "D",
+     "near lights: views without depth are this far from the eye", 1e-6, 1e9},
     {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
@@ -78,7 +80,8 @@ static relume_status run(const struct args *args)
         status = relume_capture_open(
             &capture, args_input(args, 1),
             relume_capture_params(.log = args_log(args), .transfer = transfer,
-                                  .skip_missing = args_has(args, "--skip-missing")));
+                                  .skip_missing = args_has(args, "--skip-missing"),
+                                  .assume_depth = args_number(args, "--assume-depth", 0.0)));
     if (!status)
         status = relume_evaluate(
             &evaluation, pack, capture,

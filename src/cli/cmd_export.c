@@ -14,7 +14,8 @@ static const struct option options[] = {
      "planes (bilinear, rbf; default: up to 27) or terms of the type", 1, 45},
     {"--bytes-per-pixel", OPTION_NUMBER, "B", "size of all plane JPEGs, not exceeded", 0.001, 100},
     {"--psnr", OPTION_NUMBER, "DB", "quality against the file's own pictures, reached", 1, 100},
-    {"--quality", OPTION_INT, "Q", "10 less doubles the quantiser step; default: 80", 1, 100},
+    {"--quality", OPTION_INT, "Q",
+     "10 less doubles the quantiser step; default: 80 (ptm, lptm: raw planes)", 1, 100},
     {"--resolution", OPTION_INT, "R",
      "bilinear: side of the grid of lights; default: 15 to 33, by the lights", 3, 33},
     {"--view", OPTION_INT, "N", "which view of a slab; default: 0", 0, 65535},
@@ -56,10 +57,15 @@ static relume_status parse(const struct args *args, enum relume_exchange *format
         return usage_error("--colorspace mycc: only for --type bilinear and rbf");
     const bool folder = *format == RELUME_EXCHANGE_RELIGHT || *format == RELUME_EXCHANGE_DEEPZOOM;
     static const char *const only_folders[] = {"--type", "--colorspace", "--bytes-per-pixel",
-                                               "--psnr", "--quality",    "--resolution"};
-    for (int i = 0; !folder && i < 6; i++)
+                                               "--psnr", "--resolution"};
+    for (int i = 0; !folder && i < 5; i++)
         if (args_has(args, only_folders[i]))
             return usage_error("%s: only for --to relight and deepzoom", only_folders[i]);
+    if ((*format == RELUME_EXCHANGE_PTM || *format == RELUME_EXCHANGE_LPTM) &&
+        args_has(args, "--coefficients"))
+        return usage_error("--coefficients: .ptm has six; expected another --to");
+    if (*format == RELUME_EXCHANGE_RTI && args_has(args, "--quality"))
+        return usage_error("--quality: .rti has no JPEG form; expected --to ptm or lptm");
     if (args_has(args, "--bytes-per-pixel") + args_has(args, "--psnr") +
             args_has(args, "--quality") >
         1)

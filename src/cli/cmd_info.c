@@ -19,6 +19,7 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
            "\"width\": %d, \"height\": %d, \"lights\": %d, \"hemispherical\": %s, ",
            i->version, relume_projection_name(i->geometry.projection), i->views, i->width,
            i->height, c->lights, c->hemispherical ? "true" : "false");
+    printf("\"discs\": %s, ", i->geometry.disc ? "true" : "false");
     printf("\"slabs\": %d, ", i->slabs ? i->slabs : i->geometry.projection == RELUME_SLAB);
     printf("\"basis\": \"%s\", \"coefficients\": %d, \"planes\": %d, \"interpolant\": %s%s%s, "
            "\"domain\": \"%s\", "
@@ -43,7 +44,8 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
 static void print_text(const struct relume_pack_info *i, const struct relume_coder_info *c,
                        const char *display)
 {
-    printf("projection    %s\n", relume_projection_name(i->geometry.projection));
+    printf("projection    %s%s\n", relume_projection_name(i->geometry.projection),
+           i->geometry.disc ? ", with end discs" : "");
     if (i->slabs)
         printf("slabs         %d\n", i->slabs);
     printf("views         %d of %d x %d pixels\n", i->views, i->width, i->height);

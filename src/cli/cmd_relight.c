@@ -1,5 +1,8 @@
 #include "cli.h"
+#include "btf_inputs.h"
+#include "develop.h"
 #include "frame_options.h"
+#include "glare_options.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,7 +17,8 @@ static const struct option options[] = {
     {"--look-at", OPTION_TEXT, "x,y,z", "--eye: where it looks; default: the middle of the object",
      0, 0},
     {"--up", OPTION_TEXT, "x,y,z", "--eye: what is up in the picture; default: 0,1,0", 0, 0},
-    {"--fov", OPTION_NUMBER, "DEG", "--eye: horizontal field of view; default: the slabs' windows",
+    {"--fov", OPTION_NUMBER, "DEG",
+     "--eye: horizontal field of view; default: the slabs' windows; --pass glare: of a planar file",
      0.01, 179},
     {"--pan", OPTION_NUMBER, "A", "panorama: degrees to the right", 0, 0},
     {"--tilt", OPTION_NUMBER, "A", "panorama: degrees up", 0, 0},
@@ -26,20 +30,29 @@ static const struct option options[] = {
      "slab: constant, linear or depth; default: depth where the file has it, else linear", 0, 0},
     {"--nearest", OPTION_FLAG, NULL, "slab: the same as --interpolate constant", 0, 0},
     {"--aperture", OPTION_NUMBER, "A",
-     "slab: average the cameras within A/2 of the eye; default: 0", 0, 1e9},
-    {"--focus", OPTION_NUMBER, "Z", "slab: the plane at z = Z is sharp; default: the st plane", 0,
-     0},
-    {"--exposure", OPTION_TEXT, "EV", "multiply by 2^EV, or auto: a mid grey; default: 0", 0, 0},
-    {"--tone", OPTION_TEXT, "T",
-     "linear (clip, default), reinhard or filmic; .exr, .hdr and .pfm stay linear", 0, 0},
-    {"--white", OPTION_NUMBER, "L", "reinhard: the luminance that becomes white; default: 4", 1e-3,
-     1e6},
+     "slab: average the cameras within A/2 of the eye, of a free eye a lens as wide; default: 0", 0,
+     1e9},
+    {"--focus", OPTION_NUMBER, "Z",
+     "slab: the plane at z = Z is sharp, of a free eye the one so much before what it looks at; "
+     "default: the st plane, what it looks at",
+     0, 0},
+    DEVELOP_OPTIONS,
     {"--pass", OPTION_TEXT, "NAME",
-     "colour, normals, specular, diffuse-gain, unsharp, luminance, false-colour, difference", 0, 0},
+     "colour, normals, specular, diffuse-gain, unsharp, luminance, false-colour, difference, glare",
+     0, 0},
+    GLARE_OPTIONS,
+    {"--objects", OPTION_TEXT, "FILE",
+     "objects covered with BTFs, in the scene (docs/objects.md); needs a file with depth", 0, 0},
+    {"--samples", OPTION_INT, "N", "--objects: N x N rays a pixel; default 3", 1, 16},
     {"--capture", OPTION_TEXT, "CAPTURE", "--pass difference: the photographs", 0, 0},
     CPU_OPTION,
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
+
+static bool wants_glare(const struct args *args)
+{
+    return !strcmp(args_text(args, "--pass", ""), "glare");
+}
 
 static relume_status parse_size(const char *text, struct relume_camera *camera)
 {
@@ -99,8 +112,8 @@ static relume_status parse_camera(const struct args *args, struct relume_camera 
     if (args_has(args, "--view") + args_has(args, "--eye") + look > 1)
         return usage_error(
             "relight: expected one of --view, --eye, --pan/--tilt/--zoom/--projection");
-    if (!args_has(args, "--eye") &&
-        (args_has(args, "--look-at") || args_has(args, "--up") || args_has(args, "--fov")))
+    if (!args_has(args, "--eye") && (args_has(args, "--look-at") || args_has(args, "--up") ||
+                                     (args_has(args, "--fov") && !wants_glare(args))))
         return usage_error("relight: expected --eye beside --look-at, --up and --fov");
     if (args_has(args, "--view")) {
         camera->framing = RELUME_FRAME_VIEW;
@@ -124,8 +137,6 @@ static relume_status parse_slab(const struct args *args, struct relume_frame_par
         return usage_error("relight: expected one of --interpolate, --nearest, --aperture/--focus");
     if (nearest)
         params->interpolation = RELUME_INTERPOLATE_CONSTANT;
-    else if (lens)
-        params->interpolation = RELUME_INTERPOLATE_LINEAR;
     params->aperture = args_number(args, "--aperture", 0.0);
     if (named &&
         relume_interpolation_parse(&params->interpolation, args_text(args, "--interpolate", NULL)))
@@ -136,56 +147,15 @@ static relume_status parse_slab(const struct args *args, struct relume_frame_par
 static relume_status parse_pass(const struct args *args, struct relume_frame_params *params)
 {
     const char *name = args_text(args, "--pass", relume_pass_name(RELUME_PASS_COLOUR));
-    const char *names[RELUME_PASSES + 1] = {NULL};
+    const char *names[RELUME_PASSES + 2] = {NULL};
     for (int i = 0; i < RELUME_PASSES; i++)
         names[i] = relume_pass_name((enum relume_pass)i);
-    if (relume_pass_parse(&params->pass, name))
+    names[RELUME_PASSES] = "glare";  // of the frame, not of its views
+    if (!wants_glare(args) && relume_pass_parse(&params->pass, name))
         return unknown_name("--pass", name, names);
     const bool difference = params->pass == RELUME_PASS_DIFFERENCE;
     if (difference != args_has(args, "--capture"))
         return usage_error("relight: expected --pass difference and --capture together");
-    return RELUME_OK;
-}
-
-// ---------------------------------------------------------------- exposure and tone
-
-struct developing {
-    struct relume_tone_params tone;
-    bool automatic;
-};
-
-static relume_status parse_developing(const struct args *args, struct developing *d)
-{
-    const char *exposure = args_text(args, "--exposure", "0");
-    const char *tone = args_text(args, "--tone", relume_tone_linear.name);
-    const char *names[16] = {NULL};
-    *d = (struct developing){.automatic = !strcmp(exposure, "auto")};
-    if (!d->automatic && (!parse_numbers(exposure, &d->tone.exposure_ev, 1) ||
-                          !(fabs(d->tone.exposure_ev) <= 100.0)))
-        return usage_error("--exposure: expected a number from -100 to 100, or auto; found '%s'",
-                           exposure);
-    for (int i = 0; relume_tones[i]; i++)
-        names[i] = relume_tones[i]->name;
-    d->tone.white = args_number(args, "--white", 0.0);
-    d->tone.tone = relume_tone_find(tone);
-    return d->tone.tone ? RELUME_OK : unknown_name("--tone", tone, names);
-}
-
-static void expose(struct relume_image *frame, double ev)
-{
-    const float gain = exp2f((float)ev);
-    const size_t samples = (size_t)frame->width * (size_t)frame->height * 3;
-    for (size_t i = 0; i < samples; i++)
-        frame->data[i] *= gain;
-}
-
-static relume_status develop(struct relume_image *frame, struct developing d, const char *path)
-{
-    if (d.automatic)
-        d.tone.exposure_ev = relume_tone_meter(frame);
-    if (!relume_image_saves_linear(path))
-        return relume_tone_apply(frame, &d.tone);
-    expose(frame, d.tone.exposure_ev);
     return RELUME_OK;
 }
 
@@ -205,6 +175,110 @@ static void show_normals(struct relume_image *frame, const char *path)
         frame->data[i] = relume_transfer_decode(srgb, 0.5f * frame->data[i] + 0.5f);
 }
 
+static relume_status make_frame(struct relume_image *frame, relume_pack *pack,
+                                const struct args *args, const struct relume_camera *camera,
+                                const struct relume_frame_params *params,
+                                const struct relume_light *lights, int count)
+{
+    const char *path = args_text(args, "--objects", NULL);
+    relume_objects *objects;
+    if (!path)
+        return relume_frame(frame, pack, camera, lights, count, params);
+    relume_status status = objects_open(&objects, path, args);
+    if (!status)
+        status = relume_objects_frame(
+            frame, objects, pack, camera, lights, count, params,
+            relume_render_params(.log = args_log(args), .samples = args_int(args, "--samples", 3),
+                                 .threads = args_threads(args)));
+    relume_objects_destroy(&objects);
+    return status;
+}
+
+// ---------------------------------------------------------------- glare
+
+// The horizontal field of view of a frame, from the angle of its middle pixels. 0: not known.
+static double field_of_view(const struct relume_pack_info *info, const struct relume_camera *camera,
+                            const struct relume_image *frame)
+{
+    const struct relume_geometry *const g = &info->geometry;
+    if (camera->framing == RELUME_FRAME_LOOK) {
+        const double y = 0.5 * frame->height, x = 0.5 * frame->width;
+        const struct relume_vec3 a =
+            relume_look_ray(camera->look, frame->width, frame->height, x - 0.5, y);
+        const struct relume_vec3 b =
+            relume_look_ray(camera->look, frame->width, frame->height, x + 0.5, y);
+        const double pixel = hypot(hypot(a.x - b.x, a.y - b.y), a.z - b.z);
+        return 2.0 * atan(0.5 * pixel * frame->width) * 180.0 / M_PI;
+    }
+    if (camera->framing == RELUME_FRAME_EYE && camera->aim.field_of_view_deg > 0.0)
+        return camera->aim.field_of_view_deg;
+    double width = g->window_max[0] - g->window_min[0], distance = 0.0;
+    if (g->projection == RELUME_SLAB) {
+        width = g->st_max[0] - g->st_min[0];
+        distance = (camera->framing == RELUME_FRAME_EYE ? camera->eye.z : g->uv_z) - g->st_z;
+    } else if (g->projection == RELUME_PLANAR && g->perspective) {
+        distance = g->camera_z;
+    }
+    return distance > 0.0 ? 2.0 * atan(0.5 * width / distance) * 180.0 / M_PI : 0.0;
+}
+
+static struct relume_vec3 unit_difference(struct relume_vec3 a, struct relume_vec3 b)
+{
+    const struct relume_vec3 d = {a.x - b.x, a.y - b.y, a.z - b.z};
+    const double length = hypot(hypot(d.x, d.y), d.z);
+    return (struct relume_vec3){d.x / length, d.y / length, d.z / length};
+}
+
+// The lamps of the rig, in a perspective frame of a panorama: there the eye's place is known.
+static void draw_lamps(struct relume_image *frame, const struct relume_pack_info *info,
+                       const struct relume_camera *camera, double fov_deg,
+                       const struct relume_light *lights, int count)
+{
+    const int w = frame->width, h = frame->height;
+    const double x = 0.5 * w, y = 0.5 * h;
+    if (camera->framing != RELUME_FRAME_LOOK || camera->look.stereographic)
+        return;
+    const struct relume_sight sight = {
+        .eye = info->geometry.center,
+        .ahead = relume_look_ray(camera->look, w, h, x, y),
+        .right = unit_difference(relume_look_ray(camera->look, w, h, x + 0.5, y),
+                                 relume_look_ray(camera->look, w, h, x - 0.5, y)),
+        .up = unit_difference(relume_look_ray(camera->look, w, h, x, y - 0.5),
+                              relume_look_ray(camera->look, w, h, x, y + 0.5)),
+        .fov_deg = fov_deg,
+    };
+    (void)relume_glare_lamps(frame, &sight, lights, count);
+}
+
+static relume_status add_glare(struct relume_image *frame, const struct args *args,
+                               const struct relume_pack_info *info,
+                               const struct relume_camera *camera,
+                               const struct relume_light *lights, int count)
+{
+    const double known = field_of_view(info, camera, frame);
+    const double fov = args_number(args, "--fov", known);
+    struct viewer_eye eye;
+    struct relume_image seen = {0};
+    if (info->geometry.projection > RELUME_SLAB && camera->framing != RELUME_FRAME_LOOK)
+        return usage_error("--pass glare: expected --pan, --tilt or --zoom for a panorama");
+    draw_lamps(frame, info, camera, known, lights, count);
+    const double luminance = args_number(args, "--nits", 100.0) * relume_glare_luminance(frame);
+    relume_status status =
+        open_viewer_eye(&eye, args, luminance,
+                        relume_psf_params(.log = args_log(args), .threads = args_threads(args),
+                                          .size = GLARE_SIZE, .half_field_deg = GLARE_FIELD_DEG));
+    if (status)
+        return status;
+    eye.params.fov_deg = fov;
+    status = see(&seen, &eye, frame, false);
+    close_viewer_eye(&eye);
+    if (!status) {
+        relume_image_destroy(frame);
+        *frame = seen;
+    }
+    return status;
+}
+
 static relume_status render(const struct args *args, const struct relume_camera *camera,
                             struct relume_frame_params params, struct developing developing,
                             const struct relume_light *lights, int count)
@@ -219,13 +293,19 @@ static relume_status render(const struct args *args, const struct relume_camera 
                          relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
     if (status)
         return status;
-    const double st_z = relume_pack_info(pack)->geometry.st_z;
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    const bool free_eye = info->slabs || relume_aim_given(&camera->aim);
+    const double plane_z = free_eye ? 0.0 : info->geometry.st_z;
     params.log = prefix_log(&about, args_log(args), args_input(args, 0));
-    params.focus = args_number(args, "--focus", st_z) - st_z;
+    params.focus = args_number(args, "--focus", plane_z) - plane_z;
+    if (!free_eye && (args_has(args, "--aperture") || args_has(args, "--focus")))
+        params.interpolation = RELUME_INTERPOLATE_LINEAR;
     status = open_capture(args, &capture);
     params.capture = capture;
     if (!status)
-        status = relume_frame(&frame, pack, camera, lights, count, &params);
+        status = make_frame(&frame, pack, args, camera, &params, lights, count);
+    if (!status && wants_glare(args))
+        status = add_glare(&frame, args, relume_pack_info(pack), camera, lights, count);
     if (!status && params.pass == RELUME_PASS_NORMALS)
         show_normals(&frame, output);
     else if (!status)

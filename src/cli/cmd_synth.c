@@ -21,6 +21,8 @@ static const struct option options[] = {
      "directions of a capture.json, a .lp file or lines x y z", 0, 0},
     {"--projection", OPTION_TEXT, "P",
      "planar, slab, cylindrical, spherical, cube; default: the scene's own", 0, 0},
+    {"--discs", OPTION_FLAG, NULL, "cylindrical: with its end discs, so that it shows everything",
+     0, 0},
     {"--eye", OPTION_TEXT, "x,y,z", "where the eye is; may be repeated for a slab", 0, 0},
     {"--samples", OPTION_INT, "N", "camera rays per pixel; default 16", 1, 65536},
     {"--bounces", OPTION_INT, "N", "bounces of indirect light; default 0", 0, 64},
@@ -197,6 +199,7 @@ static relume_status run(const struct args *args)
         .spread = args_number(args, "--spread", 0.0),
         .seed = (uint64_t)args_int(args, "--seed", 0),
         .threads = args_threads(args),
+        .discs = args_has(args, "--discs"),
         .force = args_has(args, "--force"),
     };
     if (!args_has(args, "-o"))

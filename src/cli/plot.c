@@ -29,7 +29,7 @@ struct drawing {
     const struct plot *plot;
     cairo_t *c;
     struct box frame;  // on the page
-    double x0, x1;     // log10 of the axis' ends
+    double x0, x1;     // the axis' ends, as place_of has them
     double y0, y1, y_step;
     struct box *taken;  // where labels may not go
     int taken_count;
@@ -37,9 +37,15 @@ struct drawing {
     int lines;
 };
 
+static double place_of(const struct plot *plot, double x)
+{
+    return plot->linear ? x : log10(x);
+}
+
 static double page_x(const struct drawing *d, double x)
 {
-    return d->frame.x0 + (log10(x) - d->x0) / (d->x1 - d->x0) * (d->frame.x1 - d->frame.x0);
+    return d->frame.x0 +
+           (place_of(d->plot, x) - d->x0) / (d->x1 - d->x0) * (d->frame.x1 - d->frame.x0);
 }
 
 static double page_y(const struct drawing *d, double y)
@@ -88,12 +94,12 @@ static void choose_axes(struct drawing *d)
     const struct plot *p = d->plot;
     double x0 = HUGE_VAL, x1 = -HUGE_VAL, y0 = HUGE_VAL, y1 = -HUGE_VAL;
     for (int i = 0; i < p->points; i++) {
-        x0 = fmin(x0, log10(p->point[i].x));
-        x1 = fmax(x1, log10(p->point[i].x));
+        x0 = fmin(x0, place_of(p, p->point[i].x));
+        x1 = fmax(x1, place_of(p, p->point[i].x));
         y0 = fmin(y0, p->point[i].y);
         y1 = fmax(y1, p->point[i].y);
     }
-    const double margin = fmax(0.06 * (x1 - x0), 0.05);
+    const double margin = p->curves ? 0.0 : fmax(0.06 * (x1 - x0), 0.05);
     d->x0 = x0 - margin;
     d->x1 = x1 + margin;
     d->y_step = nice_step(fmax(y1 - y0, 0.5), 9);
@@ -133,9 +139,11 @@ static void draw_x_tick(struct drawing *d, double value, bool named)
 
 static void draw_x_axis(struct drawing *d)
 {
-    const double decades = d->x1 - d->x0, low = pow(10.0, d->x0), high = pow(10.0, d->x1);
+    const bool linear = d->plot->linear;
+    const double decades = d->x1 - d->x0;
+    const double low = linear ? d->x0 : pow(10.0, d->x0), high = linear ? d->x1 : pow(10.0, d->x1);
     set_font(d->c, TEXT, false);
-    if (decades < 0.4) {
+    if (linear || decades < 0.4) {
         const double step = nice_step(high - low, 6);
         for (double v = ceil(low / step) * step; v <= high; v += step)
             draw_x_tick(d, v, true);
@@ -346,13 +354,16 @@ static void put_labels(struct drawing *d, const struct plot_point *const *sorted
 
 static void draw_points(struct drawing *d, const struct plot_point *const *sorted)
 {
-    draw_hull(d, sorted);
+    if (!d->plot->curves)
+        draw_hull(d, sorted);
     cairo_set_line_width(d->c, 1.4);
     for (int s = 0; s < d->plot->series_count; s++) {
         draw_path(d, sorted, s);
         set_colour(d->c, colour_of(d, s));
         cairo_stroke(d->c);
     }
+    if (d->plot->curves)
+        return;
     for (int i = 0; i < d->plot->points; i++)
         draw_mark(d, page_x(d, sorted[i]->x), page_y(d, sorted[i]->y), sorted[i]->series);
     put_labels(d, sorted);
@@ -383,10 +394,13 @@ static void draw_legend(struct drawing *d)
         cairo_move_to(d->c, x, y);
         cairo_line_to(d->c, x + 24.0, y);
         cairo_stroke(d->c);
-        draw_mark(d, x + 12.0, y, s);
+        if (!d->plot->curves)
+            draw_mark(d, x + 12.0, y, s);
         set_colour(d->c, 0x222222);
         put_text(d->c, x + 32.0, y + 4.0, 0.0, d->plot->series[s].name);
     }
+    if (d->plot->curves)
+        return;
     y += 4.0;
     cairo_set_source_rgba(d->c, 1.0, 0.83, 0.25, 0.55);
     cairo_set_line_width(d->c, 9.0);

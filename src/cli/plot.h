@@ -5,7 +5,7 @@
 #include <relume/base.h>
 
 struct plot_point {
-    double x, y;  // x > 0: its axis is logarithmic
+    double x, y;  // x > 0 unless its axis is linear
     int series;
     bool on_hull;    // joined by the hull's line
     char label[12];  // beside the point where there is room
@@ -22,6 +22,8 @@ struct plot {
     int series_count;
     const struct plot_point *point;  // points of a series are joined in the order of x
     int points;
+    bool linear;  // the axis of x, which is logarithmic otherwise
+    bool curves;  // lines alone: no marks, no labels, no hull
 };
 
 enum plot_format { PLOT_SVG, PLOT_PNG };

@@ -11,8 +11,7 @@ size_t coder_work(const relume_coder *coder)
     return separated + (coder->robust ? 2 * robust_work(coder->robust) : 0);
 }
 
-// samples[light][pixel][channel] -> to[channel][light][pixel]
-static void separate(float *to, const float *samples, size_t stride, int lights, size_t n)
+void coder_separate(float *to, const float *samples, size_t stride, int lights, size_t n)
 {
     const size_t size = (size_t)lights * n;
     for (size_t i = 0; i < (size_t)lights; i++) {
@@ -58,6 +57,14 @@ static void split_colour(const relume_coder *coder, float *work, size_t n, float
     }
 }
 
+void coder_part(const relume_coder *coder, float *parted, const float *samples, size_t stride,
+                size_t n, float *planes, size_t plane_stride)
+{
+    coder_separate(parted, samples, stride, coder->info.lights, n);
+    if (coder->info.luminance)
+        split_colour(coder, parted, n, planes, plane_stride);
+}
+
 // `separated` as [channel][light][pixel].
 static void multiply(const relume_coder *coder, float *separated, size_t n, float *planes,
                      size_t plane_stride)
@@ -72,8 +79,6 @@ static void multiply(const relume_coder *coder, float *separated, size_t n, floa
                 planes[(size_t)i * plane_stride + x] += coder->base[i];
         return;
     }
-    if (info->luminance)
-        split_colour(coder, separated, n, planes, plane_stride);
     const int sets = info->luminance ? 1 : 3;
     for (int c = 0; c < sets; c++)
         lsq_multiply(k, columns, lights, coder->map, lights, separated + (size_t)(c * lights) * n,
@@ -83,8 +88,16 @@ static void multiply(const relume_coder *coder, float *separated, size_t n, floa
 void coder_apply(const relume_coder *coder, const float *samples, size_t stride, size_t n,
                  float *planes, size_t plane_stride, float *work)
 {
+    coder_separate(work, samples, stride, coder->info.lights, n);
+    coder_apply_separated(coder, n, planes, plane_stride, work);
+}
+
+void coder_apply_separated(const relume_coder *coder, size_t n, float *planes, size_t plane_stride,
+                           float *work)
+{
     const size_t lights = (size_t)coder->info.lights;
-    separate(work, samples, stride, (int)lights, n);
+    if (coder->info.luminance)
+        split_colour(coder, work, n, planes, plane_stride);
     multiply(coder, work, n, planes, plane_stride);
     if (coder->robust)
         robust_apply(coder->robust, coder, work, n, planes, plane_stride,

@@ -23,6 +23,7 @@ struct relume_coder {
     float *base;       // learned: [K]
     struct robust *robust;                 // or NULL: plain least squares
     const struct relume_samples *samples;  // while being prepared
+    int threads;                           // for that
     bool decode, force;
     void *interpolant;  // data of info.interpolant
     void *data;         // the basis's own
@@ -37,6 +38,16 @@ enum { CODER_CHUNK = 1024 };
 size_t coder_work(const relume_coder *coder);
 void coder_apply(const relume_coder *coder, const float *samples, size_t stride, size_t n,
                  float *planes, size_t plane_stride, float *work);
+// The same for samples that lie in `work` as [channel][light][pixel]; they are lost.
+void coder_apply_separated(const relume_coder *coder, size_t n, float *planes, size_t plane_stride,
+                           float *work);
+
+// samples[light][pixel][channel] -> to[channel][light][pixel], lights `stride` apart.
+void coder_separate(float *to, const float *samples, size_t stride, int lights, size_t n);
+// The same; luminance coders: the luminances [light][pixel], and the
+// pixels' colours into their planes.
+void coder_part(const relume_coder *coder, float *parted, const float *samples, size_t stride,
+                size_t n, float *planes, size_t plane_stride);
 
 // The stored functions at some lights: basis[3][lights][K] and constant[3][lights].
 struct captured {
@@ -51,7 +62,7 @@ void captured_predict(const struct captured *c, const relume_coder *coder, int c
                       const float *planes, size_t plane_stride, size_t n, float *out);
 
 // The Gram matrix [lights][lights] of the images, mean over pixels and channels.
-relume_status samples_gram(double *gram, const struct relume_samples *s);
+relume_status samples_gram(double *gram, const struct relume_samples *s, int threads);
 // Mean squared error of each light predicted from the others, never 0 (choose.c).
 void predict_errors(double *error, const double *b, const double *gram, int lights);
 
@@ -81,6 +92,7 @@ void mesh_destroy(mesh **m);
 // `d` unit, in the frame of the lights. Always sums to 1; outside the captured region the weights
 // are those of its border.
 struct blend mesh_blend(const mesh *m, vec3 d);
+struct relume_coder_triangles mesh_triangles(const mesh *m);
 
 // The direction at which the basis is really evaluated: below the horizon of a hemispherical
 // capture that is the horizon at the same azimuth.

@@ -37,64 +37,62 @@ void census_destroy(struct census *c)
     *c = (struct census){0};
 }
 
-// Samples that are looked at together: what is gathered of them stays in the first-level cache.
+// Pixels that are looked at together: what is gathered of them stays in the first-level cache.
 enum { RUN = 256 };
 struct gathered {
-    int32_t bits[3 * RUN];     // of all lights, or-ed: 0 where all of them are 0
-    int32_t clipped[3 * RUN];  // how many lights
+    int32_t bits[3][RUN];     // of all lights, or-ed: 0 where all of them are 0
+    int32_t clipped[3][RUN];  // how many lights
 };
 
 // Without a branch, for the sake of vector instructions.
-static void gather(struct gathered *g, const float *samples, const float *white, size_t n)
+static void gather(int32_t *restrict bits, int32_t *restrict clipped, const float *samples,
+                   float white, size_t n)
 {
-    for (size_t j = 0; j < 3 * n; j++) {
-        int32_t bits;
-        memcpy(&bits, samples + j, sizeof bits);
-        g->bits[j] |= bits;
-        g->clipped[j] += samples[j] >= white[j];
+    for (size_t x = 0; x < n; x++) {
+        int32_t sample;
+        memcpy(&sample, samples + x, sizeof sample);
+        bits[x] |= sample;
+        clipped[x] += samples[x] >= white;
     }
 }
 
 static bool is_lit(const float *samples, size_t n)
 {
-    for (size_t j = 0; j < 3 * n; j++)
-        if (samples[j] > 0.0f)
+    for (size_t x = 0; x < n; x++)
+        if (samples[x] > 0.0f)
             return true;
     return false;
 }
 
-static void count_run(struct census *c, int worker, const float *samples, size_t stride, size_t n,
-                      const float *mask)
+static void count_pixels(struct relume_encode_census *count, const struct gathered *g, int lights,
+                         size_t n, const float *mask)
 {
-    struct gathered g = {{0}, {0}};
-    float white[3 * RUN];
-    struct relume_encode_census *count = &c->count[worker];
-    for (int i = 0; i < c->lights; i++) {
-        const float *row = samples + (size_t)i * stride, *w = c->white[i];
-        bool *lit = &c->lit[worker * c->lights + i];
-        *lit = *lit || is_lit(row, n);
-        if (i == 0 || memcmp(w, c->white[i - 1], sizeof *c->white))
-            for (size_t j = 0; j < 3 * n; j++)
-                white[j] = w[j % 3];
-        gather(&g, row, white, n);
-    }
     for (size_t x = 0; x < n; x++) {
         if (mask && mask[x] <= 0.5f)
             continue;
-        const int32_t *b = g.bits + 3 * x, *h = g.clipped + 3 * x;
+        const int32_t r = g->clipped[0][x], green = g->clipped[1][x], b = g->clipped[2][x];
         count->pixels++;
-        count->black += !(b[0] | b[1] | b[2]);
-        count->clipped += h[0] + h[1] + h[2] > 0;
-        count->always_clipped += h[0] == c->lights || h[1] == c->lights || h[2] == c->lights;
+        count->black += !(g->bits[0][x] | g->bits[1][x] | g->bits[2][x]);
+        count->clipped += r + green + b > 0;
+        count->always_clipped += r == lights || green == lights || b == lights;
     }
 }
 
-void census_add(struct census *c, int worker, const float *samples, size_t stride, size_t n,
-                const float *mask)
+void census_add(struct census *c, int worker, const float *planes, size_t n, const float *mask)
 {
-    for (size_t x = 0; x < n; x += RUN)
-        count_run(c, worker, samples + 3 * x, stride, n - x < RUN ? n - x : RUN,
-                  mask ? mask + x : NULL);
+    const size_t lights = (size_t)c->lights;
+    for (size_t first = 0; first < n; first += RUN) {
+        const size_t run = n - first < RUN ? n - first : RUN;
+        struct gathered g = {{{0}}, {{0}}};
+        for (size_t i = 0; i < lights; i++)
+            for (size_t k = 0; k < 3; k++) {
+                const float *samples = planes + (k * lights + i) * n + first;
+                bool *lit = &c->lit[(size_t)worker * lights + i];
+                *lit = *lit || is_lit(samples, run);
+                gather(g.bits[k], g.clipped[k], samples, c->white[i][k], run);
+            }
+        count_pixels(&c->count[worker], &g, c->lights, run, mask ? mask + first : NULL);
+    }
 }
 
 struct relume_encode_census census_result(const struct census *c)

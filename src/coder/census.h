@@ -14,9 +14,8 @@ struct census {
 relume_status census_create(struct census *c, const relume_capture *capture,
                             struct relume_transfer display, int workers);
 void census_destroy(struct census *c);
-// Some pixels: samples[light * stride + 3 * pixel + channel]. `mask` may be NULL.
-void census_add(struct census *c, int worker, const float *samples, size_t stride, size_t n,
-                const float *mask);
+// Some pixels: planes[channel][light][n]. `mask` may be NULL.
+void census_add(struct census *c, int worker, const float *planes, size_t n, const float *mask);
 struct relume_encode_census census_result(const struct census *c);
 
 #endif

@@ -5,6 +5,7 @@
 // mean of ln e_i is minimised, so that every light counts by its ratio, as in decibels. No light is
 // used to predict itself, and no other data is seen.
 #include "base/memory.h"
+#include "coder/gram.h"
 #include "coder/basis.h"
 #include "coder/interpolant.h"
 #include "math/lsq.h"
@@ -14,25 +15,22 @@
 // Squared errors below a third of an 8-bit step do not count.
 static const double FLOOR = 0.1 / (255.0 * 255.0);
 
-relume_status samples_gram(double *gram, const struct relume_samples *s)
+static void values_of(const void *context, size_t first, size_t count, double *out)
+{
+    const struct relume_samples *s = context;
+    const size_t n = (size_t)s->lights, values = 3 * s->pixels;
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < count; j++)
+            out[j * n + i] = (double)s->data[i * values + first + j];
+}
+
+relume_status samples_gram(double *gram, const struct relume_samples *s, int threads)
 {
     const size_t n = (size_t)s->lights, values = 3 * s->pixels;
-    enum { BATCH = 512 };
-    double *rows = mem_array(BATCH * n, sizeof *rows);
-    if (!rows)
-        return RELUME_ENOMEM;
-    memset(gram, 0, n * n * sizeof *gram);
-    for (size_t x = 0; x < values; x += BATCH) {
-        const size_t count = values - x < BATCH ? values - x : BATCH;
-        for (size_t i = 0; i < n; i++)
-            for (size_t j = 0; j < count; j++)
-                rows[j * n + i] = (double)s->data[i * values + x + j];
-        lsq_add_gram(gram, (int)n, rows, (int)count);
-    }
-    for (size_t i = 0; i < n * n; i++)
+    const relume_status status = gram_sum(gram, n, values, values_of, s, threads);
+    for (size_t i = 0; !status && i < n * n; i++)
         gram[i] /= (double)values;
-    free(rows);
-    return RELUME_OK;
+    return status;
 }
 
 void predict_errors(double *error, const double *b, const double *gram, int lights)
@@ -115,7 +113,7 @@ static relume_status search_axes(struct search *s, double *best, double *least)
 }
 
 relume_status interpolant_choose(double *parameter, double *rms, const struct relume_vec3 *lights,
-                                 const struct relume_samples *samples)
+                                 const struct relume_samples *samples, int threads)
 {
     enum { FEW = 160 };
     const int n = samples->lights;
@@ -126,7 +124,7 @@ relume_status interpolant_choose(double *parameter, double *rms, const struct re
                        mem_array(size, sizeof(double))};
     relume_status status = gram && s.b && s.error ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
-        status = samples_gram(gram, samples);
+        status = samples_gram(gram, samples, threads);
     if (!status)
         status = (n <= FEW ? search_all : search_axes)(&s, best, &least);
     if (!status) {

@@ -31,16 +31,6 @@ struct search {
     atomic_bool changed;
 };
 
-static double squared_distance(const float *a, const float *b, size_t dim)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < dim; i++) {
-        const double d = (double)a[i] - (double)b[i];
-        sum += d * d;
-    }
-    return sum;
-}
-
 // Whether vector i keeps its code: no other has come near enough (Hamerly 2010). The margin is far
 // above the rounding of double precision.
 static bool keeps_code(struct search *s, size_t i)

@@ -146,8 +146,8 @@ static relume_status prepare_interpolant(relume_coder *c, const struct relume_co
     if (p->choose && (!p->samples || p->samples->lights != c->info.lights || !p->samples->pixels))
         return log_fail(p->log, RELUME_EINVAL, "choosing an interpolant needs samples");
     if (p->choose)
-        status =
-            interpolant_choose(c->info.parameter, &c->info.predicted_rms, c->frame, p->samples);
+        status = interpolant_choose(c->info.parameter, &c->info.predicted_rms, c->frame, p->samples,
+                                    p->threads);
     for (int k = 0; !status && k < 4; k++)
         if (!(c->info.parameter[k] >= 0.0) || isinf(c->info.parameter[k]))
             status = log_fail(p->log, RELUME_EDATA,
@@ -209,6 +209,7 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
     c->decode = p.decode;
     c->force = p.force;
     c->samples = p.samples;
+    c->threads = p.threads;
     status = copy_lights(c, lights);
     if (!status)
         status = copy_functions(c, &p);
@@ -240,6 +241,15 @@ const struct relume_coder_info *relume_coder_info(const relume_coder *coder)
 void coder_interpolate(const relume_coder *coder, struct relume_vec3 light, double *values)
 {
     coder->info.interpolant->evaluate(coder->interpolant, light, values);
+}
+
+bool relume_coder_triangles(struct relume_coder_triangles *out, const relume_coder *coder)
+{
+    *out = (struct relume_coder_triangles){.points = 0};
+    if (coder->info.interpolant != &interpolant_delaunay)
+        return false;
+    *out = interpolant_triangles(coder->interpolant);
+    return true;
 }
 
 static double dot(const float *a, const double *b, int n)

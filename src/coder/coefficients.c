@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/outfile.h"
 #include "image/half.h"
+#include "image/unpack.h"
 
 #include <errno.h>
 #include <float.h>
@@ -74,6 +75,16 @@ struct range range_of(const float *v, size_t n)
         r.min = min[i] < r.min ? min[i] : r.min;
         r.max = max[i] > r.max ? max[i] : r.max;
     }
+    return r;
+}
+
+struct range range_join(struct range a, struct range b)
+{
+    return (struct range){b.min < a.min ? b.min : a.min, b.max > a.max ? b.max : a.max};
+}
+
+struct range range_settle(struct range r)
+{
     if (r.max - r.min < TINY_RANGE)
         r.min = r.max = fabsf(r.max) < TINY_RANGE ? 0.0f : r.max;
     return r;
@@ -148,13 +159,11 @@ void coefficients_quantise(const relume_coefficients *c, int plane, int row, con
     const struct range r = c->band[(row / BAND_ROWS) * c->info.planes + plane];
     const float a = coefficients_band_step(r) / c->scale[plane];
     const float b = (r.min - c->offset[plane]) / c->scale[plane] + 0.5f;
-    uint8_t *bytes = to;
     uint16_t *words = to;
     const float top = (float)relume_storage_top(c->info.storage);
     const size_t width = (size_t)c->info.width;
     if (c->info.storage == RELUME_STORE_8)
-        for (size_t x = 0; x < width; x++)
-            bytes[x] = (uint8_t)(int)clamp((float)from[x] * a + b, 255.0f);
+        unpack_choose(0)->codes(from, width, a, b, to);
     else
         for (size_t x = 0; x < width; x++)
             words[x] = (uint16_t)(int)clamp((float)from[x] * a + b, top);
@@ -181,18 +190,22 @@ relume_status relume_coefficients_read(const relume_coefficients *coefficients, 
 {
     const relume_coefficients *c = coefficients;
     const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
-    const size_t n = (size_t)rows * planes * width;
+    const size_t n = planes * width;
     if (c->info.storage == RELUME_STORE_HALF)
-        return scratch_read(c->fd, out, n * 2, coefficients_offset(c, row)) ? RELUME_OK
-                                                                            : RELUME_EIO;
-    uint16_t *packed = mem_array(n, sizeof *packed);
+        return scratch_read(c->fd, out, (size_t)rows * n * 2, coefficients_offset(c, row))
+                   ? RELUME_OK
+                   : RELUME_EIO;
+    uint16_t *packed = mem_array(n, sizeof *packed);  // a row stays in the cache
     if (!packed)
         return RELUME_ENOMEM;
-    const bool good = scratch_read(c->fd, packed, n * sizeof *packed, coefficients_offset(c, row));
     const size_t bytes = c->info.storage == RELUME_STORE_8 ? 1 : 2;
-    for (size_t i = 0; good && i < (size_t)rows * planes; i++)
-        coefficients_quantise(c, (int)(i % planes), row + (int)(i / planes), packed + i * width,
-                              (uint8_t *)out + i * width * bytes);
+    uint8_t *to = out;
+    bool good = true;
+    for (int y = row; good && y < row + rows; y++) {
+        good = scratch_read(c->fd, packed, n * sizeof *packed, coefficients_offset(c, y));
+        for (size_t p = 0; good && p < planes; p++, to += width * bytes)
+            coefficients_quantise(c, (int)p, y, packed + p * width, to);
+    }
     free(packed);
     return good ? RELUME_OK : RELUME_EIO;
 }

@@ -14,8 +14,11 @@ struct range {
 // Ranges below this are one value: their steps would leave single precision.
 #define TINY_RANGE 1e-30f
 
-// Of `n` values; tiny ranges are widened to none.
+// Of `n` values; empty ones have min > max.
 struct range range_of(const float *values, size_t n);
+struct range range_join(struct range a, struct range b);
+// A tiny range becomes one value.
+struct range range_settle(struct range r);
 
 // Planes of integer codes wait as 16-bit numbers with a scale of their own per band of rows, finer
 // than any code that follows; halves wait as they are. The file's order is [row][plane][x].

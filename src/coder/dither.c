@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "coder/nearest.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -21,16 +22,6 @@ struct near {
     double distance;
     int code;
 };
-
-static double squared_distance(const float *a, const float *b, size_t n)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        const double d = (double)a[i] - (double)b[i];
-        sum += d * d;
-    }
-    return sum;
-}
 
 static void find_neighbours(void *context, size_t code, int worker)
 {

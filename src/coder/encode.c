@@ -10,6 +10,7 @@
 #include "coder/basis.h"
 #include "coder/census.h"
 #include "coder/coefficients.h"
+#include "coder/seen.h"
 #include "image/half.h"
 
 #include <errno.h>
@@ -21,9 +22,13 @@ struct encoder {
     const relume_coder *coder;
     relume_coefficients *out;
     int lights, width, height, planes;
-    int row, rows;        // of the band in progress
-    float *samples;       // [lights][rows][x][3]
+    int row, rows;  // of the band in progress
+    relume_table *table;
+    struct seen *seen;    // or NULL: lights are distant, or the coder wants distant ones
+    float *samples;       // [lights][rows][x][3], with `seen`
+    float *own;           // the same as pixels really saw them
     float *values;        // [planes][rows][x]
+    struct range *chunk;  // [chunks of a band][planes]
     float *work;          // [workers][coder_work]
     uint16_t *packed[2];  // [rows][planes][x]: one is filled while the other is written
     int filling;
@@ -48,27 +53,51 @@ static bool is_inside(const struct relume_image *mask, size_t pixel)
     return !mask->data || mask->data[pixel] > 0.5f;
 }
 
+// Pixels outside the mask are 0.
+static void apply_mask(const struct encoder *e, size_t first, size_t n)
+{
+    const size_t pixels = (size_t)e->rows * (size_t)e->width;
+    const size_t at = (size_t)e->row * (size_t)e->width;
+    for (size_t x = first; e->mask->data && x < first + n; x++)
+        if (!is_inside(e->mask, at + x))
+            for (size_t p = 0; p < (size_t)e->planes; p++)
+                e->values[p * pixels + x] = 0.0f;
+}
+
+static struct range band_range(const struct encoder *e, size_t plane)
+{
+    const size_t pixels = (size_t)e->rows * (size_t)e->width;
+    struct range r = e->chunk[plane];
+    for (size_t k = 1; k * CODER_CHUNK < pixels; k++)
+        r = range_join(r, e->chunk[k * (size_t)e->planes + plane]);
+    return range_settle(r);
+}
+
+// Samples of `n` pixels of the band: [channel][light][pixel].
+static void gather(const struct encoder *e, size_t first, size_t n, float *separated)
+{
+    const size_t pixels = (size_t)e->rows * (size_t)e->width, lights = (size_t)e->lights;
+    if (e->seen)
+        coder_separate(separated, e->samples + 3 * first, 3 * pixels, e->lights, n);
+    else
+        for (size_t i = 0; i < lights; i++)
+            relume_table_planes(e->table, (int)i, first, n, separated + i * n, lights * n);
+}
+
 static void apply_chunk(void *context, size_t item, int worker)
 {
     struct encoder *e = context;
     const size_t pixels = (size_t)e->rows * (size_t)e->width, first = item * CODER_CHUNK;
     const size_t n = pixels - first < CODER_CHUNK ? pixels - first : CODER_CHUNK;
-    coder_apply(e->coder, e->samples + 3 * first, 3 * pixels, n, e->values + first, pixels,
-                e->work + (size_t)worker * coder_work(e->coder));
     const size_t at = (size_t)e->row * (size_t)e->width + first;
-    census_add(&e->census, worker, e->samples + 3 * first, 3 * pixels, n,
-               e->mask->data ? e->mask->data + at : NULL);
-}
-
-// Pixels outside the mask are 0 and do not count for the range.
-static void apply_mask(struct encoder *e)
-{
-    const size_t pixels = (size_t)e->rows * (size_t)e->width;
-    const size_t first = (size_t)e->row * (size_t)e->width;
-    for (size_t x = 0; e->mask->data && x < pixels; x++)
-        if (!is_inside(e->mask, first + x))
-            for (size_t p = 0; p < (size_t)e->planes; p++)
-                e->values[p * pixels + x] = 0.0f;
+    float *work = e->work + (size_t)worker * coder_work(e->coder);
+    gather(e, first, n, work);
+    census_add(&e->census, worker, work, n, e->mask->data ? e->mask->data + at : NULL);
+    if (!e->seen)
+        coder_apply_separated(e->coder, n, e->values + first, pixels, work);
+    apply_mask(e, first, n);
+    for (size_t p = 0; p < (size_t)e->planes; p++)
+        e->chunk[item * (size_t)e->planes + p] = range_of(e->values + p * pixels + first, n);
 }
 
 static void pack_plane(void *context, size_t plane, int worker)
@@ -78,11 +107,10 @@ static void pack_plane(void *context, size_t plane, int worker)
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
     const float *v = e->values + plane * pixels;
     const bool half = e->out->info.storage == RELUME_STORE_HALF;
-    const struct range r = range_of(v, pixels);
+    const struct range r = band_range(e, plane);
     const float scale = r.max > r.min ? 65535.0f / (r.max - r.min) : 0.0f;
     e->out->band[(size_t)(e->row / BAND_ROWS) * (size_t)e->planes + plane] = r;
-    e->total[plane].min = r.min < e->total[plane].min ? r.min : e->total[plane].min;
-    e->total[plane].max = r.max > e->total[plane].max ? r.max : e->total[plane].max;
+    e->total[plane] = range_join(e->total[plane], r);
     for (int y = 0; y < e->rows; y++) {
         uint16_t *to = e->packed[e->filling] + ((size_t)y * (size_t)e->planes + plane) * width;
         const float *from = v + (size_t)y * width;
@@ -105,19 +133,43 @@ static bool is_measured(const relume_coefficients *c, int row)
 static relume_status measure_fit(struct encoder *e)
 {
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
-    float *again = mem_array((size_t)e->lights * width, sizeof *again);
+    const size_t size = (size_t)e->lights * width;
+    float *again = mem_array(4 * size, sizeof *again), *seen = again + size;
     if (!again)
         return RELUME_ENOMEM;
+    for (size_t i = 0; i < (size_t)e->lights; i++)
+        relume_table_planes(e->table, (int)i, 0, width, seen + i * width, size);
     for (int c = 0; c < 3; c++) {
         captured_predict(&e->captured, e->coder, c, e->values, pixels, width, again);
         for (size_t i = 0; i < (size_t)e->lights; i++)
             for (size_t x = 0; x < width; x++)
                 if (is_inside(e->mask, (size_t)e->row * width + x)) {
-                    const double sample = (double)e->samples[(i * pixels + x) * 3 + (size_t)c];
+                    const double sample = (double)seen[(size_t)c * size + i * width + x];
                     const double d = sample - (double)again[i * width + x];
                     e->error_sum += d * d;
                     e->error_count++;
                 }
+    }
+    free(again);
+    return RELUME_OK;
+}
+
+// The same of near lights: a pixel in 8.
+static relume_status measure_seen(struct encoder *e)
+{
+    const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
+    float *again = mem_array(3 * (size_t)e->lights, sizeof *again);
+    if (!again)
+        return RELUME_ENOMEM;
+    for (size_t x = 0; x < width; x += 8) {
+        if (!is_inside(e->mask, (size_t)e->row * width + x))
+            continue;
+        seen_predict(e->seen, (int)x, e->row, e->values + x, pixels, again);
+        for (size_t i = 0; i < 3 * (size_t)e->lights; i++) {
+            const double d = (double)e->own[(i / 3 * pixels + x) * 3 + i % 3] - (double)again[i];
+            e->error_sum += d * d;
+            e->error_count++;
+        }
     }
     free(again);
     return RELUME_OK;
@@ -171,19 +223,20 @@ static relume_status write_band(struct encoder *e, size_t pixels,
     return RELUME_OK;
 }
 
-static relume_status encode_band(struct encoder *e, relume_table *table,
-                                 const struct relume_encode_params *p)
+static relume_status encode_band(struct encoder *e, const struct relume_encode_params *p)
 {
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
-    relume_status status = relume_table_read(table, e->rows, e->samples);
+    relume_status status = e->seen ? relume_table_read_seen(e->table, e->rows, e->samples, e->own)
+                                   : relume_table_fetch(e->table, e->rows);
+    if (!status && e->seen)
+        status = seen_apply(e->seen, e->row, e->rows, e->own, e->samples, e->values);
     if (status)
         return status;
     thread_for(e->threads, (pixels + CODER_CHUNK - 1) / CODER_CHUNK, apply_chunk, e);
     if (is_measured(e->out, e->row))
-        status = measure_fit(e);
+        status = e->seen ? measure_seen(e) : measure_fit(e);
     if (status)
         return status;
-    apply_mask(e);
     thread_for(e->threads, (size_t)e->planes, pack_plane, e);
     status = check_size(e, p);
     if (status)
@@ -199,25 +252,37 @@ static void say_repaired(struct encoder *e, int light, size_t pixels, const stru
                  e->images[light], pixels, pixels > 1 ? "s are" : " is");
 }
 
+static relume_status see_near(struct encoder *e)
+{
+    const size_t lights = 3 * (size_t)e->lights * BAND_ROWS, row = (size_t)e->width;
+    e->samples = mem_array(lights, row * sizeof *e->samples);
+    e->own = mem_array(lights, row * sizeof *e->own);
+    if (!e->samples || !e->own)
+        return RELUME_ENOMEM;
+    return seen_create(&e->seen, e->coder, e->table, e->width, e->height, e->threads);
+}
+
 static relume_status encode_bands(struct encoder *e, const relume_capture *capture, int view,
                                   struct relume_transfer display,
                                   const struct relume_encode_params *p)
 {
-    relume_table *table;
     relume_status status = relume_table_open(
-        &table, capture, view,
+        &e->table, capture, view,
         relume_table_params(.log = p->log, .display = display, .threads = p->threads));
+    if (!status && relume_table_is_near(e->table) && seen_suits(e->coder))
+        status = see_near(e);
     for (e->row = 0; !status && e->row < e->height; e->row += BAND_ROWS) {
         e->rows = e->height - e->row < BAND_ROWS ? e->height - e->row : BAND_ROWS;
-        status = encode_band(e, table, p);
+        status = encode_band(e, p);
         const int views = relume_capture_manifest(capture)->views;
         const double done = (view + (e->row + e->rows) / (double)e->height) / views;
         if (!status && !log_progress(p->log, "encoding", done))
             status = RELUME_ECANCEL;
     }
     for (int i = 0; !status && i < e->lights; i++)
-        say_repaired(e, i, relume_table_repaired(table, i), p->log);
-    relume_table_destroy(&table);
+        say_repaired(e, i, relume_table_repaired(e->table, i), p->log);
+    seen_destroy(&e->seen);
+    relume_table_destroy(&e->table);
     if (!status)
         return finish_writing(e, p);
     thread_wait(&e->writing);
@@ -302,13 +367,13 @@ struct relume_transfer relume_encode_display(const relume_capture *capture)
 static relume_status alloc_encoder(struct encoder *e)
 {
     const size_t band = (size_t)BAND_ROWS * (size_t)e->width, planes = (size_t)e->planes;
-    e->samples = mem_array((size_t)e->lights * band * 3, sizeof *e->samples);
     e->values = mem_array(planes * band, sizeof *e->values);
+    e->chunk = mem_array((band + CODER_CHUNK - 1) / CODER_CHUNK * planes, sizeof *e->chunk);
     e->work = mem_array((size_t)thread_count(e->threads) * coder_work(e->coder), sizeof *e->work);
     for (int i = 0; i < 2; i++)
         e->packed[i] = mem_array(planes * band, sizeof *e->packed[i]);
     e->total = mem_array(planes, sizeof *e->total);
-    if (!e->samples || !e->values || !e->work || !e->packed[0] || !e->packed[1] || !e->total)
+    if (!e->values || !e->chunk || !e->work || !e->packed[0] || !e->packed[1] || !e->total)
         return RELUME_ENOMEM;
     for (size_t p = 0; p < planes; p++)
         e->total[p] = (struct range){FLT_MAX, -FLT_MAX};
@@ -318,7 +383,9 @@ static relume_status alloc_encoder(struct encoder *e)
 static void free_encoder(struct encoder *e)
 {
     free(e->samples);
+    free(e->own);
     free(e->values);
+    free(e->chunk);
     free(e->work);
     free(e->packed[0]);
     free(e->packed[1]);

@@ -17,6 +17,7 @@
 #include "base/memory.h"
 #include "math/lsq.h"
 
+#include <stdio.h>
 #include <string.h>
 
 enum { FILL_SAMPLES = 256, EQUATOR_SAMPLES = 64 };
@@ -63,7 +64,30 @@ static void add_gram(double *a, int k, const double *rows, int count, double wei
                 a[i * k + j] += weight * rows[r * k + i] * rows[r * k + j];
 }
 
-static relume_status check_rank(const struct system *s, bool force, const struct relume_log *log)
+// The most coefficients of the basis that so many directions determine, 0 where there are none.
+static int most_of_rank(const struct relume_basis *basis, int rank)
+{
+    while (rank > 0 && !basis->has_count(rank))
+        rank--;
+    return rank;
+}
+
+static relume_status refuse_rank(const struct system *s, const struct relume_basis *basis, int rank,
+                                 const struct relume_log *log)
+{
+    const int most = most_of_rank(basis, rank);
+    char instead[64] = "";
+    if (most)
+        snprintf(instead, sizeof instead, ", or at most %d coefficient%s", most,
+                 most > 1 ? "s" : "");
+    return log_fail(log, RELUME_EDATA,
+                    "the %d light directions determine only %d of %d coefficients; expected lights "
+                    "spread in both angles%s",
+                    s->n, rank, s->k, instead);
+}
+
+static relume_status check_rank(const struct system *s, const relume_coder *coder,
+                                const struct relume_log *log)
 {
     const size_t k = (size_t)s->k;
     double *gram = mem_zeroed(k * k, sizeof *gram), *values = mem_array(k, sizeof *values);
@@ -76,14 +100,11 @@ static relume_status check_rank(const struct system *s, bool force, const struct
     int rank = 0;
     for (int i = 0; !status && i < s->k; i++)
         rank += values[i] > RANK_TOLERANCE * values[s->k - 1];
-    if (!status && rank < s->k && force)
+    if (!status && rank < s->k && coder->force)
         log_line(log, RELUME_WARNING,
                  "the %d light directions determine only %d of %d coefficients", s->n, rank, s->k);
     else if (!status && rank < s->k)
-        status = log_fail(log, RELUME_EDATA,
-                          "the %d light directions determine only %d of %d coefficients; expected "
-                          "lights spread in both angles, or at most %d coefficients",
-                          s->n, rank, s->k, rank);
+        status = refuse_rank(s, coder->info.basis, rank, log);
     free(gram);
     free(values);
     return status;
@@ -180,7 +201,7 @@ relume_status fit_map(relume_coder *coder, const double *roughness, const struct
     if (!status) {
         for (int i = 0; i < s.n; i++)
             coder->info.basis->evaluate(coder, coder->frame[i], s.y + (size_t)i * (size_t)s.k);
-        status = check_rank(&s, coder->force, log);
+        status = check_rank(&s, coder, log);
     }
     if (!status && s.m)
         status = assume_far_side(&s, coder);

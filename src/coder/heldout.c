@@ -185,7 +185,7 @@ static void find_coefficients(void *context, size_t item, int worker)
         float *v = f->value + p * h->pixels + c.first;
         for (size_t i = 0; h->mask && i < c.n; i++)
             v[i] = h->mask[c.first + i] > 0.5f ? v[i] : 0.0f;
-        f->range[item * f->planes + p] = range_of(v, c.n);
+        f->range[item * f->planes + p] = range_settle(range_of(v, c.n));
     }
 }
 

@@ -43,7 +43,7 @@ static relume_status keep_band(relume_coefficients *c, int row, const float *val
     const bool half = c->info.storage == RELUME_STORE_HALF;
     for (size_t p = 0; p < planes; p++) {
         const float *v = value + p * stride;
-        const struct range r = range_of(v, rows * width);
+        const struct range r = range_settle(range_of(v, rows * width));
         const float scale = r.max > r.min ? 65535.0f / (r.max - r.min) : 0.0f;
         c->band[(size_t)(row / BAND_ROWS) * planes + p] = r;
         for (size_t i = 0; i < rows * width; i++)

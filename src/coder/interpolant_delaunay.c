@@ -36,6 +36,11 @@ static void evaluate(const void *data, struct relume_vec3 light, double *weights
         weights[b.light[i]] += b.weight[i];
 }
 
+struct relume_coder_triangles interpolant_triangles(const void *delaunay)
+{
+    return mesh_triangles(((const struct delaunay *)delaunay)->mesh);
+}
+
 static void release(void *data)
 {
     struct delaunay *d = data;

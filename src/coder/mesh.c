@@ -78,6 +78,17 @@ relume_status mesh_create(mesh **out, const vec3 *lights, int n)
     return RELUME_OK;
 }
 
+struct relume_coder_triangles mesh_triangles(const mesh *m)
+{
+    const struct hull_triangle *first = m->triangle;
+    return (struct relume_coder_triangles){
+        .points = m->points,
+        .triangles = m->triangles,
+        .point = m->point,
+        .corner = first ? &first->corner : NULL,
+    };
+}
+
 static struct blend nearest_light(const mesh *m, vec3 d)
 {
     int best = 0;

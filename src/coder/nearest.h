@@ -26,4 +26,15 @@ void nearest_find(const struct nearest *n, const float *vectors, const uint32_t 
                   size_t count, uint16_t *index, double *distance, float *apart, float *scratch);
 size_t nearest_scratch(const struct nearest *n);
 
+// In double precision, from the first component to the last.
+static inline double squared_distance(const float *a, const float *b, size_t dim)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < dim; i++) {
+        const double d = (double)a[i] - (double)b[i];
+        sum += d * d;
+    }
+    return sum;
+}
+
 #endif

@@ -13,12 +13,14 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/thread.h"
+#include "coder/gram.h"
 #include "coder/interpolant.h"
 #include "math/lsq.h"
 
 #include <string.h>
 
-enum { BATCH = 512, DENSE = 400, RINGS = 12, AZIMUTHS = 40, DIRECTIONS = RINGS * AZIMUTHS };
+enum { DENSE = 400, RINGS = 12, AZIMUTHS = 40, DIRECTIONS = RINGS * AZIMUTHS };
 
 struct solver {
     const relume_coder *coder;
@@ -74,39 +76,43 @@ static bool alloc_solver(struct solver *s)
 
 // ---------------------------------------------------------------- statistics of the samples
 
-// One pixel's samples as [channel][light].
-static void gather(double *row, const struct relume_samples *s, size_t pixel)
+// The means of one light's three channels.
+static void find_mean(void *context, size_t light, int worker)
 {
-    for (size_t i = 0; i < (size_t)s->lights; i++)
+    (void)worker;
+    const struct solver *s = context;
+    const struct relume_samples *samples = s->coder->samples;
+    const float *data = samples->data + light * samples->pixels * 3;
+    for (size_t x = 0; x < samples->pixels; x++)
         for (size_t c = 0; c < 3; c++)
-            row[c * (size_t)s->lights + i] = (double)s->data[(i * s->pixels + pixel) * 3 + c];
+            s->out->mean[c * s->lights + light] +=
+                (double)data[3 * x + c] / (double)samples->pixels;
+}
+
+// Samples of pixels as [channel][light], less their means.
+static void centre(const void *context, size_t first, size_t count, double *out)
+{
+    const struct solver *s = context;
+    const struct relume_samples *samples = s->coder->samples;
+    for (size_t i = 0; i < s->lights; i++) {
+        const float *data = samples->data + (i * samples->pixels + first) * 3;
+        for (size_t x = 0; x < count; x++)
+            for (size_t c = 0; c < 3; c++) {
+                const size_t j = c * s->lights + i;
+                out[x * s->dim + j] = (double)data[3 * x + c] - s->out->mean[j];
+            }
+    }
 }
 
 static relume_status find_statistics(struct solver *s)
 {
     const struct relume_samples *samples = s->coder->samples;
-    const size_t d = s->dim, pixels = samples->pixels;
-    double *rows = mem_array(BATCH * d, sizeof *rows);
-    if (!rows)
-        return RELUME_ENOMEM;
-    for (size_t x = 0; x < pixels; x++) {
-        gather(rows, samples, x);
-        for (size_t j = 0; j < d; j++)
-            s->out->mean[j] += rows[j] / (double)pixels;
-    }
-    for (size_t x = 0; x < pixels; x += BATCH) {
-        const size_t n = pixels - x < BATCH ? pixels - x : BATCH;
-        for (size_t i = 0; i < n; i++) {
-            gather(rows + i * d, samples, x + i);
-            for (size_t j = 0; j < d; j++)
-                rows[i * d + j] -= s->out->mean[j];
-        }
-        lsq_add_gram(s->covariance, (int)d, rows, (int)n);
-    }
-    for (size_t i = 0; i < d * d; i++)
-        s->covariance[i] /= (double)pixels;
-    free(rows);
-    return RELUME_OK;
+    thread_for(s->coder->threads, s->lights, find_mean, s);
+    const relume_status status =
+        gram_sum(s->covariance, s->dim, samples->pixels, centre, s, s->coder->threads);
+    for (size_t i = 0; i < s->dim * s->dim; i++)
+        s->covariance[i] /= (double)samples->pixels;
+    return status;
 }
 
 // ---------------------------------------------------------------- directions
@@ -156,7 +162,7 @@ static relume_status expect_errors(struct solver *s, const vec3 *d)
     double *error = mem_array(n, sizeof *error);
     relume_status status = gram && b && error ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
-        status = samples_gram(gram, s->coder->samples);
+        status = samples_gram(gram, s->coder->samples, s->coder->threads);
     if (!status) {
         double alpha, beta;
         if (interpolant_predictor(s->coder->info.interpolant, s->coder->interpolant, b))

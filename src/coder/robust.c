@@ -3,103 +3,36 @@
 // Iteratively reweighted least squares: a light whose residual r at the pixel (over the channels)
 // is large against the pixel's spread s weighs 1 / (1 + (r / s)^2) (Cauchy), with s = 2.385
 // x 1.4826 x the median residual, the tuning that keeps 95 % efficiency where there are no outliers
-// (Holland and Welsch 1977). In stored functions Y (orthonormal with ridge and fill, fit.c) a round
-// solves
-//     (Yt W Y / N + P) c = Yt W t / N + F t,     P = I - Yt Y / N,  F = map - Yt / N
-// so that P and F carry what was assumed beyond the captured lights.
+// (Holland and Welsch 1977). A round solves the system of design.h with these weights.
 #include "base/memory.h"
-#include "coder/basis.h"
+#include "coder/design.h"
 #include "math/lsq.h"
 
 #include <string.h>
 
 enum { ROUNDS = 10 };
 static const double LEAST_SPREAD = 0.5 / 255.0;
-static const double JOINT_PRIOR = 1e-3;  // of the mean of the diagonal: components without data
 
 struct robust {
-    int lights, k,
-        rows;          // rows of the design: one per light, learned bases one per light and channel
-    double *design;    // [rows][k]
-    double *constant;  // [rows]: learned bases
-    double *prior;     // [k][k]
-    double *fill;      // [k][lights], or NULL
+    struct design design;
 };
 
 void robust_destroy(struct robust *r)
 {
-    if (!r)
-        return;
-    free(r->design);
-    free(r->constant);
-    free(r->prior);
-    free(r->fill);
+    if (r)
+        design_destroy(&r->design);
     free(r);
-}
-
-static relume_status fill_design(struct robust *r, const relume_coder *coder)
-{
-    const int k = r->k, channels = r->rows / r->lights;
-    float constant[3], *weights = mem_array(3 * (size_t)k, sizeof *weights);
-    if (!weights)
-        return RELUME_ENOMEM;
-    for (int i = 0; i < r->lights; i++) {
-        relume_coder_weights(coder, coder->world[i], weights, constant);
-        for (int c = 0; c < channels; c++) {
-            r->constant[i * channels + c] = (double)constant[c];
-            for (int j = 0; j < k; j++)
-                r->design[(size_t)(i * channels + c) * (size_t)k + (size_t)j] =
-                    (double)weights[c * k + j];
-        }
-    }
-    free(weights);
-    return RELUME_OK;
-}
-
-static void fill_prior(struct robust *r, const relume_coder *coder)
-{
-    const size_t k = (size_t)r->k, n = (size_t)r->lights;
-    lsq_add_gram(r->prior, r->k, r->design, r->rows);
-    double trace = 0.0;
-    for (size_t i = 0; i < k; i++)
-        trace += r->prior[i * k + i];
-    for (size_t i = 0; i < k * k; i++) {
-        const double unit = i / k == i % k;
-        r->prior[i] =
-            r->fill ? unit - r->prior[i] / (double)n : unit * JOINT_PRIOR * trace / (double)(k * n);
-    }
-    for (size_t i = 0; r->fill && i < k * n; i++)
-        r->fill[i] = (double)coder->map[i] - r->design[i % n * k + i / n] / (double)n;
 }
 
 relume_status robust_create(struct robust **out, const relume_coder *coder)
 {
-    const size_t k = (size_t)coder->info.coefficients, n = (size_t)coder->info.lights;
-    const size_t rows = coder->info.basis->learned ? 3 * n : n;
     struct robust *r = *out = mem_zeroed(1, sizeof *r);
-    if (!r)
-        return RELUME_ENOMEM;
-    *r = (struct robust){
-        .lights = (int)n,
-        .k = (int)k,
-        .rows = (int)rows,
-        .design = mem_array(rows * k, sizeof *r->design),
-        .constant = mem_array(rows, sizeof *r->constant),
-        .prior = mem_zeroed(k * k, sizeof *r->prior),
-        .fill = coder->info.basis->learned ? NULL : mem_array(k * n, sizeof *r->fill),
-    };
-    relume_status status =
-        r->design && r->constant && r->prior && (r->fill || coder->info.basis->learned)
-            ? fill_design(r, coder)
-            : RELUME_ENOMEM;
-    if (!status)
-        fill_prior(r, coder);
-    return status;
+    return r ? design_create(&r->design, coder) : RELUME_ENOMEM;
 }
 
 size_t robust_work(const struct robust *r)
 {
-    const size_t k = (size_t)r->k, n = (size_t)r->lights;
+    const size_t k = (size_t)r->design.k, n = (size_t)r->design.lights;
     return k * k + 3 * k + 3 * n + n + n;
 }
 
@@ -119,16 +52,16 @@ struct pixel {
     double *sorted;       // [lights]
 };
 
-static double predict(const struct robust *r, const double *c, int row)
+static double predict(const struct design *r, const double *c, int row)
 {
-    const double *y = r->design + (size_t)row * (size_t)r->k;
+    const double *y = r->y + (size_t)row * (size_t)r->k;
     double sum = 0.0;
     for (int j = 0; j < r->k; j++)
         sum += y[j] * c[j];
     return sum;
 }
 
-static void weigh(const struct robust *r, const struct pixel *p)
+static void weigh(const struct design *r, const struct pixel *p)
 {
     const int per_light = r->rows / r->lights;
     for (int i = 0; i < r->lights; i++) {
@@ -147,13 +80,13 @@ static void weigh(const struct robust *r, const struct pixel *p)
         p->weight[i] = 1.0 / (1.0 + p->weight[i] * p->weight[i] / (spread * spread));
 }
 
-static void solve(const struct robust *r, const struct pixel *p)
+static void solve(const struct design *r, const struct pixel *p)
 {
     const int k = r->k, n = r->lights, per_light = r->rows / n;
     memcpy(p->system, r->prior, (size_t)(k * k) * sizeof *p->system);
     memset(p->coefficient, 0, (size_t)(p->sets * k) * sizeof *p->coefficient);
     for (int row = 0; row < r->rows; row++) {
-        const double *y = r->design + (size_t)row * (size_t)k, w = p->weight[row / per_light] / n;
+        const double *y = r->y + (size_t)row * (size_t)k, w = p->weight[row / per_light] / n;
         for (int i = 0; i < k; i++) {
             const double wy = w * y[i];
             for (int j = 0; j <= i; j++)
@@ -169,10 +102,11 @@ static void solve(const struct robust *r, const struct pixel *p)
     lsq_solve(p->system, k, p->coefficient, p->sets);
 }
 
-void robust_apply(const struct robust *r, const relume_coder *coder, const float *separated,
+void robust_apply(const struct robust *robust, const relume_coder *coder, const float *separated,
                   size_t n, float *planes, size_t plane_stride, double *work)
 {
     const struct relume_coder_info *info = &coder->info;
+    const struct design *r = &robust->design;
     const size_t lights = (size_t)r->lights;
     struct pixel p = {.sets = info->joint ? 1 : 3};
     p.system = work;

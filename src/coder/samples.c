@@ -1,6 +1,7 @@
 // samples.c - pixels of a capture from which a learned basis learns
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/thread.h"
 #include "coder/coefficients.h"
 #include "math/random.h"
 
@@ -13,6 +14,9 @@ struct sampler {
     size_t *chosen;  // pixel numbers over all views, ascending
     size_t count, next;
     size_t kept;
+    relume_table *table;  // of the view in progress
+    size_t *place;        // [count]: where pixels lie in a band
+    size_t taken;         // of them
 };
 
 // One pixel from each of `count` equal runs, at a place that no pattern of the image can follow.
@@ -25,20 +29,27 @@ static void choose(struct sampler *s, size_t pixels)
     }
 }
 
-// Copy the chosen pixels of a band whose first pixel has the number `first`.
-static void take(struct sampler *s, const struct relume_image *mask, const float *band, size_t n,
-                 size_t first, size_t view_first)
+static void take_light(void *context, size_t item, int worker)
 {
-    const size_t lights = (size_t)s->out->lights;
+    (void)worker;
+    const struct sampler *s = context;
+    for (size_t k = 0; k < s->taken; k++)
+        relume_table_planes(s->table, (int)item, s->place[k], 1,
+                            s->out->data + (item * s->count + s->kept + k) * 3, 1);
+}
+
+// Take the chosen pixels of a band whose first pixel has the number `first`.
+static void take(struct sampler *s, const struct relume_image *mask, size_t n, size_t first,
+                 size_t view_first, int threads)
+{
+    s->taken = 0;
     for (; s->next < s->count && s->chosen[s->next] < first + n; s->next++) {
         const size_t x = s->chosen[s->next] - first;
-        if (mask->data && mask->data[first - view_first + x] <= 0.5f)
-            continue;
-        for (size_t i = 0; i < lights; i++)
-            memcpy(s->out->data + (i * s->count + s->kept) * 3, band + (i * n + x) * 3,
-                   3 * sizeof *band);
-        s->kept++;
+        if (!mask->data || mask->data[first - view_first + x] > 0.5f)
+            s->place[s->taken++] = x;
     }
+    thread_for(threads, s->taken ? (size_t)s->out->lights : 0, take_light, s);
+    s->kept += s->taken;
 }
 
 static relume_status sample_view(struct sampler *s, const relume_capture *capture, int view,
@@ -49,28 +60,24 @@ static relume_status sample_view(struct sampler *s, const relume_capture *captur
     const int height = relume_capture_height(capture);
     const size_t view_first = (size_t)view * width * (size_t)height;
     struct relume_image mask;
-    relume_table *table = NULL;
-    float *band = mem_array((size_t)s->out->lights * BAND_ROWS * width * 3, sizeof *band);
     relume_status status = relume_capture_mask(&mask, capture, view, p->log);
-    if (!status && !band)
-        status = RELUME_ENOMEM;
     if (!status)
         status = relume_table_open(
-            &table, capture, view,
+            &s->table, capture, view,
             relume_table_params(.log = p->log, .display = display, .threads = p->threads));
     for (int row = 0; !status && row < height; row += BAND_ROWS) {
         const int rows = height - row < BAND_ROWS ? height - row : BAND_ROWS;
-        status = relume_table_read(table, rows, band);
+        status = relume_table_fetch(s->table, rows);
         if (status)
             break;
-        take(s, &mask, band, (size_t)rows * width, view_first + (size_t)row * width, view_first);
+        take(s, &mask, (size_t)rows * width, view_first + (size_t)row * width, view_first,
+             p->threads);
         const int views = relume_capture_manifest(capture)->views;
         if (!log_progress(p->log, "sampling", (view + (row + rows) / (double)height) / views))
             status = RELUME_ECANCEL;
     }
-    relume_table_destroy(&table);
+    relume_table_destroy(&s->table);
     relume_image_destroy(&mask);
-    free(band);
     return status;
 }
 
@@ -94,8 +101,9 @@ relume_status relume_samples_read(struct relume_samples *out, const relume_captu
     *out = (struct relume_samples){.lights = m->lights};
     struct sampler s = {.out = out, .count = want < all ? want : all};
     s.chosen = mem_array(s.count, sizeof *s.chosen);
+    s.place = mem_array(s.count, sizeof *s.place);
     out->data = mem_array((size_t)m->lights * s.count * 3, sizeof *out->data);
-    relume_status status = s.chosen && out->data ? RELUME_OK : RELUME_ENOMEM;
+    relume_status status = s.chosen && s.place && out->data ? RELUME_OK : RELUME_ENOMEM;
     struct relume_transfer display = {.curve = RELUME_CURVE_LINEAR};
     if (relume_encode_domain(capture, p.domain) == RELUME_DOMAIN_DISPLAY)
         display = relume_encode_display(capture);
@@ -104,6 +112,7 @@ relume_status relume_samples_read(struct relume_samples *out, const relume_captu
     for (int v = 0; !status && v < m->views; v++)
         status = sample_view(&s, capture, v, display, &p);
     free(s.chosen);
+    free(s.place);
     if (status)
         relume_samples_destroy(out);
     else
@@ -136,6 +145,7 @@ relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *
     struct relume_samples samples = {0};
     p.hemispherical = relume_capture_hemispherical(capture);
     p.pole_y = relume_capture_pole_y(capture);
+    p.threads = encode ? encode->threads : 0;
     relume_status status = RELUME_OK;
     *out = NULL;
     if (basis->learned || p.choose) {

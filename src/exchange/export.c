@@ -36,6 +36,11 @@ relume_status relume_web_type_parse(enum relume_web_type *out, const char *name)
     return status;
 }
 
+double export_step_of_quality(int quality)
+{
+    return EXPORT_FIRST_STEP * exp2((80 - quality) / 10.0);
+}
+
 double export_light_spacing(const struct source *s)
 {
     double sum = 0.0;

@@ -24,7 +24,6 @@ enum {
 };
 
 #define LEAST_STEP 1e-4
-#define FIRST_STEP 0.045
 #define MOST_STEP  8.0
 
 struct maker {
@@ -45,12 +44,6 @@ static double pixels_of(const struct planes *p)
 static double decibel(double error)
 {
     return error > 1e-20 ? -10.0 * log10(error / 3.0) : 200.0;
-}
-
-// Quality 80 is a step of 0.045, about 11 codes; ten less doubles it.
-static double step_of_quality(int quality)
-{
-    return FIRST_STEP * exp2((80 - quality) / 10.0);
 }
 
 // What a step gives: the logarithm of the bytes per pixel, or with `psnr` the expected decibels.
@@ -81,7 +74,7 @@ static double next_step(const struct bracket *b, double target)
 static relume_status search(struct maker *m, bool psnr, double target)
 {
     struct bracket b = {log(LEAST_STEP), log(MOST_STEP), (double)NAN, (double)NAN};
-    double at = log(FIRST_STEP);
+    double at = log(EXPORT_FIRST_STEP);
     for (int i = 0; i < TRIALS && b.high - b.low > 0.004; i++) {
         double value;
         const relume_status status = try_step(m, at, psnr, &value);
@@ -243,7 +236,7 @@ static relume_status choose_step(struct maker *m)
         return search(m, false, log(p->bytes_per_pixel));
     if (p->psnr_db > 0.0 && m->plan.chroma > 1)
         return search(m, true, p->psnr_db);
-    m->step = step_of_quality(p->quality ? p->quality : 80);
+    m->step = export_step_of_quality(p->quality ? p->quality : 80);
     return RELUME_OK;
 }
 

@@ -12,6 +12,21 @@ relume_status ptm_read(struct foreign *out, const char *path, const struct relum
 // ptm_quantiser's scales and offsets. RELUME_EIO.
 relume_status ptm_write(const struct foreign *f, const char *path, const struct relume_log *log);
 
+// The same as PTM_FORMAT_JPEG_RGB or PTM_FORMAT_JPEG_LRGB.
+struct ptm_jpeg {
+    uint8_t *bytes;  // the file, from malloc
+    size_t size;
+    uint8_t *codes;           // [planes][height][width] of `f` as readers decode them, from malloc
+    int predicted, inverted;  // planes
+    size_t records;           // pixels of the side information
+};
+
+// `step`: of the quantisers, in units of the picture's error (1 is white); `quality`: what the file
+// says of itself. RELUME_ENOMEM.
+relume_status ptm_encode_jpeg(struct ptm_jpeg *out, const struct foreign *f, double step,
+                              int quality, int threads);
+void ptm_jpeg_free(struct ptm_jpeg *file);
+
 // A coefficient in 0..255 is (code - bias) * scale with a whole bias: the finest scale whose codes
 // hold [min, max].
 struct ptm_quantiser {

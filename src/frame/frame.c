@@ -113,8 +113,43 @@ static void shared_destroy(struct shared *shared)
     relume_refit_destroy(&shared->learned);
 }
 
+// Background is a thousand times as far as the farthest surface, so that it is finite between
+// pixels.
+static void fill_background(struct relume_image *depth)
+{
+    const size_t n = (size_t)depth->width * (size_t)depth->height;
+    float farthest = 1.0f;
+    for (size_t i = 0; i < n; i++)
+        if (isfinite(depth->data[i]))
+            farthest = fmaxf(farthest, depth->data[i]);
+    for (size_t i = 0; i < n; i++)
+        if (!isfinite(depth->data[i]))
+            depth->data[i] = 1e3f * farthest;
+}
+
+static relume_status find_places(const struct renderer *r, int view, struct relume_image *out)
+{
+    struct relume_image depth;
+    relume_status status = relume_pack_depth(&depth, r->pack, view);
+    if (!status && depth.data)
+        fill_background(&depth);
+    else if (!status && r->params.assume_depth > 0.0)
+        status = assume_depth(r, &depth);
+    if (!status)
+        status = relume_surface(out, relume_pack_geometry(r->pack, view), r->info->uv[view],
+                                depth.data ? &depth : NULL, r->info->width, r->info->height);
+    if (status == RELUME_EINVAL)
+        status = log_fail(r->params.log, RELUME_EDATA,
+                          "objects need to know where the scene is; expected a file with depth, or "
+                          "a depth to assume");
+    relume_image_destroy(&depth);
+    return status;
+}
+
 relume_status renderer_relight(const struct renderer *r, int view, struct relume_image *out)
 {
+    if (r->params.places)
+        return find_places(r, view, out);
     const struct relume_codes *codes;
     const relume_weight_grid *grid = NULL;
     relume_refit *refit = NULL;

@@ -2,19 +2,25 @@
 #include "base/log.h"
 #include "frame/renderer.h"
 
-static relume_status check_slab(const struct renderer *r)
+// Not of a free eye, whose plane in focus is its own.
+static relume_status check_focus(const struct renderer *r)
 {
     const struct relume_geometry *g = &r->info->geometry;
     const struct relume_view_params *v = &r->view;
-    if (v->interpolation == RELUME_INTERPOLATE_DEPTH && !r->info->has_depth)
+    if (v->focus / (g->uv_z - g->st_z) < 1.0)
+        return RELUME_OK;
+    return log_fail(r->params.log, RELUME_EINVAL,
+                    "the plane in focus lies on or behind the cameras; expected one between "
+                    "z = %g and the scene, found z = %g",
+                    g->uv_z, g->st_z + v->focus);
+}
+
+static relume_status check_slab(const struct renderer *r)
+{
+    if (r->view.interpolation == RELUME_INTERPOLATE_DEPTH && !r->info->has_depth)
         return log_fail(r->params.log, RELUME_EDATA,
                         "interpolation by depth needs to know where the surface is; expected a "
                         "file with depth");
-    if (!(v->focus / (g->uv_z - g->st_z) < 1.0))
-        return log_fail(r->params.log, RELUME_EINVAL,
-                        "the plane in focus lies on or behind the cameras; expected one between "
-                        "z = %g and the scene, found z = %g",
-                        g->uv_z, g->st_z + v->focus);
     return RELUME_OK;
 }
 
@@ -62,6 +68,8 @@ relume_status frame_eye(const struct renderer *r, const struct relume_camera *ca
     relume_status status = check_slab(r);
     if (!status && (r->info->slabs || relume_aim_given(&camera->aim)))
         return frame_around(r, camera, out);
+    if (!status)
+        status = check_focus(r);
     if (!status)
         status = make_slab(&slab, r);
     if (!status)

@@ -28,17 +28,17 @@ static relume_status make_slabs(relume_slabs **slabs, const struct renderer *r)
 }
 
 static relume_status gather(struct gathered *g, const struct renderer *r, const relume_slabs *slabs,
-                            const struct relume_window *window)
+                            const struct relume_window *window, int width)
 {
     const struct members members = {slabs, r->info->slab_of};
     const vec3 eye = window->eye;
     relume_status status = gathered_create(g, r);
-    if (!status && relume_slabs_needs(g->needed, slabs, window, &r->view) == 0)
+    if (!status && relume_slabs_needs(g->needed, slabs, window, width, &r->view) == 0)
         status = log_fail(r->params.log, RELUME_EDATA,
                           "the eye (%g, %g, %g) sees nothing of the slabs; expected one whose rays "
                           "pass a camera grid",
                           eye.x, eye.y, eye.z);
-    return status ? status : gathered_fill(g, r, renderer_takes_depth(r), member, &members);
+    return status ? status : gathered_fill(g, r, renderer_may_take_depth(r), member, &members);
 }
 
 static relume_status choose_window(struct relume_window *window, const struct renderer *r,
@@ -58,6 +58,18 @@ static relume_status choose_window(struct relume_window *window, const struct re
                     eye.x, eye.y, eye.z);
 }
 
+static relume_status check_lens(const struct renderer *r, const struct relume_window *window)
+{
+    const struct relume_view_params *v = &r->view;
+    const double away = relume_window_distance(window);
+    if (relume_lens_fits(window, v->aperture, v->focus))
+        return RELUME_OK;
+    return log_fail(r->params.log, RELUME_EINVAL,
+                    "the plane in focus lies on or behind the eye; expected less than %g before "
+                    "what it looks at, found %g",
+                    away, v->focus);
+}
+
 relume_status frame_around(const struct renderer *r, const struct relume_camera *camera,
                            struct relume_image *out)
 {
@@ -67,15 +79,13 @@ relume_status frame_around(const struct renderer *r, const struct relume_camera 
     struct relume_window window;
     struct gathered g = {0};
     relume_slabs *slabs;
-    if (params.aperture != 0.0 || params.focus != 0.0)
-        return log_fail(r->params.log, RELUME_EINVAL,
-                        "aperture and focus are of one slab and its st plane; expected none for a "
-                        "free eye");
     relume_status status = make_slabs(&slabs, r);
     if (!status)
         status = choose_window(&window, r, slabs, camera, width, height);
     if (!status)
-        status = gather(&g, r, slabs, &window);
+        status = check_lens(r, &window);
+    if (!status)
+        status = gather(&g, r, slabs, &window, width);
     if (!status)
         status = relume_image_create(out, width, height, 3);
     params.disparity = g.disparity;
@@ -94,7 +104,7 @@ relume_status query_slabs(const struct renderer *r, vec3 eye, vec3 direction, fl
     relume_slabs *slabs;
     relume_status status = make_slabs(&slabs, r);
     if (!status)
-        status = gather(&g, r, slabs, &window);
+        status = gather(&g, r, slabs, &window, 1);
     params.disparity = g.disparity;
     if (!status) {
         status = relume_slabs_value(rgb, slabs, eye, direction, g.images, &params);

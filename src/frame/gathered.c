@@ -26,12 +26,16 @@ void gathered_destroy(struct gathered *g)
     *g = (struct gathered){0};
 }
 
-bool renderer_takes_depth(const struct renderer *r)
+bool renderer_may_take_depth(const struct renderer *r)
 {
     const struct relume_view_params *v = &r->view;
-    return r->info->has_depth && v->aperture == 0.0 && v->focus == 0.0 &&
-           (v->interpolation == RELUME_INTERPOLATE_DEFAULT ||
-            v->interpolation == RELUME_INTERPOLATE_DEPTH);
+    return r->info->has_depth && (v->interpolation == RELUME_INTERPOLATE_DEFAULT ||
+                                  v->interpolation == RELUME_INTERPOLATE_DEPTH);
+}
+
+bool renderer_takes_depth(const struct renderer *r)
+{
+    return r->view.aperture == 0.0 && r->view.focus == 0.0 && renderer_may_take_depth(r);
 }
 
 static relume_status find_disparity(struct relume_image *out, const struct renderer *r,

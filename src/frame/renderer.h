@@ -37,7 +37,10 @@ void gathered_destroy(struct gathered *g);
 relume_status gathered_fill(struct gathered *g, const struct renderer *r, bool by_depth,
                             const relume_slab *(*slab_of)(const void *slabs, int view),
                             const void *slabs);
-// Frames go by depth: the file has it, and nothing else was asked for.
+// The file has depth, and no other interpolation was asked for: several slabs and free eyes go by
+// it.
+bool renderer_may_take_depth(const struct renderer *r);
+// So does one slab, but for a lens.
 bool renderer_takes_depth(const struct renderer *r);
 
 // Of a slab, or of several.

@@ -60,6 +60,17 @@ static float recode(const struct image_stream *s, int channel, float code)
     return relume_transfer_encode(s->to, linear);
 }
 
+static bool is_plain(const struct image_stream *s, const struct oiio_info *info)
+{
+    bool plain = s->channels == 3 && info->channels == 3;
+    for (int c = 0; c < 3; c++) {
+        plain = plain && info->rgb[c] == c;
+        for (int v = 0; v < 256; v++)
+            plain = plain && s->table[c][v] == (float)v / 255.0f;
+    }
+    return plain;
+}
+
 relume_status image_stream_open(struct image_stream *stream, oiio_reader *reader, int channels,
                                 struct relume_transfer from, struct relume_transfer to,
                                 const float gain[3])
@@ -81,6 +92,8 @@ relume_status image_stream_open(struct image_stream *stream, oiio_reader *reader
     for (int c = 0; c < 3; c++)
         for (int v = 0; v < 256; v++)
             stream->table[c][v] = recode(stream, c, (float)v / 255.0f);
+    stream->plain = is_plain(stream, info);
+    stream->unpack = unpack_choose(0);
     return RELUME_OK;
 }
 
@@ -119,19 +132,44 @@ static bool convert_floats(const struct image_stream *s, const struct oiio_info 
     return sum == 0.0f;
 }
 
-static relume_status read_bytes(const struct image_stream *s, const struct oiio_info *info, int row,
+relume_status image_stream_fetch(struct image_stream *s, int row, int rows, const uint8_t **bytes)
+{
+    const struct oiio_info *info = oiio_info_of(s->reader);
+    const size_t at = (size_t)row * (size_t)info->width * (size_t)info->channels;
+    if (s->kept) {
+        *bytes = s->kept + at;
+        return RELUME_OK;
+    }
+    uint8_t *to = s->keep ? s->keep + at : s->scratch;
+    *bytes = to;
+    return oiio_read_bytes(s->reader, row, rows, to);
+}
+
+void image_stream_planes(const struct image_stream *s, const uint8_t *bytes, size_t pixels,
+                         float *out, size_t stride)
+{
+    const struct oiio_info *info = oiio_info_of(s->reader);
+    if (s->plain) {
+        s->unpack->thirds(bytes, pixels, out, out + stride, out + 2 * stride);
+        return;
+    }
+    for (size_t c = 0; c < 3; c++) {
+        const float *table = s->table[c];
+        const uint8_t *in = bytes + info->rgb[c];
+        float *to = out + c * stride;
+        for (size_t x = 0; x < pixels; x++)
+            to[x] = table[in[x * (size_t)info->channels]];
+    }
+}
+
+static relume_status read_bytes(struct image_stream *s, const struct oiio_info *info, int row,
                                 int rows, float *out)
 {
-    const size_t stride = (size_t)info->width * (size_t)info->channels;
-    const uint8_t *in = s->kept ? s->kept + (size_t)row * stride : s->scratch;
-    const relume_status status =
-        s->kept ? RELUME_OK : oiio_read_bytes(s->reader, row, rows, s->scratch);
-    if (status)
-        return status;
-    if (s->keep)
-        memcpy(s->keep + (size_t)row * stride, in, (size_t)rows * stride);
-    convert_bytes(s, info, in, (size_t)rows * (size_t)info->width, out);
-    return RELUME_OK;
+    const uint8_t *in;
+    const relume_status status = image_stream_fetch(s, row, rows, &in);
+    if (!status)
+        convert_bytes(s, info, in, (size_t)rows * (size_t)info->width, out);
+    return status;
 }
 
 static relume_status read_floats(const struct image_stream *s, const struct oiio_info *info,

@@ -3,6 +3,7 @@
 #define IMAGE_IMAGE_H
 
 #include "image/oiio.h"
+#include "image/unpack.h"
 
 #include <relume/image.h>
 
@@ -21,6 +22,8 @@ struct image_stream {
     float gain[3];
     bool finite_only;     // NaN and infinity are errors; to be set after opening
     float table[3][256];  // per channel, for 8-bit files
+    bool plain;           // 8-bit files: the tables are code / 255, pixels R, G, B
+    const struct unpack_kernels *unpack;
     void *scratch;        // IMAGE_STREAM_ROWS rows of the file
     const uint8_t *kept;  // or all its rows, in place of reading, 8-bit files
     uint8_t *keep;        // or NULL: where all its rows go as they are read, 8-bit files
@@ -32,6 +35,13 @@ relume_status image_stream_open(struct image_stream *stream, oiio_reader *reader
                                 const float gain[3]);
 // out[row][x][channel]; rows must be asked for from the top on. RELUME_EDATA: the error tells.
 relume_status image_stream_read(struct image_stream *stream, int row, int rows, float *out);
+// 8-bit files: the same rows, at most IMAGE_STREAM_ROWS, as they are in the file, until the next
+// call.
+relume_status image_stream_fetch(struct image_stream *stream, int row, int rows,
+                                 const uint8_t **bytes);
+// Three channels of such pixels: out[channel * stride + pixel].
+void image_stream_planes(const struct image_stream *stream, const uint8_t *bytes, size_t pixels,
+                         float *out, size_t stride);
 // Whether what went wrong is a sample that is not finite.
 bool image_stream_is_broken(const struct image_stream *stream);
 // What went wrong, for a sentence; belongs to the stream.

@@ -243,6 +243,17 @@ static int add_scan(struct writer *w, int at, int components, int first_componen
     return at + 1;
 }
 
+static void describe_scans(struct writer *w)
+{
+    const int planes = w->picture->planes;
+    int n = add_scan(w, 0, planes, 0, 0, 0);
+    for (int c = 0; c < planes; c++)
+        for (int s = 0; s < w->script->scans; s++)
+            n = add_scan(w, n, 1, c, w->script->first[s], w->script->last[s]);
+    w->info.scan_info = w->scan;
+    w->info.num_scans = n;
+}
+
 static void describe(struct writer *w)
 {
     struct jpeg_compress_struct *i = &w->info;
@@ -255,7 +266,7 @@ static void describe(struct writer *w)
     jpeg_set_colorspace(i, p->planes == 1             ? JCS_GRAYSCALE
                            : p->colour == JPEG_PLANES ? JCS_RGB
                                                       : JCS_YCbCr);
-    if (p->colour == JPEG_PLANES)
+    if (p->colour == JPEG_PLANES && !p->baseline)
         i->write_JFIF_header = FALSE;
     i->optimize_coding = TRUE;
     for (int c = 0; c < p->planes; c++) {
@@ -271,12 +282,8 @@ static void describe(struct writer *w)
         i->comp_info[c].ac_tbl_no = c;
         i->comp_info[c].h_samp_factor = i->comp_info[c].v_samp_factor = 1;
     }
-    int n = add_scan(w, 0, p->planes, 0, 0, 0);
-    for (int c = 0; c < p->planes; c++)
-        for (int s = 0; s < w->script->scans; s++)
-            n = add_scan(w, n, 1, c, w->script->first[s], w->script->last[s]);
-    i->scan_info = w->scan;
-    i->num_scans = n;
+    if (!p->baseline)
+        describe_scans(w);
 }
 
 static void fill(struct writer *w, int plane)
@@ -326,7 +333,7 @@ relume_status jpeg_encode(uint8_t **out, size_t *size, const struct jpeg_picture
     *out = NULL;
     *size = 0;
     bool good = w != NULL;
-    for (int s = 0; good && s < SCRIPTS; s++) {
+    for (int s = 0; good && s < (picture->baseline ? 1 : SCRIPTS); s++) {
         *w = (struct writer){.picture = picture, .script = &scripts[s]};
         good = write_all(w);
         if (w->info.mem)

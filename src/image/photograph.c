@@ -1,5 +1,5 @@
 // photograph.c - one photograph: what the camera noted, its pixels turned upright and linearised
-#include <relume/photograph.h>
+#include "image/photograph.h"
 
 #include "base/log.h"
 #include "base/memory.h"
@@ -32,6 +32,13 @@ static void notes_of(struct relume_notes *out, const oiio_reader *reader, struct
         out->width = oiio_info_of(reader)->height;
         out->height = oiio_info_of(reader)->width;
     }
+}
+
+void photograph_notes(struct relume_notes *out, const oiio_reader *reader)
+{
+    *out = (struct relume_notes){.width = oiio_info_of(reader)->width,
+                                 .height = oiio_info_of(reader)->height};
+    notes_of(out, reader, NULL);
 }
 
 relume_status relume_notes_read(struct relume_notes *out, const char *path,

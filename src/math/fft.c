@@ -1,5 +1,7 @@
-// fft.c - cosine transforms by FFTW (Frigo and Johnson 2005)
+// fft.c - transforms by FFTW (Frigo and Johnson 2005)
 #include "math/fft.h"
+
+#include "base/memory.h"
 
 #include <fftw3.h>
 #include <pthread.h>
@@ -23,4 +25,66 @@ relume_status fft_cosine(float *data, int width, int height, bool inverse)
     for (size_t i = 0; inverse && i < (size_t)width * (size_t)height; i++)
         data[i] *= scale;
     return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- lines
+
+struct fft_line {
+    enum fft_kind kind;
+    fftwf_plan plan;
+};
+
+static fftwf_plan plan_line(int n, enum fft_kind kind, float *in, float *out)
+{
+    fftwf_complex *const complex_in = (fftwf_complex *)in, *const complex_out =
+                                                               (fftwf_complex *)out;
+    const unsigned flags = FFTW_ESTIMATE | FFTW_DESTROY_INPUT;
+    switch (kind) {
+    case FFT_REAL: return fftwf_plan_dft_r2c_1d(n, in, complex_out, flags);
+    case FFT_REAL_INVERSE: return fftwf_plan_dft_c2r_1d(n, complex_in, out, flags);
+    default:
+        return fftwf_plan_dft_1d(n, complex_in, complex_out,
+                                 kind == FFT_FORWARD ? FFTW_FORWARD : FFTW_BACKWARD, flags);
+    }
+}
+
+relume_status fft_line_create(fft_line **out, int n, enum fft_kind kind)
+{
+    // Two lines of n + 2 complex numbers, the second again on 16 bytes.
+    const size_t half = 2 * (size_t)n + 4;
+    float *const lines = mem_array(2 * half, sizeof *lines);
+    fft_line *const line = mem_zeroed(1, sizeof *line);
+    if (line && lines) {
+        line->kind = kind;
+        pthread_mutex_lock(&planning);
+        line->plan = plan_line(n, kind, lines, lines + half);
+        pthread_mutex_unlock(&planning);
+    }
+    free(lines);
+    *out = line && line->plan ? line : NULL;
+    if (!*out)
+        free(line);
+    return *out ? RELUME_OK : RELUME_ENOMEM;
+}
+
+void fft_line_destroy(fft_line **line)
+{
+    if (*line) {
+        pthread_mutex_lock(&planning);
+        fftwf_destroy_plan((*line)->plan);
+        pthread_mutex_unlock(&planning);
+    }
+    free(*line);
+    *line = NULL;
+}
+
+void fft_line_run(const fft_line *line, float *in, float *out, float *scratch)
+{
+    (void)scratch;
+    if (line->kind == FFT_REAL)
+        fftwf_execute_dft_r2c(line->plan, in, (fftwf_complex *)out);
+    else if (line->kind == FFT_REAL_INVERSE)
+        fftwf_execute_dft_c2r(line->plan, (fftwf_complex *)in, out);
+    else
+        fftwf_execute_dft(line->plan, (fftwf_complex *)in, (fftwf_complex *)out);
 }

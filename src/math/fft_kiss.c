@@ -1,4 +1,4 @@
-// fft_kiss.c - cosine transforms by kissfft, in place of fft.c where FFTW's licence does not fit
+// fft_kiss.c - transforms by kissfft, in place of fft.c where FFTW's licence does not fit
 //
 // Even samples forward and odd ones backward make one complex transform of the same length
 // (Makhoul 1980): with V its result, X_k = 2 Re(exp(-i pi k / 2N) V_k).
@@ -8,6 +8,7 @@
 
 #include <kissfft/kiss_fft.h>
 #include <math.h>
+#include <string.h>
 
 struct line {
     int n;
@@ -82,4 +83,67 @@ relume_status fft_cosine(float *data, int width, int height, bool inverse)
     close_line(&row);
     close_line(&column);
     return good ? RELUME_OK : RELUME_ENOMEM;
+}
+
+// ---------------------------------------------------------------- lines
+
+struct fft_line {
+    int n;
+    enum fft_kind kind;
+    kiss_fft_cfg plan;
+};
+
+relume_status fft_line_create(fft_line **out, int n, enum fft_kind kind)
+{
+    fft_line *const line = mem_zeroed(1, sizeof *line);
+    *out = NULL;
+    if (!line)
+        return RELUME_ENOMEM;
+    *line = (fft_line){n, kind, NULL};
+    line->plan = kiss_fft_alloc(n, kind == FFT_INVERSE || kind == FFT_REAL_INVERSE, NULL, NULL);
+    if (line->plan)
+        *out = line;
+    else
+        free(line);
+    return *out ? RELUME_OK : RELUME_ENOMEM;
+}
+
+void fft_line_destroy(fft_line **line)
+{
+    if (*line)
+        kiss_fft_free((*line)->plan);
+    free(*line);
+    *line = NULL;
+}
+
+// A real line is a complex one whose other half is known.
+static void run_real(const fft_line *line, const float *in, float *out, float *scratch)
+{
+    kiss_fft_cpx *const a = (kiss_fft_cpx *)scratch, *const b = a + line->n;
+    for (int i = 0; i < line->n; i++)
+        a[i] = (kiss_fft_cpx){in[i], 0.0f};
+    kiss_fft(line->plan, a, b);
+    memcpy(out, b, ((size_t)line->n / 2 + 1) * sizeof *b);
+}
+
+static void run_real_inverse(const fft_line *line, const float *in, float *out, float *scratch)
+{
+    kiss_fft_cpx *const a = (kiss_fft_cpx *)scratch, *const b = a + line->n;
+    const int n = line->n;
+    memcpy(a, in, ((size_t)n / 2 + 1) * sizeof *a);
+    for (int k = n / 2 + 1; k < n; k++)
+        a[k] = (kiss_fft_cpx){a[n - k].r, -a[n - k].i};
+    kiss_fft(line->plan, a, b);
+    for (int i = 0; i < n; i++)
+        out[i] = b[i].r;
+}
+
+void fft_line_run(const fft_line *line, float *in, float *out, float *scratch)
+{
+    if (line->kind == FFT_REAL)
+        run_real(line, in, out, scratch);
+    else if (line->kind == FFT_REAL_INVERSE)
+        run_real_inverse(line, in, out, scratch);
+    else
+        kiss_fft(line->plan, (const kiss_fft_cpx *)in, (kiss_fft_cpx *)out);
 }

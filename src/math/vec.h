@@ -59,6 +59,14 @@ static inline double vec3_angle(vec3 a, vec3 b)
     return 2.0 * atan2(vec3_length(vec3_sub(a, b)), vec3_length(vec3_add(a, b)));
 }
 
+// `a`, turned by the shortest way that brings the unit vector `n` to +z; n.z > -1.
+static inline vec3 vec3_upright(vec3 a, vec3 n)
+{
+    const vec3 half = vec3_of(n.x, n.y, n.z + 1.0);
+    const vec3 b = vec3_sub(a, vec3_scale(half, vec3_dot(a, half) / (1.0 + n.z)));
+    return vec3_of(b.x, b.y, b.z + 2.0 * vec3_dot(n, a));
+}
+
 // World -> the frame whose third axis is the pole, and back.
 static inline vec3 pole_from_world(vec3 w, bool pole_y)
 {

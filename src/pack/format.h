@@ -4,8 +4,9 @@
 
 #define FORMAT_NAME "relume"
 
-// Several slabs are version 2; everything else stays what readers of version 1 know.
-enum { FORMAT_VERSION = 2, FORMAT_ONE_SLAB = 1 };
+// Several slabs are version 2, cylinders with discs 3; everything else stays what readers of
+// version 1 know.
+enum { FORMAT_VERSION = 3, FORMAT_DISCS = 3, FORMAT_SLABS = 2, FORMAT_PLAIN = 1 };
 
 // Attributes of the first part
 #define ATTR_FORMAT        "relume.format"

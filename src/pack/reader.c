@@ -143,12 +143,17 @@ static relume_status read_geometry(relume_pack *p)
         if (status)
             return status;
     } else {
-        const float *v = reader_floats(p, 0, ATTR_PANORAMA, 5);
+        const float *v = reader_floats(p, 0, ATTR_PANORAMA, 6);
+        const float disc = v ? v[5] : 0.0f;
+        v = v ? v : reader_floats(p, 0, ATTR_PANORAMA, 5);
         if (!v || !(v[0] < v[1]))
             return reader_bad(p, ATTR_PANORAMA, "v min, v max, center");
         g->v_min = (double)v[0];
         g->v_max = (double)v[1];
         g->center = (struct relume_vec3){(double)v[2], (double)v[3], (double)v[4]};
+        g->disc = disc >= 0.0f && disc <= (float)part.height ? (int)disc : -1;
+        if ((float)g->disc != disc || !relume_geometry_fits(g, part.width, part.height))
+            return reader_bad(p, ATTR_PANORAMA, "discs of a cylinder that fit");
         if (projection == RELUME_CUBE && part.width != 6 * part.height)
             return reader_bad(p, "size", "six square faces side by side");
     }

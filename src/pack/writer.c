@@ -88,16 +88,16 @@ static relume_status view_rows(void *context, int row, int rows, void *samples)
     const size_t width = (size_t)info->width, planes = (size_t)info->planes;
     const size_t code = info->storage == RELUME_STORE_8 ? 1 : 2;
     const size_t sample = is_wide(info->storage) ? 4 : 2;
-    char *codes = mem_array((size_t)rows * planes * width, code);
-    if (!codes)
-        return RELUME_ENOMEM;
-    const relume_status status = relume_coefficients_read(source->coefficients, row, rows, codes);
-    for (size_t y = 0; !status && y < (size_t)rows; y++)
-        for (size_t p = 0; p < planes; p++) {
+    char *codes = mem_array(planes * width, code);  // a row stays in the cache
+    relume_status status = codes ? RELUME_OK : RELUME_ENOMEM;
+    for (size_t y = 0; !status && y < (size_t)rows; y++) {
+        status = relume_coefficients_read(source->coefficients, row + (int)y, 1, codes);
+        for (size_t p = 0; !status && p < planes; p++) {
             const size_t channel = (size_t)file_channel(relume_coder_info(info->coder), (int)p);
-            store_row(info->storage, source->half_of_code, codes + (y * planes + p) * width * code,
-                      width, (char *)samples + (y * planes + channel) * width * sample);
+            store_row(info->storage, source->half_of_code, codes + p * width * code, width,
+                      (char *)samples + (y * planes + channel) * width * sample);
         }
+    }
     free(codes);
     return status;
 }
@@ -345,9 +345,11 @@ static bool describe_geometry(struct builder *b, struct exr_part *part, struct e
     } else if (g->projection == RELUME_SLAB) {
         return describe_slabs(b, part, list, c);
     } else {
-        const double panorama[] = {g->v_min, g->v_max, g->center.x, g->center.y, g->center.z};
-        v = copy_doubles(&b->arena, panorama, 5);
-        add_floats(part, list, ATTR_PANORAMA, v, 5);
+        const double panorama[] = {g->v_min,    g->v_max,    g->center.x,
+                                   g->center.y, g->center.z, g->disc};
+        const int count = g->disc ? 6 : 5;
+        v = copy_doubles(&b->arena, panorama, (size_t)count);
+        add_floats(part, list, ATTR_PANORAMA, v, count);
     }
     return v != NULL;
 }
@@ -453,7 +455,10 @@ static bool add_preview(struct builder *b, const struct relume_pack_contents *c,
         .context = p,
     };
     add_text(part, list, ATTR_FORMAT, FORMAT_NAME);
-    add_int(part, list, ATTR_VERSION, c->slabs ? FORMAT_VERSION : FORMAT_ONE_SLAB);
+    add_int(part, list, ATTR_VERSION,
+            c->slabs           ? FORMAT_SLABS
+            : c->geometry.disc ? FORMAT_DISCS
+                               : FORMAT_PLAIN);
     add_text(part, list, ATTR_CREATOR, "relume " RELUME_VERSION);
     add_text(part, list, ATTR_DOMAIN, is_display ? "display" : "linear");
     add_text(part, list, ATTR_DISPLAY, display);

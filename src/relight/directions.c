@@ -4,13 +4,14 @@
 // this one has no crease inside a cell, and near the pole, where columns meet, a smooth function is
 // linear in the angle. The bilinear error is h^2 / 8 x the second derivative. Rows are closer at
 // the horizon, 1 - t = sqrt(1 - theta / 90 degrees), since hemispherical harmonics rise there like
-// sqrt(cos theta).
+// sqrt(cos theta). What is linear over triangles of lights is kept at the lights (triangles.c).
 #include <relume/relight.h>
 
 #include "base/memory.h"
 #include "base/thread.h"
 #include "math/vec.h"
 #include "relight/grid.h"
+#include "relight/triangles.h"
 
 #include <string.h>
 
@@ -22,12 +23,15 @@ struct relume_weight_grid {
     bool hemispherical, pole_y;
     int down;  // cells from pole to horizon
     float *data;
+    struct triangles *triangles;  // or NULL
     float *turned;  // while it is made: [functions][stride], the coder's transform and mean
 };
 
 // The second row at the horizon lies a hair below it.
 static vec3 node_direction(const struct relume_weight_grid *g, int row, int column)
 {
+    if (g->triangles)
+        return g->triangles->point[column];
     const bool below = row > g->down;
     const int step = below ? g->info.rows - 1 - row : row;
     const double t = (double)step / g->down, theta = 0.5 * M_PI * (2.0 * t - t * t);
@@ -86,6 +90,19 @@ static void set_size(struct relume_weight_grid *g, int steps)
     g->info.rows = (g->hemispherical ? 1 : 2) * (g->down + 1);
 }
 
+static relume_status take_triangles(struct relume_weight_grid *g)
+{
+    const relume_status status = triangles_create(&g->triangles, g->info.coder);
+    if (status || !g->triangles)
+        return status;
+    g->info.rows = 1;
+    g->info.columns = relume_coder_info(g->info.coder)->lights;
+    g->info.triangles = g->triangles->count;
+    g->info.triangle = g->triangles->triangle;
+    g->info.start = g->triangles->start;
+    return RELUME_OK;
+}
+
 static size_t floats(const struct relume_weight_grid_info *info)
 {
     return (size_t)info->rows * (size_t)info->columns * (size_t)info->stride;
@@ -116,8 +133,11 @@ relume_status relume_weight_grid_create(relume_weight_grid **out, const relume_c
     set_size(g, steps);
     while (!p.steps && steps > LEAST_STEPS && floats(&g->info) * sizeof(float) > MOST_BYTES)
         set_size(g, steps /= 2);
-    g->info.data = g->data = mem_array(floats(&g->info), sizeof(float));
-    const relume_status status = g->data ? turn_transform(g) : RELUME_ENOMEM;
+    relume_status status = p.steps ? RELUME_OK : take_triangles(g);
+    if (!status)
+        g->info.data = g->data = mem_array(floats(&g->info), sizeof(float));
+    if (!status)
+        status = g->data ? turn_transform(g) : RELUME_ENOMEM;
     if (status) {
         relume_weight_grid_destroy(&g);
         return status;
@@ -134,6 +154,7 @@ void relume_weight_grid_destroy(relume_weight_grid **grid)
     if (!*grid)
         return;
     free((*grid)->data);
+    triangles_destroy(&(*grid)->triangles);
     free(*grid);
     *grid = NULL;
 }
@@ -170,8 +191,33 @@ static int cell_of(double at, int nodes, float *share)
     return i;
 }
 
+// Below the horizon of a hemispherical capture: at the horizon of the same azimuth.
+static vec3 captured(const struct relume_weight_grid *g, vec3 direction)
+{
+    const vec3 d = pole_from_world(direction, g->pole_y);
+    if (!g->hemispherical || d.z >= 0.0)
+        return d;
+    const double r = hypot(d.x, d.y);
+    return r > 0.0 ? vec3_of(d.x / r, d.y / r, 0.0) : vec3_of(1.0, 0.0, 0.0);
+}
+
+static struct corners corners_of_triangle(const struct relume_weight_grid *g, vec3 direction)
+{
+    int node[3];
+    float share[3];
+    triangles_find(node, share, g->triangles, captured(g, direction));
+    const size_t stride = (size_t)g->info.stride;
+    const float *const first = g->data + (size_t)node[0] * stride;
+    return (struct corners){
+        {first, g->data + (size_t)node[1] * stride, g->data + (size_t)node[2] * stride, first},
+        {share[0], share[1], share[2], 0.0f},
+    };
+}
+
 static struct corners corners_at(const struct relume_weight_grid *g, vec3 direction)
 {
+    if (g->triangles)
+        return corners_of_triangle(g, direction);
     const struct relume_weight_grid_info *info = &g->info;
     double xy[2];
     float fx, fy;

@@ -15,34 +15,40 @@
 
 // ---------------------------------------------------------------- reading
 
-// Sentences about an entry begin with the file and its number.
+// Sentences about an entry begin with the file, its place in it and its number.
 struct about {
     struct relume_log log;
     const struct relume_log *to;
     const char *path;
     int light;
+    const char *member;  // that is being read, or NULL
 };
 
 static void say_about(void *user, enum relume_level level, const char *text)
 {
     const struct about *a = user;
-    log_line(a->to, level, "%s: light %d; %s", a->path, a->light, text);
+    int at[2];
+    if (jvalue_place(at, a->path, "lights", (size_t)a->light - 1, a->member))
+        log_line(a->to, level, "%s: line %d, column %d; light %d; %s", a->path, at[0], at[1],
+                 a->light, text);
+    else
+        log_line(a->to, level, "%s: light %d; %s", a->path, a->light, text);
 }
 
-static relume_status wrong(const struct about *a, const char *member, const char *expected)
+static relume_status wrong(struct about *a, const char *member, const char *expected)
 {
+    a->member = member;
     return log_fail(&a->log, RELUME_EDATA, "%s; expected %s", member, expected);
 }
 
-static relume_status take_truth(const struct about *a, const jvalue *object, const char *member,
+static relume_status take_truth(struct about *a, const jvalue *object, const char *member,
                                 bool *out)
 {
     const jvalue *value = jvalue_member(object, member);
     return !value || jvalue_truth(value, out) ? RELUME_OK : wrong(a, member, "true or false");
 }
 
-static relume_status take_values(const struct about *a, const jvalue *object,
-                                 struct relume_rig_entry *e)
+static relume_status take_values(struct about *a, const jvalue *object, struct relume_rig_entry *e)
 {
     const jvalue *colour = jvalue_member(object, "rgb");
     const jvalue *intensity = jvalue_member(object, "intensity");
@@ -61,7 +67,7 @@ static relume_status take_values(const struct about *a, const jvalue *object,
 }
 
 static relume_status take_light(relume_rig *rig, const jvalue *object, const char *folder,
-                                const struct about *a)
+                                struct about *a)
 {
     static const char *const members[] = {"name", "light", "rgb", "intensity", "on", "solo", NULL};
     if (!jvalue_is_object(object))
@@ -72,7 +78,9 @@ static relume_status take_light(relume_rig *rig, const jvalue *object, const cha
     const char *spec = jvalue_text(jvalue_member(object, "light"));
     if (!spec)
         return wrong(a, "light", "words such as \"dir 0 0 1\"");
+    a->member = "light";
     relume_status status = relume_rig_add(rig, spec, folder, &a->log);
+    a->member = NULL;
     if (status)
         return status == RELUME_EINVAL ? RELUME_EDATA : status;
     const int index = relume_rig_count(rig) - 1;
@@ -112,7 +120,7 @@ static relume_status take_lights(relume_rig *rig, const jvalue *root, const char
     relume_status status = copy ? RELUME_OK : RELUME_ENOMEM;
     const char *folder = copy ? dirname(copy) : NULL;
     for (size_t i = 0; !status && i < jvalue_count(lights); i++) {
-        struct about about = {{say_about, NULL, &about}, log, path, (int)i + 1};
+        struct about about = {{say_about, NULL, &about}, log, path, (int)i + 1, NULL};
         status = take_light(rig, jvalue_item(lights, i), folder, &about);
     }
     free(copy);

@@ -43,6 +43,26 @@ static struct camera_ray slab(const struct camera *c, double across, double down
                                relume_pose_turn(&g->pose, local.direction)};
 }
 
+// Below the rows of a cylinder: its discs in their squares, the upper one first.
+static struct camera_ray disc(const struct camera *c, double x, double y)
+{
+    const struct relume_geometry *g = &c->geometry;
+    const bool lower = x >= g->disc;
+    const double right = 2.0 * (x - (lower ? g->disc : 0)) / g->disc - 1.0;
+    const double up = 1.0 - 2.0 * (y - (c->height - g->disc)) / g->disc;
+    const vec3 at = lower ? vec3_of(right, g->v_min, -up) : vec3_of(right, g->v_max, up);
+    return (struct camera_ray){g->center, vec3_unit(at)};
+}
+
+static struct camera_ray cylinder(const struct camera *c, double x, double y)
+{
+    const struct relume_geometry *g = &c->geometry;
+    const int rows = c->height - g->disc;
+    if (g->disc && y >= rows)
+        return disc(c, x, y);
+    return around(g, 2.0 * M_PI * x / c->width - M_PI, mix(g->v_max, g->v_min, y / rows));
+}
+
 // Faces +x -x +y -y +z -z side by side; right = direction x up.
 static struct camera_ray cube(const struct camera *c, double x, double down)
 {
@@ -62,13 +82,13 @@ struct camera_ray camera_ray_at(const struct camera *camera, double x, double y)
 {
     const struct relume_geometry *g = &camera->geometry;
     const double across = x / camera->width, down = y / camera->height;
-    const double phi_rad = 2.0 * M_PI * across - M_PI;
     if (camera->rectified)
         return rectified(camera, across, down);
     switch (g->projection) {
     case RELUME_SLAB: return slab(camera, across, down);
-    case RELUME_CYLINDRICAL: return around(g, phi_rad, mix(g->v_max, g->v_min, down));
+    case RELUME_CYLINDRICAL: return cylinder(camera, x, y);
     case RELUME_SPHERICAL: {
+        const double phi_rad = 2.0 * M_PI * across - M_PI;
         const double elevation_rad = M_PI * (0.5 - down);
         const double r = cos(elevation_rad);
         return (struct camera_ray){

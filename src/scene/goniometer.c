@@ -13,6 +13,7 @@
 
 static const double MOST_MARGIN = 1.0;  // periods on each side
 enum { CELLS = 256 };                   // of the mesh on a side, at least
+enum { FINE = 2 };                      // pixels of the camera across a texel
 
 const struct relume_btf_material *const relume_btf_materials[] = {
     &material_corduroy,  &material_knit,      &material_stone, &material_leather,
@@ -204,36 +205,73 @@ static bool tell(void *user, double done)
     return log_progress(t->log, "measuring", (t->view + done) / t->views);
 }
 
+// Texels have this many pixels of the camera on a side.
+static int fineness(const struct goniometer *g)
+{
+    return g->p.samples >= FINE * FINE ? FINE : 1;
+}
+
+// One texel out of its own pixels and those half a texel around: a tent, as pictures are resampled
+// when they are rectified. The sample goes on beyond its rim as on the other side.
+static void resample(const struct goniometer *g, const struct relume_image *fine, float *out)
+{
+    static const float tent[2 * FINE] = {0.125f, 0.375f, 0.375f, 0.125f};
+    const int size = g->p.size, n = fine->width;
+    memset(out, 0, 3 * (size_t)size * (size_t)size * sizeof *out);
+    for (int y = 0; y < size; y++)
+        for (int x = 0; x < size; x++, out += 3)
+            for (int j = 0; j < 2 * FINE; j++)
+                for (int i = 0; i < 2 * FINE; i++) {
+                    const int row = (FINE * y + j - 1 + n) % n, column = (FINE * x + i - 1 + n) % n;
+                    const float *from = fine->data + 3 * ((size_t)row * (size_t)n + (size_t)column);
+                    for (int c = 0; c < 3; c++)
+                        out[c] += tent[i] * tent[j] * from[c];
+                }
+}
+
+// Views share their random numbers, so that what chance adds to a texel looks like a texture that
+// all views see rather than like noise.
+static relume_status photograph_view(const struct goniometer *g, int view,
+                                     struct relume_image *held)
+{
+    struct telling telling = {g->p.log, view, g->p.views};
+    const struct render_job job = {
+        .scene = g->scene,
+        .camera = {.geometry = {.camera_z = g->top + 0.01},
+                   .width = held[0].width,
+                   .height = held[0].height,
+                   .rectified = true,
+                   .towards = g->p.view[view]},
+        .lights = g->p.light,
+        .light_count = g->p.lights,
+        .samples = g->p.samples / (fineness(g) * fineness(g)),
+        .bounces = g->p.bounces,
+        .seed = random_mix(g->p.seed),
+        .threads = g->p.threads,
+    };
+    return render_lights(&job, held, tell, &telling);
+}
+
 static relume_status photograph(const struct goniometer *g, relume_btf *btf)
 {
-    const int size = g->p.size;
+    const int fine = fineness(g), side = g->p.size * fine;
     struct relume_image *held = mem_zeroed((size_t)g->p.lights, sizeof *held);
-    relume_status status = held ? RELUME_OK : RELUME_ENOMEM;
+    float *texels = mem_array(3 * (size_t)g->p.size * (size_t)g->p.size, sizeof *texels);
+    relume_status status = held && texels ? RELUME_OK : RELUME_ENOMEM;
     for (int l = 0; l < g->p.lights && !status; l++)
-        status = relume_image_create(&held[l], size, size, 3);
+        status = relume_image_create(&held[l], side, side, 3);
     for (int v = 0; v < g->p.views && !status; v++) {
-        struct telling telling = {g->p.log, v, g->p.views};
-        const struct render_job job = {
-            .scene = g->scene,
-            .camera = {.geometry = {.camera_z = g->top + 0.01},
-                       .width = size,
-                       .height = size,
-                       .rectified = true,
-                       .towards = g->p.view[v]},
-            .lights = g->p.light,
-            .light_count = g->p.lights,
-            .samples = g->p.samples,
-            .bounces = g->p.bounces,
-            .seed = random_mix(g->p.seed + (uint64_t)v),
-            .threads = g->p.threads,
-        };
-        status = render_lights(&job, held, tell, &telling);
-        for (int l = 0; l < g->p.lights && !status; l++)
-            relume_btf_store(btf, v, l, held[l].data);
+        status = photograph_view(g, v, held);
+        for (int l = 0; l < g->p.lights && !status; l++) {
+            if (fine > 1)
+                resample(g, &held[l], texels);
+            relume_btf_store(btf, v, l, fine > 1 ? texels : held[l].data);
+        }
     }
     for (int l = 0; held && l < g->p.lights; l++)
         relume_image_destroy(&held[l]);
     free(held);
+    free(texels);
     return status;
 }
 

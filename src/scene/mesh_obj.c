@@ -1,4 +1,5 @@
-// mesh_obj.c - Wavefront OBJ: v, vt, vn, f and mtllib; every other keyword is passed over
+// mesh_obj.c - Wavefront OBJ: v, vt, vn, f, mtllib, usemtl and g; every other keyword is passed
+// over
 #include "base/log.h"
 #include "base/memory.h"
 #include "scene/mesh_read.h"
@@ -26,6 +27,8 @@ struct obj {
     bool own_normals;     // every corner so far has a normal
     uint32_t *smooth_of;  // vertex -> position number, while normals are to be made
     size_t smooth_room;
+    bool has_materials;  // parts go by usemtl, else by g
+    uint32_t part;
 };
 
 static relume_status push(struct list *list, vec3 v)
@@ -138,9 +141,11 @@ static relume_status read_face(struct obj *o, char *text)
         if (corners == 0)
             first = vertex;
         if (corners >= 2)
-            mesh_triangle(&o->out->mesh, first, last, vertex, 0);
+            mesh_triangle(&o->out->mesh, first, last, vertex, o->part);
         last = vertex;
     }
+    if (!o->out->parts && mesh_file_part(o->out, "all") < 0)
+        return RELUME_ENOMEM;
     if (corners < 3)
         return bad_line(o, "a face of at least three corners");
     return o->out->mesh.failed ? RELUME_ENOMEM : RELUME_OK;
@@ -157,6 +162,22 @@ static relume_status read_library(struct obj *o, const char *name)
     return RELUME_OK;
 }
 
+// What follows belongs to this part.
+static relume_status begin_part(struct obj *o, char *name, bool material)
+{
+    name[strcspn(name, "\r\n")] = '\0';
+    for (size_t n = strlen(name); n && strchr(" \t", name[n - 1]); n--)
+        name[n - 1] = '\0';
+    if (!*name || (o->has_materials && !material))
+        return RELUME_OK;
+    o->has_materials |= material;
+    const int part = mesh_file_part(o->out, name);
+    if (part < 0)
+        return bad_line(o, "at most 1024 parts");
+    o->part = (uint32_t)part;
+    return RELUME_OK;
+}
+
 static relume_status read_line(struct obj *o, char *line)
 {
     line += strspn(line, " \t");
@@ -170,6 +191,10 @@ static relume_status read_line(struct obj *o, char *line)
         return read_vector(o, &o->vt, rest, 1);
     if (length == 2 && !strncmp(line, "vn", 2))
         return read_vector(o, &o->vn, rest, 3);
+    if (length == 6 && !strncmp(line, "usemtl", 6))
+        return begin_part(o, rest, true);
+    if (length == 1 && line[0] == 'g')
+        return begin_part(o, rest, false);
     if (length == 6 && !strncmp(line, "mtllib", 6))
         return read_library(o, rest);
     return RELUME_OK;
@@ -232,6 +257,7 @@ relume_status mesh_read_obj(struct mesh_file *out, const char *text, size_t size
     struct obj o = {.out = out, .path = path, .log = log, .own_normals = true};
     char *copy = mem_copy(text, size + 1, 1);
     relume_status status = copy ? read_lines(&o, copy, size) : RELUME_ENOMEM;
+    out->made_normals = !o.own_normals;
     if (!status && !o.own_normals)
         status = make_normals(&o);
     free(copy);

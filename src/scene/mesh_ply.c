@@ -306,6 +306,7 @@ relume_status mesh_read_ply(struct mesh_file *out, const char *text, size_t size
     relume_status status = read_header(&p);
     if (!status)
         status = read_body(&p);
+    out->made_normals = !p.has_normals;
     if (!status && !p.has_normals && !out->mesh.failed)
         mesh_smooth(&out->mesh);
     return status;

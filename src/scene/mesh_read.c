@@ -2,6 +2,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "scene/mesh_other.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -16,7 +17,26 @@ void mesh_file_free(struct mesh_file *file)
 {
     mesh_free(&file->mesh);
     free(file->picture);
+    for (int i = 0; i < file->parts; i++)
+        free(file->part[i]);
+    free(file->part);
     *file = (struct mesh_file){0};
+}
+
+int mesh_file_part(struct mesh_file *file, const char *name)
+{
+    enum { MOST_PARTS = 1024 };
+    for (int i = 0; i < file->parts; i++)
+        if (!strcmp(file->part[i], name))
+            return i;
+    char **part = file->parts < MOST_PARTS
+                      ? realloc(file->part, ((size_t)file->parts + 1) * sizeof *part)
+                      : NULL;
+    if (!part)
+        return -1;
+    file->part = part;
+    part[file->parts] = mem_text(name);
+    return part[file->parts] ? file->parts++ : -1;
 }
 
 char *mesh_beside(const char *path, const char *name)
@@ -92,14 +112,9 @@ static relume_status check(struct mesh_file *out, const char *path, const struct
     return RELUME_OK;
 }
 
-relume_status mesh_read(struct mesh_file *out, const char *path, const struct relume_log *log)
+static relume_status read_own(struct mesh_file *out, const char *path, bool obj,
+                              const struct relume_log *log)
 {
-    *out = (struct mesh_file){.has_uv = false};
-    const char *dot = strrchr(path, '.');
-    const bool obj = dot && !strcasecmp(dot, ".obj"), ply = dot && !strcasecmp(dot, ".ply");
-    if (!obj && !ply)
-        return log_fail(log, RELUME_EDATA, "%s: unknown kind of model; expected .obj or .ply",
-                        path);
     char *text;
     size_t size;
     relume_status status = mesh_load_text(&text, &size, path, log);
@@ -107,8 +122,20 @@ relume_status mesh_read(struct mesh_file *out, const char *path, const struct re
         return status;
     status = (obj ? mesh_read_obj : mesh_read_ply)(out, text, size, path, log);
     free(text);
+    return status;
+}
+
+relume_status mesh_read(struct mesh_file *out, const char *path, const struct relume_log *log)
+{
+    *out = (struct mesh_file){.has_uv = false};
+    const char *dot = strrchr(path, '.');
+    const bool obj = dot && !strcasecmp(dot, ".obj"), ply = dot && !strcasecmp(dot, ".ply");
+    relume_status status =
+        obj || ply ? read_own(out, path, obj, log) : mesh_read_other(out, path, log);
     if (!status)
         status = check(out, path, log);
+    if (!status && !out->parts && mesh_file_part(out, "all") < 0)
+        status = RELUME_ENOMEM;
     if (!status && out->has_uv && !out->picture)
         out->picture = picture_beside(path);
     if (status)

@@ -1,4 +1,4 @@
-// mesh_read.h - models from files: Wavefront OBJ and PLY
+// mesh_read.h - models from files: Wavefront OBJ and PLY, others by Assimp
 #ifndef SCENE_MESH_READ_H
 #define SCENE_MESH_READ_H
 
@@ -7,9 +7,16 @@
 struct mesh_file {
     struct mesh mesh;
     bool has_uv;
+    bool made_normals;  // the file has none, or not everywhere
     char *picture;  // the file of its texture, or NULL
+    char **part;    // [parts]: names; a triangle's material is the number of its part
+    int parts;      // at least 1 once read
 };
 void mesh_file_free(struct mesh_file *file);
+
+// The number of the part called `name`, which is added when it is new; -1 when memory is short or
+// there are too many.
+int mesh_file_part(struct mesh_file *file, const char *name);
 
 // Chosen by the extension. Polygons are triangulated as fans, missing normals are made smooth, the
 // picture is what the model names, else the PNG or JPEG of the same base name beside it.

@@ -92,6 +92,12 @@ static void walk_pixel(const struct render_job *job, struct places *places, int 
     }
 }
 
+static bool is_shown(const struct render_job *job, int x, int y)
+{
+    const struct camera *c = &job->camera;
+    return relume_geometry_shows(&c->geometry, c->width, c->height, x, y);
+}
+
 // Every third bit of the result is one of the low 21 bits of x.
 static uint64_t spread_bits(uint64_t x)
 {
@@ -198,7 +204,8 @@ static void render_tile(void *context, size_t item, int worker)
     s->places.count = 0;
     for (int y = 0; y < t.height; y++)
         for (int x = 0; x < t.width; x++)
-            walk_pixel(job, &s->places, t.x + x, t.y + y, (uint32_t)(y * TILE + x));
+            if (is_shown(job, t.x + x, t.y + y))
+                walk_pixel(job, &s->places, t.x + x, t.y + y, (uint32_t)(y * TILE + x));
     s->places.failed |= !sort_places(s, &job->scene->bounds);
     for (int l = 0; l < job->light_count && !s->places.failed; l++) {
         const vec3 d = job->lights[l];
@@ -264,8 +271,10 @@ static void depth_row(void *context, size_t item, int worker)
         const float direction[3] = {(float)ray.direction.x, (float)ray.direction.y,
                                     (float)ray.direction.z};
         struct trace_hit hit;
-        row[x] =
-            trace_closest(d->job->scene->tracer, origin, direction, &hit) ? hit.distance : INFINITY;
+        row[x] = is_shown(d->job, x, (int)item) &&
+                         trace_closest(d->job->scene->tracer, origin, direction, &hit)
+                     ? hit.distance
+                     : INFINITY;
     }
 }
 

@@ -24,7 +24,7 @@ struct synth {
     const relume_scene *scene;
     struct relume_synth_params p;  // defaults filled in
     enum relume_projection projection;
-    int width, height;
+    int width, height, disc;
     struct relume_geometry geometry;
     int slabs;  // 0: one, or no slab at all
     struct relume_geometry slab[RELUME_MOST_SLABS];
@@ -50,6 +50,10 @@ static void choose_size(struct synth *s)
     s->height = size;
     if (s->projection == RELUME_CYLINDRICAL)
         s->width = 4 * size;
+    // A disc's rim is as long as the cylinder is around.
+    if (s->projection == RELUME_CYLINDRICAL && s->p.discs)
+        s->disc = (int)fmax(lround(s->width / M_PI), 1);
+    s->height += s->disc;
     if (s->projection == RELUME_SPHERICAL)
         s->width = 2 * size;
     if (s->projection == RELUME_CUBE)
@@ -85,6 +89,9 @@ static relume_status check(const struct synth *s)
     if (p->ring && p->eye_count)
         return log_fail(p->log, RELUME_EINVAL,
                         "slabs: expected a grid of cameras; found eyes of one slab");
+    if (p->discs && s->projection != RELUME_CYLINDRICAL)
+        return log_fail(p->log, RELUME_EINVAL, "discs: expected a cylinder; found a %s capture",
+                        relume_projection_name(s->projection));
     if (!(p->spread >= 0.0 && p->spread <= 1000.0))
         return log_fail(p->log, RELUME_EINVAL, "spread: expected 0 to 1000; found %g", p->spread);
     return RELUME_OK;
@@ -201,6 +208,7 @@ static relume_status place_slab(struct synth *s)
 static relume_status place_views(struct synth *s)
 {
     s->geometry = relume_geometry_default(s->projection, s->width, s->height);
+    s->geometry.disc = s->disc;
     s->slabs = ring_around[s->p.ring] + (s->p.ring == RELUME_RING_CUBE);
     s->views = count_views(s);
     s->uv = arena_array(&s->arena, (size_t)s->views, sizeof *s->uv);

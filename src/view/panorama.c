@@ -1,4 +1,5 @@
 // panorama.c - all directions around one eye in one image: cylinder, sphere, cube (Wong 1998, 8.2)
+// A cylinder's end discs are panorama_discs.c.
 //
 // Layouts are those of docs/conventions.md: azimuth phi = x/W*360-180 looks along
 // (sin phi, ., -cos phi); the cylinder's rows are tangents of elevation, the sphere's are
@@ -8,7 +9,7 @@
 #include <relume/view.h>
 
 #include "base/thread.h"
-#include "math/vec.h"
+#include "view/panorama.h"
 
 #include <string.h>
 
@@ -27,27 +28,40 @@ static const struct face faces[6] = {
     {{0, 0, -1}, {1, 0, 0}, {0, 1, 0}},   // -z
 };
 
-// An image seen as a panorama.
-struct panorama {
-    const struct relume_geometry *geometry;
-    int width, height;
-    const float *data;  // three channels; NULL when only the geometry is asked for
-};
-
 // What differs from layout to layout.
 struct layout {
     vec3 (*ray)(const struct panorama *p, double x, double y);
     bool (*pixel)(double xy[2], const struct panorama *p, vec3 direction);
     // Texel (x, y), which may lie one step outside the image or, for a cube, outside `face`.
-    void (*texel)(float rgb[3], const struct panorama *p, int face, int x, int y);
+    panorama_texel *texel;
 };
 
 // ---------------------------------------------------------------- shared
 
-static void fetch(float rgb[3], const struct panorama *p, int x, int y)
+void panorama_fetch(float rgb[3], const struct panorama *p, int x, int y)
 {
     const float *from = p->data + 3 * ((size_t)y * (size_t)p->width + (size_t)x);
     memcpy(rgb, from, 3 * sizeof *rgb);
+}
+
+void panorama_bilinear(float rgb[3], const struct panorama *p, panorama_texel *texel, int face,
+                       double x, double y)
+{
+    const int left = (int)floor(x);
+    const int top = (int)floor(y);
+    rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    for (int j = 0; j < 2; j++)
+        for (int i = 0; i < 2; i++) {
+            const double wx = i ? x - left : 1.0 - (x - left);
+            const double wy = j ? y - top : 1.0 - (y - top);
+            const float w = (float)(wx * wy);
+            float t[3];
+            if (w == 0.0f)
+                continue;
+            texel(t, p, face, left + i, top + j);
+            for (int c = 0; c < 3; c++)
+                rgb[c] += w * t[c];
+        }
 }
 
 static int clamp_index(int i, int n)
@@ -78,7 +92,10 @@ static double azimuth_column(const struct panorama *p, vec3 d)
 static vec3 cylinder_ray(const struct panorama *p, double x, double y)
 {
     const struct relume_geometry *g = p->geometry;
-    const double h = g->v_max - y / p->height * (g->v_max - g->v_min);
+    const int rows = panorama_rows(p);
+    if (g->disc && y >= rows)
+        return disc_ray(p, x, y);
+    const double h = g->v_max - y / rows * (g->v_max - g->v_min);
     return vec3_unit(azimuth_ray(p, x, 1.0, h));
 }
 
@@ -87,17 +104,23 @@ static bool cylinder_pixel(double xy[2], const struct panorama *p, vec3 d)
     const struct relume_geometry *g = p->geometry;
     const double h = d.y / hypot(d.x, d.z);
     const double slack = 1e-9 * (g->v_max - g->v_min);  // computed directions on the rim
-    if (!(h >= g->v_min - slack && h <= g->v_max + slack))
-        return false;
+    const bool shown = h >= g->v_min - slack && h <= g->v_max + slack;
+    const int rows = panorama_rows(p);
+    if (!shown && g->disc) {
+        disc_pixel(xy, p, d);
+        return true;
+    }
     xy[0] = azimuth_column(p, d);
-    xy[1] = fmin(fmax((g->v_max - h) / (g->v_max - g->v_min), 0.0), 1.0) * p->height;
-    return true;
+    xy[1] = fmin(fmax((g->v_max - h) / (g->v_max - g->v_min), 0.0), 1.0) * rows;
+    if (g->disc)  // the disc's square begins at the last row's end
+        xy[1] = fmin(xy[1], nextafter(rows, 0.0));
+    return shown;
 }
 
 static void cylinder_texel(float rgb[3], const struct panorama *p, int face, int x, int y)
 {
     (void)face;
-    fetch(rgb, p, wrap_index(x, p->width), clamp_index(y, p->height));
+    panorama_fetch(rgb, p, wrap_index(x, p->width), clamp_index(y, panorama_rows(p)));
 }
 
 // ---------------------------------------------------------------- sphere
@@ -121,13 +144,13 @@ static void sphere_texel(float rgb[3], const struct panorama *p, int face, int x
 {
     (void)face;
     if (y >= 0 && y < p->height) {
-        fetch(rgb, p, wrap_index(x, p->width), y);
+        panorama_fetch(rgb, p, wrap_index(x, p->width), y);
         return;
     }
     const int row = clamp_index(y, p->height);
     float other[3];
-    fetch(rgb, p, wrap_index(x + p->width / 2, p->width), row);
-    fetch(other, p, wrap_index(x + (p->width + 1) / 2, p->width), row);
+    panorama_fetch(rgb, p, wrap_index(x + p->width / 2, p->width), row);
+    panorama_fetch(other, p, wrap_index(x + (p->width + 1) / 2, p->width), row);
     for (int c = 0; c < 3; c++)
         rgb[c] = 0.5f * (rgb[c] + other[c]);
 }
@@ -180,7 +203,7 @@ static void across_edge(float rgb[3], const struct panorama *p, int face, int x,
 {
     double xy[2];
     cube_pixel(xy, p, face_ray(p, face, x + 0.5, y + 0.5));
-    fetch(rgb, p, (int)xy[0], clamp_index((int)xy[1], p->height));
+    panorama_fetch(rgb, p, (int)xy[0], clamp_index((int)xy[1], p->height));
 }
 
 // At a corner three faces meet: the missing fourth texel is the mean of their corner texels, which
@@ -191,7 +214,7 @@ static void cube_texel(float rgb[3], const struct panorama *p, int face, int x, 
     const int inner_x = clamp_index(x, side);
     const int inner_y = clamp_index(y, p->height);
     if (x == inner_x && y == inner_y) {
-        fetch(rgb, p, face * side + x, y);
+        panorama_fetch(rgb, p, face * side + x, y);
         return;
     }
     if (x == inner_x || y == inner_y) {
@@ -199,7 +222,7 @@ static void cube_texel(float rgb[3], const struct panorama *p, int face, int x, 
         return;
     }
     float beside[3], above[3];
-    fetch(rgb, p, face * side + inner_x, inner_y);
+    panorama_fetch(rgb, p, face * side + inner_x, inner_y);
     across_edge(beside, p, face, x, inner_y);
     across_edge(above, p, face, inner_x, y);
     for (int c = 0; c < 3; c++)
@@ -265,33 +288,23 @@ static bool sample(float rgb[3], const struct panorama *p, const struct layout *
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     if (!has_direction(direction) || !layout->pixel(xy, p, direction))
         return false;
+    if (p->geometry->disc) {
+        disc_sample(rgb, p, layout->texel, xy);
+        return true;
+    }
     const int side = p->geometry->projection == RELUME_CUBE ? p->width / 6 : p->width;
     const int face = clamp_index((int)(xy[0] / side), 6);
-    const double x = xy[0] - face * side - 0.5;
-    const double y = xy[1] - 0.5;
-    const int left = (int)floor(x);
-    const int top = (int)floor(y);
-    for (int j = 0; j < 2; j++)
-        for (int i = 0; i < 2; i++) {
-            const double wx = i ? x - left : 1.0 - (x - left);
-            const double wy = j ? y - top : 1.0 - (y - top);
-            const float w = (float)(wx * wy);
-            float t[3];
-            if (w == 0.0f)
-                continue;
-            layout->texel(t, p, face, left + i, top + j);
-            for (int c = 0; c < 3; c++)
-                rgb[c] += w * t[c];
-        }
+    panorama_bilinear(rgb, p, layout->texel, face, xy[0] - face * side - 0.5, xy[1] - 0.5);
     return true;
 }
 
-// Three channels, and for a cube six square faces.
+// Three channels, for a cube six square faces, discs that fit.
 static const struct layout *usable_layout(const struct relume_geometry *geometry,
                                           const struct relume_image *image)
 {
     const bool cube = geometry->projection == RELUME_CUBE;
-    if (!image->data || image->channels != 3 || (cube && image->width != 6 * image->height))
+    if (!image->data || image->channels != 3 || (cube && image->width != 6 * image->height) ||
+        !relume_geometry_fits(geometry, image->width, image->height))
         return NULL;
     return layout_of(geometry);
 }

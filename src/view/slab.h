@@ -60,7 +60,9 @@ relume_status slab_frame_depth(const struct slab_frame *frame);
 relume_status slab_frame_lens(const struct slab_frame *frame);
 // What slab_frame_depth gives a pixel that looks at (s, t).
 relume_status slab_value_depth(float rgb[3], const struct slab_frame *frame, const double st[2]);
-// The farthest and the nearest disparity that a frame's rays can meet.
+// The farthest and the nearest disparity in a frame's views ...
+void slab_depth_extent(double range[2], const struct slab_frame *frame);
+// ... and that its rays can meet.
 void slab_depth_range(double range[2], const struct slab_frame *frame);
 struct slab_ray;
 // A ray by depth. Returns the share of the cameras around it that see its surface, 1e-3 of that

@@ -226,7 +226,7 @@ static bool usable(const struct slab_frame *f)
                           f->slab->views);
 }
 
-void slab_depth_range(double range[2], const struct slab_frame *f)
+void slab_depth_extent(double range[2], const struct slab_frame *f)
 {
     range[0] = (double)INFINITY;
     range[1] = -(double)INFINITY;
@@ -238,6 +238,11 @@ void slab_depth_range(double range[2], const struct slab_frame *f)
         range[0] = fmin(range[0], one[0]);
         range[1] = fmax(range[1], one[1]);
     }
+}
+
+void slab_depth_range(double range[2], const struct slab_frame *f)
+{
+    slab_depth_extent(range, f);
     range[1] = fmin(range[1], relume_slab_eye_disparity(f->slab, f->eye));
 }
 

@@ -2,7 +2,7 @@
 //
 // A slab is a function of rays (Gortler et al. 1996), whichever way a picture stands to its planes:
 // what a pixel shows is the mean of the slabs that know its ray, weighted so that none of them ends
-// abruptly where another one goes on.
+// abruptly where another one goes on; through a lens, the mean of that over its pinholes.
 #include "view/slabs.h"
 
 #include "base/memory.h"
@@ -21,7 +21,8 @@ struct seen {
 struct picture {
     const relume_slabs *slabs;
     struct relume_image *out;
-    struct seen *seen;  // [slabs]
+    int pinholes;
+    struct seen *seen;  // [pinholes][slabs]
     bool by_depth;
 };
 
@@ -85,23 +86,49 @@ static struct seen see(const relume_slab *slab, const struct relume_window *wind
 
 static int mark(bool *needed, struct seen *s, const struct relume_view_params *params)
 {
+    const struct relume_view_params pinhole = {.interpolation = params->interpolation};
     double min[2], max[2];
     const int n = s->any && find_reach(min, max, s)
-                      ? slab_mark(needed, s->frame.slab, s->frame.eye, min, max, params)
+                      ? slab_mark(needed, s->frame.slab, s->frame.eye, min, max, &pinhole)
                       : 0;
     s->any = n > 0;
     return n;
 }
 
-int relume_slabs_needs(bool *needed, const relume_slabs *slabs, const struct relume_window *window,
-                       const struct relume_view_params *params)
+static struct relume_window pinhole_of(const struct relume_window *window,
+                                       const struct relume_view_params *params, int i, int n)
 {
+    return slab_is_lens(params) ? relume_lens_window(window, params->aperture, params->focus, i, n)
+                                : *window;
+}
+
+// 0 when the lens does not fit.
+static int count_pinholes(const struct relume_window *window, int width,
+                          const struct relume_view_params *params)
+{
+    if (!slab_is_lens(params))
+        return 1;
+    return relume_lens_fits(window, params->aperture, params->focus)
+               ? relume_lens_points(window, params->aperture, params->focus, width)
+               : 0;
+}
+
+int relume_slabs_needs(bool *needed, const relume_slabs *slabs, const struct relume_window *window,
+                       int width, const struct relume_view_params *params)
+{
+    const struct relume_view_params p = params ? *params : (struct relume_view_params){0};
+    const int pinholes = count_pinholes(window, width, &p);
     int n = 0;
     memset(needed, 0, (size_t)slabs->views * sizeof *needed);
-    for (int i = 0; i < slabs->count; i++) {
-        struct seen s = see(slabs->slab[i], window);
-        n += mark(needed, &s, params);
+    for (int k = 0; k < pinholes; k++) {
+        const struct relume_window from = pinhole_of(window, &p, k, pinholes);
+        for (int i = 0; i < slabs->count; i++) {
+            struct seen s = see(slabs->slab[i], &from);
+            mark(needed, &s, &p);
+        }
     }
+    for (int i = 0; i < slabs->views; i++)
+        n += needed[i];
     return n;
 }
 
@@ -131,12 +158,19 @@ static void add(double sum[4], const struct picture *p, const struct seen *s, do
 // At (x, y) of the window. False, and black, where no slab has weight.
 static bool shade(float rgb[3], const struct picture *p, double x, double y)
 {
-    double sum[4] = {0.0, 0.0, 0.0, 0.0};
-    for (int i = 0; i < p->slabs->count; i++)
-        add(sum, p, &p->seen[i], x, y);
+    double mean[3] = {0.0, 0.0, 0.0};
+    int n = 0;
+    for (int k = 0; k < p->pinholes; k++) {
+        double sum[4] = {0.0, 0.0, 0.0, 0.0};
+        for (int i = 0; i < p->slabs->count; i++)
+            add(sum, p, &p->seen[k * p->slabs->count + i], x, y);
+        for (int c = 0; c < 3 && sum[3] > 0.0; c++)
+            mean[c] += sum[c] / sum[3];
+        n += sum[3] > 0.0;
+    }
     for (int c = 0; c < 3; c++)
-        rgb[c] = sum[3] > 0.0 ? (float)(sum[c] / sum[3]) : 0.0f;
-    return sum[3] > 0.0;
+        rgb[c] = n ? (float)(mean[c] / n) : 0.0f;
+    return n > 0;
 }
 
 static void draw_row(void *context, size_t row, int worker)
@@ -156,54 +190,78 @@ static bool takes_depth(const struct relume_view_params *p)
                             p->interpolation == RELUME_INTERPOLATE_DEPTH);
 }
 
-// RELUME_EINVAL when nothing is to be seen or something needed is missing.
-static relume_status prepare(struct picture *p, bool *needed, const struct relume_window *window,
-                             const struct relume_image *views,
-                             const struct relume_view_params *params)
-{
-    int width = 0, height = 0, n = 0;
-    for (int i = 0; i < p->slabs->count; i++) {
-        p->seen[i] = see(p->slabs->slab[i], window);
-        n += mark(needed, &p->seen[i], params);
-    }
-    if (n == 0 || !slab_views_fit(&width, &height, needed, views,
-                                  p->by_depth ? params->disparity : NULL, p->slabs->views))
-        return RELUME_EINVAL;
-    for (int i = 0; i < p->slabs->count; i++) {
-        struct slab_frame *f = &p->seen[i].frame;
-        f->views = views;
-        f->width = width;
-        f->height = height;
-        f->params = *params;
-        f->needed = needed;
-        if (p->by_depth && p->seen[i].any)
-            slab_depth_range(p->seen[i].range, f);
-    }
-    return RELUME_OK;
-}
-
 struct job {
     struct picture picture;
     struct relume_view_params params;
     bool *needed;
 };
 
+// What slab `i` needs from every pinhole to be drawn; the views' disparities are looked through
+// once.
+static void prepare_slab(struct job *job, int i, const struct slab_frame *common)
+{
+    const struct picture *p = &job->picture;
+    double range[2];
+    bool known = false;
+    for (int k = 0; k < p->pinholes; k++) {
+        struct seen *s = &p->seen[k * p->slabs->count + i];
+        const struct slab_frame own = s->frame;
+        s->frame = *common;
+        s->frame.slab = own.slab;
+        s->frame.eye = own.eye;
+        s->frame.reach = own.reach;
+        if (!p->by_depth || !s->any)
+            continue;
+        if (!known)
+            slab_depth_extent(range, &s->frame);
+        known = true;
+        s->range[0] = range[0];
+        s->range[1] = fmin(range[1], relume_slab_eye_disparity(own.slab, own.eye));
+    }
+}
+
+// RELUME_EINVAL when nothing is to be seen or something needed is missing.
+static relume_status prepare(struct job *job, const struct relume_window *window,
+                             const struct relume_image *views)
+{
+    struct picture *p = &job->picture;
+    const int slabs = p->slabs->count;
+    struct slab_frame common = {.views = views, .params = job->params, .needed = job->needed};
+    int n = 0;
+    for (int k = 0; k < p->pinholes; k++) {
+        const struct relume_window from = pinhole_of(window, &job->params, k, p->pinholes);
+        for (int i = 0; i < slabs; i++) {
+            p->seen[k * slabs + i] = see(p->slabs->slab[i], &from);
+            n += mark(job->needed, &p->seen[k * slabs + i], &job->params);
+        }
+    }
+    if (n == 0 || !slab_views_fit(&common.width, &common.height, job->needed, views,
+                                  p->by_depth ? job->params.disparity : NULL, p->slabs->views))
+        return RELUME_EINVAL;
+    for (int i = 0; i < slabs; i++)
+        prepare_slab(job, i, &common);
+    return RELUME_OK;
+}
+
 static relume_status begin(struct job *job, const relume_slabs *slabs,
-                           const struct relume_window *window, const struct relume_image *views,
+                           const struct relume_window *window, int width,
+                           const struct relume_image *views,
                            const struct relume_view_params *params)
 {
     *job = (struct job){.picture = {.slabs = slabs}};
     if (params)
         job->params = *params;
-    job->picture.by_depth = takes_depth(&job->params);
-    if (slab_is_lens(params) ||
+    struct picture *p = &job->picture;
+    p->by_depth = takes_depth(&job->params);
+    p->pinholes = count_pinholes(window, width, &job->params);
+    if (p->pinholes == 0 ||
         (job->params.interpolation == RELUME_INTERPOLATE_DEPTH && !job->params.disparity))
         return RELUME_EINVAL;
     job->needed = mem_zeroed((size_t)slabs->views, sizeof *job->needed);
-    job->picture.seen = mem_array((size_t)slabs->count, sizeof *job->picture.seen);
-    if (!job->needed || !job->picture.seen)
+    p->seen = mem_array((size_t)p->pinholes * (size_t)slabs->count, sizeof *p->seen);
+    if (!job->needed || !p->seen)
         return RELUME_ENOMEM;
-    return prepare(&job->picture, job->needed, window, views, &job->params);
+    return prepare(job, window, views);
 }
 
 static void end(struct job *job)
@@ -220,7 +278,7 @@ relume_status relume_slabs_frame(struct relume_image *out, const relume_slabs *s
     struct job job;
     if (!out->data || out->channels != 3)
         return RELUME_EINVAL;
-    const relume_status status = begin(&job, slabs, window, views, params);
+    const relume_status status = begin(&job, slabs, window, out->width, views, params);
     job.picture.out = out;
     if (!status)
         thread_for(job.params.threads, (size_t)out->height, draw_row, &job.picture);
@@ -234,7 +292,9 @@ relume_status relume_slabs_value(float rgb[3], const relume_slabs *slabs, vec3 e
 {
     struct job job;
     const struct relume_window window = {.eye = eye, .corner = vec3_add(eye, direction)};
-    relume_status status = begin(&job, slabs, &window, views, params);
+    if (slab_is_lens(params))
+        return RELUME_EINVAL;
+    relume_status status = begin(&job, slabs, &window, 1, views, params);
     if (!status && !shade(rgb, &job.picture, 0.0, 0.0))
         status = RELUME_EINVAL;
     end(&job);

@@ -169,7 +169,8 @@ static void open_scene(struct scene *s, struct file *f)
     *s = (struct scene){.frame = {0}};
     bench_check(relighter_create(&s->relighter, &gl, &source, 1, NULL));
     s->relighter.by_library = by_library;
-    bench_check(draw_panorama_create(&s->panorama, &gl, RELUME_SPHERICAL, NULL));
+    const struct relume_geometry sphere = {.projection = RELUME_SPHERICAL};
+    bench_check(draw_panorama_create(&s->panorama, &gl, &sphere, NULL));
     bench_check(target_create(&s->frame, &gl, width, height, NULL));
 }
 

@@ -27,6 +27,10 @@ bad '.ptm cut in its header' 'cut.ptm: .*expected' cut.ptm
 : >cut.ptm
 bad 'empty .ptm' 'cut.ptm: not a polynomial' cut.ptm
 printf 'PTM_1.2\nPTM_FORMAT_RGB\n1000000\n1000000\n1 1 1 1 1 1\n0 0 0 0 0 0\nx' >huge.ptm
+relume export ptm.exr --to ptm -o jpeg.ptm --quality 80
+size=$(wc -c <jpeg.ptm)
+head -c $((size / 2)) jpeg.ptm >cut.ptm
+bad '.ptm of JPEG planes cut in half' 'cut.ptm: truncated in plane [0-9]+ of 18' cut.ptm
 bad '.ptm that claims 1000000 x 1000000' 'huge.ptm: claims 1000000 x 1000000' huge.ptm
 printf 'PTM_1.2\nPTM_FORMAT_LUM\n4\n4\n' >lum.ptm
 bad '.ptm of another format' 'lum.ptm: format PTM_FORMAT_LUM is not supported' lum.ptm
@@ -65,6 +69,9 @@ no() { # name, status, pattern, options: export of pca.exr
 no 'unknown format' 2 "did you mean 'rti'" --to rto
 no 'unknown type' 2 "did you mean 'bilinear'" --type bilinaer
 no 'type of a file' 2 'only for --to relight' --to ptm --type rbf
+no 'a quality of .rti' 2 'no JPEG form' --to rti --quality 80
+no 'other terms of .ptm' 2 '.ptm has six' --to lptm --coefficients 3
+no 'a size of .ptm' 2 'only for --to relight' --to ptm --bytes-per-pixel 1
 no 'two targets' 2 'expected one of' --psnr 30 --quality 3
 no 'a view that is not there' 2 'view 3; expected 0 to 0' --view 3
 no 'mycc of a type without components' 2 'only for --type bilinear' --type hsh --colorspace mycc
@@ -73,6 +80,7 @@ no 'terms that folders have not' 2 '16 coefficients; expected' --type hsh --coef
 no 'terms that ptm has not' 2 '5 coefficients; expected 3 or 6' --type ptm --coefficients 5
 no 'a PSNR out of reach' 1 'out: 99 dB cannot be reached.*found at most' --psnr 99
 no 'a size out of reach' 1 'cannot be reached; found at least' --bytes-per-pixel 0.001
+expect_fail '.ptm of JPEG planes on a full device' 3 '/dev/full' - "$RELUME" export ptm.exr --to ptm -o /dev/full --quality 80
 mkdir full; : >full/file
 expect_fail 'a folder that is not empty' 2 'full: already exists' - "$RELUME" export pca.exr -o full
 expect_ok 'a folder that is not empty, --force' - "$RELUME" export pca.exr -o full --force --quality 60

@@ -12,14 +12,14 @@ if grep -q '"includes_cosine": true' paper/btf.json; then ok 'values include n.l
 
 # ---- every model: fitted, opened again, judged; compare says the same
 "$RELUME" btf compare paper --pictures 2 --json -q >compare.json 2>err.txt || not_ok 'btf compare' "$(cat err.txt)"
-for m in bump laf slaf rfp rfnl rfnlc vpca lpca fmf; do
+for m in lit bump laf slaf rfp rfnl rfnlc cmf vpca lpca fmf qmf; do
     row=$(grep -o "{\"model\": \"$m\"[^}]*}" compare.json)
-    for f in mae_avg mae_min mae_max rms delta_e bytes bytes_per_texel fit_seconds; do
+    for f in mae_avg mae_min mae_max rms delta_e bytes bytes_per_texel fit_seconds ops fetches light_ops light_fetches evaluations_per_second; do
         case $row in *"\"$f\": "[0-9]*) ;; *) not_ok "compare $m has $f" "$row" ;; esac
     done
 done
 ok 'btf compare has every model'
-for m in rfnl lpca; do
+for m in rfnl lpca qmf; do
     expect_ok "btf fit $m" - "$RELUME" btf fit paper --model $m -o $m -q
     "$RELUME" btf eval $m paper --pictures 2 --json >eval.json 2>err.txt
     grep -o "{\"model\": \"$m\"[^}]*}" compare.json >row.json
@@ -29,6 +29,13 @@ for m in rfnl lpca; do
 done
 "$RELUME" btf compare paper --models vpca --leave-out 4 --pictures 0 --json -q >out.json 2>err.txt
 above 'left out is worse' "$(field left_out_rms out.json)" "$(field rms out.json)"
+expect_ok 'btf fit without every fourth direction' - "$RELUME" btf fit paper --model vpca --leave-out 4 -o part -q
+"$RELUME" btf eval part paper --unseen --pictures 0 --json >unseen.json 2>err.txt
+below 'btf eval --unseen is what compare leaves out' "$(awk -v a="$(field rms unseen.json)" -v b="$(field left_out_rms out.json)" 'BEGIN { print (a - b) ^ 2 }')" 1e-12
+expect_fail 'nothing unseen' 1 'the model was fitted to all its directions' - "$RELUME" btf eval rfnl paper --unseen
+expect_ok 'btf fit --ratio' - "$RELUME" btf fit paper --model qmf --ratio 20 -o small -q
+"$RELUME" btf info small --json >info.json
+below 'a wanted ratio is kept' "$(field bytes info.json)" $((138624 / 20 + 1))
 "$RELUME" synth --btf wallpaper -o again --size 8 --directions coarse --samples 1 --bounces 0 --threads 3 -q
 if diff -r paper again >/dev/null; then ok 'the same for any threads'; else not_ok 'the same for any threads' "$(diff -rq paper again)"; fi
 
@@ -53,14 +60,14 @@ done
 "$RELUME" btf tile hide -o wide1 --model rfp --tile 16 --tiles 3 --matrix 5x4 --threads 1 --json -q >tile.json
 below 'cuts show less than unrelated texels' "$(field step_across tile.json)" "$(field step_unrelated tile.json)"
 if diff -r wide wide1 >/dev/null; then ok 'tiles for any threads'; else not_ok 'tiles for any threads' "$(diff -rq wide wide1)"; fi
-"$RELUME" btf render hide -o sky.exr --frame 64x32 -q
+"$RELUME" btf render hide -o sky.exr --picture 64x32 -q
 "$mkimage" poke sky.exr odd.exr 3 4 nan
 expect_ok 'an environment' - "$RELUME" btf render wide -o lit.exr --light 'env sky.exr 30' --light 'dir 0 0 1' -q
 "$RELUME" btf render wide -o odd-lit.exr --light 'env odd.exr' -q 2>err.txt
 if grep -q '3 samples are negative, not finite' err.txt; then ok 'NaN in an environment is told of'; else not_ok 'NaN in an environment is told of' "$(cat err.txt)"; fi
 expect_fail 'no environment' 1 'nothing.hdr: no such file' x.exr "$RELUME" btf render wide -o x.exr --light 'env nothing.hdr'
 { printf '\223NUMPY\001\000v\000'; printf '%-117s\n' "{'descr': '<u2', 'fortran_order': False, 'shape': (1, 2), }"; printf '\001\000\100\000'; } >large.npy
-expect_ok 'a surface from a camera' - "$RELUME" btf render wide -o view.png --camera 0,-1.5,0.7 --frame 64x40 --light 'dir -1 0 1' --light 'spot 0 1 1 0 -1 -1 30' -q
+expect_ok 'a surface from a camera' - "$RELUME" btf render wide -o view.png --camera 0,-1.5,0.7 --picture 64x40 --light 'dir -1 0 1' --light 'spot 0 1 1 0 -1 -1 30' -q
 expect_ok 'an index map' - "$RELUME" btf tile levels -o same --map wide/matrix.npy -q
 expect_fail 'an index map of a larger sample' 1 'expected a texel of 8 x 8; found number' x "$RELUME" btf tile levels -o x --map large.npy
 expect_fail 'a sample smaller than a patch' 1 'expected a sample of at least 16 x 16 texels; found 8 x 8' x "$RELUME" btf tile levels -o x
@@ -79,6 +86,41 @@ fresh wide other
 rm other/surface.json
 expect_fail 'a surface without its head' 1 'expected btf.json' - "$RELUME" btf info other
 
+# ---- objects: alone, and in a relit scene; the viewer shows what the reference does
+cat >quad.obj <<'OBJ'
+v -0.3 -0.3 0.3
+v 0.3 -0.3 0.3
+v 0.3 0.3 0.3
+v -0.3 0.3 0.3
+vt 0 0
+vt 1 0
+vt 1 1
+vt 0 1
+vn 0 0 1
+f 1/1/1 2/2/1 3/3/1 4/4/1
+OBJ
+echo '{"format":"relume-objects","version":1,"objects":[{"mesh":"quad.obj","parts":[{"material":["rfnl","lpca"],"repeat":2}]}]}' >quad.json
+expect_ok 'btf render --mesh' - "$RELUME" btf render rfnl --mesh quad.obj --repeat 2 -o quad.exr --eye 0,0,2 --light 'dir 0.3 0.2 1' --picture 40x40 -q
+expect_ok 'btf render a description' - "$RELUME" btf render quad.json -o again.exr --eye 0,0,2 --light 'dir 0.3 0.2 1' --picture 40x40 -q
+check 'a mesh and its description are the same' cmp quad.exr again.exr
+"$VIEWER" quad.json --eye 0,0,2 --light 'dir 0.3 0.2 1' --size 40x40 --offscreen stage.png 2>err.txt || not_ok 'relume-view of objects' "$(cat err.txt)"
+"$VIEWER" rfnl --mesh quad.obj --repeat 2 --eye 0,0,2 --light 'dir 0.3 0.2 1' --size 40x40 --offscreen mesh.png 2>err.txt || not_ok 'relume-view --mesh' "$(cat err.txt)"
+check 'relume-view of a mesh and its description' cmp stage.png mesh.png
+"$RELUME" synth box -o box --size 40 --views 2x2 --lights 12 --samples 1 -q && "$RELUME" encode box -o box.exr -q
+for light in 'dir 0.4 0.3 1' 'point 0.4 0.3 1.5'; do
+    "$RELUME" relight box.exr --objects quad.json -o cpu.png --light "$light" -q 2>err.txt || not_ok 'relight --objects' "$(cat err.txt)"
+    "$VIEWER" box.exr --objects quad.json --light "$light" --size 40x40 --offscreen gl.png 2>err.txt || not_ok 'relume-view --objects' "$(cat err.txt)"
+    "$RELUME" relight box.exr -o bare.png --light "$light" -q
+    above "the viewer's is the reference's, $light" "$("$RELUME" compare cpu.png gl.png | sed -n 's/^psnr_db *//p')" 32
+    below "the object is seen, $light" "$("$RELUME" compare cpu.png bare.png | sed -n 's/^psnr_db *//p')" 30
+done
+sed 's/"material"/"part":"lid","material"/' quad.json >bad.json
+head -c 100 paper/values.npy >broken.glb
+expect_fail 'a part without material' 1 "part 'all' has no material" x.exr "$RELUME" relight box.exr --objects bad.json -o x.exr
+expect_fail 'objects in a pass' 2 'expected no pass' x.exr "$RELUME" relight box.exr --objects quad.json --pass normals -o x.exr
+expect_fail 'no such mesh' 1 'nothing.obj: cannot be opened' x.exr "$RELUME" btf render rfnl --mesh nothing.obj -o x.exr
+expect_fail 'no model at all' 1 'broken.glb: not read as a model' x.exr "$RELUME" btf render rfnl --mesh broken.glb -o x.exr
+
 # ---- from outside: NumPy reads the values in place
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
     check 'NumPy reads the values' /usr/bin/python3 -c '
@@ -96,6 +138,7 @@ expect_fail 'scene and material' 2 'found both' x "$RELUME" synth box --btf ston
 expect_fail 'unknown model' 2 "unknown model 'rfnk'" - "$RELUME" btf compare paper --models rfnk
 expect_fail 'unknown task' 2 "unknown task 'fitt'; did you mean 'fit'" - "$RELUME" btf fitt paper
 expect_fail 'too many clusters' 2 'expected 1 to 64 clusters; found 65' x "$RELUME" btf fit paper --model rfnlc --clusters 65 -o x
+expect_fail 'a ratio below 1' 2 'ratio' x "$RELUME" btf fit paper --model qmf --ratio 0 -o x
 expect_fail 'no BTF' 1 'expected btf.json, or pictures named like' - "$RELUME" btf info .
 expect_fail 'not a folder' 1 'nothing: cannot be read' - "$RELUME" btf info nothing
 fresh lpca other

@@ -32,6 +32,29 @@ above 'the normal points at the viewer' "$normal" 0.98
 high() { "$mkimage" read h.exr "$1" "$2" | cut -d' ' -f1; }
 above 'the sphere rises over the floor' "$(high 48 48)" 0.2
 
+# ---- lights of a dome, 100 mm over a picture of 100 mm; and what evens out the light
+vectors() { awk -v k="$1" '{ printf "%s{\"x\":%g,\"y\":%g,\"z\":%g}", (NR > 1 ? "," : ""), k * $1, k * $2, k * $3 }' lights.txt; }
+echo "{\"imageWidth\":100,\"lightConfiguration\":\"directional\",\"directions\":[$(vectors 1)]}" >d.dome
+expect_ok 'a dome' - "$RELUME" capture photos --lights d.dome -o dome
+below 'its directions' "$(angles dome)" 0.01
+expect_fail 'a dome of directions is not near' 1 'd.dome.*expected positions' out "$RELUME" capture photos \
+    --lights d.dome --near -o out
+echo "{\"imageWidth\":100,\"lightConfiguration\":\"lights3d\",\"positions3d\":[$(vectors 300)]}" >p.dome
+expect_ok 'a dome of positions' - "$RELUME" capture photos --lights p.dome --near -o near --white 40,40,16,16
+check 'positions are kept' grep -q '"positions"' near/capture.json
+expect_ok 'positions of a capture' - "$RELUME" capture photos --lights near/capture.json --near -o again
+expect_fail 'no flat field' 1 'light0000.*evenly lit' out "$RELUME" capture photos --lights lights.txt \
+    --flat "$(find photos -name '*0000*')" --radial -o out
+expect_fail 'too many flat fields' 1 '12 photographs|expected 1, or 12' out "$RELUME" capture photos \
+    --lights lights.txt --flat "$(find photos -name '*0000*')" --flat "$(find photos -name '*0001*')" -o out
+expect_fail 'grey outside' 2 'white region 90,90' out "$RELUME" capture photos --lights lights.txt --white 90,90,9,9 -o out
+expect_fail 'no grey region' 2 'x,y,width,height' out "$RELUME" capture photos --lights lights.txt --white 9,9 -o out
+expect_fail 'an integrable surface of given lights' 2 'needs --refine-lights' out "$RELUME" capture photos \
+    --lights lights.txt --integrable -o out
+expect_ok 'refined, integrable' 'curl is' "$RELUME" capture photos --lights lights.txt --refine-lights --integrable -o curl
+below 'lights that were right stay so' "$(angles curl)" 2
+expect_fail 'a polynomial of nothing' 2 'needs --flat' out "$RELUME" capture photos --lights lights.txt --radial -o out
+
 # ---- the same from the ball
 expect_ok 'lights of a matte ball' - "$RELUME" capture photos --matte --ball 48,48,21.6 -o matte --json
 cp out.txt m.json

@@ -70,6 +70,28 @@ for kind in ptm lptm; do
     above "$kind: predicted planes are close to the raw ones" "$(psnr $kind-back.exr predicted.exr)" 35
 done
 
+# ---- JPEG planes of our own
+for kind in ptm lptm; do
+    for quality in 70 90; do
+        file=$kind-$quality.ptm
+        "$RELUME" export $kind-back.exr --to $kind -o $file --quality $quality 2>note.txt || not_ok "export --to $kind --quality" "$(cat note.txt)"
+        below "$file: half of the raw file at most" "$(wc -c <$file)" $(($(wc -c <$kind.ptm) / 2))
+        relume import $file -o jpeg.exr
+        above "$file: as good as was promised" "$(psnr $kind-back.exr jpeg.exr)" "$(awk -v p="$(promised)" 'BEGIN { print p - 5 }')"
+        decoded_alike "$file: an independent decoder" $file jpeg.exr
+    done
+    [ -z "$python" ] && continue
+    "$python" "$decoder" --planes $file $kind.ptm >counts.txt
+    read -r predicted inverted recorded wrapped progressive off <counts.txt
+    above "$kind: predicted planes are written" "$predicted" 3
+    below "$kind: no pixel leaves a byte without a record, all planes are baseline" $((wrapped + progressive)) 0
+done
+for n in 1 3; do relume export ptm-back.exr --to ptm -o threads$n.ptm --quality 80 --threads $n; done
+same '.ptm of JPEG planes with 1 and 3 threads' threads1.ptm threads3.ptm
+"$sphere" odd --size 37 --lights 12 --hemisphere --format png
+relume encode odd -o odd.exr --basis ptm --coefficients 6
+expect_ok 'a width that RTIViewer cannot take is told of' 'warning: odd.ptm: width 37 is not a multiple of 8' "$RELUME" export odd.exr --to lptm -o odd.ptm --quality 80
+
 # ---- relight folders of every type
 for kind in bilinear rbf bilinear:mycc rbf:mycc ptm lptm hsh sh ptm:ycc hsh:ycc sh:ycc; do
     type=$(echo $kind | tr -d :) space=rgb

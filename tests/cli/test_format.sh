@@ -47,6 +47,18 @@ attic_ray() { awk -v x="$1" -v y="$2" -v w="$width" -v n=$size -v lo="$v_min" -v
     printf "--direction %.12f,%.12f,%.12f", sin(phi), hi - (y + .5) / n * (hi - lo), -cos(phi) }'; }
 agree "a panorama" attic.exr 0 "--eye $x,$y,$z $(attic_ray 31 12)" 31 12
 
+# Its end discs, pixel (8, 9) of each: the upper one's up is +z, the lower one's -z.
+"$RELUME" synth attic -o discs --discs --size $size --lights 20 --samples 1 -q
+"$RELUME" encode discs -o discs.exr --basis sh -q
+side=$(sed -n 's/.*"discs": \([0-9]*\).*/\1/p' discs/capture.json)
+check 'discs are version 3' grep -q '"version": 3' <<INFO
+$("$RELUME" info discs.exr --json)
+INFO
+disc_ray() { awk -v n="$side" -v h="$1" 'BEGIN {
+    printf "--direction %.12f,%.12f,%.12f", 2 * 8.5 / n - 1, h, (h > 0 ? 1 : -1) * (1 - 2 * 9.5 / n) }'; }
+agree "the upper disc" discs.exr 0 "--eye $x,$y,$z $(disc_ray "$v_max")" 8 $((size + 9))
+agree "the lower disc" discs.exr 0 "--eye $x,$y,$z $(disc_ray "$v_min")" $((side + 8)) $((size + 9))
+
 # The worked example says what happens. Rays and fits may differ a little between CPU types.
 "$RELUME" synth box -o ex --size 16 --lights 9 --hemisphere --samples 4 -q
 "$RELUME" encode ex -o ex.exr --basis sh --coefficients 4 -q

@@ -23,6 +23,7 @@ done
 export PKG_CONFIG_PATH="$prefix/lib/pkgconfig"
 check "pkg-config knows the version" test "$(pkg-config --modversion relume)" = "$version"
 check "the module for images is installed" test -s "$prefix/lib/librelume-oiio.so.${version%%.*}"
+check "the module for models is installed" test -s "$prefix/lib/librelume-assimp.so.${version%%.*}"
 check "the installed tool runs" test "$("$prefix/bin/relume" --version)" = "relume $version"
 
 # ---------------------------------------------------------------- a program of the library's user

@@ -52,6 +52,10 @@ differ 'another up and another field of view' turned.exr frame.exr
 relume relight ring.exr -o cpu.exr --eye 2.5,1,1.4 --look-at 0.1,0.2,0 --up 0.1,1,0 --fov 25 --size 90x60 --light "$light"
 "$VIEWER" ring.exr --offscreen gpu.exr --eye 2.5,1,1.4 --look-at 0.1,0.2,0 --up 0.1,1,0 --fov 25 --size 90x60 --light "$light"
 above 'the viewer shows the same' "$(psnr gpu.exr cpu.exr)" 60
+lens="--eye 2.5,1,1.4 --fov 25 --size 60x40 --aperture 0.6 --focus 0.4"
+relume relight ring.exr -o cpu.exr $lens --light "$light"
+"$VIEWER" ring.exr --offscreen gpu.exr $lens --light "$light"
+above 'the viewer has the same lens' "$(psnr gpu.exr cpu.exr)" 60
 "$RELUME" info ring.exr --json >info.txt
 check 'info says how many, and version 2' grep -q '"version": 2.*"slabs": 6' info.txt
 
@@ -69,7 +73,7 @@ expect_ok 'sweep' - "$RELUME" sweep ring --basis sh --coefficients 1 --leave-out
 
 # ---- what does not go
 expect_fail 'an eye without a view' 1 'sees nothing of the slabs' x.exr "$RELUME" relight ring.exr -o x.exr --eye 0,9,0.1 -q
-expect_fail 'an aperture' 2 'of one slab' x.exr "$RELUME" relight ring.exr -o x.exr --eye 1,0,3 --aperture 0.2 -q
+expect_fail 'a focus behind the eye' 2 'on or behind the eye; expected less than 3.16' y.exr "$RELUME" relight ring.exr -o y.exr --eye 1,0,3 --focus 4 -q
 expect_fail 'looking without an eye' 2 'expected --eye' x.exr "$RELUME" relight ring.exr -o x.exr --look-at 0,0,0 -q
 expect_fail 'a ray beside all cameras' 1 'holds no such ray|sees nothing' - "$RELUME" query ring.exr --eye 9,0,0 --direction 0,0,1 -q
 expect_fail 'export' 1 'slabs around an object' x.ptm "$RELUME" export ring.exr --to ptm -o x.ptm -q

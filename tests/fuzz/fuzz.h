@@ -21,7 +21,7 @@ struct fuzz {
     char folder[64], path[96];
     uint64_t state;
     long iterations, accepted;
-    struct bytes seed[16];
+    struct bytes seed[64];
     int seeds;
     const char *const *words;  // NULL-terminated: text and names that mutations know
 };

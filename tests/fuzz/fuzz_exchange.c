@@ -8,6 +8,7 @@
 #include "image/trellis.h"
 
 #include <relume/exchange.h>
+#include <string.h>
 #include <sys/stat.h>
 
 static const struct relume_limits limits = {
@@ -75,6 +76,32 @@ static bool view(struct foreign *f, relume_status status)
     return !status;
 }
 
+// What is read of a .ptm is written as JPEG planes, which read back as the writer says.
+static void write_again(struct fuzz *f, const struct foreign *picture)
+{
+    struct ptm_jpeg file;
+    struct foreign back;
+    char path[128];
+    snprintf(path, sizeof path, "%s/again.ptm", f->folder);
+    if (ptm_encode_jpeg(&file, picture, 0.002 * (double)(1 + fuzz_random(f) % 200), 80, 1))
+        abort();
+    fuzz_store(path, (struct bytes){file.bytes, file.size});
+    if (ptm_read(&back, path, &limits, NULL) ||
+        memcmp(back.codes, file.codes, (size_t)picture->planes * foreign_pixels(picture)) != 0)
+        abort();
+    foreign_free(&back);
+    ptm_jpeg_free(&file);
+}
+
+static bool view_ptm(struct fuzz *f, const char *path)
+{
+    struct foreign picture;
+    const relume_status status = ptm_read(&picture, path, &limits, NULL);
+    if (!status && fuzz_random(f) % 4 == 0)
+        write_again(f, &picture);
+    return view(&picture, status);
+}
+
 // Every fourth input goes all the way to a relume file.
 static bool import(struct fuzz *f, const char *path)
 {
@@ -105,7 +132,7 @@ static bool one(struct fuzz *f, struct bytes b)
         whole                           ? import(f, path)
         : first == '{' || first == 0xff ? view(&picture, web_read(&picture, path, &limits, NULL))
         : first == '#' ? view(&picture, rti_read(&picture, path, b.size % 2, &limits, NULL))
-                       : view(&picture, ptm_read(&picture, path, &limits, NULL));
+                       : view_ptm(f, path);
     if (first == 0xff) {
         snprintf(path, sizeof path, "%s/web/plane_0.jpg", f->folder);
         fuzz_store(path, before);

@@ -59,8 +59,13 @@ static struct relume_geometry side(int i)
 
 static void start_app(struct around *t)
 {
-    const struct app_file file = {
-        .geometry = t->slab[0], .width = W, .height = H, .views = VIEWS, .around = t->slabs};
+    const struct app_file file = {.geometry = t->slab[0],
+                                  .width = W,
+                                  .height = H,
+                                  .views = VIEWS,
+                                  .uv_min = {columns[0], rows[0]},
+                                  .uv_max = {columns[COLUMNS - 1], rows[ROWS - 1]},
+                                  .around = t->slabs};
     struct relume_light light = lamp;
     struct app_lamp shown = {.off = false};
     const struct app_state start = {.light = &light, .lamp = &shown, .lights = 1};
@@ -186,6 +191,40 @@ static void frames_by_depth_are_the_library_s(void **state)
         if (i != 5)
             assert_true(share_off(t, NULL) > 0.1);
     }
+    close_around(t);
+    free(t);
+}
+
+static void lenses_are_the_library_s(void **state)
+{
+    (void)state;
+    static const struct relume_view_params lenses[] = {
+        {.aperture = 0.5}, {.aperture = 1.2, .focus = 0.7}, {.aperture = 0.3, .focus = -1}};
+    struct around *t = calloc(1, sizeof *t);
+    open_around(t);
+    const struct depth_source source = {make_depth, t};
+    assert_int_equal(renderer_use_depth(&t->renderer, &source), RELUME_OK);
+    for (size_t i = 0; i < sizeof lenses / sizeof *lenses; i++)
+        for (size_t e = 0; e < 3; e++) {
+            struct relume_view_params params = lenses[i];
+            char text[64];
+            snprintf(text, sizeof text, "aperture %g, focus %g, eye %zu", params.aperture,
+                     params.focus, e);
+            t->app.now.camera.eye = eyes[e];
+            t->app.now.aperture = params.aperture;
+            t->app.now.focus_z = params.focus;
+            t->app.now.interpolation = RELUME_INTERPOLATE_LINEAR;
+            assert_below(text, share_off(t, &params), 0.002);
+            t->app.now.interpolation = RELUME_INTERPOLATE_DEFAULT;
+            params.disparity = t->disparity;
+            assert_below(text, share_off(t, &params), 0.01);
+            // of a few pinholes while the object is in the hand
+            t->app.drag = APP_DRAG_CAMERA;
+            assert_true(e > 0 || share_off(t, &params) > 0.02);
+            t->app.drag = APP_DRAG_NONE;
+            params.focus += 0.5;
+            assert_true(share_off(t, &params) > 0.1);
+        }
     close_around(t);
     free(t);
 }
@@ -336,20 +375,46 @@ static void a_turntable_goes_around(void **state)
     close_app(&t);
 }
 
-static void what_only_one_slab_has_is_refused(void **state)
+static void what_cannot_be_seen_is_refused(void **state)
 {
     (void)state;
     struct around t = {0};
     open_app(&t);
     const struct app_file file = t.app.file;
-    struct app_state wrong[3] = {{.aperture = 0.2}, {.focused = true}, {.lights = 0}};
-    wrong[2].camera.framing = RELUME_FRAME_EYE;  // where it would look
+    struct app_state wrong[2] = {{.focused = true, .focus_z = 9}, {.lights = 0}};
+    wrong[1].camera.framing = RELUME_FRAME_EYE;  // where it would look
     struct app refused;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 2; i++)
         assert_int_equal(app_start(&refused, &file, &wrong[i], false, NULL), RELUME_EINVAL);
-    for (const char *key = "a,."; *key; key++)
-        app_handle(&t.app, &(struct app_event){.kind = APP_KEY_DOWN, .key = *key});
-    assert_true(t.app.now.aperture == 0 && t.app.now.focus_z == t.app.start.focus_z);
+    close_app(&t);
+}
+
+static void press(struct app *app, int key)
+{
+    app_handle(app, &(struct app_event){.kind = APP_KEY_DOWN, .key = key});
+}
+
+// Nearer and farther by a fiftieth of the way, from what the eye looks at; never behind the eye.
+static void keys_work_the_lens(void **state)
+{
+    (void)state;
+    struct around t = {0};
+    open_app(&t);
+    struct app *app = &t.app;
+    const double away = length_of(app->now.camera.eye);
+    press(app, 'a');
+    assert_true(app->now.aperture > 0 && app->now.focus_z == 0);
+    press(app, ',');
+    assert_true(fabs(app->now.focus_z - (away - away / 1.02)) < 1e-9);
+    press(app, '.');
+    assert_true(fabs(app->now.focus_z) < 1e-9);
+    send(app, APP_PRESS, 5, 5);
+    assert_true(app_moves(app));
+    assert_true(app_handle(app, &(struct app_event){.kind = APP_RELEASE, .x = 5, .y = 5}));
+    assert_false(app_moves(app));
+    for (int i = 0; i < 500; i++)
+        press(app, ',');
+    assert_true(app->now.focus_z > 0.9 * away && app->now.focus_z < away);
     close_app(&t);
 }
 
@@ -358,6 +423,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(frames_are_the_library_s),
         cmocka_unit_test(frames_by_depth_are_the_library_s),
+        cmocka_unit_test(lenses_are_the_library_s),
         cmocka_unit_test(only_needed_views_are_relit),
         cmocka_unit_test(a_drag_turns_the_object),
         cmocka_unit_test(the_object_glides),
@@ -365,7 +431,8 @@ int main(void)
         cmocka_unit_test(handles_lie_on_their_lights),
         cmocka_unit_test(a_pixel_is_found_in_its_view),
         cmocka_unit_test(a_turntable_goes_around),
-        cmocka_unit_test(what_only_one_slab_has_is_refused),
+        cmocka_unit_test(what_cannot_be_seen_is_refused),
+        cmocka_unit_test(keys_work_the_lens),
     };
     return cmocka_run_group_tests(tests, fixture_open, fixture_close);
 }

@@ -122,8 +122,8 @@ static void open_slab(struct slab_test *t, int width, int height)
         t->uv[i][1] = rows[(i * 5 % CAMERAS) / COLUMNS];
     }
     t->file = fixture_make(CAMERAS, width, height, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
-    t->about =
-        (struct app_file){slab_geometry(), width, height, CAMERAS, {-1, -0.5}, {1, 0.5}, NULL};
+    t->about = (struct app_file){slab_geometry(), width,    height, CAMERAS,
+                                 {-1, -0.5},      {1, 0.5}, NULL,   NULL};
     const struct code_source source = {fixture_fetch, NULL, &t->file, NULL};
     assert_int_equal(renderer_create(&t->renderer, &fixture_gl, &source, &t->about.geometry,
                                      (const double(*)[2])t->uv, CAMERAS, &fixture_log),
@@ -320,7 +320,7 @@ static void one_row_and_one_camera_are_drawn(void **state)
     const struct relume_geometry g = slab_geometry();
     for (int n = 1; n <= 2; n++) {
         struct fixture_file f = fixture_make(n, 9, 7, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
-        const struct app_file file = {g, 9, 7, n, {-0.5, 0.2}, {0.5, 0.2}, NULL};
+        const struct app_file file = {g, 9, 7, n, {-0.5, 0.2}, {0.5, 0.2}, NULL, NULL};
         const struct code_source source = {fixture_fetch, NULL, &f, NULL};
         struct renderer r;
         assert_int_equal(renderer_create(&r, &fixture_gl, &source, &g, uv, n, &fixture_log),
@@ -354,7 +354,7 @@ static void compare_panorama(const struct relume_geometry *g, int width, int hei
         {70, -80, 0.7, 0}, {135, 35, 2, 0}, {20, -90, 0.5, 1}, {-130, 25, 0.8, 1}};
     struct fixture_file f =
         fixture_make(1, width, height, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, true);
-    const struct app_file file = {*g, width, height, 1, {0}, {0}, NULL};
+    const struct app_file file = {*g, width, height, 1, {0}, {0}, NULL, NULL};
     const struct code_source source = {fixture_fetch, NULL, &f, NULL};
     struct renderer r;
     assert_int_equal(renderer_create(&r, &fixture_gl, &source, g, NULL, 1, &fixture_log),
@@ -384,6 +384,10 @@ static void panorama_frames_are_the_library_s(void **state)
     compare_panorama(
         &(struct relume_geometry){.projection = RELUME_CYLINDRICAL, .v_min = -80, .v_max = 80}, 64,
         48);
+    compare_panorama(
+        &(struct relume_geometry){
+            .projection = RELUME_CYLINDRICAL, .v_min = -0.75, .v_max = 1, .disc = 20},
+        64, 18 + 20);
     compare_panorama(&(struct relume_geometry){.projection = RELUME_SPHERICAL}, 64, 32);
     compare_panorama(&(struct relume_geometry){.projection = RELUME_SPHERICAL}, 63, 32);
     compare_panorama(&(struct relume_geometry){.projection = RELUME_CUBE}, 6 * 16, 16);

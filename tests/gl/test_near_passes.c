@@ -205,14 +205,18 @@ static void components(void **state)
         transform[i] = (float)(0.4 * uniform(&random) - 0.2);
     for (int i = 0; i < 3 * FIXTURE_LIGHTS; i++)
         mean[i] = (float)uniform(&random);
-    for (int d = 0; d < 2; d++)
-        check_coder(&relume_basis_pca,
-                    (struct relume_coder_params){.coefficients = 26,
-                                                 .transform = transform,
-                                                 .mean = mean,
-                                                 .interpolant = relume_interpolant_find("chord")},
-                    d ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR,
-                    d ? "pca 26, display" : "pca 26, linear");
+    static const char *const interpolants[] = {"chord", "delaunay"};  // a grid, and triangles
+    for (int i = 0; i < 2; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "pca 26, %s, %s", interpolants[i], i ? "display" : "linear");
+        check_coder(
+            &relume_basis_pca,
+            (struct relume_coder_params){.coefficients = 26,
+                                         .transform = transform,
+                                         .mean = mean,
+                                         .interpolant = relume_interpolant_find(interpolants[i])},
+            i ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR, name);
+    }
 }
 
 static void codebooks(void **state)

@@ -263,6 +263,49 @@ static void the_inspector_decodes_as_the_library(void **state)
     }
 }
 
+// A cell of the plot, magnified about the selected light, is the pixel under a light from there.
+static void the_inspector_magnifies_about_the_light(void **state)
+{
+    (void)state;
+    struct fixture_file f = fixture_make(1, 7, 5, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
+    const struct relume_codes *codes;
+    fixture_fetch(&codes, &f, 0);
+    const struct relume_pack_info info = {.coder = codes->coder, .width = 7, .height = 5};
+    const struct code_source source = {fixture_fetch, NULL, &f, NULL};
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    struct inspector in;
+    bool shown;
+    assert_int_equal(inspect_create(&in, &info, &source, NULL, NULL), RELUME_OK);
+    OWNED_APP app = make_app();
+    app.file.width = 7;
+    app.file.height = 5;
+    app.inspect = true;
+    app.cursor[0] = app.cursor[1] = 200;
+    app.now.exposure_ev = -3;  // nothing is clipped
+    app.now.selected = 0;
+    app.now.light[0] = (struct relume_light){.direction = {0.6, 0, 0.8}, .rgb = {1, 1, 1}};
+    for (int zoom = 1; zoom <= 16; zoom *= 4) {
+        app.inspect_zoom = zoom;
+        assert_int_equal(inspect_update(&in, &app, &shown), RELUME_OK);
+        assert_true(shown);
+        const int cell[2] = {INSPECT_GRID / 2 + 4, INSPECT_GRID / 2 - 7};  // beside the marks
+        const double middle = zoom > 1 ? 0.6 : 0;
+        const double x = middle + (2 * (cell[0] + 0.5) / INSPECT_GRID - 1) / zoom;
+        const double y = (1 - 2 * (cell[1] + 0.5) / INSPECT_GRID) / zoom;
+        const struct relume_light from = {.direction = {x, y, sqrt(1 - x * x - y * y)},
+                                          .rgb = {0.125f, 0.125f, 0.125f}};
+        const float *got = in.plot.data + 3 * ((3 * cell[1] + 1) * INSPECT_SIDE + 3 * cell[0] + 1);
+        double want[3];
+        relume_relight_pixel(want, codes, in.x, in.y, &from, 1);
+        for (int c = 0; c < 3; c++) {
+            const float code = relume_transfer_encode(srgb, (float)want[c]);
+            assert_float_equal(got[c], fminf(fmaxf(code, 0), 1), 1e-4);
+        }
+    }
+    inspect_destroy(&in);
+    fixture_free(&f);
+}
+
 static void the_cursor_finds_its_pixel(void **state)
 {
     (void)state;
@@ -294,6 +337,7 @@ int main(void)
         cmocka_unit_test(the_panel_is_drawn_where_it_is),
         cmocka_unit_test(passes_are_those_of_the_library),
         cmocka_unit_test(the_inspector_decodes_as_the_library),
+        cmocka_unit_test(the_inspector_magnifies_about_the_light),
         cmocka_unit_test(the_cursor_finds_its_pixel),
     };
     return cmocka_run_group_tests(tests, fixture_open, fixture_close);

@@ -694,8 +694,8 @@ int main(int argc, char **argv)
     if (exr_start_read(&file, argv[1], NULL))
         fail("%s cannot be opened", argv[1]);
     if (strcmp(text_of("relume.format"), "relume") || int_of("relume.version") < 1 ||
-        int_of("relume.version") > 2)
-        fail("%s: no relume file of version 1 or 2", argv[1]);
+        int_of("relume.version") > 3)
+        fail("%s: no relume file of version 1 to 3", argv[1]);
     char view[32];
     snprintf(view, sizeof view, "view%04d", atoi(argv[2]));
     const int part = find_part(view), x = atoi(argv[3]), y = atoi(argv[4]);

@@ -5,6 +5,10 @@ the formats: what a viewer shows under one light, as 8-bit codes.
     relight_decode.py IN X Y Z OUT.ppm             relight's light weights
     relight_decode.py --score FOLDER TEST.lp        mean PSNR over the lights of a .lp, bytes a pixel
     relight_decode.py --predict IN.ptm OUT.ptm      a raw .ptm as JPEG planes that predict each other
+    relight_decode.py --planes IN.ptm RAW.ptm       how its JPEG planes are made: how many predicted,
+                                                    inverted, with records; pixels that leave a byte
+                                                    without a record; planes that are not baseline
+                                                    JPEG; largest error, in codes of RAW.ptm
 """
 import io
 import json
@@ -155,13 +159,14 @@ class Ptm:
                                     v[h * w * 6:h * w * 9].reshape(h, w, 3)], 2)
             else:
                 v = v[:h * w * 18].reshape(3, h, w, 6).transpose(1, 2, 0, 3).reshape(h, w, 18)
+        self.codes = v
         v = v[::-1].astype(float)
         n = 6 if self.luminance else 18
         self.c = (v[:, :, :n].reshape(h, w, -1, 6) - bias) * scale
         self.colour = v[:, :, 6:] if self.luminance else None
 
     @staticmethod
-    def jpegs(body, n, w, h):
+    def table(body, n):
         head = re.match(rb"\s*\d+((?:\s+-?\d+){%d})[ \t]*\r?\n" % (7 * n), body)
         table = np.array(head[1].split(), int).reshape(7, n)
         at, parts = head.end(), []
@@ -169,16 +174,24 @@ class Ptm:
             parts.append((body[at:at + table[5, i]],
                           body[at + table[5, i]:at + table[5, i] + table[6, i]]))
             at += table[5, i] + table[6, i]
+        return table, parts
+
+    def jpegs(self, body, n, w, h):
+        table, parts = self.table(body, n)
+        self.facts = {"predicted": (table[4] >= 0).sum(), "inverted": (table[0] == 1).sum(),
+                      "recorded": (table[6] > 0).sum(), "wrapped": 0,
+                      "progressive": sum(b"\xff\xc0" not in p[0] for p in parts)}
         planes = [None] * n
         for i in np.argsort(table[3]):
             p = np.asarray(Image.open(io.BytesIO(parts[i][0])).convert("L"), int)
             if table[4, i] >= 0:
                 reference = planes[table[4, i]]
-                p = (p - 128 + (255 - reference if table[0, i] == 1 else reference)) % 256
+                p = p - 128 + (255 - reference if table[0, i] == 1 else reference)
             p, side = p.copy().ravel(), parts[i][1]
             for k in range(0, len(side), 5):
                 p[int.from_bytes(side[k:k + 4], "big")] = side[k + 4]
-            planes[i] = p.reshape(h, w)
+            self.facts["wrapped"] += ((p < 0) | (p > 255)).sum()
+            planes[i] = p.reshape(h, w) % 256
         return np.stack(planes, 2)
 
     def render(self, l):
@@ -246,6 +259,12 @@ def predict(path, out):
     print(f"{(table[0] == 1).sum()} {(table[6] > 0).sum()}")
 
 
+def describe(path, raw):
+    f = Ptm(path)
+    off = abs(f.codes.astype(int) - Ptm(raw).codes.astype(int)).max()
+    print(*f.facts.values(), off)
+
+
 def codes(v):
     return np.clip(np.rint(255 * v), 0, 255).astype(np.uint8)
 
@@ -263,8 +282,9 @@ def score(folder, lp):
 
 
 def main():
-    if sys.argv[1] in ("--score", "--predict"):
-        {"--score": score, "--predict": predict}[sys.argv[1]](sys.argv[2], sys.argv[3])
+    commands = {"--score": score, "--predict": predict, "--planes": describe}
+    if sys.argv[1] in commands:
+        commands[sys.argv[1]](sys.argv[2], sys.argv[3])
         return
     picture = codes(open_any(sys.argv[1]).render([float(x) for x in sys.argv[2:5]]))
     Image.fromarray(picture).save(sys.argv[5])

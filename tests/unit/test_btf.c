@@ -327,6 +327,15 @@ static void test_bad_pictures(void **state)
     CHECK_OK(relume_image_save(&other, path, NULL));
     expect_refusal(folder, "4 x 2 pixels; expected 3 x 2");
     relume_image_destroy(&other);
+    // one texel of six in one picture of sixteen is white: 1.04 %
+    CHECK_OK(relume_image_create(&other, W, H, 3));
+    other.data[4] = 1.0f;
+    CHECK_OK(relume_image_save(&other, path, NULL));
+    relume_image_destroy(&other);
+    CHECK_OK(relume_btf_open(&btf, folder, relume_btf_params(.fill = true, .log = &log.log)));
+    assert_non_null(strstr(log.text, "1 % of all texels are saturated, most in "
+                                     "M_tl045_pl120_tv045_pv000.exr"));
+    relume_btf_destroy(&btf);
     CHECK_OK(relume_image_create(&other, W, H, 3));
     other.data[5] = NAN;
     CHECK_OK(relume_image_save(&other, path, NULL));

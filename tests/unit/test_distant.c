@@ -89,13 +89,110 @@ static void bands_and_threads_agree(void **state)
     free(band);
 }
 
+// ---------------------------------------------------------------- panoramas
+
+enum { PANO_WIDE = 32, PANO_HIGH = 16 };
+static const struct relume_vec3 pano_lamp = {0.4, 0.5, -0.7}, pano_eye = {0.1, 0.0, 0.2};
+
+// Inside of a matte sphere of radius 2 around the eye, by docs/conventions.md.
+static struct relume_vec3 pano_ray(enum relume_projection p, int x, int y)
+{
+    const double phi = ((x + 0.5) / PANO_WIDE * 360 - 180) * M_PI / 180;
+    const double e = (90 - (y + 0.5) / PANO_HIGH * 180) * M_PI / 180;
+    return p == RELUME_SPHERICAL
+               ? (struct relume_vec3){cos(e) * sin(phi), sin(e), -cos(e) * cos(phi)}
+               : bump_unit(
+                     (struct relume_vec3){sin(phi), 1 - 2 * (y + 0.5) / PANO_HIGH, -cos(phi)});
+}
+
+static double pano_value(struct relume_vec3 ray, bool falls)
+{
+    const struct relume_vec3 to = {pano_lamp.x - pano_eye.x - 2 * ray.x,
+                                   pano_lamp.y - pano_eye.y - 2 * ray.y,
+                                   pano_lamp.z - pano_eye.z - 2 * ray.z};
+    const double cosine = -bump_dot(bump_unit(to), ray);
+    return 0.7 * cosine * (falls ? bump_dot(pano_lamp, pano_lamp) / bump_dot(to, to) : 1.0);
+}
+
+static void write_panorama(enum relume_projection p, bool depth, const char *folder)
+{
+    struct relume_image image, far;
+    char path[128];
+    const char *images[] = {"l.exr"};
+    const struct relume_vec3 direction = bump_unit(pano_lamp);
+    CHECK_OK(relume_image_create(&image, PANO_WIDE, PANO_HIGH, 3));
+    CHECK_OK(relume_image_create(&far, PANO_WIDE, PANO_HIGH, 1));
+    for (int i = 0; i < PANO_WIDE * PANO_HIGH; i++) {
+        far.data[i] = 2.0f;
+        for (int c = 0; c < 3; c++)
+            image.data[3 * i + c] =
+                (float)pano_value(pano_ray(p, i % PANO_WIDE, i / PANO_WIDE), true);
+    }
+    snprintf(path, sizeof path, "%s/l.exr", folder);
+    CHECK_OK(relume_image_save(&image, path, NULL));
+    snprintf(path, sizeof path, "%s/d.exr", folder);
+    CHECK_OK(relume_image_save(&far, path, NULL));
+    const struct relume_manifest_view view = {.images = images, .depth = depth ? "d.exr" : NULL};
+    struct relume_manifest m = {
+        .geometry = relume_geometry_default(p, PANO_WIDE, PANO_HIGH),
+        .lights = 1,
+        .directions = &direction,
+        .positions = &pano_lamp,
+        .views = 1,
+        .view = &view,
+    };
+    m.geometry.center = pano_eye;
+    snprintf(path, sizeof path, "%s/capture.json", folder);
+    CHECK_OK(relume_manifest_write(&m, path, NULL));
+    relume_image_destroy(&image);
+    relume_image_destroy(&far);
+}
+
+static void panoramas_are_levelled(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 3; k++) {  // a sphere, a cylinder, a sphere whose depth is assumed
+        const enum relume_projection p = k == 1 ? RELUME_CYLINDRICAL : RELUME_SPHERICAL;
+        char folder[64];
+        relume_capture *capture;
+        struct relume_image image;
+        struct test_log log;
+        test_folder(folder);
+        test_log_init(&log);
+        write_panorama(p, k < 2, folder);
+        CHECK_OK(relume_capture_open(
+            &capture, folder,
+            relume_capture_params(.log = &log.log, .assume_depth = k == 2 ? 2.0 : 0.0)));
+        assert_int_equal(log.lines, 0);
+        CHECK_OK(relume_capture_image(&image, capture, 0, 0, NULL));
+        for (int i = 0; i < PANO_WIDE * PANO_HIGH; i++)
+            CHECK_NEAR((double)image.data[3 * i],
+                       pano_value(pano_ray(p, i % PANO_WIDE, i / PANO_WIDE), false), 1e-6);
+        relume_image_destroy(&image);
+        bump_close(&capture, folder);
+    }
+}
+
+static void a_panorama_without_depth_warns(void **state)
+{
+    (void)state;
+    char folder[64];
+    relume_capture *capture;
+    struct test_log log;
+    test_folder(folder);
+    test_log_init(&log);
+    write_panorama(RELUME_SPHERICAL, false, folder);
+    CHECK_OK(relume_capture_open(&capture, folder, relume_capture_params(.log = &log.log)));
+    assert_non_null(strstr(log.text, "--assume-depth"));
+    bump_close(&capture, folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_plane_becomes_exact),
-        cmocka_unit_test(without_falloff),
-        cmocka_unit_test(images_are_levelled),
-        cmocka_unit_test(bands_and_threads_agree),
+        cmocka_unit_test(panoramas_are_levelled), cmocka_unit_test(a_panorama_without_depth_warns),
+        cmocka_unit_test(a_plane_becomes_exact),  cmocka_unit_test(without_falloff),
+        cmocka_unit_test(images_are_levelled),    cmocka_unit_test(bands_and_threads_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

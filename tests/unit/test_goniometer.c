@@ -96,11 +96,44 @@ static void test_corduroy(void **state)
     relume_btf_destroy(&again);
 }
 
+// RMS of what two measurements differ by, in parts of the values, once the mean over views of each
+// texel and light is taken off: what one view has that the others have not.
+static double noise(const relume_btf *a, const relume_btf *b)
+{
+    double off = 0.0, all = 0.0;
+    for (int l = 0; l < DIRECTIONS; l++)
+        for (int i = 0; i < SIZE * SIZE * 3; i++) {
+            double d[DIRECTIONS], sum = 0.0;
+            for (int v = 0; v < DIRECTIONS; v++) {
+                const double x = (double)float_from_half(relume_btf_picture(a, v, l)[i]);
+                sum += d[v] = x - (double)float_from_half(relume_btf_picture(b, v, l)[i]);
+                all += x * x;
+            }
+            for (int v = 0; v < DIRECTIONS; v++)
+                off += (d[v] - sum / DIRECTIONS) * (d[v] - sum / DIRECTIONS);
+        }
+    return sqrt(off / all);
+}
+
+// Three rays in a texel leave a third of a ray's variance, a tent over sixteen pixels of one ray
+// each 1 / 10.2, of four rays each (the truth here) 1 / 40.8: together a ratio of 0.585.
+static void test_resampling(void **state)
+{
+    (void)state;
+    relume_btf *truth = measure("stone", 16, -1, 0, 2);
+    relume_btf *four = measure("stone", 4, -1, 0, 2), *three = measure("stone", 3, -1, 0, 2);
+    assert_true(noise(four, truth) < 0.7 * noise(three, truth));
+    relume_btf_destroy(&truth);
+    relume_btf_destroy(&four);
+    relume_btf_destroy(&three);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_wallpaper),
         cmocka_unit_test(test_corduroy),
+        cmocka_unit_test(test_resampling),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

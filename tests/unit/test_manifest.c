@@ -124,6 +124,14 @@ static void test_bad(void **state)
     expect("\"window\": {\"camera\": \"fish\"}, ", "", "", "", "camera");
     expect("\"panorama\": {\"v_min\": 3}, ", "", "", "", "v_min");
     expect("\"panorama\": {\"center\": [1, 2]}, ", "", "", "", "center");
+    expect("\"panorama\": {\"discs\": 8}, ", "", "", "", "none but of a cylinder");
+    expect("\"projection\": \"cylindrical\", \"panorama\": {\"discs\": 8}, ", "", "", "", NULL);
+    expect("\"projection\": \"cylindrical\", \"panorama\": {\"discs\": true}, ", "", "", "",
+           "panorama.discs");
+    expect("\"projection\": \"cylindrical\", \"panorama\": {\"discs\": -1}, ", "", "", "",
+           "panorama.discs");
+    expect("\"projection\": \"cylindrical\", \"panorama\": {\"v_min\": 0, \"discs\": 8}, ", "", "",
+           "", "v_min below 0");
     expect("\"version\": 1, ", "", "", "", "JSON");
     expect("", ", \"positions\": [[0,0,1]]", "", "", "as many positions");
     expect("", ", \"positions\": [[0,0,1],[0,0,\"x\"]]", "", "", "positions[1]");

@@ -20,12 +20,17 @@ struct panorama {
 
 // Linear interpolation of unit directions over a step h errs by at most h^2/8 for each axis (their
 // second derivatives are at most 1). Over a cube's edge a texel stands for a place up to half a
-// texel (1 / side) beside it, with at most half the weight.
+// texel (1 / side) beside it, with at most half the weight; over the rim of a disc up to half a row
+// of the cylinder (2.75 / 128), of which a unit vector there turns by 0.39.
 static const struct panorama panoramas[] = {
     {{.projection = RELUME_CYLINDRICAL, .v_min = -1.25, .v_max = 1.5}, 256, 128, 1.4e-4},
     {{.projection = RELUME_SPHERICAL}, 256, 128, 1.6e-4},
     {{.projection = RELUME_SPHERICAL}, 255, 128, 1.6e-4},
     {{.projection = RELUME_CUBE}, 6 * 64, 64, 0.5 / 64 + 2.5e-4},
+    {{.projection = RELUME_CYLINDRICAL, .v_min = -1.25, .v_max = 1.5, .disc = 80},
+     256,
+     128 + 80,
+     0.5 * 0.39 * 2.75 / 128 + 3e-4},
 };
 enum { PANORAMAS = sizeof panoramas / sizeof *panoramas };
 
@@ -103,7 +108,7 @@ static void directions_survive_the_round_trip(void **state)
         double xy[2];
         const bool shown = relume_panorama_pixel(xy, &p->geometry, p->width, p->height, d);
         const double h = d.y / hypot(d.x, d.z);
-        assert_true(shown == (p->geometry.projection != RELUME_CYLINDRICAL ||
+        assert_true(shown == (p->geometry.projection != RELUME_CYLINDRICAL || p->geometry.disc ||
                               (h >= p->geometry.v_min && h <= p->geometry.v_max)));
         if (!shown)
             continue;
@@ -111,6 +116,16 @@ static void directions_survive_the_round_trip(void **state)
         const vec3 back = relume_panorama_ray(&p->geometry, p->width, p->height, xy[0], xy[1]);
         assert_true(distance(back, d) < 1e-12);
     }
+}
+
+// In the rows of the discs, but not within one.
+static bool beside_discs(const struct panorama *p, double x, double y)
+{
+    const double side = p->geometry.disc;
+    const double down = y - (p->height - side);
+    const double across = x < side ? x : x - side;
+    return p->geometry.disc && down >= 0 &&
+           hypot(across - 0.5 * side, down - 0.5 * side) >= 0.5 * side;
 }
 
 static void pixels_survive_the_round_trip(void **state)
@@ -121,6 +136,8 @@ static void pixels_survive_the_round_trip(void **state)
         const struct panorama *p = &panoramas[i % PANORAMAS];
         const double x = p->width * uniform(&random);
         const double y = p->height * uniform(&random);
+        if (beside_discs(p, x, y))
+            continue;
         const vec3 d = relume_panorama_ray(&p->geometry, p->width, p->height, x, y);
         double xy[2];
         assert_true(relume_panorama_pixel(xy, &p->geometry, p->width, p->height, d));
@@ -143,6 +160,45 @@ static void cylinder_columns_and_rows(void **state)
             assert_vec3(relume_panorama_ray(&p->geometry, p->width, p->height, c + .5, r + .5),
                         sin(phi) / n, h / n, -cos(phi) / n);
         }
+}
+
+// Centre, right and top of each disc: right = direction x up.
+static void discs_of_a_cylinder(void **state)
+{
+    (void)state;
+    const struct panorama *p = &panoramas[4];
+    const struct relume_geometry *g = &p->geometry;
+    const int top = p->height - g->disc;
+    for (int lower = 0; lower < 2; lower++) {
+        const double left = lower ? g->disc : 0, h = lower ? g->v_min : g->v_max;
+        const double n = hypot(1, h), e = 1e-12;
+        assert_vec3(relume_panorama_ray(g, p->width, p->height, left + 40, top + 40), 0,
+                    lower ? -1 : 1, 0);
+        assert_vec3(relume_panorama_ray(g, p->width, p->height, left + 80 - e, top + 40), 1 / n,
+                    h / n, 0);
+        assert_vec3(relume_panorama_ray(g, p->width, p->height, left + 40, top), 0, h / n,
+                    (lower ? -1 : 1) / n);
+    }
+    const vec3 beside = relume_panorama_ray(g, p->width, p->height, 2 * g->disc + 1, top + 40);
+    assert_true(beside.x == 0 && beside.y == 0 && beside.z == 0);
+}
+
+static void only_what_the_discs_show_counts(void **state)
+{
+    (void)state;
+    const struct panorama *p = &panoramas[4];
+    for (int y = 0; y < p->height; y++)
+        for (int x = 0; x < p->width; x++)
+            assert_true(relume_geometry_shows(&p->geometry, p->width, p->height, x, y) ==
+                        !beside_discs(p, x + 0.5, y + 0.5));
+    struct relume_geometry g = p->geometry;
+    assert_true(relume_geometry_fits(&g, 160, 81));
+    assert_false(relume_geometry_fits(&g, 159, 81));
+    assert_false(relume_geometry_fits(&g, 160, 80));
+    g.v_max = -1;
+    assert_false(relume_geometry_fits(&g, 160, 81));
+    g = (struct relume_geometry){.projection = RELUME_SPHERICAL, .disc = 2};
+    assert_false(relume_geometry_fits(&g, 160, 81));
 }
 
 static void sphere_landmarks(void **state)
@@ -268,7 +324,7 @@ static void frames_show_the_directions_they_look_at(void **state)
     for (int i = 0; i < PANORAMAS; i++) {
         const struct panorama *p = &panoramas[i];
         struct relume_image image = direction_image(p);
-        const bool cylinder = p->geometry.projection == RELUME_CYLINDRICAL;
+        const bool cylinder = p->geometry.projection == RELUME_CYLINDRICAL && !p->geometry.disc;
         for (int k = 0; k < (cylinder ? 4 : 8); k++) {
             assert_int_equal(relume_panorama_frame(&out, &p->geometry, &image, looks[k], NULL),
                              RELUME_OK);
@@ -295,6 +351,8 @@ static void texel_centres_are_exact(void **state)
             const int x = (int)(p->width * uniform(&random));
             const int y = (int)(p->height * uniform(&random));
             float rgb[3];
+            if (beside_discs(p, x + 0.5, y + 0.5))
+                continue;
             assert_true(relume_panorama_sample(
                 rgb, &p->geometry, &image,
                 relume_panorama_ray(&p->geometry, p->width, p->height, x + 0.5, y + 0.5)));
@@ -374,6 +432,33 @@ static void no_seam_at_the_edges_of_a_cube(void **state)
     relume_image_destroy(&image);
 }
 
+// At both rims all around, over the wrap beyond them and in the middle; pixels beside the discs are
+// not read.
+static void no_seam_at_the_rims_of_discs(void **state)
+{
+    (void)state;
+    const struct panorama *p = &panoramas[4];
+    const struct relume_geometry *g = &p->geometry;
+    struct relume_image image = random_image(p);
+    for (int i = 0; i < p->width * p->height; i++)
+        if (!relume_geometry_shows(g, p->width, p->height, i % p->width, i / p->width))
+            image.data[3 * i] = image.data[3 * i + 1] = image.data[3 * i + 2] = NAN;
+    const double e = 1e-9;
+    uint64_t random = 14;
+    for (int k = 0; k < 4000; k++) {
+        const double h = k & 1 ? g->v_min : g->v_max;
+        double phi = 2 * PI * uniform(&random);
+        if (k & 2)  // where the cylinder wraps, and where a rim touches its square
+            phi = 0.5 * PI * floor(4 * uniform(&random)) + 1e-3 * (uniform(&random) - 0.5);
+        const double x = sin(phi), z = -cos(phi);
+        assert_continuous(p, &image, unit(x, h * (1 - e), z), unit(x, h * (1 + e), z));
+        const double r = 0.1 + 1.2 * uniform(&random);
+        assert_continuous(p, &image, unit(-e, h, r), unit(e, h, r));
+        assert_continuous(p, &image, unit(e * x, h, e * z), unit(-e * x, h, -e * z));
+    }
+    relume_image_destroy(&image);
+}
+
 // ---------------------------------------------------------------- edges of the API
 
 static void frames_do_not_depend_on_threads(void **state)
@@ -419,6 +504,8 @@ int main(void)
         cmocka_unit_test(directions_survive_the_round_trip),
         cmocka_unit_test(pixels_survive_the_round_trip),
         cmocka_unit_test(cylinder_columns_and_rows),
+        cmocka_unit_test(discs_of_a_cylinder),
+        cmocka_unit_test(only_what_the_discs_show_counts),
         cmocka_unit_test(sphere_landmarks),
         cmocka_unit_test(cube_faces),
         cmocka_unit_test(no_direction_no_pixel),
@@ -429,6 +516,7 @@ int main(void)
         cmocka_unit_test(sample_black_outside),
         cmocka_unit_test(no_seam_at_the_wrap_or_the_poles),
         cmocka_unit_test(no_seam_at_the_edges_of_a_cube),
+        cmocka_unit_test(no_seam_at_the_rims_of_discs),
         cmocka_unit_test(frames_do_not_depend_on_threads),
         cmocka_unit_test(frames_refuse_what_is_no_panorama),
     };

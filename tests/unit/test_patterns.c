@@ -163,6 +163,10 @@ static void directions_are_read_and_normalised(void **state)
         "{\"pattern\":\"x\",\"n\":2,\"directions\":[[0,0,1],[3,0,4]],\"discrepancy\":1}",
         "{\"format\":\"relume-capture\",\"version\":1,\"lights\":{\"directions\":[[0,0,1],[3,0,4]]}"
         "}",
+        "2\n0 0 2\n3 0 4\n",
+        "1.jpg 0 0 2\n2.jpg 3,0,4\n",
+        "{\"lightConfiguration\":\"directional\",\"directions\":[{\"x\":0,\"y\":0,\"z\":1},"
+        "{\"x\":3,\"y\":0,\"z\":4}]}",
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         vec3 *v;
@@ -192,6 +196,14 @@ static void broken_direction_files_are_refused(void **state)
         "{}",
         "{\"directions\":[[0,0,0]]}",
         "{\"directions\":[]}",
+        "2\n1 0\n",
+        "{\"lightConfiguration\":\"round\",\"directions\":[[0,0,1]]}",
+        "{\"lightConfiguration\":\"spherical\",\"directions\":[[0,0,1]]}",
+        "{\"lightConfiguration\":\"lights3d\",\"imageWidth\":-3,\"positions3d\":[[0,0,1]]}",
+        "{\"lightConfiguration\":\"directional\",\"directions\":[{\"x\":0,\"y\":0}]}",
+        "{\"lightConfiguration\":\"directional\",\"directions\":[[0,0,1]],\"ledAdjust\":[[0,1,1]]}",
+        "{\"lightConfiguration\":\"directional\",\"directions\":[[0,0,1]],\"ledAdjust\":[[1,1,1],"
+        "[1,1,1]]}",
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         vec3 *v;
@@ -205,9 +217,63 @@ static void broken_direction_files_are_refused(void **state)
     assert_int_equal(relume_lights_read(&v, &n, "/nowhere/at/all", NULL), RELUME_EDATA);
 }
 
+static relume_status load_text(struct relume_light_list *out, const char *text, bool positions)
+{
+    char path[] = "/tmp/relume-lights-XXXXXX";
+    const int fd = mkstemp(path);
+    assert_true(fd >= 0 && write(fd, text, strlen(text)) == (ssize_t)strlen(text));
+    close(fd);
+    const relume_status status = relume_lights_load(out, path, positions, NULL);
+    unlink(path);
+    return status;
+}
+
+// A dome of 300 mm over a picture that shows 200 mm: 100 mm are one world unit.
+static void a_dome_tells_positions_and_leds(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "{\"label\":\"d\",\"imageWidth\":200,\"domeDiameter\":300,\"verticalOffset\":0,"
+        "\"lightConfiguration\":\"spherical\",\"directions\":[],"
+        "\"positionsSphere\":[{\"x\":0,\"y\":0,\"z\":150},{\"x\":90,\"y\":0,\"z\":120}],"
+        "\"ledAdjust\":[{\"r\":1,\"g\":1,\"b\":1},{\"r\":2,\"g\":1,\"b\":0.5}]}";
+    for (int positions = 0; positions < 2; positions++) {
+        struct relume_light_list list;
+        assert_int_equal(load_text(&list, text, positions), RELUME_OK);
+        assert_int_equal(list.count, 2);
+        check_near(list.direction[1].x, 0.6, 1e-12);
+        check_near(list.position[1].x, 0.9, 1e-12);
+        check_near(list.position[1].z, 1.2, 1e-12);
+        check_near(list.intensity[1][0], 0.5, 1e-6);
+        check_near(list.intensity[1][2], 2.0, 1e-6);
+        relume_light_list_destroy(&list);
+    }
+}
+
+static void vectors_are_positions_when_asked(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"0 0 2\n3 0 4\n", "2\na.png 0 0 2\nb.png 3 0 4\n",
+                                        "{\"positions\":[[0,0,2],[3,0,4]]}"};
+    struct relume_light_list list;
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        assert_int_equal(load_text(&list, texts[i], true), RELUME_OK);
+        check_near(list.position[1].z, 4.0, 1e-12);
+        check_near(list.direction[1].z, 0.8, 1e-12);
+        relume_light_list_destroy(&list);
+    }
+    assert_int_equal(load_text(&list, texts[0], false), RELUME_OK);
+    assert_null(list.position);
+    relume_light_list_destroy(&list);
+    assert_int_equal(load_text(&list, "{\"directions\":[[0,0,1]]}", true), RELUME_EDATA);
+    assert_null(list.direction);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_dome_tells_positions_and_leds),
+        cmocka_unit_test(vectors_are_positions_when_asked),
         cmocka_unit_test(hammersley_follows_the_book),
         cmocka_unit_test(every_pattern_gives_exactly_n_unit_vectors),
         cmocka_unit_test(no_lights_are_refused),

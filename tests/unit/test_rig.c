@@ -261,6 +261,15 @@ static void test_wrong_files(void **state)
         {RIG("[{\"light\": \"dir 0 0 1\", \"intensity\": \"1\"}]"), "intensity; expected a number"},
         {RIG("[{\"light\": \"dir 0 0 1\", \"intensity\": -1}]"), "0 or more, found -1"},
         {RIG("[{\"light\": \"env none.hdr\"}]"), "none.hdr: no such file"},
+        {RIG("[\n  3]"), "line 2, column 3; light 1; expected an object"},
+        {RIG("[\n {\"name\": \"}],{\\\"light\\\":\", \"light\": \"dir 0 0 1\"},\n"
+             " { \"name\": \"\u00e4\u20ac\", \"light\": \"dir 0 0\" }]"),
+         "line 3, column 18; light 2; light 'dir 0 0'"},
+        {RIG("[{\"light\": \"dir 0 0 1\",\n\t\"rgb\": [[1, 2], {}, 3]}]"),
+         "line 2, column 2; light 1; rgb; expected three numbers"},
+        {RIG("[{\"light\": \"dir 0 0 1\", \"rgb\": [1, 2, 3],\n\n  \"lihgt\": 3}]"),
+         "line 3, column 3; light 1; lihgt; expected name"},
+        {RIG("[{\"light\": \"dir 0 0 1\"},\n\n{}]"), "line 3, column 1; light 2; light; expected"},
     };
     char path[128];
     snprintf(path, sizeof path, "%s/wrong.json", folder);

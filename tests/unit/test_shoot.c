@@ -112,11 +112,156 @@ static void a_dark_photograph(void **state)
     test_folder_remove(p.folder);
 }
 
+// ---------------------------------------------------------------- uneven light
+
+enum { WIDE = 48, HIGH = 32 };
+enum unevenness { ROUND, SLANTED };
+
+static double unevenness(enum unevenness u, int light, int x, int y)
+{
+    const double dx = x + 0.5 - WIDE / 2, dy = y + 0.5 - HIGH / 2;
+    const double r2 = 4.0 * (dx * dx + dy * dy) / (WIDE * WIDE + HIGH * HIGH);
+    return u == ROUND ? 1.0 - 0.4 * r2 : 1.0 + 0.4 * dx / WIDE * (light - 1.5);
+}
+
+static void save_uneven(const char *path, enum unevenness u, int light, const double rgb[3])
+{
+    struct relume_image image;
+    CHECK_OK(relume_image_create(&image, WIDE, HIGH, 3));
+    for (int i = 0; i < WIDE * HIGH; i++)
+        for (int c = 0; c < 3; c++)
+            image.data[3 * i + c] = (float)(rgb[c] * unevenness(u, light, i % WIDE, i / WIDE));
+    CHECK_OK(relume_image_save(&image, path, NULL));
+    relume_image_destroy(&image);
+}
+
+// A grey board under reddish lamps, seen through a lens: even and grey when all is taken out.
+static void check_even(enum unevenness u, int flats, bool radial)
+{
+    static const double lamp[3] = {0.5, 0.3, 0.2}, board[3] = {0.7, 0.7, 0.7};
+    struct photographs p;
+    struct relume_shoot shoot;
+    char flat[LAMPS][96], lights[96], text[256] = "";
+    const char *flat_list[LAMPS];
+    test_folder(p.folder);
+    snprintf(p.out, sizeof p.out, "%s/out", p.folder);
+    snprintf(lights, sizeof lights, "%s/lights.txt", p.folder);
+    for (int i = 0; i < LAMPS; i++) {
+        const struct relume_vec3 d = lamp_at(i, 1.0);
+        snprintf(p.path[i], sizeof p.path[i], "%.63s/p%d.exr", p.folder, i);
+        snprintf(flat[i], sizeof flat[i], "%.63s/f%d.exr", p.folder, i);
+        p.list[i] = p.path[i];
+        flat_list[i] = flat[i];
+        save_uneven(p.path[i], u, i, lamp);
+        save_uneven(flat[i], u, i, board);
+        snprintf(text + strlen(text), sizeof text - strlen(text), "%f %f %f\n", d.x, d.y, d.z);
+    }
+    FILE *f = fopen(lights, "w");
+    assert_non_null(f);
+    fputs(text, f);
+    fclose(f);
+    struct relume_shoot_params params = params_of(&p);
+    params.lights = lights;
+    params.flats = flat_list;
+    params.flat_count = flats;
+    params.radial = radial;
+    params.white[0] = 10, params.white[1] = 8, params.white[2] = 12, params.white[3] = 6;
+    CHECK_OK(relume_shoot_make(&shoot, p.out, &params));
+    relume_capture *capture;
+    CHECK_OK(relume_capture_open(&capture, p.out, NULL));
+    for (int i = 0; i < LAMPS; i++) {
+        struct relume_image image;
+        CHECK_OK(relume_capture_image(&image, capture, 0, i, NULL));
+        for (int k = 0; k < 3 * WIDE * HIGH; k++)  // half floats: 2^-11; the fit of the polynomial
+            CHECK_NEAR(image.data[k] / image.data[0], 1.0, 2e-3);
+        relume_image_destroy(&image);
+    }
+    relume_capture_destroy(&capture);
+    relume_shoot_destroy(&shoot);
+    test_folder_remove(p.folder);
+}
+
+static void light_is_evened_out(void **state)
+{
+    (void)state;
+    check_even(ROUND, 1, false);
+    check_even(ROUND, 1, true);
+    check_even(SLANTED, LAMPS, false);
+}
+
+// ---------------------------------------------------------------- a camera on the lamp
+
+// A model whose unit is 1.7 of the capture's, the object 5 of them before its camera.
+static void write_model(const char *folder, int lamps)
+{
+    enum { FOCAL = 60 };
+    const double eye = 2.0 * FOCAL / WIDE, unit = eye / 5.0;
+    char path[128];
+    snprintf(path, sizeof path, "%s/cameras.txt", folder);
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    fprintf(f, "1 PINHOLE %d %d %d %d %d %d\n", WIDE, HIGH, FOCAL, FOCAL, WIDE / 2, HIGH / 2);
+    fclose(f);
+    snprintf(path, sizeof path, "%s/images.txt", folder);
+    f = fopen(path, "w");
+    assert_non_null(f);
+    fprintf(f, "1 1 0 0 0 0 0 0 1 p2.exr\n\n");
+    for (int i = 0; i < lamps; i++) {  // half a turn about x: t = -R c
+        const struct relume_vec3 p = lamp_at(i, 2.0);
+        const double c[3] = {p.x / unit, -p.y / unit, (eye - p.z) / unit};
+        fprintf(f, "%d 0 1 0 0 %.9f %.9f %.9f 1 lamp/%02d.jpg\n\n", 7 - i, -c[0], c[1], c[2], i);
+    }
+    fclose(f);
+    snprintf(path, sizeof path, "%s/points3D.txt", folder);
+    f = fopen(path, "w");
+    assert_non_null(f);
+    for (int i = 0; i < 9; i++)
+        fprintf(f, "%d %g %g %g 0 0 0 0.1\n", i + 1, 0.1 * i, -0.1 * i, i == 4 ? 99.0 : 5.0);
+    fclose(f);
+}
+
+static void a_camera_on_the_lamp(void **state)
+{
+    (void)state;
+    static const double lamp[3] = {0.5, 0.5, 0.5};
+    struct photographs p;
+    struct relume_shoot shoot;
+    struct test_log log;
+    test_folder(p.folder);
+    snprintf(p.out, sizeof p.out, "%s/out", p.folder);
+    for (int i = 0; i < LAMPS; i++) {
+        snprintf(p.path[i], sizeof p.path[i], "%.63s/p%d.exr", p.folder, i);
+        p.list[i] = p.path[i];
+        save_uneven(p.path[i], ROUND, i, lamp);
+    }
+    struct relume_shoot_params params = params_of(&p);
+    test_log_init(&log);
+    params.log = &log.log;
+    params.lights = p.folder;
+    params.near = true;
+    write_model(p.folder, LAMPS - 1);
+    assert_int_equal(relume_shoot_make(&shoot, p.out, &params), RELUME_EDATA);
+    assert_non_null(strstr(log.text, "3 photographs from the lamp; expected 4"));
+    write_model(p.folder, LAMPS);
+    CHECK_OK(relume_shoot_make(&shoot, p.out, &params));
+    for (int i = 0; i < LAMPS; i++) {
+        const struct relume_vec3 off = made_add(shoot.position[i], lamp_at(i, 2.0), -1.0);
+        CHECK_NEAR(made_dot(off, off), 0.0, 1e-12);
+    }
+    relume_capture *capture;
+    CHECK_OK(relume_capture_open(&capture, p.out, NULL));
+    assert_true(relume_capture_manifest(capture)->geometry.perspective);
+    CHECK_NEAR(relume_capture_manifest(capture)->geometry.camera_z, 2.5, 1e-6);
+    relume_capture_destroy(&capture);
+    relume_shoot_destroy(&shoot);
+    test_folder_remove(p.folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(positions_orthographic),
-        cmocka_unit_test(positions_perspective),
+        cmocka_unit_test(light_is_evened_out),    cmocka_unit_test(a_camera_on_the_lamp),
+        cmocka_unit_test(positions_orthographic), cmocka_unit_test(positions_perspective),
         cmocka_unit_test(a_dark_photograph),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -354,7 +354,7 @@ static void only_needed_views_are_read(void **state)
     const struct relume_view_params params = {.disparity = c.disparity};
     struct relume_image view[VIEWS], disparity[VIEWS], got, want = draw(&w, &params);
     bool needed[VIEWS];
-    const int n = relume_slabs_needs(needed, c.slabs, &w, &params);
+    const int n = relume_slabs_needs(needed, c.slabs, &w, W, &params);
     int marked = 0, first = -1;
     for (int i = 0; i < VIEWS; i++) {
         view[i] = needed[i] ? c.view[i] : (struct relume_image){0};
@@ -412,6 +412,183 @@ static void threads_do_not_matter(void **state)
     assert_memory_equal(one.data, three.data, 3 * W * W * sizeof(float));
     relume_image_destroy(&one);
     relume_image_destroy(&three);
+}
+
+// ---------------------------------------------------------------- lenses
+
+static double uniform(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) * 0x1p-53;
+}
+
+// A pinhole anywhere on the lens with a window on the plane in focus, by hand.
+static struct relume_window random_pinhole(const struct relume_window *w, double aperture,
+                                           double focus, uint64_t *random)
+{
+    const double away = sqrt(dot(w->eye, w->eye));  // windows here go through the origin
+    double x, y;
+    do {
+        x = 2 * uniform(random) - 1;
+        y = 2 * uniform(random) - 1;
+    } while (x * x + y * y > 1);
+    const vec3 none = {0, 0, 0};
+    const double r = 0.5 * aperture, wide = sqrt(dot(w->right, w->right)),
+                 high = sqrt(dot(w->down, w->down)), near = 1 - focus / away;
+    return (struct relume_window){
+        .eye = along(along(w->eye, w->right, r * x / wide), w->down, r * y / high),
+        .corner = along(w->eye, minus(w->corner, w->eye), near),
+        .right = along(none, w->right, near),
+        .down = along(none, w->down, near),
+    };
+}
+
+// Over the ball's inside, where no silhouette is blurred in, or over all of the picture.
+static double psnr(const struct relume_image *a, const struct relume_image *b,
+                   const struct relume_window *inside)
+{
+    double square = 0;
+    int n = 0;
+    for (int i = 0; i < 3 * W * W; i++) {
+        if (inside && depth_in_ball(inside, i / 3) > 0.6)
+            continue;
+        square += pow((double)a->data[i] - (double)b->data[i], 2);
+        n++;
+    }
+    return -10 * log10(square / n);
+}
+
+// The ball itself seen from many places of the lens, averaged.
+static struct relume_image render_lens(const struct relume_window *w, double aperture, double focus)
+{
+    enum { MANY = 600 };
+    struct relume_image sum, one, depth;
+    uint64_t random = 3;
+    CHECK_OK(relume_image_create(&sum, W, W, 3));
+    for (int k = 0; k < MANY; k++) {
+        const struct relume_window from = random_pinhole(w, aperture, focus, &random);
+        render(&one, &depth, &from, W, W);
+        for (int i = 0; i < 3 * W * W; i++)
+            sum.data[i] += one.data[i] / MANY;
+        relume_image_destroy(&one);
+        relume_image_destroy(&depth);
+    }
+    return sum;
+}
+
+// By depth from between cameras and on a seam, focus on the ball's front, its middle and behind it.
+// A pinhole is worse by far, and so is another focus.
+static void a_lens_sees_what_its_points_see(void **state)
+{
+    (void)state;
+    static const double azimuth_deg[] = {8, 30, 38}, focus[] = {0.65, 0, -0.5};
+    for (int i = 0; i < 3; i++) {
+        const struct relume_window w = window_from(eye_at(azimuth_deg[i], 0.3, 3.1));
+        const double aperture = 0.8;
+        struct relume_view_params params = {
+            .disparity = c.disparity, .aperture = aperture, .focus = focus[i]};
+        struct relume_image want = render_lens(&w, aperture, focus[i]);
+        struct relume_image got = draw(&w, &params);
+        params.focus = focus[(i + 1) % 3];
+        struct relume_image other = draw(&w, &params);
+        params.aperture = params.focus = 0;
+        struct relume_image sharp = draw(&w, &params);
+        // the blur of 600 random points against that of a few; over all of the picture the errors
+        // are silhouettes, a texel wide, as the pinhole's are
+        assert_true(psnr(&got, &want, &w) > 48);
+        assert_true(psnr(&other, &want, &w) < 47.5);
+        assert_true(psnr(&got, &want, NULL) > psnr(&sharp, &want, NULL));
+        relume_image_destroy(&want);
+        relume_image_destroy(&got);
+        relume_image_destroy(&other);
+        relume_image_destroy(&sharp);
+    }
+}
+
+// Without depth: what the library's own pinhole frames give, averaged.
+static void a_lens_without_depth_is_the_mean_of_frames(void **state)
+{
+    (void)state;
+    enum { MANY = 300 };
+    const struct relume_window w = window_from(eye_at(27, 0.2, 3.3));
+    const struct relume_view_params flat = {.interpolation = RELUME_INTERPOLATE_LINEAR};
+    struct relume_image sum, got = draw(&w, relume_view_params(.aperture = 0.6, .focus = 0.4));
+    struct relume_image sharp = draw(&w, &flat);
+    uint64_t random = 5;
+    CHECK_OK(relume_image_create(&sum, W, W, 3));
+    for (int k = 0; k < MANY; k++) {
+        const struct relume_window from = random_pinhole(&w, 0.6, 0.4, &random);
+        struct relume_image one = draw(&from, &flat);
+        for (int i = 0; i < 3 * W * W; i++)
+            sum.data[i] += one.data[i] / MANY;
+        relume_image_destroy(&one);
+    }
+    assert_true(psnr(&got, &sum, NULL) > 50);
+    assert_true(psnr(&sharp, &sum, NULL) < 42);
+    relume_image_destroy(&sum);
+    relume_image_destroy(&got);
+    relume_image_destroy(&sharp);
+}
+
+// A pinhole has everything in focus; views that a lens does not need are not read.
+static void small_lenses(void **state)
+{
+    (void)state;
+    const struct relume_window w = window_from(eye_at(14, -0.3, 3.2));
+    struct relume_image sharp = draw(&w, relume_view_params(.disparity = c.disparity));
+    struct relume_image pinhole =
+        draw(&w, relume_view_params(.disparity = c.disparity, .focus = 0.5));
+    // the same rays, rounded differently: by a comparison of depths another texel here and there
+    assert_true(psnr(&pinhole, &sharp, NULL) > 60);
+    struct relume_view_params params = {.disparity = c.disparity, .aperture = 0.4};
+    struct relume_image view[VIEWS], want = draw(&w, &params), got;
+    bool needed[VIEWS];
+    assert_true(relume_slabs_needs(needed, c.slabs, &w, W, &params) < VIEWS / 3);
+    for (int i = 0; i < VIEWS; i++)
+        view[i] = needed[i] ? c.view[i] : (struct relume_image){0};
+    CHECK_OK(relume_image_create(&got, W, W, 3));
+    CHECK_OK(relume_slabs_frame(&got, c.slabs, &w, view, &params));
+    assert_true(difference(&got, &want) == 0);
+    const struct relume_view_params wrong[] = {{.aperture = -1},
+                                               {.aperture = (double)NAN},
+                                               {.aperture = (double)INFINITY},
+                                               {.focus = 3.3},
+                                               {.aperture = 0.1, .focus = (double)NAN}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        assert_int_equal(relume_slabs_frame(&got, c.slabs, &w, c.view, &wrong[i]), RELUME_EINVAL);
+    relume_image_destroy(&sharp);
+    relume_image_destroy(&pinhole);
+    relume_image_destroy(&want);
+    relume_image_destroy(&got);
+}
+
+// Points lie within the disc, their mean is its middle, their mean square radius half the square of
+// its own; a larger blur takes more of them.
+static void pinholes_fill_the_lens(void **state)
+{
+    (void)state;
+    const struct relume_window w = window_from(eye_at(20, 0.5, 3));
+    int before = 1;
+    for (int k = 0; k < 4; k++) {
+        const double aperture = 0.05 * pow(4, k);
+        const int n = relume_lens_points(&w, aperture, 0, 200);
+        double square = 0;
+        vec3 middle = {0, 0, 0};
+        for (int i = 0; i < n; i++) {
+            const struct relume_window from = relume_lens_window(&w, aperture, 0, i, n);
+            const vec3 off = minus(from.eye, w.eye);
+            assert_true(dot(off, off) < 0.25 * aperture * aperture);
+            CHECK_NEAR(dot(off, ray_of(&w, 0.5, 0.5)), 0, 1e-12);
+            square += dot(off, off) / n;
+            middle = along(middle, off, 1.0 / n);
+        }
+        CHECK_NEAR(square, 0.125 * aperture * aperture, 1e-12);
+        assert_true(sqrt(dot(middle, middle)) < 0.06 * aperture);
+        assert_true(n >= before);
+        before = n;
+    }
+    assert_int_equal(before, 64);
+    assert_int_equal(relume_lens_points(&w, 0, 0.3, 200), 1);
 }
 
 // ---------------------------------------------------------------- weights, windows, rays
@@ -525,7 +702,7 @@ static void wrong_frames_are_refused(void **state)
     const struct relume_window w = window_from(eye_at(0, 0, 3)),
                                high = window_from(eye_at(0, 40, 3));
     const struct relume_view_params wrong[] = {
-        {.aperture = 0.1}, {.focus = 0.1}, {.interpolation = RELUME_INTERPOLATE_DEPTH}};
+        {.aperture = -0.1}, {.focus = 3}, {.interpolation = RELUME_INTERPOLATE_DEPTH}};
     struct relume_image out;
     float rgb[3];
     CHECK_OK(relume_image_create(&out, W, W, 3));
@@ -552,6 +729,10 @@ int main(void)
         cmocka_unit_test(only_needed_views_are_read),
         cmocka_unit_test(a_ray_is_its_pixel),
         cmocka_unit_test(threads_do_not_matter),
+        cmocka_unit_test(a_lens_sees_what_its_points_see),
+        cmocka_unit_test(a_lens_without_depth_is_the_mean_of_frames),
+        cmocka_unit_test(small_lenses),
+        cmocka_unit_test(pinholes_fill_the_lens),
         cmocka_unit_test(weights_fade_to_the_border),
         cmocka_unit_test(an_eye_before_a_slab_has_its_window),
         cmocka_unit_test(eyes_look_where_they_are_told),

@@ -171,6 +171,14 @@ static void panorama_rays_follow_the_contract(void **state)
     check_direction(camera_ray_at(&c, 6, 2), 1, 0, 0);
     check_direction(camera_ray_at(&c, 0, 2), 0, 0, 1);
     check_direction(camera_ray_at(&c, 4, 0), 0, 1, -1);
+    c.height = 4 + 3;
+    c.geometry.disc = 3;
+    check_direction(camera_ray_at(&c, 0, 2), 0, 0, 1);
+    check_direction(camera_ray_at(&c, 1.5, 5.5), 0, 1, 0);
+    check_direction(camera_ray_at(&c, 3, 5.5 - 1e-13), -1, -1, 0);
+    check_direction(camera_ray_at(&c, 1.5, 7), 0, 1, -1);  // up is +z
+    check_direction(camera_ray_at(&c, 4.5, 7), 0, -1, 1);  // up is -z
+    c.height = 4;
     c.geometry = relume_geometry_default(RELUME_SPHERICAL, 8, 4);
     check_direction(camera_ray_at(&c, 6, 2), 1, 0, 0);
     check_direction(camera_ray_at(&c, 4, 1), 0, 1, -1);

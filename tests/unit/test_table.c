@@ -124,10 +124,60 @@ static void test_two_tables(void **state)
     relume_capture_destroy(&capture);
 }
 
+// Fetched rows are what read ones are, for bytes in the file's own curve and in another, for pieces
+// of a band, and for floating-point files.
+static void check_fetched(const char *name, struct relume_transfer display)
+{
+    static float want[LIGHTS * BYTES], got[3 * WIDTH * 8];
+    char path[128];
+    relume_capture *capture;
+    relume_table *table;
+    struct relume_image image;
+    write_images(0);
+    CHECK_OK(relume_image_create(&image, WIDTH, HEIGHT, 3));
+    for (int k = 0; k < BYTES; k++)
+        image.data[k] = 0.01f * (float)(k % 97);
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    CHECK_OK(relume_image_save(&image, path, NULL));
+    relume_image_destroy(&image);
+    snprintf(path, sizeof path, "%s/fetch.lp", folder);
+    FILE *lp = fopen(path, "w");
+    fprintf(lp, "3\n%s 0 0 1\n1.png 0.6 0 0.8\n2.png 0 0.6 0.8\n", name);
+    fclose(lp);
+    CHECK_OK(relume_capture_open(&capture, path, NULL));
+    CHECK_OK(relume_table_open(&table, capture, 0, relume_table_params(.display = display)));
+    CHECK_OK(relume_table_read(table, HEIGHT, want));
+    relume_table_destroy(&table);
+    CHECK_OK(relume_table_open(&table, capture, 0, relume_table_params(.display = display)));
+    for (int row = 0; row < HEIGHT; row += 8) {
+        CHECK_OK(relume_table_fetch(table, 8));
+        for (int i = 0; i < LIGHTS; i++) {
+            const int first = 3 * i, n = WIDTH * 8 - first;
+            relume_table_planes(table, i, (size_t)first, (size_t)n, got, WIDTH * 8);
+            for (int x = 0; x < n; x++)
+                for (int c = 0; c < 3; c++)
+                    assert_true(got[c * WIDTH * 8 + x] ==
+                                want[i * BYTES + (row * WIDTH + first + x) * 3 + c]);
+        }
+    }
+    assert_int_equal(relume_table_fetch(table, 1), RELUME_EINVAL);
+    relume_table_destroy(&table);
+    relume_capture_destroy(&capture);
+}
+
+static void test_fetched_rows(void **state)
+{
+    (void)state;
+    check_fetched("0.png", (struct relume_transfer){.curve = RELUME_CURVE_SRGB});
+    check_fetched("0.png", (struct relume_transfer){.curve = RELUME_CURVE_LINEAR});
+    check_fetched("0.exr", (struct relume_transfer){.curve = RELUME_CURVE_SRGB});
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_nothing_is_kept, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_fetched_rows, setup, teardown),
         cmocka_unit_test_setup_teardown(test_all_are_kept, setup, teardown),
         cmocka_unit_test_setup_teardown(test_budget, setup, teardown),
         cmocka_unit_test_setup_teardown(test_part_is_not_kept, setup, teardown),

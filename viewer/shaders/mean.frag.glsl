@@ -1,5 +1,5 @@
 #version 330 core
-// A sum of weighted values over its weight; black where nothing was added.
+// A sum of weighted values over its weight; black and weightless where nothing was added.
 uniform sampler2D sum;
 uniform float exposure;
 out vec4 color;
@@ -7,5 +7,5 @@ out vec4 color;
 void main()
 {
     vec4 total = texelFetch(sum, ivec2(gl_FragCoord.xy), 0);
-    color = vec4(total.a > 0.0 ? exposure * total.rgb / total.a : vec3(0.0), 1.0);
+    color = total.a > 0.0 ? vec4(exposure * total.rgb / total.a, 1.0) : vec4(0.0);
 }

@@ -1,31 +1,20 @@
 #version 330 core
 // A light that stands near: the basis at every pixel's own direction towards it (Wong 1998, Eq. 7.7
-// with its sign corrected). Twins: relume_light_at, relume_facet_at, relume_weight_grid_place.
+// with its sign corrected). Twins: relume_light_at, relume_facet_at, relume_weight_grid_place,
+// src/relight/triangles.c.
 #include "transfer.glsl"
 #include "texels.glsl"
 #include "cube.glsl"
+#include "light.glsl"
 
-const float PI = 3.14159265358979;
-
-// enum relume_light_kind
-const int SPOT = 3, SLIDE = 4, AREA = 5, IES = 6, GONIO = 7;
-struct Light {
-    int kind;
-    vec3 rgb;
-    bool nofall;
-    vec3 position;
-    vec3 axis, right, up;  // it shines along the axis; unit vectors
-    float half_angle;      // radians
-};
-uniform Light light;
-uniform sampler2D picture;  // slide: its picture; ies: intensities [vertical][horizontal];
-                            // gonio: relume_gonio_map; area:
-                            // a column for each facet: position, normal, radiance
-uniform int facets;
+uniform int facets;  // of an area light: `picture` has a column for each: position, normal, radiance
 
 uniform sampler2D surface;     // where the pixel's surface is; alpha 0: nowhere
 uniform sampler2DArray grid;   // weights by direction, four coefficients a texel; the last layer
                                // holds the constants
+uniform sampler2D triangles;   // rows of nodes, then inverse and neighbour of each corner; then
+                               // starts, 16 a row
+uniform int triangle_count;    // 0: the weights are a grid, else those of nodes in a row
 uniform bool hemisphere, pole_y;
 
 const int JOINT = 1, LUMINANCE = 2;  // else each channel has coefficients of its own
@@ -42,72 +31,6 @@ out vec4 color;
 
 // ---------------------------------------------------------------- what arrives
 
-bool ray_to(out vec3 towards, out float distance, vec3 from, vec3 point)
-{
-    towards = from - point;
-    distance = length(towards);
-    towards /= distance;
-    return distance >= 1e-6;
-}
-
-vec3 spot_factor(vec3 ray)
-{
-    float angle = acos(clamp(dot(ray, light.axis), -1.0, 1.0));
-    return vec3(1.0 - smoothstep(0.9 * light.half_angle, light.half_angle, angle));
-}
-
-vec3 slide_factor(vec3 ray)
-{
-    vec2 size = vec2(textureSize(picture, 0));
-    float forward = dot(ray, light.axis);
-    float scale = size.x / (2.0 * tan(light.half_angle) * forward);
-    vec2 at = 0.5 * size + scale * vec2(dot(ray, light.right), -dot(ray, light.up));
-    bool inside = forward > 0.0 && all(greaterThanEqual(at, vec2(0.0))) &&
-                  all(lessThanEqual(at, size));
-    return inside ? texels_bilinear(picture, at) : vec3(0.0);
-}
-
-vec3 ies_factor(vec3 ray)
-{
-    vec2 cells = vec2(textureSize(picture, 0) - 1);
-    float vertical = acos(clamp(dot(ray, light.axis), -1.0, 1.0)) / PI;
-    float horizontal = atan(dot(ray, light.up), dot(ray, light.right)) / (2.0 * PI);
-    vec2 at = vec2(fract(horizontal), vertical) * cells + 0.5;
-    return texels_bilinear(picture, at).rrr;
-}
-
-// Twin: relume_gonio_value. Faces stand in borders of one texel.
-vec3 gonio_value(vec3 d)
-{
-    float side = float(textureSize(picture, 0).y - 2);
-    int face = cube_face_of(d);
-    float ahead = dot(d, face_ahead[face]);
-    vec2 ab = vec2(dot(d, face_right[face]), -dot(d, face_up[face])) / ahead;
-    vec2 at = clamp((0.5 + 0.5 * ab) * side, 0.0, side) + 1.0;
-    return texels_bilinear(picture, at + vec2(float(face) * (side + 2.0), 0.0));
-}
-
-vec3 gonio_factor(vec3 ray)
-{
-    return gonio_value(vec3(dot(ray, light.right), dot(ray, light.up), -dot(ray, light.axis)));
-}
-
-bool light_at(out vec3 towards, out vec3 rgb, vec3 point)
-{
-    float distance;
-    bool arrives = ray_to(towards, distance, light.position, point);
-    rgb = light.rgb * (light.nofall ? 1.0 : 1.0 / (distance * distance));
-    if (light.kind == SPOT)
-        rgb *= spot_factor(-towards);
-    else if (light.kind == SLIDE)
-        rgb *= slide_factor(-towards);
-    else if (light.kind == IES)
-        rgb *= ies_factor(-towards);
-    else if (light.kind == GONIO)
-        rgb *= gonio_factor(-towards);
-    return arrives;
-}
-
 bool facet_at(out vec3 towards, out vec3 rgb, int facet, vec3 point)
 {
     vec3 normal = texelFetch(picture, ivec2(facet, 1), 0).xyz;
@@ -120,10 +43,9 @@ bool facet_at(out vec3 towards, out vec3 rgb, int facet, vec3 point)
 
 // ---------------------------------------------------------------- what is reflected
 
-// In texels of the grid.
-vec2 weight_grid_place(vec3 direction)
+// In texels of the grid; `d` in the pole's frame.
+vec2 weight_grid_place(vec3 d)
 {
-    vec3 d = pole_y ? vec3(-direction.z, direction.x, direction.y) : direction;
     ivec2 size = textureSize(grid, 0).xy;
     float down = float(hemisphere ? size.y - 1 : size.y / 2 - 1);
     bool below = d.z < 0.0;
@@ -132,6 +54,59 @@ vec2 weight_grid_place(vec3 direction)
     float row = down * (1.0 - sqrt(max(1.0 - theta / (0.5 * PI), 0.0)));
     float column = (atan(d.y, d.x) / (2.0 * PI) + 0.5) * float(size.x - 1);
     return vec2(column, below && !hemisphere ? float(size.y - 1) - row : row) + 0.5;
+}
+
+int start_cell(vec3 d)
+{
+    vec2 at = d.xy / (abs(d.x) + abs(d.y) + abs(d.z));
+    vec2 folded = (1.0 - abs(at.yx)) * vec2(at.x < 0.0 ? -1.0 : 1.0, at.y < 0.0 ? -1.0 : 1.0);
+    ivec2 cell = clamp(ivec2((0.5 * (d.z >= 0.0 ? at : folded) + 0.5) * 32.0), 0, 31);
+    return cell.y * 32 + cell.x;
+}
+
+// Nodes and their shares.
+void triangles_find(out ivec3 node, out vec3 share, vec3 d)
+{
+    int start = start_cell(d);
+    ivec2 at = ivec2(start >> 2 & 3, triangle_count + (start >> 4));
+    int t = int(texelFetch(triangles, at, 0)[start & 3]);
+    vec4 inverse[3];
+    for (int i = 0; i <= 64; i++) {
+        for (int c = 0; c < 3; c++)
+            inverse[c] = texelFetch(triangles, ivec2(c + 1, t), 0);
+        share = vec3(dot(inverse[0].xyz, d), dot(inverse[1].xyz, d), dot(inverse[2].xyz, d));
+        float least = min(share.x, min(share.y, share.z));
+        if (least >= -1e-6)
+            break;
+        t = int(share.x == least ? inverse[0].w : share.y == least ? inverse[1].w : inverse[2].w);
+    }
+    vec3 corner = texelFetch(triangles, ivec2(0, t), 0).xyz;
+    vec3 says = vec3(greaterThanEqual(corner, vec3(0.0)));
+    share = max(share, 0.0) * says;
+    float sum = share.x + share.y + share.z;
+    share = sum > 0.0 ? share / sum : says / (says.x + says.y + says.z);
+    node = ivec3(max(corner, 0.0));
+}
+
+// Where the weights of a direction are: in the grid, or at three nodes.
+struct Place {
+    vec2 at;
+    ivec3 node;
+    vec3 share;
+};
+
+Place weight_place(vec3 direction)
+{
+    vec3 d = pole_y ? vec3(-direction.z, direction.x, direction.y) : direction;
+    Place place = Place(vec2(0.0), ivec3(0), vec3(0.0));
+    if (triangle_count == 0) {
+        place.at = weight_grid_place(d) / vec2(textureSize(grid, 0).xy);
+        return place;
+    }
+    if (hemisphere && d.z < 0.0)
+        d = length(d.xy) > 0.0 ? vec3(normalize(d.xy), 0.0) : vec3(1.0, 0.0, 0.0);
+    triangles_find(place.node, place.share, d);
+    return place;
 }
 
 vec4 coefficients_at(ivec2 at, int layer)
@@ -152,13 +127,17 @@ float plane_at(ivec2 at, int plane)
     return coefficients_at(at, plane >> 2)[plane & 3];
 }
 
-vec4 weights_at(vec2 place, int layer)
+vec4 weights_at(Place place, int layer)
 {
-    return texture(grid, vec3(place, float(layer)));
+    if (triangle_count == 0)
+        return texture(grid, vec3(place.at, float(layer)));
+    return place.share.x * texelFetch(grid, ivec3(place.node.x, 0, layer), 0) +
+           place.share.y * texelFetch(grid, ivec3(place.node.y, 0, layer), 0) +
+           place.share.z * texelFetch(grid, ivec3(place.node.z, 0, layer), 0);
 }
 
 // Four coefficients of three channels stand in three layers: r0 g0 b0 r1, g1 b1 r2 g2, b2 r3 g3 b3.
-vec3 dot_separate(ivec2 at, vec2 place)
+vec3 dot_separate(ivec2 at, Place place)
 {
     vec3 sum = vec3(0.0);
     for (int group = 0; 4 * group < coefficients; group++) {
@@ -173,7 +152,7 @@ vec3 dot_separate(ivec2 at, vec2 place)
     return sum;
 }
 
-vec3 dot_joint(ivec2 at, vec2 place)
+vec3 dot_joint(ivec2 at, Place place)
 {
     vec3 sum = vec3(0.0);
     for (int i = 0; i < layers; i++) {
@@ -184,7 +163,7 @@ vec3 dot_joint(ivec2 at, vec2 place)
     return sum;
 }
 
-vec3 dot_luminance(ivec2 at, vec2 place)
+vec3 dot_luminance(ivec2 at, Place place)
 {
     float sum = 0.0;
     for (int i = 0; 4 * i < coefficients; i++)
@@ -195,9 +174,9 @@ vec3 dot_luminance(ivec2 at, vec2 place)
 
 vec3 reflectance(ivec2 at, vec3 towards)
 {
-    ivec3 size = textureSize(grid, 0);
-    vec2 place = weight_grid_place(towards) / vec2(size.xy);
-    vec3 value = form == JOINT       ? dot_joint(at, place) + weights_at(place, size.z - 1).rgb
+    Place place = weight_place(towards);
+    int last = textureSize(grid, 0).z - 1;
+    vec3 value = form == JOINT       ? dot_joint(at, place) + weights_at(place, last).rgb
                  : form == LUMINANCE ? dot_luminance(at, place)
                                      : dot_separate(at, place);
     if (!coded)

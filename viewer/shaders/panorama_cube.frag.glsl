@@ -1,6 +1,7 @@
 #version 330 core
 // A look into a cube.
 #include "panorama.glsl"
+#include "panorama_layout.glsl"
 #include "cube.glsl"
 
 vec3 face_ray(int face, vec2 position)

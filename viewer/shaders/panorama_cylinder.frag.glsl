@@ -1,6 +1,7 @@
 #version 330 core
 // A look into a cylinder.
 #include "panorama.glsl"
+#include "panorama_layout.glsl"
 
 bool panorama_pixel(out vec2 xy, out int face, vec3 d)
 {

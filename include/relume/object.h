@@ -1,0 +1,152 @@
+// object.h - things covered with measured materials: meshes with texture coordinates and tangent
+// frames, on each part a BTF or a model of one (btf.h), shown under the lights of a rig
+//
+// At each point the directions to the eye and the light are turned into the frame of the surface
+// (x along growing s, z along the normal) and the material is asked; its values hold n.l already
+// (Meseth 2008, chapter 9, Eq. 9.3 without its second cosine). Light reaches a point when nothing
+// of the objects lies between: shadows are hard, there is no light from object to object.
+#ifndef RELUME_OBJECT_H
+#define RELUME_OBJECT_H
+
+#include <relume/base.h>
+#include <relume/btf.h>
+#include <relume/frame.h>
+#include <relume/image.h>
+#include <relume/light.h>
+#include <relume/pack.h>
+#include <relume/slabs.h>
+#include <relume/surface.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// ---------------------------------------------------------------- what there is
+
+// Thread-safety: safe while nobody chooses.
+typedef struct relume_objects relume_objects;
+
+struct relume_objects_params {
+    const struct relume_log *log;
+    const struct relume_limits *limits;
+    const char *scratch;  // as relume_btf_params
+    int threads;          // default: all cores
+};
+#define relume_objects_params(...) (&(const struct relume_objects_params){__VA_ARGS__})
+
+// Read a description (docs/objects.md). Meshes are OBJ, PLY or what Assimp reads, such as glTF;
+// materials are folders of BTFs, of fitted models or of surfaces. What a mesh lacks is made, with a
+// warning: normals, texture coordinates (from the three axes). RELUME_EDATA with a sentence,
+// RELUME_ENOMEM, RELUME_ESYSTEM when Embree or the reader of a format is missing.
+RELUME_RESULT relume_status relume_objects_open(relume_objects **out, const char *path,
+                                                const struct relume_objects_params *params);
+// One mesh, all of it of the first of `count` materials, its texture repeated `repeat` times (0: 1)
+// in each direction. Likewise.
+RELUME_RESULT relume_status relume_objects_of_mesh(relume_objects **out, const char *mesh,
+                                                   const char *const *materials, int count,
+                                                   double repeat,
+                                                   const struct relume_objects_params *params);
+RELUME_API void relume_objects_destroy(relume_objects **objects);
+
+struct relume_object_vertex {
+    float position[3], normal[3];  // world; unit
+    float tangent[4];  // unit, along growing s; the fourth is the handedness h: the other tangent,
+                       // up in the picture, is h * cross(normal, tangent)
+    float texture[2];  // (s, t) in repeats of the sample, t down from the upper edge
+};
+
+struct relume_object_material {
+    const char *name;       // of its folder
+    const char *model;      // "measured", or what relume_btf_model_name says
+    const relume_btf *btf;  // one of the two
+    const relume_btf_fitted *fitted;
+    const relume_btf_surface *surface;  // or NULL: the sample alone. `fitted` is its model
+    int width, height;                  // texels of one repeat
+    uint64_t bytes;
+};
+
+struct relume_object_part {
+    const char *name;     // in its mesh
+    int material;         // that it is shown in
+    bool bilinear;        // between texels; else the nearest
+    size_t first, count;  // triangles
+};
+
+// Everything belongs to the objects.
+struct relume_objects_info {
+    const struct relume_object_vertex *vertices;
+    size_t vertex_count;
+    const uint32_t (*triangles)[3];  // counter-clockwise as seen from where the normals point
+    size_t triangle_count;
+    const struct relume_object_part *part;
+    int parts;
+    const struct relume_object_material *material;
+    int materials;
+    struct relume_vec3 min, max;  // of the vertices
+};
+RELUME_API const struct relume_objects_info *relume_objects_info(const relume_objects *objects);
+
+// Show a part in another of the materials. RELUME_EINVAL when there is no such part or material.
+RELUME_RESULT relume_status relume_objects_choose(relume_objects *objects, int part, int material);
+
+// ---------------------------------------------------------------- lights
+
+// A light as drawing takes it: from one direction at each point.
+struct relume_lamp {
+    bool is_facet;
+    struct relume_light light;  // never area or environment
+    struct relume_facet facet;  // of an area light
+};
+
+// The lights in lamps, `*n` of them: areas in as many facets as the objects' distance asks for, at
+// most 36; environments in 64 directional lights (relume_environment_sample). `*out` is to be
+// freed. RELUME_ENOMEM; RELUME_EINVAL for a light that relume_light_check refuses.
+RELUME_RESULT relume_status relume_objects_lamps(struct relume_lamp **out, int *n,
+                                                 const relume_objects *objects,
+                                                 const struct relume_light *lights, int count);
+// What it sends to `point` and the unit direction towards it, as relume_light_at; `*distance` may
+// be infinite.
+RELUME_API bool relume_lamp_at(struct relume_vec3 *towards, float rgb[3], double *distance,
+                               const struct relume_lamp *lamp, struct relume_vec3 point);
+
+// ---------------------------------------------------------------- pictures
+
+struct relume_render_params {
+    const struct relume_log *log;
+    int samples;      // rays along each side of a pixel, [1, 16]; default 1, through its middle
+    bool no_shadows;  // all lamps reach all points
+    int threads;      // default: all cores
+};
+#define relume_render_params(...) (&(const struct relume_render_params){__VA_ARGS__})
+
+// The window through which `eye` sees all of the objects (its aim: all zero is their middle, +y up
+// and the least square view that holds them). False as relume_slabs_window.
+RELUME_API bool relume_objects_window(struct relume_window *out, const relume_objects *objects,
+                                      struct relume_vec3 eye, const struct relume_aim *aim,
+                                      int width, int height);
+
+// Ray trace the objects as seen through the window before black, linear: the reference of all other
+// ways to draw them. `out` has three channels and the wanted size already. RELUME_EINVAL (lights,
+// samples), RELUME_ENOMEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_objects_render(struct relume_image *out,
+                                                  const relume_objects *objects,
+                                                  const struct relume_window *window,
+                                                  const struct relume_light *lights, int n,
+                                                  const struct relume_render_params *params);
+
+// The objects in a relit scene: the frame of relume_frame with them drawn into it where they stand
+// before what the file's depth says, under the same lights, and with their shadows on the scene:
+// each lamp is relit alone and reaches a point of the scene when no object lies between.
+// Scenes throw no shadows on objects. RELUME_EDATA (also: a file without depth), and as
+// relume_frame.
+RELUME_RESULT relume_status relume_objects_frame(struct relume_image *out,
+                                                 const relume_objects *objects, relume_pack *pack,
+                                                 const struct relume_camera *camera,
+                                                 const struct relume_light *lights, int n,
+                                                 const struct relume_frame_params *frame,
+                                                 const struct relume_render_params *params);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

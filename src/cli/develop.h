@@ -1,0 +1,27 @@
+// develop.h - how a linear frame becomes a picture to look at: exposure and tone
+#ifndef CLI_DEVELOP_H
+#define CLI_DEVELOP_H
+
+#include "cli.h"
+
+// Table rows for a command's options.
+#define DEVELOP_OPTIONS                                                                            \
+    {"--exposure", OPTION_TEXT, "EV", "multiply by 2^EV, or auto: a mid grey; default: 0", 0, 0},  \
+        {"--tone", OPTION_TEXT,                                                                    \
+         "T",      "linear (clip, default), reinhard or filmic; .exr, .hdr and .pfm stay linear",  \
+         0,        0},                                                                             \
+    {                                                                                              \
+        "--white", OPTION_NUMBER, "L", "reinhard: the luminance that becomes white; default: 4",   \
+            1e-3, 1e6                                                                              \
+    }
+
+struct developing {
+    struct relume_tone_params tone;
+    bool automatic;
+};
+// RELUME_EINVAL with a sentence.
+relume_status parse_developing(const struct args *args, struct developing *d);
+// In place, for a file of that name: linear formats stay linear.
+relume_status develop(struct relume_image *frame, struct developing d, const char *path);
+
+#endif

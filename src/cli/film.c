@@ -1,0 +1,245 @@
+#include "film.h"
+
+#include "cli.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { PATH = 4096 };
+enum kind { NUMBERED, FOLDER, FILM };
+
+struct film {
+    const struct relume_log *log;
+    enum kind kind;
+    char path[PATH], part[PATH], name[PATH];
+    int digits;     // of a number
+    size_t before;  // where it stands in `path`
+    const char *after;
+    double fps;
+    int pictures;
+    pid_t ffmpeg;
+    int pipe;
+};
+
+__attribute__((format(printf, 3, 4))) static relume_status fail(const struct film *f,
+                                                                relume_status status,
+                                                                const char *format, ...)
+{
+    char text[PATH + 200];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (f->log && f->log->message)
+        f->log->message(f->log->user, RELUME_ERROR, text);
+    return status;
+}
+
+// ---------------------------------------------------------------- names
+
+// The only conversion in a name: %d, or %0Nd with N from 1 to 9.
+static bool find_number(const char *path, size_t *before, int *digits, const char **after)
+{
+    const char *const at = strchr(path, '%');
+    if (!at || strchr(at + 1, '%'))
+        return false;
+    *before = (size_t)(at - path);
+    *digits = at[1] == '0' && at[2] >= '1' && at[2] <= '9' ? at[2] - '0' : 0;
+    *after = at + (*digits ? 3 : 1);
+    return *(*after)++ == 'd';
+}
+
+static bool is_film(const char *path)
+{
+    const char *const dot = strrchr(path, '.');
+    return dot && (!strcmp(dot, ".mp4") || !strcmp(dot, ".mkv"));
+}
+
+bool film_is(const char *path)
+{
+    size_t before;
+    int digits;
+    const char *after;
+    const char *const base = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
+    return is_film(path) || find_number(path, &before, &digits, &after) || !strchr(base, '.');
+}
+
+const char *film_name(struct film *f)
+{
+    if (f->kind == NUMBERED)
+        snprintf(f->name, sizeof f->name, "%.*s%0*d%s", (int)f->before, f->path, f->digits,
+                 f->pictures, f->after);
+    else
+        snprintf(f->name, sizeof f->name, "%.4000s/%04d.png", f->part, f->pictures);
+    return f->name;
+}
+
+relume_status film_open(struct film **out, const char *path, double fps,
+                        const struct relume_log *log)
+{
+    struct film *const f = *out = calloc(1, sizeof *f);
+    if (!f)
+        return RELUME_ENOMEM;
+    f->log = log;
+    f->fps = fps;
+    snprintf(f->path, sizeof f->path, "%s", path);
+    for (size_t n = strlen(f->path); n > 1 && f->path[n - 1] == '/'; n--)
+        f->path[n - 1] = '\0';
+    f->kind = is_film(path)                                             ? FILM
+              : find_number(f->path, &f->before, &f->digits, &f->after) ? NUMBERED
+                                                                        : FOLDER;
+    snprintf(f->part, sizeof f->part, "%.4000s.part", f->path);
+    relume_status status = RELUME_OK;
+    if (strlen(path) > 4000)
+        status = fail(f, RELUME_EINVAL, "-o: expected a shorter name");
+    else if (f->kind == FOLDER && !access(f->path, F_OK) && rmdir(f->path))
+        status =
+            fail(f, RELUME_EINVAL, "%s: is there already; expected a new or empty folder", f->path);
+    else if (f->kind == FOLDER && mkdir(f->part, 0777))
+        status = fail(f, RELUME_EIO, "%s: cannot be made; %s", f->part, strerror(errno));
+    if (status) {
+        free(f);
+        *out = NULL;
+    }
+    return status;
+}
+
+// ---------------------------------------------------------------- ffmpeg
+
+// In the child: names are arguments of their own, never words of a shell; "file:" keeps ffmpeg from
+// reading them as anything else.
+static void become_ffmpeg(const struct film *f, const struct relume_image *image, int input)
+{
+    char size[32], rate[32], to[PATH + 8];
+    snprintf(rate, sizeof rate, "%g", f->fps);
+    snprintf(size, sizeof size, "%dx%d", image->width, image->height);
+    snprintf(to, sizeof to, "file:%s", f->part);
+    const char *const format = !strcmp(strrchr(f->path, '.'), ".mp4") ? "mp4" : "matroska";
+    const char *const arguments[] = {
+        "ffmpeg",   "-v",       "error",    "-y",
+        "-f",       "rawvideo", "-s",       size,
+        "-r",       rate,       "-pix_fmt", "rgb24",
+        "-i",       "pipe:0",   "-vf",      "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+        "-pix_fmt", "yuv420p",  "-f",       format,
+        to,         NULL};
+    (void)dup2(input, STDIN_FILENO);
+    (void)execvp(arguments[0], (char *const *)(uintptr_t)arguments);
+    _exit(127);
+}
+
+static relume_status start_ffmpeg(struct film *f, const struct relume_image *image)
+{
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC))
+        return fail(f, RELUME_ESYSTEM, "%s: no pipe to ffmpeg; %s", f->path, strerror(errno));
+    f->ffmpeg = fork();
+    if (f->ffmpeg == 0)
+        become_ffmpeg(f, image, ends[0]);
+    (void)close(ends[0]);
+    f->pipe = ends[1];
+    if (f->ffmpeg > 0)
+        return RELUME_OK;
+    (void)close(f->pipe);
+    f->ffmpeg = 0;
+    return fail(f, RELUME_ESYSTEM, "%s: ffmpeg cannot be started; %s", f->path, strerror(errno));
+}
+
+static relume_status end_ffmpeg(struct film *f)
+{
+    int state = 0;
+    if (!f->ffmpeg)
+        return RELUME_OK;
+    (void)close(f->pipe);
+    while (waitpid(f->ffmpeg, &state, 0) < 0 && errno == EINTR)
+        continue;
+    f->ffmpeg = 0;
+    if (WIFEXITED(state) && WEXITSTATUS(state) == 0)
+        return RELUME_OK;
+    if (WIFEXITED(state) && WEXITSTATUS(state) == 127)
+        return fail(f, RELUME_ESYSTEM,
+                    "%s: ffmpeg is not installed; expected it for films, or a name like "
+                    "frame.%%04d.png",
+                    f->path);
+    return fail(f, RELUME_ESYSTEM, "%s: ffmpeg could not write the film", f->path);
+}
+
+static relume_status write_picture(struct film *f, const unsigned char *bytes, size_t n)
+{
+    while (n) {
+        const ssize_t wrote = write(f->pipe, bytes, n);
+        if (wrote < 0 && errno == EINTR)
+            continue;
+        if (wrote < 0) {
+            const relume_status status = end_ffmpeg(f);  // says why it went away
+            return status ? status : fail(f, RELUME_ESYSTEM, "%s: ffmpeg went away", f->path);
+        }
+        bytes += wrote;
+        n -= (size_t)wrote;
+    }
+    return RELUME_OK;
+}
+
+static relume_status add_to_film(struct film *f, const struct relume_image *image)
+{
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    const size_t samples = 3 * (size_t)image->width * (size_t)image->height;
+    unsigned char *const bytes = malloc(samples);
+    relume_status status = bytes ? RELUME_OK : RELUME_ENOMEM;
+    if (!status && !f->ffmpeg)
+        status = start_ffmpeg(f, image);
+    for (size_t i = 0; !status && i < samples; i++) {
+        const float code = 255.0f * relume_transfer_encode(srgb, image->data[i]) + 0.5f;
+        bytes[i] = (unsigned char)fminf(fmaxf(code, 0.0f), 255.0f);
+    }
+    if (!status)
+        status = write_picture(f, bytes, samples);
+    free(bytes);
+    return status;
+}
+
+// ---------------------------------------------------------------- pictures
+
+relume_status film_add(struct film *f, const struct relume_image *image)
+{
+    const relume_status status =
+        f->kind == FILM
+            ? add_to_film(f, image)
+            : relume_image_save(image, film_name(f), relume_image_params(.log = f->log));
+    f->pictures += !status;
+    return status;
+}
+
+static void remove_folder(struct film *f)
+{
+    while (f->pictures > 0) {
+        f->pictures--;
+        (void)unlink(film_name(f));
+    }
+    (void)rmdir(f->part);
+}
+
+relume_status film_close(struct film **film, bool keep)
+{
+    struct film *const f = *film;
+    if (!f)
+        return RELUME_OK;
+    if (!keep)
+        f->log = NULL;
+    relume_status status = end_ffmpeg(f);
+    if (keep && !status && f->kind != NUMBERED && rename(f->part, f->path))
+        status = fail(f, RELUME_EIO, "%s: cannot be given its name; %s", f->path, strerror(errno));
+    if ((!keep || status) && f->kind == FOLDER)
+        remove_folder(f);
+    if ((!keep || status) && f->kind == FILM)
+        (void)unlink(f->part);
+    free(f);
+    *film = NULL;
+    return status;
+}

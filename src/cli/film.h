@@ -1,0 +1,23 @@
+// film.h - pictures one after the other: numbered files, a folder or a film
+#ifndef CLI_FILM_H
+#define CLI_FILM_H
+
+#include <relume/relume.h>
+
+// `path` with one %d or %0Nd: files of these names; ending in .mp4 or .mkv: a film by ffmpeg;
+// otherwise a folder of 0000.png and so on.
+struct film;
+// Whether `path` stands for many pictures.
+bool film_is(const char *path);
+// RELUME_EINVAL, RELUME_EIO, RELUME_ENOMEM with a sentence.
+relume_status film_open(struct film **out, const char *path, double fps,
+                        const struct relume_log *log);
+// The name that decides how the next picture is to be developed.
+const char *film_name(struct film *film);
+// All pictures have one size. RELUME_EIO, RELUME_ESYSTEM (no ffmpeg).
+relume_status film_add(struct film *film, const struct relume_image *image);
+// A folder or a film gets its name with the last picture; what was written of it vanishes when
+// `keep` is false.
+relume_status film_close(struct film **film, bool keep);
+
+#endif

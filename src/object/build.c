@@ -1,0 +1,245 @@
+// build.c - mesh files become one list of triangles in the world
+#include "base/log.h"
+#include "base/memory.h"
+#include "object/object.h"
+#include "object/tangents.h"
+#include "scene/mesh_read.h"
+
+#include <string.h>
+
+// ---------------------------------------------------------------- what a mesh lacks
+
+// Texture coordinates of every triangle from the two axes that it faces least, the longest side of
+// the mesh being 1. Corners are no longer shared: neighbours may face different axes.
+static void project(struct mesh *out, const struct mesh *from)
+{
+    const struct bounds b = mesh_bounds(from);
+    const vec3 extent = vec3_sub(b.max, b.min);
+    const double longest = fmax(extent.x, fmax(extent.y, extent.z));
+    for (size_t i = 0; i < from->triangle_count; i++) {
+        const uint32_t *v = from->triangles[i].vertex;
+        vec3 p[3];
+        uint32_t made[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = vertex_position(&from->vertices[v[k]]);
+        const vec3 n = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]));
+        const double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
+        for (int k = 0; k < 3; k++) {
+            const vec3 at = vec3_scale(vec3_sub(p[k], b.min), 1.0 / longest);
+            const vec3 uv = x > y && x > z ? vec3_of(n.x > 0.0 ? -at.z : at.z, at.y, 0)
+                            : y > z        ? vec3_of(at.x, n.y > 0.0 ? -at.z : at.z, 0)
+                                           : vec3_of(n.z > 0.0 ? at.x : -at.x, at.y, 0);
+            made[k] = mesh_vertex(out, p[k], vertex_normal(&from->vertices[v[k]]), uv);
+        }
+        mesh_triangle(out, made[0], made[1], made[2], from->triangles[i].material);
+    }
+}
+
+static relume_status make_uv(struct mesh_file *file)
+{
+    struct mesh made = {0};
+    project(&made, &file->mesh);
+    mesh_free(&file->mesh);
+    file->mesh = made;
+    return made.failed ? RELUME_ENOMEM : RELUME_OK;
+}
+
+struct edge {
+    float end[2][3];
+};
+
+static int by_ends(const void *a, const void *b)
+{
+    return memcmp(a, b, sizeof(struct edge));
+}
+
+static void add_edge(struct edge *to, const float a[3], const float b[3])
+{
+    const bool turned = memcmp(a, b, 3 * sizeof *a) > 0;
+    memcpy(to->end[turned], a, 3 * sizeof *a);
+    memcpy(to->end[!turned], b, 3 * sizeof *b);
+}
+
+// Edges that more than two triangles share, by the places of their ends.
+static relume_status count_fins(size_t *out, const struct mesh *m)
+{
+    struct edge *edge = mem_array(3 * m->triangle_count, sizeof *edge);
+    size_t n = 0;
+    *out = 0;
+    if (!edge)
+        return RELUME_ENOMEM;
+    for (size_t i = 0; i < m->triangle_count; i++) {
+        const float *p[3];
+        for (int k = 0; k < 3; k++)
+            p[k] = m->vertices[m->triangles[i].vertex[k]].position;
+        const size_t size = sizeof m->vertices->position;
+        if (!memcmp(p[0], p[1], size) || !memcmp(p[1], p[2], size) || !memcmp(p[2], p[0], size))
+            continue;
+        for (int k = 0; k < 3; k++)
+            add_edge(&edge[n++], p[k], p[(k + 1) % 3]);
+    }
+    qsort(edge, n, sizeof *edge, by_ends);
+    for (size_t i = 0, end; i < n; i = end) {
+        for (end = i + 1; end < n && !by_ends(&edge[i], &edge[end]); end++)
+            ;
+        *out += end - i > 2;
+    }
+    free(edge);
+    return RELUME_OK;
+}
+
+static relume_status complete(struct mesh_file *file, const char *path,
+                              const struct relume_log *log)
+{
+    size_t fins;
+    relume_status status = count_fins(&fins, &file->mesh);
+    if (!status && fins)
+        log_line(log, RELUME_WARNING,
+                 "%s: %zu edges with more than two faces; expected a surface, tangents there are "
+                 "between all of them",
+                 path, fins);
+    if (!status && file->made_normals)
+        log_line(log, RELUME_WARNING, "%s: without normals everywhere; they were made smooth",
+                 path);
+    if (status || file->has_uv)
+        return status;
+    log_line(log, RELUME_WARNING,
+             "%s: without texture coordinates; they were made by projection along the axes", path);
+    return make_uv(file);
+}
+
+// ---------------------------------------------------------------- into the world
+
+static const struct covering *covering_of(struct standing *s, const char *part)
+{
+    struct covering *found = NULL;
+    for (int i = 0; i < s->coverings; i++)
+        if (s->covering[i].part ? !strcmp(s->covering[i].part, part) : !found)
+            found = &s->covering[i];
+    if (found)
+        found->used = true;
+    return found;
+}
+
+static relume_status add_part(relume_objects *o, const struct mesh_file *file, int number,
+                              struct standing *s, const char *path, const struct relume_log *log)
+{
+    const struct covering *c = covering_of(s, file->part[number]);
+    if (!c)
+        return log_fail(log, RELUME_EDATA, "%s: part '%s' has no material", path,
+                        file->part[number]);
+    char *name = mem_text(file->part[number]);
+    struct relume_object_part *part =
+        realloc(o->part, ((size_t)o->info.parts + 1) * sizeof *o->part);
+    if (part)
+        o->part = part;
+    if (!part || !name) {
+        free(name);
+        return RELUME_ENOMEM;
+    }
+    part[o->info.parts++] = (struct relume_object_part){
+        .name = name,
+        .material = c->material,
+        .bilinear = !c->nearest,
+        .first = o->mesh.triangle_count,
+    };
+    return RELUME_OK;
+}
+
+// Texture coordinates in repeats, t down from the upper edge of the sample.
+static uint32_t add_vertex(relume_objects *o, const struct vertex *v, const struct frame *frame,
+                           const struct covering *c)
+{
+    const double s = (double)v->texture[0] * c->repeat[0] + c->offset[0];
+    const double t = 1.0 - ((double)v->texture[1] * c->repeat[1] + c->offset[1]);
+    return mesh_vertex(&o->mesh, frame_point(frame, vertex_position(v)),
+                       frame_normal(frame, vertex_normal(v)), vec3_of(s, t, 0));
+}
+
+// Wound as the normals say; a triangle without extent is left out.
+static void add_triangle(relume_objects *o, const struct vertex *v[3], const struct standing *s,
+                         const struct covering *c)
+{
+    vec3 p[3], normal = {0, 0, 0};
+    uint32_t made[3];
+    for (int k = 0; k < 3; k++) {
+        p[k] = vertex_position(v[k]);
+        normal = vec3_add(normal, vertex_normal(v[k]));
+    }
+    const vec3 out = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]));
+    if (!(vec3_length(out) > 0.0))
+        return;
+    const bool turned = vec3_dot(out, normal) < 0.0;
+    for (int k = 0; k < 3; k++)
+        made[k] = add_vertex(o, v[k], &s->frame, c);
+    mesh_triangle(&o->mesh, made[0], made[turned ? 2 : 1], made[turned ? 1 : 2],
+                  (uint32_t)o->info.parts - 1);
+}
+
+static relume_status add_parts(relume_objects *o, const struct mesh_file *file, struct standing *s,
+                               const char *path, const struct relume_log *log)
+{
+    relume_status status = RELUME_OK;
+    for (int i = 0; i < file->parts && !status; i++) {
+        const struct mesh *m = &file->mesh;
+        size_t k = 0;
+        while (k < m->triangle_count && m->triangles[k].material != (uint32_t)i)
+            k++;
+        if (k == m->triangle_count)
+            continue;
+        status = add_part(o, file, i, s, path, log);
+        const struct covering *c = covering_of(s, file->part[i]);
+        for (; k < m->triangle_count && !status; k++) {
+            const uint32_t *v = m->triangles[k].vertex;
+            const struct vertex *corner[3] = {&m->vertices[v[0]], &m->vertices[v[1]],
+                                              &m->vertices[v[2]]};
+            if (m->triangles[k].material == (uint32_t)i)
+                add_triangle(o, corner, s, c);
+        }
+        if (!status)
+            o->part[o->info.parts - 1].count =
+                o->mesh.triangle_count - o->part[o->info.parts - 1].first;
+    }
+    return status ? status : o->mesh.failed ? RELUME_ENOMEM : RELUME_OK;
+}
+
+relume_status objects_add(relume_objects *o, const char *path, struct standing *standing,
+                          const struct relume_objects_params *params)
+{
+    const struct relume_log *log = params ? params->log : NULL;
+    struct mesh_file file;
+    relume_status status = mesh_read(&file, path, log);
+    if (!status)
+        status = complete(&file, path, log);
+    if (!status)
+        status = add_parts(o, &file, standing, path, log);
+    for (int i = 0; i < standing->coverings && !status; i++)
+        if (standing->covering[i].part && !standing->covering[i].used)
+            status = log_fail(log, RELUME_EDATA, "%s: no part '%s'; its first is '%s'", path,
+                              standing->covering[i].part, file.part[0]);
+    mesh_file_free(&file);
+    return status;
+}
+
+relume_status objects_finish(relume_objects *o, const struct relume_objects_params *params)
+{
+    const struct relume_log *log = params ? params->log : NULL;
+    struct tangents t;
+    if (!o->mesh.triangle_count)
+        return log_fail(log, RELUME_EDATA, "the objects have no surface");
+    relume_status status = tangents_make(&t, &o->mesh);
+    o->vertices = t.vertices, o->triangles = t.triangles;
+    if (status)
+        return status;
+    if (t.flat)
+        log_line(log, RELUME_WARNING,
+                 "%zu of %zu vertices have no direction of their texture; they have some tangent",
+                 t.flat, t.vertex_count);
+    const struct bounds b = mesh_bounds(&o->mesh);
+    o->info.vertices = o->vertices, o->info.vertex_count = t.vertex_count;
+    o->info.triangles = (const uint32_t(*)[3])o->triangles;
+    o->info.triangle_count = o->mesh.triangle_count;
+    o->info.part = o->part, o->info.material = o->material;
+    o->info.min = b.min, o->info.max = b.max;
+    return trace_create(&o->tracer, &o->mesh, log);
+}

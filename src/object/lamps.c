@@ -1,0 +1,96 @@
+// lamps.c - lights in lamps: whatever shines from more than one direction becomes several
+#include "base/memory.h"
+#include "object/object.h"
+
+#include <relume/light.h>
+
+// Enough for penumbrae and soft shading to look smooth; an environment's noise shows in shadows.
+enum { MOST_SIDE = 6, SKY = 64 };
+
+// How far the objects are from an area light at least.
+static double distance_to(const relume_objects *o, const struct relume_light *area)
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < o->mesh.vertex_count; i++) {
+        const vec3 d = vec3_sub(vertex_position(&o->mesh.vertices[i]), area->position);
+        least = fmin(least, vec3_length(d));
+    }
+    return least;
+}
+
+static int side_of(const relume_objects *o, const struct relume_light *area)
+{
+    const int side = relume_light_facet_side(area, distance_to(o, area));
+    return side < MOST_SIDE ? side : MOST_SIDE;
+}
+
+static int count_of(const relume_objects *o, const struct relume_light *light)
+{
+    if (light->kind == RELUME_LIGHT_ENVIRONMENT)
+        return SKY;
+    const int side = light->kind == RELUME_LIGHT_AREA ? side_of(o, light) : 1;
+    return side * side;
+}
+
+static relume_status fill(struct relume_lamp *to, int n, const relume_objects *o,
+                          const struct relume_light *light)
+{
+    struct relume_facet facet[MOST_SIDE * MOST_SIDE];
+    struct relume_light sky[SKY];
+    relume_status status = RELUME_OK;
+    if (light->kind == RELUME_LIGHT_AREA)
+        relume_light_facets(facet, light, side_of(o, light));
+    if (light->kind == RELUME_LIGHT_ENVIRONMENT)
+        status = relume_environment_sample(sky, SKY, light, 0);
+    for (int i = 0; i < n && !status; i++) {
+        to[i] = (struct relume_lamp){.is_facet = light->kind == RELUME_LIGHT_AREA};
+        if (to[i].is_facet)
+            to[i].facet = facet[i];
+        else
+            to[i].light = light->kind == RELUME_LIGHT_ENVIRONMENT ? sky[i] : *light;
+        if (to[i].light.kind == RELUME_LIGHT_DIRECTIONAL && !to[i].is_facet)
+            to[i].light.direction = vec3_unit(to[i].light.direction);
+    }
+    return status;
+}
+
+relume_status relume_objects_lamps(struct relume_lamp **out, int *n, const relume_objects *objects,
+                                   const struct relume_light *lights, int count)
+{
+    size_t total = 0, at = 0;
+    *out = NULL;
+    *n = 0;
+    for (int i = 0; i < count; i++) {
+        if (relume_light_check(&lights[i], "light", NULL))
+            return RELUME_EINVAL;
+        total += (size_t)count_of(objects, &lights[i]);
+    }
+    struct relume_lamp *lamps = mem_array(total, sizeof *lamps);
+    relume_status status = lamps ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; i < count && !status; i++) {
+        const int own = count_of(objects, &lights[i]);
+        status = fill(lamps + at, own, objects, &lights[i]);
+        at += (size_t)own;
+    }
+    if (status)
+        free(lamps);
+    else
+        *out = lamps, *n = (int)total;
+    return status;
+}
+
+bool relume_lamp_at(struct relume_vec3 *towards, float rgb[3], double *distance,
+                    const struct relume_lamp *lamp, struct relume_vec3 point)
+{
+    *distance = INFINITY;
+    if (!lamp->is_facet && !relume_light_is_near(lamp->light.kind)) {
+        *towards = lamp->light.direction;
+        for (int c = 0; c < 3; c++)
+            rgb[c] = lamp->light.rgb[c];
+        return true;
+    }
+    const vec3 from = lamp->is_facet ? lamp->facet.position : lamp->light.position;
+    *distance = vec3_length(vec3_sub(from, point));
+    return lamp->is_facet ? relume_facet_at(towards, rgb, &lamp->facet, point)
+                          : relume_light_at(towards, rgb, &lamp->light, point);
+}

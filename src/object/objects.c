@@ -1,0 +1,394 @@
+// objects.c - the description of objects in JSON, their materials, their life
+#include "base/json.h"
+#include "base/log.h"
+#include "base/memory.h"
+#include "object/object.h"
+#include "scene/mesh_read.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { VERSION = 1, MOST_MATERIALS = 256, MOST_OBJECTS = 4096, MOST_COVERINGS = 1024 };
+
+void relume_objects_destroy(relume_objects **objects)
+{
+    relume_objects *o = *objects;
+    *objects = NULL;
+    if (!o)
+        return;
+    trace_destroy(&o->tracer);
+    mesh_free(&o->mesh);
+    for (int i = 0; i < o->info.parts; i++)
+        free((void *)o->part[i].name);
+    for (int i = 0; i < o->info.materials; i++) {
+        relume_btf_destroy((relume_btf **)&o->material[i].btf);
+        if (!o->material[i].surface)
+            relume_btf_fitted_destroy((relume_btf_fitted **)&o->material[i].fitted);
+        relume_btf_surface_destroy((relume_btf_surface **)&o->material[i].surface);
+        free((void *)o->material[i].name);
+        free(o->folder[i]);
+    }
+    free(o->vertices);
+    free(o->triangles);
+    free(o->part);
+    free(o->material);
+    free(o->folder);
+    free(o);
+}
+
+const struct relume_objects_info *relume_objects_info(const relume_objects *objects)
+{
+    return &objects->info;
+}
+
+relume_status relume_objects_choose(relume_objects *objects, int part, int material)
+{
+    if (part < 0 || part >= objects->info.parts || material < 0 ||
+        material >= objects->info.materials)
+        return RELUME_EINVAL;
+    objects->part[part].material = material;
+    return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- materials
+
+static bool holds(const char *folder, const char *name)
+{
+    char *file = mem_format("%s/%s", folder, name);
+    struct stat s;
+    const bool is = file && !stat(file, &s);
+    free(file);
+    return is;
+}
+
+// The last word of a path.
+static char *name_of(const char *folder)
+{
+    size_t end = strlen(folder);
+    while (end > 1 && folder[end - 1] == '/')
+        end--;
+    size_t start = end;
+    while (start > 0 && folder[start - 1] != '/')
+        start--;
+    return mem_format("%.*s", (int)(end - start), folder + start);
+}
+
+static relume_status open_surface(struct relume_object_material *m, const char *folder,
+                                  const struct relume_btf_params *p)
+{
+    relume_btf_surface *surface;
+    const relume_status status = relume_btf_surface_open(&surface, folder, p);
+    m->surface = surface;
+    if (status)
+        return status;
+    const struct relume_btf_surface_info info = relume_btf_surface_info(surface);
+    m->fitted = info.model;
+    m->model = relume_btf_model_name(relume_btf_fitted_info(info.model).model);
+    m->width = info.width, m->height = info.height;
+    m->bytes = info.bytes;
+    return RELUME_OK;
+}
+
+static relume_status open_material(struct relume_object_material *m, const char *folder,
+                                   const struct relume_objects_params *params)
+{
+    const struct relume_btf_params p = {
+        .log = params ? params->log : NULL,
+        .limits = params ? params->limits : NULL,
+        .scratch = params ? params->scratch : NULL,
+        .threads = params ? params->threads : 0,
+    };
+    *m = (struct relume_object_material){.name = name_of(folder), .model = "measured"};
+    if (!m->name)
+        return RELUME_ENOMEM;
+    if (holds(folder, "surface.json"))
+        return open_surface(m, folder, &p);
+    if (!holds(folder, "model.json")) {
+        relume_btf *btf;
+        const relume_status status = relume_btf_open(&btf, folder, &p);
+        m->btf = btf;
+        const struct relume_btf_info *i = status ? NULL : relume_btf_info(btf);
+        if (status)
+            return status;
+        m->width = i->width, m->height = i->height;
+        m->bytes = relume_btf_bytes(i->width, i->height, i->views, i->lights);
+        return RELUME_OK;
+    }
+    relume_btf_fitted *fitted;
+    const relume_status status = relume_btf_fitted_open(&fitted, folder, &p);
+    m->fitted = fitted;
+    if (status)
+        return status;
+    const struct relume_btf_fitted_info info = relume_btf_fitted_info(fitted);
+    m->model = relume_btf_model_name(info.model);
+    m->width = info.width, m->height = info.height;
+    m->bytes = info.bytes;
+    return RELUME_OK;
+}
+
+static relume_status grow_materials(relume_objects *o)
+{
+    const size_t n = (size_t)o->info.materials + 1;
+    struct relume_object_material *material = realloc(o->material, n * sizeof *material);
+    if (material)
+        o->material = material;
+    char **folder = realloc(o->folder, n * sizeof *folder);
+    if (folder)
+        o->folder = folder;
+    return material && folder ? RELUME_OK : RELUME_ENOMEM;
+}
+
+relume_status objects_material(relume_objects *o, const char *folder, int *number,
+                               const struct relume_objects_params *params)
+{
+    const struct relume_log *log = params ? params->log : NULL;
+    for (*number = 0; *number < o->info.materials; ++*number)
+        if (!strcmp(o->folder[*number], folder))
+            return RELUME_OK;
+    if (o->info.materials == MOST_MATERIALS)
+        return log_fail(log, RELUME_EDATA, "%s: expected at most %d materials", folder,
+                        MOST_MATERIALS);
+    relume_status status = grow_materials(o);
+    if (status)
+        return status;
+    o->folder[*number] = mem_text(folder);
+    status = open_material(&o->material[*number], folder, params);
+    if (!status && !o->folder[*number])
+        status = RELUME_ENOMEM;
+    o->info.materials++;  // destroyed with the others, also when it is broken
+    return status;
+}
+
+// ---------------------------------------------------------------- the description
+
+struct reader {
+    relume_objects *o;
+    const char *path;
+    const struct relume_objects_params *params;
+    const struct relume_log *log;
+    size_t object;  // that is being read
+};
+
+__attribute__((format(printf, 2, 3))) static relume_status wrong(const struct reader *r,
+                                                                 const char *format, ...)
+{
+    char text[512];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    return log_fail(r->log, RELUME_EDATA, "%s: object %zu: %s", r->path, r->object, text);
+}
+
+static relume_status know(const struct reader *r, const jvalue *object, const char *const *known)
+{
+    const char *stranger = jvalue_unknown(object, known);
+    if (!stranger)
+        return RELUME_OK;
+    const char *near = relume_name_nearest(stranger, known);
+    return wrong(r, "unknown member '%s'%s%s%s", stranger, near ? "; did you mean '" : "",
+                 near ? near : "", near ? "'?" : "");
+}
+
+static relume_status read_folder(const struct reader *r, const jvalue *text, int *number)
+{
+    const char *name = jvalue_text(text);
+    if (!name || !*name)
+        return wrong(r, "material: expected the folder of a BTF or of a model, or a list of them");
+    char *folder = mesh_beside(r->path, name);
+    const relume_status status =
+        folder ? objects_material(r->o, folder, number, r->params) : RELUME_ENOMEM;
+    free(folder);
+    return status;
+}
+
+// The first of a list is shown, the others can be chosen.
+static relume_status read_material(const struct reader *r, const jvalue *value, int *number)
+{
+    if (!jvalue_is_array(value))
+        return read_folder(r, value, number);
+    relume_status status =
+        jvalue_count(value) ? RELUME_OK : wrong(r, "material: expected at least one folder");
+    for (size_t i = 0; i < jvalue_count(value) && !status; i++) {
+        int other;
+        status = read_folder(r, jvalue_item(value, i), i ? &other : number);
+    }
+    return status;
+}
+
+// One number for both, or two.
+static bool read_pair(const jvalue *value, double out[2])
+{
+    if (!value || jvalue_numbers(value, out, 2))
+        return true;
+    const bool good = jvalue_number(value, &out[0]);
+    out[1] = out[0];
+    return good;
+}
+
+static relume_status read_covering(const struct reader *r, const jvalue *value, struct covering *c)
+{
+    static const char *const known[] = {"part", "material", "repeat", "offset", "filter", NULL};
+    *c = (struct covering){.repeat = {1, 1}};
+    if (!jvalue_is_object(value))
+        return wrong(r, "parts: expected objects with a material");
+    relume_status status = know(r, value, known);
+    if (status)
+        return status;
+    c->part = jvalue_text(jvalue_member(value, "part"));
+    const char *filter = jvalue_text(jvalue_member(value, "filter"));
+    c->nearest = filter && !strcmp(filter, "nearest");
+    if (jvalue_member(value, "part") && !c->part)
+        return wrong(r, "part: expected the name of a part of the mesh");
+    if (jvalue_member(value, "filter") && !c->nearest && (!filter || strcmp(filter, "bilinear")))
+        return wrong(r, "filter: expected \"bilinear\" or \"nearest\"");
+    if (!read_pair(jvalue_member(value, "repeat"), c->repeat) || c->repeat[0] == 0.0 ||
+        c->repeat[1] == 0.0)
+        return wrong(r, "repeat: expected a number or two, not 0");
+    if (!read_pair(jvalue_member(value, "offset"), c->offset))
+        return wrong(r, "offset: expected a number or two");
+    return read_material(r, jvalue_member(value, "material"), &c->material);
+}
+
+static struct frame turn(const double axis_angle[4])
+{
+    const vec3 a = vec3_unit(vec3_of(axis_angle[0], axis_angle[1], axis_angle[2]));
+    const double angle_rad = axis_angle[3] * M_PI / 180.0;
+    const double c = cos(angle_rad), s = sin(angle_rad);
+    struct frame f = frame_world;
+    vec3 *const image[3] = {&f.x, &f.y, &f.z};
+    for (int i = 0; i < 3; i++) {  // Rodrigues' formula
+        const vec3 e = *image[i];
+        *image[i] = vec3_add(vec3_add(vec3_scale(e, c), vec3_scale(vec3_cross(a, e), s)),
+                             vec3_scale(a, vec3_dot(a, e) * (1.0 - c)));
+    }
+    return f;
+}
+
+static relume_status read_pose(const struct reader *r, const jvalue *value, struct frame *out)
+{
+    static const char *const known[] = {"translate", "rotate", "scale", NULL};
+    double move[3] = {0}, axis[4] = {0, 1, 0, 0}, scale = 1.0;
+    *out = frame_world;
+    if (!value)
+        return RELUME_OK;
+    if (!jvalue_is_object(value))
+        return wrong(r, "pose: expected translate, rotate, scale");
+    relume_status status = know(r, value, known);
+    const jvalue *m = jvalue_member(value, "translate");
+    if (!status && m && !jvalue_numbers(m, move, 3))
+        status = wrong(r, "translate: expected [x, y, z]");
+    m = jvalue_member(value, "rotate");
+    if (!status && m &&
+        (!jvalue_numbers(m, axis, 4) || !(vec3_length(vec3_of(axis[0], axis[1], axis[2])) > 0.0)))
+        status = wrong(r, "rotate: expected [x, y, z, degrees], an axis that has a length");
+    m = jvalue_member(value, "scale");
+    if (!status && m && (!jvalue_number(m, &scale) || !(scale > 0.0)))
+        status = wrong(r, "scale: expected a number above 0");
+    *out = frame_compose(frame_compose(frame_move(move[0], move[1], move[2]), turn(axis)),
+                         frame_scale(scale, scale, scale));
+    return status;
+}
+
+static relume_status read_coverings(const struct reader *r, const jvalue *object,
+                                    struct standing *s)
+{
+    const jvalue *parts = jvalue_member(object, "parts");
+    const size_t n = jvalue_is_array(parts) ? jvalue_count(parts) : 0;
+    if (n < 1 || n > MOST_COVERINGS)
+        return wrong(r, "parts: expected a list of 1 to %d", MOST_COVERINGS);
+    s->covering = mem_zeroed(n, sizeof *s->covering);
+    s->coverings = s->covering ? (int)n : 0;
+    relume_status status = s->covering ? RELUME_OK : RELUME_ENOMEM;
+    for (size_t i = 0; i < n && !status; i++)
+        status = read_covering(r, jvalue_item(parts, i), &s->covering[i]);
+    return status;
+}
+
+static relume_status read_object(const struct reader *r, const jvalue *object)
+{
+    static const char *const known[] = {"mesh", "pose", "parts", NULL};
+    struct standing s = {.frame = frame_world};
+    const char *mesh = jvalue_text(jvalue_member(object, "mesh"));
+    if (!jvalue_is_object(object) || !mesh || !*mesh)
+        return wrong(r, "mesh: expected the name of a file");
+    char *path = mesh_beside(r->path, mesh);
+    relume_status status = path ? know(r, object, known) : RELUME_ENOMEM;
+    if (!status)
+        status = read_pose(r, jvalue_member(object, "pose"), &s.frame);
+    if (!status)
+        status = read_coverings(r, object, &s);
+    if (!status)
+        status = objects_add(r->o, path, &s, r->params);
+    free(s.covering);
+    free(path);
+    return status;
+}
+
+static relume_status read_all(struct reader *r, const jvalue *root)
+{
+    static const char *const known[] = {"format", "version", "objects", NULL};
+    const char *format = jvalue_text(jvalue_member(root, "format"));
+    const jvalue *list = jvalue_member(root, "objects");
+    long long version = 0;
+    if (!format || strcmp(format, "relume-objects"))
+        return log_fail(r->log, RELUME_EDATA, "%s: format: expected \"relume-objects\"", r->path);
+    if (!jvalue_integer(jvalue_member(root, "version"), &version) || version != VERSION)
+        return log_fail(r->log, RELUME_EDATA, "%s: expected version %d; found %lld", r->path,
+                        VERSION, version);
+    if (jvalue_unknown(root, known))
+        return log_fail(r->log, RELUME_EDATA, "%s: unknown member '%s'", r->path,
+                        jvalue_unknown(root, known));
+    const size_t n = jvalue_is_array(list) ? jvalue_count(list) : 0;
+    if (n < 1 || n > MOST_OBJECTS)
+        return log_fail(r->log, RELUME_EDATA, "%s: objects: expected a list of 1 to %d", r->path,
+                        MOST_OBJECTS);
+    relume_status status = RELUME_OK;
+    for (r->object = 0; r->object < n && !status; r->object++)
+        status = read_object(r, jvalue_item(list, r->object));
+    return status;
+}
+
+relume_status relume_objects_open(relume_objects **out, const char *path,
+                                  const struct relume_objects_params *params)
+{
+    const struct relume_log *log = params ? params->log : NULL;
+    relume_objects *o = mem_zeroed(1, sizeof *o);
+    struct reader r = {o, path, params, log, 0};
+    jvalue *root = NULL;
+    *out = NULL;
+    relume_status status = o ? jvalue_load(&root, path, log) : RELUME_ENOMEM;
+    if (!status)
+        status = read_all(&r, root);
+    if (!status)
+        status = objects_finish(o, params);
+    jvalue_free(&root);
+    if (status)
+        relume_objects_destroy(&o);
+    *out = o;
+    return status;
+}
+
+relume_status relume_objects_of_mesh(relume_objects **out, const char *mesh,
+                                     const char *const *materials, int count, double repeat,
+                                     const struct relume_objects_params *params)
+{
+    relume_objects *o = mem_zeroed(1, sizeof *o);
+    const double times = repeat != 0.0 ? repeat : 1.0;
+    struct covering c = {.repeat = {times, times}};
+    struct standing s = {frame_world, &c, 1};
+    relume_status status = o ? RELUME_OK : RELUME_ENOMEM;
+    *out = NULL;
+    for (int i = 0, number; i < count && !status; i++)
+        status = objects_material(o, materials[i], &number, params);
+    if (!status)
+        status = objects_add(o, mesh, &s, params);
+    if (!status)
+        status = objects_finish(o, params);
+    if (status)
+        relume_objects_destroy(&o);
+    *out = o;
+    return status;
+}

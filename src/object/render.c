@@ -1,0 +1,277 @@
+// render.c - the objects ray traced: the reference
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/thread.h"
+#include "object/object.h"
+
+#include <string.h>
+
+// Towards the eye a surface is never seen from below, but where normals are interpolated the frame
+// may say so; the lowest view stands for these.
+static const double LOWEST = 1e-3;
+
+static void copy(float out[3], vec3 v)
+{
+    out[0] = (float)v.x, out[1] = (float)v.y, out[2] = (float)v.z;
+}
+
+static vec3 vector(const float v[3])
+{
+    return vec3_of((double)v[0], (double)v[1], (double)v[2]);
+}
+
+// The frame between the corners: the normal, the tangent across it, and the other as the corners'
+// handedness says (one for all three).
+static void interpolate(struct surface_point *p, const struct relume_object_vertex *v[3],
+                        const double weight[3])
+{
+    vec3 normal = {0, 0, 0}, tangent = {0, 0, 0};
+    p->position = vec3_of(0, 0, 0);
+    p->s = p->t = 0.0;
+    for (int k = 0; k < 3; k++) {
+        p->position = vec3_add(p->position, vec3_scale(vector(v[k]->position), weight[k]));
+        normal = vec3_add(normal, vec3_scale(vector(v[k]->normal), weight[k]));
+        tangent = vec3_add(tangent, vec3_scale(vector(v[k]->tangent), weight[k]));
+        p->s += weight[k] * (double)v[k]->texture[0];
+        p->t += weight[k] * (double)v[k]->texture[1];
+    }
+    p->normal = vec3_length(normal) > 0.0 ? vec3_unit(normal) : p->geometric;
+    tangent = vec3_sub(tangent, vec3_scale(p->normal, vec3_dot(tangent, p->normal)));
+    const vec3 any = fabs(p->normal.x) < 0.7 ? vec3_of(1, 0, 0) : vec3_of(0, 1, 0);
+    p->tangent = vec3_unit(vec3_length(tangent) > 1e-9 ? tangent : vec3_cross(any, p->normal));
+    p->bitangent = vec3_scale(vec3_cross(p->normal, p->tangent), (double)v[0]->tangent[3]);
+}
+
+// Onto the surface that the corners' normals mean, where it stands over the flat triangle: flat
+// ones of a smooth mesh would shade each other along the border of the light (Hanika, "Hacking the
+// Shadow Terminator", 2021).
+static vec3 lift(const struct surface_point *p, const struct relume_object_vertex *v[3],
+                 const double weight[3], double side)
+{
+    vec3 lifted = p->position;
+    for (int k = 0; k < 3; k++) {
+        const vec3 n = vec3_scale(vector(v[k]->normal), side);
+        const double under = vec3_dot(vec3_sub(p->position, vector(v[k]->position)), n);
+        if (under < 0.0)
+            lifted = vec3_sub(lifted, vec3_scale(n, under * weight[k]));
+    }
+    return lifted;
+}
+
+bool objects_hit(struct surface_point *out, const relume_objects *o, vec3 origin, vec3 direction)
+{
+    float from[3], along[3];
+    struct trace_hit hit;
+    copy(from, origin);
+    copy(along, direction);
+    if (!trace_closest(o->tracer, from, along, &hit))
+        return false;
+    const struct relume_object_vertex *v[3];
+    for (int k = 0; k < 3; k++)
+        v[k] = &o->vertices[o->triangles[hit.triangle][k]];
+    const double u = (double)hit.u, w = (double)hit.v;
+    const double weight[3] = {1.0 - u - w, u, w};
+    const vec3 first = vector(v[0]->position);
+    out->geometric = vec3_unit(vec3_cross(vec3_sub(vector(v[1]->position), first),
+                                          vec3_sub(vector(v[2]->position), first)));
+    out->distance = (double)hit.distance;
+    out->part = (int)o->mesh.triangles[hit.triangle].material;
+    interpolate(out, v, weight);
+    // from behind: the same sample seen through, its normal on this side
+    const double side = vec3_dot(out->geometric, direction) > 0.0 ? -1.0 : 1.0;
+    out->geometric = vec3_scale(out->geometric, side);
+    out->normal = vec3_scale(out->normal, side);
+    out->lifted = lift(out, v, weight, side);
+    return true;
+}
+
+bool objects_reached(const relume_objects *o, vec3 point, vec3 normal, vec3 towards,
+                     double distance)
+{
+    float at[3], off[3], from[3], along[3];
+    struct trace_hit hit;
+    copy(at, point);
+    copy(off, normal);
+    copy(along, towards);
+    trace_leave(at, off, from);
+    return !trace_closest(o->tracer, from, along, &hit) || (double)hit.distance >= distance;
+}
+
+static vec3 local(const struct surface_point *p, vec3 d)
+{
+    return vec3_of(vec3_dot(d, p->tangent), vec3_dot(d, p->bitangent), vec3_dot(d, p->normal));
+}
+
+static void ask(float rgb[3], const relume_objects *o, const struct surface_point *p, vec3 view,
+                vec3 light)
+{
+    const struct relume_object_part *part = &o->part[p->part];
+    const struct relume_object_material *m = &o->material[part->material];
+    const double x = p->s * m->width, y = p->t * m->height;
+    const struct relume_btf_ray ray = {.view = view, .light = light};
+    if (m->surface && part->bilinear)
+        relume_btf_surface_evaluate(m->surface, x, y, 0.0, &ray, rgb);
+    else if (m->surface)
+        relume_btf_surface_evaluate(m->surface, floor(x) + 0.5, floor(y) + 0.5, 0.0, &ray, rgb);
+    else if (m->fitted)
+        relume_btf_fitted_sample(m->fitted, x, y, part->bilinear, view, light, rgb);
+    else
+        relume_btf_sample(m->btf, x, y, part->bilinear, view, light, rgb);
+}
+
+void objects_shade(float rgb[3], const relume_objects *o, const struct surface_point *p,
+                   vec3 towards_eye, const struct relume_lamp *lamps, int n, bool no_shadows)
+{
+    vec3 view = local(p, towards_eye);
+    view = vec3_unit(vec3_of(view.x, view.y, fmax(view.z, LOWEST)));
+    rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    for (int i = 0; i < n; i++) {
+        float arriving[3], value[3];
+        double distance;
+        vec3 towards;
+        if (!relume_lamp_at(&towards, arriving, &distance, &lamps[i], p->position))
+            continue;
+        const vec3 light = local(p, towards);
+        if (!(light.z > 0.0))
+            continue;
+        if (!no_shadows && !objects_reached(o, p->lifted, p->geometric, towards, distance))
+            continue;
+        ask(value, o, p, view, vec3_unit(light));
+        for (int c = 0; c < 3; c++)
+            rgb[c] += arriving[c] * value[c];
+    }
+}
+
+// ---------------------------------------------------------------- pictures
+
+enum { TILE = 16 };
+
+struct picture {
+    struct relume_image *out;
+    pixel_value *value;
+    const void *context;
+    int samples, across, first;
+};
+
+static void trace_pixel(const struct picture *p, int x, int y)
+{
+    float *to = p->out->data + 3 * ((size_t)y * (size_t)p->out->width + (size_t)x);
+    double sum[3] = {0.0, 0.0, 0.0};
+    const int n = p->samples;
+    for (int i = 0; i < n * n; i++) {
+        float rgb[3];
+        p->value(rgb, p->context, x + (i % n + 0.5) / n, y + (i / n + 0.5) / n);
+        for (int c = 0; c < 3; c++)
+            sum[c] += (double)rgb[c];
+    }
+    for (int c = 0; c < 3; c++)
+        to[c] = (float)(sum[c] / (n * n));
+}
+
+static void trace_tile(void *context, size_t item, int worker)
+{
+    (void)worker;
+    const struct picture *p = context;
+    const int tile = p->first + (int)item;
+    const int left = tile % p->across * TILE, top = tile / p->across * TILE;
+    for (int y = top; y < top + TILE && y < p->out->height; y++)
+        for (int x = left; x < left + TILE && x < p->out->width; x++)
+            trace_pixel(p, x, y);
+}
+
+relume_status objects_trace(struct relume_image *out, pixel_value *value, const void *context,
+                            const struct relume_render_params *params)
+{
+    enum { AT_ONCE = 64 };
+    const int samples = params && params->samples ? params->samples : 1;
+    struct picture p = {out, value, context, samples, (out->width + TILE - 1) / TILE, 0};
+    const int tiles = p.across * ((out->height + TILE - 1) / TILE);
+    if (samples < 1 || samples > 16 || out->channels != 3)
+        return RELUME_EINVAL;
+    for (; p.first < tiles; p.first += AT_ONCE) {
+        const int left = tiles - p.first;
+        thread_for(params ? params->threads : 0, (size_t)(left < AT_ONCE ? left : AT_ONCE),
+                   trace_tile, &p);
+        if (params &&
+            !log_progress(params->log, "rendering", fmin((double)(p.first + AT_ONCE) / tiles, 1.0)))
+            return RELUME_ECANCEL;
+    }
+    return RELUME_OK;
+}
+
+struct view {
+    const relume_objects *o;
+    const struct relume_window *window;
+    double width, height;
+    const struct relume_lamp *lamps;
+    int n;
+    bool no_shadows;
+};
+
+static void view_value(float rgb[3], const void *context, double x, double y)
+{
+    const struct view *v = context;
+    const struct relume_window *w = v->window;
+    const vec3 at = vec3_add(w->corner, vec3_add(vec3_scale(w->right, x / v->width),
+                                                 vec3_scale(w->down, y / v->height)));
+    const vec3 direction = vec3_unit(vec3_sub(at, w->eye));
+    struct surface_point p;
+    rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    if (objects_hit(&p, v->o, w->eye, direction))
+        objects_shade(rgb, v->o, &p, vec3_scale(direction, -1.0), v->lamps, v->n, v->no_shadows);
+}
+
+relume_status relume_objects_render(struct relume_image *out, const relume_objects *objects,
+                                    const struct relume_window *window,
+                                    const struct relume_light *lights, int n,
+                                    const struct relume_render_params *params)
+{
+    struct relume_lamp *lamps;
+    int count;
+    relume_status status = relume_objects_lamps(&lamps, &count, objects, lights, n);
+    if (status)
+        return status;
+    const struct view view = {
+        objects, window, out->width, out->height, lamps, count, params && params->no_shadows};
+    status = objects_trace(out, view_value, &view, params);
+    free(lamps);
+    return status;
+}
+
+bool relume_objects_window(struct relume_window *out, const relume_objects *objects,
+                           struct relume_vec3 eye, const struct relume_aim *aim, int width,
+                           int height)
+{
+    const vec3 min = objects->info.min, max = objects->info.max;
+    const vec3 middle = vec3_scale(vec3_add(min, max), 0.5);
+    const double radius = 0.5 * vec3_length(vec3_sub(max, min));
+    const vec3 at = aim && aim->aimed ? aim->at : middle;
+    const vec3 ahead = vec3_sub(at, eye);
+    const double distance = vec3_length(ahead);
+    vec3 up = aim ? aim->up : vec3_of(0, 0, 0);
+    if (!(distance > 0.0) || !isfinite(distance))
+        return false;
+    if (!(vec3_length(up) > 0.0))
+        up = fabs(ahead.y) > 0.9999 * distance ? vec3_of(0, 0, ahead.y < 0.0 ? -1.0 : 1.0)
+                                               : vec3_of(0, 1, 0);
+    vec3 right = vec3_cross(ahead, up);
+    if (!(vec3_length(right) > 1e-9 * distance * vec3_length(up)))
+        return false;
+    right = vec3_unit(right);
+    const vec3 down = vec3_unit(vec3_cross(ahead, right));
+    // half the window at distance 1, along the shorter side; the ball about the objects fills it
+    const double apart = fmax(vec3_length(vec3_sub(middle, eye)), 1.2 * radius);
+    const double fits = 1.05 * radius / sqrt(apart * apart - radius * radius);
+    const double angle_deg = aim ? aim->field_of_view_deg : 0.0;
+    const double pixel = angle_deg > 0.0 ? tan(angle_deg * M_PI / 360.0) / width
+                                         : fits / (width < height ? width : height);
+    const vec3 half_right = vec3_scale(right, distance * pixel * width);
+    const vec3 half_down = vec3_scale(down, distance * pixel * height);
+    *out = (struct relume_window){
+        .eye = eye,
+        .corner = vec3_sub(vec3_sub(at, half_right), half_down),
+        .right = vec3_scale(half_right, 2.0),
+        .down = vec3_scale(half_down, 2.0),
+    };
+    return true;
+}

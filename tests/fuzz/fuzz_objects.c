@@ -1,0 +1,106 @@
+// fuzz_objects.c - descriptions of objects and meshes (OBJ, PLY) made of noise; what is accepted is
+// rendered, where every value must be finite. Models that Assimp reads are its own affair.
+#include "fuzz.h"
+
+#include <math.h>
+#include <relume/object.h>
+
+static const char *const words[] = {"format",    "version",   "relume-objects",
+                                    "objects",   "mesh",      "pose",
+                                    "translate", "rotate",    "scale",
+                                    "parts",     "part",      "repeat",
+                                    "offset",    "filter",    "material",
+                                    "nearest",   "bilinear",  "btf",
+                                    "input.obj", "input.ply", "vt",
+                                    "vn",        "usemtl",    "f ",
+                                    "1e308",     "-0",        "nan",
+                                    "inf",       "1e-300",    "element",
+                                    "property",  "list",      "uchar",
+                                    "int",       "ascii",     "vertex",
+                                    "face",      "4096",      "[",
+                                    "]",         "{",         "}",
+                                    ",",         "null",      NULL};
+
+static const char *const extensions[] = {"json", "obj", "ply"};
+
+static void look(const relume_objects *o)
+{
+    const struct relume_light light = {.direction = {0.3, 0.4, 0.8}, .rgb = {1, 1, 1}};
+    struct relume_window window;
+    struct relume_image image;
+    mem_fail_after(0);
+    if (!relume_objects_window(&window, o, (struct relume_vec3){0.7, 1.1, 2.9}, NULL, 6, 5))
+        return;
+    if (relume_image_create(&image, 6, 5, 3) ||
+        relume_objects_render(&image, o, &window, &light, 1, relume_render_params(.threads = 1)))
+        abort();
+    for (int i = 0; i < 6 * 5 * 3; i++)
+        if (!isfinite(image.data[i]))
+            abort();
+    relume_image_destroy(&image);
+}
+
+// A seed begins with the kind of its file.
+static bool one(struct fuzz *f, struct bytes b)
+{
+    char path[128], material[128];
+    const size_t kind = b.data[0] % 3;
+    const char *materials[1] = {material};
+    relume_objects *o;
+    snprintf(path, sizeof path, "%s/input.%s", f->folder, extensions[kind]);
+    snprintf(material, sizeof material, "%s/btf", f->folder);
+    fuzz_store(path, (struct bytes){b.data + 1, b.size - 1});
+    const relume_status status = kind == 0
+                                     ? relume_objects_open(&o, path, NULL)
+                                     : relume_objects_of_mesh(&o, path, materials, 1, 1.0, NULL);
+    if (!status)
+        look(o);
+    relume_objects_destroy(&o);
+    return !status;
+}
+
+static void add(struct fuzz *f, size_t kind, const char *text)
+{
+    struct bytes b = {malloc(strlen(text) + 2), strlen(text) + 1};
+    b.data[0] = (uint8_t)kind;
+    memcpy(b.data + 1, text, b.size);
+    fuzz_add(f, b);
+}
+
+static void make_material(struct fuzz *f)
+{
+    static const struct relume_vec3 d[4] = {
+        {0, 0, 1}, {0.8, 0, 0.6}, {-0.48, 0.64, 0.6}, {-0.48, -0.64, 0.6}};
+    const struct relume_btf_info info = {
+        .name = "made", .width = 2, .height = 2, .views = 4, .lights = 4, .view = d, .light = d};
+    char path[128];
+    relume_btf *btf;
+    snprintf(path, sizeof path, "%s/btf", f->folder);
+    if (relume_btf_create(&btf, &info, NULL) || relume_btf_save(btf, path, NULL))
+        abort();
+    relume_btf_destroy(&btf);
+}
+
+int main(int argc, char **argv)
+{
+    static const char obj[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 .5\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                              "vn 0 0 1\nusemtl a\nf 1/1/1 2/2/1 3/3/1\ng b\nf -1 -2 -3\n";
+    struct fuzz f = {.words = words};
+    char path[128];
+    fuzz_begin(&f, "fuzz_objects", argc, argv);
+    make_material(&f);
+    snprintf(path, sizeof path, "%s/good.obj", f.folder);
+    fuzz_store(path, (struct bytes){(uint8_t *)(uintptr_t)obj, sizeof obj - 1});
+    add(&f, 0,
+        "{\"format\":\"relume-objects\",\"version\":1,\"objects\":[{\"mesh\":\"good.obj\","
+        "\"pose\":{\"translate\":[1,2,3],\"rotate\":[0,1,0,30],\"scale\":2},\"parts\":["
+        "{\"part\":\"a\",\"material\":\"btf\",\"repeat\":[2,3],\"offset\":0.5},"
+        "{\"material\":[\"btf\",\"btf\"],\"filter\":\"nearest\"}]}]}");
+    add(&f, 1, obj);
+    add(&f, 2,
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+        "property float z\nproperty float s\nproperty float t\nelement face 2\n"
+        "property list uchar int vertex_indices\nend_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n"
+        "1 1 1 1 1\n3 0 1 2\n3 1 3 2\n");
+    return fuzz_run(&f, argc, argv, one);
+}

@@ -1,0 +1,371 @@
+// Objects covered with measured materials: OpenGL against the ray traced reference, for every
+// model under every kind of light, and shadows.
+#include "fixture.h"
+#include "things.h"
+
+#include <unistd.h>
+
+enum { SIDE = 48, TEXELS = 8 };
+static char folder[64];
+static const char *const models[] = {"lit", "bump", "laf",  "slaf", "rfp", "rfnl", "rfnlc",
+                                     "cmf", "vpca", "lpca", "fmf",  "qmf", NULL};
+
+static const char *path_of(const char *name)
+{
+    static char path[4][128];
+    static int next;
+    char *p = path[next++ % 4];
+    snprintf(p, sizeof path[0], "%s/%s", folder, name);
+    return p;
+}
+
+// A bowl over the unit square with a mirrored half, and a ball above it that throws a shadow.
+static void write_mesh(const char *path)
+{
+    enum { N = 12 };
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    int count = 0;
+    for (int ball = 0; ball < 2; ball++) {
+        fprintf(file, "usemtl %s\n", ball ? "ball" : "bowl");
+        for (int j = 0; j <= N; j++)
+            for (int i = 0; i <= N; i++) {
+                const double u = (double)i / N, v = (double)j / N;
+                const double phi = 2 * 3.14159265358979 * u, theta = 3.14159265358979 * v;
+                const double x = 2 * u - 1, y = 2 * v - 1;
+                const double n[3] = {-sin(theta) * sin(phi), -cos(theta), -sin(theta) * cos(phi)};
+                if (ball)
+                    fprintf(file, "v %.9f %.9f %.9f\nvt %.9f %.9f\nvn %.9f %.9f %.9f\n",
+                            0.2 + 0.25 * n[0], 0.1 + 0.25 * n[1], 0.6 + 0.25 * n[2], u, v, n[0],
+                            n[1], n[2]);
+                else
+                    fprintf(file, "v %.9f %.9f %.9f\nvt %.9f %.9f\nvn %.9f %.9f 1\n", x, y,
+                            0.2 * (x * x + y * y), fabs(x), v, -0.4 * x, -0.4 * y);
+                count++;
+            }
+        for (int j = 0; j < N; j++)
+            for (int i = 0; i < N; i++) {
+                const int a = count - (N + 1) * (N + 1) + j * (N + 1) + i + 1, b = a + N + 1;
+                fprintf(file, "f %d/%d/%d %d/%d/%d %d/%d/%d\nf %d/%d/%d %d/%d/%d %d/%d/%d\n", a, a,
+                        a, a + 1, a + 1, a + 1, b + 1, b + 1, b + 1, a, a, a, b + 1, b + 1, b + 1,
+                        b, b, b);
+            }
+    }
+    fclose(file);
+}
+
+// A surface of two tiles of the sample, in a matrix of 3 x 2.
+static void make_surface(const relume_btf_fitted *model)
+{
+    enum { TILE = 5 };
+    static const uint16_t matrix[6] = {0, 1, 1, 1, 0, 0};
+    uint32_t texel[2 * TILE * TILE];
+    for (int i = 0; i < 2 * TILE * TILE; i++)
+        texel[i] = (uint32_t)(i * 11 % (TEXELS * TEXELS));
+    const struct relume_btf_map_info info = {
+        .sample_width = TEXELS,
+        .sample_height = TEXELS,
+        .tiles = 2,
+        .width = TILE,
+        .height = TILE,
+        .texel = texel,
+        .columns = 3,
+        .rows = 2,
+        .matrix = matrix,
+    };
+    relume_btf_map *map;
+    relume_btf_surface *surface;
+    assert_int_equal(relume_btf_map_create(&map, &info, &fixture_log), RELUME_OK);
+    assert_int_equal(relume_btf_surface_create(&surface, model, map, &fixture_log), RELUME_OK);
+    assert_int_equal(relume_btf_surface_save(surface, path_of("surface"), NULL), RELUME_OK);
+    relume_btf_surface_destroy(&surface);
+    relume_btf_map_destroy(&map);
+}
+
+// Every model of one small sample, and the sample.
+static void make_materials(void)
+{
+    const struct relume_btf_set *set = relume_btf_set_find("coarse");
+    struct relume_vec3 d[64];
+    relume_btf *btf;
+    relume_btf_set_directions(set, d);
+    assert_int_equal(
+        relume_btf_synth(&btf, relume_btf_material_find("weave"),
+                         relume_btf_synth_params(.log = &fixture_log, .size = TEXELS, .view = d,
+                                                 .views = set->count, .light = d,
+                                                 .lights = set->count, .samples = 1)),
+        RELUME_OK);
+    assert_int_equal(relume_btf_save(btf, path_of("measured"), NULL), RELUME_OK);
+    for (const char *const *m = models; *m; m++) {
+        // few, so that texels share them
+        const bool clustered = strchr(*m, 'c') && strcmp(*m, "vpca");
+        const int clusters = clustered ? 12 : 0;
+        relume_btf_fitted *fitted;
+        assert_int_equal(
+            relume_btf_fit(&fitted, btf, relume_btf_model_find(*m),
+                           relume_btf_fit_params(.log = &fixture_log, .clusters = clusters)),
+            RELUME_OK);
+        assert_int_equal(relume_btf_fitted_save(fitted, path_of(*m), NULL), RELUME_OK);
+        if (!strcmp(*m, "vpca"))
+            make_surface(fitted);
+        relume_btf_fitted_destroy(&fitted);
+    }
+    relume_btf_destroy(&btf);
+}
+
+static relume_objects *open_objects(void)
+{
+    enum { MOST = 16 };
+    char kept[MOST][128];
+    const char *materials[MOST];
+    int n = 0;
+    snprintf(kept[n++], sizeof kept[0], "%s", path_of("measured"));
+    for (const char *const *m = models; *m; m++)
+        snprintf(kept[n++], sizeof kept[0], "%s", path_of(*m));
+    snprintf(kept[n++], sizeof kept[0], "%s", path_of("surface"));
+    for (int i = 0; i < n; i++)
+        materials[i] = kept[i];
+    relume_objects *o;
+    assert_int_equal(relume_objects_of_mesh(&o, path_of("mesh.obj"), materials, n, 2.3,
+                                            relume_objects_params(.log = &fixture_log)),
+                     RELUME_OK);
+    assert_int_equal(relume_objects_info(o)->materials, n);
+    assert_int_equal(relume_objects_info(o)->parts, 2);
+    return o;
+}
+
+static struct relume_window window_of(const relume_objects *o)
+{
+    struct relume_window w;
+    assert_true(
+        relume_objects_window(&w, o, (struct relume_vec3){0.9, -1.6, 3.2}, NULL, SIDE, SIDE));
+    return w;
+}
+
+static struct relume_image draw(struct things *t, const struct relume_window *w,
+                                const struct relume_light *lights, int n)
+{
+    const struct gl *gl = &fixture_gl;
+    const struct relume_objects_info *info = relume_objects_info(t->objects);
+    struct sight sight;
+    struct target frame;
+    struct relume_image image;
+    GLuint array;
+    gl->GenVertexArrays(1, &array);
+    gl->BindVertexArray(array);
+    const struct place place = {SIDE, SIDE, {0, 0, SIDE, SIDE}, 1};
+    assert_true(sight_of_window(&sight, w, place.picture, SIDE, SIDE, info->min, info->max));
+    assert_int_equal(things_light(t, lights, n), RELUME_OK);
+    assert_int_equal(things_shade(t, &sight, SIDE, SIDE, -1), RELUME_OK);
+    assert_int_equal(target_create(&frame, gl, SIDE, SIDE, &fixture_log), RELUME_OK);
+    target_begin(&frame, gl);
+    things_over(t, &place, 0, false);
+    assert_int_equal(target_read(&image, &frame, gl), RELUME_OK);
+    target_destroy(&frame, gl);
+    gl->DeleteVertexArrays(1, &array);
+    return image;
+}
+
+// Pixels that differ by more than `tolerance` of what they show (or of white, where that is less),
+// and the brightest pixel of the reference.
+static int count_apart(const struct relume_image *a, const struct relume_image *b, double tolerance,
+                       double *brightest)
+{
+    int count = 0;
+    *brightest = 0;
+    for (int i = 0; i < a->width * a->height; i++) {
+        bool apart = false;
+        for (int c = 0; c < 3; c++) {
+            const double x = (double)a->data[3 * i + c], y = (double)b->data[3 * i + c];
+            apart |= !(fabs(x - y) <= tolerance * fmax(1.0, fabs(x)));
+            *brightest = fmax(*brightest, x);
+        }
+        count += apart;
+    }
+    return count;
+}
+
+struct picture {
+    struct relume_image cpu, gl;
+};
+
+static struct picture both(struct things *t, const struct relume_light *lights, int n,
+                           bool no_shadows)
+{
+    struct picture p = {0};
+    const struct relume_window w = window_of(t->objects);
+    t->no_shadows = no_shadows;
+    assert_int_equal(relume_image_create(&p.cpu, SIDE, SIDE, 3), RELUME_OK);
+    assert_int_equal(relume_objects_render(&p.cpu, t->objects, &w, lights, n,
+                                           relume_render_params(.no_shadows = no_shadows)),
+                     RELUME_OK);
+    p.gl = draw(t, &w, lights, n);
+    return p;
+}
+
+static void destroy(struct picture *p)
+{
+    relume_image_destroy(&p->cpu);
+    relume_image_destroy(&p->gl);
+}
+
+static void choose(relume_objects *o, int material)
+{
+    for (int i = 0; i < relume_objects_info(o)->parts; i++)
+        assert_int_equal(relume_objects_choose(o, i, material), RELUME_OK);
+}
+
+static void start(struct things *t)
+{
+    assert_int_equal(things_create(t, &fixture_gl, open_objects(), &fixture_log), RELUME_OK);
+}
+
+static void finish(struct things *t)
+{
+    relume_objects *o = t->objects;
+    things_destroy(t);
+    relume_objects_destroy(&o);
+}
+
+static const char *const sunlight = "dir -0.4 0.5 0.8 rgb 1 0.9 0.8";
+
+static relume_rig *rig_of(const char *const *specs)
+{
+    relume_rig *rig;
+    assert_int_equal(relume_rig_create(&rig), RELUME_OK);
+    for (; *specs; specs++)
+        assert_int_equal(relume_rig_add(rig, *specs, folder, &fixture_log), RELUME_OK);
+    return rig;
+}
+
+static void compare(struct things *t, relume_rig *rig, const char *what)
+{
+    const struct relume_light *lights;
+    double brightest;
+    int n;
+    assert_int_equal(relume_rig_lights(&lights, &n, rig), RELUME_OK);
+    struct picture p = both(t, lights, n, true);
+    // floats against doubles: 1e-3; pixels of the outline may fall to either side, a few of the
+    // 200 that it crosses
+    const int apart = count_apart(&p.cpu, &p.gl, 1e-3, &brightest);
+    if (apart > 16 || !(brightest > 0.02))
+        fail_msg("%s: %d of %d pixels differ, the brightest is %g", what, apart, SIDE * SIDE,
+                 brightest);
+    destroy(&p);
+}
+
+static void models_agree(void **state)
+{
+    (void)state;
+    struct things t;
+    start(&t);
+    relume_rig *rig = rig_of((const char *const[]){sunlight, NULL});
+    for (int i = 0; i < relume_objects_info(t.objects)->materials; i++) {
+        choose(t.objects, i);
+        compare(&t, rig, relume_objects_info(t.objects)->material[i].model);
+    }
+    relume_rig_destroy(&rig);
+    finish(&t);
+}
+
+static void lights_agree(void **state)
+{
+    (void)state;
+    struct things t;
+    start(&t);
+    const char *const specs[] = {"point 0.3 0.9 1.4",
+                                 "spot -0.5 -0.6 2 0.2 0.2 -1 24 nofall",
+                                 "slide 0.1 0.2 2 0 0 -1 40 slide.exr",
+                                 "area -0.3 0.4 1.5 0.3 0 0 0 -0.3 0",
+                                 "area -0.3 0.4 1.5 0.3 0 0 0 -0.3 0 disc",
+                                 "ies 0 0 2 0.1 0 -1 lamp.ies",
+                                 "gonio 0.1 -0.3 2 0.2 0 -1 slide.exr",
+                                 "env sky.exr 30",
+                                 NULL};
+    // what differs between lights is shared by all models
+    choose(t.objects, 6);
+    for (int i = 0; specs[i]; i++) {
+        relume_rig *rig = rig_of((const char *const[]){specs[i], NULL});
+        compare(&t, rig, specs[i]);
+        relume_rig_destroy(&rig);
+    }
+    relume_rig *all = rig_of((const char *const[]){sunlight, specs[0], specs[1], specs[3], NULL});
+    compare(&t, all, "all at once");
+    relume_rig_destroy(&all);
+    finish(&t);
+}
+
+// Shadows of rays and of maps differ along their edges only: within two texels of the map, and a
+// pixel is some thirty texels wide. What no lamp reaches is black in both.
+static void shadows_agree(void **state)
+{
+    (void)state;
+    struct things t;
+    start(&t);
+    const char *const specs[] = {sunlight, "point 0.3 0.9 3.4", "point -0.6 -0.5 0.9", NULL};
+    choose(t.objects, 6);
+    for (int i = 0; specs[i]; i++) {
+        const struct relume_light *lights;
+        double brightest;
+        int n, dark = 0;
+        relume_rig *rig = rig_of((const char *const[]){specs[i], NULL});
+        assert_int_equal(relume_rig_lights(&lights, &n, rig), RELUME_OK);
+        struct picture open = both(&t, lights, n, true), shut = both(&t, lights, n, false);
+        for (int k = 0; k < SIDE * SIDE; k++)
+            dark += shut.cpu.data[3 * k + 1] == 0.0f && open.cpu.data[3 * k + 1] > 0.01f;
+        const int apart = count_apart(&shut.cpu, &shut.gl, 0.02, &brightest);
+        if (apart > 12 || dark < 25)
+            fail_msg("%s: %d pixels differ, %d are in shadow", specs[i], apart, dark);
+        destroy(&open);
+        destroy(&shut);
+        relume_rig_destroy(&rig);
+    }
+    finish(&t);
+}
+
+static void write_lights(void)
+{
+    struct relume_image image;
+    assert_int_equal(relume_image_create(&image, 16, 8, 3), RELUME_OK);
+    for (int i = 0; i < 16 * 8 * 3; i++)
+        image.data[i] = 0.2f + 0.7f * (float)((i * 7) % 11) / 11.0f;
+    assert_int_equal(relume_image_save(&image, path_of("slide.exr"), NULL), RELUME_OK);
+    assert_int_equal(relume_image_save(&image, path_of("sky.exr"), NULL), RELUME_OK);
+    relume_image_destroy(&image);
+    FILE *file = fopen(path_of("lamp.ies"), "w");
+    assert_non_null(file);
+    fputs("IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 4 2 1 2 0 0 0\n1 1 100\n0 20 50 90\n0 90\n"
+          "1000 800 300 0\n1000 600 200 0\n",
+          file);
+    fclose(file);
+}
+
+static int open_all(void **state)
+{
+    snprintf(folder, sizeof folder, "/tmp/relume-objects-%ld", (long)getpid());
+    char command[128];
+    snprintf(command, sizeof command, "mkdir -p %s", folder);
+    if (system(command))
+        return -1;
+    write_mesh(path_of("mesh.obj"));
+    write_lights();
+    make_materials();
+    return fixture_open(state);
+}
+
+static int close_all(void **state)
+{
+    char command[128];
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    return fixture_close(state) || system(command);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(models_agree),
+        cmocka_unit_test(lights_agree),
+        cmocka_unit_test(shadows_agree),
+    };
+    return cmocka_run_group_tests(tests, open_all, close_all);
+}

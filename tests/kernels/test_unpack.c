@@ -1,0 +1,74 @@
+// test_unpack.c - bytes to planes and waiting numbers to codes: every instruction set gives the
+// bits of plain C, which divides and rounds as IEEE says
+#include "test.h"
+
+#include "image/unpack.h"
+
+enum { MOST = 600 };
+
+static const struct unpack_kernels *sets[3];
+
+static int find_sets(void **state)
+{
+    (void)state;
+    sets[0] = &unpack_kernels_c;
+    sets[1] = unpack_choose(0);
+    if (sets[1] == sets[0]) {
+        print_message("no AVX2 here: only plain C is tested\n");
+        sets[1] = NULL;
+    }
+    return 0;
+}
+
+static void test_thirds(void **state)
+{
+    (void)state;
+    static uint8_t in[3 * MOST + 1];
+    float out[3][MOST + 1];
+    for (int i = 0; i < 3 * MOST; i++)
+        in[i + 1] = (uint8_t)(i * 7 + i / 256);
+    for (int s = 0; sets[s]; s++)
+        for (size_t n = 0; n <= MOST; n += n < 40 ? 1 : 280) {
+            for (int c = 0; c < 3; c++)
+                out[c][n] = 42.0f;
+            sets[s]->thirds(in + 1, n, out[0], out[1], out[2]);
+            for (int c = 0; c < 3; c++) {
+                for (size_t i = 0; i < n; i++)
+                    assert_true(out[c][i] == (float)in[1 + 3 * i + (size_t)c] / 255.0f);
+                assert_true(out[c][n] == 42.0f);  // nothing behind the end
+            }
+        }
+}
+
+static void test_codes(void **state)
+{
+    (void)state;
+    static const float pairs[][2] = {{0.0039f, 0.5f}, {0.02f, -300.0f}, {-0.004f, 255.9f},
+                                     {0.0f, 7.5f},    {1e30f, 0.0f},    {1e-30f, -1e-30f}};
+    static uint16_t in[MOST + 1];
+    uint8_t out[MOST + 1];
+    uint32_t seed = 3;
+    for (int i = 0; i <= MOST; i++)
+        in[i] = (uint16_t)(i < 4 ? 65535 * (i % 2) : (int)test_random(&seed));
+    for (int s = 0; sets[s]; s++)
+        for (size_t p = 0; p < sizeof pairs / sizeof *pairs; p++)
+            for (size_t n = 0; n <= MOST; n += n < 70 ? 1 : 265) {
+                out[n] = 42;
+                sets[s]->codes(in + 1, n, pairs[p][0], pairs[p][1], out);
+                for (size_t i = 0; i < n; i++) {
+                    const volatile float product = (float)in[i + 1] * pairs[p][0];
+                    const float v = product + pairs[p][1];
+                    assert_int_equal(out[i], v < 0.0f ? 0 : v > 255.0f ? 255 : (int)v);
+                }
+                assert_int_equal(out[n], 42);
+            }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_thirds),
+        cmocka_unit_test(test_codes),
+    };
+    return cmocka_run_group_tests(tests, find_sets, NULL);
+}

@@ -1,0 +1,426 @@
+// Objects covered with BTFs: tangent frames against their definition, pictures against the sample
+// itself, shadows against geometry; descriptions and meshes that are broken.
+#include <relume/relume.h>
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { TEXELS = 4, DIRECTIONS = 19 };
+static char folder[64], last[512];
+static int warnings;
+
+static void hear(void *user, enum relume_level level, const char *text)
+{
+    (void)user;
+    snprintf(last, sizeof last, "%s", text);
+    warnings += level == RELUME_WARNING;
+}
+static const struct relume_log hearing = {.message = hear};
+
+static const char *path_of(const char *name)
+{
+    static char path[4][128];
+    static int next;
+    char *p = path[next++ % 4];
+    snprintf(p, sizeof path[0], "%s/%s", folder, name);
+    return p;
+}
+
+static void write_text(const char *name, const char *text)
+{
+    FILE *file = fopen(path_of(name), "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+// A sample without symmetry: every texel, view and light shows something else.
+static void write_sample(const char *name, bool without_cosine, bool lambertian)
+{
+    struct relume_vec3 d[64];
+    relume_btf_set_directions(relume_btf_set_find("coarse"), d);
+    const struct relume_btf_info info = {
+        .name = name,
+        .width = TEXELS,
+        .height = TEXELS,
+        .views = DIRECTIONS,
+        .lights = DIRECTIONS,
+        .view = d,
+        .light = d,
+        .without_cosine = without_cosine,
+    };
+    relume_btf *btf;
+    assert_int_equal(relume_btf_create(&btf, &info, NULL), RELUME_OK);
+    for (int v = 0; v < DIRECTIONS; v++)
+        for (int l = 0; l < DIRECTIONS; l++) {
+            float rgb[TEXELS * TEXELS * 3];
+            for (int i = 0; i < TEXELS * TEXELS * 3; i++) {
+                const double cosine = without_cosine ? 1.0 : d[l].z;
+                const double other = 0.5 + 0.2 * d[l].x + 0.1 * d[l].y + 0.15 * d[v].x +
+                                     0.05 * d[v].y + 0.02 * (i % 7);
+                rgb[i] = (float)(cosine * (lambertian ? 0.5 : other));
+            }
+            relume_btf_store(btf, v, l, rgb);
+        }
+    assert_int_equal(relume_btf_save(btf, path_of(name), NULL), RELUME_OK);
+    relume_btf_destroy(&btf);
+}
+
+static relume_objects *of_mesh(const char *mesh, const char *material, double repeat)
+{
+    relume_objects *o;
+    warnings = 0;
+    assert_int_equal(relume_objects_of_mesh(&o, mesh, &material, 1, repeat,
+                                            relume_objects_params(.log = &hearing)),
+                     RELUME_OK);
+    return o;
+}
+
+// Two squares side by side on z = 0; the right one's texture is mirrored, so that both meet in
+// u = 1.
+static const char mirrored[] = "v -1 0 0\nv 0 0 0\nv 1 0 0\nv -1 1 0\nv 0 1 0\nv 1 1 0\n"
+                               "vt 0 0\nvt 1 0\nvt 0 0\nvt 0 1\nvt 1 1\nvt 0 1\nvn 0 0 1\n"
+                               "f 1/1/1 2/2/1 5/5/1 4/4/1\nf 2/2/1 3/3/1 6/6/1 5/5/1\n";
+
+static void frames_follow_the_texture(void **state)
+{
+    (void)state;
+    write_text("mirrored.obj", mirrored);
+    relume_objects *o = of_mesh(path_of("mirrored.obj"), path_of("sample"), 1.0);
+    const struct relume_objects_info *i = relume_objects_info(o);
+    assert_int_equal(warnings, 0);
+    // four corners each: what the two share in place and texture they do not share in handedness
+    assert_int_equal(i->vertex_count, 8);
+    assert_int_equal(i->triangle_count, 4);
+    for (size_t t = 0; t < i->triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            const struct relume_object_vertex *v = &i->vertices[i->triangles[t][k]];
+            const float side = t < 2 ? 1.0f : -1.0f;
+            // s grows to the right, on the mirrored half to the left; up is up on both:
+            // h cross((0, 0, 1), (side, 0, 0)) = (0, h side, 0)
+            assert_float_equal(v->tangent[0], side, 1e-6);
+            assert_float_equal(v->tangent[1], 0, 1e-6);
+            assert_float_equal(v->tangent[3], side, 0);
+        }
+    relume_objects_destroy(&o);
+}
+
+static struct relume_vec3 unit(double x, double y, double z)
+{
+    const double length = sqrt(x * x + y * y + z * z);
+    return (struct relume_vec3){x / length, y / length, z / length};
+}
+
+// Every pixel of a flat sample is what the sample shows in that place from there; on the mirrored
+// half in the mirrored place, with mirrored directions.
+static void a_plane_shows_the_sample(void **state)
+{
+    (void)state;
+    enum { W = 16, H = 8 };
+    relume_objects *o = of_mesh(path_of("mirrored.obj"), path_of("sample"), 1.0);
+    const relume_btf *btf = relume_objects_info(o)->material[0].btf;
+    const struct relume_window window = {{0.3, 0.9, 2.5}, {-1, 1, 0}, {2, 0, 0}, {0, -1, 0}};
+    const struct relume_light light = {.direction = {-0.4, 0.3, 0.8}, .rgb = {1, 0.5f, 2}};
+    struct relume_image image;
+    assert_int_equal(relume_image_create(&image, W, H, 3), RELUME_OK);
+    assert_int_equal(relume_objects_render(&image, o, &window, &light, 1, NULL), RELUME_OK);
+    for (int i = 0; i < W * H; i++) {
+        const double x = -1 + 2 * (i % W + 0.5) / W, y = 1 - (i / W + 0.5) / H;
+        const double side = x < 0 ? 1 : -1, s = x < 0 ? x + 1 : 1 - x;
+        const struct relume_vec3 v =
+            unit(side * (window.eye.x - x), window.eye.y - y, window.eye.z);
+        const struct relume_vec3 l = unit(side * -0.4, 0.3, 0.8);
+        float want[3];
+        relume_btf_sample(btf, s * TEXELS, (1 - y) * TEXELS, true, v, l, want);
+        for (int c = 0; c < 3; c++)  // positions are floats
+            assert_float_equal(image.data[3 * i + c], light.rgb[c] * want[c], 1e-4);
+    }
+    relume_image_destroy(&image);
+    relume_objects_destroy(&o);
+}
+
+// Stored with or without n.l, a Lambertian sample is the same: nothing multiplies twice.
+static void the_cosine_counts_once(void **state)
+{
+    (void)state;
+    const char *const names[2] = {"lambert-with", "lambert-without"};
+    const struct relume_window window = {{0, 0.5, 2.5}, {-1, 1, 0}, {2, 0, 0}, {0, -1, 0}};
+    const struct relume_light light = {.direction = {0.5, 0.2, 0.6}, .rgb = {1, 1, 1}};
+    for (int k = 0; k < 2; k++) {
+        struct relume_image image;
+        write_sample(names[k], k == 1, true);
+        relume_objects *o = of_mesh(path_of("mirrored.obj"), path_of(names[k]), 1.0);
+        assert_int_equal(relume_image_create(&image, 8, 4, 3), RELUME_OK);
+        assert_int_equal(relume_objects_render(&image, o, &window, &light, 1, NULL), RELUME_OK);
+        const double cosine = unit(0.5, 0.2, 0.6).z;
+        // between measured lights n.l is interpolated where the values hold it: chords of the arcs
+        // between 19 directions, up to 45 degrees wide, are 8 % too low
+        for (int i = 0; i < 8 * 4; i++)
+            assert_float_equal(image.data[3 * i], 0.5 * cosine, k ? 1e-3 : 0.08 * 0.5);
+        relume_image_destroy(&image);
+        relume_objects_destroy(&o);
+    }
+}
+
+// A square of half edge 0.25 at z = 0.5 under light from (0.5, 0, 1): its shadow on z = 0 is
+// shifted by -0.25 in x.
+static void shadows_fall_where_they_should(void **state)
+{
+    (void)state;
+    enum { N = 32 };
+    write_text("shade.obj",
+               "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -.25 -.25 .5\nv .25 -.25 .5\n"
+               "v .25 .25 .5\nv -.25 .25 .5\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+               "f 1/1 2/2 3/3 4/4\nf 5/1 6/2 7/3 8/4\n");
+    relume_objects *o = of_mesh(path_of("shade.obj"), path_of("sample"), 1.0);
+    assert_int_equal(warnings, 1);  // normals were made
+    // from below the floating square's height, so that it hides nothing
+    const struct relume_window window = {{0, -40, 0.4}, {-1, 1, 0}, {2, 0, 0}, {0, -2, 0}};
+    const struct relume_light lights[2] = {
+        {.direction = {0.5, 0, 1}, .rgb = {1, 1, 1}},
+        {.kind = RELUME_LIGHT_POINT, .position = {1, 0, 2}, .rgb = {1, 1, 1}}};
+    for (int k = 0; k < 2; k++) {
+        struct relume_image image;
+        assert_int_equal(relume_image_create(&image, N, N, 3), RELUME_OK);
+        assert_int_equal(relume_objects_render(&image, o, &window, &lights[k], 1, NULL), RELUME_OK);
+        // the point light at height 2 enlarges the shadow by 2 / 1.5 from its foot
+        const double half = k ? 0.25 * 4 / 3 : 0.25, middle = k ? 1 - 4.0 / 3 : -0.25;
+        for (int i = 0; i < N * N; i++) {
+            const double x = -1 + 2 * (i % N + 0.5) / N, y = 1 - 2 * (i / N + 0.5) / N;
+            const double in_x = fabs(x - middle) - half, in_y = fabs(y) - half;
+            if (fabs(in_x) < 1e-3 || fabs(in_y) < 1e-3)
+                continue;
+            assert_int_equal(image.data[3 * i] == 0.0f, in_x < 0 && in_y < 0);
+        }
+        relume_image_destroy(&image);
+    }
+    relume_objects_destroy(&o);
+}
+
+static void what_is_missing_is_made(void **state)
+{
+    (void)state;
+    write_text("bare.obj",
+               "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    relume_objects *o = of_mesh(path_of("bare.obj"), path_of("sample"), 2.0);
+    const struct relume_objects_info *i = relume_objects_info(o);
+    assert_int_equal(warnings, 2);  // texture coordinates, normals
+    for (size_t k = 0; k < i->vertex_count; k++) {
+        const struct relume_object_vertex *v = &i->vertices[k];
+        const float *n = v->normal, *t = v->tangent;
+        assert_float_equal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-5);
+        assert_float_equal(t[0] * t[0] + t[1] * t[1] + t[2] * t[2], 1, 1e-5);
+        assert_float_equal(n[0] * t[0] + n[1] * t[1] + n[2] * t[2], 0, 1e-5);
+    }
+    relume_objects_destroy(&o);
+    write_text("fins.obj",
+               "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n"
+               "f 1/1/1 2/2/1 3/3/1\nf 1/1/1 2/2/1 4/3/1\nf 1/1/1 2/2/1 5/3/1\n");
+    o = of_mesh(path_of("fins.obj"), path_of("sample"), 1.0);
+    assert_int_equal(warnings, 1);
+    assert_non_null(strstr(last, "1 edges with more than two faces"));
+    relume_objects_destroy(&o);
+}
+
+// One triangle in glTF: positions and texture coordinates as base64, t down as the format has it.
+static const char gltf[] =
+    "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
+    "\"nodes\":[{\"mesh\":0,\"translation\":[0,0,2]}],"
+    "\"materials\":[{\"name\":\"cloth\"}],"
+    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1},"
+    "\"material\":0}]}],"
+    "\"buffers\":[{\"byteLength\":60,\"uri\":\"data:application/octet-stream;base64,"
+    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAIA/AACAPwAAAAAAAAAA\"}],"
+    "\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":36},"
+    "{\"buffer\":0,\"byteOffset\":36,\"byteLength\":24}],"
+    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\","
+    "\"min\":[0,0,0],\"max\":[1,1,0]},"
+    "{\"bufferView\":1,\"componentType\":5126,\"count\":3,\"type\":\"VEC2\"}]}";
+
+static void gltf_is_read(void **state)
+{
+    (void)state;
+    write_text("one.gltf", gltf);
+    relume_objects *o = of_mesh(path_of("one.gltf"), path_of("sample"), 1.0);
+    const struct relume_objects_info *i = relume_objects_info(o);
+    assert_int_equal(i->triangle_count, 1);
+    assert_string_equal(i->part[0].name, "cloth");
+    assert_float_equal(i->min.z, 2, 1e-6);
+    assert_int_equal(warnings, 1);  // normals
+    for (int k = 0; k < 3; k++) {
+        const struct relume_object_vertex *v = &i->vertices[i->triangles[0][k]];
+        // t is 1 - y: the upper edge of the sample is up
+        assert_float_equal(v->texture[0], v->position[0], 1e-6);
+        assert_float_equal(v->texture[1], 1 - v->position[1], 1e-6);
+        assert_float_equal(v->tangent[0], 1, 1e-6);
+        assert_float_equal(v->tangent[3], 1, 0);
+    }
+    relume_objects_destroy(&o);
+    char cut[sizeof gltf];
+    memcpy(cut, gltf, sizeof cut);
+    cut[sizeof gltf / 2] = '\0';
+    write_text("cut.gltf", cut);
+    const char *material = path_of("sample");
+    assert_int_equal(relume_objects_of_mesh(&o, path_of("cut.gltf"), &material, 1, 1,
+                                            relume_objects_params(.log = &hearing)),
+                     RELUME_EDATA);
+    assert_null(o);
+    assert_non_null(strstr(last, "cut.gltf: not read as a model"));
+}
+
+static void bad_descriptions_are_told(void **state)
+{
+    (void)state;
+#define HEAD "{\"format\":\"relume-objects\",\"version\":1,\"objects\":["
+    static const struct {
+        const char *text, *sentence;
+    } list[] = {
+        {"{\"format\":\"other\"}", "format: expected"},
+        {"{\"format\":\"relume-objects\",\"version\":2}", "expected version 1; found 2"},
+        {"{\"format\":\"relume-objects\",\"version\":1,\"objects\":[]}",
+         "objects: expected a list"},
+        {HEAD "{}]}", "object 0: mesh: expected"},
+        {HEAD "{\"mesh\":\"mirrored.obj\"}]}", "parts: expected a list"},
+        {HEAD "{\"mesh\":\"mirrored.obj\",\"part\":[]}]}", "did you mean 'parts'?"},
+        {HEAD "{\"mesh\":\"mirrored.obj\",\"parts\":[{}]}]}", "material: expected the folder"},
+        {HEAD "{\"mesh\":\"mirrored.obj\",\"parts\":[{\"material\":[]}]}]}", "at least one folder"},
+        {HEAD "{\"mesh\":\"mirrored.obj\",\"parts\":[{\"material\":\"nowhere\"}]}]}", "nowhere"},
+        {HEAD "{\"mesh\":\"nowhere.obj\",\"parts\":[{\"material\":\"sample\"}]}]}", "nowhere.obj"},
+        {HEAD "{\"mesh\":\"out.obj\",\"parts\":[{\"material\":\"sample\"}]}]}", "out.obj: line 4"},
+        {HEAD "{\"mesh\":\"mirrored.obj\",\"parts\":[{\"material\":\"sample\",\"repeat\":0}]}]}",
+         "repeat: expected"},
+        {HEAD
+         "{\"mesh\":\"mirrored.obj\",\"parts\":[{\"material\":\"sample\",\"filter\":\"cubic\"}]}]}",
+         "filter: expected"},
+        {HEAD
+         "{\"mesh\":\"mirrored.obj\",\"parts\":[{\"part\":\"lid\",\"material\":\"sample\"}]}]}",
+         "part 'all' has no material"},
+        {HEAD "{\"mesh\":\"mirrored.obj\",\"parts\":[{\"material\":\"sample\"},"
+              "{\"part\":\"lid\",\"material\":\"sample\"}]}]}",
+         "no part 'lid'"},
+        {HEAD "{\"mesh\":\"mirrored.obj\",\"pose\":{\"scale\":-1},"
+              "\"parts\":[{\"material\":\"sample\"}]}]}",
+         "scale: expected"},
+        {HEAD "{\"mesh\":\"mirrored.obj\",\"pose\":{\"rotate\":[0,0,0,9]},"
+              "\"parts\":[{\"material\":\"sample\"}]}]}",
+         "rotate: expected"},
+    };
+    write_text("out.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n");
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
+        relume_objects *o;
+        write_text("bad.json", list[i].text);
+        last[0] = '\0';
+        assert_int_equal(
+            relume_objects_open(&o, path_of("bad.json"), relume_objects_params(.log = &hearing)),
+            RELUME_EDATA);
+        assert_null(o);
+        if (!strstr(last, list[i].sentence) || strchr(last, '\n'))
+            fail_msg("%s: '%s' does not say '%s'", list[i].text, last, list[i].sentence);
+    }
+}
+
+// Poses turn, enlarge, then move; parts are covered by name; the first of a list is shown.
+static void descriptions_are_followed(void **state)
+{
+    (void)state;
+    relume_objects *o;
+    write_text("two.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n"
+                          "usemtl seat\nf 1/1/1 2/2/1 3/3/1\nusemtl back\nf 1/1/1 2/2/1 3/3/1\n");
+    write_text("good.json", HEAD "{\"mesh\":\"two.obj\",\"pose\":{\"translate\":[5,0,0],"
+                                 "\"rotate\":[0,0,2,90],\"scale\":3},\"parts\":["
+                                 "{\"part\":\"back\",\"material\":[\"lambert-with\",\"sample\"],"
+                                 "\"repeat\":[2,3],\"offset\":0.5,\"filter\":\"nearest\"},"
+                                 "{\"material\":\"sample\"}]}]}");
+    assert_int_equal(
+        relume_objects_open(&o, path_of("good.json"), relume_objects_params(.log = &hearing)),
+        RELUME_OK);
+    const struct relume_objects_info *i = relume_objects_info(o);
+    assert_int_equal(i->parts, 2);
+    assert_int_equal(i->materials, 2);
+    assert_string_equal(i->part[0].name, "seat");
+    assert_int_equal(i->part[0].material, 1);
+    assert_true(i->part[0].bilinear);
+    assert_int_equal(i->part[1].material, 0);
+    assert_false(i->part[1].bilinear);
+    assert_string_equal(i->material[0].model, "measured");
+    assert_float_equal(i->min.x, 2, 1e-5);
+    assert_float_equal(i->max.x, 5, 1e-5);
+    assert_float_equal(i->max.y, 3, 1e-5);
+    // the corner (1, 0) of the back: s = 1 * 2 + 0.5, t = 1 - (0 * 3 + 0.5)
+    bool found = false;
+    for (int k = 0; k < 3; k++) {
+        const float *t = i->vertices[i->triangles[1][k]].texture;
+        found |= fabsf(t[0] - 2.5f) < 1e-6f && fabsf(t[1] - 0.5f) < 1e-6f;
+    }
+    assert_true(found);
+    assert_int_equal(relume_objects_choose(o, 1, 1), RELUME_OK);
+    assert_int_equal(i->part[1].material, 1);
+    assert_int_equal(relume_objects_choose(o, 2, 0), RELUME_EINVAL);
+    assert_int_equal(relume_objects_choose(o, 0, 2), RELUME_EINVAL);
+    relume_objects_destroy(&o);
+}
+
+// Same bits for any number of threads.
+static void threads_agree(void **state)
+{
+    (void)state;
+    relume_objects *o = of_mesh(path_of("shade.obj"), path_of("sample"), 3.0);
+    const struct relume_light light = {.direction = {0.5, 0, 1}, .rgb = {1, 1, 1}};
+    struct relume_window window;
+    struct relume_image image[2];
+    assert_true(relume_objects_window(&window, o, (struct relume_vec3){1, 2, 3}, NULL, 40, 24));
+    for (int k = 0; k < 2; k++) {
+        assert_int_equal(relume_image_create(&image[k], 40, 24, 3), RELUME_OK);
+        assert_int_equal(
+            relume_objects_render(&image[k], o, &window, &light, 1,
+                                  relume_render_params(.threads = 1 + 2 * k, .samples = 2)),
+            RELUME_OK);
+    }
+    assert_memory_equal(image[0].data, image[1].data, 40 * 24 * 3 * sizeof(float));
+    relume_image_destroy(&image[0]);
+    relume_image_destroy(&image[1]);
+    relume_objects_destroy(&o);
+}
+
+static int open_all(void **state)
+{
+    (void)state;
+    char command[128];
+    snprintf(folder, sizeof folder, "/tmp/relume-object-%ld", (long)getpid());
+    snprintf(command, sizeof command, "mkdir -p %s", folder);
+    if (system(command))
+        return -1;
+    write_sample("sample", false, false);
+    return 0;
+}
+
+static int close_all(void **state)
+{
+    (void)state;
+    char command[128];
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    return system(command);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(frames_follow_the_texture),
+        cmocka_unit_test(a_plane_shows_the_sample),
+        cmocka_unit_test(the_cosine_counts_once),
+        cmocka_unit_test(shadows_fall_where_they_should),
+        cmocka_unit_test(what_is_missing_is_made),
+        cmocka_unit_test(gltf_is_read),
+        cmocka_unit_test(bad_descriptions_are_told),
+        cmocka_unit_test(descriptions_are_followed),
+        cmocka_unit_test(threads_agree),
+    };
+    return cmocka_run_group_tests(tests, open_all, close_all);
+}

@@ -1,0 +1,50 @@
+// gaze.h - what can be chosen of the eye that looks at the frame (glare), in numbers and in words
+//
+// No OpenGL: part of the app's state. Glare itself is drawn by glare.h.
+#ifndef VIEWER_GAZE_H
+#define VIEWER_GAZE_H
+
+#include <relume/glare.h>
+
+enum gaze_mode {
+    GAZE_AUTO = 0,  // what suits the frame
+    GAZE_FFT,
+    GAZE_BILLBOARD,
+    GAZE_HYBRID,
+    GAZE_MODES
+};
+
+// All zero: no glare, and the default of everything.
+struct gaze {
+    bool on;
+    bool paused;   // its time stands still
+    bool sources;  // lights that are in view are drawn as small sources
+    enum gaze_mode mode;
+    double magnify;      // of the pattern, [0.01, 1000]; 0: 1
+    double nits;         // cd/m^2 of a pixel of value 1, [1e-6, 1e9]; 0: 100
+    double squint;       // [0, 0.95]; where it is more than the subject's own
+    unsigned parts_off;  // RELUME_EYE_*
+};
+
+double gaze_magnify(const struct gaze *gaze);
+double gaze_nits(const struct gaze *gaze);
+// Whether time passes in it.
+static inline bool gaze_lives(const struct gaze *gaze)
+{
+    return gaze->on && !gaze->paused;
+}
+
+// The parts of an eye by name, and what is said of them: ends with a NULL name.
+struct gaze_part {
+    const char *name, *what;
+    unsigned part;
+};
+extern const struct gaze_part gaze_parts[];
+const char *gaze_mode_name(enum gaze_mode mode);
+
+// One thing as a script says it: "on", "off", "pause", "run", "sources on", "magnify 3", "nits 50",
+// "squint 0.4", "mode hybrid", "lens off". False where `words` are none of them; `*expected` says
+// what would be one.
+bool gaze_say(struct gaze *gaze, const char *words, const char **expected);
+
+#endif

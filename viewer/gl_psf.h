@@ -1,0 +1,40 @@
+// gl_psf.h - the pattern of one point source by compute passes: what relume_psf_update does
+#ifndef VIEWER_GL_PSF_H
+#define VIEWER_GL_PSF_H
+
+#include "gl_aperture.h"
+#include "gl_fft.h"
+
+#include <relume/psf.h>
+
+struct gl_psf {
+    struct relume_psf_geometry shape;
+    struct relume_psf_spectrum spectrum;
+    struct gl_aperture aperture;
+    struct program wave, power, smear, colour;
+    GLuint waves, phase, texel;  // buffers: complex [size]^2, complex [size], [size]
+    GLuint mono, smeared;        // [size + 1]^2
+    GLuint taps, colours;        // [taps] of (scale, rgb); [field]^2 of rgb, not normalised
+    double dioptres;             // that `phase` is of
+    double light;                // share that the lids let through
+};
+
+// Whether the card can: `size` is a power of two, and its buffers have room.
+bool gl_psf_fits(const struct gl *gl, int size);
+// `params` with a size that fits, one plane, and a width that any pupil fits into (9 mm).
+// RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EINVAL.
+relume_status gl_psf_create(struct gl_psf *psf, const struct gl *gl,
+                            const struct relume_psf_params *params);
+void gl_psf_destroy(struct gl_psf *psf, const struct gl *gl);
+// Another eye is looked through from now on.
+void gl_psf_forget(struct gl_psf *psf);
+// Lids that are shut leave the pattern as it was, with light 0. RELUME_ESYSTEM, RELUME_ENOMEM.
+relume_status gl_psf_update(struct gl_psf *psf, const struct gl *gl, struct gl_fft *fft,
+                            const relume_eye *eye, const struct relume_log *log);
+
+// A buffer for compute passes; `data` may be NULL.
+GLuint gl_storage(const struct gl *gl, size_t bytes, const void *data);
+// Work groups of 16 x 16 over that much, then what they wrote can be read.
+void gl_compute(const struct gl *gl, int width, int height);
+
+#endif

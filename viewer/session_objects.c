@@ -1,0 +1,87 @@
+// session_objects.c - objects: in the scene of a file, or alone on a stage that the eye goes around
+#include "session.h"
+
+#include "vec.h"
+
+#include <stdio.h>
+#include <string.h>
+
+relume_status session_take_objects(struct session *s, const struct session_objects *wanted)
+{
+    const struct relume_objects_params params = {.log = s->log, .threads = s->threads};
+    if (wanted->description)
+        return relume_objects_open(&s->objects, wanted->description, &params);
+    if (wanted->mesh)
+        return relume_objects_of_mesh(&s->objects, wanted->mesh, wanted->material,
+                                      wanted->materials, wanted->repeat, &params);
+    return RELUME_OK;
+}
+
+// One camera far away before +z looks at all of the objects; the eye starts beside it.
+static relume_status make_stage(relume_slabs **out, struct relume_geometry *g,
+                                struct relume_vec3 *eye, const struct relume_objects_info *info)
+{
+    const double uv[1][2] = {{0.0, 0.0}};
+    const struct relume_vec3 extent = vec_sub(info->max, info->min);
+    const double radius = 0.5 * vec_length(extent);
+    const struct relume_vec3 middle = vec_sub(info->max, vec_scale(extent, 0.5));
+    *g = (struct relume_geometry){
+        .projection = RELUME_SLAB,
+        .uv_z = 4.0 * radius,
+        .st_min = {-radius, -radius},
+        .st_max = {radius, radius},
+        .pose = {.origin = middle, .axis = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
+    };
+    *eye = (struct relume_vec3){middle.x + 1.2 * radius, middle.y + 1.2 * radius,
+                                middle.z + 3.6 * radius};
+    return relume_slabs_create(out, g, 1, uv, NULL, 1);
+}
+
+// What the panel says of them.
+static void describe(struct session *s, const struct relume_objects_info *info)
+{
+    snprintf(s->name, sizeof s->name, "objects");
+    snprintf(s->line[0], SESSION_TEXT, "%zu triangles, %d parts, %d materials",
+             info->triangle_count, info->parts, info->materials);
+    s->lines[0] = s->line[0];
+    s->lines[1] = NULL;
+}
+
+relume_status session_open_stage(struct session *s, const struct app_state *start)
+{
+    enum { SIDE = 640 };
+    const struct relume_objects_info *info = relume_objects_info(s->objects);
+    struct app_file file = {.width = SIDE, .height = SIDE, .views = 1, .objects = s->objects};
+    struct app_state from = *start;
+    struct relume_vec3 eye;
+    relume_status status = make_stage(&s->stage, &file.geometry, &eye, info);
+    if (status)
+        return status;
+    file.around = s->stage;
+    if (from.camera.framing == RELUME_FRAME_DEFAULT) {
+        from.camera.framing = RELUME_FRAME_EYE;
+        from.camera.eye = eye;
+    }
+    status = app_start(&s->app, &file, &from, true, s->log);
+    s->app.near_lights = true;
+    describe(s, info);
+    return status;
+}
+
+relume_status session_make_stage(struct session *s)
+{
+    static const double uv[1][2] = {{0.0, 0.0}};
+    const struct code_source nothing = {.user = NULL};
+    relume_status status =
+        renderer_create(&s->renderer, &s->gl, &nothing, &s->app.file.geometry, NULL, 1, s->log);
+    if (status)
+        return status;
+    renderer_use_slabs(&s->renderer, s->stage, uv, NULL);
+    return renderer_use_objects(&s->renderer, s->objects, NULL);
+}
+
+relume_status session_add_objects(struct session *s)
+{
+    const struct depth_source places = pack_source_places(s->source);
+    return renderer_use_objects(&s->renderer, s->objects, &places);
+}

@@ -1,0 +1,5 @@
+#version 330 core
+// A map of depths alone.
+void main()
+{
+}

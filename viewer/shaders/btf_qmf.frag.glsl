@@ -1,0 +1,81 @@
+#version 330 core
+// Full matrix factorisation in few bits. Twin: model_qmf.c, scalar.h.
+#define OWN_BLEND
+const bool view_grid = true, light_grid = true;
+#include "texels.glsl"
+#include "cube.glsl"
+#include "light.glsl"
+#include "shadow.glsl"
+#include "btf.glsl"
+
+uniform usamplerBuffer array0;  // score [texels][bytes]
+uniform usamplerBuffer array1;  // pattern [views][lights][bytes]
+uniform usamplerBuffer array2;  // width [components][4]
+uniform samplerBuffer array3;   // levels [components][4][3]
+uniform samplerBuffer array4;   // color [3][3]
+
+// The number of `bits` at a bit of the row that begins at a byte.
+float number_at(usamplerBuffer bytes, int row, int at, int bits)
+{
+    int byte = row + (at >> 3);
+    uint word = texelFetch(bytes, byte).r | texelFetch(bytes, byte + 1).r << 8 |
+                texelFetch(bytes, byte + 2).r << 16;
+    return float(word >> uint(at & 7) & ((1u << uint(bits)) - 1u));
+}
+
+// From -1 to 1. Twin: levels_value.
+float step_at(usamplerBuffer bytes, int row, int at, int bits)
+{
+    return 2.0 * number_at(bytes, row, at, bits) / float((1 << bits) - 1) - 1.0;
+}
+
+// Middle, linear, cubic.
+vec3 levels_of(int plane)
+{
+    return vec3(texelFetch(array3, 3 * plane).r, texelFetch(array3, 3 * plane + 1).r,
+                texelFetch(array3, 3 * plane + 2).r);
+}
+
+float level(vec3 levels, float t)
+{
+    return levels.x + t * (levels.y + levels.z * t * t);
+}
+
+float pattern(int plane, int at, int bits, Blend v, Blend l)
+{
+    vec3 levels = levels_of(plane);
+    if (bits == 0)
+        return levels.x;
+    int row_bytes = textureSize(array1) / (counts.x * counts.y);
+    float sum = 0.0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            float weight = v.weight[i] * l.weight[j];
+            int row = (v.index[i] * counts.y + l.index[j]) * row_bytes;
+            if (weight > 0.0)
+                sum += weight * level(levels, step_at(array1, row, at, bits));
+        }
+    return sum;
+}
+
+vec3 model_blend(int texel, Blend v, Blend l)
+{
+    int row = texel * (textureSize(array0) / (texels.x * texels.y)), score_at = 0, pattern_at = 0;
+    vec3 sum = vec3(0.0);
+    for (int plane = 0; plane < 4 * counts.z; plane += 4) {
+        int bits = int(texelFetch(array2, plane).r);
+        float score = levels_of(plane).x;
+        if (bits > 0)
+            score = level(levels_of(plane), step_at(array0, row, score_at, bits));
+        score_at += bits;
+        for (int c = 0; c < 3; c++) {
+            bits = int(texelFetch(array2, plane + c + 1).r);
+            sum[c] += score * pattern(plane + c + 1, pattern_at, bits, v, l);
+            pattern_at += bits;
+        }
+    }
+    vec3 rgb = vec3(0.0);
+    for (int c = 0; c < 9; c++)
+        rgb[c % 3] += texelFetch(array4, c).r * sum[c / 3];
+    return rgb;
+}

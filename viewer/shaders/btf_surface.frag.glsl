@@ -1,0 +1,20 @@
+#version 330 core
+// What is to be known of a surface to light it: its place and frame, and the place in its texture.
+// Rows run down, so that what faces the eye is wound the other way round here. Twin: objects_hit.
+in vec3 at_position, at_normal;
+in vec4 at_tangent;
+in vec2 at_texture;
+uniform int part;
+layout(location = 0) out vec4 place;      // position; part + 1, its sign the handedness
+layout(location = 1) out vec4 normal_s;   // normal, s
+layout(location = 2) out vec4 tangent_t;  // tangent, t
+
+void main()
+{
+    float side = gl_FrontFacing ? -1.0 : 1.0;
+    vec3 normal = side * normalize(at_normal);
+    vec3 tangent = at_tangent.xyz - dot(at_tangent.xyz, normal) * normal;
+    place = vec4(at_position, side * sign(at_tangent.w) * float(part + 1));
+    normal_s = vec4(normal, at_texture.x);
+    tangent_t = vec4(normalize(tangent), at_texture.y);
+}

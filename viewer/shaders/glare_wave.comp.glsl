@@ -1,0 +1,18 @@
+#version 430
+// The aperture becomes the wave behind it: transmittance times the phase E of a residual defocus
+// (Ritschel 2009, Eq. 8.3), which is the same along both axes.
+layout(local_size_x = 16, local_size_y = 16) in;
+layout(std430, binding = 0) writeonly buffer Wave { vec2 wave[]; };
+layout(std430, binding = 1) readonly buffer Phase { vec2 phase[]; };
+uniform sampler2D aperture;
+uniform int size;
+
+void main()
+{
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (at.x >= size || at.y >= size)
+        return;
+    vec2 x = phase[at.x], y = phase[at.y];
+    float t = texelFetch(aperture, at, 0).r;
+    wave[at.y * size + at.x] = t * vec2(x.x * y.x - x.y * y.y, x.x * y.y + x.y * y.x);
+}

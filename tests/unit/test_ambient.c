@@ -194,7 +194,7 @@ static void test_furnace(void **state)
     relume_btf *btf = make(white, true);
     const struct relume_btf_frame f = frame_of(vec3_of(0.5, -0.7, 0.3));
     relume_prefilter *p;
-    CHECK_OK(relume_prefilter_create(&p, &light, NULL));
+    CHECK_OK(relume_prefilter_create(&p, &light, relume_prefilter_params(.height = 12)));
     for (const struct relume_btf_model *const *k = relume_btf_models; *k; k++) {
         relume_btf_fitted *m = fit(btf, relume_btf_model_name(*k));
         relume_btf_ambient *a;
@@ -225,7 +225,8 @@ static void test_even_sky(void **state)
     const vec3 n = vec3_unit(vec3_of(0.3, 0.2, -0.8));
     relume_prefilter *p;
     float rgb[3];
-    CHECK_OK(relume_prefilter_create(&p, &light, relume_prefilter_params(.threads = 2)));
+    CHECK_OK(
+        relume_prefilter_create(&p, &light, relume_prefilter_params(.height = 16, .threads = 2)));
     relume_prefilter_diffuse(rgb, p, n);
     CHECK_NEAR(rgb[0], 2.0, 0.01);  // cells at the horizon
     CHECK_NEAR(rgb[1], 4.0, 0.02);

@@ -73,5 +73,5 @@ glare "$candle" -o "$out/fft.png" --fov 16 --magnify 3
 picture 'glare-candle.jpg, glare-8-10.jpg'
 
 # the night from inside its panorama
-glare "$night" -o "$pictures/glare-night.jpg" --pan -57 --tilt 12 --fov 50 --frame 960x540 --exposure -3 --border clamp
+glare "$night" -o "$pictures/glare-night.jpg" --pan -57 --tilt 12 --fov 50 --picture 960x540 --exposure -3 --border clamp
 picture glare-night.jpg

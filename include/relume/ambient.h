@@ -79,12 +79,20 @@ struct relume_btf_frame {
     struct relume_vec3 right, up, normal;
 };
 
-// Some 2000 directions are interpolated: about half a millisecond. Both objects must outlive it.
+struct relume_btf_ambient_params {
+    // Prefiltered maps of this orientation, for models of lobes: exact at the horizon, where those
+    // of the environment know only the mean of a lobe. They take 0.1 s or so of one core: for flat
+    // surfaces.
+    bool own_maps;
+    int threads;  // default: all cores
+};
+#define relume_btf_ambient_params(...) (&(const struct relume_btf_ambient_params){__VA_ARGS__})
+
+// Some 2000 directions are interpolated: a few milliseconds. Both objects must outlive it.
 // RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_btf_ambient_create(relume_btf_ambient **out,
-                                                      const relume_btf_fitted *model,
-                                                      const relume_prefilter *prefilter,
-                                                      const struct relume_btf_frame *frame);
+RELUME_RESULT relume_status relume_btf_ambient_create(
+    relume_btf_ambient **out, const relume_btf_fitted *model, const relume_prefilter *prefilter,
+    const struct relume_btf_frame *frame, const struct relume_btf_ambient_params *params);
 RELUME_API void relume_btf_ambient_destroy(relume_btf_ambient **ambient);
 
 // The weights of the measured lights [lights][3]: red, green, blue of the light i times a value

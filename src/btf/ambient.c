@@ -13,51 +13,93 @@ static vec3 to_sample(const struct relume_btf_frame *f, vec3 d)
     return vec3_of(vec3_dot(d, f->right), vec3_dot(d, f->up), vec3_dot(d, f->normal));
 }
 
-static void add_cell(relume_btf_ambient *a, const struct relume_environment_cell *cell)
+// What arrives from a cell: from the direction and at the strength that the model is asked for.
+static bool arrives(const relume_btf_ambient *a, const struct relume_environment_cell *cell,
+                    struct relume_dome_blend *blend, struct relume_environment_cell *out)
 {
     const vec3 l = to_sample(&a->frame, cell->direction);
     if (!(l.z > 0.0))
-        return;
-    const struct relume_dome_blend b = relume_dome_at(a->model->light_dome, l);
-    const double scale = a->model->without_cosine ? l.z : b.rim;
-    const vec3 d = b.direction;
+        return false;
+    *blend = relume_dome_at(a->model->light_dome, l);
+    const double scale = a->model->without_cosine ? l.z : blend->rim;
+    out->direction = blend->direction;
+    for (int c = 0; c < 3; c++)
+        out->rgb[c] = (float)(scale * (double)cell->rgb[c]);
+    return true;
+}
+
+static void add_cell(relume_btf_ambient *a, const struct relume_environment_cell *cell,
+                     const struct relume_dome_blend *b)
+{
+    const vec3 d = cell->direction;
     const double term[AMBIENT_TERMS] = {d.x * d.x, d.y * d.y, d.x * d.y, d.x, d.y, 1.0};
     for (int c = 0; c < 3; c++) {
-        const double sent = scale * (double)cell->rgb[c];
-        for (int i = 0; i < b.count; i++)
-            a->weight[3 * b.index[i] + c] += (float)(sent * b.weight[i]);
+        const double sent = (double)cell->rgb[c];
+        a->even[0][c] += (float)sent;
+        a->even[1][c] += (float)(a->model->without_cosine ? sent : sent * d.z);
+        for (int i = 0; i < b->count; i++)
+            a->weight[3 * b->index[i] + c] += (float)(sent * b->weight[i]);
         for (int t = 0; t < AMBIENT_TERMS; t++)
             a->term[t][c] += (float)(sent * term[t]);
     }
 }
 
+// Cells as the lobes of the model see them.
+static relume_status make_own_maps(relume_btf_ambient *a, struct relume_environment_cell *cell,
+                                   int n, int threads)
+{
+    enum { HEIGHT = 48 };
+    const bool cosine = a->model->model->lobes_times_cosine && !a->model->without_cosine;
+    for (int i = 0; i < n && cosine; i++)
+        for (int c = 0; c < 3; c++)
+            cell[i].rgb[c] *= (float)cell[i].direction.z;
+    return prefilter_from_cells(&a->own, cell, n, HEIGHT, 0.0, threads);
+}
+
+static relume_status fill(relume_btf_ambient *a, const struct relume_btf_ambient_params *p)
+{
+    const size_t most = (size_t)a->prefilter->cells;
+    struct relume_environment_cell *cell = mem_array(most, sizeof *cell);
+    int n = 0;
+    if (!cell)
+        return RELUME_ENOMEM;
+    for (size_t i = 0; i < most; i++) {
+        struct relume_dome_blend b;
+        if (arrives(a, &a->prefilter->cell[i], &b, &cell[n]))
+            add_cell(a, &cell[n++], &b);
+    }
+    const relume_status status =
+        p && p->own_maps && a->model->lobes > 0 ? make_own_maps(a, cell, n, p->threads) : RELUME_OK;
+    free(cell);
+    return status;
+}
+
 relume_status relume_btf_ambient_create(relume_btf_ambient **out, const relume_btf_fitted *model,
                                         const relume_prefilter *prefilter,
-                                        const struct relume_btf_frame *frame)
+                                        const struct relume_btf_frame *frame,
+                                        const struct relume_btf_ambient_params *params)
 {
     relume_btf_ambient *a = mem_zeroed(1, sizeof *a);
-    *out = a;
+    *out = NULL;
     if (!a)
         return RELUME_ENOMEM;
     a->model = model;
     a->prefilter = prefilter;
     a->frame = *frame;
     a->weight = mem_zeroed(3 * (size_t)model->lights, sizeof *a->weight);
-    if (!a->weight) {
-        relume_btf_ambient_destroy(out);
-        return RELUME_ENOMEM;
-    }
-    for (int i = 0; i < prefilter->cells; i++)
-        add_cell(a, &prefilter->cell[i]);
-    relume_prefilter_diffuse(a->even[0], prefilter, frame->normal);
-    relume_prefilter_specular(a->even[1], prefilter, frame->normal, 1.0);
-    return RELUME_OK;
+    const relume_status status = a->weight ? fill(a, params) : RELUME_ENOMEM;
+    if (status)
+        relume_btf_ambient_destroy(&a);
+    *out = a;
+    return status;
 }
 
 void relume_btf_ambient_destroy(relume_btf_ambient **ambient)
 {
-    if (*ambient)
+    if (*ambient) {
+        relume_prefilter_destroy(&(*ambient)->own);
         free((*ambient)->weight);
+    }
     free(*ambient);
     *ambient = NULL;
 }
@@ -80,13 +122,19 @@ void ambient_lobe(const relume_btf_ambient *a, const float t[3], float exponent,
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     if (!(length > 1e-9))
         return;
-    const vec3 axis = vec3_add(vec3_scale(a->frame.right, t[0] / length),
-                               vec3_add(vec3_scale(a->frame.up, t[1] / length),
-                                        vec3_scale(a->frame.normal, t[2] / length)));
-    relume_prefilter_lobe(rgb, a->prefilter, a->frame.normal, axis, exponent, cosine);
-    const float height = (float)exp((double)exponent * log(length));
+    const vec3 u = vec3_of(t[0] / length, t[1] / length, t[2] / length);
+    const struct relume_btf_frame *f = &a->frame;
+    double height = exp((double)exponent * log(length));
+    if (a->own) {
+        relume_prefilter_specular(rgb, a->own, u, exponent);
+        height *= 2.0 / ((double)exponent + 1.0);
+    } else {
+        const vec3 axis = vec3_add(vec3_scale(f->right, u.x),
+                                   vec3_add(vec3_scale(f->up, u.y), vec3_scale(f->normal, u.z)));
+        relume_prefilter_lobe(rgb, a->prefilter, f->normal, axis, exponent, cosine);
+    }
     for (int c = 0; c < 3; c++)
-        rgb[c] *= height;
+        rgb[c] *= (float)height;
 }
 
 // All measured lights at once: what models do that say nothing better.

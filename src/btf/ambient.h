@@ -16,19 +16,25 @@ struct relume_prefilter {
     int cells;
 };
 
+// Maps of `cells`, a copy of which they keep; nothing is cut off at a horizon. RELUME_ENOMEM.
+relume_status prefilter_from_cells(relume_prefilter **out,
+                                   const struct relume_environment_cell *cell, int cells,
+                                   int height, double rim, int threads);
+
 struct relume_btf_ambient {
     const relume_btf_fitted *model;
     const relume_prefilter *prefilter;
+    relume_prefilter *own;  // of this orientation, in the frame of the sample, or NULL
     struct relume_btf_frame frame;
     float *weight;                 // [lights][3]
-    float even[2][3];              // ambient_even, without and with the cosine
+    float even[2][3];              // of a constant, and of n.l: ambient_even
     float term[AMBIENT_TERMS][3];  // sums of x^2, y^2, xy, x, y, 1 of the light
 };
 
-// What a value of 1 for all lights shows; `cosine`: values do not include n.l.
+// What a constant in place of a lobe shows; `cosine`: it is multiplied by n.l.
 void ambient_even(const relume_btf_ambient *a, bool cosine, float rgb[3]);
 
-// What a lobe of a model, in the frame of the sample, shows.
+// What a lobe of a model, in the frame of the sample, shows; `cosine`: the same.
 void ambient_lobe(const relume_btf_ambient *a, const float t[3], float exponent, bool cosine,
                   float rgb[3]);
 

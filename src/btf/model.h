@@ -69,6 +69,7 @@ struct relume_btf_model {
     struct relume_btf_cost (*cost)(const relume_btf_fitted *m);
     // Whether arrays that are fine by themselves fit together; NULL: they do.
     bool (*is_sound)(const relume_btf_fitted *m);
+    bool lobes_times_cosine;  // where values include n.l
     // Under an environment (btf/ambient.h); NULL: the sum over the measured lights.
     void (*lit)(const relume_btf_fitted *m, const struct model_at *at,
                 const struct relume_btf_ambient *ambient, float rgb[3]);

@@ -14,7 +14,7 @@
 
 enum { EXPONENTS = RELUME_PREFILTER_EXPONENTS, STEPS = RELUME_PREFILTER_STEPS };
 enum { CELL_COLUMNS = 96, CELL_ROWS = 48 };  // cells of 3.75 degrees: the sharpest lobe has 24
-enum { TABLE = 2048 };
+enum { TABLE = 2048, USUAL_HEIGHT = 48 };
 
 static double exponent_of(int i)
 {
@@ -41,8 +41,9 @@ static double luminance(const float rgb[3])
 }
 
 // Neighbouring cells become one, from where their energy comes.
-static void gather(relume_prefilter *p, const struct relume_light *light)
+static int gather(struct relume_environment_cell *cell, const struct relume_light *light)
 {
+    int kept = 0;
     int n;
     const struct relume_environment_cell *from = relume_environment_cells(&n, light->environment);
     vec3 middle[CELL_COLUMNS * CELL_ROWS];
@@ -56,14 +57,15 @@ static void gather(relume_prefilter *p, const struct relume_light *light)
         const int to = y * CELL_COLUMNS + x;
         middle[to] = vec3_add(middle[to], vec3_scale(d, luminance(from[i].rgb)));
         for (int c = 0; c < 3; c++)
-            p->cell[to].rgb[c] += light->rgb[c] * from[i].rgb[c];
+            cell[to].rgb[c] += light->rgb[c] * from[i].rgb[c];
     }
     for (int i = 0; i < CELL_COLUMNS * CELL_ROWS; i++)
         if (vec3_length(middle[i]) > 0.0) {
-            struct relume_environment_cell one = p->cell[i];
+            struct relume_environment_cell one = cell[i];
             one.direction = vec3_unit(middle[i]);
-            p->cell[p->cells++] = one;
+            cell[kept++] = one;
         }
+    return kept;
 }
 
 // ---------------------------------------------------------------- maps
@@ -176,35 +178,50 @@ static relume_status check(const struct relume_light *light,
     return relume_light_check(light, "environment", p->log);
 }
 
-relume_status relume_prefilter_create(relume_prefilter **out, const struct relume_light *light,
-                                      const struct relume_prefilter_params *params)
+relume_status prefilter_from_cells(relume_prefilter **out,
+                                   const struct relume_environment_cell *cell, int cells,
+                                   int height, double rim, int threads)
 {
-    const struct relume_prefilter_params q =
-        params ? *params : (struct relume_prefilter_params){.height = 0};
     *out = NULL;
-    relume_status status = check(light, &q);
-    if (status)
-        return status;
     relume_prefilter *p = mem_zeroed(1, sizeof *p);
     if (!p)
         return RELUME_ENOMEM;
-    p->height = q.height ? q.height : 48;
+    p->height = height;
     p->width = 2 * p->height;
-    p->rim = q.rim;
+    p->rim = rim;
+    p->cells = cells;
     const size_t plane = 3 * (size_t)p->width * (size_t)p->height;
     p->diffuse = mem_zeroed(plane, sizeof *p->diffuse);
     p->specular = mem_zeroed(EXPONENTS * plane, sizeof *p->specular);
     p->part = mem_zeroed((size_t)2 * EXPONENTS * STEPS, sizeof *p->part);
-    p->cell = mem_zeroed((size_t)CELL_COLUMNS * CELL_ROWS, sizeof *p->cell);
-    status = p->diffuse && p->specular && p->part && p->cell ? RELUME_OK : RELUME_ENOMEM;
+    p->cell = mem_copy(cell, (size_t)cells, sizeof *cell);
+    relume_status status =
+        p->diffuse && p->specular && p->part && p->cell ? RELUME_OK : RELUME_ENOMEM;
     if (!status) {
-        gather(p, light);
         fill_parts(p);
-        status = filter(p, q.threads);
+        status = filter(p, threads);
     }
     if (status)
         relume_prefilter_destroy(&p);
     *out = p;
+    return status;
+}
+
+relume_status relume_prefilter_create(relume_prefilter **out, const struct relume_light *light,
+                                      const struct relume_prefilter_params *params)
+{
+    const struct relume_prefilter_params p =
+        params ? *params : (struct relume_prefilter_params){.height = 0};
+    *out = NULL;
+    relume_status status = check(light, &p);
+    if (status)
+        return status;
+    struct relume_environment_cell *cell =
+        mem_zeroed((size_t)CELL_COLUMNS * CELL_ROWS, sizeof *cell);
+    status = cell ? prefilter_from_cells(out, cell, gather(cell, light),
+                                         p.height ? p.height : USUAL_HEIGHT, p.rim, p.threads)
+                  : RELUME_ENOMEM;
+    free(cell);
     return status;
 }
 

@@ -176,7 +176,9 @@ static relume_status make_ambient(struct drawing *d, int i, const struct relume_
         relume_prefilter_params(.log = p->log, .rim = relume_btf_fitted_info(model).rim,
                                 .threads = p->threads));
     return status ? status
-                  : relume_btf_ambient_create(&d->ambient[i], model, d->prefilter[i], &frame);
+                  : relume_btf_ambient_create(
+                        &d->ambient[i], model, d->prefilter[i], &frame,
+                        relume_btf_ambient_params(.own_maps = true, .threads = p->threads));
 }
 
 static relume_status make_ambients(struct drawing *d, const struct relume_btf_draw_params *p)

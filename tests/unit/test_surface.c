@@ -314,7 +314,7 @@ static void test_ambient(void **state)
     relume_btf_ambient *a;
     relume_btf_surface *s;
     CHECK_OK(relume_prefilter_create(&p, &light, NULL));
-    CHECK_OK(relume_btf_ambient_create(&a, m, p, &frame));
+    CHECK_OK(relume_btf_ambient_create(&a, m, p, &frame, NULL));
     CHECK_OK(relume_btf_surface_create(&s, m, NULL, NULL));
     const struct relume_btf_ray under = {.view = ray.view, .ambient = a};
     float got[3], left[3], right[3], coarse[3];

@@ -20,7 +20,7 @@ struct relume_psf_params {
     unsigned cpu_off;  // RELUME_CPU_* features not to use
     int threads;       // default: all cores
     int size;          // texels, even, [64, 8192]; default 1024
-    // How wide: given in mm, [1, 100], or by the half field at 400 nm, (0, 20] degrees: then
+    // How wide: given in mm, [0.2, 100], or by the half field at 400 nm, (0, 20] degrees: then
     // width_mm = size * 400 nm / 2 half_field. A pupil that is wider than that is folded, which
     // samples the same pattern more sparsely. Default: 9 mm.
     double width_mm, half_field_deg;
@@ -73,8 +73,8 @@ typedef struct relume_psf relume_psf;
 RELUME_RESULT relume_status relume_psf_create(relume_psf **out,
                                               const struct relume_psf_params *params);
 RELUME_API void relume_psf_destroy(relume_psf **psf);
-// Draw, diffract and sum `eye` as it is now. Lids that are shut leave the pattern as it was, with
-// light 0. RELUME_ENOMEM.
+// Draw, diffract and sum `eye` as it is now; cornea and fibres are kept for the next time. Lids
+// that are shut leave the pattern as it was, with light 0. RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_psf_update(relume_psf *psf, const relume_eye *eye);
 // How long the last update's stages took, seconds (Table 8.2).
 struct relume_psf_times {

@@ -324,12 +324,31 @@ void canvas_destroy(struct canvas *canvas)
     *canvas = (struct canvas){0};
 }
 
+// Another eye has other fixed parts, and may stand where the last one stood in memory.
+static uint64_t key_of(const struct relume_aperture *a)
+{
+    uint64_t key = 0xcbf29ce484222325u, word;
+    const char *const parts[2] = {(const char *)(a->disc + a->cornea.first),
+                                  (const char *)(a->stroke + a->fibres.first)};
+    const size_t sizes[2] = {(size_t)a->cornea.count * sizeof *a->disc,
+                             (size_t)a->fibres.count * sizeof *a->stroke};
+    for (int k = 0; k < 2; k++)
+        for (size_t i = 0; i < sizes[k]; i += sizeof word) {
+            word = sizes[k];
+            memcpy(&word, parts[k] + i, sizes[k] - i < sizeof word ? sizes[k] - i : sizeof word);
+            key = (key ^ word) * 0x100000001b3u;  // FNV-1a, eight bytes at a time
+            key ^= key >> 32;
+        }
+    return key;
+}
+
 static relume_status draw_fixed(struct drawing d, int threads)
 {
     struct canvas *const c = d.canvas;
     const struct relume_aperture *const a = d.aperture;
     const size_t texels = (size_t)c->n * (size_t)c->n;
-    c->fixed = mem_array(texels, sizeof *c->fixed);
+    if (!c->fixed)
+        c->fixed = mem_array(texels, sizeof *c->fixed);
     if (!c->fixed)
         return RELUME_ENOMEM;
     for (size_t i = 0; i < texels; i++)
@@ -382,8 +401,10 @@ relume_status canvas_draw(struct canvas *canvas, const struct relume_aperture *a
         mem_zeroed((size_t)thread_count(threads) * ((size_t)canvas->n + 4), sizeof *d.differences);
     d.light = mem_array(most_bands, sizeof *d.light);
     relume_status status = d.differences && d.light ? RELUME_OK : RELUME_ENOMEM;
-    if (!status && !canvas->fixed)
+    const uint64_t key = key_of(aperture);
+    if (!status && (!canvas->fixed || canvas->key != key))
         status = draw_fixed(d, threads);
+    canvas->key = key;
     if (!status)
         draw_moving(d, threads);
     free(d.differences);

@@ -13,6 +13,7 @@ struct canvas {
     double texel_mm;
     float *t;      // [n][n]; outside rows [from, to) there is no light
     float *fixed;  // [n][n]: cornea and fibres, drawn once; NULL: not drawn yet
+    uint64_t key;  // of the primitives in `fixed`
     int from, to;
     double light;  // share of the pupil that the lids leave open
 };

@@ -44,7 +44,7 @@ void chromatic_sum(float *const out[3], int field, const struct plane *in,
 // Floats of `work` for either, for pictures up to n texels.
 size_t chromatic_work(int n, int threads);
 
-// As relume_psf_update, of any aperture; its fixed parts must be those of the last one.
+// As relume_psf_update, of any aperture.
 relume_status psf_update_aperture(relume_psf *psf, const struct relume_aperture *aperture,
                                   double dioptres);
 // Three channels of the pattern as they lie in memory, each field x field and summing to 1.

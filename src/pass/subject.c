@@ -22,7 +22,7 @@ struct relume_subject relume_subject_default(void)
                  .radius_mm = 4.5,
                  .thickness_mm = 4.0,
                  .nucleus = 0.8,
-                 .travel_mm = 0.1},
+                 .travel_mm = 0.2},
         .fibres = {.spokes = 200,
                    .halo_deg = 3.0,
                    .inner_mm = 1.4,
@@ -33,7 +33,7 @@ struct relume_subject relume_subject_default(void)
                      .radius_mm = 11.0,
                      .damping = 3.0,
                      .saccades_per_s = 3.0,
-                     .kick = 0.06},
+                     .kick = 0.08},
         .lids = {.lashes = 80, .lash_width_mm = 0.08, .blink_interval_s = 4.5, .blink_s = 0.28},
         .optics = {.defocus_dpt = 0.25, .age = 35.0, .pigment = 0.5},
     };

@@ -551,6 +551,30 @@ static void check_threads_and_kernels(void **state)
     relume_image_destroy(&plain);
 }
 
+// A pattern that has seen one eye sees the next as if it were its first.
+static void check_other_eye(void **state)
+{
+    struct relume_subject subject = relume_subject_default();
+    struct relume_image image[2];
+    (void)state;
+    for (int fresh = 0; fresh < 2; fresh++) {
+        relume_psf *psf = make_psf((struct relume_psf_params){.size = 128, .wavelengths = 2});
+        for (uint64_t seed = fresh ? 2 : 1; seed <= 2; seed++) {
+            relume_eye *eye;
+            subject.seed = seed;
+            CHECK_OK(relume_eye_create(&eye, &subject, 0.1));
+            CHECK_OK(relume_psf_update(psf, eye));
+            relume_eye_destroy(&eye);
+        }
+        CHECK_OK(relume_psf_image(&image[fresh], psf));
+        relume_psf_destroy(&psf);
+    }
+    assert_memory_equal(image[0].data, image[1].data,
+                        3 * (size_t)image[0].width * (size_t)image[0].height * sizeof(float));
+    relume_image_destroy(&image[0]);
+    relume_image_destroy(&image[1]);
+}
+
 static void check_parameters(void **state)
 {
     static const struct relume_psf_params bad[] = {
@@ -588,6 +612,7 @@ int main(void)
         cmocka_unit_test(check_drift),
         cmocka_unit_test(check_coverage),
         cmocka_unit_test(check_observer),
+        cmocka_unit_test(check_other_eye),
         cmocka_unit_test(check_lids),
         cmocka_unit_test(check_planes),
         cmocka_unit_test(check_literal_distance),

@@ -64,11 +64,6 @@ void gl_aperture_destroy(struct gl_aperture *a, const struct gl *gl)
     *a = (struct gl_aperture){0};
 }
 
-void gl_aperture_forget(struct gl_aperture *a)
-{
-    a->drawn = false;
-}
-
 // ---------------------------------------------------------------- primitives
 
 static void attribute(const struct gl *gl, GLuint index, int floats, size_t stride, size_t offset)

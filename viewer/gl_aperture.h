@@ -25,10 +25,9 @@ struct gl_aperture {
 relume_status gl_aperture_create(struct gl_aperture *aperture, const struct gl *gl, int size,
                                  double texel_mm, unsigned parts_off, const struct relume_log *log);
 void gl_aperture_destroy(struct gl_aperture *aperture, const struct gl *gl);
-// Draw that moment. What never moves in an eye is drawn once: gl_aperture_forget for another eye.
+// Draw that moment of one eye: what never moves in it is drawn once.
 void gl_aperture_draw(struct gl_aperture *aperture, const struct gl *gl,
                       const struct relume_aperture *moment);
-void gl_aperture_forget(struct gl_aperture *aperture);
 
 // The share of the pupil between the lids.
 double gl_aperture_light(const struct relume_aperture *moment);

@@ -145,11 +145,6 @@ void gl_psf_destroy(struct gl_psf *psf, const struct gl *gl)
     *psf = (struct gl_psf){0};
 }
 
-void gl_psf_forget(struct gl_psf *psf)
-{
-    gl_aperture_forget(&psf->aperture);
-}
-
 // ---------------------------------------------------------------- steps
 
 static void bind(const struct gl *gl, GLuint binding, GLuint buffer)

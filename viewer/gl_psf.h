@@ -26,8 +26,6 @@ bool gl_psf_fits(const struct gl *gl, const struct relume_psf_params *params);
 relume_status gl_psf_create(struct gl_psf *psf, const struct gl *gl,
                             const struct relume_psf_params *params);
 void gl_psf_destroy(struct gl_psf *psf, const struct gl *gl);
-// Another eye is looked through from now on.
-void gl_psf_forget(struct gl_psf *psf);
 // Lids that are shut leave the pattern as it was, with light 0. RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status gl_psf_update(struct gl_psf *psf, const struct gl *gl, struct gl_fft *fft,
                             const relume_eye *eye, const struct relume_log *log);

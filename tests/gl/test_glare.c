@@ -461,7 +461,7 @@ static void fields_of_view_follow_the_camera(void **state)
     app_release(&app);
 }
 
-static void words_change_the_sight_or_nothing(void **state)
+static void words_change_the_gaze_or_nothing(void **state)
 {
     (void)state;
     static const char *const wrong[] = {"",       "maybe",    "magnify",    "magnify nan",
@@ -540,7 +540,7 @@ int main(void)
         cmocka_unit_test_prestate(nothing_of_an_old_frame_stays, &library),
         cmocka_unit_test(without_compute_the_library_sees),
         cmocka_unit_test(fields_of_view_follow_the_camera),
-        cmocka_unit_test(words_change_the_sight_or_nothing),
+        cmocka_unit_test(words_change_the_gaze_or_nothing),
         cmocka_unit_test(lamps_in_view_send_what_they_send),
     };
     return cmocka_run_group_tests(tests, open_pairs, close_pairs);

@@ -100,7 +100,7 @@ struct app_state {
     enum relume_pass pass;
     enum app_split split;  // objects ...
     int other;             // ... in this of their materials as well
-    struct gaze gaze;  // how an eye sees the frame
+    struct gaze gaze;      // how an eye sees the frame
 };
 
 enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT, APP_DRAG_GIZMO };

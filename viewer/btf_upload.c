@@ -8,20 +8,13 @@
 #include <string.h>
 
 const struct btf_twin btf_twins[] = {
-    {"measured", "btf_measured.frag", {3}},
-    {"lit", "btf_lit.frag", {3}},
-    {"bump", "btf_bump.frag", {3, 3, 3}},
-    {"laf", "btf_laf.frag", {3, 3, 4}},
-    {"slaf", "btf_slaf.frag", {3, 3, 4, 1}},
-    {"rfp", "btf_rfp.frag", {3}},
-    {"rfnl", "btf_rfnl.frag", {3, 3, 4}},
-    {"rfnlc", "btf_rfnlc.frag", {3, 3, 4, 1}},
-    {"cmf", "btf_cmf.frag", {3, 1}},
-    {"vpca", "btf_vpca.frag", {3, 3, 1}},
-    {"lpca", "btf_lpca.frag", {3, 3, 1, 1}},
-    {"fmf", "btf_fmf.frag", {1, 3}},
-    {"qmf", "btf_qmf.frag", {1, 1, 1, 1, 1}},
-    {NULL, NULL, {0}},
+    {"measured", "btf_measured.frag", {3}},   {"lit", "btf_lit.frag", {3}},
+    {"bump", "btf_bump.frag", {3, 3, 3}},     {"laf", "btf_laf.frag", {3, 3, 4}},
+    {"slaf", "btf_slaf.frag", {3, 3, 4, 1}},  {"rfp", "btf_rfp.frag", {3}},
+    {"rfnl", "btf_rfnl.frag", {3, 3, 4}},     {"rfnlc", "btf_rfnlc.frag", {3, 3, 4, 1}},
+    {"cmf", "btf_cmf.frag", {3, 1}},          {"vpca", "btf_vpca.frag", {3, 3, 1}},
+    {"lpca", "btf_lpca.frag", {3, 3, 1, 1}},  {"fmf", "btf_fmf.frag", {1, 3}},
+    {"qmf", "btf_qmf.frag", {1, 1, 1, 1, 1}}, {NULL, NULL, {0}},
 };
 
 const struct btf_twin *btf_twin_find(const char *model)

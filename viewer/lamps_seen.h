@@ -29,7 +29,7 @@ void lamp_scene_forget(struct lamp_scene *scene);
 
 // The sources among `n` lights, at most LAMPS_SEEN_MOST; returns how many. Without `scene` nothing
 // is hidden.
-int lamps_seen(struct lamp_seen *out, const struct app *app, const struct relume_light *lights, int n,
-               struct lamp_scene *scene);
+int lamps_seen(struct lamp_seen *out, const struct app *app, const struct relume_light *lights,
+               int n, struct lamp_scene *scene);
 
 #endif

@@ -130,8 +130,8 @@ static relume_status host_shot(void *user, const char *path)
 
 static struct script_host host_of(struct session *s)
 {
-    return (struct script_host){s,         &s->app,   host_send,  host_light, host_rig,  host_open,
-                                host_wait, host_frame, host_shot, s->log, host_glare};
+    return (struct script_host){s,         &s->app,    host_send, host_light, host_rig,  host_open,
+                                host_wait, host_frame, host_shot, s->log,     host_glare};
 }
 
 // ---------------------------------------------------------------- without a window

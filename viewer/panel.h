@@ -41,7 +41,7 @@ struct panel_facts {
     const size_t *material_bytes;
     int materials;
     const double *objects_ms;
-    const char *eye;         // what is known of the eye that looks, or NULL
+    const char *eye;  // what is known of the eye that looks, or NULL
 };
 // Work through the events and make the triangles of the frame; changes `app` as the user asks.
 // Returns whether the picture changed.

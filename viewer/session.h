@@ -67,10 +67,10 @@ struct session {
     int threads;                           // that read files
     size_t vram_bytes;                     // for views
     enum session_relight relight;
-    enum session_relight glare;     // by passes or by the library, likewise
-    int glare_size;                 // as glare.size
+    enum session_relight glare;            // by passes or by the library, likewise
+    int glare_size;                        // as glare.size
     const struct relume_subject *subject;  // whose eye looks; NULL: the default one
-    bool streams;  // frames are drawn with the views that are there
+    bool streams;                          // frames are drawn with the views that are there
     const struct relume_log *log;
 };
 

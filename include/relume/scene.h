@@ -98,7 +98,7 @@ RELUME_API const char *relume_btf_material_summary(const struct relume_btf_mater
 
 struct relume_btf_synth_params {
     const struct relume_log *log;
-    int size;  // texels a side, [1, 1024]; default 64
+    int size;    // texels a side, [1, 1024]; default 64
     int extent;  // [1, 16]; default 1: so many times as many stones, threads, ... along a side
     const struct relume_vec3 *view;  // with `views`; default: the 81 of the Bonn laboratory
     int views;

@@ -17,8 +17,8 @@ struct camera_photos {
 struct photo_set {
     struct arena arena;
     int count, lights;
-    struct camera_photos *camera;          // [count]
-    int width, height;                     // of every photograph, upright
+    struct camera_photos *camera;  // [count]
+    int width, height;             // of every photograph, upright
     bool turned;  // some lie on their side in their files: no reader of those shows them upright
     const struct relume_vec3 *directions;  // [lights]
 };

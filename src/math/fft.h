@@ -17,7 +17,8 @@ enum fft_kind { FFT_FORWARD, FFT_INVERSE, FFT_REAL, FFT_REAL_INVERSE };
 // RELUME_ENOMEM.
 relume_status fft_line_create(fft_line **out, int n, enum fft_kind kind);
 void fft_line_destroy(fft_line **line);
-// `in`, `out` and `scratch` differ and start on 16 bytes; `in` is spoilt. `scratch` holds 4 n floats.
+// `in`, `out` and `scratch` differ and start on 16 bytes; `in` is spoilt. `scratch` holds 4 n
+// floats.
 void fft_line_run(const fft_line *line, float *in, float *out, float *scratch);
 
 // The least even size of at least n whose prime factors are 2, 3 and 5.

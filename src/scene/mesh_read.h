@@ -8,9 +8,9 @@ struct mesh_file {
     struct mesh mesh;
     bool has_uv;
     bool made_normals;  // the file has none, or not everywhere
-    char *picture;  // the file of its texture, or NULL
-    char **part;    // [parts]: names; a triangle's material is the number of its part
-    int parts;      // at least 1 once read
+    char *picture;      // the file of its texture, or NULL
+    char **part;        // [parts]: names; a triangle's material is the number of its part
+    int parts;          // at least 1 once read
 };
 void mesh_file_free(struct mesh_file *file);
 

@@ -95,8 +95,10 @@ bool jvalue_place(int line_column[2], const char *path, const char *array, size_
 {
     char *text = read_text(path);
     const char *at = text ? skip_space(text) : NULL;
-    at = at ? find_member(at, array, true) : NULL;
-    at = at ? find_item(at, index) : NULL;
+    if (array) {
+        at = at ? find_member(at, array, true) : NULL;
+        at = at ? find_item(at, index) : NULL;
+    }
     const char *member = at && key ? find_member(at, key, false) : NULL;
     at = member ? member : at;
     line_column[0] = line_column[1] = 1;

@@ -91,24 +91,30 @@ static relume_status take_light(relume_rig *rig, const jvalue *object, const cha
     return status == RELUME_EINVAL ? RELUME_EDATA : status;
 }
 
+// `member` of the file itself, absent ones at its beginning.
+static relume_status wrong_head(const char *path, const char *member, const char *expected,
+                                const struct relume_log *log)
+{
+    int at[2] = {1, 1};
+    (void)jvalue_place(at, path, NULL, 0, member);
+    return log_fail(log, RELUME_EDATA, "%s: line %d, column %d; %s; expected %s", path, at[0],
+                    at[1], member, expected);
+}
+
 static relume_status check_head(const jvalue *root, const char *path, const struct relume_log *log)
 {
     static const char *const members[] = {"format", "version", "lights", NULL};
     const char *format = jvalue_text(jvalue_member(root, "format"));
+    const char *unknown = jvalue_unknown(root, members);
     long long version;
     if (!format || strcmp(format, "relume-rig"))
-        return log_fail(log, RELUME_EDATA,
-                        "%s: no rig of lights; expected \"format\": "
-                        "\"relume-rig\"",
-                        path);
+        return wrong_head(path, "format", "a rig of lights, \"relume-rig\"", log);
     if (!jvalue_integer(jvalue_member(root, "version"), &version) || version != 1)
-        return log_fail(log, RELUME_EDATA, "%s: unknown version; expected \"version\": 1", path);
-    const char *unknown = jvalue_unknown(root, members);
+        return wrong_head(path, "version", "1", log);
     if (unknown)
-        return log_fail(log, RELUME_EDATA, "%s: %s; expected format, version or lights", path,
-                        unknown);
+        return wrong_head(path, unknown, "format, version or lights", log);
     if (!jvalue_is_array(jvalue_member(root, "lights")))
-        return log_fail(log, RELUME_EDATA, "%s: lights; expected an array", path);
+        return wrong_head(path, "lights", "an array", log);
     return RELUME_OK;
 }
 

@@ -246,11 +246,14 @@ static void test_wrong_files(void **state)
         const char *text, *why;
     } wrong[] = {
         {"{\n  \"format\": }", "line 2, column 13; expected JSON"},
-        {"[]", "no rig of lights"},
-        {"{\"format\": \"relume-capture\"}", "no rig of lights"},
-        {"{\"format\": \"relume-rig\", \"version\": 2, \"lights\": []}", "unknown version"},
+        {"[]", "line 1, column 1; format; expected a rig of lights"},
+        {"{\n  \"format\": \"relume-capture\"}",
+         "line 2, column 3; format; expected a rig of lights"},
+        {"{\"format\": \"relume-rig\",\n \"version\": 2, \"lights\": []}",
+         "line 2, column 2; version; expected 1"},
         {"{\"format\": \"relume-rig\", \"version\": 1}", "lights; expected an array"},
-        {"{\"format\": \"relume-rig\", \"version\": 1, \"ligths\": []}", "ligths; expected format"},
+        {"{\"format\": \"relume-rig\", \"version\": 1, \"ligths\": []}",
+         "line 1, column 40; ligths; expected format"},
         {RIG("[3]"), "light 1; expected an object"},
         {RIG("[{}]"), "light 1; light; expected words"},
         {RIG("[{\"light\": \"dir 0 0 1\"}, {\"light\": \"dir 0 0\"}]"), "light 2; light 'dir 0 0'"},

@@ -360,7 +360,7 @@ const struct key_binding key_bindings[] = {
     {'b', "B", "ball that shows the light", press_ball, false},
     {'g', "G", "handles of the lights in the picture", press_gizmos, false},
     {'i', "I", "inspector: the reflectance under the cursor", press_inspect, false},
-    {'h', "H", "inspector: closer about the light", press_magnify, false},
+    {'y', "Y", "inspector: closer about the light", press_magnify, false},
     {'s', "S", "save the picture, PNG", press_png, false},
     {'p', "P", "save the picture, EXR", press_exr, false},
     {'w', "W", "write the lights, a rig file", press_save_rig, false},

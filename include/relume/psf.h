@@ -93,6 +93,30 @@ RELUME_RESULT relume_status relume_psf_aperture(struct relume_image *out, const 
 RELUME_RESULT relume_status relume_psf_monochrome(struct relume_image *out, const relume_psf *psf);
 RELUME_API const struct relume_psf_geometry *relume_psf_shape(const relume_psf *psf);
 
+// Patterns of a while, computed once and shown in a loop: playback costs a copy instead of a
+// transform. The loop has no seam: its beginning fades over from what the eye shows after its end.
+// Patterns wait as halfs: 6 field^2 bytes each. Thread-safety: never changes; safe.
+typedef struct relume_psf_cycle relume_psf_cycle;
+struct relume_psf_cycle_params {  // zero in a field means its default
+    const struct relume_log *log;
+    double seconds;    // how long the loop is; default 4
+    double fps;        // patterns a second; default 30; at most 3600 in all
+    double fade_s;     // of its beginning, at most all of it; default a quarter
+    double luminance;  // that the eye adapts to meanwhile, cd/m^2; default: what it has adapted to
+};
+#define relume_psf_cycle_params(...) (&(const struct relume_psf_cycle_params){__VA_ARGS__})
+
+// `eye` lives on for the loop and its fade, and `psf` shows it meanwhile. RELUME_EINVAL with a
+// sentence, RELUME_ENOMEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_psf_cycle_create(relume_psf_cycle **out, relume_psf *psf,
+                                                    relume_eye *eye,
+                                                    const struct relume_psf_cycle_params *params);
+RELUME_API void relume_psf_cycle_destroy(relume_psf_cycle **cycle);
+// What `psf`, of the same size, shows becomes the loop at a time; between two patterns, a mix of
+// both. RELUME_EINVAL for another size, or a time that is not finite.
+RELUME_RESULT relume_status relume_psf_cycle_show(relume_psf *psf, const relume_psf_cycle *cycle,
+                                                  double time_s);
+
 // CIE 1999 standard observer (CIE 135/1, Vos and van den Berg): the share of a point source's light
 // per steradian at an angle in degrees, for an age in years and a pigment of the iris in [0, 1.2].
 RELUME_API double relume_cie_glare(double angle_deg, double age, double pigment);

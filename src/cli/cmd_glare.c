@@ -16,6 +16,8 @@ static const struct option options[] = {
     GLARE_OPTIONS,
     {"--frames", OPTION_INT, "N", "as many pictures, from --time on", 1, 1000000},
     {"--fps", OPTION_NUMBER, "F", "pictures a second; default: 30", 0.1, 1000},
+    {"--cycle", OPTION_NUMBER, "S", "--frames: S seconds are computed and shown in a seamless loop",
+     0.1, 120},
     {"--pan", OPTION_NUMBER, "A", "IN is a whole sphere: look this far to the right, degrees", 0,
      0},
     {"--tilt", OPTION_NUMBER, "A", "IN is a whole sphere: look this far up", -90, 90},
@@ -144,27 +146,56 @@ static bool go_on(const struct args *args, double done)
     return !log->progress || log->progress(log->user, "glare", done);
 }
 
+// Picture i of a film: of the loop, or of an eye that lives on.
+static relume_status see_next(struct relume_image *out, struct viewer_eye *e,
+                              const relume_psf_cycle *cycle, const struct relume_image *frame,
+                              int i, double fps)
+{
+    relume_status status = RELUME_OK;
+    if (!cycle) {
+        if (i)
+            status = relume_eye_advance(e->eye, 1.0 / fps, e->luminance);
+        return status ? status : see(out, e, frame, i > 0);
+    }
+    status = relume_psf_cycle_show(e->psf, cycle, i / fps);
+    return status ? status : relume_glare_apply(out, e->glare, frame, i > 0, e->psf, &e->params);
+}
+
+static relume_status make_cycle(relume_psf_cycle **cycle, struct viewer_eye *e,
+                                const struct args *args, double fps)
+{
+    const double seconds = args_number(args, "--cycle", 0.0);
+    *cycle = NULL;
+    return seconds > 0.0 ? relume_psf_cycle_create(
+                               cycle, e->psf, e->eye,
+                               relume_psf_cycle_params(.log = args_log(args), .seconds = seconds,
+                                                       .fps = fps, .luminance = e->luminance))
+                         : RELUME_OK;
+}
+
 static relume_status save_many(struct viewer_eye *e, const struct relume_image *frame,
                                const struct args *args, struct developing developing)
 {
     const int frames = args_int(args, "--frames", 1);
     const double fps = args_number(args, "--fps", 30.0);
-    struct film *film;
-    relume_status status = film_open(&film, args_text(args, "-o", NULL), fps, args_log(args));
+    relume_psf_cycle *cycle;
+    struct film *film = NULL;
+    relume_status status = make_cycle(&cycle, e, args, fps);
+    if (!status)
+        status = film_open(&film, args_text(args, "-o", NULL), fps, args_log(args));
     for (int i = 0; !status && i < frames; i++) {
         struct relume_image out = {0};
         if (!go_on(args, (double)i / frames))
             status = RELUME_ECANCEL;
-        if (!status && i)
-            status = relume_eye_advance(e->eye, 1.0 / fps, e->luminance);
         if (!status)
-            status = see(&out, e, frame, i > 0);
+            status = see_next(&out, e, cycle, frame, i, fps);
         if (!status)
             status = develop(&out, developing, film_name(film));
         if (!status)
             status = film_add(film, &out);
         relume_image_destroy(&out);
     }
+    relume_psf_cycle_destroy(&cycle);
     const relume_status closed = film_close(&film, !status);
     return status ? status : closed;
 }
@@ -179,8 +210,8 @@ static relume_status check(const struct args *args)
     if (out && args_has(args, "--frames") && !film_is(out))
         return usage_error("-o: expected name.%%04d.png, a folder or .mp4 for --frames; found '%s'",
                            out);
-    if (!args_has(args, "--frames") && args_has(args, "--fps"))
-        return usage_error("glare: expected --frames beside --fps");
+    if (!args_has(args, "--frames") && (args_has(args, "--fps") || args_has(args, "--cycle")))
+        return usage_error("glare: expected --frames beside --fps and --cycle");
     if (out && !args_has(args, "--frames") && strchr(out, '%') && film_is(out))
         return usage_error("glare: expected --frames N for '%s'", out);
     return RELUME_OK;

@@ -455,6 +455,23 @@ const float *psf_channel(const relume_psf *psf, int channel)
     return psf->colour[channel];
 }
 
+float *psf_channel_to_fill(relume_psf *psf, int channel)
+{
+    return psf->colour[channel];
+}
+
+void psf_filled(relume_psf *psf, double light, double age, double pigment)
+{
+    psf->light = light;
+    psf->age = age;
+    psf->pigment = pigment;
+}
+
+int psf_threads(const relume_psf *psf)
+{
+    return psf->params.threads;
+}
+
 void psf_observer(const relume_psf *psf, double *age, double *pigment)
 {
     *age = psf->age;

@@ -49,6 +49,10 @@ relume_status psf_update_aperture(relume_psf *psf, const struct relume_aperture 
                                   double dioptres);
 // Three channels of the pattern as they lie in memory, each field x field and summing to 1.
 const float *psf_channel(const relume_psf *psf, int channel);
+// For whoever fills them otherwise, and then says of what.
+float *psf_channel_to_fill(relume_psf *psf, int channel);
+void psf_filled(relume_psf *psf, double light, double age, double pigment);
+int psf_threads(const relume_psf *psf);
 // Age and pigment of the subject that was seen last.
 void psf_observer(const relume_psf *psf, double *age, double *pigment);
 

@@ -111,7 +111,7 @@ k = b'relume.version\0int\0\4\0\0\0'
 i = b.index(k) + len(k)
 open('new.exr', 'wb').write(b[:i] + b'\x09' + b[i + 1:])
 E
-    info 'a newer version' 'new.exr: version 9 is newer than this program; expected at most 2' new.exr
+    info 'a newer version' 'new.exr: version 9 is newer than this program; expected at most 3' new.exr
 else
     skip 'a newer version' 'no python3'
 fi

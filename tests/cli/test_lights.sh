@@ -140,7 +140,7 @@ bad 'ies: negative candela' 1 'negative.ies: candela; expected 0 or more, found 
 sed 's/^0 10 20/0 10 1e9/' lamp.ies >angle.ies
 bad 'ies: huge angles' 1 'angle.ies: vertical angles; expected ascending angles in 0 to 180' 'ies 0 0 3 0 0 -1 angle.ies'
 sed 's/"solo": false/"solo": 7/' sub/rig.json >sub/wrong.json
-expect_fail 'rig: a wrong field' 1 'sub/wrong.json: light 1; solo; expected true or false' x.exr \
+expect_fail 'rig: a wrong field' 1 'sub/wrong.json: line [0-9]*, column [0-9]*; light 1; solo; expected true or false' x.exr \
     "$RELUME" relight full.exr -o x.exr --rig sub/wrong.json
 tr ']' '}' <sub/rig.json >sub/broken.json
 expect_fail 'rig: broken JSON' 1 'sub/broken.json: line [0-9]+, column [0-9]+; expected JSON' x.exr \

@@ -18,12 +18,11 @@ decoded_alike() { # name, file of another format, relume file of it
         skip "$1" 'no python3 with numpy and Pillow'
         return
     fi
-    for light in '0.5 0.3 0.7' '-0.8 0.1 0.3'; do
-        relume relight "$3" -o a.png --light "dir $light"
-        "$python" "$decoder" "$2" $light b.png
-        # both round the same sum, in single and in double precision
-        below "$1, light $light" "$(codes_apart a.png b.png)" 1
-    done
+    light="-0.6 0.2 0.5"
+    relume relight "$3" -o a.png --light "dir $light"
+    "$python" "$decoder" "$2" $light b.png
+    # both round the same sum, in single and in double precision
+    below "$1, light $light" "$(codes_apart a.png b.png)" 1
 }
 psnr() { # relume file, relume file: under one light
     relume relight "$1" -o a.png --light 'dir 0.4 0.3 0.8'

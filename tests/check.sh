@@ -25,7 +25,7 @@ is_left_out() { # script
 # code that other tests run as well.
 is_arithmetic() { # binary
     case $build in *asan* | *tsan*) ;; *) return 1 ;; esac
-    case $(basename "$1") in test_environment | test_near_passes | test_align) ;; *) return 1 ;; esac
+    case $(basename "$1") in test_environment | test_near | test_near_passes | test_align) ;; *) return 1 ;; esac
 }
 
 # Scripts first: they take longest, and a core should not wait for the last one alone.

@@ -51,6 +51,12 @@ RELUME_RESULT relume_status relume_ball_find(struct relume_ball *out, int count,
                                              const struct relume_image *mean,
                                              const struct relume_ball_camera *camera,
                                              const struct relume_ball_params *params);
+// The same, up to `most` circles that may be balls and do not overlap, the roundest first; *found
+// of them, perhaps none. Which one is a ball is for its highlights to say. RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_ball_candidates(struct relume_ball *out, int most, int *found,
+                                                   const struct relume_image *mean,
+                                                   const struct relume_ball_camera *camera,
+                                                   const struct relume_ball_params *params);
 
 enum relume_ball_sight {
     RELUME_BALL_SEEN = 0,

@@ -11,9 +11,9 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LEVELS = 12, RADII = 10, FIRST_RADIUS = 8, PER_LEVEL = 24, MOST = LEVELS * PER_LEVEL };
+enum { LEVELS = 12, RADII = 10, FIRST_RADIUS = 8, PER_LEVEL = 40, MOST = LEVELS * PER_LEVEL };
 static const double SMALLEST = 0.015, LARGEST = 0.6;
-static const double EDGES = 0.88;         // quantile of the gradient above which edges lie
+static const double EDGES = 0.7;          // quantile of the gradient above which edges lie
 static const double WIDEST = 0.14;        // how far a circle may be off, share of its radius
 static const double LEAST_EXCESS = 0.38;  // of coverage over chance: below it is no circle
 
@@ -365,6 +365,32 @@ static relume_status choose(struct relume_ball *out, int count, int *found,
     return RELUME_OK;
 }
 
+relume_status relume_ball_candidates(struct relume_ball *out, int most, int *found,
+                                     const struct relume_image *mean,
+                                     const struct relume_ball_camera *camera,
+                                     const struct relume_ball_params *params)
+{
+    const struct relume_ball_params p = params ? *params : (struct relume_ball_params){0};
+    const struct relume_image *look_at = p.mask ? p.mask : mean;
+    struct pyramid pyramid = {0};
+    struct candidate *list = mem_zeroed(MOST, sizeof *list);
+    relume_status status = list ? build_pyramid(&pyramid, look_at) : RELUME_ENOMEM;
+    int n = 0;
+    *found = 0;
+    for (int i = 0; !status && i < pyramid.levels; i++) {
+        int here = 0;
+        status = search_level(&pyramid.level[i], 1 << i, list + n, &here);
+        n += here;
+    }
+    if (!status)
+        status = screen(list, n, &pyramid, mean, camera, &p);
+    if (!status)
+        status = choose(out, most, found, list, n, &pyramid, mean, camera, &p);
+    destroy_pyramid(&pyramid);
+    free(list);
+    return status;
+}
+
 static int by_column(const void *a, const void *b)
 {
     const struct relume_ball *p = a, *q = b;
@@ -375,29 +401,13 @@ relume_status relume_ball_find(struct relume_ball *out, int count, const struct 
                                const struct relume_ball_camera *camera,
                                const struct relume_ball_params *params)
 {
-    const struct relume_ball_params p = params ? *params : (struct relume_ball_params){0};
-    const struct relume_image *look_at = p.mask ? p.mask : mean;
-    struct pyramid pyramid = {0};
-    struct candidate *list = mem_zeroed(MOST, sizeof *list);
-    relume_status status = list ? build_pyramid(&pyramid, look_at) : RELUME_ENOMEM;
-    int n = 0;
-    for (int i = 0; !status && i < pyramid.levels; i++) {
-        int here = 0;
-        status = search_level(&pyramid.level[i], 1 << i, list + n, &here);
-        n += here;
-    }
-    int found = 0;
-    if (!status)
-        status = screen(list, n, &pyramid, mean, camera, &p);
-    if (!status)
-        status = choose(out, count, &found, list, n, &pyramid, mean, camera, &p);
+    int found;
+    const relume_status status = relume_ball_candidates(out, count, &found, mean, camera, params);
     qsort(out, (size_t)found, sizeof *out, by_column);
-    destroy_pyramid(&pyramid);
-    free(list);
     if (!status && found < count)
-        status = log_fail(p.log, RELUME_EDATA,
-                          "%d of %d balls found; expected round outlines against the background, "
-                          "or --ball x,y,r",
-                          found, count);
+        return log_fail(params ? params->log : NULL, RELUME_EDATA,
+                        "%d of %d balls found; expected round outlines against the background, "
+                        "or --ball x,y,r",
+                        found, count);
     return status;
 }

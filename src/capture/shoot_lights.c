@@ -52,6 +52,69 @@ static const char *ball_photo(const struct shot *shot)
     return shot->ball_path ? shot->ball_path : shot->path;
 }
 
+static int by_column(const void *a, const void *b)
+{
+    const struct relume_ball *p = a, *q = b;
+    return (p->x > q->x) - (p->x < q->x);
+}
+
+// What is wrong with how ball `b` shows the light; NULL when nothing is.
+static const char *objection(const struct relume_ball_light *l, bool matte)
+{
+    if (l->sight == RELUME_BALL_DARK || l->sight == RELUME_BALL_FULL)
+        return relume_ball_sight_text(l->sight);
+    return !matte && l->spread_deg > TOO_WIDE ? "what shines on it is too wide for a lamp" : NULL;
+}
+
+enum { CANDIDATES = 16, TRIALS = 6 };
+
+// In how many of a few photographs, spread over all, each candidate shows a lamp. A round stone
+// does in few of them.
+static relume_status try_candidates(const struct shoot *s, const struct relume_ball *ball, int n,
+                                    int *seen)
+{
+    const int trials = s->shots < TRIALS ? s->shots : TRIALS;
+    memset(seen, 0, (size_t)n * sizeof *seen);
+    for (int i = 0; i < trials; i++) {
+        struct relume_image image;
+        relume_status status =
+            relume_photograph_load(&image, NULL, ball_photo(&s->shot[i * s->shots / trials]),
+                                   relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
+                                                            .transfer = s->p.transfer));
+        for (int b = 0; !status && b < n; b++) {
+            struct relume_ball_light light;
+            status = relume_ball_mirror(&light, &ball[b], &s->camera, &image);
+            seen[b] += !objection(&light, false);
+        }
+        relume_image_destroy(&image);
+        if (status)
+            return status;
+    }
+    return RELUME_OK;
+}
+
+// Mirror balls: the roundest circles of those that show the lamp in most of the photographs tried.
+// Where too few do, the roundest of the others, so that what is wrong with them is told.
+static relume_status find_mirrors(struct shoot *s, const struct relume_ball_params *params)
+{
+    struct relume_shoot *out = s->out;
+    struct relume_ball ball[MOST_BALLS + CANDIDATES];
+    int seen[MOST_BALLS + CANDIDATES], n, kept = 0;
+    relume_status status =
+        relume_ball_candidates(ball, out->balls + CANDIDATES, &n, &s->mean, &s->camera, params);
+    if (!status && n < out->balls)
+        return RELUME_EDATA;
+    if (!status)
+        status = try_candidates(s, ball, n, seen);
+    const int trials = s->shots < TRIALS ? s->shots : TRIALS;
+    for (int good = 1; !status && good >= 0; good--)
+        for (int b = 0; b < n && kept < out->balls; b++)
+            if ((2 * seen[b] > trials) == good)
+                out->ball[kept++] = ball[b];
+    qsort(out->ball, (size_t)kept, sizeof *out->ball, by_column);
+    return status;
+}
+
 static relume_status find_balls(struct shoot *s)
 {
     struct relume_shoot *out = s->out;
@@ -68,9 +131,11 @@ static relume_status find_balls(struct shoot *s)
     const relume_status loaded = load_mask(s, &mask);
     if (loaded)
         return loaded;
-    relume_status status = relume_ball_find(
-        out->ball, out->balls, &s->mean, &s->camera,
-        relume_ball_params(.mask = mask.data ? &mask : NULL, .peak = s->p.matte ? NULL : &s->peak));
+    const struct relume_ball_params p = {.mask = mask.data ? &mask : NULL,
+                                         .peak = s->p.matte ? NULL : &s->peak};
+    relume_status status = s->p.matte || mask.data
+                               ? relume_ball_find(out->ball, out->balls, &s->mean, &s->camera, &p)
+                               : find_mirrors(s, &p);
     if (status == RELUME_EDATA)
         status =
             log_fail(s->p.log, status,
@@ -116,14 +181,6 @@ struct sights {
     struct relume_ball_light light[MOST_BALLS];
     vec3 origin[MOST_BALLS], direction[MOST_BALLS];
 };
-
-// What is wrong with how ball `b` shows the light; NULL when nothing is.
-static const char *objection(const struct relume_ball_light *l, bool matte)
-{
-    if (l->sight == RELUME_BALL_DARK || l->sight == RELUME_BALL_FULL)
-        return relume_ball_sight_text(l->sight);
-    return !matte && l->spread_deg > TOO_WIDE ? "what shines on it is too wide for a lamp" : NULL;
-}
 
 static relume_status look(struct shoot *s, int i, struct sights *to, const char **why)
 {

@@ -75,6 +75,20 @@ static inline void test_write(const char *path, const void *bytes, size_t size)
     assert_int_equal(fclose(f), 0);
 }
 
+// All of a file, to be freed.
+static inline void *test_read(const char *path, size_t *size)
+{
+    FILE *f = fopen(path, "rb");
+    assert_non_null(f);
+    fseek(f, 0, SEEK_END);
+    *size = (size_t)ftell(f);
+    rewind(f);
+    void *bytes = malloc(*size);
+    assert_int_equal(fread(bytes, 1, *size, f), *size);
+    fclose(f);
+    return bytes;
+}
+
 // A small generator, so that tests do not depend on the C library's.
 static inline uint32_t test_random(uint32_t *state)
 {

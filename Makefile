@@ -38,7 +38,7 @@ OIIO     = $(call once,OIIO,pkg-config --cflags OpenImageIO)
 IMGUI    = $(call once,IMGUI,pkg-config --cflags imgui)
 GLFW     = $(call once,GLFW,pkg-config --cflags glfw3)
 FFT_PC   := $(if $(filter kiss,$(FFT)),kissfft-float,fftw3f)
-PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenEXR openblas jansson libjpeg lcms2 $(FFT_PC))
+PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenEXR openblas jansson libjpeg libpng lcms2 $(FFT_PC))
 OIIO_LIBS = $(call once,OIIO_LIBS,pkg-config --libs OpenImageIO)
 CAIRO    = $(call once,CAIRO,pkg-config --cflags cairo)
 LIBS     = -Wl,--as-needed $(PKG_LIBS) -llapacke -lembree3 -lm -ldl
@@ -51,7 +51,7 @@ LIB_C    := $(wildcard src/base/*.c src/math/*.c src/image/*.c src/capture/*.c s
             src/frame/*.c src/btf/*.c src/object/*.c)
 LIB_C    := $(filter-out src/scene/mesh_assimp.c,$(LIB_C))
 LIB_C    := $(filter-out $(if $(filter kiss,$(FFT)),%/fft.c,%/fft_kiss.c),$(LIB_C))
-# The module that is loaded when the first image needs it (src/image/oiio.h)
+# The module that is loaded when the first image needs it (src/image/picture.h)
 MODULE_CXX := src/image/oiio.cpp
 # The module that is loaded when the first model needs it (src/scene/mesh_other.h)
 MESHES_C := src/scene/mesh_assimp.c

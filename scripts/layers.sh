@@ -64,6 +64,7 @@ only_in 'fftw3' src/math/fft.c
 only_in 'kissfft' src/math/fft_kiss.c
 only_in 'jansson' src/base/json.c
 only_in 'jpeglib' src/image/jpeg.c
+only_in 'png' src/image/png.c
 only_in 'lcms2' src/image/profile.c tests/unit/test_photograph.c
 only_in 'cairo' src/cli/plot.c
 only_in 'GLFW' viewer/context_glfw.c

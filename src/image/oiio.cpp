@@ -147,10 +147,6 @@ double shutter_of(const ImageSpec &spec)
 relume_status open_input(oiio_reader *r, const relume_limits *limits)
 {
     OIIO::attribute("exr_threads", -1);  // our own threads work on many files at once
-    if (!Filesystem::exists(r->path))
-        return broken(r, "no such file; expected an image");
-    if (Filesystem::is_directory(r->path) || Filesystem::file_size(r->path) == 0)
-        return broken(r, "empty file or folder; expected an image");
     ImageSpec hints;
     hints["oiio:UnassociatedAlpha"] = 1;
     hints["raw:ColorSpace"] = "Linear";

@@ -7,6 +7,7 @@
 #include "base/outfile.h"
 #include "image/picture_format.h"
 
+#include <errno.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <string.h>
@@ -33,31 +34,39 @@ static relume_status need_bridge(const char *path, const struct relume_log *log)
 
 // ---------------------------------------------------------------- reading
 
-// Pipes and devices do not: they would lose what is read here.
-static bool begins(const char *path, const char *with, size_t n)
+enum { MAGIC = 8 };
+
+// The first bytes of the file, 0 where it has fewer.
+static relume_status look(char bytes[MAGIC], const char *path, const struct relume_log *log)
 {
-    char bytes[8];
     struct stat s;
-    FILE *f = !stat(path, &s) && S_ISREG(s.st_mode) ? fopen(path, "rb") : NULL;
-    const bool same = f && fread(bytes, 1, n, f) == n && !memcmp(bytes, with, n);
-    if (f)
-        fclose(f);
-    return same;
+    memset(bytes, 0, MAGIC);
+    if (stat(path, &s))
+        return log_fail(log, RELUME_EDATA, "%s: no such file; expected an image", path);
+    if (!S_ISREG(s.st_mode) || s.st_size == 0)
+        return log_fail(log, RELUME_EDATA, "%s: empty file or folder; expected an image", path);
+    FILE *f = fopen(path, "rb");
+    if (!f)
+        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
+    if (fread(bytes, 1, MAGIC, f) < MAGIC)
+        memset(bytes, 0, MAGIC);
+    fclose(f);
+    return RELUME_OK;
 }
 
 relume_status picture_open(picture_reader **out, const char *path,
                            const struct relume_limits *limits, const struct relume_log *log)
 {
-    relume_status status = RELUME_OK;
+    char bytes[MAGIC];
     *out = NULL;
-    if (begins(path, "\x76\x2f\x31\x01", 4))
+    relume_status status = look(bytes, path, log);
+    if (!status && !memcmp(bytes, "\x76\x2f\x31\x01", 4))
         status = exr_picture_open(out, path, limits);
-    else if (begins(path, "\x89PNG\r\n\x1a\n", 8))
+    else if (!status && !memcmp(bytes, "\x89PNG\r\n\x1a\n", MAGIC))
         status = png_picture_open(out, path, limits);
-    if (*out || status)
-        return status;
-    status = need_bridge(path, log);
-    return status ? status : bridge->open(out, path, limits, log);
+    if (!*out && !status)
+        status = need_bridge(path, log);
+    return *out || status ? status : bridge->open(out, path, limits, log);
 }
 
 const struct picture_info *picture_info_of(const picture_reader *reader)

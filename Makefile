@@ -123,11 +123,14 @@ $B/obj/viewer/context_glfw.o: own_flags = $(GLFW)
 $B/obj/viewer/panel.o: own_flags = $(IMGUI) -Wno-shadow
 $B/obj/tests/tools/decode.o: own_flags = $(EXR)
 $B/obj/tests/%.o:             own_include = -Isrc -Itests -Iviewer
+# Tests themselves are many and short: compiled fast, and linked by the faster linker where it is.
+$(UNIT_C:%.c=$B/obj/%.o) $(GL_C:%.c=$B/obj/%.o): own_mode = $(if $(filter release,$(config)),-O1)
+TEST_LD := $(if $(shell command -v ld.gold),-fuse-ld=gold)
 
 $B/obj/%.o: %.c | $(DEPS)
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(C11) -Iinclude $(own_include) $(own_flags) $(CFLAGS) -c -o $@ $<
+	$(Q)$(CC) $(C11) $(own_mode) -Iinclude $(own_include) $(own_flags) $(CFLAGS) -c -o $@ $<
 $B/obj/%.o: %.cpp | $(DEPS)
 	@mkdir -p $(@D)
 	$(call say,CXX)
@@ -175,21 +178,21 @@ $B/relume-view: $(VIEWER_O) $B/librelume.a
 $(UNIT): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
+	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
 # Benches that draw are linked as the tests of GL are.
 GL_BENCH := $(addprefix $B/tests/bench/,bench_viewer bench_objects bench_seeing)
 $(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS)
 $(TOOLS): $B/%: $B/obj/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) -pthread $(call run_path,/../..:$$ORIGIN/..) -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..:$$ORIGIN/..) -o $@ $^ $(LDFLAGS) $(LIBS)
 $(GL) $(GL_BENCH): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O)) $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
+	$(Q)$(CXX) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
 
 # Programs open the module when they run.
 $B/relume $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE) $(MESHES)

@@ -233,21 +233,21 @@ static void codebooks(void **state)
         for (int i = 0; i < W * H; i++)
             index[b][i] = (uint16_t)(counts[b] * uniform(&random));
     }
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 2; k++) {  // how many books and in which domain know nothing of each other
         const struct relume_codes codes = {
             .coder = coder,
-            .domain = k % 2 ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR,
+            .domain = k ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR,
             .display = {.curve = RELUME_CURVE_SRGB},
             .width = W,
             .height = H,
             .planes = FIXTURE_PLANES,
-            .books = 1 + k / 2,
+            .books = 1 + k,
             .index = (const uint16_t *const[]){index[0], index[1]},
             .vectors = (const float *const[]){vectors[0], vectors[1]},
             .book_codes = counts,
         };
         char name[64];
-        snprintf(name, sizeof name, "%d codebooks, %s", codes.books, k % 2 ? "display" : "linear");
+        snprintf(name, sizeof name, "%d codebooks, %s", codes.books, k ? "display" : "linear");
         check_codes(&codes, name);
     }
     relume_coder_destroy(&coder);

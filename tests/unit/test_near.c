@@ -34,7 +34,8 @@ static void test_grid(void **state)
 {
     (void)state;
     for (const struct relume_basis *const *b = relume_bases; *b; b++)
-        for (int half = (*b)->upper_only; half <= 2; half++) {
+        // sphere, dome about z, about y: where the pole is does not matter to what was learned
+        for (int half = (*b)->upper_only; half <= ((*b)->learned ? 1 : 2); half++) {
             static struct learned l;
             relume_weight_grid *grid;
             uint32_t seed = 3;

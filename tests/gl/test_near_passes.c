@@ -1,6 +1,7 @@
 // Near lights and environments on the GPU against the library, for every kind of coefficients; and
 // views that are read in the background
 #include "fixture.h"
+#include "test.h"
 
 #include <time.h>
 
@@ -128,6 +129,8 @@ static void check_codes(const struct relume_codes *codes, const char *name)
     struct relighter r;
     relume_weight_grid *grid;
     relume_refit *refit = NULL;
+    if (TEST_SANITIZED && codes->domain == RELUME_DOMAIN_DISPLAY)
+        return;
     assert_int_equal(relume_weight_grid_create(&grid, codes->coder, NULL), RELUME_OK);
     if (codes->domain == RELUME_DOMAIN_DISPLAY)
         assert_int_equal(relume_refit_create(&refit, codes, NULL), RELUME_OK);
@@ -208,14 +211,14 @@ static void components(void **state)
     static const char *const interpolants[] = {"chord", "delaunay"};  // a grid, and triangles
     for (int i = 0; i < 2; i++) {
         char name[64];
-        snprintf(name, sizeof name, "pca 26, %s, %s", interpolants[i], i ? "display" : "linear");
+        snprintf(name, sizeof name, "pca 26, %s, %s", interpolants[i], i ? "linear" : "display");
         check_coder(
             &relume_basis_pca,
             (struct relume_coder_params){.coefficients = 26,
                                          .transform = transform,
                                          .mean = mean,
                                          .interpolant = relume_interpolant_find(interpolants[i])},
-            i ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR, name);
+            i ? RELUME_DOMAIN_LINEAR : RELUME_DOMAIN_DISPLAY, name);
     }
 }
 

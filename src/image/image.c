@@ -9,7 +9,6 @@
 #include <relume/response.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
 relume_status relume_image_create(struct relume_image *out, int width, int height, int channels)
@@ -304,12 +303,6 @@ static relume_status save_bytes(const struct relume_image *image, const char *pa
     return status;
 }
 
-static bool has_extension(const char *path, const char *extension)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && !strcasecmp(dot, extension);
-}
-
 // /dev/stdout and the like have no extension to tell the format.
 static bool is_device(const char *path)
 {
@@ -321,7 +314,7 @@ static bool is_device(const char *path)
 
 bool relume_image_saves_linear(const char *path)
 {
-    return has_extension(path, ".exr") || is_device(path) || picture_writes_floats(path);
+    return picture_has_extension(path, ".exr") || is_device(path) || picture_writes_floats(path);
 }
 
 relume_status relume_image_save(const struct relume_image *image, const char *path,
@@ -330,7 +323,7 @@ relume_status relume_image_save(const struct relume_image *image, const char *pa
     const struct relume_image_params p = params ? *params : (struct relume_image_params){0};
     if (image->channels != 1 && image->channels != 3)
         return RELUME_EINVAL;
-    if (has_extension(path, ".exr") || is_device(path))
+    if (picture_has_extension(path, ".exr") || is_device(path))
         return save_exr(image, path, &p);
     if (picture_writes_floats(path))
         return picture_write_floats(path, image->width, image->height, image->channels, image->data,

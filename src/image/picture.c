@@ -117,7 +117,7 @@ void picture_close(picture_reader **reader)
 
 // ---------------------------------------------------------------- writing
 
-static bool has_extension(const char *path, const char *extension)
+bool picture_has_extension(const char *path, const char *extension)
 {
     const char *dot = strrchr(path, '.');
     return dot && strcasecmp(dot, extension) == 0;
@@ -125,13 +125,13 @@ static bool has_extension(const char *path, const char *extension)
 
 bool picture_writes_floats(const char *path)
 {
-    return has_extension(path, ".hdr") || has_extension(path, ".pfm");
+    return picture_has_extension(path, ".hdr") || picture_has_extension(path, ".pfm");
 }
 
 relume_status picture_write_bytes(const char *path, int width, int height, int channels,
                                   const uint8_t *samples, const struct relume_log *log)
 {
-    if (has_extension(path, ".png"))
+    if (picture_has_extension(path, ".png"))
         return png_write(path, width, height, channels, samples, log);
     const relume_status status = need_bridge(path, log);
     return status ? status

@@ -1,6 +1,7 @@
 // fuzz_picture.c - plain EXR and PNG pictures made of noise, by our own readers; check sums of
 // every second PNG are made right, so that what they guard is reached
 #include "fuzz.h"
+#include "png_crc.h"
 
 #include "image/picture_format.h"
 
@@ -20,14 +21,9 @@ static void mend(struct bytes b)
         const uint32_t size = big_endian(b.data + at);
         if (size > b.size - at - 12)
             return;
-        uint32_t sum = 0xffffffff;
-        for (size_t i = at + 4; i < at + 8 + size; i++) {
-            sum ^= b.data[i];
-            for (int k = 0; k < 8; k++)
-                sum = sum & 1 ? 0xedb88320 ^ sum >> 1 : sum >> 1;
-        }
+        const uint32_t sum = png_crc(b.data + at + 4, 4 + size);
         for (int i = 0; i < 4; i++)
-            b.data[at + 8 + size + (size_t)i] = (uint8_t)(~sum >> (24 - 8 * i));
+            b.data[at + 8 + size + (size_t)i] = (uint8_t)(sum >> (24 - 8 * i));
         at += 12 + size;
     }
 }

@@ -1,5 +1,6 @@
 // Plain pictures as our own readers see them, against OpenImageIO; what is not plain is left to it.
 #include "in_folder.h"
+#include "png_crc.h"
 
 #include "base/module.h"
 #include "base/outfile.h"
@@ -192,17 +193,6 @@ static void png_is_what_openimageio_sees(void **state)
     }
 }
 
-static uint32_t check_sum(const uint8_t *bytes, size_t n)
-{
-    uint32_t c = 0xffffffff;
-    for (size_t i = 0; i < n; i++) {
-        c ^= bytes[i];
-        for (int k = 0; k < 8; k++)
-            c = c & 1 ? 0xedb88320 ^ c >> 1 : c >> 1;
-    }
-    return ~c;
-}
-
 static void put(uint8_t *to, uint32_t v)
 {
     for (int i = 0; i < 4; i++)
@@ -218,7 +208,7 @@ static void with_chunk(const char *path, const char *type, const void *data, uin
     put(chunk, n);
     memcpy(chunk + 4, type, 4);
     memcpy(chunk + 8, data, n);
-    put(chunk + 8 + n, check_sum(chunk + 4, n + 4));
+    put(chunk + 8 + n, png_crc(chunk + 4, n + 4));
     bytes = realloc(bytes, size + n + 12);
     memmove(bytes + HEADER + n + 12, bytes + HEADER, size - HEADER);
     memcpy(bytes + HEADER, chunk, n + 12);

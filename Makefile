@@ -38,7 +38,7 @@ OIIO     = $(call once,OIIO,pkg-config --cflags OpenImageIO)
 IMGUI    = $(call once,IMGUI,pkg-config --cflags imgui)
 GLFW     = $(call once,GLFW,pkg-config --cflags glfw3)
 FFT_PC   := $(if $(filter kiss,$(FFT)),kissfft-float,fftw3f)
-PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenEXR openblas jansson libjpeg lcms2 $(FFT_PC))
+PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenEXR openblas jansson libjpeg libpng lcms2 $(FFT_PC))
 OIIO_LIBS = $(call once,OIIO_LIBS,pkg-config --libs OpenImageIO)
 CAIRO    = $(call once,CAIRO,pkg-config --cflags cairo)
 LIBS     = -Wl,--as-needed $(PKG_LIBS) -llapacke -lembree3 -lm -ldl
@@ -51,7 +51,7 @@ LIB_C    := $(wildcard src/base/*.c src/math/*.c src/image/*.c src/capture/*.c s
             src/frame/*.c src/btf/*.c src/object/*.c)
 LIB_C    := $(filter-out src/scene/mesh_assimp.c,$(LIB_C))
 LIB_C    := $(filter-out $(if $(filter kiss,$(FFT)),%/fft.c,%/fft_kiss.c),$(LIB_C))
-# The module that is loaded when the first image needs it (src/image/oiio.h)
+# The module that is loaded when the first image needs it (src/image/picture.h)
 MODULE_CXX := src/image/oiio.cpp
 # The module that is loaded when the first model needs it (src/scene/mesh_other.h)
 MESHES_C := src/scene/mesh_assimp.c
@@ -123,11 +123,14 @@ $B/obj/viewer/context_glfw.o: own_flags = $(GLFW)
 $B/obj/viewer/panel.o: own_flags = $(IMGUI) -Wno-shadow
 $B/obj/tests/tools/decode.o: own_flags = $(EXR)
 $B/obj/tests/%.o:             own_include = -Isrc -Itests -Iviewer
+# Tests themselves are many and short: compiled fast, and linked by the faster linker where it is.
+$(UNIT_C:%.c=$B/obj/%.o) $(GL_C:%.c=$B/obj/%.o): own_mode = $(if $(filter release,$(config)),-O1)
+TEST_LD := $(if $(shell command -v ld.gold),-fuse-ld=gold)
 
 $B/obj/%.o: %.c | $(DEPS)
 	@mkdir -p $(@D)
 	$(call say,CC)
-	$(Q)$(CC) $(C11) -Iinclude $(own_include) $(own_flags) $(CFLAGS) -c -o $@ $<
+	$(Q)$(CC) $(C11) $(own_mode) -Iinclude $(own_include) $(own_flags) $(CFLAGS) -c -o $@ $<
 $B/obj/%.o: %.cpp | $(DEPS)
 	@mkdir -p $(@D)
 	$(call say,CXX)
@@ -175,21 +178,21 @@ $B/relume-view: $(VIEWER_O) $B/librelume.a
 $(UNIT): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
+	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(CMOCKA)
 # Benches that draw are linked as the tests of GL are.
 GL_BENCH := $(addprefix $B/tests/bench/,bench_viewer bench_objects bench_seeing)
 $(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS)
 $(TOOLS): $B/%: $B/obj/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) -pthread $(call run_path,/../..:$$ORIGIN/..) -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..:$$ORIGIN/..) -o $@ $^ $(LDFLAGS) $(LIBS)
 $(GL) $(GL_BENCH): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O)) $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
+	$(Q)$(CXX) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
 
 # Programs open the module when they run.
 $B/relume $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE) $(MESHES)

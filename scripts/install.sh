@@ -38,7 +38,7 @@ libdir=\${prefix}/lib
 Name: relume
 Description: image-based relighting
 Version: $version
-Requires.private: OpenEXR jansson libjpeg lcms2
+Requires.private: OpenEXR jansson libjpeg libpng lcms2
 Libs: -L\${libdir} -lrelume
 Libs.private: -Wl,-rpath,\${libdir} $(pkg-config --libs openblas) -llapacke -lembree3 -lm -ldl -pthread
 Cflags: -I\${includedir}

@@ -1,9 +1,9 @@
 #!/bin/sh
 # Who may use whom (docs/architecture.md): every quoted include of a folder must name a folder it
 # may use, public headers of working folders only where allowed, and external libraries one file each.
+# One awk over all includes: tests/cli/test_build.sh runs it ten times.
 set -eu
 cd "$(dirname "$0")/.."
-bad=0
 
 # folder: private folders it may include | public headers it may include (* = all)
 rules="base::base
@@ -24,52 +24,72 @@ cli:cli:*
 viewer:viewer:*
 samples::*"
 
-folder_files() {
-    case $1 in viewer | samples) find "$1" -name '*.c' -o -name '*.h' -o -name '*.cpp' ;;
-    *) find "src/$1" -name '*.c' -o -name '*.h' -o -name '*.cpp' ;; esac
-}
+# external header: the files it may appear in
+external="openexr:src/image/exr.c tests/tools/decode.c
+OpenImageIO:src/image/oiio.cpp
+dlfcn:src/base/module.c
+opencv:src/capture/stitch.cpp
+embree:src/scene/trace.c
+assimp:src/scene/mesh_assimp.c
+(cblas|lapacke):src/math/lsq.c
+fftw3:src/math/fft.c
+kissfft:src/math/fft_kiss.c
+jansson:src/base/json.c
+jpeglib:src/image/jpeg.c
+png:src/image/png.c
+lcms2:src/image/profile.c tests/unit/test_photograph.c
+cairo:src/cli/plot.c
+GLFW:viewer/context_glfw.c
+imgui:viewer/panel.cpp
+GL/osmesa:viewer/context_osmesa.c
+EGL/:viewer/context_egl.c
+immintrin:$(echo src/*/*_avx2.c)"
 
-complain() { echo "layers: $*" >&2; bad=1; }
-
-while IFS=: read -r folder private public; do
-    for f in $(folder_files "$folder" 2>/dev/null); do
-        for inc in $(sed -n 's/^#include "\([^"]*\)".*/\1/p' "$f"); do
-            case $inc in */*) dir=${inc%%/*} ;; *) dir=$folder ;; esac
-            [ "$dir" = "$folder" ] && continue
-            case " $private " in *" $dir "*) ;; *) complain "$f includes $inc" ;; esac
-        done
-        [ "$public" = '*' ] && continue
-        for inc in $(sed -n 's/^#include <relume\/\([^.>]*\)\.h>.*/\1/p' "$f"); do
-            case " $public " in *" $inc "*) ;; *) complain "$f includes <relume/$inc.h>" ;; esac
-        done
-    done
-done <<RULES
-$rules
-RULES
-
-only_in() { # pattern file...: an external header appears in these files only
-    pattern=$1; shift
-    for f in $(grep -rlE "^#include <$pattern" src viewer tests samples 2>/dev/null || true); do
-        case " $* " in *" $f "*) ;; *) complain "$f includes <$pattern...>; belongs to $*" ;; esac
-    done
-}
-only_in 'openexr' src/image/exr.c tests/tools/decode.c
-only_in 'OpenImageIO' src/image/oiio.cpp
-only_in 'dlfcn' src/base/module.c
-only_in 'opencv' src/capture/stitch.cpp
-only_in 'embree' src/scene/trace.c
-only_in 'assimp' src/scene/mesh_assimp.c
-only_in '(cblas|lapacke)' src/math/lsq.c
-only_in 'fftw3' src/math/fft.c
-only_in 'kissfft' src/math/fft_kiss.c
-only_in 'jansson' src/base/json.c
-only_in 'jpeglib' src/image/jpeg.c
-only_in 'lcms2' src/image/profile.c tests/unit/test_photograph.c
-only_in 'cairo' src/cli/plot.c
-only_in 'GLFW' viewer/context_glfw.c
-only_in 'imgui' viewer/panel.cpp
-only_in 'GL/osmesa' viewer/context_osmesa.c
-only_in 'EGL/' viewer/context_egl.c
-only_in 'immintrin' src/*/*_avx2.c
-[ $bad = 0 ] && echo "layers: fine"
-exit $bad
+grep -rE '^#include [<"]' src viewer tests samples --include='*.c' --include='*.h' --include='*.cpp' |
+    awk -F : -v rules="$rules" -v external="$external" '
+    function complain(what) {
+        print "layers: " what >"/dev/stderr"
+        bad = 1
+    }
+    function has(list, word) { return index(" " list " ", " " word " ") }
+    BEGIN {
+        n = split(rules, line, "\n")
+        for (i = 1; i <= n; i++) {
+            split(line[i], part, ":")
+            private[part[1]] = part[2]
+            public[part[1]] = part[3]
+        }
+        externals = split(external, line, "\n")
+        for (i = 1; i <= externals; i++) {
+            split(line[i], part, ":")
+            pattern[i] = part[1]
+            place[i] = part[2]
+        }
+    }
+    {
+        file = $1
+        split(file, part, "/")
+        folder = part[1] == "src" ? part[2] : part[1]
+        name = substr($2, 11)
+        sub(/[">].*/, "", name)
+        known = folder in private
+        own = $2 ~ /^#include "/
+    }
+    own && known && name ~ "/" {
+        dir = name
+        sub("/.*", "", dir)
+        if (dir != folder && !has(private[folder], dir))
+            complain(file " includes " name)
+    }
+    !own && known && name ~ "^relume/" && public[folder] != "*" {
+        header = name
+        gsub("relume/|[.].*", "", header)
+        if (!has(public[folder], header))
+            complain(file " includes <" name ">")
+    }
+    !own {
+        for (i = 1; i <= externals; i++)
+            if (name ~ "^" pattern[i] && !has(place[i], file))
+                complain(file " includes <" pattern[i] "...>; belongs to " place[i])
+    }
+    END { exit bad }' && echo "layers: fine"

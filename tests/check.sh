@@ -21,13 +21,6 @@ is_left_out() { # script
     case $(basename "$1" .sh) in test_bad_* | test_sweep | test_window) return 1 ;; esac
 }
 
-# Nor do they see tests whose minute is arithmetic: fine sums that say how near two formulas are, of
-# code that other tests run as well.
-is_arithmetic() { # binary
-    case $build in *asan* | *tsan*) ;; *) return 1 ;; esac
-    case $(basename "$1") in test_environment | test_near | test_near_passes | test_align) ;; *) return 1 ;; esac
-}
-
 # Scripts first: they take longest, and a core should not wait for the last one alone.
 tests() {
     [ "${ONLY_BINARIES:-}" ] || for t in "$here"/cli/test_*.sh; do
@@ -35,7 +28,7 @@ tests() {
     done
     for t in "$build"/tests/gl/* "$build"/tests/unit/* "$build"/tests/props/* \
         "$build"/tests/kernels/* "$build"/tests/threads/*; do
-        [ -x "$t" ] && [ -f "$t" ] && ! is_arithmetic "$t" && echo "$t"
+        [ -x "$t" ] && [ -f "$t" ] && echo "$t"
     done
 }
 

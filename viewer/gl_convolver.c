@@ -75,11 +75,7 @@ static const char *const picture_uniforms[] = {"size", "factor"};
 static relume_status make_programs(struct gl_convolver *c, const struct gl *gl,
                                    const struct relume_log *log)
 {
-    const struct {
-        struct program *program;
-        const char *name, *const *uniforms;
-        int count;
-    } list[] = {
+    const struct compute_pass list[] = {
         {&c->frame, "glare_frame.comp", frame_uniforms, FRAME_COUNT},
         {&c->rows, "glare_rows.comp", share_uniforms, SHARE_COUNT},
         {&c->columns, "glare_columns.comp", share_uniforms, SHARE_COUNT},
@@ -88,11 +84,7 @@ static relume_status make_programs(struct gl_convolver *c, const struct gl *gl,
         {&c->product, "glare_product.comp", product_uniforms, PRODUCT_COUNT},
         {&c->picture, "glare_picture.comp", picture_uniforms, PICTURE_COUNT},
     };
-    relume_status status = RELUME_OK;
-    for (size_t i = 0; !status && i < sizeof list / sizeof *list; i++)
-        status = program_create_compute(list[i].program, gl, list[i].name, NULL, list[i].uniforms,
-                                        list[i].count, log);
-    return status;
+    return program_create_passes(list, sizeof list / sizeof *list, gl, log);
 }
 
 relume_status gl_convolver_create(struct gl_convolver *c, const struct gl *gl,

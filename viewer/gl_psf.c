@@ -57,21 +57,13 @@ static const char *const colour_uniforms[] = {"size", "taps", "field", "fade_rad
 static relume_status make_programs(struct gl_psf *psf, const struct gl *gl,
                                    const struct relume_log *log)
 {
-    const struct {
-        struct program *program;
-        const char *name, *const *uniforms;
-        int count;
-    } list[] = {
+    const struct compute_pass list[] = {
         {&psf->wave, "glare_wave.comp", wave_uniforms, WAVE_COUNT},
         {&psf->power, "glare_power.comp", power_uniforms, POWER_COUNT},
         {&psf->smear, "glare_smear.comp", smear_uniforms, SMEAR_COUNT},
         {&psf->colour, "glare_colour.comp", colour_uniforms, COLOUR_COUNT},
     };
-    relume_status status = RELUME_OK;
-    for (size_t i = 0; !status && i < sizeof list / sizeof *list; i++)
-        status = program_create_compute(list[i].program, gl, list[i].name, NULL, list[i].uniforms,
-                                        list[i].count, log);
-    return status;
+    return program_create_passes(list, sizeof list / sizeof *list, gl, log);
 }
 
 // A texel's coverage is an average over it, which lowers high frequencies by a known factor.

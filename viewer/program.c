@@ -100,6 +100,16 @@ relume_status program_create_compute(struct program *program, const struct gl *g
     return finish(program, gl, stages, compute, uniforms, n, status, log);
 }
 
+relume_status program_create_passes(const struct compute_pass *list, size_t n, const struct gl *gl,
+                                    const struct relume_log *log)
+{
+    relume_status status = RELUME_OK;
+    for (size_t i = 0; !status && i < n; i++)
+        status = program_create_compute(list[i].program, gl, list[i].name, NULL, list[i].uniforms,
+                                        list[i].count, log);
+    return status;
+}
+
 relume_status program_create(struct program *program, const struct gl *gl, const char *fragment,
                              const char *const *uniforms, int n, const struct relume_log *log)
 {

@@ -25,6 +25,14 @@ relume_status program_create_compute(struct program *program, const struct gl *g
                                      const char *compute, const char *defines,
                                      const char *const *uniforms, int n,
                                      const struct relume_log *log);
+// Several of them, up to the first that fails.
+struct compute_pass {
+    struct program *program;
+    const char *name, *const *uniforms;
+    int count;  // of uniforms
+};
+relume_status program_create_passes(const struct compute_pass *list, size_t n, const struct gl *gl,
+                                    const struct relume_log *log);
 void program_destroy(struct program *program, const struct gl *gl);
 
 #endif

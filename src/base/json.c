@@ -25,6 +25,19 @@ void jvalue_free(jvalue **root)
     *root = NULL;
 }
 
+relume_status jvalue_check_format(const jvalue *root, const char *path, const char *format,
+                                  int version, const struct relume_log *log)
+{
+    const char *found = jvalue_text(jvalue_member(root, "format"));
+    long long number = 0;
+    if (!found || strcmp(found, format))
+        return log_fail(log, RELUME_EDATA, "%s: expected \"format\": \"%s\"", path, format);
+    if (!jvalue_integer(jvalue_member(root, "version"), &number) || number != version)
+        return log_fail(log, RELUME_EDATA, "%s: expected version %d; found %lld", path, version,
+                        number);
+    return RELUME_OK;
+}
+
 const jvalue *jvalue_member(const jvalue *object, const char *key)
 {
     return json_object_get(object, key);

@@ -366,3 +366,11 @@ void outdir_abort(outdir **dir)
     free(d->path);
     free(d);
 }
+
+relume_status outdir_end(outdir **dir, relume_status status)
+{
+    if (!status)
+        return outdir_commit(dir);
+    outdir_abort(dir);
+    return status;
+}

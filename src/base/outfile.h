@@ -29,6 +29,8 @@ relume_status outdir_open(outdir **out, const char *path, bool force, const stru
 const char *outdir_path(const outdir *dir);
 relume_status outdir_commit(outdir **dir);
 void outdir_abort(outdir **dir);
+// Commit what a `status` of RELUME_OK says is whole, or abort; `*dir` may be NULL then.
+relume_status outdir_end(outdir **dir, relume_status status);
 
 // A new unlinked file for temporary data in the folder of `near` (NULL: $TMPDIR or /tmp).
 // Returns the descriptor, or -1 with errno set. It vanishes when closed.

@@ -182,32 +182,3 @@ void members_free(struct members *m)
     free(m->first);
     m->texel = m->first = NULL;
 }
-
-bool members_mean(const struct members *m, size_t cluster, const relume_btf *btf, float *values)
-{
-    const size_t n = 3 * (size_t)btf->info.views * (size_t)btf->info.lights;
-    const size_t from = m->first[cluster], end = m->first[cluster + 1];
-    double *sum = mem_zeroed(n, sizeof *sum);
-    for (size_t i = from; i < end && sum; i++) {
-        btf_gather(btf, m->texel[i], 1, values);
-        for (size_t k = 0; k < n; k++)
-            sum[k] += (double)values[k] / (double)(end - from);
-    }
-    for (size_t k = 0; k < n && sum; k++)
-        values[k] = (float)sum[k];
-    free(sum);
-    return sum != NULL;
-}
-
-relume_status cluster_texels(const struct fitting *f, int count, int *which, struct members *out)
-{
-    struct reduced r = {.score = NULL};
-    const int clusters = f->out->clusters;
-    relume_status status = reduce_make(&r, f, count);
-    if (!status)
-        status = reduce_cluster(&r, f, clusters, which);
-    if (!status)
-        status = members_make(out, which, f->out->texels, clusters);
-    reduce_free(&r);
-    return status;
-}

@@ -34,19 +34,6 @@ relume_status btf_read_directions(const jvalue *array, const char *path, const c
     return RELUME_OK;
 }
 
-static relume_status check_format(const jvalue *root, const char *path,
-                                  const struct relume_log *log)
-{
-    const char *format = jvalue_text(jvalue_member(root, "format"));
-    long long version = 0;
-    if (!format || strcmp(format, "relume-btf"))
-        return log_fail(log, RELUME_EDATA, "%s: expected \"format\": \"relume-btf\"", path);
-    if (!jvalue_integer(jvalue_member(root, "version"), &version) || version != VERSION)
-        return log_fail(log, RELUME_EDATA, "%s: expected version %d; found %lld", path, VERSION,
-                        version);
-    return RELUME_OK;
-}
-
 struct folder {
     const char *path;
     char *json;
@@ -126,7 +113,7 @@ static relume_status open_json(relume_btf **out, const jvalue *root, const struc
 {
     struct relume_btf_info info = {0};
     vec3 *view = NULL, *light = NULL;
-    relume_status status = check_format(root, f->json, f->log);
+    relume_status status = jvalue_check_format(root, f->json, "relume-btf", VERSION, f->log);
     if (!status)
         status = read_info(&info, &view, &light, root, f);
     if (!status)
@@ -250,8 +237,5 @@ relume_status relume_btf_save(const relume_btf *btf, const char *path,
         status = save_truth(&btf->info.normals, outdir_path(dir), "normals.exr", log);
     if (!status)
         status = save_json(btf, outdir_path(dir), log);
-    if (!status)
-        return outdir_commit(&dir);
-    outdir_abort(&dir);
-    return status;
+    return outdir_end(&dir, status);
 }

@@ -9,9 +9,7 @@
 // then again in turn. Each step is the multiplicative one of Lee and Seung (2001), which keeps
 // factors positive and never raises the squared error. Not the logarithms are fitted, as McCool,
 // Ang, Ahmad (2001) do: shadows are zeros.
-#include "base/log.h"
 #include "base/memory.h"
-#include "base/thread.h"
 #include "btf/reduce.h"
 #include "image/half.h"
 
@@ -19,7 +17,7 @@
 
 enum { FACTOR, CLUSTER };
 enum { SIDE = 15, CELLS = SIDE * SIDE };  // of a map; a middle cell stands at the pole
-enum { ROUNDS = 24, REDUCED = 48 };
+enum { ROUNDS = 24 };
 // Maps have a mean of 1; what the data does not hold stays below.
 static const float MOST_FACTOR = 16.0f;
 static const float TINY = 1e-12f;
@@ -78,11 +76,8 @@ static float map_at(const float *map, const struct place *p, int taps)
 // ---------------------------------------------------------------- one colour of one cluster
 
 struct work {
-    const struct fitting *f;
-    const struct members *members;
+    relume_btf_fitted *m;
     struct place *half, *difference;  // [pairs]
-    size_t first;
-    bool failed;  // set by any worker, read after all
 };
 
 enum link { VIEW, LIGHT, HALF, DIFFERENCE, LINKS };
@@ -154,7 +149,7 @@ static void balance(struct chain *s)
 static void fit_chain(struct chain *s)
 {
     const size_t pairs = s->size[VIEW] * s->size[LIGHT];
-    for (size_t k = 0; k < entries(s->w->f->out); k++)
+    for (size_t k = 0; k < entries(s->w->m); k++)
         s->factor[3 * k] = 1.0f;
     for (size_t i = 0; i < pairs; i++)
         s->product[i] = 1.0f;
@@ -166,14 +161,14 @@ static void fit_chain(struct chain *s)
 
 // ---------------------------------------------------------------- clusters
 
-static bool fit_center(const struct work *w, size_t cluster)
+static bool fit_mean(const void *context, size_t cluster, const float *value)
 {
-    const relume_btf_fitted *m = w->f->out;
+    const struct work *w = context;
+    const relume_btf_fitted *m = w->m;
     const size_t pairs = model_pairs(m), n = entries(m);
-    float *value = mem_array(3 * pairs, sizeof *value), *factor = mem_array(3 * n, sizeof *factor);
+    float *factor = mem_array(3 * n, sizeof *factor);
     float *product = mem_array(pairs, sizeof *product), *sums = mem_array(2 * n, sizeof *sums);
-    bool good = value && factor && product && sums;
-    good = good && members_mean(w->members, cluster, w->f->btf, value);
+    const bool good = factor && product && sums;
     for (int c = 0; c < 3 && good; c++) {
         float *map = factor + c;
         struct chain s = {.w = w,
@@ -189,58 +184,26 @@ static bool fit_center(const struct work *w, size_t cluster)
     }
     for (size_t i = 0; i < 3 * n && good; i++)
         model_halfs(m, FACTOR)[cluster * 3 * n + i] = half_from_float(fminf(factor[i], 65504.0f));
-    free(value);
     free(factor);
     free(product);
     free(sums);
     return good;
 }
 
-static void fit_cluster(void *context, size_t item, int worker)
-{
-    (void)worker;
-    struct work *w = context;
-    if (!fit_center(w, w->first + item))
-        __atomic_store_n(&w->failed, true, __ATOMIC_RELAXED);
-}
-
-static relume_status fit_clusters(struct work *w)
-{
-    enum { GROUP = 64 };
-    const relume_btf_fitted *m = w->f->out;
-    const size_t clusters = (size_t)m->clusters, lights = (size_t)m->lights;
-    w->half = mem_array(model_pairs(m), sizeof *w->half);
-    w->difference = mem_array(model_pairs(m), sizeof *w->difference);
-    relume_status status = w->half && w->difference ? RELUME_OK : RELUME_ENOMEM;
-    for (size_t i = 0; i < model_pairs(m) && !status; i++)
-        places_of(m->view[i / lights], m->light[i % lights], &w->half[i], &w->difference[i]);
-    for (; w->first < clusters && !status; w->first += GROUP) {
-        const size_t left = clusters - w->first;
-        thread_for(w->f->threads, left < GROUP ? left : GROUP, fit_cluster, w);
-        if (w->failed)
-            status = RELUME_ENOMEM;
-        else if (!log_progress(w->f->log, "fitting",
-                               fmin((double)(w->first + GROUP) / (double)clusters, 1.0)))
-            status = RELUME_ECANCEL;
-    }
-    free(w->half);
-    free(w->difference);
-    return status;
-}
-
 static relume_status fit(struct fitting *f)
 {
-    relume_btf_fitted *m = f->out;
-    struct members members = {NULL, NULL};
-    struct work w = {.f = f, .members = &members};
-    int *which = mem_array(m->texels, sizeof *which);
-    relume_status status = which ? cluster_texels(f, REDUCED, which, &members) : RELUME_ENOMEM;
+    const relume_btf_fitted *m = f->out;
+    const size_t lights = (size_t)m->lights;
+    struct work w = {.m = f->out,
+                     .half = mem_array(model_pairs(m), sizeof *w.half),
+                     .difference = mem_array(model_pairs(m), sizeof *w.difference)};
+    relume_status status = w.half && w.difference ? RELUME_OK : RELUME_ENOMEM;
+    for (size_t i = 0; i < model_pairs(m) && !status; i++)
+        places_of(m->view[i / lights], m->light[i % lights], &w.half[i], &w.difference[i]);
     if (!status)
-        status = fit_clusters(&w);
-    for (size_t i = 0; i < m->texels && !status; i++)
-        ((uint16_t *)m->array[CLUSTER].data)[i] = (uint16_t)which[i];
-    members_free(&members);
-    free(which);
+        status = clusters_fit(f, CLUSTER, fit_mean, &w);
+    free(w.half);
+    free(w.difference);
     return status;
 }
 

@@ -80,10 +80,7 @@ relume_status relume_btf_fitted_save(const relume_btf_fitted *m, const char *pat
     if (status)
         return status;
     status = model_save_into(m, outdir_path(dir), log);
-    if (!status)
-        return outdir_commit(&dir);
-    outdir_abort(&dir);
-    return status;
+    return outdir_end(&dir, status);
 }
 
 // ---------------------------------------------------------------- reading
@@ -102,14 +99,11 @@ static relume_status wrong(const struct reader *r, const char *what, const char 
 
 static relume_status read_model(relume_btf_fitted *m, const jvalue *root, const struct reader *r)
 {
-    const char *format = jvalue_text(jvalue_member(root, "format"));
     const char *name = jvalue_text(jvalue_member(root, "model"));
-    long long version = 0;
-    if (!format || strcmp(format, "relume-btf-model"))
-        return wrong(r, "format", "relume-btf-model");
-    if (!jvalue_integer(jvalue_member(root, "version"), &version) || version != VERSION)
-        return log_fail(r->log, RELUME_EDATA, "%s: expected version %d; found %lld", r->json,
-                        VERSION, version);
+    const relume_status status =
+        jvalue_check_format(root, r->json, "relume-btf-model", VERSION, r->log);
+    if (status)
+        return status;
     m->model = name ? relume_btf_model_find(name) : NULL;
     return m->model ? RELUME_OK : wrong(r, "model", "the name of a model");
 }

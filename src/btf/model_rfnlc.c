@@ -1,16 +1,9 @@
 // model_rfnlc.c - clustered reflectance fields (thesis, Procedure 1): texels in clusters, fields
 // with lobes fitted to the mean of each cluster, one index a texel
-#include "base/log.h"
-#include "base/memory.h"
-#include "base/thread.h"
 #include "btf/fields.h"
 #include "btf/reduce.h"
 
-#include <string.h>
-
 enum { CLUSTER = FIELD_ARRAYS };
-// Numbers of a texel that clustering looks at, in place of its 19683 values.
-enum { REDUCED = 48 };
 
 static void layout(relume_btf_fitted *m)
 {
@@ -18,62 +11,18 @@ static void layout(relume_btf_fitted *m)
     model_add(m, "cluster", NPY_U16, true, (size_t)m->clusters, MODEL_SHAPE(m->texels));
 }
 
-struct work {
-    struct fields fields;
-    const struct fitting *f;
-    const struct members *members;
-    size_t first;
-    bool failed;  // set by any worker, read after all
-};
-
-static bool fit_center(const struct work *w, size_t cluster)
+static bool fit_mean(const void *context, size_t cluster, const float *values)
 {
-    float *values = mem_array(3 * model_pairs(w->f->out), sizeof *values);
-    const bool good = values && members_mean(w->members, cluster, w->f->btf, values) &&
-                      fields_fit(&w->fields, cluster, values);
-    free(values);
-    return good;
-}
-
-static void fit_cluster(void *context, size_t item, int worker)
-{
-    (void)worker;
-    struct work *w = context;
-    if (!fit_center(w, w->first + item))
-        __atomic_store_n(&w->failed, true, __ATOMIC_RELAXED);
-}
-
-static relume_status fit_clusters(struct work *w)
-{
-    enum { GROUP = 64 };
-    const size_t clusters = (size_t)w->f->out->clusters;
-    relume_status status = fields_start(&w->fields, w->f->out);
-    for (; w->first < clusters && !status; w->first += GROUP) {
-        const size_t left = clusters - w->first;
-        thread_for(w->f->threads, left < GROUP ? left : GROUP, fit_cluster, w);
-        if (w->failed)
-            status = RELUME_ENOMEM;
-        else if (!log_progress(w->f->log, "fitting",
-                               fmin((double)(w->first + GROUP) / (double)clusters, 1.0)))
-            status = RELUME_ECANCEL;
-    }
-    fields_end(&w->fields);
-    return status;
+    return fields_fit(context, cluster, values);
 }
 
 static relume_status fit(struct fitting *f)
 {
-    relume_btf_fitted *m = f->out;
-    struct members members = {NULL, NULL};
-    struct work w = {.f = f, .members = &members};
-    int *which = mem_array(m->texels, sizeof *which);
-    relume_status status = which ? cluster_texels(f, REDUCED, which, &members) : RELUME_ENOMEM;
+    struct fields fields;
+    relume_status status = fields_start(&fields, f->out);
     if (!status)
-        status = fit_clusters(&w);
-    for (size_t i = 0; i < m->texels && !status; i++)
-        ((uint16_t *)m->array[CLUSTER].data)[i] = (uint16_t)which[i];
-    members_free(&members);
-    free(which);
+        status = clusters_fit(f, CLUSTER, fit_mean, &fields);
+    fields_end(&fields);
     return status;
 }
 

@@ -27,11 +27,12 @@ struct members {
 };
 relume_status members_make(struct members *out, const int *which, size_t texels, int clusters);
 void members_free(struct members *m);
-// The mean values [view][light][3] of a cluster; false: no memory.
-bool members_mean(const struct members *m, size_t cluster, const relume_btf *btf, float *values);
 
-// f->out->clusters clusters of texels, found by `count` numbers of each. RELUME_ENOMEM,
-// RELUME_ECANCEL; `out` is to be freed also then.
-relume_status cluster_texels(const struct fitting *f, int count, int *which, struct members *out);
+// Cluster the texels of f->btf into f->out->clusters, keep the cluster of each in array `which` of
+// f->out and call `fit` for each cluster with its mean values [view][light][3], on several cores;
+// false: no memory. RELUME_ENOMEM, RELUME_ECANCEL.
+relume_status clusters_fit(const struct fitting *f, int which,
+                           bool (*fit)(const void *context, size_t cluster, const float *values),
+                           const void *context);
 
 #endif

@@ -89,10 +89,7 @@ relume_status relume_btf_surface_save(const relume_btf_surface *surface, const c
         status = save_model(surface->level[0].model, folder, log);
     if (!status)
         status = save_json(m, folder, log);
-    if (!status)
-        return outdir_commit(&dir);
-    outdir_abort(&dir);
-    return status;
+    return outdir_end(&dir, status);
 }
 
 // ---------------------------------------------------------------- reading
@@ -116,14 +113,10 @@ static bool read_count(const jvalue *root, const char *key, long long most, int 
 static relume_status read_sizes(struct relume_btf_map_info *s, const jvalue *root,
                                 const struct reader *r)
 {
-    const char *format = jvalue_text(jvalue_member(root, "format"));
-    long long version = 0;
-    if (!format || strcmp(format, "relume-btf-surface"))
-        return log_fail(r->log, RELUME_EDATA, "%s: expected \"format\": \"relume-btf-surface\"",
-                        r->json);
-    if (!jvalue_integer(jvalue_member(root, "version"), &version) || version != VERSION)
-        return log_fail(r->log, RELUME_EDATA, "%s: expected version %d; found %lld", r->json,
-                        VERSION, version);
+    const relume_status status =
+        jvalue_check_format(root, r->json, "relume-btf-surface", VERSION, r->log);
+    if (status)
+        return status;
     if (!read_count(root, "tiles", 65536, &s->tiles) ||
         !read_count(root, "tile_width", r->limits.max_side, &s->width) ||
         !read_count(root, "tile_height", r->limits.max_side, &s->height) ||

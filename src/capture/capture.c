@@ -136,12 +136,12 @@ static relume_status skip_missing(relume_capture *c, const struct relume_log *lo
 static relume_status check_image(relume_capture *c, const char *path,
                                  const struct relume_capture_params *p)
 {
-    oiio_reader *reader;
-    const relume_status status = oiio_open(&reader, path, p->limits, p->log);
+    picture_reader *reader;
+    const relume_status status = picture_open(&reader, path, p->limits, p->log);
     if (status)
         return status;
-    const struct oiio_info info = *oiio_info_of(reader);
-    oiio_close(&reader);
+    const struct picture_info info = *picture_info_of(reader);
+    picture_close(&reader);
     c->floats |= info.floats;
     if (c->width == 0) {
         c->width = info.width;
@@ -233,13 +233,13 @@ relume_status capture_stream(struct image_stream *out, const relume_capture *cap
     const struct relume_manifest *m = &capture->draft.m;
     static const float no_gain[3] = {1.0f, 1.0f, 1.0f};
     const char *path = m->view[view].images[light];
-    oiio_reader *reader;
-    const relume_status status = oiio_open(&reader, path, NULL, log);
+    picture_reader *reader;
+    const relume_status status = picture_open(&reader, path, NULL, log);
     if (status)
         return status;
-    const struct oiio_info *info = oiio_info_of(reader);
+    const struct picture_info *info = picture_info_of(reader);
     if (info->width != capture->width || info->height != capture->height) {
-        oiio_close(&reader);
+        picture_close(&reader);
         return log_fail(log, RELUME_EDATA, "%s: changed while it was being read", path);
     }
     const relume_status opened =

@@ -179,10 +179,7 @@ static relume_status make_folder(struct panorama_job *job, enum relume_panorama_
         status = add_depth(job);
     if (!status)
         status = write_manifest(job);
-    if (!status)
-        return outdir_commit(&folder);
-    outdir_abort(&folder);
-    return status;
+    return outdir_end(&folder, status);
 }
 
 relume_status relume_panorama_ingest(const char *dir, const char *const *photos, int n,

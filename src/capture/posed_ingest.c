@@ -390,10 +390,7 @@ static relume_status write_slab(struct posed *s, const char *path)
     };
     if (!status)
         status = save_manifest(dir, &m, s->common->log);
-    if (!status)
-        return outdir_commit(&dir);
-    outdir_abort(&dir);
-    return status;
+    return outdir_end(&dir, status);
 }
 
 static relume_status check(const struct posed *s)

@@ -355,9 +355,7 @@ relume_status relume_shoot_make(struct relume_shoot *out, const char *dir,
     status = s.shot ? outdir_open(&s.dir, dir, params->force, params->log) : RELUME_ENOMEM;
     if (!status)
         status = run(&s);
-    if (!status)
-        status = outdir_commit(&s.dir);
-    outdir_abort(&s.dir);
+    status = outdir_end(&s.dir, status);
     release(&s);
     if (status)
         relume_shoot_destroy(out);

@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 #include "capture/ball.h"
-#include "image/oiio.h"
+#include "image/picture.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -72,7 +72,7 @@ static void put_bytes(struct report *r, int width, int height, const uint8_t *by
 {
     char *path = mem_format("%s/thumbnail.jpg", r->dir);
     relume_status status =
-        path ? oiio_write_bytes(path, width, height, 3, bytes, r->s->p.log) : RELUME_ENOMEM;
+        path ? picture_write_bytes(path, width, height, 3, bytes, r->s->p.log) : RELUME_ENOMEM;
     fprintf(r->f, "<img width=\"%d\" height=\"%d\" src=\"data:image/jpeg;base64,", width, height);
     if (!status)
         status = put_file(r->f, path);

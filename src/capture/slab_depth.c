@@ -214,10 +214,7 @@ static relume_status make_folder(struct slab_depth *d, const char *path)
         status = save_views(d, dir);
     if (!status)
         status = write_manifest(d, path, dir);
-    if (!status)
-        return outdir_commit(&dir);
-    outdir_abort(&dir);
-    return status;
+    return outdir_end(&dir, status);
 }
 
 static void report_on(struct relume_slab_depth_report *r, const struct slab_depth *d)

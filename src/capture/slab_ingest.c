@@ -347,10 +347,7 @@ static relume_status ingest(struct slab *s, const char *dir, const char *const *
     }
     if (!status)
         status = write_slab(s, dir, folder);
-    if (!status)
-        return outdir_commit(&folder);
-    outdir_abort(&folder);
-    return status;
+    return outdir_end(&folder, status);
 }
 
 relume_status relume_slab_ingest(const char *dir, const char *const *photos, int n,

@@ -33,7 +33,7 @@ struct relume_table {
 
 static size_t file_bytes(const struct image_stream *stream)
 {
-    const struct oiio_info *info = oiio_info_of(stream->reader);
+    const struct picture_info *info = picture_info_of(stream->reader);
     return (size_t)info->width * (size_t)info->height * (size_t)info->channels;
 }
 
@@ -41,7 +41,7 @@ static size_t file_bytes(const struct image_stream *stream)
 static void use_kept(relume_table *t, struct image_stream *stream, int light)
 {
     struct kept *kept = t->capture->kept;
-    if (!oiio_info_of(stream->reader)->bytes)
+    if (!picture_info_of(stream->reader)->bytes)
         return;
     stream->kept = kept_find(kept, t->view * t->capture->draft.m.lights + light);
     stream->keep = stream->kept ? NULL : kept_reserve(kept, file_bytes(stream));
@@ -130,7 +130,7 @@ relume_status relume_table_open(relume_table **out, const relume_capture *captur
         status = capture_stream(&t->stream[t->open], capture, view, t->open, to, p.log);
         if (!status)
             use_kept(t, &t->stream[t->open], t->open);
-        t->bytes = t->bytes && !status && oiio_info_of(t->stream[t->open].reader)->bytes;
+        t->bytes = t->bytes && !status && picture_info_of(t->stream[t->open].reader)->bytes;
         t->open += !status;
     }
     if (status)
@@ -324,7 +324,7 @@ void relume_table_planes(const relume_table *table, int light, size_t first, siz
 {
     const struct image_stream *stream = &table->stream[light];
     if (table->bytes) {
-        const size_t channels = (size_t)oiio_info_of(stream->reader)->channels;
+        const size_t channels = (size_t)picture_info_of(stream->reader)->channels;
         image_stream_planes(stream, table->fetched[light] + first * channels, count, out, stride);
         return;
     }

@@ -23,7 +23,7 @@ struct kernel {
     double parameter[4];
     int lights, trend;
     vec3 *light;
-    double *inverse;  // [lights + trend][lights + trend]
+    double *inverse;  // [lights + trend][lights + trend], columns side by side
 };
 
 // ---------------------------------------------------------------- kernels
@@ -102,6 +102,17 @@ static relume_status invert(struct kernel *k, double least)
     return lsq_invert(k->inverse, (int)size);
 }
 
+// So that weights are sums of columns, which run through memory in order.
+static void transpose(double *a, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < i; j++) {
+            const double kept = a[i * n + j];
+            a[i * n + j] = a[j * n + i];
+            a[j * n + i] = kept;
+        }
+}
+
 static void release(void *data)
 {
     struct kernel *k = data;
@@ -123,6 +134,8 @@ static relume_status prepare(void **data, struct kernel kind, double least,
     relume_status status = k->light && k->inverse ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = invert(k, least);
+    if (!status)
+        transpose(k->inverse, size);
     if (status == RELUME_EDATA)
         (void)log_fail(log, status, "the %d light directions leave the interpolant open", n);
     if (status) {
@@ -132,18 +145,21 @@ static relume_status prepare(void **data, struct kernel kind, double least,
     return status;
 }
 
+static void add_scaled(double *restrict to, const double *restrict from, double factor, int n)
+{
+    for (int i = 0; i < n; i++)
+        to[i] += factor * from[i];
+}
+
 static void evaluate(const void *data, struct relume_vec3 light, double *weights)
 {
     const struct kernel *k = data;
     double row[CODER_MAX_COEFFICIENTS + MAX_TREND];
     const int size = k->lights + k->trend;
     fill_row(k, light, row);
-    for (int i = 0; i < k->lights; i++) {
-        double sum = 0.0;
-        for (int j = 0; j < size; j++)
-            sum += k->inverse[(size_t)i * (size_t)size + (size_t)j] * row[j];
-        weights[i] = sum;
-    }
+    memset(weights, 0, (size_t)k->lights * sizeof *weights);
+    for (int j = 0; j < size; j++)
+        add_scaled(weights, k->inverse + (size_t)j * (size_t)size, row[j], k->lights);
 }
 
 // ---------------------------------------------------------------- the interpolants
@@ -204,7 +220,8 @@ bool interpolant_predictor(const struct relume_interpolant *interpolant, const v
     const struct kernel *k = data;
     const size_t n = (size_t)k->lights, size = n + (size_t)k->trend;
     for (size_t i = 0; i < n; i++)
-        memcpy(b + i * n, k->inverse + i * size, n * sizeof *b);
+        for (size_t j = 0; j < n; j++)
+            b[i * n + j] = k->inverse[j * size + i];
     return true;
 }
 

@@ -25,6 +25,18 @@ void mesh_destroy(mesh **m)
     *m = NULL;
 }
 
+static int nearest(const vec3 *p, int n, vec3 d)
+{
+    int best = 0;
+    double most = -2.0;
+    for (int j = 0; j < n; j++) {
+        const double cosine = vec3_dot(d, p[j]);
+        best = cosine > most ? j : best;
+        most = fmax(cosine, most);
+    }
+    return best;
+}
+
 // The largest gap around: the direction among candidates that is farthest from every light.
 static vec3 widest_gap(const vec3 *p, int n, double *angle)
 {
@@ -35,11 +47,9 @@ static vec3 widest_gap(const vec3 *p, int n, double *angle)
         const double z = 2.0 * i / CANDIDATES - 1.0, r = sqrt(1.0 - z * z);
         const double phi = i * (M_PI * (3.0 - sqrt(5.0)));
         const vec3 d = vec3_of(r * cos(phi), r * sin(phi), z);
-        double nearest = M_PI;
-        for (int j = 0; j < n; j++)
-            nearest = fmin(nearest, vec3_angle(d, p[j]));
-        if (nearest > *angle + 0.02) {  // ties go to the pole
-            *angle = nearest;
+        const double gap = vec3_angle(d, p[nearest(p, n, d)]);
+        if (gap > *angle + 0.02) {  // ties go to the pole
+            *angle = gap;
             best = d;
         }
     }

@@ -288,9 +288,7 @@ relume_status export_web(const struct export *e, const char *path,
         status = spare_chroma(&m);
     if (!status)
         status = make_folder(&m, outdir_path(dir), report);
-    if (!status)
-        status = outdir_commit(&dir);
-    outdir_abort(&dir);
+    status = outdir_end(&dir, status);
     free_planes(&m);
     return status;
 }

@@ -392,6 +392,8 @@ struct exr_part_info exr_part_info(const exr_file *file, int part)
         .name = name,
         .width = box.max.x - box.min.x + 1,
         .height = box.max.y - box.min.y + 1,
+        .x = box.min.x,
+        .y = box.min.y,
         .sample = (enum exr_sample)list->entries[0].pixel_type,
         .uniform = true,
         .channels = list->num_channels,
@@ -403,6 +405,38 @@ struct exr_part_info exr_part_info(const exr_file *file, int part)
                         e->y_sampling == 1;
     }
     return info;
+}
+
+const char *exr_channel_name(const exr_file *file, int part, int channel)
+{
+    return channel_list(file, part)->entries[channel].name.str;
+}
+
+bool exr_is_plain(const exr_file *file, int part)
+{
+    static const char *const known[] = {"channels",
+                                        "chunkCount",
+                                        "compression",
+                                        "dataWindow",
+                                        "displayWindow",
+                                        "lineOrder",
+                                        "name",
+                                        "type",
+                                        "version",
+                                        "pixelAspectRatio",
+                                        "screenWindowCenter",
+                                        "screenWindowWidth"};
+    int32_t count;
+    bool plain = !exr_get_attribute_count(file->exr, part, &count);
+    for (int32_t i = 0; plain && i < count; i++) {
+        const exr_attribute_t *a;
+        plain = !exr_get_attribute_by_index(file->exr, part, EXR_ATTR_LIST_FILE_ORDER, i, &a);
+        bool found = false;
+        for (size_t k = 0; plain && k < sizeof known / sizeof *known; k++)
+            found |= !strcmp(a->name, known[k]);
+        plain = plain && found;
+    }
+    return plain;
 }
 
 bool exr_get_int(const exr_file *file, int part, const char *name, int *value)
@@ -431,19 +465,16 @@ const float *exr_get_floats(const exr_file *file, int part, const char *name, in
     return floats;
 }
 
-struct reading {
-    const exr_file *file;
-    int part, first_row, height, block_rows;
-    void (*sink)(void *, int, int, const void *);
-    void *context;
-    exr_decode_pipeline_t *pipelines;  // one a worker
-    atomic_bool failed;
+// A block of rows, decoded.
+struct block {
+    int row, rows;
+    const void *samples;  // the pipeline's
 };
 
 // Hands the decompressed rows on as they are.
 static exr_result_t deliver(exr_decode_pipeline_t *pipeline)
 {
-    const struct reading *r = pipeline->decoding_user_data;
+    struct block *b = pipeline->decoding_user_data;
     const void *samples =
         pipeline->unpacked_buffer ? pipeline->unpacked_buffer : pipeline->packed_buffer;
     const uint64_t size = pipeline->unpacked_buffer && pipeline->decompress_fn
@@ -451,33 +482,76 @@ static exr_result_t deliver(exr_decode_pipeline_t *pipeline)
                               : pipeline->chunk.packed_size;
     if (!samples || size < pipeline->chunk.unpacked_size)
         return EXR_ERR_CORRUPT_CHUNK;
-    r->sink(r->context, pipeline->chunk.start_y - r->first_row, pipeline->chunk.height, samples);
+    b->samples = samples;
     return EXR_ERR_SUCCESS;
 }
+
+// What decoding blocks of a part needs to know of it.
+struct layout {
+    const exr_file *file;
+    int part, first_row, height, block_rows, channels;
+    size_t row_bytes;  // of one channel
+};
+
+static bool find_layout(struct layout *out, const exr_file *file, int part)
+{
+    const struct exr_part_info info = exr_part_info(file, part);
+    int32_t block_rows;
+    if (exr_get_scanlines_per_chunk(file->exr, part, &block_rows) || block_rows < 1)
+        return false;
+    *out = (struct layout){.file = file,
+                           .part = part,
+                           .first_row = info.y,
+                           .height = info.height,
+                           .block_rows = block_rows,
+                           .channels = info.channels,
+                           .row_bytes = (size_t)info.width * exr_sample_bytes(info.sample)};
+    return true;
+}
+
+// The block of number `item`; false: truncated or damaged.
+static bool decode(struct block *out, const struct layout *l, exr_decode_pipeline_t *pipeline,
+                   size_t item)
+{
+    const exr_const_context_t exr = l->file->exr;
+    exr_chunk_info_t chunk;
+    const int y = l->first_row + (int)item * l->block_rows;
+    exr_result_t e = exr_read_scanline_chunk_info(exr, l->part, y, &chunk);
+    if (!e && pipeline->channels) {
+        e = exr_decoding_update(exr, l->part, &chunk, pipeline);
+    } else if (!e) {
+        e = exr_decoding_initialize(exr, l->part, &chunk, pipeline);
+        if (!e)
+            e = exr_decoding_choose_default_routines(exr, l->part, pipeline);
+    }
+    pipeline->decoding_user_data = out;
+    pipeline->unpack_and_convert_fn = deliver;
+    if (!e)
+        e = exr_decoding_run(exr, l->part, pipeline);
+    if (e)
+        return false;
+    out->row = chunk.start_y - l->first_row;
+    out->rows = chunk.height;
+    return true;
+}
+
+struct reading {
+    struct layout layout;
+    void (*sink)(void *, int, int, const void *);
+    void *context;
+    exr_decode_pipeline_t *pipelines;  // one a worker
+    atomic_bool failed;
+};
 
 static void read_block(void *context, size_t item, int worker)
 {
     struct reading *r = context;
-    const exr_const_context_t exr = r->file->exr;
-    exr_decode_pipeline_t *pipeline = &r->pipelines[worker];
+    struct block block = {0};
     if (atomic_load(&r->failed))
         return;
-
-    exr_chunk_info_t chunk;
-    const int y = r->first_row + (int)item * r->block_rows;
-    exr_result_t e = exr_read_scanline_chunk_info(exr, r->part, y, &chunk);
-    if (!e && pipeline->channels) {
-        e = exr_decoding_update(exr, r->part, &chunk, pipeline);
-    } else if (!e) {
-        e = exr_decoding_initialize(exr, r->part, &chunk, pipeline);
-        if (!e)
-            e = exr_decoding_choose_default_routines(exr, r->part, pipeline);
-    }
-    pipeline->decoding_user_data = r;
-    pipeline->unpack_and_convert_fn = deliver;
-    if (!e)
-        e = exr_decoding_run(exr, r->part, pipeline);
-    if (e)
+    if (decode(&block, &r->layout, &r->pipelines[worker], item))
+        r->sink(r->context, block.row, block.rows, block.samples);
+    else
         atomic_store(&r->failed, true);
 }
 
@@ -486,33 +560,61 @@ relume_status exr_read(const exr_file *file, int part, int threads,
                        const struct relume_log *log)
 {
     threads = thread_count(threads);
-    const struct exr_part_info info = exr_part_info(file, part);
-    exr_attr_box2i_t box;
-    int32_t block_rows;
-    if (exr_get_data_window(file->exr, part, &box) ||
-        exr_get_scanlines_per_chunk(file->exr, part, &block_rows) || block_rows < 1)
+    struct reading r = {.sink = sink, .context = context};
+    if (!find_layout(&r.layout, file, part))
         return log_fail(log, RELUME_EDATA, "%s: part %d is broken", file->path, part);
-
-    struct reading r = {
-        .file = file,
-        .part = part,
-        .first_row = box.min.y,
-        .height = info.height,
-        .block_rows = block_rows,
-        .sink = sink,
-        .context = context,
-        .pipelines = mem_zeroed((size_t)threads, sizeof *r.pipelines),
-    };
+    r.pipelines = mem_zeroed((size_t)threads, sizeof *r.pipelines);
     if (!r.pipelines)
         return RELUME_ENOMEM;
-    const size_t blocks = ((size_t)info.height + (size_t)block_rows - 1) / (size_t)block_rows;
-    thread_for(threads, blocks, read_block, &r);
+    const size_t height = (size_t)r.layout.height, rows = (size_t)r.layout.block_rows;
+    thread_for(threads, (height + rows - 1) / rows, read_block, &r);
     for (int i = 0; i < threads; i++)
         exr_decoding_destroy(file->exr, &r.pipelines[i]);
     free(r.pipelines);
     if (atomic_load(&r.failed))
         return log_fail(log, RELUME_EDATA,
                         "%s: truncated or damaged in part '%s'; expected %d rows", file->path,
-                        info.name, info.height);
+                        exr_part_info(file, part).name, r.layout.height);
     return RELUME_OK;
+}
+
+struct exr_blocks {
+    struct layout layout;
+    exr_decode_pipeline_t pipeline;
+    struct block block;  // the last one decoded
+};
+
+relume_status exr_blocks_open(exr_blocks **out, const exr_file *file, int part)
+{
+    exr_blocks *b = mem_zeroed(1, sizeof *b);
+    *out = NULL;
+    if (!b)
+        return RELUME_ENOMEM;
+    if (!find_layout(&b->layout, file, part)) {
+        free(b);
+        return RELUME_EDATA;
+    }
+    *out = b;
+    return RELUME_OK;
+}
+
+const void *exr_blocks_row(exr_blocks *b, int row)
+{
+    if (row < b->block.row || row >= b->block.row + b->block.rows) {
+        if (!decode(&b->block, &b->layout, &b->pipeline, (size_t)(row / b->layout.block_rows))) {
+            b->block.rows = 0;
+            return NULL;
+        }
+    }
+    const size_t bytes = (size_t)b->layout.channels * b->layout.row_bytes;
+    return (const uint8_t *)b->block.samples + (size_t)(row - b->block.row) * bytes;
+}
+
+void exr_blocks_close(exr_blocks **blocks)
+{
+    if (!*blocks)
+        return;
+    exr_decoding_destroy((*blocks)->layout.file->exr, &(*blocks)->pipeline);
+    free(*blocks);
+    *blocks = NULL;
 }

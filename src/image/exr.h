@@ -52,12 +52,16 @@ int exr_part_count(const exr_file *file);
 struct exr_part_info {
     const char *name;  // "" when the part has none
     int width, height;
+    int x, y;                // where the data window begins
     enum exr_sample sample;  // of the first channel
     bool uniform;            // all channels have that type and full resolution
     int channels;
     const char *codec;
 };
 struct exr_part_info exr_part_info(const exr_file *file, int part);
+const char *exr_channel_name(const exr_file *file, int part, int channel);
+// Whether a part has no attributes but those that all have.
+bool exr_is_plain(const exr_file *file, int part);
 
 // Attributes of a part; false or NULL when absent or of another type.
 bool exr_get_int(const exr_file *file, int part, const char *name, int *value);
@@ -69,5 +73,13 @@ const float *exr_get_floats(const exr_file *file, int part, const char *name, in
 relume_status exr_read(const exr_file *file, int part, int threads,
                        void (*sink)(void *context, int row, int rows, const void *samples),
                        void *context, const struct relume_log *log);
+
+// The blocks of a part as they are asked for. Thread-safety: one thread at a time.
+typedef struct exr_blocks exr_blocks;
+// `file` must outlive it. RELUME_ENOMEM.
+relume_status exr_blocks_open(exr_blocks **out, const exr_file *file, int part);
+// samples[channel][x] of a row, until the next call; NULL where the file is truncated or damaged.
+const void *exr_blocks_row(exr_blocks *blocks, int row);
+void exr_blocks_close(exr_blocks **blocks);
 
 #endif

@@ -9,7 +9,6 @@
 #include <relume/response.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
 relume_status relume_image_create(struct relume_image *out, int width, int height, int channels)
@@ -32,7 +31,8 @@ void relume_image_destroy(struct relume_image *image)
 
 // ---------------------------------------------------------------- streams
 
-struct relume_transfer image_transfer(struct relume_transfer transfer, const struct oiio_info *info)
+struct relume_transfer image_transfer(struct relume_transfer transfer,
+                                      const struct picture_info *info)
 {
     if (transfer.curve == RELUME_CURVE_AUTO)
         transfer.curve = info->linear ? RELUME_CURVE_LINEAR : RELUME_CURVE_SRGB;
@@ -60,7 +60,7 @@ static float recode(const struct image_stream *s, int channel, float code)
     return relume_transfer_encode(s->to, linear);
 }
 
-static bool is_plain(const struct image_stream *s, const struct oiio_info *info)
+static bool is_plain(const struct image_stream *s, const struct picture_info *info)
 {
     bool plain = s->channels == 3 && info->channels == 3;
     for (int c = 0; c < 3; c++) {
@@ -71,11 +71,11 @@ static bool is_plain(const struct image_stream *s, const struct oiio_info *info)
     return plain;
 }
 
-relume_status image_stream_open(struct image_stream *stream, oiio_reader *reader, int channels,
+relume_status image_stream_open(struct image_stream *stream, picture_reader *reader, int channels,
                                 struct relume_transfer from, struct relume_transfer to,
                                 const float gain[3])
 {
-    const struct oiio_info *info = oiio_info_of(reader);
+    const struct picture_info *info = picture_info_of(reader);
     *stream = (struct image_stream){
         .reader = reader,
         .channels = channels,
@@ -99,12 +99,12 @@ relume_status image_stream_open(struct image_stream *stream, oiio_reader *reader
 
 void image_stream_close(struct image_stream *stream)
 {
-    oiio_close(&stream->reader);
+    picture_close(&stream->reader);
     free(stream->scratch);
     stream->scratch = NULL;
 }
 
-static void convert_bytes(const struct image_stream *s, const struct oiio_info *info,
+static void convert_bytes(const struct image_stream *s, const struct picture_info *info,
                           const uint8_t *in, size_t pixels, float *out)
 {
     if (s->channels == 3 && info->channels == 3)
@@ -118,7 +118,7 @@ static void convert_bytes(const struct image_stream *s, const struct oiio_info *
 }
 
 // False when a sample is NaN or infinite.
-static bool convert_floats(const struct image_stream *s, const struct oiio_info *info,
+static bool convert_floats(const struct image_stream *s, const struct picture_info *info,
                            size_t pixels, float *out)
 {
     const float *in = s->scratch;
@@ -134,7 +134,7 @@ static bool convert_floats(const struct image_stream *s, const struct oiio_info 
 
 relume_status image_stream_fetch(struct image_stream *s, int row, int rows, const uint8_t **bytes)
 {
-    const struct oiio_info *info = oiio_info_of(s->reader);
+    const struct picture_info *info = picture_info_of(s->reader);
     const size_t at = (size_t)row * (size_t)info->width * (size_t)info->channels;
     if (s->kept) {
         *bytes = s->kept + at;
@@ -142,13 +142,13 @@ relume_status image_stream_fetch(struct image_stream *s, int row, int rows, cons
     }
     uint8_t *to = s->keep ? s->keep + at : s->scratch;
     *bytes = to;
-    return oiio_read_bytes(s->reader, row, rows, to);
+    return picture_read_bytes(s->reader, row, rows, to);
 }
 
 void image_stream_planes(const struct image_stream *s, const uint8_t *bytes, size_t pixels,
                          float *out, size_t stride)
 {
-    const struct oiio_info *info = oiio_info_of(s->reader);
+    const struct picture_info *info = picture_info_of(s->reader);
     if (s->plain) {
         s->unpack->thirds(bytes, pixels, out, out + stride, out + 2 * stride);
         return;
@@ -162,7 +162,7 @@ void image_stream_planes(const struct image_stream *s, const uint8_t *bytes, siz
     }
 }
 
-static relume_status read_bytes(struct image_stream *s, const struct oiio_info *info, int row,
+static relume_status read_bytes(struct image_stream *s, const struct picture_info *info, int row,
                                 int rows, float *out)
 {
     const uint8_t *in;
@@ -172,10 +172,10 @@ static relume_status read_bytes(struct image_stream *s, const struct oiio_info *
     return status;
 }
 
-static relume_status read_floats(const struct image_stream *s, const struct oiio_info *info,
+static relume_status read_floats(const struct image_stream *s, const struct picture_info *info,
                                  int row, int rows, float *out)
 {
-    const relume_status status = oiio_read_floats(s->reader, row, rows, s->scratch);
+    const relume_status status = picture_read_floats(s->reader, row, rows, s->scratch);
     if (status)
         return status;
     const bool finite = convert_floats(s, info, (size_t)rows * (size_t)info->width, out);
@@ -184,7 +184,7 @@ static relume_status read_floats(const struct image_stream *s, const struct oiio
 
 relume_status image_stream_read(struct image_stream *stream, int row, int rows, float *out)
 {
-    const struct oiio_info *info = oiio_info_of(stream->reader);
+    const struct picture_info *info = picture_info_of(stream->reader);
     for (int end = row + rows; row < end; row += IMAGE_STREAM_ROWS) {
         const int n = end - row < IMAGE_STREAM_ROWS ? end - row : IMAGE_STREAM_ROWS;
         const relume_status status = info->bytes ? read_bytes(stream, info, row, n, out)
@@ -198,12 +198,12 @@ relume_status image_stream_read(struct image_stream *stream, int row, int rows, 
 
 bool image_stream_is_broken(const struct image_stream *stream)
 {
-    return !*oiio_error(stream->reader);
+    return !*picture_error(stream->reader);
 }
 
 const char *image_stream_error(const struct image_stream *stream)
 {
-    const char *said = oiio_error(stream->reader);
+    const char *said = picture_error(stream->reader);
     return *said ? said : "holds NaN or infinite values; expected finite radiance";
 }
 
@@ -217,11 +217,11 @@ relume_status relume_image_load(struct relume_image *out, const char *path,
     static const float no_gain[3] = {1.0f, 1.0f, 1.0f};
     *out = (struct relume_image){0};
 
-    oiio_reader *reader;
-    relume_status status = oiio_open(&reader, path, p.limits, p.log);
+    picture_reader *reader;
+    relume_status status = picture_open(&reader, path, p.limits, p.log);
     if (status)
         return status;
-    const struct oiio_info info = *oiio_info_of(reader);
+    const struct picture_info info = *picture_info_of(reader);
     struct image_stream stream;
     status = image_stream_open(&stream, reader, channels, image_transfer(p.transfer, &info),
                                (struct relume_transfer){.curve = RELUME_CURVE_LINEAR}, no_gain);
@@ -298,15 +298,9 @@ static relume_status save_bytes(const struct relume_image *image, const char *pa
         bytes[i] = (uint8_t)(v >= 1.0f ? 255 : v > 0.0f ? (int)(v * 255.0f + 0.5f) : 0);
     }
     const relume_status status =
-        oiio_write_bytes(path, image->width, image->height, image->channels, bytes, p->log);
+        picture_write_bytes(path, image->width, image->height, image->channels, bytes, p->log);
     free(bytes);
     return status;
-}
-
-static bool has_extension(const char *path, const char *extension)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && !strcasecmp(dot, extension);
 }
 
 // /dev/stdout and the like have no extension to tell the format.
@@ -320,7 +314,7 @@ static bool is_device(const char *path)
 
 bool relume_image_saves_linear(const char *path)
 {
-    return has_extension(path, ".exr") || is_device(path) || oiio_writes_floats(path);
+    return picture_has_extension(path, ".exr") || is_device(path) || picture_writes_floats(path);
 }
 
 relume_status relume_image_save(const struct relume_image *image, const char *path,
@@ -329,10 +323,10 @@ relume_status relume_image_save(const struct relume_image *image, const char *pa
     const struct relume_image_params p = params ? *params : (struct relume_image_params){0};
     if (image->channels != 1 && image->channels != 3)
         return RELUME_EINVAL;
-    if (has_extension(path, ".exr") || is_device(path))
+    if (picture_has_extension(path, ".exr") || is_device(path))
         return save_exr(image, path, &p);
-    if (oiio_writes_floats(path))
-        return oiio_write_floats(path, image->width, image->height, image->channels, image->data,
-                                 p.log);
+    if (picture_writes_floats(path))
+        return picture_write_floats(path, image->width, image->height, image->channels, image->data,
+                                    p.log);
     return save_bytes(image, path, &p);
 }

@@ -2,21 +2,21 @@
 #ifndef IMAGE_IMAGE_H
 #define IMAGE_IMAGE_H
 
-#include "image/oiio.h"
+#include "image/picture.h"
 #include "image/unpack.h"
 
 #include <relume/image.h>
 
 // What `transfer` AUTO means for an open file.
 struct relume_transfer image_transfer(struct relume_transfer transfer,
-                                      const struct oiio_info *info);
+                                      const struct picture_info *info);
 
 enum { IMAGE_STREAM_ROWS = 16 };
 
 // Reads rows of one file as 1 or 3 channels after a per-value function: decode by `from`, divide
 // by gain[channel], encode by `to`. Bytes go through tables.
 struct image_stream {
-    oiio_reader *reader;
+    picture_reader *reader;
     int channels;
     struct relume_transfer from, to;
     float gain[3];
@@ -30,7 +30,7 @@ struct image_stream {
 };
 
 // Takes over `reader`, also on failure. RELUME_ENOMEM.
-relume_status image_stream_open(struct image_stream *stream, oiio_reader *reader, int channels,
+relume_status image_stream_open(struct image_stream *stream, picture_reader *reader, int channels,
                                 struct relume_transfer from, struct relume_transfer to,
                                 const float gain[3]);
 // out[row][x][channel]; rows must be asked for from the top on. RELUME_EDATA: the error tells.

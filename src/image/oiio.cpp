@@ -1,5 +1,5 @@
-// oiio.cpp - the one file that knows OpenImageIO: a module, opened by oiio_load.c
-#include "image/oiio.h"
+// oiio.cpp - the one file that knows OpenImageIO: a module, opened by picture.c
+#include "image/picture_format.h"
 
 extern "C" {
 #include "base/log.h"
@@ -22,15 +22,19 @@ extern "C" {
 
 using namespace OIIO;
 
-struct oiio_reader {
+namespace
+{
+
+struct oiio_reader : picture_reader {
     std::unique_ptr<ImageInput> input;
-    oiio_info info;
     std::string path, error;
     std::vector<float> whole;  // tiled files have no scanlines to stream: read at once
 };
 
-namespace
+const ImageSpec &spec_of(const picture_reader *reader)
 {
+    return static_cast<const oiio_reader *>(reader)->input->spec();
+}
 
 // One line without the library's trailing newline and without "(" file ")" noise.
 std::string one_line(std::string text)
@@ -82,7 +86,7 @@ bool jpeg_is_truncated(const std::string &path)
     return true;
 }
 
-void find_colour(const ImageSpec &spec, oiio_info &info)
+void find_colour(const ImageSpec &spec, picture_info &info)
 {
     const int last = spec.nchannels >= 3 ? 2 : 0;
     static const char *const names[] = {"R", "G", "B"};
@@ -143,10 +147,6 @@ double shutter_of(const ImageSpec &spec)
 relume_status open_input(oiio_reader *r, const relume_limits *limits)
 {
     OIIO::attribute("exr_threads", -1);  // our own threads work on many files at once
-    if (!Filesystem::exists(r->path))
-        return broken(r, "no such file; expected an image");
-    if (Filesystem::is_directory(r->path) || Filesystem::file_size(r->path) == 0)
-        return broken(r, "empty file or folder; expected an image");
     ImageSpec hints;
     hints["oiio:UnassociatedAlpha"] = 1;
     hints["raw:ColorSpace"] = "Linear";
@@ -227,7 +227,7 @@ std::unique_ptr<ImageOutput> writer_for(const char *path)
 
 // Through memory where the format can, so that a full disk is noticed by our own writes.
 relume_status write_in_memory(ImageOutput &output, const char *path, const ImageSpec &spec,
-                              TypeDesc type, const void *samples, oiio_save *save,
+                              TypeDesc type, const void *samples, picture_save *save,
                               const relume_log *log)
 {
     std::vector<unsigned char> bytes;
@@ -240,7 +240,7 @@ relume_status write_in_memory(ImageOutput &output, const char *path, const Image
 }
 
 relume_status write_beside(ImageOutput &output, const char *path, const ImageSpec &spec,
-                           TypeDesc type, const void *samples, oiio_save *save,
+                           TypeDesc type, const void *samples, picture_save *save,
                            const relume_log *log)
 {
     const std::string beside =
@@ -264,7 +264,7 @@ relume_status write_beside(ImageOutput &output, const char *path, const ImageSpe
 }
 
 relume_status write_image(const char *path, int width, int height, int channels, TypeDesc type,
-                          const void *samples, oiio_save *save, const relume_log *log)
+                          const void *samples, picture_save *save, const relume_log *log)
 {
     try {
         auto output = writer_for(path);
@@ -288,12 +288,63 @@ relume_status write_image(const char *path, int width, int height, int channels,
     }
 }
 
-relume_status bridge_open(oiio_reader **out, const char *path, const relume_limits *limits,
+void notes(const picture_reader *reader, relume_notes *out)
+{
+    const ImageSpec &spec = spec_of(reader);
+    std::string date = spec.get_string_attribute("Exif:DateTimeOriginal");
+    if (date.empty())
+        date = spec.get_string_attribute("DateTime");
+    const double iso = positive(spec, "Exif:PhotographicSensitivity");
+    out->time_s = shutter_of(spec);
+    out->f_number = positive(spec, "FNumber");
+    out->iso = iso > 0.0 ? iso : positive(spec, "Exif:ISOSpeedRatings");
+    out->focal_mm = positive(spec, "Exif:FocalLength");
+    out->focal_35mm = positive(spec, "Exif:FocalLengthIn35mmFilm");
+    out->taken_s = seconds_of(date);
+    const int orientation = spec.get_int_attribute("Orientation", 1);
+    out->orientation = orientation >= 1 && orientation <= 8 ? orientation : 1;
+    const std::string make = spec.get_string_attribute("Make");
+    const std::string model = spec.get_string_attribute("Model");
+    if (!make.empty() || !model.empty())
+        std::snprintf(out->camera, sizeof out->camera, "%s %s", make.c_str(), model.c_str());
+}
+
+const void *profile(const picture_reader *reader, size_t *size)
+{
+    const ParamValue *p = spec_of(reader).find_attribute("ICCProfile");
+    *size = p ? size_t(p->datasize()) : 0;
+    return p ? p->data() : nullptr;
+}
+
+relume_status read_floats(picture_reader *reader, int row, int rows, float *out)
+{
+    return read_rows(static_cast<oiio_reader *>(reader), row, rows, TypeFloat, out);
+}
+
+relume_status read_bytes(picture_reader *reader, int row, int rows, uint8_t *out)
+{
+    return read_rows(static_cast<oiio_reader *>(reader), row, rows, TypeUInt8, out);
+}
+
+const char *error(const picture_reader *reader)
+{
+    return static_cast<const oiio_reader *>(reader)->error.c_str();
+}
+
+void close(picture_reader *reader)
+{
+    delete static_cast<oiio_reader *>(reader);
+}
+
+const picture_format format = {read_floats, read_bytes, notes, profile, error, close};
+
+relume_status bridge_open(picture_reader **out, const char *path, const relume_limits *limits,
                           const relume_log *log)
 {
     *out = nullptr;
     try {
         std::unique_ptr<oiio_reader> r(new oiio_reader());
+        r->format = &format;
         r->path = path;
         const relume_status status = open_input(r.get(), limits);
         if (status)
@@ -307,73 +358,14 @@ relume_status bridge_open(oiio_reader **out, const char *path, const relume_limi
     }
 }
 
-const oiio_info *bridge_info_of(const oiio_reader *reader)
-{
-    return &reader->info;
-}
-
-void bridge_notes(const oiio_reader *reader, relume_notes *out)
-{
-    const ImageSpec &spec = reader->input->spec();
-    std::string date = spec.get_string_attribute("Exif:DateTimeOriginal");
-    if (date.empty())
-        date = spec.get_string_attribute("DateTime");
-    const double iso = positive(spec, "Exif:PhotographicSensitivity");
-    *out = relume_notes();
-    out->width = reader->info.width;
-    out->height = reader->info.height;
-    out->time_s = shutter_of(spec);
-    out->f_number = positive(spec, "FNumber");
-    out->iso = iso > 0.0 ? iso : positive(spec, "Exif:ISOSpeedRatings");
-    out->focal_mm = positive(spec, "Exif:FocalLength");
-    out->focal_35mm = positive(spec, "Exif:FocalLengthIn35mmFilm");
-    out->taken_s = seconds_of(date);
-    const int orientation = spec.get_int_attribute("Orientation", 1);
-    out->orientation = orientation >= 1 && orientation <= 8 ? orientation : 1;
-    out->linear = reader->info.linear;
-    out->bytes = reader->info.bytes;
-    out->floats = reader->info.floats;
-    std::snprintf(out->camera, sizeof out->camera, "%s %s",
-                  spec.get_string_attribute("Make").c_str(),
-                  spec.get_string_attribute("Model").c_str());
-}
-
-const void *bridge_profile(const oiio_reader *reader, size_t *size)
-{
-    const ParamValue *p = reader->input->spec().find_attribute("ICCProfile");
-    *size = p ? size_t(p->datasize()) : 0;
-    return p ? p->data() : nullptr;
-}
-
-relume_status bridge_read_floats(oiio_reader *reader, int row, int rows, float *out)
-{
-    return read_rows(reader, row, rows, TypeFloat, out);
-}
-
-relume_status bridge_read_bytes(oiio_reader *reader, int row, int rows, uint8_t *out)
-{
-    return read_rows(reader, row, rows, TypeUInt8, out);
-}
-
-const char *bridge_error(const oiio_reader *reader)
-{
-    return reader->error.c_str();
-}
-
-void bridge_close(oiio_reader **reader)
-{
-    delete *reader;
-    *reader = nullptr;
-}
-
 relume_status bridge_write_bytes(const char *path, int width, int height, int channels,
-                                 const uint8_t *samples, oiio_save *save, const relume_log *log)
+                                 const uint8_t *samples, picture_save *save, const relume_log *log)
 {
     return write_image(path, width, height, channels, TypeUInt8, samples, save, log);
 }
 
 relume_status bridge_write_floats(const char *path, int width, int height, int channels,
-                                  const float *samples, oiio_save *save, const relume_log *log)
+                                  const float *samples, picture_save *save, const relume_log *log)
 {
     return write_image(path, width, height, channels, TypeFloat, samples, save, log);
 }
@@ -381,7 +373,5 @@ relume_status bridge_write_floats(const char *path, int width, int height, int c
 }  // namespace
 
 extern "C" RELUME_API const oiio_bridge relume_oiio_bridge;
-const oiio_bridge relume_oiio_bridge = {RELUME_VERSION,     bridge_open,        bridge_info_of,
-                                        bridge_read_floats, bridge_read_bytes,  bridge_notes,
-                                        bridge_profile,     bridge_error,       bridge_close,
-                                        bridge_write_bytes, bridge_write_floats};
+const oiio_bridge relume_oiio_bridge = {RELUME_VERSION, bridge_open, bridge_write_bytes,
+                                        bridge_write_floats};

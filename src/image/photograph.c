@@ -19,25 +19,27 @@ static bool is_turned_sideways(int orientation)
 }
 
 // `profile` may be NULL.
-static void notes_of(struct relume_notes *out, const oiio_reader *reader, struct profile *profile)
+static void notes_of(struct relume_notes *out, const picture_reader *reader,
+                     struct profile *profile)
 {
     size_t size;
-    const void *icc = oiio_profile(reader, &size);
+    const void *icc = picture_profile(reader, &size);
     struct profile own;
-    oiio_notes(reader, out);
+    picture_notes(reader, out);
     profile = profile ? profile : &own;
-    out->profile = icc && oiio_info_of(reader)->channels >= 3 && profile_read(profile, icc, size);
+    out->profile =
+        icc && picture_info_of(reader)->channels >= 3 && profile_read(profile, icc, size);
     memcpy(out->to_srgb, out->profile ? profile->to_srgb : identity, sizeof out->to_srgb);
     if (is_turned_sideways(out->orientation)) {
-        out->width = oiio_info_of(reader)->height;
-        out->height = oiio_info_of(reader)->width;
+        out->width = picture_info_of(reader)->height;
+        out->height = picture_info_of(reader)->width;
     }
 }
 
-void photograph_notes(struct relume_notes *out, const oiio_reader *reader)
+void photograph_notes(struct relume_notes *out, const picture_reader *reader)
 {
-    *out = (struct relume_notes){.width = oiio_info_of(reader)->width,
-                                 .height = oiio_info_of(reader)->height};
+    *out = (struct relume_notes){.width = picture_info_of(reader)->width,
+                                 .height = picture_info_of(reader)->height};
     notes_of(out, reader, NULL);
 }
 
@@ -45,12 +47,12 @@ relume_status relume_notes_read(struct relume_notes *out, const char *path,
                                 const struct relume_log *log)
 {
     *out = (struct relume_notes){0};
-    oiio_reader *reader;
-    const relume_status status = oiio_open(&reader, path, NULL, log);
+    picture_reader *reader;
+    const relume_status status = picture_open(&reader, path, NULL, log);
     if (status)
         return status;
     notes_of(out, reader, NULL);
-    oiio_close(&reader);
+    picture_close(&reader);
     return RELUME_OK;
 }
 
@@ -103,11 +105,11 @@ static void follow_profile(struct relume_image *image, const struct profile *pro
     relume_primaries_apply(image, profile->to_srgb);
 }
 
-static relume_status read_pixels(struct relume_image *out, const char *path, oiio_reader *reader,
+static relume_status read_pixels(struct relume_image *out, const char *path, picture_reader *reader,
                                  struct relume_transfer from, const struct relume_log *log)
 {
     static const float no_gain[3] = {1.0f, 1.0f, 1.0f};
-    const struct oiio_info info = *oiio_info_of(reader);
+    const struct picture_info info = *picture_info_of(reader);
     struct image_stream stream;
     relume_status status =
         image_stream_open(&stream, reader, 3, image_transfer(from, &info),
@@ -131,7 +133,7 @@ relume_status relume_photograph_load(struct relume_image *out, struct relume_not
     const struct relume_photograph_params p =
         params ? *params : (struct relume_photograph_params){0};
     struct relume_notes own;
-    oiio_reader *reader;
+    picture_reader *reader;
     size_t icc_size;
     *out = (struct relume_image){0};
     notes = notes ? notes : &own;
@@ -139,14 +141,14 @@ relume_status relume_photograph_load(struct relume_image *out, struct relume_not
     struct profile *profile = mem_array(1, sizeof *profile);
     if (!profile)
         return RELUME_ENOMEM;
-    relume_status status = oiio_open(&reader, path, p.limits, p.log);
+    relume_status status = picture_open(&reader, path, p.limits, p.log);
     if (status) {
         free(profile);
         return status;
     }
     notes_of(notes, reader, profile);
     const bool follow = notes->profile && !p.codes && p.transfer.curve == RELUME_CURVE_AUTO;
-    if (!notes->profile && oiio_profile(reader, &icc_size))
+    if (!notes->profile && picture_profile(reader, &icc_size))
         log_line(p.log, RELUME_WARNING,
                  "%s: its colour profile is not of curves and a matrix; taken for sRGB", path);
     const struct relume_transfer from =

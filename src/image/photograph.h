@@ -2,10 +2,10 @@
 #ifndef IMAGE_PHOTOGRAPH_H
 #define IMAGE_PHOTOGRAPH_H
 
-#include "image/oiio.h"
+#include "image/picture.h"
 
 #include <relume/photograph.h>
 
-void photograph_notes(struct relume_notes *out, const oiio_reader *reader);
+void photograph_notes(struct relume_notes *out, const picture_reader *reader);
 
 #endif

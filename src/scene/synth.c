@@ -407,10 +407,7 @@ static relume_status write_folder(struct synth *s, const char *path)
     status = write_views(s);
     if (!status)
         status = write_manifest(s);
-    if (!status)
-        return outdir_commit(&dir);
-    outdir_abort(&dir);
-    return status;
+    return outdir_end(&dir, status);
 }
 
 relume_status relume_ring_parse(enum relume_ring *out, const char *name)

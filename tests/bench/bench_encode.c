@@ -4,7 +4,7 @@
 #include "bench.h"
 
 #include "base/thread.h"
-#include "image/oiio.h"
+#include "image/picture.h"
 
 #include <sys/wait.h>
 
@@ -58,14 +58,14 @@ static void decode_one(void *context, size_t item, int worker)
 {
     (void)worker;
     char path[256];
-    oiio_reader *reader;
+    picture_reader *reader;
     snprintf(path, sizeof path, "%s/photo%02zu.jpg", (const char *)context, item);
-    bench_check(oiio_open(&reader, path, NULL, NULL));
-    const struct oiio_info *info = oiio_info_of(reader);
+    bench_check(picture_open(&reader, path, NULL, NULL));
+    const struct picture_info *info = picture_info_of(reader);
     uint8_t *pixels = malloc((size_t)info->width * (size_t)info->height * 3);
-    bench_check(oiio_read_bytes(reader, 0, info->height, pixels));
+    bench_check(picture_read_bytes(reader, 0, info->height, pixels));
     free(pixels);
-    oiio_close(&reader);
+    picture_close(&reader);
 }
 
 static void decode(const char *folder)

@@ -12,48 +12,51 @@ fine() { # name, warning pattern or -, capture, options...: encodes into NAME.ex
     expect_ok "$name" "$pattern" "$RELUME" encode "$capture" -o "$name.exr" "$@"
 }
 L="--basis sh --coefficients 4"
-"$sphere" good --size 24 --lights 10 --format jpg || exit 1
+"$sphere" good --size 24 --lights 10 --format png || exit 1
 "$sphere" float --size 24 --lights 10 --half || exit 1
 fine good - good $L
 fine good-lp - good/dirs.lp $L
 
 # ---- images
-image=view00/light0003.jpg
-size=$(wc -c <good/$image)
+image=view00/light0003.png
 fresh good c; rm c/$image
 bad 'missing image' "c/$image.*no such file" c
 bad 'missing image, .lp' "dirs.lp: image '$image' does not exist" c/dirs.lp
-fine missing-skipped "warning.*light0003.jpg.*skipped" c $L --skip-missing
-fine missing-skipped-lp "warning.*light0003.jpg.*skipped" c/dirs.lp $L --skip-missing
+fine missing-skipped "warning.*light0003.png.*skipped" c $L --skip-missing
+fine missing-skipped-lp "warning.*light0003.png.*skipped" c/dirs.lp $L --skip-missing
 "$RELUME" info missing-skipped.exr --json >info.json
 below 'nine lights are left' "$(field lights info.json)" 9
-rm -f c/view00/*.jpg
+rm -f c/view00/*.png
 bad 'nothing left to skip to' "c/capture.json: no image exists" c --skip-missing
-fresh good c; head -c $((size / 2)) good/$image >c/$image
-bad 'JPEG cut in half' "c/$image: (truncated|not a readable)" c
-head -c $((size - 40)) good/$image >c/$image
-bad 'JPEG without its last bytes' "c/$image: truncated" c
-fresh good c; head -c 300 good/$image >c/$image
-bad 'JPEG cut to 300 bytes' "c/$image: .*(truncated|not a readable)" c
-# a thumbnail's end marker is not the picture's: APP1 holding "FF D8 FF D9" comes first
-fresh good c; { printf '\377\330\377\341\000\006\377\330\377\331'; tail -c +3 good/$image | head -c $((size - 40)); } >c/$image
-bad 'cut JPEG with a whole thumbnail' "c/$image.*truncated" c
-fresh good c; { cat good/$image; printf 'trailing bytes of a camera'; } >c/$image
-fine jpeg-with-trailer - c $L
-same 'bytes after the JPEG change nothing' good.exr jpeg-with-trailer.exr
-# coded data may end in FF 00 and one byte more: the search for the end marker stands before that byte
-fresh good c; { head -c -2 good/$image; printf '\377\000\211\377\331'; } >c/$image
-fine jpeg-with-coded-ff-at-its-end - c $L
-same 'a coded FF before the end marker is not a cut' good.exr jpeg-with-coded-ff-at-its-end.exr
 fresh good c; : >c/$image
 bad 'empty image' "c/$image: empty file" c
 fresh good c; echo 'this is no picture' >c/$image
-bad 'text named .jpg' "c/$image: not a readable image" c
+bad 'text named .png' "c/$image: not a readable image" c
 fresh good c; rm c/$image; mkdir c/$image
-bad 'folder named .jpg' "c/$image: empty file or folder" c
-"$sphere" small --size 20 --lights 10 --format jpg
+bad 'folder named .png' "c/$image: empty file or folder" c
+"$sphere" small --size 20 --lights 10 --format png
 fresh good c; cp small/$image c/$image
 bad 'one image of another size' "c/$image: 20 x 20 pixels; expected 24 x 24" c
+"$sphere" photo --size 24 --lights 10 --format jpg
+photo=view00/light0003.jpg
+size=$(wc -c <photo/$photo)
+fine photo - photo $L
+fresh photo c; head -c $((size / 2)) photo/$photo >c/$photo
+bad 'JPEG cut in half' "c/$photo: (truncated|not a readable)" c
+head -c $((size - 40)) photo/$photo >c/$photo
+bad 'JPEG without its last bytes' "c/$photo: truncated" c
+fresh photo c; head -c 300 photo/$photo >c/$photo
+bad 'JPEG cut to 300 bytes' "c/$photo: .*(truncated|not a readable)" c
+# a thumbnail's end marker is not the picture's: APP1 holding "FF D8 FF D9" comes first
+fresh photo c; { printf '\377\330\377\341\000\006\377\330\377\331'; tail -c +3 photo/$photo | head -c $((size - 40)); } >c/$photo
+bad 'cut JPEG with a whole thumbnail' "c/$photo.*truncated" c
+fresh photo c; { cat photo/$photo; printf 'trailing bytes of a camera'; } >c/$photo
+fine jpeg-with-trailer - c $L
+same 'bytes after the JPEG change nothing' photo.exr jpeg-with-trailer.exr
+# coded data may end in FF 00 and one byte more: the search for the end marker stands before that byte
+fresh photo c; { head -c -2 photo/$photo; printf '\377\000\211\377\331'; } >c/$photo
+fine jpeg-with-coded-ff-at-its-end - c $L
+same 'a coded FF before the end marker is not a cut' photo.exr jpeg-with-coded-ff-at-its-end.exr
 for f in png tif exr; do
     "$sphere" f --size 24 --lights 10 --format $f
     one=f/view00/light0003.$f
@@ -124,7 +127,7 @@ fine png-named-jpg - c $L
 fine png-named-png - wrap $L
 same 'PNG data in .jpg files' png-named-jpg.exr png-named-png.exr
 # CMYK: no black, half cyan, no magenta, full yellow is rgb codes 128 255 0, linear .216 1 0
-fresh good c; "$mkimage" cmyk c/view00/light0003.jpg 24 24 127 0 255 0
+fresh photo c; "$mkimage" cmyk c/view00/light0003.jpg 24 24 127 0 255 0
 fine cmyk - c $L
 "$mkimage" read c/view00/light0003.jpg 5 5 >cmyk.txt
 above 'CMYK: half of red' "$(cut -d' ' -f1 cmyk.txt)" 0.20
@@ -143,7 +146,7 @@ fine lp-order - c/dirs.lp $L
 above 'names decide: other order, same quality' "$(field psnr_db a.json)" "$(field psnr_db b.json | awk '{ print $1 - 0.01 }')"
 # ... and with the manifest's order restored the file is the same, bit for bit
 fresh good c; i=0; mkdir c/shuffled
-while [ $i -lt 10 ]; do mv c/view00/light000$i.jpg c/shuffled/light000$i.jpg; i=$((i + 1)); done
+while [ $i -lt 10 ]; do mv c/view00/light000$i.png c/shuffled/light000$i.png; i=$((i + 1)); done
 rm -r c/view00; mv c/shuffled/* c/; rmdir c/shuffled
 fine lp-base-names - c/dirs.lp $L
 same 'base names are found in the folder' good-lp.exr lp-base-names.exr
@@ -153,8 +156,8 @@ same 'absolute Windows paths in another case' good-lp.exr lp-windows.exr
 sed 's|view00/light|no/such/name|' good/dirs.lp >c/dirs.lp
 fine lp-unknown 'warning.*order of their names' c/dirs.lp $L
 same 'all names unknown, counts agree: order of names' good-lp.exr lp-unknown.exr
-rm c/light0009.jpg
-bad 'all names unknown, counts differ' "dirs.lp: image 'no/such/name0000.jpg' does not exist" c/dirs.lp
+rm c/light0009.png
+bad 'all names unknown, counts differ' "dirs.lp: image 'no/such/name0000.png' does not exist" c/dirs.lp
 lp <<E
 $(echo 12; body)
 E

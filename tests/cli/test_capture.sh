@@ -5,8 +5,8 @@
 capture() { "$RELUME" capture "$@" 2>err.txt || not_ok "relume capture" "$(cat err.txt)"; }
 
 # a matte sphere of radius 0.45 in the middle of a window 2 wide: 21.6 pixels
-"$sphere" ball --size 96 --lights 12 --hemisphere --shade lambert --format jpg || exit 1
-mkdir photos && mv ball/view00/*.jpg photos/ 2>/dev/null || mv ball/*.jpg photos/
+"$sphere" ball --size 96 --lights 12 --hemisphere --shade lambert --format png || exit 1
+mkdir photos && mv ball/view00/*.png photos/ 2>/dev/null || mv ball/*.png photos/
 sed -n 's/^ *\[\([-0-9.e, ]*\)\],\{0,1\}$/\1/p' ball/capture.json | tr -d ',' | head -n 12 >lights.txt
 check 'the sphere tells its lights' test "$(wc -l <lights.txt)" -eq 12
 angles() { # capture folder: RMS angle between lights.lp and lights.txt, degrees
@@ -73,12 +73,12 @@ head -n 11 lights.txt >few.txt
 bad 'too few lights' 'few.txt: 11 lights; expected 12' photos --lights few.txt
 bad 'no photographs' 'nowhere1' nowhere1 nowhere2 nowhere3 --lights lights.txt
 fresh photos mixed
-head -c 600 photos/*0004.jpg >mixed/"$(basename photos/*0004.jpg)"
-bad 'a broken photograph' 'mixed/.*0004.jpg' mixed --lights lights.txt
+head -c 600 photos/*0004.png >mixed/"$(basename photos/*0004.png)"
+bad 'a broken photograph' 'mixed/.*0004.png' mixed --lights lights.txt
 fresh photos sizes
-"$sphere" small --size 32 --lights 3 --hemisphere --format jpg
-cp "$(find small -name "*0001.jpg")" sizes/"$(basename photos/*0003.jpg)"
-bad 'another size' 'sizes/.*0003.jpg: 32 x 32 pixels; expected 96 x 96' sizes --lights lights.txt
+"$sphere" small --size 32 --lights 3 --hemisphere --format png
+cp "$(find small -name "*0001.png")" sizes/"$(basename photos/*0003.png)"
+bad 'another size' 'sizes/.*0003.png: 32 x 32 pixels; expected 96 x 96' sizes --lights lights.txt
 sed -n '1,$s/^[-0-9.e]* [-0-9.e]*/0.3 0/p' lights.txt >plane.txt
 expect_ok 'lights in one plane' 'one plane' "$RELUME" capture photos --lights plane.txt -o out
 rm -rf out

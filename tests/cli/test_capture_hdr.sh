@@ -8,41 +8,41 @@ number() { sed -n "s/.*\"$1\": \{0,1\}\([-0-9.e+]*\).*/\1/p" "$2"; } # every val
 # ---- a steady camera: radiance within 2 %, of which noise makes 0.9 %
 "$shoot" truth truth.exr 160 120
 printf '1\n4 # the longest\n1/4\n' >times.txt
-"$shoot" photo a.ppm 160 120 1 0 0 0 0.5
-"$shoot" photo b.ppm 160 120 4 0 0 0 0.5
-"$shoot" photo c.ppm 160 120 0.25 0 0 0 0.5
-expect_ok 'three exposures' - "$RELUME" capture --hdr a.ppm b.ppm c.ppm --times times.txt -o out.exr --save-response curve.txt
+"$shoot" photo a.png 160 120 1 0 0 0 0.5
+"$shoot" photo b.png 160 120 4 0 0 0 0.5
+"$shoot" photo c.png 160 120 0.25 0 0 0 0.5
+expect_ok 'three exposures' - "$RELUME" capture --hdr a.png b.png c.png --times times.txt -o out.exr --save-response curve.txt
 below 'radiance within 2 %' "$("$shoot" logrms out.exr truth.exr 0)" 0.02
-check 'a table is printed' grep -q '^b.ppm .* 4 ' out.txt
+check 'a table is printed' grep -q '^b.png .* 4 ' out.txt
 check 'the curve is monotone' awk 'NR > 2 { if ($2 < r || $3 < g || $4 < b) exit 1; r = $2; g = $3; b = $4 }' curve.txt
-expect_ok 'by the curve that was found' - "$RELUME" capture --hdr a.ppm b.ppm c.ppm --times times.txt -o again.exr --response curve.txt
+expect_ok 'by the curve that was found' - "$RELUME" capture --hdr a.png b.png c.png --times times.txt -o again.exr --response curve.txt
 same 'the same bytes' out.exr again.exr
-expect_ok 'on three threads' - "$RELUME" capture --hdr a.ppm b.ppm c.ppm --times times.txt -o again.exr --align blocks --ghosts --threads 3
-expect_ok 'on one' - "$RELUME" capture --hdr a.ppm b.ppm c.ppm --times times.txt -o one.exr --align blocks --ghosts --threads 1
+expect_ok 'on three threads' - "$RELUME" capture --hdr a.png b.png c.png --times times.txt -o again.exr --align blocks --ghosts --threads 3
+expect_ok 'on one' - "$RELUME" capture --hdr a.png b.png c.png --times times.txt -o one.exr --align blocks --ghosts --threads 1
 same 'equal bytes for any threads' again.exr one.exr
-expect_ok 'a grey region' - "$RELUME" capture --hdr a.ppm b.ppm c.ppm --times times.txt -o out.exr --white 10,10,20,20
-mkdir shots && cp a.ppm b.ppm c.ppm shots && cp a.ppm shots/d.ppm && cp b.ppm shots/e.ppm && cp c.ppm shots/f.ppm
+expect_ok 'a grey region' - "$RELUME" capture --hdr a.png b.png c.png --times times.txt -o out.exr --white 10,10,20,20
+mkdir shots && cp a.png b.png c.png shots && cp a.png shots/d.png && cp b.png shots/e.png && cp c.png shots/f.png
 expect_ok 'two brackets of a folder' - "$RELUME" capture --hdr shots --times times.txt -o made --json
 same 'one picture each' made/a.exr made/d.exr
 check 'both are reported' test "$(number output out.txt | wc -l)" -eq 2
-printf 'c.ppm 0.25\nb.ppm 4s\na.ppm 1\n' >names.txt
-expect_ok 'times by name' - "$RELUME" capture --hdr a.ppm b.ppm c.ppm --times names.txt -o again.exr --response curve.txt
-expect_ok 'in any order' - "$RELUME" capture --hdr c.ppm a.ppm b.ppm --times names.txt -o one.exr --response curve.txt
+printf 'c.png 0.25\nb.png 4s\na.png 1\n' >names.txt
+expect_ok 'times by name' - "$RELUME" capture --hdr a.png b.png c.png --times names.txt -o again.exr --response curve.txt
+expect_ok 'in any order' - "$RELUME" capture --hdr c.png a.png b.png --times names.txt -o one.exr --response curve.txt
 below 'the same picture' "$("$mkimage" maxdiff again.exr one.exr)" 1e-5 # sums in another order
 
 # ---- held by hand, and something moves
-"$shoot" photo b1.ppm 240 180 4 0 0 0 0.5 130 110 22
-"$shoot" photo c1.ppm 240 180 0.25 -3 -8 7 0.5 170 70 22
-"$shoot" photo a1.ppm 240 180 1 4 9 -6 0.5 90 80 22
+"$shoot" photo b1.png 240 180 4 0 0 0 0.5 130 110 22
+"$shoot" photo c1.png 240 180 0.25 -3 -8 7 0.5 170 70 22
+"$shoot" photo a1.png 240 180 1 4 9 -6 0.5 90 80 22
 "$shoot" truth truth1.exr 240 180
-expect_ok 'blocks' - "$RELUME" capture --hdr a1.ppm b1.ppm c1.ppm --times times.txt -o out.exr --align blocks --ghosts --json
+expect_ok 'blocks' - "$RELUME" capture --hdr a1.png b1.png c1.png --times times.txt -o out.exr --align blocks --ghosts --json
 above 'ghosts are found' "$(number ghosts out.txt | sed -n 1p)" 0.02
-check 'but not in the anchor' grep -q 'b1.ppm.*"ghosts": 0}' out.txt
-"$shoot" photo a2.ppm 240 180 1 4 9 -6 0.5
-"$shoot" photo b2.ppm 240 180 4 0 0 0 0.5
-"$shoot" photo c2.ppm 240 180 0.25 -3 -8 7 0.5
+check 'but not in the anchor' grep -q 'b1.png.*"ghosts": 0}' out.txt
+"$shoot" photo a2.png 240 180 1 4 9 -6 0.5
+"$shoot" photo b2.png 240 180 4 0 0 0 0.5
+"$shoot" photo c2.png 240 180 0.25 -3 -8 7 0.5
 for mode in blocks homography; do
-    expect_ok "$mode, nothing moves" - "$RELUME" capture --hdr a2.ppm b2.ppm c2.ppm --times times.txt -o out.exr --align $mode
+    expect_ok "$mode, nothing moves" - "$RELUME" capture --hdr a2.png b2.png c2.png --times times.txt -o out.exr --align $mode
     below "radiance after $mode" "$("$shoot" logrms out.exr truth1.exr 30)" 0.06 # and interpolation
 done
 
@@ -50,7 +50,7 @@ done
 awk 'BEGIN { print "relume-response 1"; for (i = 0; i < 256; i++) { e = (i / 255) ^ 2.2; printf "%d %.9g %.9g %.9g\n", i, e, e, e } }' >gamma.txt
 for t in gamma.txt gamma:2.2; do
     printf '{"format": "relume-capture", "version": 1, "transfer": "%s", "lights": {"directions": [[0,0,1],[0.5,0,0.8],[0,0.5,0.8]]},
-        "views": [{"images": ["a.ppm", "b.ppm", "c.ppm"]}]}' $t >capture.json
+        "views": [{"images": ["a.png", "b.png", "c.png"]}]}' $t >capture.json
     expect_ok "a capture coded by $t" - "$RELUME" encode capture.json -o "$t.exr" --basis table --domain linear --bits half
     "$RELUME" relight "$t.exr" -o "relit-$t.exr" --light 'dir 0.5 0 0.8' 2>err.txt
 done
@@ -65,38 +65,38 @@ fails() { # name, status, pattern, arguments...
     rm -f out.exr
     expect_fail "$name" "$want" "$pattern" out.exr "$RELUME" capture --hdr "$@" -o out.exr
 }
-fails 'no EXIF' 1 'a.ppm: no exposure time in its EXIF; expected --times' a.ppm b.ppm c.ppm
+fails 'no EXIF' 1 'a.png: no exposure time in its EXIF; expected --times' a.png b.png c.png
 printf '1\n1\n1\n' >ones.txt
-fails 'one exposure only' 1 'a.ppm: all 3 exposures .* two different' a.ppm b.ppm c.ppm --times ones.txt
+fails 'one exposure only' 1 'a.png: all 3 exposures .* two different' a.png b.png c.png --times ones.txt
 printf '4\n1\n1/16\n' >wrong.txt
-fails 'times against the pictures' 1 'a.ppm: darker than b.ppm though' a.ppm b.ppm c.ppm --times wrong.txt
-fails 'too few times' 1 'times.txt: 3 times; expected one for each of the 2' a.ppm b.ppm --times times.txt
+fails 'times against the pictures' 1 'a.png: darker than b.png though' a.png b.png c.png --times wrong.txt
+fails 'too few times' 1 'times.txt: 3 times; expected one for each of the 2' a.png b.png --times times.txt
 printf '1\nsoon\n1\n' >words.txt
-fails 'times that are none' 1 'words.txt: line 2; expected' a.ppm b.ppm c.ppm --times words.txt
-"$shoot" photo white.ppm 160 120 900 0 0 0 0
-"$shoot" photo whiter.ppm 160 120 1900 0 0 0 0
+fails 'times that are none' 1 'words.txt: line 2; expected' a.png b.png c.png --times words.txt
+"$shoot" photo white.png 160 120 900 0 0 0 0
+"$shoot" photo whiter.png 160 120 1900 0 0 0 0
 printf '1\n2\n' >two.txt
-fails 'all saturated' 1 'white.ppm: .*saturated' white.ppm whiter.ppm --times two.txt
-"$shoot" photo other.ppm 160 120 1 0 9000 700 0.5
+fails 'all saturated' 1 'white.png: .*saturated' white.png whiter.png --times two.txt
+"$shoot" photo other.png 160 120 1 0 9000 700 0.5
 printf '1\n4\n1/4\n1/2\n' >four.txt
-fails 'another scene' 1 'other.ppm: another scene' a.ppm b.ppm c.ppm other.ppm --times four.txt
-expect_ok 'it can be left out' 'warning: other.ppm: another scene .*left out' "$RELUME" capture --hdr a.ppm b.ppm c.ppm other.ppm --times four.txt -o out.exr --skip-bad
+fails 'another scene' 1 'other.png: another scene' a.png b.png c.png other.png --times four.txt
+expect_ok 'it can be left out' 'warning: other.png: another scene .*left out' "$RELUME" capture --hdr a.png b.png c.png other.png --times four.txt -o out.exr --skip-bad
 below 'and the others are merged' "$("$shoot" logrms out.exr truth.exr 0)" 0.02
-head -c 9000 a.ppm >torn.ppm
-fails 'a torn file' 1 'torn.ppm: ' a.ppm b.ppm torn.ppm c.ppm --times four.txt
-printf 'a.ppm 1\nb.ppm 4\ntorn.ppm 1/2\nc.ppm 1/4\n' >torn.txt
-expect_ok 'left out as well' 'warning: torn.ppm: ' "$RELUME" capture --hdr a.ppm b.ppm torn.ppm c.ppm --times torn.txt -o again.exr --skip-bad --response curve.txt
-fails 'without alignment it is another scene' 1 '[abc]2.ppm: another scene .* not aligned' a2.ppm b2.ppm c2.ppm --times times.txt
-fails 'other sizes' 1 'b1.ppm: 240 x 180 pixels; expected 160 x 120' a.ppm b1.ppm c.ppm --times times.txt
+head -c 9000 a.png >torn.png
+fails 'a torn file' 1 'torn.png: ' a.png b.png torn.png c.png --times four.txt
+printf 'a.png 1\nb.png 4\ntorn.png 1/2\nc.png 1/4\n' >torn.txt
+expect_ok 'left out as well' 'warning: torn.png: ' "$RELUME" capture --hdr a.png b.png torn.png c.png --times torn.txt -o again.exr --skip-bad --response curve.txt
+fails 'without alignment it is another scene' 1 '[abc]2.png: another scene .* not aligned' a2.png b2.png c2.png --times times.txt
+fails 'other sizes' 1 'b1.png: 240 x 180 pixels; expected 160 x 120' a.png b1.png c.png --times times.txt
 head -c 5000 /dev/zero >photo.nef
-fails 'RAW that cannot be read' 1 'photo.nef: a RAW photograph' a.ppm b.ppm photo.nef --times times.txt
+fails 'RAW that cannot be read' 1 'photo.nef: a RAW photograph' a.png b.png photo.nef --times times.txt
 "$mkimage" poke truth.exr nan.exr 3 4 nan
 fails 'NaN' 1 'nan.exr: holds NaN' truth.exr nan.exr truth.exr --times times.txt
-fails 'a curve that is none' 1 'times.txt: not a response-curve' a.ppm b.ppm c.ppm --times times.txt --response times.txt
-fails 'unknown weights' 2 "did you mean 'hat'" a.ppm b.ppm --times times.txt --weights hut
-fails 'unknown alignment' 2 "did you mean 'blocks'" a.ppm b.ppm --times times.txt --align block
-fails 'a region outside' 2 'white: .*expected it inside' a.ppm b.ppm c.ppm --times times.txt --white 150,0,20,20
-fails 'a flat field of another size' 1 'a1.ppm: .*expected 160 x 120' a.ppm b.ppm c.ppm --times times.txt --flat a1.ppm
+fails 'a curve that is none' 1 'times.txt: not a response-curve' a.png b.png c.png --times times.txt --response times.txt
+fails 'unknown weights' 2 "did you mean 'hat'" a.png b.png --times times.txt --weights hut
+fails 'unknown alignment' 2 "did you mean 'blocks'" a.png b.png --times times.txt --align block
+fails 'a region outside' 2 'white: .*expected it inside' a.png b.png c.png --times times.txt --white 150,0,20,20
+fails 'a flat field of another size' 1 'a1.png: .*expected 160 x 120' a.png b.png c.png --times times.txt --flat a1.png
 
 # ---- the memorial church (Debevec, Malik 1997)
 memorial=${RELUME_DATA:-$TOP/../shared/data}/hdr-memorial-brackets

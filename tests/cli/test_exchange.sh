@@ -6,12 +6,14 @@ decoder="$TOP/tests/tools/relight_decode.py" python=
 for p in python3 /usr/bin/python3; do
     [ "$python" ] || ! "$p" -c 'import numpy, PIL' 2>/dev/null || python=$p
 done
-codes_apart() { # picture, picture: largest difference in 8-bit codes
-    "$python" -c "
-import sys, numpy as np
-from PIL import Image
-a, b = (np.asarray(Image.open(f).convert('RGB'), int) for f in sys.argv[1:])
-print(abs(a - b).max())" "$1" "$2"
+if [ "$python" ]; then # one for all questions: most of a start is loading NumPy
+    mkfifo asked answered
+    "$python" "$decoder" --serve <asked >answered &
+    exec 3>asked 4<answered
+fi
+decoder() { # arguments: what the independent decoder answers
+    echo "$@" >&3
+    read -r answer <&4 && echo "$answer"
 }
 decoded_alike() { # name, file of another format, relume file of it
     if [ -z "$python" ]; then
@@ -20,9 +22,8 @@ decoded_alike() { # name, file of another format, relume file of it
     fi
     light="-0.6 0.2 0.5"
     relume relight "$3" -o a.png --light "dir $light"
-    "$python" "$decoder" "$2" $light b.png
     # both round the same sum, in single and in double precision
-    below "$1, light $light" "$(codes_apart a.png b.png)" 1
+    below "$1, light $light" "$(decoder --apart "$2" $light a.png)" 1
 }
 psnr() { # relume file, relume file: under one light
     relume relight "$1" -o a.png --light 'dir 0.4 0.3 0.8'
@@ -61,7 +62,7 @@ for kind in ptm lptm; do
         skip "$kind: predicted planes" 'no python3 with numpy and Pillow'
         continue
     fi
-    "$python" "$decoder" --predict $kind.ptm predicted.ptm >counts.txt
+    decoder --predict $kind.ptm predicted.ptm >counts.txt
     above "$kind: planes predicted by inversion" "$(cut -d ' ' -f 1 counts.txt)" 1
     above "$kind: planes with side information" "$(cut -d ' ' -f 2 counts.txt)" 1
     relume import predicted.ptm -o predicted.exr
@@ -80,7 +81,7 @@ for kind in ptm lptm; do
         decoded_alike "$file: an independent decoder" $file jpeg.exr
     done
     [ -z "$python" ] && continue
-    "$python" "$decoder" --planes $file $kind.ptm >counts.txt
+    decoder --planes $file $kind.ptm >counts.txt
     read -r predicted inverted recorded wrapped progressive off <counts.txt
     above "$kind: predicted planes are written" "$predicted" 3
     below "$kind: no pixel leaves a byte without a record, all planes are baseline" $((wrapped + progressive)) 0

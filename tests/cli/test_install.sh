@@ -58,9 +58,9 @@ fi
 
 # ---------------------------------------------------------------- without its module
 mkdir alone && cp "$RELUME" alone/
-check "a tool without its module reads relume files" alone/relume info box.exr
-expect_fail "a tool without its module says so" 3 'module for image formats cannot be loaded' none.png \
-    alone/relume relight box.exr -o none.png
+check "a tool without its module shows relume files" alone/relume relight box.exr -o alone.png
+expect_fail "a tool without its module says so" 3 'module for image formats cannot be loaded' none.jpg \
+    alone/relume relight box.exr -o none.jpg
 
 # ---------------------------------------------------------------- headers
 for header in "$prefix"/include/relume/*.h; do

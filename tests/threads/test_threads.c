@@ -26,19 +26,6 @@ static int teardown(void **state)
     return 0;
 }
 
-static char *whole_file(const char *path, size_t *size)
-{
-    FILE *f = fopen(path, "rb");
-    assert_non_null(f);
-    fseek(f, 0, SEEK_END);
-    *size = (size_t)ftell(f);
-    rewind(f);
-    char *bytes = malloc(*size);
-    assert_int_equal(fread(bytes, 1, *size, f), *size);
-    fclose(f);
-    return bytes;
-}
-
 static const int threads[] = {1, 2, 7};
 
 static void test_encode(void **state)
@@ -71,7 +58,7 @@ static void test_encode(void **state)
                 relume_pack_encode_params(.threads = threads[t], .storage = kinds[k].storage,
                                           .compression = kinds[k].compression,
                                           .step = kinds[k].step)));
-            char *bytes = whole_file(path, &size);
+            char *bytes = test_read(path, &size);
             if (!first) {
                 first = bytes;
                 first_size = size;

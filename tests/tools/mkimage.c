@@ -10,6 +10,8 @@
 //   CMYK JPEG of one colour, inks 0 to 255, as Adobe writes it mkimage read IMAGE X Y the linear
 //   value of a pixel mkimage maxdiff A B                    the largest difference, linear mkimage
 //   sum OUT A B                    A + B, as float EXR
+#include "png_crc.h"
+
 #include <relume/relume.h>
 
 #include <math.h>
@@ -91,24 +93,13 @@ static unsigned code(const struct relume_image *image, size_t pixel, int c, int 
 
 // ---------------------------------------------------------------- PNG (stored, not deflated)
 
-static uint32_t crc(const uint8_t *p, size_t n)
-{
-    uint32_t c = ~0u;
-    for (size_t i = 0; i < n; i++) {
-        c ^= p[i];
-        for (int k = 0; k < 8; k++)
-            c = c & 1 ? 0xedb88320u ^ (c >> 1) : c >> 1;
-    }
-    return ~c;
-}
-
 static void put_chunk(struct buffer *b, const char *type, const struct buffer *body)
 {
     put_big(b, (uint32_t)body->size, 4);
     const size_t from = b->size;
     put(b, type, 4);
     put(b, body->data, body->size);
-    put_big(b, crc(b->data + from, b->size - from), 4);
+    put_big(b, png_crc(b->data + from, b->size - from), 4);
 }
 
 static void deflate_stored(struct buffer *out, const struct buffer *raw)

@@ -3,12 +3,14 @@
 the formats: what a viewer shows under one light, as 8-bit codes.
 
     relight_decode.py IN X Y Z OUT.ppm             relight's light weights
+    relight_decode.py --apart IN X Y Z PICTURE      largest difference from a picture, in codes
     relight_decode.py --score FOLDER TEST.lp        mean PSNR over the lights of a .lp, bytes a pixel
     relight_decode.py --predict IN.ptm OUT.ptm      a raw .ptm as JPEG planes that predict each other
     relight_decode.py --planes IN.ptm RAW.ptm       how its JPEG planes are made: how many predicted,
                                                     inverted, with records; pixels that leave a byte
                                                     without a record; planes that are not baseline
                                                     JPEG; largest error, in codes of RAW.ptm
+    relight_decode.py --serve                       arguments line by line from stdin, an answer each
 """
 import io
 import json
@@ -281,13 +283,30 @@ def score(folder, lp):
     print(f"{total / len(lines):.4f} {f.bytes / f.pixels:.5f} {f.c.shape[2]}")
 
 
-def main():
-    commands = {"--score": score, "--predict": predict, "--planes": describe}
-    if sys.argv[1] in commands:
-        commands[sys.argv[1]](sys.argv[2], sys.argv[3])
+def show(path, *light):
+    return codes(open_any(path).render([float(x) for x in light]))
+
+
+def apart(path, x, y, z, picture):
+    want = np.asarray(Image.open(picture).convert("RGB"), int)
+    print(abs(show(path, x, y, z).astype(int) - want).max())
+
+
+def run(arguments):
+    commands = {"--score": score, "--predict": predict, "--planes": describe, "--apart": apart}
+    if arguments[0] in commands:
+        commands[arguments[0]](*arguments[1:])
         return
-    picture = codes(open_any(sys.argv[1]).render([float(x) for x in sys.argv[2:5]]))
-    Image.fromarray(picture).save(sys.argv[5])
+    Image.fromarray(show(*arguments[:4])).save(arguments[4])
+
+
+def main():
+    if sys.argv[1:] != ["--serve"]:
+        run(sys.argv[1:])
+        return
+    for line in sys.stdin:  # so that many questions load NumPy once
+        run(line.split())
+        sys.stdout.flush()
 
 
 if __name__ == "__main__":

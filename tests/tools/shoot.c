@@ -1,13 +1,16 @@
 // shoot.c - pictures of the made camera, and how far a radiance map is from another
 //
-//   shoot photo OUT.ppm W H TIME ROLL DX DY NOISE [X Y RADIUS]   one exposure; a ball at X, Y
+//   shoot photo OUT.png W H TIME ROLL DX DY NOISE [X Y RADIUS]   one exposure; a ball at X, Y
 //   shoot truth OUT.exr W H                                      the radiance that is there
 //   shoot logrms A B BORDER    RMS of ln A / B after one scale, inside of the border, where both
 //   are
 //                              above 0 in all channels
 #include "made_camera.h"
 
+#include "image/picture.h"
+
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 // Where the camera stands: there a quarter of a picture saturates in an exposure of 4.
@@ -29,14 +32,15 @@ static int photo(int argc, char **argv)
         .seed = (uint32_t)(1000.0 * number(argv, argc, 5)),
     };
     struct relume_image image = made_shoot(&s, atoi(argv[3]), atoi(argv[4]));
-    FILE *f = fopen(argv[2], "wb");
-    if (!f)
-        return 1;
-    fprintf(f, "P6\n%d %d\n255\n", image.width, image.height);
-    for (size_t i = 0; i < 3 * (size_t)image.width * (size_t)image.height; i++)
-        fputc((int)lroundf(255.0f * image.data[i]), f);
+    const size_t n = 3 * (size_t)image.width * (size_t)image.height;
+    uint8_t *codes = malloc(n);
+    for (size_t i = 0; codes && i < n; i++)
+        codes[i] = (uint8_t)lroundf(255.0f * image.data[i]);
+    const bool good =
+        codes && !picture_write_bytes(argv[2], image.width, image.height, 3, codes, NULL);
     relume_image_destroy(&image);
-    return fclose(f);
+    free(codes);
+    return !good;
 }
 
 static int truth(char **argv)

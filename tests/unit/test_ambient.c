@@ -1,10 +1,10 @@
 // Environment light on measured materials, against brute force: every cell of the environment as a
 // light of its own.
-#include "test.h"
+#include "made_btf.h"
 
 #include "btf/ambient.h"
 
-enum { SIDE = 3, DIRECTIONS = 19 };
+enum { SIDE = 3 };
 
 // ---------------------------------------------------------------- what is lit
 
@@ -21,29 +21,25 @@ static double white(size_t texel, int c, vec3 v, vec3 l)
     return l.z;
 }
 
+struct made {
+    double (*value)(size_t texel, int c, vec3 v, vec3 l);
+    bool without_cosine;
+};
+
+static void fill(const void *context, vec3 v, vec3 l, float *rgb)
+{
+    const struct made *m = context;
+    for (size_t i = 0; i < 3 * SIDE * SIDE; i++)
+        rgb[i] = (float)(m->value(i / 3, (int)(i % 3), v, l) / (m->without_cosine ? l.z : 1.0));
+}
+
 static relume_btf *make(double (*value)(size_t texel, int c, vec3 v, vec3 l), bool without_cosine)
 {
-    vec3 d[DIRECTIONS];
-    float rgb[3 * SIDE * SIDE];
-    relume_btf_set_directions(relume_btf_set_find("coarse"), d);
-    const struct relume_btf_info info = {.name = "made",
-                                         .width = SIDE,
-                                         .height = SIDE,
-                                         .views = DIRECTIONS,
-                                         .lights = DIRECTIONS,
-                                         .view = d,
-                                         .light = d,
-                                         .without_cosine = without_cosine};
-    relume_btf *btf;
-    CHECK_OK(relume_btf_create(&btf, &info, NULL));
-    for (int v = 0; v < DIRECTIONS; v++)
-        for (int l = 0; l < DIRECTIONS; l++) {
-            for (size_t i = 0; i < 3 * SIDE * SIDE; i++)
-                rgb[i] = (float)(value(i / 3, (int)(i % 3), d[v], d[l]) /
-                                 (without_cosine ? d[l].z : 1.0));
-            relume_btf_store(btf, v, l, rgb);
-        }
-    return btf;
+    return made_btf(&(struct made_btf){.width = SIDE,
+                                       .height = SIDE,
+                                       .without_cosine = without_cosine,
+                                       .fill = fill,
+                                       .context = &(struct made){value, without_cosine}});
 }
 
 static double even(vec3 d, int c)

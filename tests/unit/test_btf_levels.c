@@ -1,10 +1,10 @@
 // Levels of detail of BTFs and of their models: means of values, fitted again.
-#include "test.h"
+#include "made_btf.h"
 
 #include "btf/model.h"
 #include "image/half.h"
 
-enum { WIDTH = 7, HEIGHT = 4, DIRECTIONS = 19 };
+enum { WIDTH = 7, HEIGHT = 4 };
 
 static double value(int x, int y, int c, vec3 v, vec3 l)
 {
@@ -13,38 +13,23 @@ static double value(int x, int y, int c, vec3 v, vec3 l)
 }
 
 static relume_btf *make(int width, int height,
-                        void (*fill)(int v, int l, float *rgb, const vec3 *d))
+                        void (*fill)(const void *context, vec3 v, vec3 l, float *rgb))
 {
-    vec3 d[DIRECTIONS];
-    relume_btf_set_directions(relume_btf_set_find("coarse"), d);
-    const struct relume_btf_info info = {.name = "made",
-                                         .width = width,
-                                         .height = height,
-                                         .views = DIRECTIONS,
-                                         .lights = DIRECTIONS,
-                                         .view = d,
-                                         .light = d};
-    relume_btf *btf;
-    float rgb[3 * WIDTH * HEIGHT];
-    CHECK_OK(relume_btf_create(&btf, &info, NULL));
-    for (int v = 0; v < DIRECTIONS; v++)
-        for (int l = 0; l < DIRECTIONS; l++) {
-            fill(v, l, rgb, d);
-            relume_btf_store(btf, v, l, rgb);
-        }
-    return btf;
+    return made_btf(&(struct made_btf){.width = width, .height = height, .fill = fill});
 }
 
-static void whole(int v, int l, float *rgb, const vec3 *d)
+static void whole(const void *context, vec3 v, vec3 l, float *rgb)
 {
+    (void)context;
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         for (int c = 0; c < 3; c++)
-            rgb[3 * i + c] = (float)value(i % WIDTH, i / WIDTH, c, d[v], d[l]);
+            rgb[3 * i + c] = (float)value(i % WIDTH, i / WIDTH, c, v, l);
 }
 
 // 7 x 4 -> 3 x 2: columns 0 1, 2 3, 4 5 6, written out.
-static void averaged(int v, int l, float *rgb, const vec3 *d)
+static void averaged(const void *context, vec3 v, vec3 l, float *rgb)
 {
+    (void)context;
     static const int first[4] = {0, 2, 4, 7};
     for (int y = 0; y < 2; y++)
         for (int x = 0; x < 3; x++)
@@ -53,8 +38,8 @@ static void averaged(int v, int l, float *rgb, const vec3 *d)
                 for (int i = first[x]; i < first[x + 1]; i++)
                     for (int j = 2 * y; j < 2 * y + 2; j++)
                         // the values that are averaged are halfs
-                        sum += (double)float_from_half(
-                            half_from_float((float)value(i, j, c, d[v], d[l])));
+                        sum +=
+                            (double)float_from_half(half_from_float((float)value(i, j, c, v, l)));
                 rgb[3 * (y * 3 + x) + c] = (float)(sum / (2.0 * (first[x + 1] - first[x])));
             }
 }
@@ -66,8 +51,8 @@ static void test_means(void **state)
     CHECK_OK(relume_btf_halve(&half, btf, NULL));
     assert_int_equal(relume_btf_info(half)->width, 3);
     assert_int_equal(relume_btf_info(half)->height, 2);
-    for (int v = 0; v < DIRECTIONS; v++)
-        for (int l = 0; l < DIRECTIONS; l++)
+    for (int v = 0; v < MADE_DIRECTIONS; v++)
+        for (int l = 0; l < MADE_DIRECTIONS; l++)
             for (int i = 0; i < 18; i++)
                 // one rounding to halfs of values up to 2, either way
                 CHECK_NEAR(float_from_half(relume_btf_picture(half, v, l)[i]),

@@ -1,5 +1,5 @@
 // .ptm and .rti written by hand and read back: every variant against the numbers that went in.
-#include "test.h"
+#include "in_folder.h"
 
 #include "exchange/ptm.h"
 #include "exchange/rti.h"
@@ -60,8 +60,6 @@ static void colour_of(FILE *f, int x, int y)
     for (int c = 0; c < 3; c++)
         fputc(code(6, c, x, y), f);
 }
-
-static char folder[64];
 
 static const char *save(struct text *t, const char *name)
 {
@@ -442,20 +440,6 @@ static void grid_nodes_are_nodes(void **state)
         for (int j = 0; j < 49; j++)
             CHECK_NEAR(v[j], i == j, 1e-12);
     }
-}
-
-static int make_folder(void **state)
-{
-    (void)state;
-    test_folder(folder);
-    return 0;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    test_folder_remove(folder);
-    return 0;
 }
 
 int main(void)

@@ -33,8 +33,11 @@ static double grid_error(const struct learned *l, const relume_weight_grid *grid
 static void test_grid(void **state)
 {
     (void)state;
+    if (TEST_SANITIZED)
+        skip();
     for (const struct relume_basis *const *b = relume_bases; *b; b++)
-        for (int half = (*b)->upper_only; half <= 2; half++) {
+        // sphere, dome about z, about y: where the pole is does not matter to what was learned
+        for (int half = (*b)->upper_only; half <= ((*b)->learned ? 1 : 2); half++) {
             static struct learned l;
             relume_weight_grid *grid;
             uint32_t seed = 3;
@@ -576,6 +579,8 @@ static void teach(struct taught *t, const struct relume_basis *basis, bool book)
 static void test_refit(void **state)
 {
     (void)state;
+    if (TEST_SANITIZED)
+        skip();
     // sh in planes, pca in a codebook
     static const struct relume_basis *const bases[] = {&relume_basis_sh, &relume_basis_pca};
     relume_environment *e = sky();
@@ -641,7 +646,7 @@ static void test_allocations(void **state)
         {.direction = {0, 0, 1}}};
     float points[LEARNED_PIXELS * 3] = {0};
     const struct relume_image surface = {20, LEARNED_PIXELS / 20, 3, points};
-    for (int book = 0; book < 2; book++) {
+    for (int book = TEST_SANITIZED; book < 2; book++) {
         teach(&t, &relume_basis_sh, book);
         t.codes.domain = RELUME_DOMAIN_DISPLAY;
         relume_status status = RELUME_ENOMEM;

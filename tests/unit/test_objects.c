@@ -1,18 +1,8 @@
 // Objects covered with BTFs: tangent frames against their definition, pictures against the sample
 // itself, shadows against geometry; descriptions and meshes that are broken.
-#include <relume/relume.h>
+#include "made_btf.h"
 
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#include <cmocka.h>
-
-enum { TEXELS = 4, DIRECTIONS = 19 };
+enum { TEXELS = 4 };
 static char folder[64], last[512];
 static int warnings;
 
@@ -42,33 +32,29 @@ static void write_text(const char *name, const char *text)
 }
 
 // A sample without symmetry: every texel, view and light shows something else.
+struct shown {
+    bool without_cosine, lambertian;
+};
+
+static void fill(const void *context, struct relume_vec3 v, struct relume_vec3 l, float *rgb)
+{
+    const struct shown *s = context;
+    const double cosine = s->without_cosine ? 1.0 : l.z;
+    for (int i = 0; i < TEXELS * TEXELS * 3; i++) {
+        const double other = 0.5 + 0.2 * l.x + 0.1 * l.y + 0.15 * v.x + 0.05 * v.y + 0.02 * (i % 7);
+        rgb[i] = (float)(cosine * (s->lambertian ? 0.5 : other));
+    }
+}
+
 static void write_sample(const char *name, bool without_cosine, bool lambertian)
 {
-    struct relume_vec3 d[64];
-    relume_btf_set_directions(relume_btf_set_find("coarse"), d);
-    const struct relume_btf_info info = {
-        .name = name,
-        .width = TEXELS,
-        .height = TEXELS,
-        .views = DIRECTIONS,
-        .lights = DIRECTIONS,
-        .view = d,
-        .light = d,
-        .without_cosine = without_cosine,
-    };
-    relume_btf *btf;
-    assert_int_equal(relume_btf_create(&btf, &info, NULL), RELUME_OK);
-    for (int v = 0; v < DIRECTIONS; v++)
-        for (int l = 0; l < DIRECTIONS; l++) {
-            float rgb[TEXELS * TEXELS * 3];
-            for (int i = 0; i < TEXELS * TEXELS * 3; i++) {
-                const double cosine = without_cosine ? 1.0 : d[l].z;
-                const double other = 0.5 + 0.2 * d[l].x + 0.1 * d[l].y + 0.15 * d[v].x +
-                                     0.05 * d[v].y + 0.02 * (i % 7);
-                rgb[i] = (float)(cosine * (lambertian ? 0.5 : other));
-            }
-            relume_btf_store(btf, v, l, rgb);
-        }
+    relume_btf *btf =
+        made_btf(&(struct made_btf){.name = name,
+                                    .width = TEXELS,
+                                    .height = TEXELS,
+                                    .without_cosine = without_cosine,
+                                    .fill = fill,
+                                    .context = &(struct shown){without_cosine, lambertian}});
     assert_int_equal(relume_btf_save(btf, path_of(name), NULL), RELUME_OK);
     relume_btf_destroy(&btf);
 }

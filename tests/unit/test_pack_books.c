@@ -234,19 +234,6 @@ static void test_bad_params(void **state)
     expect(relume_books_params(.codes = 2, .dither = 2.0f), RELUME_EINVAL, "dither");
 }
 
-static void *bytes_of(const char *from, size_t *size)
-{
-    FILE *f = fopen(from, "rb");
-    assert_non_null(f);
-    fseek(f, 0, SEEK_END);
-    *size = (size_t)ftell(f);
-    rewind(f);
-    void *bytes = malloc(*size);
-    assert_int_equal(fread(bytes, 1, *size, f), *size);
-    fclose(f);
-    return bytes;
-}
-
 static void test_threads(void **state)
 {
     (void)state;
@@ -263,7 +250,7 @@ static void test_threads(void **state)
                                           .books = relume_books_params(.codes = 17, .stages = 2,
                                                                        .dither =
                                                                            dither ? 0.7f : 0.0f))));
-            void *bytes = bytes_of(path, &size);
+            void *bytes = test_read(path, &size);
             if (!first) {
                 first = bytes;
                 first_size = size;

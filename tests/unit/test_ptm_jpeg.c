@@ -1,13 +1,11 @@
 // The JPEG forms of .ptm as they are written: what the writer says readers see is what the reader
 // sees, however planes predict each other; records bound the error of every pixel.
-#include "test.h"
+#include "in_folder.h"
 
 #include "exchange/ptm.h"
 #include "exchange/sheet.h"
 
 enum { W = 37, H = 21, PIXELS = W * H };
-
-static char folder[64];
 
 static float wave(int p, int x, int y)
 {
@@ -162,20 +160,6 @@ static void flat_pictures_are_written(void **state)
         free_round(&r);
         foreign_free(&f);
     }
-}
-
-static int make_folder(void **state)
-{
-    (void)state;
-    test_folder(folder);
-    return 0;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    test_folder_remove(folder);
-    return 0;
 }
 
 int main(void)

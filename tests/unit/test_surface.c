@@ -1,39 +1,33 @@
 // Large surfaces: cuts against all cuts, tiles, lookups through maps, files, pictures.
-#include "test.h"
+#include "made_btf.h"
 
 #include "btf/cut.h"
 #include "btf/surface.h"
-
-enum { DIRECTIONS = 19 };
 
 // ---------------------------------------------------------------- samples
 
 typedef double pattern(int x, int y);
 
+struct made {
+    int width, height;
+    pattern *value;
+};
+
+static void fill(const void *context, vec3 v, vec3 l, float *rgb)
+{
+    const struct made *m = context;
+    for (int i = 0; i < m->width * m->height; i++)
+        for (int c = 0; c < 3; c++)
+            rgb[3 * i + c] =
+                (float)(m->value(i % m->width, i / m->width) * (l.z + 0.1 * v.x) * (1.0 - 0.1 * c));
+}
+
 static relume_btf *make(int width, int height, pattern *value)
 {
-    vec3 d[DIRECTIONS];
-    relume_btf_set_directions(relume_btf_set_find("coarse"), d);
-    const struct relume_btf_info info = {.name = "made",
-                                         .width = width,
-                                         .height = height,
-                                         .views = DIRECTIONS,
-                                         .lights = DIRECTIONS,
-                                         .view = d,
-                                         .light = d};
-    relume_btf *btf;
-    CHECK_OK(relume_btf_create(&btf, &info, NULL));
-    float *rgb = malloc(3 * (size_t)width * (size_t)height * sizeof *rgb);
-    for (int v = 0; v < DIRECTIONS; v++)
-        for (int l = 0; l < DIRECTIONS; l++) {
-            for (int i = 0; i < width * height; i++)
-                for (int c = 0; c < 3; c++)
-                    rgb[3 * i + c] = (float)(value(i % width, i / width) * (d[l].z + 0.1 * d[v].x) *
-                                             (1.0 - 0.1 * c));
-            relume_btf_store(btf, v, l, rgb);
-        }
-    free(rgb);
-    return btf;
+    return made_btf(&(struct made_btf){.width = width,
+                                       .height = height,
+                                       .fill = fill,
+                                       .context = &(struct made){width, height, value}});
 }
 
 static relume_btf_fitted *fit(const relume_btf *btf, const char *name, int levels)
@@ -330,7 +324,7 @@ static void test_ambient(void **state)
     // one of the sums that a renderer of its own would make
     const float *w = relume_btf_ambient_weights(a);
     float total = 0.0f;
-    for (int i = 0; i < DIRECTIONS; i++)
+    for (int i = 0; i < MADE_DIRECTIONS; i++)
         total += w[3 * i];
     assert_true(total > 0.0f);
     relume_btf_surface_destroy(&s);

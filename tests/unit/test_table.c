@@ -1,23 +1,7 @@
 // test_table.c - images kept in memory: what a table reads, whether from a file or not
-#include "test.h"
+#include "in_folder.h"
 
 enum { LIGHTS = 3, WIDTH = 20, HEIGHT = 40, BYTES = 3 * WIDTH * HEIGHT };
-
-static char folder[64];
-
-static int setup(void **state)
-{
-    (void)state;
-    test_folder(folder);
-    return 0;
-}
-
-static int teardown(void **state)
-{
-    (void)state;
-    test_folder_remove(folder);
-    return 0;
-}
 
 // Every image flat, its value telling light and version.
 static float value_of(int version, int light)
@@ -176,12 +160,12 @@ static void test_fetched_rows(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_nothing_is_kept, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_fetched_rows, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_all_are_kept, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_budget, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_part_is_not_kept, setup, teardown),
-        cmocka_unit_test_setup_teardown(test_two_tables, setup, teardown),
+        cmocka_unit_test_setup_teardown(test_nothing_is_kept, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(test_fetched_rows, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(test_all_are_kept, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(test_budget, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(test_part_is_not_kept, make_folder, remove_folder),
+        cmocka_unit_test_setup_teardown(test_two_tables, make_folder, remove_folder),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,60 @@
+// picture.h - picture files of every format, row by row
+//
+// EXR and PNG files of the plain kind, which are most, are read by exr.c and png.c; all others by
+// OpenImageIO. That one brings over 200 shared libraries, a third of a second at every start: so
+// the C++ that knows it (oiio.cpp) is a module of its own, librelume-oiio.so, which picture.c opens
+// when the first file asks for it; nobody else notices.
+#ifndef IMAGE_PICTURE_H
+#define IMAGE_PICTURE_H
+
+#include <relume/base.h>
+#include <relume/photograph.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// An open picture file. Thread-safety: one thread at a time.
+typedef struct picture_reader picture_reader;
+
+struct picture_info {
+    int width, height;
+    int x, y;      // where the data window begins
+    int channels;  // as read_* delivers them
+    int rgb[3];    // which channel is red, green, blue; all equal for grey
+    bool bytes;    // 8-bit integers: picture_read_bytes works
+    bool floats;   // floating point: values do not end at 1
+    bool linear;   // float samples, or an integer file that says it is linear
+};
+
+// RELUME_EDATA with a sentence that names the file.
+relume_status picture_open(picture_reader **out, const char *path,
+                           const struct relume_limits *limits, const struct relume_log *log);
+const struct picture_info *picture_info_of(const picture_reader *reader);
+// Code values of `rows` rows from `row` on, out[row][x][channel]: as they are from files of bytes;
+// as floats from all others, integers map to [0, 1]. Rows must be asked for from the top on, once
+// each. No log: threads that read must not speak; picture_error tells.
+relume_status picture_read_floats(picture_reader *reader, int row, int rows, float *out);
+relume_status picture_read_bytes(picture_reader *reader, int row, int rows, uint8_t *out);
+// What the camera noted: all but the profile. The ICC profile, NULL when there is none; belongs to
+// the reader.
+void picture_notes(const picture_reader *reader, struct relume_notes *out);
+const void *picture_profile(const picture_reader *reader, size_t *size);
+// What went wrong last, for a sentence; "" when nothing did. Belongs to the reader.
+const char *picture_error(const picture_reader *reader);
+void picture_close(picture_reader **reader);
+
+// Write interleaved samples, whole or not at all: floats for formats that hold them, else bytes.
+// RELUME_EINVAL for an extension that nobody writes, RELUME_EIO.
+bool picture_writes_floats(const char *path);
+// ".png", in any case.
+bool picture_has_extension(const char *path, const char *extension);
+relume_status picture_write_bytes(const char *path, int width, int height, int channels,
+                                  const uint8_t *samples, const struct relume_log *log);
+relume_status picture_write_floats(const char *path, int width, int height, int channels,
+                                   const float *samples, const struct relume_log *log);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

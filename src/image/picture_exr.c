@@ -1,0 +1,110 @@
+// picture_exr.c - EXR pictures of the plain kind: one part of scanlines, grey or red, green and
+// blue, perhaps with alpha, and nothing noted in the header
+#include "base/memory.h"
+#include "image/exr.h"
+#include "image/half.h"
+#include "image/picture_format.h"
+
+#include <string.h>
+
+struct exr_picture {
+    picture_reader reader;  // first
+    exr_file *file;
+    exr_blocks *blocks;
+    bool half, failed;
+};
+
+static relume_status read_floats(picture_reader *reader, int row, int rows, float *out)
+{
+    struct exr_picture *p = (struct exr_picture *)reader;
+    const size_t n = (size_t)reader->info.channels, width = (size_t)reader->info.width;
+    for (int y = row; y < row + rows; y++) {
+        const void *from = exr_blocks_row(p->blocks, y);
+        p->failed |= !from;
+        if (!from)
+            return RELUME_EDATA;
+        for (size_t c = 0; c < n; c++)
+            for (size_t x = 0; x < width; x++)
+                out[x * n + c] = p->half ? float_from_half(((const uint16_t *)from)[c * width + x])
+                                         : ((const float *)from)[c * width + x];
+        out += n * width;
+    }
+    return RELUME_OK;
+}
+
+static const char *error(const picture_reader *reader)
+{
+    return ((const struct exr_picture *)reader)->failed ? "truncated or damaged" : "";
+}
+
+static void close(picture_reader *reader)
+{
+    struct exr_picture *p = (struct exr_picture *)reader;
+    exr_blocks_close(&p->blocks);
+    exr_close(&p->file);
+    free(p);
+}
+
+static const struct picture_format format = {
+    .read_floats = read_floats, .error = error, .close = close};
+
+// Where red, green and blue are; false for other channels.
+static bool find_colour(int rgb[3], const exr_file *file, int channels)
+{
+    static const char *const names[] = {"A", "B", "G", "R"};
+    if (channels == 1) {
+        rgb[0] = rgb[1] = rgb[2] = 0;
+        return true;
+    }
+    if (channels != 3 && channels != 4)
+        return false;
+    for (int i = 0; i < channels; i++)
+        if (strcmp(exr_channel_name(file, 0, i), names[4 - channels + i]))
+            return false;
+    for (int c = 0; c < 3; c++)
+        rgb[c] = channels - 1 - c;
+    return true;
+}
+
+static bool is_plain(struct picture_info *out, const exr_file *file)
+{
+    const struct exr_part_info info = exr_part_info(file, 0);
+    *out = (struct picture_info){.width = info.width,
+                                 .height = info.height,
+                                 .x = info.x,
+                                 .y = info.y,
+                                 .channels = info.channels,
+                                 .floats = true,
+                                 .linear = true};
+    return exr_part_count(file) == 1 && info.uniform && info.sample != EXR_SAMPLE_UINT &&
+           strcmp(info.codec, "other") && exr_is_plain(file, 0) &&
+           find_colour(out->rgb, file, info.channels);
+}
+
+relume_status exr_picture_open(picture_reader **out, const char *path,
+                               const struct relume_limits *limits)
+{
+    exr_file *file;
+    struct picture_info info;
+    *out = NULL;
+    relume_status status = exr_open(&file, path, limits, NULL);
+    if (status)
+        return status == RELUME_ENOMEM ? status : RELUME_OK;
+    if (!is_plain(&info, file)) {
+        exr_close(&file);
+        return RELUME_OK;
+    }
+    struct exr_picture *p = mem_zeroed(1, sizeof *p);
+    if (p)
+        status = exr_blocks_open(&p->blocks, file, 0);
+    if (!p || status) {
+        free(p);
+        exr_close(&file);
+        return RELUME_ENOMEM;
+    }
+    p->reader = (picture_reader){&format, info};
+    p->file = file;
+    p->half = exr_part_info(file, 0).sample == EXR_SAMPLE_HALF;
+    *out = &p->reader;
+    return RELUME_OK;
+}

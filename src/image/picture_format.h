@@ -1,0 +1,59 @@
+// picture_format.h - what a reader of picture files is made of
+#ifndef IMAGE_PICTURE_FORMAT_H
+#define IMAGE_PICTURE_FORMAT_H
+
+#include "image/picture.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// The functions of picture.h for one kind of files; only those that can be called.
+struct picture_format {
+    relume_status (*read_floats)(picture_reader *reader, int row, int rows, float *out);
+    relume_status (*read_bytes)(picture_reader *reader, int row, int rows, uint8_t *out);
+    // NULL: the file says nothing. `out` holds what the reader's `info` tells.
+    void (*notes)(const picture_reader *reader, struct relume_notes *out);
+    const void *(*profile)(const picture_reader *reader, size_t *size);
+    const char *(*error)(const picture_reader *reader);
+    void (*close)(picture_reader *reader);
+};
+
+// What every reader begins with.
+struct picture_reader {
+    const struct picture_format *format;
+    struct picture_info info;
+};
+
+// `*out` is NULL with RELUME_OK where the file is not of the plain kind: broken ones are not, and
+// what is wrong with them is for the module to say. RELUME_ENOMEM.
+relume_status exr_picture_open(picture_reader **out, const char *path,
+                               const struct relume_limits *limits);
+relume_status png_picture_open(picture_reader **out, const char *path,
+                               const struct relume_limits *limits);
+
+// RELUME_EIO, RELUME_ENOMEM.
+relume_status png_write(const char *path, int width, int height, int channels,
+                        const uint8_t *samples, const struct relume_log *log);
+
+typedef relume_status picture_save(const char *path, const void *bytes, size_t size,
+                                   const struct relume_log *log);
+
+// What the module exports, as `relume_oiio_bridge`.
+struct oiio_bridge {
+    const char *version;  // RELUME_VERSION of its build; another one's is not used
+    relume_status (*open)(picture_reader **out, const char *path,
+                          const struct relume_limits *limits, const struct relume_log *log);
+    // `save` is the library's own outfile_save.
+    relume_status (*write_bytes)(const char *path, int width, int height, int channels,
+                                 const uint8_t *samples, picture_save *save,
+                                 const struct relume_log *log);
+    relume_status (*write_floats)(const char *path, int width, int height, int channels,
+                                  const float *samples, picture_save *save,
+                                  const struct relume_log *log);
+};
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,42 @@
+// made_btf.h - a BTF of the coarse set of directions, of pictures that a test makes
+#ifndef MADE_BTF_H
+#define MADE_BTF_H
+
+#include "test.h"
+
+enum { MADE_DIRECTIONS = 19 };
+
+struct made_btf {
+    const char *name;  // NULL: "made"
+    int width, height;
+    bool without_cosine;
+    // Picture [height][width][3] of the view `v` and the light `l`; `context` is the caller's.
+    void (*fill)(const void *context, struct relume_vec3 v, struct relume_vec3 l, float *rgb);
+    const void *context;
+};
+
+static inline relume_btf *made_btf(const struct made_btf *m)
+{
+    struct relume_vec3 d[MADE_DIRECTIONS];
+    relume_btf_set_directions(relume_btf_set_find("coarse"), d);
+    const struct relume_btf_info info = {.name = m->name ? m->name : "made",
+                                         .width = m->width,
+                                         .height = m->height,
+                                         .views = MADE_DIRECTIONS,
+                                         .lights = MADE_DIRECTIONS,
+                                         .view = d,
+                                         .light = d,
+                                         .without_cosine = m->without_cosine};
+    relume_btf *btf;
+    CHECK_OK(relume_btf_create(&btf, &info, NULL));
+    float *rgb = malloc(3 * (size_t)m->width * (size_t)m->height * sizeof *rgb);
+    for (int v = 0; v < MADE_DIRECTIONS; v++)
+        for (int l = 0; l < MADE_DIRECTIONS; l++) {
+            m->fill(m->context, d[v], d[l], rgb);
+            relume_btf_store(btf, v, l, rgb);
+        }
+    free(rgb);
+    return btf;
+}
+
+#endif

@@ -268,13 +268,15 @@ static relume_status name_outliers(struct shoot *s)
     qsort(sorted, (size_t)p->lights, sizeof *sorted, ascending);
     const double usual = sorted[p->lights / 2];
     relume_status status = RELUME_OK;
-    for (int i = 0; i < p->lights && !status; i++)
-        if (p->light_residual[i] > fmax(OUTLIER * usual, CONTRADICTION))
+    for (int i = 0; i < p->lights && !status; i++) {
+        s->out->photo[i].outlier = p->light_residual[i] > fmax(OUTLIER * usual, CONTRADICTION);
+        if (s->out->photo[i].outlier)
             status = shoot_warn(s,
                                 "%s: contradicts the others and its light: matte surfaces miss by "
                                 "%.2f of their albedo, usual are %.2f; damaged, moved, or a lamp "
                                 "elsewhere or of another brightness (--refine-lights)?",
                                 s->shot[i].path, p->light_residual[i], usual);
+    }
     free(sorted);
     return status;
 }

@@ -1,6 +1,7 @@
 // shoot.c - pictures of the made camera, and how far a radiance map is from another
 //
-//   shoot photo OUT.ppm W H TIME ROLL DX DY NOISE [X Y RADIUS]   one exposure; a ball at X, Y
+//   shoot photo OUT W H TIME ROLL DX DY NOISE [X Y RADIUS]       one exposure; a ball at X, Y;
+//                                                                OUT.jpg, else a PPM
 //   shoot truth OUT.exr W H                                      the radiance that is there
 //   shoot logrms A B BORDER    RMS of ln A / B after one scale, inside of the border, where both
 //   are
@@ -29,6 +30,15 @@ static int photo(int argc, char **argv)
         .seed = (uint32_t)(1000.0 * number(argv, argc, 5)),
     };
     struct relume_image image = made_shoot(&s, atoi(argv[3]), atoi(argv[4]));
+    const char *dot = strrchr(argv[2], '.');
+    if (dot && !strcmp(dot, ".jpg")) {
+        const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+        for (size_t i = 0; i < 3 * (size_t)image.width * (size_t)image.height; i++)
+            image.data[i] = relume_transfer_decode(srgb, image.data[i]);
+        const int failed = relume_image_save(&image, argv[2], NULL);
+        relume_image_destroy(&image);
+        return failed;
+    }
     FILE *f = fopen(argv[2], "wb");
     if (!f)
         return 1;

@@ -13,7 +13,7 @@ timed() { # name, command...
     for run in 1 2 3; do
         rm -rf out*
         printf '%-24s run %d  ' "$name" "$run"
-        { time -p "$@" >log.txt 2>&1; } 2>&1 | awk '{ printf "%s %6.2f  ", $1, $2 } END { print "" }'
+        { time -p sh -c '"$@" >log.txt 2>&1' - "$@"; } 2>&1 | awk '{ printf "%s %6.2f  ", $1, $2 } END { print "" }'
     done
 }
 shoot="$build/tests/tools/shoot"

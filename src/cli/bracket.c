@@ -261,10 +261,14 @@ static void report_bias(const struct bracket *b, const struct args *args)
 {
     char text[1024];
     int worst = 0, wrong = 0;
-    for (int i = 0; i < b->n; i++) {
-        wrong += fabs(b->report[i].bias_ev) > clear_bias_ev;
-        if (fabs(b->report[i].bias_ev) > fabs(b->report[worst].bias_ev))
+    double most = clear_bias_ev;
+    for (int i = 0; i < b->n; i++) {  // no bias is known of what nothing overlaps: NaN
+        const double bias = fabs(b->report[i].bias_ev);
+        wrong += bias > clear_bias_ev;
+        if (bias > most) {
+            most = bias;
             worst = i;
+        }
     }
     if (!wrong)
         return;

@@ -15,10 +15,11 @@ struct photographs {
 static void begin(struct photographs *p)
 {
     *p = (struct photographs){.params = {.photographs = p->list, .photograph_count = LAMPS}};
-    test_folder(p->folder);
-    snprintf(p->out, sizeof p->out, "%s/out", p->folder);
+    char folder[64];
+    memcpy(p->folder, test_folder(folder), sizeof folder);
+    snprintf(p->out, sizeof p->out, "%s/out", folder);
     for (int i = 0; i < LAMPS; i++) {
-        snprintf(p->path[i], sizeof p->path[i], "%.63s/p%d.png", p->folder, i);
+        snprintf(p->path[i], sizeof p->path[i], "%.63s/p%d.png", folder, i);
         p->list[i] = p->path[i];
     }
     test_log_init(&p->log);

@@ -59,7 +59,10 @@ struct relume_shoot_photo {
     float likeness;                  // median to others, relume_likeness; NaN: not measured
     struct relume_ball_light light;  // as the first ball tells it
     double sigma_deg;                // estimated error of the direction, degrees; 0: not known
+    bool outlier;                    // contradicts its light and the others
 };
+
+enum { RELUME_SHOOT_WANTED = 12 };
 
 // What came out. Thread-safety: plain data.
 struct relume_shoot {
@@ -73,6 +76,8 @@ struct relume_shoot {
     int balls;
     double gap_deg;          // of the upper hemisphere: how far the emptiest direction is
     struct relume_vec3 gap;  // from its nearest light, and which that is
+    struct relume_vec3 wanted[RELUME_SHOOT_WANTED];  // where lights should be added, widest gap
+    int wanted_count;                                // first; until none is wider than 40 degrees
     struct relume_photometric photometric;  // normals, albedo; empty where lights do not allow it
     char **warning;                         // [warnings]: sentences, also sent to the log
     int warnings;

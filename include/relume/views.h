@@ -94,6 +94,8 @@ struct relume_panorama_params {
     const char *depth;      // sphere, cylinder: a picture of depth: an EXR of distances, else grey
     double depth_range[2];  // grey: distance of white and of black
     int width;              // stitch: columns of the sphere; default: the photographs' own scale
+    int bands;              // stitch: of blending, [1, 10], each twice as coarse as the one before;
+                            // 1: hard seams; default: up to a sixteenth of a photograph
 };
 #define relume_panorama_params(...) (&(const struct relume_panorama_params){__VA_ARGS__})
 
@@ -101,8 +103,9 @@ struct relume_panorama_params {
 // their names (px nx py ny pz nz, posx ..., right left top bottom back front up down); where no
 // name says so they come in the order +x -x +y -y +z -z. Each face as conventions.md states it.
 // Stitched photographs turn about one point; poses, seams and gains are found in the mean over
-// lights, and every light is warped alike. Needs the module librelume-stitch (OpenCV); without it
-// RELUME_EIO says so. RELUME_EDATA names a photograph that overlaps none.
+// lights, and every light is warped and blended by bands alike (Burt, Adelson 1983). Needs the
+// module librelume-stitch (OpenCV); without it RELUME_EIO says so. RELUME_EDATA names a photograph
+// that overlaps none.
 RELUME_RESULT relume_status relume_panorama_ingest(const char *dir, const char *const *photos,
                                                    int n, enum relume_panorama_source source,
                                                    const struct relume_panorama_params *panorama,

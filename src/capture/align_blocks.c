@@ -3,7 +3,8 @@
 // The scheme of a freehand HDR acquisition: one block of the whole picture is matched, split in
 // four, each quarter starts from the displacements of its surroundings, down to blocks of 16
 // pixels. Every level allows a shift of an eighth of the block's side, so that all levels together
-// follow a roll of atan(2/8) = 14 degrees. Here blocks above 64 pixels are matched on a pyramid
+// follow a roll of atan(2/8) = 14 degrees. Here a roll that has been found is undone and the rest
+// searched for again, blocks above 64 pixels are matched on a pyramid
 // where they have 64 x 64 samples, and the last level is refined below a pixel by a parabola.
 #include <relume/align.h>
 
@@ -270,6 +271,92 @@ static relume_status match_all(struct grid *out, const struct pyramid *anchor,
     return status || grid_median(out) ? status : RELUME_ENOMEM;
 }
 
+// ---------------------------------------------------------------- roll
+
+// Blocks move without turning. Where the picture is rolled, their insides are therefore compared
+// smeared; so the affine map that the first displacements amount to is undone and what remains is
+// searched for again.
+
+static const double notable = 0.05;  // pixels that two neighbours move apart: a roll of 3 degrees
+
+static relume_status make_alike(struct pyramid *out, const struct relume_image *anchor,
+                                const struct relume_image *image, int threads)
+{
+    struct relume_image alike;
+    relume_status status = tones_match(&alike, anchor, image, threads);
+    if (!status)
+        status = sharpened(out, &alike, threads);
+    relume_image_destroy(&alike);
+    return status;
+}
+
+static relume_status match(struct grid *out, const struct pyramid *anchor,
+                           const struct relume_image *image, int block, int threads)
+{
+    struct pyramid b = {0};
+    relume_status status = sharpened(&b, image, threads);
+    if (!status)
+        status = match_all(out, anchor, &b, block, threads);
+    pyramid_free(&b);
+    return status;
+}
+
+// Displacements after `map` become those of both together.
+static void compose(struct grid *grid, const struct relume_homography *map)
+{
+    for (int row = 0; row < grid->count; row++)
+        for (int column = 0; column < grid->count; column++) {
+            struct node *n = grid_node(grid, column, row);
+            const double x = grid->origin[0] + (column + 0.5) * grid->side;
+            const double y = grid->origin[1] + (row + 0.5) * grid->side;
+            const double at[2] = {x + n->d[0], y + n->d[1]};
+            n->d[0] = map->m[0][0] * at[0] + map->m[0][1] * at[1] + map->m[0][2] - x;
+            n->d[1] = map->m[1][0] * at[0] + map->m[1][1] * at[1] + map->m[1][2] - y;
+        }
+}
+
+static relume_status undo_roll(struct grid *grid, const struct pyramid *anchor,
+                               const struct relume_image *image, int block,
+                               const struct relume_align_params *p)
+{
+    struct relume_homography map = {.m = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    struct relume_image upright;
+    if (!grid_affine(map.m, grid) || hypot(map.m[0][1], map.m[1][0]) < sqrt(2.0) * notable)
+        return RELUME_OK;
+    relume_status status = relume_warp_homography(&upright, NULL, image, &map, p);
+    struct grid again = {0};
+    if (!status)
+        status = match(&again, anchor, &upright, block, p->threads);
+    relume_image_destroy(&upright);
+    if (status) {
+        free(again.node);
+        return status;
+    }
+    compose(&again, &map);
+    free(grid->node);
+    *grid = again;
+    return RELUME_OK;
+}
+
+static relume_status hand_out(struct relume_displacements *out, const struct grid *grid, int width,
+                              int height)
+{
+    const size_t nodes = (size_t)grid->count * (size_t)grid->count;
+    out->d = mem_array(nodes, sizeof *out->d);
+    if (!out->d)
+        return RELUME_ENOMEM;
+    out->width = width;
+    out->height = height;
+    out->columns = out->rows = grid->count;
+    out->step = grid->side;
+    for (int k = 0; k < 2; k++)
+        out->origin[k] = grid->origin[k] + 0.5 * grid->side;
+    for (size_t i = 0; i < nodes; i++)
+        for (int k = 0; k < 2; k++)
+            out->d[i][k] = (float)grid->node[i].d[k];
+    return RELUME_OK;
+}
+
 relume_status relume_align_blocks(struct relume_displacements *out,
                                   const struct relume_image *anchor,
                                   const struct relume_image *image,
@@ -284,34 +371,17 @@ relume_status relume_align_blocks(struct relume_displacements *out,
             p.log, RELUME_EINVAL,
             "alignment: expected two pictures of 3 channels and equal sizes, and blocks "
             "of 8, 16, 32 or 64 pixels");
-    struct pyramid a = {0}, b = {0};
+    struct pyramid a = {0};
     struct grid grid = {0};
-    struct relume_image alike;
-    relume_status status = tones_match(&alike, anchor, image, p.threads);
+    relume_status status = make_alike(&a, anchor, image, p.threads);
     if (!status)
-        status = sharpened(&a, &alike, p.threads);
-    relume_image_destroy(&alike);
+        status = match(&grid, &a, image, block, p.threads);
     if (!status)
-        status = sharpened(&b, image, p.threads);
+        status = undo_roll(&grid, &a, image, block, &p);
     if (!status)
-        status = match_all(&grid, &a, &b, block, p.threads);
-    const size_t nodes = (size_t)grid.count * (size_t)grid.count;
-    if (!status && !(out->d = mem_array(nodes, sizeof *out->d)))
-        status = RELUME_ENOMEM;
-    if (!status) {
-        out->width = anchor->width;
-        out->height = anchor->height;
-        out->columns = out->rows = grid.count;
-        out->step = block;
-        for (int k = 0; k < 2; k++)
-            out->origin[k] = grid.origin[k] + 0.5 * block;
-        for (size_t i = 0; i < nodes; i++)
-            for (int k = 0; k < 2; k++)
-                out->d[i][k] = (float)grid.node[i].d[k];
-    }
+        status = hand_out(out, &grid, anchor->width, anchor->height);
     free(grid.node);
     pyramid_free(&a);
-    pyramid_free(&b);
     return status;
 }
 

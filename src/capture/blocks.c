@@ -79,6 +79,46 @@ void grid_fill(struct grid *grid, int threads)
         thread_for(threads, (size_t)grid->count, fill_row, grid);
 }
 
+static double off(const double m[3][3], const double r[3], const struct node *n)
+{
+    return hypot(m[0][0] * r[0] + m[0][1] * r[1] + m[0][2] - r[0] - n->d[0],
+                 m[1][0] * r[0] + m[1][1] * r[1] + m[1][2] - r[1] - n->d[1]);
+}
+
+// Least squares over the trusted, each weighted by how near the last map came to it.
+bool grid_affine(double m[3][3], const struct grid *grid)
+{
+    enum { ROUNDS = 12 };
+    const double near = 2.0;  // pixels
+    double found[3][3] = {{0.0}};
+    for (int round = 0; round < ROUNDS; round++) {
+        double gram[9] = {0.0}, b[2][3] = {{0.0}}, total = 0.0;
+        for (int i = 0; i < grid->count * grid->count; i++) {
+            const struct node *n = &grid->node[i];
+            const double r[3] = {grid->origin[0] + (i % grid->count + 0.5) * grid->side,
+                                 grid->origin[1] + (i / grid->count + 0.5) * grid->side, 1.0};
+            const double miss = round ? off((const double(*)[3])found, r, n) / near : 0.0;
+            const double w = n->trusted ? 1.0 / (1.0 + miss * miss) : 0.0;
+            total += w;
+            for (int k = 0; k < 3; k++) {
+                b[0][k] += w * r[k] * (r[0] + n->d[0]);
+                b[1][k] += w * r[k] * (r[1] + n->d[1]);
+                for (int l = 0; l <= k; l++)
+                    gram[3 * k + l] += w * r[k] * r[l];
+            }
+        }
+        if (total < LEAST_TRUSTED || !lsq_solve(gram, 3, b[0], 2))
+            return false;
+        for (int k = 0; k < 3; k++) {
+            found[0][k] = b[0][k];
+            found[1][k] = b[1][k];
+        }
+    }
+    for (int k = 0; k < 6; k++)
+        m[k / 3][k % 3] = found[k / 3][k % 3];
+    return true;
+}
+
 static double median(double *v, int n)
 {
     for (int i = 1; i < n; i++) {

@@ -23,6 +23,9 @@ void grid_interpolate(const struct grid *grid, double x, double y, double d[2], 
 // Blocks without detail follow the trusted ones around them: an affine map fitted with weights that
 // fall with the distance.
 void grid_fill(struct grid *grid, int threads);
+// The affine map of the plane that trusted nodes amount to, wrong ones left aside: rows 0 and 1 of
+// `m` take a place to where it is displaced. False: too few to tell.
+bool grid_affine(double m[3][3], const struct grid *grid);
 // Each displacement becomes the median of the 3 x 3 around it: single wrong matches vanish, shifts,
 // rolls and edges of motion stay. Returns false when memory is short.
 bool grid_median(struct grid *grid);

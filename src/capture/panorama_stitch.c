@@ -1,15 +1,14 @@
 // panorama_stitch.c - overlapping photographs of one viewpoint become a sphere
 //
-// Poses come from the mean over lights (stitch.h). Every light is then warped alike: a pixel is the
-// weighted mean, in linear light, of the photographs that show its direction. Weights fall to zero
-// towards a photograph's rim, so that no seam shows, and by a power, so that most of the picture is
-// one photograph only; with the gains they are the same for all lights, and sums of lights stay
-// sums.
+// Poses and gains come from the mean over lights (stitch.h). A direction belongs to the photograph
+// that shows it farthest from its rim; every light is then warped alike and blended by bands
+// (blend.h), in linear light, so that sums of lights stay sums.
 #include "capture/panorama.h"
 
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
+#include "capture/blend.h"
 #include "capture/stitch.h"
 #include "math/lsq.h"
 #include "math/vec.h"
@@ -18,8 +17,7 @@
 
 enum { MOST_WIDTH = 16384 };
 static const double pi = 3.14159265358979323846;
-// Power of a photograph's weight; how strongly gains are pulled towards 1.
-static const int weight_power = 3;
+// How strongly gains are pulled towards 1.
 static const double gain_pull = 1e-3;
 
 struct stitching {
@@ -28,10 +26,9 @@ struct stitching {
     struct stitch_picture *picture;  // [n], the mean over lights
     struct stitch_pose *pose;
     double *gain;  // [n]
-    // of one light
-    const struct relume_image *image;
-    int camera;
-    float *sum, *weight;
+    struct blend blend;
+    double *azimuth;                   // [2 * width], sine and cosine of each column
+    const struct relume_image *image;  // a photograph under one light
 };
 
 // ---------------------------------------------------------------- poses
@@ -108,17 +105,22 @@ static relume_status find_poses(struct stitching *s)
 
 // ---------------------------------------------------------------- gains
 
-// Where a camera shows a direction; false: not in its picture.
-static bool project(double xy[2], const struct stitching *s, int camera, vec3 d)
+// Where a camera shows a direction, and how many pixels from its picture's rim: negative beyond.
+static double look(double xy[2], const struct stitching *s, int camera, vec3 d)
 {
     const struct stitch_pose *p = &s->pose[camera];
-    const double z = vec3_dot(d, column(p, 2));
-    if (z <= 1e-3)
-        return false;
-    xy[0] = p->focal * vec3_dot(d, column(p, 0)) / z + p->center[0];
-    xy[1] = p->focal * vec3_dot(d, column(p, 1)) / z + p->center[1];
-    return xy[0] >= 0.0 && xy[1] >= 0.0 && xy[0] <= s->job->set.width - 1 &&
-           xy[1] <= s->job->set.height - 1;
+    const double z = vec3_dot(d, column(p, 2)), ahead = fmax(z, 1e-3);
+    xy[0] = p->focal * vec3_dot(d, column(p, 0)) / ahead + p->center[0];
+    xy[1] = p->focal * vec3_dot(d, column(p, 1)) / ahead + p->center[1];
+    if (z < ahead)
+        return (z - 2.0) * 1e9;
+    return fmin(fmin(xy[0], s->job->set.width - 1 - xy[0]),
+                fmin(xy[1], s->job->set.height - 1 - xy[1]));
+}
+
+static bool project(double xy[2], const struct stitching *s, int camera, vec3 d)
+{
+    return look(xy, s, camera, d) >= 0.0;
 }
 
 // Mean linear grey of 9 x 9 pixels; negative where some are too dark or too bright to tell.
@@ -190,6 +192,36 @@ static relume_status find_gains(struct stitching *s)
 
 // ---------------------------------------------------------------- warping
 
+static vec3 direction(const struct stitching *s, int x, double elevation)
+{
+    const double across = cos(elevation);
+    return vec3_of(across * s->azimuth[2 * x], sin(elevation), -across * s->azimuth[2 * x + 1]);
+}
+
+static double elevation_of(const struct stitching *s, int y)
+{
+    return (0.5 - (y + 0.5) / s->blend.height) * pi;
+}
+
+static void find_owners(void *context, size_t item, int worker)
+{
+    const struct stitching *s = context;
+    const double elevation = elevation_of(s, (int)item);
+    (void)worker;
+    for (int x = 0; x < s->blend.width; x++) {
+        const vec3 d = direction(s, x, elevation);
+        double xy[2], best = -INFINITY;
+        int owner = 0;
+        for (int i = 0; i < s->n; i++) {
+            const double inside = look(xy, s, i, d);
+            owner = inside > best ? i : owner;
+            best = fmax(best, inside);
+        }
+        s->blend.owner[item * (size_t)s->blend.width + (size_t)x] =
+            (uint16_t)(owner | (best < 0.0 ? BLEND_UNSEEN : 0));
+    }
+}
+
 static float bilinear(const struct relume_image *image, const double xy[2], size_t c)
 {
     const int x = (int)xy[0], y = (int)xy[1];
@@ -201,55 +233,77 @@ static float bilinear(const struct relume_image *image, const double xy[2], size
            (p[below] * (1.0f - fx) + p[below + right] * fx) * fy;
 }
 
-// 1 in the middle of a picture, 0 on its rim.
-static float weight_at(const struct stitching *s, const double xy[2])
-{
-    const double w = s->job->set.width, h = s->job->set.height;
-    const double x = 1.0 - fabs(2.0 * (xy[0] + 0.5) / w - 1.0);
-    const double y = 1.0 - fabs(2.0 * (xy[1] + 0.5) / h - 1.0);
-    return (float)pow(x * y, weight_power);
-}
-
-static void warp_row(void *context, size_t item, int worker)
+static void fetch(float *rgba, const void *context, int camera, int x, int y, int n)
 {
     const struct stitching *s = context;
-    const int width = s->job->width;
-    (void)worker;
-    const float gain = (float)s->gain[s->camera];
-    const double elevation = (0.5 - ((double)item + 0.5) / s->job->height) * pi;
-    for (int x = 0; x < width; x++) {
-        const double phi = ((x + 0.5) / width * 2.0 - 1.0) * pi, across = cos(elevation);
+    const double elevation = elevation_of(s, y);
+    const float gain = (float)s->gain[camera];
+    for (int i = 0; i < n; i++) {
         double xy[2];
-        if (!project(xy, s, s->camera,
-                     vec3_of(across * sin(phi), sin(elevation), -across * cos(phi))))
-            continue;
-        const size_t i = item * (size_t)width + (size_t)x;
-        const float w = weight_at(s, xy);
+        look(xy, s, camera, direction(s, (x + i) % s->blend.width, elevation));
+        xy[0] = fmin(fmax(xy[0], 0.0), s->image->width - 1);
+        xy[1] = fmin(fmax(xy[1], 0.0), s->image->height - 1);
         for (size_t c = 0; c < 3; c++)
-            s->sum[3 * i + c] += w * gain * bilinear(s->image, xy, c);
-        s->weight[i] += w;
+            rgba[4 * i + (int)c] = gain * bilinear(s->image, xy, c);
     }
 }
 
 static relume_status warp_light(struct stitching *s, struct relume_image *out, int light)
 {
-    const size_t n = (size_t)out->width * (size_t)out->height;
     relume_status status = RELUME_OK;
-    s->sum = out->data;
-    memset(s->sum, 0, 3 * n * sizeof *s->sum);
-    memset(s->weight, 0, n * sizeof *s->weight);
-    for (s->camera = 0; s->camera < s->n && !status; s->camera++) {
+    memset(out->data, 0, 3 * (size_t)out->width * (size_t)out->height * sizeof *out->data);
+    for (int i = 0; i < s->n && !status; i++) {
         struct relume_image image;
-        status = panorama_load(&image, s->job, s->camera, light);
+        status = panorama_load(&image, s->job, i, light);
         s->image = &image;
         if (!status)
-            thread_for(s->job->common->threads, (size_t)out->height, warp_row, s);
+            status = blend_add(out->data, &s->blend, i, fetch, s, s->job->common->threads);
         relume_image_destroy(&image);
     }
-    for (size_t i = 0; i < n; i++)
-        for (size_t c = 0; c < 3; c++)
-            s->sum[3 * i + c] = s->weight[i] > 0.0f ? s->sum[3 * i + c] / s->weight[i] : 0.0f;
+    if (!status)
+        blend_finish(out->data, &s->blend);
     return status;
+}
+
+// The coarsest band is as smooth as a Gaussian of a sixteenth of a photograph's shorter side, which
+// goes over within an overlap of a quarter.
+static int default_bands(const struct stitching *s)
+{
+    const double side = fmin(s->job->set.width, s->job->set.height) / s->pose[0].focal;
+    const double pixels = side * s->blend.width / (2.0 * pi);
+    return 1 + (int)fmin(fmax(log2(pixels / 16.0), 0.0), BLEND_BANDS - 1);
+}
+
+static relume_status share_out(struct stitching *s)
+{
+    struct blend *b = &s->blend;
+    const size_t width = (size_t)s->job->width, height = (size_t)s->job->height;
+    *b = (struct blend){.width = s->job->width, .height = s->job->height, .pictures = s->n};
+    b->bands = s->job->p->bands ? s->job->p->bands : default_bands(s);
+    b->owner = arena_array(&s->job->set.arena, width * height, sizeof *b->owner);
+    s->azimuth = arena_array(&s->job->set.arena, 2 * width, sizeof *s->azimuth);
+    if (!b->owner || !s->azimuth)
+        return RELUME_ENOMEM;
+    for (size_t x = 0; x < width; x++) {
+        const double phi = (((double)x + 0.5) / (double)width * 2.0 - 1.0) * pi;
+        s->azimuth[2 * x] = sin(phi);
+        s->azimuth[2 * x + 1] = cos(phi);
+    }
+    thread_for(s->job->common->threads, height, find_owners, s);
+    return blend_begin(b);
+}
+
+static void say_coverage(const struct stitching *s)
+{
+    const size_t n = (size_t)s->blend.width * (size_t)s->blend.height;
+    size_t covered = 0;
+    for (size_t i = 0; i < n; i++)
+        covered += !(s->blend.owner[i] & BLEND_UNSEEN);
+    log_line(s->job->common->log, RELUME_NOTE,
+             "%d photographs of %.1f degrees cover %.0f %% of the sphere's picture, blended in %d "
+             "bands; the rest is black",
+             s->n, 360.0 / pi * atan(0.5 * s->job->set.width / s->pose[0].focal),
+             100.0 * (double)covered / (double)n, s->blend.bands);
 }
 
 static relume_status warp_lights(struct stitching *s)
@@ -257,10 +311,8 @@ static relume_status warp_lights(struct stitching *s)
     struct panorama_job *job = s->job;
     struct relume_image out;
     relume_status status = relume_image_create(&out, job->width, job->height, 3);
-    const size_t n = (size_t)job->width * (size_t)job->height;
-    s->weight = mem_array(n, sizeof *s->weight);
-    if (!s->weight)
-        status = RELUME_ENOMEM;
+    if (!status)
+        status = share_out(s);
     for (int k = 0; k < job->set.lights && !status; k++) {
         status = warp_light(s, &out, k);
         if (!status)
@@ -270,17 +322,9 @@ static relume_status warp_lights(struct stitching *s)
         if (!status && !log_progress(job->common->log, "warping", (k + 1.0) / job->set.lights))
             status = RELUME_ECANCEL;
     }
-    size_t covered = 0;
-    for (size_t i = 0; !status && i < n; i++)
-        covered += s->weight[i] > 0.0f;
     if (!status)
-        log_line(
-            job->common->log, RELUME_NOTE,
-            "%d photographs of %.1f degrees cover %.0f %% of the sphere's picture; the rest is "
-            "black",
-            s->n, 360.0 / pi * atan(0.5 * job->set.width / s->pose[0].focal),
-            100.0 * (double)covered / (double)n);
-    free(s->weight);
+        say_coverage(s);
+    free(s->blend.box);
     relume_image_destroy(&out);
     return status;
 }
@@ -311,6 +355,12 @@ relume_status panorama_from_stitch(struct panorama_job *job)
     };
     if (!s.picture || !s.pose || !s.gain)
         return RELUME_ENOMEM;
+    if ((unsigned)job->p->bands > BLEND_BANDS)
+        return log_fail(job->common->log, RELUME_EINVAL,
+                        "blending: expected 1 to %d bands; found %d", BLEND_BANDS, job->p->bands);
+    if (n > BLEND_PICTURES)
+        return log_fail(job->common->log, RELUME_EDATA, "%zu photographs; expected at most %d", n,
+                        BLEND_PICTURES);
     if (n < 2)
         return log_fail(job->common->log, RELUME_EDATA,
                         "%s: a single photograph; expected two or more that overlap",

@@ -39,6 +39,14 @@ struct search {
     int n;
 };
 
+static bool has_masks(const struct search *s)
+{
+    for (int j = 0; s->masks && j < s->n; j++)
+        if (s->masks[j].data)
+            return true;
+    return false;
+}
+
 static bool is_masked(const struct search *s, size_t pixel)
 {
     for (int j = 0; s->masks && j < s->n; j++)
@@ -110,12 +118,30 @@ static double hat(const struct channel *ch, int z)
     return (z < MIDDLE ? z : N - 1 - z) / (double)(MIDDLE - 1);
 }
 
-static bool read_codes(const struct channel *ch, int i)
+// The mean of 3 x 3 pixels.
+static float mean_around(const struct relume_image *codes, size_t pixel, int c)
 {
-    if (ch->place[i].pixel == SIZE_MAX)
+    const ptrdiff_t stride = codes->width;
+    float sum = 0.0f;
+    for (ptrdiff_t y = -1; y <= 1; y++)
+        for (ptrdiff_t x = -1; x <= 1; x++)
+            sum += codes->data[3 * ((ptrdiff_t)pixel + y * stride + x) + c];
+    return sum / 9.0f;
+}
+
+// The codes of place `i`. Smooth: even places lose two thirds of their noise, of which the curve,
+// whose unknowns are chosen by the codes, would keep a part however many places there are. Not
+// where things move: neighbours are not to be trusted, and places may be few.
+static bool read_codes(const struct channel *ch, int i, bool smooth)
+{
+    const size_t pixel = ch->place[i].pixel;
+    if (pixel == SIZE_MAX)
         return false;
-    for (int j = 0; j < ch->s->n; j++)
-        ch->z[j] = code_of(ch->s->codes[j].data[3 * ch->place[i].pixel + (size_t)ch->c]);
+    for (int j = 0; j < ch->s->n; j++) {
+        const struct relume_image *codes = &ch->s->codes[j];
+        ch->z[j] = code_of(smooth ? mean_around(codes, pixel, ch->c)
+                                  : codes->data[3 * pixel + (size_t)ch->c]);
+    }
     return true;
 }
 
@@ -190,12 +216,13 @@ static relume_status solve(double *g, const struct channel *ch, double smoothnes
 {
     static const char *const names[] = {"red", "green", "blue"};
     struct equations e = {.matrix = mem_zeroed((size_t)N * N, sizeof(double)), .right = g};
+    const bool smooth = !has_masks(ch->s);
     int seen = 0;
     if (!e.matrix)
         return RELUME_ENOMEM;
     memset(g, 0, N * sizeof *g);
     for (int i = 0; i < ch->samples; i++)
-        if (read_codes(ch, i))
+        if (read_codes(ch, i, smooth))
             add_sample(&e, ch);
     for (int z = 0; z < N; z++)
         seen += e.has[z];
@@ -239,12 +266,13 @@ static int median(const int count[N])
     return z;
 }
 
-// Scanned film and some cameras lift black: the highest code that says nothing, -1 when black is 0.
+// Scanned film and some cameras lift black: the highest code that says nothing, noise included; -1
+// when black is 0.
 static int find_black(const double *g, const struct channel *ch)
 {
     int count[N] = {0}, distance[N] = {0}, seen = 0;
     for (int i = 0; i < ch->samples; i++) {
-        const double radiance = read_codes(ch, i) ? log_radiance(g, ch) : (double)NAN;
+        const double radiance = read_codes(ch, i, false) ? log_radiance(g, ch) : (double)NAN;
         for (int j = 0; j < ch->s->n; j++)
             if (radiance + ch->log_time[j] < g[MIDDLE] + nothing_ev * log(2.0)) {
                 count[ch->z[j]]++;

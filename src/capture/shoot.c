@@ -9,6 +9,7 @@
 #include <string.h>
 #include <unistd.h>
 
+static const double OUTLIER = 3.0;         // times what photographs usually miss
 static const double CONTRADICTION = 0.10;  // of the albedo; matte scenes with right lights: 0.04
 
 const char *shoot_base_name(const char *path)
@@ -250,16 +251,48 @@ static double mean_miss(const struct relume_photometric *p)
     return sum;
 }
 
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// Photographs that miss far more than most: damaged in a way that no reader sees, taken when
+// something had moved, or under a lamp that is not as it is said to be.
+static relume_status name_outliers(struct shoot *s)
+{
+    const struct relume_photometric *p = &s->out->photometric;
+    double *sorted = mem_copy(p->light_residual, (size_t)p->lights, sizeof *sorted);
+    if (!sorted)
+        return RELUME_ENOMEM;
+    qsort(sorted, (size_t)p->lights, sizeof *sorted, ascending);
+    const double usual = sorted[p->lights / 2];
+    relume_status status = RELUME_OK;
+    for (int i = 0; i < p->lights && !status; i++) {
+        s->out->photo[i].outlier = p->light_residual[i] > fmax(OUTLIER * usual, CONTRADICTION);
+        if (s->out->photo[i].outlier)
+            status = shoot_warn(s,
+                                "%s: contradicts the others and its light: matte surfaces miss by "
+                                "%.2f of their albedo, usual are %.2f; damaged, moved, or a lamp "
+                                "elsewhere or of another brightness (--refine-lights)?",
+                                s->shot[i].path, p->light_residual[i], usual);
+    }
+    free(sorted);
+    return status;
+}
+
 static relume_status fit(struct shoot *s, const relume_capture *capture)
 {
     struct relume_shoot *out = s->out;
-    const relume_status status =
+    relume_status status =
         relume_photometric_fit(&out->photometric, capture, 0,
                                relume_photometric_params(.log = s->p.log, .threads = s->p.threads));
     if (status == RELUME_EDATA)  // the lights do not allow it; that has been said
         return RELUME_OK;
+    if (!status)
+        status = name_outliers(s);
     if (!status && mean_miss(&out->photometric) > CONTRADICTION)
-        return shoot_warn(
+        status = shoot_warn(
             s,
             "the photographs contradict the lights: matte surfaces miss by %.2f of their "
             "albedo; are they in the order of the lights?",

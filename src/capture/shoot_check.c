@@ -126,22 +126,24 @@ static double azimuth(vec3 d)
 
 static relume_status check_coverage(struct shoot *s)
 {
-    enum { MOST = 4 };
+    enum { SAID = 4 };
     struct relume_shoot *out = s->out;
-    vec3 proposed[MOST];
     char places[256] = "";
     size_t at = 0;
     int n = 0;
     out->gap_deg = find_gap(out, NULL, 0, &out->gap);
-    for (; n < MOST && find_gap(out, proposed, n, &proposed[n]) > WIDE_GAP; n++)
-        at += (size_t)snprintf(places + at, sizeof places - at, "%s%.0f/%.0f", n ? ", " : "",
-                               azimuth(proposed[n]), asin(proposed[n].z) * 180.0 / M_PI);
+    while (n < RELUME_SHOOT_WANTED && find_gap(out, out->wanted, n, &out->wanted[n]) > WIDE_GAP)
+        n++;
+    out->wanted_count = n;
+    for (int i = 0; i < n && i < SAID; i++)
+        at += (size_t)snprintf(places + at, sizeof places - at, "%s%.0f/%.0f", i ? ", " : "",
+                               azimuth(out->wanted[i]), asin(out->wanted[i].z) * 180.0 / M_PI);
     if (!n)
         return RELUME_OK;
     return shoot_warn(s,
                       "uneven light: the widest gap is %.0f degrees; lights to add, azimuth from "
                       "the right/elevation: %s%s",
-                      out->gap_deg, places, n == MOST ? ", ..." : "");
+                      out->gap_deg, places, n > SAID ? ", ..." : "");
 }
 
 relume_status shoot_check_lights(struct shoot *s)

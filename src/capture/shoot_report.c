@@ -2,12 +2,10 @@
 #include "capture/shoot.h"
 
 #include "base/memory.h"
-#include "capture/ball.h"
-#include "image/picture.h"
+#include "capture/report_picture.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { THUMB = 168, PLATE = 420 };
 
@@ -19,12 +17,20 @@ struct report {
 };
 
 static const char style[] =
-    "body{font:14px/1.45 sans-serif;max-width:1100px;margin:2em auto;padding:0 1em;color:#222}"
-    "h1{font-size:22px}h2{font-size:17px;margin-top:1.6em}table{border-collapse:collapse}"
-    "td,th{padding:2px 10px;text-align:right}th{border-bottom:1px solid #999}"
-    "td:first-child,th:first-child{text-align:left}.row{display:flex;flex-wrap:wrap;gap:16px}"
-    "figure{margin:0}figcaption{font-size:12px;color:#555}.warn{background:#fff3d6;border-left:4px "
-    "solid #e0a000;padding:4px 10px;margin:4px 0}.good{color:#060}img{display:block}";
+    "body{font:14px/1.5 sans-serif;max-width:1100px;margin:2em auto;padding:0 1em;color:#222}"
+    "h1{font-size:22px}h2{font-size:17px;margin-top:1.8em}"
+    "img,svg{display:block;max-width:100%;height:auto}figure{margin:0;max-width:100%}"
+    "figcaption{font-size:12px;color:#555;max-width:420px}"
+    ".row{display:flex;flex-wrap:wrap;gap:16px}.over{position:relative}"
+    ".over svg{position:absolute;left:0;top:0;width:100%}"
+    ".wide{overflow-x:auto}table{border-collapse:collapse}"
+    "td,th{padding:2px 10px;text-align:right}.wide td,.wide "
+    "th{white-space:nowrap}th{border-bottom:1px solid #999}"
+    "td:first-child,th:first-child{text-align:left}"
+    ".warn{background:#fff3d6;border-left:4px solid #e0a000;padding:4px 10px;margin:4px 0;"
+    "overflow-wrap:anywhere}.good{color:#060}.off td,.off figcaption{color:#b00}"
+    ".sun{position:absolute;right:3px;top:3px;width:34px!important;left:auto!important}"
+    "@media print{body{margin:0}}";
 
 static void put_text(FILE *f, const char *text)
 {
@@ -39,102 +45,11 @@ static void put_text(FILE *f, const char *text)
             fputc(*text, f);
 }
 
-// ---------------------------------------------------------------- pictures
-
-static void put_base64(FILE *f, const uint8_t *p, size_t n)
-{
-    static const char digit[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < n; i += 3) {
-        const unsigned v = (unsigned)p[i] << 16 | (i + 1 < n ? (unsigned)p[i + 1] << 8 : 0u) |
-                           (i + 2 < n ? p[i + 2] : 0u);
-        fputc(digit[v >> 18], f);
-        fputc(digit[v >> 12 & 63], f);
-        fputc(i + 1 < n ? digit[v >> 6 & 63] : '=', f);
-        fputc(i + 2 < n ? digit[v & 63] : '=', f);
-    }
-}
-
-static relume_status put_file(FILE *f, const char *path)
-{
-    uint8_t block[3 * 4096];
-    size_t n;
-    FILE *from = fopen(path, "rb");
-    if (!from)
-        return RELUME_EIO;
-    while ((n = fread(block, 1, sizeof block, from)) > 0)
-        put_base64(f, block, n);
-    fclose(from);
-    return RELUME_OK;
-}
-
-// Coded bytes as a data: URL, through a file of the folder that does not stay.
-static void put_bytes(struct report *r, int width, int height, const uint8_t *bytes)
-{
-    char *path = mem_format("%s/thumbnail.jpg", r->dir);
-    relume_status status =
-        path ? picture_write_bytes(path, width, height, 3, bytes, r->s->p.log) : RELUME_ENOMEM;
-    fprintf(r->f, "<img width=\"%d\" height=\"%d\" src=\"data:image/jpeg;base64,", width, height);
-    if (!status)
-        status = put_file(r->f, path);
-    fputs("\" alt=\"\">", r->f);
-    if (path)
-        unlink(path);
-    free(path);
-    r->status = r->status ? r->status : status;
-}
-
-enum look { LOOK_LIGHT, LOOK_NORMAL };
-
-static float coded(float v, enum look look)
-{
-    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
-    if (look == LOOK_NORMAL)
-        return 0.5f + 0.5f * v;
-    return relume_transfer_encode(srgb, fminf(fmaxf(v, 0.0f), 1.0f));
-}
-
-// `image` made fit into a square of `side`, values times `gain`.
 static void put_picture(struct report *r, const struct relume_image *image, int side, float gain,
-                        enum look look)
+                        enum report_look look)
 {
-    const int most = image->width > image->height ? image->width : image->height;
-    const double step = most > side ? (double)most / side : 1.0;
-    const int w = (int)fmax(image->width / step, 1.0), h = (int)fmax(image->height / step, 1.0);
-    uint8_t *bytes = mem_array((size_t)w * (size_t)h, 3);
-    for (int y = 0; bytes && y < h; y++)
-        for (int x = 0; x < w; x++) {
-            const int x0 = (int)(x * step), y0 = (int)(y * step);
-            const int x1 = (int)fmin((x + 1) * step, image->width),
-                      y1 = (int)fmin((y + 1) * step, image->height);
-            for (int c = 0; c < 3; c++) {
-                float sum = 0.0f;
-                int n = 0;
-                for (int v = y0; v < y1 || v == y0; v++)
-                    for (int u = x0; u < x1 || u == x0; u++, n++)
-                        sum += image->data[((size_t)v * (size_t)image->width + (size_t)u) *
-                                               (size_t)image->channels +
-                                           (size_t)(image->channels == 3 ? c : 0)];
-                const float code = coded(gain * sum / (float)n, look);
-                bytes[3 * ((size_t)y * (size_t)w + (size_t)x) + (size_t)c] =
-                    (uint8_t)(255.0f * fminf(fmaxf(code, 0.0f), 1.0f) + 0.5f);
-            }
-        }
-    if (bytes)
-        put_bytes(r, w, h, bytes);
-    else
-        r->status = RELUME_ENOMEM;
-    free(bytes);
-}
-
-// The gain that makes the brightest of the values about white.
-static float gain_for(const struct relume_image *image)
-{
-    const size_t n = (size_t)image->width * (size_t)image->height * (size_t)image->channels;
-    double sum = 0.0;
-    for (size_t i = 0; i < n; i++)
-        sum += (double)image->data[i] * (double)image->data[i];
-    const float rms = (float)sqrt(sum / (double)n);
-    return rms > 0.0f ? 0.35f / rms : 1.0f;
+    const relume_status status = report_picture(r->f, r->dir, image, side, gain, look, r->s->p.log);
+    r->status = r->status ? r->status : status;
 }
 
 // ---------------------------------------------------------------- parts
@@ -193,12 +108,10 @@ static void put_balls(struct report *r)
         return;
     const int most = mean->width > mean->height ? mean->width : mean->height;
     const double scale = most > PLATE ? (double)PLATE / most : 1.0;
-    fputs("<figure><div style=\"position:relative\">", r->f);
-    put_picture(r, mean, PLATE, 2.0f * gain_for(mean), LOOK_LIGHT);
-    fprintf(r->f,
-            "<svg style=\"position:absolute;left:0;top:0\" width=\"%.0f\" height=\"%.0f\" "
-            "fill=\"none\">",
-            mean->width * scale, mean->height * scale);
+    fputs("<figure><div class=\"over\">", r->f);
+    put_picture(r, mean, PLATE, 2.0f * report_gain(mean), LOOK_LIGHT);
+    fprintf(r->f, "<svg viewBox=\"0 0 %.0f %.0f\" fill=\"none\">", mean->width * scale,
+            mean->height * scale);
     for (int b = 0; b < out->balls; b++)
         fprintf(r->f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\" stroke=\"#3f3\"/>",
                 out->ball[b].x * scale, out->ball[b].y * scale, out->ball[b].radius * scale);
@@ -221,7 +134,7 @@ static void put_sphere(struct report *r)
     fputs("<figure>", r->f);
     fputs(svg, r->f);
     fputs("<figcaption>the lights as seen from the camera; pale discs: twice the estimated error; "
-          "red: the widest gap</figcaption></figure>\n",
+          "red: the widest gap, and where lights should be added</figcaption></figure>\n",
           r->f);
     free(svg);
 }
@@ -234,7 +147,7 @@ static void put_surface(struct report *r)
     fputs("<h2>Surface</h2>\n<div class=\"row\"><figure>", r->f);
     put_picture(r, &p->normal, 320, 1.0f, LOOK_NORMAL);
     fputs("<figcaption>normals</figcaption></figure><figure>", r->f);
-    put_picture(r, &p->albedo, 320, gain_for(&p->albedo), LOOK_LIGHT);
+    put_picture(r, &p->albedo, 320, report_gain(&p->albedo), LOOK_LIGHT);
     fputs("<figcaption>albedo</figcaption></figure><figure>", r->f);
     put_picture(r, &p->error, 320, 10.0f, LOOK_LIGHT);
     fputs("<figcaption>what Lambert's law misses (white: 10 % of the albedo)</figcaption></figure>"
@@ -242,37 +155,82 @@ static void put_surface(struct report *r)
           r->f);
 }
 
+static double miss_of(const struct relume_shoot *out, int i)
+{
+    return out->photometric.light_residual ? out->photometric.light_residual[i] : 0.0;
+}
+
+static double most_missed(const struct relume_shoot *out)
+{
+    double most = 0.0;
+    for (int i = 0; i < out->lights; i++)
+        most = fmax(most, miss_of(out, i));
+    return most;
+}
+
+// The share of 100 % as a bar behind the number.
+static void put_bar(FILE *f, double value, double most)
+{
+    fprintf(f, "<td style=\"background:linear-gradient(to left,#cde %.0f%%,#fff 0)\">%.1f %%</td>",
+            most > 0.0 ? 100.0 * value / most : 0.0, 100.0 * value);
+}
+
+static void put_row(FILE *f, const struct relume_shoot *out, int i, double most)
+{
+    const struct relume_shoot_photo *p = &out->photo[i];
+    const vec3 d = out->position ? out->position[i] : out->direction[i];
+    fprintf(f, "<tr%s><td>%d ", p->outlier ? " class=\"off\"" : "", i);
+    put_text(f, shoot_base_name(p->path));
+    fprintf(f, "</td><td>%.3f</td><td>%.3f</td><td>%.3f</td>", d.x, d.y, d.z);
+    fprintf(f, p->sigma_deg > 0.0 ? "<td>%.2f&#176;</td>" : "<td></td>", p->sigma_deg);
+    fprintf(f, p->light.spread_deg > 0.0 ? "<td>%.1f&#176;</td>" : "<td></td>",
+            p->light.spread_deg);
+    put_bar(f, miss_of(out, i), most);
+    fprintf(f, "<td>%.2f %%</td></tr>\n", 100.0 * (double)p->saturated);
+}
+
 static void put_table(struct report *r)
 {
     const struct relume_shoot *out = r->s->out;
-    FILE *f = r->f;
-    fputs("<h2>Lights</h2>\n<table><tr><th>photograph</th><th>x</th><th>y</th><th>z</th><th>error"
-          "</th><th>lamp's width</th><th>misses</th><th>saturated</th></tr>\n",
-          f);
-    for (int i = 0; i < out->lights; i++) {
-        const struct relume_shoot_photo *p = &out->photo[i];
-        const vec3 d = out->position ? out->position[i] : out->direction[i];
-        fprintf(f, "<tr><td>%d ", i);
-        put_text(f, shoot_base_name(p->path));
-        fprintf(f, "</td><td>%.3f</td><td>%.3f</td><td>%.3f</td>", d.x, d.y, d.z);
-        fprintf(f, p->sigma_deg > 0.0 ? "<td>%.2f&#176;</td>" : "<td></td>", p->sigma_deg);
-        fprintf(f, p->light.spread_deg > 0.0 ? "<td>%.1f&#176;</td>" : "<td></td>",
-                p->light.spread_deg);
-        fprintf(f, "<td>%.1f %%</td><td>%.2f %%</td></tr>\n",
-                out->photometric.light_residual ? 100.0 * out->photometric.light_residual[i] : 0.0,
-                100.0 * (double)p->saturated);
-    }
-    fputs("</table>\n", f);
+    const double most = most_missed(out);
+    fputs("<h2>Lights</h2>\n<div class=\"wide\"><table><tr><th>photograph</th><th>x</th><th>y</th>"
+          "<th>z</th><th>error</th><th>lamp's width</th><th>misses</th><th>saturated</th></tr>\n",
+          r->f);
+    for (int i = 0; i < out->lights; i++)
+        put_row(r->f, out, i, most);
+    fputs("</table></div>\n", r->f);
+}
+
+// Where the light of a photograph stood, for the corner of its thumbnail.
+static void put_sun(FILE *f, vec3 d)
+{
+    fprintf(f,
+            "<svg class=\"sun\" viewBox=\"-10 -10 20 20\"><circle r=\"9\" fill=\"#222\" "
+            "stroke=\"#aaa\"/><circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.6\" fill=\"#fd4\"/></svg>",
+            8.0 * d.x, -8.0 * d.y);
+}
+
+// All of one gain: which photograph is darker shows.
+static float common_gain(const struct shoot *s)
+{
+    float least = INFINITY;
+    for (int i = 0; i < s->shots; i++)
+        least = fminf(least, report_gain(&s->shot[i].small));
+    return fmaxf(0.6f * least, 1.0f);  // mostly a small thing before black
 }
 
 static void put_thumbnails(struct report *r)
 {
-    fputs("<h2>Photographs</h2>\n<div class=\"row\">", r->f);
-    for (int i = 0; i < r->s->shots && !r->status; i++) {
-        fputs("<figure>", r->f);
-        put_picture(r, &r->s->shot[i].small, THUMB, 1.0f, LOOK_LIGHT);
-        fprintf(r->f, "<figcaption>%d ", i);
-        put_text(r->f, shoot_base_name(r->s->shot[i].path));
+    const struct shoot *s = r->s;
+    const float gain = common_gain(s);
+    fputs("<h2>Photographs and their lights</h2>\n<div class=\"row\">", r->f);
+    for (int i = 0; i < s->shots && !r->status; i++) {
+        fprintf(r->f, "<figure%s><div class=\"over\">",
+                s->out->photo[i].outlier ? " class=\"off\"" : "");
+        put_picture(r, &s->shot[i].small, THUMB, gain, LOOK_LIGHT);
+        put_sun(r->f, s->out->direction[i]);
+        fprintf(r->f, "</div><figcaption>%d ", i);
+        put_text(r->f, shoot_base_name(s->shot[i].path));
         fputs("</figcaption></figure>\n", r->f);
     }
     fputs("</div>\n", r->f);
@@ -298,7 +256,8 @@ relume_status shoot_report(const struct shoot *s, const char *dir)
         return RELUME_ENOMEM;
     }
     fprintf(r.f,
-            "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>capture"
+            "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta "
+            "name=\"viewport\" content=\"width=device-width\"><title>capture"
             "</title><style>%s</style></head><body>\n<h1>Capture of %d photographs</h1>\n",
             style, s->shots);
     put_summary(&r);

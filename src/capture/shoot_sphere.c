@@ -37,10 +37,19 @@ static void put_gap(FILE *f, const struct relume_shoot *out)
     project(out->gap, xy);
     const double r = fmax(0.5 * out->gap_deg / 90.0 * RADIUS, 4.0);
     fprintf(f,
+            "<clipPath id=\"sky\"><circle cx=\"%d\" cy=\"%d\" r=\"%d\"/></clipPath>"
             "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"#c33\" fill-opacity=\"0.12\" "
-            "stroke=\"#c33\" stroke-dasharray=\"4 3\"><title>widest gap: %.0f degrees</title>"
-            "</circle>\n",
-            xy[0], xy[1], r, out->gap_deg);
+            "stroke=\"#c33\" stroke-dasharray=\"4 3\" clip-path=\"url(#sky)\"><title>widest gap: "
+            "%.0f degrees</title></circle>\n",
+            SIZE / 2, SIZE / 2, RADIUS, xy[0], xy[1], r, out->gap_deg);
+}
+
+static void put_wanted(FILE *f, vec3 d)
+{
+    double xy[2];
+    project(d, xy);
+    fprintf(f, "<path d=\"M%.1f %.1fh10m-5 -5v10\" stroke=\"#c33\" stroke-width=\"2\"/>\n",
+            xy[0] - 5.0, xy[1]);
 }
 
 static void put_light(FILE *f, const struct relume_shoot *out, int i)
@@ -74,6 +83,8 @@ char *shoot_light_sphere(const struct relume_shoot *out)
             SIZE, SIZE, SIZE, SIZE);
     put_grid(f);
     put_gap(f, out);
+    for (int i = 0; i < out->wanted_count; i++)
+        put_wanted(f, out->wanted[i]);
     for (int i = 0; i < out->lights; i++)
         put_light(f, out, i);
     fputs("</svg>\n", f);

@@ -67,6 +67,7 @@ static relume_status panorama(const struct args *args, const char *const *photos
     struct relume_panorama_params panorama = {
         .depth = args_text(args, "--depth", NULL),
         .width = args_int(args, "--width", 0),
+        .bands = args_int(args, "--bands", 0),
     };
     const relume_status status = range_option(panorama.depth_range, args);
     return status ? status

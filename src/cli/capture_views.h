@@ -31,6 +31,9 @@ relume_status capture_views(const struct args *args);
     {"--views", OPTION_TEXT, "GxG", "--colmap: grid of cameras to make; default 5x5", 0, 0}, \
     {"--width", OPTION_INT, "N", "--colmap: width of a view; panorama stitch: of the sphere", 1, \
      65536}, \
+    {"--bands", OPTION_INT, "N", \
+     "panorama stitch: bands of blending, 1 to 10; 1: hard seams; default: by the photographs' size", \
+     1, 10}, \
     {"--depth-from-views", OPTION_FLAG, NULL, "estimate the depth of a slab's views", 0, 0}, \
     {"--depth-range", OPTION_TEXT, "A,B", \
      "--depth-from-views: distances from the camera plane, nearest and farthest; --depth: of " \

@@ -32,14 +32,14 @@ above 'the normal points at the viewer' "$normal" 0.98
 high() { "$mkimage" read h.exr "$1" "$2" | cut -d' ' -f1; }
 above 'the sphere rises over the floor' "$(high 48 48)" 0.2
 
-# ---- lights of a dome, 100 mm over a picture of 100 mm; and what evens out the light
+# ---- lights of a dome, far away from a picture of 100 mm; and what evens out the light
 vectors() { awk -v k="$1" '{ printf "%s{\"x\":%g,\"y\":%g,\"z\":%g}", (NR > 1 ? "," : ""), k * $1, k * $2, k * $3 }' lights.txt; }
 echo "{\"imageWidth\":100,\"lightConfiguration\":\"directional\",\"directions\":[$(vectors 1)]}" >d.dome
 expect_ok 'a dome' - "$RELUME" capture photos --lights d.dome -o dome
 below 'its directions' "$(angles dome)" 0.01
 expect_fail 'a dome of directions is not near' 1 'd.dome.*expected positions' out "$RELUME" capture photos \
     --lights d.dome --near -o out
-echo "{\"imageWidth\":100,\"lightConfiguration\":\"lights3d\",\"positions3d\":[$(vectors 300)]}" >p.dome
+echo "{\"imageWidth\":100,\"lightConfiguration\":\"lights3d\",\"positions3d\":[$(vectors 3000)]}" >p.dome
 expect_ok 'a dome of positions' - "$RELUME" capture photos --lights p.dome --near -o near --white 40,40,16,16
 check 'positions are kept' grep -q '"positions"' near/capture.json
 expect_ok 'positions of a capture' - "$RELUME" capture photos --lights near/capture.json --near -o again
@@ -75,6 +75,19 @@ bad 'no photographs' 'nowhere1' nowhere1 nowhere2 nowhere3 --lights lights.txt
 fresh photos mixed
 head -c 600 photos/*0004.png >mixed/"$(basename photos/*0004.png)"
 bad 'a broken photograph' 'mixed/.*0004.png' mixed --lights lights.txt
+fresh photos middle # a restart marker where none belongs
+"$sphere" coded --size 96 --lights 12 --hemisphere --shade lambert --format jpg
+rm middle/*0004.png && cp coded/view00/*0004.jpg middle/
+damaged=$(echo middle/*0004.jpg)
+printf '\377\320' | dd of="$damaged" bs=1 seek=$(($(wc -c <"$damaged") / 2)) conv=notrunc 2>dd.txt
+bad 'damaged in its middle' 'middle/.*0004.jpg: truncated or damaged' middle --lights lights.txt
+fresh photos raw
+rm raw/*0004.png && head -c 4000 /dev/zero >raw/"$(basename photos/*0004.png .png)".nef
+bad 'a RAW that cannot be read' 'raw/.*0004.nef: a RAW photograph' raw --lights lights.txt
+awk 'NR == 4 { kept = $0; next } { print } NR == 5 { print kept }' lights.txt >exchanged.txt
+expect_ok 'two lights exchanged are named' '0003.png: contradicts' "$RELUME" capture photos --lights exchanged.txt -o out
+check 'both of them' grep -q '0004.png: contradicts' err.txt
+rm -rf out
 fresh photos sizes
 "$sphere" small --size 32 --lights 3 --hemisphere --format png
 cp "$(find small -name "*0001.png")" sizes/"$(basename photos/*0003.png)"

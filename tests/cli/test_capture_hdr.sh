@@ -66,6 +66,9 @@ fails() { # name, status, pattern, arguments...
     expect_fail "$name" "$want" "$pattern" out.exr "$RELUME" capture --hdr "$@" -o out.exr
 }
 fails 'no EXIF' 1 'a.png: no exposure time in its EXIF; expected --times' a.png b.png c.png
+printf '1\n4\n0.42\n' >lies.txt
+expect_ok 'a time that lies by less' 'a.png: its time of 1 s contradicts the pictures.*so do other times' \
+    "$RELUME" capture --hdr a.png b.png c.png --times lies.txt -o lies.exr
 printf '1\n1\n1\n' >ones.txt
 fails 'one exposure only' 1 'a.png: all 3 exposures .* two different' a.png b.png c.png --times ones.txt
 printf '4\n1\n1/16\n' >wrong.txt

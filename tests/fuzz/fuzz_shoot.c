@@ -1,8 +1,10 @@
 // fuzz_shoot.c - what comes with photographs, made of noise: lights of domes, camera responses,
-// COLMAP's poses, and photographs with EXIF
+// COLMAP's poses, exposure times, names that tell a camera's place, and photographs with EXIF
 #include "fuzz.h"
 
+#include "capture/views.h"
 #include "capture/views_colmap.h"
+#include "cli/capture_times.c"
 #include "made_exif.h"
 
 #include <relume/lights.h>
@@ -36,6 +38,14 @@ static const char *const words[] = {"lightConfiguration",
                                     "#",
                                     " ",
                                     "\f",
+                                    "{row}",
+                                    "{column}",
+                                    "{n}",
+                                    "{u}",
+                                    "{v}",
+                                    "*",
+                                    "1/60",
+                                    "IMG_1.jpg",
                                     NULL};
 static const char *const parts[] = {"cameras.txt", "images.txt", "points3D.txt"};
 
@@ -90,6 +100,56 @@ static bool try_poses(const struct fuzz *f, struct bytes b)
     return true;
 }
 
+// What the tool's reader of times needs of the tool.
+relume_status data_error(const char *format, ...)
+{
+    (void)format;
+    return RELUME_EDATA;
+}
+
+const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+static bool try_times(const char *path, struct bytes b)
+{
+    char names[2][16] = {"IMG_1.jpg", "IMG_2.jpg"}, *photos[] = {names[0], names[1]};
+    const struct photo_list list = {2, photos};
+    struct relume_notes notes[2] = {{.iso = 1.0}};
+    fuzz_store(path, (struct bytes){b.data + 1, b.size - 1});
+    if (read_times(path, &list, notes))
+        return false;
+    for (int i = 0; i < 2; i++)
+        if (!(notes[i].time_s > 0.0) || isinf(notes[i].time_s))
+            abort();
+    return true;
+}
+
+// A pattern, or none, and names, line by line.
+static bool try_names(struct bytes b)
+{
+    enum { MOST = 16 };
+    char *text = calloc(b.size + 1, 1), *save, *lines = text;
+    struct camera_photos camera[MOST];
+    struct view_place places[MOST];
+    struct photo_set set = {.camera = camera};
+    if (!text)
+        return false;
+    memcpy(text, b.data + 1, b.size - 1);
+    const char *pattern = *lines == '\n' ? NULL : strtok_r(lines, "\n", &save);
+    for (char *name = strtok_r(pattern ? NULL : lines, "\n", &save); name && set.count < MOST;
+         name = strtok_r(NULL, "\n", &save))
+        camera[set.count++] = (struct camera_photos){.name = name};
+    const bool taken = set.count && !view_places(places, &set, pattern, NULL);
+    for (int i = 0; taken && i < set.count; i++)
+        if (!isfinite(places[i].u) || !isfinite(places[i].v) || places[i].row < 0)
+            abort();
+    free(text);
+    return taken;
+}
+
 static bool try_photograph(const char *path)
 {
     static const struct relume_limits small = {.max_side = 256, .max_pixels = 1 << 14};
@@ -106,6 +166,10 @@ static bool try_photograph(const char *path)
 static bool one(struct fuzz *f, struct bytes b)
 {
     fuzz_store(f->path, b);
+    if (b.data[0] == 'n')
+        return try_names(b);
+    if (b.data[0] == 't')
+        return try_times(f->path, b);
     if (b.data[0] == 0xff)
         return try_photograph(f->path);
     if (memchr(b.data, '\f', b.size))
@@ -160,6 +224,13 @@ int main(int argc, char **argv)
     fuzz_add(&f, text("1 PINHOLE 64 48 70 70 32 24\n2 OPENCV 64 48 70 70 32 24 .1 0 .01 0\n\f"
                       "# id q t camera name\n1 1 0 0 0 0 0 3 1 a b.jpg\n3 4 7 5 6 -1\n"
                       "2 .7 0 .7 0 1 0 3 2 c.jpg\n\n\f1 0.5 0.5 1 9 9 9 0.1 1 0\n"));
+    fuzz_add(&f, text("nview_{row}_{column}\nview_0_0.png\nview_0_1.png\nview_1_00.png\n"));
+    fuzz_add(&f, text("n*{u}*{v}\nat 0.5 -1.25.jpg\nat -3.5 7.125.jpg\n"));
+    fuzz_add(&f, text("n\nout_00_01_-381.9_-776.5_.png\nout_01_01_-381.9_2776.5_.png\n"));
+    fuzz_add(&f, text("n\nC000.png\nC001.png\nC002.png\nC003.png\n"));
+    fuzz_add(&f, text("tIMG_1.jpg 1/60 # remark\nIMG_2.jpg 0.25s\n"));
+    fuzz_add(&f, text("t1/60 # a\n\n0.25s\n"));
+    fuzz_add(&f, text("tIMG_1.jpg 3\nIMG_1.jpg 1e-3\ndir/IMG_2.jpg,4\n"));
     fuzz_add(&f, response_seed(f.folder));
     fuzz_add(&f, photograph_seed(f.folder));
     return fuzz_run(&f, argc, argv, one);

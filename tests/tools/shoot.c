@@ -1,6 +1,6 @@
 // shoot.c - pictures of the made camera, and how far a radiance map is from another
 //
-//   shoot photo OUT.png W H TIME ROLL DX DY NOISE [X Y RADIUS]   one exposure; a ball at X, Y
+//   shoot photo OUT W H TIME ROLL DX DY NOISE [X Y RADIUS]   one exposure; a ball at X, Y
 //   shoot truth OUT.exr W H                                      the radiance that is there
 //   shoot logrms A B BORDER    RMS of ln A / B after one scale, inside of the border, where both
 //   are

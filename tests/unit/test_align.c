@@ -61,8 +61,8 @@ static const struct made_shot hand[] = {
     {.time = 0.25, .noise = 1, .seed = 5, .roll_deg = -10, .shift = {-20, 0}},
 };
 
-// The target is half a pixel; a roll of 10 degrees and half of the picture saturated is too much.
-static const double hand_error[] = {0.1, 0.2, 1.0, 0.5};
+// The target is half a pixel; a tenth is a few times what parabolas through noisy scores leave.
+static const double hand_error = 0.1;
 
 static double homography_error(const struct relume_homography *h, const struct made_shot *s)
 {
@@ -87,7 +87,7 @@ static void test_held_by_hand(void **state)
         struct relume_homography h;
         struct relume_image b = made_shoot(&hand[i], W, H);
         CHECK_OK(relume_align_blocks(&d, &a, &b, NULL));
-        CHECK_NEAR(block_error(&d, &hand[i], &a, &b), 0.0, hand_error[i]);
+        CHECK_NEAR(block_error(&d, &hand[i], &a, &b), 0.0, hand_error);
         CHECK_OK(relume_align_homography(&h, &a, &b, NULL));
         // where half of the picture saturates, its edges move a little
         CHECK_NEAR(homography_error(&h, &hand[i]), 0.0, hand[i].time > 1 ? 0.4 : 0.1);

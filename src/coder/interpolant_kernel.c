@@ -63,8 +63,10 @@ static double chord(const double *parameter, vec3 a, vec3 b)
     static const double FIRST_DEGREE = 30.0;
     const vec3 d = vec3_sub(a, b);
     const double z = parameter[STRETCH] * d.z;
-    double value =
-        FIRST_DEGREE * vec3_dot(a, b) - pow(d.x * d.x + d.y * d.y + z * z, parameter[POWER] / 2.0);
+    const double square = d.x * d.x + d.y * d.y + z * z;
+    double value = FIRST_DEGREE * vec3_dot(a, b) - (parameter[POWER] == 1.5
+                                                        ? sqrt(square * sqrt(square))
+                                                        : pow(square, parameter[POWER] / 2.0));
     if (parameter[SECOND_DEGREE] > 0.0) {
         double p[5], q[5];
         second_degree(a, p);
@@ -138,11 +140,12 @@ static void evaluate(const void *data, struct relume_vec3 light, double *weights
     double row[CODER_MAX_COEFFICIENTS + MAX_TREND];
     const int size = k->lights + k->trend;
     fill_row(k, light, row);
-    for (int i = 0; i < k->lights; i++) {
-        double sum = 0.0;
-        for (int j = 0; j < size; j++)
-            sum += k->inverse[(size_t)i * (size_t)size + (size_t)j] * row[j];
-        weights[i] = sum;
+    memset(weights, 0, (size_t)k->lights * sizeof *weights);
+    for (int j = 0; j < size; j++) {  // the inverse is symmetric
+        const double *restrict from = k->inverse + (size_t)j * (size_t)size;
+        double *restrict to = weights;
+        for (int i = 0; i < k->lights; i++)
+            to[i] += row[j] * from[i];
     }
 }
 

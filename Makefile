@@ -84,7 +84,7 @@ FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 
-.PHONY: all lib cli viewer deps deps-web deps-stitch demo tour figures test check check-threads bench fuzz headers layers format install \
+.PHONY: all lib cli viewer deps deps-web deps-stitch demo tour figures golden test check check-threads bench fuzz headers layers format install \
         clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
@@ -235,6 +235,10 @@ demo: all
 # A film of everything the viewer does: build/tour/film.mp4, or a folder of pictures without ffmpeg
 tour: all
 	@scripts/tour.sh $B build/tour
+
+# The frames that tests/cli/test_golden.sh compares with, to be looked at before they are committed
+golden: cli viewer
+	@RELUME=$(CURDIR)/$B/relume VIEWER=$(CURDIR)/$B/relume-view TOP=$(CURDIR) BUILD=$(CURDIR)/$B STORE=1 tests/cli/test_golden.sh
 
 # The pictures of docs/figures.md
 figures: cli $B/samples/figures

@@ -12,9 +12,17 @@
 #include <string.h>
 #include <time.h>
 
+// A listener may pass on what it is told.
 static void on_message(void *user, enum relume_level level, const char *text)
 {
-    (void)user;
+    struct session *s = user;
+    const struct relume_log *listener = s->listener;
+    if (listener) {
+        s->listener = NULL;
+        listener->message(listener->user, level, text);
+        s->listener = listener;
+        return;
+    }
     fprintf(stderr, "relume-view: %s%s\n", level == RELUME_WARNING ? "warning: " : "", text);
 }
 
@@ -64,30 +72,27 @@ static relume_status host_light(void *user, const char *spec, bool replace,
                                 const struct relume_log *log)
 {
     struct session *s = user;
-    const struct relume_log *usual = s->log;
-    s->log = log;
+    s->listener = log;
     const relume_status status = session_light(s, spec, replace);
-    s->log = usual;
+    s->listener = NULL;
     return status;
 }
 
 static relume_status host_rig(void *user, const char *path, const struct relume_log *log)
 {
     struct session *s = user;
-    const struct relume_log *usual = s->log;
-    s->log = log;
+    s->listener = log;
     const relume_status status = session_load_rig(s, path);
-    s->log = usual;
+    s->listener = NULL;
     return status;
 }
 
 static relume_status host_open(void *user, const char *path, const struct relume_log *log)
 {
     struct session *s = user;
-    const struct relume_log *usual = s->log;
-    s->log = log;
+    s->listener = log;
     const relume_status status = session_show(s, path);
-    s->log = usual;
+    s->listener = NULL;
     return status;
 }
 
@@ -107,7 +112,8 @@ static relume_status host_wait(void *user, double seconds)
     double left = until_idle ? patience_s : seconds;
     const double step = s->film ? 1.0 / RECORD_RATE : frame_s;
     bool moves = true;
-    relume_status status = RELUME_OK;
+    // a frame says what it moves towards: its exposure
+    relume_status status = until_idle ? session_draw(s) : RELUME_OK;
     for (; !status && left > 1e-9 && (moves || !until_idle); left -= step) {
         moves = session_pass(s, fmin(left, step)) || renderer_is_pending(&s->renderer);
         if (s->film)
@@ -326,8 +332,9 @@ static relume_status run_window(struct session *s, struct options *o)
 
 int main(int argc, char **argv)
 {
-    static const struct relume_log log = {.message = on_message};
-    static struct session session = {.log = &log};
+    static struct session session;
+    static const struct relume_log log = {.message = on_message, .user = &session};
+    session.log = &log;
     struct options options;
     signal(SIGXFSZ, SIG_IGN);  // a file size limit is a write error, not a death
     signal(SIGPIPE, SIG_IGN);

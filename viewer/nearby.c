@@ -16,6 +16,8 @@ enum uniform {
     GRID,
     TRIANGLES,
     TRIANGLE_COUNT,
+    GRID_ROWS,
+    TILES,
     AFFINE,
     INDICES,
     VECTORS,
@@ -33,10 +35,10 @@ enum uniform {
     UNIFORMS
 };
 static const char *const uniforms[] = {
-    "rectangle", "frame_size",     "codes",         "picture",       "surface",      "grid",
-    "triangles", "triangle_count", "affine",        "indices",       "vectors",      SHINE_NAMES,
-    "facets",    "hemisphere",     "pole_y",        "form",          "coefficients", "layers",
-    "books",     "coded",          "display.curve", "display.gamma",
+    "rectangle",    "frame_size",     "codes",     "picture",    "surface",       "grid",
+    "triangles",    "triangle_count", "grid_rows", "tiles",      "affine",        "indices",
+    "vectors",      SHINE_NAMES,      "facets",    "hemisphere", "pole_y",        "form",
+    "coefficients", "layers",         "books",     "coded",      "display.curve", "display.gamma",
 };
 
 // Texture units; each sampler has its own.
@@ -92,7 +94,7 @@ static int form_of(const struct relume_coder_info *info)
 static void gather_layer(float *texel, const struct relume_weight_grid_info *g, int layer)
 {
     const int sets = g->sets, set = layer % sets, first = layer / sets * LANES;
-    const size_t nodes = (size_t)g->rows * (size_t)g->columns;
+    const size_t nodes = (size_t)relume_weight_grid_rows(g) * (size_t)g->columns;
     for (size_t i = 0; i < nodes; i++)
         for (int lane = 0; lane < LANES; lane++, texel++)
             *texel = first + lane < g->coefficients
@@ -103,7 +105,7 @@ static void gather_layer(float *texel, const struct relume_weight_grid_info *g, 
 
 static void gather_constants(float *texel, const struct relume_weight_grid_info *g)
 {
-    const size_t nodes = (size_t)g->rows * (size_t)g->columns;
+    const size_t nodes = (size_t)relume_weight_grid_rows(g) * (size_t)g->columns;
     memset(texel, 0, nodes * LANES * sizeof *texel);
     for (size_t i = 0; g->sets == 3 && i < nodes; i++)
         memcpy(texel + LANES * i, g->data + i * (size_t)g->stride + 3 * (size_t)g->coefficients,
@@ -118,11 +120,12 @@ static relume_status upload_grid(struct nearby *near, const struct relume_weight
         return say(near->log, RELUME_ESYSTEM,
                    "near lights on %d coefficients take %d texture layers; OpenGL has %d here",
                    g->coefficients, layers, gl->max_layers);
-    float *texels = malloc((size_t)g->rows * (size_t)g->columns * LANES * sizeof *texels);
+    const int rows = relume_weight_grid_rows(g);
+    float *texels = malloc((size_t)rows * (size_t)g->columns * LANES * sizeof *texels);
     if (!texels)
         return RELUME_ENOMEM;
     texture_use(gl, UNIT_GRID, GL_TEXTURE_2D_ARRAY, near->grid);
-    gl->TexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA16F, g->columns, g->rows, layers, 0, GL_RGBA,
+    gl->TexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA16F, g->columns, rows, layers, 0, GL_RGBA,
                    GL_FLOAT, NULL);
     texture_settings(gl, GL_TEXTURE_2D_ARRAY);
     gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
@@ -132,11 +135,12 @@ static relume_status upload_grid(struct nearby *near, const struct relume_weight
             gather_layer(texels, g, i);
         else
             gather_constants(texels, g);
-        gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, i, g->columns, g->rows, 1, GL_RGBA,
-                          GL_FLOAT, texels);
+        gl->TexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, i, g->columns, rows, 1, GL_RGBA, GL_FLOAT,
+                          texels);
     }
     free(texels);
     near->has_grid = true;
+    near->grid_rows = g->rows;
     return gl_check(gl, "uploading weights", near->log);
 }
 
@@ -179,13 +183,39 @@ static relume_status upload_triangles(struct nearby *near, const struct relume_w
     return gl_check(gl, "uploading triangles", near->log);
 }
 
-// More triangles than a texture has rows give way to a grid.
+// The tiles of the grid's cells, then those of the tiles' own.
+static relume_status upload_tiles(struct nearby *near, const struct relume_weight_grid_info *g)
+{
+    enum { WIDE = 1024 };
+    const struct gl *gl = near->gl;
+    const size_t cells = (size_t)(g->rows - 1) * (size_t)(g->columns - 1);
+    const size_t all = cells + 4 * (size_t)g->tiles;
+    const int rows = (int)((all + 4 * WIDE - 1) / (4 * WIDE));
+    float *texels = calloc((size_t)rows, 4 * WIDE * sizeof *texels);
+    if (!texels)
+        return RELUME_ENOMEM;
+    for (size_t i = 0; i < cells; i++)
+        texels[i] = (float)g->tile[i];
+    for (size_t i = 0; i < 4 * (size_t)g->tiles; i++)
+        texels[cells + i] = (float)g->child[i / 4][i % 4];
+    texture_use(gl, UNIT_TRIANGLES, GL_TEXTURE_2D, near->triangles);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, WIDE, rows, 0, GL_RGBA, GL_FLOAT, texels);
+    texture_settings(gl, GL_TEXTURE_2D);
+    free(texels);
+    near->tiles = g->tiles;
+    return gl_check(gl, "uploading tiles of weights", near->log);
+}
+
+// More triangles, or tiles, than a texture has rows give way to a plain grid.
 static relume_status make_grid(relume_weight_grid **grid, const struct gl *gl,
                                const relume_coder *coder)
 {
     const relume_status status = relume_weight_grid_create(grid, coder, NULL);
-    if (status || triangle_rows(relume_weight_grid_info(*grid)) <= gl->max_texture)
+    if (status)
         return status;
+    const struct relume_weight_grid_info *info = relume_weight_grid_info(*grid);
+    if (triangle_rows(info) <= gl->max_texture && relume_weight_grid_rows(info) <= gl->max_texture)
+        return RELUME_OK;
     relume_weight_grid_destroy(grid);
     return relume_weight_grid_create(grid, coder, relume_weight_grid_params(.steps = 16));
 }
@@ -199,6 +229,8 @@ static relume_status need_grid(struct nearby *near, const relume_coder *coder)
     const struct relume_weight_grid_info *info = grid ? relume_weight_grid_info(grid) : NULL;
     if (!status && info->triangles)
         status = upload_triangles(near, info);
+    if (!status && info->tiles)
+        status = upload_tiles(near, info);
     if (!status)
         status = upload_grid(near, info);
     relume_weight_grid_destroy(&grid);
@@ -371,6 +403,8 @@ static void set_codes(const struct nearby *near, const struct nearby_view *view,
     texture_use(gl, UNIT_AFFINE, GL_TEXTURE_2D, view->affine);
     texture_use(gl, UNIT_VECTORS, GL_TEXTURE_2D_ARRAY, view->vectors);
     gl->Uniform1i(at[TRIANGLE_COUNT], near->triangle_count);
+    gl->Uniform1i(at[GRID_ROWS], near->grid_rows);
+    gl->Uniform1i(at[TILES], near->tiles);
     gl->Uniform1i(at[HEMISPHERE], info->hemispherical);
     gl->Uniform1i(at[POLE_Y], info->pole_y);
     gl->Uniform1i(at[FORM], form_of(info));

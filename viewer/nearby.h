@@ -14,11 +14,12 @@ struct nearby {
     const struct gl *gl;
     const struct relume_log *log;
     struct program program;
-    bool has_grid;       // has been uploaded
-    GLuint grid;         // array texture of the weights by direction
-    GLuint triangles;    // between its nodes, and where to begin to look for one
-    int triangle_count;  // 0: the nodes are a grid
-    GLuint facets;       // a column for each facet of the area light in use
+    bool has_grid;         // has been uploaded
+    GLuint grid;           // array texture of the weights by direction
+    GLuint triangles;      // between its nodes, and where to begin to look for one
+    int triangle_count;    // 0: the nodes are a grid
+    int grid_rows, tiles;  // its rows above the tiles of divided cells
+    GLuint facets;         // a column for each facet of the area light in use
     struct shine shine;
 };
 

@@ -71,7 +71,8 @@ struct session {
     int glare_size;                        // as glare.size
     const struct relume_subject *subject;  // whose eye looks; NULL: the default one
     bool streams;                          // frames are drawn with the views that are there
-    const struct relume_log *log;
+    const struct relume_log *log;          // lasts as long: files and renderers keep it
+    const struct relume_log *listener;     // hears what `log` would say, for a while; or NULL
 };
 
 // Open `path` and start the app; the session is untouched when that fails.

@@ -26,8 +26,8 @@ RELUME_RESULT relume_status relume_import(const char *path, const char *out,
 
 enum relume_exchange {
     RELUME_EXCHANGE_RELIGHT = 0,  // info.json and plane JPEGs, for OpenLIME and relight
-    RELUME_EXCHANGE_PTM,          // .ptm, PTM_FORMAT_RGB; with a quality PTM_FORMAT_JPEG_RGB
-    RELUME_EXCHANGE_LPTM,         // .ptm, PTM_FORMAT_LRGB; with a quality PTM_FORMAT_JPEG_LRGB
+    RELUME_EXCHANGE_PTM,          // .ptm, PTM_FORMAT_RGB; with a quality, size or PSNR JPEG_RGB
+    RELUME_EXCHANGE_LPTM,         // .ptm, PTM_FORMAT_LRGB; likewise JPEG_LRGB
     RELUME_EXCHANGE_RTI,          // .rti, hemispherical harmonics
     RELUME_EXCHANGE_DEEPZOOM,     // as RELIGHT, the planes as DeepZoom tiles
 };
@@ -58,7 +58,7 @@ struct relume_export_params {
                                 // types
     int resolution;  // bilinear: side of the grid of lights, [3, 33]; default 15, for many lights
                      // more
-    double bytes_per_pixel;  // of all plane JPEGs together, not exceeded
+    double bytes_per_pixel;  // of all plane JPEGs together (PTM, LPTM: of the file), not exceeded
     double psnr_db;          // against the file's own pictures under its lights, reached
     int quality;             // [1, 100]; default 80; PTM, LPTM: default 0, raw planes; not for RTI
     bool force;              // replace an existing folder that is not empty

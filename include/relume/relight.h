@@ -15,9 +15,10 @@ extern "C" {
 // The basis of a coder at a grid of directions, between which it is bilinear: near lights and
 // environments ask for thousands of directions a pixel. Rows go by the angle from the pole, columns
 // by azimuth, so that no crease of the map cuts a cell. A full sphere has two rows at the horizon,
-// for bases that jump there. What is linear over triangles of lights (`delaunay`) has creases
-// everywhere and no grid: its nodes are the lights, between which it is exact. Never changes.
-// Thread-safety: safe.
+// for bases that jump there. Interpolants have cusps at the lights: there cells are divided until
+// values in [0, 1] are met to 1/255, whatever they are. What is linear over triangles of lights
+// (`delaunay`) has creases everywhere and no grid: its nodes are the lights, between which it is
+// exact. Never changes. Thread-safety: safe.
 typedef struct relume_weight_grid relume_weight_grid;
 
 struct relume_weight_grid_params {
@@ -54,13 +55,24 @@ struct relume_weight_grid_info {
     int coefficients;   // K
     int stride;         // floats from node to node
     const float *data;  // [rows][columns][stride]: the weights [sets][K], then the constants
-                        // [3] where sets is 3 (else they are 0)
-    int triangles;      // 0: a grid as above. Else nodes are the columns of a single row, ...
+                        // [3] where sets is 3 (else they are 0); then the tiles
+    int tiles;          // divided cells, as 3 x 3 nodes: tile t begins (t / n * 3) rows below the
+                        // grid's, at column t % n * 3, n being columns / 3
+    const int *tile;    // [rows - 1][columns - 1]: the tile of a cell, or -1
+    const int (*child)[4];  // [tiles]: those of a tile's own cells, row by row, or -1
+    int triangles;          // 0: a grid as above. Else nodes are the columns of a single row, ...
     const struct relume_weight_triangle *triangle;
     const int *start;  // ... found by walking from this triangle over edges behind which w < 0
 };
 RELUME_API const struct relume_weight_grid_info *relume_weight_grid_info(
     const relume_weight_grid *grid);
+
+// Of `data`: the grid's and those of the tiles.
+static inline int relume_weight_grid_rows(const struct relume_weight_grid_info *info)
+{
+    const int across = info->columns / 3;
+    return info->rows + (info->tiles ? (info->tiles + across - 1) / across * 3 : 0);
+}
 
 // Where a unit direction (world) lies, from node to node: column x in [0, columns - 1], row y in
 // [0, rows - 1]. With phi and theta in the pole's frame (0 <= theta <= 90 degrees from the nearer

@@ -3,6 +3,7 @@
 #include <math.h>
 
 static const struct option options[] = {
+    {"-o", OPTION_TEXT, "OUT", "write the picture |A - B| of linear light", 0, 0},
     {"--ramps", OPTION_FLAG, NULL, "also how smooth ramps of B keep their slope (contours)", 0, 0},
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
@@ -35,6 +36,17 @@ static void print(const struct args *args, const struct relume_difference *d,
         puts("}");
 }
 
+// Of equal sizes; in place of `a`.
+static relume_status save_difference(const struct args *args, struct relume_image *a,
+                                     const struct relume_image *b)
+{
+    const size_t samples = 3 * (size_t)a->width * (size_t)a->height;
+    for (size_t i = 0; i < samples; i++)
+        a->data[i] = fabsf(a->data[i] - b->data[i]);
+    return relume_image_save(a, args_text(args, "-o", NULL),
+                             relume_image_params(.log = args_log(args)));
+}
+
 static relume_status run(const struct args *args)
 {
     struct relume_image a = {0}, b = {0};
@@ -53,6 +65,8 @@ static relume_status run(const struct args *args)
     if (!status && args_has(args, "--ramps"))
         status = relume_image_ramps(&ramps, &a, &b,
                                     relume_compare_params(.threads = args_threads(args)));
+    if (!status && args_has(args, "-o"))
+        status = save_difference(args, &a, &b);
     if (!status)
         print(args, &difference, &ramps);
     relume_image_destroy(&a);
@@ -62,7 +76,7 @@ static relume_status run(const struct args *args)
 
 const struct command command_compare = {
     .name = "compare",
-    .usage = "A B [--ramps] [--json]",
+    .usage = "A B [-o OUT] [--ramps] [--json]",
     .summary = "measure how far two pictures are apart",
     .example = "relume compare relit.exr photograph.jpg --json",
     .min_inputs = 2,

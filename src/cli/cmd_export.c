@@ -12,7 +12,8 @@ static const struct option options[] = {
      0, 0},
     {"--coefficients", OPTION_INT, "K",
      "planes (bilinear, rbf; default: up to 27) or terms of the type", 1, 45},
-    {"--bytes-per-pixel", OPTION_NUMBER, "B", "size of all plane JPEGs, not exceeded", 0.001, 100},
+    {"--bytes-per-pixel", OPTION_NUMBER, "B",
+     "size of all plane JPEGs (ptm, lptm: of the file), not exceeded", 0.001, 100},
     {"--psnr", OPTION_NUMBER, "DB", "quality against the file's own pictures, reached", 1, 100},
     {"--quality", OPTION_INT, "Q",
      "10 less doubles the quantiser step; default: 80 (ptm, lptm: raw planes)", 1, 100},
@@ -56,16 +57,17 @@ static relume_status parse(const struct args *args, enum relume_exchange *format
     if (!strcmp(space, "mycc") && p->type > RELUME_WEB_RBF)
         return usage_error("--colorspace mycc: only for --type bilinear and rbf");
     const bool folder = *format == RELUME_EXCHANGE_RELIGHT || *format == RELUME_EXCHANGE_DEEPZOOM;
-    static const char *const only_folders[] = {"--type", "--colorspace", "--bytes-per-pixel",
-                                               "--psnr", "--resolution"};
-    for (int i = 0; !folder && i < 5; i++)
+    static const char *const only_folders[] = {"--type", "--colorspace", "--resolution"};
+    static const char *const jpeg[] = {"--quality", "--bytes-per-pixel", "--psnr"};
+    for (int i = 0; !folder && i < 3; i++)
         if (args_has(args, only_folders[i]))
             return usage_error("%s: only for --to relight and deepzoom", only_folders[i]);
     if ((*format == RELUME_EXCHANGE_PTM || *format == RELUME_EXCHANGE_LPTM) &&
         args_has(args, "--coefficients"))
         return usage_error("--coefficients: .ptm has six; expected another --to");
-    if (*format == RELUME_EXCHANGE_RTI && args_has(args, "--quality"))
-        return usage_error("--quality: .rti has no JPEG form; expected --to ptm or lptm");
+    for (int i = 0; *format == RELUME_EXCHANGE_RTI && i < 3; i++)
+        if (args_has(args, jpeg[i]))
+            return usage_error("%s: .rti has no JPEG form; expected --to ptm or lptm", jpeg[i]);
     if (args_has(args, "--bytes-per-pixel") + args_has(args, "--psnr") +
             args_has(args, "--quality") >
         1)

@@ -63,8 +63,10 @@ static double chord(const double *parameter, vec3 a, vec3 b)
     static const double FIRST_DEGREE = 30.0;
     const vec3 d = vec3_sub(a, b);
     const double z = parameter[STRETCH] * d.z;
-    double value =
-        FIRST_DEGREE * vec3_dot(a, b) - pow(d.x * d.x + d.y * d.y + z * z, parameter[POWER] / 2.0);
+    const double square = d.x * d.x + d.y * d.y + z * z;
+    double value = FIRST_DEGREE * vec3_dot(a, b) - (parameter[POWER] == 1.5
+                                                        ? sqrt(square * sqrt(square))
+                                                        : pow(square, parameter[POWER] / 2.0));
     if (parameter[SECOND_DEGREE] > 0.0) {
         double p[5], q[5];
         second_degree(a, p);

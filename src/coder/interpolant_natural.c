@@ -13,7 +13,7 @@ enum { POINTS = 8192 };
 struct cells {
     int lights;
     vec3 *light;
-    vec3 point[POINTS];
+    double x[POINTS], y[POINTS], z[POINTS];
     int owner[POINTS];
     double nearest[POINTS];  // cosine of the angle to the owner
 };
@@ -52,9 +52,12 @@ static relume_status prepare(void **data, const struct relume_vec3 *lights, int 
     for (int i = 0; i < POINTS; i++) {
         const double z = 1.0 - (2.0 * i + 1.0) / POINTS, r = sqrt(1.0 - z * z);
         const double phi = i * (M_PI * (3.0 - sqrt(5.0)));
-        c->point[i] = vec3_of(r * cos(phi), r * sin(phi), z);
-        c->owner[i] = nearest_light(c, c->point[i]);
-        c->nearest[i] = vec3_dot(c->point[i], c->light[c->owner[i]]);
+        const vec3 point = vec3_of(r * cos(phi), r * sin(phi), z);
+        c->x[i] = point.x;
+        c->y[i] = point.y;
+        c->z[i] = point.z;
+        c->owner[i] = nearest_light(c, point);
+        c->nearest[i] = vec3_dot(point, c->light[c->owner[i]]);
     }
     return RELUME_OK;
 }
@@ -62,15 +65,15 @@ static relume_status prepare(void **data, const struct relume_vec3 *lights, int 
 static void evaluate(const void *data, struct relume_vec3 light, double *weights)
 {
     const struct cells *c = data;
-    double sum = 0.0;
+    double sum = 0.0, gain[POINTS];
     memset(weights, 0, (size_t)c->lights * sizeof *weights);
-    for (int i = 0; i < POINTS; i++) {
-        const double gain = vec3_dot(c->point[i], light) - c->nearest[i];
-        if (gain > 0.0) {
-            weights[c->owner[i]] += gain;
-            sum += gain;
+    for (int i = 0; i < POINTS; i++)
+        gain[i] = c->x[i] * light.x + c->y[i] * light.y + c->z[i] * light.z - c->nearest[i];
+    for (int i = 0; i < POINTS; i++)
+        if (gain[i] > 0.0) {
+            weights[c->owner[i]] += gain[i];
+            sum += gain[i];
         }
-    }
     if (sum < 1e-9) {  // on a light
         weights[nearest_light(c, light)] = 1.0;
         return;

@@ -1,5 +1,6 @@
 // legacy.c - .ptm and .rti from a relume file: its own codes where they fit, else a fit
 #include "exchange/export.h"
+#include "exchange/legacy.h"
 #include "exchange/measure.h"
 #include "exchange/planes.h"
 #include "exchange/ptm.h"
@@ -7,8 +8,6 @@
 
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/outfile.h"
-#include "image/jpeg.h"
 
 #include <math.h>
 #include <string.h>
@@ -157,62 +156,19 @@ static relume_status write_raw(const struct foreign *f, const struct export *e, 
                                               : ptm_write(f, path, e->log);
 }
 
-static void warn_of_width(const struct foreign *f, const struct export *e, const char *path)
-{
-    if (f->width % 8)
-        log_line(e->log, RELUME_WARNING,
-                 "%s: width %d is not a multiple of 8, as RTIViewer wants it for JPEG planes", path,
-                 f->width);
-}
-
-static relume_status write_jpeg(const struct foreign *f, const struct export *e, const char *path,
-                                struct relume_export_report *report)
-{
-    const struct relume_export_params *p = e->params;
-    struct ptm_jpeg file;
-    relume_status status =
-        ptm_encode_jpeg(&file, f, export_step_of_quality(p->quality), p->quality, p->threads);
-    if (status)
-        return status;
-    struct foreign decoded = *f;
-    decoded.codes = file.codes;
-    status = measure_psnr(&report->psnr_db, &decoded, e->source, p->threads);
-    if (!status)
-        status = outfile_save(path, file.bytes, file.size, e->log);
-    report->bytes_per_pixel = (double)file.size / (double)foreign_pixels(f);
-    report->exact = false;
-    ptm_jpeg_free(&file);
-    if (!status)
-        warn_of_width(f, e, path);
-    return status;
-}
-
-static relume_status check_jpeg(const struct export *e, const char *path,
-                                enum relume_exchange format)
-{
-    const struct relume_codes *codes = e->source->codes;
-    if (format == RELUME_EXCHANGE_RTI)
-        return log_fail(e->log, RELUME_EINVAL,
-                        "quality: .rti has no JPEG form; expected ptm or lptm");
-    if (codes->width > JPEG_MOST_SIDE || codes->height > JPEG_MOST_SIDE)
-        return log_fail(e->log, RELUME_EDATA, "%s: %d x %d pixels; expected at most %d for JPEG",
-                        path, codes->width, codes->height, JPEG_MOST_SIDE);
-    return RELUME_OK;
-}
-
 relume_status export_legacy(const struct export *e, const char *path, enum relume_exchange format,
                             struct relume_export_report *report)
 {
     const struct target t = target_of(e, format);
     const struct relume_codes *codes = e->source->codes;
-    const bool jpeg = e->params->quality > 0;
+    const bool jpeg = legacy_wants_jpeg(e->params);
     struct foreign f = {.form = t.luminance ? FOREIGN_LUMINANCE : FOREIGN_CHANNELS,
                         .functions = t.functions,
                         .terms = t.functions.count};
     if (!functions_has_count(t.functions.kind, t.functions.count))
         return log_fail(e->log, RELUME_EINVAL, "%d coefficients; expected 1, 4, 9 or 16 for hsh",
                         t.functions.count);
-    relume_status status = jpeg ? check_jpeg(e, path, format) : RELUME_OK;
+    relume_status status = jpeg ? legacy_check_jpeg(e, path, format) : RELUME_OK;
     if (!status)
         status = foreign_create(&f, path, codes->width, codes->height,
                                 t.luminance ? f.terms + 3 : 3 * f.terms, NULL, e->log);
@@ -222,7 +178,7 @@ relume_status export_legacy(const struct export *e, const char *path, enum relum
         status = report->exact ? take_codes(&f, e) : fit(&f, e, &t, path);
     report->planes = f.planes;
     if (!status)
-        status = jpeg ? write_jpeg(&f, e, path, report) : write_raw(&f, e, path, report);
+        status = jpeg ? legacy_write_jpeg(&f, e, path, report) : write_raw(&f, e, path, report);
     foreign_free(&f);
     return status;
 }

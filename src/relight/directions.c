@@ -4,12 +4,15 @@
 // this one has no crease inside a cell, and near the pole, where columns meet, a smooth function is
 // linear in the angle. The bilinear error is h^2 / 8 x the second derivative. Rows are closer at
 // the horizon, 1 - t = sqrt(1 - theta / 90 degrees), since hemispherical harmonics rise there like
-// sqrt(cos theta). What is linear over triangles of lights is kept at the lights (triangles.c).
+// sqrt(cos theta). Interpolants have cusps at the lights (the angular one opposite to them as
+// well), around which cells are divided (cells.c). What is linear over triangles of lights is kept
+// at the lights (triangles.c).
 #include <relume/relight.h>
 
 #include "base/memory.h"
 #include "base/thread.h"
 #include "math/vec.h"
+#include "relight/cells.h"
 #include "relight/grid.h"
 #include "relight/triangles.h"
 
@@ -17,6 +20,8 @@
 
 enum { DEFAULT_STEPS = 96, LEAST_STEPS = 16, MOST_STEPS = 1024, MOST_FUNCTIONS = 4096 };
 static const size_t MOST_BYTES = (size_t)256 << 20;
+// Of values in [0, 1], whatever they are: a step of 8 bits.
+static const double TOLERANCE = 1.0 / 255;
 
 struct relume_weight_grid {
     struct relume_weight_grid_info info;
@@ -24,17 +29,18 @@ struct relume_weight_grid {
     int down;  // cells from pole to horizon
     float *data;
     struct triangles *triangles;  // or NULL
+    struct cells cells;
     float *turned;  // while it is made: [functions][stride], the coder's transform and mean
 };
 
 // The second row at the horizon lies a hair below it.
-static vec3 node_direction(const struct relume_weight_grid *g, int row, int column)
+static vec3 node_direction(const struct relume_weight_grid *g, double row, double column)
 {
     if (g->triangles)
-        return g->triangles->point[column];
+        return g->triangles->point[(int)column];
     const bool below = row > g->down;
-    const int step = below ? g->info.rows - 1 - row : row;
-    const double t = (double)step / g->down, theta = 0.5 * M_PI * (2.0 * t - t * t);
+    const double step = below ? g->info.rows - 1 - row : row;
+    const double t = step / g->down, theta = 0.5 * M_PI * (2.0 * t - t * t);
     const double phi = 2.0 * M_PI * column / (g->info.columns - 1) - M_PI;
     const double height = step == g->down ? 1e-12 : cos(theta), r = sin(theta);
     return vec3_of(r * cos(phi), r * sin(phi), below ? -height : height);
@@ -64,23 +70,109 @@ static void add_scaled(float *restrict to, const float *restrict from, float fac
         to[i] += factor * from[i];
 }
 
+static void evaluate_at(const void *grid, double row, double column, double *value)
+{
+    const struct relume_weight_grid *g = grid;
+    relume_coder_info(g->info.coder)
+        ->basis->evaluate(g->info.coder, node_direction(g, row, column), value);
+}
+
+static void put_node(const struct relume_weight_grid *g, const double *value, float *to)
+{
+    const int stride = g->info.stride, raw = relume_coder_info(g->info.coder)->functions;
+    memset(to, 0, (size_t)stride * sizeof *to);
+    for (int j = 0; j < raw; j++)
+        if (g->turned && value[j] != 0.0)
+            add_scaled(to, g->turned + (size_t)j * (size_t)stride, (float)value[j], stride);
+        else if (!g->turned)
+            to[j] = (float)value[j];
+}
+
+static float *node_at(const struct relume_weight_grid *g, int row, int column)
+{
+    return g->data +
+           ((size_t)row * (size_t)g->info.columns + (size_t)column) * (size_t)g->info.stride;
+}
+
 static void fill_row(void *context, size_t row, int worker)
 {
     (void)worker;
     const struct relume_weight_grid *g = context;
-    const struct relume_coder_info *info = relume_coder_info(g->info.coder);
-    const int stride = g->info.stride;
     double value[MOST_FUNCTIONS];
-    float *to = g->data + row * (size_t)g->info.columns * (size_t)stride;
-    for (int x = 0; x < g->info.columns; x++, to += stride) {
-        info->basis->evaluate(g->info.coder, node_direction(g, (int)row, x), value);
-        memset(to, 0, (size_t)stride * sizeof *to);
-        for (int j = 0; j < info->functions; j++)
-            if (g->turned && value[j] != 0.0)
-                add_scaled(to, g->turned + (size_t)j * (size_t)stride, (float)value[j], stride);
-            else if (!g->turned)
-                to[j] = (float)value[j];
+    for (int x = 0; x < g->info.columns; x++) {
+        evaluate_at(g, (double)row, x, value);
+        put_node(g, value, node_at(g, (int)row, x));
     }
+}
+
+// ---------------------------------------------------------------- divided cells
+
+static int tiles_across(const struct relume_weight_grid_info *info)
+{
+    return info->columns / 3;
+}
+
+static void fill_tile(void *context, size_t tile, int worker)
+{
+    (void)worker;
+    const struct relume_weight_grid *g = context;
+    const int across = tiles_across(&g->info), t = (int)tile;
+    const size_t raw = (size_t)relume_coder_info(g->info.coder)->functions;
+    for (int i = 0; i < 9; i++)
+        put_node(g, g->cells.value + (9 * tile + (size_t)i) * raw,
+                 node_at(g, g->info.rows + t / across * 3 + i / 3, t % across * 3 + i % 3));
+}
+
+// The cells of the lights and of the places opposite to them. Room for two of each light.
+static int find_starts(int (*start)[2], const struct relume_weight_grid *g)
+{
+    const struct relume_coder_info *info = relume_coder_info(g->info.coder);
+    int n = 0;
+    for (int i = 0; i < 2 * info->lights; i++) {
+        const vec3 l = vec3_scale(info->directions[i / 2], i % 2 ? -1.0 : 1.0);
+        double xy[2];
+        if (g->hemispherical && pole_from_world(l, g->pole_y).z < 0.0)
+            continue;
+        relume_weight_grid_place(xy, g, l);
+        start[n][0] = (int)fmin(xy[1], g->info.rows - 2);
+        start[n++][1] = (int)fmin(xy[0], g->info.columns - 2);
+    }
+    return n;
+}
+
+// Three times the memory of the grid, and no more than all may take.
+static int most_tiles(const struct relume_weight_grid *g)
+{
+    const size_t row = (size_t)g->info.columns * (size_t)g->info.stride * sizeof(float);
+    const int all = (int)(MOST_BYTES / row), rows = g->info.rows;
+    return (all < 4 * rows ? all > rows ? all - rows : 0 : 3 * rows) / 3 * tiles_across(&g->info);
+}
+
+static relume_status find_cells(struct relume_weight_grid *g, int threads)
+{
+    const struct relume_coder_info *info = relume_coder_info(g->info.coder);
+    int(*start)[2] = mem_array(2 * (size_t)info->lights, sizeof *start);
+    if (!start)
+        return RELUME_ENOMEM;
+    const relume_status status =
+        cells_create(&g->cells, &(const struct cells_params){
+                                    .context = g,
+                                    .evaluate = evaluate_at,
+                                    .values = info->functions,
+                                    .rows = g->info.rows,
+                                    .columns = g->info.columns,
+                                    .seam = g->hemispherical ? -2 : g->down,
+                                    .start = (const int(*)[2])start,
+                                    .starts = find_starts(start, g),
+                                    .tolerance = TOLERANCE,
+                                    .most = most_tiles(g),
+                                    .threads = threads,
+                                });
+    free(start);
+    g->info.tiles = g->cells.count;
+    g->info.tile = g->cells.of;
+    g->info.child = (const int(*)[4])g->cells.child;
+    return status;
 }
 
 static void set_size(struct relume_weight_grid *g, int steps)
@@ -105,7 +197,7 @@ static relume_status take_triangles(struct relume_weight_grid *g)
 
 static size_t floats(const struct relume_weight_grid_info *info)
 {
-    return (size_t)info->rows * (size_t)info->columns * (size_t)info->stride;
+    return (size_t)relume_weight_grid_rows(info) * (size_t)info->columns * (size_t)info->stride;
 }
 
 relume_status relume_weight_grid_create(relume_weight_grid **out, const relume_coder *coder,
@@ -134,6 +226,8 @@ relume_status relume_weight_grid_create(relume_weight_grid **out, const relume_c
     while (!p.steps && steps > LEAST_STEPS && floats(&g->info) * sizeof(float) > MOST_BYTES)
         set_size(g, steps /= 2);
     relume_status status = p.steps ? RELUME_OK : take_triangles(g);
+    if (!status && !p.steps && !g->triangles && info->interpolant)
+        status = find_cells(g, p.threads);
     if (!status)
         g->info.data = g->data = mem_array(floats(&g->info), sizeof(float));
     if (!status)
@@ -143,6 +237,9 @@ relume_status relume_weight_grid_create(relume_weight_grid **out, const relume_c
         return status;
     }
     thread_for(p.threads, (size_t)g->info.rows, fill_row, g);
+    thread_for(p.threads, (size_t)g->cells.count, fill_tile, g);
+    free(g->cells.value);
+    g->cells.value = NULL;
     free(g->turned);
     g->turned = NULL;
     *out = g;
@@ -155,6 +252,7 @@ void relume_weight_grid_destroy(relume_weight_grid **grid)
         return;
     free((*grid)->data);
     triangles_destroy(&(*grid)->triangles);
+    cells_destroy(&(*grid)->cells);
     free(*grid);
     *grid = NULL;
 }
@@ -184,10 +282,10 @@ struct corners {
     float share[4];
 };
 
-static int cell_of(double at, int nodes, float *share)
+static int cell_of(double at, int nodes, double *share)
 {
     const int i = at < nodes - 2 ? at > 0.0 ? (int)at : 0 : nodes - 2;
-    *share = (float)fmin(fmax(at - i, 0.0), 1.0);
+    *share = fmin(fmax(at - i, 0.0), 1.0);
     return i;
 }
 
@@ -218,14 +316,18 @@ static struct corners corners_at(const struct relume_weight_grid *g, vec3 direct
 {
     if (g->triangles)
         return corners_of_triangle(g, direction);
-    const struct relume_weight_grid_info *info = &g->info;
-    double xy[2];
-    float fx, fy;
+    double xy[2], x, y;
     relume_weight_grid_place(xy, g, direction);
-    const size_t x = (size_t)cell_of(xy[0], info->columns, &fx);
-    const size_t y = (size_t)cell_of(xy[1], info->rows, &fy);
-    const size_t next = (size_t)info->stride, line = (size_t)info->columns * next;
-    const float *first = g->data + y * line + x * next;
+    int column = cell_of(xy[0], g->info.columns, &x), row = cell_of(xy[1], g->info.rows, &y);
+    const int tile =
+        g->info.tiles ? cells_find(&g->cells, g->info.columns, &row, &column, &x, &y) : -1;
+    if (tile >= 0) {
+        row += g->info.rows + tile / tiles_across(&g->info) * 3;
+        column += tile % tiles_across(&g->info) * 3;
+    }
+    const size_t next = (size_t)g->info.stride, line = (size_t)g->info.columns * next;
+    const float *first = node_at(g, row, column);
+    const float fx = (float)x, fy = (float)y;
     return (struct corners){
         {first, first + next, first + line, first + line + next},
         {(1.0f - fx) * (1.0f - fy), fx * (1.0f - fy), (1.0f - fx) * fy, fx * fy},

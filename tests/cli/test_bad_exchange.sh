@@ -73,7 +73,9 @@ no 'unknown type' 2 "did you mean 'bilinear'" --type bilinaer
 no 'type of a file' 2 'only for --to relight' --to ptm --type rbf
 no 'a quality of .rti' 2 'no JPEG form' --to rti --quality 80
 no 'other terms of .ptm' 2 '.ptm has six' --to lptm --coefficients 3
-no 'a size of .ptm' 2 'only for --to relight' --to ptm --bytes-per-pixel 1
+no 'a size of .rti' 2 'no JPEG form' --to rti --bytes-per-pixel 1
+no 'a size of .ptm out of reach' 1 'cannot be reached; found at least' --to ptm --bytes-per-pixel 0.001
+no 'a PSNR of .ptm out of reach' 1 'out: 99 dB cannot be reached.*found at most' --to lptm --psnr 99
 no 'two targets' 2 'expected one of' --psnr 30 --quality 3
 no 'a view that is not there' 2 'view 3; expected 0 to 0' --view 3
 no 'mycc of a type without components' 2 'only for --type bilinear' --type hsh --colorspace mycc

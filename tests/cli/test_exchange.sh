@@ -86,6 +86,11 @@ for kind in ptm lptm; do
     above "$kind: predicted planes are written" "$predicted" 3
     below "$kind: no pixel leaves a byte without a record, all planes are baseline" $((wrapped + progressive)) 0
 done
+relume export ptm-back.exr --to ptm -o small.ptm --bytes-per-pixel 8
+below 'a .ptm of a given size' "$(wc -c <small.ptm)" $((8 * 40 * 40))
+"$RELUME" export lptm-back.exr --to lptm -o fine.ptm --psnr 36 2>note.txt
+above 'a .ptm of a given PSNR' "$(promised)" 36
+below 'and of no more' "$(promised)" 38
 for n in 1 3; do relume export ptm-back.exr --to ptm -o threads$n.ptm --quality 80 --threads $n; done
 same '.ptm of JPEG planes with 1 and 3 threads' threads1.ptm threads3.ptm
 "$sphere" odd --size 37 --lights 12 --hemisphere --format png

@@ -4,6 +4,7 @@
 #include "relight_fixture.h"
 
 #include "base/memory.h"
+#include "math/vec.h"
 
 // ---------------------------------------------------------------- the grid
 
@@ -113,6 +114,50 @@ static void test_triangles(void **state)
     assert_true(relume_weight_grid_info(grid)->triangles == 0);
     relume_weight_grid_destroy(&grid);
     relume_coder_destroy(&coder);
+}
+
+// The cusps of interpolants, where a plain grid is off by up to 0.1. Cells are judged in five
+// places, in between they may be off by a few times as much.
+static void test_cusps(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"chord", "angular"};
+    for (int set = 0; set < 4; set++) {
+        enum { N = 40, LOOKS = 1000 };
+        struct relume_vec3 lights[N];
+        relume_coder *coder;
+        relume_weight_grid *grid;
+        uint32_t seed = 5;
+        double worst = 0, square = 0;
+        const bool half = set / 2;
+        CHECK_OK(relume_lights_make(lights, N, relume_pattern_find("hammersley"),
+                                    relume_lights_params(.hemisphere = half)));
+        CHECK_OK(relume_coder_create(
+            &coder, &relume_basis_table, lights, N,
+            relume_coder_params(.interpolant = relume_interpolant_find(names[set % 2]),
+                                .hemispherical = half, .decode = true)));
+        CHECK_OK(relume_weight_grid_create(&grid, coder, NULL));
+        assert_true(relume_weight_grid_info(grid)->tiles > 0);
+        for (int i = 0; i < LOOKS; i++) {
+            static const float one[3] = {1, 1, 1};
+            float exact[3 * N], weights[3 * N] = {0}, constant[3], none[3] = {0};
+            const struct relume_vec3 l = lights[i % N], d = test_direction(&seed);
+            const vec3 near = vec3_unit(vec3_add(l, vec3_scale(d, 0.02)));
+            relume_coder_weights(coder, near, exact, constant);
+            relume_weight_grid_add(weights, none, grid, near, one);
+            double above = 0, below = 0;
+            for (int k = 0; k < N; k++) {
+                above += fmax((double)weights[k] - (double)exact[k], 0);
+                below += fmax((double)exact[k] - (double)weights[k], 0);
+            }
+            worst = fmax(worst, fmax(above, below));
+            square += fmax(above, below) * fmax(above, below) / LOOKS;
+        }
+        if (worst > 5.0 / 255 || sqrt(square) > 1.0 / 255)
+            fail_msg("%s %d: off by %g, rms %g", names[set % 2], half, worst, sqrt(square));
+        relume_weight_grid_destroy(&grid);
+        relume_coder_destroy(&coder);
+    }
 }
 
 // What the header says of the layout, so that others can read the grid: nodes hold the weights.
@@ -695,12 +740,12 @@ static void test_refusals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_grid),        cmocka_unit_test(test_triangles),
-        cmocka_unit_test(test_grid_layout), cmocka_unit_test(test_kinds),
-        cmocka_unit_test(test_storages),    cmocka_unit_test(test_together),
-        cmocka_unit_test(test_odd_places),  cmocka_unit_test(test_environments),
-        cmocka_unit_test(test_refit),       cmocka_unit_test(test_refusals),
-        cmocka_unit_test(test_allocations),
+        cmocka_unit_test(test_grid),         cmocka_unit_test(test_triangles),
+        cmocka_unit_test(test_cusps),        cmocka_unit_test(test_grid_layout),
+        cmocka_unit_test(test_kinds),        cmocka_unit_test(test_storages),
+        cmocka_unit_test(test_together),     cmocka_unit_test(test_odd_places),
+        cmocka_unit_test(test_environments), cmocka_unit_test(test_refit),
+        cmocka_unit_test(test_refusals),     cmocka_unit_test(test_allocations),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,7 @@
 #version 330 core
 // A light that stands near: the basis at every pixel's own direction towards it (Wong 1998, Eq. 7.7
 // with its sign corrected). Twins: relume_light_at, relume_facet_at, relume_weight_grid_place,
-// src/relight/triangles.c.
+// cells_find of src/relight/cells.c, src/relight/triangles.c.
 #include "transfer.glsl"
 #include "texels.glsl"
 #include "cube.glsl"
@@ -15,6 +15,8 @@ uniform sampler2DArray grid;   // weights by direction, four coefficients a texe
 uniform sampler2D triangles;   // rows of nodes, then inverse and neighbour of each corner; then
                                // starts, 16 a row
 uniform int triangle_count;    // 0: the weights are a grid, else those of nodes in a row
+uniform int grid_rows, tiles;  // of the grid, below which are tiles; `triangles` then holds the tile
+                               // of each cell, and those of each tile's four, 4096 a row
 uniform bool hemisphere, pole_y;
 
 const int JOINT = 1, LUMINANCE = 2;  // else each channel has coefficients of its own
@@ -43,17 +45,39 @@ bool facet_at(out vec3 towards, out vec3 rgb, int facet, vec3 point)
 
 // ---------------------------------------------------------------- what is reflected
 
-// In texels of the grid; `d` in the pole's frame.
+// In nodes of the grid; `d` in the pole's frame.
 vec2 weight_grid_place(vec3 d)
 {
-    ivec2 size = textureSize(grid, 0).xy;
+    ivec2 size = ivec2(textureSize(grid, 0).x, grid_rows);
     float down = float(hemisphere ? size.y - 1 : size.y / 2 - 1);
     bool below = d.z < 0.0;
     float height = below && hemisphere ? 0.0 : abs(d.z);
     float theta = atan(length(d.xy), height);
     float row = down * (1.0 - sqrt(max(1.0 - theta / (0.5 * PI), 0.0)));
     float column = (atan(d.y, d.x) / (2.0 * PI) + 0.5) * float(size.x - 1);
-    return vec2(column, below && !hemisphere ? float(size.y - 1) - row : row) + 0.5;
+    return vec2(column, below && !hemisphere ? float(size.y - 1) - row : row);
+}
+
+int tile_of(int cell)
+{
+    return int(texelFetch(triangles, ivec2(cell >> 2 & 1023, cell >> 12), 0)[cell & 3]);
+}
+
+// In texels, within the smallest cell around a place in the grid.
+vec2 cells_find(vec2 place)
+{
+    int columns = textureSize(grid, 0).x, across = columns / 3;
+    ivec2 corner = clamp(ivec2(place), ivec2(0), ivec2(columns, grid_rows) - 2);
+    vec2 at = clamp(place - vec2(corner), 0.0, 1.0);
+    int cells = (columns - 1) * (grid_rows - 1);
+    int tile = tiles > 0 ? tile_of(corner.y * (columns - 1) + corner.x) : -1;
+    while (tile >= 0) {
+        ivec2 part = ivec2(greaterThanEqual(at, vec2(0.5)));
+        at = 2.0 * at - vec2(part);
+        corner = part + 3 * ivec2(tile % across, tile / across) + ivec2(0, grid_rows);
+        tile = tile_of(cells + 4 * tile + 2 * part.y + part.x);
+    }
+    return vec2(corner) + at + 0.5;
 }
 
 int start_cell(vec3 d)
@@ -100,7 +124,7 @@ Place weight_place(vec3 direction)
     vec3 d = pole_y ? vec3(-direction.z, direction.x, direction.y) : direction;
     Place place = Place(vec2(0.0), ivec3(0), vec3(0.0));
     if (triangle_count == 0) {
-        place.at = weight_grid_place(d) / vec2(textureSize(grid, 0).xy);
+        place.at = cells_find(weight_grid_place(d)) / vec2(textureSize(grid, 0).xy);
         return place;
     }
     if (hemisphere && d.z < 0.0)

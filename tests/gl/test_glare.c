@@ -493,7 +493,7 @@ static void lamps_in_view_send_what_they_send(void **state)
         {.kind = RELUME_LIGHT_POINT, .position = {0, 0, -2}, .rgb = {1, 0.5f, 0}},
         {.kind = RELUME_LIGHT_POINT, .position = {0, 0, 2}, .rgb = {1, 1, 1}},
         {.kind = RELUME_LIGHT_DIRECTIONAL, .direction = {0.5, 0, -1}, .rgb = {1, 1, 1}}};
-    struct lamp_seen *seen = malloc(LAMPS_SEEN_MOST * sizeof *seen);
+    struct relume_source *seen = malloc(RELUME_SOURCES_MOST * sizeof *seen);
     struct app app;
     assert_int_equal(app_start(&app, &file, &start, true, NULL), RELUME_OK);
     assert_int_equal(lamps_seen(seen, &app, lights, 3, NULL), 2);

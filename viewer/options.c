@@ -497,6 +497,9 @@ static const struct option options[] = {
      take_sight},
     {"--nits", "N", "--glare: cd/m^2 of a pixel of value 1; default 100", take_sight},
     {"--squint", "S", "--glare: how far the lids are held closed, 0 to 0.95", take_sight},
+    {"--glare-cycle", "S",
+     "--glare: the library computes S seconds of the eye once and shows them in a loop; up to 10",
+     take_sight},
     {"--glare-mode", "M", "--glare: auto, fft, billboard or hybrid; default auto", take_sight},
     {"--glare-size", "N",
      "--glare: texels of the pattern; default 1536 by passes, 512 by the library", take_glare_size},
@@ -553,8 +556,8 @@ void options_help(void)
          "        key K                 hold K, let K                    type TEXT\n"
          "        light SPEC            add SPEC                         rig FILE\n"
          "        open FILE: another relume file\n"
-         "        glare on|off|pause|run, glare magnify|nits|squint X, glare mode M, glare sources "
-         "on|off\n"
+         "        glare on|off|pause|run, glare magnify|nits|squint|cycle X, glare mode M\n"
+         "        glare sources on|off: lamps in view\n"
          "        glare cornea|fibres|lens|vitreous|lids on|off: parts of the eye\n"
          "        wait [SECONDS]        frame OUT: the picture           shot OUT: with the "
          "panel\n\n"

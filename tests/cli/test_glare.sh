@@ -18,8 +18,6 @@ cp "$lit" in.exr
 expect_ok 'a picture' - "$RELUME" glare lamp.exr -o seen.exr $quick
 expect_ok 'the same by one thread' - "$RELUME" glare lamp.exr -o one.exr $quick --threads 1
 same 'any number of threads' seen.exr one.exr
-glare lamp.exr -o later.exr $quick --time 2
-differ 'time passes' seen.exr later.exr
 for mode in billboard hybrid; do
     expect_ok "mode $mode" - "$RELUME" glare lamp.exr -o $mode.exr $quick --mode $mode
     "$RELUME" compare seen.exr $mode.exr --json >c.json
@@ -34,6 +32,8 @@ for file in psf.exr psf.png aperture.png pupil.svg pupil.png observer.svg observ
     check "$file" test -s "pattern/$file"
 done
 same 'the same pattern' psf.exr pattern/psf.exr
+glare --psf later.exr $quick --time 2
+differ 'time passes' psf.exr later.exr
 glare --psf with.exr $quick --luminance 0.01
 for part in cornea fibres lens vitreous lids; do
     glare --psf without.exr $quick --without $part --luminance 0.01
@@ -62,21 +62,23 @@ fi
 expect_ok 'a pass of relight' - "$RELUME" relight dome.exr -o pass.png --pass glare --nits 1
 "$RELUME" synth attic -q -o attic --projection cylindrical --lights 9 --hemisphere --size 24 --samples 1
 "$RELUME" encode attic -q -o attic.exr
-seen_alike() { # name, least brightness that glare adds, most, light
-    "$RELUME" relight attic.exr -q -o a.exr --pass glare --time 0 --pan 0 --size 48x32 --light "$4"
-    "$RELUME" relight attic.exr -q -o b.exr --pan 0 --size 48x32 --light "$4"
+seen_alike() { # name, least brightness that glare adds, most, lights
+    what=$1 least=$2 most=$3
+    shift 3
+    "$RELUME" relight attic.exr -q -o a.exr --pass glare --time 0 --pan 0 --size 48x32 "$@"
+    "$RELUME" relight attic.exr -q -o b.exr --pan 0 --size 48x32 "$@"
     "$RELUME" compare a.exr b.exr --json >c.json
-    above "$1 shines" "$(field max_abs c.json)" "$2"
-    below "$1 shines no more" "$(field max_abs c.json)" "$3"
-    expect_ok "$1 in the viewer" - "$VIEWER" attic.exr --offscreen v.exr --glare --sources \
-        --glare-mode fft --glare-size 1536 --pan 0 --size 48x32 --light "$4"
+    above "$what" "$(field max_abs c.json)" "$least"
+    below "$what, no more" "$(field max_abs c.json)" "$most"
+    expect_ok "$what, in the viewer" - "$VIEWER" attic.exr --offscreen v.exr --glare --sources \
+        --glare-mode fft --glare-size 1536 --pan 0 --size 48x32 "$@"
     "$RELUME" compare a.exr v.exr --json >c.json
     # floats, and reflectances summed in another order: 2e-5 of the brightest pixel was found
-    below "$1: the viewer sees the same" "$(field max_abs c.json)" "$(awk "BEGIN { print 1e-4 * ($3) }")"
+    below "$what, and seen alike" "$(field max_abs c.json)" "$(awk "BEGIN { print 1e-4 * $most }")"
 }
-seen_alike 'a lamp in view' 10 500 "point 0.4 0.3 -1 rgb .1 .1 .1"
-seen_alike 'a lamp behind the wall' 0 0.1 "point 4 0.3 -9 rgb 10 10 10"
-seen_alike 'a panel' 0.5 10 "area 0.3 0.4 -1.2 0.1 0 0 0 0.1 0 rgb 3 2 1"
+seen_alike 'a lamp and a panel shine' 10 500 --light "point 0.4 0.3 -1 rgb .1 .1 .1" \
+    --light "area -0.3 0.4 -1.2 0.1 0 0 0 0.1 0 rgb 3 2 1"
+seen_alike 'a lamp behind the wall does not' 0 0.1 --light "point 4 0.3 -9 rgb 10 10 10"
 expect_fail 'a panorama unfolded' 2 'expected --pan' p.png \
     "$RELUME" relight attic.exr -o p.png --pass glare
 

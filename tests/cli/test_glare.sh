@@ -108,6 +108,11 @@ bad 'unknown group' 1 'line 1; lense; unknown; did you mean "lens"' --psf out.pn
 printf '{"format": "relume-subject", "version": 1, "lids": {"squint": 0.6, "blink_interval_s": 0}}' >s.json
 expect_ok 'a squinting subject' - "$RELUME" glare --psf squint.exr $quick --subject s.json
 differ 'squinting' psf.exr squint.exr
+printf '{"format": "relume-subject", "version": 1, "lids": {"squint": 0.6, "blink_interval_s": 0, "lash_image": "l.exr"}}' >s.json
+bad 'no picture of lashes' 1 'l.exr: no such file' --psf out.png --subject s.json
+"$mkimage" poke in.exr l0.exr 12 0 0 && "$mkimage" poke l0.exr l.exr 12 1 0
+expect_ok 'lashes of a picture' - "$RELUME" glare --psf lashes.exr $quick --subject s.json
+differ 'lashes' squint.exr lashes.exr
 
 # ---- pixels that are no light
 "$mkimage" poke in.exr nan.exr 3 3 nan

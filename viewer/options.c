@@ -307,8 +307,8 @@ static relume_status take_tone(struct options *o, const char *name, const char *
             o->start.tone = i;
             return RELUME_OK;
         }
-    return say(log, RELUME_EINVAL, "%s: expected linear, reinhard or filmic; found '%s'", name,
-               text);
+    return say(log, RELUME_EINVAL, "%s: expected linear, reinhard, filmic or gamma; found '%s'",
+               name, text);
 }
 
 static relume_status take_white(struct options *o, const char *name, const char *text,
@@ -474,7 +474,8 @@ static const struct option options[] = {
      take_focus},
     {"--size", "WxH", "pixels of the window or picture", take_size},
     {"--exposure", "EV", "brighter by 2^EV, or auto", take_exposure},
-    {"--tone", "T", "linear, reinhard or filmic; .exr, .hdr and .pfm stay linear", take_tone},
+    {"--tone", "T", "linear, reinhard, filmic or gamma; .exr, .hdr and .pfm stay linear",
+     take_tone},
     {"--white", "L", "reinhard: the luminance that becomes white; default: 4", take_white},
     {"--pass", "NAME", "colour, normals, specular, diffuse-gain, unsharp, luminance, ...",
      take_pass},

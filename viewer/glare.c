@@ -9,6 +9,7 @@
 enum { LIBRARY_SIZE = 512, PASSES_SIZE = 1536 };
 static const double field_deg = 4;  // of the pattern: the ring of the lens's fibres is within
 static const double most_nits = 1e12;
+static const double shortest_s = 0.1;  // of a loop: three patterns
 
 void glare_begin(struct glare *g, const struct gl *gl, const struct relume_log *log)
 {
@@ -142,7 +143,8 @@ static relume_status begin_loop(struct glare *g, const struct gaze *gaze, double
     relume_eye_squint(g->eye, squint);
     status = relume_psf_cycle_create(
         &g->loop.cycle, g->library.psf, g->eye,
-        relume_psf_cycle_params(.log = g->log, .seconds = gaze->cycle_s, .luminance = luminance));
+        relume_psf_cycle_params(.log = g->log, .seconds = fmax(gaze->cycle_s, shortest_s),
+                                .luminance = luminance));
     g->loop.seconds = gaze->cycle_s;
     g->loop.squint = squint;
     return status;

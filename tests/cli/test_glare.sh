@@ -62,23 +62,26 @@ fi
 expect_ok 'a pass of relight' - "$RELUME" relight dome.exr -o pass.png --pass glare --nits 1
 "$RELUME" synth attic -q -o attic --projection cylindrical --lights 9 --hemisphere --size 24 --samples 1
 "$RELUME" encode attic -q -o attic.exr
-seen_alike() { # name, least brightness that glare adds, most, lights
+seen_alike() { # name, least brightness that glare adds, most, lights; of $file in $look
     what=$1 least=$2 most=$3
     shift 3
-    "$RELUME" relight attic.exr -q -o a.exr --pass glare --time 0 --pan 0 --size 48x32 "$@"
-    "$RELUME" relight attic.exr -q -o b.exr --pan 0 --size 48x32 "$@"
+    "$RELUME" relight $file -q -o a.exr --pass glare --time 0 $look "$@"
+    "$RELUME" relight $file -q -o b.exr $look "$@"
     "$RELUME" compare a.exr b.exr --json >c.json
     above "$what" "$(field max_abs c.json)" "$least"
     below "$what, no more" "$(field max_abs c.json)" "$most"
-    expect_ok "$what, in the viewer" - "$VIEWER" attic.exr --offscreen v.exr --glare --sources \
-        --glare-mode fft --glare-size 1536 --pan 0 --size 48x32 "$@"
+    expect_ok "$what, in the viewer" - "$VIEWER" $file --offscreen v.exr --glare --sources \
+        --glare-mode fft --glare-size 1536 ${look:---size 24x24} "$@"
     "$RELUME" compare a.exr v.exr --json >c.json
     # floats, and reflectances summed in another order: 2e-5 of the brightest pixel was found
     below "$what, and seen alike" "$(field max_abs c.json)" "$(awk "BEGIN { print 1e-4 * $most }")"
 }
+file=attic.exr look='--pan 0 --size 48x32'
 seen_alike 'a lamp and a panel shine' 10 500 --light "point 0.4 0.3 -1 rgb .1 .1 .1" \
     --light "area -0.3 0.4 -1.2 0.1 0 0 0 0.1 0 rgb 3 2 1"
 seen_alike 'a lamp behind the wall does not' 0 0.1 --light "point 4 0.3 -9 rgb 10 10 10"
+file=dome.exr look=
+seen_alike 'a lamp above a picture shines' 10 500 --light "point 0.3 0.5 1.4 rgb .1 .1 .1"
 expect_fail 'a panorama unfolded' 2 'expected --pan' p.png \
     "$RELUME" relight attic.exr -o p.png --pass glare
 

@@ -198,7 +198,8 @@ void fft2d_pass_columns(const fft2d *f, float *spectrum, const struct fft2d_pass
     struct columns columns = {f, spectrum, *pass};
     const int count = pass->end - pass->first;
     if (count > 0)
-        thread_for(f->threads, ((size_t)count + FFT2D_BLOCK - 1) / FFT2D_BLOCK, column_block, &columns);
+        thread_for(f->threads, ((size_t)count + FFT2D_BLOCK - 1) / FFT2D_BLOCK, column_block,
+                   &columns);
 }
 
 static void column_back(void *context, size_t item, int worker)
@@ -217,5 +218,6 @@ static void column_back(void *context, size_t item, int worker)
 void fft2d_columns_back(const fft2d *f, float *spectrum)
 {
     struct columns columns = {f, spectrum, {0}};
-    thread_for(f->threads, ((size_t)f->columns + FFT2D_BLOCK - 1) / FFT2D_BLOCK, column_back, &columns);
+    thread_for(f->threads, ((size_t)f->columns + FFT2D_BLOCK - 1) / FFT2D_BLOCK, column_back,
+               &columns);
 }

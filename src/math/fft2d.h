@@ -1,8 +1,8 @@
 // fft2d.h - two-dimensional transforms on the library's own threads, made of lines (fft.h)
 //
-// Rows first, then columns, FFT2D_BLOCK at a time. The halves are separate, so that rows and columns that
-// are known to be zero or not wanted cost nothing, and so that what is done to a column is done
-// while it is at hand. The same bits for any number of threads.
+// Rows first, then columns, FFT2D_BLOCK at a time. The halves are separate, so that rows and
+// columns that are known to be zero or not wanted cost nothing, and so that what is done to a
+// column is done while it is at hand. The same bits for any number of threads.
 #ifndef MATH_FFT2D_H
 #define MATH_FFT2D_H
 

@@ -8,9 +8,10 @@
 //   figures resampled FILE OUT L    FILE relit from its 50 x 50 samples of the disc, bilinear
 //   figures errors FILE X,Y,W,H L OTHER...
 //                                   RMS error of others against FILE, under light L and 16 more
-//   figures row OUT [crop=X,Y,W,H] [frame=X,Y,W,H] [scale=K] [gain=G] PICTURE...
-//                                   pictures side by side; what stands before one holds from there
-//                                   on, `crop=` and `frame=` alone end it
+//   figures row OUT [columns=N] [crop=X,Y,W,H] [frame=X,Y,W,H] [scale=K] [gain=G] PICTURE...
+//                                   pictures side by side, N in a row (16); what stands before one
+//                                   holds from there on, `crop=` and `frame=` alone end it; with a
+//                                   gain, what is brighter than white burns out to white
 #include <relume/relume.h>
 
 #include <math.h>
@@ -558,6 +559,14 @@ static void errors(char **args)
 
 // ---------------------------------------------------------------- row
 
+// As film does: the colour of what is brighter than white goes as it exceeds white.
+static void burn(float *rgb)
+{
+    const float most = fmaxf(fmaxf(rgb[0], rgb[1]), rgb[2]);
+    for (int c = 0; c < 3 && most > 1.0f; c++)
+        rgb[c] = 1.0f + (fmaxf(rgb[c], 0.0f) / most - 1.0f) / most;
+}
+
 // Every pixel of `b` as a square of `scale` pixels.
 static struct relume_image enlarged(const struct relume_image *image, struct box b, int scale,
                                     float gain)
@@ -565,9 +574,13 @@ static struct relume_image enlarged(const struct relume_image *image, struct box
     struct relume_image part = cropped(image, b),
                         out = new_image(b.width * scale, b.height * scale, 0.0f);
     for (int y = 0; y < out.height; y++)
-        for (int x = 0; x < out.width; x++)
+        for (int x = 0; x < out.width; x++) {
+            float *rgb = at(&out, x, y);
             for (int c = 0; c < 3; c++)
-                at(&out, x, y)[c] = gain * at(&part, x / scale, y / scale)[c];
+                rgb[c] = gain * at(&part, x / scale, y / scale)[c];
+            if (gain != 1.0f)
+                burn(rgb);
+        }
     relume_image_destroy(&part);
     return out;
 }
@@ -591,7 +604,7 @@ static struct box scaled(struct box frame, struct box crop, int scale)
 
 struct panel_options {
     struct box crop, frame;
-    int scale;
+    int scale, columns;
     float gain;
 };
 
@@ -603,6 +616,8 @@ static bool panel_option(struct panel_options *o, const char *arg)
         o->frame = box_of(arg + 6);
     else if (!strncmp(arg, "scale=", 6))
         o->scale = atoi(arg + 6) > 1 ? atoi(arg + 6) : 1;
+    else if (!strncmp(arg, "columns=", 8))
+        o->columns = atoi(arg + 8) > 1 ? atoi(arg + 8) : 1;
     else if (!strncmp(arg, "gain=", 5))
         o->gain = (float)atof(arg + 5);
     else
@@ -622,32 +637,46 @@ static struct relume_image panel(const struct panel_options *o, const char *path
     return out;
 }
 
+// Side by side, `columns` in a row.
+static struct relume_image arranged(const struct relume_image *panels, int n, int columns)
+{
+    int x[MOST_PANELS], y[MOST_PANELS], width = 0, height = 0;
+    for (int i = 0, top = 0; i < n; i++) {
+        const bool begins = i % columns == 0;
+        top = begins && i ? height + GAP : top;
+        x[i] = begins ? 0 : x[i - 1] + panels[i - 1].width + GAP;
+        y[i] = top;
+        width = x[i] + panels[i].width > width ? x[i] + panels[i].width : width;
+        height = top + panels[i].height > height ? top + panels[i].height : height;
+    }
+    struct relume_image out = new_image(width, height, 1.0f);
+    for (int i = 0; i < n; i++)
+        for (int row = 0; row < panels[i].height; row++)
+            memcpy(at(&out, x[i], y[i] + row), at(&panels[i], 0, row),
+                   3 * sizeof(float) * (size_t)panels[i].width);
+    return out;
+}
+
 static void row(char **args)
 {
     const char *path = *args++;
-    struct panel_options o = {.scale = 1, .gain = 1.0f};
+    struct panel_options o = {.scale = 1, .columns = MOST_PANELS, .gain = 1.0f};
     struct relume_image panels[MOST_PANELS];
-    int n = 0, width = -GAP, height = 0;
+    int n = 0;
     for (; *args; args++) {
         if (panel_option(&o, *args))
             continue;
         if (n == MOST_PANELS)
             fail("more than %d pictures", MOST_PANELS);
-        panels[n] = panel(&o, *args);
-        width += panels[n].width + GAP;
-        height = panels[n].height > height ? panels[n].height : height;
-        n++;
+        panels[n++] = panel(&o, *args);
     }
-    struct relume_image out = new_image(width, height, 1.0f);
-    for (int i = 0, x = 0; i < n; i++) {
-        for (int y = 0; y < panels[i].height; y++)
-            memcpy(at(&out, x, y), at(&panels[i], 0, y),
-                   3 * sizeof(float) * (size_t)panels[i].width);
-        x += panels[i].width + GAP;
-        relume_image_destroy(&panels[i]);
-    }
+    if (!n)
+        fail("row: expected a picture");
+    struct relume_image out = arranged(panels, n, o.columns);
     save(&out, path);
     relume_image_destroy(&out);
+    for (int i = 0; i < n; i++)
+        relume_image_destroy(&panels[i]);
 }
 
 int main(int argc, char **argv)

@@ -18,8 +18,8 @@ glare --psf "$out/eye" $pattern
 "$draw" row "$pictures/glare-pattern.jpg" "$out/eye/psf.png"
 cp "$out/eye/pupil.png" "$pictures/glare-pupil.png"
 cp "$out/eye/observer.png" "$pictures/glare-observer.png"
-glare --psf "$out/wide" --size 1536 --luminance 1
-"$draw" row "$pictures/glare-aperture.jpg" crop=418,418,700,700 "$out/wide/aperture.png"
+glare --psf "$out/wide" --width 4.2 --luminance 1 --size 640
+"$draw" row "$pictures/glare-aperture.jpg" crop=34,34,572,572 "$out/wide/aperture.png"
 picture 'glare-pattern.jpg, glare-aperture.jpg, glare-pupil.png, glare-observer.png'
 
 # 8.6: without defocus, with 0.25 dioptres, with the printed distance
@@ -72,6 +72,16 @@ glare "$candle" -o "$out/fft.png" --fov 16 --magnify 3
 "$draw" row "$pictures/glare-8-10.jpg" crop=130,120,480,480 "$out/billboard.png" "$out/fft.png"
 picture 'glare-candle.jpg, glare-8-10.jpg'
 
-# the night from inside its panorama
-glare "$night" -o "$pictures/glare-night.jpg" --pan -57 --tilt 12 --fov 50 --picture 960x540 --exposure -3 --border clamp
+# one frame a second of the candle's four, as every thirtieth of --frames 120 --fps 30
+rm -rf "$out/film" "$out/sparks"
+glare "$candle" -o "$out/film" --fov 16 --magnify 3 --frames 4 --fps 1
+glare "$candle" -o "$out/sparks" --fov 16 --magnify 3 --frames 4 --fps 1 --mode billboard --threshold 40
+"$draw" row "$pictures/glare-film.jpg" columns=4 crop=247,220,240,240 "$out"/film/*.png "$out"/sparks/*.png
+picture glare-film.jpg
+
+# the night from inside its panorama, as it is and as it is seen
+look="--pan -57 --tilt 6 --fov 30 --picture 620x350 --exposure -4.5 --border clamp"
+glare "$night" -o "$out/night.png" $look --size 64 --width 0.3 --no-veil --magnify 0.01
+glare "$night" -o "$out/night-seen.png" $look
+"$draw" row "$pictures/glare-night.jpg" "$out/night.png" "$out/night-seen.png"
 picture glare-night.jpg

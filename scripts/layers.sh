@@ -15,11 +15,11 @@ pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image lights codebook coder capture pack relight exchange
 relight:base math image:base image coder light relight rig normals enhance
 view:base math image:base image light relight view slabs capture
-pass:base math image:base image light tone eye psf glare
+pass:base math image:base image tone eye psf glare
 btf:base math image:base image light lights btf surface ambient
-frame:base math:base image capture coder pack light relight view slabs frame evaluate normals enhance
+frame:base math:base image capture coder pack light relight view slabs frame sight evaluate normals enhance
 scene:base math image:base image lights capture btf scene
-object:base math image scene:base image capture light relight view slabs pack frame btf ambient surface object
+object:base math image scene:base image capture light relight view slabs pack frame sight btf ambient surface object
 cli:cli:*
 viewer:viewer:*
 samples::*"

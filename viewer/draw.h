@@ -103,7 +103,7 @@ void draw_ball(const struct program *program, const struct gl *gl, const struct 
 relume_status draw_source_create(struct program *program, const struct gl *gl,
                                  const struct relume_log *log);
 void draw_sources(const struct program *program, const struct gl *gl, const struct place *place,
-                  const struct lamp_seen *sources, int n);
+                  const struct relume_source *sources, int n);
 
 // A linear frame onto a framebuffer whose first row is the lowest (0: the screen), through
 // relume_tones[tone], coded as sRGB; `white` > 0.

@@ -86,6 +86,7 @@ static const struct number {
     {"magnify", "a magnification from 0.01 to 1000", offsetof(struct gaze, magnify), 0.01, 1000},
     {"nits", "cd/m^2 of a pixel of value 1, 1e-6 to 1e9", offsetof(struct gaze, nits), 1e-6, 1e9},
     {"squint", "how far the lids are closed, 0 to 0.95", offsetof(struct gaze, squint), 0, 0.95},
+    {"cycle", "seconds of a loop, 0 (none) to 10", offsetof(struct gaze, cycle_s), 0, 10},
 };
 
 bool gaze_say(struct gaze *s, const char *words, const char **expected)
@@ -117,8 +118,9 @@ bool gaze_say(struct gaze *s, const char *words, const char **expected)
         *expected = "auto, fft, billboard or hybrid";
         return take_mode(s, words);
     }
-    *expected = "on, off, pause, run, sources, magnify, nits, squint, mode, cornea, fibres, lens, "
-                "vitreous or lids";
+    *expected =
+        "on, off, pause, run, sources, magnify, nits, squint, cycle, mode, cornea, fibres, lens, "
+        "vitreous or lids";
     const bool pause = word_is(&words, "pause");
     if ((!pause && !word_is(&words, "run")) || !at_end(words))
         return false;

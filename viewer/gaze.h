@@ -23,6 +23,8 @@ struct gaze {
     double magnify;      // of the pattern, [0.01, 1000]; 0: 1
     double nits;         // cd/m^2 of a pixel of value 1, [1e-6, 1e9]; 0: 100
     double squint;       // [0, 0.95]; where it is more than the subject's own
+    double cycle_s;      // up to 10: a loop of so many seconds, at least 0.1, is computed once; 0:
+                         // it lives on
     unsigned parts_off;  // RELUME_EYE_*
 };
 
@@ -43,8 +45,8 @@ extern const struct gaze_part gaze_parts[];
 const char *gaze_mode_name(enum gaze_mode mode);
 
 // One thing as a script says it: "on", "off", "pause", "run", "sources on", "magnify 3", "nits 50",
-// "squint 0.4", "mode hybrid", "lens off". False where `words` are none of them; `*expected` says
-// what would be one.
+// "squint 0.4", "cycle 4", "mode hybrid", "lens off". False where `words` are none of them;
+// `*expected` says what would be one.
 bool gaze_say(struct gaze *gaze, const char *words, const char **expected);
 
 #endif

@@ -9,14 +9,25 @@
 enum { LIBRARY_SIZE = 512, PASSES_SIZE = 1536 };
 static const double field_deg = 4;  // of the pattern: the ring of the lens's fibres is within
 static const double most_nits = 1e12;
+static const double shortest_s = 0.1;  // of a loop: three patterns
 
 void glare_begin(struct glare *g, const struct gl *gl, const struct relume_log *log)
 {
     *g = (struct glare){.gl = gl, .log = log};
 }
 
+static void forget_loop(struct glare *g)
+{
+    if (!g->loop.cycle)
+        return;
+    relume_psf_cycle_destroy(&g->loop.cycle);
+    relume_eye_destroy(&g->eye);
+    g->loop = (struct glare_loop){0};
+}
+
 static void forget_pattern(struct glare *g)
 {
+    forget_loop(g);
     relume_psf_destroy(&g->library.psf);
     relume_glare_destroy(&g->library.work);
     relume_image_destroy(&g->library.frame);
@@ -74,7 +85,8 @@ static bool can_pass(struct glare *g, const struct gaze *gaze)
 
 static bool wants_passes(struct glare *g, const struct gaze *gaze)
 {
-    return (gaze->mode == GAZE_AUTO || gaze->mode == GAZE_FFT) && can_pass(g, gaze);
+    return !gaze->cycle_s && (gaze->mode == GAZE_AUTO || gaze->mode == GAZE_FFT) &&
+           can_pass(g, gaze);
 }
 
 static relume_status prepare(struct glare *g, const struct gaze *gaze, bool passes)
@@ -95,11 +107,16 @@ static relume_status prepare(struct glare *g, const struct gaze *gaze, bool pass
 
 // ---------------------------------------------------------------- the eye
 
+static double squint_of(const struct glare *g, const struct gaze *gaze)
+{
+    const double own = g->subject ? g->subject->lids.squint : 0;
+    return fmin(fmax(own, gaze->squint), 0.99);
+}
+
 // Live on; `*moved`: it is not as it was.
 static relume_status live(struct glare *g, const struct app *app, double luminance, bool *moved)
 {
-    const double own = g->subject ? g->subject->lids.squint : 0;
-    const double squint = fmin(fmax(own, app->now.gaze.squint), 0.99);
+    const double squint = squint_of(g, &app->now.gaze);
     relume_status status = RELUME_OK;
     *moved = !g->eye || app->eye_s > g->eye_s;
     if (!g->eye)
@@ -114,12 +131,48 @@ static relume_status live(struct glare *g, const struct app *app, double luminan
     return RELUME_OK;
 }
 
+// Of an eye that opens now, adapted to that luminance.
+static relume_status begin_loop(struct glare *g, const struct gaze *gaze, double luminance)
+{
+    const double squint = squint_of(g, gaze);
+    forget_loop(g);
+    relume_eye_destroy(&g->eye);
+    relume_status status = relume_eye_create(&g->eye, g->subject, luminance);
+    if (status)
+        return status;
+    relume_eye_squint(g->eye, squint);
+    status = relume_psf_cycle_create(
+        &g->loop.cycle, g->library.psf, g->eye,
+        relume_psf_cycle_params(.log = g->log, .seconds = fmax(gaze->cycle_s, shortest_s),
+                                .luminance = luminance));
+    g->loop.seconds = gaze->cycle_s;
+    g->loop.squint = squint;
+    return status;
+}
+
+static relume_status go_around(struct glare *g, const struct app *app, double luminance)
+{
+    const struct gaze *gaze = &app->now.gaze;
+    relume_status status = RELUME_OK;
+    if (!g->loop.cycle || g->loop.seconds != gaze->cycle_s || g->loop.squint != squint_of(g, gaze))
+        status = begin_loop(g, gaze, luminance);
+    else if (g->fresh && app->eye_s == g->eye_s)
+        return RELUME_OK;
+    g->fresh = false;
+    g->eye_s = app->eye_s;
+    return status ? status : relume_psf_cycle_show(g->library.psf, g->loop.cycle, app->eye_s);
+}
+
 static relume_status live_and_update(struct glare *g, const struct app *app, double luminance,
                                      double exposure)
 {
     const double nits = luminance / exposure * gaze_nits(&app->now.gaze);
+    const double seen = nits >= 0 ? fmin(nits, most_nits) : 0;
     bool moved;
-    relume_status status = live(g, app, nits >= 0 ? fmin(nits, most_nits) : 0, &moved);
+    if (app->now.gaze.cycle_s > 0)
+        return go_around(g, app, seen);
+    forget_loop(g);
+    relume_status status = live(g, app, seen, &moved);
     if (status || (!moved && g->fresh))
         return status;
     g->fresh = false;

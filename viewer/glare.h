@@ -16,6 +16,12 @@ struct glare_library {
     struct relume_image frame;  // that was looked at last
 };
 
+// Patterns that are computed once; the library shows them.
+struct glare_loop {
+    relume_psf_cycle *cycle;  // NULL: the eye lives on
+    double seconds, squint;   // that it was made for
+};
+
 struct glare {
     const struct gl *gl;
     const struct relume_log *log;
@@ -31,6 +37,7 @@ struct glare {
     bool ready, passes;  // the pattern is made, by passes
     unsigned parts_off;  // that it leaves out
     struct glare_library library;
+    struct glare_loop loop;
     struct gl_glare card;
     struct relume_glare_params view;  // how the last frame was seen
     struct target seen;
@@ -42,7 +49,8 @@ void glare_begin(struct glare *glare, const struct gl *gl, const struct relume_l
 void glare_end(struct glare *glare);
 
 // `frame`, linear, times `exposure` what the scene sends, as the app's eye sees it now: into
-// glare->seen. The eye lives on to app->eye_s. RELUME_ESYSTEM, RELUME_ENOMEM.
+// glare->seen. The eye lives on to app->eye_s, or its loop goes on, which takes as long as its
+// patterns when it begins. RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status glare_see(struct glare *glare, const struct target *frame, const struct app *app,
                         double exposure);
 

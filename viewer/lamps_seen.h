@@ -1,20 +1,13 @@
-// lamps_seen.h - the lights that are in view, as small sources that send the eye what lights send
+// lamps_seen.h - the lights that are in view of the app's frame (sight.h)
 //
-// A light of value E at the eye (light.h) sends it pi E, which a pixel of solid angle w shows as
-// pi E / w. Panels of light are spread over as many pieces. The surface hides what lies behind it,
-// as the nearest view knows it.
+// The surface hides what lies behind it, as the nearest view knows it.
 #ifndef VIEWER_LAMPS_SEEN_H
 #define VIEWER_LAMPS_SEEN_H
 
 #include "app.h"
 #include "loader.h"
 
-enum { LAMPS_SEEN_MOST = 8192 };
-
-struct lamp_seen {
-    double x, y;   // pixels of the frame
-    float rgb[3];  // the sum over its pixels
-};
+#include <relume/sight.h>
 
 // Where views stand, and where their pixels lie. `source` and `uv` must outlive it.
 struct lamp_scene {
@@ -27,9 +20,8 @@ struct lamp_scene {
 };
 void lamp_scene_forget(struct lamp_scene *scene);
 
-// The sources among `n` lights, at most LAMPS_SEEN_MOST; returns how many. Without `scene` nothing
-// is hidden.
-int lamps_seen(struct lamp_seen *out, const struct app *app, const struct relume_light *lights,
+// As relume_sight_lamps. Without `scene` nothing is hidden.
+int lamps_seen(struct relume_source *out, const struct app *app, const struct relume_light *lights,
                int n, struct lamp_scene *scene);
 
 #endif

@@ -307,8 +307,8 @@ static relume_status take_tone(struct options *o, const char *name, const char *
             o->start.tone = i;
             return RELUME_OK;
         }
-    return say(log, RELUME_EINVAL, "%s: expected linear, reinhard or filmic; found '%s'", name,
-               text);
+    return say(log, RELUME_EINVAL, "%s: expected linear, reinhard, filmic or gamma; found '%s'",
+               name, text);
 }
 
 static relume_status take_white(struct options *o, const char *name, const char *text,
@@ -474,7 +474,8 @@ static const struct option options[] = {
      take_focus},
     {"--size", "WxH", "pixels of the window or picture", take_size},
     {"--exposure", "EV", "brighter by 2^EV, or auto", take_exposure},
-    {"--tone", "T", "linear, reinhard or filmic; .exr, .hdr and .pfm stay linear", take_tone},
+    {"--tone", "T", "linear, reinhard, filmic or gamma; .exr, .hdr and .pfm stay linear",
+     take_tone},
     {"--white", "L", "reinhard: the luminance that becomes white; default: 4", take_white},
     {"--pass", "NAME", "colour, normals, specular, diffuse-gain, unsharp, luminance, ...",
      take_pass},
@@ -497,6 +498,9 @@ static const struct option options[] = {
      take_sight},
     {"--nits", "N", "--glare: cd/m^2 of a pixel of value 1; default 100", take_sight},
     {"--squint", "S", "--glare: how far the lids are held closed, 0 to 0.95", take_sight},
+    {"--glare-cycle", "S",
+     "--glare: the library computes S seconds of the eye once and shows them in a loop; up to 10",
+     take_sight},
     {"--glare-mode", "M", "--glare: auto, fft, billboard or hybrid; default auto", take_sight},
     {"--glare-size", "N",
      "--glare: texels of the pattern; default 1536 by passes, 512 by the library", take_glare_size},
@@ -553,8 +557,8 @@ void options_help(void)
          "        key K                 hold K, let K                    type TEXT\n"
          "        light SPEC            add SPEC                         rig FILE\n"
          "        open FILE: another relume file\n"
-         "        glare on|off|pause|run, glare magnify|nits|squint X, glare mode M, glare sources "
-         "on|off\n"
+         "        glare on|off|pause|run, glare magnify|nits|squint|cycle X, glare mode M\n"
+         "        glare sources on|off: lamps in view\n"
          "        glare cornea|fibres|lens|vitreous|lids on|off: parts of the eye\n"
          "        wait [SECONDS]        frame OUT: the picture           shot OUT: with the "
          "panel\n\n"

@@ -527,6 +527,13 @@ static bool glare_section(app *app, const panel_facts *facts)
     }
     changed |= ImGui::SliderScalar("squint", ImGuiDataType_Double, &s->squint, &least[2], &most[2],
                                    "%.2f");
+    bool loop = s->cycle_s > 0;
+    if (ImGui::Checkbox("loop of 4 s", &loop)) {
+        s->cycle_s = loop ? 4 : 0;
+        changed = true;
+    }
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("computed once, then shown again and again: cheap");
     changed |= choose_mode(s);
     changed |= parts_row(s);
     if (facts->eye)

@@ -436,7 +436,7 @@ static relume_status draw_lights_in_view(struct renderer *r, const struct app *a
 {
     if (!app->now.gaze.sources || app->now.pass != RELUME_PASS_COLOUR)
         return RELUME_OK;
-    struct lamp_seen *sources = malloc(LAMPS_SEEN_MOST * sizeof *sources);
+    struct relume_source *sources = malloc(RELUME_SOURCES_MOST * sizeof *sources);
     if (!sources)
         return RELUME_ENOMEM;
     const int n = lamps_seen(sources, app, r->light, r->lights, &r->backdrop);

@@ -78,8 +78,12 @@ static const char *describe_eye(char *text, size_t size, const struct glare *gla
     if (!glare->eye)
         return NULL;
     const struct relume_eye_state *eye = relume_eye_state(glare->eye);
-    snprintf(text, size, "pupil %.2f mm, field %.3g cd/m2\n%.1f s, by %s", eye->pupil_mm,
-             eye->luminance, eye->time_s, glare->passes ? "passes" : "the library");
+    if (glare->loop.cycle)
+        snprintf(text, size, "field %.3g cd/m2\na loop of %.3g s, by the library", eye->luminance,
+                 glare->loop.seconds);
+    else
+        snprintf(text, size, "pupil %.2f mm, field %.3g cd/m2\n%.1f s, by %s", eye->pupil_mm,
+                 eye->luminance, eye->time_s, glare->passes ? "passes" : "the library");
     return text;
 }
 

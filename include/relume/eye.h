@@ -23,6 +23,9 @@ struct relume_particles {
     double opacity;    // [0, 1]: 1 - transmittance of the amplitude
 };
 
+// Of a file's name and its folder's.
+enum { RELUME_SUBJECT_PATH = 1024 };
+
 // One person. Every field counts as it stands: begin with relume_subject_default().
 struct relume_subject {
     uint64_t seed;  // another seed, another person with the same measures
@@ -60,6 +63,10 @@ struct relume_subject {
         double blink_interval_s;  // mean, 0: never; [0, 3600]
         double blink_s;           // how long one takes, [0.05, 5]
         double squint;            // how far the lids are held closed, [0, 1)
+        // A picture of the upper lid's lashes, 14 mm wide, the lid's edge at its top, in place of
+        // drawn ones: what is darker than half is a lash. The lower lid's are the same upside down
+        // and 0.45 times as long. Empty: none.
+        char lash_image[RELUME_SUBJECT_PATH];
     } lids;
     struct {
         double defocus_dpt;  // residual defocus, the distance d of E in Eq. 8.3 as 1/d; [-5, 5]
@@ -69,7 +76,8 @@ struct relume_subject {
 };
 
 RELUME_API struct relume_subject relume_subject_default(void);
-// A JSON file of such fields (docs/glare.md) over the defaults. RELUME_EDATA with a sentence that
+// A JSON file of such fields (docs/glare.md) over the defaults; a picture is looked for from the
+// file's folder. RELUME_EDATA with a sentence that
 // names line, field and range; RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_subject_load(struct relume_subject *out, const char *path,
                                                 const struct relume_log *log);
@@ -132,7 +140,7 @@ struct relume_eye_state {
 };
 
 // An eye at time 0, adapted to `luminance` cd/m^2. `subject` NULL: the default. RELUME_EINVAL for a
-// field out of its range, RELUME_ENOMEM.
+// field out of its range, RELUME_EDATA for a picture of lashes that cannot be read, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_eye_create(relume_eye **out,
                                               const struct relume_subject *subject,
                                               double luminance);

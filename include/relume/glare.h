@@ -4,7 +4,6 @@
 
 #include <relume/base.h>
 #include <relume/image.h>
-#include <relume/light.h>
 #include <relume/psf.h>
 
 #ifdef __cplusplus
@@ -84,20 +83,6 @@ RELUME_RESULT relume_status relume_glare_apply(struct relume_image *out, relume_
 // Mean BT.709 luminance of a frame, never negative; times cd/m^2 per unit it is what an eye adapts
 // to.
 RELUME_API double relume_glare_luminance(const struct relume_image *frame);
-
-// ------------------------------------------------------------------ lamps in view
-
-// A perspective frame's camera in the world: unit vectors, at right angles.
-struct relume_sight {
-    struct relume_vec3 eye, ahead, right, up;
-    double fov_deg;  // horizontal, (0, 180); square pixels
-};
-// Add to `frame` the lamps themselves, shared out among the four pixels around the place where the
-// sight meets them: the radiance that gives the eye what relume_light_at says it gets, and what a
-// directional light is worth. Areas and environments are left out, and nothing hides a lamp.
-// Returns how many are in view.
-RELUME_API int relume_glare_lamps(struct relume_image *frame, const struct relume_sight *sight,
-                                  const struct relume_light *lights, int n);
 
 #ifdef __cplusplus
 }

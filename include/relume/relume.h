@@ -32,6 +32,7 @@
 #include <relume/rig.h>
 #include <relume/scene.h>
 #include <relume/shoot.h>
+#include <relume/sight.h>
 #include <relume/slabs.h>
 #include <relume/surface.h>
 #include <relume/tone.h>

@@ -22,6 +22,7 @@ struct relume_tone {
 extern RELUME_API const struct relume_tone relume_tone_linear;    // clipped
 extern RELUME_API const struct relume_tone relume_tone_reinhard;  // of the luminance
 extern RELUME_API const struct relume_tone relume_tone_filmic;    // of each channel
+extern RELUME_API const struct relume_tone relume_tone_gamma;     // 2.2 in place of the sRGB curve
 // All of them, ending with NULL; the place in the list is what a viewer may keep.
 extern RELUME_API const struct relume_tone *const relume_tones[];
 // NULL when there is none of that name.

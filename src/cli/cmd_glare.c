@@ -21,8 +21,8 @@ static const struct option options[] = {
     {"--pan", OPTION_NUMBER, "A", "IN is a whole sphere: look this far to the right, degrees", 0,
      0},
     {"--tilt", OPTION_NUMBER, "A", "IN is a whole sphere: look this far up", -90, 90},
-    {"--frame", OPTION_TEXT, "WxH", "IN is a whole sphere: size of the picture; default: 1280x720",
-     0, 0},
+    {"--picture", OPTION_TEXT, "WxH",
+     "IN is a whole sphere: size of the picture; default: 1280x720", 0, 0},
     {"--psf", OPTION_TEXT, "OUT",
      "write the eye's pattern: a picture, or a folder with aperture and diagrams as well", 0, 0},
     {"--luminance", OPTION_NUMBER, "L", "--psf without IN: of the field, cd/m^2; default: 1", 0,
@@ -93,13 +93,13 @@ static relume_status look_around(struct relume_image *frame, const struct args *
     struct relume_image whole = *frame;
     int width = 1280, height = 720;
     char rest;
-    const char *const size = args_text(args, "--frame", "1280x720");
+    const char *const size = args_text(args, "--picture", "1280x720");
     *frame = (struct relume_image){0};
     relume_status status = RELUME_OK;
     if (sscanf(size, "%dx%d%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
         width > 65536 || height > 65536 || (int64_t)width * height > 1 << 30)
         status =
-            usage_error("--frame: expected WIDTHxHEIGHT, at most 2^30 pixels; found '%s'", size);
+            usage_error("--picture: expected WIDTHxHEIGHT, at most 2^30 pixels; found '%s'", size);
     if (!status)
         status = relume_image_create(frame, width, height, 3);
     if (!status)
@@ -112,12 +112,12 @@ static relume_status look_around(struct relume_image *frame, const struct args *
 static relume_status load(struct relume_image *frame, const struct args *args)
 {
     const bool sphere =
-        args_has(args, "--pan") || args_has(args, "--tilt") || args_has(args, "--frame");
+        args_has(args, "--pan") || args_has(args, "--tilt") || args_has(args, "--picture");
     relume_status status =
         relume_image_load(frame, args_input(args, 0), relume_image_params(.log = args_log(args)));
     if (!status && sphere && frame->width != 2 * frame->height)
         status = data_error("%s: %d x %d pixels; expected a sphere, twice as wide as high, for "
-                            "--pan, --tilt and --frame",
+                            "--pan, --tilt and --picture",
                             args_input(args, 0), frame->width, frame->height);
     if (!status && sphere)
         status = look_around(frame, args);

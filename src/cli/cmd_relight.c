@@ -222,51 +222,24 @@ static double field_of_view(const struct relume_pack_info *info, const struct re
     return distance > 0.0 ? 2.0 * atan(0.5 * width / distance) * 180.0 / M_PI : 0.0;
 }
 
-static struct relume_vec3 unit_difference(struct relume_vec3 a, struct relume_vec3 b)
-{
-    const struct relume_vec3 d = {a.x - b.x, a.y - b.y, a.z - b.z};
-    const double length = hypot(hypot(d.x, d.y), d.z);
-    return (struct relume_vec3){d.x / length, d.y / length, d.z / length};
-}
-
-// The lamps of the rig, in a perspective frame of a panorama: there the eye's place is known.
-static void draw_lamps(struct relume_image *frame, const struct relume_pack_info *info,
-                       const struct relume_camera *camera, double fov_deg,
-                       const struct relume_light *lights, int count)
-{
-    const int w = frame->width, h = frame->height;
-    const double x = 0.5 * w, y = 0.5 * h;
-    if (camera->framing != RELUME_FRAME_LOOK || camera->look.stereographic)
-        return;
-    const struct relume_sight sight = {
-        .eye = info->geometry.center,
-        .ahead = relume_look_ray(camera->look, w, h, x, y),
-        .right = unit_difference(relume_look_ray(camera->look, w, h, x + 0.5, y),
-                                 relume_look_ray(camera->look, w, h, x - 0.5, y)),
-        .up = unit_difference(relume_look_ray(camera->look, w, h, x, y - 0.5),
-                              relume_look_ray(camera->look, w, h, x, y + 0.5)),
-        .fov_deg = fov_deg,
-    };
-    (void)relume_glare_lamps(frame, &sight, lights, count);
-}
-
-static relume_status add_glare(struct relume_image *frame, const struct args *args,
-                               const struct relume_pack_info *info,
-                               const struct relume_camera *camera,
+static relume_status add_glare(struct relume_image *frame, relume_pack *pack,
+                               const struct args *args, const struct relume_camera *camera,
+                               const struct relume_frame_params *params,
                                const struct relume_light *lights, int count)
 {
-    const double known = field_of_view(info, camera, frame);
-    const double fov = args_number(args, "--fov", known);
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    const double fov = args_number(args, "--fov", field_of_view(info, camera, frame));
     struct viewer_eye eye;
     struct relume_image seen = {0};
     if (info->geometry.projection > RELUME_SLAB && camera->framing != RELUME_FRAME_LOOK)
         return usage_error("--pass glare: expected --pan, --tilt or --zoom for a panorama");
-    draw_lamps(frame, info, camera, known, lights, count);
+    relume_status status = relume_frame_lamps(frame, NULL, pack, camera, lights, count, params);
     const double luminance = args_number(args, "--nits", 100.0) * relume_glare_luminance(frame);
-    relume_status status =
-        open_viewer_eye(&eye, args, luminance,
-                        relume_psf_params(.log = args_log(args), .threads = args_threads(args),
-                                          .size = GLARE_SIZE, .half_field_deg = GLARE_FIELD_DEG));
+    if (!status)
+        status = open_viewer_eye(
+            &eye, args, luminance,
+            relume_psf_params(.log = args_log(args), .threads = args_threads(args),
+                              .size = GLARE_SIZE, .half_field_deg = GLARE_FIELD_DEG));
     if (status)
         return status;
     eye.params.fov_deg = fov;
@@ -305,7 +278,7 @@ static relume_status render(const struct args *args, const struct relume_camera 
     if (!status)
         status = make_frame(&frame, pack, args, camera, &params, lights, count);
     if (!status && wants_glare(args))
-        status = add_glare(&frame, args, relume_pack_info(pack), camera, lights, count);
+        status = add_glare(&frame, pack, args, camera, &params, lights, count);
     if (!status && params.pass == RELUME_PASS_NORMALS)
         show_normals(&frame, output);
     else if (!status)

@@ -7,9 +7,12 @@
 // Table rows for a command's options.
 #define DEVELOP_OPTIONS                                                                            \
     {"--exposure", OPTION_TEXT, "EV", "multiply by 2^EV, or auto: a mid grey; default: 0", 0, 0},  \
-        {"--tone", OPTION_TEXT,                                                                    \
-         "T",      "linear (clip, default), reinhard or filmic; .exr, .hdr and .pfm stay linear",  \
-         0,        0},                                                                             \
+        {"--tone",                                                                                 \
+         OPTION_TEXT,                                                                              \
+         "T",                                                                                      \
+         "linear (clip, default), reinhard, filmic or gamma; .exr, .hdr and .pfm stay linear",     \
+         0,                                                                                        \
+         0},                                                                                       \
     {                                                                                              \
         "--white", OPTION_NUMBER, "L", "reinhard: the luminance that becomes white; default: 4",   \
             1e-3, 1e6                                                                              \

@@ -5,8 +5,6 @@
 
 #include <string.h>
 
-enum { BLOCK = 8 };  // columns at a time: one cache line of complex numbers
-
 struct fft2d {
     int width, height, columns, threads;
     bool real;
@@ -34,7 +32,7 @@ int fft_good_size(int n)
 static size_t work_floats(const fft2d *f)
 {
     const size_t longest = (size_t)(f->width > f->height ? f->width : f->height) + 2;
-    return 4 * BLOCK * (size_t)f->height + 8 * longest;
+    return 4 * FFT2D_BLOCK * (size_t)f->height + 8 * longest;
 }
 
 relume_status fft2d_create(fft2d **out, int width, int height, bool real, int threads)
@@ -45,7 +43,7 @@ relume_status fft2d_create(fft2d **out, int width, int height, bool real, int th
         return RELUME_ENOMEM;
     *f = (fft2d){.width = width, .height = height, .real = real, .threads = thread_count(threads)};
     f->columns = real ? width / 2 + 1 : width;
-    f->stride = 2 * (((size_t)f->columns + BLOCK - 1) / BLOCK * BLOCK);
+    f->stride = 2 * (((size_t)f->columns + FFT2D_BLOCK - 1) / FFT2D_BLOCK * FFT2D_BLOCK);
     f->work = mem_zeroed((size_t)f->threads, sizeof *f->work);
     bool good = f->work && !fft_line_create(&f->row, width, real ? FFT_REAL : FFT_FORWARD) &&
                 !fft_line_create(&f->row_back, width, real ? FFT_REAL_INVERSE : FFT_INVERSE) &&
@@ -182,9 +180,9 @@ static void column_block(void *context, size_t item, int worker)
     const struct columns *c = context;
     const fft2d *const f = c->f;
     const struct fft2d_pass *const p = &c->pass;
-    const int column = p->first + (int)item * BLOCK;
-    const int count = p->end - column < BLOCK ? p->end - column : BLOCK;
-    const size_t block = 2 * BLOCK * (size_t)f->height;
+    const int column = p->first + (int)item * FFT2D_BLOCK;
+    const int count = p->end - column < FFT2D_BLOCK ? p->end - column : FFT2D_BLOCK;
+    const size_t block = 2 * FFT2D_BLOCK * (size_t)f->height;
     float *const a = f->work[worker], *const b = a + block, *const scratch = b + block;
     gather(a, f, c->spectrum, column, count, p->from, p->to);
     run_lines(f->column, f, a, b, count, scratch);
@@ -200,16 +198,17 @@ void fft2d_pass_columns(const fft2d *f, float *spectrum, const struct fft2d_pass
     struct columns columns = {f, spectrum, *pass};
     const int count = pass->end - pass->first;
     if (count > 0)
-        thread_for(f->threads, ((size_t)count + BLOCK - 1) / BLOCK, column_block, &columns);
+        thread_for(f->threads, ((size_t)count + FFT2D_BLOCK - 1) / FFT2D_BLOCK, column_block,
+                   &columns);
 }
 
 static void column_back(void *context, size_t item, int worker)
 {
     const struct columns *c = context;
     const fft2d *const f = c->f;
-    const int column = (int)item * BLOCK;
-    const int count = f->columns - column < BLOCK ? f->columns - column : BLOCK;
-    const size_t block = 2 * BLOCK * (size_t)f->height;
+    const int column = (int)item * FFT2D_BLOCK;
+    const int count = f->columns - column < FFT2D_BLOCK ? f->columns - column : FFT2D_BLOCK;
+    const size_t block = 2 * FFT2D_BLOCK * (size_t)f->height;
     float *const a = f->work[worker], *const b = a + block, *const scratch = b + block;
     gather(a, f, c->spectrum, column, count, 0, f->height);
     run_lines(f->column_back, f, a, b, count, scratch);
@@ -219,5 +218,6 @@ static void column_back(void *context, size_t item, int worker)
 void fft2d_columns_back(const fft2d *f, float *spectrum)
 {
     struct columns columns = {f, spectrum, {0}};
-    thread_for(f->threads, ((size_t)f->columns + BLOCK - 1) / BLOCK, column_back, &columns);
+    thread_for(f->threads, ((size_t)f->columns + FFT2D_BLOCK - 1) / FFT2D_BLOCK, column_back,
+               &columns);
 }

@@ -1,12 +1,14 @@
 // fft2d.h - two-dimensional transforms on the library's own threads, made of lines (fft.h)
 //
-// Rows first, then columns, 8 at a time. The halves are separate, so that rows and columns that
-// are known to be zero or not wanted cost nothing, and so that what is done to a column is done
-// while it is at hand. The same bits for any number of threads.
+// Rows first, then columns, FFT2D_BLOCK at a time. The halves are separate, so that rows and
+// columns that are known to be zero or not wanted cost nothing, and so that what is done to a
+// column is done while it is at hand. The same bits for any number of threads.
 #ifndef MATH_FFT2D_H
 #define MATH_FFT2D_H
 
 #include "math/fft.h"
+
+enum { FFT2D_BLOCK = 8 };  // columns: one cache line of complex numbers
 
 // Thread-safety: one thread at a time.
 typedef struct fft2d fft2d;
@@ -25,7 +27,8 @@ void fft2d_rows(const fft2d *f, float *spectrum, int from, int to,
                 void (*fill)(void *context, int row, float *line), void *context);
 
 // The columns [first, end): rows outside [from, to) count as zero. Every column's coefficients are
-// handed to `visit`, lines[count][height] pairs of the columns from `column` on; where `back` they
+// handed to `visit`, lines[count][height] pairs of the columns from `column` on, count at most
+// FFT2D_BLOCK; where `back` they
 // are transformed back afterwards and stored, else stored as they are. Without `visit` the
 // coefficients are stored; with a visit that answers false nothing is.
 struct fft2d_pass {

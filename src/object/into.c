@@ -4,110 +4,8 @@
 #include "base/thread.h"
 #include "object/object.h"
 
-#include <relume/view.h>
+#include <relume/sight.h>
 #include <string.h>
-
-// ---------------------------------------------------------------- the rays of a frame
-
-struct rays {
-    enum { THROUGH_WINDOW, PARALLEL, LOOK, PANORAMA } kind;
-    struct relume_window window;
-    struct relume_geometry geometry;
-    struct relume_look look;
-    int width, height;
-};
-
-static void ray_of(const struct rays *r, double x, double y, vec3 *origin, vec3 *direction)
-{
-    const struct relume_geometry *g = &r->geometry;
-    const struct relume_window *w = &r->window;
-    const vec3 at = vec3_add(w->corner, vec3_add(vec3_scale(w->right, x / r->width),
-                                                 vec3_scale(w->down, y / r->height)));
-    switch (r->kind) {
-    case THROUGH_WINDOW:
-        *origin = w->eye;
-        *direction = vec3_unit(vec3_sub(at, w->eye));
-        break;
-    case PARALLEL:
-        *origin = vec3_of(at.x, at.y, g->camera_z);
-        *direction = vec3_of(0, 0, -1);
-        break;
-    case LOOK:
-        *origin = g->center;
-        *direction = relume_look_ray(r->look, r->width, r->height, x, y);
-        break;
-    case PANORAMA:
-        *origin = g->center;
-        *direction = relume_panorama_ray(g, r->width, r->height, x, y);
-        break;
-    }
-}
-
-// The rectangle of the plane z = 0, seen from (0, 0, camera_z).
-static struct relume_window planar_window(const struct relume_geometry *g)
-{
-    return (struct relume_window){
-        .eye = {0, 0, g->camera_z},
-        .corner = {g->window_min[0], g->window_max[1], 0},
-        .right = {g->window_max[0] - g->window_min[0], 0, 0},
-        .down = {0, g->window_min[1] - g->window_max[1], 0},
-    };
-}
-
-static void rays_of_view(struct rays *r, const relume_pack *pack, int view)
-{
-    const struct relume_pack_info *info = relume_pack_info(pack);
-    r->geometry = *relume_pack_geometry(pack, view);
-    const struct relume_geometry *g = &r->geometry;
-    if (g->projection == RELUME_SLAB) {
-        const vec3 camera = vec3_of(info->uv[view][0], info->uv[view][1], g->uv_z);
-        r->window = relume_slab_window(g, relume_pose_world(&g->pose, camera));
-        r->kind = THROUGH_WINDOW;
-    } else if (g->projection == RELUME_PLANAR) {
-        r->window = planar_window(g);
-        r->kind = g->perspective ? THROUGH_WINDOW : PARALLEL;
-    } else {
-        r->kind = PANORAMA;
-    }
-}
-
-// As relume_frame has it; it has been asked before and found nothing wrong.
-static relume_status rays_of_eye(struct rays *r, const relume_pack *pack,
-                                 const struct relume_camera *camera)
-{
-    const struct relume_pack_info *info = relume_pack_info(pack);
-    relume_slabs *slabs;
-    const relume_status status =
-        relume_slabs_create(&slabs, info->slabs ? info->slab : &info->geometry,
-                            info->slabs ? info->slabs : 1, info->uv, info->slab_of, info->views);
-    if (status)
-        return status;
-    const vec3 eye = camera->framing == RELUME_FRAME_EYE ? camera->eye : relume_slabs_eye(slabs, 0);
-    const bool window = !info->slabs && !relume_aim_given(&camera->aim);
-    const int through = window ? 1 : camera->through;
-    if (through > 0 && through <= relume_slabs_count(slabs))
-        r->window = relume_slab_window(relume_slabs_geometry(slabs, through - 1), eye);
-    else
-        (void)relume_slabs_window(&r->window, slabs, eye, &camera->aim, r->width, r->height);
-    relume_slabs_destroy(&slabs);
-    return RELUME_OK;
-}
-
-static relume_status find_rays(struct rays *r, const relume_pack *pack,
-                               const struct relume_camera *camera)
-{
-    const struct relume_pack_info *info = relume_pack_info(pack);
-    const bool slab = info->geometry.projection == RELUME_SLAB;
-    r->geometry = info->geometry;
-    r->look = camera->look;
-    if (camera->framing == RELUME_FRAME_LOOK)
-        r->kind = LOOK;
-    else if (camera->framing == RELUME_FRAME_EYE || (slab && camera->framing != RELUME_FRAME_VIEW))
-        return rays_of_eye(r, pack, camera);
-    else
-        rays_of_view(r, pack, camera->framing == RELUME_FRAME_VIEW ? camera->view : 0);
-    return RELUME_OK;
-}
 
 // ---------------------------------------------------------------- the scene, in their shadow
 
@@ -178,7 +76,7 @@ static relume_status add_light(struct shadows *s, relume_pack *pack,
 
 struct layered {
     const relume_objects *o;
-    const struct rays *rays;
+    const struct relume_sight *sight;
     const struct relume_image *scene, *places;
     const struct relume_lamp *lamps;
     int n;
@@ -192,7 +90,7 @@ static void layered_value(float rgb[3], const void *context, double x, double y)
     const float *p = l->places->data + pixel;
     struct surface_point point;
     vec3 origin, direction;
-    ray_of(l->rays, x, y, &origin, &direction);
+    relume_sight_ray(&origin, &direction, l->sight, x, y);
     const vec3 to = vec3_sub(vec3_of((double)p[0], (double)p[1], (double)p[2]), origin);
     const bool nothing = p[0] == 0.0f && p[1] == 0.0f && p[2] == 0.0f;  // no view sees so far
     memcpy(rgb, l->scene->data + pixel, 3 * sizeof *rgb);
@@ -240,15 +138,15 @@ relume_status relume_objects_frame(struct relume_image *out, const relume_object
         return log_fail(light.log, RELUME_EINVAL, "objects are seen in colour; expected no pass");
     place.places = true;
     relume_status status = relume_frame(&places, pack, camera, NULL, 0, &place);
-    struct rays rays = {.width = places.width, .height = places.height};
+    struct relume_sight sight;
     if (!status)
-        status = find_rays(&rays, pack, camera);
+        status = relume_frame_sight(&sight, pack, camera, places.width, places.height);
     if (!status)
         status = relume_objects_lamps(&lamps, &count, objects, lights, n);
     if (!status)
         status = light_scene(&scene, &places, objects, pack, camera, lights, n, &light, params);
     const struct layered layers = {
-        objects, &rays, &scene, &places, lamps, count, params && params->no_shadows};
+        objects, &sight, &scene, &places, lamps, count, params && params->no_shadows};
     if (!status)
         status = layer(out, &layers, params);
     if (status)

@@ -19,8 +19,8 @@ struct row {
 
 static void add_span(struct row *row, double a, double b, float weight)
 {
-    a = fmax(a, 0.0);
-    b = fmin(b, row->n);
+    a = a > 0.0 ? a : 0.0;
+    b = b < row->n ? b : row->n;
     if (!(a < b))
         return;
     const int i = (int)a, j = (int)b;
@@ -63,7 +63,7 @@ static double admit(struct row *row, float *t)
         t[i] = 0.0f;
     for (int i = row->first; i <= last; i++) {
         sum += row->d[i];
-        t[i] *= fmaxf(sum, 0.0f);
+        t[i] *= sum > 0.0f ? sum : 0.0f;
         light += t[i];
         row->d[i] = 0.0f;
     }

@@ -93,6 +93,8 @@ struct sum {
     double fade, radius;
     const struct psf_kernels *kernels;
     float *work;
+    double (*sums)[3];  // of rows
+    float scale[3];
 };
 
 static void fade_out(float *const row[3], int half, int v, double fade, double radius)
@@ -134,12 +136,36 @@ static void sum_row(void *context, size_t item, int worker)
         s->kernels->spread(inside, 2 * w.half + 1, line, w.at, (float)scale, tap->rgb);
     }
     fade_out(row, half, v, s->fade, s->radius);
+    for (int c = 0; c < 3; c++) {
+        float all = 0.0f;
+        for (int i = 0; i < s->field; i++)
+            all += row[c][i];
+        s->sums[item][c] = (double)all;
+    }
+}
+
+static void scale_row(void *context, size_t item, int worker)
+{
+    const struct sum *s = context;
+    (void)worker;
+    for (int c = 0; c < 3; c++) {
+        float *const row = s->out[c] + item * (size_t)s->field;
+        for (int i = 0; i < s->field; i++)
+            row[i] *= s->scale[c];
+    }
 }
 
 void chromatic_sum(float *const out[3], int field, const struct plane *in,
                    const struct relume_psf_spectrum *spectrum, double fade, double radius,
-                   const struct psf_kernels *kernels, int threads, float *work)
+                   const struct psf_kernels *kernels, int threads, float *work, double (*sums)[3])
 {
-    struct sum sum = {out, field, in, spectrum, fade, radius, kernels, work};
+    struct sum sum = {out, field, in, spectrum, fade, radius, kernels, work, sums, {0}};
+    double all[3] = {0};
     thread_for(threads, (size_t)field, sum_row, &sum);
+    for (int y = 0; y < field; y++)
+        for (int c = 0; c < 3; c++)
+            all[c] += sums[y][c];
+    for (int c = 0; c < 3; c++)
+        sum.scale[c] = (float)(all[c] > 0.0 ? 1.0 / all[c] : 0.0);
+    thread_for(threads, (size_t)field, scale_row, &sum);
 }

@@ -18,6 +18,7 @@ struct relume_eye {
     struct relume_aperture aperture;
     struct lens lens;
     struct vitreous vitreous;
+    struct lashes lashes;
     int64_t step;         // of the clock
     double hippus_phase;  // integral of dt / p: t / p of Eq. 8.1 for a p that changes
     struct relume_eye_disc *disc;
@@ -70,7 +71,7 @@ static void place(struct relume_eye *eye)
     a->pupil_radius = (float)(0.5 * s->pupil_mm);
     lens_place(&eye->lens, &eye->subject, s->muscle_mm, eye->disc + a->lens.first);
     vitreous_place(&eye->vitreous, &eye->subject, eye->disc + a->vitreous.first);
-    lids_place(&eye->subject, s->openness, a, eye->stroke + a->lashes.first);
+    lids_place(&eye->subject, &eye->lashes, s->openness, a, eye->stroke + a->lashes.first);
 }
 
 relume_status relume_eye_advance(relume_eye *eye, double dt_s, double luminance)
@@ -120,7 +121,7 @@ static relume_status allocate(struct relume_eye *eye)
     a->vitreous =
         (struct relume_eye_range){a->lens.first + a->lens.count, s->vitreous.particles.count};
     a->fibres = (struct relume_eye_range){0, fibres_count(s)};
-    a->lashes = (struct relume_eye_range){a->fibres.count, lashes_count(s)};
+    a->lashes = (struct relume_eye_range){a->fibres.count, lashes_count(s, &eye->lashes)};
     a->disc = eye->disc =
         mem_zeroed((size_t)(a->vitreous.first + a->vitreous.count), sizeof *eye->disc);
     a->stroke = eye->stroke =
@@ -142,7 +143,11 @@ relume_status relume_eye_create(relume_eye **out, const struct relume_subject *s
     eye->subject = chosen;
     eye->state.luminance = luminance;
     eye->state.mean_pupil_mm = relume_pupil_mm(luminance, chosen.pupil.moon_spencer);
-    relume_status status = allocate(eye);
+    relume_status status = RELUME_OK;
+    if (chosen.lids.lash_image[0])
+        status = lashes_load(&eye->lashes, chosen.lids.lash_image, NULL);
+    if (!status)
+        status = allocate(eye);
     if (!status)
         status = lens_create(&eye->lens, &eye->subject, eye->disc + eye->aperture.lens.first);
     if (!status)
@@ -165,6 +170,7 @@ void relume_eye_destroy(relume_eye **eye)
         return;
     lens_destroy(&(*eye)->lens);
     vitreous_destroy(&(*eye)->vitreous);
+    lashes_destroy(&(*eye)->lashes);
     free((*eye)->disc);
     free((*eye)->stroke);
     free(*eye);

@@ -50,11 +50,24 @@ void vitreous_place(const struct vitreous *body, const struct relume_subject *su
 int fibres_count(const struct relume_subject *subject);
 void fibres_draw(const struct relume_subject *subject, struct relume_eye_stroke *strokes);
 
-int lashes_count(const struct relume_subject *subject);  // strokes
+// Pieces of a picture's lashes, mm: beside the lid's middle, from its edge on, and how wide at both
+// ends.
+struct lash_piece {
+    float x[2], far[2], width[2];
+};
+struct lashes {
+    struct lash_piece *piece;  // NULL: they are drawn
+    int count;
+};
+// Of a picture, see relume_subject. RELUME_EDATA with a sentence, RELUME_ENOMEM.
+relume_status lashes_load(struct lashes *out, const char *path, const struct relume_log *log);
+void lashes_destroy(struct lashes *lashes);
+
+int lashes_count(const struct relume_subject *subject, const struct lashes *image);  // strokes
 // Openness of the lids, without squint.
 double lids_openness(const struct relume_subject *subject, double time_s);
 // Lids and lashes at that openness.
-void lids_place(const struct relume_subject *subject, double openness,
+void lids_place(const struct relume_subject *subject, const struct lashes *image, double openness,
                 struct relume_aperture *aperture, struct relume_eye_stroke *lashes);
 
 // Radius of particle i: one of `particles`' spread.

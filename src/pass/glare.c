@@ -108,19 +108,26 @@ void relume_glare_destroy(relume_glare **glare)
     *glare = NULL;
 }
 
+// Samples that are no numbers.
+static size_t count_bad(const float *v, size_t n)
+{
+    size_t bad = 0;
+    for (size_t i = 0; i < n; i++) {
+        uint32_t bits;
+        memcpy(&bits, &v[i], sizeof bits);
+        bad += (bits & 0x7f800000u) == 0x7f800000u;
+    }
+    return bad;
+}
+
 // `frame` itself when it is fine; else a copy.
 static relume_status clean_frame(const float **out, relume_glare *glare,
                                  const struct relume_image *frame, const struct relume_log *log)
 {
     const size_t n = 3 * (size_t)frame->width * (size_t)frame->height;
-    size_t bad = 0;
+    const size_t bad = count_bad(frame->data, n);
     float most = 0.0f;
     *out = frame->data;
-    for (size_t i = 0; i < n; i++)
-        if (isfinite(frame->data[i]))
-            most = fmaxf(most, frame->data[i]);
-        else
-            bad++;
     if (!bad)
         return RELUME_OK;
     log_line(log, RELUME_WARNING,
@@ -132,6 +139,9 @@ static relume_status clean_frame(const float **out, relume_glare *glare,
     }
     if (!glare->clean)
         return RELUME_ENOMEM;
+    for (size_t i = 0; i < n; i++)
+        if (isfinite(frame->data[i]))
+            most = fmaxf(most, frame->data[i]);
     for (size_t i = 0; i < n; i++) {
         const float v = frame->data[i];
         glare->clean[i] = isfinite(v) ? v : isinf(v) && v > 0.0f ? most : 0.0f;
@@ -243,7 +253,8 @@ relume_status relume_glare_apply(struct relume_image *out, relume_glare *glare,
     if (!status)
         status = modes[job.p.mode](out->data, &job);
     const float light = job.p.keep_light ? 1.0f : (float)relume_psf_light(psf);
-    for (size_t i = 0; !status && i < 3 * (size_t)out->width * (size_t)out->height; i++)
+    for (size_t i = 0; !status && light != 1.0f && i < 3 * (size_t)out->width * (size_t)out->height;
+         i++)
         out->data[i] *= light;
     if (status)
         relume_image_destroy(out);

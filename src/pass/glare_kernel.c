@@ -7,6 +7,7 @@
 #include "pass/psf.h"
 
 #include <math.h>
+#include <string.h>
 
 // The veil is the observer's up to the first of these angles and has faded out at the second.
 static const double veil_fade_deg = 7.5, veil_deg = RELUME_VEIL_DEG;
@@ -32,23 +33,47 @@ double relume_glare_pixel(double fov_deg, int width)
 // ---------------------------------------------------------------- resampling
 
 // One axis: a texel's light goes to the pixels around its place, falling linearly over one pixel,
-// or over one texel where that is wider.
+// or over one texel where that is wider. What a pixel gets is a run of weights.
 struct axis {
     int reach, half;        // pixels and texels on either side of the middle
     double pixels, spread;  // a texel's width; how far its light goes
+    int *first, *count;     // [2 reach + 1]: texels of a pixel, from -half on
+    float *weight;          // [2 reach + 1][most]
+    int most;
 };
 
-static double share(const struct axis *a, int pixel, int texel)
+static float share(const struct axis *a, int pixel, int texel)
 {
     const double d = fabs(pixel - texel * a->pixels);
-    return d < a->spread ? (1.0 - d / a->spread) / a->spread : 0.0;
+    return (float)(d < a->spread ? (1.0 - d / a->spread) / a->spread : 0.0);
 }
 
-static void texels_of(const struct axis *a, int pixel, int *from, int *to)
+static void axis_destroy(struct axis *a)
 {
-    const double low = (pixel - a->spread) / a->pixels, high = (pixel + a->spread) / a->pixels;
-    *from = (int)fmax(ceil(low), -a->half);
-    *to = (int)fmin(floor(high), a->half);
+    free(a->first);
+    free(a->weight);
+}
+
+static relume_status axis_create(struct axis *a, int reach, int half, double pixels)
+{
+    const int side = 2 * reach + 1;
+    *a = (struct axis){.reach = reach, .half = half, .pixels = pixels, .spread = fmax(pixels, 1.0)};
+    a->most = (int)fmin(2.0 * a->spread / pixels + 2.0, 2.0 * half + 1.0);
+    a->first = mem_array(2 * (size_t)side, sizeof *a->first);
+    a->weight = mem_array((size_t)side * (size_t)a->most, sizeof *a->weight);
+    if (!a->first || !a->weight)
+        return RELUME_ENOMEM;
+    a->count = a->first + side;
+    for (int i = 0; i < side; i++) {
+        const int pixel = i - reach;
+        const int from = (int)fmax(ceil((pixel - a->spread) / pixels), -half);
+        const int to = (int)fmin(floor((pixel + a->spread) / pixels), half);
+        a->first[i] = from + half;
+        a->count[i] = to >= from ? to - from + 1 : 0;
+        for (int k = 0; k < a->count[i]; k++)
+            a->weight[i * a->most + k] = share(a, pixel, from + k);
+    }
+    return RELUME_OK;
 }
 
 struct resampling {
@@ -63,26 +88,21 @@ static void resample_row(void *context, size_t item, int worker)
     const struct resampling *r = context;
     const struct axis *const a = &r->axis;
     const int field = 2 * a->half + 1, side = 2 * a->reach + 1;
-    const int pixel = (int)item - a->reach;
     float *const row = r->work + (size_t)worker * (size_t)field;
-    int from, to, first, last;
-    texels_of(a, pixel, &from, &to);
     for (int c = 0; c < 3; c++) {
-        const float *const in = psf_channel(r->psf, c);
+        const float *texels = psf_channel(r->psf, c) + (size_t)a->first[item] * (size_t)field;
         float *const out = r->out[c] + item * (size_t)side;
-        for (int i = 0; i < field; i++)
-            row[i] = 0.0f;
-        for (int k = from; k <= to; k++) {
-            const float w = (float)share(a, pixel, k);
-            const float *const texels = in + (size_t)(k + a->half) * (size_t)field;
+        memset(row, 0, (size_t)field * sizeof *row);
+        for (int k = 0; k < a->count[item]; k++, texels += field) {
+            const float w = a->weight[(int)item * a->most + k];
             for (int i = 0; i < field; i++)
                 row[i] += w * texels[i];
         }
         for (int i = 0; i < side; i++) {
+            const float *const w = a->weight + i * a->most;
             float sum = 0.0f;
-            texels_of(a, i - a->reach, &first, &last);
-            for (int k = first; k <= last; k++)
-                sum += (float)share(a, i - a->reach, k) * row[k + a->half];
+            for (int k = 0; k < a->count[i]; k++)
+                sum += w[k] * row[a->first[i] + k];
             out[i] = sum;
         }
     }
@@ -172,17 +192,33 @@ static relume_status reach_of(int *reach, double angle, double texel, double pix
     return RELUME_OK;
 }
 
-static void normalise(struct kernel *kernel, double light)
+struct scaling {
+    struct kernel *kernel;
+    double light;
+};
+
+static void normalise_channel(void *context, size_t c, int worker)
 {
-    const size_t side = 2 * (size_t)kernel->reach + 1;
-    for (int c = 0; c < 3; c++) {
-        double sum = 0.0;
-        for (size_t i = 0; i < side * side; i++)
-            sum += (double)kernel->v[c][i];
-        const float scale = (float)(sum > 0.0 ? light / sum : 0.0);
-        for (size_t i = 0; i < side * side; i++)
-            kernel->v[c][i] *= scale;
+    const struct scaling *s = context;
+    const size_t side = 2 * (size_t)s->kernel->reach + 1;
+    float *const v = s->kernel->v[c];
+    double sum = 0.0;
+    (void)worker;
+    for (size_t y = 0; y < side; y++) {
+        float row = 0.0f;
+        for (size_t x = 0; x < side; x++)
+            row += v[y * side + x];
+        sum += (double)row;
     }
+    const float scale = (float)(sum > 0.0 ? s->light / sum : 0.0);
+    for (size_t i = 0; i < side * side; i++)
+        v[i] *= scale;
+}
+
+static void normalise(struct kernel *kernel, double light, int threads)
+{
+    struct scaling s = {kernel, light};
+    thread_for(threads, 3, normalise_channel, &s);
 }
 
 static relume_status allocate(struct kernel *out, int reach)
@@ -203,16 +239,17 @@ static relume_status add_pattern(struct kernel *out, const relume_psf *psf, doub
     const struct relume_psf_geometry *const shape = relume_psf_shape(psf);
     struct resampling r = {
         .psf = psf,
-        .axis = {.reach = out->reach, .half = shape->field / 2, .pixels = shape->step / fine},
         .out = {out->v[0], out->v[1], out->v[2]},
         .work = mem_array((size_t)thread_count(threads) * (size_t)shape->field, sizeof(float)),
     };
-    r.axis.spread = fmax(r.axis.pixels, 1.0);
+    relume_status status = axis_create(&r.axis, out->reach, shape->field / 2, shape->step / fine);
     if (!r.work)
-        return RELUME_ENOMEM;
-    thread_for(threads, 2 * (size_t)out->reach + 1, resample_row, &r);
+        status = RELUME_ENOMEM;
+    if (!status)
+        thread_for(threads, 2 * (size_t)out->reach + 1, resample_row, &r);
+    axis_destroy(&r.axis);
     free(r.work);
-    return RELUME_OK;
+    return status;
 }
 
 static void add_veil(struct kernel *out, const struct relume_veil *veil, double fine, int threads)
@@ -245,11 +282,11 @@ relume_status kernel_create(struct kernel *out, const relume_psf *psf, double pi
         status = add_pattern(out, psf, fine, p->threads);
     const double share = veiled ? veil.share : 0.0;
     if (!status && part & KERNEL_PATTERN)
-        normalise(out, 1.0 - share);
+        normalise(out, 1.0 - share, p->threads);
     if (!status && veiled && part & KERNEL_VEIL)
         add_veil(out, &veil, fine, p->threads);
     if (!status && part != KERNEL_PATTERN)
-        normalise(out, part == KERNEL_VEIL ? share : 1.0);
+        normalise(out, part == KERNEL_VEIL ? share : 1.0, p->threads);
     if (status)
         kernel_destroy(out);
     return status;

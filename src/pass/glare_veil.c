@@ -27,9 +27,15 @@ static void shrink_row(void *context, size_t item, int worker)
     // Beyond the frame's edge the last cell is dark: light is neither lost nor made.
     for (int y = (int)item * COARSE; y < s->height && y < ((int)item + 1) * COARSE; y++) {
         const float *const row = s->in + 3 * (size_t)y * (size_t)s->width;
-        for (int x = 0; x < s->width; x++)
+        for (int cell = 0; cell < s->columns; cell++) {
+            const int end = (cell + 1) * COARSE < s->width ? (cell + 1) * COARSE : s->width;
+            float sum[3] = {0};
+            for (int x = cell * COARSE; x < end; x++)
+                for (int c = 0; c < 3; c++)
+                    sum[c] += row[3 * x + c];
             for (int c = 0; c < 3; c++)
-                out[3 * (x / COARSE) + c] += row[3 * x + c] * (1.0f / (COARSE * COARSE));
+                out[3 * cell + c] += sum[c] * (1.0f / (COARSE * COARSE));
+        }
     }
 }
 
@@ -38,6 +44,8 @@ static int clamp_index(int i, int n)
     return i < 0 ? 0 : i >= n ? n - 1 : i;
 }
 
+// Cell by cell between the middles of two cells: what stands left and right is mixed from the rows
+// above and below once for its pixels.
 static void enlarge_row(void *context, size_t item, int worker)
 {
     const struct coarse *s = context;
@@ -47,15 +55,23 @@ static void enlarge_row(void *context, size_t item, int worker)
     const float *const a = s->in + 3 * (size_t)clamp_index(j, s->rows) * (size_t)s->columns;
     const float *const b = s->in + 3 * (size_t)clamp_index(j + 1, s->rows) * (size_t)s->columns;
     float *const out = s->out + 3 * item * (size_t)s->width;
+    float left[3], right[3];
     (void)worker;
-    for (int x = 0; x < s->width; x++) {
-        const int shifted = x + COARSE / 2, i = shifted / COARSE - 1;
-        const float tx = ((float)(shifted % COARSE) + 0.5f) / COARSE;
-        const int left = 3 * clamp_index(i, s->columns), right = 3 * clamp_index(i + 1, s->columns);
+    for (int c = 0; c < 3; c++)
+        right[c] = a[c] + ty * (b[c] - a[c]);
+    for (int cell = 0; cell <= s->columns; cell++) {
+        const int at = 3 * clamp_index(cell, s->columns), first = cell * COARSE - COARSE / 2;
         for (int c = 0; c < 3; c++) {
-            const float above = a[left + c] + tx * (a[right + c] - a[left + c]);
-            const float below = b[left + c] + tx * (b[right + c] - b[left + c]);
-            out[3 * x + c] = s->keep[c] * out[3 * x + c] + above + ty * (below - above);
+            left[c] = right[c];
+            right[c] = a[at + c] + ty * (b[at + c] - a[at + c]);
+        }
+        for (int k = 0; k < COARSE; k++) {
+            const float tx = ((float)k + 0.5f) / COARSE;
+            const int x = first + k;
+            if (x < 0 || x >= s->width)
+                continue;
+            for (int c = 0; c < 3; c++)
+                out[3 * x + c] = s->keep[c] * out[3 * x + c] + left[c] + tx * (right[c] - left[c]);
         }
     }
 }

@@ -11,11 +11,12 @@
 // Of an adult's open eye, mm: the upper lid just clears the widest pupil.
 static const double corner_x = 15.0, corner_y = -1.0;
 static const double upper_open = 4.6, lower_open = -5.8, closed = -3.5;
-enum { PIECES = 3 };  // of a lash
+static const double lower_length = 0.45;  // of a picture's lashes, upper ones being 1
+enum { PIECES = 3 };                      // of a lash
 
-int lashes_count(const struct relume_subject *s)
+int lashes_count(const struct relume_subject *s, const struct lashes *image)
 {
-    return s->lids.lashes * PIECES;
+    return image->piece ? 2 * image->count : s->lids.lashes * PIECES;
 }
 
 static double smooth(double x)
@@ -69,11 +70,30 @@ static void draw_lash(struct relume_eye_stroke *strokes, const struct relume_sub
     }
 }
 
-void lids_place(const struct relume_subject *s, double openness, struct relume_aperture *aperture,
-                struct relume_eye_stroke *lashes)
+static void place_image(const struct lashes *image, const float edge[2], double up,
+                        struct relume_eye_stroke *strokes)
+{
+    for (int i = 0; i < image->count; i++) {
+        const struct lash_piece *const p = &image->piece[i];
+        strokes[i] = (struct relume_eye_stroke){.opacity = 1.0f};
+        for (int k = 0; k < 2; k++) {
+            strokes[i].x[k] = p->x[k];
+            strokes[i].y[k] = edge[0] + edge[1] * p->x[k] * p->x[k] + (float)up * p->far[k];
+            strokes[i].width[k] = p->width[k];
+        }
+    }
+}
+
+void lids_place(const struct relume_subject *s, const struct lashes *image, double openness,
+                struct relume_aperture *aperture, struct relume_eye_stroke *lashes)
 {
     set_edge(aperture->upper, closed + openness * (upper_open - closed));
     set_edge(aperture->lower, closed + openness * (lower_open - closed));
+    if (image->piece) {
+        place_image(image, aperture->upper, -1.0, lashes);
+        place_image(image, aperture->lower, lower_length, lashes + image->count);
+        return;
+    }
     for (int i = 0; i < s->lids.lashes; i++) {
         struct random random = random_stream(s->seed, (uint64_t)i, 0x6c617368u);
         const bool below = i % 3 == 2;

@@ -39,7 +39,8 @@ struct relume_psf {
     struct plane mono, smeared;
     float *colour[3];  // [field][field]
     float *work;
-    bool mirrored;  // the transform of a real aperture: only half of it is computed
+    double (*sums)[3];  // [field]
+    bool mirrored;      // the transform of a real aperture: only half of it is computed
     double light, age, pigment;
     struct relume_psf_times times;
 };
@@ -149,7 +150,8 @@ relume_status relume_psf_create(relume_psf **out, const struct relume_psf_params
     psf->work = status ? NULL
                        : mem_zeroed(chromatic_work(psf->shape.size + 2, psf->params.threads),
                                     sizeof *psf->work);
-    if (!status && !psf->work)
+    psf->sums = mem_array((size_t)psf->shape.field, sizeof *psf->sums);
+    if (!status && (!psf->work || !psf->sums))
         status = RELUME_ENOMEM;
     psf->kernels = psf_kernels_choose(psf->params.cpu_off);
     psf->light = 1.0;
@@ -176,6 +178,7 @@ void relume_psf_destroy(relume_psf **psf)
     for (int c = 0; c < 3; c++)
         free(p->colour[c]);
     free(p->work);
+    free(p->sums);
     free(p);
     *psf = NULL;
 }
@@ -274,23 +277,30 @@ static void fill_wave(void *context, int row, float *line)
     }
 }
 
-// Power of a column's coefficients at its place; the mirrored ones too when only half is there.
+// Power of the columns' coefficients at their places; at the mirrored ones too when only half of
+// them is there. Column 0 stands in the middle, and its row repeats after n.
 static bool store_power(void *context, int column, int count, float *lines)
 {
     relume_psf *const psf = context;
     const int n = psf->shape.size, middle = n / 2;
-    const bool mirrored = psf->mirrored;
+    int to[FFT2D_BLOCK], across[FFT2D_BLOCK];
+    float gain[FFT2D_BLOCK];
+    for (int k = 0; k < count; k++) {
+        to[k] = (middle - column - k + n) % n;
+        across[k] = (middle + column + k) % n;
+        gain[k] = psf->texel[column + k];
+    }
     for (int y = 0; y < n; y++) {
-        const int row = (middle - y + n) % n, opposite = (middle + y) % n;
-        float *const to = psf->mono.v + (size_t)row * psf->mono.stride;
-        float *const across = psf->mono.v + (size_t)opposite * psf->mono.stride;
+        const int row = middle - y + (y > middle ? n : 0);
+        const int opposite = middle + y - (y >= n - middle ? n : 0);
+        float *const here = psf->mono.v + (size_t)row * psf->mono.stride;
+        float *const there = psf->mono.v + (size_t)opposite * psf->mono.stride;
         for (int k = 0; k < count; k++) {
             const float *const z = lines + 2 * ((size_t)n * (size_t)k + (size_t)y);
-            const float power =
-                (z[0] * z[0] + z[1] * z[1]) * psf->texel[y] * psf->texel[column + k];
-            to[(middle - column - k + n) % n] = power;
-            if (mirrored)
-                across[(middle + column + k) % n] = power;
+            const float power = (z[0] * z[0] + z[1] * z[1]) * psf->texel[y] * gain[k];
+            here[to[k]] = power;
+            if (psf->mirrored)
+                there[across[k]] = power;
         }
     }
     return false;
@@ -345,25 +355,6 @@ static void close_period(struct plane *plane)
 
 // ---------------------------------------------------------------- wavelengths
 
-static double sum_of(const float *v, int width, int height, size_t stride)
-{
-    double sum = 0.0;
-    for (int y = 0; y < height; y++) {
-        float row = 0.0f;
-        for (int x = 0; x < width; x++)
-            row += v[(size_t)y * stride + (size_t)x];
-        sum += (double)row;
-    }
-    return sum;
-}
-
-static void scale_by(float *v, size_t n, double factor)
-{
-    const float f = (float)factor;
-    for (size_t i = 0; i < n; i++)
-        v[i] *= f;
-}
-
 static void colour(relume_psf *psf)
 {
     const double step = psf->shape.step;
@@ -375,11 +366,8 @@ static void colour(relume_psf *psf)
         from = &psf->smeared;
     }
     chromatic_sum(psf->colour, field, from, &psf->spectrum, psf->shape.fade / step,
-                  psf->shape.radius / step, psf->kernels, psf->params.threads, psf->work);
-    for (int c = 0; c < 3; c++) {
-        const double sum = sum_of(psf->colour[c], field, field, (size_t)field);
-        scale_by(psf->colour[c], (size_t)field * (size_t)field, sum > 0.0 ? 1.0 / sum : 0.0);
-    }
+                  psf->shape.radius / step, psf->kernels, psf->params.threads, psf->work,
+                  psf->sums);
 }
 
 // ---------------------------------------------------------------- update
@@ -505,7 +493,10 @@ relume_status relume_psf_monochrome(struct relume_image *out, const relume_psf *
     const relume_status status = relume_image_create(out, n, n, 1);
     if (status)
         return status;
-    const double sum = sum_of(psf->mono.v, n, n, psf->mono.stride);
+    double sum = 0.0;
+    for (int y = 0; y < n; y++)
+        for (int x = 0; x < n; x++)
+            sum += (double)psf->mono.v[(size_t)y * psf->mono.stride + (size_t)x];
     for (int y = 0; y < n; y++)
         for (int x = 0; x < n; x++)
             out->data[(size_t)y * (size_t)n + (size_t)x] =

@@ -37,10 +37,10 @@ void chromatic_smear(struct plane *out, const struct plane *in,
                      const struct relume_psf_spectrum *spectrum, const struct psf_kernels *kernels,
                      int threads, float *work);
 // The sum over wavelengths: three pictures out[c][field][field] with their middle in the middle,
-// faded out from `fade` to `radius` texels.
+// faded out from `fade` to `radius` texels, each summing to 1. `sums`[field] is scratch.
 void chromatic_sum(float *const out[3], int field, const struct plane *in,
                    const struct relume_psf_spectrum *spectrum, double fade, double radius,
-                   const struct psf_kernels *kernels, int threads, float *work);
+                   const struct psf_kernels *kernels, int threads, float *work, double (*sums)[3]);
 // Floats of `work` for either, for pictures up to n texels.
 size_t chromatic_work(int n, int threads);
 

@@ -19,8 +19,9 @@ enum { MOST_PATTERNS = 3600 };
 struct relume_psf_cycle {
     int field, count;
     double seconds;
-    double *light;    // [count]
-    uint16_t *shown;  // [count][3][field * field], each channel to a scale of its own
+    double *light;     // [count]
+    double (*sum)[3];  // [count]: of the halfs of a channel
+    uint16_t *shown;   // [count][3][field * field], each channel to a scale of its own
     double age, pigment;
 };
 
@@ -59,8 +60,8 @@ static void show_channel(void *context, size_t channel, int worker)
     const size_t n = texels(s->cycle);
     const uint16_t *a = channel_of(s->cycle, s->from, (int)channel);
     const uint16_t *b = channel_of(s->cycle, s->to, (int)channel);
-    const float of_a = (float)((1.0 - (double)s->part) / sum_of(a, n));
-    const float of_b = s->part > 0.0f ? (float)((double)s->part / sum_of(b, n)) : 0.0f;
+    const float of_a = (float)((1.0 - (double)s->part) / s->cycle->sum[s->from][channel]);
+    const float of_b = (float)((double)s->part / s->cycle->sum[s->to][channel]);
     for (size_t i = 0; i < n; i++)
         s->out[channel][i] = of_a * float_from_half(a[i]) + of_b * float_from_half(b[i]);
 }
@@ -98,6 +99,7 @@ static void keep(relume_psf_cycle *c, int k, const relume_psf *psf)
         const float scale = most > 0.0f ? largest_half / most : 0.0f;
         for (size_t i = 0; i < texels(c); i++)
             to[i] = half_from_float(scale * v[i]);
+        c->sum[k][channel] = sum_of(to, texels(c));
     }
 }
 
@@ -108,7 +110,7 @@ static void fade_over(relume_psf_cycle *c, int k, double part, relume_psf *psf)
     for (int channel = 0; channel < 3; channel++) {
         const uint16_t *before = channel_of(c, k, channel);
         float *v = psf_channel_to_fill(psf, channel);
-        const double sum = sum_of(before, texels(c));
+        const double sum = c->sum[k][channel];
         for (size_t i = 0; i < texels(c); i++)
             v[i] = (float)(part / sum * (double)float_from_half(before[i]) +
                            (1.0 - part) * (double)v[i]);
@@ -165,8 +167,10 @@ relume_status relume_psf_cycle_create(relume_psf_cycle **out, relume_psf *psf, r
     c->age = relume_eye_subject(eye)->optics.age;
     c->pigment = relume_eye_subject(eye)->optics.pigment;
     c->light = mem_zeroed((size_t)c->count, sizeof *c->light);
+    c->sum = mem_zeroed((size_t)c->count, sizeof *c->sum);
     c->shown = mem_array(3 * (size_t)c->count, texels(c) * sizeof *c->shown);
-    const relume_status status = c->light && c->shown ? run(c, psf, eye, &p) : RELUME_ENOMEM;
+    const relume_status status =
+        c->light && c->sum && c->shown ? run(c, psf, eye, &p) : RELUME_ENOMEM;
     if (status)
         relume_psf_cycle_destroy(&c);
     *out = c;
@@ -178,6 +182,7 @@ void relume_psf_cycle_destroy(relume_psf_cycle **cycle)
     if (!*cycle)
         return;
     free((*cycle)->light);
+    free((*cycle)->sum);
     free((*cycle)->shown);
     free(*cycle);
     *cycle = NULL;

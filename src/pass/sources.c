@@ -71,6 +71,11 @@ static bool add_source(struct sources *s, int *room, struct source source)
     return true;
 }
 
+static bool shines(const struct finding *f, int x, int y)
+{
+    return luminance(f->rest + 3 * ((size_t)y * (size_t)f->width + (size_t)x)) > f->threshold;
+}
+
 // The light of a pixel beyond the threshold, taken out of it; none when it is darker.
 static bool take_pixel(struct finding *f, int x, int y, struct source *out)
 {
@@ -89,7 +94,8 @@ static bool take_pixels(struct finding *f)
     struct source source;
     for (int y = 0; y < f->height; y++)
         for (int x = 0; x < f->width; x++)
-            if (take_pixel(f, x, y, &source) && !add_source(f->out, &f->room, source))
+            if (shines(f, x, y) && take_pixel(f, x, y, &source) &&
+                !add_source(f->out, &f->room, source))
                 return false;
     return true;
 }

@@ -41,7 +41,7 @@ struct relume_subject relume_subject_default(void)
 
 // ---------------------------------------------------------------- fields
 
-enum kind { NUMBER, WHOLE, SEED, TRUTH };
+enum kind { NUMBER, WHOLE, SEED, TRUTH, PICTURE };
 struct field {
     const char *group, *name;
     enum kind kind;
@@ -85,6 +85,7 @@ static const struct field fields[] = {
     {"lids", "blink_interval_s", NUMBER, AT(lids.blink_interval_s), 0, 3600},
     {"lids", "blink_s", NUMBER, AT(lids.blink_s), 0.05, 5},
     {"lids", "squint", NUMBER, AT(lids.squint), 0, 0.99},
+    {"lids", "lash_image", PICTURE, AT(lids.lash_image), 0, 0},
     {"optics", "defocus_dpt", NUMBER, AT(optics.defocus_dpt), -5, 5},
     {"optics", "age", NUMBER, AT(optics.age), 1, 120},
     {"optics", "pigment", NUMBER, AT(optics.pigment), 0, 1.2},
@@ -98,7 +99,8 @@ static double value_of(const struct relume_subject *s, const struct field *f)
     case NUMBER: return *(const double *)(const void *)at;
     case WHOLE: return *(const int *)(const void *)at;
     case TRUTH: return *(const bool *)(const void *)at;
-    case SEED: break;
+    case SEED:
+    case PICTURE: break;
     }
     return 0.0;
 }
@@ -111,6 +113,7 @@ static void set_value(struct relume_subject *s, const struct field *f, double va
     case WHOLE: *(int *)(void *)at = (int)value; break;
     case TRUTH: *(bool *)(void *)at = value != 0.0; break;
     case SEED: *(uint64_t *)(void *)at = (uint64_t)value; break;
+    case PICTURE: break;
     }
 }
 
@@ -174,9 +177,28 @@ __attribute__((format(printf, 4, 5))) static relume_status wrong(const struct re
                     line_of(r, group, name), group ? group : "", group ? "." : "", name, sentence);
 }
 
+// Named from the subject's folder; read once to see that it can be.
+static relume_status take_picture(struct relume_subject *s, const struct reading *r,
+                                  const struct field *f, const jvalue *value)
+{
+    char *const path = (char *)s + f->offset;
+    const char *const name = jvalue_text(value), *const slash = strrchr(r->path, '/');
+    const int folder = name && name[0] != '/' && slash ? (int)(slash - r->path) + 1 : 0;
+    struct lashes lashes;
+    if (!name || !name[0])
+        return wrong(r, f->group, f->name, "expected a file's name");
+    if (snprintf(path, RELUME_SUBJECT_PATH, "%.*s%s", folder, r->path, name) >= RELUME_SUBJECT_PATH)
+        return wrong(r, f->group, f->name, "expected a shorter name");
+    const relume_status status = lashes_load(&lashes, path, r->log);
+    lashes_destroy(&lashes);
+    return status;
+}
+
 static relume_status take_field(struct relume_subject *s, const struct reading *r,
                                 const struct field *f, const jvalue *value)
 {
+    if (f->kind == PICTURE)
+        return take_picture(s, r, f, value);
     double number = 0.0;
     long long whole = 0;
     bool truth = false;

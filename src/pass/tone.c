@@ -45,16 +45,26 @@ static void tone_filmic(float out[3], const float rgb[3], float white)
     }
 }
 
+// Ritschel 2009, 8.4.4: the picture is shown with a gamma of 2.2, here through the sRGB curve that
+// comes after it: what that curve makes x^(1 / 2.2) of.
+static void tone_gamma(float out[3], const float rgb[3], float white)
+{
+    (void)white;
+    for (int k = 0; k < 3; k++) {
+        const float coded = powf(clip(rgb[k]), 1.0f / 2.2f);
+        out[k] = coded <= 0.04045f ? coded / 12.92f : powf((coded + 0.055f) / 1.055f, 2.4f);
+    }
+}
+
 const struct relume_tone relume_tone_linear = {"linear", "clipped at 1", tone_linear};
 const struct relume_tone relume_tone_reinhard = {
     "reinhard", "highlights of up to the white luminance are compressed", tone_reinhard};
 const struct relume_tone relume_tone_filmic = {"filmic", "the S-shaped curve of film (ACES)",
                                                tone_filmic};
+const struct relume_tone relume_tone_gamma = {
+    "gamma", "clipped at 1, a gamma of 2.2 in place of the sRGB curve", tone_gamma};
 const struct relume_tone *const relume_tones[] = {
-    &relume_tone_linear,
-    &relume_tone_reinhard,
-    &relume_tone_filmic,
-    NULL,
+    &relume_tone_linear, &relume_tone_reinhard, &relume_tone_filmic, &relume_tone_gamma, NULL,
 };
 
 const struct relume_tone *relume_tone_find(const char *name)

@@ -18,8 +18,6 @@ cp "$lit" in.exr
 expect_ok 'a picture' - "$RELUME" glare lamp.exr -o seen.exr $quick
 expect_ok 'the same by one thread' - "$RELUME" glare lamp.exr -o one.exr $quick --threads 1
 same 'any number of threads' seen.exr one.exr
-glare lamp.exr -o later.exr $quick --time 2
-differ 'time passes' seen.exr later.exr
 for mode in billboard hybrid; do
     expect_ok "mode $mode" - "$RELUME" glare lamp.exr -o $mode.exr $quick --mode $mode
     "$RELUME" compare seen.exr $mode.exr --json >c.json
@@ -34,6 +32,8 @@ for file in psf.exr psf.png aperture.png pupil.svg pupil.png observer.svg observ
     check "$file" test -s "pattern/$file"
 done
 same 'the same pattern' psf.exr pattern/psf.exr
+glare --psf later.exr $quick --time 2
+differ 'time passes' psf.exr later.exr
 glare --psf with.exr $quick --luminance 0.01
 for part in cornea fibres lens vitreous lids; do
     glare --psf without.exr $quick --without $part --luminance 0.01
@@ -62,11 +62,26 @@ fi
 expect_ok 'a pass of relight' - "$RELUME" relight dome.exr -o pass.png --pass glare --nits 1
 "$RELUME" synth attic -q -o attic --projection cylindrical --lights 9 --hemisphere --size 24 --samples 1
 "$RELUME" encode attic -q -o attic.exr
-lamp="point 0.4 0.3 -1 rgb .1 .1 .1"
-expect_ok 'a lamp in view' - "$RELUME" relight attic.exr -o a.exr --pass glare --pan 0 --size 48x32 --light "$lamp"
-"$RELUME" relight attic.exr -o b.exr --pan 0 --size 48x32 --light "$lamp"
-"$RELUME" compare a.exr b.exr --json >c.json
-above 'it dazzles' "$(field max_abs c.json)" 10
+seen_alike() { # name, least brightness that glare adds, most, lights; of $file in $look
+    what=$1 least=$2 most=$3
+    shift 3
+    "$RELUME" relight $file -q -o a.exr --pass glare --time 0 $look "$@"
+    "$RELUME" relight $file -q -o b.exr $look "$@"
+    "$RELUME" compare a.exr b.exr --json >c.json
+    above "$what" "$(field max_abs c.json)" "$least"
+    below "$what, no more" "$(field max_abs c.json)" "$most"
+    expect_ok "$what, in the viewer" - "$VIEWER" $file --offscreen v.exr --glare --sources \
+        --glare-mode fft --glare-size 1536 ${look:---size 24x24} "$@"
+    "$RELUME" compare a.exr v.exr --json >c.json
+    # floats, and reflectances summed in another order: 2e-5 of the brightest pixel was found
+    below "$what, and seen alike" "$(field max_abs c.json)" "$(awk "BEGIN { print 1e-4 * $most }")"
+}
+file=attic.exr look='--pan 0 --size 48x32'
+seen_alike 'a lamp and a panel shine' 10 500 --light "point 0.4 0.3 -1 rgb .1 .1 .1" \
+    --light "area -0.3 0.4 -1.2 0.1 0 0 0 0.1 0 rgb 3 2 1"
+seen_alike 'a lamp behind the wall does not' 0 0.1 --light "point 4 0.3 -9 rgb 10 10 10"
+file=dome.exr look=
+seen_alike 'a lamp above a picture shines' 10 500 --light "point 0.3 0.5 1.4 rgb .1 .1 .1"
 expect_fail 'a panorama unfolded' 2 'expected --pan' p.png \
     "$RELUME" relight attic.exr -o p.png --pass glare
 
@@ -96,6 +111,11 @@ bad 'unknown group' 1 'line 1; lense; unknown; did you mean "lens"' --psf out.pn
 printf '{"format": "relume-subject", "version": 1, "lids": {"squint": 0.6, "blink_interval_s": 0}}' >s.json
 expect_ok 'a squinting subject' - "$RELUME" glare --psf squint.exr $quick --subject s.json
 differ 'squinting' psf.exr squint.exr
+printf '{"format": "relume-subject", "version": 1, "lids": {"squint": 0.6, "blink_interval_s": 0, "lash_image": "l.exr"}}' >s.json
+bad 'no picture of lashes' 1 'l.exr: no such file' --psf out.png --subject s.json
+"$mkimage" poke in.exr l0.exr 12 0 0 && "$mkimage" poke l0.exr l.exr 12 1 0
+expect_ok 'lashes of a picture' - "$RELUME" glare --psf lashes.exr $quick --subject s.json
+differ 'lashes' squint.exr lashes.exr
 
 # ---- pixels that are no light
 "$mkimage" poke in.exr nan.exr 3 3 nan

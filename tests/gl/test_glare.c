@@ -388,6 +388,32 @@ static void the_eye_lives_with_the_app(void **state)
     close_stage(&s);
 }
 
+// A loop of 0.4 s is at 0.5 s where it was at 0.1 s; an eye that lives on is elsewhere.
+static void a_loop_goes_around(void **state)
+{
+    struct stage s;
+    (void)state;
+    open_stage(&s, false);
+    s.app.now.gaze.cycle_s = 0.4;
+    (void)app_advance(&s.app, 0.1);
+    struct relume_image first = look(&s), seen = look(&s);
+    assert_true(s.glare.loop.cycle && !s.glare.passes);
+    (void)app_advance(&s.app, 0.2);
+    assert_true(changed(&s, &seen) > 0.01);
+    (void)app_advance(&s.app, 0.2);
+    (void)changed(&s, &seen);
+    // times of the app are sums of its steps; a part of 1e-12 between two patterns
+    assert_below("after a loop", most_apart(&first, &seen), 1e-3);
+    s.app.now.gaze.squint = 0.6;
+    assert_true(changed(&s, &seen) > 0.01);
+    s.app.now.gaze.cycle_s = 0;
+    (void)changed(&s, &seen);
+    assert_null(s.glare.loop.cycle);
+    relume_image_destroy(&first);
+    relume_image_destroy(&seen);
+    close_stage(&s);
+}
+
 // What is kept of a frame is not shown for another, and time in other steps leads to the same.
 static void nothing_of_an_old_frame_stays(void **state)
 {
@@ -473,6 +499,7 @@ static void words_change_the_gaze_or_nothing(void **state)
     assert_true(gaze_say(&s, " magnify 3 ", &expected) && s.magnify == 3);
     assert_true(gaze_say(&s, "lens off", &expected) && s.parts_off == RELUME_EYE_LENS);
     assert_true(gaze_say(&s, "lens on", &expected) && s.parts_off == 0);
+    assert_true(gaze_say(&s, "cycle 4", &expected) && s.cycle_s == 4);
     assert_true(gaze_say(&s, "mode hybrid", &expected) && s.mode == GAZE_HYBRID);
     assert_true(gaze_say(&s, "pause", &expected) && s.paused && !gaze_lives(&s));
     const struct gaze before = s;
@@ -493,7 +520,7 @@ static void lamps_in_view_send_what_they_send(void **state)
         {.kind = RELUME_LIGHT_POINT, .position = {0, 0, -2}, .rgb = {1, 0.5f, 0}},
         {.kind = RELUME_LIGHT_POINT, .position = {0, 0, 2}, .rgb = {1, 1, 1}},
         {.kind = RELUME_LIGHT_DIRECTIONAL, .direction = {0.5, 0, -1}, .rgb = {1, 1, 1}}};
-    struct lamp_seen *seen = malloc(LAMPS_SEEN_MOST * sizeof *seen);
+    struct relume_source *seen = malloc(RELUME_SOURCES_MOST * sizeof *seen);
     struct app app;
     assert_int_equal(app_start(&app, &file, &start, true, NULL), RELUME_OK);
     assert_int_equal(lamps_seen(seen, &app, lights, 3, NULL), 2);
@@ -536,6 +563,7 @@ int main(void)
         cmocka_unit_test(spoiled_and_tiny_frames_are_seen),
         cmocka_unit_test(the_eye_lives_with_the_app),
         cmocka_unit_test_prestate(the_eye_lives_with_the_app, &library),
+        cmocka_unit_test(a_loop_goes_around),
         cmocka_unit_test(nothing_of_an_old_frame_stays),
         cmocka_unit_test_prestate(nothing_of_an_old_frame_stays, &library),
         cmocka_unit_test(without_compute_the_library_sees),

@@ -254,6 +254,72 @@ static void check_subjects(void **state)
     assert_int_equal(relume_subject_load(&s, "/nonexistent/s.json", &log.log), RELUME_EDATA);
 }
 
+// ---------------------------------------------------------------- lashes of a picture
+
+// A picture of one bar, 10 pixels of 0.1 mm wide, that leans by `slant` pixels a row; 1: white.
+static void write_bar(const char *path, float background, double slant)
+{
+    struct relume_image image;
+    CHECK_OK(relume_image_create(&image, 140, 60, 3));
+    for (int y = 0; y < 60; y++)
+        for (int x = 0; x < 140; x++) {
+            const bool inside = y < 50 && fabs(x + 0.5 - 70.0 - slant * y) < 5.0;
+            for (int c = 0; c < 3; c++)
+                image.data[3 * (y * 140 + x) + c] = inside ? 0.0f : background;
+        }
+    CHECK_OK(relume_image_save(&image, path, NULL));
+    relume_image_destroy(&image);
+}
+
+// The bar's strokes stand on both lids' edges and lead to where it ends, 49 rows below; the lower
+// lid's are 0.45 times as long and point upwards.
+static void check_lash_picture(void **state)
+{
+    char folder[64], path[96], picture[96];
+    struct relume_subject s;
+    relume_eye *eye;
+    struct test_log log;
+    const char *const text = HEAD "\"lids\": {\"lash_image\": \"bar.exr\"}}";
+    (void)state;
+    test_folder(folder);
+    snprintf(path, sizeof path, "%s/s.json", folder);
+    snprintf(picture, sizeof picture, "%s/bar.exr", folder);
+    test_write(path, text, strlen(text));
+    test_log_init(&log);
+    assert_int_equal(relume_subject_load(&s, path, &log.log), RELUME_EDATA);  // no picture
+    write_bar(picture, 0.0f, 0.0);                                            // one dark block
+    CHECK_OK(relume_subject_load(&s, path, &log.log));
+    write_bar(picture, 1.0f, 0.4);
+    CHECK_OK(relume_subject_load(&s, path, &log.log));
+    CHECK_OK(relume_eye_create(&eye, &s, 10.0));
+    const struct relume_aperture *const a = relume_eye_aperture(eye);
+    const int half = a->lashes.count / 2;
+    const struct relume_eye_stroke *const upper = a->stroke + a->lashes.first;
+    const double end = 0.1 * 0.4 * 49.0;  // mm beside the middle
+    assert_int_equal(a->lashes.count, 2 * 49);
+    CHECK_NEAR((double)upper[0].x[0], 0.0, 1e-5);
+    CHECK_NEAR((double)upper[0].y[0], (double)a->upper[0], 1e-5);
+    // half a pixel is how well a row's run tells its middle; the last piece goes on by a quarter of
+    // up to one
+    CHECK_NEAR((double)upper[48].x[1], end, 0.05 + 0.25 * 0.1);
+    CHECK_NEAR((double)upper[48].y[1],
+               (double)a->upper[0] + (double)a->upper[1] * end * end - 4.925, 0.01);
+    CHECK_NEAR((double)upper[half].y[0], (double)a->lower[0], 1e-5);
+    CHECK_NEAR((double)upper[half + 48].y[1],
+               (double)a->lower[0] + (double)a->lower[1] * end * end + 0.45 * 4.925, 0.01);
+    double width = 0.0;
+    for (int i = 0; i < half; i++)
+        width += (double)upper[i].width[0] / half;
+    CHECK_NEAR(width, 0.6 + 0.4 / sqrt(2.0), 0.02);  // rows lean by 0 or 1 pixel, 0.4 in the mean
+    relume_eye_destroy(&eye);
+    write_bar(picture, 1.0f, 1e9);  // nothing but a dot
+    assert_int_equal(relume_subject_load(&s, path, &log.log), RELUME_EDATA);
+    assert_non_null(strstr(log.text, "no lashes"));
+    assert_int_equal(relume_eye_create(&eye, &s, 10.0), RELUME_EDATA);
+    assert_null(eye);
+    test_folder_remove(folder);
+}
+
 static void check_limits(void **state)
 {
     struct relume_subject s = relume_subject_default();
@@ -280,7 +346,8 @@ int main(void)
         cmocka_unit_test(check_adaptation), cmocka_unit_test(check_division),
         cmocka_unit_test(check_long),       cmocka_unit_test(check_lens),
         cmocka_unit_test(check_vitreous),   cmocka_unit_test(check_blinks),
-        cmocka_unit_test(check_subjects),   cmocka_unit_test(check_limits),
+        cmocka_unit_test(check_subjects),   cmocka_unit_test(check_lash_picture),
+        cmocka_unit_test(check_limits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

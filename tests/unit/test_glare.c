@@ -340,50 +340,6 @@ static void check_modes(void **state)
     relume_image_destroy(&frame);
 }
 
-// ---------------------------------------------------------------- lamps
-
-// A lamp fills its pixels with what makes its light at the eye: the sum over pixels of radiance
-// times solid angle is pi times its value there.
-static void check_lamps(void **state)
-{
-    const struct relume_sight sight = {
-        .eye = {1, 2, 3}, .ahead = {0, 0, -1}, .right = {1, 0, 0}, .up = {0, 1, 0}, .fov_deg = 90};
-    const struct relume_light lights[] = {
-        {.kind = RELUME_LIGHT_POINT, .position = {2, 2.5, 1}, .rgb = {4, 8, 12}},
-        {.kind = RELUME_LIGHT_POINT, .position = {2, 2.5, 5}, .rgb = {4, 8, 12}},  // behind
-        {.kind = RELUME_LIGHT_POINT, .position = {9, 2.5, 1}, .rgb = {4, 8, 12}},  // beside
-        {.kind = RELUME_LIGHT_DIRECTIONAL, .direction = {-1, 0, -2}, .rgb = {1, 1, 1}},
-        {.kind = RELUME_LIGHT_SPOT,  // shines away from the eye
-         .position = {1, 2, 1},
-         .direction = {0, 0, -1},
-         .half_angle_deg = 30,
-         .rgb = {1, 1, 1}},
-    };
-    struct relume_image frame;
-    (void)state;
-    CHECK_OK(relume_image_create(&frame, 40, 20, 3));
-    assert_int_equal(relume_glare_lamps(&frame, &sight, lights, 5), 2);
-    // (1, 0.5, -2) from the eye: x = 20 + 20 / 2, y = 10 - 20 / 4; 5.25 units squared away.
-    double sum = 0.0, x = 0.0, y = 0.0;
-    for (int py = 0; py < 20; py++)
-        for (int px = 20; px < 40; px++) {
-            const double v = (double)frame.data[3 * (py * 40 + px) + 1];
-            sum += v;
-            x += v * (px + 0.5);
-            y += v * (py + 0.5);
-        }
-    CHECK_NEAR(x / sum, 30.0, 1e-5);
-    CHECK_NEAR(y / sum, 5.0, 1e-5);
-    const double pixel = 0.05 * 0.05 * pow(2.0 / sqrt(5.25), 3.0);
-    CHECK_NEAR(sum * pixel, M_PI * 8.0 / 5.25, 1e-4);
-    double sun = 0.0;
-    for (int py = 0; py < 20; py++)
-        for (int px = 0; px < 20; px++)
-            sun += (double)frame.data[3 * (py * 40 + px)];
-    CHECK_NEAR(sun * 0.05 * 0.05 * pow(2.0 / sqrt(5.0), 3.0), M_PI, 1e-4);
-    relume_image_destroy(&frame);
-}
-
 // ---------------------------------------------------------------- hostile frames
 
 static void check_hostile(void **state)
@@ -511,8 +467,8 @@ int main(void)
         cmocka_unit_test(check_delta),    cmocka_unit_test(check_borders),
         cmocka_unit_test(check_light),    cmocka_unit_test(check_threads),
         cmocka_unit_test(check_rest),     cmocka_unit_test(check_sources),
-        cmocka_unit_test(check_modes),    cmocka_unit_test(check_lamps),
-        cmocka_unit_test(check_memory),   cmocka_unit_test(check_hostile),
+        cmocka_unit_test(check_modes),    cmocka_unit_test(check_memory),
+        cmocka_unit_test(check_hostile),
     };
     return cmocka_run_group_tests(tests, open_psf, close_psf);
 }

@@ -14,7 +14,7 @@ static void tones_are_found_by_name(void **state)
     int n = 0;
     for (; relume_tones[n]; n++)
         assert_ptr_equal(relume_tone_find(relume_tones[n]->name), relume_tones[n]);
-    assert_int_equal(n, 3);
+    assert_int_equal(n, 4);
     assert_null(relume_tone_find("sepia"));
 }
 
@@ -63,6 +63,12 @@ static void known_values(void **state)
     apply(&relume_tone_filmic, out, 1, 0.18f, 0);
     CHECK_NEAR(out[0], 2.54 / 3.16, 1e-6);
     CHECK_NEAR(out[1], 0.18 * (2.51 * 0.18 + 0.03) / (0.18 * (2.43 * 0.18 + 0.59) + 0.14), 1e-6);
+    // shown through the sRGB curve, a half is 0.5^(1 / 2.2) of the screen's code, and a dark value
+    // 1e-5 is 12.92 times what is coded
+    apply(&relume_tone_gamma, out, 0.5f, 1e-5f, 2);
+    CHECK_NEAR(1.055 * pow((double)out[0], 1 / 2.4) - 0.055, pow(0.5, 1 / 2.2), 1e-6);
+    CHECK_NEAR(12.92 * (double)out[1], pow(1e-5, 1 / 2.2), 1e-6);
+    assert_true(out[2] == 1);
 }
 
 static void images_are_exposed_first(void **state)

@@ -1,0 +1,147 @@
+// lamps.c - lights that stand in the frame, so that they can dazzle
+#include <relume/sight.h>
+
+#include "base/memory.h"
+#include "math/vec.h"
+
+static const double far_away = 1e6;  // of directional lights, in widths of the picture
+enum { FACETS = 8 };                 // of an area light, along one side
+
+// ---------------------------------------------------------------- finding
+
+struct finding {
+    const struct relume_sight *sight;
+    vec3 eye;
+    bool (*hides)(void *user, const double xy[2], vec3 point);
+    void *user;
+    struct relume_source *out;
+    int n;
+};
+
+// A pixel beyond the border still reaches into the frame.
+static bool in_frame(const struct relume_sight *s, const double xy[2])
+{
+    return xy[0] > -0.5 && xy[1] > -0.5 && xy[0] < s->width + 0.5 && xy[1] < s->height + 0.5;
+}
+
+static void add(struct finding *f, vec3 point, const float rgb[3])
+{
+    double xy[2];
+    if (f->n == RELUME_SOURCES_MOST || !(rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0) ||
+        !relume_sight_place(xy, f->sight, point) || !in_frame(f->sight, xy) ||
+        (f->hides && f->hides(f->user, xy, point)))
+        return;
+    struct relume_source *const s = &f->out[f->n++];
+    const double solid = relume_sight_pixel(f->sight, xy[0], xy[1]);
+    *s = (struct relume_source){.x = xy[0], .y = xy[1]};
+    for (int c = 0; c < 3; c++)
+        s->rgb[c] = (float)fmin(M_PI * (double)rgb[c] / solid, 1e30);
+}
+
+static void add_area(struct finding *f, const struct relume_light *light)
+{
+    struct relume_facet facets[FACETS * FACETS];
+    vec3 towards;
+    float rgb[3];
+    relume_light_facets(facets, light, FACETS);
+    for (int i = 0; i < FACETS * FACETS; i++)
+        if (relume_facet_at(&towards, rgb, &facets[i], f->eye))
+            add(f, facets[i].position, rgb);
+}
+
+static void add_distant(struct finding *f, const struct relume_light *light)
+{
+    const bool window = f->sight->kind == RELUME_SIGHT_WINDOW;
+    const double wide = window ? vec3_length(f->sight->window.right) : 1.0;
+    const vec3 towards = vec3_unit(light->direction);
+    if (f->sight->kind != RELUME_SIGHT_PARALLEL)
+        add(f, vec3_add(f->eye, vec3_scale(towards, far_away * wide)), light->rgb);
+}
+
+int relume_sight_lamps(struct relume_source *out, const struct relume_sight *sight,
+                       const struct relume_light *lights, int n,
+                       bool (*hides)(void *user, const double xy[2], struct relume_vec3 point),
+                       void *user)
+{
+    struct finding f = {sight, relume_sight_eye(sight), hides, user, out, 0};
+    for (int i = 0; i < n; i++) {
+        vec3 towards;
+        float rgb[3];
+        if (lights[i].kind == RELUME_LIGHT_AREA)
+            add_area(&f, &lights[i]);
+        else if (lights[i].kind == RELUME_LIGHT_DIRECTIONAL)
+            add_distant(&f, &lights[i]);
+        else if (relume_light_is_near(lights[i].kind) &&
+                 relume_light_at(&towards, rgb, &lights[i], f.eye))
+            add(&f, lights[i].position, rgb);
+    }
+    return f.n;
+}
+
+// ---------------------------------------------------------------- drawing
+
+void relume_sources_draw(struct relume_image *frame, const struct relume_source *sources, int n)
+{
+    for (int i = 0; i < n; i++) {
+        const double x = sources[i].x - 0.5, y = sources[i].y - 0.5;
+        for (int k = 0; k < 4; k++) {
+            const double px = floor(x) + k % 2, py = floor(y) + k / 2;
+            const double share = (1.0 - fabs(x - px)) * (1.0 - fabs(y - py));
+            if (!(px >= 0.0 && px < frame->width && py >= 0.0 && py < frame->height))
+                continue;
+            float *const to = frame->data + 3 * ((size_t)py * (size_t)frame->width + (size_t)px);
+            for (int c = 0; c < 3; c++)
+                to[c] += (float)share * sources[i].rgb[c];
+        }
+    }
+}
+
+// ---------------------------------------------------------------- a frame
+
+struct scene {
+    const struct relume_sight *sight;
+    struct relume_image places;
+};
+
+static int clamp_index(double x, int n)
+{
+    return x < 0.0 ? 0 : x >= n ? n - 1 : (int)x;
+}
+
+static bool hidden(void *user, const double xy[2], vec3 point)
+{
+    const struct scene *s = user;
+    const int x = clamp_index(xy[0], s->places.width), y = clamp_index(xy[1], s->places.height);
+    const float *const at = s->places.data + 3 * ((size_t)y * (size_t)s->places.width + (size_t)x);
+    const vec3 surface = vec3_of((double)at[0], (double)at[1], (double)at[2]);
+    const bool nothing = surface.x == 0.0 && surface.y == 0.0 && surface.z == 0.0;  // no ray there
+    return !nothing && relume_sight_hides(s->sight, surface, point);
+}
+
+relume_status relume_frame_lamps(struct relume_image *frame, int *seen, relume_pack *pack,
+                                 const struct relume_camera *camera,
+                                 const struct relume_light *lights, int n,
+                                 const struct relume_frame_params *params)
+{
+    struct relume_frame_params where = params ? *params : (struct relume_frame_params){0};
+    struct relume_sight sight;
+    struct scene scene = {.sight = &sight};
+    struct relume_source *sources = NULL;
+    where.places = true;
+    where.aperture = where.focus = 0.0;
+    where.pass = RELUME_PASS_COLOUR;
+    relume_status status = relume_frame_sight(&sight, pack, camera, frame->width, frame->height);
+    if (!status && relume_pack_info(pack)->has_depth)
+        status = relume_frame(&scene.places, pack, camera, NULL, 0, &where);
+    if (!status && !(sources = mem_array(RELUME_SOURCES_MOST, sizeof *sources)))
+        status = RELUME_ENOMEM;
+    const int count = status ? 0
+                             : relume_sight_lamps(sources, &sight, lights, n,
+                                                  scene.places.data ? hidden : NULL, &scene);
+    relume_sources_draw(frame, sources, count);
+    if (seen)
+        *seen = count;
+    free(sources);
+    relume_image_destroy(&scene.places);
+    return status;
+}

@@ -13,7 +13,7 @@
 #include <string.h>
 
 enum { EXPONENTS = RELUME_PREFILTER_EXPONENTS, STEPS = RELUME_PREFILTER_STEPS };
-enum { CELL_COLUMNS = 96, CELL_ROWS = 48 };  // cells of 3.75 degrees: the sharpest lobe has 24
+enum { CELL_COLUMNS = 96, CELL_ROWS = 48 };  // cells of 3.75 degrees: the sharpest lobe has 12
 enum { TABLE = 2048, USUAL_HEIGHT = 48 };
 
 static double exponent_of(int i)

@@ -17,30 +17,23 @@ struct rays {
     int width, height;
 };
 
-static void ray_of(const struct rays *r, double x, double y, vec3 *origin, vec3 *direction)
+static struct ray ray_of(const struct rays *r, double x, double y)
 {
+    struct ray ray = {r->geometry.center, {0, 0, -1}};
     const struct relume_geometry *g = &r->geometry;
     const struct relume_window *w = &r->window;
     const vec3 at = vec3_add(w->corner, vec3_add(vec3_scale(w->right, x / r->width),
                                                  vec3_scale(w->down, y / r->height)));
     switch (r->kind) {
     case THROUGH_WINDOW:
-        *origin = w->eye;
-        *direction = vec3_unit(vec3_sub(at, w->eye));
+        ray.origin = w->eye;
+        ray.direction = vec3_unit(vec3_sub(at, w->eye));
         break;
-    case PARALLEL:
-        *origin = vec3_of(at.x, at.y, g->camera_z);
-        *direction = vec3_of(0, 0, -1);
-        break;
-    case LOOK:
-        *origin = g->center;
-        *direction = relume_look_ray(r->look, r->width, r->height, x, y);
-        break;
-    case PANORAMA:
-        *origin = g->center;
-        *direction = relume_panorama_ray(g, r->width, r->height, x, y);
-        break;
+    case PARALLEL: ray.origin = vec3_of(at.x, at.y, g->camera_z); break;
+    case LOOK: ray.direction = relume_look_ray(r->look, r->width, r->height, x, y); break;
+    case PANORAMA: ray.direction = relume_panorama_ray(g, r->width, r->height, x, y); break;
     }
+    return ray;
 }
 
 // The rectangle of the plane z = 0, seen from (0, 0, camera_z).
@@ -180,26 +173,25 @@ struct layered {
     const relume_objects *o;
     const struct rays *rays;
     const struct relume_image *scene, *places;
-    const struct relume_lamp *lamps;
-    int n;
-    bool no_shadows;
+    const struct lighting *lighting;
 };
 
-static void layered_value(float rgb[3], const void *context, double x, double y)
+static void layered_value(float rgb[3], const void *context, double x, double y, double step)
 {
     const struct layered *l = context;
     const size_t pixel = 3 * ((size_t)y * (size_t)l->scene->width + (size_t)x);
     const float *p = l->places->data + pixel;
     struct surface_point point;
-    vec3 origin, direction;
-    ray_of(l->rays, x, y, &origin, &direction);
-    const vec3 to = vec3_sub(vec3_of((double)p[0], (double)p[1], (double)p[2]), origin);
+    const struct ray ray = ray_of(l->rays, x, y), right = ray_of(l->rays, x + step, y),
+                     below = ray_of(l->rays, x, y + step);
+    const vec3 to = vec3_sub(vec3_of((double)p[0], (double)p[1], (double)p[2]), ray.origin);
     const bool nothing = p[0] == 0.0f && p[1] == 0.0f && p[2] == 0.0f;  // no view sees so far
     memcpy(rgb, l->scene->data + pixel, 3 * sizeof *rgb);
-    if (objects_hit(&point, l->o, origin, direction) &&
-        (nothing || point.distance < vec3_dot(to, direction)))
-        objects_shade(rgb, l->o, &point, vec3_scale(direction, -1.0), l->lamps, l->n,
-                      l->no_shadows);
+    if (!objects_hit(&point, l->o, ray.origin, ray.direction) ||
+        !(nothing || point.distance < vec3_dot(to, ray.direction)))
+        return;
+    objects_spread(&point, l->o, &ray, &right, &below);
+    objects_shade(rgb, l->o, &point, vec3_scale(ray.direction, -1.0), l->lighting);
 }
 
 static relume_status layer(struct relume_image *out, const struct layered *l,
@@ -233,8 +225,7 @@ relume_status relume_objects_frame(struct relume_image *out, const relume_object
     struct relume_frame_params light = frame ? *frame : (struct relume_frame_params){0};
     struct relume_frame_params place = light;
     struct relume_image places, scene = {0};
-    struct relume_lamp *lamps = NULL;
-    int count = 0;
+    struct lighting lighting = {0};
     *out = (struct relume_image){0};
     if (light.pass != RELUME_PASS_COLOUR)
         return log_fail(light.log, RELUME_EINVAL, "objects are seen in colour; expected no pass");
@@ -244,17 +235,16 @@ relume_status relume_objects_frame(struct relume_image *out, const relume_object
     if (!status)
         status = find_rays(&rays, pack, camera);
     if (!status)
-        status = relume_objects_lamps(&lamps, &count, objects, lights, n);
+        status = lighting_create(&lighting, objects, lights, n, params);
     if (!status)
         status = light_scene(&scene, &places, objects, pack, camera, lights, n, &light, params);
-    const struct layered layers = {
-        objects, &rays, &scene, &places, lamps, count, params && params->no_shadows};
+    const struct layered layers = {objects, &rays, &scene, &places, &lighting};
     if (!status)
         status = layer(out, &layers, params);
     if (status)
         relume_image_destroy(out);
     relume_image_destroy(&scene);
     relume_image_destroy(&places);
-    free(lamps);
+    lighting_destroy(&lighting);
     return status;
 }

@@ -261,7 +261,7 @@ static void compare(const struct relume_image *a, const struct relume_image *b, 
 static void environments_light_objects(void **state)
 {
     (void)state;
-    enum { W = 12, H = 12 };
+    enum { W = 8, H = 8 };
     struct relume_light each[SKY_W * SKY_H];
     relume_environment *sky = make_sky(each, 40);
     const struct relume_light light = {

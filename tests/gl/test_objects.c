@@ -82,6 +82,12 @@ static void make_surface(const relume_btf_fitted *model)
     relume_btf_map_destroy(&map);
 }
 
+// Of the model of the tiled surface, and of another.
+static bool with_levels(const char *model)
+{
+    return !strcmp(model, "vpca") || !strcmp(model, "rfnlc");
+}
+
 // Every model of one small sample, and the sample.
 static void make_materials(void)
 {
@@ -100,7 +106,8 @@ static void make_materials(void)
         relume_btf_fitted *fitted;  // of few clusters, so that texels share them
         assert_int_equal(relume_btf_fit(&fitted, btf, relume_btf_model_find(*m),
                                         relume_btf_fit_params(.log = &fixture_log, .components = 6,
-                                                              .clusters = 12)),
+                                                              .clusters = 12,
+                                                              .levels = with_levels(*m) ? -1 : 1)),
                          RELUME_OK);
         assert_int_equal(relume_btf_fitted_save(fitted, path_of(*m), NULL), RELUME_OK);
         if (!strcmp(*m, "vpca"))
@@ -110,7 +117,7 @@ static void make_materials(void)
     relume_btf_destroy(&btf);
 }
 
-static relume_objects *open_objects(void)
+static relume_objects *open_objects(double repeat)
 {
     enum { MOST = 16 };
     char kept[MOST][128];
@@ -123,7 +130,7 @@ static relume_objects *open_objects(void)
     for (int i = 0; i < n; i++)
         materials[i] = kept[i];
     relume_objects *o;
-    assert_int_equal(relume_objects_of_mesh(&o, path_of("mesh.obj"), materials, n, 0.7,
+    assert_int_equal(relume_objects_of_mesh(&o, path_of("mesh.obj"), materials, n, repeat,
                                             relume_objects_params(.log = &fixture_log)),
                      RELUME_OK);
     assert_int_equal(relume_objects_info(o)->materials, n);
@@ -212,9 +219,9 @@ static void choose(relume_objects *o, int material)
         assert_int_equal(relume_objects_choose(o, i, material), RELUME_OK);
 }
 
-static void start(struct things *t)
+static void start(struct things *t, double repeat)
 {
-    assert_int_equal(things_create(t, &fixture_gl, open_objects(), &fixture_log), RELUME_OK);
+    assert_int_equal(things_create(t, &fixture_gl, open_objects(repeat), &fixture_log), RELUME_OK);
 }
 
 static void finish(struct things *t)
@@ -265,7 +272,7 @@ static void models_agree(void **state)
 {
     (void)state;
     struct things t;
-    start(&t);
+    start(&t, 0.7);  // texels are wider than pixels
     relume_rig *rig = rig_of((const char *const[]){sunlight, NULL});
     for (int i = 0; i < relume_objects_info(t.objects)->materials; i++) {
         choose(t.objects, i);
@@ -283,7 +290,7 @@ static void models_agree_under_the_sky(void **state)
     static const char *const pair[][2] = {
         {"lit", "laf"}, {"slaf", "rfnl"}, {"rfnlc", "bump"}, {"lpca", "lit"}};
     struct things t;
-    start(&t);
+    start(&t, 0.7);
     relume_rig *rig = rig_of((const char *const[]){"env sky.exr 30 rgb 1 0.8 1.1", NULL});
     for (size_t i = 0; i < sizeof pair / sizeof *pair; i++) {
         for (int k = 0; k < 2; k++)
@@ -295,11 +302,43 @@ static void models_agree_under_the_sky(void **state)
     finish(&t);
 }
 
+// Many texels in a pixel: levels of detail, and means along the longer way. How wide a pixel is, GL
+// knows from its neighbours and the library from rays: levels differ a little, and what is looked
+// up along a line of n texels jumps with n.
+static void levels_agree(void **state)
+{
+    (void)state;
+    struct things t;
+    start(&t, 25.0);
+    relume_rig *rig = rig_of((const char *const[]){sunlight, NULL});
+    const struct relume_light *lights;
+    const struct relume_objects_info *info = relume_objects_info(t.objects);
+    int n, tried = 0;
+    assert_int_equal(relume_rig_lights(&lights, &n, rig), RELUME_OK);
+    for (int i = 0; i < info->materials; i++) {
+        const int levels = relume_btf_surface_info(info->material[i].surface).levels;
+        double brightest;
+        if (levels == 1)
+            continue;
+        assert_int_equal(levels, info->material[i].mapped ? 3 : 4);
+        choose(t.objects, i);
+        tried++;
+        struct picture p = both(&t, lights, n, true);
+        const int apart = count_apart(&p.cpu, &p.gl, 5e-3, &brightest);
+        if (apart > 16 || !(brightest > 0.02))
+            fail_msg("%s: %d pixels differ", info->material[i].model, apart);
+        destroy(&p);
+    }
+    assert_int_equal(tried, 3);
+    relume_rig_destroy(&rig);
+    finish(&t);
+}
+
 static void lights_agree(void **state)
 {
     (void)state;
     struct things t;
-    start(&t);
+    start(&t, 0.7);
     const char *const specs[] = {"point 0.3 0.9 1.4",
                                  "spot -0.5 -0.6 2 0.2 0.2 -1 24 nofall",
                                  "slide 0.1 0.2 2 0 0 -1 40 slide.exr",
@@ -327,7 +366,7 @@ static void shadows_agree(void **state)
 {
     (void)state;
     struct things t;
-    start(&t);
+    start(&t, 0.7);
     const char *const specs[] = {sunlight, "point 0.3 0.9 3.4", "point -0.6 -0.5 0.9",
                                  "env sky.exr 30", NULL};
     choose(t.objects, 6);
@@ -391,9 +430,8 @@ static int close_all(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(models_agree),
-        cmocka_unit_test(models_agree_under_the_sky),
-        cmocka_unit_test(lights_agree),
+        cmocka_unit_test(models_agree),  cmocka_unit_test(models_agree_under_the_sky),
+        cmocka_unit_test(levels_agree),  cmocka_unit_test(lights_agree),
         cmocka_unit_test(shadows_agree),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);

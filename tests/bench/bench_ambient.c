@@ -60,13 +60,13 @@ struct trial {
     const relume_btf_sky *sky;
     struct relume_btf_frame frame;
     struct relume_vec3 view;
+    int width, height;
 };
 
 static void place(const struct trial *t, int i, int *x, int *y)
 {
-    const struct relume_btf_fitted_info info = relume_btf_fitted_info(t->model);
-    *x = (5 + 7 * i) % info.width;
-    *y = (3 + 11 * i) % info.height;
+    *x = (5 + 7 * i) % t->width;
+    *y = (3 + 11 * i) % t->height;
 }
 
 static void brute(const struct trial *t, double rgb[TEXELS][3])
@@ -153,6 +153,7 @@ static void judge(struct trial *t, const char *sky, const char *name)
     }
     printf("| %s | %s | %.2f %% | %.2f %% | %.2f %% | %.2f %% |\n", name, sky, percent(sums[0]),
            percent(sums[1]), percent(sums[2]), percent(sums[3]));
+    fflush(stdout);
 }
 
 static void run(const char *sky, const char *folder)
@@ -167,13 +168,15 @@ static void run(const char *sky, const char *folder)
     must(relume_environment_create(&e, &map, NULL), sky);
     must(relume_btf_fitted_open(&model, folder, NULL), folder);
     must(relume_btf_surface_create(&surface, model, NULL, NULL), folder);
+    const struct relume_btf_fitted_info info = relume_btf_fitted_info(model);
     const struct relume_light light = {
         .kind = RELUME_LIGHT_ENVIRONMENT, .environment = e, .rgb = {1, 1, 1}};
-    must(relume_prefilter_create(&prefilter, &light,
-                                 relume_prefilter_params(.rim = relume_btf_fitted_info(model).rim)),
+    must(relume_prefilter_create(&prefilter, &light, relume_prefilter_params(.rim = info.rim)),
          sky);
     must(relume_btf_sky_create(&any_way, model, prefilter), folder);
-    struct trial t = {model, surface, &light, prefilter, any_way, frame_of(0), unit(0.28, 0, 0.96)};
+    struct trial t = {
+        model,      surface,    &light, prefilter, any_way, frame_of(0), unit(0.28, 0, 0.96),
+        info.width, info.height};
     judge(&t, sky, folder);
     relume_btf_sky_destroy(&any_way);
     relume_prefilter_destroy(&prefilter);

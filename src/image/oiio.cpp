@@ -62,7 +62,7 @@ bool jpeg_is_truncated(const std::string &path)
         return true;
     const auto at = [&b](size_t i) { return (unsigned char)b[i]; };
     size_t i = 2;
-    while (i + 4 <= b.size()) {
+    while (i + 2 <= b.size()) {
         if (at(i) != 0xff) {  // coded data, up to the next marker
             i = b.find('\xff', i);
             if (i == std::string::npos)
@@ -73,11 +73,13 @@ bool jpeg_is_truncated(const std::string &path)
             i++;
         } else if (at(i + 1) == 0 || at(i + 1) == 1 || (at(i + 1) >= 0xd0 && at(i + 1) <= 0xd7)) {
             i += 2;  // a coded FF, or a marker without a length
-        } else {
+        } else if (i + 4 <= b.size()) {
             i += 2 + size_t(at(i + 2)) * 256 + at(i + 3);
+        } else {
+            return true;
         }
     }
-    return !(i + 2 <= b.size() && at(i) == 0xff && at(i + 1) == 0xd9);
+    return true;
 }
 
 void find_colour(const ImageSpec &spec, oiio_info &info)

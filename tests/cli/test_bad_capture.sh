@@ -41,6 +41,10 @@ bad 'cut JPEG with a whole thumbnail' "c/$image.*truncated" c
 fresh good c; { cat good/$image; printf 'trailing bytes of a camera'; } >c/$image
 fine jpeg-with-trailer - c $L
 same 'bytes after the JPEG change nothing' good.exr jpeg-with-trailer.exr
+# coded data may end in FF 00 and one byte more: the search for the end marker stands before that byte
+fresh good c; { head -c -2 good/$image; printf '\377\000\211\377\331'; } >c/$image
+fine jpeg-with-coded-ff-at-its-end - c $L
+same 'a coded FF before the end marker is not a cut' good.exr jpeg-with-coded-ff-at-its-end.exr
 fresh good c; : >c/$image
 bad 'empty image' "c/$image: empty file" c
 fresh good c; echo 'this is no picture' >c/$image

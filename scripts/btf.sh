@@ -5,7 +5,7 @@
 # used again. The cow is left out where ../shared/data is not there.
 set -eu
 relume=$1/relume draw=$1/samples/figures out=$2 pictures=$3
-cow=../shared/data/meshes/spot.obj
+cow=../shared/data/meshes/spot.obj skies=../shared/data/hdri-polyhaven-1k
 mkdir -p "$out/panels" "$pictures"
 
 sample() { # name, material, options...
@@ -64,3 +64,11 @@ done
 "$draw" row "$out/panels/cows2.exr" $(names cow-rfnl cow-rfnlc cow-cmf cow-vpca cow-lpca cow-fmf)
 "$draw" column "$pictures/objects-models.jpg" $(names cows1 cows2)
 echo "  $pictures/objects-models.jpg"
+
+[ -d "$skies" ] || { echo "skipped: $skies is not there"; exit 0; }
+for sky in sunset forest studio; do
+    "$relume" btf render "$out/cloth-rfnl" --mesh "$cow" --repeat 5 -o "$out/panels/cow-$sky.exr" --picture 280x300 \
+        --eye -1.2,0.9,-1.9 --samples 2 --light "env $skies/$sky.hdr" -q
+done
+"$draw" row "$pictures/objects-sky.jpg" $(names cow-sunset cow-forest) gain=2 $(names cow-studio)
+echo "  $pictures/objects-sky.jpg"

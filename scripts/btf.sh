@@ -57,8 +57,8 @@ for m in measured lit bump laf slaf rfp rfnl rfnlc cmf vpca lpca fmf; do
     from=$out/cloth
     [ $m = measured ] || { model cloth $m; from=$out/cloth-$m; }
     "$relume" btf render "$from" --mesh "$cow" --repeat 5 -o "$out/panels/cow-$m.exr" --picture 220x250 \
-        --eye -1.6,1.1,-2.6 --samples 3 --light 'dir -0.6 0.9 -0.9' \
-        --light 'dir 0.9 0.2 -0.6 rgb 0.25 0.25 0.28' -q
+        --eye -1.6,1.1,-2.6 --fov 30 --samples 3 --light 'dir -0.6 0.9 -0.9' \
+        --light 'dir -1.6 1.1 -2.6 rgb 0.2 0.2 0.22' -q
 done
 "$draw" row "$out/panels/cows1.exr" $(names cow-measured cow-lit cow-bump cow-laf cow-slaf cow-rfp)
 "$draw" row "$out/panels/cows2.exr" $(names cow-rfnl cow-rfnlc cow-cmf cow-vpca cow-lpca cow-fmf)
@@ -68,7 +68,7 @@ echo "  $pictures/objects-models.jpg"
 [ -d "$skies" ] || { echo "skipped: $skies is not there"; exit 0; }
 for sky in sunset forest studio; do
     "$relume" btf render "$out/cloth-rfnl" --mesh "$cow" --repeat 5 -o "$out/panels/cow-$sky.exr" --picture 280x300 \
-        --eye -1.2,0.9,-1.9 --samples 2 --light "env $skies/$sky.hdr" -q
+        --eye -1.2,0.9,-1.9 --fov 42 --samples 2 --light "env $skies/$sky.hdr" -q
 done
-"$draw" row "$pictures/objects-sky.jpg" $(names cow-sunset cow-forest) gain=2 $(names cow-studio)
+"$draw" row "$pictures/objects-sky.jpg" $(names cow-sunset cow-forest) gain=0.6 $(names cow-studio)
 echo "  $pictures/objects-sky.jpg"

@@ -325,7 +325,7 @@ static void write_grains(void)
 }
 
 // A plane of 1536 texels in 12 pixels, its far end seen at a low angle: one ray a pixel through the
-// levels of detail is the mean of 100, where one through the texels alone is noise.
+// levels of detail is the mean of 256, where one through the texels alone is noise.
 static void far_surfaces_are_even(void **state)
 {
     (void)state;
@@ -336,7 +336,7 @@ static void far_surfaces_are_even(void **state)
     relume_objects *fine = of_mesh(path_of("shade.obj"), path_of("grains-one"), 48.0);
     relume_objects *level = of_mesh(path_of("shade.obj"), path_of("grains-levels"), 48.0);
     struct relume_image want =
-        render(fine, &window, W, H, &light, 1, relume_render_params(.samples = 10));
+        render(fine, &window, W, H, &light, 1, relume_render_params(.samples = 16));
     struct relume_image one = render(fine, &window, W, H, &light, 1, NULL);
     struct relume_image got = render(level, &window, W, H, &light, 1, NULL);
     double apart[2], noise[2];

@@ -188,6 +188,10 @@ static void run(const char *sky, const char *folder)
 
 int main(int argc, char **argv)
 {
+    if (argc == 1) {
+        puts("skipped: bench_ambient SKY... -- MODEL...");
+        return 0;
+    }
     int split = 1;
     while (split < argc && strcmp(argv[split], "--"))
         split++;

@@ -12,6 +12,7 @@
 //                                   pictures side by side, N in a row (16); what stands before one
 //                                   holds from there on, `crop=` and `frame=` alone end it; with a
 //                                   gain, what is brighter than white burns out to white
+//   figures column OUT PICTURE...   pictures of one width, one below the other
 #include <relume/relume.h>
 
 #include <math.h>
@@ -679,6 +680,30 @@ static void row(char **args)
         relume_image_destroy(&panels[i]);
 }
 
+static void column(char **args)
+{
+    const char *path = *args++;
+    struct relume_image out = {0};
+    for (; *args; args++) {
+        struct relume_image next = {0}, both;
+        must(relume_image_load(&next, *args, relume_image_params(.log = &to_stderr)), *args);
+        if (out.data && next.width != out.width)
+            fail("%s: expected a width of %d; found %d", *args, out.width, next.width);
+        const int above = out.data ? out.height + GAP : 0;
+        both = new_image(next.width, above + next.height, 1.0f);
+        for (int y = 0; y < out.height; y++)
+            memcpy(at(&both, 0, y), at(&out, 0, y), 3 * sizeof(float) * (size_t)out.width);
+        for (int y = 0; y < next.height; y++)
+            memcpy(at(&both, 0, above + y), at(&next, 0, y),
+                   3 * sizeof(float) * (size_t)next.width);
+        relume_image_destroy(&out);
+        relume_image_destroy(&next);
+        out = both;
+    }
+    save(&out, path);
+    relume_image_destroy(&out);
+}
+
 int main(int argc, char **argv)
 {
     static const struct {
@@ -687,7 +712,7 @@ int main(int argc, char **argv)
         void (*run)(char **args);
     } commands[] = {
         {"blob", 5, 6, blob},      {"disc", 4, 4, disc}, {"resampled", 3, 3, resampled},
-        {"errors", 4, 99, errors}, {"row", 2, 99, row},
+        {"errors", 4, 99, errors}, {"row", 2, 99, row},  {"column", 2, 99, column},
     };
     for (size_t i = 0; argc > 1 && i < sizeof commands / sizeof *commands; i++)
         if (!strcmp(argv[1], commands[i].name) && argc - 2 >= commands[i].least &&
@@ -695,5 +720,5 @@ int main(int argc, char **argv)
             commands[i].run(argv + 2);
             return 0;
         }
-    fail("usage: figures blob|disc|resampled|errors|row ...; see samples/figures.c");
+    fail("usage: figures blob|disc|resampled|errors|row|column ...; see samples/figures.c");
 }

@@ -16,7 +16,7 @@ exchange:base math image:base image lights codebook coder capture pack relight e
 relight:base math image:base image coder light relight rig normals enhance
 view:base math image:base image light relight view slabs capture
 pass:base math image:base image tone eye psf glare
-btf:base math image:base image light lights btf surface ambient
+btf:base math image:base image light lights capture btf surface ambient
 frame:base math:base image capture coder pack light relight view slabs frame sight evaluate normals enhance
 scene:base math image:base image lights capture btf scene
 object:base math image scene:base image capture light relight view slabs pack frame sight btf ambient surface object

@@ -8,13 +8,20 @@
 #include <string.h>
 
 const struct btf_twin btf_twins[] = {
-    {"measured", "btf_measured.frag", {3}},   {"lit", "btf_lit.frag", {3}},
-    {"bump", "btf_bump.frag", {3, 3, 3}},     {"laf", "btf_laf.frag", {3, 3, 4}},
-    {"slaf", "btf_slaf.frag", {3, 3, 4, 1}},  {"rfp", "btf_rfp.frag", {3}},
-    {"rfnl", "btf_rfnl.frag", {3, 3, 4}},     {"rfnlc", "btf_rfnlc.frag", {3, 3, 4, 1}},
-    {"cmf", "btf_cmf.frag", {3, 1}},          {"vpca", "btf_vpca.frag", {3, 3, 1}},
-    {"lpca", "btf_lpca.frag", {3, 3, 1, 1}},  {"fmf", "btf_fmf.frag", {1, 3}},
-    {"qmf", "btf_qmf.frag", {1, 1, 1, 1, 1}}, {NULL, NULL, {0}},
+    {"measured", "btf_measured.frag", {3}, false},
+    {"lit", "btf_lit.frag", {3}, true},
+    {"bump", "btf_bump.frag", {3, 3, 3}, false},
+    {"laf", "btf_laf.frag", {3, 3, 4}, true},
+    {"slaf", "btf_slaf.frag", {3, 3, 4, 1}, true},
+    {"rfp", "btf_rfp.frag", {3}, false},
+    {"rfnl", "btf_rfnl.frag", {3, 3, 4}, true},
+    {"rfnlc", "btf_rfnlc.frag", {3, 3, 4, 1}, true},
+    {"cmf", "btf_cmf.frag", {3, 1}, false},
+    {"vpca", "btf_vpca.frag", {3, 3, 1}, false},
+    {"lpca", "btf_lpca.frag", {3, 3, 1, 1}, false},
+    {"fmf", "btf_fmf.frag", {1, 3}, false},
+    {"qmf", "btf_qmf.frag", {1, 1, 1, 1, 1}, false},
+    {NULL, NULL, {0}, false},
 };
 
 const struct btf_twin *btf_twin_find(const char *model)
@@ -27,23 +34,32 @@ const struct btf_twin *btf_twin_find(const char *model)
 
 // ---------------------------------------------------------------- buffers
 
-// Texture number `i` of the material: `texels` of `format`.
-static relume_status fill(struct btf_material *m, const struct gl *gl, int i, GLenum format,
-                          size_t texels, size_t bytes, const void *data,
-                          const struct relume_log *log)
+static relume_status fill_buffer(struct btf_material *m, const struct gl *gl, GLuint *texture,
+                                 GLuint *buffer, GLenum format, size_t texels, size_t bytes,
+                                 const void *data, const struct relume_log *log)
 {
     if (texels > (size_t)gl->max_buffer)
         return say(log, RELUME_ESYSTEM,
                    "model %s: an array of %zu texels; OpenGL reads at most %d here", m->twin->model,
                    texels, gl->max_buffer);
-    gl->GenBuffers(1, &m->buffer[i]);
-    gl->BindBuffer(GL_TEXTURE_BUFFER, m->buffer[i]);
+    gl->GenBuffers(1, buffer);
+    gl->BindBuffer(GL_TEXTURE_BUFFER, *buffer);
     gl->BufferData(GL_TEXTURE_BUFFER, (GLsizeiptr)bytes, data, GL_STATIC_DRAW);
-    gl->GenTextures(1, &m->texture[i]);
-    texture_use(gl, i, GL_TEXTURE_BUFFER, m->texture[i]);
-    gl->TexBuffer(GL_TEXTURE_BUFFER, format, m->buffer[i]);
+    gl->GenTextures(1, texture);
+    texture_use(gl, 0, GL_TEXTURE_BUFFER, *texture);
+    gl->TexBuffer(GL_TEXTURE_BUFFER, format, *buffer);
     m->bytes += bytes;
     return gl_check(gl, "uploading a material", log);
+}
+
+// Texture number `i` of the level that is uploaded, the last one: `texels` of `format`.
+static relume_status fill(struct btf_material *m, const struct gl *gl, int i, GLenum format,
+                          size_t texels, size_t bytes, const void *data,
+                          const struct relume_log *log)
+{
+    struct btf_level *level = &m->level[m->levels - 1];
+    return fill_buffer(m, gl, &level->texture[i], &level->buffer[i], format, texels, bytes, data,
+                       log);
 }
 
 // Halfs by three, with room for a fourth: GL 3.3 has no buffers of three.
@@ -243,12 +259,11 @@ static relume_status upload_dome(struct btf_material *m, const struct gl *gl, in
 
 // The matrix, then the texels of all tiles; a single zero where there is no map.
 static relume_status upload_map(struct btf_material *m, const struct gl *gl,
-                                const relume_btf_surface *surface, const struct relume_log *log)
+                                const struct relume_btf_map_info *i, const struct relume_log *log)
 {
     static const uint32_t none = 0;
-    if (!surface)
+    if (!i)
         return fill(m, gl, BTF_UNIT_MAP, GL_R32UI, 1, sizeof none, &none, log);
-    const struct relume_btf_map_info *i = relume_btf_surface_info(surface).map;
     const size_t cells = (size_t)i->columns * (size_t)i->rows;
     const size_t texels = (size_t)i->tiles * (size_t)i->width * (size_t)i->height;
     uint32_t *list = malloc((cells + texels) * sizeof *list);
@@ -257,7 +272,8 @@ static relume_status upload_map(struct btf_material *m, const struct gl *gl,
     for (size_t k = 0; k < cells; k++)
         list[k] = i->matrix[k];
     memcpy(list + cells, i->texel, texels * sizeof *list);
-    memcpy(m->map, (int[4]){i->columns, i->rows, i->width, i->height}, sizeof m->map);
+    memcpy(m->level[m->levels - 1].map, (int[4]){i->columns, i->rows, i->width, i->height},
+           sizeof m->level->map);
     const relume_status status = fill(m, gl, BTF_UNIT_MAP, GL_R32UI, cells + texels,
                                       (cells + texels) * sizeof *list, list, log);
     free(list);
@@ -276,52 +292,106 @@ static relume_status upload_fitted(struct btf_material *m, const struct gl *gl,
     return status;
 }
 
+static relume_status upload_level(struct btf_material *m, const struct gl *gl,
+                                  const struct relume_object_material *from, int number,
+                                  const struct relume_log *log)
+{
+    const struct relume_btf_surface_level at = relume_btf_surface_level(from->surface, number);
+    const struct relume_btf_fitted_info i = relume_btf_fitted_info(at.model);
+    struct btf_level *level = &m->level[m->levels++];
+    level->width = at.map->columns * at.map->width;
+    level->height = at.map->rows * at.map->height;
+    level->area = i.width * i.height;
+    memcpy(level->counts, (int[4]){i.views, i.lights, i.components, i.lobes}, sizeof level->counts);
+    const relume_status status =
+        from->fitted ? upload_fitted(m, gl, at.model, log) : upload_measured(m, gl, from->btf, log);
+    return status ? status : upload_map(m, gl, from->mapped ? at.map : NULL, log);
+}
+
 relume_status btf_upload(struct btf_material *out, const struct gl *gl,
                          const struct relume_object_material *material,
                          const struct relume_log *log)
 {
-    struct relume_btf_directions d;
     *out = (struct btf_material){.twin = btf_twin_find(material->model)};
     struct btf_material *m = out;
     if (!m->twin)
         return say(log, RELUME_ESYSTEM, "%s: model %s cannot be drawn here", material->name,
                    material->model);
-    if (material->fitted) {
-        const struct relume_btf_fitted_info i = relume_btf_fitted_info(material->fitted);
-        d = relume_btf_fitted_directions(material->fitted);
-        m->area = i.width * i.height;
-        memcpy(m->counts, (int[4]){i.views, i.lights, i.components, i.lobes}, sizeof m->counts);
-    } else {
-        const struct relume_btf_info *i = relume_btf_info(material->btf);
-        d = (struct relume_btf_directions){i->view, i->light, i->without_cosine};
-        m->area = i->width * i->height;
-        memcpy(m->counts, (int[4]){i->views, i->lights, 0, 0}, sizeof m->counts);
-    }
-    m->width = material->width, m->height = material->height;
+    const struct relume_btf_surface_info info = relume_btf_surface_info(material->surface);
+    const struct relume_btf_directions d = relume_btf_fitted_directions(info.model);
     m->without_cosine = d.without_cosine;
-    relume_status status = material->fitted ? upload_fitted(m, gl, material->fitted, log)
-                                            : upload_measured(m, gl, material->btf, log);
+    m->rim = relume_btf_fitted_info(info.model).rim;
+    relume_status status = upload_level(m, gl, material, 0, log);
     if (!status)
-        status = upload_dome(m, gl, BTF_UNIT_DOMES, d.view, m->counts[0], log);
+        status = upload_dome(m, gl, BTF_UNIT_DOMES, d.view, m->level->counts[0], log);
     if (!status)
-        status = upload_dome(m, gl, BTF_UNIT_DOMES + 2, d.light, m->counts[1], log);
-    if (!status)
-        status = upload_map(m, gl, material->surface, log);
+        status = upload_dome(m, gl, BTF_UNIT_DOMES + 2, d.light, m->level->counts[1], log);
+    for (int i = 1; i < info.levels && !status; i++)
+        status = upload_level(m, gl, material, i, log);
     if (status)
         btf_release(m, gl);
     return status;
 }
 
+// ---------------------------------------------------------------- under an environment
+
+static relume_status upload_cones(struct btf_material *m, const struct gl *gl,
+                                  const relume_btf_fitted *model, const relume_prefilter *prefilter,
+                                  const struct relume_log *log)
+{
+    relume_btf_sky *sky;
+    const int lights = m->level->counts[1];
+    const struct relume_vec3 *light = relume_btf_fitted_directions(model).light;
+    relume_status status = relume_btf_sky_create(&sky, model, prefilter);
+    if (status)
+        return status;
+    const struct relume_btf_cone *cone = relume_btf_sky_cones(sky);
+    float(*texel)[2][4] = malloc((size_t)lights * sizeof *texel);
+    for (int i = 0; texel && i < lights; i++) {
+        const float values[2][4] = {
+            {(float)cone[i].axis.x, (float)cone[i].axis.y, (float)cone[i].axis.z,
+             (float)cone[i].exponent},
+            {(float)light[i].x, (float)light[i].y, (float)light[i].z, (float)cone[i].weight}};
+        memcpy(texel[i], values, sizeof values);
+    }
+    status = !texel ? RELUME_ENOMEM
+                    : fill_buffer(m, gl, &m->table, &m->table_buffer, GL_RGBA32F,
+                                  2 * (size_t)lights, (size_t)lights * sizeof *texel, texel, log);
+    free(texel);
+    relume_btf_sky_destroy(&sky);
+    return status;
+}
+
+relume_status btf_need_table(struct btf_material *m, const struct gl *gl,
+                             const struct relume_object_material *from,
+                             const relume_prefilter *prefilter, const struct relume_log *log)
+{
+    enum { PARTS = 2 * RELUME_PREFILTER_EXPONENTS * RELUME_PREFILTER_STEPS };
+    if (m->table)
+        return RELUME_OK;
+    if (!m->twin->lobes)
+        return upload_cones(m, gl, relume_btf_surface_info(from->surface).model, prefilter, log);
+    return fill_buffer(m, gl, &m->table, &m->table_buffer, GL_R32F, PARTS, PARTS * sizeof(float),
+                       relume_prefilter_info(prefilter).part, log);
+}
+
 void btf_release(struct btf_material *m, const struct gl *gl)
 {
-    gl->DeleteTextures(BTF_BUFFERS, m->texture);
-    gl->DeleteBuffers(BTF_BUFFERS, m->buffer);
+    for (int i = 0; i < m->levels; i++) {
+        gl->DeleteTextures(BTF_BUFFERS, m->level[i].texture);
+        gl->DeleteBuffers(BTF_BUFFERS, m->level[i].buffer);
+    }
+    gl->DeleteTextures(1, &m->table);
+    gl->DeleteBuffers(1, &m->table_buffer);
     *m = (struct btf_material){.twin = NULL};
 }
 
-void btf_use(const struct btf_material *m, const struct gl *gl)
+void btf_use(const struct btf_material *m, const struct gl *gl, int level)
 {
-    for (int i = 0; i < BTF_BUFFERS; i++)
-        if (m->texture[i])
-            texture_use(gl, i, GL_TEXTURE_BUFFER, m->texture[i]);
+    for (int i = 0; i < BTF_BUFFERS; i++) {
+        const bool dome = i >= BTF_UNIT_DOMES && i < BTF_UNIT_DOMES + BTF_DOMES;
+        const GLuint texture = m->level[dome ? 0 : level].texture[i];
+        if (texture)
+            texture_use(gl, i, GL_TEXTURE_BUFFER, texture);
+    }
 }

@@ -544,7 +544,9 @@ void options_help(void)
     for (const struct key_binding *b = key_bindings; b->key; b++)
         if (b->shown)
             printf("        %-12s %s\n", b->shown, b->what);
-    puts("        A relume file dropped onto the window is opened.\n\n"
+    puts("        A relume file or a description of objects dropped onto the window is opened; a "
+         "material\n"
+         "        covers the mesh of --mesh.\n\n"
          "A window shows a panorama as a perspective look ahead. --offscreen without a framing "
          "option\n"
          "shows what `relume relight` shows: planar files and panoramas their view 0, slabs the "
@@ -556,7 +558,7 @@ void options_help(void)
          "        click X Y             press, release left|right X Y    move X Y\n"
          "        key K                 hold K, let K                    type TEXT\n"
          "        light SPEC            add SPEC                         rig FILE\n"
-         "        open FILE: another relume file\n"
+         "        open FILE: another relume file, objects, or a material for --mesh\n"
          "        glare on|off|pause|run, glare magnify|nits|squint|cycle X, glare mode M\n"
          "        glare sources on|off: lamps in view\n"
          "        glare cornea|fibres|lens|vitreous|lids on|off: parts of the eye\n"

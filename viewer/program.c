@@ -18,7 +18,7 @@ static const struct shader_source *find_source(const char *name)
 static void set_source(const struct gl *gl, GLuint shader, const struct shader_source *source,
                        const char *defines)
 {
-    enum { MOST = 512 };
+    enum { MOST = 1024 };
     const char *line[MOST + 1];
     assert(source->lines <= MOST);
     line[0] = source->line[0];
@@ -90,6 +90,18 @@ relume_status program_create_with(struct program *program, const struct gl *gl, 
     return finish(program, gl, stages, fragment, uniforms, n, status, log);
 }
 
+relume_status program_create_variant(struct program *program, const struct gl *gl,
+                                     const char *fragment, const char *defines,
+                                     const char *const *uniforms, int n,
+                                     const struct relume_log *log)
+{
+    GLuint stages[2] = {0, 0};
+    relume_status status = compile(&stages[0], gl, GL_VERTEX_SHADER, "rectangle.vert", NULL, log);
+    if (!status)
+        status = compile(&stages[1], gl, GL_FRAGMENT_SHADER, fragment, defines, log);
+    return finish(program, gl, stages, fragment, uniforms, n, status, log);
+}
+
 relume_status program_create_compute(struct program *program, const struct gl *gl,
                                      const char *compute, const char *defines,
                                      const char *const *uniforms, int n,
@@ -113,7 +125,7 @@ relume_status program_create_passes(const struct compute_pass *list, size_t n, c
 relume_status program_create(struct program *program, const struct gl *gl, const char *fragment,
                              const char *const *uniforms, int n, const struct relume_log *log)
 {
-    return program_create_with(program, gl, "rectangle.vert", fragment, uniforms, n, log);
+    return program_create_variant(program, gl, fragment, NULL, uniforms, n, log);
 }
 
 void program_destroy(struct program *program, const struct gl *gl)

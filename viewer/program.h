@@ -5,7 +5,7 @@
 #include "gl.h"
 #include "shaders.h"
 
-enum { PROGRAM_UNIFORMS = 48 };
+enum { PROGRAM_UNIFORMS = 56 };
 
 struct program {
     GLuint id;
@@ -16,6 +16,11 @@ struct program {
 // of the caller's enum. RELUME_ESYSTEM with the compiler's words.
 relume_status program_create(struct program *program, const struct gl *gl, const char *fragment,
                              const char *const *uniforms, int n, const struct relume_log *log);
+// The same with `defines`, lines that follow the first.
+relume_status program_create_variant(struct program *program, const struct gl *gl,
+                                     const char *fragment, const char *defines,
+                                     const char *const *uniforms, int n,
+                                     const struct relume_log *log);
 // The same with a vertex shader of its own.
 relume_status program_create_with(struct program *program, const struct gl *gl, const char *vertex,
                                   const char *fragment, const char *const *uniforms, int n,

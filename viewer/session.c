@@ -126,7 +126,7 @@ relume_status session_compare(struct session *s, const char *capture)
 }
 
 // The renderer first: its thread may be reading.
-static void close_file(struct session *s)
+void session_close_file(struct session *s)
 {
     renderer_destroy(&s->renderer);
     pack_source_destroy(&s->source);
@@ -143,6 +143,8 @@ relume_status session_open(struct session *s, const char *path, const struct app
     struct app app;
     if (!path)
         return session_open_stage(s, start);
+    if (session_is_objects(path))
+        return session_open_objects(s, path, start);
     relume_status status =
         relume_pack_open(&pack, path, relume_pack_params(.log = s->log, .threads = s->threads));
     if (status)
@@ -161,7 +163,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
         relume_slabs_destroy(&around);
         return status;
     }
-    close_file(s);
+    session_close_file(s);
     app_release(&s->app);
     s->pack = pack;
     s->around = around;
@@ -282,7 +284,7 @@ void session_close(struct session *s)
     inspect_destroy(&s->inspector);
     draw_panel_destroy(&s->drawing, &s->gl);
     panel_destroy(&s->panel);
-    close_file(s);
+    session_close_file(s);
     relume_objects_destroy(&s->objects);
     if (s->context)
         s->backend->close(s->context);

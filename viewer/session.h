@@ -42,13 +42,14 @@ struct session {
     const struct context_backend *backend;
     void *context;
     struct gl gl;
-    relume_pack *pack;           // NULL: there are objects alone, on a stage
-    relume_objects *objects;     // or NULL
-    relume_slabs *stage;         // what the eye goes around there
-    relume_slabs *around;        // of it, where there are several
-    struct pack_source *source;  // of it, for the renderer and its threads
-    relume_capture *capture;     // of the file, to compare with, or NULL
-    relume_rig *rig;             // owns what lights point at; the app's list says what shines
+    relume_pack *pack;              // NULL: there are objects alone, on a stage
+    relume_objects *objects;        // or NULL
+    struct session_objects wanted;  // that it was started with; its mesh may be shown otherwise
+    relume_slabs *stage;            // what the eye goes around there
+    relume_slabs *around;           // of it, where there are several
+    struct pack_source *source;     // of it, for the renderer and its threads
+    relume_capture *capture;        // of the file, to compare with, or NULL
+    relume_rig *rig;                // owns what lights point at; the app's list says what shines
     struct app app;
     struct renderer renderer;
     struct panel *panel;
@@ -75,7 +76,8 @@ struct session {
     const struct relume_log *listener;     // hears what `log` would say, for a while; or NULL
 };
 
-// Open `path` and start the app; the session is untouched when that fails.
+// Open `path`, also a description of objects, or a material for the mesh that was asked for, and
+// start the app; the session is untouched when that fails.
 relume_status session_open(struct session *s, const char *path, const struct app_state *start,
                            bool look_ahead);
 // A capture to compare the file with, before session_open. RELUME_EDATA, RELUME_ENOMEM.
@@ -83,6 +85,12 @@ relume_status session_compare(struct session *s, const char *capture);
 // Objects to show, before session_open: in the scene of the file, or alone when its path is NULL.
 // What relume_objects_open says.
 relume_status session_take_objects(struct session *s, const struct session_objects *wanted);
+// For session_open: what is no relume file, and objects on a stage of their own in place of what is
+// shown.
+bool session_is_objects(const char *path);
+relume_status session_open_objects(struct session *s, const char *path,
+                                   const struct app_state *start);
+void session_close_file(struct session *s);
 // For session_open: the app of a stage.
 relume_status session_open_stage(struct session *s, const struct app_state *start);
 // The renderer of a stage, and objects in the renderer of a file. RELUME_ESYSTEM, RELUME_ENOMEM.

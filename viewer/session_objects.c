@@ -3,17 +3,61 @@
 
 #include "vec.h"
 
+#include "say.h"
+
 #include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
 
 relume_status session_take_objects(struct session *s, const struct session_objects *wanted)
 {
     const struct relume_objects_params params = {.log = s->log, .threads = s->threads};
+    s->wanted = *wanted;
     if (wanted->description)
         return relume_objects_open(&s->objects, wanted->description, &params);
     if (wanted->mesh)
         return relume_objects_of_mesh(&s->objects, wanted->mesh, wanted->material,
                                       wanted->materials, wanted->repeat, &params);
     return RELUME_OK;
+}
+
+static bool is_folder(const char *path)
+{
+    struct stat s;
+    return !stat(path, &s) && S_ISDIR(s.st_mode);
+}
+
+bool session_is_objects(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return (dot && !strcmp(dot, ".json")) || is_folder(path);
+}
+
+relume_status session_open_objects(struct session *s, const char *path,
+                                   const struct app_state *start)
+{
+    const struct relume_objects_params params = {.log = s->log, .threads = s->threads};
+    relume_objects *objects;
+    relume_status status;
+    if (!is_folder(path))
+        status = relume_objects_open(&objects, path, &params);
+    else if (s->wanted.mesh)
+        status =
+            relume_objects_of_mesh(&objects, s->wanted.mesh, &path, 1, s->wanted.repeat, &params);
+    else
+        return say(s->log, RELUME_EDATA,
+                   "%s: a material; expected 'relume-view %s --mesh FILE', or a description of "
+                   "objects",
+                   path, path);
+    if (status)
+        return status;
+    relume_objects *was = s->objects;
+    s->objects = objects;
+    status = session_open_stage(s, start);
+    if (status)
+        s->objects = was, was = objects;
+    relume_objects_destroy(&was);
+    return status;
 }
 
 // One camera far away before +z looks at all of the objects; the eye starts beside it.
@@ -53,18 +97,29 @@ relume_status session_open_stage(struct session *s, const struct app_state *star
     struct app_file file = {.width = SIDE, .height = SIDE, .views = 1, .objects = s->objects};
     struct app_state from = *start;
     struct relume_vec3 eye;
-    relume_status status = make_stage(&s->stage, &file.geometry, &eye, info);
+    relume_slabs *stage;
+    struct app app;
+    relume_status status = make_stage(&stage, &file.geometry, &eye, info);
     if (status)
         return status;
-    file.around = s->stage;
+    file.around = stage;
     if (from.camera.framing == RELUME_FRAME_DEFAULT) {
         from.camera.framing = RELUME_FRAME_EYE;
         from.camera.eye = eye;
     }
-    status = app_start(&s->app, &file, &from, true, s->log);
+    status = app_start(&app, &file, &from, true, s->log);
+    if (status) {
+        app_release(&app);
+        relume_slabs_destroy(&stage);
+        return status;
+    }
+    session_close_file(s);
+    app_release(&s->app);
+    s->stage = stage;
+    s->app = app;
     s->app.near_lights = true;
     describe(s, info);
-    return status;
+    return RELUME_OK;
 }
 
 relume_status session_make_stage(struct session *s)

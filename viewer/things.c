@@ -1,6 +1,5 @@
-#include "things.h"
-
 #include "say.h"
+#include "things_parts.h"
 #include "vec.h"
 
 #include <stddef.h>
@@ -8,36 +7,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    ARRAYS = DRAW_OWN,
-    DOMES = ARRAYS + BTF_ARRAYS,
-    PLACE = DOMES + BTF_DOMES,
-    NORMAL,
-    TANGENT,
-    PICTURE,
-    PART,
-    EYE,
-    TEXELS,
-    BILINEAR,
-    WITHOUT_COSINE,
-    COUNTS,
-    AREA,
-    MAP,
-    MAP_TEXELS,
-    LIGHT,
-    SHADOW = LIGHT + SHINE_UNIFORMS,
-    BTF_COUNT = SHADOW + SHADOW_UNIFORMS
-};
 static const char *const btf_uniforms[] = {
-    "rectangle",      "frame_size",  "array0",
-    "array1",         "array2",      "array3",
-    "array4",         "array5",      "view_cells",
-    "view_triangles", "light_cells", "light_triangles",
-    "place",          "normal_s",    "tangent_t",
-    "picture",        "part",        "eye",
-    "texels",         "bilinear",    "without_cosine",
-    "counts",         "area",        "map",
-    "map_texels",     SHINE_NAMES,   SHADOW_NAMES,
+    "rectangle",
+    "frame_size",
+    "array0",
+    "array1",
+    "array2",
+    "array3",
+    "array4",
+    "view_cells",
+    "view_triangles",
+    "light_cells",
+    "light_triangles",
+    "place",
+    "normal_s",
+    "tangent_t",
+    "footprint",
+    "picture",
+    "part",
+    "eye",
+    "texels",
+    "finest",
+    "level",
+    "levels",
+    "bilinear",
+    "without_cosine",
+    "counts",
+    "area",
+    "map",
+    "map_texels",
+    "sky",
+    "sky_turn",
+    "sky_rgb",
+    "sky_table",
+    SHINE_NAMES,
+    SHADOW_NAMES,
 };
 enum { SURFACE_CLIP, SURFACE_PART, SURFACE_COUNT };
 static const char *const surface_uniforms[] = {"clip", "part"};
@@ -113,7 +117,7 @@ static relume_status create_programs(struct things *t)
         status = program_create(&t->over, gl, "btf_over.frag", over_uniforms, OVER_COUNT, t->log);
     if (!status)
         status = program_create(&t->cast, gl, "btf_cast.frag", cast_uniforms, CAST_COUNT, t->log);
-    return status;
+    return status ? status : things_create_sky(t);
 }
 
 relume_status things_create(struct things *t, const struct gl *gl, relume_objects *objects,
@@ -124,6 +128,7 @@ relume_status things_create(struct things *t, const struct gl *gl, relume_object
                          .log = log,
                          .objects = objects,
                          .shine = {.gl = gl, .log = log},
+                         .maps = {.gl = gl, .log = log},
                          .grid = gl->software ? 1 : FINER};
     const struct relume_vec3 extent = vec_sub(info->max, info->min);
     t->radius = 0.5 * vec_length(extent);
@@ -142,14 +147,26 @@ relume_status things_create(struct things *t, const struct gl *gl, relume_object
     return status;
 }
 
+// The first four are what the surface is drawn into.
+enum { SURFACES = 4, TARGETS = 9 };
+static void find_targets(struct target *out[TARGETS], struct things *t)
+{
+    struct target *const all[TARGETS] = {&t->place,     &t->normal, &t->tangent,
+                                         &t->footprint, &t->shaded, &t->other,
+                                         &t->shown,     &t->sent,   &t->arrived};
+    memcpy(out, all, sizeof all);
+}
+
 static void destroy_targets(struct things *t)
 {
-    struct target *const targets[] = {&t->place, &t->normal, &t->tangent, &t->shaded, &t->other};
-    for (size_t i = 0; i < sizeof targets / sizeof *targets; i++)
-        target_destroy(targets[i], t->gl);
+    struct target *target[TARGETS];
+    find_targets(target, t);
+    for (int i = 0; i < TARGETS; i++)
+        target_destroy(target[i], t->gl);
     t->gl->DeleteFramebuffers(1, &t->surface_buffer);
+    t->gl->DeleteFramebuffers(1, &t->share_buffer);
     t->gl->DeleteTextures(1, &t->depth_texture);
-    t->surface_buffer = t->depth_texture = 0;
+    t->surface_buffer = t->share_buffer = t->depth_texture = 0;
 }
 
 void things_destroy(struct things *t)
@@ -161,18 +178,21 @@ void things_destroy(struct things *t)
         btf_release(&t->material[i], t->gl);
     for (int i = 0; i < t->programs; i++)
         program_destroy(&t->program[i].program, t->gl);
-    struct program *const programs[] = {&t->surface, &t->depth, &t->over, &t->cast};
+    struct program *const programs[] = {&t->surface, &t->depth, &t->over,
+                                        &t->cast,    &t->share, &t->sky};
     for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
         program_destroy(programs[i], t->gl);
     destroy_targets(t);
     shadow_map_destroy(&t->shadow);
     shine_forget(&t->shine);
+    sky_maps_forget(&t->maps);
     t->gl->DeleteVertexArrays(1, &t->array);
     t->gl->DeleteBuffers(1, &t->vertices);
     t->gl->DeleteBuffers(1, &t->indices);
     free(t->program);
     free(t->material);
     free(t->lamp);
+    free(t->light);
     *t = (struct things){0};
 }
 
@@ -183,17 +203,39 @@ size_t things_bytes(const struct things *t, int material)
 
 // ---------------------------------------------------------------- what is needed
 
+// A framebuffer that draws into `n` targets at once.
+static relume_status join_targets(GLuint *out, struct things *t, struct target *const *target,
+                                  int n)
+{
+    const struct gl *gl = t->gl;
+    GLenum buffers[SURFACES];
+    gl->GenFramebuffers(1, out);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, *out);
+    for (int i = 0; i < n; i++) {
+        buffers[i] = GL_COLOR_ATTACHMENT0 + (GLenum)i;
+        gl->FramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D, target[i]->texture, 0);
+    }
+    gl->DrawBuffers(n, buffers);
+    if (n == SURFACES)
+        gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D,
+                                 t->depth_texture, 0);
+    if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE)
+        return gl_check(gl, "objects", t->log);
+    return say(t->log, RELUME_ESYSTEM, "OpenGL: cannot draw the surface of objects");
+}
+
 static relume_status need_targets(struct things *t, int width, int height)
 {
     const struct gl *gl = t->gl;
-    struct target *const targets[] = {&t->place, &t->normal, &t->tangent, &t->shaded, &t->other};
+    struct target *target[TARGETS];
     relume_status status = RELUME_OK;
     width *= t->grid, height *= t->grid;
     if (t->place.width == width && t->place.height == height)
         return RELUME_OK;
     destroy_targets(t);
-    for (size_t i = 0; !status && i < sizeof targets / sizeof *targets; i++)
-        status = target_create(targets[i], gl, width, height, t->log);
+    find_targets(target, t);
+    for (int i = 0; !status && i < TARGETS; i++)
+        status = target_create(target[i], gl, width, height, t->log);
     if (status)
         return status;
     gl->GenTextures(1, &t->depth_texture);
@@ -201,27 +243,20 @@ static relume_status need_targets(struct things *t, int width, int height)
     gl->TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, width, height, 0, GL_DEPTH_COMPONENT,
                    GL_FLOAT, NULL);
     texture_settings(gl, GL_TEXTURE_2D);
-    gl->GenFramebuffers(1, &t->surface_buffer);
-    gl->BindFramebuffer(GL_FRAMEBUFFER, t->surface_buffer);
-    for (GLenum i = 0; i < 3; i++)
-        gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0 + i, GL_TEXTURE_2D,
-                                 targets[i]->texture, 0);
-    gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, t->depth_texture,
-                             0);
-    const GLenum buffers[3] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
-    gl->DrawBuffers(3, buffers);
-    if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE)
-        return gl_check(gl, "objects", t->log);
-    destroy_targets(t);
-    return say(t->log, RELUME_ESYSTEM, "OpenGL: cannot draw the surface of objects");
+    status = join_targets(&t->surface_buffer, t, target, SURFACES);
+    if (!status)
+        status = join_targets(&t->share_buffer, t, target + TARGETS - 2, 2);
+    if (status)
+        destroy_targets(t);
+    return status;
 }
 
 // The program of a model, compiled when it is first shown.
 static relume_status need_program(const struct program **out, struct things *t,
-                                  const struct btf_twin *twin)
+                                  const struct btf_twin *twin, bool sky)
 {
     for (int i = 0; i < t->programs; i++)
-        if (t->program[i].twin == twin) {
+        if (t->program[i].twin == twin && t->program[i].sky == sky) {
             *out = &t->program[i].program;
             return RELUME_OK;
         }
@@ -230,10 +265,10 @@ static relume_status need_program(const struct program **out, struct things *t,
     if (!more)
         return RELUME_ENOMEM;
     t->program = more;
-    more[t->programs] = (struct things_program){.twin = twin};
+    more[t->programs] = (struct things_program){.twin = twin, .sky = sky};
     *out = &more[t->programs].program;
-    return program_create(&more[t->programs++].program, t->gl, twin->shader, btf_uniforms,
-                          BTF_COUNT, t->log);
+    return program_create_variant(&more[t->programs++].program, t->gl, twin->shader,
+                                  sky ? "#define SKY\n" : NULL, btf_uniforms, BTF_COUNT, t->log);
 }
 
 static relume_status need_material(struct things *t, int i)
@@ -246,6 +281,12 @@ static relume_status need_material(struct things *t, int i)
 
 relume_status things_light(struct things *t, const struct relume_light *lights, int n)
 {
+    struct relume_light *light = realloc(t->light, ((size_t)n + 1) * sizeof *light);
+    if (!light)
+        return RELUME_ENOMEM;
+    memcpy(light, lights, (size_t)n * sizeof *light);
+    t->light = light;
+    t->lights = n;
     free(t->lamp);
     return relume_objects_lamps(&t->lamp, &t->lamps, t->objects, lights, n);
 }
@@ -261,7 +302,7 @@ static void draw_all(void *context, const float clip[16])
                         GL_UNSIGNED_INT, NULL);
 }
 
-static void draw_shadow(struct things *t, int lamp)
+void things_draw_shadow(struct things *t, int lamp)
 {
     GLint before = 0;
     t->shadow.layers = 0;
@@ -310,19 +351,38 @@ static void set_uniforms(const struct things *t, const struct program *program, 
     gl->Uniform1i(at[PLACE], BTF_UNIT_PLACE);
     gl->Uniform1i(at[NORMAL], BTF_UNIT_NORMAL);
     gl->Uniform1i(at[TANGENT], BTF_UNIT_TANGENT);
-    gl->Uniform1i(at[PICTURE], BTF_UNIT_PICTURE);
+    gl->Uniform1i(at[FOOTPRINT], BTF_UNIT_FOOTPRINT);
+    gl->Uniform1i(at[MAP_TEXELS], BTF_UNIT_MAP);
     texture_use(gl, BTF_UNIT_PLACE, GL_TEXTURE_2D, t->place.texture);
     texture_use(gl, BTF_UNIT_NORMAL, GL_TEXTURE_2D, t->normal.texture);
     texture_use(gl, BTF_UNIT_TANGENT, GL_TEXTURE_2D, t->tangent.texture);
+    texture_use(gl, BTF_UNIT_FOOTPRINT, GL_TEXTURE_2D, t->footprint.texture);
     gl->Uniform1i(at[PART], part);
     gl->Uniform4f(at[EYE], t->sight.eye[0], t->sight.eye[1], t->sight.eye[2], t->sight.eye[3]);
-    gl->Uniform2i(at[TEXELS], m->width, m->height);
+    gl->Uniform2i(at[FINEST], m->level->width, m->level->height);
+    gl->Uniform1i(at[LEVELS], m->levels);
     gl->Uniform1i(at[BILINEAR], relume_objects_info(t->objects)->part[part].bilinear);
     gl->Uniform1i(at[WITHOUT_COSINE], m->without_cosine);
-    gl->Uniform1i(at[AREA], m->area);
-    gl->Uniform4i(at[MAP], m->map[0], m->map[1], m->map[2], m->map[3]);
-    gl->Uniform1i(at[MAP_TEXELS], BTF_UNIT_MAP);
-    gl->Uniform4i(at[COUNTS], m->counts[0], m->counts[1], m->counts[2], m->counts[3]);
+}
+
+// Each level of detail adds its part.
+static void draw_levels(const struct things *t, const struct program *program,
+                        const struct target *target, const struct btf_material *m)
+{
+    const struct gl *gl = t->gl;
+    const GLint *at = program->at;
+    const struct place place = {.width = target->width, .height = target->height};
+    for (int i = 0; i < m->levels; i++) {
+        const struct btf_level *l = &m->level[i];
+        gl->Uniform1i(at[LEVEL], i);
+        gl->Uniform2i(at[TEXELS], l->width, l->height);
+        gl->Uniform1i(at[AREA], l->area);
+        gl->Uniform4i(at[MAP], l->map[0], l->map[1], l->map[2], l->map[3]);
+        gl->Uniform4i(at[COUNTS], l->counts[0], l->counts[1], l->counts[2], l->counts[3]);
+        btf_use(m, gl, i);
+        draw_rectangle(gl, program, &place,
+                       (struct app_rectangle){0, 0, place.width, place.height});
+    }
 }
 
 // A lamp as a light: a facet is an area light's piece, its normal the axis.
@@ -336,29 +396,79 @@ static struct relume_light light_of(const struct relume_lamp *lamp)
     return light;
 }
 
+static relume_status use_material(const struct program **out, struct things *t, int part,
+                                  int material, bool sky)
+{
+    relume_status status = need_material(t, material);
+    if (!status)
+        status = need_program(out, t, t->material[material].twin, sky);
+    if (status)
+        return status;
+    t->gl->UseProgram((*out)->id);
+    set_uniforms(t, *out, part, &t->material[material]);
+    return RELUME_OK;
+}
+
 static relume_status shade_part(struct things *t, int part, int material, int lamp)
 {
     const struct program *program;
     const struct gl *gl = t->gl;
-    relume_status status = need_material(t, material);
-    if (!status)
-        status = need_program(&program, t, t->material[material].twin);
+    relume_status status = use_material(&program, t, part, material, false);
     if (status)
         return status;
     const struct relume_light light = light_of(&t->lamp[lamp]);
-    gl->UseProgram(program->id);
-    set_uniforms(t, program, part, &t->material[material]);
+    gl->Uniform1i(program->at[PICTURE], BTF_UNIT_PICTURE);
     status = shine_set(&t->shine, program->at + LIGHT, BTF_UNIT_PICTURE, &light);
     if (t->lamp[lamp].is_facet) {
         const struct relume_vec3 n = t->lamp[lamp].facet.normal;
         gl->Uniform3f(program->at[LIGHT + SHINE_AXIS], (float)n.x, (float)n.y, (float)n.z);
     }
     shadow_map_use(t->shadow.layers ? &t->shadow : NULL, gl, program->at + SHADOW, BTF_UNIT_SHADOW);
-    btf_use(&t->material[material], gl);
-    const struct place place = {.width = t->shaded.width, .height = t->shaded.height};
     if (!status)
-        draw_rectangle(gl, program, &place,
-                       (struct app_rectangle){0, 0, place.width, place.height});
+        draw_levels(t, program, &t->shaded, &t->material[material]);
+    return status;
+}
+
+relume_status things_shade_sky(struct things *t, int part, int material,
+                               const struct relume_light *light)
+{
+    const struct sky_map *map;
+    const struct program *program;
+    const struct gl *gl = t->gl;
+    relume_status status = need_material(t, material);
+    struct btf_material *m = &t->material[material];
+    if (!status)
+        status = sky_maps_find(&map, &t->maps, light, m->rim);
+    if (!status)
+        status = btf_need_table(m, gl, &relume_objects_info(t->objects)->material[material],
+                                map->prefilter, t->log);
+    if (!status)
+        status = use_material(&program, t, part, material, true);
+    if (status)
+        return status;
+    const GLint *at = program->at;
+    gl->Uniform1i(at[SKY], BTF_UNIT_SKY);
+    texture_use(gl, BTF_UNIT_SKY, GL_TEXTURE_2D, map->texture);
+    gl->Uniform1i(at[SKY_TABLE], BTF_UNIT_TABLE);
+    texture_use(gl, BTF_UNIT_TABLE, GL_TEXTURE_BUFFER, m->table);
+    gl->Uniform1f(at[SKY_TURN], (float)(-light->rotate_deg * (3.14159265358979 / 180.0)));
+    gl->Uniform3f(at[SKY_RGB], light->rgb[0], light->rgb[1], light->rgb[2]);
+    draw_levels(t, program, &t->shown, m);
+    return RELUME_OK;
+}
+
+static relume_status add_lamp(struct things *t, int lamp, int only)
+{
+    const struct gl *gl = t->gl;
+    const struct relume_objects_info *info = relume_objects_info(t->objects);
+    relume_status status = RELUME_OK;
+    things_draw_shadow(t, lamp);
+    target_resume(&t->shaded, gl);
+    gl->Enable(GL_BLEND);
+    gl->BlendFunc(GL_ONE, GL_ONE);
+    for (int i = 0; i < info->parts && !status; i++)
+        status = shade_part(t, i, only >= 0 ? only : info->part[i].material, lamp);
+    gl->Disable(GL_BLEND);
     return status;
 }
 
@@ -366,26 +476,22 @@ relume_status things_shade(struct things *t, const struct sight *sight, int widt
                            int only)
 {
     const struct gl *gl = t->gl;
-    const struct relume_objects_info *info = relume_objects_info(t->objects);
     relume_status status = need_targets(t, width, height);
     if (status)
         return status;
     t->sight = *sight;
     draw_surface(t, sight);
     target_begin(&t->shaded, gl);
-    for (int lamp = 0; lamp < t->lamps && !status; lamp++) {
-        draw_shadow(t, lamp);
-        target_resume(&t->shaded, gl);
-        gl->Enable(GL_BLEND);
-        gl->BlendFunc(GL_ONE, GL_ONE);
-        for (int i = 0; i < info->parts && !status; i++)
-            status = shade_part(t, i, only >= 0 ? only : info->part[i].material, lamp);
-        gl->Disable(GL_BLEND);
-    }
+    for (int i = 0; i < t->lamps && !status; i++)
+        if (!t->lamp[i].is_sky)
+            status = add_lamp(t, i, only);
+    for (int i = 0; i < t->lights && !status; i++)
+        if (t->light[i].kind == RELUME_LIGHT_ENVIRONMENT)
+            status = things_add_sky(t, i, only);
     return status ? status : gl_check(gl, "drawing objects", t->log);
 }
 
-static void draw_whole(const struct gl *gl, const struct program *program,
+void things_draw_whole(const struct gl *gl, const struct program *program,
                        const struct place *place)
 {
     draw_rectangle(gl, program, place, (struct app_rectangle){0, 0, place->width, place->height});
@@ -418,7 +524,7 @@ void things_over(const struct things *t, const struct place *place, GLuint scene
     gl->Uniform1f(at[EXPOSURE], place->exposure);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    draw_whole(gl, &t->over, place);
+    things_draw_whole(gl, &t->over, place);
     gl->Disable(GL_BLEND);
 }
 
@@ -443,7 +549,7 @@ void things_cast(struct things *t, const struct place *place, int lamp, GLuint s
     GLint before = 0, viewport[4];
     gl->GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);
     gl->GetIntegerv(GL_VIEWPORT, viewport);
-    draw_shadow(t, lamp);
+    things_draw_shadow(t, lamp);
     gl->BindFramebuffer(GL_FRAMEBUFFER, (GLuint)before);
     gl->Viewport(viewport[0], viewport[1], viewport[2], viewport[3]);
     gl->UseProgram(t->cast.id);
@@ -455,6 +561,6 @@ void things_cast(struct things *t, const struct place *place, int lamp, GLuint s
     shadow_map_use(t->shadow.layers ? &t->shadow : NULL, gl, t->cast.at + CAST_SHADOW, 2);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
-    draw_whole(gl, &t->cast, place);
+    things_draw_whole(gl, &t->cast, place);
     gl->Disable(GL_BLEND);
 }

@@ -2,7 +2,8 @@
 //
 // Their surface is drawn once into textures of places and frames; then every lamp adds what each
 // material shows of it, with a shadow map of its own. So the work of a lamp is that of the pixels
-// that show something, and any number of lamps will do.
+// that show something, and any number of lamps will do. An environment adds what is looked up in
+// its prefiltered maps, times the share of its lamps that arrives.
 #ifndef VIEWER_THINGS_H
 #define VIEWER_THINGS_H
 
@@ -10,10 +11,12 @@
 #include "draw.h"
 #include "shadow_map.h"
 #include "sight.h"
+#include "sky_maps.h"
 
 struct things_program {
     struct program program;
     const struct btf_twin *twin;
+    bool sky;  // for environments
 };
 
 struct things {
@@ -21,19 +24,23 @@ struct things {
     const struct relume_log *log;
     relume_objects *objects;  // borrowed
     GLuint array, vertices, indices;
-    struct program surface, depth, over, cast;
+    struct program surface, depth, over, cast, share, sky;
     struct things_program *program;  // [programs]: of the models in use
     int programs;
     struct btf_material *material;  // [materials]; without a twin until it is shown
     struct shine shine;
+    struct sky_maps maps;
     struct shadow_map shadow;
     // Of the frame, `grid` times finer; `other` is in another material, to compare with.
-    struct target place, normal, tangent, shaded, other;
-    GLuint surface_buffer, depth_texture;
+    struct target place, normal, tangent, footprint, shaded, other;
+    struct target shown, sent, arrived;  // of an environment
+    GLuint surface_buffer, depth_texture, share_buffer;
     int grid;
     bool no_shadows;
-    struct relume_lamp *lamp;  // of the present frame
+    struct relume_lamp *lamp;  // of the present frame, and its lights
     int lamps;
+    struct relume_light *light;
+    int lights;
     struct sight sight;
     struct relume_vec3 middle;
     double radius;
@@ -44,7 +51,8 @@ relume_status things_create(struct things *things, const struct gl *gl, relume_o
                             const struct relume_log *log);
 void things_destroy(struct things *things);
 
-// The lights of the next frames. RELUME_ENOMEM, RELUME_EINVAL.
+// The lights of the next frames; what they point to must live as long. RELUME_ENOMEM,
+// RELUME_EINVAL.
 relume_status things_light(struct things *things, const struct relume_light *lights, int n);
 
 // Light the objects as seen in a frame of width x height, with all lamps, into things->shaded;

@@ -17,7 +17,7 @@ extern "C" {
 typedef struct relume_prefilter relume_prefilter;
 
 enum {
-    RELUME_PREFILTER_EXPONENTS = 11,  // 2^(i / 2): 1, 1.41, 2, ... 32
+    RELUME_PREFILTER_EXPONENTS = 15,  // 2^(i / 2): 1, 1.41, 2, ... 128; the thesis ends at 32
     RELUME_PREFILTER_STEPS = 33,      // of a cosine from -1 to 1
 };
 
@@ -45,11 +45,11 @@ struct relume_prefilter_info {
     // [height][width][3]: the sum of E fall(n.l) dw / pi over n.l > 0, fall(z) being
     // min(z / rim, 1): what a value of 1 for all lights shows on a surface facing the direction n.
     const float *diffuse;
-    // [11][height][width][3]: the mean of E under the lobe max(d.l, 0)^e about the direction d:
+    // [15][height][width][3]: the mean of E under the lobe max(d.l, 0)^e about the direction d:
     // (e + 1) / (2 pi) times the sum of E max(d.l, 0)^e dw. Means change little from exponent to
     // exponent: between them they are linear in log2(e), beyond them the last ones.
     const float *specular;
-    // [2][11][33]: what part of a lobe, by the cosine between its axis and the normal, arrives:
+    // [2][15][33]: what part of a lobe, by the cosine between its axis and the normal, arrives:
     // [0] where values include n.l, by fall(z); [1] times z, where they do not.
     const float *part;
 };
@@ -105,6 +105,33 @@ RELUME_API const float *relume_btf_ambient_weights(const relume_btf_ambient *amb
 // maps, rfp in sums of its six terms, all others are summed over the measured lights.
 RELUME_API void relume_btf_ambient_evaluate(const relume_btf_ambient *ambient, int level, int x,
                                             int y, struct relume_vec3 view, float rgb[3]);
+
+// ---------------------------------------------------------------- a material in any orientation
+
+// For surfaces that bend. Between measured lights values are interpolated, so that a light stands
+// for the directions around it; here it stands for a cosine lobe of the same integral, mean
+// direction and mean cosine, and the radiance under that lobe is one lookup: an orientation costs
+// as many as there are lights, and none where a model of lobes is looked up itself.
+struct relume_btf_cone {
+    struct relume_vec3 axis;  // unit, in the frame of the sample
+    double exponent;          // [1, 128]
+    double weight;            // integral over directions / pi, n.l and all
+};
+
+// Never changes. Thread-safety: safe.
+typedef struct relume_btf_sky relume_btf_sky;
+
+// Some milliseconds. Model and prefilter must outlive it; the rim of the prefilter is the model's
+// own. RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_btf_sky_create(relume_btf_sky **out,
+                                                  const relume_btf_fitted *model,
+                                                  const relume_prefilter *prefilter);
+RELUME_API void relume_btf_sky_destroy(relume_btf_sky **sky);
+// [lights]; they belong to the sky.
+RELUME_API const struct relume_btf_cone *relume_btf_sky_cones(const relume_btf_sky *sky);
+// What light number `i` of the model stands for in an orientation: relume_btf_ambient_weights.
+RELUME_API void relume_btf_sky_weight(float rgb[3], const relume_btf_sky *sky,
+                                      const struct relume_btf_frame *frame, int i);
 
 #ifdef __cplusplus
 }

@@ -90,7 +90,8 @@ struct relume_btf_params {
 // Values all zero, to be stored; copies what `info` points to. RELUME_EINVAL, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_create(relume_btf **out, const struct relume_btf_info *info,
                                               const struct relume_btf_params *params);
-// Open a folder: btf.json beside values.npy (docs/btf.md), or pictures whose names hold the angles
+// Open a folder: btf.json beside values.npy (docs/btf.md); a capture.json of the views of one slab
+// under distant lights (the window is the sample); or pictures whose names hold the angles
 // in degrees, tl (light elevation from the pole), pl (light azimuth), tv, pv in any order, like
 // tl030_pl120_tv045_pv020.png. Returns RELUME_EDATA, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_btf_open(relume_btf **out, const char *path,

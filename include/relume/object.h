@@ -4,7 +4,12 @@
 // At each point the directions to the eye and the light are turned into the frame of the surface
 // (x along growing s, z along the normal) and the material is asked; its values hold n.l already
 // (Meseth 2008, chapter 9, Eq. 9.3 without its second cosine). Light reaches a point when nothing
-// of the objects lies between: shadows are hard, there is no light from object to object.
+// of the objects lies between: shadows are hard, there is no light from object to object. Pixels
+// that cover many texels show means of them: levels of detail of the model, where it has such.
+//
+// Under an environment a material shows what relume_btf_sky says, times the share of the light that
+// reaches the point, in each colour: of 64 lamps drawn from the environment, each times n.l, what
+// nothing stands before over all (a ratio estimator; Heitz, Hill, McGuire 2018).
 #ifndef RELUME_OBJECT_H
 #define RELUME_OBJECT_H
 
@@ -60,7 +65,8 @@ struct relume_object_material {
     const char *model;      // "measured", or what relume_btf_model_name says
     const relume_btf *btf;  // one of the two
     const relume_btf_fitted *fitted;
-    const relume_btf_surface *surface;  // or NULL: the sample alone. `fitted` is its model
+    const relume_btf_surface *surface;  // of either, with all levels of detail
+    bool mapped;                        // the surface has a map; else it is the sample
     int width, height;                  // texels of one repeat
     uint64_t bytes;
 };
@@ -94,6 +100,8 @@ RELUME_RESULT relume_status relume_objects_choose(relume_objects *objects, int p
 // A light as drawing takes it: from one direction at each point.
 struct relume_lamp {
     bool is_facet;
+    bool is_sky;                // of an environment: where it arrives, not what it shows
+    int number;                 // of the light that it is of
     struct relume_light light;  // never area or environment
     struct relume_facet facet;  // of an area light
 };

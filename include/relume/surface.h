@@ -109,11 +109,22 @@ struct relume_btf_surface_info {
 };
 RELUME_API struct relume_btf_surface_info relume_btf_surface_info(
     const relume_btf_surface *surface);
+// The model and the map of a level of detail, for clients that look texels up themselves.
+struct relume_btf_surface_level {
+    const relume_btf_fitted *model;
+    const struct relume_btf_map_info *map;
+};
+RELUME_API struct relume_btf_surface_level relume_btf_surface_level(
+    const relume_btf_surface *surface, int level);
 
 // From where a point is looked at and lit: unit vectors in the frame of the surface.
 struct relume_btf_ray {
     struct relume_vec3 view, light;
-    const relume_btf_ambient *ambient;  // or NULL: an environment in place of the light
+    // An environment in place of the light, or NULL: in the one orientation of an ambient, or in
+    // that of `frame`.
+    const relume_btf_ambient *ambient;
+    const relume_btf_sky *sky;
+    struct relume_btf_frame frame;
 };
 
 // The value at (x, y) texels, as relume_btf_evaluate: the four texels around the point are fetched

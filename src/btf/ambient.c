@@ -28,19 +28,26 @@ static bool arrives(const relume_btf_ambient *a, const struct relume_environment
     return true;
 }
 
+void ambient_add_terms(float term[AMBIENT_TERMS][3], vec3 light, const float rgb[3])
+{
+    const double x = light.x, y = light.y;
+    const double of[AMBIENT_TERMS] = {x * x, y * y, x * y, x, y, 1.0};
+    for (int t = 0; t < AMBIENT_TERMS; t++)
+        for (int c = 0; c < 3; c++)
+            term[t][c] += (float)((double)rgb[c] * of[t]);
+}
+
 static void add_cell(relume_btf_ambient *a, const struct relume_environment_cell *cell,
                      const struct relume_dome_blend *b)
 {
     const vec3 d = cell->direction;
-    const double term[AMBIENT_TERMS] = {d.x * d.x, d.y * d.y, d.x * d.y, d.x, d.y, 1.0};
+    ambient_add_terms(a->term, d, cell->rgb);
     for (int c = 0; c < 3; c++) {
         const double sent = (double)cell->rgb[c];
         a->even[0][c] += (float)sent;
         a->even[1][c] += (float)(a->model->without_cosine ? sent : sent * d.z);
         for (int i = 0; i < b->count; i++)
             a->weight[3 * b->index[i] + c] += (float)(sent * b->weight[i]);
-        for (int t = 0; t < AMBIENT_TERMS; t++)
-            a->term[t][c] += (float)(sent * term[t]);
     }
 }
 

@@ -31,6 +31,9 @@ struct relume_btf_ambient {
     float term[AMBIENT_TERMS][3];  // sums of x^2, y^2, xy, x, y, 1 of the light
 };
 
+// A light's part of the six terms.
+void ambient_add_terms(float term[AMBIENT_TERMS][3], vec3 light, const float rgb[3]);
+
 // What a constant in place of a lobe shows; `cosine`: it is multiplied by n.l.
 void ambient_even(const relume_btf_ambient *a, bool cosine, float rgb[3]);
 
@@ -41,5 +44,15 @@ void ambient_lobe(const relume_btf_ambient *a, const float t[3], float exponent,
 // The value under the environment from a view that is blended already.
 void ambient_blend(const relume_btf_ambient *a, const relume_btf_fitted *level, size_t texel,
                    const struct relume_dome_blend *view, float rgb[3]);
+
+struct relume_btf_sky {
+    const relume_btf_fitted *model;
+    const relume_prefilter *prefilter;
+    struct relume_btf_cone *cone;  // [lights]
+};
+
+// What a model that has `lit` is asked for, in one orientation.
+struct relume_btf_ambient sky_ambient(const relume_btf_sky *sky,
+                                      const struct relume_btf_frame *frame);
 
 #endif

@@ -31,6 +31,9 @@ relume_status btf_make_room(relume_btf *btf, const struct relume_btf_params *par
 // A folder of pictures named by their angles.
 relume_status btf_open_pictures(relume_btf **out, const char *path,
                                 const struct relume_btf_params *params);
+// A folder with capture.json whose views are the cameras of a slab.
+relume_status btf_open_capture(relume_btf **out, const char *path,
+                               const struct relume_btf_params *params);
 
 // The side of the next level of detail.
 int btf_half_side(int side);

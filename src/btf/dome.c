@@ -12,11 +12,14 @@ struct relume_dome {
     int n;
     struct hull_triangle *triangle;
     vec3 (*across)[3];  // [triangles]: the weight of corner c grows along across[c]
+    int (*beside)[3];   // [triangles]: the one across the edge that faces corner c
+    int *start;         // [CELLS * CELLS]: where to look first, by x and y
     int triangles;
 };
 
 static const double LOWEST = 1e-3;   // z of a direction that can be measured
 static const double NOTHING = 1e-9;  // weights below are rounding
+enum { CELLS = 16, MOST_STEPS = 24 };
 
 static relume_status check(const struct relume_vec3 *d, int n, const struct relume_log *log)
 {
@@ -48,41 +51,21 @@ static relume_status triangulate(relume_dome *d, const struct relume_vec3 *direc
     return d->across ? RELUME_OK : RELUME_ENOMEM;
 }
 
-relume_status relume_dome_create(relume_dome **out, const struct relume_vec3 *directions, int n,
-                                 const struct relume_log *log)
+// The triangle that has the edge from `a` to `b` the other way round.
+static int find_beside(const relume_dome *d, int a, int b)
 {
-    *out = NULL;
-    relume_status status = check(directions, n, log);
-    if (status)
-        return status;
-    relume_dome *d = mem_zeroed(1, sizeof *d);
-    if (!d)
-        return RELUME_ENOMEM;
-    d->n = n;
-    status = triangulate(d, directions);
-    if (status == RELUME_EDATA)
-        log_fail(log, status, "directions: expected some not on one great circle");
-    if (status)
-        relume_dome_destroy(&d);
-    *out = d;
-    return status;
+    for (int i = 0; i < d->triangles; i++)
+        for (int c = 0; c < 3; c++)
+            if (d->triangle[i].corner[c] == b && d->triangle[i].corner[(c + 1) % 3] == a)
+                return i;
+    return 0;
 }
 
-void relume_dome_destroy(relume_dome **dome)
+static int cell_of(vec3 d)
 {
-    if (*dome) {
-        free((*dome)->point);
-        free((*dome)->triangle);
-        free((*dome)->across);
-    }
-    free(*dome);
-    *dome = NULL;
-}
-
-const int (*relume_dome_triangles(const relume_dome *dome, int *n))[3]
-{
-    *n = dome->triangles;
-    return (const int(*)[3])dome->triangle;
+    const int x = (int)fmin(fmax(0.5 * (d.x + 1.0), 0.0) * CELLS, CELLS - 1);
+    const int y = (int)fmin(fmax(0.5 * (d.y + 1.0), 0.0) * CELLS, CELLS - 1);
+    return y * CELLS + x;
 }
 
 // Barycentric weights of the ray's hit; false when the triangle faces away.
@@ -99,9 +82,9 @@ static bool weigh(const vec3 across[3], vec3 d, double weight[3])
 }
 
 // The triangle that `d` meets: the one whose smallest weight is largest, for rays through edges.
-static const struct hull_triangle *find(const relume_dome *dome, vec3 d, double weight[3])
+static int search(const relume_dome *dome, vec3 d, double weight[3])
 {
-    const struct hull_triangle *best = &dome->triangle[0];
+    int best = 0;
     double most = -INFINITY;
     for (int i = 0; i < dome->triangles && most < NOTHING; i++) {
         double w[3];
@@ -110,11 +93,90 @@ static const struct hull_triangle *find(const relume_dome *dome, vec3 d, double 
         const double least = fmin(w[0], fmin(w[1], w[2]));
         if (least > most) {
             most = least;
-            best = &dome->triangle[i];
+            best = i;
             memcpy(weight, w, sizeof w);
         }
     }
     return best;
+}
+
+// The same from the triangle at the middle of the cell, by the edge that `d` lies behind; what the
+// ray only grazes is searched for, so that the answer does not depend on the way.
+static const struct hull_triangle *find(const relume_dome *dome, vec3 d, double weight[3])
+{
+    int i = dome->start[cell_of(d)];
+    for (int step = 0; step < MOST_STEPS && weigh(dome->across[i], d, weight); step++) {
+        const int least = weight[0] < weight[1]   ? weight[0] < weight[2] ? 0 : 2
+                          : weight[1] < weight[2] ? 1
+                                                  : 2;
+        if (weight[least] >= NOTHING)
+            return &dome->triangle[i];
+        if (weight[least] > -NOTHING)
+            break;
+        i = dome->beside[i][least];
+    }
+    return &dome->triangle[search(dome, d, weight)];
+}
+
+static relume_status prepare_find(relume_dome *d)
+{
+    d->beside = mem_array((size_t)d->triangles, sizeof *d->beside);
+    d->start = mem_array((size_t)CELLS * CELLS, sizeof *d->start);
+    if (!d->beside || !d->start)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < d->triangles; i++)
+        for (int c = 0; c < 3; c++)
+            d->beside[i][c] = find_beside(d, d->triangle[i].corner[(c + 1) % 3],
+                                          d->triangle[i].corner[(c + 2) % 3]);
+    for (int i = 0; i < CELLS * CELLS; i++) {
+        double unused[3] = {0.0, 0.0, 0.0};
+        const double x = 2.0 * (i % CELLS + 0.5) / CELLS - 1.0;
+        const double y = 2.0 * (i / CELLS + 0.5) / CELLS - 1.0;
+        const double z = sqrt(fmax(1.0 - x * x - y * y, 0.0));
+        d->start[i] = search(d, vec3_unit(vec3_of(x, y, z)), unused);
+    }
+    return RELUME_OK;
+}
+
+relume_status relume_dome_create(relume_dome **out, const struct relume_vec3 *directions, int n,
+                                 const struct relume_log *log)
+{
+    *out = NULL;
+    relume_status status = check(directions, n, log);
+    if (status)
+        return status;
+    relume_dome *d = mem_zeroed(1, sizeof *d);
+    if (!d)
+        return RELUME_ENOMEM;
+    d->n = n;
+    status = triangulate(d, directions);
+    if (status == RELUME_EDATA)
+        log_fail(log, status, "directions: expected some not on one great circle");
+    if (!status)
+        status = prepare_find(d);
+    if (status)
+        relume_dome_destroy(&d);
+    *out = d;
+    return status;
+}
+
+void relume_dome_destroy(relume_dome **dome)
+{
+    if (*dome) {
+        free((*dome)->point);
+        free((*dome)->triangle);
+        free((*dome)->across);
+        free((*dome)->beside);
+        free((*dome)->start);
+    }
+    free(*dome);
+    *dome = NULL;
+}
+
+const int (*relume_dome_triangles(const relume_dome *dome, int *n))[3]
+{
+    *n = dome->triangles;
+    return (const int(*)[3])dome->triangle;
 }
 
 static void keep_real(struct relume_dome_blend *b, const relume_dome *dome,

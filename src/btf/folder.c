@@ -131,6 +131,15 @@ static relume_status open_json(relume_btf **out, const jvalue *root, const struc
     return status;
 }
 
+static bool has_manifest(const char *folder)
+{
+    struct stat info;
+    char *path = mem_format("%s/capture.json", folder);
+    const bool has = path && !stat(path, &info);
+    free(path);
+    return has;
+}
+
 relume_status relume_btf_open(relume_btf **out, const char *path,
                               const struct relume_btf_params *params)
 {
@@ -143,7 +152,8 @@ relume_status relume_btf_open(relume_btf **out, const char *path,
     struct stat info;
     if (stat(f.json, &info)) {
         free(f.json);
-        return btf_open_pictures(out, path, params);
+        return has_manifest(path) ? btf_open_capture(out, path, params)
+                                  : btf_open_pictures(out, path, params);
     }
     jvalue *root;
     relume_status status = jvalue_load(&root, f.json, f.log);

@@ -13,7 +13,8 @@
 #include <string.h>
 
 enum { EXPONENTS = RELUME_PREFILTER_EXPONENTS, STEPS = RELUME_PREFILTER_STEPS };
-enum { CELL_COLUMNS = 96, CELL_ROWS = 48 };  // cells of 3.75 degrees: the sharpest lobe has 24
+enum { CELL_COLUMNS = 96, CELL_ROWS = 48 };  // cells of 3.75 degrees: the sharpest lobe has 12
+enum { LANES = 16 };                         // exponents, and what fills vectors
 enum { TABLE = 2048, USUAL_HEIGHT = 48 };
 
 static double exponent_of(int i)
@@ -40,7 +41,8 @@ static double luminance(const float rgb[3])
     return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
 }
 
-// Neighbouring cells become one, from where their energy comes.
+// Neighbouring cells become one, from where their energy comes; which do does not depend on the
+// rotation.
 static int gather(struct relume_environment_cell *cell, const struct relume_light *light)
 {
     int kept = 0;
@@ -50,7 +52,7 @@ static int gather(struct relume_environment_cell *cell, const struct relume_ligh
     memset(middle, 0, sizeof middle);
     for (int i = 0; i < n; i++) {
         double at[2];
-        const vec3 d = relume_environment_turn(from[i].direction, light->rotate_deg);
+        const vec3 d = from[i].direction;
         place_of(d, at);
         const int x = (int)(at[0] * CELL_COLUMNS) % CELL_COLUMNS;
         const int y = at[1] < 1.0 ? (int)(at[1] * CELL_ROWS) : CELL_ROWS - 1;
@@ -62,7 +64,7 @@ static int gather(struct relume_environment_cell *cell, const struct relume_ligh
     for (int i = 0; i < CELL_COLUMNS * CELL_ROWS; i++)
         if (vec3_length(middle[i]) > 0.0) {
             struct relume_environment_cell one = cell[i];
-            one.direction = vec3_unit(middle[i]);
+            one.direction = relume_environment_turn(vec3_unit(middle[i]), light->rotate_deg);
             cell[kept++] = one;
         }
     return kept;
@@ -72,11 +74,27 @@ static int gather(struct relume_environment_cell *cell, const struct relume_ligh
 
 struct filtering {
     relume_prefilter *p;
-    float (*power)[EXPONENTS];  // [TABLE + 1]: (i / TABLE)^e
+    float (*power)[LANES];  // [TABLE + 1]: (i / TABLE)^e
 };
 
-static void filter_pixel(const struct filtering *f, vec3 d, float diffuse[3],
-                         float specular[EXPONENTS][3])
+struct sums {
+    float diffuse[3], specular[3][LANES];
+};
+
+static inline void add_lobes(struct sums *restrict sums, const float low[restrict LANES],
+                             const float high[restrict LANES], float part,
+                             const float rgb[restrict 3])
+{
+    const float red = rgb[0], green = rgb[1], blue = rgb[2];
+    for (int e = 0; e < LANES; e++) {
+        const float weight = low[e] + part * (high[e] - low[e]);
+        sums->specular[0][e] += weight * red;
+        sums->specular[1][e] += weight * green;
+        sums->specular[2][e] += weight * blue;
+    }
+}
+
+static void filter_pixel(const struct filtering *f, vec3 d, struct sums *sums)
 {
     const relume_prefilter *p = f->p;
     for (int i = 0; i < p->cells; i++) {
@@ -84,17 +102,12 @@ static void filter_pixel(const struct filtering *f, vec3 d, float diffuse[3],
         const double z = vec3_dot(d, cell->direction);
         if (!(z > 0.0))
             continue;
-        const float fall = p->rim > 0.0 ? fminf((float)(z / p->rim), 1.0f) : 1.0f;
-        const double at = fmin(z, 1.0) * TABLE;
+        const float fall = p->rim > 0.0 && z < p->rim ? (float)(z / p->rim) : 1.0f;
+        const float at = z < 1.0 ? (float)z * TABLE : TABLE;
         const int low = at < TABLE ? (int)at : TABLE - 1;
-        const float part = (float)(at - low);
         for (int c = 0; c < 3; c++)
-            diffuse[c] += fall * cell->rgb[c];
-        for (int e = 0; e < EXPONENTS; e++) {
-            const float w = f->power[low][e] + part * (f->power[low + 1][e] - f->power[low][e]);
-            for (int c = 0; c < 3; c++)
-                specular[e][c] += w * cell->rgb[c];
-        }
+            sums->diffuse[c] += fall * cell->rgb[c];
+        add_lobes(sums, f->power[low], f->power[low + 1], at - (float)low, cell->rgb);
     }
 }
 
@@ -105,25 +118,29 @@ static void filter_row(void *context, size_t row, int worker)
     relume_prefilter *p = f->p;
     const size_t width = (size_t)p->width, plane = width * (size_t)p->height;
     for (size_t x = 0; x < width; x++) {
-        float specular[EXPONENTS][3] = {{0.0f}};
+        struct sums sums = {.diffuse = {0.0f}};
         const size_t at = row * width + x;
         const vec3 d = direction_of(((double)x + 0.5) / p->width, ((double)row + 0.5) / p->height);
-        filter_pixel(f, d, p->diffuse + 3 * at, specular);
+        filter_pixel(f, d, &sums);
+        memcpy(p->diffuse + 3 * at, sums.diffuse, sizeof sums.diffuse);
         for (int e = 0; e < EXPONENTS; e++)
             for (size_t c = 0; c < 3; c++)
                 p->specular[3 * ((size_t)e * plane + at) + c] =
-                    (float)(0.5 * (exponent_of(e) + 1.0)) * specular[e][c];
+                    (float)(0.5 * (exponent_of(e) + 1.0)) * sums.specular[c][e];
     }
 }
 
 static relume_status filter(relume_prefilter *p, int threads)
 {
-    struct filtering f = {p, mem_array(TABLE + 1, sizeof *f.power)};
+    struct filtering f = {p, mem_zeroed(TABLE + 1, sizeof *f.power)};
     if (!f.power)
         return RELUME_ENOMEM;
     for (int i = 0; i <= TABLE; i++)
-        for (int e = 0; e < EXPONENTS; e++)
-            f.power[i][e] = (float)pow((double)i / TABLE, exponent_of(e));
+        for (int e = 0; e < EXPONENTS; e++) {
+            const double power = pow((double)i / TABLE, exponent_of(e));
+            // less is nothing, and numbers too small for a float are slow
+            f.power[i][e] = power > 1e-12 ? (float)power : 0.0f;
+        }
     thread_for(threads, (size_t)p->height, filter_row, &f);
     free(f.power);
     return RELUME_OK;

@@ -152,12 +152,19 @@ struct relume_btf_surface_info relume_btf_surface_info(const relume_btf_surface 
     };
 }
 
+struct relume_btf_surface_level relume_btf_surface_level(const relume_btf_surface *s, int level)
+{
+    return (struct relume_btf_surface_level){s->level[level].model, &s->level[level].map};
+}
+
 // ---------------------------------------------------------------- lookups
 
 // A ray between the measured directions.
 struct blend {
     struct model_blend at;  // its light is unused under an environment
     const relume_btf_ambient *ambient;
+    const relume_btf_sky *summed;  // or NULL: an environment that is summed over the lights
+    struct relume_btf_ambient sky;
 };
 
 static struct blend blend_of(const relume_btf_surface *s, const struct relume_btf_ray *ray)
@@ -166,15 +173,19 @@ static struct blend blend_of(const relume_btf_surface *s, const struct relume_bt
     struct blend b = {
         .at = {.view = relume_dome_at(m->view_dome, ray->view), .v = ray->view, .l = ray->light},
         .ambient = ray->ambient};
-    if (!ray->ambient)
+    if (ray->sky && m->model->lit)
+        b.sky = sky_ambient(ray->sky, &ray->frame);
+    else if (ray->sky)
+        b.summed = ray->sky;
+    else if (!ray->ambient)
         b.at.light = relume_dome_at(m->light_dome, ray->light);
     return b;
 }
 
 static void value_of(const relume_btf_fitted *m, size_t texel, const struct blend *b, float rgb[3])
 {
-    if (b->ambient)
-        ambient_blend(b->ambient, m, texel, &b->at.view, rgb);
+    if (b->ambient || b->sky.model)
+        ambient_blend(b->ambient ? b->ambient : &b->sky, m, texel, &b->at.view, rgb);
     else
         model_blend(m, texel, &b->at, rgb);
 }
@@ -219,7 +230,50 @@ static void add_point(const relume_btf_surface *s, double x, double y, double le
 
 static bool is_dark(const struct relume_btf_ray *ray)
 {
-    return !(ray->view.z > 0.0) || (!ray->ambient && !(ray->light.z > 0.0));
+    return !(ray->view.z > 0.0) || (!ray->ambient && !ray->sky && !(ray->light.z > 0.0));
+}
+
+// The points that stand for a footprint: `taps` of them along `way`, on one level.
+struct points {
+    double x, y, way[2], level;
+    int taps;
+};
+
+static void add_points(const relume_btf_surface *s, const struct points *p, const struct blend *at,
+                       float rgb[3])
+{
+    for (int i = 0; i < p->taps; i++) {
+        const double t = (i + 0.5) / p->taps - 0.5;
+        add_point(s, p->x + t * p->way[0], p->y + t * p->way[1], p->level, at,
+                  1.0f / (float)p->taps, rgb);
+    }
+}
+
+// Each measured light alone, times what it stands for.
+static void sum_sky(const relume_btf_surface *s, const struct points *p, struct blend *at,
+                    const struct relume_btf_frame *frame, float rgb[3])
+{
+    const relume_btf_fitted *m = s->level[0].model;
+    at->at.l = vec3_of(0.0, 0.0, 1.0);  // n.l is in the weight
+    for (int i = 0; i < m->lights; i++) {
+        float weight[3], value[3] = {0.0f, 0.0f, 0.0f};
+        relume_btf_sky_weight(weight, at->summed, frame, i);
+        at->at.light = (struct relume_dome_blend){
+            .count = 1, .index = {i}, .weight = {1.0}, .direction = m->light[i], .rim = 1.0};
+        add_points(s, p, at, value);
+        for (int c = 0; c < 3; c++)
+            rgb[c] += weight[c] * value[c];
+    }
+}
+
+static void mean_of(const relume_btf_surface *s, const struct points *p,
+                    const struct relume_btf_ray *ray, float rgb[3])
+{
+    struct blend at = blend_of(s, ray);
+    if (at.summed)
+        sum_sky(s, p, &at, &ray->frame, rgb);
+    else
+        add_points(s, p, &at, rgb);
 }
 
 void relume_btf_surface_evaluate(const relume_btf_surface *s, double x, double y, double level,
@@ -228,8 +282,7 @@ void relume_btf_surface_evaluate(const relume_btf_surface *s, double x, double y
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     if (is_dark(ray) || !isfinite(x) || !isfinite(y))
         return;
-    const struct blend at = blend_of(s, ray);
-    add_point(s, x, y, level, &at, 1.0f, rgb);
+    mean_of(s, &(struct points){.x = x, .y = y, .level = level, .taps = 1}, ray, rgb);
 }
 
 void relume_btf_surface_filter(const relume_btf_surface *s, const struct relume_btf_footprint *f,
@@ -239,13 +292,14 @@ void relume_btf_surface_filter(const relume_btf_surface *s, const struct relume_
     const double right = hypot(f->right[0], f->right[1]), down = hypot(f->down[0], f->down[1]);
     if (is_dark(ray) || !isfinite(f->x) || !isfinite(f->y) || !isfinite(right) || !isfinite(down))
         return;
-    const struct blend at = blend_of(s, ray);
     const double *way = right > down ? f->right : f->down;
     const double longer = fmax(right, down), shorter = fmax(fmin(right, down), 1.0);
     const int taps = (int)fmin(fmax(ceil(longer / shorter), 1.0), MOST_TAPS);
-    const double level = log2(fmax(longer / taps, 1.0));
-    for (int i = 0; i < taps; i++) {
-        const double t = (i + 0.5) / taps - 0.5;
-        add_point(s, f->x + t * way[0], f->y + t * way[1], level, &at, 1.0f / (float)taps, rgb);
-    }
+    mean_of(s,
+            &(struct points){.x = f->x,
+                             .y = f->y,
+                             .way = {way[0], way[1]},
+                             .level = log2(fmax(longer / taps, 1.0)),
+                             .taps = taps},
+            ray, rgb);
 }

@@ -78,26 +78,32 @@ struct layered {
     const relume_objects *o;
     const struct relume_sight *sight;
     const struct relume_image *scene, *places;
-    const struct relume_lamp *lamps;
-    int n;
-    bool no_shadows;
+    const struct lighting *lighting;
 };
 
-static void layered_value(float rgb[3], const void *context, double x, double y)
+static struct ray ray_of(const struct relume_sight *sight, double x, double y)
+{
+    struct ray ray;
+    relume_sight_ray(&ray.origin, &ray.direction, sight, x, y);
+    return ray;
+}
+
+static void layered_value(float rgb[3], const void *context, double x, double y, double step)
 {
     const struct layered *l = context;
     const size_t pixel = 3 * ((size_t)y * (size_t)l->scene->width + (size_t)x);
     const float *p = l->places->data + pixel;
     struct surface_point point;
-    vec3 origin, direction;
-    relume_sight_ray(&origin, &direction, l->sight, x, y);
-    const vec3 to = vec3_sub(vec3_of((double)p[0], (double)p[1], (double)p[2]), origin);
+    const struct ray ray = ray_of(l->sight, x, y), right = ray_of(l->sight, x + step, y),
+                     below = ray_of(l->sight, x, y + step);
+    const vec3 to = vec3_sub(vec3_of((double)p[0], (double)p[1], (double)p[2]), ray.origin);
     const bool nothing = p[0] == 0.0f && p[1] == 0.0f && p[2] == 0.0f;  // no view sees so far
     memcpy(rgb, l->scene->data + pixel, 3 * sizeof *rgb);
-    if (objects_hit(&point, l->o, origin, direction) &&
-        (nothing || point.distance < vec3_dot(to, direction)))
-        objects_shade(rgb, l->o, &point, vec3_scale(direction, -1.0), l->lamps, l->n,
-                      l->no_shadows);
+    if (!objects_hit(&point, l->o, ray.origin, ray.direction) ||
+        !(nothing || point.distance < vec3_dot(to, ray.direction)))
+        return;
+    objects_spread(&point, l->o, &ray, &right, &below);
+    objects_shade(rgb, l->o, &point, vec3_scale(ray.direction, -1.0), l->lighting);
 }
 
 static relume_status layer(struct relume_image *out, const struct layered *l,
@@ -131,8 +137,7 @@ relume_status relume_objects_frame(struct relume_image *out, const relume_object
     struct relume_frame_params light = frame ? *frame : (struct relume_frame_params){0};
     struct relume_frame_params place = light;
     struct relume_image places, scene = {0};
-    struct relume_lamp *lamps = NULL;
-    int count = 0;
+    struct lighting lighting = {0};
     *out = (struct relume_image){0};
     if (light.pass != RELUME_PASS_COLOUR)
         return log_fail(light.log, RELUME_EINVAL, "objects are seen in colour; expected no pass");
@@ -142,17 +147,16 @@ relume_status relume_objects_frame(struct relume_image *out, const relume_object
     if (!status)
         status = relume_frame_sight(&sight, pack, camera, places.width, places.height);
     if (!status)
-        status = relume_objects_lamps(&lamps, &count, objects, lights, n);
+        status = lighting_create(&lighting, objects, lights, n, params);
     if (!status)
         status = light_scene(&scene, &places, objects, pack, camera, lights, n, &light, params);
-    const struct layered layers = {
-        objects, &sight, &scene, &places, lamps, count, params && params->no_shadows};
+    const struct layered layers = {objects, &sight, &scene, &places, &lighting};
     if (!status)
         status = layer(out, &layers, params);
     if (status)
         relume_image_destroy(out);
     relume_image_destroy(&scene);
     relume_image_destroy(&places);
-    free(lamps);
+    lighting_destroy(&lighting);
     return status;
 }

@@ -4,7 +4,7 @@
 
 #include <relume/light.h>
 
-// Enough for penumbrae and soft shading to look smooth; an environment's noise shows in shadows.
+// Enough for penumbrae and soft shading to look smooth; of an environment they are its shadows.
 enum { MOST_SIDE = 6, SKY = 64 };
 
 // How far the objects are from an area light at least.
@@ -33,7 +33,7 @@ static int count_of(const relume_objects *o, const struct relume_light *light)
 }
 
 static relume_status fill(struct relume_lamp *to, int n, const relume_objects *o,
-                          const struct relume_light *light)
+                          const struct relume_light *light, int number)
 {
     struct relume_facet facet[MOST_SIDE * MOST_SIDE];
     struct relume_light sky[SKY];
@@ -43,7 +43,9 @@ static relume_status fill(struct relume_lamp *to, int n, const relume_objects *o
     if (light->kind == RELUME_LIGHT_ENVIRONMENT)
         status = relume_environment_sample(sky, SKY, light, 0);
     for (int i = 0; i < n && !status; i++) {
-        to[i] = (struct relume_lamp){.is_facet = light->kind == RELUME_LIGHT_AREA};
+        to[i] = (struct relume_lamp){.is_facet = light->kind == RELUME_LIGHT_AREA,
+                                     .is_sky = light->kind == RELUME_LIGHT_ENVIRONMENT,
+                                     .number = number};
         if (to[i].is_facet)
             to[i].facet = facet[i];
         else
@@ -69,7 +71,7 @@ relume_status relume_objects_lamps(struct relume_lamp **out, int *n, const relum
     relume_status status = lamps ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; i < count && !status; i++) {
         const int own = count_of(objects, &lights[i]);
-        status = fill(lamps + at, own, objects, &lights[i]);
+        status = fill(lamps + at, own, objects, &lights[i], i);
         at += (size_t)own;
     }
     if (status)

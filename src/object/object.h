@@ -50,19 +50,54 @@ struct surface_point {
     vec3 lifted;     // the position where shadow rays start
     vec3 normal, tangent, bitangent;
     double s, t;
+    double right[2], down[2];  // what (s, t) grow by from pixel to pixel; 0: nothing is known
+    size_t triangle;
     int part;
 };
+struct ray {
+    vec3 origin, direction;
+};
 bool objects_hit(struct surface_point *out, const relume_objects *o, vec3 origin, vec3 direction);
+// How far a pixel spreads over the surface: from the ray that met the point to the rays of the
+// pixels to the right and below (Igehy 1999).
+void objects_spread(struct surface_point *point, const relume_objects *o, const struct ray *ray,
+                    const struct ray *right, const struct ray *below);
 // Whether nothing lies between a point of a surface and what shines `towards` it from `distance`
 // away. `normal` may be zero: the point is not the objects'.
 bool objects_reached(const relume_objects *o, vec3 point, vec3 normal, vec3 towards,
                      double distance);
-// What the point shows of all lamps.
-void objects_shade(float rgb[3], const relume_objects *o, const struct surface_point *point,
-                   vec3 towards_eye, const struct relume_lamp *lamps, int n, bool no_shadows);
 
-// Pixels of a picture over several cores: `value` is called for places in pixels, centres at +0.5.
-typedef void pixel_value(float rgb[3], const void *context, double x, double y);
+// ---------------------------------------------------------------- light
+
+// An environment on each of the materials; what is not shown has none.
+struct sky_light {
+    int first, lamps;
+    relume_prefilter **prefilter;  // [materials]; NULL also where it is that of another
+    relume_btf_sky **sky;          // [materials]
+};
+struct lighting {
+    struct relume_lamp *lamp;
+    int lamps;
+    struct sky_light *sky;
+    int skies;
+    int materials;
+    bool no_shadows;
+};
+// RELUME_ENOMEM, RELUME_EINVAL. What is in `out` is to be destroyed, whatever is returned.
+relume_status lighting_create(struct lighting *out, const relume_objects *o,
+                              const struct relume_light *lights, int n,
+                              const struct relume_render_params *params);
+void lighting_destroy(struct lighting *lighting);
+
+// What the point shows of all lights.
+void objects_shade(float rgb[3], const relume_objects *o, const struct surface_point *point,
+                   vec3 towards_eye, const struct lighting *lighting);
+
+// ---------------------------------------------------------------- pictures
+
+// Pixels of a picture over several cores: `value` is called for places in pixels, centres at +0.5,
+// `step` apart.
+typedef void pixel_value(float rgb[3], const void *context, double x, double y, double step);
 relume_status objects_trace(struct relume_image *out, pixel_value *value, const void *context,
                             const struct relume_render_params *params);
 

@@ -12,6 +12,17 @@
 
 enum { VERSION = 1, MOST_MATERIALS = 256, MOST_OBJECTS = 4096, MOST_COVERINGS = 1024 };
 
+static void close_material(struct relume_object_material *m)
+{
+    relume_btf_fitted *model = NULL;  // a surface that has a map owns its model
+    if (m->surface && !m->mapped)
+        model = (relume_btf_fitted *)relume_btf_surface_info(m->surface).model;
+    relume_btf_surface_destroy((relume_btf_surface **)&m->surface);
+    relume_btf_fitted_destroy(&model);
+    relume_btf_destroy((relume_btf **)&m->btf);
+    free((void *)m->name);
+}
+
 void relume_objects_destroy(relume_objects **objects)
 {
     relume_objects *o = *objects;
@@ -23,11 +34,7 @@ void relume_objects_destroy(relume_objects **objects)
     for (int i = 0; i < o->info.parts; i++)
         free((void *)o->part[i].name);
     for (int i = 0; i < o->info.materials; i++) {
-        relume_btf_destroy((relume_btf **)&o->material[i].btf);
-        if (!o->material[i].surface)
-            relume_btf_fitted_destroy((relume_btf_fitted **)&o->material[i].fitted);
-        relume_btf_surface_destroy((relume_btf_surface **)&o->material[i].surface);
-        free((void *)o->material[i].name);
+        close_material(&o->material[i]);
         free(o->folder[i]);
     }
     free(o->vertices);
@@ -81,6 +88,7 @@ static relume_status open_surface(struct relume_object_material *m, const char *
     relume_btf_surface *surface;
     const relume_status status = relume_btf_surface_open(&surface, folder, p);
     m->surface = surface;
+    m->mapped = true;
     if (status)
         return status;
     const struct relume_btf_surface_info info = relume_btf_surface_info(surface);
@@ -88,6 +96,54 @@ static relume_status open_surface(struct relume_object_material *m, const char *
     m->model = relume_btf_model_name(relume_btf_fitted_info(info.model).model);
     m->width = info.width, m->height = info.height;
     m->bytes = info.bytes;
+    return RELUME_OK;
+}
+
+// The sample alone as a surface, which takes over the model.
+static relume_status cover_whole(struct relume_object_material *m, relume_btf_fitted *model,
+                                 const struct relume_btf_params *p)
+{
+    relume_btf_surface *surface;
+    const relume_status status = relume_btf_surface_create(&surface, model, NULL, p->log);
+    m->surface = surface;
+    if (status)
+        relume_btf_fitted_destroy(&model);
+    return status;
+}
+
+static relume_status open_model(struct relume_object_material *m, const char *folder,
+                                const struct relume_btf_params *p)
+{
+    relume_btf_fitted *fitted;
+    relume_status status = relume_btf_fitted_open(&fitted, folder, p);
+    if (!status)
+        status = cover_whole(m, fitted, p);
+    if (status)
+        return status;
+    const struct relume_btf_fitted_info info = relume_btf_fitted_info(fitted);
+    m->fitted = fitted;
+    m->model = relume_btf_model_name(info.model);
+    m->width = info.width, m->height = info.height;
+    m->bytes = info.bytes_levels;
+    return RELUME_OK;
+}
+
+static relume_status open_measured(struct relume_object_material *m, const char *folder,
+                                   const struct relume_btf_params *p)
+{
+    relume_btf *btf;
+    relume_btf_fitted *values;
+    relume_status status = relume_btf_open(&btf, folder, p);
+    m->btf = btf;
+    if (!status)
+        status = relume_btf_as_model(&values, btf, p->log);
+    if (!status)
+        status = cover_whole(m, values, p);
+    if (status)
+        return status;
+    const struct relume_btf_info *i = relume_btf_info(btf);
+    m->width = i->width, m->height = i->height;
+    m->bytes = relume_btf_bytes(i->width, i->height, i->views, i->lights);
     return RELUME_OK;
 }
 
@@ -105,27 +161,7 @@ static relume_status open_material(struct relume_object_material *m, const char 
         return RELUME_ENOMEM;
     if (holds(folder, "surface.json"))
         return open_surface(m, folder, &p);
-    if (!holds(folder, "model.json")) {
-        relume_btf *btf;
-        const relume_status status = relume_btf_open(&btf, folder, &p);
-        m->btf = btf;
-        const struct relume_btf_info *i = status ? NULL : relume_btf_info(btf);
-        if (status)
-            return status;
-        m->width = i->width, m->height = i->height;
-        m->bytes = relume_btf_bytes(i->width, i->height, i->views, i->lights);
-        return RELUME_OK;
-    }
-    relume_btf_fitted *fitted;
-    const relume_status status = relume_btf_fitted_open(&fitted, folder, &p);
-    m->fitted = fitted;
-    if (status)
-        return status;
-    const struct relume_btf_fitted_info info = relume_btf_fitted_info(fitted);
-    m->model = relume_btf_model_name(info.model);
-    m->width = info.width, m->height = info.height;
-    m->bytes = info.bytes;
-    return RELUME_OK;
+    return holds(folder, "model.json") ? open_model(m, folder, &p) : open_measured(m, folder, &p);
 }
 
 static relume_status grow_materials(relume_objects *o)

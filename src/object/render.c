@@ -75,6 +75,9 @@ bool objects_hit(struct surface_point *out, const relume_objects *o, vec3 origin
     out->geometric = vec3_unit(vec3_cross(vec3_sub(vector(v[1]->position), first),
                                           vec3_sub(vector(v[2]->position), first)));
     out->distance = (double)hit.distance;
+    out->triangle = hit.triangle;
+    memset(out->right, 0, sizeof out->right);
+    memset(out->down, 0, sizeof out->down);
     out->part = (int)o->mesh.triangles[hit.triangle].material;
     interpolate(out, v, weight);
     // from behind: the same sample seen through, its normal on this side
@@ -83,6 +86,42 @@ bool objects_hit(struct surface_point *out, const relume_objects *o, vec3 origin
     out->normal = vec3_scale(out->normal, side);
     out->lifted = lift(out, v, weight, side);
     return true;
+}
+
+// The step over the plane of the surface that a ray beside makes.
+static vec3 step_over(const struct surface_point *p, const struct ray *ray,
+                      const struct ray *beside)
+{
+    const vec3 turned = vec3_sub(beside->direction, ray->direction);
+    const vec3 across =
+        vec3_add(vec3_sub(beside->origin, ray->origin), vec3_scale(turned, p->distance));
+    const double facing = fmin(vec3_dot(ray->direction, p->geometric), -1e-6);
+    const double further = -vec3_dot(across, p->geometric) / facing;
+    return vec3_add(across, vec3_scale(ray->direction, further));
+}
+
+// A step over the triangle's plane in texture coordinates.
+static void step_in_texture(double out[2], const relume_objects *o, size_t triangle, vec3 step)
+{
+    const struct relume_object_vertex *v[3];
+    for (int k = 0; k < 3; k++)
+        v[k] = &o->vertices[o->triangles[triangle][k]];
+    const vec3 a = vec3_sub(vector(v[1]->position), vector(v[0]->position));
+    const vec3 b = vec3_sub(vector(v[2]->position), vector(v[0]->position));
+    const double aa = vec3_dot(a, a), bb = vec3_dot(b, b), ab = vec3_dot(a, b);
+    const double sa = vec3_dot(step, a), sb = vec3_dot(step, b), area = aa * bb - ab * ab;
+    const double along_a = area > 0.0 ? (sa * bb - sb * ab) / area : 0.0;
+    const double along_b = area > 0.0 ? (sb * aa - sa * ab) / area : 0.0;
+    for (int i = 0; i < 2; i++)
+        out[i] = along_a * (double)(v[1]->texture[i] - v[0]->texture[i]) +
+                 along_b * (double)(v[2]->texture[i] - v[0]->texture[i]);
+}
+
+void objects_spread(struct surface_point *p, const relume_objects *o, const struct ray *ray,
+                    const struct ray *right, const struct ray *below)
+{
+    step_in_texture(p->right, o, p->triangle, step_over(p, ray, right));
+    step_in_texture(p->down, o, p->triangle, step_over(p, ray, below));
 }
 
 bool objects_reached(const relume_objects *o, vec3 point, vec3 normal, vec3 towards,
@@ -102,44 +141,84 @@ static vec3 local(const struct surface_point *p, vec3 d)
     return vec3_of(vec3_dot(d, p->tangent), vec3_dot(d, p->bitangent), vec3_dot(d, p->normal));
 }
 
-static void ask(float rgb[3], const relume_objects *o, const struct surface_point *p, vec3 view,
-                vec3 light)
+static void ask(float rgb[3], const relume_objects *o, const struct surface_point *p,
+                const struct relume_btf_ray *ray)
 {
     const struct relume_object_part *part = &o->part[p->part];
     const struct relume_object_material *m = &o->material[part->material];
     const double x = p->s * m->width, y = p->t * m->height;
-    const struct relume_btf_ray ray = {.view = view, .light = light};
-    if (m->surface && part->bilinear)
-        relume_btf_surface_evaluate(m->surface, x, y, 0.0, &ray, rgb);
-    else if (m->surface)
-        relume_btf_surface_evaluate(m->surface, floor(x) + 0.5, floor(y) + 0.5, 0.0, &ray, rgb);
-    else if (m->fitted)
-        relume_btf_fitted_sample(m->fitted, x, y, part->bilinear, view, light, rgb);
+    const struct relume_btf_footprint pixel = {x,
+                                               y,
+                                               {p->right[0] * m->width, p->right[1] * m->height},
+                                               {p->down[0] * m->width, p->down[1] * m->height}};
+    if (part->bilinear)
+        relume_btf_surface_filter(m->surface, &pixel, ray, rgb);
     else
-        relume_btf_sample(m->btf, x, y, part->bilinear, view, light, rgb);
+        relume_btf_surface_evaluate(m->surface, floor(x) + 0.5, floor(y) + 0.5, 0.0, ray, rgb);
+}
+
+static void add_lamp(float rgb[3], const relume_objects *o, const struct surface_point *p,
+                     vec3 view, const struct relume_lamp *lamp, bool no_shadows)
+{
+    float arriving[3], value[3];
+    double distance;
+    vec3 towards;
+    if (!relume_lamp_at(&towards, arriving, &distance, lamp, p->position))
+        return;
+    const vec3 light = local(p, towards);
+    if (!(light.z > 0.0))
+        return;
+    if (!no_shadows && !objects_reached(o, p->lifted, p->geometric, towards, distance))
+        return;
+    ask(value, o, p, &(struct relume_btf_ray){.view = view, .light = vec3_unit(light)});
+    for (int c = 0; c < 3; c++)
+        rgb[c] += arriving[c] * value[c];
+}
+
+// Of what the lamps send, each by its cosine, the part that arrives.
+static void share_of_sky(float share[3], const relume_objects *o, const struct surface_point *p,
+                         const struct lighting *l, const struct sky_light *sky)
+{
+    float sent[3] = {0.0f, 0.0f, 0.0f}, arrived[3] = {0.0f, 0.0f, 0.0f};
+    for (int i = sky->first; i < sky->first + sky->lamps && !l->no_shadows; i++) {
+        const struct relume_light *lamp = &l->lamp[i].light;
+        const float cosine = (float)vec3_dot(lamp->direction, p->normal);
+        if (!(cosine > 0.0f))
+            continue;
+        const bool reached = objects_reached(o, p->lifted, p->geometric, lamp->direction, INFINITY);
+        for (int c = 0; c < 3; c++) {
+            sent[c] += cosine * lamp->rgb[c];
+            arrived[c] += reached ? cosine * lamp->rgb[c] : 0.0f;
+        }
+    }
+    for (int c = 0; c < 3; c++)
+        share[c] = sent[c] > 0.0f ? arrived[c] / sent[c] : 1.0f;
+}
+
+static void add_sky(float rgb[3], const relume_objects *o, const struct surface_point *p, vec3 view,
+                    const struct lighting *l, const struct sky_light *sky)
+{
+    float value[3], share[3];
+    ask(value, o, p,
+        &(struct relume_btf_ray){.view = view,
+                                 .sky = sky->sky[o->part[p->part].material],
+                                 .frame = {p->tangent, p->bitangent, p->normal}});
+    share_of_sky(share, o, p, l, sky);
+    for (int c = 0; c < 3; c++)
+        rgb[c] += share[c] * value[c];
 }
 
 void objects_shade(float rgb[3], const relume_objects *o, const struct surface_point *p,
-                   vec3 towards_eye, const struct relume_lamp *lamps, int n, bool no_shadows)
+                   vec3 towards_eye, const struct lighting *lighting)
 {
     vec3 view = local(p, towards_eye);
     view = vec3_unit(vec3_of(view.x, view.y, fmax(view.z, LOWEST)));
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
-    for (int i = 0; i < n; i++) {
-        float arriving[3], value[3];
-        double distance;
-        vec3 towards;
-        if (!relume_lamp_at(&towards, arriving, &distance, &lamps[i], p->position))
-            continue;
-        const vec3 light = local(p, towards);
-        if (!(light.z > 0.0))
-            continue;
-        if (!no_shadows && !objects_reached(o, p->lifted, p->geometric, towards, distance))
-            continue;
-        ask(value, o, p, view, vec3_unit(light));
-        for (int c = 0; c < 3; c++)
-            rgb[c] += arriving[c] * value[c];
-    }
+    for (int i = 0; i < lighting->lamps; i++)
+        if (!lighting->lamp[i].is_sky)
+            add_lamp(rgb, o, p, view, &lighting->lamp[i], lighting->no_shadows);
+    for (int i = 0; i < lighting->skies; i++)
+        add_sky(rgb, o, p, view, lighting, &lighting->sky[i]);
 }
 
 // ---------------------------------------------------------------- pictures
@@ -160,7 +239,7 @@ static void trace_pixel(const struct picture *p, int x, int y)
     const int n = p->samples;
     for (int i = 0; i < n * n; i++) {
         float rgb[3];
-        p->value(rgb, p->context, x + (i % n + 0.5) / n, y + (i / n + 0.5) / n);
+        p->value(rgb, p->context, x + (i % n + 0.5) / n, y + (i / n + 0.5) / n, 1.0 / n);
         for (int c = 0; c < 3; c++)
             sum[c] += (double)rgb[c];
     }
@@ -203,22 +282,28 @@ struct view {
     const relume_objects *o;
     const struct relume_window *window;
     double width, height;
-    const struct relume_lamp *lamps;
-    int n;
-    bool no_shadows;
+    struct lighting lighting;
 };
 
-static void view_value(float rgb[3], const void *context, double x, double y)
+static struct ray ray_at(const struct view *v, double x, double y)
 {
-    const struct view *v = context;
     const struct relume_window *w = v->window;
     const vec3 at = vec3_add(w->corner, vec3_add(vec3_scale(w->right, x / v->width),
                                                  vec3_scale(w->down, y / v->height)));
-    const vec3 direction = vec3_unit(vec3_sub(at, w->eye));
+    return (struct ray){w->eye, vec3_unit(vec3_sub(at, w->eye))};
+}
+
+static void view_value(float rgb[3], const void *context, double x, double y, double step)
+{
+    const struct view *v = context;
+    const struct ray ray = ray_at(v, x, y), right = ray_at(v, x + step, y),
+                     below = ray_at(v, x, y + step);
     struct surface_point p;
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
-    if (objects_hit(&p, v->o, w->eye, direction))
-        objects_shade(rgb, v->o, &p, vec3_scale(direction, -1.0), v->lamps, v->n, v->no_shadows);
+    if (!objects_hit(&p, v->o, ray.origin, ray.direction))
+        return;
+    objects_spread(&p, v->o, &ray, &right, &below);
+    objects_shade(rgb, v->o, &p, vec3_scale(ray.direction, -1.0), &v->lighting);
 }
 
 relume_status relume_objects_render(struct relume_image *out, const relume_objects *objects,
@@ -226,15 +311,11 @@ relume_status relume_objects_render(struct relume_image *out, const relume_objec
                                     const struct relume_light *lights, int n,
                                     const struct relume_render_params *params)
 {
-    struct relume_lamp *lamps;
-    int count;
-    relume_status status = relume_objects_lamps(&lamps, &count, objects, lights, n);
-    if (status)
-        return status;
-    const struct view view = {
-        objects, window, out->width, out->height, lamps, count, params && params->no_shadows};
-    status = objects_trace(out, view_value, &view, params);
-    free(lamps);
+    struct view view = {objects, window, out->width, out->height, {0}};
+    relume_status status = lighting_create(&view.lighting, objects, lights, n, params);
+    if (!status)
+        status = objects_trace(out, view_value, &view, params);
+    lighting_destroy(&view.lighting);
     return status;
 }
 

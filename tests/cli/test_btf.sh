@@ -106,6 +106,14 @@ check 'a mesh and its description are the same' cmp quad.exr again.exr
 "$VIEWER" quad.json --eye 0,0,2 --light 'dir 0.3 0.2 1' --size 40x40 --offscreen stage.png 2>err.txt || not_ok 'relume-view of objects' "$(cat err.txt)"
 "$VIEWER" rfnl --mesh quad.obj --repeat 2 --eye 0,0,2 --light 'dir 0.3 0.2 1' --size 40x40 --offscreen mesh.png 2>err.txt || not_ok 'relume-view --mesh' "$(cat err.txt)"
 check 'relume-view of a mesh and its description' cmp stage.png mesh.png
+printf 'open lpca\nlight dir 0.3 0.2 1\nframe lpca.png\nopen quad.json\nlight dir 0.3 0.2 1\nframe first.png\n' >open.txt
+"$VIEWER" rfnl --mesh quad.obj --repeat 2 --size 40x40 --script open.txt 2>err.txt || not_ok 'a script opens objects' "$(cat err.txt)"
+printf 'light dir 0.3 0.2 1\nframe second.png\n' >stay.txt
+"$VIEWER" quad.json --size 40x40 --script stay.txt
+check 'objects that are opened later are the same' cmp first.png second.png
+if cmp -s lpca.png first.png; then not_ok 'a script opens a material' 'nothing changed'; else ok 'a script opens a material'; fi
+"$VIEWER" rfnl --offscreen x.png 2>err.txt
+check 'a material without a mesh' grep -qx "relume-view: rfnl: a material; expected 'relume-view rfnl --mesh FILE', or a description of objects" err.txt
 "$RELUME" synth box -o box --size 40 --views 2x2 --lights 12 --samples 1 -q && "$RELUME" encode box -o box.exr -q
 for light in 'dir 0.4 0.3 1' 'point 0.4 0.3 1.5'; do
     "$RELUME" relight box.exr --objects quad.json -o cpu.png --light "$light" -q 2>err.txt || not_ok 'relight --objects' "$(cat err.txt)"

@@ -5,6 +5,7 @@
 #include "btf/btf.h"
 #include "image/half.h"
 
+#include <relume/capture.h>
 #include <sys/stat.h>
 
 static vec3 *set_directions(const char *name, int *n)
@@ -344,6 +345,71 @@ static void test_bad_pictures(void **state)
     test_folder_remove(folder);
 }
 
+// Every picture of a slab's views has one value, its own: by how its camera and light stand.
+static void test_capture(void **state)
+{
+    (void)state;
+    enum { VIEWS = 4, LIGHTS = 5 };
+    static const double uv[VIEWS][2] = {{-1, -1}, {1, -1}, {1.5, 1}, {-1, 1}};
+    const struct relume_vec3 light[LIGHTS] = {vec3_unit(vec3_of(1, 0, 2)), vec3_of(0, 0, -1),
+                                              vec3_unit(vec3_of(-1, 1, 1)), vec3_of(0, 0, 1),
+                                              vec3_unit(vec3_of(0, -1, 1))};
+    char folder[64], path[256], name[VIEWS][LIGHTS][16];
+    const char *images[VIEWS][LIGHTS];
+    struct relume_manifest_view view[VIEWS] = {{.slab = 0}};
+    test_folder(folder);
+    for (int v = 0; v < VIEWS; v++) {
+        memcpy(view[v].uv, uv[v], sizeof uv[v]);
+        view[v].images = images[v];
+        for (int l = 0; l < LIGHTS; l++) {
+            struct relume_image image;
+            snprintf(name[v][l], sizeof name[v][l], "%d-%d.exr", v, l);
+            images[v][l] = name[v][l];
+            snprintf(path, sizeof path, "%s/%.16s", folder, name[v][l]);
+            CHECK_OK(relume_image_create(&image, W, H, 3));
+            for (int i = 0; i < W * H * 3; i++)
+                image.data[i] = (float)(0.125 * v + 0.015625 * l);
+            image.data[0] = 1.0f;  // the upper left
+            CHECK_OK(relume_image_save(&image, path, NULL));
+            relume_image_destroy(&image);
+        }
+    }
+    struct relume_manifest m = {.geometry = relume_geometry_default(RELUME_SLAB, W, H),
+                                .lights = LIGHTS,
+                                .directions = light,
+                                .views = VIEWS,
+                                .view = view};
+    m.geometry.uv_z = 2.0;
+    m.geometry.st_min[0] = 0.0, m.geometry.st_max[0] = 1.0;
+    m.geometry.st_min[1] = -0.5, m.geometry.st_max[1] = 0.5;
+    snprintf(path, sizeof path, "%s/capture.json", folder);
+    CHECK_OK(relume_manifest_write(&m, path, NULL));
+    relume_btf *btf;
+    CHECK_OK(relume_btf_open(&btf, folder, NULL));
+    const struct relume_btf_info *i = relume_btf_info(btf);
+    assert_int_equal(i->views, VIEWS);
+    assert_int_equal(i->lights, LIGHTS - 1);  // the second stands behind
+    assert_int_equal(i->width, W);
+    assert_false(i->without_cosine);
+    for (int v = 0; v < VIEWS; v++) {
+        const vec3 want = vec3_unit(vec3_of(uv[v][0] - 0.5, uv[v][1], 2.0));
+        CHECK_NEAR(vec3_dot(i->view[v], want), 1.0, 1e-12);
+        for (int l = 0; l < LIGHTS - 1; l++) {
+            const int at = l ? l + 1 : 0;
+            const uint16_t *p = relume_btf_picture(btf, v, l);
+            CHECK_NEAR(vec3_dot(i->light[l], light[at]), 1.0, 1e-12);
+            CHECK_NEAR(float_from_half(p[0]), 1.0, 0);
+            CHECK_NEAR(float_from_half(p[3 * W * H - 1]), 0.125 * v + 0.015625 * at, 0);
+        }
+    }
+    relume_btf_destroy(&btf);
+    m.geometry = relume_geometry_default(RELUME_PLANAR, W, H);
+    m.views = 1;
+    CHECK_OK(relume_manifest_write(&m, path, NULL));
+    expect_refusal(folder, "made of the views of one slab");
+    test_folder_remove(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -355,6 +421,7 @@ int main(void)
         cmocka_unit_test(test_part),
         cmocka_unit_test(test_pictures),
         cmocka_unit_test(test_bad_pictures),
+        cmocka_unit_test(test_capture),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -190,6 +190,152 @@ static void shadows_fall_where_they_should(void **state)
     relume_objects_destroy(&o);
 }
 
+static double wave(const struct relume_vec3 d)
+{
+    return 1.0 + 0.6 * d.y + 0.4 * d.x * d.z + fmax(0.0, d.z) * d.z;
+}
+
+enum { SKY_W = 32, SKY_H = 16 };
+
+// The sky, and each of its pixels as a light.
+static relume_environment *make_sky(struct relume_light each[SKY_W * SKY_H], double rotate_deg)
+{
+    const double pi = 3.14159265358979;
+    struct relume_image map;
+    relume_environment *e;
+    assert_int_equal(relume_image_create(&map, SKY_W, SKY_H, 3), RELUME_OK);
+    for (int i = 0; i < SKY_W * SKY_H; i++) {
+        const double phi = ((i % SKY_W + 0.5) / SKY_W * 2 - 1) * pi;
+        const double theta = (i / SKY_W + 0.5) / SKY_H * pi;
+        const struct relume_vec3 d = {sin(theta) * sin(phi), cos(theta), -sin(theta) * cos(phi)};
+        const double angle = 2 * pi / SKY_W * (pi / SKY_H) * sin(theta);
+        each[i] = (struct relume_light){.direction = relume_environment_turn(d, rotate_deg)};
+        for (int c = 0; c < 3; c++) {
+            map.data[3 * i + c] = (float)(wave(d) * (1 + 0.2 * c));
+            each[i].rgb[c] = (float)((double)map.data[3 * i + c] * angle / pi);
+        }
+    }
+    assert_int_equal(relume_environment_create(&e, &map, NULL), RELUME_OK);
+    relume_image_destroy(&map);
+    return e;
+}
+
+static struct relume_image render(const relume_objects *o, const struct relume_window *w, int width,
+                                  int height, const struct relume_light *lights, int n,
+                                  const struct relume_render_params *params)
+{
+    struct relume_image image;
+    assert_int_equal(relume_image_create(&image, width, height, 3), RELUME_OK);
+    assert_int_equal(relume_objects_render(&image, o, w, lights, n, params), RELUME_OK);
+    return image;
+}
+
+// The greatest and the mean difference of two pictures.
+static void compare(const struct relume_image *a, const struct relume_image *b, double out[2])
+{
+    const int n = 3 * a->width * a->height;
+    out[0] = out[1] = 0.0;
+    for (int i = 0; i < n; i++) {
+        const double apart = fabs((double)(a->data[i] - b->data[i]));
+        out[0] = fmax(out[0], apart);
+        out[1] += apart / n;
+    }
+}
+
+// Every pixel of an environment as a light of its own is what the environment shows; so are its
+// shadows, as well as 64 lamps find them.
+static void environments_light_objects(void **state)
+{
+    (void)state;
+    enum { W = 6, H = 6 };
+    struct relume_light each[SKY_W * SKY_H];
+    relume_environment *sky = make_sky(each, 40);
+    const struct relume_light light = {
+        .kind = RELUME_LIGHT_ENVIRONMENT, .environment = sky, .rotate_deg = 40, .rgb = {1, 1, 1}};
+    relume_objects *o = of_mesh(path_of("shade.obj"), path_of("sample"), 1.0);
+    const struct relume_window window = {{0.9, -1.2, 2.5}, {-1, 1, 0}, {2, 0, 0}, {0, -2, 0}};
+    for (int shut = 0; shut < 2; shut++) {
+        const struct relume_render_params *p = relume_render_params(.no_shadows = !shut);
+        struct relume_image got = render(o, &window, W, H, &light, 1, p);
+        struct relume_image want = render(o, &window, W, H, each, SKY_W * SKY_H, p);
+        double apart[2];
+        compare(&got, &want, apart);
+        // values up to 1.9. Lobes in place of pyramids, pixels of 11 degrees in place of a smooth
+        // sky; under the floating square, a sixth of the picture, some 30 lamps decide: 10 %
+        assert_true(shut ? apart[1] < 0.04 : apart[0] < 0.01);
+        relume_image_destroy(&got);
+        relume_image_destroy(&want);
+    }
+    relume_environment_destroy(&sky);
+    relume_objects_destroy(&o);
+}
+
+// Grains of one texel, fitted with and without levels of detail.
+static void write_grains(void)
+{
+    enum { GRAINS = 32 };
+    struct relume_vec3 d[64];
+    relume_btf_set_directions(relume_btf_set_find("coarse"), d);
+    relume_btf *btf;
+    assert_int_equal(relume_btf_create(&btf,
+                                       &(struct relume_btf_info){.name = "grains",
+                                                                 .width = GRAINS,
+                                                                 .height = GRAINS,
+                                                                 .views = DIRECTIONS,
+                                                                 .lights = DIRECTIONS,
+                                                                 .view = d,
+                                                                 .light = d},
+                                       NULL),
+                     RELUME_OK);
+    for (int v = 0; v < DIRECTIONS; v++)
+        for (int l = 0; l < DIRECTIONS; l++) {
+            static float rgb[GRAINS * GRAINS * 3];
+            uint32_t random = 1;
+            for (int i = 0; i < GRAINS * GRAINS * 3; i++) {
+                random = random * 1664525u + 1013904223u;
+                rgb[i] = (float)(d[l].z * (random >> 31));
+            }
+            relume_btf_store(btf, v, l, rgb);
+        }
+    for (int levels = -1; levels <= 1; levels += 2) {
+        relume_btf_fitted *m;
+        assert_int_equal(relume_btf_fit(&m, btf, relume_btf_model_find("lit"),
+                                        relume_btf_fit_params(.levels = levels)),
+                         RELUME_OK);
+        assert_int_equal(
+            relume_btf_fitted_save(m, path_of(levels < 0 ? "grains-levels" : "grains-one"), NULL),
+            RELUME_OK);
+        relume_btf_fitted_destroy(&m);
+    }
+    relume_btf_destroy(&btf);
+}
+
+// A plane of 1536 texels in 12 pixels, its far end seen at a low angle: one ray a pixel through the
+// levels of detail is the mean of 256, where one through the texels alone is noise.
+static void far_surfaces_are_even(void **state)
+{
+    (void)state;
+    enum { W = 12, H = 12 };
+    write_grains();
+    const struct relume_light light = {.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
+    const struct relume_window window = {{0, -3, 1.5}, {-0.7, 1, 0}, {1.4, 0, 0}, {0, -2, 0}};
+    relume_objects *fine = of_mesh(path_of("shade.obj"), path_of("grains-one"), 48.0);
+    relume_objects *level = of_mesh(path_of("shade.obj"), path_of("grains-levels"), 48.0);
+    struct relume_image want =
+        render(fine, &window, W, H, &light, 1, relume_render_params(.samples = 16));
+    struct relume_image one = render(fine, &window, W, H, &light, 1, NULL);
+    struct relume_image got = render(level, &window, W, H, &light, 1, NULL);
+    double apart[2], noise[2];
+    compare(&got, &want, apart);
+    compare(&one, &want, noise);
+    assert_true(apart[1] < 0.05 && noise[1] > 3 * apart[1]);
+    relume_image_destroy(&want);
+    relume_image_destroy(&one);
+    relume_image_destroy(&got);
+    relume_objects_destroy(&fine);
+    relume_objects_destroy(&level);
+}
+
 static void what_is_missing_is_made(void **state)
 {
     (void)state;
@@ -402,6 +548,8 @@ int main(void)
         cmocka_unit_test(a_plane_shows_the_sample),
         cmocka_unit_test(the_cosine_counts_once),
         cmocka_unit_test(shadows_fall_where_they_should),
+        cmocka_unit_test(environments_light_objects),
+        cmocka_unit_test(far_surfaces_are_even),
         cmocka_unit_test(what_is_missing_is_made),
         cmocka_unit_test(gltf_is_read),
         cmocka_unit_test(bad_descriptions_are_told),

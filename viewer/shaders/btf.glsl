@@ -1,10 +1,15 @@
 // What all models share: a pixel of the surface, the lamp of the pass, and the measured directions
 // around any direction. Before it: view_grid and light_grid (struct relume_btf_model); after it:
-// model_eval, or, where OWN_BLEND is defined, model_blend.
-uniform sampler2D place, normal_s, tangent_t;  // btf_surface.frag
+// model_eval, or, where OWN_BLEND is defined, model_blend; where LOBES is, also model_lit.
+//
+// Compiled twice: for a lamp, and with SKY defined for an environment. Each level of detail is a
+// pass of its own, which adds its part of what lies between two levels.
+uniform sampler2D place, normal_s, tangent_t, footprint;  // btf_surface.frag
 uniform int part;                              // that is drawn
 uniform vec4 eye;                              // its place, 1; or the direction towards it, 0
-uniform ivec2 texels;                          // of a repeat
+uniform ivec2 texels;                          // of a repeat, on this level
+uniform ivec2 finest;                          // the same of the first level
+uniform int level, levels;
 uniform int area;                              // texels of the sample
 uniform ivec4 map;                             // columns, rows; width, height of a tile; 0: none
 uniform usamplerBuffer map_texels;             // the matrix of tiles, then their texels
@@ -96,6 +101,27 @@ vec3 model_blend(int texel, Blend v, Blend l)
 }
 #endif
 
+// A place between the texels under the light of the pass.
+#if defined(SKY) && defined(LOBES)
+vec3 model_lit(int texel, int view, vec3 v, mat3 frame);
+
+vec3 value_at(int texel, Blend v, Blend l, mat3 frame)
+{
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < (view_grid ? 3 : 1); i++) {
+        float weight = view_grid ? v.weight[i] : 1.0;
+        if (weight > 0.0)
+            sum += weight * model_lit(texel, v.index[i], v.direction, frame);
+    }
+    return sum;
+}
+#else
+vec3 value_at(int texel, Blend v, Blend l, mat3 frame)
+{
+    return model_blend(texel, v, l);
+}
+#endif
+
 // Twin: relume_btf_surface_evaluate. The texel of the sample that stands there.
 int texel_of(ivec2 at)
 {
@@ -107,8 +133,8 @@ int texel_of(ivec2 at)
                           map.x * map.y + (number * map.w + inside.y) * map.z + inside.x).r);
 }
 
-// Twin: relume_btf_fitted_sample.
-vec3 btf_sample(vec2 at, Blend v, Blend l)
+// Twin: add_level.
+vec3 btf_sample(vec2 at, Blend v, Blend l, mat3 frame)
 {
     vec2 corner = floor(bilinear ? at - 0.5 : at);
     vec2 part_of = bilinear ? at - 0.5 - corner : vec2(0.0);
@@ -118,12 +144,65 @@ vec3 btf_sample(vec2 at, Blend v, Blend l)
         vec2 share = mix(1.0 - part_of, part_of, step_to);
         vec2 inside = corner + step_to - vec2(texels) * floor((corner + step_to) / vec2(texels));
         ivec2 texel = min(ivec2(inside), texels - 1);
-        sum += share.x * share.y * model_blend(texel_of(texel), v, l);
+        sum += share.x * share.y * value_at(texel_of(texel), v, l, frame);
     }
     return sum;
 }
 
-// ---------------------------------------------------------------- the lamp
+// What a pixel covers: lookups along a line, and what of their level this one has.
+struct Points {
+    vec2 at, way;  // texels of this level
+    int taps;
+    float weight;
+};
+
+// Twin: relume_btf_surface_filter, add_point.
+Points points_of(vec2 texture_at, vec4 spread)
+{
+    if (!bilinear)
+        return Points((floor(texture_at * vec2(texels)) + 0.5), vec2(0.0), 1,
+                      level == 0 ? 1.0 : 0.0);
+    vec2 right = spread.xy * vec2(finest), down = spread.zw * vec2(finest);
+    float longer = max(length(right), length(down));
+    float shorter = max(min(length(right), length(down)), 1.0);
+    int taps = int(clamp(ceil(longer / shorter), 1.0, 8.0));
+    float at = min(log2(max(longer / float(taps), 1.0)), float(levels - 1));
+    vec2 way = length(right) > length(down) ? right : down;
+    return Points(texture_at * vec2(texels), way * vec2(texels) / vec2(finest), taps,
+                  max(1.0 - abs(at - float(level)), 0.0));
+}
+
+vec3 mean_of(Points p, Blend v, Blend l, mat3 frame)
+{
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < p.taps; i++) {
+        float t = (float(i) + 0.5) / float(p.taps) - 0.5;
+        sum += btf_sample(p.at + t * p.way, v, l, frame);
+    }
+    return p.weight * sum / float(p.taps);
+}
+
+// ---------------------------------------------------------------- the light
+
+#ifdef SKY
+
+// Twin: add_sky, without shadows.
+vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
+{
+#ifdef LOBES
+    return mean_of(p, v, v, frame);
+#else
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < counts.y; i++) {
+        vec3 direction;
+        vec3 weight = sky_weight(frame, i, direction);
+        sum += weight * mean_of(p, v, Blend(ivec3(i), vec3(1.0, 0.0, 0.0), direction, 1.0), frame);
+    }
+    return sum;
+#endif
+}
+
+#else
 
 // Twin: relume_lamp_at. A facet's place and normal are those of the light.
 bool lamp_at(out vec3 towards, out vec3 rgb, vec3 point)
@@ -142,6 +221,26 @@ bool lamp_at(out vec3 towards, out vec3 rgb, vec3 point)
     return arrives && cosine > 0.0;
 }
 
+// Twin: add_lamp.
+vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
+{
+    vec3 towards, arriving;
+    if (!lamp_at(towards, arriving, point))
+        return vec3(0.0);
+    vec3 l = towards * frame;
+    if (l.z <= 0.0)
+        return vec3(0.0);
+    float seen = reached(point, normal);
+    if (seen <= 0.0)
+        return vec3(0.0);
+    l = normalize(l);
+    Blend by_light = dome_at(light_cells, light_triangles, l);
+    return arriving * seen * (without_cosine ? l.z : by_light.rim) *
+           mean_of(p, v, by_light, frame);
+}
+
+#endif
+
 // Twin: objects_shade.
 void main()
 {
@@ -149,22 +248,12 @@ void main()
     vec4 at = texelFetch(place, pixel, 0);
     if (int(abs(at.w)) != part + 1)
         discard;
-    vec3 towards, arriving;
-    if (!lamp_at(towards, arriving, at.xyz))
-        discard;
     vec4 ns = texelFetch(normal_s, pixel, 0), tt = texelFetch(tangent_t, pixel, 0);
+    Points p = points_of(vec2(ns.w, tt.w), texelFetch(footprint, pixel, 0));
+    if (p.weight <= 0.0)
+        discard;
     mat3 frame = mat3(tt.xyz, sign(at.w) * cross(ns.xyz, tt.xyz), ns.xyz);
-    vec3 l = towards * frame;
-    if (l.z <= 0.0)
-        discard;
-    float seen = reached(at.xyz, ns.xyz);
-    if (seen <= 0.0)
-        discard;
     vec3 v = normalize(eye.xyz - eye.w * at.xyz) * frame;
     v = normalize(vec3(v.xy, max(v.z, 1e-3)));
-    l = normalize(l);
-    Blend by_light = dome_at(light_cells, light_triangles, l);
-    vec3 value = btf_sample(vec2(ns.w, tt.w) * vec2(texels),
-                            dome_at(view_cells, view_triangles, v), by_light);
-    color = vec4(arriving * seen * (without_cosine ? l.z : by_light.rim) * value, 1.0);
+    color = vec4(lit(at.xyz, ns.xyz, p, dome_at(view_cells, view_triangles, v), frame), 1.0);
 }

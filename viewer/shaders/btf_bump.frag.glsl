@@ -5,6 +5,7 @@ const bool view_grid = false, light_grid = false;
 #include "cube.glsl"
 #include "light.glsl"
 #include "shadow.glsl"
+#include "sky.glsl"
 #include "btf.glsl"
 
 #include "btf_upright.glsl"

@@ -6,6 +6,7 @@ const bool view_grid = true, light_grid = true;
 #include "cube.glsl"
 #include "light.glsl"
 #include "shadow.glsl"
+#include "sky.glsl"
 #include "btf.glsl"
 #include "btf_pairs.glsl"
 

@@ -14,3 +14,17 @@ vec3 laf_eval(int texel, vec3 v, vec3 l)
     }
     return without_cosine ? rgb : rgb * l.z;
 }
+
+#ifdef SKY
+// For one view a lobe is a cosine lobe of the light. Twin: lit (model_laf.c).
+vec3 laf_lit(int texel, vec3 v, mat3 frame)
+{
+    vec3 rgb = texelFetch(array0, texel).rgb * sky_even(frame, true);
+    for (int j = 0; j < counts.w; j++) {
+        vec4 lobe = texelFetch(array2, texel * counts.w + j);
+        rgb += texelFetch(array1, texel * counts.w + j).rgb *
+               sky_lobe(frame, lobe.xyz * v, lobe.w, true);
+    }
+    return rgb;
+}
+#endif

@@ -5,6 +5,7 @@ const bool view_grid = true, light_grid = true;
 #include "cube.glsl"
 #include "light.glsl"
 #include "shadow.glsl"
+#include "sky.glsl"
 #include "btf.glsl"
 
 uniform samplerBuffer array0;  // values [views][lights][texels]

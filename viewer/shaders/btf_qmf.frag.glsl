@@ -6,6 +6,7 @@ const bool view_grid = true, light_grid = true;
 #include "cube.glsl"
 #include "light.glsl"
 #include "shadow.glsl"
+#include "sky.glsl"
 #include "btf.glsl"
 
 uniform usamplerBuffer array0;  // score [texels][bytes]
@@ -36,16 +37,16 @@ vec3 levels_of(int plane)
                 texelFetch(array3, 3 * plane + 2).r);
 }
 
-float level(vec3 levels, float t)
+float value_of(vec3 curve, float t)
 {
-    return levels.x + t * (levels.y + levels.z * t * t);
+    return curve.x + t * (curve.y + curve.z * t * t);
 }
 
 float pattern(int plane, int at, int bits, Blend v, Blend l)
 {
-    vec3 levels = levels_of(plane);
+    vec3 curve = levels_of(plane);
     if (bits == 0)
-        return levels.x;
+        return curve.x;
     int row_bytes = textureSize(array1) / (counts.x * counts.y);
     float sum = 0.0;
     for (int i = 0; i < 3; i++)
@@ -53,7 +54,7 @@ float pattern(int plane, int at, int bits, Blend v, Blend l)
             float weight = v.weight[i] * l.weight[j];
             int row = (v.index[i] * counts.y + l.index[j]) * row_bytes;
             if (weight > 0.0)
-                sum += weight * level(levels, step_at(array1, row, at, bits));
+                sum += weight * value_of(curve, step_at(array1, row, at, bits));
         }
     return sum;
 }
@@ -66,7 +67,7 @@ vec3 model_blend(int texel, Blend v, Blend l)
         int bits = int(texelFetch(array2, plane).r);
         float score = levels_of(plane).x;
         if (bits > 0)
-            score = level(levels_of(plane), step_at(array0, row, score_at, bits));
+            score = value_of(levels_of(plane), step_at(array0, row, score_at, bits));
         score_at += bits;
         for (int c = 0; c < 3; c++) {
             bits = int(texelFetch(array2, plane + c + 1).r);

@@ -1,5 +1,6 @@
 #version 330 core
-// What is to be known of a surface to light it: its place and frame, and the place in its texture.
+// What is to be known of a surface to light it: its place and frame, the place in its texture, and
+// what that grows by from pixel to pixel.
 // Rows run down, so that what faces the eye is wound the other way round here. Twin: objects_hit.
 in vec3 at_position, at_normal;
 in vec4 at_tangent;
@@ -8,6 +9,7 @@ uniform int part;
 layout(location = 0) out vec4 place;      // position; part + 1, its sign the handedness
 layout(location = 1) out vec4 normal_s;   // normal, s
 layout(location = 2) out vec4 tangent_t;  // tangent, t
+layout(location = 3) out vec4 footprint;  // (s, t) to the right, and down
 
 void main()
 {
@@ -17,4 +19,5 @@ void main()
     place = vec4(at_position, side * sign(at_tangent.w) * float(part + 1));
     normal_s = vec4(normal, at_texture.x);
     tangent_t = vec4(normalize(tangent), at_texture.y);
+    footprint = vec4(dFdx(at_texture), dFdy(at_texture));
 }

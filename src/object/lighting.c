@@ -1,0 +1,101 @@
+// lighting.c - all lights as objects meet them: lamps, and environments on each material
+#include "base/memory.h"
+#include "object/object.h"
+
+static bool is_shown(const relume_objects *o, int material)
+{
+    for (int i = 0; i < o->info.parts; i++)
+        if (o->part[i].material == material)
+            return true;
+    return false;
+}
+
+static const relume_btf_fitted *model_of(const relume_objects *o, int material)
+{
+    return relume_btf_surface_info(o->material[material].surface).model;
+}
+
+static double rim_of(const relume_objects *o, int material)
+{
+    return relume_btf_fitted_info(model_of(o, material)).rim;
+}
+
+// The maps of an earlier material whose lowest lights are the same, or new ones.
+static relume_status find_prefilter(relume_prefilter **out, struct sky_light *sky,
+                                    const relume_objects *o, int material,
+                                    const struct relume_light *light, int threads)
+{
+    const double rim = rim_of(o, material);
+    for (int i = 0; i < material; i++)
+        if (sky->prefilter[i] && rim_of(o, i) == rim) {
+            *out = sky->prefilter[i];
+            return RELUME_OK;
+        }
+    const relume_status status = relume_prefilter_create(
+        &sky->prefilter[material], light, relume_prefilter_params(.rim = rim, .threads = threads));
+    *out = sky->prefilter[material];
+    return status;
+}
+
+static relume_status make_sky(struct sky_light *sky, const relume_objects *o,
+                              const struct relume_light *light, int threads)
+{
+    const size_t materials = (size_t)o->info.materials;
+    sky->prefilter = mem_zeroed(materials, sizeof *sky->prefilter);
+    sky->sky = mem_zeroed(materials, sizeof *sky->sky);
+    relume_status status = sky->prefilter && sky->sky ? RELUME_OK : RELUME_ENOMEM;
+    for (int i = 0; i < o->info.materials && !status; i++) {
+        relume_prefilter *prefilter;
+        if (!is_shown(o, i))
+            continue;
+        status = find_prefilter(&prefilter, sky, o, i, light, threads);
+        if (!status)
+            status = relume_btf_sky_create(&sky->sky[i], model_of(o, i), prefilter);
+    }
+    return status;
+}
+
+// Lamps of a light follow one another, and lights in their order.
+static void find_lamps(struct sky_light *sky, const struct lighting *l, int light)
+{
+    while (sky->first < l->lamps && l->lamp[sky->first].number < light)
+        sky->first++;
+    while (sky->first + sky->lamps < l->lamps && l->lamp[sky->first + sky->lamps].number == light)
+        sky->lamps++;
+}
+
+relume_status lighting_create(struct lighting *out, const relume_objects *o,
+                              const struct relume_light *lights, int n,
+                              const struct relume_render_params *params)
+{
+    *out = (struct lighting){.materials = o->info.materials,
+                             .no_shadows = params && params->no_shadows};
+    relume_status status = relume_objects_lamps(&out->lamp, &out->lamps, o, lights, n);
+    if (!status) {
+        out->sky = mem_zeroed((size_t)n, sizeof *out->sky);
+        status = out->sky ? RELUME_OK : RELUME_ENOMEM;
+    }
+    for (int i = 0; i < n && !status; i++) {
+        if (lights[i].kind != RELUME_LIGHT_ENVIRONMENT)
+            continue;
+        struct sky_light *sky = &out->sky[out->skies++];
+        find_lamps(sky, out, i);
+        status = make_sky(sky, o, &lights[i], params ? params->threads : 0);
+    }
+    return status;
+}
+
+void lighting_destroy(struct lighting *l)
+{
+    for (int i = 0; i < l->skies; i++) {
+        for (int k = 0; k < l->materials && l->sky[i].prefilter && l->sky[i].sky; k++) {
+            relume_btf_sky_destroy(&l->sky[i].sky[k]);
+            relume_prefilter_destroy(&l->sky[i].prefilter[k]);
+        }
+        free(l->sky[i].prefilter);
+        free(l->sky[i].sky);
+    }
+    free(l->sky);
+    free(l->lamp);
+    *l = (struct lighting){.lamp = NULL};
+}

@@ -281,14 +281,14 @@ static void write_grains(void)
                                        &(struct relume_btf_info){.name = "grains",
                                                                  .width = GRAINS,
                                                                  .height = GRAINS,
-                                                                 .views = DIRECTIONS,
-                                                                 .lights = DIRECTIONS,
+                                                                 .views = MADE_DIRECTIONS,
+                                                                 .lights = MADE_DIRECTIONS,
                                                                  .view = d,
                                                                  .light = d},
                                        NULL),
                      RELUME_OK);
-    for (int v = 0; v < DIRECTIONS; v++)
-        for (int l = 0; l < DIRECTIONS; l++) {
+    for (int v = 0; v < MADE_DIRECTIONS; v++)
+        for (int l = 0; l < MADE_DIRECTIONS; l++) {
             static float rgb[GRAINS * GRAINS * 3];
             uint32_t random = 1;
             for (int i = 0; i < GRAINS * GRAINS * 3; i++) {

@@ -76,17 +76,24 @@ static bool alloc_solver(struct solver *s)
 
 // ---------------------------------------------------------------- statistics of the samples
 
-// The means of one light's three channels.
+// The means of one light's three channels, by sums of every fourth pixel: they do not wait for each
+// other.
 static void find_mean(void *context, size_t light, int worker)
 {
     (void)worker;
     const struct solver *s = context;
     const struct relume_samples *samples = s->coder->samples;
-    const float *data = samples->data + light * samples->pixels * 3;
-    for (size_t x = 0; x < samples->pixels; x++)
-        for (size_t c = 0; c < 3; c++)
-            s->out->mean[c * s->lights + light] +=
-                (double)data[3 * x + c] / (double)samples->pixels;
+    const size_t n = 3 * samples->pixels;
+    const float *data = samples->data + light * n;
+    double sum[12] = {0.0};
+    for (size_t i = 0; i < n - n % 12; i += 12)
+        for (size_t k = 0; k < 12; k++)
+            sum[k] += (double)data[i + k];
+    for (size_t i = n - n % 12; i < n; i++)
+        sum[i % 12] += (double)data[i];
+    for (size_t c = 0; c < 3; c++)
+        s->out->mean[c * s->lights + light] =
+            (sum[c] + sum[c + 3] + sum[c + 6] + sum[c + 9]) / (double)samples->pixels;
 }
 
 // Samples of pixels as [channel][light], less their means.

@@ -30,6 +30,9 @@ bool ball_normal(vec3 *normal, vec3 *to_eye, const struct relume_ball *ball,
 relume_status ball_follow(struct relume_ball *ball, const struct relume_ball_camera *camera,
                           const struct relume_image *edges, int angles, double reach);
 
+// Order balls from left to right.
+void ball_sort(struct relume_ball *ball, int n);
+
 // The mean of a pixel's channels.
 static inline float ball_grey(const struct relume_image *image, int x, int y)
 {

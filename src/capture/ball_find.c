@@ -397,13 +397,18 @@ static int by_column(const void *a, const void *b)
     return (p->x > q->x) - (p->x < q->x);
 }
 
+void ball_sort(struct relume_ball *ball, int n)
+{
+    qsort(ball, (size_t)n, sizeof *ball, by_column);
+}
+
 relume_status relume_ball_find(struct relume_ball *out, int count, const struct relume_image *mean,
                                const struct relume_ball_camera *camera,
                                const struct relume_ball_params *params)
 {
     int found;
     const relume_status status = relume_ball_candidates(out, count, &found, mean, camera, params);
-    qsort(out, (size_t)found, sizeof *out, by_column);
+    ball_sort(out, found);
     if (!status && found < count)
         return log_fail(params ? params->log : NULL, RELUME_EDATA,
                         "%d of %d balls found; expected round outlines against the background, "

@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "capture/ball.h"
 #include "capture/manifest.h"
 
 #include <relume/lights.h>
@@ -52,12 +53,6 @@ static const char *ball_photo(const struct shot *shot)
     return shot->ball_path ? shot->ball_path : shot->path;
 }
 
-static int by_column(const void *a, const void *b)
-{
-    const struct relume_ball *p = a, *q = b;
-    return (p->x > q->x) - (p->x < q->x);
-}
-
 // What is wrong with how ball `b` shows the light; NULL when nothing is.
 static const char *objection(const struct relume_ball_light *l, bool matte)
 {
@@ -68,13 +63,13 @@ static const char *objection(const struct relume_ball_light *l, bool matte)
 
 enum { CANDIDATES = 16, TRIALS = 6 };
 
-// In how many of a few photographs, spread over all, each candidate shows a lamp. A round stone
-// does in few of them.
-static relume_status try_candidates(const struct shoot *s, const struct relume_ball *ball, int n,
-                                    int *seen)
+// Which candidates show a lamp in most of a few photographs, spread over all. A round stone does in
+// few of them.
+static relume_status try_candidates(bool *good, const struct shoot *s,
+                                    const struct relume_ball *ball, int n)
 {
     const int trials = s->shots < TRIALS ? s->shots : TRIALS;
-    memset(seen, 0, (size_t)n * sizeof *seen);
+    int seen[MOST_BALLS + CANDIDATES] = {0};
     for (int i = 0; i < trials; i++) {
         struct relume_image image;
         relume_status status =
@@ -90,28 +85,30 @@ static relume_status try_candidates(const struct shoot *s, const struct relume_b
         if (status)
             return status;
     }
+    for (int b = 0; b < n; b++)
+        good[b] = 2 * seen[b] > trials;
     return RELUME_OK;
 }
 
-// Mirror balls: the roundest circles of those that show the lamp in most of the photographs tried.
-// Where too few do, the roundest of the others, so that what is wrong with them is told.
+// Mirror balls: the roundest of the good candidates. Where too few are, the roundest of the others,
+// so that what is wrong with them is told.
 static relume_status find_mirrors(struct shoot *s, const struct relume_ball_params *params)
 {
     struct relume_shoot *out = s->out;
     struct relume_ball ball[MOST_BALLS + CANDIDATES];
-    int seen[MOST_BALLS + CANDIDATES], n, kept = 0;
+    bool good[MOST_BALLS + CANDIDATES] = {false};
+    int n, kept = 0;
     relume_status status =
         relume_ball_candidates(ball, out->balls + CANDIDATES, &n, &s->mean, &s->camera, params);
     if (!status && n < out->balls)
         return RELUME_EDATA;
-    if (!status)
-        status = try_candidates(s, ball, n, seen);
-    const int trials = s->shots < TRIALS ? s->shots : TRIALS;
-    for (int good = 1; !status && good >= 0; good--)
+    if (!status && n > out->balls)
+        status = try_candidates(good, s, ball, n);
+    for (int want = 1; !status && want >= 0; want--)
         for (int b = 0; b < n && kept < out->balls; b++)
-            if ((2 * seen[b] > trials) == good)
+            if (good[b] == want)
                 out->ball[kept++] = ball[b];
-    qsort(out->ball, (size_t)kept, sizeof *out->ball, by_column);
+    ball_sort(out->ball, kept);
     return status;
 }
 

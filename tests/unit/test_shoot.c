@@ -85,6 +85,32 @@ static void positions_perspective(void **state)
     check_positions(40.0, 0.02);
 }
 
+// A round stone with a sharper outline than the ball's: white all over, so it shows no lamp.
+static void a_round_stone_is_no_ball(void **state)
+{
+    (void)state;
+    const struct made_scene s = {
+        .balls = 1, .middle = {{0.4, 0, 0}}, .radius = {0.3}, .brightness = 4.0, .distant = true};
+    struct photographs p;
+    struct relume_shoot shoot;
+    photograph(&p, s, 1.0, -1);
+    for (int i = 0; i < LAMPS; i++) {
+        struct relume_image image = {0};
+        CHECK_OK(relume_image_load(&image, p.path[i], NULL));
+        for (int k = 0; k < image.width * image.height; k++)
+            if (hypot(k % image.width - 0.22 * image.width, k / image.width - 0.5 * image.height) <
+                0.14 * image.width)
+                image.data[3 * k] = image.data[3 * k + 1] = image.data[3 * k + 2] = 0.9f;
+        CHECK_OK(relume_image_save(&image, p.path[i], NULL));
+        relume_image_destroy(&image);
+    }
+    const struct relume_shoot_params params = params_of(&p);
+    CHECK_OK(relume_shoot_make(&shoot, p.out, &params));
+    assert_true(shoot.ball[0].x > 0.5 * MADE_WIDTH);
+    relume_shoot_destroy(&shoot);
+    test_folder_remove(p.folder);
+}
+
 static void a_dark_photograph(void **state)
 {
     (void)state;
@@ -262,7 +288,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(light_is_evened_out),    cmocka_unit_test(a_camera_on_the_lamp),
         cmocka_unit_test(positions_orthographic), cmocka_unit_test(positions_perspective),
-        cmocka_unit_test(a_dark_photograph),
+        cmocka_unit_test(a_dark_photograph),      cmocka_unit_test(a_round_stone_is_no_ball),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -96,13 +96,10 @@ static relume_status list_lights(struct photo_set *set, int index, const char *n
 static relume_status check_size(struct photo_set *set, const char *path,
                                 const struct relume_ingest_params *p)
 {
-    picture_reader *reader;
-    const relume_status status = picture_open(&reader, path, p->limits, p->log);
+    struct relume_notes notes;
+    const relume_status status = photograph_notes(&notes, path, p->limits, p->log);
     if (status)
         return status;
-    struct relume_notes notes;
-    photograph_notes(&notes, reader);
-    picture_close(&reader);
     set->turned |= notes.orientation > 1;
     if (!set->width) {
         set->width = notes.width;

@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "image/picture_format.h"
 
 #include <errno.h>
 #include <setjmp.h>
@@ -12,11 +13,14 @@
 
 #include <jpeglib.h>
 
+#include <jerror.h>
+
 // libjpeg's errors end here; its warnings (a truncated file, say) are errors too.
 struct trap {
     struct jpeg_error_mgr manager;
     jmp_buf jump;
     char text[JMSG_LENGTH_MAX];
+    bool only_damage;  // only warnings of damage end here: cameras leave much that is odd
 };
 
 static void on_error(j_common_ptr info)
@@ -26,9 +30,18 @@ static void on_error(j_common_ptr info)
     longjmp(trap->jump, 1);
 }
 
+// What libjpeg repairs with grey or with rows out of place. Bytes that nothing asked for are not
+// among them: some cameras pad their pictures.
+static bool is_damage(int code)
+{
+    return code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE || code == JWRN_ARITH_BAD_CODE ||
+           code == JWRN_MUST_RESYNC || code == JWRN_JPEG_EOF;
+}
+
 static void on_message(j_common_ptr info, int level)
 {
-    if (level < 0)
+    const struct trap *trap = (struct trap *)info->err;
+    if (level < 0 && (!trap->only_damage || is_damage(trap->manager.msg_code)))
         on_error(info);
 }
 
@@ -41,7 +54,140 @@ static struct jpeg_error_mgr *trap_init(struct trap *trap)
     return &trap->manager;
 }
 
-// ---------------------------------------------------------------- reading
+// ---------------------------------------------------------------- reading pictures
+
+struct jpeg_picture_reader {
+    picture_reader reader;  // first
+    struct jpeg_decompress_struct info;
+    struct trap trap;
+    FILE *file;
+    char *path;
+    JOCTET *profile;
+    unsigned profile_size;
+    uint8_t *cmyk;  // a row of it, for pictures of four components
+    char why[JMSG_LENGTH_MAX + 32];
+};
+
+// What Adobe's programs write, and with them everybody: 255 is no ink.
+static void turn_to_rgb(uint8_t *out, const uint8_t *cmyk, size_t width)
+{
+    for (size_t x = 0; x < width; x++, cmyk += 4, out += 3)
+        for (int c = 0; c < 3; c++)
+            out[c] = (uint8_t)((cmyk[c] * cmyk[3] + 127) / 255);
+}
+
+static relume_status read_bytes(picture_reader *reader, int row, int rows, uint8_t *out)
+{
+    struct jpeg_picture_reader *p = (struct jpeg_picture_reader *)reader;
+    const size_t width = (size_t)reader->info.width, step = width * (size_t)reader->info.channels;
+    if (setjmp(p->trap.jump)) {
+        snprintf(p->why, sizeof p->why, "truncated or damaged; %s", p->trap.text);
+        return RELUME_EDATA;
+    }
+    if (row == 0)
+        jpeg_start_decompress(&p->info);
+    for (int y = 0; y < rows; y++) {
+        JSAMPROW to = p->cmyk ? p->cmyk : out + (size_t)y * step;
+        jpeg_read_scanlines(&p->info, &to, 1);
+        if (p->cmyk)
+            turn_to_rgb(out + (size_t)y * step, p->cmyk, width);
+    }
+    if (p->info.output_scanline == p->info.output_height)
+        jpeg_finish_decompress(&p->info);  // the end marker, too
+    return RELUME_OK;
+}
+
+static const void *profile(const picture_reader *reader, size_t *size)
+{
+    const struct jpeg_picture_reader *p = (const struct jpeg_picture_reader *)reader;
+    *size = p->profile_size;
+    return p->profile;
+}
+
+static const char *error(const picture_reader *reader)
+{
+    return ((const struct jpeg_picture_reader *)reader)->why;
+}
+
+static void close(picture_reader *reader)
+{
+    struct jpeg_picture_reader *p = (struct jpeg_picture_reader *)reader;
+    if (p->info.mem)
+        jpeg_destroy_decompress(&p->info);
+    if (p->file)
+        fclose(p->file);
+    free(p->profile);
+    free(p->cmyk);
+    free(p->path);
+    free(p);
+}
+
+static const struct picture_format format = {
+    .read_bytes = read_bytes, .profile = profile, .error = error, .close = close};
+
+static bool has_exif(const struct jpeg_decompress_struct *info)
+{
+    for (const struct jpeg_marker_struct *m = info->marker_list; m; m = m->next)
+        if (m->marker == JPEG_APP0 + 1 && m->data_length >= 6 && !memcmp(m->data, "Exif\0", 6))
+            return true;
+    return false;
+}
+
+static bool read_header(struct jpeg_picture_reader *p)
+{
+    struct jpeg_decompress_struct *i = &p->info;
+    i->err = trap_init(&p->trap);
+    p->trap.only_damage = true;
+    if (setjmp(p->trap.jump))
+        return false;
+    jpeg_create_decompress(i);
+    jpeg_stdio_src(i, p->file);
+    jpeg_save_markers(i, JPEG_APP0 + 1, 6);
+    jpeg_save_markers(i, JPEG_APP0 + 2, 0xffff);
+    jpeg_read_header(i, TRUE);
+    (void)jpeg_read_icc_profile(i, &p->profile, &p->profile_size);
+    const int planes = i->num_components == 1 ? 1 : 3, last = planes - 1;
+    i->out_color_space = planes == 1 ? JCS_GRAYSCALE : i->num_components == 4 ? JCS_CMYK : JCS_RGB;
+    i->dct_method = JDCT_ISLOW;
+    p->reader = (picture_reader){.format = &format,
+                                 .info = {.width = (int)i->image_width,
+                                          .height = (int)i->image_height,
+                                          .channels = planes,
+                                          .rgb = {0, last / 2, last},
+                                          .bytes = true},
+                                 .exif = has_exif(i) ? p->path : NULL};
+    return true;
+}
+
+relume_status jpeg_picture_open(picture_reader **out, const char *path,
+                                const struct relume_limits *limits, const struct relume_log *log)
+{
+    struct jpeg_picture_reader *p = mem_zeroed(1, sizeof *p);
+    *out = NULL;
+    if (!p || !(p->path = mem_format("%s", path))) {
+        free(p);
+        return RELUME_ENOMEM;
+    }
+    const struct picture_info *info = &p->reader.info;
+    relume_status status = RELUME_OK;
+    p->file = fopen(path, "rb");
+    if (!p->file)
+        status = log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
+    else if (!read_header(p))
+        status = log_fail(log, RELUME_EDATA, "%s: not a readable image; %s", path, p->trap.text);
+    else if (!limits_allow(limits, info->width, info->height))
+        status = log_fail(log, RELUME_EDATA, "%s: size %d x %d; expected sizes within the limits",
+                          path, info->width, info->height);
+    else if (p->info.num_components == 4 && !(p->cmyk = mem_array((size_t)info->width, 4)))
+        status = RELUME_ENOMEM;
+    if (status)
+        close(&p->reader);
+    else
+        *out = &p->reader;
+    return status;
+}
+
+// ---------------------------------------------------------------- reading codes
 
 struct reader {
     struct jpeg_decompress_struct info;

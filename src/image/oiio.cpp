@@ -13,7 +13,6 @@ extern "C" {
 #include <cmath>
 #include <cstdio>
 #include <ctime>
-#include <fstream>
 #include <memory>
 #include <new>
 #include <string>
@@ -51,39 +50,6 @@ relume_status broken(oiio_reader *r, const std::string &what)
 {
     r->error = one_line(what);
     return RELUME_EDATA;
-}
-
-// libjpeg fills what a truncated file lacks with grey and calls it a warning. Here the segments are
-// walked (ITU T.81, B.1): thumbnails inside a segment are skipped over with it, and only an end
-// marker in the coded data itself ends the picture. Bytes after it are some cameras' habit.
-bool jpeg_is_truncated(const std::string &path)
-{
-    std::ifstream file(path, std::ios::binary | std::ios::ate);
-    const std::streamoff size = file.tellg();
-    std::string b(size > 0 ? size_t(size) : 0, '\0');
-    file.seekg(0);
-    if (!file.read(&b[0], std::streamsize(b.size())))
-        return true;
-    const auto at = [&b](size_t i) { return (unsigned char)b[i]; };
-    size_t i = 2;
-    while (i + 2 <= b.size()) {
-        if (at(i) != 0xff) {  // coded data, up to the next marker
-            i = b.find('\xff', i);
-            if (i == std::string::npos)
-                return true;
-        } else if (at(i + 1) == 0xd9) {
-            return false;
-        } else if (at(i + 1) == 0xff) {  // padding
-            i++;
-        } else if (at(i + 1) == 0 || at(i + 1) == 1 || (at(i + 1) >= 0xd0 && at(i + 1) <= 0xd7)) {
-            i += 2;  // a coded FF, or a marker without a length
-        } else if (i + 4 <= b.size()) {
-            i += 2 + size_t(at(i + 2)) * 256 + at(i + 3);
-        } else {
-            return true;
-        }
-    }
-    return true;
 }
 
 void find_colour(const ImageSpec &spec, picture_info &info)
@@ -167,8 +133,6 @@ relume_status open_input(oiio_reader *r, const relume_limits *limits)
         return broken(r, "size " + std::to_string(spec.width) + " x " +
                              std::to_string(spec.height) + "; expected sizes within the limits");
     const std::string format = r->input->format_name();
-    if (format == "jpeg" && jpeg_is_truncated(r->path))
-        return broken(r, "truncated JPEG; expected an end marker");
     r->info.width = spec.width;
     r->info.height = spec.height;
     r->info.x = spec.x;

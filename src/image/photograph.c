@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/image.h"
+#include "image/picture.h"
 #include "image/profile.h"
 
 #include <math.h>
@@ -19,13 +20,13 @@ static bool is_turned_sideways(int orientation)
 }
 
 // `profile` may be NULL.
-static void notes_of(struct relume_notes *out, const picture_reader *reader,
-                     struct profile *profile)
+static relume_status notes_of(struct relume_notes *out, const picture_reader *reader,
+                              struct profile *profile, const struct relume_log *log)
 {
     size_t size;
     const void *icc = picture_profile(reader, &size);
     struct profile own;
-    picture_notes(reader, out);
+    const relume_status status = picture_notes(reader, out, log);
     profile = profile ? profile : &own;
     out->profile =
         icc && picture_info_of(reader)->channels >= 3 && profile_read(profile, icc, size);
@@ -34,26 +35,26 @@ static void notes_of(struct relume_notes *out, const picture_reader *reader,
         out->width = picture_info_of(reader)->height;
         out->height = picture_info_of(reader)->width;
     }
+    return status;
 }
 
-void photograph_notes(struct relume_notes *out, const picture_reader *reader)
+relume_status photograph_notes(struct relume_notes *out, const char *path,
+                               const struct relume_limits *limits, const struct relume_log *log)
 {
-    *out = (struct relume_notes){.width = picture_info_of(reader)->width,
-                                 .height = picture_info_of(reader)->height};
-    notes_of(out, reader, NULL);
+    picture_reader *reader;
+    *out = (struct relume_notes){0};
+    relume_status status = picture_open(&reader, path, limits, log);
+    if (status)
+        return status;
+    status = notes_of(out, reader, NULL, log);
+    picture_close(&reader);
+    return status;
 }
 
 relume_status relume_notes_read(struct relume_notes *out, const char *path,
                                 const struct relume_log *log)
 {
-    *out = (struct relume_notes){0};
-    picture_reader *reader;
-    const relume_status status = picture_open(&reader, path, NULL, log);
-    if (status)
-        return status;
-    notes_of(out, reader, NULL);
-    picture_close(&reader);
-    return RELUME_OK;
+    return photograph_notes(out, path, NULL, log);
 }
 
 double relume_notes_exposure(const struct relume_notes *notes)
@@ -146,14 +147,17 @@ relume_status relume_photograph_load(struct relume_image *out, struct relume_not
         free(profile);
         return status;
     }
-    notes_of(notes, reader, profile);
+    status = notes_of(notes, reader, profile, p.log);
     const bool follow = notes->profile && !p.codes && p.transfer.curve == RELUME_CURVE_AUTO;
     if (!notes->profile && picture_profile(reader, &icc_size))
         log_line(p.log, RELUME_WARNING,
                  "%s: its colour profile is not of curves and a matrix; taken for sRGB", path);
     const struct relume_transfer from =
         p.codes || follow ? (struct relume_transfer){.curve = RELUME_CURVE_LINEAR} : p.transfer;
-    status = read_pixels(out, path, reader, from, p.log);
+    if (status)
+        picture_close(&reader);
+    else
+        status = read_pixels(out, path, reader, from, p.log);
     if (!status && follow)
         follow_profile(out, profile);
     if (!status && !p.not_turned && notes->orientation > 1)

@@ -1,11 +1,11 @@
-// photograph.h - what the camera noted in a file that is open
+// photograph.h - what the camera noted, within limits
 #ifndef IMAGE_PHOTOGRAPH_H
 #define IMAGE_PHOTOGRAPH_H
 
-#include "image/picture.h"
-
 #include <relume/photograph.h>
 
-void photograph_notes(struct relume_notes *out, const picture_reader *reader);
+// relume_notes_read, of files within `limits`.
+relume_status photograph_notes(struct relume_notes *out, const char *path,
+                               const struct relume_limits *limits, const struct relume_log *log);
 
 #endif

@@ -64,6 +64,8 @@ relume_status picture_open(picture_reader **out, const char *path,
         status = exr_picture_open(out, path, limits);
     else if (!status && !memcmp(bytes, "\x89PNG\r\n\x1a\n", MAGIC))
         status = png_picture_open(out, path, limits);
+    else if (!status && !memcmp(bytes, "\xff\xd8\xff", 3))
+        status = jpeg_picture_open(out, path, limits, log);
     if (!*out && !status)
         status = need_bridge(path, log);
     return *out || status ? status : bridge->open(out, path, limits, log);
@@ -84,7 +86,22 @@ relume_status picture_read_bytes(picture_reader *reader, int row, int rows, uint
     return reader->format->read_bytes(reader, row, rows, out);
 }
 
-void picture_notes(const picture_reader *reader, struct relume_notes *out)
+static relume_status exif_notes(const char *path, struct relume_notes *out,
+                                const struct relume_log *log)
+{
+    picture_reader *reader;
+    relume_status status = need_bridge(path, log);
+    if (!status)
+        status = bridge->open(&reader, path, NULL, log);
+    if (status)
+        return status;
+    reader->format->notes(reader, out);
+    picture_close(&reader);
+    return RELUME_OK;
+}
+
+relume_status picture_notes(const picture_reader *reader, struct relume_notes *out,
+                            const struct relume_log *log)
 {
     const struct picture_info *info = &reader->info;
     *out = (struct relume_notes){.width = info->width,
@@ -95,6 +112,7 @@ void picture_notes(const picture_reader *reader, struct relume_notes *out)
                                  .floats = info->floats};
     if (reader->format->notes)
         reader->format->notes(reader, out);
+    return reader->exif ? exif_notes(reader->exif, out, log) : RELUME_OK;
 }
 
 const void *picture_profile(const picture_reader *reader, size_t *size)

@@ -1,7 +1,7 @@
 // picture.h - picture files of every format, row by row
 //
-// EXR and PNG files of the plain kind, which are most, are read by exr.c and png.c; all others by
-// OpenImageIO. That one brings over 200 shared libraries, a third of a second at every start: so
+// JPEG files and EXR and PNG files of the plain kind, which are most, are read by jpeg.c, exr.c and
+// png.c; all others, and EXIF, by OpenImageIO. That one brings over 200 shared libraries, a third of a second at every start: so
 // the C++ that knows it (oiio.cpp) is a module of its own, librelume-oiio.so, which picture.c opens
 // when the first file asks for it; nobody else notices.
 #ifndef IMAGE_PICTURE_H
@@ -36,9 +36,10 @@ const struct picture_info *picture_info_of(const picture_reader *reader);
 // each. No log: threads that read must not speak; picture_error tells.
 relume_status picture_read_floats(picture_reader *reader, int row, int rows, float *out);
 relume_status picture_read_bytes(picture_reader *reader, int row, int rows, uint8_t *out);
-// What the camera noted: all but the profile. The ICC profile, NULL when there is none; belongs to
-// the reader.
-void picture_notes(const picture_reader *reader, struct relume_notes *out);
+// What the camera noted: all but the profile. RELUME_EIO without the module, where it takes that.
+relume_status picture_notes(const picture_reader *reader, struct relume_notes *out,
+                            const struct relume_log *log);
+// The ICC profile, NULL when there is none; belongs to the reader.
 const void *picture_profile(const picture_reader *reader, size_t *size);
 // What went wrong last, for a sentence; "" when nothing did. Belongs to the reader.
 const char *picture_error(const picture_reader *reader);

@@ -102,7 +102,7 @@ relume_status exr_picture_open(picture_reader **out, const char *path,
         exr_close(&file);
         return RELUME_ENOMEM;
     }
-    p->reader = (picture_reader){&format, info};
+    p->reader = (picture_reader){.format = &format, .info = info};
     p->file = file;
     p->half = exr_part_info(file, 0).sample == EXR_SAMPLE_HALF;
     *out = &p->reader;

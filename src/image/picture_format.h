@@ -12,7 +12,7 @@ extern "C" {
 struct picture_format {
     relume_status (*read_floats)(picture_reader *reader, int row, int rows, float *out);
     relume_status (*read_bytes)(picture_reader *reader, int row, int rows, uint8_t *out);
-    // NULL: the file says nothing. `out` holds what the reader's `info` tells.
+    // NULL: the file says nothing of itself. `out` holds what the reader's `info` tells.
     void (*notes)(const picture_reader *reader, struct relume_notes *out);
     const void *(*profile)(const picture_reader *reader, size_t *size);
     const char *(*error)(const picture_reader *reader);
@@ -23,6 +23,7 @@ struct picture_format {
 struct picture_reader {
     const struct picture_format *format;
     struct picture_info info;
+    const char *exif;  // NULL, or the file, for its notes: only the module knows EXIF
 };
 
 // `*out` is NULL with RELUME_OK where the file is not of the plain kind: broken ones are not, and
@@ -31,6 +32,9 @@ relume_status exr_picture_open(picture_reader **out, const char *path,
                                const struct relume_limits *limits);
 relume_status png_picture_open(picture_reader **out, const char *path,
                                const struct relume_limits *limits);
+// JPEG files of all kinds. RELUME_EDATA with a sentence, RELUME_ENOMEM.
+relume_status jpeg_picture_open(picture_reader **out, const char *path,
+                                const struct relume_limits *limits, const struct relume_log *log);
 
 // RELUME_EIO, RELUME_ENOMEM.
 relume_status png_write(const char *path, int width, int height, int channels,

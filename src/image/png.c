@@ -146,12 +146,12 @@ static bool read_header(struct png_picture *p)
     png_init_io(p->png, p->file);
     png_read_info(p->png, p->info);
     const int channels = png_get_channels(p->png, p->info), last = channels >= 3 ? 2 : 0;
-    p->reader = (picture_reader){&format,
-                                 {.width = (int)png_get_image_width(p->png, p->info),
-                                  .height = (int)png_get_image_height(p->png, p->info),
-                                  .channels = channels,
-                                  .rgb = {0, last ? 1 : 0, last},
-                                  .bytes = true}};
+    p->reader = (picture_reader){.format = &format,
+                                 .info = {.width = (int)png_get_image_width(p->png, p->info),
+                                          .height = (int)png_get_image_height(p->png, p->info),
+                                          .channels = channels,
+                                          .rgb = {0, last ? 1 : 0, last},
+                                          .bytes = true}};
     return true;
 }
 

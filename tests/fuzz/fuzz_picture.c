@@ -1,5 +1,5 @@
-// fuzz_picture.c - plain EXR and PNG pictures made of noise, by our own readers; check sums of
-// every second PNG are made right, so that what they guard is reached
+// fuzz_picture.c - JPEG, plain EXR and PNG pictures made of noise, by our own readers; check sums
+// of every second PNG are made right, so that what they guard is reached
 #include "fuzz.h"
 #include "png_crc.h"
 
@@ -50,6 +50,8 @@ static bool one(struct fuzz *f, struct bytes b)
     fuzz_store(f->path, b);
     if (!png_picture_open(&r, f->path, &limits) && r)
         return read_all(r);
+    if (!jpeg_picture_open(&r, f->path, &limits, NULL))
+        return read_all(r);
     return !exr_picture_open(&r, f->path, &limits) && r && read_all(r);
 }
 
@@ -72,6 +74,8 @@ int main(int argc, char **argv)
     fuzz_begin(&f, "fuzz_picture", argc, argv);
     add(&f, 1, false, "grey.png");
     add(&f, 3, false, "colour.png");
+    add(&f, 1, false, "grey.jpg");
+    add(&f, 3, false, "colour.jpg");
     add(&f, 1, false, "grey.exr");
     add(&f, 3, true, "colour.exr");
     return fuzz_run(&f, argc, argv, one);

@@ -8,6 +8,8 @@
 #include "image/half.h"
 #include "image/picture_format.h"
 
+#include <jpeglib.h>
+
 enum { MOST = 70 };
 
 static const struct oiio_bridge *bridge;
@@ -48,8 +50,8 @@ static void compare(const char *path)
     assert_true(i.bytes == j.bytes && i.floats == j.floats && i.linear == j.linear);
     struct relume_notes n, m;
     size_t size;
-    picture_notes(a, &n);
-    picture_notes(b, &m);
+    CHECK_OK(picture_notes(a, &n, NULL));
+    CHECK_OK(picture_notes(b, &m, NULL));
     assert_memory_equal(&n, &m, sizeof n);
     assert_null(picture_profile(a, &size));
     assert_null(picture_profile(b, &size));
@@ -244,6 +246,108 @@ static void png_that_is_not_plain(void **state)
     assert_null(format_of(path_of("a.png")));
 }
 
+// ---------------------------------------------------------------- JPEG
+
+struct kind {
+    int channels;
+    bool subsampled, progressive, restarts;
+};
+
+static void write_jpeg(const char *path, int width, int height, struct kind kind,
+                       const uint8_t *samples)
+{
+    struct jpeg_compress_struct c;
+    struct jpeg_error_mgr errors;
+    FILE *f = fopen(path, "wb");
+    c.err = jpeg_std_error(&errors);
+    jpeg_create_compress(&c);
+    jpeg_stdio_dest(&c, f);
+    c.image_width = (JDIMENSION)width;
+    c.image_height = (JDIMENSION)height;
+    c.input_components = kind.channels;
+    c.in_color_space = kind.channels == 1 ? JCS_GRAYSCALE : kind.channels == 3 ? JCS_RGB : JCS_CMYK;
+    jpeg_set_defaults(&c);
+    c.comp_info[0].h_samp_factor = c.comp_info[0].v_samp_factor = kind.subsampled ? 2 : 1;
+    if (kind.progressive)
+        jpeg_simple_progression(&c);
+    c.restart_in_rows = kind.restarts;
+    jpeg_start_compress(&c, TRUE);
+    while (c.next_scanline < c.image_height) {
+        JSAMPROW row = (JSAMPROW)samples + c.next_scanline * (size_t)(width * kind.channels);
+        jpeg_write_scanlines(&c, &row, 1);
+    }
+    jpeg_finish_compress(&c);
+    jpeg_destroy_compress(&c);
+    fclose(f);
+}
+
+static void jpeg_is_what_openimageio_sees(void **state)
+{
+    (void)state;
+    static const struct kind kinds[] = {{1, false, false, false}, {3, false, false, false},
+                                        {3, true, false, true},   {3, true, true, false},
+                                        {4, false, false, false}, {1, false, true, false}};
+    static const int sides[] = {1, 16, 33, MOST};
+    uint8_t samples[MOST * MOST * 4];
+    fill(samples, sizeof samples);
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
+        for (int s = 0; s < 4; s++) {
+            write_jpeg(path_of("a.jpg"), sides[s], sides[3 - s], kinds[k], samples);
+            compare(path_of("a.jpg"));
+        }
+}
+
+// The file without the `cut` bytes before its end marker (also of the marker, where it is cut),
+// `padding` in their place.
+static void respan(const char *path, size_t cut, bool marker, size_t padding)
+{
+    size_t size;
+    uint8_t *bytes = test_read(path, &size), *out = calloc(size + padding, 1);
+    const size_t kept = size - 2 - cut;
+    memcpy(out, bytes, kept);
+    memcpy(out + kept + padding, "\xff\xd9", 2);
+    test_write(path, out, kept + padding + (marker ? 2 : 0));
+    free(bytes);
+    free(out);
+}
+
+static relume_status read_jpeg(const char *path)
+{
+    uint8_t row[MOST * 3];
+    picture_reader *r;
+    relume_status status = RELUME_OK;
+    CHECK_OK(picture_open(&r, path, NULL, NULL));
+    for (int y = 0; y < MOST && !status; y++)
+        status = picture_read_bytes(r, y, 1, row);
+    assert_int_equal(status != RELUME_OK, strstr(picture_error(r), "truncated or damaged") != NULL);
+    picture_close(&r);
+    return status;
+}
+
+// libjpeg makes pictures of all of them.
+static void jpeg_that_is_not_whole(void **state)
+{
+    (void)state;
+    static const struct {
+        size_t cut;
+        bool marker;
+        size_t padding;
+        relume_status status;
+    } ends[] = {
+        {0, true, 0, RELUME_OK},      {0, false, 0, RELUME_EDATA}, {9, false, 0, RELUME_EDATA},
+        {100, true, 0, RELUME_EDATA}, {0, true, 50, RELUME_OK},  // padded, as some cameras do
+    };
+    static const struct kind kinds[] = {{3, false, false, false}, {3, true, true, false}};
+    uint8_t samples[MOST * MOST * 3];
+    fill(samples, sizeof samples);
+    for (int k = 0; k < 2; k++)
+        for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
+            write_jpeg(path_of("a.jpg"), MOST, MOST, kinds[k], samples);
+            respan(path_of("a.jpg"), ends[i].cut, ends[i].marker, ends[i].padding);
+            assert_int_equal(read_jpeg(path_of("a.jpg")), ends[i].status);
+        }
+}
+
 // Damage that only reading finds has a sentence.
 static void damaged_rows(void **state)
 {
@@ -255,17 +359,18 @@ static void damaged_rows(void **state)
     fill(samples, sizeof samples);
     CHECK_OK(png_write(path_of("a.png"), MOST, MOST, 3, samples, NULL));
     write_exr(path_of("a.exr"), (struct made){MOST, 3, false}, MOST, EXR_CODEC_ZIP, NULL);
-    static const char *const names[] = {"a.png", "a.exr"};
-    for (int k = 0; k < 2; k++) {
+    write_jpeg(path_of("a.jpg"), MOST, MOST, (struct kind){.channels = 3}, samples);
+    static const char *const names[] = {"a.png", "a.exr", "a.jpg"};
+    for (int k = 0; k < 3; k++) {
         uint8_t *bytes = test_read(path_of(names[k]), &size);
-        memset(bytes + size / 2, 0x55, 40);
+        memset(bytes + size / 2, 0xff, 40);
         test_write(path_of(names[k]), bytes, size);
         free(bytes);
         CHECK_OK(picture_open(&r, path_of(names[k]), NULL, NULL));
         relume_status status = RELUME_OK;
         for (int y = 0; y < MOST && !status; y++)
-            status =
-                k ? picture_read_floats(r, y, 1, out) : picture_read_bytes(r, y, 1, (uint8_t *)out);
+            status = k == 1 ? picture_read_floats(r, y, 1, out)
+                            : picture_read_bytes(r, y, 1, (uint8_t *)out);
         assert_int_equal(status, RELUME_EDATA);
         assert_non_null(strstr(picture_error(r), "truncated or damaged"));
         picture_close(&r);
@@ -285,6 +390,8 @@ int main(void)
         cmocka_unit_test(exr_that_is_not_plain),
         cmocka_unit_test(png_is_what_openimageio_sees),
         cmocka_unit_test(png_that_is_not_plain),
+        cmocka_unit_test(jpeg_is_what_openimageio_sees),
+        cmocka_unit_test(jpeg_that_is_not_whole),
         cmocka_unit_test(damaged_rows),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -1,8 +1,9 @@
 // json_place.c - where a value of a JSON file stands in its text, which jansson does not keep
 #include "base/json.h"
 
+#include "base/memory.h"
+
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 // The text has been parsed before: it is JSON, or it has changed since and ends early.
@@ -77,7 +78,7 @@ static char *read_text(const char *path)
     char *text = NULL;
     size_t size = 0, got = from ? 1 : 0;
     while (got) {
-        char *longer = realloc(text, size + STEP + 1);
+        char *longer = mem_resize(text, size + STEP + 1, 1);
         if (!longer)
             break;
         text = longer;

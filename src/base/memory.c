@@ -36,6 +36,14 @@ void *mem_zeroed(size_t count, size_t size)
     return refuse() ? NULL : calloc(count ? count : 1, size ? size : 1);
 }
 
+void *mem_resize(void *old, size_t count, size_t size)
+{
+    size_t bytes;
+    if (__builtin_mul_overflow(count, size, &bytes) || refuse())
+        return NULL;
+    return realloc(old, bytes ? bytes : 1);
+}
+
 void *mem_copy(const void *from, size_t count, size_t size)
 {
     void *copy = mem_array(count, size);

@@ -9,6 +9,8 @@
 // Never returns NULL for a count of 0.
 void *mem_array(size_t count, size_t size);
 void *mem_zeroed(size_t count, size_t size);
+// `old` (which may be NULL) with room for more or fewer; on NULL it stays as it was.
+void *mem_resize(void *old, size_t count, size_t size);
 void *mem_copy(const void *from, size_t count, size_t size);
 char *mem_text(const char *text);
 // A new string like printf's, NULL when memory is short.

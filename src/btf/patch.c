@@ -207,7 +207,7 @@ static bool remember(struct canvas *c, const struct patch *p)
 {
     if (c->used_count == c->used_room) {
         const int room = 2 * c->used_room + 16;
-        struct patch *more = realloc(c->used, (size_t)room * sizeof *more);
+        struct patch *more = mem_resize(c->used, (size_t)room, sizeof *more);
         if (!more)
             return false;
         c->used = more;

@@ -79,7 +79,7 @@ static bool grow(struct pictures *p)
     if (p->count < p->room)
         return true;
     const size_t room = p->room ? 2 * p->room : 256;
-    struct picture *more = realloc(p->all, room * sizeof *more);
+    struct picture *more = mem_resize(p->all, room, sizeof *more);
     if (!more)
         return false;
     p->all = more;

@@ -27,7 +27,7 @@ relume_status shoot_warn(struct shoot *s, const char *format, ...)
     va_end(list);
     log_line(s->p.log, RELUME_WARNING, "%s", text);
     struct relume_shoot *out = s->out;
-    char **grown = realloc(out->warning, ((size_t)out->warnings + 1) * sizeof *grown);
+    char **grown = mem_resize(out->warning, (size_t)out->warnings + 1, sizeof *grown);
     if (!grown)
         return RELUME_ENOMEM;
     out->warning = grown;

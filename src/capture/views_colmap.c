@@ -130,7 +130,7 @@ static relume_status read_lenses(struct lens **out, int *count, const char *fold
         if (is_blank(t.buffer))
             continue;
         struct lens *more =
-            *count < MOST_CAMERAS ? realloc(*out, (size_t)(*count + 1) * sizeof **out) : NULL;
+            *count < MOST_CAMERAS ? mem_resize(*out, (size_t)*count + 1, sizeof **out) : NULL;
         if (!more) {
             status = RELUME_ENOMEM;
             break;
@@ -200,7 +200,7 @@ static relume_status read_poses(struct posed_model *m, const char *folder, const
         if (is_blank(t.buffer))
             continue;
         struct posed_camera *more =
-            m->count < MOST_CAMERAS ? realloc(all, (size_t)(m->count + 1) * sizeof *all) : NULL;
+            m->count < MOST_CAMERAS ? mem_resize(all, (size_t)m->count + 1, sizeof *all) : NULL;
         if (!more) {
             status = RELUME_ENOMEM;
             break;
@@ -240,7 +240,7 @@ static relume_status read_points(struct posed_model *m, const char *folder)
             continue;
         if (m->points == room) {
             room = room ? 2 * room : 1024;
-            struct relume_vec3 *more = realloc(m->point, room * sizeof *more);
+            struct relume_vec3 *more = mem_resize(m->point, room, sizeof *more);
             if (!more) {
                 status = RELUME_ENOMEM;
                 break;

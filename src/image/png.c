@@ -193,9 +193,9 @@ static void append(png_structp png, png_bytep bytes, size_t n)
     struct writer *w = png_get_io_ptr(png);
     if (w->room - w->size < n) {
         const size_t room = 2 * (w->size + n);
-        uint8_t *more = realloc(w->bytes, room);
+        uint8_t *more = mem_resize(w->bytes, room, 1);
         if (!more)
-            png_error(png, "no memory");
+            png_error(png, "");  // no memory
         w->bytes = more;
         w->room = room;
     }
@@ -235,7 +235,9 @@ relume_status png_write(const char *path, int width, int height, int channels,
         w->info = png_create_info_struct(w->png);
     relume_status status = w && w->info ? RELUME_OK : RELUME_ENOMEM;
     if (!status && !encode(w, width, height, channels, samples))
-        status = log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path, w->trap.text);
+        status = w->trap.text[0]
+                     ? log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path, w->trap.text)
+                     : RELUME_ENOMEM;
     if (!status)
         status = outfile_save(path, w->bytes, w->size, log);
     if (w && w->png)

@@ -43,7 +43,7 @@ static bool grow(void **array, int *capacity, int needed, size_t size)
     if (needed <= *capacity)
         return true;
     const int larger = needed * 2 + 16;
-    void *moved = realloc(*array, (size_t)larger * size);
+    void *moved = mem_resize(*array, (size_t)larger, size);
     if (!moved)
         return false;
     *array = moved;

@@ -130,7 +130,7 @@ static relume_status add_part(relume_objects *o, const struct mesh_file *file, i
                         file->part[number]);
     char *name = mem_text(file->part[number]);
     struct relume_object_part *part =
-        realloc(o->part, ((size_t)o->info.parts + 1) * sizeof *o->part);
+        mem_resize(o->part, (size_t)o->info.parts + 1, sizeof *o->part);
     if (part)
         o->part = part;
     if (!part || !name) {

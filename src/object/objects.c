@@ -167,10 +167,10 @@ static relume_status open_material(struct relume_object_material *m, const char 
 static relume_status grow_materials(relume_objects *o)
 {
     const size_t n = (size_t)o->info.materials + 1;
-    struct relume_object_material *material = realloc(o->material, n * sizeof *material);
+    struct relume_object_material *material = mem_resize(o->material, n, sizeof *material);
     if (material)
         o->material = material;
-    char **folder = realloc(o->folder, n * sizeof *folder);
+    char **folder = mem_resize(o->folder, n, sizeof *folder);
     if (folder)
         o->folder = folder;
     return material && folder ? RELUME_OK : RELUME_ENOMEM;

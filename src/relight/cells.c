@@ -95,7 +95,7 @@ static void look_at(void *context, size_t item, int worker)
 
 static bool grow(void *array, size_t count, size_t size)
 {
-    void *larger = realloc(*(void **)array, count * size);
+    void *larger = mem_resize(*(void **)array, count, size);
     if (larger)
         *(void **)array = larger;
     return larger;

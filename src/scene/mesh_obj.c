@@ -116,7 +116,7 @@ static uint32_t add_corner(struct obj *o, struct corner c)
         mesh_vertex(mesh, o->v.at[c.v - 1], vec3_length(normal) > 0.0 ? vec3_unit(normal) : normal,
                     c.vt ? o->vt.at[c.vt - 1] : zero);
     if (mesh->vertex_room > o->smooth_room) {
-        uint32_t *bigger = realloc(o->smooth_of, mesh->vertex_room * sizeof *bigger);
+        uint32_t *bigger = mem_resize(o->smooth_of, mesh->vertex_room, sizeof *bigger);
         if (!bigger) {
             mesh->failed = true;
             return 0;

@@ -30,7 +30,7 @@ int mesh_file_part(struct mesh_file *file, const char *name)
         if (!strcmp(file->part[i], name))
             return i;
     char **part = file->parts < MOST_PARTS
-                      ? realloc(file->part, ((size_t)file->parts + 1) * sizeof *part)
+                      ? mem_resize(file->part, (size_t)file->parts + 1, sizeof *part)
                       : NULL;
     if (!part)
         return -1;

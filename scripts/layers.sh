@@ -35,7 +35,7 @@ assimp:src/scene/mesh_assimp.c
 fftw3:src/math/fft.c
 kissfft:src/math/fft_kiss.c
 jansson:src/base/json.c
-jpeglib:src/image/jpeg.c
+jpeglib:src/image/jpeg.c tests/unit/test_picture.c
 png:src/image/png.c
 lcms2:src/image/profile.c tests/unit/test_photograph.c
 cairo:src/cli/plot.c

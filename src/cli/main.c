@@ -4,6 +4,8 @@
 #include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#include <malloc.h>
 #include <math.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -484,8 +486,19 @@ static void allow_many_files(void)
     }
 }
 
+// Pictures come and go by the dozen. Freed memory stays for the next one: fresh pages have to be
+// cleared by the kernel, a sixth of the time of merging exposures of 12 megapixels.
+static void keep_freed_memory(void)
+{
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, INT_MAX);
+    mallopt(M_TRIM_THRESHOLD, INT_MAX);
+#endif
+}
+
 int main(int argc, char **argv)
 {
+    keep_freed_memory();
     occupy_standard_streams();
     keep_stderr_for_people();
     allow_many_files();

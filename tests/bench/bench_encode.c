@@ -1,6 +1,5 @@
-// bench_encode.c - encoding 49 JPEG photographs against only decoding them with OpenImageIO on the
-// same threads (the decoding opens files as the library does, with its look for cut JPEGs, 2 % of
-// the time). Usage: bench_encode [SIDE]; default 2048. Prints peak memory as well.
+// bench_encode.c - encoding 49 JPEG photographs against only decoding them on the same threads, by
+// the library's own reader. Usage: bench_encode [SIDE]; default 2048. Prints peak memory as well.
 #include "bench.h"
 
 #include "base/thread.h"

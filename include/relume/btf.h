@@ -83,6 +83,10 @@ struct relume_btf_params {
     const char *scratch;  // the folder of temporary data; default $TMPDIR or /tmp
     bool fill;   // folders of pictures: a missing pair is interpolated rather than an error
     bool force;  // saving: replace an existing folder
+    // Files of Bonn: only these texels, x, y (of the upper left one), width, height; zeros: all.
+    int crop[4];
+    // Files of Bonn: without values, which take long; only relume_btf_info may be asked for.
+    bool outline;
     int threads;
 };
 #define relume_btf_params(...) (&(const struct relume_btf_params){__VA_ARGS__})
@@ -93,7 +97,9 @@ RELUME_RESULT relume_status relume_btf_create(relume_btf **out, const struct rel
 // Open a folder: btf.json beside values.npy (docs/btf.md); a capture.json of the views of one slab
 // under distant lights (the window is the sample); or pictures whose names hold the angles
 // in degrees, tl (light elevation from the pole), pl (light azimuth), tv, pv in any order, like
-// tl030_pl120_tv045_pv020.png. Returns RELUME_EDATA, RELUME_ENOMEM, RELUME_ECANCEL.
+// tl030_pl120_tv045_pv020.png. Or a .btf file of the University of Bonn, whose values are
+// multiplied out into temporary data. Returns RELUME_EDATA, RELUME_ENOMEM, RELUME_ECANCEL,
+// RELUME_ESYSTEM without room for temporary data, RELUME_EINVAL for a part that is not there.
 RELUME_RESULT relume_status relume_btf_open(relume_btf **out, const char *path,
                                             const struct relume_btf_params *params);
 // The folder appears whole or not at all. RELUME_EINVAL (also for a part), RELUME_EIO.

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "image/half.h"
 
+#include <errno.h>
 #include <string.h>
 
 static const float HALF_MAX = 65504.0f;
@@ -93,12 +94,20 @@ relume_status btf_make_room(relume_btf *btf, const struct relume_btf_params *par
 {
     char *near = params && params->scratch ? mem_format("%s/values", params->scratch) : NULL;
     btf->own = scratch_map(near, own_bytes(btf));
+    const int error = errno;
     btf->values = btf->own;
     free(near);
     if (btf->own)
         return RELUME_OK;
+    const char *temp = getenv("TMPDIR");
     return log_fail(params ? params->log : NULL, RELUME_ESYSTEM,
-                    "values: no room for %zu bytes of temporary data", own_bytes(btf));
+                    "no room for %.3g GiB of temporary data in %s (TMPDIR names another folder); "
+                    "%s",
+                    (double)own_bytes(btf) / 1073741824.0,
+                    params && params->scratch ? params->scratch
+                    : temp && *temp           ? temp
+                                              : "/tmp",
+                    strerror(error));
 }
 
 relume_status relume_btf_create(relume_btf **out, const struct relume_btf_info *info,

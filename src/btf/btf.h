@@ -34,6 +34,9 @@ relume_status btf_open_pictures(relume_btf **out, const char *path,
 // A folder with capture.json whose views are the cameras of a slab.
 relume_status btf_open_capture(relume_btf **out, const char *path,
                                const struct relume_btf_params *params);
+// A .btf file of the University of Bonn.
+relume_status btf_open_ubo(relume_btf **out, const char *path,
+                           const struct relume_btf_params *params);
 
 // The side of the next level of detail.
 int btf_half_side(int side);

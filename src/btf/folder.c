@@ -140,10 +140,26 @@ static bool has_manifest(const char *folder)
     return has;
 }
 
+static bool is_file(const char *path)
+{
+    struct stat info;
+    return !stat(path, &info) && S_ISREG(info.st_mode);
+}
+
+static bool is_cropped(const struct relume_btf_params *p)
+{
+    return p && (p->crop[0] | p->crop[1] | p->crop[2] | p->crop[3]);
+}
+
 relume_status relume_btf_open(relume_btf **out, const char *path,
                               const struct relume_btf_params *params)
 {
     *out = NULL;
+    if (is_file(path))
+        return btf_open_ubo(out, path, params);
+    if (is_cropped(params))
+        return log_fail(params->log, RELUME_EINVAL, "%s: expected a .btf file to take a part of",
+                        path);
     struct folder f = {path, mem_format("%s/btf.json", path),
                        limits_or_default(params ? params->limits : NULL),
                        params ? params->log : NULL};

@@ -43,14 +43,45 @@ static relume_status synth_material(relume_btf **out, const struct relume_btf_ma
     return status;
 }
 
-relume_status btf_open(relume_btf **out, const char *name, const struct args *args)
+static relume_status parse_crop(int out[4], const struct args *args)
+{
+    const char *text = args_text(args, "--crop", NULL), *at = text;
+    for (int i = 0; text && i < 4; i++) {
+        char *end;
+        const long n = strtol(at, &end, 10);
+        if (end == at || *end != (i < 3 ? ',' : '\0') || n < (i > 1) || n > 65536)
+            return usage_error("--crop: expected x,y,w,h in texels; found '%s'", text);
+        out[i] = (int)n;
+        at = end + 1;
+    }
+    return RELUME_OK;
+}
+
+static relume_status open_btf(relume_btf **out, const char *name, bool outline,
+                              const struct args *args)
 {
     const struct relume_btf_material *material = relume_btf_material_find(name);
+    struct relume_btf_params params = {.log = args_log(args),
+                                       .threads = args_threads(args),
+                                       .fill = args_has(args, "--fill"),
+                                       .outline = outline};
+    *out = NULL;
     if (material && !exists(name))
-        return synth_material(out, material, args);
-    return relume_btf_open(out, name,
-                           relume_btf_params(.log = args_log(args), .threads = args_threads(args),
-                                             .fill = args_has(args, "--fill")));
+        return args_has(args, "--crop")
+                   ? usage_error("--crop: expected a .btf file; found '%s'", name)
+                   : synth_material(out, material, args);
+    const relume_status status = parse_crop(params.crop, args);
+    return status ? status : relume_btf_open(out, name, &params);
+}
+
+relume_status btf_open(relume_btf **out, const char *name, const struct args *args)
+{
+    return open_btf(out, name, false, args);
+}
+
+relume_status btf_open_outline(relume_btf **out, const char *name, const struct args *args)
+{
+    return open_btf(out, name, true, args);
 }
 
 relume_status btf_open_sample(struct btf_sample *out, const char *name, const struct args *args)

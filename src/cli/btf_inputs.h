@@ -1,4 +1,4 @@
-// btf_inputs.h - what `relume btf` is given: folders of BTFs and models, names of materials
+// btf_inputs.h - what `relume btf` is given: BTFs, models, names of materials
 #ifndef BTF_INPUTS_H
 #define BTF_INPUTS_H
 
@@ -7,8 +7,10 @@
 // Whether the folder holds a fitted model.
 bool btf_is_model(const char *path);
 
-// A folder, or a built-in material when there is none of that name.
+// A folder or file, or a built-in material when there is none of that name.
 relume_status btf_open(relume_btf **out, const char *name, const struct args *args);
+// ... of which only relume_btf_info is asked.
+relume_status btf_open_outline(relume_btf **out, const char *name, const struct args *args);
 
 // Whether the folder holds a surface.
 bool btf_is_surface(const char *path);

@@ -57,6 +57,8 @@ static const struct option options[] = {
     {"--directions", OPTION_TEXT, "SET", "of a built-in material: bonn (default), dome, coarse", 0,
      0},
     {"--fill", OPTION_FLAG, NULL, "interpolate pictures that are missing in a folder", 0, 0},
+    {"--crop", OPTION_TEXT, "x,y,w,h", "of a .btf file: only these texels, from its upper left", 0,
+     0},
     {"--seed", OPTION_INT, "S", "of materials, clusters and tiles; default 0", 0, 2147483647},
     {"--force", OPTION_FLAG, NULL, "fit, tile: replace an existing folder", 0, 0},
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
@@ -334,7 +336,7 @@ static relume_status info(const struct args *args)
         return surface_info(args);
     if (btf_is_model(args_input(args, 1)))
         return model_info(args);
-    const relume_status status = btf_open(&btf, args_input(args, 1), args);
+    const relume_status status = btf_open_outline(&btf, args_input(args, 1), args);
     if (status)
         return status;
     const struct relume_btf_info *i = relume_btf_info(btf);

@@ -129,6 +129,35 @@ expect_fail 'objects in a pass' 2 'expected no pass' x.exr "$RELUME" relight box
 expect_fail 'no such mesh' 1 'nothing.obj: cannot be opened' x.exr "$RELUME" btf render rfnl --mesh nothing.obj -o x.exr
 expect_fail 'no model at all' 1 'broken.glb: not read as a model' x.exr "$RELUME" btf render rfnl --mesh broken.glb -o x.exr
 
+# ---- files of Bonn
+mkubo="$BUILD/tests/tools/mkubo"
+"$mkubo" bump.btf dfmf 12 coarse && "$mkubo" together.btf fmf 12 coarse
+expect_ok 'btf info of a file of Bonn' - env TMPDIR=/nowhere "$RELUME" btf info bump.btf --json
+for f in 'width 12' 'height 12' 'lights 19' 'raw_bytes 311904'; do
+    set -- $f
+    if [ "$(field "$1" out.txt)" = "$2" ]; then ok "file of Bonn: $1"; else not_ok "file of Bonn: $1" "$(cat out.txt)"; fi
+done
+expect_ok 'the other kind is read' - "$RELUME" btf render together.btf -o together.exr --light 'dir 0 1 0.5' -q
+expect_ok 'a file of Bonn is shown' - "$RELUME" btf render bump.btf -o bump.exr --light 'dir 0 1 0.5' -q
+above 'y is up: the upper edge faces the light' "$("$mkimage" read bump.exr 6 2 | cut -d' ' -f1)" 0.5
+below 'and the lower one does not' "$("$mkimage" read bump.exr 6 9 | cut -d' ' -f1)" 0.1
+expect_ok 'a part of it' - "$RELUME" btf render bump.btf -o part.exr --light 'dir 0 1 0.5' --crop 4,1,5,3 -q
+if [ "$("$mkimage" read bump.exr 6 2)" = "$("$mkimage" read part.exr 2 1)" ]; then ok 'a part is that part'; else not_ok 'a part is that part' "$("$mkimage" read part.exr 2 1)"; fi
+expect_ok 'fitted' - "$RELUME" btf fit bump.btf -o bump --model lpca -q
+expect_ok 'judged' - "$RELUME" btf eval bump bump.btf --pictures 0 --json
+below 'fitted well' "$(field rms out.txt)" 0.001
+expect_ok 'compared' - "$RELUME" btf compare bump.btf --models rfnl,vpca --pictures 0 --json -q
+expect_fail 'no room' 3 'bump.btf: no room for 0.00029 GiB of temporary data in /nowhere' x.exr env TMPDIR=/nowhere "$RELUME" btf render bump.btf -o x.exr
+expect_fail 'a part outside' 2 'bump.btf: a part of 5 x 3 texels at 8, 1; expected one of 12 x 12' - "$RELUME" btf info bump.btf --crop 8,1,5,3
+expect_fail 'a part of nothing' 2 "crop: expected x,y,w,h in texels; found '1,2,3'" - "$RELUME" btf info bump.btf --crop 1,2,3
+expect_fail 'a part of a folder' 2 'paper: expected a .btf file to take a part of' - "$RELUME" btf info paper --crop 0,0,1,1
+expect_fail 'a part of a material' 2 "crop: expected a .btf file; found 'stone'" - "$RELUME" btf info stone --crop 0,0,1,1
+head -c 9000 bump.btf >short.btf
+expect_fail 'cut off' 1 'short.btf: ends within its values; expected [0-9]* bytes more; found' - "$RELUME" btf info short.btf
+sed 's/^!DFMF08FCR/!PVF06FCR /' bump.btf >view.btf
+expect_fail 'another kind of Bonn' 1 'view.btf: views factored each by itself \(PVF\) are not read' - "$RELUME" btf info view.btf
+expect_fail 'no file of Bonn' 1 'bump.exr: not a BTF of Bonn; expected a folder, or a file that begins with' - "$RELUME" btf info bump.exr
+
 # ---- from outside: NumPy reads the values in place
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
     check 'NumPy reads the values' /usr/bin/python3 -c '

@@ -89,9 +89,6 @@ VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 .DELETE_ON_ERROR:
 all: lib cli viewer
 lib: $B/librelume.a $B/librelume.so $(MODULE) $(MESHES) $(STITCH)
-ifeq ($(STITCH),)
-	@echo '  OpenCV is not there: built without stitching (make deps-stitch adds it)'
-endif
 cli: $B/relume
 viewer: $(VIEWER)
 
@@ -159,6 +156,7 @@ $B/librelume.so: $(LIB_O)
 	$(call say,LD)
 	$(Q)$(CC) $(MODE) -shared -Wl,-soname,librelume.so.$(MAJOR) $(call run_path) -o $@ $^ $(LDFLAGS) $(LIBS)
 	$(Q)ln -sfn $(@F) $@.$(MAJOR)
+	$(if $(STITCH),,@echo '  OpenCV is not there: built without stitching (make deps-stitch adds it)')
 $(MODULE): $(MODULE_CXX:%.cpp=$B/obj/%.o) $B/librelume.a
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -shared -Wl,--exclude-libs,ALL -o $@ $^ $(LDFLAGS) $(OIIO_LIBS) $(LIBS)

@@ -2,6 +2,7 @@
 # The build itself: nothing is rebuilt when nothing changed, a touched header rebuilds, and the
 # layer rules hold for this tree and would notice if they did not.
 . "$(dirname "$0")/lib.sh"
+unset MAKEFLAGS
 case $BUILD in
 */build) config=release ;;
 *) config=$(basename "$BUILD") ;;

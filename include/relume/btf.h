@@ -196,7 +196,7 @@ struct relume_btf_cost {
 RELUME_API struct relume_btf_cost relume_btf_fitted_cost(const relume_btf_fitted *fitted);
 
 // The measured values as a model that is exact, for what takes models. Nothing is copied: the BTF
-// must outlive it; it cannot be saved. RELUME_ENOMEM.
+// must outlive it; it cannot be saved. RELUME_EDATA for values that are not finite, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_as_model(relume_btf_fitted **out, const relume_btf *btf,
                                                 const struct relume_log *log);
 

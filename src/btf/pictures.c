@@ -161,8 +161,45 @@ static relume_status missing(const struct pictures *p, int view, int light)
     const struct angles v = p->views[view], l = p->lights[light];
     return log_fail(p->log, RELUME_EDATA,
                     "%s: no picture for tl%03g_pl%03g_tv%03g_pv%03g; expected one of every light "
-                    "and view (or fill the gaps)",
+                    "and view, or --fill to interpolate",
                     p->path, l.theta_deg, l.phi_deg, v.theta_deg, v.phi_deg);
+}
+
+// Pictures that have direction `which` of the views or lights, and the first of them.
+static int count_of(const struct pictures *p, bool view, int which, const struct picture **first)
+{
+    const int n = view ? p->light_count : p->view_count;
+    int count = 0;
+    *first = NULL;
+    for (int i = 0; i < n; i++) {
+        const int v = view ? which : i, l = view ? i : which;
+        const struct picture *one = p->grid[(size_t)v * (size_t)p->light_count + (size_t)l];
+        *first = *first ? *first : one;
+        count += one != NULL;
+    }
+    return count;
+}
+
+// A direction of few pictures was not measured: somebody mistyped an angle.
+static relume_status find_strays(const struct pictures *p)
+{
+    enum { FEW = 4 };  // less than one of so many
+    for (int view = 0; view < 2; view++) {
+        const int n = view ? p->view_count : p->light_count;
+        const int all = view ? p->light_count : p->view_count;
+        for (int i = 0; i < n; i++) {
+            const struct picture *first;
+            const int count = count_of(p, view, i, &first);
+            const struct angles a = view ? p->views[i] : p->lights[i];
+            if (count * FEW < all)
+                return log_fail(p->log, RELUME_EDATA,
+                                "%s/%s: wrong angles?; expected pictures of t%c%03g_p%c%03g for "
+                                "all %d %s; found %d",
+                                p->path, first->name, view ? 'v' : 'l', a.theta_deg,
+                                view ? 'v' : 'l', a.phi_deg, all, view ? "lights" : "views", count);
+        }
+    }
+    return RELUME_OK;
 }
 
 static relume_status place(struct pictures *p)
@@ -178,6 +215,9 @@ static relume_status place(struct pictures *p)
                             one->name, (*cell)->name);
         *cell = one;
     }
+    const relume_status status = find_strays(p);
+    if (status)
+        return status;
     for (int v = 0; v < p->view_count; v++)
         for (int l = 0; l < p->light_count; l++)
             if (!p->grid[(size_t)v * (size_t)p->light_count + (size_t)l] &&
@@ -388,7 +428,7 @@ static relume_status make_btf(relume_btf **out, const struct pictures *p)
         .light = light,
     };
     if (!status)
-        status = btf_start(out, &info, p->log);
+        status = btf_start(out, &info, p->path, p->log);
     if (!status)
         status = btf_make_room(*out, p->params);
     relume_image_destroy(&first);

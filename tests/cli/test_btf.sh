@@ -144,11 +144,18 @@ fi
 expect_fail 'unknown material' 2 "unknown material 'ston'; did you mean 'stone'" x "$RELUME" synth --btf ston -o x
 expect_fail 'scene and material' 2 'found both' x "$RELUME" synth box --btf stone -o x
 expect_fail 'unknown model' 2 "unknown model 'rfnk'" - "$RELUME" btf compare paper --models rfnk
+expect_fail 'no model' 2 'expected names of models' - "$RELUME" btf compare paper --models ''
 expect_fail 'unknown task' 2 "unknown task 'fitt'; did you mean 'fit'" - "$RELUME" btf fitt paper
 expect_fail 'too many clusters' 2 'expected 1 to 64 clusters; found 65' x "$RELUME" btf fit paper --model rfnlc --clusters 65 -o x
 expect_fail 'a ratio below 1' 2 'ratio' x "$RELUME" btf fit paper --model qmf --ratio 0 -o x
 expect_fail 'no BTF' 1 'expected btf.json, or pictures named like' - "$RELUME" btf info .
 expect_fail 'not a folder' 1 'nothing: cannot be read' - "$RELUME" btf info nothing
+fresh paper other
+printf '\000\176' | dd of=other/values.npy bs=1 seek=1000 conv=notrunc 2>/dev/null
+expect_fail 'NaN among the values' 1 'other: view 0, light 2: NaN or infinity' x "$RELUME" btf fit other --model lit -o x
+expect_fail 'NaN among values that are shown' 1 'other: view 0, light 2: NaN or infinity' x.exr "$RELUME" btf render other -o x.exr
+"$RELUME" btf compare other --json >out.json 2>err.txt
+check 'no half of a JSON object' test ! -s out.json
 fresh lpca other
 sed -i 's/"version": 1/"version": 2/' other/model.json
 expect_fail 'another version' 1 'other/model.json: expected version 1; found 2' - "$RELUME" btf info other

@@ -322,7 +322,26 @@ static void test_bad_pictures(void **state)
     test_write(path, "x", 1);
     expect_refusal(folder, "tl095_pl000_tv000_pv000.exr: angles");
     remove(path);
+    // a typing error makes a light of one picture, which --fill must not complete
+    snprintf(path, sizeof path, "%s/M_tl046_pl120_tv045_pv000.exr", folder);
     struct relume_image other;
+    CHECK_OK(relume_image_create(&other, W, H, 3));
+    CHECK_OK(relume_image_save(&other, path, NULL));
+    relume_image_destroy(&other);
+    for (int i = 0; i < 4; i++) {  // one of four views is not few
+        char more[160];
+        snprintf(more, sizeof more, "%s/M_tl000_pl000_tv050_pv%03d.exr", folder, 10 * i);
+        CHECK_OK(relume_image_create(&other, W, H, 3));
+        CHECK_OK(relume_image_save(&other, more, NULL));
+        relume_image_destroy(&other);
+    }
+    expect_refusal(folder, "M_tl046_pl120_tv045_pv000.exr: wrong angles?; expected pictures of "
+                           "tl046_pl120 for all 8 views; found 1");
+    remove(path);
+    for (int i = 0; i < 4; i++) {
+        snprintf(path, sizeof path, "%s/M_tl000_pl000_tv050_pv%03d.exr", folder, 10 * i);
+        remove(path);
+    }
     CHECK_OK(relume_image_create(&other, W + 1, H, 3));
     snprintf(path, sizeof path, "%s/M_tl045_pl120_tv045_pv000.exr", folder);
     CHECK_OK(relume_image_save(&other, path, NULL));
@@ -407,6 +426,11 @@ static void test_capture(void **state)
     m.views = 1;
     CHECK_OK(relume_manifest_write(&m, path, NULL));
     expect_refusal(folder, "made of the views of one slab");
+    m.geometry = relume_geometry_default(RELUME_SLAB, W, H);
+    m.views = 2;
+    CHECK_OK(relume_manifest_write(&m, path, NULL));
+    snprintf(path, sizeof path, "%s: view directions: expected 3 or more; found 2", folder);
+    expect_refusal(folder, path);
     test_folder_remove(folder);
 }
 

@@ -18,7 +18,7 @@ static const struct option options[] = {
      "qmf: bytes of the measured values to one of the model; default 200", 1, 1000000},
     {"--lobes", OPTION_INT, "N", "rfnl, rfnlc, laf, slaf: default 2", 1, 4},
     {"--levels", OPTION_INT, "N",
-     "fit, tile: levels of detail, each half as wide; default 1, of tile all", 1, 17},
+     "fit, tile: levels of detail, each half as wide; -1: all; default 1, of tile all", -1, 17},
     {"--leave-out", OPTION_INT, "K",
      "compare: also without every K-th view and light, judged on pairs with one of these; fit: "
      "without them",

@@ -50,6 +50,8 @@ expect_fail 'an area light' 2 'area lights are not drawn' x.exr "$RELUME" btf re
 expect_ok 'levels of detail' - "$RELUME" btf fit paper --model rfp --levels 3 -o levels -q
 "$RELUME" btf info levels --json >info.json
 if [ "$(field levels info.json)" = 3 ] && [ -f levels/level2/model.json ]; then ok 'three levels'; else not_ok 'three levels' "$(cat info.json)"; fi
+expect_ok 'all levels of detail' - "$RELUME" btf fit paper --model lit --levels -1 -o levels-all -q
+check 'down to one texel' test -f levels-all/level3/model.json -a ! -e levels-all/level4
 "$RELUME" synth --btf leather -o hide --size 16 --extent 2 --directions coarse --samples 1 --bounces 0 -q
 expect_ok 'btf tile' - "$RELUME" btf tile hide -o wide --model rfp --tile 16 --tiles 3 --matrix 5x4 --force -q
 "$RELUME" btf info wide --json >info.json

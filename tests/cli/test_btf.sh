@@ -144,6 +144,9 @@ fi
 
 # ---- refused
 expect_fail 'unknown material' 2 "unknown material 'ston'; did you mean 'stone'" x "$RELUME" synth --btf ston -o x
+printf '0 0 1\n0.6 0 -0.8\n0 0.6 0.8\n-0.6 0 0.8\n' >below.txt
+expect_fail 'a direction from below' 1 'below.txt: direction 1: expected a unit vector with z > 0' x "$RELUME" synth --btf stone --directions below.txt -o x
+expect_fail 'two directions' 1 'two.txt: directions: expected 3 or more' x sh -c 'head -1 below.txt >two.txt; sed -n 3p below.txt >>two.txt; exec "$0" synth --btf stone --directions two.txt -o x' "$RELUME"
 expect_fail 'scene and material' 2 'found both' x "$RELUME" synth box --btf stone -o x
 expect_fail 'unknown model' 2 "unknown model 'rfnk'" - "$RELUME" btf compare paper --models rfnk
 expect_fail 'no model' 2 'expected names of models' - "$RELUME" btf compare paper --models ''

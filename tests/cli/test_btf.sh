@@ -33,6 +33,8 @@ expect_ok 'btf fit without every fourth direction' - "$RELUME" btf fit paper --m
 "$RELUME" btf eval part paper --unseen --pictures 0 --json >unseen.json 2>err.txt
 below 'btf eval --unseen is what compare leaves out' "$(awk -v a="$(field rms unseen.json)" -v b="$(field left_out_rms out.json)" 'BEGIN { print (a - b) ^ 2 }')" 1e-12
 expect_fail 'nothing unseen' 1 'the model was fitted to all its directions' - "$RELUME" btf eval rfnl paper --unseen
+"$RELUME" btf eval rfnl paper --pictures 0 >eval.txt
+check 'what was not measured is a dash' sh -c '! grep -q nan eval.txt && grep -q "  -  " eval.txt'
 expect_ok 'btf fit --ratio' - "$RELUME" btf fit paper --model qmf --ratio 20 -o small -q
 "$RELUME" btf info small --json >info.json
 below 'a wanted ratio is kept' "$(field bytes info.json)" $((138624 / 20 + 1))
@@ -108,6 +110,9 @@ check 'a mesh and its description are the same' cmp quad.exr again.exr
 "$VIEWER" quad.json --eye 0,0,2 --light 'dir 0.3 0.2 1' --size 40x40 --offscreen stage.png 2>err.txt || not_ok 'relume-view of objects' "$(cat err.txt)"
 "$VIEWER" rfnl --mesh quad.obj --repeat 2 --eye 0,0,2 --light 'dir 0.3 0.2 1' --size 40x40 --offscreen mesh.png 2>err.txt || not_ok 'relume-view --mesh' "$(cat err.txt)"
 check 'relume-view of a mesh and its description' cmp stage.png mesh.png
+expect_ok 'btf render of the same' - "$RELUME" btf render quad.json -o cpu.png --eye 0.5,0,2 --light 'dir 0.3 0.2 1' --picture 60x40 --samples 1 -q
+"$VIEWER" quad.json --eye 0.5,0,2 --light 'dir 0.3 0.2 1' --size 60x40 --offscreen gl.png
+above 'relume-view of objects from an eye is the reference' "$("$RELUME" compare cpu.png gl.png | sed -n 's/^psnr_db *//p')" 45
 printf 'open lpca\nlight dir 0.3 0.2 1\nframe lpca.png\nopen quad.json\nlight dir 0.3 0.2 1\nframe first.png\n' >open.txt
 "$VIEWER" rfnl --mesh quad.obj --repeat 2 --size 40x40 --script open.txt 2>err.txt || not_ok 'a script opens objects' "$(cat err.txt)"
 printf 'light dir 0.3 0.2 1\nframe second.png\n' >stay.txt

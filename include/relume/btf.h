@@ -93,7 +93,8 @@ RELUME_RESULT relume_status relume_btf_create(relume_btf **out, const struct rel
 // Open a folder: btf.json beside values.npy (docs/btf.md); a capture.json of the views of one slab
 // under distant lights (the window is the sample); or pictures whose names hold the angles
 // in degrees, tl (light elevation from the pole), pl (light azimuth), tv, pv in any order, like
-// tl030_pl120_tv045_pv020.png. Returns RELUME_EDATA, RELUME_ENOMEM, RELUME_ECANCEL.
+// tl030_pl120_tv045_pv020.png, there or one level below. Returns RELUME_EDATA, RELUME_ENOMEM,
+// RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_btf_open(relume_btf **out, const char *path,
                                             const struct relume_btf_params *params);
 // The folder appears whole or not at all. RELUME_EINVAL (also for a part), RELUME_EIO.

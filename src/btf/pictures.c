@@ -10,6 +10,7 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 struct angles {
     double theta_deg, phi_deg;
@@ -61,17 +62,27 @@ static struct angles normal_angles(double theta_deg, double phi_deg)
     return (struct angles){theta_deg, theta_deg > 0.0 ? fmod(phi_deg, 360.0) : 0.0};
 }
 
-// 1: a picture of the BTF; 0: some other file; -1: angles that cannot be.
+// How many of the four angles are there: light from the pole, around; view from the pole, around.
+static int angles_in(const char *name, double angle[4])
+{
+    return angle_in(name, "tl", &angle[0]) + angle_in(name, "pl", &angle[1]) +
+           angle_in(name, "tv", &angle[2]) + angle_in(name, "pv", &angle[3]);
+}
+
+// 1: a picture of the BTF; 0: some other file; -1: angles that cannot be. The folder may name the
+// view for all that is in it.
 static int parse(struct picture *p, const char *name)
 {
-    double tl, pl, tv, pv;
-    const int found = angle_in(name, "tl", &tl) + angle_in(name, "pl", &pl) +
-                      angle_in(name, "tv", &tv) + angle_in(name, "pv", &pv);
-    if (found < 4)
-        return found ? -1 : 0;
-    p->light = normal_angles(tl, pl);
-    p->view = normal_angles(tv, pv);
-    return tl < 90.0 && tv < 90.0 && pl <= 360.0 && pv <= 360.0 ? 1 : -1;
+    const char *slash = strrchr(name, '/');
+    double a[4];
+    const int found = angles_in(slash ? slash + 1 : name, a);
+    if (found == 0)
+        return 0;
+    if (found < 4 && angles_in(name, a) < 4)
+        return -1;
+    p->light = normal_angles(a[0], a[1]);
+    p->view = normal_angles(a[2], a[3]);
+    return a[0] < 90.0 && a[2] < 90.0 && a[1] <= 360.0 && a[3] <= 360.0 ? 1 : -1;
 }
 
 static bool grow(struct pictures *p)
@@ -112,15 +123,52 @@ static int by_name(const void *a, const void *b)
     return strcmp(((const struct picture *)a)->name, ((const struct picture *)b)->name);
 }
 
+static bool is_folder(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+static relume_status list_folder(struct pictures *p, const char *inside);
+
+static relume_status list_entry(struct pictures *p, const char *inside, const char *entry)
+{
+    const bool top = !*inside;
+    char *name = top ? mem_text(entry) : mem_format("%s/%s", inside, entry);
+    char *path = name ? mem_format("%s/%s", p->path, name) : NULL;
+    relume_status status = path ? RELUME_OK : RELUME_ENOMEM;
+    if (path && !is_folder(path))
+        status = add(p, name);
+    else if (path && top)
+        status = list_folder(p, name);
+    free(path);
+    free(name);
+    return status;
+}
+
+// The pictures of a folder inside that of the BTF ("": this itself) and there of folders one level
+// below: Bonn keeps each view in its own, tv000_pv000/00001 tl000 pl000 tv000 pv000.jpg.
+static relume_status list_folder(struct pictures *p, const char *inside)
+{
+    relume_status status = RELUME_OK;
+    char *path = *inside ? mem_format("%s/%s", p->path, inside) : mem_text(p->path);
+    if (!path)
+        return RELUME_ENOMEM;
+    DIR *dir = opendir(path);
+    if (!dir)
+        status = log_fail(p->log, RELUME_EDATA, "%s: cannot be read; %s", path, strerror(errno));
+    free(path);
+    const struct dirent *e;
+    while (dir && !status && (e = readdir(dir)))
+        status = e->d_name[0] == '.' ? RELUME_OK : list_entry(p, inside, e->d_name);
+    if (dir)
+        closedir(dir);
+    return status;
+}
+
 static relume_status list(struct pictures *p)
 {
-    DIR *dir = opendir(p->path);
-    if (!dir)
-        return log_fail(p->log, RELUME_EDATA, "%s: cannot be read; %s", p->path, strerror(errno));
-    relume_status status = RELUME_OK;
-    for (const struct dirent *e = readdir(dir); e && !status; e = readdir(dir))
-        status = add(p, e->d_name);
-    closedir(dir);
+    const relume_status status = list_folder(p, "");
     if (!status && !p->count)
         return log_fail(p->log, RELUME_EDATA,
                         "%s: expected btf.json, or pictures named like tl030_pl120_tv045_pv020.png",

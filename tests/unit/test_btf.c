@@ -289,6 +289,43 @@ static void test_pictures(void **state)
     test_folder_remove(folder);
 }
 
+// As Bonn packs them: a folder for each view; what else lies there does not matter.
+static void test_view_folders(void **state)
+{
+    (void)state;
+    static const int angles[4][2] = {{0, 0}, {45, 0}, {45, 120}, {45, 240}};
+    char folder[64], path[200];
+    test_folder(folder);
+    for (int v = 0; v < 4; v++) {
+        snprintf(path, sizeof path, "%s/tv%03d_pv%03d", folder, angles[v][0], angles[v][1]);
+        assert_int_equal(mkdir(path, 0777), 0);
+        for (int l = 0; l < 4; l++) {
+            struct relume_image image;
+            snprintf(path, sizeof path, "%s/tv%03d_pv%03d/%05d tl%03d pl%03d tv%03d pv%03d.png",
+                     folder, angles[v][0], angles[v][1], 4 * v + l + 1, angles[l][0], angles[l][1],
+                     angles[v][0], angles[v][1]);
+            CHECK_OK(relume_image_create(&image, W, H, 3));
+            for (int i = 0; i < W * H * 3; i++)
+                image.data[i] = v == 2 && l == 3 ? 0.5f : 0.0f;
+            CHECK_OK(relume_image_save(&image, path, NULL));
+            relume_image_destroy(&image);
+        }
+    }
+    snprintf(path, sizeof path, "%s/tv000_pv000/readme.txt", folder);
+    test_write(path, "x", 1);
+    snprintf(path, sizeof path, "%s/._tl000 pl000 tv000 pv000.png", folder);
+    test_write(path, "x", 1);
+    relume_btf *btf;
+    CHECK_OK(relume_btf_open(&btf, folder, NULL));
+    assert_int_equal(relume_btf_info(btf)->views, 4);
+    assert_int_equal(relume_btf_info(btf)->lights, 4);
+    // 8 bits
+    CHECK_NEAR(float_from_half(relume_btf_picture(btf, 2, 3)[4]), 0.5, 0.005);
+    CHECK_NEAR(float_from_half(relume_btf_picture(btf, 3, 2)[4]), 0.0, 0.0);
+    relume_btf_destroy(&btf);
+    test_folder_remove(folder);
+}
+
 static void expect_refusal(const char *folder, const char *sentence)
 {
     struct test_log log;
@@ -444,6 +481,7 @@ int main(void)
         cmocka_unit_test(test_folder_round_trip),
         cmocka_unit_test(test_part),
         cmocka_unit_test(test_pictures),
+        cmocka_unit_test(test_view_folders),
         cmocka_unit_test(test_bad_pictures),
         cmocka_unit_test(test_capture),
     };

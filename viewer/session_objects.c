@@ -60,6 +60,8 @@ relume_status session_open_objects(struct session *s, const char *path,
     return status;
 }
 
+enum { SIDE = 640 };  // of the picture, where no size is asked for
+
 // One camera far away before +z looks at all of the objects; the eye starts beside it.
 static relume_status make_stage(relume_slabs **out, struct relume_geometry *g,
                                 struct relume_vec3 *eye, const struct relume_objects_info *info)
@@ -90,9 +92,21 @@ static void describe(struct session *s, const struct relume_objects_info *info)
     s->lines[1] = NULL;
 }
 
+// All of the objects from an eye that was asked for, as relume_objects_window sees them.
+static void fit_view(struct relume_camera *camera, const struct session *s)
+{
+    const int width = camera->width ? camera->width : SIDE;
+    const int height = camera->width ? camera->height : SIDE;
+    struct relume_window w;
+    if (camera->aim.field_of_view_deg != 0.0 ||
+        !relume_objects_window(&w, s->objects, camera->eye, &camera->aim, width, height))
+        return;
+    const double half = 0.5 * vec_length(w.right) / relume_window_distance(&w);
+    camera->aim.field_of_view_deg = 2.0 * atan(half) * (180.0 / 3.14159265358979323846);
+}
+
 relume_status session_open_stage(struct session *s, const struct app_state *start)
 {
-    enum { SIDE = 640 };
     const struct relume_objects_info *info = relume_objects_info(s->objects);
     struct app_file file = {.width = SIDE, .height = SIDE, .views = 1, .objects = s->objects};
     struct app_state from = *start;
@@ -106,6 +120,8 @@ relume_status session_open_stage(struct session *s, const struct app_state *star
     if (from.camera.framing == RELUME_FRAME_DEFAULT) {
         from.camera.framing = RELUME_FRAME_EYE;
         from.camera.eye = eye;
+    } else if (from.camera.framing == RELUME_FRAME_EYE) {
+        fit_view(&from.camera, s);
     }
     status = app_start(&app, &file, &from, true, s->log);
     if (status) {

@@ -40,6 +40,7 @@ static const char *const btf_uniforms[] = {
     "sky_turn",
     "sky_rgb",
     "sky_table",
+    "some_lights",
     SHINE_NAMES,
     SHADOW_NAMES,
 };
@@ -365,9 +366,30 @@ static void set_uniforms(const struct things *t, const struct program *program, 
     gl->Uniform1i(at[WITHOUT_COSINE], m->without_cosine);
 }
 
-// Each level of detail adds its part.
+// Lights that one pass sums over: llvmpipe ends all loops of a pixel, without a word, after 65535
+// rounds. A model goes through its components, at most once for each of three views, for four
+// texels at each of up to eight places.
+static int lights_at_once(const struct btf_level *l)
+{
+    enum { MOST_ROUNDS = 60000, PLACES = 4 * 8, DOME_ROUNDS = 16 };
+    const int rounds = PLACES * (DOME_ROUNDS + 3 * l->counts[2]);
+    return rounds < MOST_ROUNDS ? MOST_ROUNDS / rounds : 1;
+}
+
+static void draw_level(const struct things *t, const struct program *program,
+                       const struct place *place, const struct btf_level *l, bool sums)
+{
+    const int lights = l->counts[1], step = sums ? lights_at_once(l) : lights;
+    for (int from = 0; from < lights; from += step) {
+        const int end = from + step < lights ? from + step : lights;
+        t->gl->Uniform2i(program->at[SOME_LIGHTS], from, end);
+        things_draw_whole(t->gl, program, place);
+    }
+}
+
+// Each level of detail adds its part; `sums`: over the measured lights.
 static void draw_levels(const struct things *t, const struct program *program,
-                        const struct target *target, const struct btf_material *m)
+                        const struct target *target, const struct btf_material *m, bool sums)
 {
     const struct gl *gl = t->gl;
     const GLint *at = program->at;
@@ -380,8 +402,7 @@ static void draw_levels(const struct things *t, const struct program *program,
         gl->Uniform4i(at[MAP], l->map[0], l->map[1], l->map[2], l->map[3]);
         gl->Uniform4i(at[COUNTS], l->counts[0], l->counts[1], l->counts[2], l->counts[3]);
         btf_use(m, gl, i);
-        draw_rectangle(gl, program, &place,
-                       (struct app_rectangle){0, 0, place.width, place.height});
+        draw_level(t, program, &place, l, sums);
     }
 }
 
@@ -425,7 +446,7 @@ static relume_status shade_part(struct things *t, int part, int material, int la
     }
     shadow_map_use(t->shadow.layers ? &t->shadow : NULL, gl, program->at + SHADOW, BTF_UNIT_SHADOW);
     if (!status)
-        draw_levels(t, program, &t->shaded, &t->material[material]);
+        draw_levels(t, program, &t->shaded, &t->material[material], false);
     return status;
 }
 
@@ -453,7 +474,7 @@ relume_status things_shade_sky(struct things *t, int part, int material,
     texture_use(gl, BTF_UNIT_TABLE, GL_TEXTURE_BUFFER, m->table);
     gl->Uniform1f(at[SKY_TURN], (float)(-light->rotate_deg * (3.14159265358979 / 180.0)));
     gl->Uniform3f(at[SKY_RGB], light->rgb[0], light->rgb[1], light->rgb[2]);
-    draw_levels(t, program, &t->shown, m);
+    draw_levels(t, program, &t->shown, m, !m->twin->lobes);
     return RELUME_OK;
 }
 

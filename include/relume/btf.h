@@ -97,9 +97,10 @@ RELUME_RESULT relume_status relume_btf_create(relume_btf **out, const struct rel
 // Open a folder: btf.json beside values.npy (docs/btf.md); a capture.json of the views of one slab
 // under distant lights (the window is the sample); or pictures whose names hold the angles
 // in degrees, tl (light elevation from the pole), pl (light azimuth), tv, pv in any order, like
-// tl030_pl120_tv045_pv020.png. Or a .btf file of the University of Bonn, whose values are
-// multiplied out into temporary data. Returns RELUME_EDATA, RELUME_ENOMEM, RELUME_ECANCEL,
-// RELUME_ESYSTEM without room for temporary data, RELUME_EINVAL for a part that is not there.
+// tl030_pl120_tv045_pv020.png, there or one level below. Or a .btf file of the University of Bonn,
+// whose values are multiplied out into temporary data. Returns RELUME_EDATA, RELUME_ENOMEM,
+// RELUME_ECANCEL, RELUME_ESYSTEM without room for temporary data, RELUME_EINVAL for a part that is
+// not there.
 RELUME_RESULT relume_status relume_btf_open(relume_btf **out, const char *path,
                                             const struct relume_btf_params *params);
 // The folder appears whole or not at all. RELUME_EINVAL (also for a part), RELUME_EIO.
@@ -202,7 +203,7 @@ struct relume_btf_cost {
 RELUME_API struct relume_btf_cost relume_btf_fitted_cost(const relume_btf_fitted *fitted);
 
 // The measured values as a model that is exact, for what takes models. Nothing is copied: the BTF
-// must outlive it; it cannot be saved. RELUME_ENOMEM.
+// must outlive it; it cannot be saved. RELUME_EDATA for values that are not finite, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_as_model(relume_btf_fitted **out, const relume_btf *btf,
                                                 const struct relume_log *log);
 

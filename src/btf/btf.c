@@ -26,15 +26,18 @@ static relume_status copy_image(struct relume_image *out, const struct relume_im
     return status;
 }
 
-static relume_status check(const struct relume_btf_info *info, const struct relume_log *log)
+static relume_status check(const struct relume_btf_info *info, const char *path,
+                           const struct relume_log *log)
 {
     const struct relume_limits limits = limits_or_default(NULL);
+    const char *colon = path ? ": " : "";
+    path = path ? path : "";
     if (!limits_allow(&limits, info->width, info->height))
-        return log_fail(log, RELUME_EDATA, "texels: expected 1 to 65536 a side; found %d x %d",
-                        info->width, info->height);
+        return log_fail(log, RELUME_EDATA, "%s%stexels: expected 1 to 65536 a side; found %d x %d",
+                        path, colon, info->width, info->height);
     if (info->views > limits.max_views || info->lights > limits.max_lights)
-        return log_fail(log, RELUME_EDATA, "directions: expected at most %d; found %d x %d",
-                        limits.max_views, info->views, info->lights);
+        return log_fail(log, RELUME_EDATA, "%s%sdirections: expected at most %d; found %d x %d",
+                        path, colon, limits.max_views, info->views, info->lights);
     return RELUME_OK;
 }
 
@@ -58,11 +61,30 @@ static bool copy_parts(relume_btf *b, const struct relume_btf_info *info)
     return true;
 }
 
-relume_status btf_start(relume_btf **out, const struct relume_btf_info *info,
+struct named_log {
+    const struct relume_log *log;
+    const char *path, *what;
+};
+
+static void say_with_name(void *user, enum relume_level level, const char *text)
+{
+    const struct named_log *n = user;
+    log_line(n->log, level, "%s: %s %s", n->path, n->what, text);
+}
+
+relume_status btf_make_dome(relume_dome **out, const vec3 *directions, int n, const char *path,
+                            const char *what, const struct relume_log *log)
+{
+    struct named_log named = {log, path, what};
+    const struct relume_log own = {.message = say_with_name, .user = &named};
+    return relume_dome_create(out, directions, n, path ? &own : log);
+}
+
+relume_status btf_start(relume_btf **out, const struct relume_btf_info *info, const char *path,
                         const struct relume_log *log)
 {
     *out = NULL;
-    relume_status status = check(info, log);
+    relume_status status = check(info, path, log);
     if (status)
         return status;
     relume_btf *b = mem_zeroed(1, sizeof *b);
@@ -70,11 +92,12 @@ relume_status btf_start(relume_btf **out, const struct relume_btf_info *info,
         return RELUME_ENOMEM;
     b->info = *info;
     b->info.relief = b->info.normals = (struct relume_image){0};
-    status = copy_parts(b, info) ? RELUME_OK : RELUME_ENOMEM;
+    b->path = path ? mem_text(path) : NULL;
+    status = copy_parts(b, info) && !b->path == !path ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
-        status = relume_dome_create(&b->views, b->view, info->views, log);
+        status = btf_make_dome(&b->views, b->view, info->views, path, "view", log);
     if (!status)
-        status = relume_dome_create(&b->lights, b->light, info->lights, log);
+        status = btf_make_dome(&b->lights, b->light, info->lights, path, "light", log);
     if (!status)
         status = copy_image(&b->info.relief, &info->relief);
     if (!status)
@@ -113,7 +136,7 @@ relume_status btf_make_room(relume_btf *btf, const struct relume_btf_params *par
 relume_status relume_btf_create(relume_btf **out, const struct relume_btf_info *info,
                                 const struct relume_btf_params *params)
 {
-    relume_status status = btf_start(out, info, params ? params->log : NULL);
+    relume_status status = btf_start(out, info, NULL, params ? params->log : NULL);
     if (!status)
         status = btf_make_room(*out, params);
     if (status && *out)
@@ -135,6 +158,7 @@ void relume_btf_destroy(relume_btf **btf)
     relume_image_destroy(&b->info.relief);
     relume_image_destroy(&b->info.normals);
     free((void *)b->info.name);
+    free(b->path);
     free(b->view);
     free(b->light);
     free(b->view_at);
@@ -187,7 +211,7 @@ relume_status relume_btf_part(relume_btf **out, const relume_btf *whole, const i
         struct relume_btf_info info = whole->info;
         info.views = view_count, info.view = v;
         info.lights = light_count, info.light = l;
-        status = btf_start(out, &info, log);
+        status = btf_start(out, &info, whole->path, log);
     }
     if (!status) {
         (*out)->values = whole->values;

@@ -9,6 +9,7 @@
 
 struct relume_btf {
     struct relume_btf_info info;  // owns what it points to
+    char *path;                   // where it was read from, or NULL
     vec3 *view, *light;
     relume_dome *views, *lights;
     const uint16_t *values;   // [stored view][stored light][height][width][3]
@@ -23,9 +24,19 @@ static inline size_t btf_texels(const relume_btf *btf)
     return (size_t)btf->info.width * (size_t)btf->info.height;
 }
 
-// Everything of a BTF but its values. RELUME_EDATA for directions that cannot be used.
-relume_status btf_start(relume_btf **out, const struct relume_btf_info *info,
+// What sentences about it begin with.
+static inline const char *btf_name(const relume_btf *btf)
+{
+    return btf->path ? btf->path : btf->info.name;
+}
+
+// Everything of a BTF but its values; `path` is where it comes from, or NULL. RELUME_EDATA for
+// directions that cannot be used.
+relume_status btf_start(relume_btf **out, const struct relume_btf_info *info, const char *path,
                         const struct relume_log *log);
+// relume_dome_create, with sentences that begin "PATH: WHAT "; `path` may be NULL.
+relume_status btf_make_dome(relume_dome **out, const vec3 *directions, int n, const char *path,
+                            const char *what, const struct relume_log *log);
 // Zeroed scratch memory as its values.
 relume_status btf_make_room(relume_btf *btf, const struct relume_btf_params *params);
 // A folder of pictures named by their angles.

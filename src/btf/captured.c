@@ -74,7 +74,7 @@ static relume_status start(relume_btf **out, const struct captured *c, const cha
     if (behind)
         log_line(log, RELUME_WARNING, "%s: %d of %d lights stand behind the sample; left out", path,
                  behind, c->m->lights);
-    const relume_status status = btf_start(out, &info, log);
+    const relume_status status = btf_start(out, &info, path, log);
     return status ? status : btf_make_room(*out, params);
 }
 

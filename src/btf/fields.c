@@ -12,7 +12,14 @@ enum { NEAR = 6 };
 static const double START_N = 10.0;
 // A lobe may stand this much over the brightest sample: peaks fall between lights.
 static const double OVERSHOOT = 1.5;
-static const double MOST_ALBEDO = 64.0;  // halfs stay far from overflow, also after lighting
+// Of white, or of the brightest value where that is more: halfs stay far from overflow, also after
+// lighting.
+static const double MOST_ALBEDO = 64.0;
+// Values from so dark to so bright are fitted as they are, others in units that bring them there.
+static const double DARKEST = 1.0 / 64, BRIGHTEST = 8.0;
+// What a fit without a floor must leave of the squared error to be taken: lobes that hold the matt
+// part as well are further from their environment (ambient.h) than a floor is.
+static const double MATT = 0.03;
 
 void fields_layout(relume_btf_fitted *m, size_t entries, bool each)
 {
@@ -113,10 +120,18 @@ static struct lobe peak_start(const struct fields *s, const double *rest)
 struct field_work {
     double *y, *rest;  // [lights]
     double *sum;       // [views][lights]: of lobes
+    double top, unit;  // the brightest value; lobes are fitted to values over `unit`
 };
 
-static void fit_view(const struct fields *s, struct lobe *lobe, const struct field_work *w,
-                     double top)
+// One entry as it is stored.
+struct stored {
+    uint16_t *diffuse, *specular;  // [3], [views][3]
+    float *lobe;                   // [views][lobes][4]
+    size_t speculars, lobes;       // how many numbers
+};
+
+static double fit_view(const struct fields *s, struct lobe *lobe, const struct field_work *w,
+                       double top)
 {
     const int n = s->m->lights, count = s->m->lobes;
     const struct lobe_samples samples = {(const double(*)[3])s->light, NULL, w->y, n};
@@ -129,9 +144,10 @@ static void fit_view(const struct fields *s, struct lobe *lobe, const struct fie
         }
         lobe[j] = peak_start(s, w->rest);
     }
-    lobes_fit(lobe, count, &samples);
+    const double error = lobes_fit(lobe, count, &samples);
     for (int j = 0; j < count; j++)
         lobe_limit(&lobe[j], OVERSHOOT * top);
+    return error;
 }
 
 static double luminance(const float *rgb)
@@ -152,68 +168,92 @@ static double pedestal(const float *values, int views, int lights)
     return sum / views;
 }
 
-// Lobes as they are stored.
-static void store_lobes(float *to, struct lobe *lobe, int count)
+// Lobes as they are stored, back in the units of the values.
+static void store_lobes(float *to, struct lobe *lobe, int count, double unit)
 {
     for (int j = 0; j < count; j++, to += 4) {
+        const double length = pow(unit, 1.0 / lobe[j].n);
         for (int c = 0; c < 3; c++)
-            lobe[j].t[c] = to[c] = (float)lobe[j].t[c];
+            lobe[j].t[c] = to[c] = (float)(length * lobe[j].t[c]);
         lobe[j].n = to[3] = (float)lobe[j].n;
     }
 }
 
-static double clipped(double x)
+static double clipped(double x, double brightest)
 {
-    return fmin(fmax(x, 0.0), MOST_ALBEDO);
+    return fmin(fmax(x, 0.0), MOST_ALBEDO * fmax(brightest, 1.0));
 }
 
 // Both rho of one channel: the linear least squares over all views, with each rho_v eliminated.
-static void solve_albedo(const struct fields *s, size_t entry, const double *sum,
-                         const float *values, int channel)
+// Returns the squared error of what is stored.
+static double solve_albedo(const struct fields *s, const struct stored *to,
+                           const struct field_work *w, const float *values, size_t channel)
 {
     const size_t views = (size_t)s->m->views, lights = (size_t)s->m->lights;
-    double over = 0.0, under = 0.0;
+    double over = 0.0, under = 0.0, error = 0.0;
     for (size_t v = 0; v < views; v++) {
         double s1 = 0.0, s2 = 0.0, c1 = 0.0, sc = 0.0;
         for (size_t l = 0; l < lights; l++) {
-            const double lobe = sum[v * lights + l];
-            const double value = (double)values[3 * (v * lights + l) + (size_t)channel];
+            const double lobe = w->sum[v * lights + l];
+            const double value = (double)values[3 * (v * lights + l) + channel];
             s1 += lobe, s2 += lobe * lobe, c1 += value, sc += lobe * value;
         }
         const double share = s2 > 1e-20 ? s1 / s2 : 0.0;
         over += c1 - share * sc;
         under += (double)lights - share * s1;
     }
-    uint16_t *diffuse = model_halfs(s->m, FIELD_DIFFUSE) + 3 * entry + channel;
-    *diffuse = half_from_float((float)clipped(under > 1e-9 ? over / under : 0.0));
-    const double rho_d = (double)float_from_half(*diffuse);
-    uint16_t *specular = model_halfs(s->m, FIELD_SPECULAR) + 3 * entry * views + channel;
+    to->diffuse[channel] = model_half(clipped(under > 1e-9 ? over / under : 0.0, w->top));
+    const double rho_d = (double)float_from_half(to->diffuse[channel]);
     for (size_t v = 0; v < views; v++) {
-        double s2 = 0.0, sc = 0.0;
+        double s2 = 0.0, sc = 0.0, c2 = 0.0;
         for (size_t l = 0; l < lights; l++) {
-            const double lobe = sum[v * lights + l];
-            s2 += lobe * lobe;
-            sc += lobe * ((double)values[3 * (v * lights + l) + (size_t)channel] - rho_d);
+            const double lobe = w->sum[v * lights + l];
+            const double rest = (double)values[3 * (v * lights + l) + channel] - rho_d;
+            s2 += lobe * lobe, sc += lobe * rest, c2 += rest * rest;
         }
-        specular[3 * v] = half_from_float((float)clipped(s2 > 1e-20 ? sc / s2 : 0.0));
+        uint16_t *specular = to->specular + 3 * v + channel;
+        *specular = model_half(clipped(s2 > 1e-20 ? sc / s2 : 0.0, 1.0));
+        const double rho_v = (double)float_from_half(*specular);
+        error += c2 - 2.0 * rho_v * sc + rho_v * rho_v * s2;
     }
+    return error;
 }
 
-static void fit_entry(const struct fields *s, size_t entry, const float *values,
-                      struct field_work *w)
+// What view `v` shows over `floor_value`; returns the greatest.
+static double take_view(const struct fields *s, int v, double floor_value, const float *values,
+                        struct field_work *w)
+{
+    double top = 0.0;
+    for (int l = 0; l < s->m->lights; l++) {
+        w->y[l] = (luminance(values + 3 * (v * s->m->lights + l)) - floor_value) / w->unit;
+        top = fmax(top, w->y[l]);
+    }
+    return top;
+}
+
+// Whether lobes alone fit one view far better than lobes on a floor: a look at one view of many,
+// which spares most entries the second fit.
+static bool seems_matt(const struct fields *s, double floor_value, const float *values,
+                       struct field_work *w)
+{
+    struct lobe lobe[MODEL_LOBES];
+    double error[2];
+    for (int i = 0; i < 2; i++)
+        error[i] = fit_view(s, lobe, w, take_view(s, 0, i ? 0.0 : floor_value, values, w));
+    return error[1] < MATT * error[0];
+}
+
+// Lobes on `floor_value`, then the colours; returns the squared error.
+static double fit_on(const struct fields *s, const struct stored *to, double floor_value,
+                     const float *values, struct field_work *w)
 {
     const int views = s->m->views, lights = s->m->lights, count = s->m->lobes;
-    const double floor_value = pedestal(values, views, lights);
-    float *to = model_floats(s->m, FIELD_LOBE) + entry * (size_t)views * (size_t)count * 4;
-    for (int v = 0; v < views; v++, to += 4 * count) {
+    float *next = to->lobe;
+    for (int v = 0; v < views; v++, next += 4 * count) {
         struct lobe lobe[MODEL_LOBES];
-        double top = 0.0;
-        for (int l = 0; l < lights; l++) {
-            w->y[l] = luminance(values + 3 * (v * lights + l)) - floor_value;
-            top = fmax(top, w->y[l]);
-        }
+        const double top = take_view(s, v, floor_value, values, w);
         fit_view(s, lobe, w, top);
-        store_lobes(to, lobe, count);
+        store_lobes(next, lobe, count, w->unit);
         for (int l = 0; l < lights; l++) {
             double *sum = &w->sum[v * lights + l];
             *sum = 0.0;
@@ -221,20 +261,68 @@ static void fit_entry(const struct fields *s, size_t entry, const float *values,
                 *sum += lobe_at(&lobe[j], s->light[l]);
         }
     }
-    for (int c = 0; c < 3; c++)
-        solve_albedo(s, entry, w->sum, values, c);
+    double error = 0.0;
+    for (size_t c = 0; c < 3; c++)
+        error += solve_albedo(s, to, w, values, c);
+    return error;
+}
+
+static void copy(const struct stored *to, const struct stored *from)
+{
+    memcpy(to->diffuse, from->diffuse, 3 * sizeof *to->diffuse);
+    memcpy(to->specular, from->specular, to->speculars * sizeof *to->specular);
+    memcpy(to->lobe, from->lobe, to->lobes * sizeof *to->lobe);
+}
+
+// What is darkest in every view may be a floor that lobes stand on, or, as where light grazes a
+// matt surface, part of the lobes. `spare` is overwritten.
+static void fit_entry(const struct fields *s, const struct stored *to, const struct stored *spare,
+                      const float *values, struct field_work *w)
+{
+    const int views = s->m->views, lights = s->m->lights;
+    const double floor_value = pedestal(values, views, lights);
+    w->top = 0.0;
+    for (int i = 0; i < views * lights; i++)
+        w->top = fmax(w->top, luminance(values + 3 * i));
+    w->unit = w->top > BRIGHTEST                 ? w->top / BRIGHTEST
+              : w->top > 0.0 && w->top < DARKEST ? w->top / DARKEST
+                                                 : 1.0;
+    const double error = fit_on(s, to, floor_value, values, w);
+    if (seems_matt(s, floor_value, values, w) && fit_on(s, spare, 0.0, values, w) < MATT * error)
+        copy(to, spare);
+}
+
+static struct stored stored_at(const struct fields *s, size_t entry)
+{
+    const size_t views = (size_t)s->m->views, lobes = 4 * views * (size_t)s->m->lobes;
+    return (struct stored){
+        .diffuse = model_halfs(s->m, FIELD_DIFFUSE) + 3 * entry,
+        .specular = model_halfs(s->m, FIELD_SPECULAR) + 3 * entry * views,
+        .lobe = model_floats(s->m, FIELD_LOBE) + entry * lobes,
+        .speculars = 3 * views,
+        .lobes = lobes,
+    };
 }
 
 bool fields_fit(const struct fields *s, size_t entry, const float *values)
 {
     const size_t lights = (size_t)s->m->lights;
+    const struct stored to = stored_at(s, entry);
     double *room = mem_array(lights * ((size_t)s->m->views + 2), sizeof *room);
-    if (!room)
-        return false;
-    struct field_work w = {room, room + lights, room + 2 * lights};
-    fit_entry(s, entry, values, &w);
+    uint16_t *halfs = mem_array(3 + to.speculars, sizeof *halfs);
+    struct stored spare = to;
+    spare.diffuse = halfs;
+    spare.lobe = mem_array(to.lobes, sizeof *spare.lobe);
+    const bool good = room && halfs && spare.lobe;
+    if (good) {
+        struct field_work w = {.y = room, .rest = room + lights, .sum = room + 2 * lights};
+        spare.specular = halfs + 3;
+        fit_entry(s, &to, &spare, values, &w);
+    }
     free(room);
-    return true;
+    free(halfs);
+    free(spare.lobe);
+    return good;
 }
 
 void fields_eval(const relume_btf_fitted *m, size_t entry, const struct model_at *at, float rgb[3])

@@ -121,7 +121,7 @@ static relume_status open_json(relume_btf **out, const jvalue *root, const struc
     if (!status)
         status = open_truth(&info.normals, root, "normals", 3, &info, f);
     if (!status)
-        status = btf_start(out, &info, f->log);
+        status = btf_start(out, &info, f->path, f->log);
     if (!status)
         status = open_values(*out, f);
     relume_image_destroy(&info.relief);

@@ -156,13 +156,13 @@ relume_status relume_btf_judge(struct relume_btf_error *out, const relume_btf_fi
     struct judge j = {.model = fitted, .btf = btf};
     if (fitted->width != btf->info.width || fitted->height != btf->info.height)
         return log_fail(p.log, RELUME_EINVAL, "%s: %d x %d texels; expected %d x %d as the model",
-                        btf->info.name, btf->info.width, btf->info.height, fitted->width,
+                        btf_name(btf), btf->info.width, btf->info.height, fitted->width,
                         fitted->height);
     relume_status status = prepare(&j, p.unseen);
     if (!status && !j.pairs)
         status = log_fail(p.log, RELUME_EINVAL,
                           "%s: the model was fitted to all its directions; expected others",
-                          btf->info.name);
+                          btf_name(btf));
     if (!status)
         status = btf_for_texels(btf, p.threads, p.log, "comparing", &j, judge_texel);
     if (!status) {

@@ -126,7 +126,7 @@ static relume_status check_values(const relume_btf *btf, const struct relume_log
             if (broken)
                 return log_fail(log, RELUME_EDATA,
                                 "%s: view %d, light %d: NaN or infinity; expected finite values",
-                                btf->info.name, v, l);
+                                btf_name(btf), v, l);
         }
     return RELUME_OK;
 }
@@ -228,7 +228,10 @@ relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
 relume_status relume_btf_as_model(relume_btf_fitted **out, const relume_btf *btf,
                                   const struct relume_log *log)
 {
-    return fit_level(out, btf, &model_table, relume_btf_fit_params(.log = log), NULL);
+    *out = NULL;
+    const relume_status status = check_values(btf, log);
+    return status ? status
+                  : fit_level(out, btf, &model_table, relume_btf_fit_params(.log = log), NULL);
 }
 
 // ---------------------------------------------------------------- reading back

@@ -7,6 +7,9 @@
 #define BTF_MODEL_H
 
 #include "btf/btf.h"
+#include "image/half.h"
+
+#include <math.h>
 
 enum { MODEL_ARRAYS = 6, MODEL_LOBES = 4 };
 
@@ -88,6 +91,12 @@ relume_status model_make_arrays(relume_btf_fitted *m);
 static inline uint16_t *model_halfs(const relume_btf_fitted *m, int array)
 {
     return m->array[array].data;
+}
+
+// What a model stores must stay finite, also where values are as large as halfs can be.
+static inline uint16_t model_half(double x)
+{
+    return half_from_float((float)fmin(fmax(x, -65504.0), 65504.0));
 }
 
 static inline float *model_floats(const relume_btf_fitted *m, int array)

@@ -1,7 +1,8 @@
 // model_bump.c - bump mapping with the mean BRDF of the sample: a colour and a normal a texel, and
 // one table of view and light that is looked up in the frame of the normal. Normals come from the
 // view nearest to the pole, by photometric stereo (Woodham 1980) without the darkest and brightest
-// lights.
+// lights. Stereo needs what is seen, with n.l; and where values lack it, what the table says of the
+// turned light is times that light's own cosine, not that of the plane.
 #include "base/memory.h"
 #include "btf/model.h"
 #include "image/half.h"
@@ -77,7 +78,9 @@ static void measure(void *context, size_t texel, const float *values)
             mean[c] += (double)values[3 * i + (size_t)c] / (double)pairs;
     const float *top = values + 3 * (size_t)w->top_view * (size_t)w->m->lights;
     for (int l = 0; l < lights; l++)
-        list[l] = (struct sample){(double)(top[3 * l] + top[3 * l + 1] + top[3 * l + 2]), l};
+        list[l] = (struct sample){(double)(top[3 * l] + top[3 * l + 1] + top[3 * l + 2]) *
+                                      (w->m->without_cosine ? w->m->light[l].z : 1.0),
+                                  l};
     qsort(list, (size_t)lights, sizeof *list, by_value);
     const vec3 n = normal_of(w->m, list);
     const float normal[3] = {(float)n.x, (float)n.y, (float)n.z};
@@ -120,6 +123,15 @@ static relume_status fit(struct fitting *f)
     return status;
 }
 
+static const double LEAST_COSINE = 1e-6;
+
+// What the table's value is times: the share that arrives below its lowest lights, or, where values
+// lack n.l, the cosine of the light on the turned plane over that on the plane, which follows.
+static double scale_of(const relume_btf_fitted *m, vec3 light, vec3 turned, double rim)
+{
+    return m->without_cosine ? fmax(turned.z, 0.0) / fmax(light.z, LEAST_COSINE) : rim;
+}
+
 static void eval(const relume_btf_fitted *m, const struct model_at *at, float rgb[3])
 {
     const uint16_t *color = model_halfs(m, COLOR) + 3 * at->texel;
@@ -128,7 +140,9 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
         vec3_unit(vec3_of((double)float_from_half(normal[0]), (double)float_from_half(normal[1]),
                           (double)float_from_half(normal[2])));
     const struct relume_dome_blend v = relume_dome_at(m->view_dome, vec3_upright(at->v, n));
-    const struct relume_dome_blend l = relume_dome_at(m->light_dome, vec3_upright(at->l, n));
+    const vec3 turned = vec3_upright(at->l, n);
+    const struct relume_dome_blend l = relume_dome_at(m->light_dome, turned);
+    const double scale = scale_of(m, at->l, turned, l.rim);
     double sum[3] = {0.0, 0.0, 0.0};
     for (int i = 0; i < v.count; i++)
         for (int j = 0; j < l.count; j++) {
@@ -138,7 +152,7 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
                           (double)float_from_half(model_halfs(m, MEAN)[3 * pair + (size_t)c]);
         }
     for (int c = 0; c < 3; c++)
-        rgb[c] = float_from_half(color[c]) * (float)(l.rim * sum[c]);
+        rgb[c] = float_from_half(color[c]) * (float)(scale * sum[c]);
 }
 
 // Eye and light turn with the normal; nine pairs of the table are blended.

@@ -19,7 +19,9 @@ enum { UNKNOWNS = MODEL_LOBES + 1, ROUNDS = 2 };
 enum { FITTED_PAIRS = 2187 };
 // The share of pairs that show no more than the Lambertian part.
 static const double DIFFUSE_RANK = 0.25;
-static const double MOST_ALBEDO = 64.0, MOST_FACTOR = 64.0;
+// Values up to this are fitted as they are, brighter ones in units that bring them there.
+static const double BRIGHTEST = 8.0;
+static const double MOST_ALBEDO = 64.0, MOST_FACTOR = 64.0;  // albedos: over `unit`
 
 static void layout(relume_btf_fitted *m)
 {
@@ -51,6 +53,7 @@ struct texel {
     double *y, *rest;            // [fitted_count]
     double *lobe;                // [pairs][lobes]: values
     double *factor;              // [views]
+    double unit;                 // lobes are fitted to values over this
     double albedo[3][UNKNOWNS];  // of each colour: rho_d, rho_j
 };
 
@@ -114,8 +117,14 @@ static void fit_lobes(const struct work *w, size_t texel, const float *values, s
 {
     const int count = w->m->lobes;
     struct lobe lobe[MODEL_LOBES];
-    for (size_t i = 0; i < w->fitted_count; i++)
+    double top = 0.0;
+    for (size_t i = 0; i < w->fitted_count; i++) {
         s->y[i] = luminance(values + 3 * i * w->stride);
+        top = fmax(top, s->y[i]);
+    }
+    s->unit = fmax(top / BRIGHTEST, 1.0);
+    for (size_t i = 0; i < w->fitted_count; i++)
+        s->y[i] /= s->unit;
     subtract_diffuse(w, s);
     const struct lobe_samples samples = {(const double(*)[3])w->fitted, w->fitted_cosine, s->y,
                                          (int)w->fitted_count};
@@ -161,7 +170,8 @@ static bool fit_albedo(const struct work *w, const float *values, struct texel *
         return false;
     for (int c = 0; c < 3; c++)
         for (int a = 0; a < n; a++)
-            s->albedo[c][a] = fmin(fmax(right[c * n + a], -MOST_ALBEDO), MOST_ALBEDO);
+            s->albedo[c][a] =
+                s->unit * fmin(fmax(right[c * n + a] / s->unit, -MOST_ALBEDO), MOST_ALBEDO);
     return true;
 }
 
@@ -200,10 +210,10 @@ static void store(const struct work *w, size_t texel, const struct texel *s)
 {
     const size_t lobes = (size_t)w->m->lobes, views = (size_t)w->m->views;
     for (size_t c = 0; c < 3; c++) {
-        model_halfs(w->m, DIFFUSE)[3 * texel + c] = half_from_float((float)s->albedo[c][0]);
+        model_halfs(w->m, DIFFUSE)[3 * texel + c] = model_half(s->albedo[c][0]);
         for (size_t j = 0; j < lobes; j++)
             model_halfs(w->m, SPECULAR)[3 * (texel * lobes + j) + c] =
-                half_from_float((float)s->albedo[c][j + 1]);
+                model_half(s->albedo[c][j + 1]);
     }
     for (size_t v = 0; v < views && w->scaled; v++)
         model_floats(w->m, FACTOR)[texel * views + v] = (float)s->factor[v];

@@ -41,7 +41,7 @@ static void fit_texel(void *context, size_t texel, const float *values)
                     sum[t][c] += w->solution[l * TERMS + (size_t)t] * (double)values[c];
         for (int t = 0; t < TERMS; t++)
             for (int c = 0; c < 3; c++)
-                to[3 * t + c] = half_from_float((float)sum[t][c]);
+                to[3 * t + c] = model_half(sum[t][c]);
     }
 }
 

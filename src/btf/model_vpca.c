@@ -33,6 +33,8 @@ struct view {
     double *gram;    // [lights][lights]
     double *vector;  // [count][lights]
     double *values_of;
+    double longest;  // row, squared
+    double scale;    // of textures, so that halfs hold them; weights make up for it
 };
 
 // Rows of `n` values from `first` on, and their means.
@@ -49,8 +51,12 @@ static void load(const relume_btf *btf, struct view *w, size_t first, size_t n, 
             sum += row[l];
         mean[first + i] = half_from_float((float)(sum / w->lights));
         const double stored = (double)float_from_half(mean[first + i]);
-        for (int l = 0; l < w->lights; l++)
+        double squared = 0.0;
+        for (int l = 0; l < w->lights; l++) {
             row[l] -= stored;
+            squared += row[l] * row[l];
+        }
+        w->longest = fmax(w->longest, squared);
     }
 }
 
@@ -59,7 +65,8 @@ static size_t batch(const struct view *w, size_t first)
     return w->values - first < BATCH ? w->values - first : BATCH;
 }
 
-// Textures are scores, in the units of the values; weights are unit vectors over the lights.
+// Textures are scores, in the units of the values (very bright ones scaled); weights are unit
+// vectors over the lights.
 static void project(struct view *w, size_t first, size_t n, uint16_t *texture)
 {
     for (size_t i = 0; i < n; i++)
@@ -69,7 +76,7 @@ static void project(struct view *w, size_t first, size_t n, uint16_t *texture)
             double sum = 0.0;
             for (int l = 0; l < w->lights; l++)
                 sum += row[l] * vector[l];
-            texture[(size_t)k * w->values + first + i] = half_from_float((float)sum);
+            texture[(size_t)k * w->values + first + i] = model_half(w->scale * sum);
         }
 }
 
@@ -87,13 +94,15 @@ static bool solve(struct view *w, const struct fitting *f)
     }
     if (!lsq_eigenvectors(w->gram, w->lights, w->count, w->values_of, w->vector))
         return false;
+    for (w->scale = 1.0; w->scale * sqrt(w->longest) > 65504.0;)
+        w->scale *= 0.5;  // an even power of two costs no digit
     for (size_t first = 0; first < w->values; first += BATCH) {
         load(f->btf, w, first, batch(w, first), mean);
         project(w, first, batch(w, first), texture);
     }
     for (size_t l = 0; l < lights; l++)
         for (size_t k = 0; k < count; k++)
-            weight[l * count + k] = half_from_float((float)w->vector[k * lights + l]);
+            weight[l * count + k] = model_half(w->vector[k * lights + l] / w->scale);
     return true;
 }
 

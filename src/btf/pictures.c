@@ -10,6 +10,7 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 struct angles {
     double theta_deg, phi_deg;
@@ -61,17 +62,27 @@ static struct angles normal_angles(double theta_deg, double phi_deg)
     return (struct angles){theta_deg, theta_deg > 0.0 ? fmod(phi_deg, 360.0) : 0.0};
 }
 
-// 1: a picture of the BTF; 0: some other file; -1: angles that cannot be.
+// How many of the four angles are there: light from the pole, around; view from the pole, around.
+static int angles_in(const char *name, double angle[4])
+{
+    return angle_in(name, "tl", &angle[0]) + angle_in(name, "pl", &angle[1]) +
+           angle_in(name, "tv", &angle[2]) + angle_in(name, "pv", &angle[3]);
+}
+
+// 1: a picture of the BTF; 0: some other file; -1: angles that cannot be. The folder may name the
+// view for all that is in it.
 static int parse(struct picture *p, const char *name)
 {
-    double tl, pl, tv, pv;
-    const int found = angle_in(name, "tl", &tl) + angle_in(name, "pl", &pl) +
-                      angle_in(name, "tv", &tv) + angle_in(name, "pv", &pv);
-    if (found < 4)
-        return found ? -1 : 0;
-    p->light = normal_angles(tl, pl);
-    p->view = normal_angles(tv, pv);
-    return tl < 90.0 && tv < 90.0 && pl <= 360.0 && pv <= 360.0 ? 1 : -1;
+    const char *slash = strrchr(name, '/');
+    double a[4];
+    const int found = angles_in(slash ? slash + 1 : name, a);
+    if (found == 0)
+        return 0;
+    if (found < 4 && angles_in(name, a) < 4)
+        return -1;
+    p->light = normal_angles(a[0], a[1]);
+    p->view = normal_angles(a[2], a[3]);
+    return a[0] < 90.0 && a[2] < 90.0 && a[1] <= 360.0 && a[3] <= 360.0 ? 1 : -1;
 }
 
 static bool grow(struct pictures *p)
@@ -112,15 +123,52 @@ static int by_name(const void *a, const void *b)
     return strcmp(((const struct picture *)a)->name, ((const struct picture *)b)->name);
 }
 
+static bool is_folder(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+static relume_status list_folder(struct pictures *p, const char *inside);
+
+static relume_status list_entry(struct pictures *p, const char *inside, const char *entry)
+{
+    const bool top = !*inside;
+    char *name = top ? mem_text(entry) : mem_format("%s/%s", inside, entry);
+    char *path = name ? mem_format("%s/%s", p->path, name) : NULL;
+    relume_status status = path ? RELUME_OK : RELUME_ENOMEM;
+    if (path && !is_folder(path))
+        status = add(p, name);
+    else if (path && top)
+        status = list_folder(p, name);
+    free(path);
+    free(name);
+    return status;
+}
+
+// The pictures of a folder inside that of the BTF ("": this itself) and there of folders one level
+// below: Bonn keeps each view in its own, tv000_pv000/00001 tl000 pl000 tv000 pv000.jpg.
+static relume_status list_folder(struct pictures *p, const char *inside)
+{
+    relume_status status = RELUME_OK;
+    char *path = *inside ? mem_format("%s/%s", p->path, inside) : mem_text(p->path);
+    if (!path)
+        return RELUME_ENOMEM;
+    DIR *dir = opendir(path);
+    if (!dir)
+        status = log_fail(p->log, RELUME_EDATA, "%s: cannot be read; %s", path, strerror(errno));
+    free(path);
+    const struct dirent *e;
+    while (dir && !status && (e = readdir(dir)))
+        status = e->d_name[0] == '.' ? RELUME_OK : list_entry(p, inside, e->d_name);
+    if (dir)
+        closedir(dir);
+    return status;
+}
+
 static relume_status list(struct pictures *p)
 {
-    DIR *dir = opendir(p->path);
-    if (!dir)
-        return log_fail(p->log, RELUME_EDATA, "%s: cannot be read; %s", p->path, strerror(errno));
-    relume_status status = RELUME_OK;
-    for (const struct dirent *e = readdir(dir); e && !status; e = readdir(dir))
-        status = add(p, e->d_name);
-    closedir(dir);
+    const relume_status status = list_folder(p, "");
     if (!status && !p->count)
         return log_fail(p->log, RELUME_EDATA,
                         "%s: expected btf.json, or pictures named like tl030_pl120_tv045_pv020.png",
@@ -161,8 +209,53 @@ static relume_status missing(const struct pictures *p, int view, int light)
     const struct angles v = p->views[view], l = p->lights[light];
     return log_fail(p->log, RELUME_EDATA,
                     "%s: no picture for tl%03g_pl%03g_tv%03g_pv%03g; expected one of every light "
-                    "and view (or fill the gaps)",
+                    "and view, or --fill to interpolate",
                     p->path, l.theta_deg, l.phi_deg, v.theta_deg, v.phi_deg);
+}
+
+// Pictures that have direction `which` of the views or lights, and the first of them.
+static int count_of(const struct pictures *p, bool view, int which, const struct picture **first)
+{
+    const int n = view ? p->light_count : p->view_count;
+    int count = 0;
+    *first = NULL;
+    for (int i = 0; i < n; i++) {
+        const int v = view ? which : i, l = view ? i : which;
+        const struct picture *one = p->grid[(size_t)v * (size_t)p->light_count + (size_t)l];
+        *first = *first ? *first : one;
+        count += one != NULL;
+    }
+    return count;
+}
+
+// A direction of far fewer pictures than others was not measured: somebody mistyped an angle.
+static relume_status find_strays_of(const struct pictures *p, bool view)
+{
+    enum { FEW = 4 };  // less than one for so many of another direction
+    const int n = view ? p->view_count : p->light_count;
+    const struct picture *first;
+    int most = 0;
+    for (int i = 0; i < n; i++) {
+        const int count = count_of(p, view, i, &first);
+        most = count > most ? count : most;
+    }
+    for (int i = 0; i < n; i++) {
+        const int count = count_of(p, view, i, &first);
+        const struct angles a = view ? p->views[i] : p->lights[i];
+        if (count * FEW < most)
+            return log_fail(p->log, RELUME_EDATA,
+                            "%s/%s: wrong angles?; expected pictures of t%c%03g_p%c%03g for %d %s, "
+                            "as of others; found %d",
+                            p->path, first->name, view ? 'v' : 'l', a.theta_deg, view ? 'v' : 'l',
+                            a.phi_deg, most, view ? "lights" : "views", count);
+    }
+    return RELUME_OK;
+}
+
+static relume_status find_strays(const struct pictures *p)
+{
+    const relume_status status = find_strays_of(p, false);
+    return status ? status : find_strays_of(p, true);
 }
 
 static relume_status place(struct pictures *p)
@@ -178,6 +271,9 @@ static relume_status place(struct pictures *p)
                             one->name, (*cell)->name);
         *cell = one;
     }
+    const relume_status status = find_strays(p);
+    if (status)
+        return status;
     for (int v = 0; v < p->view_count; v++)
         for (int l = 0; l < p->light_count; l++)
             if (!p->grid[(size_t)v * (size_t)p->light_count + (size_t)l] &&
@@ -388,7 +484,7 @@ static relume_status make_btf(relume_btf **out, const struct pictures *p)
         .light = light,
     };
     if (!status)
-        status = btf_start(out, &info, p->log);
+        status = btf_start(out, &info, p->path, p->log);
     if (!status)
         status = btf_make_room(*out, p->params);
     relume_image_destroy(&first);

@@ -396,7 +396,8 @@ static relume_status make_btf(relume_btf **out, const struct ubo *u)
         .light = u->light,
         .without_cosine = !u->cosine,
     };
-    relume_status status = name ? btf_start(out, &info, &u->log) : RELUME_ENOMEM;
+    const struct relume_log *log = u->params ? u->params->log : NULL;
+    relume_status status = name ? btf_start(out, &info, u->path, log) : RELUME_ENOMEM;
     free(name);
     if (status || (u->params && u->params->outline))
         return status;

@@ -60,17 +60,29 @@ void btf_heading(bool held_out)
            held_out ? "   left out: mean   RMS %" : "");
 }
 
+// What was not measured is a dash.
+static const char *or_dash(char text[16], int digits, double value)
+{
+    if (isfinite(value))
+        snprintf(text, 16, "%.*f", digits, value);
+    else
+        snprintf(text, 16, "-");
+    return text;
+}
+
 void btf_print(const struct btf_row *row)
 {
     const struct relume_btf_error *e = &row->error;
-    char ops[16], fetches[16];
+    char ops[16], fetches[16], delta_e[16], ssim[16], fit_s[16];
     snprintf(ops, sizeof ops, "%d+%d", row->cost.ops, row->cost.light_ops);
     snprintf(fetches, sizeof fetches, "%d+%d", row->cost.fetches, row->cost.light_fetches);
-    printf("%-7s %-9.4f  %-7.4f  %-7.4f  %-6.2f  %-6.1f  %-6.2f  %-6.4f  %-12.1f  %-10.3f  %-6.1f"
+    printf("%-7s %-9.4f  %-7.4f  %-7.4f  %-6.2f  %-6.1f  %-6s  %-6s  %-12.1f  %-10.3f  %-6s"
            "  %-8s  %-8s  %-7.2g",
            relume_btf_model_name(row->info.model), e->mean_avg, e->mean_min, e->mean_max,
-           100.0 * e->rms, 100.0 * e->relative, e->delta_e, e->ssim, bytes_per_texel(&row->info),
-           (double)row->info.bytes / 1048576.0, row->fit_s, ops, fetches, row->evaluations);
+           100.0 * e->rms, 100.0 * e->relative, or_dash(delta_e, 2, e->delta_e),
+           or_dash(ssim, 4, e->ssim), bytes_per_texel(&row->info),
+           (double)row->info.bytes / 1048576.0, or_dash(fit_s, 1, row->fit_s), ops, fetches,
+           row->evaluations);
     if (row->held_out)
         printf("            %-7.4f  %-6.2f", row->held_out->mean_avg, 100.0 * row->held_out->rms);
     printf("\n");

@@ -18,7 +18,7 @@ static const struct option options[] = {
      "qmf: bytes of the measured values to one of the model; default 200", 1, 1000000},
     {"--lobes", OPTION_INT, "N", "rfnl, rfnlc, laf, slaf: default 2", 1, 4},
     {"--levels", OPTION_INT, "N",
-     "fit, tile: levels of detail, each half as wide; default 1, of tile all", 1, 17},
+     "fit, tile: levels of detail, each half as wide; -1: all; default 1, of tile all", -1, 17},
     {"--leave-out", OPTION_INT, "K",
      "compare: also without every K-th view and light, judged on pairs with one of these; fit: "
      "without them",
@@ -98,7 +98,7 @@ static relume_status choose_models(const struct relume_btf_model *out[MOST_MODEL
         list += length + (list[length] == ',');
     }
     out[n] = NULL;
-    return RELUME_OK;
+    return n ? RELUME_OK : usage_error("--models: expected names of models; found none");
 }
 
 static struct relume_btf_fit_params fit_params(const struct args *args)
@@ -176,8 +176,10 @@ static relume_status judge(struct btf_row *row, const relume_btf_fitted *fitted,
     return RELUME_OK;
 }
 
+// `before` is what stands before its row in JSON.
 static relume_status compare_one(const relume_btf *btf, const relume_btf *part,
-                                 const struct relume_btf_model *model, const struct args *args)
+                                 const struct relume_btf_model *model, const char *before,
+                                 const struct args *args)
 {
     const struct relume_btf_fit_params p = fit_params(args);
     struct btf_row row = {.held_out = NULL};
@@ -193,6 +195,8 @@ static relume_status compare_one(const relume_btf *btf, const relume_btf *part,
         row.held_out = &held_out;
     }
     if (!status) {
+        if (args_has(args, "--json"))
+            fputs(before, stdout);
         (args_has(args, "--json") ? btf_print_json : btf_print)(&row);
         fflush(stdout);
     }
@@ -210,15 +214,10 @@ static relume_status compare(const struct args *args)
         status = btf_open(&btf, args_input(args, 1), args);
     if (!status)
         status = make_part(&part, btf, args);
-    if (!status && json)
-        printf("{\"models\":[");
-    else if (!status)
+    if (!status && !json)
         btf_heading(part != NULL);
-    for (int i = 0; !status && models[i]; i++) {
-        if (json && i)
-            printf(",\n");
-        status = compare_one(btf, part, models[i], args);
-    }
+    for (int i = 0; !status && models[i]; i++)
+        status = compare_one(btf, part, models[i], i ? ",\n" : "{\"models\":[", args);
     if (!status && json)
         puts("]}");
     relume_btf_destroy(&part);

@@ -127,12 +127,39 @@ static relume_status choose_material(const struct relume_btf_material **out, con
     return *out ? RELUME_OK : unknown_name("material", name, names);
 }
 
+struct named_log {
+    const struct relume_log *log;
+    const char *file;
+};
+
+static void say_of_file(void *user, enum relume_level level, const char *text)
+{
+    const struct named_log *n = user;
+    char line[2048];
+    snprintf(line, sizeof line, "%s: %s", n->file, text);
+    n->log->message(n->log->user, level, line);
+}
+
+// Directions of a file that a material can be measured from: the file is at fault, not the usage.
+static relume_status read_directions(struct relume_vec3 **out, int *n, const char *file,
+                                     const struct args *args)
+{
+    struct named_log named = {args_log(args), file};
+    relume_dome *dome = NULL;
+    relume_status status = relume_lights_read(out, n, file, args_log(args));
+    if (!status)
+        status = relume_dome_create(&dome, *out, *n,
+                                    &(struct relume_log){.message = say_of_file, .user = &named});
+    relume_dome_destroy(&dome);
+    return status;
+}
+
 static relume_status choose_directions(struct relume_vec3 **out, int *n, const struct args *args)
 {
     const char *name = args_text(args, "--directions", "bonn");
     const struct relume_btf_set *set = relume_btf_set_find(name);
     if (!set)
-        return relume_lights_read(out, n, name, args_log(args));
+        return read_directions(out, n, name, args);
     *n = set->count;
     *out = malloc((size_t)*n * sizeof **out);
     if (!*out)

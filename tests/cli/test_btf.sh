@@ -33,6 +33,8 @@ expect_ok 'btf fit without every fourth direction' - "$RELUME" btf fit paper --m
 "$RELUME" btf eval part paper --unseen --pictures 0 --json >unseen.json 2>err.txt
 below 'btf eval --unseen is what compare leaves out' "$(awk -v a="$(field rms unseen.json)" -v b="$(field left_out_rms out.json)" 'BEGIN { print (a - b) ^ 2 }')" 1e-12
 expect_fail 'nothing unseen' 1 'the model was fitted to all its directions' - "$RELUME" btf eval rfnl paper --unseen
+"$RELUME" btf eval rfnl paper --pictures 0 >eval.txt
+check 'what was not measured is a dash' sh -c '! grep -q nan eval.txt && grep -q "  -  " eval.txt'
 expect_ok 'btf fit --ratio' - "$RELUME" btf fit paper --model qmf --ratio 20 -o small -q
 "$RELUME" btf info small --json >info.json
 below 'a wanted ratio is kept' "$(field bytes info.json)" $((138624 / 20 + 1))
@@ -50,6 +52,8 @@ expect_fail 'an area light' 2 'area lights are not drawn' x.exr "$RELUME" btf re
 expect_ok 'levels of detail' - "$RELUME" btf fit paper --model rfp --levels 3 -o levels -q
 "$RELUME" btf info levels --json >info.json
 if [ "$(field levels info.json)" = 3 ] && [ -f levels/level2/model.json ]; then ok 'three levels'; else not_ok 'three levels' "$(cat info.json)"; fi
+expect_ok 'all levels of detail' - "$RELUME" btf fit paper --model lit --levels -1 -o levels-all -q
+check 'down to one texel' test -f levels-all/level3/model.json -a ! -e levels-all/level4
 "$RELUME" synth --btf leather -o hide --size 16 --extent 2 --directions coarse --samples 1 --bounces 0 -q
 expect_ok 'btf tile' - "$RELUME" btf tile hide -o wide --model rfp --tile 16 --tiles 3 --matrix 5x4 --force -q
 "$RELUME" btf info wide --json >info.json
@@ -106,6 +110,9 @@ check 'a mesh and its description are the same' cmp quad.exr again.exr
 "$VIEWER" quad.json --eye 0,0,2 --light 'dir 0.3 0.2 1' --size 40x40 --offscreen stage.png 2>err.txt || not_ok 'relume-view of objects' "$(cat err.txt)"
 "$VIEWER" rfnl --mesh quad.obj --repeat 2 --eye 0,0,2 --light 'dir 0.3 0.2 1' --size 40x40 --offscreen mesh.png 2>err.txt || not_ok 'relume-view --mesh' "$(cat err.txt)"
 check 'relume-view of a mesh and its description' cmp stage.png mesh.png
+expect_ok 'btf render of the same' - "$RELUME" btf render quad.json -o cpu.png --eye 0.5,0,2 --light 'dir 0.3 0.2 1' --picture 60x40 --samples 1 -q
+"$VIEWER" quad.json --eye 0.5,0,2 --light 'dir 0.3 0.2 1' --size 60x40 --offscreen gl.png
+above 'relume-view of objects from an eye is the reference' "$("$RELUME" compare cpu.png gl.png | sed -n 's/^psnr_db *//p')" 45
 printf 'open lpca\nlight dir 0.3 0.2 1\nframe lpca.png\nopen quad.json\nlight dir 0.3 0.2 1\nframe first.png\n' >open.txt
 "$VIEWER" rfnl --mesh quad.obj --repeat 2 --size 40x40 --script open.txt 2>err.txt || not_ok 'a script opens objects' "$(cat err.txt)"
 printf 'light dir 0.3 0.2 1\nframe second.png\n' >stay.txt
@@ -171,13 +178,23 @@ fi
 
 # ---- refused
 expect_fail 'unknown material' 2 "unknown material 'ston'; did you mean 'stone'" x "$RELUME" synth --btf ston -o x
+printf '0 0 1\n0.6 0 -0.8\n0 0.6 0.8\n-0.6 0 0.8\n' >below.txt
+expect_fail 'a direction from below' 1 'below.txt: direction 1: expected a unit vector with z > 0' x "$RELUME" synth --btf stone --directions below.txt -o x
+expect_fail 'two directions' 1 'two.txt: directions: expected 3 or more' x sh -c 'head -1 below.txt >two.txt; sed -n 3p below.txt >>two.txt; exec "$0" synth --btf stone --directions two.txt -o x' "$RELUME"
 expect_fail 'scene and material' 2 'found both' x "$RELUME" synth box --btf stone -o x
 expect_fail 'unknown model' 2 "unknown model 'rfnk'" - "$RELUME" btf compare paper --models rfnk
+expect_fail 'no model' 2 'expected names of models' - "$RELUME" btf compare paper --models ''
 expect_fail 'unknown task' 2 "unknown task 'fitt'; did you mean 'fit'" - "$RELUME" btf fitt paper
 expect_fail 'too many clusters' 2 'expected 1 to 64 clusters; found 65' x "$RELUME" btf fit paper --model rfnlc --clusters 65 -o x
 expect_fail 'a ratio below 1' 2 'ratio' x "$RELUME" btf fit paper --model qmf --ratio 0 -o x
 expect_fail 'no BTF' 1 'expected btf.json, or pictures named like' - "$RELUME" btf info .
 expect_fail 'not a folder' 1 'nothing: cannot be read' - "$RELUME" btf info nothing
+fresh paper other
+printf '\000\176' | dd of=other/values.npy bs=1 seek=1000 conv=notrunc 2>/dev/null
+expect_fail 'NaN among the values' 1 'other: view 0, light 2: NaN or infinity' x "$RELUME" btf fit other --model lit -o x
+expect_fail 'NaN among values that are shown' 1 'other: view 0, light 2: NaN or infinity' x.exr "$RELUME" btf render other -o x.exr
+"$RELUME" btf compare other --json >out.json 2>err.txt
+check 'no half of a JSON object' test ! -s out.json
 fresh lpca other
 sed -i 's/"version": 1/"version": 2/' other/model.json
 expect_fail 'another version' 1 'other/model.json: expected version 1; found 2' - "$RELUME" btf info other

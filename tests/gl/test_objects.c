@@ -245,20 +245,25 @@ static relume_rig *rig_of(const char *const *specs)
     return rig;
 }
 
-static void compare(struct things *t, relume_rig *rig, const char *what)
+static void compare_about(struct things *t, relume_rig *rig, const char *what, double tolerance)
 {
     const struct relume_light *lights;
     double brightest;
     int n;
     assert_int_equal(relume_rig_lights(&lights, &n, rig), RELUME_OK);
     struct picture p = both(t, lights, n, true);
-    // floats against doubles: 1e-3; pixels of the outline may fall to either side, a few of the
-    // 200 that it crosses
-    const int apart = count_apart(&p.cpu, &p.gl, 1e-3, &brightest);
+    // pixels of the outline may fall to either side, a few of the 200 that it crosses
+    const int apart = count_apart(&p.cpu, &p.gl, tolerance, &brightest);
     if (apart > 16 || !(brightest > 0.02))
         fail_msg("%s: %d of %d pixels differ, the brightest is %g", what, apart, SIDE * SIDE,
                  brightest);
     destroy(&p);
+}
+
+// floats against doubles: 1e-3
+static void compare(struct things *t, relume_rig *rig, const char *what)
+{
+    compare_about(t, rig, what, 1e-3);
 }
 
 static int material_of(const relume_objects *o, const char *model)
@@ -300,6 +305,39 @@ static void models_agree_under_the_sky(void **state)
     compare(&t, rig, "all at once");
     relume_rig_destroy(&rig);
     finish(&t);
+}
+
+// Sums over lights and many components, which llvmpipe cut off after 65535 rounds.
+static void long_sums_agree(void **state)
+{
+    (void)state;
+    static const char *const list[] = {"fmf", "qmf"};
+    relume_btf *btf;
+    assert_int_equal(relume_btf_open(&btf, path_of("measured"), NULL), RELUME_OK);
+    for (int i = 0; i < 2; i++) {
+        relume_btf_fitted *fitted;
+        assert_int_equal(relume_btf_fit(&fitted, btf, relume_btf_model_find(list[i]),
+                                        relume_btf_fit_params(.components = 64, .ratio = 2)),
+                         RELUME_OK);
+        assert_int_equal(
+            relume_btf_fitted_save(fitted, path_of("long"), relume_btf_params(.force = true)),
+            RELUME_OK);
+        relume_btf_fitted_destroy(&fitted);
+        const char *const materials[] = {path_of("long")};
+        struct things t;
+        relume_objects *o;
+        assert_int_equal(relume_objects_of_mesh(&o, path_of("mesh.obj"), materials, 1, 2.0,
+                                                relume_objects_params(.log = &fixture_log)),
+                         RELUME_OK);
+        assert_int_equal(things_create(&t, &fixture_gl, o, &fixture_log), RELUME_OK);
+        for (int k = 0; k < 2; k++) {
+            relume_rig *rig = rig_of((const char *const[]){k ? "env sky.exr 30" : sunlight, NULL});
+            compare_about(&t, rig, list[i], 5e-3);
+            relume_rig_destroy(&rig);
+        }
+        finish(&t);
+    }
+    relume_btf_destroy(&btf);
 }
 
 // Many texels in a pixel: levels of detail, and means along the longer way. How wide a pixel is, GL
@@ -430,8 +468,11 @@ static int close_all(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(models_agree),  cmocka_unit_test(models_agree_under_the_sky),
-        cmocka_unit_test(levels_agree),  cmocka_unit_test(lights_agree),
+        cmocka_unit_test(models_agree),
+        cmocka_unit_test(long_sums_agree),
+        cmocka_unit_test(models_agree_under_the_sky),
+        cmocka_unit_test(levels_agree),
+        cmocka_unit_test(lights_agree),
         cmocka_unit_test(shadows_agree),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);

@@ -289,6 +289,43 @@ static void test_pictures(void **state)
     test_folder_remove(folder);
 }
 
+// As Bonn packs them: a folder for each view; what else lies there does not matter.
+static void test_view_folders(void **state)
+{
+    (void)state;
+    static const int angles[4][2] = {{0, 0}, {45, 0}, {45, 120}, {45, 240}};
+    char folder[64], path[200];
+    test_folder(folder);
+    for (int v = 0; v < 4; v++) {
+        snprintf(path, sizeof path, "%s/tv%03d_pv%03d", folder, angles[v][0], angles[v][1]);
+        assert_int_equal(mkdir(path, 0777), 0);
+        for (int l = 0; l < 4; l++) {
+            struct relume_image image;
+            snprintf(path, sizeof path, "%s/tv%03d_pv%03d/%05d tl%03d pl%03d tv%03d pv%03d.png",
+                     folder, angles[v][0], angles[v][1], 4 * v + l + 1, angles[l][0], angles[l][1],
+                     angles[v][0], angles[v][1]);
+            CHECK_OK(relume_image_create(&image, W, H, 3));
+            for (int i = 0; i < W * H * 3; i++)
+                image.data[i] = v == 2 && l == 3 ? 0.5f : 0.0f;
+            CHECK_OK(relume_image_save(&image, path, NULL));
+            relume_image_destroy(&image);
+        }
+    }
+    snprintf(path, sizeof path, "%s/tv000_pv000/readme.txt", folder);
+    test_write(path, "x", 1);
+    snprintf(path, sizeof path, "%s/._tl000 pl000 tv000 pv000.png", folder);
+    test_write(path, "x", 1);
+    relume_btf *btf;
+    CHECK_OK(relume_btf_open(&btf, folder, NULL));
+    assert_int_equal(relume_btf_info(btf)->views, 4);
+    assert_int_equal(relume_btf_info(btf)->lights, 4);
+    // 8 bits
+    CHECK_NEAR(float_from_half(relume_btf_picture(btf, 2, 3)[4]), 0.5, 0.005);
+    CHECK_NEAR(float_from_half(relume_btf_picture(btf, 3, 2)[4]), 0.0, 0.0);
+    relume_btf_destroy(&btf);
+    test_folder_remove(folder);
+}
+
 static void expect_refusal(const char *folder, const char *sentence)
 {
     struct test_log log;
@@ -322,7 +359,26 @@ static void test_bad_pictures(void **state)
     test_write(path, "x", 1);
     expect_refusal(folder, "tl095_pl000_tv000_pv000.exr: angles");
     remove(path);
+    // a typing error makes a light of one picture, which --fill must not complete
+    snprintf(path, sizeof path, "%s/M_tl046_pl120_tv045_pv000.exr", folder);
     struct relume_image other;
+    CHECK_OK(relume_image_create(&other, W, H, 3));
+    CHECK_OK(relume_image_save(&other, path, NULL));
+    relume_image_destroy(&other);
+    for (int i = 0; i < 4; i++) {  // one of four views is not few
+        char more[160];
+        snprintf(more, sizeof more, "%s/M_tl000_pl000_tv050_pv%03d.exr", folder, 10 * i);
+        CHECK_OK(relume_image_create(&other, W, H, 3));
+        CHECK_OK(relume_image_save(&other, more, NULL));
+        relume_image_destroy(&other);
+    }
+    expect_refusal(folder, "M_tl046_pl120_tv045_pv000.exr: wrong angles?; expected pictures of "
+                           "tl046_pl120 for 8 views, as of others; found 1");
+    remove(path);
+    for (int i = 0; i < 4; i++) {
+        snprintf(path, sizeof path, "%s/M_tl000_pl000_tv050_pv%03d.exr", folder, 10 * i);
+        remove(path);
+    }
     CHECK_OK(relume_image_create(&other, W + 1, H, 3));
     snprintf(path, sizeof path, "%s/M_tl045_pl120_tv045_pv000.exr", folder);
     CHECK_OK(relume_image_save(&other, path, NULL));
@@ -407,6 +463,11 @@ static void test_capture(void **state)
     m.views = 1;
     CHECK_OK(relume_manifest_write(&m, path, NULL));
     expect_refusal(folder, "made of the views of one slab");
+    m.geometry = relume_geometry_default(RELUME_SLAB, W, H);
+    m.views = 2;
+    CHECK_OK(relume_manifest_write(&m, path, NULL));
+    snprintf(path, sizeof path, "%s: view directions: expected 3 or more; found 2", folder);
+    expect_refusal(folder, path);
     test_folder_remove(folder);
 }
 
@@ -420,6 +481,7 @@ int main(void)
         cmocka_unit_test(test_folder_round_trip),
         cmocka_unit_test(test_part),
         cmocka_unit_test(test_pictures),
+        cmocka_unit_test(test_view_folders),
         cmocka_unit_test(test_bad_pictures),
         cmocka_unit_test(test_capture),
     };

@@ -186,6 +186,10 @@ vec3 mean_of(Points p, Blend v, Blend l, mat3 frame)
 
 #ifdef SKY
 
+#ifndef LOBES
+uniform ivec2 some_lights;  // the pass sums over these: from, to
+#endif
+
 // Twin: add_sky, without shadows.
 vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
 {
@@ -193,7 +197,7 @@ vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
     return mean_of(p, v, v, frame);
 #else
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < counts.y; i++) {
+    for (int i = some_lights.x; i < some_lights.y; i++) {
         vec3 direction;
         vec3 weight = sky_weight(frame, i, direction);
         sum += weight * mean_of(p, v, Blend(ivec3(i), vec3(1.0, 0.0, 0.0), direction, 1.0), frame);

@@ -17,11 +17,13 @@ vec3 model_eval(int texel, int view, int light, vec3 v, vec3 l)
 {
     vec3 n = normalize(texelFetch(array1, texel).xyz);
     Blend bv = dome_at(view_cells, view_triangles, upright(v, n));
-    Blend bl = dome_at(light_cells, light_triangles, upright(l, n));
+    vec3 turned = upright(l, n);
+    Blend bl = dome_at(light_cells, light_triangles, turned);
+    float scale = without_cosine ? max(turned.z, 0.0) / max(l.z, 1e-6) : bl.rim;
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             sum += bv.weight[i] * bl.weight[j] *
                    texelFetch(array2, bv.index[i] * counts.y + bl.index[j]).rgb;
-    return texelFetch(array0, texel).rgb * bl.rim * sum;
+    return texelFetch(array0, texel).rgb * scale * sum;
 }

@@ -1,12 +1,19 @@
-// Of the nine pairs of views and lights around.
+// Of the nine pairs of views and lights around. Written out: a shader on the processor may stop
+// after 65535 rounds of all its loops.
+vec3 of_view(samplerBuffer values, int row, Blend l)
+{
+#ifdef SKY
+    return texelFetch(values, row + l.index.x).rgb;  // one light at a time
+#else
+    return l.weight.x * texelFetch(values, row + l.index.x).rgb +
+           l.weight.y * texelFetch(values, row + l.index.y).rgb +
+           l.weight.z * texelFetch(values, row + l.index.z).rgb;
+#endif
+}
+
 vec3 blended(samplerBuffer values, int first, Blend v, Blend l)
 {
-    vec3 sum = vec3(0.0);
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            float weight = v.weight[i] * l.weight[j];
-            if (weight > 0.0)
-                sum += weight * texelFetch(values, first + v.index[i] * counts.y + l.index[j]).rgb;
-        }
-    return sum;
+    ivec3 row = first + v.index * counts.y;
+    return v.weight.x * of_view(values, row.x, l) + v.weight.y * of_view(values, row.y, l) +
+           v.weight.z * of_view(values, row.z, l);
 }

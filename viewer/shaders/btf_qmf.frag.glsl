@@ -42,21 +42,31 @@ float value_of(vec3 curve, float t)
     return curve.x + t * (curve.y + curve.z * t * t);
 }
 
-float pattern(int plane, int at, int bits, Blend v, Blend l)
+// Of the lights around, under one view. Written out, as in btf_pairs.glsl.
+float of_view(vec3 curve, ivec3 row, int at, int bits, Blend l)
+{
+#ifdef SKY
+    return value_of(curve, step_at(array1, row.x, at, bits));
+#else
+    return l.weight.x * value_of(curve, step_at(array1, row.x, at, bits)) +
+           l.weight.y * value_of(curve, step_at(array1, row.y, at, bits)) +
+           l.weight.z * value_of(curve, step_at(array1, row.z, at, bits));
+#endif
+}
+
+// One colour of a pattern; `at` moves on to the next.
+float pattern(int plane, inout int at, Blend v, Blend l)
 {
     vec3 curve = levels_of(plane);
+    int bits = int(texelFetch(array2, plane).r), from = at;
+    at += bits;
     if (bits == 0)
         return curve.x;
-    int row_bytes = textureSize(array1) / (counts.x * counts.y);
-    float sum = 0.0;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
-            float weight = v.weight[i] * l.weight[j];
-            int row = (v.index[i] * counts.y + l.index[j]) * row_bytes;
-            if (weight > 0.0)
-                sum += weight * value_of(curve, step_at(array1, row, at, bits));
-        }
-    return sum;
+    int row_bytes = textureSize(array1) / (counts.x * counts.y), view = counts.y * row_bytes;
+    ivec3 row = l.index * row_bytes;
+    return v.weight.x * of_view(curve, row + v.index.x * view, from, bits, l) +
+           v.weight.y * of_view(curve, row + v.index.y * view, from, bits, l) +
+           v.weight.z * of_view(curve, row + v.index.z * view, from, bits, l);
 }
 
 vec3 model_blend(int texel, Blend v, Blend l)
@@ -69,11 +79,9 @@ vec3 model_blend(int texel, Blend v, Blend l)
         if (bits > 0)
             score = value_of(levels_of(plane), step_at(array0, row, score_at, bits));
         score_at += bits;
-        for (int c = 0; c < 3; c++) {
-            bits = int(texelFetch(array2, plane + c + 1).r);
-            sum[c] += score * pattern(plane + c + 1, pattern_at, bits, v, l);
-            pattern_at += bits;
-        }
+        sum.x += score * pattern(plane + 1, pattern_at, v, l);
+        sum.y += score * pattern(plane + 2, pattern_at, v, l);
+        sum.z += score * pattern(plane + 3, pattern_at, v, l);
     }
     vec3 rgb = vec3(0.0);
     for (int c = 0; c < 9; c++)

@@ -56,8 +56,14 @@ double btf_speed(const relume_btf_fitted *fitted)
 void btf_heading(bool held_out)
 {
     printf("model   mean abs   min      max      RMS %%   rel. %%  dE2000  SSIM    bytes/texel"
-           "   total MiB   fit s   ops       fetches   evals/s%s\n",
+           "   total MiB   fit s   ops       fetches   frames/s%s\n",
            held_out ? "   left out: mean   RMS %" : "");
+}
+
+// As many evaluations as a frame of the papers has pixels, on one processor.
+static double frames_per_second(const struct btf_row *row)
+{
+    return row->evaluations / (1280.0 * 1024.0);
 }
 
 // What was not measured is a dash.
@@ -82,7 +88,7 @@ void btf_print(const struct btf_row *row)
            100.0 * e->rms, 100.0 * e->relative, or_dash(delta_e, 2, e->delta_e),
            or_dash(ssim, 4, e->ssim), bytes_per_texel(&row->info),
            (double)row->info.bytes / 1048576.0, or_dash(fit_s, 1, row->fit_s), ops, fetches,
-           row->evaluations);
+           frames_per_second(row));
     if (row->held_out)
         printf("            %-7.4f  %-6.2f", row->held_out->mean_avg, 100.0 * row->held_out->rms);
     printf("\n");
@@ -98,6 +104,7 @@ void btf_print_json(const struct btf_row *row)
     printf(", \"ops\": %d, \"fetches\": %d, \"light_ops\": %d, \"light_fetches\": %d",
            row->cost.ops, row->cost.fetches, row->cost.light_ops, row->cost.light_fetches);
     member("evaluations_per_second", row->evaluations);
+    member("frames_per_second", frames_per_second(row));
     if (row->held_out) {
         member("left_out_mae", row->held_out->mean_avg);
         member("left_out_rms", row->held_out->rms);

@@ -36,7 +36,7 @@ mkdir -p "$folder/rows"
 for m; do
     [ -d "$folder/$m" ] || "$relume" synth --btf "$m" -o "$folder/$m" --size "$size" -q
     printf '**%s**, %s x %s texels\n\n' "$m" "$size" "$size"
-    echo '| model | mean abs: avg | min | max | RMS % | rel. % | dE | SSIM | B a texel | total MiB | fit s | ops | fetches | evals/s |'
+    echo '| model | mean abs: avg | min | max | RMS % | rel. % | dE | SSIM | B a texel | total MiB | fit s | ops | fetches | frames/s |'
     echo '|---|---|---|---|---|---|---|---|---|---|---|---|---|---|'
     echo "$rows" | while IFS='|' read -r label options; do
         row=$folder/rows/$m-$label.txt

@@ -14,7 +14,7 @@ if grep -q '"includes_cosine": true' paper/btf.json; then ok 'values include n.l
 "$RELUME" btf compare paper --pictures 2 --json -q >compare.json 2>err.txt || not_ok 'btf compare' "$(cat err.txt)"
 for m in lit bump laf slaf rfp rfnl rfnlc cmf vpca lpca fmf qmf; do
     row=$(grep -o "{\"model\": \"$m\"[^}]*}" compare.json)
-    for f in mae_avg mae_min mae_max rms delta_e bytes bytes_per_texel fit_seconds ops fetches light_ops light_fetches evaluations_per_second; do
+    for f in mae_avg mae_min mae_max rms delta_e bytes bytes_per_texel fit_seconds ops fetches light_ops light_fetches evaluations_per_second frames_per_second; do
         case $row in *"\"$f\": "[0-9]*) ;; *) not_ok "compare $m has $f" "$row" ;; esac
     done
 done

@@ -21,6 +21,7 @@
 
 enum { COARSE = 80, FINE = 1400, ROUNDS = 15, BAND = 16, PARAMETERS = 8, LIKENESS = 256 };
 static const double small_step = 1e-2;  // pixels in the corners: then a level is done
+static const double per_move = 2.0;     // share of the correlation that half a picture costs
 static const double most_shift = 0.12;  // of the longer side, tried on the coarsest level
 static const double default_roll_deg = 12.0, roll_step_deg = 3.0;
 static const double least_correlation = 0.02;
@@ -197,6 +198,12 @@ static void set_pose(double h[9], double roll_deg, double x, double y)
     memcpy(h, pose, sizeof pose);
 }
 
+// What moves by less is believed where correlations are nearly equal: rows of tiles fit each other.
+static double likely(double correlation, const double h[9])
+{
+    return correlation * (1.0 - per_move * fmin(hypot(h[2] / h[8], h[5] / h[8]), 1.0 / per_move));
+}
+
 // The best of all rolls and shifts, each climbed from the best shift of its roll.
 static void start(struct ecc *e, double max_roll_deg, int threads)
 {
@@ -210,7 +217,7 @@ static void start(struct ecc *e, double max_roll_deg, int threads)
             for (int x = -shifts; x <= shifts; x++) {
                 set_pose(e->h, k * roll_step_deg, 2.0 * x / e->scale, 2.0 * y / e->scale);
                 const struct sums s = sum_all(e, 1);
-                const double correlation = correlation_of(&s, e);
+                const double correlation = likely(correlation_of(&s, e), e->h);
                 if (correlation > peak) {
                     peak = correlation;
                     memcpy(pose, e->h, sizeof pose);
@@ -218,7 +225,7 @@ static void start(struct ecc *e, double max_roll_deg, int threads)
             }
         memcpy(e->h, pose, sizeof pose);
         e->parameters = 6;
-        peak = climb(e, threads);
+        peak = likely(climb(e, threads), e->h);
         if (peak > best) {
             best = peak;
             memcpy(best_h, e->h, sizeof best_h);

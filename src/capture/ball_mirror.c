@@ -12,7 +12,7 @@ static const float DARK = 0.02f;         // peaks below are no lamp
 static const double RIM = 0.975;         // of the radius
 static const double BORDER = 1.0;        // pixels: what lies behind the ball mixes in
 static const double FULL = 0.15;         // share of the disc
-static const double SECOND = 0.4;        // of the first spot's light
+static const double SECOND = 0.1;        // of the first spot's light
 static const double PIXEL_SIGMA = 0.15;  // how well a spot's middle is told, pixels
 
 const char *relume_ball_sight_text(enum relume_ball_sight sight)

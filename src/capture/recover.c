@@ -21,6 +21,7 @@ static const double same_exposure = 1.01;
 // This far below middle grey 8 bits hold nothing: what codes are there are the black level's.
 static const double nothing_ev = -12.0;
 enum { LEAST_BLACK = 16 };
+static const float even_range = 0.25f;  // of the code range: neighbours whose mean is a code
 
 static int code_of(float v)
 {
@@ -118,15 +119,33 @@ static double hat(const struct channel *ch, int z)
     return (z < MIDDLE ? z : N - 1 - z) / (double)(MIDDLE - 1);
 }
 
-// The mean of 3 x 3 pixels.
-static float mean_around(const struct relume_image *codes, size_t pixel, int c)
+// The mean of 3 x 3 pixels, and how far these lie apart.
+static float mean_around(const struct relume_image *codes, size_t pixel, int c, float *range)
 {
     const ptrdiff_t stride = codes->width;
-    float sum = 0.0f;
+    float sum = 0.0f, least = INFINITY, most = -INFINITY;
     for (ptrdiff_t y = -1; y <= 1; y++)
-        for (ptrdiff_t x = -1; x <= 1; x++)
-            sum += codes->data[3 * ((ptrdiff_t)pixel + y * stride + x) + c];
+        for (ptrdiff_t x = -1; x <= 1; x++) {
+            const float v = codes->data[3 * ((ptrdiff_t)pixel + y * stride + x) + c];
+            sum += v;
+            least = fminf(least, v);
+            most = fmaxf(most, v);
+        }
+    *range = most - least;
     return sum / 9.0f;
+}
+
+// Whether the pixels around a place differ by noise alone in all exposures: the mean of codes that
+// differ by more is not the code of the mean, least of all where some are saturated.
+static bool is_even(const struct channel *ch, size_t pixel)
+{
+    bool even = true;
+    for (int j = 0; even && j < ch->s->n; j++) {
+        float range;
+        mean_around(&ch->s->codes[j], pixel, ch->c, &range);
+        even = range <= even_range;
+    }
+    return even;
 }
 
 // The codes of place `i`. Smooth: even places lose two thirds of their noise, of which the curve,
@@ -135,11 +154,13 @@ static float mean_around(const struct relume_image *codes, size_t pixel, int c)
 static bool read_codes(const struct channel *ch, int i, bool smooth)
 {
     const size_t pixel = ch->place[i].pixel;
+    float range;
     if (pixel == SIZE_MAX)
         return false;
+    smooth = smooth && is_even(ch, pixel);
     for (int j = 0; j < ch->s->n; j++) {
         const struct relume_image *codes = &ch->s->codes[j];
-        ch->z[j] = code_of(smooth ? mean_around(codes, pixel, ch->c)
+        ch->z[j] = code_of(smooth ? mean_around(codes, pixel, ch->c, &range)
                                   : codes->data[3 * pixel + (size_t)ch->c]);
     }
     return true;

@@ -13,6 +13,7 @@
 enum { MOST_BALLS = 16 };
 static const double TOO_WIDE = 12.0;  // degrees: what is that wide is no lamp in a mirror
 static const double DISAGREE = 3.0;   // degrees between balls: lights are near
+static const double BELOW = -0.05;    // z of a direction: the lamp stood behind the ball
 
 // ---------------------------------------------------------------- balls
 
@@ -62,14 +63,18 @@ static const char *objection(const struct relume_ball_light *l, bool matte)
 }
 
 enum { CANDIDATES = 16, TRIALS = 6 };
+static const double NO_LAMP = 90.0;  // degrees that count where a matte ball tells nothing
 
-// Which candidates show a lamp in most of a few photographs, spread over all. A round stone does in
-// few of them.
-static relume_status try_candidates(bool *good, const struct shoot *s,
+// How badly candidates tell the lamp, in a few photographs spread over all: mirrors 0, or 1 where
+// most show none (a round stone does in few of them); matte ones the error in degrees of what they
+// tell, which is large where something round is shaded as no white ball is.
+static relume_status try_candidates(double *bad, const struct shoot *s,
                                     const struct relume_ball *ball, int n)
 {
     const int trials = s->shots < TRIALS ? s->shots : TRIALS;
+    const bool matte = s->p.matte;
     int seen[MOST_BALLS + CANDIDATES] = {0};
+    double error[MOST_BALLS + CANDIDATES] = {0.0};
     for (int i = 0; i < trials; i++) {
         struct relume_image image;
         relume_status status =
@@ -78,38 +83,46 @@ static relume_status try_candidates(bool *good, const struct shoot *s,
                                                             .transfer = s->p.transfer));
         for (int b = 0; !status && b < n; b++) {
             struct relume_ball_light light;
-            status = relume_ball_mirror(&light, &ball[b], &s->camera, &image);
-            seen[b] += !objection(&light, false);
+            status = (matte ? relume_ball_matte : relume_ball_mirror)(&light, &ball[b], &s->camera,
+                                                                      &image);
+            const bool sees = !objection(&light, matte);
+            seen[b] += sees;
+            error[b] += sees ? light.sigma_deg : NO_LAMP;
         }
         relume_image_destroy(&image);
         if (status)
             return status;
     }
     for (int b = 0; b < n; b++)
-        good[b] = 2 * seen[b] > trials;
+        bad[b] = matte ? error[b] / trials : 2 * seen[b] <= trials;
     return RELUME_OK;
 }
 
-// Mirror balls: the roundest of the good candidates. Where too few are, the roundest of the others,
-// so that what is wrong with them is told.
-static relume_status find_mirrors(struct shoot *s, const struct relume_ball_params *params)
+// The candidates that tell the lamp best, the roundest of equals first. Where too few tell it at
+// all, others are taken, so that what is wrong with them is told.
+static relume_status find_telling(struct shoot *s, const struct relume_ball_params *params)
 {
     struct relume_shoot *out = s->out;
     struct relume_ball ball[MOST_BALLS + CANDIDATES];
-    bool good[MOST_BALLS + CANDIDATES] = {false};
-    int n, kept = 0;
+    double bad[MOST_BALLS + CANDIDATES] = {0.0};
+    int n;
     relume_status status =
         relume_ball_candidates(ball, out->balls + CANDIDATES, &n, &s->mean, &s->camera, params);
     if (!status && n < out->balls)
         return RELUME_EDATA;
     if (!status && n > out->balls)
-        status = try_candidates(good, s, ball, n);
-    for (int want = 1; !status && want >= 0; want--)
-        for (int b = 0; b < n && kept < out->balls; b++)
-            if (good[b] == want)
-                out->ball[kept++] = ball[b];
-    ball_sort(out->ball, kept);
-    return status;
+        status = try_candidates(bad, s, ball, n);
+    if (status)
+        return status;
+    for (int kept = 0; kept < out->balls; kept++) {
+        int best = 0;
+        for (int b = 1; b < n; b++)
+            best = bad[b] < bad[best] ? b : best;
+        out->ball[kept] = ball[best];
+        bad[best] = INFINITY;
+    }
+    ball_sort(out->ball, out->balls);
+    return RELUME_OK;
 }
 
 static relume_status find_balls(struct shoot *s)
@@ -130,9 +143,9 @@ static relume_status find_balls(struct shoot *s)
         return loaded;
     const struct relume_ball_params p = {.mask = mask.data ? &mask : NULL,
                                          .peak = s->p.matte ? NULL : &s->peak};
-    relume_status status = s->p.matte || mask.data
+    relume_status status = mask.data
                                ? relume_ball_find(out->ball, out->balls, &s->mean, &s->camera, &p)
-                               : find_mirrors(s, &p);
+                               : find_telling(s, &p);
     if (status == RELUME_EDATA)
         status =
             log_fail(s->p.log, status,
@@ -248,6 +261,23 @@ static relume_status locate(struct shoot *s, int i, const struct sights *seen, d
     return RELUME_OK;
 }
 
+// A mirror's outline that is too small turns lights away from the axis of view, some behind the
+// ball: a mirror on a table shows the table's horizon as a circle, 0.71 of its outline.
+static relume_status warn_below(struct shoot *s)
+{
+    int below = 0;
+    for (int i = 0; i < s->shots; i++)
+        below += s->shot[i].direction.z < BELOW;
+    if (!below || s->p.matte)
+        return RELUME_OK;
+    const struct relume_ball *b = &s->out->ball[0];
+    return shoot_warn(
+        s,
+        "ball at %.0f,%.0f with radius %.0f: by it, %d of the lights stand behind it; is "
+        "that its outline, or a circle that it reflects (--ball x,y,r)?",
+        b->x, b->y, b->radius, below);
+}
+
 static relume_status lights_from_balls(struct shoot *s)
 {
     double disagree = 0.0;
@@ -276,6 +306,8 @@ static relume_status lights_from_balls(struct shoot *s)
         seen_well++;
         i++;
     }
+    if (!status)
+        status = warn_below(s);
     if (!status && !seen_well)
         status = log_fail(s->p.log, RELUME_EDATA, "no photograph shows the lamp in the ball");
     if (!status && !s->p.near && disagree > DISAGREE)

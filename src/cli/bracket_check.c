@@ -6,6 +6,7 @@
 
 enum { THUMB = 320 };
 static const double least_likeness = 0.15;
+static const double at_the_ends = 0.995;  // share of samples black or saturated: shows nothing
 static const double clear_ratio = 1.4, clear_codes = 0.02;  // longer must not be darker
 
 static relume_status shrink(struct relume_image *out, const struct relume_image *image)
@@ -25,8 +26,41 @@ static relume_status shrink(struct relume_image *out, const struct relume_image 
     return RELUME_OK;
 }
 
-// Exposures next to each other show the same edges; so do the next but one.
-static relume_status check_scene(struct bracket *b, const int *order, const struct args *args)
+static double mean_code(const struct relume_image *codes)
+{
+    const size_t samples = 3 * (size_t)codes->width * (size_t)codes->height;
+    double sum = 0.0;
+    for (size_t i = 0; i < samples; i++)
+        sum += (double)codes->data[i];
+    return sum / (double)samples;
+}
+
+static bool shows_nothing(const struct relume_image *codes)
+{
+    const size_t samples = 3 * (size_t)codes->width * (size_t)codes->height;
+    size_t ends = 0;
+    for (size_t i = 0; i < samples; i++)
+        ends += codes->data[i] >= 0.995f || codes->data[i] <= 0.005f;
+    return (double)ends > at_the_ends * (double)samples;
+}
+
+// One exposure that is white or black all over does no harm; a bracket of them shows no scene.
+static relume_status check_exposure(const struct bracket *b, bool *blank)
+{
+    int blanks = 0;
+    for (int i = 0; i < b->n; i++)
+        blanks += blank[i] = shows_nothing(&b->codes[i]);
+    if (b->n < 2 || blanks < b->n)
+        return RELUME_OK;
+    const bool white = mean_code(&b->codes[0]) > 0.5;
+    return data_error("%s: %s, as are the other %d exposures; expected %s ones", b->path[0],
+                      white ? "saturated" : "black", b->n - 1, white ? "shorter" : "longer");
+}
+
+// Exposures next to each other show the same edges; so do the next but one. Where one of them is
+// blank there are none to compare.
+static relume_status check_scene(struct bracket *b, const int *order, const bool *blank,
+                                 const struct args *args)
 {
     struct relume_image thumb[MAX_BRACKET] = {{0}};
     double likeness[MAX_BRACKET];
@@ -38,6 +72,8 @@ static relume_status check_scene(struct bracket *b, const int *order, const stru
         likeness[i] = (double)NAN;
     for (int i = 0; !status && i < b->n; i++)
         for (int j = i + 1; j < b->n && j <= i + 2; j++) {
+            if (blank[order[i]] || blank[order[j]])
+                continue;
             const double l = relume_likeness(&thumb[i], &thumb[j]);
             likeness[i] = fmax(likeness[i], l);
             likeness[j] = fmax(likeness[j], l);
@@ -65,15 +101,6 @@ static relume_status check_scene(struct bracket *b, const int *order, const stru
     if (!b->aligned)
         b->anchor = relume_align_anchor(b->codes, b->n);
     return bracket_remains(b);
-}
-
-static double mean_code(const struct relume_image *codes)
-{
-    const size_t samples = 3 * (size_t)codes->width * (size_t)codes->height;
-    double sum = 0.0;
-    for (size_t i = 0; i < samples; i++)
-        sum += (double)codes->data[i];
-    return sum / (double)samples;
 }
 
 static relume_status check_order(const struct bracket *b, const int *order)
@@ -104,9 +131,12 @@ static void sort_by_exposure(const struct bracket *b, int *order)
 relume_status bracket_check(struct bracket *b, const struct args *args)
 {
     int order[MAX_BRACKET];
+    bool blank[MAX_BRACKET];
     sort_by_exposure(b, order);
     const int before = b->n;
-    relume_status status = check_scene(b, order, args);
+    relume_status status = check_exposure(b, blank);
+    if (!status)
+        status = check_scene(b, order, blank, args);
     if (!status && b->n < before)
         sort_by_exposure(b, order);
     return status ? status : check_order(b, order);

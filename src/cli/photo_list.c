@@ -74,8 +74,10 @@ void photo_list_free(struct photo_list *list)
 relume_status photo_list_add(struct photo_list *list, const char *path)
 {
     struct stat s;
-    const bool folder = !stat(path, &s) && S_ISDIR(s.st_mode);
-    return folder ? add_folder(list, path) : add(list, "", path);
+    if (stat(path, &s))
+        return data_error("%s: %s; expected a photograph, or a folder of them", path,
+                          errno == ENOENT ? "no such file" : strerror(errno));
+    return S_ISDIR(s.st_mode) ? add_folder(list, path) : add(list, "", path);
 }
 
 relume_status photo_list_make(struct photo_list *out, const struct args *args)

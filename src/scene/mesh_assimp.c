@@ -4,6 +4,7 @@
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -46,19 +47,42 @@ static bool add_mesh(struct mesh_file *out, const struct aiScene *scene, const s
     return !out->mesh.failed;
 }
 
+// Assimp leaves out faces of vertices that are not there, and says so in passing.
+static void hear(const char *message, char *user)
+{
+    if (strstr(message, "out-of-range indices"))
+        *(bool *)(void *)user = true;
+}
+
+static const struct aiScene *import(const char *path, unsigned steps,
+                                    const struct aiPropertyStore *settings, bool *dropped)
+{
+    static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;  // all hear all messages
+    const struct aiLogStream stream = {hear, (char *)dropped};
+    pthread_mutex_lock(&one_at_a_time);
+    aiAttachLogStream(&stream);
+    const struct aiScene *scene = aiImportFileExWithProperties(path, steps, NULL, settings);
+    aiDetachLogStream(&stream);
+    pthread_mutex_unlock(&one_at_a_time);
+    return scene;
+}
+
 static bool read(struct mesh_file *out, const char *path, char why[MESH_OTHER_WHY])
 {
+    bool dropped = false;
     const unsigned steps = aiProcess_Triangulate | aiProcess_PreTransformVertices |
                            aiProcess_SortByPType | aiProcess_ValidateDataStructure;
     struct aiPropertyStore *settings = aiCreatePropertyStore();
     // lines and points are no surface
     aiSetImportPropertyInteger(settings, AI_CONFIG_PP_SBP_REMOVE,
                                aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const struct aiScene *scene = aiImportFileExWithProperties(path, steps, NULL, settings);
+    const struct aiScene *scene = import(path, steps, settings, &dropped);
     aiReleasePropertyStore(settings);
-    if (!scene) {
-        snprintf(why, MESH_OTHER_WHY, "%s", aiGetErrorString());
+    if (!scene || dropped) {
+        snprintf(why, MESH_OTHER_WHY, "%s",
+                 dropped ? "faces of vertices that are not there" : aiGetErrorString());
         why[strcspn(why, "\r\n")] = '\0';
+        aiReleaseImport(scene);
         return false;
     }
     for (unsigned i = 0; i < scene->mNumMeshes; i++)

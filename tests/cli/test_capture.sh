@@ -71,6 +71,7 @@ bad 'a matte sphere is no mirror' 'photos/.*bright all over' photos
 bad 'highlight off the ball' 'light.*0000.*ball at 15' photos --ball 15,15,8
 head -n 11 lights.txt >few.txt
 bad 'too few lights' 'few.txt: 11 lights; expected 12' photos --lights few.txt
+bad 'no folder' 'nowhere: no such file; expected a photograph' nowhere --lights lights.txt
 bad 'no photographs' 'nowhere1' nowhere1 nowhere2 nowhere3 --lights lights.txt
 fresh photos mixed
 head -c 600 photos/*0004.png >mixed/"$(basename photos/*0004.png)"

@@ -80,6 +80,10 @@ fails 'times that are none' 1 'words.txt: line 2; expected' a.png b.png c.png --
 "$shoot" photo whiter.png 160 120 1900 0 0 0 0
 printf '1\n2\n' >two.txt
 fails 'all saturated' 1 'white.png: .*saturated' white.png whiter.png --times two.txt
+fails 'all saturated, as it is said of more' 1 'white.png: saturated, as are the other 2' white.png whiter.png white.png --times ones.txt
+printf '1\n4\n1/4\n900\n' >five.txt
+expect_ok 'one of them white all over' - "$RELUME" capture --hdr a.png b.png c.png white.png --times five.txt -o out.exr
+below 'and of no harm' "$("$shoot" logrms out.exr truth.exr 0)" 0.02
 "$shoot" photo other.png 160 120 1 0 9000 700 0.5
 printf '1\n4\n1/4\n1/2\n' >four.txt
 fails 'another scene' 1 'other.png: another scene' a.png b.png c.png other.png --times four.txt

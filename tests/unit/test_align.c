@@ -229,6 +229,36 @@ static void test_only_source_stays(void **state)
     }
 }
 
+// Tiles of 24 pixels and a shadow that falls to the other side, moved by 3 and 2 pixels.
+static struct relume_image tiles(int dx, int dy, bool left)
+{
+    struct relume_image image;
+    CHECK_OK(relume_image_create(&image, W, H, 3));
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const int u = x + dx + 480, v = y + dy + 480;
+            const double sx = u - 480 - (left ? 0.3 : 0.7) * W, sy = v - 480 - 0.5 * H;
+            const bool shadow = hypot(sx, 1.5 * sy) < 0.2 * W;
+            const float tile = (u / 24 + v / 24) % 2 ? 0.7f : 0.2f;
+            for (int c = 0; c < 3; c++)
+                image.data[3 * (y * W + x) + c] =
+                    tile * (shadow ? 0.1f : 1.0f) * (float)(left ? x + W : 2 * W - x) / (2 * W);
+        }
+    return image;
+}
+
+static void test_tiles(void **state)
+{
+    (void)state;
+    struct relume_image a = tiles(0, 0, false), b = tiles(3, 2, true);
+    struct relume_homography h;
+    CHECK_OK(relume_align_homography(&h, &a, &b, NULL));
+    CHECK_NEAR(h.m[0][2], -3.0, 1.0);
+    CHECK_NEAR(h.m[1][2], -2.0, 1.0);
+    relume_image_destroy(&a);
+    relume_image_destroy(&b);
+}
+
 static void test_anchor_and_threads(void **state)
 {
     (void)state;
@@ -283,6 +313,7 @@ int main(void)
         cmocka_unit_test(test_ghosts),
         cmocka_unit_test(test_only_source_stays),
         cmocka_unit_test(test_anchor_and_threads),
+        cmocka_unit_test(test_tiles),
         cmocka_unit_test(test_bad_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -194,6 +194,27 @@ static enum relume_ball_sight sight_of(struct made_scene s)
     return light.sight;
 }
 
+// A window is a larger spot than the lamp, which has a tenth of its light and more: no light of one
+// may go unnoticed (a spot of a third once did, and the direction was 31 degrees off).
+static void a_larger_second(void **state)
+{
+    (void)state;
+    const struct made_scene s = {
+        .balls = 1, .radius = {0.5}, .distant = true, .brightness = 40.0, .lamp = {0.3, 0.2, 1}};
+    const struct relume_ball_camera camera = camera_of(&s);
+    const struct relume_ball ball =
+        relume_ball_outlined(MADE_WIDTH / 2.0, MADE_HEIGHT / 2.0, 0.25 * MADE_WIDTH, &camera);
+    struct relume_image photo;
+    struct relume_ball_light light;
+    CHECK_OK(made_photograph(&photo, &s, 0.0));
+    for (int k = 0; k < 3 * MADE_WIDTH * MADE_HEIGHT; k++)
+        if (hypot(k / 3 % MADE_WIDTH - 130.0, k / 3 / MADE_WIDTH - 100.0) < 4.0)
+            photo.data[k] = 1.0f;
+    CHECK_OK(relume_ball_mirror(&light, &ball, &camera, &photo));
+    relume_image_destroy(&photo);
+    assert_int_equal(light.sight, RELUME_BALL_TWO);
+}
+
 static void bad_highlights(void **state)
 {
     (void)state;
@@ -249,6 +270,7 @@ int main(void)
         cmocka_unit_test(positions),
         cmocka_unit_test(lines_that_do_not_meet),
         cmocka_unit_test(bad_highlights),
+        cmocka_unit_test(a_larger_second),
         cmocka_unit_test(no_ball),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -407,6 +407,26 @@ static void gltf_is_read(void **state)
     assert_non_null(strstr(last, "cut.gltf: not read as a model"));
 }
 
+// Assimp leaves such faces out and goes on.
+static void gltf_of_vertices_that_are_not_there(void **state)
+{
+    (void)state;
+    char text[2 * sizeof gltf];
+    const char *const material = path_of("sample"), *rest = strstr(gltf, "\"material\":0");
+    // the texture coordinates 1.0, 0.0 taken for three indices: 0, 16256, 0
+    snprintf(text, sizeof text, "%.*s\"indices\":2,%.*s,%s", (int)(rest - gltf), gltf,
+             (int)strlen(rest) - 2, rest,
+             "{\"bufferView\":1,\"byteOffset\":8,\"componentType\":5123,\"count\":3,"
+             "\"type\":\"SCALAR\"}]}");
+    write_text("beyond.gltf", text);
+    relume_objects *o;
+    assert_int_equal(relume_objects_of_mesh(&o, path_of("beyond.gltf"), &material, 1, 1,
+                                            relume_objects_params(.log = &hearing)),
+                     RELUME_EDATA);
+    assert_non_null(strstr(last, "beyond.gltf: not read as a model"));
+    assert_non_null(strstr(last, "vertices that are not there"));
+}
+
 static void bad_descriptions_are_told(void **state)
 {
     (void)state;
@@ -552,6 +572,7 @@ int main(void)
         cmocka_unit_test(far_surfaces_are_even),
         cmocka_unit_test(what_is_missing_is_made),
         cmocka_unit_test(gltf_is_read),
+        cmocka_unit_test(gltf_of_vertices_that_are_not_there),
         cmocka_unit_test(bad_descriptions_are_told),
         cmocka_unit_test(descriptions_are_followed),
         cmocka_unit_test(threads_agree),

@@ -151,12 +151,12 @@ static void forget(struct bracket *b)
 }
 
 // ln of recovered over true exposure, its mean left out: the scale is free.
-static double curve_error(const struct relume_response *r, int c)
+static double curve_error(const struct relume_response *r, int c, double (*decode)(double))
 {
     double sum = 0.0, squares = 0.0;
     int n = 0;
     for (int i = 16; i <= 245; i++, n++) {
-        const double e = log((double)r->exposure[c][i] / made_decode(i / 255.0));
+        const double e = log((double)r->exposure[c][i] / decode(i / 255.0));
         sum += e;
         squares += e * e;
     }
@@ -188,7 +188,7 @@ static void test_made_camera(void **state)
     shoot(&b, 0.5);
     CHECK_OK(relume_response_recover(&r, b.codes, b.exposures, SHOTS, NULL));
     for (int c = 0; c < 3; c++) {
-        assert_true(curve_error(&r, c) < 0.03);
+        assert_true(curve_error(&r, c, made_decode) < 0.03);
         for (int i = 1; i < RELUME_CODES; i++)
             assert_true(r.exposure[c][i] >= r.exposure[c][i - 1]);
     }
@@ -209,6 +209,38 @@ static void test_made_camera(void **state)
     CHECK_NEAR(error[RELUME_MERGE_HAT], 0.0, 0.025);
     CHECK_NEAR(error[RELUME_MERGE_GAUSSIAN], 0.0, 0.025);
     forget(&b);
+}
+
+static double itself(double code)
+{
+    return code;
+}
+
+// Every pixel of another brightness: the mean of neighbours of which some are saturated is no code
+// of a camera, and bent the curve by 20 % (found with linear codes of an HDR picture).
+static void test_fine_texture(void **state)
+{
+    (void)state;
+    struct relume_image codes[SHOTS];
+    double exposures[SHOTS];
+    struct relume_response r;
+    uint32_t random = 1;
+    for (int i = 0; i < SHOTS; i++) {
+        exposures[i] = pow(4.0, 1 - i);
+        codes[i] = flat(W, H, 0.0f);
+        for (int k = 0; k < 3 * W * H; k++) {
+            const double texture = exp2(5.0 * made_hash(k / 3 % W, k / 3 / W, 7) - 2.5);
+            const double radiance =
+                texture * made_radiance(k / 3 % W + 0.5, k / 3 / W + 0.5, k % 3);
+            const double code = 255.0 * radiance * exposures[i] + 0.5 * made_gauss(&random);
+            codes[i].data[k] = (float)(fmin(fmax(floor(code + 0.5), 0.0), 255.0) / 255.0);
+        }
+    }
+    CHECK_OK(relume_response_recover(&r, codes, exposures, SHOTS, NULL));
+    for (int c = 0; c < 3; c++)
+        CHECK_NEAR(curve_error(&r, c, itself), 0.0, 0.04);
+    for (int i = 0; i < SHOTS; i++)
+        relume_image_destroy(&codes[i]);
 }
 
 // With noise of a whole code the true curve leaves 1.8 %; the target is 2 % all told.
@@ -325,7 +357,8 @@ int main(void)
         cmocka_unit_test(test_weights),      cmocka_unit_test(test_merge_by_hand),
         cmocka_unit_test(test_made_camera),  cmocka_unit_test(test_much_noise),
         cmocka_unit_test(test_threads),      cmocka_unit_test(test_wrong_time),
-        cmocka_unit_test(test_lifted_black), cmocka_unit_test(test_bad_input),
+        cmocka_unit_test(test_fine_texture), cmocka_unit_test(test_lifted_black),
+        cmocka_unit_test(test_bad_input),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

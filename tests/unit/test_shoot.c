@@ -85,12 +85,14 @@ static void positions_perspective(void **state)
     check_positions(40.0, 0.02);
 }
 
-// A round stone with a sharper outline than the ball's: white all over, so it shows no lamp.
-static void a_round_stone_is_no_ball(void **state)
+static void check_stone(bool matte)
 {
-    (void)state;
-    const struct made_scene s = {
-        .balls = 1, .middle = {{0.4, 0, 0}}, .radius = {0.3}, .brightness = 4.0, .distant = true};
+    const struct made_scene s = {.balls = 1,
+                                 .middle = {{0.4, 0, 0}},
+                                 .radius = {0.3},
+                                 .matte = matte,
+                                 .brightness = matte ? 0.5 : 4.0,
+                                 .distant = true};
     struct photographs p;
     struct relume_shoot shoot;
     photograph(&p, s, 1.0, -1);
@@ -104,10 +106,49 @@ static void a_round_stone_is_no_ball(void **state)
         CHECK_OK(relume_image_save(&image, p.path[i], NULL));
         relume_image_destroy(&image);
     }
-    const struct relume_shoot_params params = params_of(&p);
+    struct relume_shoot_params params = params_of(&p);
+    params.matte = matte;
     CHECK_OK(relume_shoot_make(&shoot, p.out, &params));
     assert_true(shoot.ball[0].x > 0.5 * MADE_WIDTH);
     relume_shoot_destroy(&shoot);
+    test_folder_remove(p.folder);
+}
+
+// A round stone with a sharper outline than the ball's: white all over, so it shows no lamp and is
+// not shaded by one.
+static void a_round_stone_is_no_ball(void **state)
+{
+    (void)state;
+    check_stone(false);
+    check_stone(true);
+}
+
+// The horizon of a table in a mirror on it looks like an outline, too: what a small circle tells of
+// low lamps is that they stand behind the ball.
+static void an_outline_too_small(void **state)
+{
+    (void)state;
+    const struct made_scene s = {
+        .balls = 1, .middle = {{0, 0, 0}}, .radius = {0.4}, .brightness = 12.0, .distant = true};
+    static const double outline[2][3] = {
+        {0.5 * MADE_WIDTH, 0.5 * MADE_HEIGHT, 0.2 * MADE_WIDTH},
+        {0.5 * MADE_WIDTH, 0.5 * MADE_HEIGHT, 0.12 * MADE_WIDTH},
+    };
+    struct photographs p;
+    struct relume_shoot shoot;
+    photograph(&p, s, 1.0, -1);
+    for (int round = 0; round < 2; round++) {
+        struct relume_shoot_params params = params_of(&p);
+        params.ball = &outline[round];
+        params.balls = 1;
+        params.force = true;
+        CHECK_OK(relume_shoot_make(&shoot, p.out, &params));
+        int said = 0;
+        for (int i = 0; i < shoot.warnings; i++)
+            said += strstr(shoot.warning[i], "behind it") != NULL;
+        assert_int_equal(said, round);
+        relume_shoot_destroy(&shoot);
+    }
     test_folder_remove(p.folder);
 }
 
@@ -289,6 +330,7 @@ int main(void)
         cmocka_unit_test(light_is_evened_out),    cmocka_unit_test(a_camera_on_the_lamp),
         cmocka_unit_test(positions_orthographic), cmocka_unit_test(positions_perspective),
         cmocka_unit_test(a_dark_photograph),      cmocka_unit_test(a_round_stone_is_no_ball),
+        cmocka_unit_test(an_outline_too_small),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -235,8 +235,9 @@ struct relume_encode_census {
 // How well a view was encoded, in the coefficients' own domain over the captured lights, in units
 // where 1 is white; measured on every 16th or 64th row.
 struct relume_encode_report {
-    double fit_rms;                      // captured samples against unquantised coefficients
-    double store_rms;                    // unquantised against stored coefficients
+    double fit_rms;    // captured samples against unquantised coefficients
+    double store_rms;  // unquantised against stored coefficients
+    double typical;    // captured sample: the squared mean of their square roots; 0 from a file
     struct relume_encode_census census;  // zeros where it is read from a file
 };
 RELUME_API struct relume_encode_report relume_coefficients_report(

@@ -123,6 +123,32 @@ static void say_result(const struct args *args, const relume_coder *coder,
     args_log(args)->message(args_log(args)->user, RELUME_NOTE, text);
 }
 
+struct request {
+    const struct relume_basis *basis;
+    struct relume_transfer transfer;
+    struct relume_coder_params coder;
+    struct relume_pack_encode_params pack;
+    struct relume_books_params books;
+};
+
+// Codes are even steps up to the brightest value: a lamp in the picture of HDR radiance leaves the
+// rest few of them.
+static void say_steps(const struct args *args, const struct relume_encode_report *report,
+                      const struct request *r, const char *path)
+{
+    static const double COARSE = 0.05;  // photographs of 8 bits lose a hundredth of this
+    char text[384];
+    const double lost = report->typical > 0.0 ? report->store_rms / report->typical : 0.0;
+    if (r->pack.storage == RELUME_STORE_HALF || r->pack.books || lost < COARSE ||
+        report->store_rms < report->fit_rms)
+        return;
+    snprintf(text, sizeof text,
+             "%s: %s bits are too few beside values so much brighter than others: storing loses "
+             "%.0f %% of a typical one; expected --bits half",
+             path, args_text(args, "--bits", "8"), 100.0 * lost);
+    args_log(args)->message(args_log(args)->user, RELUME_WARNING, text);
+}
+
 // What in the capture says little: black and clipped pixels, black images.
 static void say_census(const struct args *args, const struct relume_encode_census *c,
                        bool hemispherical)
@@ -147,14 +173,6 @@ static void say_census(const struct args *args, const struct relume_encode_censu
         log->message(log->user, RELUME_WARNING, text);
     }
 }
-
-struct request {
-    const struct relume_basis *basis;
-    struct relume_transfer transfer;
-    struct relume_coder_params coder;
-    struct relume_pack_encode_params pack;
-    struct relume_books_params books;
-};
 
 // Near lights are resampled where the places of the pixels are known (capture.h).
 static bool ignores_positions(const struct relume_manifest *m)
@@ -195,6 +213,7 @@ static relume_status encode(const struct args *args, struct request *r)
     if (!status) {
         say_census(args, &report.census, relume_capture_hemispherical(capture));
         say_result(args, coder, &report, path);
+        say_steps(args, &report, r, path);
     }
     relume_coder_destroy(&coder);
     relume_capture_destroy(&capture);

@@ -43,7 +43,7 @@ struct encoder {
     struct captured captured;
     struct census census;
     size_t repaired;
-    double error_sum;
+    double error_sum, root_sum;
     size_t error_count;
     int threads;
 };
@@ -147,6 +147,7 @@ static relume_status measure_fit(struct encoder *e)
                     const double sample = (double)seen[(size_t)c * size + i * width + x];
                     const double d = sample - (double)again[i * width + x];
                     e->error_sum += d * d;
+                    e->root_sum += sqrt(fmax(sample, 0.0));
                     e->error_count++;
                 }
     }
@@ -166,8 +167,10 @@ static relume_status measure_seen(struct encoder *e)
             continue;
         seen_predict(e->seen, (int)x, e->row, e->values + x, pixels, again);
         for (size_t i = 0; i < 3 * (size_t)e->lights; i++) {
-            const double d = (double)e->own[(i / 3 * pixels + x) * 3 + i % 3] - (double)again[i];
+            const double sample = (double)e->own[(i / 3 * pixels + x) * 3 + i % 3];
+            const double d = sample - (double)again[i];
             e->error_sum += d * d;
+            e->root_sum += sqrt(fmax(sample, 0.0));
             e->error_count++;
         }
     }
@@ -435,6 +438,8 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
         c->report.census = census_result(&e.census);
         c->report.census.repaired = e.repaired;
         c->report.fit_rms = e.error_count ? sqrt(e.error_sum / (double)e.error_count) : 0.0;
+        const double root = e.error_count ? e.root_sum / (double)e.error_count : 0.0;
+        c->report.typical = root * root;
         coefficients_choose_steps(c, e.total, mask.data != NULL, p.step);
         if (c->info.storage != RELUME_STORE_HALF)
             status = measure_storage(c, &e);

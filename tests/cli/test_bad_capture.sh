@@ -78,6 +78,12 @@ fresh float c; "$mkimage" poke float/view00/light0003.exr c/view00/light0003.exr
 bad 'values that overflow the codes' 'c/view00/.*too large for single precision' c --basis table
 fresh float c; "$mkimage" poke float/view00/light0003.exr c/view00/light0003.exr 5 6 1e6
 bad 'values that no half holds' "half" c --basis table --bits half
+fresh float c; "$mkimage" poke float/view00/light0003.exr c/view00/light0003.exr 5 6 1e4
+expect_ok 'a value far above the others' 'warning: out.exr: 8 bits are too few' \
+    "$RELUME" encode c -o out.exr --basis table
+expect_ok 'halfs hold both' - "$RELUME" encode c -o out.exr --basis table --bits half
+expect_ok 'the others alone fit 8 bits' - "$RELUME" encode float -o out.exr --basis table
+rm -f out.exr
 for kind in bigpng bigexr; do
     extension=${kind#big}
     fresh good c; "$mkimage" $kind c/big.$extension 1000000 1000000

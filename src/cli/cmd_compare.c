@@ -25,10 +25,12 @@ static void print(const struct args *args, const struct relume_difference *d,
     const size_t count = sizeof rows / sizeof *rows - !args_has(args, "--ramps");
     const bool json = args_has(args, "--json");
     for (size_t i = 0; i < count; i++) {
-        if (!json) {
+        if (!json && isfinite(rows[i].value))
             printf("%-8s %.6g\n", rows[i].name, rows[i].value);
+        else if (!json)
+            printf("%-8s -\n", rows[i].name);
+        if (!json)
             continue;
-        }
         printf("%s\"%s\": ", i ? ", " : "{", rows[i].name);
         json_number(stdout, rows[i].value);
     }

@@ -57,7 +57,8 @@ static void print_text(const struct relume_evaluation *e)
 {
     printf("images    %zu (%d views x %d lights)\n", e->images, e->views, e->lights);
     printf("PSNR      %.2f dB (mean over images)\n", e->psnr_db);
-    printf("SSIM      %.4f\n", e->ssim);
+    if (isfinite(e->ssim))
+        printf("SSIM      %.4f\n", e->ssim);
     printf("deltaE    %.3f (CIEDE2000)\n", e->delta_e);
     printf("RMS       %.5f (linear)\n", e->rms);
     printf("file      %.0f bytes, %.3f bits per pixel and view\n", e->file_bytes,

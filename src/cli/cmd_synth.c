@@ -58,13 +58,23 @@ static relume_status choose_projection(struct relume_synth_params *p, const char
     return unknown_name("projection", name, names);
 }
 
-static relume_status choose_views(struct relume_synth_params *p, const char *text)
+// A scene that is planar by itself becomes a slab by being asked for views.
+static relume_status choose_views(struct relume_synth_params *p, enum relume_projection own,
+                                  const char *text)
 {
     char rest;
-    if (!text || (sscanf(text, "%4dx%4d%c", &p->grid[0], &p->grid[1], &rest) == 2 &&
-                  p->grid[0] > 0 && p->grid[1] > 0))
+    if (!text)
         return RELUME_OK;
-    return usage_error("--views: expected a grid like 5x5; found '%s'", text);
+    if (sscanf(text, "%4dx%4d%c", &p->grid[0], &p->grid[1], &rest) != 2 || p->grid[0] < 1 ||
+        p->grid[1] < 1)
+        return usage_error("--views: expected a grid like 5x5; found '%s'", text);
+    if (!p->projection_set && own == RELUME_PLANAR) {
+        p->projection = RELUME_SLAB;
+        p->projection_set = true;
+    }
+    if ((p->projection_set ? p->projection : own) == RELUME_SLAB)
+        return RELUME_OK;
+    return usage_error("--views: expected --projection slab, which has views");
 }
 
 static relume_status choose_ring(struct relume_synth_params *p, const char *name)
@@ -240,7 +250,7 @@ static relume_status run(const struct args *args)
     if (!status)
         status = choose_projection(&p, args_text(args, "--projection", NULL));
     if (!status)
-        status = choose_views(&p, args_text(args, "--views", NULL));
+        status = choose_views(&p, kind->projection, args_text(args, "--views", NULL));
     if (!status)
         status = choose_ring(&p, args_text(args, "--slabs", NULL));
     if (!status)

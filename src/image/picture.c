@@ -3,6 +3,7 @@
 #include "image/picture.h"
 
 #include "base/log.h"
+#include "base/memory.h"
 #include "base/module.h"
 #include "base/outfile.h"
 #include "image/picture_format.h"
@@ -156,9 +157,31 @@ relume_status picture_write_bytes(const char *path, int width, int height, int c
                   : bridge->write_bytes(path, width, height, channels, samples, outfile_save, log);
 }
 
+// Which OpenImageIO reads and does not write: rows from the bottom up, the sign says little endian.
+static relume_status write_pfm(const char *path, int width, int height, int channels,
+                               const float *samples, const struct relume_log *log)
+{
+    enum { HEAD = 64 };
+    const size_t row = (size_t)width * (size_t)channels;
+    char *bytes = mem_array(row * (size_t)height * sizeof *samples + HEAD, 1);
+    if (!bytes)
+        return RELUME_ENOMEM;
+    const char *scale = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ ? "-1.0" : "1.0";
+    const int head =
+        snprintf(bytes, HEAD, "P%c\n%d %d\n%s\n", channels == 3 ? 'F' : 'f', width, height, scale);
+    char *to = bytes + head;
+    for (int y = height; y-- > 0; to += row * sizeof *samples)
+        memcpy(to, samples + (size_t)y * row, row * sizeof *samples);
+    const relume_status status = outfile_save(path, bytes, (size_t)(to - bytes), log);
+    free(bytes);
+    return status;
+}
+
 relume_status picture_write_floats(const char *path, int width, int height, int channels,
                                    const float *samples, const struct relume_log *log)
 {
+    if (picture_has_extension(path, ".pfm"))
+        return write_pfm(path, width, height, channels, samples, log);
     const relume_status status = need_bridge(path, log);
     return status ? status
                   : bridge->write_floats(path, width, height, channels, samples, outfile_save, log);

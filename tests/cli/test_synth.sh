@@ -37,6 +37,10 @@ done
 "$RELUME" eval discs.exr discs --json >eval.json
 above 'eval of discs' "$(field psnr_db eval.json)" 90
 expect_ok 'a spot under a roof' - "$RELUME" relight discs.exr -o spot.png --tilt 60 --light 'spot 0 0 0 0 1 0 40'
+expect_fail 'views of a panorama' 2 'views: expected --projection slab' s "$RELUME" synth attic -o s --views 2x2
+expect_ok 'views of a planar scene' - "$RELUME" synth box -o s --views 2x1 --size 8 --lights 1 --samples 1 -q
+check 'make a slab' test "$(grep -c '"uv": \[' s/capture.json)" -eq 2
+rm -rf s
 expect_fail 'discs of a sphere' 2 'discs: expected a cylinder; found a spherical capture' s "$RELUME" synth attic -o s --projection spherical --discs
 sed 's/"discs": [0-9]*/"discs": 97/' discs/capture.json >discs/wrong.json
 expect_fail 'discs wider than the cylinder' 1 'panorama.discs; expected at most half of the 192 columns' w.exr "$RELUME" encode discs/wrong.json -o w.exr

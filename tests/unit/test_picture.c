@@ -159,6 +159,25 @@ static void exr_that_is_not_plain(void **state)
     assert_null(format_of(path_of("a.exr")));
 }
 
+// ---------------------------------------------------------------- PFM
+
+static void pfm_comes_back(void **state)
+{
+    (void)state;
+    float samples[5 * 4 * 3], back[sizeof samples / sizeof *samples];
+    picture_reader *r;
+    for (int i = 0; i < 60; i++)
+        samples[i] = (float)i * 1.1f - 7.0f;
+    for (int channels = 1; channels <= 3; channels += 2) {
+        CHECK_OK(picture_write_floats(path_of("a.pfm"), 5, 4, channels, samples, NULL));
+        CHECK_OK(picture_open(&r, path_of("a.pfm"), NULL, NULL));
+        assert_true(r->info.width == 5 && r->info.height == 4 && r->info.channels == channels);
+        CHECK_OK(picture_read_floats(r, 0, 4, back));
+        assert_memory_equal(back, samples, 20 * (size_t)channels * sizeof *samples);
+        picture_close(&r);
+    }
+}
+
 // ---------------------------------------------------------------- PNG
 
 static void fill(uint8_t *samples, int n)
@@ -388,6 +407,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exr_is_what_openimageio_sees),
         cmocka_unit_test(exr_that_is_not_plain),
+        cmocka_unit_test(pfm_comes_back),
         cmocka_unit_test(png_is_what_openimageio_sees),
         cmocka_unit_test(png_that_is_not_plain),
         cmocka_unit_test(jpeg_is_what_openimageio_sees),

@@ -60,6 +60,10 @@ relume_status shoot_add_grey(struct shoot *s, const struct relume_image *image);
 relume_status shoot_whiten(struct shoot *s);
 // What can be told wrong of the pictures themselves: other scenes, clipping, blackness.
 relume_status shoot_check_pictures(struct shoot *s);
+// The photograph that shows the balls under a shot's light, linear.
+relume_status shoot_load_balls(struct relume_image *out, const struct shoot *s, int i);
+// Mirror balls found as the horizon of the table they stand on: find their outlines.
+relume_status shoot_seek_tables(struct shoot *s);
 // Directions, positions, intensities and their errors, from balls or from a file.
 relume_status shoot_find_lights(struct shoot *s);
 // The same from a folder: the text files of COLMAP, with cameras that are tied to the lamp.

@@ -54,6 +54,13 @@ static const char *ball_photo(const struct shot *shot)
     return shot->ball_path ? shot->ball_path : shot->path;
 }
 
+relume_status shoot_load_balls(struct relume_image *out, const struct shoot *s, int i)
+{
+    return relume_photograph_load(out, NULL, ball_photo(&s->shot[i]),
+                                  relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
+                                                           .transfer = s->p.transfer));
+}
+
 // What is wrong with how ball `b` shows the light; NULL when nothing is.
 static const char *objection(const struct relume_ball_light *l, bool matte)
 {
@@ -77,10 +84,7 @@ static relume_status try_candidates(double *bad, const struct shoot *s,
     double error[MOST_BALLS + CANDIDATES] = {0.0};
     for (int i = 0; i < trials; i++) {
         struct relume_image image;
-        relume_status status =
-            relume_photograph_load(&image, NULL, ball_photo(&s->shot[i * s->shots / trials]),
-                                   relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
-                                                            .transfer = s->p.transfer));
+        relume_status status = shoot_load_balls(&image, s, i * s->shots / trials);
         for (int b = 0; !status && b < n; b++) {
             struct relume_ball_light light;
             status = (matte ? relume_ball_matte : relume_ball_mirror)(&light, &ball[b], &s->camera,
@@ -146,6 +150,8 @@ static relume_status find_balls(struct shoot *s)
     relume_status status = mask.data
                                ? relume_ball_find(out->ball, out->balls, &s->mean, &s->camera, &p)
                                : find_telling(s, &p);
+    if (!status && !mask.data && !s->p.matte)
+        status = shoot_seek_tables(s);
     if (status == RELUME_EDATA)
         status =
             log_fail(s->p.log, status,
@@ -196,10 +202,7 @@ static relume_status look(struct shoot *s, int i, struct sights *to, const char 
 {
     const char *path = ball_photo(&s->shot[i]);
     struct relume_image image;
-    relume_status status =
-        relume_photograph_load(&image, NULL, path,
-                               relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
-                                                        .transfer = s->p.transfer));
+    relume_status status = shoot_load_balls(&image, s, i);
     *to = (struct sights){0};
     *why = NULL;
     for (int b = 0; !status && b < s->out->balls; b++) {

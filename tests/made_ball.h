@@ -90,7 +90,7 @@ static inline double made_table(const struct made_scene *s, struct relume_vec3 f
         if (made_hit(s, b, at, lamp, &on, &n))
             light = 0.0;
     }
-    const double albedo = 0.5 + 0.15 * sin(9.0 * at.x + 2.0 * sin(4.0 * at.y)) * sin(7.0 * at.y);
+    const double albedo = 0.45 + 0.4 * sin(23.0 * at.x + 2.0 * sin(9.0 * at.y)) * sin(19.0 * at.y);
     return albedo * (0.6 * light + 0.02) * exp(-2.0 * fmax(far - 3.0, 0.0));
 }
 

@@ -38,6 +38,7 @@ struct shoot {
     // of the photographs in which the balls stand
     struct relume_ball_camera camera;
     struct relume_image mean, peak;
+    struct relume_image change;  // how light differs between photographs: RMS of its logarithm
     int summed;
 };
 

@@ -18,6 +18,7 @@ struct made_scene {
     bool distant;
     double brightness;
     struct relume_vec3 second;  // another lamp, likewise; zero: none
+    double table;               // z of a table that the balls stand on; 0: cloth without end
 };
 
 static inline struct relume_vec3 made_add(struct relume_vec3 a, struct relume_vec3 b, double s)
@@ -75,19 +76,39 @@ static inline double made_glint(const struct made_scene *s, struct relume_vec3 l
                                                                                    : 0.0;
 }
 
+// Where a ray that points down meets the table: bright, patterned, with the shadows of the balls,
+// up to some three units from the middle.
+static inline double made_table(const struct made_scene *s, struct relume_vec3 from,
+                                struct relume_vec3 ray)
+{
+    const struct relume_vec3 at = made_add(from, ray, (s->table - from.z) / ray.z);
+    const struct relume_vec3 lamp = made_towards(s, s->lamp, at);
+    const double far = hypot(at.x, at.y);
+    double light = fmax(lamp.z, 0.0);
+    for (int b = 0; b < s->balls; b++) {
+        struct relume_vec3 on, n;
+        if (made_hit(s, b, at, lamp, &on, &n))
+            light = 0.0;
+    }
+    const double albedo = 0.45 + 0.4 * sin(23.0 * at.x + 2.0 * sin(9.0 * at.y)) * sin(19.0 * at.y);
+    return albedo * (0.6 * light + 0.02) * exp(-2.0 * fmax(far - 3.0, 0.0));
+}
+
 static inline double made_shade(const struct made_scene *s, struct relume_vec3 ray,
                                 struct relume_vec3 at, struct relume_vec3 n)
 {
     if (s->matte)
         return s->brightness * fmax(made_dot(n, made_towards(s, s->lamp, at)), 0.0);
     const struct relume_vec3 mirrored = made_add(ray, n, -2.0 * made_dot(ray, n));
+    if (s->table < 0.0 && mirrored.z < 0.0)
+        return 0.7 * made_table(s, at, mirrored);
     double v = 0.01 + 0.01 * mirrored.y + made_glint(s, s->lamp, at, mirrored);
     if (made_dot(s->second, s->second) > 0.0)
         v += made_glint(s, s->second, at, mirrored);
     return v;
 }
 
-// What a ray sees of the balls; false where it sees the cloth behind them.
+// What a ray sees of the balls and the table; false where it sees the cloth behind them.
 static inline bool made_value(double *value, const struct made_scene *s, double x, double y)
 {
     struct relume_vec3 from, ray, at, n;
@@ -97,7 +118,9 @@ static inline bool made_value(double *value, const struct made_scene *s, double 
             *value = made_shade(s, ray, at, n);
             return true;
         }
-    return false;
+    if (s->table < 0.0)
+        *value = made_table(s, from, ray);
+    return s->table < 0.0;
 }
 
 static inline double made_cloth(int x, int y)

@@ -23,17 +23,6 @@ struct follower {
     double step;               // along a radius, pixels
 };
 
-static float at(const struct relume_image *image, double x, double y)
-{
-    const double cx = fmin(fmax(x - 0.5, 0.0), image->width - 1.001);
-    const double cy = fmin(fmax(y - 0.5, 0.0), image->height - 1.001);
-    const int ix = (int)cx, iy = (int)cy;
-    const float fx = (float)(cx - ix), fy = (float)(cy - iy);
-    const float *p = image->data + (size_t)iy * (size_t)image->width + (size_t)ix;
-    const float *q = p + image->width;
-    return (p[0] * (1 - fx) + p[1] * fx) * (1 - fy) + (q[0] * (1 - fx) + q[1] * fx) * fy;
-}
-
 static bool is_inside(const struct relume_image *image, double x, double y)
 {
     return x >= 1.0 && y >= 1.0 && x <= image->width - 1.0 && y <= image->height - 1.0;
@@ -54,8 +43,8 @@ static void search_radius(const struct follower *f, int i, double reach)
         const double in = r - f->step, out = r + f->step;
         change[k] = 0.0f;
         if (is_inside(f->edges, b->x + out * cx, b->y + out * cy))
-            change[k] = fabsf(at(f->edges, b->x + out * cx, b->y + out * cy) -
-                              at(f->edges, b->x + in * cx, b->y + in * cy));
+            change[k] = fabsf(ball_at(f->edges, b->x + out * cx, b->y + out * cy) -
+                              ball_at(f->edges, b->x + in * cx, b->y + in * cy));
         const double near = (double)change[k] * exp(-off * off / (reach * reach));
         if (near > best) {
             best = near;
@@ -90,8 +79,8 @@ static float background(const struct follower *f)
     for (int i = 0; i < f->angles; i++) {
         const double a = 2.0 * M_PI * i / f->angles, r = b->radius * (i % 2 ? 1.25 : 0.75);
         const double x = b->x + r * cos(a), y = b->y + r * sin(a);
-        f->scratch[i] = fabsf(at(f->edges, x + f->step * cos(a), y + f->step * sin(a)) -
-                              at(f->edges, x - f->step * cos(a), y - f->step * sin(a)));
+        f->scratch[i] = fabsf(ball_at(f->edges, x + f->step * cos(a), y + f->step * sin(a)) -
+                              ball_at(f->edges, x - f->step * cos(a), y - f->step * sin(a)));
     }
     qsort(f->scratch, (size_t)f->angles, sizeof *f->scratch, ascending);
     return f->scratch[f->angles / 2];

@@ -369,6 +369,7 @@ static void release(struct shoot *s)
     relume_image_destroy(&s->grey);
     relume_image_destroy(&s->mean);
     relume_image_destroy(&s->peak);
+    relume_image_destroy(&s->change);
 }
 
 relume_status relume_shoot_make(struct relume_shoot *out, const char *dir,

@@ -38,6 +38,7 @@ struct shoot {
     // of the photographs in which the balls stand
     struct relume_ball_camera camera;
     struct relume_image mean, peak;
+    struct relume_image change;  // how light differs between photographs: RMS of its logarithm
     int summed;
 };
 
@@ -60,6 +61,10 @@ relume_status shoot_add_grey(struct shoot *s, const struct relume_image *image);
 relume_status shoot_whiten(struct shoot *s);
 // What can be told wrong of the pictures themselves: other scenes, clipping, blackness.
 relume_status shoot_check_pictures(struct shoot *s);
+// The photograph that shows the balls under a shot's light, linear.
+relume_status shoot_load_balls(struct relume_image *out, const struct shoot *s, int i);
+// Mirror balls found as the horizon of the table they stand on: find their outlines.
+relume_status shoot_seek_tables(struct shoot *s);
 // Directions, positions, intensities and their errors, from balls or from a file.
 relume_status shoot_find_lights(struct shoot *s);
 // The same from a folder: the text files of COLMAP, with cameras that are tied to the lamp.

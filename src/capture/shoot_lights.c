@@ -54,6 +54,13 @@ static const char *ball_photo(const struct shot *shot)
     return shot->ball_path ? shot->ball_path : shot->path;
 }
 
+relume_status shoot_load_balls(struct relume_image *out, const struct shoot *s, int i)
+{
+    return relume_photograph_load(out, NULL, ball_photo(&s->shot[i]),
+                                  relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
+                                                           .transfer = s->p.transfer));
+}
+
 // What is wrong with how ball `b` shows the light; NULL when nothing is.
 static const char *objection(const struct relume_ball_light *l, bool matte)
 {
@@ -63,6 +70,7 @@ static const char *objection(const struct relume_ball_light *l, bool matte)
 }
 
 enum { CANDIDATES = 16, TRIALS = 6 };
+static const double DOUBTFUL = 3.0;  // degrees: a matte ball that tells less may not be one
 static const double NO_LAMP = 90.0;  // degrees that count where a matte ball tells nothing
 
 // How badly candidates tell the lamp, in a few photographs spread over all: mirrors 0, or 1 where
@@ -77,10 +85,7 @@ static relume_status try_candidates(double *bad, const struct shoot *s,
     double error[MOST_BALLS + CANDIDATES] = {0.0};
     for (int i = 0; i < trials; i++) {
         struct relume_image image;
-        relume_status status =
-            relume_photograph_load(&image, NULL, ball_photo(&s->shot[i * s->shots / trials]),
-                                   relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
-                                                            .transfer = s->p.transfer));
+        relume_status status = shoot_load_balls(&image, s, i * s->shots / trials);
         for (int b = 0; !status && b < n; b++) {
             struct relume_ball_light light;
             status = (matte ? relume_ball_matte : relume_ball_mirror)(&light, &ball[b], &s->camera,
@@ -98,31 +103,85 @@ static relume_status try_candidates(double *bad, const struct shoot *s,
     return RELUME_OK;
 }
 
-// The candidates that tell the lamp best, the roundest of equals first. Where too few tell it at
-// all, others are taken, so that what is wrong with them is told.
+struct telling {
+    int n;
+    struct relume_ball ball[MOST_BALLS + 2 * CANDIDATES];
+    double bad[MOST_BALLS + 2 * CANDIDATES];
+};
+
+// Take the candidates that tell the lamp best and do not overlap, the first of equals; returns how
+// badly the last of them tells it, infinity where there are too few.
+static double take_best(struct relume_shoot *out, const struct telling *t)
+{
+    double worst = 0.0;
+    bool used[MOST_BALLS + 2 * CANDIDATES] = {false};
+    for (int kept = 0; kept < out->balls; kept++) {
+        int best = -1;
+        for (int b = 0; b < t->n; b++)
+            if (!used[b] && (best < 0 || t->bad[b] < t->bad[best]))
+                best = b;
+        if (best < 0)
+            return INFINITY;
+        out->ball[kept] = t->ball[best];
+        worst = t->bad[best];
+        for (int b = 0; b < t->n; b++)
+            used[b] |= hypot(t->ball[b].x - t->ball[best].x, t->ball[b].y - t->ball[best].y) <
+                       fmax(t->ball[b].radius, t->ball[best].radius);
+    }
+    return worst;
+}
+
+static relume_status add_candidates(struct telling *t, const struct shoot *s,
+                                    const struct relume_image *picture, int most,
+                                    const struct relume_ball_params *params)
+{
+    int found;
+    relume_status status =
+        relume_ball_candidates(t->ball + t->n, most, &found, picture, &s->camera, params);
+    if (!status)
+        status = try_candidates(t->bad + t->n, s, t->ball + t->n, found);
+    t->n += found;
+    return status;
+}
+
+// Outlines instead of horizons of tables, which are smaller, so that lamps look wider by them;
+// *bad: how badly they tell the lamp then.
+static relume_status seek_tables(struct shoot *s, double *bad)
+{
+    double each[MOST_BALLS];
+    if (s->p.matte || isinf(*bad))
+        return RELUME_OK;
+    relume_status status = shoot_seek_tables(s);
+    if (!status && *bad > 0.0) {
+        status = try_candidates(each, s, s->out->ball, s->out->balls);
+        *bad = 0.0;
+        for (int b = 0; !status && b < s->out->balls; b++)
+            *bad = fmax(*bad, each[b]);
+    }
+    return status;
+}
+
+// The circles that tell the lamp best. Where a patterned table hides outlines, in how light changes
+// they show: there the pattern drops out. Where too few tell the lamp at all, others are taken, so
+// that what is wrong with them is told.
 static relume_status find_telling(struct shoot *s, const struct relume_ball_params *params)
 {
     struct relume_shoot *out = s->out;
-    struct relume_ball ball[MOST_BALLS + CANDIDATES];
-    double bad[MOST_BALLS + CANDIDATES] = {0.0};
-    int n;
-    relume_status status =
-        relume_ball_candidates(ball, out->balls + CANDIDATES, &n, &s->mean, &s->camera, params);
-    if (!status && n < out->balls)
-        return RELUME_EDATA;
-    if (!status && n > out->balls)
-        status = try_candidates(bad, s, ball, n);
-    if (status)
-        return status;
-    for (int kept = 0; kept < out->balls; kept++) {
-        int best = 0;
-        for (int b = 1; b < n; b++)
-            best = bad[b] < bad[best] ? b : best;
-        out->ball[kept] = ball[best];
-        bad[best] = INFINITY;
+    struct telling t = {0};
+    relume_status status = add_candidates(&t, s, &s->mean, out->balls + CANDIDATES, params);
+    double bad = take_best(out, &t);
+    if (!status)
+        status = seek_tables(s, &bad);
+    if (!status && bad > (s->p.matte ? DOUBTFUL : 0.0)) {
+        status = add_candidates(&t, s, &s->change, CANDIDATES, params);
+        bad = take_best(out, &t);
+        if (!status)
+            status = seek_tables(s, &bad);
     }
+    if (!status && isinf(bad))
+        return RELUME_EDATA;
     ball_sort(out->ball, out->balls);
-    return RELUME_OK;
+    return status;
 }
 
 static relume_status find_balls(struct shoot *s)
@@ -196,10 +255,7 @@ static relume_status look(struct shoot *s, int i, struct sights *to, const char 
 {
     const char *path = ball_photo(&s->shot[i]);
     struct relume_image image;
-    relume_status status =
-        relume_photograph_load(&image, NULL, path,
-                               relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
-                                                        .transfer = s->p.transfer));
+    relume_status status = shoot_load_balls(&image, s, i);
     *to = (struct sights){0};
     *why = NULL;
     for (int b = 0; !status && b < s->out->balls; b++) {

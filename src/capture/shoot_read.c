@@ -56,6 +56,8 @@ static relume_status add_to_mean(struct shoot *s, const struct relume_image *ima
         relume_status status = relume_image_create(&s->mean, image->width, image->height, 1);
         if (!status)
             status = relume_image_create(&s->peak, image->width, image->height, 1);
+        if (!status)
+            status = relume_image_create(&s->change, image->width, image->height, 1);
         if (status)
             return status;
     }
@@ -63,8 +65,9 @@ static relume_status add_to_mean(struct shoot *s, const struct relume_image *ima
         for (int x = 0; x < image->width; x++) {
             const size_t at = (size_t)y * (size_t)image->width + (size_t)x;
             const float v = ball_grey(image, x, y);
-            s->mean.data[at] +=
-                (logf(fmaxf(v, 0.0f) + FAINT) - s->mean.data[at]) / (float)(s->summed + 1);
+            const float off = logf(fmaxf(v, 0.0f) + FAINT) - s->mean.data[at];
+            s->mean.data[at] += off / (float)(s->summed + 1);
+            s->change.data[at] += off * off * (float)s->summed / (float)(s->summed + 1);
             s->peak.data[at] = v > s->peak.data[at] ? v : s->peak.data[at];
         }
     s->summed++;
@@ -181,8 +184,10 @@ relume_status shoot_read(struct shoot *s)
         if (!status && !log_progress(s->p.log, "reading", (done + 1.0) / all))
             status = RELUME_ECANCEL;
     }
-    for (size_t i = 0; s->mean.data && i < (size_t)s->mean.width * (size_t)s->mean.height; i++)
+    for (size_t i = 0; s->mean.data && i < (size_t)s->mean.width * (size_t)s->mean.height; i++) {
         s->mean.data[i] = expf(s->mean.data[i]);
+        s->change.data[i] = sqrtf(s->change.data[i] / (float)s->summed);
+    }
     if (!status && s->shots < 3)
         status = log_fail(s->p.log, RELUME_EDATA, "%d photographs; expected at least 3", s->shots);
     return status;

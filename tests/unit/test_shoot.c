@@ -152,6 +152,51 @@ static void an_outline_too_small(void **state)
     test_folder_remove(p.folder);
 }
 
+// A mirror on a bright table shows its horizon, a circle of 0.7 to 0.8 of the outline and clearer
+// than it: directions were 20 degrees off.
+static void check_table(double fov_deg, struct relume_vec3 middle, bool matte, double tolerance)
+{
+    const struct made_scene s = {.fov_deg = fov_deg,
+                                 .balls = 1,
+                                 .middle = {middle},
+                                 .radius = {0.35},
+                                 .matte = matte,
+                                 .brightness = matte ? 0.45 : 40.0,
+                                 .distant = true,
+                                 .table = -0.38};
+    struct photographs p;
+    struct relume_shoot shoot;
+    double squares = 0.0;
+    photograph(&p, s, 1.0, -1);
+    struct relume_shoot_params params = params_of(&p);
+    params.fov_deg = fov_deg;
+    params.matte = matte;
+    CHECK_OK(relume_shoot_make(&shoot, p.out, &params));
+    for (int i = 0; i < LAMPS; i++) {
+        const double cosine = made_dot(shoot.direction[i], lamp_at(i, 1.0));
+        squares += (2.0 - 2.0 * cosine) / LAMPS;
+    }
+    CHECK_NEAR(sqrt(squares) * 180.0 / M_PI, 0.0, tolerance);
+    relume_shoot_destroy(&shoot);
+    test_folder_remove(p.folder);
+}
+
+static void a_mirror_on_a_table(void **state)
+{
+    (void)state;
+    // 56 pixels: one is 2 degrees
+    check_table(0.0, (struct relume_vec3){-0.2, 0.1, 0}, false, 0.8);
+    check_table(40.0, (struct relume_vec3){-0.25, 0.12, 0}, false, 0.8);
+}
+
+// As bright as the table and before its pattern: the mean shows no outline, the change of light
+// does.
+static void a_matte_ball_on_a_table(void **state)
+{
+    (void)state;
+    check_table(0.0, (struct relume_vec3){-0.2, 0.1, 0}, true, 0.5);
+}
+
 static void a_dark_photograph(void **state)
 {
     (void)state;
@@ -327,10 +372,11 @@ static void a_camera_on_the_lamp(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(light_is_evened_out),    cmocka_unit_test(a_camera_on_the_lamp),
-        cmocka_unit_test(positions_orthographic), cmocka_unit_test(positions_perspective),
-        cmocka_unit_test(a_dark_photograph),      cmocka_unit_test(a_round_stone_is_no_ball),
-        cmocka_unit_test(an_outline_too_small),
+        cmocka_unit_test(light_is_evened_out),     cmocka_unit_test(a_camera_on_the_lamp),
+        cmocka_unit_test(positions_orthographic),  cmocka_unit_test(positions_perspective),
+        cmocka_unit_test(a_dark_photograph),       cmocka_unit_test(a_round_stone_is_no_ball),
+        cmocka_unit_test(an_outline_too_small),    cmocka_unit_test(a_mirror_on_a_table),
+        cmocka_unit_test(a_matte_ball_on_a_table),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

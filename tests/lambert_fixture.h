@@ -10,6 +10,7 @@ struct bump {
     bool near;     // lights at 3 world units, falling with the square of the distance
     bool flat;     // a plane instead of the bump
     double gloss;  // height of a highlight at each pixel under one light
+    double shine;  // strength of a highlight around the mirror direction, seen from above
     bool shadows;  // two lights are blocked at each pixel
     bool no_falloff;
     const double *brightness;  // [BUMP_LIGHTS], or NULL: all 1
@@ -71,7 +72,9 @@ static inline double bump_value(const struct bump *s, int light, int x, int y)
     if (s->shadows && (light == odd || light == (odd + 5) % BUMP_LIGHTS))
         return 0.0;
     const double gloss = s->gloss > 0.0 && light == (odd + 3) % BUMP_LIGHTS ? s->gloss : 0.0;
-    return fall * (0.7 * fmax(bump_dot(n, l), 0.0) + gloss);
+    const struct relume_vec3 h = bump_unit((struct relume_vec3){l.x, l.y, l.z + 1.0});
+    const double shine = s->shine * pow(fmax(bump_dot(n, h), 0.0), 15.0);
+    return fall * (0.7 * fmax(bump_dot(n, l), 0.0) + gloss + shine);
 }
 
 // FOLDER/capture.json and its images.

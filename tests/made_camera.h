@@ -15,6 +15,7 @@ struct made_shot {
     double object[3];   // x, y, radius of a ball in pixels of this picture; 0: none
     double noise;       // standard deviation, codes of 255
     double vignetting;  // light lost in the corners, [0, 1)
+    bool night;         // the scene is that of made_night
     uint32_t seed;
 };
 
@@ -44,6 +45,18 @@ static inline double made_radiance(double x, double y, int c)
     const double coarse = made_noise(x / 23, y / 23, 2 + c) - 0.5;
     const double fine = made_noise(x / 6, y / 6, 5) - 0.5;
     return 0.2 * exp2(range + 2.0 * coarse + 1.5 * fine);
+}
+
+// Lamps and windows, small and bright, far apart in the dark: averages over many pixels show
+// little.
+static inline double made_night(double x, double y, int c)
+{
+    const int i = (int)floor(x / 40), j = (int)floor(y / 40);
+    const double dx = x / 40 - i - 0.5, dy = y / 40 - j - 0.5;
+    const double side = 0.12 * (0.3 + made_hash(i, j, 12));
+    const bool lit = made_hash(i, j, 11) < 0.4 && fabs(dx) < side && fabs(dy) < 1.5 * side;
+    const double fine = made_noise(x / 8, y / 8, 13) - 0.5;
+    return 0.03 * exp2(3.0 * fine) + (lit ? 0.4 * exp2(3.0 * made_hash(i, j, 14 + c)) : 0.0);
 }
 
 static inline double made_object(double x, double y, int c)
@@ -123,9 +136,10 @@ static inline struct relume_image made_shoot(const struct made_shot *s, int widt
                 const double px = x + 0.5, py = y + 0.5;
                 double at[2];
                 made_place(s, width, height, px, py, at);
-                const double radiance = made_covers(s, px, py)
-                                            ? made_object(px - s->object[0], py - s->object[1], c)
-                                            : made_radiance(at[0], at[1], c);
+                const double radiance =
+                    made_covers(s, px, py)
+                        ? made_object(px - s->object[0], py - s->object[1], c)
+                        : (s->night ? made_night : made_radiance)(at[0], at[1], c);
                 const double lens = made_vignette(s, width, height, px, py);
                 const double code = 255.0 * made_encode(radiance * s->time * lens) +
                                     (s->noise > 0.0 ? s->noise * made_gauss(&state) : 0.0);

@@ -105,8 +105,10 @@ struct relume_refine_params {
 // left out; the linear map that the images leave open (it contains the bas-relief ambiguity,
 // Belhumeur, Kriegman, Yuille 1999) is the one that brings the lights nearest to those given.
 // direction[lights] are replaced; intensity[lights] gets relative brightness, mean 1; *residual the
-// median miss / albedo before and after. RELUME_EDATA where the lights do not span space or there
-// are fewer than 6, RELUME_ENOMEM.
+// median miss / albedo before and after. Where the surface does not tell lights better than they
+// are (it faces one way, or gloss passes for light: halves of it disagree), they stay, intensities
+// are 1, both residuals are equal and curl is 0, with a warning. RELUME_EDATA where the lights do
+// not span space or there are fewer than 6, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_lights_refine(struct relume_vec3 *direction, double *intensity,
                                                  double residual[2], const relume_capture *capture,
                                                  const struct relume_refine_params *params);

@@ -3,14 +3,15 @@
 // The scheme of a freehand HDR acquisition: one block of the whole picture is matched, split in
 // four, each quarter starts from the displacements of its surroundings, down to blocks of 16
 // pixels. Every level allows a shift of an eighth of the block's side, so that all levels together
-// follow a roll of atan(2/8) = 14 degrees. Here a roll that has been found is undone and the rest
-// searched for again, blocks above 64 pixels are matched on a pyramid
-// where they have 64 x 64 samples, and the last level is refined below a pixel by a parabola.
+// follow a roll of atan(2/8) = 14 degrees. Here a roll is undone before or afterwards, blocks above
+// 64 pixels are matched on a pyramid where they have 64 x 64 samples, and the last level is refined
+// below a pixel by a parabola.
 #include <relume/align.h>
 
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
+#include "capture/align_guess.h"
 #include "capture/blocks.h"
 #include "capture/correlate.h"
 #include "capture/pyramid.h"
@@ -274,10 +275,19 @@ static relume_status match_all(struct grid *out, const struct pyramid *anchor,
 // ---------------------------------------------------------------- roll
 
 // Blocks move without turning. Where the picture is rolled, their insides are therefore compared
-// smeared; so the affine map that the first displacements amount to is undone and what remains is
-// searched for again.
+// smeared, the largest of them most, and what these miss the small ones do not find again. So the
+// homography of small pictures is undone beforehand where it says that there is a roll; where it
+// cannot tell, the affine map that the displacements amount to is undone afterwards and what
+// remains is searched for again.
 
-static const double notable = 0.05;  // pixels that two neighbours move apart: a roll of 3 degrees
+static const double clear_match = 0.3;    // correlation of a homography that is believed
+static const double clear_roll = 0.01;    // pixels that two neighbours move apart: half a degree
+static const double notable_roll = 0.05;  // the same, by displacements: 3 degrees
+
+static double roll_of(const struct relume_homography *map)
+{
+    return sqrt(0.5) * hypot(map->m[0][1], map->m[1][0]);
+}
 
 static relume_status make_alike(struct pyramid *out, const struct relume_image *anchor,
                                 const struct relume_image *image, int threads)
@@ -310,9 +320,32 @@ static void compose(struct grid *grid, const struct relume_homography *map)
             const double x = grid->origin[0] + (column + 0.5) * grid->side;
             const double y = grid->origin[1] + (row + 0.5) * grid->side;
             const double at[2] = {x + n->d[0], y + n->d[1]};
-            n->d[0] = map->m[0][0] * at[0] + map->m[0][1] * at[1] + map->m[0][2] - x;
-            n->d[1] = map->m[1][0] * at[0] + map->m[1][1] * at[1] + map->m[1][2] - y;
+            const double z = map->m[2][0] * at[0] + map->m[2][1] * at[1] + 1.0;
+            n->d[0] = (map->m[0][0] * at[0] + map->m[0][1] * at[1] + map->m[0][2]) / z - x;
+            n->d[1] = (map->m[1][0] * at[0] + map->m[1][1] * at[1] + map->m[1][2]) / z - y;
         }
+}
+
+// The displacements that are found after `map` has been undone.
+static relume_status match_upright(struct grid *out, const struct pyramid *anchor,
+                                   const struct relume_image *image,
+                                   const struct relume_homography *map, int block,
+                                   const struct relume_align_params *p)
+{
+    struct relume_image upright;
+    struct grid grid = {0};
+    relume_status status = relume_warp_homography(&upright, NULL, image, map, p);
+    if (!status)
+        status = match(&grid, anchor, &upright, block, p->threads);
+    relume_image_destroy(&upright);
+    if (status) {
+        free(grid.node);
+        return status;
+    }
+    compose(&grid, map);
+    free(out->node);
+    *out = grid;
+    return RELUME_OK;
 }
 
 static relume_status undo_roll(struct grid *grid, const struct pyramid *anchor,
@@ -320,22 +353,24 @@ static relume_status undo_roll(struct grid *grid, const struct pyramid *anchor,
                                const struct relume_align_params *p)
 {
     struct relume_homography map = {.m = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    struct relume_image upright;
-    if (!grid_affine(map.m, grid) || hypot(map.m[0][1], map.m[1][0]) < sqrt(2.0) * notable)
+    if (!grid_affine(map.m, grid) || roll_of(&map) < notable_roll)
         return RELUME_OK;
-    relume_status status = relume_warp_homography(&upright, NULL, image, &map, p);
-    struct grid again = {0};
-    if (!status)
-        status = match(&again, anchor, &upright, block, p->threads);
-    relume_image_destroy(&upright);
-    if (status) {
-        free(again.node);
+    return match_upright(grid, anchor, image, &map, block, p);
+}
+
+static relume_status match_rolled(struct grid *out, const struct pyramid *anchor_alike,
+                                  const struct relume_image *anchor,
+                                  const struct relume_image *image, int block,
+                                  const struct relume_align_params *p)
+{
+    struct relume_homography map = {.correlation = 0.0};
+    relume_status status = align_guess(&map, anchor, image, p->threads);
+    if (status)
         return status;
-    }
-    compose(&again, &map);
-    free(grid->node);
-    *grid = again;
-    return RELUME_OK;
+    if (map.correlation > clear_match && roll_of(&map) > clear_roll)
+        return match_upright(out, anchor_alike, image, &map, block, p);
+    status = match(out, anchor_alike, image, block, p->threads);
+    return status ? status : undo_roll(out, anchor_alike, image, block, p);
 }
 
 static relume_status hand_out(struct relume_displacements *out, const struct grid *grid, int width,
@@ -375,9 +410,7 @@ relume_status relume_align_blocks(struct relume_displacements *out,
     struct grid grid = {0};
     relume_status status = make_alike(&a, anchor, image, p.threads);
     if (!status)
-        status = match(&grid, &a, image, block, p.threads);
-    if (!status)
-        status = undo_roll(&grid, &a, image, block, &p);
+        status = match_rolled(&grid, &a, anchor, image, block, &p);
     if (!status)
         status = hand_out(out, &grid, anchor->width, anchor->height);
     free(grid.node);

@@ -22,6 +22,12 @@ static const float DARK = 0.01f;       // median over lights below which a pixel
 static const float CLIPPED = 0.995f;   // of white
 static const double MOST_MOVED = 5.0;  // degrees, by integrability
 
+enum { BINS = 32 };                       // of normals, along x and y
+static const double RARE = 0.002;         // share of the pixels: rarer normals count no more
+static const double MOST_CHANGED = 10.0;  // degrees, RMS: no one misses lamps by more
+static const double AGREED = 0.25;        // degrees between halves that always do
+static const double CLEAR = 2.0;          // moved by as many times what halves disagree
+
 struct refiner {
     const relume_capture *capture;
     int lights, threads;
@@ -31,6 +37,7 @@ struct refiner {
     float *value;                    // [PIXELS][lights]; clipped ones are NaN
     vec3 *g;                         // [PIXELS]
     bool *known;                     // [PIXELS]
+    double *weight;                  // [PIXELS], by how rare their normal is; mean 1
     vec3 *light;                     // [lights]
     double *bright;                  // [lights]
     struct lambert_sample *scratch;  // [workers][lights]
@@ -137,12 +144,46 @@ static void fit_pixel(void *context, size_t item, int worker)
     r->known[item] = n >= 4 && lambert_fit(&r->g[item], r->light, s, &n, false) != NULL;
 }
 
-// Reweighted least squares of one light over the pixels that it meets.
-static void fit_light(void *context, size_t item, int worker)
+static int bin_of(double component)
 {
-    (void)worker;
-    const struct refiner *r = context;
-    vec3 light = r->light[item];
+    const int i = (int)(0.5 * (component + 1.0) * BINS);
+    return i < 0 ? 0 : i >= BINS ? BINS - 1 : i;
+}
+
+static void weigh_pixels(struct refiner *r)
+{
+    size_t count[BINS][BINS] = {{0}}, known = 0;
+    double sum = 0.0;
+    for (size_t k = 0; k < r->pixels; k++) {
+        const vec3 n = r->known[k] ? vec3_unit(r->g[k]) : vec3_of(0, 0, 1);
+        count[bin_of(n.x)][bin_of(n.y)] += r->known[k];
+        known += r->known[k];
+    }
+    for (size_t k = 0; k < r->pixels; k++) {
+        const vec3 n = r->known[k] ? vec3_unit(r->g[k]) : vec3_of(0, 0, 1);
+        const double alike = (double)count[bin_of(n.x)][bin_of(n.y)];
+        r->weight[k] = r->known[k] ? 1.0 / fmax(alike, RARE * (double)known) : 0.0;
+        sum += r->weight[k];
+    }
+    for (size_t k = 0; k < r->pixels; k++)
+        r->weight[k] *= sum > 0.0 ? (double)known / sum : 0.0;
+}
+
+// Of the surface: what faces more along the axis than half of it does.
+struct half {
+    vec3 axis;  // of unit length; 0: all of it
+    double least;
+};
+
+static bool is_in(const struct half *half, vec3 g)
+{
+    return vec3_dot(g, half->axis) >= half->least * vec3_length(g);
+}
+
+// Reweighted least squares of one light over the pixels that it meets.
+static bool light_from(vec3 *out, const struct refiner *r, size_t item, const struct half *half)
+{
+    vec3 light = *out;
     double scale = 0.1;
     for (int round = 0; round < 6; round++) {
         double m[9] = {0.0}, b[3] = {0.0}, sum = 0.0, weight = 0.0;
@@ -150,24 +191,34 @@ static void fit_light(void *context, size_t item, int worker)
             const double v = (double)r->value[k * (size_t)r->lights + item];
             const vec3 g = r->g[k];
             const double size = vec3_length(g), expected = vec3_dot(g, light);
-            if (!r->known[k] || isnan(v) || expected < 0.15 * size * vec3_length(light))
+            if (!r->known[k] || isnan(v) || expected < 0.15 * size * vec3_length(light) ||
+                !is_in(half, g))
                 continue;
             const double miss = (v - expected) / size;
-            const double w = 1.0 / (1.0 + miss * miss / (scale * scale)) / (size * size);
+            const double trust = r->weight[k] / (1.0 + miss * miss / (scale * scale));
+            const double w = trust / (size * size);
             const double row[3] = {g.x, g.y, g.z};
             for (int j = 0; j < 9; j++)
                 m[j] += w * row[j / 3] * row[j % 3];
             for (int j = 0; j < 3; j++)
                 b[j] += w * row[j] * v;
-            sum += w * size * size * miss * miss;
-            weight += w * size * size;
+            sum += trust * miss * miss;
+            weight += trust;
         }
         if (weight < 20.0 || !lsq_solve(m, 3, b, 1))
-            return;
+            return false;
         light = vec3_of(b[0], b[1], b[2]);
         scale = fmax(2.0 * sqrt(sum / weight), 1e-3);
     }
-    r->light[item] = light;
+    *out = light;
+    return true;
+}
+
+static void fit_light(void *context, size_t item, int worker)
+{
+    (void)worker;
+    struct refiner *r = context;
+    light_from(&r->light[item], r, item, &(struct half){{0, 0, 0}, 0.0});
 }
 
 // light <- A light with the A that brings the lights nearest to s_i given_i, s_i being free.
@@ -211,6 +262,64 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+// ---------------------------------------------------------------- whether to believe it
+
+static double degrees_between(vec3 a, vec3 b)
+{
+    return vec3_angle(a, b) * 180.0 / M_PI;
+}
+
+// By how much lights as one half tells them differ from what both do, RMS; `sorted` [pixels].
+// Infinite where more than a quarter of the lights is told by one half alone.
+static double disagreement(const struct refiner *r, vec3 axis, double *sorted)
+{
+    const vec3 back = vec3_scale(axis, -1.0);
+    size_t n = 0;
+    int told = 0;
+    double sum = 0.0;
+    for (size_t k = 0; k < r->pixels; k++)
+        if (r->known[k])
+            sorted[n++] = vec3_dot(vec3_unit(r->g[k]), axis);
+    if (!n)
+        return INFINITY;
+    qsort(sorted, n, sizeof *sorted, ascending);
+    const struct half one = {axis, sorted[n / 2]}, other = {back, -sorted[n / 2]};
+    for (int i = 0; i < r->lights; i++) {
+        vec3 a = r->light[i], b = a;
+        if (!light_from(&a, r, (size_t)i, &one) || !light_from(&b, r, (size_t)i, &other))
+            continue;
+        const double off = 0.5 * degrees_between(a, b);
+        sum += off * off;
+        told++;
+    }
+    return 4 * told < 3 * r->lights ? (double)INFINITY : sqrt(sum / told);
+}
+
+static relume_status judge(bool *believed, const struct refiner *r, const vec3 *given,
+                           const struct relume_log *log)
+{
+    double *sorted = mem_array(r->pixels, sizeof *sorted), sum = 0.0;
+    if (!sorted)
+        return RELUME_ENOMEM;
+    const double off =
+        fmax(disagreement(r, vec3_of(1, 0, 0), sorted), disagreement(r, vec3_of(0, 1, 0), sorted));
+    free(sorted);
+    for (int i = 0; i < r->lights; i++)
+        sum += pow(degrees_between(r->light[i], given[i]), 2.0);
+    const double change = sqrt(sum / r->lights);
+    *believed = change < MOST_CHANGED && off < fmax(AGREED, change / CLEAR);
+    if (!*believed && isfinite(off))
+        log_line(log, RELUME_WARNING,
+                 "lights are left as found: refined ones would move by %.1f degrees, but two "
+                 "halves of the surface place them %.1f degrees off each other; it is too flat or "
+                 "too glossy",
+                 change, 2.0 * off);
+    else if (!*believed)
+        log_line(log, RELUME_WARNING,
+                 "lights are left as found: the surface is too flat to tell them better");
+    return RELUME_OK;
+}
+
 // The median |miss| / albedo of lit samples, with surfaces fitted to the lights as they are.
 static relume_status find_residual(double *residual, struct refiner *r)
 {
@@ -252,7 +361,7 @@ static relume_status integrate(struct refiner *r, double curl[2], const struct r
             vec3_of(a[0] * l.x + a[1] * l.y + a[2] * l.z, a[3] * l.x + a[4] * l.y + a[5] * l.z,
                     a[6] * l.x + a[7] * l.y + a[8] * l.z);
         mean += vec3_length(moved[i]) / r->lights;
-        angle += vec3_angle(moved[i], l) * 180.0 / M_PI / r->lights;
+        angle += degrees_between(moved[i], l) / r->lights;
     }
     if (angle > MOST_MOVED) {
         log_line(log, RELUME_WARNING,
@@ -269,20 +378,35 @@ static relume_status integrate(struct refiner *r, double curl[2], const struct r
     return RELUME_OK;
 }
 
-static relume_status solve(struct refiner *r, const vec3 *given, double residual[2],
+// Back to where they came from.
+static void give_back(struct refiner *r, const vec3 *given)
+{
+    for (int i = 0; i < r->lights; i++)
+        r->light[i] = given[i];
+}
+
+static relume_status solve(struct refiner *r, bool *believed, const vec3 *given, double residual[2],
                            const struct relume_log *log)
 {
     relume_status status = find_residual(&residual[0], r);
-    for (int round = 0; !status && round < ROUNDS; round++) {
+    bool good = true;
+    for (int round = 0; !status && good && round < ROUNDS; round++) {
+        weigh_pixels(r);
         thread_for(r->threads, (size_t)r->lights, fit_light, r);
-        if (!fix_gauge(r, given))
-            return log_fail(log, RELUME_EDATA,
-                            "lights cannot be refined: the surface does not tell them apart");
+        good = fix_gauge(r, given);
         thread_for(r->threads, r->pixels, fit_pixel, r);
         if (!log_progress(log, "refining", (round + 1.0) / ROUNDS))
             return RELUME_ECANCEL;
     }
-    return status ? status : find_residual(&residual[1], r);
+    if (!status)
+        weigh_pixels(r);
+    if (!status)
+        status = judge(believed, r, given, log);
+    residual[1] = residual[0];
+    if (!status && *believed)
+        return find_residual(&residual[1], r);
+    give_back(r, given);
+    return status;
 }
 
 relume_status relume_lights_refine(struct relume_vec3 *direction, double *intensity,
@@ -291,7 +415,8 @@ relume_status relume_lights_refine(struct relume_vec3 *direction, double *intens
 {
     const struct relume_refine_params p = params ? *params : (struct relume_refine_params){0};
     const struct relume_manifest *m = relume_capture_manifest(capture);
-    double curl[2];
+    double curl[2] = {0.0, 0.0};
+    bool believed = false;
     struct refiner r = {
         .capture = capture, .lights = m->lights, .threads = thread_count(p.threads)};
     if (m->lights < LEAST_LIGHTS || m->positions || !lambert_spans(m->directions, m->lights))
@@ -302,11 +427,13 @@ relume_status relume_lights_refine(struct relume_vec3 *direction, double *intens
     r.value = mem_array((size_t)(PIXELS + 1) * (size_t)r.lights, sizeof *r.value);
     r.g = mem_array(PIXELS, sizeof *r.g);
     r.known = mem_array(PIXELS, sizeof *r.known);
+    r.weight = mem_array(PIXELS, sizeof *r.weight);
     r.light = mem_copy(m->directions, (size_t)r.lights, sizeof *r.light);
     r.bright = mem_array((size_t)r.lights, sizeof *r.bright);
     r.scratch = mem_array((size_t)r.threads * (size_t)r.lights, sizeof *r.scratch);
-    relume_status status =
-        r.value && r.g && r.known && r.light && r.bright && r.scratch ? RELUME_OK : RELUME_ENOMEM;
+    relume_status status = r.value && r.g && r.known && r.weight && r.light && r.bright && r.scratch
+                               ? RELUME_OK
+                               : RELUME_ENOMEM;
     if (!status)
         status = read_pixels(&r, p.log);
     if (!status && r.pixels < 200)
@@ -315,8 +442,8 @@ relume_status relume_lights_refine(struct relume_vec3 *direction, double *intens
                           "expected some hundred",
                           r.pixels);
     if (!status)
-        status = solve(&r, m->directions, residual, p.log);
-    if (!status && p.integrable)
+        status = solve(&r, &believed, m->directions, residual, p.log);
+    if (!status && believed && p.integrable)
         status = integrate(&r, p.curl ? p.curl : curl, p.log);
     for (int i = 0; !status && i < r.lights; i++) {
         intensity[i] = vec3_length(r.light[i]);
@@ -326,6 +453,7 @@ relume_status relume_lights_refine(struct relume_vec3 *direction, double *intens
     free(r.value);
     free(r.g);
     free(r.known);
+    free(r.weight);
     free(r.light);
     free(r.bright);
     free(r.scratch);

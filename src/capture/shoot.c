@@ -231,15 +231,16 @@ static relume_status refine(struct shoot *s, const relume_capture *capture)
         for (int c = 0; c < 3; c++)
             out->intensity[i][c] *= (float)bright[i];
     free(bright);
-    if (!status)
-        log_line(s->p.log, RELUME_NOTE,
-                 "lights refined: the images miss Lambert's law by %.3f of the albedo, %.3f before",
-                 residual[1], residual[0]);
-    if (!status && s->p.integrable)
+    if (status || residual[1] == residual[0])  // they stay, and that has been said
+        return status ? status : describe(s);
+    log_line(s->p.log, RELUME_NOTE,
+             "lights refined: the images miss Lambert's law by %.3f of the albedo, %.3f before",
+             residual[1], residual[0]);
+    if (s->p.integrable)
         log_line(s->p.log, RELUME_NOTE,
                  "lights refined: the surface's curl is %.3f of its curvature, %.3f before",
                  curl[1], curl[0]);
-    return status ? status : describe(s);
+    return describe(s);
 }
 
 // What matte surfaces miss under a light, of their albedo, mean over the lights.

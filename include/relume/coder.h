@@ -237,7 +237,7 @@ struct relume_encode_census {
 struct relume_encode_report {
     double fit_rms;    // captured samples against unquantised coefficients
     double store_rms;  // unquantised against stored coefficients
-    double typical;    // captured sample: the squared mean of their square roots; 0 from a file
+    double typical;    // captured sample above 0: squared mean of the roots; 0 from a file
     struct relume_encode_census census;  // zeros where it is read from a file
 };
 RELUME_API struct relume_encode_report relume_coefficients_report(

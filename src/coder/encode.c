@@ -44,7 +44,7 @@ struct encoder {
     struct census census;
     size_t repaired;
     double error_sum, root_sum;
-    size_t error_count;
+    size_t error_count, lit_count;
     int threads;
 };
 
@@ -129,6 +129,13 @@ static bool is_measured(const relume_coefficients *c, int row)
     return row % (c->bands < 64 ? BAND_ROWS : 4 * BAND_ROWS) == 0;
 }
 
+// Black says nothing of what is typical.
+static void add_root(struct encoder *e, double sample)
+{
+    e->root_sum += sample > 0.0 ? sqrt(sample) : 0.0;
+    e->lit_count += sample > 0.0;
+}
+
 // What the basis cannot express, on the first row of the band.
 static relume_status measure_fit(struct encoder *e)
 {
@@ -147,7 +154,7 @@ static relume_status measure_fit(struct encoder *e)
                     const double sample = (double)seen[(size_t)c * size + i * width + x];
                     const double d = sample - (double)again[i * width + x];
                     e->error_sum += d * d;
-                    e->root_sum += sqrt(fmax(sample, 0.0));
+                    add_root(e, sample);
                     e->error_count++;
                 }
     }
@@ -170,7 +177,7 @@ static relume_status measure_seen(struct encoder *e)
             const double sample = (double)e->own[(i / 3 * pixels + x) * 3 + i % 3];
             const double d = sample - (double)again[i];
             e->error_sum += d * d;
-            e->root_sum += sqrt(fmax(sample, 0.0));
+            add_root(e, sample);
             e->error_count++;
         }
     }
@@ -438,7 +445,7 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
         c->report.census = census_result(&e.census);
         c->report.census.repaired = e.repaired;
         c->report.fit_rms = e.error_count ? sqrt(e.error_sum / (double)e.error_count) : 0.0;
-        const double root = e.error_count ? e.root_sum / (double)e.error_count : 0.0;
+        const double root = e.lit_count ? e.root_sum / (double)e.lit_count : 0.0;
         c->report.typical = root * root;
         coefficients_choose_steps(c, e.total, mask.data != NULL, p.step);
         if (c->info.storage != RELUME_STORE_HALF)

@@ -1,9 +1,9 @@
 // picture.h - picture files of every format, row by row
 //
 // JPEG files and EXR and PNG files of the plain kind, which are most, are read by jpeg.c, exr.c and
-// png.c; all others, and EXIF, by OpenImageIO. That one brings over 200 shared libraries, a third of a second at every start: so
-// the C++ that knows it (oiio.cpp) is a module of its own, librelume-oiio.so, which picture.c opens
-// when the first file asks for it; nobody else notices.
+// png.c; all others, and EXIF, by OpenImageIO. That one brings over 200 shared libraries, a third
+// of a second at every start: so the C++ that knows it (oiio.cpp) is a module of its own,
+// librelume-oiio.so, which picture.c opens when the first file asks for it; nobody else notices.
 #ifndef IMAGE_PICTURE_H
 #define IMAGE_PICTURE_H
 

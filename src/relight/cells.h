@@ -33,9 +33,9 @@ struct cells_params {
 relume_status cells_create(struct cells *out, const struct cells_params *params);
 void cells_destroy(struct cells *cells);
 
-// From cell (*row, *column) of the grid and a place (*x, *y) in it, each in [0, 1], into the smallest
-// cell around that place. Returns its tile, in which it is cell (*row, *column) then, and the place
-// in it; or -1, all as it was.
+// From cell (*row, *column) of the grid and a place (*x, *y) in it, each in [0, 1], into the
+// smallest cell around that place. Returns its tile, in which it is cell (*row, *column) then, and
+// the place in it; or -1, all as it was.
 int cells_find(const struct cells *cells, int columns, int *row, int *column, double *x, double *y);
 
 #endif

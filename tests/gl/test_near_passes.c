@@ -208,7 +208,8 @@ static void components(void **state)
         transform[i] = (float)(0.4 * uniform(&random) - 0.2);
     for (int i = 0; i < 3 * FIXTURE_LIGHTS; i++)
         mean[i] = (float)uniform(&random);
-    static const char *const interpolants[] = {"angular", "delaunay"};  // a grid with tiles, and triangles
+    static const char *const interpolants[] = {"angular",
+                                               "delaunay"};  // a grid with tiles, and triangles
     for (int i = 0; i < 2; i++) {
         char name[64];
         snprintf(name, sizeof name, "pca 26, %s, %s", interpolants[i], i ? "linear" : "display");

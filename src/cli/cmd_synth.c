@@ -137,29 +137,15 @@ static relume_status choose_material(const struct relume_btf_material **out, con
     return *out ? RELUME_OK : unknown_name("material", name, names);
 }
 
-struct named_log {
-    const struct relume_log *log;
-    const char *file;
-};
-
-static void say_of_file(void *user, enum relume_level level, const char *text)
-{
-    const struct named_log *n = user;
-    char line[2048];
-    snprintf(line, sizeof line, "%s: %s", n->file, text);
-    n->log->message(n->log->user, level, line);
-}
-
 // Directions of a file that a material can be measured from: the file is at fault, not the usage.
 static relume_status read_directions(struct relume_vec3 **out, int *n, const char *file,
                                      const struct args *args)
 {
-    struct named_log named = {args_log(args), file};
+    struct prefix_log about;
     relume_dome *dome = NULL;
     relume_status status = relume_lights_read(out, n, file, args_log(args));
     if (!status)
-        status = relume_dome_create(&dome, *out, *n,
-                                    &(struct relume_log){.message = say_of_file, .user = &named});
+        status = relume_dome_create(&dome, *out, *n, prefix_log(&about, args_log(args), file));
     relume_dome_destroy(&dome);
     return status;
 }

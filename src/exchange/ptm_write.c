@@ -43,7 +43,8 @@ void ptm_print_header(const struct foreign *f, bool jpeg, FILE *out)
     fputs("\n", out);
     for (int i = 0; i < PTM_TERMS; i++) {
         const int p = ptm_term_of_place[i] * copies;
-        fprintf(out, "%ld ", lround(-(double)f->offset[p] / (double)f->scale[p]));
+        const double scale = (double)f->scale[p];  // 0: the term says nothing, and has no bias
+        fprintf(out, "%ld ", scale != 0.0 ? lround(-(double)f->offset[p] / scale) : 0L);
     }
     fputs("\n", out);
 }

@@ -75,6 +75,25 @@ static void readers_see_what_the_writer_says(void **state)
         }
 }
 
+// Scale 0. A bias from 0 / 0 was no number that readers take (found by fuzz_exchange).
+static void terms_that_say_nothing(void **state)
+{
+    (void)state;
+    for (int luminance = 0; luminance < 2; luminance++) {
+        struct foreign f = picture(luminance);
+        const int copies = luminance ? 1 : 3;
+        for (int c = 0; c < copies; c++)
+            f.scale[2 * copies + c] = f.offset[2 * copies + c] = 0.0f;
+        struct round r = go(&f, 0.02, 1);
+        assert_memory_equal(r.back.codes, r.file.codes, (size_t)f.planes * PIXELS);
+        for (int c = 0; c < copies; c++)
+            assert_true(r.back.scale[2 * copies + c] == 0.0f &&
+                        r.back.offset[2 * copies + c] == 0.0f);
+        free_round(&r);
+        foreign_free(&f);
+    }
+}
+
 static void planes_predict_each_other(void **state)
 {
     (void)state;
@@ -166,6 +185,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(readers_see_what_the_writer_says),
+        cmocka_unit_test(terms_that_say_nothing),
         cmocka_unit_test(planes_predict_each_other),
         cmocka_unit_test(errors_are_bounded),
         cmocka_unit_test(files_do_not_depend_on_threads),

@@ -117,7 +117,7 @@ $B/obj/src/cli/plot.o: own_flags = $(CAIRO)
 $B/obj/src/cli/%.o:           own_include = -Isrc/cli
 $B/obj/viewer/%.o:            own_include = -Iviewer
 $B/obj/viewer/context_glfw.o: own_flags = $(GLFW)
-$B/obj/viewer/panel.o: own_flags = $(IMGUI) -Wno-shadow
+$(VIEWER_CXX:%.cpp=$B/obj/%.o): own_flags = $(IMGUI) -Wno-shadow
 $B/obj/tests/tools/decode.o: own_flags = $(EXR)
 $B/obj/tests/%.o:             own_include = -Isrc -Itests -Iviewer
 # Tests themselves are many and short: compiled fast, and linked by the faster linker where it is.

@@ -40,7 +40,8 @@ png:src/image/png.c
 lcms2:src/image/profile.c tests/unit/test_photograph.c
 cairo:src/cli/plot.c
 GLFW:viewer/context_glfw.c
-imgui:viewer/panel.cpp
+imgui:viewer/panel_parts.h viewer/panel.cpp
+panel_parts:$(echo viewer/panel*.cpp)
 GL/osmesa:viewer/context_osmesa.c
 EGL/:viewer/context_egl.c
 immintrin:$(echo src/*/*_avx2.c)"

@@ -1,6 +1,6 @@
 // panel.h - the panel and what is drawn over the picture: lists, sliders, handles, help
 //
-// Made with Dear ImGui in panel.cpp, the only C++ of the viewer. It knows neither windows nor
+// Made with Dear ImGui in panel*.cpp, the only C++ of the viewer. It knows neither windows nor
 // OpenGL: events of the app go in, triangles come out, and draw_panel draws them.
 #ifndef VIEWER_PANEL_H
 #define VIEWER_PANEL_H

@@ -1,0 +1,48 @@
+// panel_parts.h - what the files of the panel share; only they know Dear ImGui
+#ifndef VIEWER_PANEL_PARTS_H
+#define VIEWER_PANEL_PARTS_H
+
+#include "panel.h"
+
+extern "C" {
+#include "gizmo.h"
+#include "keys.h"
+#include "lamps.h"
+}
+
+#include <imgui.h>
+
+#include <vector>
+
+struct panel {
+    ImGuiContext *context;
+    float scale;
+    std::vector<app_event> queue;
+    bool held;         // a press belongs to the panel
+    bool held_by_app;  // or to the app
+    bool histogram;    // is open
+    bool maps;         // the list of environment maps is open
+    bool changed;      // the picture, by what the user did in this frame
+    char spec[APP_SPEC];
+    char environment[APP_SPEC];
+    std::vector<panel_run> runs;
+    int listed;  // the light that the list has scrolled to
+};
+
+// Sections of the panel: what they return is whether the picture changed.
+bool panel_lights(panel *panel, app *app, const panel_facts *facts);
+bool panel_picture(app *app);
+bool panel_glare(app *app, const panel_facts *facts);
+bool panel_objects(app *app, const panel_facts *facts);
+void panel_histogram(const panel_facts *facts, float scale);
+void panel_file(const panel_facts *facts);
+
+// What is drawn over the picture.
+void panel_help(const app *app, float scale);
+void panel_handles(const app *app, float scale);
+void panel_inspector(const app *app, const panel_facts *facts, float scale);
+
+// The colour of a light's mark on discs of directions.
+ImU32 panel_mark_colour(const relume_light &light, bool behind);
+
+#endif

@@ -83,13 +83,25 @@ static exr_result_t set_attribute(exr_context_t exr, int part, const struct exr_
     return EXR_ERR_INVALID_ARGUMENT;
 }
 
-static exr_result_t declare_part(exr_context_t exr, const struct exr_part *p)
+static exr_attr_box2i_t window_of(const struct exr_part *p)
 {
+    exr_attr_box2i_t window = {.max.x = p->width - 1};
+    window.max.y = p->height - 1;
+    return window;
+}
+
+// OpenEXR's C++ library refuses files whose parts do not share one display window, so that is the
+// first part's for all of them; data windows may be smaller or larger.
+static exr_result_t declare_part(exr_context_t exr, const struct exr_part *p,
+                                 const struct exr_part *first)
+{
+    const exr_attr_box2i_t display = window_of(first), data = window_of(p);
+    const exr_attr_v2f_t centre = {.x = 0.0f};
     int index;
     exr_result_t r = exr_add_part(exr, p->name, EXR_STORAGE_SCANLINE, &index);
     if (!r)
-        r = exr_initialize_required_attr_simple(exr, index, p->width, p->height,
-                                                codecs[p->codec].exr);
+        r = exr_initialize_required_attr(exr, index, &display, &data, 1.0f, &centre, 1.0f,
+                                         EXR_LINEORDER_INCREASING_Y, codecs[p->codec].exr);
     for (int i = 0; !r && i < p->channels; i++)
         r = exr_add_channel(exr, index, p->channel[i], pixel_types[p->sample],
                             EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
@@ -237,7 +249,7 @@ relume_status exr_write(const char *path, const struct exr_part *parts, int coun
     init.write_fn = write_stream;
     exr_result_t r = exr_start_write(&w.exr, path, EXR_WRITE_FILE_DIRECTLY, &init);
     for (int i = 0; !r && i < count; i++)
-        r = declare_part(w.exr, &parts[i]);
+        r = declare_part(w.exr, &parts[i], parts);
     if (!r)
         r = exr_write_header(w.exr);
     if (r)

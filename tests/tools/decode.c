@@ -2,6 +2,7 @@
 // OpenEXR's C library and no header or function of relume. The slow and plain way everywhere.
 //
 //   decode FILE VIEW X Y LX LY LZ      prints linear r g b under `dir LX LY LZ`
+//   decode FILE                        is the file one that every OpenEXR program opens?
 #include <math.h>
 #include <openexr.h>
 #include <stdarg.h>
@@ -687,10 +688,54 @@ static void print_ray(int view, int part, int x, int y)
            eye.z + pose[2], way.x, way.y, way.z);
 }
 
+// Attributes that OpenEXR wants equal in all parts. The C library does not look at them, the C++
+// library opens no file in which they differ.
+static void check_shared(int part)
+{
+    exr_attr_box2i_t first, window;
+    float first_aspect, aspect;
+    if (exr_get_display_window(file, 0, &first) || exr_get_display_window(file, part, &window) ||
+        exr_get_pixel_aspect_ratio(file, 0, &first_aspect) ||
+        exr_get_pixel_aspect_ratio(file, part, &aspect))
+        fail("part %d has no display window or pixel aspect ratio", part);
+    if (memcmp(&first, &window, sizeof first))
+        fail("part %d: another displayWindow than part 0", part);
+    if (first_aspect != aspect)
+        fail("part %d: another pixelAspectRatio than part 0", part);
+    static const char *const absent[] = {"timeCode", "chromaticities"};
+    const exr_attribute_t *a;
+    for (int i = 0; i < 2; i++)
+        if (!exr_get_attribute_by_name(file, part, absent[i], &a))
+            fail("part %d has %s; expected none in any part", part, absent[i]);
+}
+
+static void check_container(const char *path)
+{
+    exr_context_initializer_t strict = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    strict.flags = EXR_CONTEXT_FLAG_STRICT_HEADER;
+    if (exr_start_read(&file, path, &strict))
+        fail("%s: the header is refused when it is read strictly", path);
+    int count = 0;
+    if (exr_get_count(file, &count) || count < 1)
+        fail("no parts");
+    for (int part = 0; part < count; part++) {
+        const char *name;
+        check_shared(part);
+        for (int other = 0; count > 1 && other < part; other++)
+            if (exr_get_name(file, part, &name) || look_for_part(name) != part)
+                fail("part %d: its name is not its own", part);
+    }
+    exr_finish(&file);
+}
+
 int main(int argc, char **argv)
 {
+    if (argc == 2) {
+        check_container(argv[1]);
+        return 0;
+    }
     if (argc != 8 && argc != 5)
-        fail("usage: decode FILE VIEW X Y [LX LY LZ]");
+        fail("usage: decode FILE [VIEW X Y [LX LY LZ]]");
     if (exr_start_read(&file, argv[1], NULL))
         fail("%s cannot be opened", argv[1]);
     if (strcmp(text_of("relume.format"), "relume") || int_of("relume.version") < 1 ||

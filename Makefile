@@ -22,7 +22,7 @@ COMMON   := -g -fPIC -fvisibility=hidden -MMD -MP -pthread -ffp-contract=off \
             -fno-math-errno -fno-trapping-math $(WARNINGS)
 release  := -O3 -DNDEBUG
 debug    := -O0
-asan     := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+asan     := -O1 -g1 -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer
 tsan     := -O0 -g1 -fsanitize=thread
 MODE     := $($(config))
 ifeq ($(MODE),)

@@ -74,10 +74,10 @@ static void upload(const struct panel_drawing *d, const struct gl *gl, const str
 static void draw_run(const struct panel_drawing *d, const struct gl *gl,
                      const struct panel_run *run, int height)
 {
-    const int left = (int)floorf(fmaxf(run->clip[0], 0));
-    const int top = (int)floorf(fmaxf(run->clip[1], 0));
-    const int right = (int)ceilf(run->clip[2]);
-    const int bottom = (int)ceilf(run->clip[3]);
+    const int left = relume_whole(floorf(fmaxf(run->clip[0], 0)));
+    const int top = relume_whole(floorf(fmaxf(run->clip[1], 0)));
+    const int right = relume_whole(ceilf(run->clip[2]));
+    const int bottom = relume_whole(ceilf(run->clip[3]));
     if (right <= left || bottom <= top)
         return;
     const bool plot = run->texture == PANEL_PLOT;

@@ -177,8 +177,8 @@ static void draw_fixed(struct gl_aperture *a, const struct gl *gl, const struct 
 void gl_aperture_draw(struct gl_aperture *a, const struct gl *gl, const struct relume_aperture *m)
 {
     const double middle = 0.5 * a->size + 0.5, radius = (double)m->pupil_radius / a->texel_mm;
-    a->from = (int)fmax(floor(middle - radius), 0);
-    a->to = (int)fmin(ceil(middle + radius), a->size);
+    a->from = relume_whole(fmax(floor(middle - radius), 0));
+    a->to = relume_whole(fmin(ceil(middle + radius), a->size));
     gl->BindVertexArray(a->vertices);
     if (!a->drawn)
         draw_fixed(a, gl, m);

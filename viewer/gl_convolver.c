@@ -188,7 +188,7 @@ static double veil_at(const struct relume_veil *veil, double steps)
 {
     if (steps >= RELUME_VEIL_STEPS)
         return 0;
-    const int i = (int)steps;
+    const int i = relume_whole(steps);
     return (double)veil->light[i] + (steps - i) * (double)(veil->light[i + 1] - veil->light[i]);
 }
 

@@ -39,8 +39,8 @@ static bool disc_place(int at[2], const struct inspector *in, struct relume_vec3
     if (!direction_place(place, d, pole_y))
         return false;
     const double x = in->zoom * (place[0] - in->at[0]), y = in->zoom * (place[1] - in->at[1]);
-    at[0] = (int)(0.5 * INSPECT_SIDE * (1 + x));
-    at[1] = (int)(0.5 * INSPECT_SIDE * (1 - y));
+    at[0] = relume_whole(0.5 * INSPECT_SIDE * (1 + x));
+    at[1] = relume_whole(0.5 * INSPECT_SIDE * (1 - y));
     return fabs(x) <= 1 && fabs(y) <= 1;
 }
 
@@ -119,7 +119,8 @@ void inspect_destroy(struct inspector *in)
 
 static int clamp_to(double x, int n)
 {
-    return x < 0 ? 0 : x >= n ? n - 1 : (int)x;
+    const int i = relume_whole(x);
+    return i < 0 ? 0 : i < n ? i : n - 1;
 }
 
 static bool pick_look(int pixel[2], const struct app *app, double x, double y)

@@ -63,6 +63,17 @@ RELUME_API unsigned relume_cpu_features(void);
 // The number of cores that this process may use, at least 1.
 RELUME_API int relume_cpu_count(void);
 
+// The whole number of a value, cut towards zero, whatever the value: beyond 2^30 either way it
+// stays there, so that a neighbour can be added or subtracted, and NaN is the lowest. A cast alone
+// is undefined where no int can hold the value: what comes from a file or a fit goes through here,
+// and is checked against its bounds afterwards.
+static inline int relume_whole(double value)
+{
+    const double most = 0x1p30;
+    const double above = value > -most ? value : -most;
+    return (int)(above < most ? above : most);
+}
+
 // Write a whole file: it appears under its name complete or not at all; devices and pipes are
 // written directly. RELUME_EIO with a sentence, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_file_save(const char *path, const void *bytes, size_t size,

@@ -268,7 +268,7 @@ static void add_map(const relume_prefilter *p, const float *map, const double at
 {
     const double u = at[0] * p->width - 0.5, v = fmax(at[1] * p->height - 0.5, 0.0);
     const double left = floor(u);
-    const int top = (int)v, x = ((int)left + p->width) % p->width;
+    const int top = relume_whole(v), x = (relume_whole(left) + p->width) % p->width;
     const float right = (float)(u - left), below = top + 1 < p->height ? (float)(v - top) : 0.0f;
     for (int i = 0; i < 4; i++) {
         const float w = weight * (i % 2 ? right : 1.0f - right) * (i / 2 ? below : 1.0f - below);

@@ -10,7 +10,7 @@ struct corners {
 static int wrap(double at, int n)
 {
     const double inside = at - n * floor(at / n);
-    return (int)fmin(inside, n - 1);
+    return relume_whole(fmin(inside, n - 1));
 }
 
 static struct corners corners_of(double x, double y, bool bilinear, int width, int height)

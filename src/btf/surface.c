@@ -215,7 +215,7 @@ static void add_point(const relume_btf_surface *s, double x, double y, double le
 {
     const struct relume_btf_map_info *finest = &s->level[0].map;
     const double l = fmin(fmax(level, 0.0), s->levels - 1);
-    const int below = (int)l;
+    const int below = relume_whole(l);
     const float part = (float)(l - below);
     // whole repetitions are dropped, so that far points lose no digits
     const double px =

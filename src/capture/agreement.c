@@ -19,8 +19,8 @@ struct tally {
 
 static void tally_add(struct tally *t, double ev)
 {
-    const double place = (ev + RANGE_EV) * PER_EV;
-    t->bin[place < 0.0 ? 0 : place >= BINS ? BINS - 1 : (int)place]++;
+    const int bin = relume_whole((ev + RANGE_EV) * PER_EV);
+    t->bin[bin < 0 ? 0 : bin < BINS ? bin : BINS - 1]++;
     t->squares += ev * ev;
     t->count++;
 }
@@ -127,8 +127,8 @@ relume_status agreement(struct relume_exposure_report *report, const struct relu
                 const float f = relume_response_decode(response, c, code);
                 const bool good = code > low && code < bright;
                 const float w = relume_merge_weight(params->weights, code, false, false) * mask;
-                s[j] =
-                    good ? (struct sample){w, log2f(f / (float)exposures[j])} : (struct sample){0};
+                s[j] = good ? (struct sample){w, log2f(f) - (float)log2(exposures[j])}
+                            : (struct sample){0};
                 t[j].weight += (double)w;
                 resolved += good;
             }

@@ -175,8 +175,8 @@ static void match_block(const struct search *s, int column, int row)
     const struct grid *g = s->grid;
     struct node *node = grid_node(g, column, row);
     double above;
-    const int x = (int)floor((g->origin[0] + (double)column * g->side) / s->scale);
-    const int y = (int)floor((g->origin[1] + (double)row * g->side) / s->scale);
+    const int x = relume_whole(floor((g->origin[0] + (double)column * g->side) / s->scale));
+    const int y = relume_whole(floor((g->origin[1] + (double)row * g->side) / s->scale));
     const int side = g->side / s->scale;
     start_of(s, column, row, node->d, &above);
     node->score = above;
@@ -429,7 +429,7 @@ void relume_displacements_at(const struct relume_displacements *displacements, d
 {
     const struct relume_displacements *f = displacements;
     const double u = (x - f->origin[0]) / f->step, v = (y - f->origin[1]) / f->step;
-    const int i = (int)floor(u), j = (int)floor(v);
+    const int i = relume_whole(floor(u)), j = relume_whole(floor(v));
     const double s = u - i, t = v - j;
     d[0] = d[1] = 0.0;
     for (int k = 0; k < 4; k++) {

@@ -247,8 +247,10 @@ static relume_status follow_at(struct relume_ball *ball, const struct relume_bal
 
 static bool has_highlight(const struct relume_ball *b, const struct relume_image *peak, float least)
 {
-    const int x0 = (int)fmax(b->x - b->radius, 0), x1 = (int)fmin(b->x + b->radius, peak->width);
-    const int y0 = (int)fmax(b->y - b->radius, 0), y1 = (int)fmin(b->y + b->radius, peak->height);
+    const int x0 = relume_whole(fmax(b->x - b->radius, 0)),
+              x1 = relume_whole(fmin(b->x + b->radius, peak->width));
+    const int y0 = relume_whole(fmax(b->y - b->radius, 0)),
+              y1 = relume_whole(fmin(b->y + b->radius, peak->height));
     for (int y = y0; y < y1; y++)
         for (int x = x0; x < x1; x++)
             if (hypot(x + 0.5 - b->x, y + 0.5 - b->y) < 0.95 * b->radius &&

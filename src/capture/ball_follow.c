@@ -33,7 +33,7 @@ static void search_radius(const struct follower *f, int i, double reach)
 {
     const struct relume_ball *b = f->ball;
     const double a = 2.0 * M_PI * i / f->angles, cx = cos(a), cy = sin(a);
-    int n = (int)(2.0 * reach / f->step) + 1;
+    int n = relume_whole(2.0 * reach / f->step) + 1;
     n = n > MOST_STEPS ? MOST_STEPS : n;
     float change[MOST_STEPS];
     double best = 0.0;

@@ -38,7 +38,7 @@ static int gather(struct patch *out, const struct relume_ball *ball,
     for (double y = ball->y - ball->radius; y < ball->y + ball->radius; y += step)
         for (double x = ball->x - ball->radius; x < ball->x + ball->radius; x += step) {
             vec3 normal, eye;
-            const int ix = (int)floor(x), iy = (int)floor(y);
+            const int ix = relume_whole(floor(x)), iy = relume_whole(floor(y));
             if (ix < 0 || iy < 0 || ix >= image->width || iy >= image->height || n >= MOST ||
                 !ball_normal(&normal, &eye, ball, camera, ix + 0.5, iy + 0.5) ||
                 vec3_dot(normal, eye) < FACING)

@@ -49,8 +49,10 @@ static float value(const struct window *w, int x, int y)
 static bool cut_window(struct window *w, const struct relume_ball *ball,
                        const struct relume_image *image)
 {
-    const int x0 = (int)floor(ball->x - ball->radius), y0 = (int)floor(ball->y - ball->radius);
-    const int x1 = (int)ceil(ball->x + ball->radius), y1 = (int)ceil(ball->y + ball->radius);
+    const int x0 = relume_whole(floor(ball->x - ball->radius)),
+              y0 = relume_whole(floor(ball->y - ball->radius));
+    const int x1 = relume_whole(ceil(ball->x + ball->radius)),
+              y1 = relume_whole(ceil(ball->y + ball->radius));
     w->image = image;
     w->x = x0 < 0 ? 0 : x0;
     w->y = y0 < 0 ? 0 : y0;

@@ -22,7 +22,7 @@ void grid_interpolate(const struct grid *grid, double x, double y, double d[2], 
 {
     const double u = (x - grid->origin[0]) / grid->side - 0.5;
     const double v = (y - grid->origin[1]) / grid->side - 0.5;
-    const int i = (int)floor(u), j = (int)floor(v);
+    const int i = relume_whole(floor(u)), j = relume_whole(floor(v));
     const double s = u - i, t = v - j;
     d[0] = d[1] = *score = 0.0;
     for (int k = 0; k < 4; k++) {

@@ -130,7 +130,7 @@ static double mean_depth(const struct near *near, int x0, int y0, int x1, int y1
 
 vec3 near_around(const struct near *near, double x, double y, int reach)
 {
-    const int cx = (int)fmin(x, near->width), cy = (int)fmin(y, near->height);
+    const int cx = relume_whole(fmin(x, near->width)), cy = relume_whole(fmin(y, near->height));
     return near_point(near, x, y, mean_depth(near, cx - reach, cy - reach, cx + reach, cy + reach));
 }
 

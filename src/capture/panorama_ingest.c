@@ -94,7 +94,7 @@ static float at(const struct relume_image *image, int x, int y)
 // Bilinear, across the wrap; beside infinity the nearest.
 static float resampled(const struct relume_image *image, double x, double y)
 {
-    const int left = (int)floor(x), top = (int)floor(y);
+    const int left = relume_whole(floor(x)), top = relume_whole(floor(y));
     const float fx = (float)(x - left), fy = (float)(y - top);
     const float a = at(image, left, top), b = at(image, left + 1, top);
     const float c = at(image, left, top + 1), d = at(image, left + 1, top + 1);

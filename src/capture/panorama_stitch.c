@@ -127,7 +127,7 @@ static bool project(double xy[2], const struct stitching *s, int camera, vec3 d)
 static double grey_around(const struct stitch_picture *p, const double xy[2])
 {
     enum { REACH = 4, DARK = 8, BRIGHT = 250 };
-    const int x = (int)xy[0], y = (int)xy[1];
+    const int x = relume_whole(xy[0]), y = relume_whole(xy[1]);
     if (x < REACH || y < REACH || x + REACH >= p->width || y + REACH >= p->height)
         return -1.0;
     double sum = 0.0;
@@ -224,7 +224,7 @@ static void find_owners(void *context, size_t item, int worker)
 
 static float bilinear(const struct relume_image *image, const double xy[2], size_t c)
 {
-    const int x = (int)xy[0], y = (int)xy[1];
+    const int x = relume_whole(xy[0]), y = relume_whole(xy[1]);
     const size_t right = x + 1 < image->width ? 3 : 0;
     const size_t below = y + 1 < image->height ? 3 * (size_t)image->width : 0;
     const float fx = (float)(xy[0] - x), fy = (float)(xy[1] - y);

@@ -179,7 +179,7 @@ static void choose_window(struct posed *s)
         half[1] += 0.5 * height_of_eyes * c->height / c->focal[1] / n;
     }
     s->width = s->p->width ? s->p->width : first->width < MOST_WIDTH ? first->width : MOST_WIDTH;
-    s->height = (int)lround(s->width * half[1] / half[0]);
+    s->height = relume_whole(round(s->width * half[1] / half[0]));
     s->height = s->height < 1 ? 1 : s->height;
     s->geometry = relume_geometry_default(RELUME_SLAB, s->width, s->height);
     s->geometry.uv_z = height_of_eyes;
@@ -254,7 +254,7 @@ struct blending {
 
 static float photo_value(const struct relume_image *image, double x, double y, size_t c)
 {
-    const int left = (int)floor(x), top = (int)floor(y);
+    const int left = relume_whole(floor(x)), top = relume_whole(floor(y));
     const int x0 = left < 0 ? 0 : left, y0 = top < 0 ? 0 : top;
     const int x1 = left + 1 < image->width ? left + 1 : image->width - 1;
     const int y1 = top + 1 < image->height ? top + 1 : image->height - 1;

@@ -146,7 +146,7 @@ static void fit_pixel(void *context, size_t item, int worker)
 
 static int bin_of(double component)
 {
-    const int i = (int)(0.5 * (component + 1.0) * BINS);
+    const int i = relume_whole(0.5 * (component + 1.0) * BINS);
     return i < 0 ? 0 : i >= BINS ? BINS - 1 : i;
 }
 

@@ -58,7 +58,7 @@ static float mean_of(const struct relume_image *image, const int from[2], const 
 
 static int at_most(double a, int b)
 {
-    return a < b ? (int)a : b;
+    return a < b ? relume_whole(a) : b;
 }
 
 static void shrink(uint8_t *bytes, int width, int height, const struct relume_image *image,

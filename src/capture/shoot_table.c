@@ -67,7 +67,7 @@ relume_status shoot_seek_tables(struct shoot *s)
     double largest = LARGEST;
     for (int b = 0; b < s->out->balls; b++)
         largest = fmax(largest, s->out->ball[b].radius);
-    const int step = (int)(largest / LARGEST);
+    const int step = relume_whole(largest / LARGEST);
     const struct relume_ball_camera camera = {s->camera.width / step, s->camera.height / step,
                                               s->camera.focal_px / step};
     relume_status status = load_photos(photo, s, photos, step);

@@ -159,7 +159,7 @@ static relume_status find_range(double range[2], const struct slab_depth *d)
     const int view = middle_view(d), width = d->sweep.width;
     const struct sweep_target target = sweep_target(&d->sweep, view, SWEEP_NEIGHBOURS);
     const double texel = 1.0 / sweep_reach(&d->sweep, &target);
-    int planes = (int)ceil((nearest - farthest) / texel) + 1;
+    int planes = relume_whole(ceil((nearest - farthest) / texel)) + 1;
     planes = planes > MOST_PLANES ? MOST_PLANES : planes < LEAST_PLANES ? LEAST_PLANES : planes;
     const double step = (nearest - farthest) / (planes - 1);
     size_t votes[MOST_PLANES] = {0};

@@ -90,9 +90,9 @@ static int clamp_int(int i, int low, int high)
 
 static struct shift shift_of(const struct sweep *s, double dx, double dy)
 {
-    const long x16 = lround(dx * 16.0), y16 = lround(dy * 16.0);
-    const int x = (int)(x16 >> 4), y = (int)(y16 >> 4);
-    const int fx = (int)(x16 & 15), fy = (int)(y16 & 15);
+    const int x16 = relume_whole(round(dx * 16.0)), y16 = relume_whole(round(dy * 16.0));
+    const int x = x16 >> 4, y = y16 >> 4;
+    const int fx = x16 & 15, fy = y16 & 15;
     const int begin = clamp_int(-x, 0, s->width);
     const int end = clamp_int(s->width - x - (fx > 0), begin, s->width);
     return (struct shift){x, y, fx, fy, begin, end};

@@ -79,8 +79,10 @@ static bool place_of(struct view_place *p, const struct match *m)
 {
     *p = (struct view_place){.has_uv = has(m, U) && has(m, V), .u = m->value[U], .v = m->value[V]};
     const bool crossing = has(m, ROW) && has(m, COLUMN);
-    p->row = has(m, ROW) ? (int)m->value[ROW] : 0;
-    p->column = has(m, NUMBER) ? (int)m->value[NUMBER] : has(m, COLUMN) ? (int)m->value[COLUMN] : 0;
+    p->row = has(m, ROW) ? relume_whole(m->value[ROW]) : 0;
+    p->column = has(m, NUMBER)   ? relume_whole(m->value[NUMBER])
+                : has(m, COLUMN) ? relume_whole(m->value[COLUMN])
+                                 : 0;
     return crossing || p->has_uv || has(m, NUMBER);
 }
 

@@ -33,7 +33,7 @@ static float pixel(const struct relume_image *image, int x, int y, int c)
 
 static float bilinear(const struct relume_image *image, double x, double y, int c)
 {
-    const int left = (int)floor(x), top = (int)floor(y);
+    const int left = relume_whole(floor(x)), top = relume_whole(floor(y));
     const float fx = (float)(x - left), fy = (float)(y - top);
     const float a = pixel(image, left, top, c) * (1.0f - fx) + pixel(image, left + 1, top, c) * fx;
     const float b =
@@ -69,8 +69,8 @@ static relume_status measure(struct shifting *s, const struct photo_set *set,
     s->per_unit = disparity / step;
     s->margin[0] = ceil(fabs(s->per_unit) * reach(g->u, g->columns));
     s->margin[1] = ceil(fabs(s->per_unit) * reach(g->v, g->rows));
-    s->width = set->width - 2 * (int)fmin(s->margin[0], set->width);
-    s->height = set->height - 2 * (int)fmin(s->margin[1], set->height);
+    s->width = set->width - 2 * relume_whole(fmin(s->margin[0], set->width));
+    s->height = set->height - 2 * relume_whole(fmin(s->margin[1], set->height));
     if (s->width >= 2 && s->height >= 2)
         return RELUME_OK;
     return log_fail(p->log, RELUME_EDATA,

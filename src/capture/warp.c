@@ -38,7 +38,7 @@ static double clamp(double v, double most)
 static void sample(const struct relume_image *image, double x, double y, float *out)
 {
     const double u = clamp(x - 0.5, image->width - 1), v = clamp(y - 0.5, image->height - 1);
-    const int i = (int)u, j = (int)v;
+    const int i = relume_whole(u), j = relume_whole(v);
     const float s = (float)(u - i), t = (float)(v - j);
     const size_t n = (size_t)image->channels, stride = n * (size_t)image->width;
     const float *a = image->data + (size_t)j * stride + (size_t)i * n;

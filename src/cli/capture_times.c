@@ -5,6 +5,9 @@
 #include <string.h>
 
 enum { MAX_LINES = 4096 };
+// A nanosecond to thirty years: whatever lies beyond is no time of an exposure, nor relative to
+// one.
+static const double SHORTEST_S = 1e-9, LONGEST_S = 1e9;
 
 struct times {
     int count;
@@ -44,6 +47,9 @@ static relume_status parse_line(const char *path, struct times *t, char *text, i
     if (n > 2 || t->count == MAX_LINES || !parse_seconds(words[n - 1], &t->line[t->count].seconds))
         return data_error("%s: line %d; expected 'seconds' or 'name seconds', such as 1/60", path,
                           number);
+    if (t->line[t->count].seconds < SHORTEST_S || t->line[t->count].seconds > LONGEST_S)
+        return data_error("%s: line %d; expected an exposure time from %g to %g seconds; found %g",
+                          path, number, SHORTEST_S, LONGEST_S, t->line[t->count].seconds);
     snprintf(t->line[t->count].name, sizeof t->line->name, "%s", n == 2 ? words[0] : "");
     t->count++;
     return RELUME_OK;

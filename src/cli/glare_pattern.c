@@ -138,7 +138,7 @@ static void measure_rings(double light[RINGS], double angle[RINGS], int count[RI
     for (int y = -half; y <= half; y++)
         for (int x = -half; x <= half; x++) {
             const double t = step * deg * hypot(x, y);
-            const int ring = (int)floor(log2(t / first_deg) * rings_per_octave);
+            const int ring = relume_whole(floor(log2(t / first_deg) * rings_per_octave));
             if (!(t >= first_deg) || ring >= RINGS)
                 continue;
             light[ring] += luminance(image->data + 3 * ((size_t)(y + half) * (size_t)image->width +

@@ -315,7 +315,8 @@ static relume_status check_value(struct given *g)
     char *end;
     errno = 0;
     g->number = strtod(g->text, &end);
-    const bool whole = o->kind == OPTION_NUMBER || g->number == floor(g->number);
+    const bool whole =
+        o->kind == OPTION_NUMBER || (g->number == floor(g->number) && fabs(g->number) <= INT_MAX);
     if (end == g->text || *end || !isfinite(g->number) || !whole)
         return usage_error("%s: expected %s; found '%s'", o->name,
                            o->kind == OPTION_INT ? "a whole number" : "a number", g->text);

@@ -148,7 +148,7 @@ static void draw_x_axis(struct drawing *d)
         for (double v = ceil(low / step) * step; v <= high; v += step)
             draw_x_tick(d, v, true);
     } else {
-        for (int e = (int)floor(d->x0); e <= (int)ceil(d->x1); e++)
+        for (int e = relume_whole(floor(d->x0)); e <= relume_whole(ceil(d->x1)); e++)
             for (int digit = 1; digit < 10; digit++) {
                 const double v = digit * pow(10.0, e);
                 if (v >= low && v <= high)

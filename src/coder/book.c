@@ -97,7 +97,7 @@ void book_store(void *numbers, float *scale, float *offset, const float *vectors
             const size_t at = (size_t)d * (size_t)codes + (size_t)c;
             const float v = vectors[(size_t)c * (size_t)dim + (size_t)d];
             const float code = rintf((v - offset[d]) / scale[d]);
-            const float kept = code < 0.0f ? 0.0f : code > (float)top ? (float)top : code;
+            const float kept = code > 0.0f ? fminf(code, (float)top) : 0.0f;
             if (storage == RELUME_STORE_8)
                 ((uint8_t *)numbers)[at] = (uint8_t)kept;
             else

@@ -150,7 +150,7 @@ float coefficients_band_step(struct range r)
 
 static inline float clamp(float v, float top)
 {
-    return v < 0.0f ? 0.0f : v > top ? top : v;
+    return v > 0.0f ? v < top ? v : top : 0.0f;
 }
 
 void coefficients_quantise(const relume_coefficients *c, int plane, int row, const uint16_t *from,

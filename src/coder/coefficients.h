@@ -37,6 +37,12 @@ relume_status coefficients_create(relume_coefficients **out, const relume_coder 
 off_t coefficients_offset(const relume_coefficients *c, int row);
 // The value that a waiting number stands for is min + step * number.
 float coefficients_band_step(struct range r);
+// That number; `scale` is 65535 over the range, 0 for a range of no width or of an infinite one.
+static inline uint16_t coefficients_code(float value, struct range r, float scale)
+{
+    const float code = (value - r.min) * scale + 0.5f;
+    return (uint16_t)(int)(code > 0.0f ? code : 0.0f);
+}
 // Fix scale and offset of every plane for the range that it has in the whole view.
 void coefficients_choose_steps(relume_coefficients *c, const struct range *total, bool masked,
                                enum relume_step step);

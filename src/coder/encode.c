@@ -119,7 +119,7 @@ static void pack_plane(void *context, size_t plane, int worker)
                 to[x] = half_from_float(from[x]);
         else
             for (size_t x = 0; x < width; x++)
-                to[x] = (uint16_t)(int)((from[x] - r.min) * scale + 0.5f);
+                to[x] = coefficients_code(from[x], r, scale);
     }
 }
 

@@ -227,7 +227,7 @@ static void store_and_restore(const struct fold *f, struct chunk c, float *to)
         float *row = to + p * c.n;
         for (size_t i = 0; top > 0.0f && i < c.n; i++) {
             const float code = (from[i] - offset) * inverse + 0.5f;
-            row[i] = (float)(int)(code < 0.0f ? 0.0f : code > top ? top : code) * scale + offset;
+            row[i] = (float)(int)(code > 0.0f ? code < top ? code : top : 0.0f) * scale + offset;
         }
         for (size_t i = 0; top == 0.0f && i < c.n; i++)
             row[i] = float_from_half(half_from_float(from[i]));

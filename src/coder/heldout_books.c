@@ -48,7 +48,7 @@ static relume_status keep_band(relume_coefficients *c, int row, const float *val
         c->band[(size_t)(row / BAND_ROWS) * planes + p] = r;
         for (size_t i = 0; i < rows * width; i++)
             packed[(i / width * planes + p) * width + i % width] =
-                half ? half_from_float(v[i]) : (uint16_t)(int)((v[i] - r.min) * scale + 0.5f);
+                half ? half_from_float(v[i]) : coefficients_code(v[i], r, scale);
     }
     return scratch_write(c->fd, packed, rows * planes * width * sizeof *packed,
                          coefficients_offset(c, row))

@@ -120,7 +120,8 @@ static void take_colours(struct foreign *f, const struct planes *planes)
         const float *from = planes_at(planes, p);
         f->scale[p] = 1.0f / 255.0f;
         for (size_t i = 0; i < pixels; i++)
-            f->codes[(size_t)p * pixels + i] = (uint8_t)rintf(255.0f * from[i]);
+            f->codes[(size_t)p * pixels + i] =
+                (uint8_t)fminf(fmaxf(rintf(255.0f * from[i]), 0.0f), 255.0f);
     }
 }
 

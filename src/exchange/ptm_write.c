@@ -17,7 +17,7 @@ struct ptm_quantiser ptm_quantiser(double min, double max)
         return (struct ptm_quantiser){1.0, 0};
     // one code of room, since the bias is whole
     struct ptm_quantiser q = {(max - min) / 254.0, 0};
-    q.bias = (int)ceil(-min / q.scale - 1e-9);
+    q.bias = relume_whole(ceil(-min / q.scale - 1e-9));
     return q;
 }
 

@@ -105,7 +105,8 @@ struct scene {
 
 static int clamp_index(double x, int n)
 {
-    return x < 0.0 ? 0 : x >= n ? n - 1 : (int)x;
+    const int i = relume_whole(x);
+    return i < 0 ? 0 : i < n ? i : n - 1;
 }
 
 static bool hidden(void *user, const double xy[2], vec3 point)

@@ -6,7 +6,7 @@ void ray_sample(float rgb[3], const struct relume_image *image, double x, double
 {
     const double cx = fmin(fmax(x - 0.5, 0.0), image->width - 1.0);
     const double cy = fmin(fmax(y - 0.5, 0.0), image->height - 1.0);
-    const int x0 = (int)cx, y0 = (int)cy;
+    const int x0 = relume_whole(cx), y0 = relume_whole(cy);
     const int x1 = x0 + 1 < image->width ? x0 + 1 : x0, y1 = y0 + 1 < image->height ? y0 + 1 : y0;
     const double fx = cx - x0, fy = cy - y0;
     const size_t width = (size_t)image->width;

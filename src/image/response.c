@@ -17,9 +17,9 @@ float relume_response_decode(const struct relume_response *response, int channel
     if (!(code > 0.0f))
         return e[0];
     const float x = code * (RELUME_CODES - 1);
-    const int i = (int)x;
     if (!(x < RELUME_CODES - 1))
         return e[RELUME_CODES - 1];
+    const int i = (int)x;
     return e[i] + (x - (float)i) * (e[i + 1] - e[i]);
 }
 

@@ -14,7 +14,7 @@ static void codes(const uint16_t *in, size_t n, float a, float b, uint8_t *out)
 {
     for (size_t i = 0; i < n; i++) {
         const float v = (float)in[i] * a + b;
-        out[i] = (uint8_t)(int)(v < 0.0f ? 0.0f : v > 255.0f ? 255.0f : v);
+        out[i] = (uint8_t)(int)(v > 0.0f ? v < 255.0f ? v : 255.0f : 0.0f);
     }
 }
 

@@ -23,7 +23,7 @@ static void add_span(struct row *row, double a, double b, float weight)
     b = b < row->n ? b : row->n;
     if (!(a < b))
         return;
-    const int i = (int)a, j = (int)b;
+    const int i = relume_whole(a), j = relume_whole(b);
     const float left = (float)(a - i) * weight, right = (float)(b - j) * weight;
     row->d[i] += weight - left;
     row->d[i + 1] += left;
@@ -186,8 +186,8 @@ static void draw_discs(const struct drawing *d, struct row *row, int from, int t
         const double y = middle - texel(c, d->scale * (double)d->discs[i].y);
         const double radius = texel(c, d->scale * (double)d->discs[i].radius);
         const int lines = lines_for(radius);
-        const int first = (int)fmax(floor(y - radius), from);
-        const int last = (int)fmin(floor(y + radius), to - 1);
+        const int first = relume_whole(fmax(floor(y - radius), from));
+        const int last = relume_whole(fmin(floor(y + radius), to - 1));
         if (x + radius < 0.0 || x - radius > c->n)
             continue;
         for (int top = first; top <= last; top++) {
@@ -213,7 +213,8 @@ static void draw_strokes(const struct drawing *d, struct row *row, int from, int
         if (fmin(y[0], y[1]) - reach >= to || fmax(y[0], y[1]) + reach < from)
             continue;
         const struct quad q = quad_of(x, y, w);
-        const int first = (int)fmax(floor(q.y0), from), last = (int)fmin(floor(q.y1), to - 1);
+        const int first = relume_whole(fmax(floor(q.y0), from)),
+                  last = relume_whole(fmin(floor(q.y1), to - 1));
         for (int top = first; top <= last; top++) {
             begin(row);
             quad_row(row, &q, top);
@@ -370,8 +371,8 @@ static void draw_moving(struct drawing d, int threads)
     const struct relume_aperture *const a = d.aperture;
     const double middle = middle_of(c), radius = texel(c, (double)a->pupil_radius);
     d.t = c->t;
-    d.from = c->from = (int)fmax(floor(middle - radius), 0.0);
-    d.to = c->to = (int)fmin(ceil(middle + radius), c->n);
+    d.from = c->from = relume_whole(fmax(floor(middle - radius), 0.0));
+    d.to = c->to = relume_whole(fmin(ceil(middle + radius), c->n));
     d.discs = a->disc + a->lens.first;
     d.count = d.parts_off & RELUME_EYE_LENS ? 0 : a->lens.count;
     d.strokes = a->stroke + a->lashes.first;

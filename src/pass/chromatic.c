@@ -20,7 +20,7 @@ static bool take_line(float *line, const struct plane *in, double v, int from, i
                       const struct psf_kernels *kernels)
 {
     const double y = in->middle + v;
-    const int j = (int)floor(y);
+    const int j = relume_whole(floor(y));
     if (j < 0 || j + 1 >= in->n)
         return false;
     const float *const row = in->v + (size_t)j * in->stride + from;
@@ -37,11 +37,11 @@ struct window {
 
 static struct window window_of(const struct plane *in, int half, double scale)
 {
-    const int most = (int)floor((in->middle - 1) / scale);
+    const int most = relume_whole(floor((in->middle - 1) / scale));
     struct window w = {.half = half < most ? half : most};
     const double first = in->middle - w.half * scale;
-    w.from = (int)floor(first);
-    w.to = (int)floor(in->middle + w.half * scale) + 2;
+    w.from = relume_whole(floor(first));
+    w.to = relume_whole(floor(in->middle + w.half * scale)) + 2;
     w.to = w.to < in->n ? w.to : in->n;
     w.at = (float)(first - w.from);
     return w;
@@ -100,7 +100,7 @@ struct sum {
 static void fade_out(float *const row[3], int half, int v, double fade, double radius)
 {
     const double chord = fade * fade - (double)v * v;
-    const int kept = chord > 0.0 ? (int)sqrt(chord) : -1;
+    const int kept = chord > 0.0 ? relume_whole(sqrt(chord)) : -1;
     for (int u = kept + 1; u <= half; u++) {
         const double r = sqrt((double)u * u + (double)v * v);
         const double t = fmin(fmax((r - fade) / (radius - fade), 0.0), 1.0);
@@ -120,7 +120,7 @@ static void sum_row(void *context, size_t item, int worker)
     float *const line = s->work + (size_t)worker * ((size_t)s->in->n + SLACK);
     float *row[3], *inside[3];
     // Within the circle; beyond it everything is faded out.
-    const int chord = (int)sqrt(fmax(s->radius * s->radius - (double)v * v, 0.0));
+    const int chord = relume_whole(sqrt(fmax(s->radius * s->radius - (double)v * v, 0.0)));
     for (int c = 0; c < 3; c++) {
         row[c] = s->out[c] + item * (size_t)s->field;
         memset(row[c], 0, (size_t)s->field * sizeof *row[c]);

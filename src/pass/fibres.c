@@ -26,7 +26,7 @@ static struct rings rings_of(const struct relume_subject *s)
         return (struct rings){0};
     if (s->fibres.halo_deg <= 0.0)
         return (struct rings){.count = s->fibres.spokes > 0, .step = span};
-    const int count = (int)ceil(span / ring_mm);
+    const int count = relume_whole(ceil(span / ring_mm));
     return (struct rings){count, span / count,
                           wavelength_mm / sin(s->fibres.halo_deg * M_PI / 180.0)};
 }
@@ -36,7 +36,7 @@ static int around(const struct relume_subject *s, const struct rings *rings, int
     if (rings->spacing <= 0.0)
         return s->fibres.spokes;
     const double middle = s->fibres.inner_mm + (ring + 0.5) * rings->step;
-    return (int)(2.0 * M_PI * middle / rings->spacing);
+    return relume_whole(2.0 * M_PI * middle / rings->spacing);
 }
 
 int fibres_count(const struct relume_subject *s)

@@ -58,7 +58,7 @@ static relume_status axis_create(struct axis *a, int reach, int half, double pix
 {
     const int side = 2 * reach + 1;
     *a = (struct axis){.reach = reach, .half = half, .pixels = pixels, .spread = fmax(pixels, 1.0)};
-    a->most = (int)fmin(2.0 * a->spread / pixels + 2.0, 2.0 * half + 1.0);
+    a->most = relume_whole(fmin(2.0 * a->spread / pixels + 2.0, 2.0 * half + 1.0));
     a->first = mem_array(2 * (size_t)side, sizeof *a->first);
     a->weight = mem_array((size_t)side * (size_t)a->most, sizeof *a->weight);
     if (!a->first || !a->weight)
@@ -66,8 +66,8 @@ static relume_status axis_create(struct axis *a, int reach, int half, double pix
     a->count = a->first + side;
     for (int i = 0; i < side; i++) {
         const int pixel = i - reach;
-        const int from = (int)fmax(ceil((pixel - a->spread) / pixels), -half);
-        const int to = (int)fmin(floor((pixel + a->spread) / pixels), half);
+        const int from = relume_whole(fmax(ceil((pixel - a->spread) / pixels), -half));
+        const int to = relume_whole(fmin(floor((pixel + a->spread) / pixels), half));
         a->first[i] = from + half;
         a->count[i] = to >= from ? to - from + 1 : 0;
         for (int k = 0; k < a->count[i]; k++)
@@ -163,7 +163,7 @@ static void veil_row(void *context, size_t item, int worker)
         const double at = v->pixel_steps * sqrt((double)x * x + (double)y * y);
         if (at >= RELUME_VEIL_STEPS)
             continue;
-        const int i = (int)at;
+        const int i = relume_whole(at);
         const float light =
             v->solid * (v->light[i] + (float)(at - i) * (v->light[i + 1] - v->light[i]));
         for (int c = 0; c < 3; c++)
@@ -188,7 +188,7 @@ static relume_status reach_of(int *reach, double angle, double texel, double pix
                         "the pattern would be %.0f pixels wide; expected at most %d: a wider field "
                         "of view or a smaller magnification",
                         2.0 * pixels, 2 * MOST_REACH);
-    *reach = (int)pixels;
+    *reach = relume_whole(pixels);
     return RELUME_OK;
 }
 

@@ -50,7 +50,7 @@ static void enlarge_row(void *context, size_t item, int worker)
 {
     const struct coarse *s = context;
     const double v = ((double)item + 0.5) / COARSE - 0.5;
-    const int j = (int)floor(v);
+    const int j = relume_whole(floor(v));
     const float ty = (float)(v - j);
     const float *const a = s->in + 3 * (size_t)clamp_index(j, s->rows) * (size_t)s->columns;
     const float *const b = s->in + 3 * (size_t)clamp_index(j + 1, s->rows) * (size_t)s->columns;

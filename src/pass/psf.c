@@ -193,7 +193,7 @@ static relume_status prepare_canvas(relume_psf *psf, const struct relume_apertur
     const double wanted = 2.0 * (double)aperture->pupil_radius / psf->shape.texel_mm + 4.0;
     int n = size;
     if (wanted > n)
-        n = 64 * (int)ceil(wanted / 64.0) + 128;
+        n = 64 * relume_whole(ceil(wanted / 64.0)) + 128;
     if (psf->canvas.n >= n && psf->canvas.texel_mm == psf->shape.texel_mm && psf->canvas.t)
         return RELUME_OK;
     free(psf->phase);

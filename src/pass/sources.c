@@ -131,7 +131,7 @@ static bool take_spot(struct finding *f, struct spot *spot, int x, int y)
     while (good && spot->open.count) {
         const struct source at = spot->open.source[--spot->open.count];
         for (int k = 0; good && k < 9; k++) {
-            const int nx = (int)at.x + k % 3 - 1, ny = (int)at.y + k / 3 - 1;
+            const int nx = relume_whole(at.x) + k % 3 - 1, ny = relume_whole(at.y) + k / 3 - 1;
             if (nx >= 0 && nx < f->width && ny >= 0 && ny < f->height)
                 good = grow_spot(f, spot, nx, ny);
         }
@@ -198,7 +198,7 @@ static void add_source_row(float *const row[3], const struct splat *s, const str
 {
     const struct kernel *const kernel = s->kernel;
     const float fx = source->x - 0.5f, fy = source->y - 0.5f;
-    const int ix = (int)floorf(fx), iy = (int)floorf(fy);
+    const int ix = relume_whole(floorf(fx)), iy = relume_whole(floorf(fy));
     const float tx = fx - (float)ix, ty = fy - (float)iy;
     const size_t side = 2 * (size_t)kernel->reach + 1;
     for (int k = 0; k < 4; k++) {

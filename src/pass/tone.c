@@ -110,7 +110,7 @@ static size_t count_bins(size_t bin[BINS], const struct relume_image *image)
         const double place = ((double)log2f(l) + RANGE_EV) * PER_EV;
         if (!(l > 0.0f) || !(place >= 0.0 && place < BINS))
             continue;
-        bin[(int)place]++;
+        bin[relume_whole(place)]++;
         count++;
     }
     return count;

@@ -134,8 +134,8 @@ static int find_starts(int (*start)[2], const struct relume_weight_grid *g)
         if (g->hemispherical && pole_from_world(l, g->pole_y).z < 0.0)
             continue;
         relume_weight_grid_place(xy, g, l);
-        start[n][0] = (int)fmin(xy[1], g->info.rows - 2);
-        start[n++][1] = (int)fmin(xy[0], g->info.columns - 2);
+        start[n][0] = relume_whole(fmin(xy[1], g->info.rows - 2));
+        start[n++][1] = relume_whole(fmin(xy[0], g->info.columns - 2));
     }
     return n;
 }

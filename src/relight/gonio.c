@@ -125,7 +125,7 @@ static void sphere_value(float rgb[3], const struct relume_image *map, vec3 d)
     const double height = d.y / vec3_length(d);
     const double x = (atan2(d.x, -d.z) / (2.0 * M_PI) + 0.5) * map->width - 0.5;
     const double y = acos(height) / M_PI * map->height - 0.5;
-    const int x0 = (int)floor(x), y0 = (int)floor(y);
+    const int x0 = relume_whole(floor(x)), y0 = relume_whole(floor(y));
     const float fx = (float)(x - x0), fy = (float)(y - y0);
     for (int c = 0; c < 3; c++) {
         const float top =
@@ -225,7 +225,7 @@ void relume_gonio_value(float rgb[3], const relume_gonio *g, struct relume_vec3 
     const int face = place(xy, g->side, direction);
     const double x = fmin(fmax(xy[0], 0.0), g->side) - 0.5;
     const double y = fmin(fmax(xy[1], 0.0), g->side) - 0.5;
-    const int x0 = (int)floor(x), y0 = (int)floor(y);
+    const int x0 = relume_whole(floor(x)), y0 = relume_whole(floor(y));
     const float fx = (float)(x - x0), fy = (float)(y - y0);
     for (int c = 0; c < 3; c++) {
         const float top =

@@ -72,7 +72,7 @@ static relume_status take_count(struct reader *r, int *out, int least, int most,
     if (n != floor(n) || n < least || n > most)
         return log_fail(r->log, RELUME_EDATA, "%s: %s; expected %d to %d, found %g", r->name, what,
                         least, most, n);
-    *out = (int)n;
+    *out = relume_whole(n);
     return RELUME_OK;
 }
 

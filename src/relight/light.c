@@ -129,7 +129,7 @@ static void picture_at(float rgb[3], const struct relume_image *image, double x,
 {
     const double cx = fmin(fmax(x - 0.5, 0.0), image->width - 1.0);
     const double cy = fmin(fmax(y - 0.5, 0.0), image->height - 1.0);
-    const int x0 = (int)cx, y0 = (int)cy;
+    const int x0 = relume_whole(cx), y0 = relume_whole(cy);
     const int x1 = x0 + (x0 + 1 < image->width), y1 = y0 + (y0 + 1 < image->height);
     const float fx = (float)(cx - x0), fy = (float)(cy - y0);
     const float *top = image->data + (size_t)y0 * (size_t)image->width * 3;

@@ -79,7 +79,7 @@ static int walk(float share[3], const struct triangles *m, int t, vec3 d)
 
 static int cell_of(double at)
 {
-    const int i = (int)((0.5 * at + 0.5) * SIDE);
+    const int i = relume_whole((0.5 * at + 0.5) * SIDE);
     return i < 0 ? 0 : i >= SIDE ? SIDE - 1 : i;
 }
 

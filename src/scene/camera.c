@@ -70,7 +70,7 @@ static struct camera_ray cube(const struct camera *c, double x, double down)
                                       {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
     static const vec3 up[6] = {{0, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}, {0, 1, 0}, {0, 1, 0}};
     const double faces = 6.0 * x / c->width;
-    const int face = faces >= 6.0 ? 5 : (int)faces;
+    const int face = faces >= 6.0 ? 5 : relume_whole(faces);
     const vec3 right = vec3_cross(direction[face], up[face]);
     const vec3 sideways = vec3_scale(right, 2.0 * (faces - face) - 1.0);
     const vec3 upwards = vec3_scale(up[face], 1.0 - 2.0 * down);

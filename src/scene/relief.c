@@ -52,7 +52,7 @@ void relief_color(float out[3], const float color[3], double tone)
 double relief_noise(double u, double v, int across, int along, uint64_t seed)
 {
     const double x = u * across, y = v * along, fx = floor(x), fy = floor(y);
-    const int ix = (int)fx, iy = (int)fy;
+    const int ix = relume_whole(fx), iy = relume_whole(fy);
     const double dx = x - fx, dy = y - fy;
     double row[2];
     for (int j = 0; j < 2; j++)
@@ -77,7 +77,7 @@ double relief_scatter(double u, double v, int cells, uint64_t seed, double dista
     distance[0] = distance[1] = INFINITY;
     for (int j = -1; j <= 1; j++)
         for (int i = -1; i <= 1; i++) {
-            const int cx = (int)floor(x) + i, cy = (int)floor(y) + j;
+            const int cx = relume_whole(floor(x)) + i, cy = relume_whole(floor(y)) + j;
             const uint64_t h = lattice(cx, cy, cells, cells, seed);
             const double dx = cx + unit(h) - x, dy = cy + unit(random_mix(h)) - y;
             const double d = sqrt(dx * dx + dy * dy);

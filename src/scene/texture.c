@@ -59,7 +59,7 @@ float noise_at(float x, float y, float z)
 {
     const float fx = floorf(x), fy = floorf(y), fz = floorf(z);
     const float dx = x - fx, dy = y - fy, dz = z - fz;
-    const int ix = (int)fx, iy = (int)fy, iz = (int)fz;
+    const int ix = relume_whole(fx), iy = relume_whole(fy), iz = relume_whole(fz);
     float row[2][2];
     for (int k = 0; k < 2; k++)
         for (int j = 0; j < 2; j++)
@@ -93,7 +93,7 @@ void texture_checker(const struct texture *t, const float at[3], float out[3])
     const float inside = 1e-4f;
     int parity = 0;
     for (int i = 0; i < 3; i++)
-        parity += (int)floorf(at[i] * t->scale + inside);
+        parity += relume_whole(floorf(at[i] * t->scale + inside));
     mix_color(t, (float)(parity & 1), out);
 }
 
@@ -130,7 +130,8 @@ void texture_bricks(const struct texture *t, const float at[3], float out[3])
     const float along = (fabsf(at[0]) > fabsf(at[2]) ? at[2] : at[0]) * t->scale + 0.5f * row;
     const float u = along - floorf(along), v = at[1] * t->scale * 2.0f - row;
     const float joint = fmaxf(fabsf(u - 0.5f) - 0.46f, 0.5f * (fabsf(v - 0.5f) - 0.42f));
-    const float tone = 0.75f + 0.5f * lattice_value((int)floorf(along), (int)row, 7) +
+    const float tone = 0.75f +
+                       0.5f * lattice_value(relume_whole(floorf(along)), relume_whole(row), 7) +
                        0.25f * noise_sum(6.0f * at[0], 6.0f * at[1], 6.0f * at[2], 3);
     const float brick = joint < 0.0f ? 1.0f : 0.0f;
     for (int c = 0; c < 3; c++)
@@ -149,7 +150,7 @@ void texture_image(const struct texture *t, const float at[3], float out[3])
     const float u = at[0] - floorf(at[0]), v = at[1] - floorf(at[1]);
     const float x = u * (float)t->image->width - 0.5f;
     const float y = (1.0f - v) * (float)t->image->height - 0.5f;
-    const int ix = (int)floorf(x), iy = (int)floorf(y);
+    const int ix = relume_whole(floorf(x)), iy = relume_whole(floorf(y));
     const float fx = x - (float)ix, fy = y - (float)iy;
     const float *p00 = texel(t->image, ix, iy), *p10 = texel(t->image, ix + 1, iy);
     const float *p01 = texel(t->image, ix, iy + 1), *p11 = texel(t->image, ix + 1, iy + 1);

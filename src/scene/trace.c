@@ -134,7 +134,7 @@ void trace_leave(const float p[3], const float normal[3], float out[3])
     const float fixed_step = 1.0f / 65536.0f;
     const float spacings = 256.0f;
     for (int c = 0; c < 3; c++) {
-        const int32_t steps = (int32_t)(spacings * normal[c]);
+        const int32_t steps = relume_whole(spacings * normal[c]);
         int32_t bits;
         memcpy(&bits, &p[c], sizeof bits);
         bits += p[c] < 0.0f ? -steps : steps;

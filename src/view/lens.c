@@ -40,7 +40,7 @@ int relume_lens_points(const struct relume_window *w, double aperture, double fo
     const double blur = aperture * off * window / sharp * width / vec3_length(w->right);
     if (aperture == 0.0)
         return 1;
-    return (int)ceil(fmin(fmax(density * blur * blur, FEWEST), MOST));
+    return relume_whole(ceil(fmin(fmax(density * blur * blur, FEWEST), MOST)));
 }
 
 struct relume_window relume_lens_window(const struct relume_window *w, double aperture,

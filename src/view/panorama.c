@@ -47,8 +47,8 @@ void panorama_fetch(float rgb[3], const struct panorama *p, int x, int y)
 void panorama_bilinear(float rgb[3], const struct panorama *p, panorama_texel *texel, int face,
                        double x, double y)
 {
-    const int left = (int)floor(x);
-    const int top = (int)floor(y);
+    const int left = relume_whole(floor(x));
+    const int top = relume_whole(floor(y));
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     for (int j = 0; j < 2; j++)
         for (int i = 0; i < 2; i++) {
@@ -181,7 +181,7 @@ static vec3 face_ray(const struct panorama *p, int face, double x, double y)
 static vec3 cube_ray(const struct panorama *p, double x, double y)
 {
     const int side = p->width / 6;
-    const int face = clamp_index((int)floor(x / side), 6);
+    const int face = clamp_index(relume_whole(floor(x / side)), 6);
     return vec3_unit(face_ray(p, face, x - face * side, y));
 }
 
@@ -203,7 +203,7 @@ static void across_edge(float rgb[3], const struct panorama *p, int face, int x,
 {
     double xy[2];
     cube_pixel(xy, p, face_ray(p, face, x + 0.5, y + 0.5));
-    panorama_fetch(rgb, p, (int)xy[0], clamp_index((int)xy[1], p->height));
+    panorama_fetch(rgb, p, relume_whole(xy[0]), clamp_index(relume_whole(xy[1]), p->height));
 }
 
 // At a corner three faces meet: the missing fourth texel is the mean of their corner texels, which
@@ -293,7 +293,7 @@ static bool sample(float rgb[3], const struct panorama *p, const struct layout *
         return true;
     }
     const int side = p->geometry->projection == RELUME_CUBE ? p->width / 6 : p->width;
-    const int face = clamp_index((int)(xy[0] / side), 6);
+    const int face = clamp_index(relume_whole(xy[0] / side), 6);
     panorama_bilinear(rgb, p, layout->texel, face, xy[0] - face * side - 0.5, xy[1] - 0.5);
     return true;
 }

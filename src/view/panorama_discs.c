@@ -77,7 +77,7 @@ static void disc_value(float rgb[3], const struct panorama *p, panorama_texel *c
                        const double xy[2])
 {
     const double x = xy[0] - 0.5, y = xy[1] - 0.5;
-    const int left = (int)floor(x), top = (int)floor(y);
+    const int left = relume_whole(floor(x)), top = relume_whole(floor(y));
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     for (int i = 0; i < 4; i++) {
         const double wx = i & 1 ? x - left : 1.0 - (x - left);

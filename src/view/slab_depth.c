@@ -72,7 +72,8 @@ static double disparity_at(const struct around *a, const struct camera *c, doubl
     place_at(at, a, c, q);
     if (!within(a, at))
         return (double)RELUME_SLAB_BACKGROUND;
-    return (double)c->disparity[texel_index(a, (int)floor(at[0]), (int)floor(at[1]))];
+    return (double)
+        c->disparity[texel_index(a, relume_whole(floor(at[0])), relume_whole(floor(at[1])))];
 }
 
 // 1 while taking one disparity for the other is wrong by a texel, 0 from two texels on.
@@ -90,8 +91,8 @@ static void gather(double sum[5], const struct around *a, const struct camera *c
     place_at(at, a, c, q);
     if (!within(a, at))
         return;
-    const int left = (int)floor(at[0] - 0.5);
-    const int top = (int)floor(at[1] - 0.5);
+    const int left = relume_whole(floor(at[0] - 0.5));
+    const int top = relume_whole(floor(at[1] - 0.5));
     for (int j = 0; j < 2; j++)
         for (int i = 0; i < 2; i++) {
             const size_t texel = texel_index(a, left + i, top + j);
@@ -133,7 +134,7 @@ static bool walk(double *q, const struct around *a, double nearest, double farth
         return false;
     for (int i = 0; i < a->count; i++)
         speed = fmax(speed, walking_speed(&a->camera[i]));
-    const int steps = (int)fmin(fmax(ceil((nearest - farthest) * speed), 1.0), most_steps);
+    const int steps = relume_whole(fmin(fmax(ceil((nearest - farthest) * speed), 1.0), most_steps));
     const double step = (nearest - farthest) / steps;
     for (int k = 0; k <= steps; k++) {
         double sum[2] = {0.0, 0.0};

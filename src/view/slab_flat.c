@@ -16,8 +16,8 @@ static void add_sample(double sum[3], const struct relume_image *image, const do
     const double part[2] = {at[0] - 0.5 - left, at[1] - 0.5 - top};
     for (int j = 0; j < 2; j++)
         for (int i = 0; i < 2; i++) {
-            const size_t x = (size_t)within((int)left + i, image->width);
-            const size_t y = (size_t)within((int)top + j, image->height);
+            const size_t x = (size_t)within(relume_whole(left) + i, image->width);
+            const size_t y = (size_t)within(relume_whole(top) + j, image->height);
             const float *rgb = image->data + 3 * (y * (size_t)image->width + x);
             const double w = weight * (i ? part[0] : 1.0 - part[0]) * (j ? part[1] : 1.0 - part[1]);
             for (int c = 0; c < 3; c++)

@@ -25,7 +25,7 @@ static struct neighbours texel_neighbours(int i, int pixels, int texels)
         return one_neighbour(0);
     if (at >= texels - 1)
         return one_neighbour(texels - 1);
-    const int low = (int)at;
+    const int low = relume_whole(at);
     if (at == low)
         return one_neighbour(low);
     return (struct neighbours){2, {low, low + 1}, {1.0 - (at - low), at - low}};

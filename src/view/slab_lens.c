@@ -67,7 +67,7 @@ static bool add_sample(double sum[3], const struct slab_frame *f, const float *r
         return false;
     const double x = fmin(fmax(at[0] - 0.5, 0.0), f->width - 1.0);
     const double y = fmin(fmax(at[1] - 0.5, 0.0), f->height - 1.0);
-    const int left = (int)x, top = (int)y;
+    const int left = relume_whole(x), top = relume_whole(y);
     const int right = left + 1 < f->width ? left + 1 : left;
     const int low = top + 1 < f->height ? top + 1 : top;
     const double across = x - left, down = y - top;

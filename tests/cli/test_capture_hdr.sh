@@ -30,6 +30,12 @@ expect_ok 'times by name' - "$RELUME" capture --hdr a.png b.png c.png --times na
 expect_ok 'in any order' - "$RELUME" capture --hdr c.png a.png b.png --times names.txt -o one.exr --response curve.txt
 below 'the same picture' "$("$mkimage" maxdiff again.exr one.exr)" 1e-5 # sums in another order
 
+for t in 1e300 1e-300 1e10; do
+    printf '1\n%s\n1/4\n' $t >far.txt
+    expect_fail "a time of $t s" 1 'far.txt: line 2; expected an exposure time from' out2.exr \
+        "$RELUME" capture --hdr a.png b.png c.png --times far.txt --response curve.txt -o out2.exr
+done
+
 # ---- held by hand, and something moves
 "$shoot" photo b1.png 240 180 4 0 0 0 0.5 130 110 22
 "$shoot" photo c1.png 240 180 0.25 -3 -8 7 0.5 170 70 22

@@ -350,6 +350,25 @@ static void test_bad_input(void **state)
     relume_image_destroy(&codes[1]);
 }
 
+// Times of 1 and 1e300 had sums of infinities, and wrote at the index that NaN became.
+static void test_times_far_apart(void **state)
+{
+    (void)state;
+    struct relume_image codes[2] = {flat(16, 16, 0.4f), flat(16, 16, 0.6f)}, out;
+    const double times[][2] = {{1.0, 1e300}, {1e300, 1.0}, {1e-300, 1e300}, {1e-45, 1.0}};
+    struct relume_exposure_report report[2];
+    struct relume_response r;
+    relume_response_of(&r, linear);
+    for (size_t i = 0; i < sizeof times / sizeof *times; i++) {
+        if (!relume_merge(&out, report, codes, times[i], 2, &r, NULL))
+            for (int j = 0; j < 2; j++)
+                assert_true(fabs(report[j].bias_ev) <= 8.0);  // what the counts reach
+        relume_image_destroy(&out);
+    }
+    relume_image_destroy(&codes[0]);
+    relume_image_destroy(&codes[1]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -358,7 +377,7 @@ int main(void)
         cmocka_unit_test(test_made_camera),  cmocka_unit_test(test_much_noise),
         cmocka_unit_test(test_threads),      cmocka_unit_test(test_wrong_time),
         cmocka_unit_test(test_fine_texture), cmocka_unit_test(test_lifted_black),
-        cmocka_unit_test(test_bad_input),
+        cmocka_unit_test(test_bad_input),    cmocka_unit_test(test_times_far_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -145,6 +145,27 @@ void app_release(struct app *app)
     lamps_release(&app->now);
 }
 
+const char *const app_dock_names[APP_DOCKS + 1] = {"over", "left", "right", NULL};
+
+int app_window_width(const struct app *app)
+{
+    return app->beside[0] + app->width + app->beside[1];
+}
+
+static void arrange(struct app *app, int window_width)
+{
+    const bool fits = app->panel && app->dock && 2 * app->dock_width < window_width;
+    const int beside = fits ? app->dock_width : 0;
+    app->beside[0] = app->dock == APP_DOCK_LEFT ? beside : 0;
+    app->beside[1] = app->dock == APP_DOCK_RIGHT ? beside : 0;
+    app->width = window_width - beside;
+}
+
+void app_arrange(struct app *app)
+{
+    arrange(app, app_window_width(app));
+}
+
 void app_reset(struct app *app)
 {
     (void)lamps_copy(&app->now, &app->start);
@@ -402,14 +423,20 @@ static bool on_press(struct app *app, const struct app_event *e)
 {
     const bool light = e->button == APP_RIGHT || app->light_key;
     const int grabbed = app->gizmos && !light ? gizmo_hit(app, e->x, e->y) : -1;
-    app->drag = light ? APP_DRAG_LIGHT : grabbed >= 0 ? APP_DRAG_GIZMO : APP_DRAG_CAMERA;
+    const bool ball = !light && grabbed < 0 && gizmo_on_ball(app, e->x, e->y);
+    app->drag = light          ? APP_DRAG_LIGHT
+                : grabbed >= 0 ? APP_DRAG_GIZMO
+                : ball         ? APP_DRAG_BALL
+                               : APP_DRAG_CAMERA;
     app->cursor[0] = e->x;
     app->cursor[1] = e->y;
     app_stand_still(app);
-    if (grabbed < 0)
-        return false;
-    app->now.selected = grabbed;
-    return true;
+    app->hint_s = 0;  // it is known
+    if (grabbed >= 0)
+        app->now.selected = grabbed;
+    if (ball)
+        gizmo_drag_ball(app, e->x, e->y);
+    return grabbed >= 0 || ball;
 }
 
 // What is drawn roughly while it moves is drawn once more when it rests.
@@ -437,6 +464,8 @@ static bool on_move(struct app *app, const struct app_event *e)
         turn_light(app, dx, dy);
     else if (app->drag == APP_DRAG_GIZMO)
         gizmo_drag(app, app->now.selected, e->x, e->y);
+    else if (app->drag == APP_DRAG_BALL)
+        gizmo_drag_ball(app, e->x, e->y);
     else
         drag_camera[app->now.camera.framing](app, dx, dy);
     return true;
@@ -456,7 +485,9 @@ static bool on_wheel(struct app *app, const struct app_event *e)
 
 static bool on_key_down(struct app *app, const struct app_event *e)
 {
-    return keys_press(app, e->key, e->repeat);
+    const bool changed = keys_press(app, e->key, e->repeat);
+    app->quit |= app->asks && e->unasked;
+    return changed;
 }
 
 static bool on_key_up(struct app *app, const struct app_event *e)
@@ -477,8 +508,8 @@ static bool on_size(struct app *app, const struct app_event *e)
 {
     if (e->width < 1 || e->height < 1)
         return false;
-    app->width = e->width;
     app->height = e->height;
+    arrange(app, e->width);
     return true;
 }
 
@@ -490,7 +521,11 @@ static bool (*const handlers[])(struct app *, const struct app_event *) = {
 
 bool app_handle(struct app *app, const struct app_event *event)
 {
-    return handlers[event->kind](app, event);
+    struct app_event in_frame = *event;
+    in_frame.x -= app->beside[0];
+    const bool changed = handlers[event->kind](app, &in_frame);
+    app_arrange(app);
+    return changed;
 }
 
 // ---------------------------------------------------------------- time
@@ -531,6 +566,36 @@ static bool adapt(struct app *app, double seconds)
         return false;
     app->adapted_ev += left * (1 - exp(-seconds / adapt_s));
     return true;
+}
+
+static const double fade_s = 0.6;
+
+double app_note_alpha(double left_s)
+{
+    return clamp(left_s / fade_s, 0, 1);
+}
+
+static bool fade(double *left_s, double seconds)
+{
+    const double before = app_note_alpha(*left_s);
+    *left_s = fmax(*left_s - seconds, 0);
+    return app_note_alpha(*left_s) != before;
+}
+
+bool app_fade(struct app *app, double seconds)
+{
+    const bool toast = fade(&app->toast_s, seconds);
+    return fade(&app->hint_s, seconds) || toast;
+}
+
+static double steady_s(double left_s)
+{
+    return left_s > 0 ? fmax(left_s - fade_s, 0) : INFINITY;
+}
+
+double app_steady_s(const struct app *app)
+{
+    return fmin(steady_s(app->toast_s), steady_s(app->hint_s));
 }
 
 void app_live(struct app *app, double seconds)

@@ -41,8 +41,12 @@ enum {
     APP_KEY_PAGE_DOWN,
     APP_KEY_HOME,
     APP_KEY_END,
+    APP_KEY_F11,
     APP_KEYS  // all are below
 };
+enum { APP_CONTROL = 1 << 10 };  // added to a letter: Ctrl is held as well
+
+enum { APP_HINT_S = 8, APP_TOAST_S = 4 };  // seconds that a note is to be seen
 
 struct app_event {
     enum app_event_kind kind;
@@ -50,8 +54,9 @@ struct app_event {
     double x, y;             // PRESS, RELEASE, MOVE, WHEEL
     double wheel;            // WHEEL: steps, > 0 away from the user
     bool repeat;             // KEY_DOWN: the key was down already
-    int key;                 // KEY_*: a lower-case letter, a sign, or APP_KEY_*; TEXT: Unicode
-    int width, height;       // SIZE
+    bool unasked;            // KEY_DOWN: of a script, which nobody can ask whether it means it
+    int key;  // KEY_*: a lower-case letter (with APP_CONTROL), a sign, or APP_KEY_*; TEXT: Unicode
+    int width, height;  // SIZE
 };
 
 // What the app must know of the file it shows.
@@ -70,6 +75,11 @@ struct app_lamp {
     double stops;  // its value is multiplied by 2^stops
     int entry;     // of the rig that it came from; -1: none
 };
+
+// Where the panel is: over the picture, or beside it.
+enum app_dock { APP_DOCK_OVER = 0, APP_DOCK_LEFT, APP_DOCK_RIGHT, APP_DOCKS };
+
+extern const char *const app_dock_names[APP_DOCKS + 1];  // "over", "left", "right", NULL
 
 // How objects are shown in two materials at once.
 enum app_split {
@@ -103,7 +113,7 @@ struct app_state {
     struct gaze gaze;      // how an eye sees the frame
 };
 
-enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT, APP_DRAG_GIZMO };
+enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT, APP_DRAG_GIZMO, APP_DRAG_BALL };
 
 // What the app cannot do itself; whoever runs it does, and sets this back to NONE.
 enum app_wish {
@@ -111,10 +121,11 @@ enum app_wish {
     APP_WISH_PNG,  // a picture of the frame
     APP_WISH_EXR,
     APP_WISH_SAVE_RIG,
-    APP_WISH_SWEEP,      // a recording
-    APP_WISH_TURNTABLE,  // a recording
-    APP_WISH_ADD_LIGHT,  // of the SPEC app.spec
-    APP_WISH_MAP         // the environment map of the file app.spec
+    APP_WISH_SWEEP,       // a recording
+    APP_WISH_TURNTABLE,   // a recording
+    APP_WISH_ADD_LIGHT,   // of the SPEC app.spec
+    APP_WISH_MAP,         // the environment map of the file app.spec
+    APP_WISH_FULL_SCREEN  // or back from it
 };
 enum { APP_SPEC = 1024 };
 
@@ -123,14 +134,21 @@ struct app {
     struct app_file file;
     struct app_state start, now;
     int width, height;  // of the frame
-    bool letterbox;     // keep the picture's proportions; else it fills the frame
+    int beside[2];      // pixels of the window to the left and right of the frame, for the panel
+    enum app_dock dock;
+    int dock_width;  // pixels that a panel beside the frame takes; 0: there is none
+    bool letterbox;  // keep the picture's proportions; else it fills the frame
     enum app_drag drag;
     double cursor[2];
     bool light_key;                     // L is held
     bool panel, help, inspect, gizmos;  // shown
-    double inspect_zoom;                // of the inspector's disc; 0 and 1: all of it
-    bool compared;                      // there is a capture to compare with
-    bool near_lights;  // it is known where the surface is, so that near lights can shine on it
+    bool asks;                          // whether to quit
+    bool recording;                     // every frame becomes a picture
+    double toast_s,
+        hint_s;           // how long what was last said, and what the mouse does, stay to be seen
+    double inspect_zoom;  // of the inspector's disc; 0 and 1: all of it
+    bool compared;        // there is a capture to compare with
+    bool near_lights;     // it is known where the surface is, so that near lights can shine on it
     enum app_wish wish;
     char spec[APP_SPEC];
     bool quit;
@@ -152,16 +170,28 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
                         bool look_ahead, const struct relume_log *log);
 
 void app_release(struct app *app);
+// The window's width: the frame and what is beside it.
+int app_window_width(const struct app *app);
+// Share the window between frame and panel; the frame keeps most of it, else the panel lies over
+// it.
+void app_arrange(struct app *app);
 // As it was at the start.
 void app_reset(struct app *app);
 
-// Returns whether the picture changed.
+// Returns whether the picture changed. Places of events are in pixels of the window.
 bool app_handle(struct app *app, const struct app_event *event);
 
 // Let time pass: a panorama let go of in motion glides to a stop, automatic exposure adapts.
 // Returns whether the picture changed; false for good once all is at rest. What a span does, any
 // way to split it does.
 bool app_advance(struct app *app, double seconds);
+
+// What is said over the picture fades; returns whether it looks different.
+bool app_fade(struct app *app, double seconds);
+// Seconds for which it will look the same; INFINITY when nothing is said.
+double app_steady_s(const struct app *app);
+// How much of a note with `left` seconds to go is still to be seen, 0 to 1.
+double app_note_alpha(double left_s);
 
 // The same for the living eye alone (struct gaze), which never rests.
 void app_live(struct app *app, double seconds);

@@ -33,8 +33,10 @@ struct context_backend {
     // How many pixels are as large as one on ordinary screens: for letters.
     double (*scale)(void *context);
     void (*show)(void *context, const char *title);
-    // The next event; false when there is none (with `wait` only after sleeping for one).
-    bool (*next)(void *context, struct context_event *event, bool wait);
+    // The next event; false when there is none within `wait_s` seconds, which may be INFINITY.
+    bool (*next)(void *context, struct context_event *event, double wait_s);
+    // Fill the screen, or be a window again as before. NULL: there is no window.
+    void (*full_screen)(void *context, bool fill);
 };
 extern const struct context_backend context_glfw;  // a window
 // No display needed, draw into targets:

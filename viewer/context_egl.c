@@ -132,11 +132,11 @@ static gl_proc get_proc(const char *name)
 }
 
 const struct context_backend context_egl = {
-    "egl",          open_any,        close_offscreen, get_proc,
-    offscreen_size, offscreen_scale, offscreen_show,  offscreen_next,
+    "egl",           open_any,       close_offscreen, get_proc, offscreen_size,
+    offscreen_scale, offscreen_show, offscreen_next,  NULL,
 };
 
 const struct context_backend context_egl_card = {
-    "egl, graphics card", open_card,       close_offscreen, get_proc,
-    offscreen_size,       offscreen_scale, offscreen_show,  offscreen_next,
+    "egl, graphics card", open_card,      close_offscreen, get_proc, offscreen_size,
+    offscreen_scale,      offscreen_show, offscreen_next,  NULL,
 };

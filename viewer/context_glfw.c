@@ -5,6 +5,7 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +18,7 @@ struct window {
     int first, count;
     double cursor[2];  // window units, as of the last event: GLFW itself answers for right now
     char dropped[4096];
+    int place[2], units[2];  // before the window filled the screen
 };
 
 // ---------------------------------------------------------------- events
@@ -91,6 +93,7 @@ static int key_letter(int key, int scancode)
         {GLFW_KEY_HOME, APP_KEY_HOME},
         {GLFW_KEY_END, APP_KEY_END},
         {GLFW_KEY_F1, '?'},
+        {GLFW_KEY_F11, APP_KEY_F11},
         {GLFW_KEY_KP_ADD, '+'},
         {GLFW_KEY_KP_SUBTRACT, '-'},
         {GLFW_KEY_EQUAL, '+'},
@@ -105,9 +108,10 @@ static int key_letter(int key, int scancode)
 
 static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mods)
 {
-    (void)mods;
     struct app_event e = at_cursor(handle, action == GLFW_RELEASE ? APP_KEY_UP : APP_KEY_DOWN);
     e.key = key_letter(key, scancode);
+    if (mods & GLFW_MOD_CONTROL && e.key >= 'a' && e.key <= 'z')
+        e.key |= APP_CONTROL;
     e.repeat = action == GLFW_REPEAT;
     if (e.key)
         push_input(handle, e);
@@ -244,11 +248,13 @@ static void show(void *context, const char *title)
     glfwSwapBuffers(w->handle);
 }
 
-static bool next(void *context, struct context_event *event, bool wait)
+static bool next(void *context, struct context_event *event, double wait_s)
 {
     struct window *w = context;
-    if (!w->count && wait)
+    if (!w->count && isinf(wait_s))
         glfwWaitEvents();
+    else if (!w->count && wait_s > 0)
+        glfwWaitEventsTimeout(wait_s);
     else if (!w->count)
         glfwPollEvents();
     if (!w->count)
@@ -259,6 +265,22 @@ static bool next(void *context, struct context_event *event, bool wait)
     return true;
 }
 
+static void full_screen(void *context, bool fill)
+{
+    struct window *w = context;
+    GLFWmonitor *monitor = glfwGetPrimaryMonitor();
+    const GLFWvidmode *mode = monitor ? glfwGetVideoMode(monitor) : NULL;
+    if (fill && mode) {
+        glfwGetWindowPos(w->handle, &w->place[0], &w->place[1]);
+        glfwGetWindowSize(w->handle, &w->units[0], &w->units[1]);
+        glfwSetWindowMonitor(w->handle, monitor, 0, 0, mode->width, mode->height,
+                             mode->refreshRate);
+    } else if (!fill && w->units[0]) {
+        glfwSetWindowMonitor(w->handle, NULL, w->place[0], w->place[1], w->units[0], w->units[1],
+                             GLFW_DONT_CARE);
+    }
+}
+
 const struct context_backend context_glfw = {
-    "glfw", open_window, close_window, get_proc, size, scale, show, next,
+    "glfw", open_window, close_window, get_proc, size, scale, show, next, full_screen,
 };

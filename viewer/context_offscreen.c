@@ -36,9 +36,9 @@ void offscreen_show(void *context, const char *title)
     (void)context, (void)title;
 }
 
-bool offscreen_next(void *context, struct context_event *event, bool wait)
+bool offscreen_next(void *context, struct context_event *event, double wait_s)
 {
-    (void)context, (void)wait;
+    (void)context, (void)wait_s;
     event->kind = CONTEXT_CLOSE;
     return false;
 }

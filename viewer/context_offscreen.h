@@ -11,6 +11,6 @@ const struct context_backend *context_offscreen(const char *name);
 void offscreen_size(void *context, int *width, int *height);
 double offscreen_scale(void *context);
 void offscreen_show(void *context, const char *title);
-bool offscreen_next(void *context, struct context_event *event, bool wait);
+bool offscreen_next(void *context, struct context_event *event, double wait_s);
 
 #endif

@@ -5,6 +5,7 @@
 #define VIEWER_DRAW_H
 
 #include "app.h"
+#include "gizmo.h"
 #include "program.h"
 #include "lamps_seen.h"
 #include "target.h"
@@ -93,11 +94,11 @@ void draw_panorama(const struct program *program, const struct gl *gl, const str
                    const struct relume_geometry *geometry, struct relume_look look,
                    const struct target *view);
 
-// The ball in the lower right corner, lit from `light` (as the viewer sees it).
+// The ball of gizmo_ball, lit from `light` (as the viewer sees it).
 relume_status draw_ball_create(struct program *program, const struct gl *gl,
                                const struct relume_log *log);
 void draw_ball(const struct program *program, const struct gl *gl, const struct place *place,
-               struct relume_vec3 light, const float rgb[3]);
+               struct gizmo_circle ball, struct relume_vec3 light, const float rgb[3]);
 
 // Lights that are in view, added to the frame.
 relume_status draw_source_create(struct program *program, const struct gl *gl,
@@ -105,11 +106,15 @@ relume_status draw_source_create(struct program *program, const struct gl *gl,
 void draw_sources(const struct program *program, const struct gl *gl, const struct place *place,
                   const struct relume_source *sources, int n);
 
+// Where a frame lies in a window: so many pixels from its left edge.
+struct window_place {
+    int left, width, height;
+};
 // A linear frame onto a framebuffer whose first row is the lowest (0: the screen), through
 // relume_tones[tone], coded as sRGB; `white` > 0.
 relume_status draw_present_create(struct program *program, const struct gl *gl,
                                   const struct relume_log *log);
 void draw_present(const struct program *program, const struct gl *gl, const struct target *frame,
-                  int tone, double white, GLuint framebuffer);
+                  const struct window_place *window, int tone, double white, GLuint framebuffer);
 
 #endif

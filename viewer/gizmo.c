@@ -17,6 +17,24 @@ struct gizmo_circle gizmo_disc(const struct app *app)
     };
 }
 
+struct gizmo_circle gizmo_ball(const struct app *app)
+{
+    const double radius = fmin(0.09 * fmin(app->width, app->height), 48.0);
+    return (struct gizmo_circle){app->width - 1.4 * radius, app->height - 1.4 * radius, radius};
+}
+
+bool gizmo_on_ball(const struct app *app, double x, double y)
+{
+    const struct gizmo_circle ball = gizmo_ball(app);
+    return app->now.ball && hypot(x - ball.x, y - ball.y) <= ball.radius;
+}
+
+void gizmo_drag_ball(struct app *app, double x, double y)
+{
+    const struct gizmo_circle ball = gizmo_ball(app);
+    app_point_light(app, app->now.selected, (x - ball.x) / ball.radius, (ball.y - y) / ball.radius);
+}
+
 static bool place_direction(struct gizmo *out, const struct app *app, int light)
 {
     const struct gizmo_circle disc = gizmo_disc(app);

@@ -16,6 +16,12 @@ struct gizmo_circle {
 };
 struct gizmo_circle gizmo_disc(const struct app *app);
 
+// The ball in the lower right corner that shows the light, while app.now.ball. A place on it is
+// where the selected light shall come from.
+struct gizmo_circle gizmo_ball(const struct app *app);
+bool gizmo_on_ball(const struct app *app, double x, double y);
+void gizmo_drag_ball(struct app *app, double x, double y);
+
 // False when the light has no place in the frame.
 bool gizmo_of(struct gizmo *out, const struct app *app, int light);
 

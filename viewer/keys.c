@@ -20,6 +20,28 @@ static bool press_quit(struct app *app, int key)
     return false;
 }
 
+// Closes what was opened last; with nothing open it asks whether to quit. A recording ends before
+// the app hears of the key.
+static bool press_escape(struct app *app, int key)
+{
+    bool *const open[] = {&app->asks, &app->help, &app->inspect, &app->panel};
+    (void)key;
+    for (size_t i = 0; i < sizeof open / sizeof *open; i++)
+        if (*open[i]) {
+            *open[i] = false;
+            return true;
+        }
+    app->asks = true;
+    return true;
+}
+
+static bool press_enter(struct app *app, int key)
+{
+    (void)key;
+    app->quit |= app->asks;
+    return false;
+}
+
 static bool press_panel(struct app *app, int key)
 {
     (void)key;
@@ -318,6 +340,12 @@ static bool press_turntable(struct app *app, int key)
     return wish(app, APP_WISH_TURNTABLE);
 }
 
+static bool press_full_screen(struct app *app, int key)
+{
+    (void)key;
+    return wish(app, APP_WISH_FULL_SCREEN);
+}
+
 // ---------------------------------------------------------------- table
 
 const struct key_binding key_bindings[] = {
@@ -361,19 +389,26 @@ const struct key_binding key_bindings[] = {
     {'g', "G", "handles of the lights in the picture", press_gizmos, false},
     {'i', "I", "inspector: the reflectance under the cursor", press_inspect, false},
     {'y', "Y", "inspector: closer about the light", press_magnify, false},
-    {'s', "S", "save the picture, PNG", press_png, false},
+    {'s', "S or Ctrl+S", "save the picture, PNG", press_png, false},
+    {APP_CONTROL | 's', NULL, NULL, press_png, false},
     {'p', "P", "save the picture, EXR", press_exr, false},
     {'w', "W", "write the lights, a rig file", press_save_rig, false},
     {'k', "K", "record a light sweep", press_sweep, false},
     {'j', "J", "record a turntable", press_turntable, false},
-    {APP_KEY_ESCAPE, "Esc", "quit", press_quit, false},
+    {APP_KEY_F11, "F11", "full screen, and back", press_full_screen, false},
+    {APP_KEY_ESCAPE, "Esc", "close what is open; then ask whether to quit", press_escape, false},
+    {APP_KEY_ENTER, NULL, NULL, press_enter, false},
+    {APP_CONTROL | 'q', "Ctrl+Q", "quit", press_quit, false},
     {0, NULL, NULL, NULL, false},
 };
 
+// Whoever does something else stays.
 bool keys_press(struct app *app, int key, bool repeat)
 {
+    const bool answered = app->asks && key != APP_KEY_ESCAPE && key != APP_KEY_ENTER;
+    app->asks &= !answered;
     for (const struct key_binding *b = key_bindings; b->key; b++)
         if (b->key == key)
-            return (b->repeats || !repeat) && b->press(app, key);
-    return false;
+            return ((b->repeats || !repeat) && b->press(app, key)) || answered;
+    return answered;
 }

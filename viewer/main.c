@@ -164,6 +164,8 @@ static relume_status run_offscreen(struct session *s, struct options *o)
     if (!status)
         status = session_start(s, context_offscreen(o->gl), s->app.width, s->app.height);
     s->app.panel = o->panel;
+    s->app.dock = o->dock;
+    app_arrange(&s->app);
     if (!status && film)
         status = begin_film(s, o);
     if (!status && o->script)
@@ -220,7 +222,8 @@ static relume_status take_events(struct session *s, bool *changed, double *time_
     relume_status status = RELUME_OK;
     struct context_event event;
     *changed |= session_pass(s, time_passed(time_ms));
-    while (!status && !s->app.quit && s->backend->next(s->context, &event, !*changed)) {
+    while (!status && !s->app.quit &&
+           s->backend->next(s->context, &event, *changed ? 0 : app_steady_s(&s->app))) {
         *changed |= session_pass(s, time_passed(time_ms));
         status = take_event(s, &event, changed);
     }
@@ -236,6 +239,8 @@ static relume_status live(struct session *s, struct script *script)
     while (!status && !s->app.quit) {
         if (more)
             status = script_step(script, &more);
+        if (script && !more && script_leaves(script))
+            s->app.quit = true;
         changed |= more;
         if (!status)
             status = take_events(s, &changed, &time_ms);
@@ -268,8 +273,11 @@ static void recall_rig(struct options *o, const struct settings *settings)
 static void remember(struct session *s, struct settings *settings)
 {
     const struct relume_log *log = s->log;
-    settings->width = s->app.width;
-    settings->height = s->app.height;
+    if (!s->full_screen) {
+        settings->width = app_window_width(&s->app);
+        settings->height = s->app.height;
+    }
+    settings->dock = s->app.dock;
     settings->panel = s->app.panel;
     settings_save(settings);
     s->log = NULL;  // a rig that cannot be kept is no news
@@ -299,6 +307,8 @@ static relume_status open_window(struct session *s, struct options *o,
     }
     s->app.letterbox = true;
     s->app.panel = o->panel || settings->panel;
+    s->app.dock = o->docked ? o->dock : (enum app_dock)settings->dock;
+    s->app.hint_s = APP_HINT_S;
     status = session_start(s, &context_glfw, s->app.width, s->app.height);
     if (status)
         return status;

@@ -445,6 +445,18 @@ static relume_status take_panel(struct options *o, const char *name, const char 
     return RELUME_OK;
 }
 
+static relume_status take_dock(struct options *o, const char *name, const char *text,
+                               const struct relume_log *log)
+{
+    o->docked = o->panel = true;
+    for (int i = 0; i < APP_DOCKS; i++)
+        if (!strcmp(text, app_dock_names[i])) {
+            o->dock = (enum app_dock)i;
+            return RELUME_OK;
+        }
+    return say(log, RELUME_EINVAL, "%s: expected over, left or right; found '%s'", name, text);
+}
+
 static relume_status take_window(struct options *o, const char *name, const char *text,
                                  const struct relume_log *log)
 {
@@ -521,6 +533,8 @@ static const struct option options[] = {
     {"--no-config", NULL, "neither read nor write what the window remembers", take_no_config},
     {"--window", NULL, "play --script in a window, which then stays", take_window},
     {"--panel", NULL, "begin with the panel; offscreen: draw it as well", take_panel},
+    {"--dock", "SIDE", "begin with the panel at the left or right, beside the picture, or over it",
+     take_dock},
     {"--ball", NULL, "offscreen: draw the ball that shows the light, as the window does",
      take_ball},
     {"--help", NULL, "this text", NULL},
@@ -541,7 +555,7 @@ void options_help(void)
     puts("\n"
          "mouse:  drag         slab: turn; panorama: look around; picture: move\n"
          "        wheel        zoom; several slabs: nearer, farther\n"
-         "        right drag   turn the light\n"
+         "        right drag   turn the light; so does a drag on the ball\n"
          "keys:");
     for (const struct key_binding *b = key_bindings; b->key; b++)
         if (b->shown)
@@ -564,6 +578,7 @@ void options_help(void)
          "        glare on|off|pause|run, glare magnify|nits|squint|cycle X, glare mode M\n"
          "        glare sources on|off: lamps in view\n"
          "        glare cornea|fibres|lens|vitreous|lids on|off: parts of the eye\n"
+         "        dock over|left|right  hint: what the mouse does        quit\n"
          "        wait [SECONDS]        frame OUT: the picture           shot OUT: with the "
          "panel\n\n"
          "example:\n"

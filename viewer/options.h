@@ -22,6 +22,8 @@ struct options {
     bool no_config;
     bool window;  // play them in a window
     bool panel;   // begin with the panel
+    bool docked;  // --dock was given
+    enum app_dock dock;
     struct app_state start;
     relume_rig *rig;  // of --rig and --light, NULL without either
     bool sized;       // --size was given

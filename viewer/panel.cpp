@@ -9,6 +9,7 @@
 #include <new>
 
 static const float width_units = 290;  // of the panel
+static const float margin_units = 8;
 
 // ---------------------------------------------------------------- making
 
@@ -25,6 +26,8 @@ static void map_keys(ImGuiIO &io)
     io.KeyMap[ImGuiKey_DownArrow] = APP_KEY_DOWN_ARROW;
     io.KeyMap[ImGuiKey_Home] = APP_KEY_HOME;
     io.KeyMap[ImGuiKey_End] = APP_KEY_END;
+    for (int i = 0; i < 6; i++)
+        io.KeyMap[ImGuiKey_A + i] = "acvxyz"[i];
 }
 
 static void set_style(float scale)
@@ -90,6 +93,23 @@ static bool over_a_window(const panel *panel, double x, double y)
     return false;
 }
 
+// Keys that are meant for the viewer also while a field is written into.
+static bool always_of_app(int key)
+{
+    return key == APP_KEY_F11 || (key & APP_CONTROL && std::strchr("oqs", key & ~APP_CONTROL));
+}
+
+// A list or a colour that is being chosen goes away by Esc.
+static bool closes_popup(panel *panel, const app_event *event)
+{
+    if (event->kind != APP_KEY_DOWN || event->key != APP_KEY_ESCAPE ||
+        !panel->context->OpenPopupStack.Size)
+        return false;
+    ImGui::SetCurrentContext(panel->context);
+    ImGui::ClosePopupToLevel(0, false);
+    return true;
+}
+
 extern "C" bool panel_takes(struct panel *panel, const struct app_event *event)
 {
     const bool typing = panel->context->IO.WantTextInput;
@@ -111,6 +131,10 @@ extern "C" bool panel_takes(struct panel *panel, const struct app_event *event)
         break;
     case APP_WHEEL: takes = over_a_window(panel, event->x, event->y); break;
     case APP_KEY_DOWN:
+        if (closes_popup(panel, event))
+            return true;
+        takes = typing && !always_of_app(event->key);
+        break;
     case APP_TEXT: takes = typing; break;
     case APP_KEY_UP:
     case APP_SIZE: break;
@@ -122,7 +146,8 @@ extern "C" bool panel_takes(struct panel *panel, const struct app_event *event)
 
 extern "C" bool panel_shown(const struct app *app)
 {
-    return app->panel || app->help || app->inspect || app->gizmos;
+    return app->panel || app->help || app->inspect || app->gizmos || app->asks || app->recording ||
+           app->toast_s > 0 || app->hint_s > 0;
 }
 
 static void tell_imgui(const app_event &e)
@@ -136,29 +161,50 @@ static void tell_imgui(const app_event &e)
         io.MouseWheel += (float)e.wheel;
     if (e.kind == APP_TEXT)
         io.AddInputCharacter((unsigned)e.key);
-    if ((e.kind == APP_KEY_DOWN || e.kind == APP_KEY_UP) && e.key < APP_KEYS)
-        io.KeysDown[e.key] = e.kind == APP_KEY_DOWN;
+    if (e.kind == APP_KEY_DOWN)
+        io.KeyCtrl = e.key & APP_CONTROL;
+    if (e.kind == APP_KEY_DOWN || e.kind == APP_KEY_UP)
+        io.KeysDown[e.key & ~APP_CONTROL] = e.kind == APP_KEY_DOWN;
 }
 
 // ---------------------------------------------------------------- window
 
-static bool panel_window(panel *panel, app *app, const panel_facts *facts)
+// Over the picture, as high as it needs, or beside the frame; false where there is no room.
+static bool place_window(const panel *panel, const app *app)
 {
-    const float margin = 8 * panel->scale;
-    const float width = std::min(width_units * panel->scale, (float)app->width - 2 * margin);
+    const float margin = margin_units * panel->scale;
+    const float all = (float)app_window_width(app);
+    const float width = std::min(width_units * panel->scale, all - 2 * margin);
     const float height = (float)app->height - 2 * margin;
     if (width < 40 || height < 40)
         return false;
-    bool changed = false;
-    ImGui::SetNextWindowPos(ImVec2(margin, margin));
-    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, height));
-    ImGui::Begin("relume", nullptr,
-                 ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar |
-                     ImGuiWindowFlags_AlwaysAutoResize);
-    ImGui::PushItemWidth(0.62f * width);
-    if (ImGui::CollapsingHeader("Lights", ImGuiTreeNodeFlags_DefaultOpen)) {
-        changed |= panel_lights(panel, app, facts);
+    const bool docked = app->beside[0] || app->beside[1];
+    const bool right = docked ? app->beside[1] > 0 : app->dock == APP_DOCK_RIGHT;
+    ImGui::SetNextWindowPos(ImVec2(right ? all - width - margin : margin, margin));
+    ImGui::SetNextWindowSizeConstraints(ImVec2(width, docked ? height : 0), ImVec2(width, height));
+    return true;
+}
+
+static bool dock_row(app *app)
+{
+    static const char *const names[APP_DOCKS] = {"over the picture", "left", "right"};
+    int dock = app->dock;
+    for (int i = 0; i < APP_DOCKS; i++) {
+        if (i)
+            ImGui::SameLine();
+        ImGui::RadioButton(names[i], &dock, i);
     }
+    const bool changed = dock != app->dock;
+    app->dock = (app_dock)dock;
+    app_arrange(app);
+    return changed;
+}
+
+static bool sections(panel *panel, app *app, const panel_facts *facts)
+{
+    bool changed = false;
+    if (ImGui::CollapsingHeader("Lights", ImGuiTreeNodeFlags_DefaultOpen))
+        changed |= panel_lights(panel, app, facts);
     if (app->file.objects && ImGui::CollapsingHeader("Objects", ImGuiTreeNodeFlags_DefaultOpen))
         changed |= panel_objects(app, facts);
     if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen))
@@ -170,18 +216,33 @@ static bool panel_window(panel *panel, app *app, const panel_facts *facts)
         panel_histogram(facts, panel->scale);
     if (ImGui::CollapsingHeader("File"))
         panel_file(facts);
+    if (ImGui::CollapsingHeader("Panel"))
+        changed |= dock_row(app);
+    return changed;
+}
+
+static bool panel_window(panel *panel, app *app, const panel_facts *facts)
+{
+    if (!place_window(panel, app))
+        return false;
+    ImGui::Begin("relume", nullptr,
+                 ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar |
+                     ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::PushItemWidth(0.62f * ImGui::GetWindowWidth());
+    const bool changed = sections(panel, app, facts);
     if (facts->message && facts->message[0])
         ImGui::TextWrapped("%s", facts->message);
     ImGui::PopItemWidth();
     ImGui::End();
     return changed;
 }
+
 // ---------------------------------------------------------------- frame
 
 static void one_frame(panel *panel, app *app, const panel_facts *facts)
 {
     ImGuiIO &io = ImGui::GetIO();
-    io.DisplaySize = ImVec2((float)app->width, (float)app->height);
+    io.DisplaySize = ImVec2((float)app_window_width(app), (float)app->height);
     io.DeltaTime = 1.0f / 60;
     ImGui::NewFrame();
     panel->histogram = false;
@@ -193,6 +254,9 @@ static void one_frame(panel *panel, app *app, const panel_facts *facts)
         panel_inspector(app, facts, panel->scale);
     if (app->help)
         panel_help(app, panel->scale);
+    panel_notes(app, facts, panel->scale);
+    if (app->asks)
+        panel_question(app, panel->scale);
     ImGui::Render();
 }
 
@@ -234,6 +298,11 @@ extern "C" bool panel_build(struct panel *panel, struct app *app, const struct p
     one_frame(panel, app, facts);
     collect_runs(panel);
     return panel->changed;
+}
+
+extern "C" int panel_width(const struct panel *panel)
+{
+    return (int)std::ceil((width_units + 2 * margin_units) * panel->scale);
 }
 
 extern "C" bool panel_wants_histogram(const struct panel *panel)

@@ -41,11 +41,15 @@ struct panel_facts {
     const size_t *material_bytes;
     int materials;
     const double *objects_ms;
-    const char *eye;  // what is known of the eye that looks, or NULL
+    const char *eye;             // what is known of the eye that looks, or NULL
+    const char *recording;       // where pictures go, or NULL ...
+    double recorded_s, round_s;  // ... how many seconds of them there are, and will be
 };
 // Work through the events and make the triangles of the frame; changes `app` as the user asks.
 // Returns whether the picture changed.
 bool panel_build(struct panel *panel, struct app *app, const struct panel_facts *facts);
+// Pixels that the panel takes beside the frame.
+int panel_width(const struct panel *panel);
 // Whether the histogram is open, and worth making.
 bool panel_wants_histogram(const struct panel *panel);
 // Whether maps are being chosen from.

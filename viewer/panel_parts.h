@@ -39,6 +39,10 @@ void panel_file(const panel_facts *facts);
 
 // What is drawn over the picture.
 void panel_help(const app *app, float scale);
+void panel_notes(const app *app, const panel_facts *facts, float scale);
+void panel_question(app *app, float scale);
+// The middle of the frame, in pixels of the window: across, down.
+ImVec2 panel_frame_point(const app *app, float across, float down);
 void panel_handles(const app *app, float scale);
 void panel_inspector(const app *app, const panel_facts *facts, float scale);
 

@@ -469,7 +469,7 @@ relume_status renderer_draw(struct renderer *r, const struct app *app)
     target_resume(r->shown, r->gl);
     r->gl->BindVertexArray(r->vertices);
     if (app->now.ball)
-        draw_ball(&r->ball, r->gl, &place, app_seen_light(app, app->now.selected),
+        draw_ball(&r->ball, r->gl, &place, gizmo_ball(app), app_seen_light(app, app->now.selected),
                   app->now.light[app->now.selected].rgb);
     return gl_check(r->gl, "drawing", r->log);
 }
@@ -513,5 +513,6 @@ relume_status renderer_meter(double *ev, struct renderer *r)
 void renderer_present(const struct renderer *r, const struct app *app, GLuint framebuffer)
 {
     r->gl->BindVertexArray(r->vertices);
-    draw_present(&r->present, r->gl, r->shown, app->now.tone, app->now.white, framebuffer);
+    const struct window_place window = {app->beside[0], app_window_width(app), app->height};
+    draw_present(&r->present, r->gl, r->shown, &window, app->now.tone, app->now.white, framebuffer);
 }

@@ -17,6 +17,7 @@ struct script {
     char text[LINE];
     const char *at;  // in `text`: what is read next
     int line;
+    bool leaves;  // the last event was Esc
 };
 
 // ---------------------------------------------------------------- words of a line
@@ -103,6 +104,7 @@ static bool take_key(struct script *s, int *out)
         {"pagedown", APP_KEY_PAGE_DOWN},
         {"home", APP_KEY_HOME},
         {"end", APP_KEY_END},
+        {"f11", APP_KEY_F11},
     };
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (take_word(s, names[i].name)) {
@@ -110,9 +112,12 @@ static bool take_key(struct script *s, int *out)
             return true;
         }
     skip_blanks(s);
-    if (s->at[0] <= ' ' || s->at[0] > '~' || (s->at[1] && !strchr(" \t", s->at[1])))
+    const bool control = !strncmp(s->at, "ctrl+", 5);
+    const char *sign = s->at + (control ? 5 : 0);
+    if (sign[0] <= ' ' || sign[0] > '~' || (sign[1] && !strchr(" \t", sign[1])))
         return false;
-    *out = *s->at++;
+    *out = sign[0] | (control ? APP_CONTROL : 0);
+    s->at = sign + 1;
     return true;
 }
 
@@ -120,6 +125,9 @@ static bool take_key(struct script *s, int *out)
 
 static void send(struct script *s, struct app_event event)
 {
+    event.unasked = true;
+    if (event.kind != APP_KEY_UP)
+        s->leaves = event.kind == APP_KEY_DOWN && event.key == APP_KEY_ESCAPE;
     s->host.send(s->host.user, &event);
 }
 
@@ -214,7 +222,8 @@ static relume_status play_key(struct script *s)
 {
     int key;
     if (!take_key(s, &key))
-        return wrong(s, "key K: one letter or sign, esc, tab, enter, left, right, up, down, ...");
+        return wrong(s, "key K: one letter or sign, esc, tab, enter, left, right, up, down, ..., "
+                        "ctrl+ a letter");
     send(s, (struct app_event){.kind = APP_KEY_DOWN, .key = key});
     send(s, (struct app_event){.kind = APP_KEY_UP, .key = key});
     return RELUME_OK;
@@ -338,6 +347,31 @@ static relume_status play_shot(struct script *s)
     return with_path(s, s->host.shot, "shot FILE");
 }
 
+static relume_status play_hint(struct script *s)
+{
+    s->host.app->hint_s = APP_HINT_S;
+    return RELUME_OK;
+}
+
+static relume_status play_dock(struct script *s)
+{
+    struct app *app = s->host.app;
+    for (int i = 0; i < APP_DOCKS; i++)
+        if (take_word(s, app_dock_names[i])) {
+            app->dock = (enum app_dock)i;
+            app->panel = true;
+            app_arrange(app);
+            return RELUME_OK;
+        }
+    return wrong(s, "dock over|left|right");
+}
+
+static relume_status play_quit(struct script *s)
+{
+    s->host.app->quit = true;
+    return RELUME_OK;
+}
+
 static relume_status play_wait(struct script *s)
 {
     double seconds = -1;
@@ -362,7 +396,8 @@ static const struct word {
     {"let", play_let, false},     {"type", play_type, true},  {"light", play_light, true},
     {"add", play_add, true},      {"rig", play_rig, true},    {"wait", play_wait, false},
     {"frame", play_frame, true},  {"shot", play_shot, true},  {"open", play_open, true},
-    {"glare", play_glare, true},
+    {"glare", play_glare, true},  {"hint", play_hint, false}, {"quit", play_quit, false},
+    {"dock", play_dock, false},
 };
 
 static relume_status play_line(struct script *s)
@@ -378,7 +413,7 @@ static relume_status play_line(struct script *s)
         return status || words[i].whole || at_end(s) ? status : wrong(s, "the end of the line");
     }
     return wrong(s, "size, drag, click, press, move, release, wheel, key, hold, let, type, light, "
-                    "add, rig, open, glare, wait, frame or shot");
+                    "add, rig, open, glare, dock, hint, wait, frame, shot or quit");
 }
 
 relume_status script_open(struct script **out, const char *path, const struct script_host *host)
@@ -410,6 +445,11 @@ relume_status script_step(struct script *s, bool *more)
             "%s: line %d, column %d; expected lines of at most %d characters; found a longer one",
             s->path, s->line, LINE - 1, LINE - 2);
     return play_line(s);
+}
+
+bool script_leaves(const struct script *s)
+{
+    return s->leaves;
 }
 
 void script_close(struct script **script)

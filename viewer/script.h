@@ -8,7 +8,7 @@
 // end the script.
 struct script_host {
     void *user;
-    struct app *app;  // asked for sizes only
+    struct app *app;
     void (*send)(void *user, const struct app_event *event);
     // `light SPEC` (in place of all lights) and `add SPEC`, and the lights of a rig file; what is
     // wrong goes to `log`, which says where.
@@ -34,6 +34,8 @@ relume_status script_open(struct script **out, const char *path, const struct sc
 // Play one line; `*more` is false behind the last. RELUME_EDATA names the line and column that are
 // wrong.
 relume_status script_step(struct script *script, bool *more);
+// Whether the last event was Esc: a script that ends so leaves the window.
+bool script_leaves(const struct script *script);
 void script_close(struct script **script);
 
 // All of it, or until an event quits the app.

@@ -3,8 +3,18 @@
 #include "say.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+
+void session_say(struct session *s, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(s->message, sizeof s->message, format, args);
+    va_end(args);
+    s->app.toast_s = APP_TOAST_S;
+}
 
 // ---------------------------------------------------------------- file
 
@@ -214,7 +224,11 @@ static relume_status make_renderer(struct session *s)
 static relume_status make_panel(struct session *s, double scale)
 {
     const relume_status status = panel_create(&s->panel, scale);
-    return status ? status : draw_panel_create(&s->drawing, &s->gl, s->panel, s->log);
+    if (status)
+        return status;
+    s->app.dock_width = panel_width(s->panel);
+    app_arrange(&s->app);
+    return draw_panel_create(&s->drawing, &s->gl, s->panel, s->log);
 }
 
 relume_status session_start(struct session *s, const struct context_backend *backend, int width,
@@ -236,6 +250,20 @@ relume_status session_scale(struct session *s, double scale)
     return make_panel(s, scale);
 }
 
+// What belongs to the window, not to the file.
+static void keep_window(struct app *app, const struct app *was)
+{
+    app->width = was->width;
+    app->height = was->height;
+    memcpy(app->beside, was->beside, sizeof app->beside);
+    app->dock = was->dock;
+    app->dock_width = was->dock_width;
+    app->letterbox = was->letterbox;
+    app->panel = was->panel;
+    app->gizmos = was->gizmos;
+    app->toast_s = was->toast_s;
+}
+
 static relume_status replace(struct session *s, const char *path, bool *opened)
 {
     session_record_stop(s);
@@ -251,11 +279,7 @@ static relume_status replace(struct session *s, const char *path, bool *opened)
     *opened = !session_open(s, path, &start, true);
     if (!*opened)
         return RELUME_OK;
-    s->app.width = was.width;
-    s->app.height = was.height;
-    s->app.letterbox = was.letterbox;
-    s->app.panel = was.panel;
-    s->app.gizmos = was.gizmos;
+    keep_window(&s->app, &was);
     relume_capture_destroy(&s->capture);
     s->app.compared = false;
     return make_renderer(s);
@@ -332,8 +356,11 @@ bool session_send(struct session *s, const struct app_event *event)
 relume_status session_draw(struct session *s)
 {
     relume_status status = panel_shown(&s->app) ? session_build_panel(s, false) : RELUME_OK;
+    const bool wished = s->app.wish;
     if (!status)
         status = session_grant_wish(s);
+    if (!status && wished && panel_shown(&s->app))
+        status = session_build_panel(s, false);  // with what is said of it
     const bool recorded = !status && session_records(s) && !session_record_step(s);
     if (!status && !recorded)
         status = renderer_draw(&s->renderer, &s->app);
@@ -350,12 +377,12 @@ bool session_is_busy(const struct session *s)
 bool session_pass(struct session *s, double seconds)
 {
     const bool moved = !session_records(s) && app_advance(&s->app, seconds);
-    return moved || session_is_busy(s);
+    return app_fade(&s->app, seconds) || moved || session_is_busy(s);
 }
 
 void session_present(struct session *s, GLuint framebuffer)
 {
     renderer_present(&s->renderer, &s->app, framebuffer);
     if (panel_shown(&s->app))
-        draw_panel(&s->drawing, &s->gl, s->panel, s->app.width, s->app.height);
+        draw_panel(&s->drawing, &s->gl, s->panel, app_window_width(&s->app), s->app.height);
 }

@@ -64,9 +64,10 @@ struct session {
     size_t material_bytes[SESSION_MATERIALS];  // of graphics memory
     char line[SESSION_LINES][SESSION_TEXT];
     const char *lines[SESSION_LINES + 1];  // what the panel says of the file
-    char message[SESSION_TEXT];            // what the panel says last
-    int threads;                           // that read files
-    size_t vram_bytes;                     // for views
+    char message[SESSION_TEXT];            // what was said last
+    bool full_screen;
+    int threads;        // that read files
+    size_t vram_bytes;  // for views
     enum session_relight relight;
     enum session_relight glare;            // by passes or by the library, likewise
     int glare_size;                        // as glare.size
@@ -75,6 +76,9 @@ struct session {
     const struct relume_log *log;          // lasts as long: files and renderers keep it
     const struct relume_log *listener;     // hears what `log` would say, for a while; or NULL
 };
+
+// Say it in the panel and, for a while, over the picture.
+void session_say(struct session *s, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 // Open `path`, also a description of objects, or a material for the mesh that was asked for, and
 // start the app; the session is untouched when that fails.

@@ -111,6 +111,9 @@ relume_status session_build_panel(struct session *s, bool histogram)
         .material_bytes = s->objects ? s->material_bytes : NULL,
         .materials = SESSION_MATERIALS,
         .objects_ms = s->renderer.things_ms,
+        .recording = session_records(s) ? s->recording.path : NULL,
+        .recorded_s = (double)s->recording.frame / RECORD_RATE,
+        .round_s = (double)s->recording.frames / RECORD_RATE,
         .eye = describe_eye(eye, sizeof eye, &s->renderer.glare),
     };
     if (!status)

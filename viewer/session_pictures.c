@@ -44,11 +44,12 @@ relume_status session_frame(struct session *s, const char *path)
 
 static relume_status prepare_screen(struct session *s)
 {
-    if (s->screen.width == s->app.width && s->screen.height == s->app.height)
+    const int width = app_window_width(&s->app);
+    if (s->screen.width == width && s->screen.height == s->app.height)
         return RELUME_OK;
     if (s->screen.texture)
         target_destroy(&s->screen, &s->gl);
-    return target_create(&s->screen, &s->gl, s->app.width, s->app.height, s->log);
+    return target_create(&s->screen, &s->gl, width, s->app.height, s->log);
 }
 
 // The screen's first row is the lowest, and its values are coded.

@@ -25,6 +25,7 @@ relume_status session_record_begin(struct session *s, enum record_kind kind, con
     snprintf(made.path, sizeof made.path, "%s", path);
     *r = made;
     s->app.now.ball = false;
+    s->app.recording = true;
     return RELUME_OK;
 }
 
@@ -32,6 +33,7 @@ static void put_back(struct session *s)
 {
     lamps_release(&s->app.now);
     s->app.now = s->recording.before;
+    s->app.recording = false;
     s->recording = (struct recording){.record = NULL};
 }
 
@@ -44,8 +46,10 @@ static relume_status finish(struct session *s)
         status = record_commit(&r->record);
     else
         record_abort(&r->record);
-    snprintf(s->message, sizeof s->message, "%.200s %s", r->path,
-             r->frame && !status ? "recorded" : "was not recorded");
+    if (r->frame && !status)
+        session_say(s, "recorded %.200s, %d pictures", r->path, r->frame);
+    else
+        session_say(s, "%.200s was not recorded", r->path);
     put_back(s);
     return status;
 }
@@ -60,7 +64,7 @@ static relume_status fail(struct session *s, relume_status status)
 {
     struct recording *r = &s->recording;
     record_abort(&r->record);
-    snprintf(s->message, sizeof s->message, "%.200s was not recorded", r->path);
+    session_say(s, "%.200s was not recorded", r->path);
     put_back(s);
     return status;
 }
@@ -85,7 +89,6 @@ relume_status session_record_step(struct session *s)
     if (status)
         return fail(s, status);
     r->frame++;
-    snprintf(s->message, sizeof s->message, "picture %d of %d; Esc ends it", r->frame, r->frames);
     return r->frame == r->frames ? finish(s) : RELUME_OK;
 }
 

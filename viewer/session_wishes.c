@@ -17,6 +17,14 @@ static void free_name(char *path, size_t size, const struct session *s, const ch
     }
 }
 
+static void say_saved(struct session *s, const char *path, relume_status status)
+{
+    if (status)
+        session_say(s, "%.200s could not be saved", path);
+    else
+        session_say(s, "saved %.200s", path);
+}
+
 static relume_status wish_picture(struct session *s, const char *extension)
 {
     char path[SESSION_TEXT + 16];
@@ -25,8 +33,7 @@ static relume_status wish_picture(struct session *s, const char *extension)
     s->app.now.ball = false;
     const relume_status status = session_frame(s, path);
     s->app.now.ball = ball;
-    snprintf(s->message, sizeof s->message, "%.200s %s", path,
-             status ? "was not written" : "written");
+    say_saved(s, path, status);
     return RELUME_OK;
 }
 
@@ -45,7 +52,7 @@ static relume_status wish_recording(struct session *s, enum record_kind kind, co
     char path[SESSION_TEXT + 16];
     free_name(path, sizeof path, s, ending);
     if (session_record_begin(s, kind, path, RECORD_FRAMES))
-        snprintf(s->message, sizeof s->message, "%.200s was not recorded", path);
+        session_say(s, "%.200s could not be recorded", path);
     return RELUME_OK;
 }
 
@@ -64,23 +71,30 @@ static relume_status wish_save_rig(struct session *s)
     char path[SESSION_TEXT + 16];
     free_name(path, sizeof path, s, ".json");
     const relume_status status = session_save_rig(s, path);
-    snprintf(s->message, sizeof s->message, "%.200s %s", path,
-             status ? "was not written" : "written");
+    say_saved(s, path, status);
     return RELUME_OK;
 }
 
 static relume_status wish_add_light(struct session *s)
 {
     const bool added = !session_light(s, s->app.spec, false);
-    snprintf(s->message, sizeof s->message, added ? "added: %.200s" : "no light: %.200s",
-             s->app.spec);
+    session_say(s, added ? "light added: %.200s" : "not a light: %.200s", s->app.spec);
     return RELUME_OK;
 }
 
 static relume_status wish_map(struct session *s)
 {
     const bool shown = !session_map(s, s->app.spec);
-    snprintf(s->message, sizeof s->message, shown ? "%.200s" : "no map: %.200s", s->app.spec);
+    session_say(s, shown ? "environment: %.200s" : "not an environment map: %.200s", s->app.spec);
+    return RELUME_OK;
+}
+
+static relume_status wish_full_screen(struct session *s)
+{
+    if (!s->backend->full_screen)
+        return RELUME_OK;
+    s->full_screen = !s->full_screen;
+    s->backend->full_screen(s->context, s->full_screen);
     return RELUME_OK;
 }
 
@@ -95,6 +109,7 @@ relume_status session_grant_wish(struct session *s)
         [APP_WISH_TURNTABLE] = wish_turntable,
         [APP_WISH_ADD_LIGHT] = wish_add_light,
         [APP_WISH_MAP] = wish_map,
+        [APP_WISH_FULL_SCREEN] = wish_full_screen,
     };
     const enum app_wish wish = s->app.wish;
     s->app.wish = APP_WISH_NONE;

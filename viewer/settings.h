@@ -13,6 +13,7 @@ enum { SETTINGS_PATH = 4096 };
 struct settings {
     int width, height;  // 0: not known
     bool panel;
+    int dock;                 // enum app_dock
     char rig[SETTINGS_PATH];  // where the lights are kept; "": nowhere
 };
 

@@ -75,16 +75,38 @@ xdotool windowunmap "$window"
 sleep 0.3
 xdotool windowmap "$window" windowfocus "$window"
 sleep 0.3
-xdotool key Escape
-status=none
-tries=0
-while [ $tries -lt 50 ] && kill -0 $viewer 2>/dev/null; do sleep 0.1; tries=$((tries + 1)); done
-if kill -0 $viewer 2>/dev/null; then not_ok 'Esc quits' 'it is still there'; else
+left() { # is the viewer gone within five seconds?
+    tries=0
+    while [ $tries -lt 50 ] && kill -0 $viewer 2>/dev/null; do sleep 0.1; tries=$((tries + 1)); done
+    ! kill -0 $viewer 2>/dev/null
+}
+quits() { # name
+    if ! left; then not_ok "$1" 'it is still there'; return; fi
     wait $viewer
     status=$?
     viewer=
-    if [ $status -eq 0 ]; then ok 'Esc quits'; else not_ok 'Esc quits' "status $status: $(cat view.txt)"; fi
-fi
+    if [ $status -eq 0 ]; then ok "$1"; else not_ok "$1" "status $status: $(cat view.txt)"; fi
+}
+# full screen and back: the root window is 800 x 800
+geometry() { xdotool getwindowgeometry --shell "$window" | sed -n 's/^WIDTH=//p;s/^HEIGHT=//p' | tr '\n' ' '; }
+xdotool key F11
+sleep 0.5
+check 'F11 fills the screen' test "$(geometry)" = '800 800 '
+xdotool key F11
+sleep 0.5
+check 'F11 again' test "$(geometry)" = "$size $size "
+# the help by ?, away by Esc; Esc asks before it quits, Esc again stays
+xdotool key question Escape Escape Escape
+sleep 0.3
+picture 5
+same 'Esc does not quit unasked' ball-0003.png ball-0005.png
+xdotool mousemove 241 224 mousedown 1 mousemove 254 224 mouseup 1
+picture 6
+differ 'the ball in the corner turns the light' ball-0003.png ball-0006.png
+xdotool key Escape
+sleep 0.3
+xdotool key Return
+quits 'Esc and Enter quit'
 
 # a screen with twice the pixels: the panel is twice as large, and its ball takes the pointer there
 if command -v xprop >/dev/null 2>&1; then

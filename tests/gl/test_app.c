@@ -400,8 +400,119 @@ static void keys(void **state)
     assert_true(key(&app, 'r'));
     assert_true(app.now.exposure_ev == 0 && !app.now.ball);
     assert_false(app.quit);
-    key(&app, APP_KEY_ESCAPE);
+    key(&app, APP_KEY_ENTER);
+    assert_false(app.quit);
+    key(&app, APP_CONTROL | 's');
+    assert_int_equal(app.wish, APP_WISH_PNG);
+    key(&app, APP_KEY_F11);
+    assert_int_equal(app.wish, APP_WISH_FULL_SCREEN);
+    key(&app, APP_CONTROL | 'q');
     assert_true(app.quit);
+}
+
+// Esc closes one thing after the other; only then it asks, and only Enter means yes.
+static void escape_never_quits_unasked(void **state)
+{
+    (void)state;
+    OWNED_APP app = make_app(RELUME_PLANAR, true);
+    app.panel = app.inspect = true;
+    key(&app, '?');
+    assert_true(key(&app, APP_KEY_ESCAPE) && !app.help && app.inspect && app.panel);
+    assert_true(key(&app, APP_KEY_ESCAPE) && !app.inspect && app.panel && !app.asks);
+    assert_true(key(&app, APP_KEY_ESCAPE) && !app.panel && !app.asks);
+    assert_true(key(&app, APP_KEY_ESCAPE) && app.asks && !app.quit);
+    assert_true(key(&app, APP_KEY_ESCAPE) && !app.asks && !app.quit);
+    key(&app, APP_KEY_ESCAPE);
+    assert_true(key(&app, 'z') && !app.asks && app.now.lamp[0].solo);  // whoever goes on stays
+    assert_false(app.quit);
+    key(&app, APP_KEY_ESCAPE);
+    key(&app, APP_KEY_ENTER);
+    assert_true(app.quit);
+}
+
+// Nobody can answer a script: its Esc closes what is open, then quits.
+static void escape_of_a_script_is_not_asked_about(void **state)
+{
+    (void)state;
+    OWNED_APP app = make_app(RELUME_PLANAR, true);
+    const struct app_event escape = {.kind = APP_KEY_DOWN, .key = APP_KEY_ESCAPE, .unasked = true};
+    app.help = true;
+    app_handle(&app, &escape);
+    assert_false(app.help || app.quit);
+    app_handle(&app, &escape);
+    assert_true(app.quit);
+}
+
+// ---------------------------------------------------------------- over and beside the picture
+
+static void the_ball_in_the_corner_turns_the_light(void **state)
+{
+    (void)state;
+    OWNED_APP app = make_app(RELUME_PLANAR, true);  // 400 x 200: 18 pixels around (374.8, 174.8)
+    const struct gizmo_circle ball = gizmo_ball(&app);
+    const struct app_event press = {
+        .kind = APP_PRESS, .x = ball.x + 0.6 * ball.radius, .y = ball.y - 0.3 * ball.radius};
+    const struct app_event move = {.kind = APP_MOVE, .x = ball.x - 9000, .y = ball.y};
+    assert_false(app_handle(&app, &press));  // it is not there: the picture is moved
+    app_handle(&app, &(struct app_event){.kind = APP_RELEASE});
+    app.now.ball = true;
+    assert_true(app_handle(&app, &press));
+    struct relume_vec3 d = app.now.light[0].direction;
+    assert_float_equal(d.x, 0.6, 1e-12);
+    assert_float_equal(d.y, 0.3, 1e-12);
+    assert_float_equal(d.z, sqrt(1 - 0.45), 1e-12);
+    assert_true(app_handle(&app, &move));  // beyond the rim: from the side
+    d = app.now.light[0].direction;
+    assert_float_equal(d.x, -1, 1e-12);
+    assert_float_equal(d.z, 0, 1e-12);
+    assert_true(app.now.shift[0] == 0);
+    app_handle(&app, &(struct app_event){.kind = APP_RELEASE});
+    drag(&app, APP_LEFT, 10, 0);
+    assert_true(app.now.shift[0] == 10 && app.now.light[0].direction.x < -0.99);
+}
+
+static void notes_fade(void **state)
+{
+    (void)state;
+    OWNED_APP app = make_app(RELUME_PLANAR, true);
+    assert_true(isinf(app_steady_s(&app)));
+    assert_false(app_fade(&app, 1));
+    app.hint_s = 8;
+    app.toast_s = 4;
+    const double steady = app_steady_s(&app);
+    assert_true(steady > 3 && steady < 4);
+    assert_false(app_fade(&app, steady - 0.1));
+    assert_true(app_note_alpha(app.toast_s) == 1);
+    assert_true(app_fade(&app, 0.3));
+    assert_true(app_note_alpha(app.toast_s) < 1 && app_note_alpha(app.toast_s) > 0);
+    assert_true(app_fade(&app, 1));
+    assert_true(app.toast_s == 0 && app_note_alpha(app.hint_s) == 1);
+    app_handle(&app, &(struct app_event){.kind = APP_PRESS, .x = 5, .y = 5});
+    assert_true(app.hint_s == 0);  // whoever has begun needs no hint
+    assert_true(isinf(app_steady_s(&app)));
+}
+
+// The frame keeps what the panel leaves of the window, and its events their places.
+static void a_panel_stands_beside_the_picture(void **state)
+{
+    (void)state;
+    OWNED_APP app = make_app(RELUME_PLANAR, true);
+    app.dock_width = 150;
+    app.dock = APP_DOCK_LEFT;
+    key(&app, APP_KEY_TAB);
+    assert_true(app.width == 250 && app.beside[0] == 150 && app_window_width(&app) == 400);
+    app_handle(&app, &(struct app_event){.kind = APP_MOVE, .x = 200, .y = 10});
+    assert_true(app.cursor[0] == 50);
+    app_handle(&app, &(struct app_event){.kind = APP_SIZE, .width = 600, .height = 300});
+    assert_true(app.width == 450 && app.height == 300);
+    app.dock = APP_DOCK_RIGHT;
+    app_arrange(&app);
+    assert_true(app.beside[0] == 0 && app.beside[1] == 150 && app.width == 450);
+    key(&app, APP_KEY_TAB);
+    assert_true(app.width == 600 && app.beside[1] == 0);
+    key(&app, APP_KEY_TAB);
+    app_handle(&app, &(struct app_event){.kind = APP_SIZE, .width = 290, .height = 300});
+    assert_true(app.width == 290);  // too narrow for both: over the picture
 }
 
 static void keys_of_a_slab(void **state)
@@ -742,6 +853,10 @@ static void broken_scripts_name_the_line(void **state)
         {"drag left 1 2 3 4 -1", 21},
         {"click 1", 8},
         {"press middle 1 1", 7},
+        {"key ctrl+", 5},
+        {"key ctrl+qq", 5},
+        {"dock top", 6},
+        {"hint 3", 6},
     };
     static struct frames frames;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
@@ -1074,6 +1189,11 @@ int main(void)
         cmocka_unit_test(l_and_drag_turn_the_light_too),
         cmocka_unit_test(the_light_turns_as_seen_in_a_panorama),
         cmocka_unit_test(keys),
+        cmocka_unit_test(escape_never_quits_unasked),
+        cmocka_unit_test(escape_of_a_script_is_not_asked_about),
+        cmocka_unit_test(the_ball_in_the_corner_turns_the_light),
+        cmocka_unit_test(notes_fade),
+        cmocka_unit_test(a_panel_stands_beside_the_picture),
         cmocka_unit_test(keys_of_a_slab),
         cmocka_unit_test(a_planet_and_back),
         cmocka_unit_test(a_focus_behind_the_cameras_is_refused),

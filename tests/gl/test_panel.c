@@ -113,13 +113,83 @@ static void text_goes_into_the_field(void **state)
     panel_destroy(&panel);
 }
 
+// Esc closes a list that is open, and is not the app's then.
+static void escape_closes_a_list(void **state)
+{
+    (void)state;
+    static const struct panel_facts none = {0};
+    const struct app_event escape = {.kind = APP_KEY_DOWN, .key = APP_KEY_ESCAPE};
+    OWNED_APP app = make_app();
+    app.near_lights = true;
+    struct panel *panel = make_panel(&app);
+    assert_false(panel_takes(panel, &escape));
+    drag(panel, &app, 60, 215, 60, 215);  // kinds of light
+    panel_build(panel, &app, &none);
+    assert_true(panel_takes(panel, &escape));
+    panel_build(panel, &app, &none);
+    assert_false(panel_takes(panel, &escape));
+    panel_destroy(&panel);
+}
+
+static int runs_of(struct panel *panel, struct app *app, const struct panel_facts *facts)
+{
+    struct panel_run run;
+    int indices = 0;
+    panel_build(panel, app, facts);
+    for (int i = 0; panel_run_at(&run, panel, i); i++)
+        indices += run.count;
+    return indices;
+}
+
+// Notes are drawn while they last, and the pointer goes through them.
+static void notes_are_drawn(void **state)
+{
+    (void)state;
+    const struct panel_facts says = {.message = "saved statue-0001.png"};
+    const struct panel_facts records = {.recording = "statue-0001-sweep", .recorded_s = 1};
+    OWNED_APP app = make_app();
+    app.panel = false;
+    struct panel *panel = make_panel(&app);
+    assert_int_equal(runs_of(panel, &app, &says), 0);
+    assert_false(panel_shown(&app));
+    app.toast_s = 4;
+    assert_true(panel_shown(&app));
+    const int toast = runs_of(panel, &app, &says);
+    assert_true(toast > 0);
+    for (int y = 0; y < app.height; y += 5)
+        assert_false(tell(panel, APP_WHEEL, 320, y));
+    app.hint_s = 8;
+    assert_true(runs_of(panel, &app, &says) > toast);
+    app.toast_s = app.hint_s = 0;
+    app.recording = true;
+    assert_true(runs_of(panel, &app, &records) > 0 && panel_shown(&app));
+    panel_destroy(&panel);
+}
+
+static void the_question_is_answered_by_its_buttons(void **state)
+{
+    (void)state;
+    for (int quits = 0; quits < 2; quits++) {
+        OWNED_APP app = make_app();
+        app.panel = false;
+        app.asks = true;
+        struct panel *panel = make_panel(&app);
+        const double x = quits ? 285 : 370;  // beside the middle of 640 x 560
+        (void)drag(panel, &app, x, 292, x, 292);
+        assert_int_equal(app.quit, quits);
+        assert_int_equal(app.asks, quits);
+        panel_destroy(&panel);
+    }
+}
+
 static void tiny_frames_do_no_harm(void **state)
 {
     (void)state;
     static const struct panel_facts none = {0};
     OWNED_APP app = make_app();
     struct panel *panel = make_panel(&app);
-    app.help = app.inspect = app.gizmos = true;
+    app.help = app.inspect = app.gizmos = app.asks = true;
+    app.hint_s = app.toast_s = 9;
     for (int side = 1; side < 100; side += 7) {
         app.width = app.height = side;
         panel_build(panel, &app, &none);
@@ -333,6 +403,9 @@ int main(void)
         cmocka_unit_test(a_click_turns_the_light_off),
         cmocka_unit_test(the_picture_keeps_its_events),
         cmocka_unit_test(text_goes_into_the_field),
+        cmocka_unit_test(escape_closes_a_list),
+        cmocka_unit_test(notes_are_drawn),
+        cmocka_unit_test(the_question_is_answered_by_its_buttons),
         cmocka_unit_test(tiny_frames_do_no_harm),
         cmocka_unit_test(the_panel_is_drawn_where_it_is),
         cmocka_unit_test(passes_are_those_of_the_library),

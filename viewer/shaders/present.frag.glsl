@@ -7,11 +7,12 @@ uniform sampler2D frame;
 uniform int tone;  // place in relume_tones
 uniform float white;
 uniform vec2 frame_size;
+uniform float left;  // of the frame in the window
 out vec4 color;
 
 void main()
 {
-    ivec2 at = ivec2(gl_FragCoord.x, frame_size.y - gl_FragCoord.y);
+    ivec2 at = ivec2(gl_FragCoord.x - left, frame_size.y - gl_FragCoord.y);
     vec3 linear = tone_apply(tone, texelFetch(frame, at, 0).rgb, white);
     Transfer srgb = Transfer(CURVE_SRGB, 1.0);
     color = vec4(transfer_encode(srgb, linear.r), transfer_encode(srgb, linear.g),

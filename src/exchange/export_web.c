@@ -137,6 +137,8 @@ static relume_status attempt(struct maker *m, struct web_folder *w, double aim, 
         status = encode_whole(m, w);
     if (!status)
         status = web_write(w, path, m->e->params->quality, m->e->log);
+    if (!status && m->e->tiles)
+        status = tiles_write(w, m->step, path, m->e->params->threads, m->e->log);
     if (!status)
         status = measure_folder(m, path, report);
     report->planes = web_planes(w);
@@ -151,10 +153,8 @@ static relume_status make_folder(struct maker *m, const char *path,
     double aim = target;
     for (int i = 0; i <= CORRECTIONS && !(i > 0 && m->step < 1.01 * LEAST_STEP); i++) {
         struct web_folder w = {.plan = &m->plan, .planes = &m->planes};
-        relume_status status = attempt(m, &w, aim, path, report);
+        const relume_status status = attempt(m, &w, aim, path, report);
         const bool reached = !(target > 0.0) || report->psnr_db >= target;
-        if (!status && reached && m->e->tiles)
-            status = tiles_write(&w, m->step, path, m->e->params->threads, m->e->log);
         web_folder_free(&w);
         if (status || reached)
             return status;

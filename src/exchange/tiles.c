@@ -12,13 +12,14 @@
 #include <unistd.h>
 
 // Tiles of 256 pixels with their overlap: whole blocks.
-enum { TILE = 254, OVERLAP = 1 };
+enum { MOST_TILE = 254, OVERLAP = 1 };
 
 // One level of one sheet.
 struct level {
     struct sheet sheet;        // all of it
     float *own[SHEET_PLANES];  // NULL for the finest, which is the planes' own
     double step;
+    int side;  // of a tile without its overlap
     const char *folder;
     int columns, rows;
     relume_status *status;  // [columns x rows]
@@ -39,10 +40,10 @@ static relume_status cut(const struct level *l, int column, int row, struct shee
                          float **room)
 {
     const struct sheet *s = &l->sheet;
-    const int x = most(column * TILE - OVERLAP, 0), y = most(row * TILE - OVERLAP, 0);
+    const int x = most(column * l->side - OVERLAP, 0), y = most(row * l->side - OVERLAP, 0);
     *tile = *s;
-    tile->width = least((column + 1) * TILE + OVERLAP, s->width) - x;
-    tile->height = least((row + 1) * TILE + OVERLAP, s->height) - y;
+    tile->width = least((column + 1) * l->side + OVERLAP, s->width) - x;
+    tile->height = least((row + 1) * l->side + OVERLAP, s->height) - y;
     const size_t width = (size_t)tile->width, pixels = width * (size_t)tile->height;
     *room = mem_array(pixels * (size_t)s->planes, sizeof **room);
     if (!*room)
@@ -90,8 +91,8 @@ static relume_status write_tiles(const struct level *l, const struct relume_log 
 
 static relume_status write_level(struct level *l, int threads, const struct relume_log *log)
 {
-    l->columns = (l->sheet.width + TILE - 1) / TILE;
-    l->rows = (l->sheet.height + TILE - 1) / TILE;
+    l->columns = (l->sheet.width + l->side - 1) / l->side;
+    l->rows = (l->sheet.height + l->side - 1) / l->side;
     const size_t n = (size_t)l->columns * (size_t)l->rows;
     l->status = mem_zeroed(n, sizeof *l->status);
     l->tile = mem_zeroed(n, sizeof *l->tile);
@@ -140,24 +141,27 @@ static relume_status go_up(struct level *l)
     return RELUME_OK;
 }
 
-static relume_status write_dzi(const char *path, const struct sheet *s,
+static relume_status write_dzi(const char *path, const struct sheet *s, int side,
                                const struct relume_log *log)
 {
     char *text = mem_format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
                             "<Image xmlns=\"http://schemas.microsoft.com/deepzoom/2008\" "
                             "Format=\"jpg\" Overlap=\"%d\" TileSize=\"%d\">\n"
                             "  <Size Width=\"%d\" Height=\"%d\"/>\n</Image>\n",
-                            OVERLAP, TILE, s->width, s->height);
+                            OVERLAP, side, s->width, s->height);
     const relume_status status = text ? outfile_save(path, text, strlen(text), log) : RELUME_ENOMEM;
     free(text);
     return status;
 }
 
-// Level numbers count down to 0, where one pixel is left.
-static int finest_level(int width, int height)
+// Levels are numbered as OpenLIME asks for them: from 0, which is one tile, to the whole picture.
+// (DeepZoom's own levels begin with a single pixel; OpenLIME calls that layout deepzoom1px, and its
+// RTI layer does not take it.) OpenLIME counts ceil(log2(longer side / tile)) + 1 of them: none for
+// a picture below half a tile, whose tile is therefore as large as the picture.
+static int finest_level(int longer, int tile)
 {
     int level = 0;
-    for (int side = most(width, height); side > 1; side = (side + 1) / 2)
+    for (int side = longer; side > tile; side = (side + 1) / 2)
         level++;
     return level;
 }
@@ -166,13 +170,16 @@ static relume_status write_sheet(const struct web_folder *w, int index, double s
                                  const char *path, int threads, const struct relume_log *log)
 {
     struct level l = {.sheet = web_sheet(w, index), .step = step};
+    const int longer = most(l.sheet.width, l.sheet.height);
     char *dzi = mem_format("%s/plane_%d.dzi", path, index);
     char *files = mem_format("%s/plane_%d_files", path, index);
     char *jpeg = mem_format("%s/plane_%d.jpg", path, index);
-    relume_status status = dzi && files && jpeg ? write_dzi(dzi, &l.sheet, log) : RELUME_ENOMEM;
+    l.side = least(longer, MOST_TILE);
+    relume_status status =
+        dzi && files && jpeg ? write_dzi(dzi, &l.sheet, l.side, log) : RELUME_ENOMEM;
     if (!status)
         status = make_folder(files, log);
-    for (int level = finest_level(l.sheet.width, l.sheet.height); !status && level >= 0; level--) {
+    for (int level = finest_level(longer, l.side); !status && level >= 0; level--) {
         char *folder = mem_format("%s/%d", files, level);
         l.folder = folder;
         status = folder ? write_level(&l, threads, log) : RELUME_ENOMEM;

@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "exchange/bytes.h"
+#include "exchange/tiles.h"
 #include "image/jpeg.h"
 #include "math/vec.h"
 
@@ -12,6 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum space { SPACE_RGB, SPACE_LRGB, SPACE_YCC, SPACE_MRGB, SPACE_MYCC, SPACES };
 
@@ -333,13 +335,23 @@ static int plane_of(const struct folder *w, int p)
     return p;
 }
 
+// Planes are pictures, or DeepZoom pyramids.
+static bool is_tiled(const struct folder *w, int image)
+{
+    char *path = mem_format("%s/plane_%d.dzi", w->at, image);
+    const bool tiled = path && !access(path, R_OK);
+    free(path);
+    return tiled;
+}
+
 static relume_status read_jpeg(struct folder *w, int image, struct jpeg_codes *codes)
 {
     char *path = mem_format("%s/plane_%d.jpg", w->at, image);
     *codes = (struct jpeg_codes){0};
     if (!path)
         return RELUME_ENOMEM;
-    relume_status status = jpeg_read(codes, path, w->limits, w->log);
+    relume_status status = is_tiled(w, image) ? tiles_read(codes, w->at, image, w->limits, w->log)
+                                              : jpeg_read(codes, path, w->limits, w->log);
     if (!status &&
         (codes->width != w->f->width || codes->height != w->f->height || codes->planes != 3))
         status = log_fail(w->log, RELUME_EDATA,

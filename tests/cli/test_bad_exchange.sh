@@ -53,6 +53,26 @@ folder; cp dome/view00/light0001.png c/plane_1.jpg
 bad 'plane that is no JPEG' 'c/plane_1.jpg: not a whole JPEG' c
 folder; cp other/plane_0.jpg c/plane_1.jpg
 bad 'plane JPEG of another size' 'c/plane_1.jpg: 24 x 24 pixels, 3 components; expected 40 x 40' c
+
+# ---- deep zoom
+relume export pca.exr --to deepzoom -o zoom
+zoom() { fresh zoom c; }
+zoom; rm c/plane_1_files/0/0_0.jpg
+bad 'a tile that is missing' 'c/plane_1_files/0/0_0.jpg: no such tile; expected 1 x 1' c
+zoom; rm c/plane_1.dzi
+bad 'a plane that is missing' 'c/plane_1.jpg: ' c
+describe() { zoom; sed "s/$1/$2/" zoom/plane_0.dzi >c/plane_0.dzi; }
+describe 'Width="[0-9]*"' 'Width="39"'; bad 'tiles of another size' 'c/plane_0_files/0/0_0.jpg: [0-9]+ x [0-9]+ pixels, 3 components; expected 39 x' c
+describe 'TileSize="[0-9]*"' 'TileSize="0"'; bad 'tiles of no size' 'c/plane_0.dzi: not a DeepZoom description' c
+describe 'TileSize="[0-9]*"' 'TileSize="2"'; bad 'more tiles than there are' 'c/plane_0_files/[0-9]+/[0-9]+_[0-9]+.jpg: no such tile' c
+describe 'Format="jpg"' 'Format="..\/x"'; bad 'tiles of another format' 'c/plane_0.dzi: tiles of another format; expected jpg' c
+describe 'Width="[0-9]*"' 'Width="900000"'; bad 'a huge description' 'c/plane_0.dzi: 900000 x [0-9]+ pixels are over the limits' c
+zoom; head -c 300 zoom/plane_0_files/0/0_0.jpg >c/plane_0_files/0/0_0.jpg
+bad 'a tile cut short' 'c/plane_0_files/0/0_0.jpg: ' c
+zoom; cp dome/view00/light0001.png c/plane_0.dzi
+bad 'a picture in place of the description' 'c/plane_0.dzi: ' c
+
+# ---- info.json
 edit() { folder; sed "s/$1/$2/" web-bilinear/info.json >c/info.json; }
 edit '"width"' '"width'; bad 'broken JSON' 'c/info.json: line 2' c
 edit '"bilinear"' '"neural"'; bad 'unknown type' 'c/info.json: type; expected ptm' c

@@ -135,14 +135,42 @@ expect_ok 'codebooks are exported' 'dB from the file' "$RELUME" export books.exr
 relume import web-books -o web-books.exr
 above 'codebooks: a close picture' "$(psnr books.exr web-books.exr)" 26
 
-# ---- deep zoom
-"$sphere" big --size 300 --lights 12 --hemisphere --format png
-relume encode big -o big.exr --basis pca --coefficients 6
-relume export big.exr --to deepzoom -o zoom
-for f in info.json plane_0.dzi plane_0_files/0/0_0.jpg plane_0_files/9/0_0.jpg plane_0_files/9/1_1.jpg; do
-    if [ -s zoom/$f ]; then ok "deep zoom: $f"; else not_ok "deep zoom: $f" "$(find zoom | head -n 20)"; fi
+# ---- deep zoom, as OpenLIME 1.2.6 asks for it. With T and W x H of the .dzi it counts
+#     n = ceil(log2(max(W, H) / T)) + 1
+# levels and asks level l, from 0, which is one tile, to n - 1, the whole picture, for the tiles
+# x < ceil((W >> n - 1 - l) / T) and y alike: plane_N_files/l/x_y.jpg.
+dzi() { sed -n "s/.*$1=\"\([0-9a-z]*\)\".*/\1/p" "$2"; }
+asked() { # folder
+    awk -v w="$(dzi Width "$1/plane_0.dzi")" -v h="$(dzi Height "$1/plane_0.dzi")" \
+        -v t="$(dzi TileSize "$1/plane_0.dzi")" 'BEGIN {
+        side = (w > h ? w : h) / t
+        n = log(side) / log(2); n = (n == int(n) ? n : int(n) + (n > 0)) + 1
+        for (l = 0; l < n; l++) {
+            cut = 2 ^ (n - 1 - l); width = int(w / cut); height = int(h / cut)
+            for (x = 0; x * t < width; x++)
+                for (y = 0; y * t < height; y++)
+                    print "plane_0_files/" l "/" x "_" y ".jpg"
+        }
+        print n >"levels.txt" }'
+}
+for side in 300 509 60; do # two levels; a half of 254.5 pixels; a picture below half a tile
+    "$sphere" big --size $side --lights 12 --hemisphere --format png
+    relume encode big -o big.exr --basis pca --coefficients 6
+    rm -rf zoom
+    "$RELUME" export big.exr --to deepzoom -o zoom --quality 95 2>note.txt || not_ok 'export --to deepzoom' "$(cat note.txt)"
+    asked zoom >asked.txt
+    missing=
+    while read -r f; do [ -s zoom/$f ] || missing="$missing $f"; done <asked.txt
+    if [ -s asked.txt ] && [ -z "$missing" ]; then ok "deep zoom of $side: every tile that OpenLIME asks for"; else not_ok "deep zoom of $side: every tile that OpenLIME asks for" "missing:$missing"; fi
+    if [ "$(ls zoom/plane_0_files | wc -l)" -eq "$(cat levels.txt)" ]; then ok "deep zoom of $side: no other level"; else not_ok "deep zoom of $side: no other level" "$(ls zoom/plane_0_files)"; fi
+    relume import zoom -o zoom.exr
+    above "deep zoom of $side is read back, as good as was promised" "$(psnr big.exr zoom.exr)" "$(awk -v p="$(promised)" 'BEGIN { print p - 4 }')"
 done
 if ls zoom/plane_*.jpg >/dev/null 2>&1; then not_ok 'deep zoom: no whole planes' "$(ls zoom)"; else ok 'deep zoom: no whole planes'; fi
+decoded_alike 'deep zoom of one tile: an independent decoder' zoom zoom.exr
+for p in zoom/plane_*_files; do mv $p/0 $p/6; done # 60 pixels are halved six times down to one
+relume import zoom -o six.exr
+same 'levels that begin with one pixel' zoom.exr six.exr
 
 # ---- relight's own files, where they are at hand
 samples=${RELUME_DATA:-$TOP/../shared/data}/relight-outputs/test

@@ -10,36 +10,47 @@ if [ -z "$browser" ]; then
     finish
     exit
 fi
+show() { # folder, pictures: what the page says, in dom.txt
+    "$TOP/tests/tools/web_page.sh" "$@" >page.html
+    HOME=$work/home timeout 120 "$browser" --headless --no-sandbox --disable-gpu-sandbox --use-gl=angle \
+        --use-angle=swiftshader --enable-unsafe-swiftshader --user-data-dir="$work/home/profile" \
+        --virtual-time-budget=60000 --dump-dom "file://$work/page.html" >dom.txt 2>browser.txt
+    grep -q '^end' dom.txt && return
+    not_ok "the page relights $1" "$(grep -E '^(failed|light)' dom.txt; tail -n 3 browser.txt)"
+}
+compare() { # folder
+    "$RELUME" import $1 -o back.exr -q || exit 1
+    n=0 folder=$1
+    set --
+    for light in '0 0 1' '0.6 0.3 0.7' '-0.5 0.7 0.3'; do
+        "$RELUME" relight back.exr -o back$n.png --light "dir $light" -q
+        "$RELUME" relight dome.exr -o own$n.png --light "dir $light" -q
+        set -- "$@" "$light" back$n.png "$light" own$n.png
+        n=$((n + 1))
+    done
+    show $folder "$@" || return
+    for l in 0 2 4; do
+        # codes and weights are the same; sums are rounded twice in single precision: a code apart
+        below "$folder, light $((l / 2)) in the browser is relume relight of the same codes" \
+            "$(sed -n "s/^light $l .* max \([0-9]*\) .*/\1/p" dom.txt)" 1
+        # the folder is lossy: no light is much worse than what export measured over all of them
+        above "$folder, light $((l / 2)) in the browser is the file's own picture" \
+            "$(sed -n "s/^light $((l + 1)) .* psnr \([0-9.]*\)/\1/p" dom.txt)" \
+            "$(awk -v p="$promised" 'BEGIN { print p - 3 }')"
+    done
+}
+mkdir home
 "$sphere" dome --size 64 --lights 40 --hemisphere --shade wrap --format png || exit 1
 "$RELUME" encode dome -o dome.exr --basis pca --coefficients 27 -q || exit 1
 "$RELUME" export dome.exr -o web --quality 90 2>note.txt || exit 1
 promised=$(sed -n 's/.*; \([0-9.]*\) dB from.*/\1/p' note.txt)
-"$RELUME" import web -o back.exr -q || exit 1
-n=0
-set --
-for light in '0 0 1' '0.6 0.3 0.7' '-0.5 0.7 0.3'; do
-    "$RELUME" relight back.exr -o back$n.png --light "dir $light" -q
-    "$RELUME" relight dome.exr -o own$n.png --light "dir $light" -q
-    set -- "$@" "$light" back$n.png "$light" own$n.png
-    n=$((n + 1))
-done
-"$TOP/tests/tools/web_page.sh" web "$@" >page.html
-mkdir home
-HOME=$work/home timeout 120 "$browser" --headless --no-sandbox --disable-gpu-sandbox --use-gl=angle \
-    --use-angle=swiftshader --enable-unsafe-swiftshader --user-data-dir="$work/home/profile" \
-    --virtual-time-budget=60000 --dump-dom "file://$work/page.html" >dom.txt 2>browser.txt
-if ! grep -q '^end' dom.txt; then
-    not_ok 'the page relights the folder' "$(grep -E '^(failed|light)' dom.txt; tail -n 3 browser.txt)"
-    finish
-    exit
-fi
-for l in 0 2 4; do
-    # codes and weights are the same; sums are rounded twice in single precision: a code apart
-    below "light $((l / 2)) in the browser is relume relight of the same codes" \
-        "$(sed -n "s/^light $l .* max \([0-9]*\) .*/\1/p" dom.txt)" 1
-    # the folder is lossy: no light is much worse than what export measured over all of them
-    above "light $((l / 2)) in the browser is the file's own picture" \
-        "$(sed -n "s/^light $((l + 1)) .* psnr \([0-9.]*\)/\1/p" dom.txt)" \
-        "$(awk -v p="$promised" 'BEGIN { print p - 3 }')"
-done
+compare web
+
+# ---- DeepZoom: levels and tiles as OpenLIME counts them
+"$sphere" dome --size 520 --lights 12 --hemisphere --shade wrap --format png || exit 1
+"$RELUME" encode dome -o dome.exr --basis pca --coefficients 12 -q || exit 1
+"$RELUME" export dome.exr -o zoom --to deepzoom --quality 90 2>note.txt || exit 1
+promised=$(sed -n 's/.*; \([0-9.]*\) dB from.*/\1/p' note.txt)
+compare zoom
+above 'the root is a tile, not a speck' "$(sed -n 's/^root 0 \([0-9]*\) of.*/\1/p' dom.txt)" 127
 finish

@@ -89,6 +89,8 @@ class Folder:
         m, planes, self.bytes = d["materials"][0], [], 0
         for j in range((n + 2) // 3):
             f = path / f"plane_{j}.jpg"
+            if not f.exists():  # deep zoom of a single tile
+                f = path / f"plane_{j}_files" / "0" / "0_0.jpg"
             self.bytes += f.stat().st_size
             planes.append(np.asarray(Image.open(f).convert("RGB"), float))
         v = np.concatenate(planes, 2)[:, :, :n]

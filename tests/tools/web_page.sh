@@ -1,7 +1,8 @@
 #!/bin/sh
 # web_page.sh FOLDER 'X Y Z' PNG ['X Y Z' PNG ...] > page.html: a page without network that relights
-# a relight folder (bilinear, mrgb) by WebGL as viewers do and prints how far each light's picture is
-# from the given one: "light N mean M max X psnr P" a line, then "end".
+# a relight folder (bilinear, mrgb; planes as pictures or DeepZoom tiles) by WebGL as viewers do and
+# prints how far each light's picture is from the given one: "light N mean M max X psnr P" a line; of
+# tiles "root T SIDE of TILE", the longer side of the coarsest level; then "end".
 set -eu
 folder=$1
 shift
@@ -12,8 +13,12 @@ cat <<'PAGE'
 'use strict';
 PAGE
 printf 'const info = %s;\nconst planes = [' "$(cat "$folder/info.json")"
-for f in $(ls "$folder"/plane_*.jpg | sort -t_ -k2 -V); do data jpeg "$f"; printf ','; done
-printf '];\nconst lights = ['
+for f in $(ls "$folder"/plane_*.jpg 2>/dev/null | sort -t_ -k2 -V); do data jpeg "$f"; printf ','; done
+printf '];\nconst descriptions = ['
+for f in $(ls "$folder"/plane_*.dzi 2>/dev/null | sort -t_ -k2 -V); do printf '`%s`,' "$(cat "$f")"; done
+printf '];\nconst tiles = {'
+for f in $(cd "$folder" && find . -path '*_files/*.jpg'); do printf '"%s":' "${f#./}"; data jpeg "$folder/$f"; printf ','; done
+printf '};\nconst lights = ['
 while [ $# -gt 0 ]; do
     printf '{direction: [%s], picture: ' "$(echo "$1" | tr ' ' ',')"
     data png "$2"
@@ -29,6 +34,39 @@ const load = url => new Promise((done, fail) => {
     image.onerror = () => fail('an image cannot be decoded');
     image.src = url;
 });
+
+// The layout of a .dzi as OpenLIME 1.2.6 sees it: level 0 is one tile, the last one the whole picture.
+function layoutOf(text) {
+    const xml = new DOMParser().parseFromString(text, 'text/xml'), root = xml.documentElement;
+    const size = root.querySelector('Size'), number = (e, name) => parseInt(e.getAttribute(name));
+    const l = {tile: number(root, 'TileSize'), overlap: number(root, 'Overlap'),
+               width: number(size, 'Width'), height: number(size, 'Height'), suffix: root.getAttribute('Format')};
+    l.levels = Math.ceil(Math.log(Math.max(l.width, l.height) / l.tile) / Math.LN2) + 1;
+    return l;
+}
+
+// A level of plane `index`, each tile without the overlap that it has where it has neighbours.
+async function levelOf(index, level) {
+    const l = layoutOf(descriptions[index]), cut = l.levels - 1 - level;
+    if (!(l.levels > 0)) throw 'no levels';
+    const canvas = document.createElement('canvas'), context = canvas.getContext('2d');
+    canvas.width = Math.ceil(l.width / 2 ** cut);
+    canvas.height = Math.ceil(l.height / 2 ** cut);
+    const columns = Math.ceil((l.width >>> cut) / l.tile), rows = Math.ceil((l.height >>> cut) / l.tile);
+    for (let y = 0; y < rows; y++)
+        for (let x = 0; x < columns; x++) {
+            const name = `plane_${index}_files/${level}/${x}_${y}.${l.suffix}`;
+            if (!tiles[name]) throw `no tile ${name}`;
+            const image = await load(tiles[name]);
+            const left = x ? l.overlap : 0, top = y ? l.overlap : 0;
+            const w = Math.min(image.width - left, l.tile), h = Math.min(image.height - top, l.tile);
+            context.drawImage(image, left, top, w, h, x * l.tile, y * l.tile, w, h);
+        }
+    return canvas;
+}
+
+const planeCount = planes.length || descriptions.length;
+const planeOf = async t => planes.length ? load(planes[t]) : levelOf(t, layoutOf(descriptions[t]).levels - 1);
 
 // Weights of a light: the basis interpolated in the octahedral grid.
 function weights(direction) {
@@ -58,7 +96,7 @@ function shader(gl, kind, text) {
 }
 
 function program(gl) {
-    const count = planes.length, sums = [];
+    const count = planeCount, sums = [];
     for (let t = 0; t < count; t++)
         for (let c = 0; c < 3 && 3 * t + c < info.nplanes; c++)
             sums.push(`sum += w[${3 * t + c + 1}] * (texelFetch(plane${t}, at, 0)[${c}] - ` +
@@ -68,7 +106,7 @@ function program(gl) {
         void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }`));
     gl.attachShader(p, shader(gl, gl.FRAGMENT_SHADER, `#version 300 es
         precision highp float;
-        ${planes.map((_, t) => `uniform highp sampler2D plane${t};`).join('')}
+        ${[...Array(count).keys()].map(t => `uniform highp sampler2D plane${t};`).join('')}
         uniform vec3 w[${info.nplanes + 1}];
         uniform float bias[${info.nplanes}], scale[${info.nplanes}];
         out vec4 colour;
@@ -100,10 +138,10 @@ async function run() {
     if (!gl) throw 'no WebGL 2';
     const p = program(gl), got = new Uint8Array(4 * info.width * info.height);
     gl.useProgram(p);
-    for (let t = 0; t < planes.length; t++) {
+    for (let t = 0; t < planeCount; t++) {
         gl.activeTexture(gl.TEXTURE0 + t);
         gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
-        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB, gl.RGB, gl.UNSIGNED_BYTE, await load(planes[t]));
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB, gl.RGB, gl.UNSIGNED_BYTE, await planeOf(t));
         gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
         gl.uniform1i(gl.getUniformLocation(p, 'plane' + t), t);
     }
@@ -125,6 +163,11 @@ async function run() {
         const n = 3 * info.width * info.height;
         const psnr = Math.min(200, 10 * Math.log10(255 * 255 / (square / n + 1e-20)));
         say(`light ${l} mean ${(sum / n).toFixed(4)} max ${most} psnr ${psnr.toFixed(2)}`);
+    }
+    // the root of the pyramid is one tile and no speck: a viewer shows it until the others are there
+    for (let t = 0; t < descriptions.length; t++) {
+        const root = await levelOf(t, 0), l = layoutOf(descriptions[t]);
+        say(`root ${t} ${Math.max(root.width, root.height)} of ${l.tile}`);
     }
     say('end');
 }

@@ -23,7 +23,10 @@ static void on_message(void *user, enum relume_level level, const char *text)
         s->listener = listener;
         return;
     }
-    fprintf(stderr, "relume-view: %s%s\n", level == RELUME_WARNING ? "warning: " : "", text);
+    char line[2048];
+    snprintf(line, sizeof line, "%s", text);
+    fprintf(stderr, "relume-view: %s%s\n", level == RELUME_WARNING ? "warning: " : "",
+            relume_printable(line));
 }
 
 static int exit_code(relume_status status)

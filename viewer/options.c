@@ -615,6 +615,9 @@ static relume_status take_option(struct options *o, int *i, int argc, char **arg
             return say(log, RELUME_EINVAL, "%s: expected %s; found the end of the line",
                        option->name, option->argument);
         const char *text = !option->argument ? NULL : equals ? equals + 1 : argv[++*i];
+        if (text && !*text)
+            return say(log, RELUME_EINVAL, "%s: expected %s; found an empty one", option->name,
+                       option->argument);
         return option->take(o, option->name, text, log);
     }
     return unknown(given, log);

@@ -63,6 +63,15 @@ RELUME_API unsigned relume_cpu_features(void);
 // The number of cores that this process may use, at least 1.
 RELUME_API int relume_cpu_count(void);
 
+// One character of UTF-8: its number, and how many bytes it has; 0 at the end. A byte that begins no
+// whole character is one, of the number 0xFFFD.
+RELUME_API int relume_text_step(uint32_t *code, const char *text);
+// Whether a terminal only shows it: no control, no change of direction, nothing unseen.
+RELUME_API bool relume_text_harmless(uint32_t code);
+// Makes a text fit for a terminal, in place: each harmful character becomes "?". Returns it. Messages
+// of the library are so already.
+RELUME_API char *relume_printable(char *text);
+
 // The whole number of a value, cut towards zero, whatever the value: beyond 2^30 either way it
 // stays there, so that a neighbour can be added or subtracted, and NaN is the lowest. A cast alone
 // is undefined where no int can hold the value: what comes from a file or a fit goes through here,

@@ -2,6 +2,7 @@
 #include "base/json.h"
 
 #include "base/log.h"
+#include "base/memory.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -120,10 +121,22 @@ bool jvalue_numbers(const jvalue *array, double *out, size_t count)
     return true;
 }
 
+static bool is_utf8(const char *text)
+{
+    uint32_t code = 0;
+    int n = 1;
+    for (; n && code != 0xfffd; text += n)
+        n = relume_text_step(&code, text);
+    return n == 0;
+}
+
+// JSON is UTF-8; a name that is not, as disks allow, is written as it is shown.
 char *jvalue_quote(const char *text)
 {
-    json_t *string = json_string(text);
+    char *copy = is_utf8(text) ? NULL : mem_text(text);
+    json_t *string = json_string(copy ? relume_printable(copy) : text);
     char *quoted = string ? json_dumps(string, JSON_ENCODE_ANY) : NULL;
     json_decref(string);
+    free(copy);
     return quoted;
 }

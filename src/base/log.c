@@ -12,7 +12,7 @@ static void say(const struct relume_log *log, enum relume_level level, const cha
         return;
     char text[LINE];
     vsnprintf(text, sizeof text, format, args);
-    log->message(log->user, level, text);
+    log->message(log->user, level, relume_printable(text));
 }
 
 void log_line(const struct relume_log *log, enum relume_level level, const char *format, ...)

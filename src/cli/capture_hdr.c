@@ -53,19 +53,6 @@ static relume_status parse_choices(struct choices *out, const struct args *args)
 
 // ---------------------------------------------------------------- report
 
-static void put_string(FILE *out, const char *text)
-{
-    fputc('"', out);
-    for (; *text; text++)
-        if (*text == '"' || *text == '\\')
-            fprintf(out, "\\%c", *text);
-        else if ((unsigned char)*text < ' ')
-            fprintf(out, "\\u%04x", *text);
-        else
-            fputc(*text, out);
-    fputc('"', out);
-}
-
 static void put_photo_json(FILE *out, const struct bracket *b, int i)
 {
     const struct relume_exposure_report *r = &b->report[i];
@@ -85,7 +72,7 @@ static void put_photo_json(FILE *out, const struct bracket *b, int i)
         {"ghosts", b->ghosts[i]},
     };
     fprintf(out, "%s\n    {\"file\": ", i ? "," : "");
-    put_string(out, b->path[i]);
+    json_text(out, b->path[i]);
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
         fprintf(out, ", \"%s\": ", numbers[k].name);
         json_number(out, numbers[k].value);
@@ -96,11 +83,11 @@ static void put_photo_json(FILE *out, const struct bracket *b, int i)
 static void print_json(FILE *out, const struct bracket *b, const char *output, int index)
 {
     fprintf(out, "%s{\"output\": ", index ? ",\n  " : "");
-    put_string(out, output);
+    json_text(out, output);
     fprintf(out, ", \"width\": %d, \"height\": %d, \"anchor\": ", b->out.width, b->out.height);
-    put_string(out, b->path[b->anchor]);
+    json_text(out, b->path[b->anchor]);
     fprintf(out, ", \"response\": ");
-    put_string(out, b->response_source);
+    json_text(out, b->response_source);
     fprintf(out, ", \"photos\": [");
     for (int i = 0; i < b->n; i++)
         put_photo_json(out, b, i);
@@ -109,16 +96,17 @@ static void print_json(FILE *out, const struct bracket *b, const char *output, i
 
 static void print_table(FILE *out, const struct bracket *b, const char *output)
 {
-    fprintf(out, "%s: %d x %d pixels, response %s\n", output, b->out.width, b->out.height,
-            b->response_source);
+    struct shown name, source;
+    fprintf(out, "%s: %d x %d pixels, response %s\n", shown(&name, output), b->out.width,
+            b->out.height, shown(&source, b->response_source));
     fprintf(out, "%-24s %10s %9s %8s %8s %7s %7s %7s %7s\n", "photograph", "time s", "residual",
             "bias EV", "noise EV", "white", "black", "shift", "ghosts");
     for (int i = 0; i < b->n; i++) {
         const struct relume_exposure_report *r = &b->report[i];
         fprintf(out, "%-24s %10.5g %9.3f %8.3f %8.3f %6.1f%% %6.1f%% %7.2f %6.1f%%%s\n",
-                base_name(b->path[i]), b->notes[i].time_s, r->residual_ev, r->bias_ev, r->noise_ev,
-                100.0 * r->saturated, 100.0 * r->black, b->shift[i], 100.0 * b->ghosts[i],
-                i == b->anchor ? "  anchor" : "");
+                shown(&name, base_name(b->path[i])), b->notes[i].time_s, r->residual_ev, r->bias_ev,
+                r->noise_ev, 100.0 * r->saturated, 100.0 * r->black, b->shift[i],
+                100.0 * b->ghosts[i], i == b->anchor ? "  anchor" : "");
     }
 }
 

@@ -272,17 +272,6 @@ static relume_status relight(const struct args *args, const char *file)
 
 // ---------------------------------------------------------------- what to say
 
-static void put_quoted(const char *text)
-{
-    putchar('"');
-    for (; *text; text++)
-        if (*text == '"' || *text == '\\')
-            printf("\\%c", *text);
-        else if ((unsigned char)*text >= ' ')
-            putchar(*text);
-    putchar('"');
-}
-
 static void put_vector(const char *key, struct relume_vec3 v)
 {
     printf(",\"%s\":[%.9g,%.9g,%.9g]", key, v.x, v.y, v.z);
@@ -299,7 +288,7 @@ static void print_json(const struct relume_shoot *s)
     printf(",\"position_error\":%.6g,\"photographs\":[", s->position_error);
     for (int i = 0; i < s->lights; i++) {
         printf("%s{\"file\":", i ? "," : "");
-        put_quoted(s->photo[i].path);
+        json_text(stdout, s->photo[i].path);
         put_vector("direction", s->direction[i]);
         if (s->position)
             put_vector("position", s->position[i]);
@@ -312,7 +301,7 @@ static void print_json(const struct relume_shoot *s)
     printf("],\"warnings\":[");
     for (int i = 0; i < s->warnings; i++) {
         fputs(i ? "," : "", stdout);
-        put_quoted(s->warning[i]);
+        json_text(stdout, s->warning[i]);
     }
     puts("]}");
 }

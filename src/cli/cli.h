@@ -62,7 +62,14 @@ bool parse_numbers(const char *text, double *out, int count);
 // "x,y,z" of an option; RELUME_EINVAL with a sentence.
 relume_status args_vec3(struct relume_vec3 *out, const char *option, const char *text);
 
+// A name or note as a line for people may hold it; the text lives in `out`.
+struct shown {
+    char text[4096];
+};
+const char *shown(struct shown *out, const char *text);
 // A number for JSON output: never NaN or Inf (null instead).
 void json_number(FILE *out, double value);
+// A text with its quotes. What a terminal would obey is escaped, what is no UTF-8 is U+FFFD.
+void json_text(FILE *out, const char *text);
 
 #endif

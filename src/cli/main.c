@@ -68,14 +68,12 @@ static void clear_bar(void)
     bar_drawn = false;
 }
 
-// One line, whatever bytes file names and library messages hold.
+// One line, whatever bytes file names hold.
 static void print_line(const char *prefix, const char *text)
 {
+    struct shown line;
     clear_bar();
-    fprintf(people, "relume: %s", prefix);
-    for (; *text; text++)
-        fputc((unsigned char)*text < ' ' || *text == 127 ? '?' : *text, people);
-    fputc('\n', people);
+    fprintf(people, "relume: %s%s\n", prefix, shown(&line, text));
 }
 
 static void on_message(void *user, enum relume_level level, const char *text)
@@ -310,6 +308,8 @@ relume_status args_vec3(struct relume_vec3 *out, const char *option, const char 
 static relume_status check_value(struct given *g)
 {
     const struct option *o = g->option;
+    if (!*g->text)
+        return usage_error("%s: expected a value (%s); found an empty one", o->name, o->argument);
     if (o->kind == OPTION_TEXT)
         return RELUME_OK;
     char *end;
@@ -342,6 +342,9 @@ static relume_status parse(struct args *args, int argc, char **argv)
             only_inputs = true;
             continue;
         }
+        if (!*argv[i])
+            return usage_error("%s: expected '%s'; found an empty name", args->command->name,
+                               args->command->usage);
         if (only_inputs || !is_option(argv[i])) {
             args->inputs[args->input_count++] = argv[i];
             continue;
@@ -531,12 +534,4 @@ int main(int argc, char **argv)
         status = RELUME_EIO;
     free(args);
     return exit_code(status);
-}
-
-void json_number(FILE *out, double value)
-{
-    if (isfinite(value))
-        fprintf(out, "%.9g", value);
-    else
-        fputs("null", out);
 }

@@ -55,6 +55,7 @@ void sweep_print_text(const struct sweep *sweep, FILE *out)
             "seconds", "hull");
     for (int i = 0; i < sweep->rows; i++) {
         const struct sweep_row *r = &sweep->row[i];
+        struct shown why;
         char name[64];
         sweep_coder_name(r, name, sizeof name);
         fprintf(out, "%-18s %4d %4s %-6s %5d ", name, r->coefficients,
@@ -64,7 +65,7 @@ void sweep_print_text(const struct sweep *sweep, FILE *out)
                     r->bytes_per_pixel, r->before_db, r->quality.psnr_db, r->quality.psnr_pooled_db,
                     r->quality.ssim, r->seconds, r->on_hull ? "*" : "");
         else
-            fprintf(out, "skipped: %s\n", r->skipped);
+            fprintf(out, "skipped: %s\n", shown(&why, r->skipped));
     }
 }
 
@@ -115,19 +116,6 @@ void sweep_print_csv(const struct sweep *sweep, FILE *out)
 }
 
 // ---------------------------------------------------------------- JSON
-
-static void json_text(FILE *out, const char *text)
-{
-    fputc('"', out);
-    for (; *text; text++)
-        if (*text == '"' || *text == '\\')
-            fprintf(out, "\\%c", *text);
-        else if ((unsigned char)*text < ' ')
-            fprintf(out, "\\u%04x", (unsigned)*text);
-        else
-            fputc(*text, out);
-    fputc('"', out);
-}
 
 static void json_field(FILE *out, const char *name, double value)
 {

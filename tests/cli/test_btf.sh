@@ -183,7 +183,7 @@ expect_fail 'a direction from below' 1 'below.txt: direction 1: expected a unit 
 expect_fail 'two directions' 1 'two.txt: directions: expected 3 or more' x sh -c 'head -1 below.txt >two.txt; sed -n 3p below.txt >>two.txt; exec "$0" synth --btf stone --directions two.txt -o x' "$RELUME"
 expect_fail 'scene and material' 2 'found both' x "$RELUME" synth box --btf stone -o x
 expect_fail 'unknown model' 2 "unknown model 'rfnk'" - "$RELUME" btf compare paper --models rfnk
-expect_fail 'no model' 2 'expected names of models' - "$RELUME" btf compare paper --models ''
+expect_fail 'no model' 2 '--models: expected a value .*found an empty one' - "$RELUME" btf compare paper --models ''
 expect_fail 'unknown task' 2 "unknown task 'fitt'; did you mean 'fit'" - "$RELUME" btf fitt paper
 expect_fail 'too many clusters' 2 'expected 1 to 64 clusters; found 65' x "$RELUME" btf fit paper --model rfnlc --clusters 65 -o x
 expect_fail 'a ratio below 1' 2 'ratio' x "$RELUME" btf fit paper --model qmf --ratio 0 -o x

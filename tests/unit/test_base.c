@@ -1,4 +1,5 @@
-// What everything stands on: whole numbers of any value
+// What everything stands on: whole numbers of any value, texts that a terminal shows and does not
+// obey
 #include "test.h"
 
 static void test_whole(void **state)
@@ -17,8 +18,43 @@ static void test_whole(void **state)
         assert_int_equal(relume_whole(known[i].value), known[i].whole);
 }
 
+static void test_printable(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *given, *shown;
+    } known[] = {
+        {"", ""},
+        {"photo 12.jpg", "photo 12.jpg"},
+        {"M\xc3\xbcnze \xe6\xbc\xa2 \xf0\x9f\x93\xb7.png",
+         "M\xc3\xbcnze \xe6\xbc\xa2 \xf0\x9f\x93\xb7.png"},
+        {"a\x1b[31mb\nc\x7f", "a?[31mb?c?"},
+        {"a\xc2\x9b"
+         "31mb",
+         "a?31mb"},  // U+009B begins an escape sequence, too
+        {"a\x9b"
+         "31mb",
+         "a?31mb"},                                           // as it does in Latin-1
+        {"gpj.\xe2\x80\xaetxt", "gpj.?txt"},                  // U+202E turns what follows
+        {"\xe2\x81\xa6x\xe2\x81\xa9\xe2\x80\xa8y", "?x??y"},  // isolates, a line separator
+        {"\xef\xbb\xbfx\xe2\x80\x8by", "?x?y"},               // no width
+        {"\xc0\xafx", "??x"},                                 // longer than need be
+        {"\xed\xa0\x80x", "???x"},                            // half of a pair
+        {"\xf4\x90\x80\x80", "????"},                         // beyond the last
+        {"cut \xe6\xbc", "cut ??"},
+    };
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        char text[64];
+        snprintf(text, sizeof text, "%s", known[i].given);
+        assert_string_equal(relume_printable(text), known[i].shown);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_whole)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_whole),
+        cmocka_unit_test(test_printable),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

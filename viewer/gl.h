@@ -69,6 +69,7 @@
     X(PFNGLTEXSUBIMAGE3DPROC, TexSubImage3D)                                                       \
     X(PFNGLUNIFORM1FPROC, Uniform1f)                                                               \
     X(PFNGLUNIFORM1FVPROC, Uniform1fv)                                                             \
+    X(PFNGLUNIFORM4FVPROC, Uniform4fv)                                                             \
     X(PFNGLUNIFORM1IPROC, Uniform1i)                                                               \
     X(PFNGLUNIFORM2FPROC, Uniform2f)                                                               \
     X(PFNGLUNIFORM2IPROC, Uniform2i)                                                               \

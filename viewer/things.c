@@ -64,12 +64,14 @@ static const char *const over_uniforms[] = {"rectangle", "frame_size", "place", 
 enum {
     CAST_SCENE = DRAW_OWN,
     CAST_LONE,
-    WEIGHT,
+    CAST_LAMPS,
+    CAST_OF,
+    CAST_LAMP,
     CAST_SHADOW,
     CAST_COUNT = CAST_SHADOW + SHADOW_UNIFORMS
 };
-static const char *const cast_uniforms[] = {"rectangle", "frame_size", "scene",
-                                            "lone",      "weight",     SHADOW_NAMES};
+static const char *const cast_uniforms[] = {"rectangle", "frame_size", "scene", "lone",
+                                            "lamps",     "count",      "lamp",  SHADOW_NAMES};
 
 // Where OpenGL is software, a smaller map and no finer grid.
 enum { SHADOW_SIDE = 2048, SHADOW_SIDE_SOFTWARE = 1024, FINER = 2 };
@@ -549,18 +551,29 @@ void things_over(const struct things *t, const struct place *place, GLuint scene
     gl->Disable(GL_BLEND);
 }
 
-static float value_of(const struct relume_lamp *lamp)
+// A lamp of several: its direction times its value and 0, or its place and its value.
+static void put_lamp(float to[4], const struct relume_lamp *lamp)
 {
     const float *rgb = lamp->is_facet ? lamp->facet.rgb : lamp->light.rgb;
-    return rgb[0] + rgb[1] + rgb[2];
+    const struct relume_vec3 at = lamp->is_facet ? lamp->facet.position : lamp->light.direction;
+    const float value = rgb[0] + rgb[1] + rgb[2], scale = lamp->is_facet ? 1.0f : value;
+    to[0] = scale * (float)at.x;
+    to[1] = scale * (float)at.y;
+    to[2] = scale * (float)at.z;
+    to[3] = lamp->is_facet ? value : 0.0f;
 }
 
-static float share_of(const struct things *t, int lamp)
+// A single lamp counts whole.
+static void use_lamps(const struct things *t, int lamp)
 {
-    float sum = 0.0f;
-    for (int i = 0; i < t->lamps; i++)
-        sum += value_of(&t->lamp[i]);
-    return sum > 0.0f ? value_of(&t->lamp[lamp]) / sum : 0.0f;
+    float at[RELUME_LAMPS_MOST][4];
+    const int n = t->lamps > 1 ? t->lamps : 0;
+    for (int i = 0; i < n; i++)
+        put_lamp(at[i], &t->lamp[i]);
+    t->gl->Uniform1i(t->cast.at[CAST_OF], n);
+    t->gl->Uniform1i(t->cast.at[CAST_LAMP], lamp);
+    if (n)
+        t->gl->Uniform4fv(t->cast.at[CAST_LAMPS], n, at[0]);
 }
 
 void things_cast(struct things *t, const struct place *place, int lamp, GLuint scene,
@@ -578,7 +591,7 @@ void things_cast(struct things *t, const struct place *place, int lamp, GLuint s
     texture_use(gl, 1, GL_TEXTURE_2D, lone->texture);
     gl->Uniform1i(t->cast.at[CAST_SCENE], 0);
     gl->Uniform1i(t->cast.at[CAST_LONE], 1);
-    gl->Uniform1f(t->cast.at[WEIGHT], share_of(t, lamp));
+    use_lamps(t, lamp);
     shadow_map_use(t->shadow.layers ? &t->shadow : NULL, gl, t->cast.at + CAST_SHADOW, 2);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);

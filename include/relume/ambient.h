@@ -50,7 +50,8 @@ struct relume_prefilter_info {
     // exponent: between them they are linear in log2(e), beyond them the last ones.
     const float *specular;
     // [2][15][33]: what part of a lobe, by the cosine between its axis and the normal, arrives:
-    // [0] where values include n.l, by fall(z); [1] times z, where they do not.
+    // [0] where values include n.l, by fall(z); [1] times z, where they do not. Below the rim the
+    // lobe is that at the rim of the same azimuth.
     const float *part;
 };
 RELUME_API struct relume_prefilter_info relume_prefilter_info(const relume_prefilter *prefilter);
@@ -102,7 +103,7 @@ RELUME_API const float *relume_btf_ambient_weights(const relume_btf_ambient *amb
 
 // One texel of a level of detail from a direction in the frame of the sample, under the
 // environment. Models of lobes (laf, slaf, rfnl, rfnlc) look their lobes up in the prefiltered
-// maps, rfp in sums of its six terms, all others are summed over the measured lights.
+// maps, all others are summed over the measured lights.
 RELUME_API void relume_btf_ambient_evaluate(const relume_btf_ambient *ambient, int level, int x,
                                             int y, struct relume_vec3 view, float rgb[3]);
 

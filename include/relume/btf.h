@@ -53,6 +53,9 @@ struct relume_dome_blend {
     // one of its azimuth on their rim.
     struct relume_vec3 direction;
     double rim;  // z asked for over z of `direction`: below 1 only below the rim, never below 0
+    // Of the sum of weight x direction, at most 1: what is linear in the direction, as n.l, comes
+    // out of interpolation so much too small.
+    double length;
 };
 RELUME_API struct relume_dome_blend relume_dome_at(const relume_dome *dome, struct relume_vec3 d);
 // The triangles of directions that cover the sphere, `*n` of them, for clients that look directions

@@ -48,8 +48,8 @@ struct relume_frame_params {
         *capture;  // PASS_DIFFERENCE: of the file; the nearest view and light count
     enum relume_interpolation interpolation;  // slab; default: by depth where the file has it
     double aperture, focus;  // slab; as relume_view_params, several: relume_lens_window
-    // Show where the surface is instead of light: world positions, background far along its ray.
-    // Lights and pass are not looked at.
+    // Show where the surface is instead of light: world positions, background far along its ray,
+    // NaN where no view sees. Lights and pass are not looked at.
     bool places;
 };
 #define relume_frame_params(...) (&(const struct relume_frame_params){__VA_ARGS__})

@@ -106,9 +106,10 @@ struct relume_lamp {
     struct relume_facet facet;  // of an area light
 };
 
+enum { RELUME_LAMPS_MOST = 64 };  // of one light
 // The lights in lamps, `*n` of them: areas in as many facets as the objects' distance asks for, at
-// most 36; environments in 64 directional lights (relume_environment_sample). `*out` is to be
-// freed. RELUME_ENOMEM; RELUME_EINVAL for a light that relume_light_check refuses.
+// most 36; environments in RELUME_LAMPS_MOST directional lights (relume_environment_sample). `*out`
+// is to be freed. RELUME_ENOMEM; RELUME_EINVAL for a light that relume_light_check refuses.
 RELUME_RESULT relume_status relume_objects_lamps(struct relume_lamp **out, int *n,
                                                  const relume_objects *objects,
                                                  const struct relume_light *lights, int count);

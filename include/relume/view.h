@@ -32,6 +32,7 @@ struct relume_view_params {
     // aperture are averaged in linear light, whatever `interpolation` says. Default: a pinhole, the
     // st plane in focus.
     double aperture, focus;
+    float nothing;  // what pixels of a frame hold that no view sees; default: black
 };
 #define relume_view_params(...) (&(const struct relume_view_params){__VA_ARGS__})
 

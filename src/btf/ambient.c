@@ -28,26 +28,16 @@ static bool arrives(const relume_btf_ambient *a, const struct relume_environment
     return true;
 }
 
-void ambient_add_terms(float term[AMBIENT_TERMS][3], vec3 light, const float rgb[3])
-{
-    const double x = light.x, y = light.y;
-    const double of[AMBIENT_TERMS] = {x * x, y * y, x * y, x, y, 1.0};
-    for (int t = 0; t < AMBIENT_TERMS; t++)
-        for (int c = 0; c < 3; c++)
-            term[t][c] += (float)((double)rgb[c] * of[t]);
-}
-
 static void add_cell(relume_btf_ambient *a, const struct relume_environment_cell *cell,
                      const struct relume_dome_blend *b)
 {
-    const vec3 d = cell->direction;
-    ambient_add_terms(a->term, d, cell->rgb);
+    const bool bare = a->model->without_cosine;
     for (int c = 0; c < 3; c++) {
-        const double sent = (double)cell->rgb[c];
+        const double sent = (double)cell->rgb[c], among = bare ? sent : sent / b->length;
         a->even[0][c] += (float)sent;
-        a->even[1][c] += (float)(a->model->without_cosine ? sent : sent * d.z);
+        a->even[1][c] += (float)(bare ? sent : sent * cell->direction.z);
         for (int i = 0; i < b->count; i++)
-            a->weight[3 * b->index[i] + c] += (float)(sent * b->weight[i]);
+            a->weight[3 * b->index[i] + c] += (float)(among * b->weight[i]);
     }
 }
 
@@ -144,19 +134,33 @@ void ambient_lobe(const relume_btf_ambient *a, const float t[3], float exponent,
         rgb[c] *= (float)height;
 }
 
-// All measured lights at once: what models do that say nothing better.
-static void sum_lights(const relume_btf_ambient *a, const relume_btf_fitted *m, struct model_at *at,
-                       float rgb[3])
+// What models that know lobes of the light make of it.
+static void look_up(const relume_btf_ambient *a, const relume_btf_fitted *m, size_t texel,
+                    const struct relume_dome_blend *view, float rgb[3])
 {
-    rgb[0] = rgb[1] = rgb[2] = 0.0f;
-    for (int l = 0; l < m->lights; l++) {
-        const float *w = a->weight + 3 * l;
+    const int count = m->model->view_grid ? view->count : 1;
+    for (int i = 0; i < count; i++) {
+        const float weight = m->model->view_grid ? (float)view->weight[i] : 1.0f;
+        const struct model_at at = {.texel = texel, .view = view->index[i], .v = view->direction};
+        float value[3];
+        m->model->lit(m, &at, a, value);
+        for (int c = 0; c < 3; c++)
+            rgb[c] += weight * value[c];
+    }
+}
+
+// All measured lights at once: what models do that say nothing better.
+static void sum_lights(const relume_btf_ambient *a, const relume_btf_fitted *m, size_t texel,
+                       const struct relume_dome_blend *view, float rgb[3])
+{
+    struct model_blend at = {.view = *view, .v = view->direction, .l = {0.0, 0.0, 1.0}};
+    for (int i = 0; i < m->lights; i++) {
+        const float *w = a->weight + 3 * i;
         float value[3];
         if (w[0] == 0.0f && w[1] == 0.0f && w[2] == 0.0f)
             continue;
-        at->light = l;
-        at->l = m->light[l];
-        m->model->eval(m, at, value);
+        at.light = model_measured_light(m, i);
+        model_blend(m, texel, &at, value);
         for (int c = 0; c < 3; c++)
             rgb[c] += w[c] * value[c];
     }
@@ -165,19 +169,8 @@ static void sum_lights(const relume_btf_ambient *a, const relume_btf_fitted *m, 
 void ambient_blend(const relume_btf_ambient *a, const relume_btf_fitted *m, size_t texel,
                    const struct relume_dome_blend *view, float rgb[3])
 {
-    const int count = m->model->view_grid ? view->count : 1;
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
-    for (int i = 0; i < count; i++) {
-        const float weight = m->model->view_grid ? (float)view->weight[i] : 1.0f;
-        struct model_at at = {.texel = texel, .view = view->index[i], .v = view->direction};
-        float value[3];
-        if (m->model->lit)
-            m->model->lit(m, &at, a, value);
-        else
-            sum_lights(a, m, &at, value);
-        for (int c = 0; c < 3; c++)
-            rgb[c] += weight * value[c];
-    }
+    (m->model->lit ? look_up : sum_lights)(a, m, texel, view, rgb);
 }
 
 void relume_btf_ambient_evaluate(const relume_btf_ambient *ambient, int level, int x, int y,

@@ -6,8 +6,6 @@
 
 #include <relume/ambient.h>
 
-enum { AMBIENT_TERMS = 6 };
-
 struct relume_prefilter {
     int width, height;
     double rim;
@@ -26,13 +24,9 @@ struct relume_btf_ambient {
     const relume_prefilter *prefilter;
     relume_prefilter *own;  // of this orientation, in the frame of the sample, or NULL
     struct relume_btf_frame frame;
-    float *weight;                 // [lights][3]
-    float even[2][3];              // of a constant, and of n.l: ambient_even
-    float term[AMBIENT_TERMS][3];  // sums of x^2, y^2, xy, x, y, 1 of the light
+    float *weight;     // [lights][3]
+    float even[2][3];  // of a constant, and of n.l: ambient_even
 };
-
-// A light's part of the six terms.
-void ambient_add_terms(float term[AMBIENT_TERMS][3], vec3 light, const float rgb[3]);
 
 // What a constant in place of a lobe shows; `cosine`: it is multiplied by n.l.
 void ambient_even(const relume_btf_ambient *a, bool cosine, float rgb[3]);

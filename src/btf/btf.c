@@ -255,7 +255,7 @@ void relume_btf_evaluate(const relume_btf *btf, int x, int y, struct relume_vec3
             for (int c = 0; c < 3; c++)
                 sum[c] += v.weight[i] * l.weight[j] * float_from_half(p[c]);
         }
-    const double scale = btf->info.without_cosine ? light.z : l.rim;
+    const double scale = btf->info.without_cosine ? light.z : l.rim / l.length;
     for (int c = 0; c < 3; c++)
         rgb[c] = (float)(scale * sum[c]);
 }

@@ -201,7 +201,7 @@ static bool has_nadir(const relume_dome *dome, const struct hull_triangle *t)
 
 struct relume_dome_blend relume_dome_at(const relume_dome *dome, struct relume_vec3 d)
 {
-    struct relume_dome_blend b = {.direction = d, .rim = 1.0};
+    struct relume_dome_blend b = {.direction = d, .rim = 1.0, .length = 1.0};
     double weight[3] = {1.0, 0.0, 0.0}, sum = 0.0;
     vec3 middle = {0.0, 0.0, 0.0};
     const struct hull_triangle *t = find(dome, d, weight);
@@ -214,6 +214,7 @@ struct relume_dome_blend relume_dome_at(const relume_dome *dome, struct relume_v
     }
     if (b.count == 1)
         middle = dome->point[b.index[0]];
+    b.length = vec3_length(middle);
     if (b.count == 1 || has_nadir(dome, t)) {
         b.direction = vec3_unit(middle);
         b.rim = has_nadir(dome, t) ? fmin(fmax(d.z, 0.0) / b.direction.z, 1.0) : 1.0;

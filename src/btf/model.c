@@ -293,7 +293,7 @@ const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fitted *m, int
 static struct relume_dome_blend alone(const struct relume_dome_blend *b)
 {
     return (struct relume_dome_blend){
-        .count = 1, .weight = {1.0}, .direction = b->direction, .rim = b->rim};
+        .count = 1, .weight = {1.0}, .direction = b->direction, .rim = b->rim, .length = 1.0};
 }
 
 void model_blend(const relume_btf_fitted *m, size_t texel, const struct model_blend *at,
@@ -310,9 +310,10 @@ void model_blend(const relume_btf_fitted *m, size_t texel, const struct model_bl
             for (int c = 0; c < 3; c++)
                 sum[c] += v.weight[i] * l.weight[j] * (double)value[c];
         }
-    const double scale = m->without_cosine ? at->l.z : at->light.rim;
+    const double scale = m->without_cosine ? at->l.z : l.rim / l.length;
+    // what truncated sums and polynomials leave below 0 is no light
     for (int c = 0; c < 3; c++)
-        rgb[c] = (float)(scale * sum[c]);
+        rgb[c] = (float)fmax(scale * sum[c], 0.0);
 }
 
 void relume_btf_fitted_evaluate(const relume_btf_fitted *fitted, int x, int y,

@@ -115,6 +115,17 @@ struct model_blend {
 };
 void model_blend(const relume_btf_fitted *m, size_t texel, const struct model_blend *at,
                  float rgb[3]);
+// Light number `i` alone. What is summed over lights has n.l in its weights: model_blend.l is then
+// the pole.
+static inline struct relume_dome_blend model_measured_light(const relume_btf_fitted *m, int i)
+{
+    return (struct relume_dome_blend){.count = 1,
+                                      .index = {i},
+                                      .weight = {1.0},
+                                      .direction = m->light[i],
+                                      .rim = 1.0,
+                                      .length = 1.0};
+}
 
 static inline size_t model_pairs(const relume_btf_fitted *m)
 {

@@ -2,7 +2,7 @@
 // texture map of Malzbender, Gelb, Wolters (2001) for every measured view:
 //     BTF(x, v, l) ~ a0 lx^2 + a1 ly^2 + a2 lx ly + a3 lx + a4 ly + a5
 #include "base/memory.h"
-#include "btf/ambient.h"
+#include "btf/model.h"
 #include "image/half.h"
 #include "math/lsq.h"
 
@@ -91,18 +91,6 @@ static struct relume_btf_cost cost(const relume_btf_fitted *m)
     return (struct relume_btf_cost){.fetches = 2 + 3 * TERMS, .light_ops = 3 + 3 * (TERMS + 1)};
 }
 
-static void lit(const relume_btf_fitted *m, const struct model_at *at,
-                const struct relume_btf_ambient *ambient, float rgb[3])
-{
-    const size_t slice = at->texel * (size_t)m->views + (size_t)at->view;
-    const uint16_t *a = model_halfs(m, COEFFICIENT) + slice * TERMS * 3;
-    for (int c = 0; c < 3; c++) {
-        rgb[c] = 0.0f;
-        for (int t = 0; t < TERMS; t++)
-            rgb[c] += ambient->term[t][c] * float_from_half(a[3 * t + c]);
-    }
-}
-
 const struct relume_btf_model model_rfp = {
     .name = "rfp",
     .summary = "a biquadratic polynomial of the light for each view",
@@ -111,5 +99,4 @@ const struct relume_btf_model model_rfp = {
     .fit = fit,
     .eval = eval,
     .cost = cost,
-    .lit = lit,
 };

@@ -148,34 +148,59 @@ static relume_status filter(relume_prefilter *p, int threads)
 
 // ---------------------------------------------------------------- parts of lobes
 
-// The mean over a lobe whose axis has the cosine `axis` to the normal, by equal shares of it.
-static void part_of_lobe(double axis, double exponent, double rim, float out[2])
+// Half the integral over azimuth of lobes of all exponents at the height z over the horizon, their
+// axis having the cosine `axis` to the normal. Exponents double every other one.
+static void around(double axis, double z, double sum[EXPONENTS])
 {
-    enum { SHARES = 48 };
-    const double across = sqrt(1.0 - axis * axis);
-    double fall = 0.0, cosine = 0.0;
-    for (int i = 0; i < SHARES; i++) {
-        const double mu = pow((i + 0.5) / SHARES, 1.0 / (exponent + 1.0));
-        for (int j = 0; j < SHARES; j++) {
-            const double phi = (j + 0.5) / SHARES * M_PI;
-            const double z = axis * mu + across * sqrt(1.0 - mu * mu) * cos(phi);
-            fall += z > 0.0 ? rim > 0.0 ? fmin(z / rim, 1.0) : 1.0 : 0.0;
-            cosine += fmax(z, 0.0);
+    enum { AROUND = 64 };
+    const double across = sqrt(fmax((1.0 - axis * axis) * (1.0 - z * z), 0.0));
+    for (int e = 0; e < EXPONENTS; e++)
+        sum[e] = 0.0;
+    for (int i = 0; i < AROUND; i++) {
+        const double mu = axis * z + across * cos((i + 0.5) / AROUND * M_PI);
+        double power[EXPONENTS] = {mu, pow(fmax(mu, 0.0), exponent_of(1))};
+        for (int e = 0; e < EXPONENTS && mu > 0.0; e++) {
+            power[e] = e < 2 ? power[e] : power[e - 2] * power[e - 2];
+            sum[e] += power[e] * M_PI / AROUND;
         }
     }
-    out[0] = (float)(fall / (SHARES * SHARES));
-    out[1] = (float)(cosine / (SHARES * SHARES));
 }
 
+// Parts of all lobes about one axis. Below the rim values are those at the rim, times fall(z) =
+// z / rim: the lobe is asked there, and fall and z have a closed form.
+static void parts_of_lobes(double axis, double rim, double even[EXPONENTS],
+                           double cosine[EXPONENTS])
+{
+    enum { UP = 64 };
+    double sum[EXPONENTS];
+    around(axis, rim, sum);
+    for (int e = 0; e < EXPONENTS; e++) {
+        even[e] = 0.5 * rim * sum[e];
+        cosine[e] = 0.5 * rim * rim * sum[e];
+    }
+    for (int i = 0; i < UP; i++) {
+        const double theta = acos(rim) * (i + 0.5) / UP, z = cos(theta);
+        const double step = acos(rim) / UP * sin(theta);
+        around(axis, z, sum);
+        for (int e = 0; e < EXPONENTS; e++) {
+            even[e] += step * sum[e];
+            cosine[e] += step * z * sum[e];
+        }
+    }
+}
+
+// A whole lobe has the integral 2 pi / (e + 1).
 static void fill_parts(relume_prefilter *p)
 {
-    for (int e = 0; e < EXPONENTS; e++)
-        for (int i = 0; i < STEPS; i++) {
-            float part[2];
-            part_of_lobe(2.0 * i / (STEPS - 1) - 1.0, exponent_of(e), p->rim, part);
-            p->part[e * STEPS + i] = part[0];
-            p->part[(EXPONENTS + e) * STEPS + i] = part[1];
+    for (int i = 0; i < STEPS; i++) {
+        double even[EXPONENTS], cosine[EXPONENTS];
+        parts_of_lobes(2.0 * i / (STEPS - 1) - 1.0, p->rim, even, cosine);
+        for (int e = 0; e < EXPONENTS; e++) {
+            const double scale = (exponent_of(e) + 1.0) / M_PI;
+            p->part[e * STEPS + i] = (float)(scale * even[e]);
+            p->part[(EXPONENTS + e) * STEPS + i] = (float)(scale * cosine[e]);
         }
+    }
 }
 
 // ---------------------------------------------------------------- making one

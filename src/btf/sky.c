@@ -20,7 +20,7 @@ static double exponent_of(double mean_cosine)
 static void add_direction(struct relume_btf_sky *s, vec3 d, double solid_angle)
 {
     const struct relume_dome_blend b = relume_dome_at(s->model->light_dome, d);
-    const double arrives = (s->model->without_cosine ? d.z : b.rim) * solid_angle / M_PI;
+    const double arrives = (s->model->without_cosine ? d.z : b.rim / b.length) * solid_angle / M_PI;
     for (int i = 0; i < b.count; i++) {
         struct relume_btf_cone *cone = &s->cone[b.index[i]];
         cone->weight += arrives * b.weight[i];
@@ -97,10 +97,5 @@ struct relume_btf_ambient sky_ambient(const relume_btf_sky *sky,
     relume_prefilter_diffuse(a.even[0], sky->prefilter, frame->normal);
     for (int c = 0; c < 3 && m->without_cosine; c++)
         a.even[0][c] = a.even[1][c];
-    for (int i = 0; i < m->lights && m->lobes == 0; i++) {
-        float rgb[3];
-        relume_btf_sky_weight(rgb, sky, frame, i);
-        ambient_add_terms(a.term, m->light[i], rgb);
-    }
     return a;
 }

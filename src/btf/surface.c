@@ -5,7 +5,9 @@
 #include "base/log.h"
 #include "base/memory.h"
 
-enum { MOST_TAPS = 8 };
+// Footprints rounder than 1.06 count as round: their middle is enough. Longer ones than 7 to 1 take
+// a coarser level.
+static const double SQUARE = 0.0625, MOST_RATIO = 7.0;
 
 // ---------------------------------------------------------------- levels of the map
 
@@ -233,19 +235,21 @@ static bool is_dark(const struct relume_btf_ray *ray)
     return !(ray->view.z > 0.0) || (!ray->ambient && !ray->sky && !(ray->light.z > 0.0));
 }
 
-// The points that stand for a footprint: `taps` of them along `way`, on one level.
+// The points that stand for a footprint: `ratio` of them `way` apart, on one level. The outermost
+// count in part, so that nothing jumps where a footprint grows longer.
 struct points {
     double x, y, way[2], level;
-    int taps;
+    double ratio;
 };
 
 static void add_points(const relume_btf_surface *s, const struct points *p, const struct blend *at,
                        float rgb[3])
 {
-    for (int i = 0; i < p->taps; i++) {
-        const double t = (i + 0.5) / p->taps - 0.5;
-        add_point(s, p->x + t * p->way[0], p->y + t * p->way[1], p->level, at,
-                  1.0f / (float)p->taps, rgb);
+    const int aside = (int)ceil(0.5 * (p->ratio - 1.0));
+    for (int i = -aside; i <= aside; i++) {
+        const double share = fmin(0.5 * (p->ratio + 1.0) - abs(i), 1.0);
+        add_point(s, p->x + i * p->way[0], p->y + i * p->way[1], p->level, at,
+                  (float)(share / p->ratio), rgb);
     }
 }
 
@@ -258,8 +262,7 @@ static void sum_sky(const relume_btf_surface *s, const struct points *p, struct 
     for (int i = 0; i < m->lights; i++) {
         float weight[3], value[3] = {0.0f, 0.0f, 0.0f};
         relume_btf_sky_weight(weight, at->summed, frame, i);
-        at->at.light = (struct relume_dome_blend){
-            .count = 1, .index = {i}, .weight = {1.0}, .direction = m->light[i], .rim = 1.0};
+        at->at.light = model_measured_light(m, i);
         add_points(s, p, at, value);
         for (int c = 0; c < 3; c++)
             rgb[c] += weight[c] * value[c];
@@ -282,7 +285,7 @@ void relume_btf_surface_evaluate(const relume_btf_surface *s, double x, double y
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     if (is_dark(ray) || !isfinite(x) || !isfinite(y))
         return;
-    mean_of(s, &(struct points){.x = x, .y = y, .level = level, .taps = 1}, ray, rgb);
+    mean_of(s, &(struct points){.x = x, .y = y, .level = level, .ratio = 1.0}, ray, rgb);
 }
 
 void relume_btf_surface_filter(const relume_btf_surface *s, const struct relume_btf_footprint *f,
@@ -294,12 +297,13 @@ void relume_btf_surface_filter(const relume_btf_surface *s, const struct relume_
         return;
     const double *way = right > down ? f->right : f->down;
     const double longer = fmax(right, down), shorter = fmax(fmin(right, down), 1.0);
-    const int taps = (int)fmin(fmax(ceil(longer / shorter), 1.0), MOST_TAPS);
+    const double ratio = fmin(fmax(longer / shorter - SQUARE, 1.0), MOST_RATIO);
+    const double apart = fmax(shorter / fmax(longer, 1.0), 1.0 / MOST_RATIO);
     mean_of(s,
             &(struct points){.x = f->x,
                              .y = f->y,
-                             .way = {way[0], way[1]},
-                             .level = log2(fmax(longer / taps, 1.0)),
-                             .taps = taps},
+                             .way = {way[0] * apart, way[1] * apart},
+                             .level = log2(fmax(longer / ratio, 1.0)),
+                             .ratio = ratio},
             ray, rgb);
 }

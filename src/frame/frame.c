@@ -17,7 +17,8 @@ static struct renderer renderer_of(relume_pack *pack, const struct relume_light 
         .view = {.threads = p.threads,
                  .interpolation = p.interpolation,
                  .aperture = p.aperture,
-                 .focus = p.focus},
+                 .focus = p.focus,
+                 .nothing = p.places ? NAN : 0.0f},
     };
 }
 

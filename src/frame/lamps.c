@@ -115,8 +115,7 @@ static bool hidden(void *user, const double xy[2], vec3 point)
     const int x = clamp_index(xy[0], s->places.width), y = clamp_index(xy[1], s->places.height);
     const float *const at = s->places.data + 3 * ((size_t)y * (size_t)s->places.width + (size_t)x);
     const vec3 surface = vec3_of((double)at[0], (double)at[1], (double)at[2]);
-    const bool nothing = surface.x == 0.0 && surface.y == 0.0 && surface.z == 0.0;  // no ray there
-    return !nothing && relume_sight_hides(s->sight, surface, point);
+    return !isnan(surface.x) && relume_sight_hides(s->sight, surface, point);
 }
 
 relume_status relume_frame_lamps(struct relume_image *frame, int *seen, relume_pack *pack,

@@ -18,9 +18,45 @@ struct shadows {
     bool none;
 };
 
-// The share of a light that reaches a point. One lamp does or does not; of the lamps of an area or
-// an environment each counts by its value.
-static double share(const struct shadows *s, vec3 point)
+static vec3 place_at(const struct relume_image *places, size_t x, size_t y)
+{
+    const float *p = places->data + 3 * (y * (size_t)places->width + x);
+    return vec3_of((double)p[0], (double)p[1], (double)p[2]);
+}
+
+// From one pixel to the next: of the steps to both sides the shorter one, which stays on the
+// surface.
+static vec3 step_across(vec3 before, vec3 at, vec3 after)
+{
+    const vec3 back = vec3_sub(at, before), on = vec3_sub(after, at);
+    const double b = vec3_length(back), o = vec3_length(on);
+    const bool is_on = o > 0.0 && !(b > 0.0 && b < o);
+    return is_on ? on : b > 0.0 ? back : vec3_of(0, 0, 0);
+}
+
+// Which way the scene faces in a pixel, as places beside it tell; 0 where they do not.
+static vec3 scene_normal(const struct relume_image *places, size_t x, size_t y)
+{
+    const size_t right = x + 1 < (size_t)places->width ? x + 1 : x, left = x ? x - 1 : x;
+    const size_t below = y + 1 < (size_t)places->height ? y + 1 : y, above = y ? y - 1 : y;
+    const vec3 at = place_at(places, x, y);
+    const vec3 across = step_across(place_at(places, left, y), at, place_at(places, right, y));
+    const vec3 down = step_across(place_at(places, x, above), at, place_at(places, x, below));
+    const vec3 normal = vec3_cross(down, across);
+    return vec3_length(normal) > 0.0 ? vec3_unit(normal) : vec3_of(0, 0, 0);
+}
+
+// What a lamp among several of one light counts for in a pixel: its value times n.l.
+static double counts_for(const struct relume_lamp *lamp, vec3 towards, vec3 normal)
+{
+    const float *rgb = lamp->is_facet ? lamp->facet.rgb : lamp->light.rgb;
+    const bool unknown = vec3_length(normal) == 0.0;
+    return (double)(rgb[0] + rgb[1] + rgb[2]) *
+           (unknown ? 1.0 : fmax(vec3_dot(normal, towards), 0.0));
+}
+
+// The share of a light that reaches a point. One lamp does or does not.
+static double share(const struct shadows *s, vec3 point, vec3 normal)
 {
     double sent = 0.0, arrived = 0.0;
     for (int i = 0; i < s->n; i++) {
@@ -28,11 +64,10 @@ static double share(const struct shadows *s, vec3 point)
         double distance;
         vec3 towards;
         const struct relume_lamp *lamp = &s->lamps[i];
-        const float *rgb = lamp->is_facet ? lamp->facet.rgb : lamp->light.rgb;
-        const double value = (double)(rgb[0] + rgb[1] + rgb[2]);
-        sent += value;
         (void)relume_lamp_at(&towards, unused, &distance, lamp, point);
-        if (objects_reached(s->o, point, vec3_of(0, 0, 0), towards, distance))
+        const double value = s->n > 1 ? counts_for(lamp, towards, normal) : 1.0;
+        sent += value;
+        if (value > 0.0 && objects_reached(s->o, point, vec3_of(0, 0, 0), towards, distance))
             arrived += value;
     }
     return sent > 0.0 ? arrived / sent : 1.0;
@@ -42,12 +77,14 @@ static void add_row(void *context, size_t row, int worker)
 {
     (void)worker;
     const struct shadows *s = context;
-    const size_t width = (size_t)s->sum->width, first = 3 * row * width;
-    for (size_t i = first; i < first + 3 * width; i += 3) {
-        const float *p = s->places->data + i, *lone = s->lone->data + i;
+    const size_t width = (size_t)s->sum->width;
+    for (size_t x = 0; x < width; x++) {
+        const size_t i = 3 * (row * width + x);
+        const float *lone = s->lone->data + i;
         const bool lit = lone[0] != 0.0f || lone[1] != 0.0f || lone[2] != 0.0f;
+        const vec3 at = place_at(s->places, x, row);
         const double part =
-            lit && !s->none ? share(s, vec3_of((double)p[0], (double)p[1], (double)p[2])) : 1.0;
+            lit && !s->none && !isnan(at.x) ? share(s, at, scene_normal(s->places, x, row)) : 1.0;
         for (size_t c = 0; c < 3; c++)
             s->sum->data[i + c] += (float)(part * (double)lone[c]);
     }
@@ -97,10 +134,9 @@ static void layered_value(float rgb[3], const void *context, double x, double y,
     const struct ray ray = ray_of(l->sight, x, y), right = ray_of(l->sight, x + step, y),
                      below = ray_of(l->sight, x, y + step);
     const vec3 to = vec3_sub(vec3_of((double)p[0], (double)p[1], (double)p[2]), ray.origin);
-    const bool nothing = p[0] == 0.0f && p[1] == 0.0f && p[2] == 0.0f;  // no view sees so far
     memcpy(rgb, l->scene->data + pixel, 3 * sizeof *rgb);
     if (!objects_hit(&point, l->o, ray.origin, ray.direction) ||
-        !(nothing || point.distance < vec3_dot(to, ray.direction)))
+        !(isnan(p[0]) || point.distance < vec3_dot(to, ray.direction)))
         return;
     objects_spread(&point, l->o, &ray, &right, &below);
     objects_shade(rgb, l->o, &point, vec3_scale(ray.direction, -1.0), l->lighting);

@@ -5,7 +5,7 @@
 #include <relume/light.h>
 
 // Enough for penumbrae and soft shading to look smooth; of an environment they are its shadows.
-enum { MOST_SIDE = 6, SKY = 64 };
+enum { MOST_SIDE = 6, SKY = RELUME_LAMPS_MOST };
 
 // How far the objects are from an area light at least.
 static double distance_to(const relume_objects *o, const struct relume_light *area)

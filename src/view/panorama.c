@@ -325,6 +325,7 @@ struct frame {
     struct relume_look look;
     struct panorama panorama;
     const struct layout *layout;
+    float nothing;
 };
 
 static void draw_row(void *context, size_t row, int worker)
@@ -335,7 +336,8 @@ static void draw_row(void *context, size_t row, int worker)
     for (int x = 0; x < f->out->width; x++, rgb += 3) {
         const vec3 ray =
             relume_look_ray(f->look, f->out->width, f->out->height, x + 0.5, (double)row + 0.5);
-        sample(rgb, &f->panorama, f->layout, ray);
+        if (!sample(rgb, &f->panorama, f->layout, ray))
+            rgb[0] = rgb[1] = rgb[2] = f->nothing;
     }
 }
 
@@ -353,6 +355,7 @@ relume_status relume_panorama_frame(struct relume_image *out,
         .look = look,
         .panorama = {geometry, image->width, image->height, image->data},
         .layout = layout,
+        .nothing = params ? params->nothing : 0.0f,
     };
     thread_for(params ? params->threads : 0, (size_t)out->height, draw_row, &frame);
     return RELUME_OK;

@@ -214,7 +214,8 @@ static void draw_row(void *context, size_t row, int worker)
     float *rgb = out->data + 3 * row * (size_t)out->width;
     for (int x = 0; x < out->width; x++, rgb += 3) {
         const struct slab_ray ray = slab_ray_of(f->of, x, (int)row);
-        slab_depth_shade(rgb, f->of, &ray, f->range);
+        if (!(slab_depth_shade(rgb, f->of, &ray, f->range) > 0.0))
+            rgb[0] = rgb[1] = rgb[2] = f->of->params.nothing;
     }
 }
 

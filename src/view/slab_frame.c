@@ -66,7 +66,7 @@ static void draw_pixel(float *rgb, const struct frame *f, const struct taps *acr
 {
     const bool inside = across->count && down->count;
     // -0 + x is x for every x, 0 included: a single texel of weight 1 arrives bit by bit.
-    rgb[0] = rgb[1] = rgb[2] = inside ? -0.0f : 0.0f;
+    rgb[0] = rgb[1] = rgb[2] = inside ? -0.0f : f->of->params.nothing;
     for (int j = 0; j < down->count; j++)
         for (int i = 0; i < across->count; i++) {
             const float w = down->weight[j] * across->weight[i];

@@ -99,7 +99,7 @@ static void draw_pixel(float *rgb, const struct frame *f, int column, int row)
             total += weight;
     }
     for (int k = 0; k < 3; k++)
-        rgb[k] = total > 0.0 ? (float)(sum[k] / total) : 0.0f;
+        rgb[k] = total > 0.0 ? (float)(sum[k] / total) : f->of->params.nothing;
 }
 
 static void draw_row(void *context, size_t row, int worker)

@@ -24,6 +24,7 @@ struct picture {
     int pinholes;
     struct seen *seen;  // [pinholes][slabs]
     bool by_depth;
+    float nothing;
 };
 
 bool slabs_ray(double uv[2], double st[2], const relume_slab *slab, vec3 eye, vec3 direction)
@@ -155,7 +156,7 @@ static void add(double sum[4], const struct picture *p, const struct seen *s, do
     sum[3] += weight;
 }
 
-// At (x, y) of the window. False, and black, where no slab has weight.
+// At (x, y) of the window. False, and `nothing`, where no slab has weight.
 static bool shade(float rgb[3], const struct picture *p, double x, double y)
 {
     double mean[3] = {0.0, 0.0, 0.0};
@@ -169,7 +170,7 @@ static bool shade(float rgb[3], const struct picture *p, double x, double y)
         n += sum[3] > 0.0;
     }
     for (int c = 0; c < 3; c++)
-        rgb[c] = n ? (float)(mean[c] / n) : 0.0f;
+        rgb[c] = n ? (float)(mean[c] / n) : p->nothing;
     return n > 0;
 }
 
@@ -253,6 +254,7 @@ static relume_status begin(struct job *job, const relume_slabs *slabs,
         job->params = *params;
     struct picture *p = &job->picture;
     p->by_depth = takes_depth(&job->params);
+    p->nothing = job->params.nothing;
     p->pinholes = count_pinholes(window, width, &job->params);
     if (p->pinholes == 0 ||
         (job->params.interpolation == RELUME_INTERPOLATE_DEPTH && !job->params.disparity))

@@ -1,5 +1,6 @@
 // Objects covered with BTFs: tangent frames against their definition, pictures against the sample
 // itself, shadows against geometry; descriptions and meshes that are broken.
+#include "capture_fixture.h"
 #include "made_btf.h"
 
 enum { TEXELS = 4 };
@@ -268,6 +269,133 @@ static void environments_light_objects(void **state)
     }
     relume_environment_destroy(&sky);
     relume_objects_destroy(&o);
+}
+
+// ---------------------------------------------------------------- in a relit scene
+
+enum { SIDE_OF_SCENE = 33, SCENE_LIGHTS = 12 };
+
+// A white Lambertian plane on z = 0 without depth, of an odd number of pixels: the place in its
+// middle is exactly (0, 0, 0).
+static void write_scene(void)
+{
+    FILE *file = fopen(path_of("capture.json"), "w");
+    struct relume_image image;
+    CHECK_OK(relume_image_create(&image, SIDE_OF_SCENE, SIDE_OF_SCENE, 3));
+    fputs("{\"format\":\"relume-capture\",\"version\":1,\"transfer\":\"linear\",\"lights\":"
+          "{\"directions\":[",
+          file);
+    for (int i = 0; i < SCENE_LIGHTS; i++) {
+        const double z = 1.0 - i % 3 * 0.35, r = sqrt(1.0 - z * z), phi = 0.7 * i;
+        char name[32];
+        for (int k = 0; k < SIDE_OF_SCENE * SIDE_OF_SCENE * 3; k++)
+            image.data[k] = (float)z;
+        snprintf(name, sizeof name, "light%d.exr", i);
+        CHECK_OK(relume_image_save(&image, path_of(name), NULL));
+        fprintf(file, "%s[%.9g,%.9g,%.9g]", i ? "," : "", r * cos(phi), r * sin(phi), z);
+    }
+    fputs("]},\"views\":[{\"images\":[", file);
+    for (int i = 0; i < SCENE_LIGHTS; i++)
+        fprintf(file, "%s\"light%d.exr\"", i ? "," : "", i);
+    fputs("]}]}", file);
+    fclose(file);
+    relume_image_destroy(&image);
+}
+
+static relume_pack *open_scene(void)
+{
+    relume_pack *pack;
+    write_scene();
+    CHECK_OK(fixture_encode(folder, path_of("scene.exr"), &relume_basis_sh, 4,
+                            relume_pack_encode_params(.storage = RELUME_STORE_HALF)));
+    CHECK_OK(relume_pack_open(&pack, path_of("scene.exr"), NULL));
+    return pack;
+}
+
+// A square of half edge 0.4 that faces up and down, at height z.
+static void write_square(const char *name, double z)
+{
+    char text[512];
+    snprintf(text, sizeof text,
+             "v -.4 -.4 %g\nv .4 -.4 %g\nv .4 .4 %g\nv -.4 .4 %g\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+             "f 1/1 2/2 3/3 4/4\n",
+             z, z, z, z);
+    write_text(name, text);
+}
+
+// The part of what reaches a point below that a corner (a, b) away at height 1 takes off: the form
+// factor of a rectangle with that corner and one above the point.
+static double corner(double a, double b)
+{
+    const double p = sqrt(1.0 + a * a), q = sqrt(1.0 + b * b);
+    return (a / p * atan(b / p) + b / q * atan(a / q)) / (2.0 * M_PI);
+}
+
+static double hidden_part(double x, double y, double height)
+{
+    const double l = (-0.4 - x) / height, r = (0.4 - x) / height;
+    const double d = (-0.4 - y) / height, u = (0.4 - y) / height;
+    return corner(r, u) - corner(l, u) - corner(r, d) + corner(l, d);
+}
+
+static struct relume_image scene_with(relume_pack *pack, double z, const char *material,
+                                      const struct relume_light *light)
+{
+    struct relume_image out;
+    write_sample(material, true, false);
+    write_square("square.obj", z);
+    relume_objects *o = of_mesh(path_of("square.obj"), path_of(material), 1.0);
+    CHECK_OK(relume_objects_frame(&out, o, pack, &(struct relume_camera){0}, light, 1, NULL,
+                                  relume_render_params(.samples = 1)));
+    relume_objects_destroy(&o);
+    return out;
+}
+
+// What lies behind a scene without depth stays there, where the place is the origin as well.
+static void scenes_without_depth_hide(void **state)
+{
+    (void)state;
+    relume_pack *pack = open_scene();
+    const struct relume_light light = {.direction = {0.0, 0.0, 1.0}, .rgb = {1, 1, 1}};
+    struct relume_image out = scene_with(pack, -0.3, "behind", &light);
+    const float *middle = out.data + 3 * (SIDE_OF_SCENE * SIDE_OF_SCENE / 2);
+    for (int c = 0; c < 3; c++)
+        CHECK_NEAR(middle[c], out.data[c], 1e-6);
+    relume_image_destroy(&out);
+    relume_pack_destroy(&pack);
+}
+
+// Under an even sky a square takes its form factor off, in closed form. Half of the 64 lamps that
+// stand for the sky are above the plane: their shadows together are 0.898 of it, those of 4096
+// lamps 0.995. Without the cosine it was 0.376.
+static void skies_throw_whole_shadows(void **state)
+{
+    (void)state;
+    relume_pack *pack = open_scene();
+    relume_environment *e;
+    struct relume_image map;
+    CHECK_OK(relume_image_create(&map, 64, 32, 3));
+    for (int i = 0; i < 64 * 32 * 3; i++)
+        map.data[i] = 1.0f;
+    CHECK_OK(relume_environment_create(&e, &map, NULL));
+    const struct relume_light sky = {
+        .kind = RELUME_LIGHT_ENVIRONMENT, .environment = e, .rgb = {1, 1, 1}};
+    struct relume_image out = scene_with(pack, 0.3, "above", &sky);
+    double got = 0.0, want = 0.0;
+    for (int y = 0; y < SIDE_OF_SCENE; y++)
+        for (int x = 0; x < SIDE_OF_SCENE; x++) {
+            const double wx = (x + 0.5) / SIDE_OF_SCENE * 2.0 - 1.0;
+            const double wy = 1.0 - (y + 0.5) / SIDE_OF_SCENE * 2.0;
+            if (fabs(wx) < 0.45 && fabs(wy) < 0.45)  // there the square itself is seen
+                continue;
+            got += 1.0 - (double)out.data[3 * (y * SIDE_OF_SCENE + x)];
+            want += hidden_part(wx, wy, 0.3);
+        }
+    CHECK_NEAR(got / want, 1.0, 0.12);
+    relume_image_destroy(&out);
+    relume_image_destroy(&map);
+    relume_environment_destroy(&e);
+    relume_pack_destroy(&pack);
 }
 
 // Grains of one texel, fitted with and without levels of detail.
@@ -569,6 +697,8 @@ int main(void)
         cmocka_unit_test(the_cosine_counts_once),
         cmocka_unit_test(shadows_fall_where_they_should),
         cmocka_unit_test(environments_light_objects),
+        cmocka_unit_test(scenes_without_depth_hide),
+        cmocka_unit_test(skies_throw_whole_shadows),
         cmocka_unit_test(far_surfaces_are_even),
         cmocka_unit_test(what_is_missing_is_made),
         cmocka_unit_test(gltf_is_read),

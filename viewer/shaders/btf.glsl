@@ -25,7 +25,7 @@ struct Blend {
     ivec3 index;
     vec3 weight;
     vec3 direction;
-    float rim;
+    float rim, size;  // relume_dome_blend.length
 };
 
 const int CELLS = 32;  // along each side of the octahedral map
@@ -69,11 +69,12 @@ Blend dome_at(isamplerBuffer cells, samplerBuffer triangles, vec3 d)
     vec3 weight = max(best, 0.0) * real;
     float sum = weight.x + weight.y + weight.z;
     weight = sum > 1e-9 ? weight / sum : real / (real.x + real.y + real.z);
-    Blend b = Blend(ivec3(max(number, 0.0)), weight, d, 1.0);
+    vec3 middle = weight.x * texelFetch(triangles, 6 * found + 3).xyz +
+                  weight.y * texelFetch(triangles, 6 * found + 4).xyz +
+                  weight.z * texelFetch(triangles, 6 * found + 5).xyz;
+    Blend b = Blend(ivec3(max(number, 0.0)), weight, d, 1.0, length(middle));
     if (real != vec3(1.0)) {
-        b.direction = normalize(weight.x * texelFetch(triangles, 6 * found + 3).xyz +
-                                weight.y * texelFetch(triangles, 6 * found + 4).xyz +
-                                weight.z * texelFetch(triangles, 6 * found + 5).xyz);
+        b.direction = normalize(middle);
         b.rim = min(max(d.z, 0.0) / b.direction.z, 1.0);
     }
     return b;
@@ -118,7 +119,7 @@ vec3 value_at(int texel, Blend v, Blend l, mat3 frame)
 #else
 vec3 value_at(int texel, Blend v, Blend l, mat3 frame)
 {
-    return model_blend(texel, v, l);
+    return max(model_blend(texel, v, l), 0.0);
 }
 #endif
 
@@ -151,35 +152,39 @@ vec3 btf_sample(vec2 at, Blend v, Blend l, mat3 frame)
 
 // What a pixel covers: lookups along a line, and what of their level this one has.
 struct Points {
-    vec2 at, way;  // texels of this level
-    int taps;
+    vec2 at, way;  // texels of this level; from lookup to lookup
+    int aside;     // lookups on either side of the middle
+    float ratio;   // how many lookups all of them count as
     float weight;
 };
+
+const float SQUARE = 0.0625, MOST_RATIO = 7.0;
 
 // Twin: relume_btf_surface_filter, add_point.
 Points points_of(vec2 texture_at, vec4 spread)
 {
     if (!bilinear)
-        return Points((floor(texture_at * vec2(texels)) + 0.5), vec2(0.0), 1,
+        return Points((floor(texture_at * vec2(texels)) + 0.5), vec2(0.0), 0, 1.0,
                       level == 0 ? 1.0 : 0.0);
     vec2 right = spread.xy * vec2(finest), down = spread.zw * vec2(finest);
     float longer = max(length(right), length(down));
     float shorter = max(min(length(right), length(down)), 1.0);
-    int taps = int(clamp(ceil(longer / shorter), 1.0, 8.0));
-    float at = min(log2(max(longer / float(taps), 1.0)), float(levels - 1));
-    vec2 way = length(right) > length(down) ? right : down;
-    return Points(texture_at * vec2(texels), way * vec2(texels) / vec2(finest), taps,
-                  max(1.0 - abs(at - float(level)), 0.0));
+    float ratio = clamp(longer / shorter - SQUARE, 1.0, MOST_RATIO);
+    float at = min(log2(max(longer / ratio, 1.0)), float(levels - 1));
+    vec2 way = (length(right) > length(down) ? right : down) *
+               max(shorter / max(longer, 1.0), 1.0 / MOST_RATIO);
+    return Points(texture_at * vec2(texels), way * vec2(texels) / vec2(finest),
+                  int(ceil(0.5 * (ratio - 1.0))), ratio, max(1.0 - abs(at - float(level)), 0.0));
 }
 
 vec3 mean_of(Points p, Blend v, Blend l, mat3 frame)
 {
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < p.taps; i++) {
-        float t = (float(i) + 0.5) / float(p.taps) - 0.5;
-        sum += btf_sample(p.at + t * p.way, v, l, frame);
+    for (int i = -p.aside; i <= p.aside; i++) {
+        float share = clamp(0.5 * (p.ratio + 1.0) - abs(float(i)), 0.0, 1.0);
+        sum += share * btf_sample(p.at + float(i) * p.way, v, l, frame);
     }
-    return p.weight * sum / float(p.taps);
+    return p.weight * sum / p.ratio;
 }
 
 // ---------------------------------------------------------------- the light
@@ -200,7 +205,7 @@ vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
     for (int i = some_lights.x; i < some_lights.y; i++) {
         vec3 direction;
         vec3 weight = sky_weight(frame, i, direction);
-        sum += weight * mean_of(p, v, Blend(ivec3(i), vec3(1.0, 0.0, 0.0), direction, 1.0), frame);
+        sum += weight * mean_of(p, v, Blend(ivec3(i), vec3(1.0, 0.0, 0.0), direction, 1.0, 1.0), frame);
     }
     return sum;
 #endif
@@ -239,8 +244,8 @@ vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
         return vec3(0.0);
     l = normalize(l);
     Blend by_light = dome_at(light_cells, light_triangles, l);
-    return arriving * seen * (without_cosine ? l.z : by_light.rim) *
-           mean_of(p, v, by_light, frame);
+    float scale = without_cosine ? l.z : by_light.rim / (light_grid ? by_light.size : 1.0);
+    return arriving * seen * scale * mean_of(p, v, by_light, frame);
 }
 
 #endif

@@ -19,7 +19,7 @@ vec3 model_eval(int texel, int view, int light, vec3 v, vec3 l)
     Blend bv = dome_at(view_cells, view_triangles, upright(v, n));
     vec3 turned = upright(l, n);
     Blend bl = dome_at(light_cells, light_triangles, turned);
-    float scale = without_cosine ? max(turned.z, 0.0) / max(l.z, 1e-6) : bl.rim;
+    float scale = without_cosine ? max(turned.z, 0.0) / max(l.z, 1e-6) : bl.rim / bl.size;
     vec3 sum = vec3(0.0);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)

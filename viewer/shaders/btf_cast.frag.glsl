@@ -1,16 +1,55 @@
 #version 330 core
-// What one lamp alone shows of a scene, where no object keeps it off.
+// What one lamp alone shows of a scene, where no object keeps it off. Twin: share (into.c).
 #include "cube.glsl"
 #include "shadow.glsl"
 uniform sampler2D scene;  // positions
 uniform sampler2D lone;
-uniform float weight;  // of the lamp among those of its light
+uniform vec4 lamps[64];  // of the light: direction times value, 0; or place, value
+uniform int count, lamp;  // 0: the light is a single lamp
 out vec4 color;
+
+vec3 place_at(ivec2 pixel)
+{
+    return texelFetch(scene, clamp(pixel, ivec2(0), textureSize(scene, 0) - 1), 0).xyz;
+}
+
+// Twin: step_across.
+vec3 step_across(ivec2 pixel, ivec2 way)
+{
+    vec3 at = place_at(pixel), back = at - place_at(pixel - way), on = place_at(pixel + way) - at;
+    float b = length(back), o = length(on);
+    return o > 0.0 && !(b > 0.0 && b < o) ? on : back;
+}
+
+// Twin: scene_normal.
+vec3 scene_normal(ivec2 pixel)
+{
+    vec3 normal = cross(step_across(pixel, ivec2(0, 1)), step_across(pixel, ivec2(1, 0)));
+    float size = length(normal);
+    return size > 0.0 ? normal / size : vec3(0.0);
+}
+
+// Twin: counts_for.
+float counts_for(vec4 by, vec3 point, vec3 normal)
+{
+    bool near = by.w > 0.0;
+    float value = near ? by.w : length(by.xyz);
+    vec3 towards = near ? normalize(by.xyz - point) : by.xyz / max(value, 1e-30);
+    return value * (normal == vec3(0.0) ? 1.0 : max(dot(normal, towards), 0.0));
+}
 
 void main()
 {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 point = texelFetch(scene, pixel, 0);
-    float seen = point.a > 0.0 ? reached(point.xyz, vec3(0.0)) : 1.0;
+    float weight = count > 0 ? 1.0 / float(count) : 1.0, sent = weight;
+    if (count > 0 && point.a > 0.0) {
+        vec3 normal = scene_normal(pixel);
+        sent = 0.0;
+        for (int i = 0; i < count; i++)
+            sent += counts_for(lamps[i], point.xyz, normal);
+        weight = sent > 0.0 ? counts_for(lamps[lamp], point.xyz, normal) / sent : weight;
+    }
+    float seen = point.a > 0.0 && sent > 0.0 ? reached(point.xyz, vec3(0.0)) : 1.0;
     color = vec4(weight * seen * texelFetch(lone, pixel, 0).rgb, 1.0);
 }

@@ -67,6 +67,7 @@ struct app_file {
     double uv_min[2], uv_max[2];  // slab: where cameras stand
     const relume_slabs *around;   // several slabs, about whose middle the eye goes; NULL: none
     relume_objects *objects;      // in the scene, or all that there is; NULL: none
+    bool empty;                   // no file is open yet
 };
 
 // What the viewer adds to a light. All zero is a light that shines as it says.
@@ -121,13 +122,15 @@ enum app_wish {
     APP_WISH_PNG,  // a picture of the frame
     APP_WISH_EXR,
     APP_WISH_SAVE_RIG,
-    APP_WISH_SWEEP,       // a recording
-    APP_WISH_TURNTABLE,   // a recording
-    APP_WISH_ADD_LIGHT,   // of the SPEC app.spec
-    APP_WISH_MAP,         // the environment map of the file app.spec
-    APP_WISH_FULL_SCREEN  // or back from it
+    APP_WISH_SWEEP,        // a recording
+    APP_WISH_TURNTABLE,    // a recording
+    APP_WISH_ADD_LIGHT,    // of the SPEC app.spec
+    APP_WISH_MAP,          // the environment map of the file app.spec
+    APP_WISH_FULL_SCREEN,  // or back from it
+    APP_WISH_FOLDER,       // a list of the folder app.spec; "": of the one that was listed last
+    APP_WISH_OPEN          // the file app.spec in place of this one
 };
-enum { APP_SPEC = 1024 };
+enum { APP_SPEC = 4096 };
 
 // Owns its lists of lights. Thread-safety: plain data.
 struct app {
@@ -143,6 +146,8 @@ struct app {
     bool light_key;                     // L is held
     bool panel, help, inspect, gizmos;  // shown
     bool asks;                          // whether to quit
+    bool browse;                        // for a file to open
+    bool keep_lights;                   // for the next file
     bool recording;                     // every frame becomes a picture
     double toast_s,
         hint_s;           // how long what was last said, and what the mouse does, stay to be seen

@@ -24,7 +24,7 @@ static bool press_quit(struct app *app, int key)
 // the app hears of the key.
 static bool press_escape(struct app *app, int key)
 {
-    bool *const open[] = {&app->asks, &app->help, &app->inspect, &app->panel};
+    bool *const open[] = {&app->asks, &app->browse, &app->help, &app->inspect, &app->panel};
     (void)key;
     for (size_t i = 0; i < sizeof open / sizeof *open; i++)
         if (*open[i]) {
@@ -346,6 +346,15 @@ static bool press_full_screen(struct app *app, int key)
     return wish(app, APP_WISH_FULL_SCREEN);
 }
 
+static bool press_open(struct app *app, int key)
+{
+    (void)key;
+    app->browse = !app->browse;
+    app->spec[0] = '\0';
+    (void)wish(app, app->browse ? APP_WISH_FOLDER : APP_WISH_NONE);
+    return true;
+}
+
 // ---------------------------------------------------------------- table
 
 const struct key_binding key_bindings[] = {
@@ -389,6 +398,7 @@ const struct key_binding key_bindings[] = {
     {'g', "G", "handles of the lights in the picture", press_gizmos, false},
     {'i', "I", "inspector: the reflectance under the cursor", press_inspect, false},
     {'y', "Y", "inspector: closer about the light", press_magnify, false},
+    {APP_CONTROL | 'o', "Ctrl+O", "open a file", press_open, false},
     {'s', "S or Ctrl+S", "save the picture, PNG", press_png, false},
     {APP_CONTROL | 's', NULL, NULL, press_png, false},
     {'p', "P", "save the picture, EXR", press_exr, false},
@@ -402,11 +412,24 @@ const struct key_binding key_bindings[] = {
     {0, NULL, NULL, NULL, false},
 };
 
+// Keys that have a meaning before a file is open.
+static bool needs_no_file(int key)
+{
+    static const int keys[] = {
+        '?', '/', APP_KEY_ESCAPE, APP_KEY_ENTER, APP_KEY_F11, APP_CONTROL | 'o', APP_CONTROL | 'q'};
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
+        if (keys[i] == key)
+            return true;
+    return false;
+}
+
 // Whoever does something else stays.
 bool keys_press(struct app *app, int key, bool repeat)
 {
     const bool answered = app->asks && key != APP_KEY_ESCAPE && key != APP_KEY_ENTER;
     app->asks &= !answered;
+    if (app->file.empty && !needs_no_file(key))
+        return answered;
     for (const struct key_binding *b = key_bindings; b->key; b++)
         if (b->key == key)
             return ((b->repeats || !repeat) && b->press(app, key)) || answered;

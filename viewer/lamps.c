@@ -133,6 +133,15 @@ bool lamps_remove(struct app_state *state, int light)
     return true;
 }
 
+void lamps_drop_near(struct app_state *state)
+{
+    for (int i = state->lights - 1; i >= 0; i--)
+        if (relume_light_is_near(state->light[i].kind) && !lamps_remove(state, i)) {
+            state->light[0] = (struct relume_light){.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
+            state->lamp[0] = (struct app_lamp){.entry = -1};
+        }
+}
+
 // ---------------------------------------------------------------- directions
 
 struct relume_vec3 lamps_direction(const struct relume_light *light, struct relume_vec3 middle)

@@ -26,6 +26,9 @@ bool lamps_add(struct app_state *state, const struct relume_light *light, int en
 // The last light stays. False when nothing was removed.
 bool lamps_remove(struct app_state *state, int light);
 
+// Remove the near lights; a list of nothing else becomes one light from the front.
+void lamps_drop_near(struct app_state *state);
+
 // Let one light come from `direction` (unit, world): near ones move on a sphere about `middle` and
 // turn with it, environments turn about y.
 void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,

@@ -17,6 +17,8 @@ static void on_message(void *user, enum relume_level level, const char *text)
 {
     struct session *s = user;
     const struct relume_log *listener = s->listener;
+    if (s->listens)
+        snprintf(s->told, sizeof s->told, "%s", text);
     if (listener) {
         s->listener = NULL;
         listener->message(listener->user, level, text);
@@ -168,6 +170,7 @@ static relume_status run_offscreen(struct session *s, struct options *o)
         status = session_start(s, context_offscreen(o->gl), s->app.width, s->app.height);
     s->app.panel = o->panel;
     s->app.dock = o->dock;
+    s->app.keep_lights = o->keep_lights;
     app_arrange(&s->app);
     if (!status && film)
         status = begin_film(s, o);
@@ -263,11 +266,12 @@ static bool has_near_light(const relume_rig *rig)
     return false;
 }
 
-// The lights of the last time, where the command names none. Near ones belong to the scene that
-// they stood in.
+// The lights of the last time, where that was asked for and the command names none. Near ones
+// belong to the scene that they stood in.
 static void recall_rig(struct options *o, const struct settings *settings)
 {
-    if (o->rig || !settings->rig[0] || relume_rig_load(&o->rig, settings->rig, NULL))
+    if (o->rig || !(o->keep_lights || settings->keep_lights) || !settings->rig[0] ||
+        relume_rig_load(&o->rig, settings->rig, NULL))
         return;
     if (has_near_light(o->rig) || relume_rig_count(o->rig) > APP_LIGHTS)
         relume_rig_destroy(&o->rig);
@@ -281,10 +285,11 @@ static void remember(struct session *s, struct settings *settings)
         settings->height = s->app.height;
     }
     settings->dock = s->app.dock;
+    settings->keep_lights = s->app.keep_lights;
     settings->panel = s->app.panel;
     settings_save(settings);
     s->log = NULL;  // a rig that cannot be kept is no news
-    if (settings->rig[0])
+    if (settings->rig[0] && s->app.keep_lights)
         (void)session_save_rig(s, settings->rig);
     s->log = log;
 }
@@ -292,7 +297,7 @@ static void remember(struct session *s, struct settings *settings)
 static relume_status open_window(struct session *s, struct options *o,
                                  const struct settings *settings)
 {
-    o->start.ball = true;
+    o->start.ball = o->file || o->stage;
     relume_status status = session_take_rig(s, &o->rig, &o->start);
     if (!status && o->capture)
         status = session_compare(s, o->capture);
@@ -311,6 +316,7 @@ static relume_status open_window(struct session *s, struct options *o,
     s->app.letterbox = true;
     s->app.panel = o->panel || settings->panel;
     s->app.dock = o->docked ? o->dock : (enum app_dock)settings->dock;
+    s->app.keep_lights = o->keep_lights || settings->keep_lights;
     s->app.hint_s = APP_HINT_S;
     status = session_start(s, &context_glfw, s->app.width, s->app.height);
     if (status)
@@ -360,7 +366,7 @@ int main(int argc, char **argv)
     session.vram_bytes = (size_t)(options.vram_mb * 1048576.0);
     const bool offscreen =
         options.offscreen || options.record || (options.script && !options.window);
-    if (!status && !options.file && !options.stage)
+    if (!status && options.help)
         options_help();
     else if (!status)
         status = (offscreen ? run_offscreen : run_window)(&session, &options);

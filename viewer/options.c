@@ -445,6 +445,14 @@ static relume_status take_panel(struct options *o, const char *name, const char 
     return RELUME_OK;
 }
 
+static relume_status take_keep_lights(struct options *o, const char *name, const char *text,
+                                      const struct relume_log *log)
+{
+    (void)name, (void)text, (void)log;
+    o->keep_lights = true;
+    return RELUME_OK;
+}
+
 static relume_status take_dock(struct options *o, const char *name, const char *text,
                                const struct relume_log *log)
 {
@@ -533,6 +541,9 @@ static const struct option options[] = {
     {"--no-config", NULL, "neither read nor write what the window remembers", take_no_config},
     {"--window", NULL, "play --script in a window, which then stays", take_window},
     {"--panel", NULL, "begin with the panel; offscreen: draw it as well", take_panel},
+    {"--keep-lights", NULL,
+     "begin with the lights of the last time, and keep them for files opened later",
+     take_keep_lights},
     {"--dock", "SIDE", "begin with the panel at the left or right, beside the picture, or over it",
      take_dock},
     {"--ball", NULL, "offscreen: draw the ball that shows the light, as the window does",
@@ -543,8 +554,10 @@ enum { OPTIONS = sizeof options / sizeof *options };
 
 void options_help(void)
 {
-    puts("usage: relume-view FILE [OPTION ...]\n\n"
-         "Look at a relume file in a window, under any light and from other viewpoints.\n\n"
+    puts("usage: relume-view [FILE] [OPTION ...]\n\n"
+         "Look at a relume file in a window, under any light and from other viewpoints. Without "
+         "FILE\n"
+         "the window says how to open one.\n\n"
          "options:");
     for (int i = 0; i < OPTIONS; i++) {
         char left[40];
@@ -664,11 +677,20 @@ static relume_status choose_objects(struct options *o, const struct relume_log *
     return RELUME_OK;
 }
 
+// A window, and a script, can open one later; without a display there is nobody to choose one.
+static bool needs_file(const struct options *o)
+{
+    const bool display = getenv("DISPLAY") || getenv("WAYLAND_DISPLAY");
+    return o->offscreen || o->record || (!o->script && !display);
+}
+
 relume_status options_parse(struct options *o, int argc, char **argv, const struct relume_log *log)
 {
     *o = (struct options){.gl = "auto", .vram_mb = 1024, .subject = relume_subject_default()};
-    if (asks_for_help(argc, argv))
+    if (asks_for_help(argc, argv)) {
+        o->help = true;
         return RELUME_OK;
+    }
     for (int i = 1; i < argc; i++) {
         relume_status status = RELUME_OK;
         if (argv[i][0] == '-' && argv[i][1])
@@ -692,7 +714,7 @@ relume_status options_parse(struct options *o, int argc, char **argv, const stru
     const relume_status status = choose_objects(o, log);
     if (status || o->stage)
         return status;
-    if (!o->file)
+    if (!o->file && needs_file(o))
         return say(log, RELUME_EINVAL, "expected 'relume-view FILE'; see 'relume-view --help'");
     return RELUME_OK;
 }

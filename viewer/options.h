@@ -9,7 +9,8 @@
 #include <relume/rig.h>
 
 struct options {
-    const char *file;  // NULL: only help was asked for, or `stage`
+    bool help;         // was asked for, and nothing else is known
+    const char *file;  // NULL: `stage`, or a window without a file
     bool stage;        // there are objects alone
     struct session_objects objects;
     const char *offscreen;  // picture to write without a window, or NULL
@@ -22,6 +23,7 @@ struct options {
     bool no_config;
     bool window;  // play them in a window
     bool panel;   // begin with the panel
+    bool keep_lights;
     bool docked;  // --dock was given
     enum app_dock dock;
     struct app_state start;

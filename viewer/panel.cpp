@@ -133,7 +133,8 @@ extern "C" bool panel_takes(struct panel *panel, const struct app_event *event)
     case APP_KEY_DOWN:
         if (closes_popup(panel, event))
             return true;
-        takes = typing && !always_of_app(event->key);
+        takes = typing && !always_of_app(event->key) &&
+                !(panel->browsing && event->key == APP_KEY_ESCAPE);
         break;
     case APP_TEXT: takes = typing; break;
     case APP_KEY_UP:
@@ -147,7 +148,7 @@ extern "C" bool panel_takes(struct panel *panel, const struct app_event *event)
 extern "C" bool panel_shown(const struct app *app)
 {
     return app->panel || app->help || app->inspect || app->gizmos || app->asks || app->recording ||
-           app->toast_s > 0 || app->hint_s > 0;
+           app->browse || app->file.empty || app->toast_s > 0 || app->hint_s > 0;
 }
 
 static void tell_imgui(const app_event &e)
@@ -215,7 +216,7 @@ static bool sections(panel *panel, app *app, const panel_facts *facts)
     if (panel->histogram)
         panel_histogram(facts, panel->scale);
     if (ImGui::CollapsingHeader("File"))
-        panel_file(facts);
+        panel_file(app, facts);
     if (ImGui::CollapsingHeader("Panel"))
         changed |= dock_row(app);
     return changed;
@@ -248,13 +249,18 @@ static void one_frame(panel *panel, app *app, const panel_facts *facts)
     panel->histogram = false;
     if (app->gizmos)
         panel_handles(app, panel->scale);
-    if (app->panel)
+    if (app->file.empty && !app->browse)
+        panel_start(app, panel->scale);
+    if (app->panel && !app->file.empty)
         panel->changed |= panel_window(panel, app, facts);
     if (app->inspect)
         panel_inspector(app, facts, panel->scale);
     if (app->help)
         panel_help(app, panel->scale);
     panel_notes(app, facts, panel->scale);
+    panel->browsing = app->browse && facts->browser;
+    if (panel->browsing)
+        panel_browse(panel, app, facts->browser);
     if (app->asks)
         panel_question(app, panel->scale);
     ImGui::Render();
@@ -284,10 +290,12 @@ static void collect_runs(panel *panel)
 }
 
 // A frame for every event, so that a click within one picture is a press and a release, and two
-// more: new windows find their size in the first and are seen in the second.
+// more: new windows find their size in the first and are seen in the second. A field that has just
+// got the keys knows it in the third.
 extern "C" bool panel_build(struct panel *panel, struct app *app, const struct panel_facts *facts)
 {
     ImGui::SetCurrentContext(panel->context);
+    const bool browsed = panel->browsing;
     panel->changed = false;
     for (const app_event &e : panel->queue) {
         tell_imgui(e);
@@ -296,6 +304,8 @@ extern "C" bool panel_build(struct panel *panel, struct app *app, const struct p
     panel->queue.clear();
     one_frame(panel, app, facts);
     one_frame(panel, app, facts);
+    if (panel->browsing != browsed)
+        one_frame(panel, app, facts);
     collect_runs(panel);
     return panel->changed;
 }

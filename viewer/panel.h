@@ -10,6 +10,7 @@ extern "C" {
 #endif
 
 #include "app.h"
+#include "browse.h"
 
 // Thread-safety: main thread only.
 struct panel;
@@ -41,9 +42,10 @@ struct panel_facts {
     const size_t *material_bytes;
     int materials;
     const double *objects_ms;
-    const char *eye;             // what is known of the eye that looks, or NULL
-    const char *recording;       // where pictures go, or NULL ...
-    double recorded_s, round_s;  // ... how many seconds of them there are, and will be
+    const char *eye;                // what is known of the eye that looks, or NULL
+    const struct browser *browser;  // to choose a file from, or NULL
+    const char *recording;          // where pictures go, or NULL ...
+    double recorded_s, round_s;     // ... how many seconds of them there are, and will be
 };
 // Work through the events and make the triangles of the frame; changes `app` as the user asks.
 // Returns whether the picture changed.

@@ -12,6 +12,7 @@ extern "C" {
 
 #include <imgui.h>
 
+#include <string>
 #include <vector>
 
 struct panel {
@@ -22,11 +23,14 @@ struct panel {
     bool held_by_app;  // or to the app
     bool histogram;    // is open
     bool maps;         // the list of environment maps is open
+    bool browsing;     // a file is being chosen
     bool changed;      // the picture, by what the user did in this frame
     char spec[APP_SPEC];
     char environment[APP_SPEC];
     std::vector<panel_run> runs;
-    int listed;  // the light that the list has scrolled to
+    char path[APP_SPEC];  // of a file to open
+    std::string browsed;  // the folder that it is in
+    int listed;           // the light that the list has scrolled to
 };
 
 // Sections of the panel: what they return is whether the picture changed.
@@ -35,12 +39,14 @@ bool panel_picture(app *app);
 bool panel_glare(app *app, const panel_facts *facts);
 bool panel_objects(app *app, const panel_facts *facts);
 void panel_histogram(const panel_facts *facts, float scale);
-void panel_file(const panel_facts *facts);
+void panel_file(app *app, const panel_facts *facts);
 
 // What is drawn over the picture.
 void panel_help(const app *app, float scale);
 void panel_notes(const app *app, const panel_facts *facts, float scale);
 void panel_question(app *app, float scale);
+void panel_start(app *app, float scale);
+void panel_browse(panel *panel, app *app, const browser *b);
 // The middle of the frame, in pixels of the window: across, down.
 ImVec2 panel_frame_point(const app *app, float across, float down);
 void panel_handles(const app *app, float scale);

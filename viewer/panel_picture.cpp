@@ -229,9 +229,14 @@ void panel_histogram(const panel_facts *facts, float scale)
     }
 }
 
-void panel_file(const panel_facts *facts)
+void panel_file(app *app, const panel_facts *facts)
 {
     ImGui::TextUnformatted(facts->file ? facts->file : "");
     for (const char *const *line = facts->line; line && *line; line++)
         ImGui::TextUnformatted(*line);
+    if (ImGui::Button("open another file"))
+        (void)keys_press(app, APP_CONTROL | 'o', false);
+    ImGui::Checkbox("keep these lights for it", &app->keep_lights);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("otherwise the next file begins with one light from the front");
 }

@@ -412,7 +412,7 @@ static relume_status prepare(struct renderer *r, const struct app *app)
 {
     relume_status status = renderer_prepare(&r->frame, r, app->width, app->height);
     memset(r->needed, 0, (size_t)r->views * sizeof *r->needed);
-    if (!r->stage)
+    if (!r->stage && !r->empty)
         framings[app->now.camera.framing].mark(r, app);
     if (!status)
         status = need_lights(r, app->now.lights);
@@ -454,11 +454,13 @@ relume_status renderer_draw(struct renderer *r, const struct app *app)
         .exposure = (float)exp2(app_exposure_ev(app)),
     };
     relume_status status = prepare(r, app);
-    if (!status && r->things.gl)
+    if (!status && r->empty)
+        target_begin(&r->frame, r->gl);
+    else if (!status && r->things.gl)
         status = renderer_draw_objects(r, app, &place, r->light, r->lights);
     else if (!status)
         status = renderer_relight_views(r, app, r->light, r->lights);
-    if (!status && !r->things.gl)
+    if (!status && !r->things.gl && !r->empty)
         status = renderer_frame(r, app, &place);
     if (!status)
         status = draw_lights_in_view(r, app, &place);

@@ -37,6 +37,7 @@ struct renderer {
     int lights, room;
     struct things things;  // objects; empty: none
     bool stage;            // there is nothing but objects
+    bool empty;            // there is nothing at all
     // Of a scene with objects: where it is, what one light shows of it, and of each view what its
     // pixels see; made when first needed.
     struct depth_source place_source;

@@ -1,5 +1,6 @@
 #include "session.h"
 
+#include "lamps.h"
 #include "say.h"
 
 #include <math.h>
@@ -57,6 +58,8 @@ static void set_name(struct session *s, const char *path)
 {
     const char *slash = strrchr(path, '/');
     snprintf(s->name, sizeof s->name, "%s", slash ? slash + 1 : path);
+    snprintf(s->folder, sizeof s->folder, "%.*s", slash > path ? (int)(slash - path) : 1,
+             slash ? path : ".");
 }
 
 // As relume_relight says it; only for lights that were asked for, not for each one dragged there.
@@ -152,7 +155,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
     relume_slabs *around;
     struct app app;
     if (!path)
-        return session_open_stage(s, start);
+        return s->objects ? session_open_stage(s, start) : session_open_nothing(s, start);
     if (session_is_objects(path))
         return session_open_objects(s, path, start);
     relume_status status =
@@ -186,10 +189,35 @@ relume_status session_open(struct session *s, const char *path, const struct app
     return RELUME_OK;
 }
 
+relume_status session_open_nothing(struct session *s, const struct app_state *start)
+{
+    const struct app_file file = {
+        .geometry = {.projection = RELUME_PLANAR, .window_min = {-1, -1}, .window_max = {1, 1}},
+        .width = 960,
+        .height = 600,
+        .views = 1,
+        .empty = true,
+    };
+    const relume_status status = app_start(&s->app, &file, start, true, s->log);
+    set_name(s, "no file");
+    return status;
+}
+
 // ---------------------------------------------------------------- drawing
+
+static relume_status make_nothing(struct session *s)
+{
+    const struct code_source nothing = {.user = NULL};
+    const relume_status status =
+        renderer_create(&s->renderer, &s->gl, &nothing, &s->app.file.geometry, NULL, 1, s->log);
+    s->renderer.empty = true;
+    return status;
+}
 
 static relume_status make_renderer(struct session *s)
 {
+    if (s->app.file.empty)
+        return make_nothing(s);
     if (!s->pack)
         return session_make_stage(s);
     const struct relume_pack_info *info = relume_pack_info(s->pack);
@@ -261,7 +289,29 @@ static void keep_window(struct app *app, const struct app *was)
     app->letterbox = was->letterbox;
     app->panel = was->panel;
     app->gizmos = was->gizmos;
-    app->toast_s = was->toast_s;
+    app->keep_lights = was->keep_lights;
+    app->recording = false;
+}
+
+// A copy of the lists alone.
+static relume_status keep_lights(struct app_state *to, const struct app_state *from)
+{
+    struct app_state state = {0};
+    if (!lamps_copy(&state, from))
+        return RELUME_ENOMEM;
+    to->light = state.light;
+    to->lamp = state.lamp;
+    to->lights = state.lights;
+    to->room = state.room;
+    to->selected = state.selected;
+    return RELUME_OK;
+}
+
+// It is not known where they would stand.
+static void drop_near_lights(struct app *app)
+{
+    lamps_drop_near(&app->start);
+    lamps_drop_near(&app->now);
 }
 
 static relume_status replace(struct session *s, const char *path, bool *opened)
@@ -269,17 +319,28 @@ static relume_status replace(struct session *s, const char *path, bool *opened)
     session_record_stop(s);
     const struct app was = s->app;
     inspect_destroy(&s->inspector);
-    const struct app_state start = {
-        .ball = was.now.ball,
+    struct app_state start = {
+        .ball = was.now.ball || was.file.empty,
         .auto_exposure = was.now.auto_exposure,
         .tone = was.now.tone,
         .white = was.now.white,
         .gaze = was.now.gaze,
     };
-    *opened = !session_open(s, path, &start, true);
+    relume_status status = was.keep_lights ? keep_lights(&start, &was.now) : RELUME_OK;
+    s->told[0] = '\0';
+    s->listens = true;
+    *opened = !status && !session_open(s, path, &start, true);
+    s->listens = false;
+    lamps_release(&start);
+    if (s->told[0])
+        session_say(s, "%s", s->told);
     if (!*opened)
-        return RELUME_OK;
+        return status;
+    if (!s->app.near_lights)
+        drop_near_lights(&s->app);
+    const double toast_s = s->told[0] ? APP_TOAST_S : 0;
     keep_window(&s->app, &was);
+    s->app.toast_s = toast_s;
     relume_capture_destroy(&s->capture);
     s->app.compared = false;
     return make_renderer(s);
@@ -305,6 +366,7 @@ void session_close(struct session *s)
     if (s->screen.texture)
         target_destroy(&s->screen, &s->gl);
     maps_destroy(&s->maps);
+    browse_destroy(&s->browser);
     inspect_destroy(&s->inspector);
     draw_panel_destroy(&s->drawing, &s->gl);
     panel_destroy(&s->panel);

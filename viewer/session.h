@@ -55,19 +55,23 @@ struct session {
     struct panel *panel;
     struct panel_drawing drawing;
     struct maps maps;            // to choose from, while the panel does
+    struct browser browser;      // the folder that was listed last
     struct inspector inspector;  // made when first asked for
     struct recording recording;
     struct record *film;   // of a script as it is played, or NULL
     struct target screen;  // of shots without a window
     float histogram[256][3];
     char name[SESSION_TEXT];                   // of the file, for the title
+    char folder[APP_SPEC];                     // that it is in
     size_t material_bytes[SESSION_MATERIALS];  // of graphics memory
     char line[SESSION_LINES][SESSION_TEXT];
     const char *lines[SESSION_LINES + 1];  // what the panel says of the file
     char message[SESSION_TEXT];            // what was said last
     bool full_screen;
-    int threads;        // that read files
-    size_t vram_bytes;  // for views
+    char told[SESSION_TEXT];  // by the log while a file was opened
+    bool listens;             // to it
+    int threads;              // that read files
+    size_t vram_bytes;        // for views
     enum session_relight relight;
     enum session_relight glare;            // by passes or by the library, likewise
     int glare_size;                        // as glare.size
@@ -95,6 +99,8 @@ bool session_is_objects(const char *path);
 relume_status session_open_objects(struct session *s, const char *path,
                                    const struct app_state *start);
 void session_close_file(struct session *s);
+// For session_open: no file, but a page that says how to open one.
+relume_status session_open_nothing(struct session *s, const struct app_state *start);
 // For session_open: the app of a stage.
 relume_status session_open_stage(struct session *s, const struct app_state *start);
 // The renderer of a stage, and objects in the renderer of a file. RELUME_ESYSTEM, RELUME_ENOMEM.
@@ -153,6 +159,10 @@ void session_record_stop(struct session *s);
 // All of it at once. Errors of record.h and session_draw.
 relume_status session_record(struct session *s, enum record_kind kind, const char *path,
                              int frames);
+
+// List a folder to choose a file from; "": the one that was listed last, else that of the file.
+// RELUME_ENOMEM.
+relume_status session_browse(struct session *s, const char *folder);
 
 // A light from words, in place of all or beside them. RELUME_EINVAL, RELUME_EDATA with a sentence.
 relume_status session_light(struct session *s, const char *spec, bool replace);

@@ -73,6 +73,14 @@ static relume_status list_maps(struct session *s)
     return maps_list(&s->maps, folder);
 }
 
+relume_status session_browse(struct session *s, const char *folder)
+{
+    char path[APP_SPEC];
+    const char *from = folder[0] ? folder : s->browser.folder[0] ? s->browser.folder : s->folder;
+    snprintf(path, sizeof path, "%s", from[0] ? from : ".");
+    return browse_list(&s->browser, path);
+}
+
 static const char *describe_eye(char *text, size_t size, const struct glare *glare)
 {
     if (!glare->eye)
@@ -111,6 +119,7 @@ relume_status session_build_panel(struct session *s, bool histogram)
         .material_bytes = s->objects ? s->material_bytes : NULL,
         .materials = SESSION_MATERIALS,
         .objects_ms = s->renderer.things_ms,
+        .browser = s->browser.folder[0] ? &s->browser : NULL,
         .recording = session_records(s) ? s->recording.path : NULL,
         .recorded_s = (double)s->recording.frame / RECORD_RATE,
         .round_s = (double)s->recording.frames / RECORD_RATE,

@@ -98,6 +98,18 @@ static relume_status wish_full_screen(struct session *s)
     return RELUME_OK;
 }
 
+static relume_status wish_folder(struct session *s)
+{
+    return session_browse(s, s->app.spec);
+}
+
+static relume_status wish_open(struct session *s)
+{
+    char path[APP_SPEC];
+    snprintf(path, sizeof path, "%s", s->app.spec);
+    return session_drop(s, path);
+}
+
 // What was wished for is done once; what fails is said in the panel and in the log.
 relume_status session_grant_wish(struct session *s)
 {
@@ -110,6 +122,8 @@ relume_status session_grant_wish(struct session *s)
         [APP_WISH_ADD_LIGHT] = wish_add_light,
         [APP_WISH_MAP] = wish_map,
         [APP_WISH_FULL_SCREEN] = wish_full_screen,
+        [APP_WISH_FOLDER] = wish_folder,
+        [APP_WISH_OPEN] = wish_open,
     };
     const enum app_wish wish = s->app.wish;
     s->app.wish = APP_WISH_NONE;

@@ -31,6 +31,8 @@ static void take_line(struct settings *s, const char *line)
         s->panel = a != 0;
     if (sscanf(line, "dock %d", &a) == 1 && a >= 0 && a < APP_DOCKS)
         s->dock = a;
+    if (sscanf(line, "keep-lights %d", &a) == 1)
+        s->keep_lights = a != 0;
 }
 
 void settings_load(struct settings *s)
@@ -69,8 +71,8 @@ void settings_save(const struct settings *s)
         return;
     make_folder(folder);
     snprintf(path, sizeof path, "%s/viewer", folder);
-    const int n = snprintf(text, sizeof text, "size %d %d\npanel %d\ndock %d\n", s->width,
-                           s->height, s->panel, s->dock);
+    const int n = snprintf(text, sizeof text, "size %d %d\npanel %d\ndock %d\nkeep-lights %d\n",
+                           s->width, s->height, s->panel, s->dock, s->keep_lights);
     const relume_status ignored = relume_file_save(path, text, (size_t)n, NULL);
     (void)ignored;
 }

@@ -13,7 +13,8 @@ enum { SETTINGS_PATH = 4096 };
 struct settings {
     int width, height;  // 0: not known
     bool panel;
-    int dock;                 // enum app_dock
+    int dock;  // enum app_dock
+    bool keep_lights;
     char rig[SETTINGS_PATH];  // where the lights are kept; "": nowhere
 };
 

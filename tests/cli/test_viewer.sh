@@ -74,6 +74,49 @@ if cmp -s shot.png open.png; then not_ok 'a shot shows the panel' 'it is the pic
 "$RELUME" compare dark.png shot.png >dark.txt 2>&1
 if cmp -s dark.png open.png; then not_ok 'a click turns the light off' 'nothing changed'; else ok 'a click turns the light off'; fi
 
+# another file begins with its own light, unless the lights are to be kept; near ones need a place to stand
+cat >next.txt <<'END'
+light "dir 1 0.2 0.4 rgb 1 0.5 0.2"
+add point 0.4 0.4 1
+open teapot.exr
+frame again.png
+open bare.exr
+key w
+END
+"$VIEWER" teapot.exr --script next.txt
+"$VIEWER" teapot.exr --offscreen first.png
+check 'the next file begins with its own light' cmp again.png first.png
+check 'one light' test "$(grep -c '"light"' bare-0001.json)" = 1
+"$VIEWER" teapot.exr --script next.txt --keep-lights
+"$VIEWER" teapot.exr --offscreen first.png --light 'dir 1 0.2 0.4 rgb 1 0.5 0.2' --light 'point 0.4 0.4 1'
+check 'lights that are kept' cmp again.png first.png
+check 'but near ones where there is no depth' test "$(grep -c '"light"' bare-0002.json)" = 1
+check 'the light that is kept' grep -q '"dir 1 0.2' bare-0002.json
+
+# no file yet: a page that says how to open one, and a list of what there is
+cat >start.txt <<'END'
+size 500 400
+shot page.png
+key ctrl+o
+shot folder.png
+type bare.exr
+key enter
+shot opened.png
+key b
+key ctrl+o
+type none.exr
+key enter
+shot missing.png
+key esc
+frame frame.png
+END
+"$VIEWER" --script start.txt 2>err.txt
+"$VIEWER" bare.exr --size 500x400 --offscreen want.png
+differ 'a page and a list' page.png folder.png
+differ 'a list and what was opened from it' folder.png opened.png
+check 'what was opened' cmp frame.png want.png
+check 'a file that is not there is told' grep -q 'none.exr: no such file' err.txt
+
 # a rig in, the same rig out
 "$RELUME" relight teapot.exr -o rigged.png --light "$light" --light "dir -1 0 1 rgb 0 0 1" --save-rig rig.json
 "$VIEWER" teapot.exr --rig rig.json --offscreen seen.png

@@ -122,6 +122,11 @@ else
     skip 'a dense screen' 'xprop is not installed'
 fi
 
+# a window without a file
+printf 'wait 0.1\nkey ctrl+o\nwait 0.1\ntype ball.exr\nkey enter\nwait 0.1\nkey s\nwait 0.1\nquit\n' >empty.txt
+timeout 60 "$VIEWER" --size 256x256 --no-config --script empty.txt --window >view.txt 2>&1
+check 'a window without a file opens one' test -s ball-0007.png
+
 # the window remembers; settings that cannot be read or written are no reason to fail
 remembers() { # name, folder for settings, size that is wanted, options...
     name=$1 settings=$2 want=$3
@@ -134,9 +139,15 @@ remembers() { # name, folder for settings, size that is wanted, options...
         not_ok "$name" "status $status, size '$got'; $(cat view.txt)"
     fi
 }
-remembers 'a size is kept' "$work/config" '300 200' --size 300x200 --light 'dir 1 0 1'
+remembers 'a size is kept' "$work/config" '300 200' --size 300x200 --light 'dir 1 0 1' --dock right
 remembers 'it comes back' "$work/config" '300 200'
+check 'lights are not kept unasked' test ! -e config/relume/rig.json
+check 'where the panel was' grep -qx 'dock 2' config/relume/viewer
+remembers 'lights are kept' "$work/config" '300 200' --light 'dir 1 0 1' --keep-lights
 check 'the lights are kept' grep -q 'dir 1 0 1' config/relume/rig.json
+printf 'wait\nkey w\nquit\n' >lit.txt
+XDG_CONFIG_HOME=$work/config timeout 60 "$VIEWER" ball.exr --script lit.txt --window >view.txt 2>&1
+check 'they come back' grep -q 'dir 1 0 1' ball-0002.json
 printf 'size -1 99999999\npanel x\n\377\n' >config/relume/viewer
 printf '{' >config/relume/rig.json
 remembers 'broken settings are forgotten' "$work/config" "$((2 * size)) $((2 * size))"

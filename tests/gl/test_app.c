@@ -618,7 +618,9 @@ static void wrong_options_are_refused(void **state)
 {
     (void)state;
     static const char *const wrong[][2] = {
-        {"", "expected 'relume-view FILE'"},
+        {"--offscreen b.png", "expected 'relume-view FILE'"},
+        {"--record sweep -o b", "expected 'relume-view FILE'"},
+        {"a.exr --dock top", "found 'top'"},
         {"a.exr b.exr", "expected one FILE"},
         {"a.exr --exposrue 1", "did you mean '--exposure'"},
         {"a.exr --zzzzzzzzzzzz", "--help"},

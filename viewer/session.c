@@ -94,7 +94,7 @@ static void describe_lines(struct session *s)
     else if (info->views > 1)
         snprintf(s->line[n++], SESSION_TEXT, "%d views", info->views);
     snprintf(s->line[n++], SESSION_TEXT, "%s, %d coefficients, %d lights", coder->basis->name,
-             coder->coefficients, coder->lights);
+             info->coefficients, coder->lights);
     snprintf(s->line[n++], SESSION_TEXT, "%s domain%s",
              info->domain == RELUME_DOMAIN_DISPLAY ? "display" : "linear",
              info->has_depth ? ", with depth" : "");

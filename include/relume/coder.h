@@ -124,6 +124,12 @@ struct relume_coder_info {
 };
 RELUME_API const struct relume_coder_info *relume_coder_info(const relume_coder *coder);
 
+// The mean becomes the last of the functions, one more than before: its coefficient, a plane behind
+// the others, is 1 where the mean counts and 0 where nothing is to be seen; encoding gives 1. For a
+// coder that nobody else uses yet; nothing happens to one without a mean, or a robust one.
+// RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_coder_append_mean(relume_coder *coder);
+
 // The triangles of `delaunay`: in a direction d = sum of w_i p_i over the corners p_i of its
 // triangle, all w_i >= 0, functions are linear in w over the corners that are lights, w made to sum
 // to 1 over these. Points from the number of lights on fill gaps between lights and have no value.

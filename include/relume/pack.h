@@ -104,9 +104,10 @@ struct relume_pack_info {
     const double (*uv)[2];  // [views]; slab: camera places
     const int *slab_of;     // [views]; several slabs: which one; else NULL
     bool has_depth, has_mask;
-    int books;                           // codebooks for each pixel, 0: planes
-    int codes;                           // vectors of the first book
-    bool shared;                         // all views have the same codebooks
+    int coefficients, planes;  // as stored. The coder has one more where there are masks and a mean
+    int books;                 // codebooks for each pixel, 0: planes
+    int codes;                 // vectors of the first book
+    bool shared;               // all views have the same codebooks
     struct relume_encode_report report;  // NaN where the file does not say
     uint64_t file_bytes;
 };

@@ -24,7 +24,7 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
     printf("\"basis\": \"%s\", \"coefficients\": %d, \"planes\": %d, \"interpolant\": %s%s%s, "
            "\"domain\": \"%s\", "
            "\"display\": \"%s\", \"bits\": \"%s\", \"compression\": \"%s\", ",
-           c->basis->name, c->coefficients, c->planes, c->interpolant ? "\"" : "",
+           c->basis->name, i->coefficients, i->planes, c->interpolant ? "\"" : "",
            c->interpolant ? c->interpolant->name : "null", c->interpolant ? "\"" : "",
            i->domain == RELUME_DOMAIN_LINEAR ? "linear" : "display", display,
            relume_storage_name(i->storage), i->compression);
@@ -51,7 +51,7 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
     printf("views         %d of %d x %d pixels\n", i->views, i->width, i->height);
     printf("lights        %d, %s\n", c->lights,
            c->hemispherical ? "one hemisphere" : "whole sphere");
-    printf("basis         %s, %d coefficients %s\n", c->basis->name, c->coefficients,
+    printf("basis         %s, %d coefficients %s\n", c->basis->name, i->coefficients,
            c->luminance ? "and a colour"
            : c->joint   ? "for all channels"
                         : "per channel");

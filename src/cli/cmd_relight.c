@@ -166,13 +166,18 @@ static relume_status open_capture(const struct args *args, relume_capture **capt
                 : RELUME_OK;
 }
 
-// Linear pictures hold the vectors; others the codes (n + 1) / 2, as normal maps do.
+// Linear pictures hold the vectors; others the codes (n + 1) / 2, as normal maps do, and black
+// where there is none.
 static void show_normals(struct relume_image *frame, const char *path)
 {
     const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     const size_t samples = (size_t)frame->width * (size_t)frame->height * 3;
-    for (size_t i = 0; !relume_image_saves_linear(path) && i < samples; i++)
-        frame->data[i] = relume_transfer_decode(srgb, 0.5f * frame->data[i] + 0.5f);
+    for (size_t i = 0; !relume_image_saves_linear(path) && i < samples; i += 3) {
+        float *n = frame->data + i;
+        const bool known = n[0] != 0.0f || n[1] != 0.0f || n[2] != 0.0f;
+        for (int c = 0; known && c < 3; c++)
+            n[c] = relume_transfer_decode(srgb, 0.5f * n[c] + 0.5f);
+    }
 }
 
 static relume_status make_frame(struct relume_image *frame, relume_pack *pack,

@@ -233,6 +233,54 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
     return RELUME_OK;
 }
 
+// Encoding, the coefficient of the mean is 1 whatever the samples are.
+static bool append_row(relume_coder *coder, size_t k, size_t samples)
+{
+    float *map = coder->map ? mem_zeroed((k + 1) * samples, sizeof *map) : NULL;
+    float *base = coder->map ? mem_zeroed(k + 1, sizeof *base) : NULL;
+    if (!coder->map)
+        return true;
+    if (!map || !base) {
+        free(map);
+        free(base);
+        return false;
+    }
+    memcpy(map, coder->map, k * samples * sizeof *map);
+    memcpy(base, coder->base, k * sizeof *base);
+    base[k] = 1.0f;
+    free(coder->map);
+    free(coder->base);
+    coder->map = map;
+    coder->base = base;
+    return true;
+}
+
+relume_status relume_coder_append_mean(relume_coder *coder)
+{
+    const size_t k = (size_t)coder->info.coefficients, raw = (size_t)coder->info.functions;
+    if (!coder->mean || !coder->transform || coder->robust || k >= CODER_MAX_COEFFICIENTS)
+        return RELUME_OK;
+    float *grown = mem_array(3 * (k + 1) * raw, sizeof *grown);
+    if (!grown || !append_row(coder, k, 3 * raw)) {
+        free(grown);
+        return RELUME_ENOMEM;
+    }
+    for (size_t c = 0; c < 3; c++) {
+        float *to = grown + c * (k + 1) * raw;
+        memcpy(to, coder->transform + c * k * raw, k * raw * sizeof *to);
+        memcpy(to + k * raw, coder->mean + c * raw, raw * sizeof *to);
+    }
+    free(coder->transform);
+    free(coder->mean);
+    coder->transform = grown;
+    coder->mean = NULL;
+    coder->info.transform = grown;
+    coder->info.mean = NULL;
+    coder->info.coefficients++;
+    coder->info.planes++;
+    return RELUME_OK;
+}
+
 const struct relume_coder_info *relume_coder_info(const relume_coder *coder)
 {
     return &coder->info;

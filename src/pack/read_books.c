@@ -76,10 +76,9 @@ relume_status reader_find_books(relume_pack *p, int view, int *part)
         if (status)
             return status;
         set->part[b] = *part;
-        set->codes[b] = set->book[b].codes;
     }
     p->info.shared = view < 0;
-    p->info.codes = set->codes[0];
+    p->info.codes = set->book[0].codes;
     return RELUME_OK;
 }
 
@@ -92,6 +91,14 @@ static size_t number_of_channel(const relume_pack *p, const struct relume_book *
     return reader_plane(relume_coder_info(p->coder), first + channel) - first;
 }
 
+// The mean belongs to the vectors of the first book, and to none of them that are nothing.
+static void add_mean(const relume_pack *p, float *vectors, size_t codes)
+{
+    const size_t planes = (size_t)relume_coder_info(p->coder)->planes;
+    for (size_t v = 0; planes > (size_t)p->info.planes && v < codes; v++)
+        vectors[(v + 1) * planes - 1] = 1.0f;
+}
+
 static relume_status load_book(relume_pack *p, int part, const struct relume_book *b,
                                float **vectors)
 {
@@ -100,7 +107,7 @@ static relume_status load_book(relume_pack *p, int part, const struct relume_boo
     const int planes = relume_coder_info(p->coder)->planes;
     void *numbers = mem_array(dim * codes, b->storage == RELUME_STORE_8 ? 1 : 2);
     size_t *place = mem_array(dim, sizeof *place);
-    float *out = mem_array(codes * (size_t)planes, sizeof *out);
+    float *out = mem_zeroed((codes + 1) * (size_t)planes, sizeof *out);
     relume_status status = numbers && place && out ? RELUME_OK : RELUME_ENOMEM;
     bool valid = true;
     for (size_t c = 0; !status && c < dim; c++) {
@@ -124,8 +131,8 @@ static relume_status load_book(relume_pack *p, int part, const struct relume_boo
 }
 
 struct index_sink {
-    const int *codes;  // [books]
-    uint16_t *index;   // [books][height][width]
+    const struct relume_book *book;  // [books]
+    uint16_t *index;                 // [books][height][width]
     size_t books, width, height;
     atomic_bool wrong;
 };
@@ -139,7 +146,7 @@ static void index_rows(void *context, int row, int rows, const void *samples)
             uint16_t *to = s->index + (b * s->height + (size_t)row + y) * s->width;
             unsigned wrong = 0;
             for (size_t x = 0; x < s->width; x++, from++) {
-                wrong |= *from >= (uint32_t)s->codes[b];
+                wrong |= *from >= (uint32_t)s->book[b].codes;
                 to[x] = (uint16_t)*from;
             }
             if (wrong)
@@ -158,7 +165,8 @@ relume_status reader_load_indices(relume_pack *p, int view)
             status = load_book(p, set->part[b], &set->book[b], &set->vectors[b]);
     if (status)
         return status;
-    struct index_sink sink = {.codes = set->codes,
+    add_mean(p, set->vectors[0], (size_t)set->book[0].codes);
+    struct index_sink sink = {.book = set->book,
                               .books = books,
                               .width = (size_t)p->info.width,
                               .height = (size_t)p->info.height};
@@ -170,8 +178,12 @@ relume_status reader_load_indices(relume_pack *p, int view)
     status = exr_read(p->file, p->parts[view].codes, p->threads, index_rows, &sink, p->log);
     if (!status && atomic_load(&sink.wrong))
         return reader_bad(p, "an index", "indices below the number of code vectors");
-    for (size_t b = 0; b < books; b++)
+    if (!status && p->info.has_mask)
+        status = reader_mask_indices(p, view, sink.index);
+    for (size_t b = 0; b < books; b++) {
         to->plane[b] = sink.index + b * pixels;
+        set->codes[b] = set->book[b].codes + reader_has_nothing(p, set->book[b].codes);
+    }
     to->codes.books = p->info.books;
     to->codes.index = (const uint16_t *const *)(const void *)to->plane;
     to->codes.vectors = (const float *const *)set->vectors;

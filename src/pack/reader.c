@@ -222,6 +222,8 @@ static relume_status read_coder(relume_pack *p)
         params.parameter[i] = (double)parameter[i];
     const relume_status status = relume_coder_create(&p->coder, basis, directions, n / 3, &params);
     p->info.coder = p->coder;
+    p->info.coefficients = k;
+    p->info.planes = status ? 0 : relume_coder_info(p->coder)->planes;
     return status == RELUME_EINVAL ? RELUME_EDATA : status;
 }
 
@@ -333,6 +335,8 @@ static relume_status read_header(relume_pack *p)
         status = find_parts(p);
     if (!status)
         status = reader_read_members(p);
+    if (!status && p->info.has_mask)
+        status = relume_coder_append_mean(p->coder);
     if (!status)
         status = make_code_table(p);
     return status;
@@ -465,11 +469,29 @@ relume_status reader_load(relume_pack *p, int part, void *data, size_t planes, c
     return status;
 }
 
+// Steps of the planes, and of the one of the mask, whose codes are 0 and 1.
+static relume_status load_steps(struct loaded *to, const relume_pack *p, int part, size_t planes)
+{
+    const size_t stored = (size_t)p->info.planes;
+    const float *scale = reader_floats(p, part, ATTR_SCALE, p->info.planes);
+    const float *offset = reader_floats(p, part, ATTR_OFFSET, p->info.planes);
+    to->steps = mem_array(2 * planes, sizeof *to->steps);
+    if (!to->steps)
+        return RELUME_ENOMEM;
+    for (size_t i = 0; i < planes; i++) {
+        to->steps[i] = i < stored ? scale[i] : 1.0f;
+        to->steps[planes + i] = i < stored ? offset[i] : 0.0f;
+    }
+    to->codes.scale = to->steps;
+    to->codes.offset = to->steps + planes;
+    return RELUME_OK;
+}
+
 static relume_status load_planes(relume_pack *p, int view)
 {
     struct loaded *to = &p->loaded[view];
     const struct relume_coder_info *coder = relume_coder_info(p->coder);
-    const size_t planes = (size_t)coder->planes;
+    const size_t planes = (size_t)coder->planes, stored = (size_t)p->info.planes;
     const size_t plane_bytes = (size_t)p->info.width * (size_t)p->info.height *
                                (p->info.storage == RELUME_STORE_8 ? 1 : 2);
     const int part = p->parts[view].codes;
@@ -482,13 +504,13 @@ static relume_status load_planes(relume_pack *p, int view)
         place[i] = reader_plane(coder, i);
     }
     if (!status)
-        status = reader_load(p, part, to->data, planes, place);
+        status = reader_load(p, part, to->data, stored, place);
+    if (!status && planes > stored)
+        status = reader_mask_plane(p, view, (char *)to->data + stored * plane_bytes);
     free(place);
     to->codes.storage = p->info.storage;
     to->codes.plane = to->plane;
-    to->codes.scale = reader_floats(p, part, ATTR_SCALE, coder->planes);
-    to->codes.offset = reader_floats(p, part, ATTR_OFFSET, coder->planes);
-    return status;
+    return status ? status : load_steps(to, p, part, planes);
 }
 
 relume_status relume_pack_codes(const struct relume_codes **out, relume_pack *pack, int view)
@@ -522,6 +544,7 @@ void relume_pack_drop(relume_pack *pack, int view)
     struct loaded *l = &pack->loaded[view];
     free(l->plane);
     free(l->data);
+    free(l->steps);
     *l = (struct loaded){0};
     if (pack->books && !pack->info.shared)
         reader_drop_books(&pack->books[view]);

@@ -13,6 +13,7 @@ struct loaded {
     struct relume_codes codes;
     const void **plane;  // [planes], or [books]
     void *data;          // [planes][height][width], with codebooks uint16_t [books][height][width]
+    float *steps;        // scale and offset of each plane
 };
 
 struct view_parts {
@@ -23,8 +24,8 @@ struct view_parts {
 struct read_books {
     int part[RELUME_MOST_BOOKS];
     struct relume_book book[RELUME_MOST_BOOKS];  // without numbers
-    int codes[RELUME_MOST_BOOKS];
-    float *vectors[RELUME_MOST_BOOKS];  // NULL until they are needed
+    int codes[RELUME_MOST_BOOKS];                // with that of nothing, behind those of the file
+    float *vectors[RELUME_MOST_BOOKS];           // NULL until they are needed
 };
 
 struct relume_pack {
@@ -61,6 +62,12 @@ enum exr_sample reader_sample(const relume_pack *p);
 size_t reader_plane(const struct relume_coder_info *info, size_t channel);
 // Numbers of the file's storage: data[planes][height][width], checked.
 relume_status reader_load(relume_pack *p, int part, void *data, size_t planes, const size_t *place);
+
+// What a mask leaves out is black, whatever the file's constant is (read_mask.c): the plane of the
+// mean, 1 inside and 0 outside; and the code vectors of nothing.
+relume_status reader_mask_plane(relume_pack *p, int view, void *plane);
+bool reader_has_nothing(const relume_pack *p, int codes);
+relume_status reader_mask_indices(relume_pack *p, int view, uint16_t *index);
 
 // Into info.geometry and info.slab; and, once parts are known, which slab each view is of.
 relume_status reader_read_slabs(relume_pack *p);

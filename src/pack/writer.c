@@ -198,8 +198,9 @@ static void preview_row(const struct preview *p, const void *codes, size_t row, 
     }
 }
 
-static relume_status preview_indices(const struct preview *p, int row, int rows, uint16_t *out)
+static relume_status preview_indices(const struct preview *p, int row, int rows, void *samples)
 {
+    uint16_t *out = samples;
     const struct relume_coefficients_info *info = relume_coefficients_info(p->coefficients);
     const size_t width = (size_t)info->width;
     const int books = relume_books_info(p->view->books)->books;
@@ -215,11 +216,18 @@ static relume_status preview_indices(const struct preview *p, int row, int rows,
     return RELUME_OK;
 }
 
-static relume_status preview_rows(void *context, int row, int rows, void *samples)
+static void blacken(const struct preview *p, int row, int rows, uint16_t *out)
 {
-    const struct preview *p = context;
-    if (p->relit)
-        return preview_indices(p, row, rows, samples);
+    const struct relume_image *mask = p->view->mask;
+    const size_t width = (size_t)relume_coefficients_info(p->coefficients)->width;
+    for (size_t i = 0; mask && i < (size_t)rows * width; i++)
+        if (!(mask->data[(size_t)row * width + i] > 0.5f))
+            for (size_t c = 0; c < 3; c++)
+                out[(i / width * 3 + c) * width + i % width] = 0;
+}
+
+static relume_status preview_planes(const struct preview *p, int row, int rows, void *samples)
+{
     const struct relume_coefficients_info *info = relume_coefficients_info(p->coefficients);
     const size_t width = (size_t)info->width;
     void *codes = mem_array((size_t)rows * (size_t)info->planes * width, 2);
@@ -231,6 +239,16 @@ static relume_status preview_rows(void *context, int row, int rows, void *sample
         preview_row(p, codes, (size_t)y, sum, (uint16_t *)samples + (size_t)y * 3 * width);
     free(codes);
     free(sum);
+    return status;
+}
+
+static relume_status preview_rows(void *context, int row, int rows, void *samples)
+{
+    const struct preview *p = context;
+    const relume_status status =
+        (p->relit ? preview_indices : preview_planes)(p, row, rows, samples);
+    if (!status)
+        blacken(p, row, rows, samples);
     return status;
 }
 

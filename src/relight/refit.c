@@ -185,7 +185,7 @@ static relume_status learn(relume_refit *refit, const struct work *w,
     const relume_status status = relume_coder_create(&refit->learned, &relume_basis_pca,
                                                      w->info->directions, w->info->lights, &p);
     refit->coder = refit->learned;
-    return status;
+    return status ? status : relume_coder_append_mean(refit->learned);
 }
 
 static relume_status create_planes(relume_refit *refit, const struct work *w)
@@ -246,6 +246,20 @@ static void store(relume_refit *refit, const float *planes, size_t first, size_t
         }
 }
 
+// What is black under every light stays so: its mean does not count either.
+static void keep_black(const relume_refit *refit, const struct work *w, const float *samples,
+                       float *planes, size_t n)
+{
+    static const float BLACK = 1e-5f;  // codes of 0 sum to 0 but for rounding
+    for (size_t i = 0; i < n; i++) {
+        float most = 0.0f;
+        for (size_t s = 0; s < 3 * (size_t)w->info->lights; s++)
+            most = fmaxf(most, fabsf(samples[(s / 3 * n + i) * 3 + s % 3]));
+        for (size_t p = 0; most < BLACK && p < (size_t)refit->codes.planes; p++)
+            planes[p * n + i] = 0.0f;
+    }
+}
+
 // Band by band, `codes` being pixels or a book's vectors.
 static relume_status encode(relume_refit *refit, const struct work *w,
                             const struct relume_codes *codes)
@@ -259,8 +273,10 @@ static relume_status encode(relume_refit *refit, const struct work *w,
         status = decode(w, codes, first, 1, n, samples);
         if (!status)
             status = relume_coder_apply(refit->coder, samples, 3 * n, n, planes, n);
-        if (!status)
+        if (!status) {
+            keep_black(refit, w, samples, planes, n);
             store(refit, planes, first, n);
+        }
     }
     free(samples);
     free(planes);

@@ -632,6 +632,19 @@ static void add_part(int part, int x, int y, int first)
         add_number(name[i], (double)code[i], scale, offset, scales, first);
 }
 
+// Whether the view's mask, if it has one, shows the pixel.
+static int is_shown(const char *view, int x, int y)
+{
+    char name[64];
+    const char *channel;
+    float value = 1.0f;
+    snprintf(name, sizeof name, "%s.mask", view);
+    const int part = look_for_part(name);
+    if (part >= 0)
+        read_pixel(part, x, y, &channel, &value, 1);
+    return value > 0.5f;
+}
+
 static void add_books(int part, const char *view, int x, int y)
 {
     const char *name[8];
@@ -764,6 +777,7 @@ int main(int argc, char **argv)
         for (int i = 0; i < k; i++)
             rgb[c] += weight[c * k + i] * coefficient[shared ? i : 3 * i + c];
         rgb[c] = linearised(rgb[c] * (luminance ? coefficient[k + c] : 1.0));
+        rgb[c] = is_shown(view, x, y) ? rgb[c] : 0.0;
     }
     printf("%.9g %.9g %.9g\n", rgb[0], rgb[1], rgb[2]);
     free(weight);

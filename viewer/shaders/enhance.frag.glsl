@@ -42,10 +42,11 @@ vec3 value(int light)
     return vector_at(lamps, ivec2(light & 511, 2 * (light >> 9) + 1));
 }
 
-// As codes (n + 1) / 2 once the screen's curve is applied.
+// As codes (n + 1) / 2 once the screen's curve is applied; black where there is no normal.
 vec3 show_normals(ivec2 at)
 {
-    vec3 code = 0.5 * vector_at(normals, at) + 0.5;
+    vec3 normal = vector_at(normals, at);
+    vec3 code = normal == vec3(0.0) ? vec3(0.0) : 0.5 * normal + 0.5;
     Transfer srgb = Transfer(CURVE_SRGB, 1.0);
     return vec3(transfer_decode(srgb, code.r), transfer_decode(srgb, code.g),
                 transfer_decode(srgb, code.b));

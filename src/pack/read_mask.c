@@ -1,0 +1,47 @@
+// read_mask.c - what a mask leaves out is black
+//
+// Masked coefficients are stored as 0, which leaves what a coder adds to every pixel: the mean of
+// `pca`. So in files with masks the mean is one more function (relume_coder_append_mean), whose
+// coefficient is the mask: all who relight see ordinary codes, and nothing is left outside.
+// Code vectors need not hold 0 at all: there masked pixels point to one more vector, of nothing.
+#include "pack/reader.h"
+
+#include "image/half.h"
+
+relume_status reader_mask_plane(relume_pack *p, int view, void *plane)
+{
+    const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
+    const bool half = p->info.storage == RELUME_STORE_HALF;
+    const uint16_t one = half ? half_from_float(1.0f) : 1;
+    struct relume_image mask;
+    const relume_status status = relume_pack_mask(&mask, p, view);
+    for (size_t i = 0; !status && i < pixels; i++) {
+        const bool inside = !mask.data || mask.data[i] > 0.5f;
+        if (p->info.storage == RELUME_STORE_8)
+            ((uint8_t *)plane)[i] = inside;
+        else
+            ((uint16_t *)plane)[i] = inside ? one : 0;
+    }
+    relume_image_destroy(&mask);
+    return status;
+}
+
+// Indices have 16 bits: the largest books have no room for another vector.
+bool reader_has_nothing(const relume_pack *p, int codes)
+{
+    return p->info.has_mask && codes < 65536;
+}
+
+relume_status reader_mask_indices(relume_pack *p, int view, uint16_t *index)
+{
+    const struct read_books *set = &p->books[p->info.shared ? 0 : view];
+    const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
+    struct relume_image mask;
+    const relume_status status = relume_pack_mask(&mask, p, view);
+    for (int b = 0; !status && mask.data && b < p->info.books; b++)
+        for (size_t i = 0; reader_has_nothing(p, set->book[b].codes) && i < pixels; i++)
+            if (mask.data[i] <= 0.5f)
+                index[(size_t)b * pixels + i] = (uint16_t)set->book[b].codes;
+    relume_image_destroy(&mask);
+    return status;
+}

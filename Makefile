@@ -38,10 +38,11 @@ OIIO     = $(call once,OIIO,pkg-config --cflags OpenImageIO)
 IMGUI    = $(call once,IMGUI,pkg-config --cflags imgui)
 GLFW     = $(call once,GLFW,pkg-config --cflags glfw3)
 FFT_PC   := $(if $(filter kiss,$(FFT)),kissfft-float,fftw3f)
-PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenEXR openblas jansson libjpeg libpng lcms2 $(FFT_PC))
+PKG_LIBS = $(call once,PKG_LIBS,pkg-config --libs OpenEXR jansson libjpeg libpng lcms2 $(FFT_PC))
 OIIO_LIBS = $(call once,OIIO_LIBS,pkg-config --libs OpenImageIO)
+EIGEN    = $(call once,EIGEN,pkg-config --cflags eigen3)
 CAIRO    = $(call once,CAIRO,pkg-config --cflags cairo)
-LIBS     = -Wl,--as-needed $(PKG_LIBS) -llapacke -lembree3 -lm -ldl
+LIBS     = -Wl,--as-needed $(PKG_LIBS) -lembree3 -lstdc++ -lm -ldl
 CLI_LIBS = $(call once,CLI_LIBS,pkg-config --libs cairo)
 GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa egl imgui)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
@@ -71,7 +72,7 @@ TOOLS_C  := $(wildcard tests/tools/*.c)
 # minimal.c is built against the installed library instead (tests/cli/test_install.sh)
 SAMPLES_C := samples/sphere.c samples/figures.c
 
-LIB_O    := $(LIB_C:%.c=$B/obj/%.o)
+LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $B/obj/src/math/lsq_eigen.o $B/obj/src/math/lsq_eigen_avx2.o
 MODULE   := $B/librelume-oiio.so.$(MAJOR)
 MESHES   := $B/librelume-assimp.so.$(MAJOR)
 STITCH   := $(if $(STITCH_CXX),$B/librelume-stitch.so.$(MAJOR))
@@ -112,6 +113,11 @@ $B/obj/src/image/oiio.o: own_flags = $(OIIO)
 $B/obj/src/capture/stitch.o: own_flags = -isystem $(OPENCV)
 $B/obj/src/base/module.o: own_flags = -DRELUME_MAJOR=$(MAJOR)
 $B/obj/src/%_avx2.o: own_flags = -mavx2 -mfma -mf16c
+# One source, two objects: see its head. Without optimising Eigen is a hundred times slower, and its
+# debug symbols are ten times the rest of the library.
+eigen_flags = -isystem $(patsubst -I%,%,$(EIGEN)) -O2 -g0 -DEigen=eigen_$1 -DLSQ_KERNELS=lsq_kernels_$1
+$B/obj/src/math/lsq_eigen.o: own_flags = $(call eigen_flags,plain)
+$B/obj/src/math/lsq_eigen_avx2.o: own_flags = $(call eigen_flags,avx2) -mavx2 -mfma
 $B/obj/src/%.o:               own_include = -Isrc
 $B/obj/src/cli/plot.o: own_flags = $(CAIRO)
 $B/obj/src/cli/%.o:           own_include = -Isrc/cli
@@ -132,6 +138,11 @@ $B/obj/%.o: %.cpp | $(DEPS)
 	@mkdir -p $(@D)
 	$(call say,CXX)
 	$(Q)$(CXX) $(CXX17) -Iinclude $(own_include) $(own_flags) $(CXXFLAGS) -c -o $@ $<
+
+$B/obj/src/math/lsq_eigen_avx2.o: src/math/lsq_eigen.cpp | $(DEPS)
+	@mkdir -p $(@D)
+	$(call say,CXX)
+	$(Q)$(CXX) $(CXX17) -Iinclude -Isrc $(own_flags) $(CXXFLAGS) -c -o $@ $<
 
 # Shaders are files in the tree and strings in the program.
 $B/obj/viewer/shaders.c: scripts/embed.sh $(SHADERS)
@@ -218,7 +229,7 @@ layers:
 	@scripts/layers.sh
 
 format:
-	clang-format -i $(LIB_C) $(MODULE_CXX) $(MESHES_C) $(STITCH_CXX) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
+	clang-format -i $(LIB_C) $(MODULE_CXX) src/math/lsq_eigen.cpp $(MESHES_C) $(STITCH_CXX) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
 	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*.h viewer/*.h tests/*.h samples/*.c)
 
 bench: all $(BENCH)

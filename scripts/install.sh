@@ -27,8 +27,7 @@ for header in "$here"/include/relume/*.h; do
 done
 put 644 "$here/LICENSE" "$dest/share/doc/relume"
 
-# Private: what librelume.so has inside itself, and who links librelume.a must name. openblas is
-# named by hand: its own .pc file adds the Fortran library, which a C program need not have.
+# Private: what librelume.so has inside itself, and who links librelume.a must name.
 install -d "$dest/lib/pkgconfig"
 cat >"$dest/lib/pkgconfig/relume.pc" <<PC
 prefix=$prefix
@@ -40,7 +39,7 @@ Description: image-based relighting
 Version: $version
 Requires.private: OpenEXR jansson libjpeg libpng lcms2
 Libs: -L\${libdir} -lrelume
-Libs.private: -Wl,-rpath,\${libdir} $(pkg-config --libs openblas) -llapacke -lembree3 -lm -ldl -pthread
+Libs.private: -Wl,-rpath,\${libdir} -lembree3 -lstdc++ -lm -ldl -pthread
 Cflags: -I\${includedir}
 PC
 

@@ -31,7 +31,7 @@ dlfcn:src/base/module.c
 opencv:src/capture/stitch.cpp
 embree:src/scene/trace.c
 assimp:src/scene/mesh_assimp.c
-(cblas|lapacke):src/math/lsq.c
+Eigen:src/math/lsq_eigen.cpp
 fftw3:src/math/fft.c
 kissfft:src/math/fft_kiss.c
 jansson:src/base/json.c

@@ -1,29 +1,26 @@
 #include "math/lsq.h"
 
 #include "base/memory.h"
+#include "math/lsq_kernels.h"
 #include "math/random.h"
 
-#include <cblas.h>
-#include <lapacke.h>
 #include <math.h>
-#include <pthread.h>
 #include <string.h>
 
-static void one_thread(void)
+static const struct lsq_kernels *kernels(void)
 {
-    openblas_set_num_threads(1);
-}
-
-static void prepare(void)
-{
-    static pthread_once_t once = PTHREAD_ONCE_INIT;
-    pthread_once(&once, one_thread);
+    return relume_cpu_features() & RELUME_CPU_AVX2 ? &lsq_kernels_avx2 : &lsq_kernels_plain;
 }
 
 bool lsq_eigenvalues(double *matrix, int n, double *values)
 {
-    prepare();
-    return LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'L', n, matrix, n, values) == 0;
+    const bool good = kernels()->eigen(matrix, n, n, values, NULL);
+    for (int i = 0; i < n / 2; i++) {
+        const double largest = values[i];
+        values[i] = values[n - 1 - i];
+        values[n - 1 - i] = largest;
+    }
+    return good;
 }
 
 // Where few eigenvectors of a large semidefinite matrix are asked for: blocks of vectors times it,
@@ -31,20 +28,20 @@ bool lsq_eigenvalues(double *matrix, int n, double *values)
 // problem.
 enum { LARGE = 1024, SPARE = 16, POWERS = 12 };
 
-// rows[m][n] -> orthonormal; `small` has room for m x m.
-static bool orthonormalise(double *rows, int m, int n, double *small)
+// rows[m][n] -> orthonormal; `small` has room for m x m, `next` for another m x n.
+static bool orthonormalise(double *rows, int m, int n, double *small, double *next)
 {
     for (int again = 0; again < 2; again++) {  // twice: the Gram matrix squares the condition
         double trace = 0.0;
-        cblas_dsyrk(CblasRowMajor, CblasLower, CblasNoTrans, m, n, 1.0, rows, n, 0.0, small, m);
+        lsq_product(false, true, m, m, n, rows, rows, small);
         for (int i = 0; i < m; i++)
             trace += small[i * m + i];
         for (int i = 0; i < m; i++)
             small[i * m + i] += 1e-14 * trace;
-        if (!lsq_cholesky(small, m))
+        if (!lsq_cholesky(small, m) || !lsq_invert_lower(small, m))
             return false;
-        cblas_dtrsm(CblasRowMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, m, n, 1.0,
-                    small, m, rows, n);
+        lsq_multiply_double(m, n, m, small, rows, next);
+        memcpy(rows, next, (size_t)m * (size_t)n * sizeof *rows);
     }
     return true;
 }
@@ -66,16 +63,15 @@ static bool top_eigenvectors(const double *matrix, int n, int count, double *val
         shift += 1e-12 * matrix[i * (size_t)n + i];
     shift = shift > 0.0 ? shift : 1.0;
     for (int i = 0; good && i < POWERS; i++) {
-        good = orthonormalise(rows, m, n, small);
+        good = orthonormalise(rows, m, n, small, next);
         lsq_multiply_double(m, n, n, rows, matrix, next);
         for (size_t j = 0; j < size; j++)
             rows[j] = next[j] + shift * rows[j];
     }
-    good = good && orthonormalise(rows, m, n, small);
+    good = good && orthonormalise(rows, m, n, small, next);
     if (good) {
         lsq_multiply_double(m, n, n, rows, matrix, next);
-        cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasTrans, m, m, n, 1.0, next, n, rows, n, 0.0,
-                    small, m);
+        lsq_product(false, true, m, m, n, next, rows, small);
         good = lsq_eigenvectors(small, m, m, all, turn);
     }
     if (good) {
@@ -93,63 +89,40 @@ static bool top_eigenvectors(const double *matrix, int n, int count, double *val
 // The sign is open; the largest component becomes positive.
 static void fix_sign(double *v, int n)
 {
-    const int top = (int)cblas_idamax(n, v, 1);
-    if (v[top] < 0.0)
-        cblas_dscal(n, -1.0, v, 1);
+    int top = 0;
+    for (int i = 1; i < n; i++)
+        top = fabs(v[i]) > fabs(v[top]) ? i : top;
+    const double sign = v[top] < 0.0 ? -1.0 : 1.0;
+    for (int i = 0; i < n; i++)
+        v[i] *= sign;
 }
 
 bool lsq_eigenvectors(double *matrix, int n, int count, double *values, double *vectors)
 {
-    prepare();
-    const size_t size = (size_t)n;
-    if (n > LARGE && count < n / 8) {
-        const bool good = top_eigenvectors(matrix, n, count, values, vectors);
-        for (int i = 0; good && i < count; i++)
-            fix_sign(vectors + (size_t)i * size, n);
-        return good;
-    }
-    double *all = mem_array(size, sizeof *all);
-    double *columns = mem_array(size * (size_t)count, sizeof *columns);  // [n][count], ascending
-    lapack_int *support = mem_array(2 * (size_t)count, sizeof *support);
-    lapack_int found = 0;
-    const bool good = all && columns && support &&
-                      !LAPACKE_dsyevr(LAPACK_ROW_MAJOR, 'V', 'I', 'L', n, matrix, n, 0.0, 0.0,
-                                      n - count + 1, n, 0.0, &found, all, columns, count, support);
-    for (int i = 0; good && i < count; i++) {
-        values[i] = all[count - 1 - i];
-        for (size_t j = 0; j < size; j++)
-            vectors[(size_t)i * size + j] = columns[j * (size_t)count + (size_t)(count - 1 - i)];
-        fix_sign(vectors + (size_t)i * size, n);
-    }
-    free(all);
-    free(columns);
-    free(support);
-    return good && found == count;
+    const bool few = n > LARGE && count < n / 8;
+    const bool good = few ? top_eigenvectors(matrix, n, count, values, vectors)
+                          : kernels()->eigen(matrix, n, count, values, vectors);
+    for (int i = 0; good && i < count; i++)
+        fix_sign(vectors + (size_t)i * (size_t)n, n);
+    return good;
 }
 
 bool lsq_solve(double *matrix, int n, double *b, int count)
 {
-    prepare();
-    // by columns, the lower triangle is the upper one and a right side is a column
-    return LAPACKE_dposv_work(LAPACK_COL_MAJOR, 'U', n, count, matrix, n, b, n) == 0;
+    return kernels()->cholesky(matrix, n) && kernels()->cholesky_solve(matrix, n, b, count);
 }
 
 relume_status lsq_invert(double *matrix, int n)
 {
-    prepare();
-    lapack_int *pivots = mem_array((size_t)n, sizeof *pivots);
-    if (!pivots)
+    bool singular = false;
+    if (!kernels()->invert(matrix, n, &singular))
         return RELUME_ENOMEM;
-    const bool good = !LAPACKE_dgetrf(LAPACK_ROW_MAJOR, n, n, matrix, n, pivots) &&
-                      !LAPACKE_dgetri(LAPACK_ROW_MAJOR, n, matrix, n, pivots);
-    free(pivots);
-    return good ? RELUME_OK : RELUME_EDATA;
+    return singular ? RELUME_EDATA : RELUME_OK;
 }
 
 void lsq_add_gram(double *gram, int n, const double *rows, int count)
 {
-    prepare();
-    cblas_dsyrk(CblasRowMajor, CblasLower, CblasTrans, n, count, 1.0, rows, n, 1.0, gram, n);
+    kernels()->add_gram(gram, n, rows, count);
     for (size_t i = 0; i < (size_t)n; i++)
         for (size_t j = 0; j < i; j++)
             gram[j * (size_t)n + i] = gram[i * (size_t)n + j];
@@ -157,8 +130,7 @@ void lsq_add_gram(double *gram, int n, const double *rows, int count)
 
 bool lsq_cholesky(double *matrix, int n)
 {
-    prepare();
-    if (LAPACKE_dpotrf(LAPACK_ROW_MAJOR, 'L', n, matrix, n))
+    if (!kernels()->cholesky(matrix, n))
         return false;
     for (int i = 0; i < n; i++)
         for (int j = i + 1; j < n; j++)
@@ -168,8 +140,7 @@ bool lsq_cholesky(double *matrix, int n)
 
 bool lsq_invert_lower(double *factor, int n)
 {
-    prepare();
-    return LAPACKE_dtrtri(LAPACK_ROW_MAJOR, 'L', 'N', n, factor, n) == 0;
+    return kernels()->invert_lower(factor, n);
 }
 
 bool lsq_roots(double *matrix, int n, double *root, double *inverse)
@@ -197,25 +168,20 @@ bool lsq_roots(double *matrix, int n, double *root, double *inverse)
     return good;
 }
 
+void lsq_product(bool turn_a, bool turn_b, int m, int n, int k, const double *a, const double *b,
+                 double *c)
+{
+    const struct lsq_shape shape = {m, n, k, turn_a ? m : k, turn_b ? k : n, n, turn_a, turn_b};
+    kernels()->multiply_double(shape, a, b, c);
+}
+
 void lsq_multiply_double(int m, int n, int k, const double *a, const double *b, double *c)
 {
-    prepare();
-    cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, n, k, 1.0, a, k, b, n, 0.0, c, n);
+    lsq_product(false, false, m, n, k, a, b, c);
 }
 
 void lsq_multiply(int m, int n, int k, const float *a, int lda, const float *b, int ldb, float *c,
                   int ldc)
 {
-    prepare();
-    cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, m, n, k, 1.0f, a, lda, b, ldb, 0.0f, c,
-                ldc);
-}
-
-void lsq_product(bool turn_a, bool turn_b, int m, int n, int k, const double *a, const double *b,
-                 double *c)
-{
-    prepare();
-    cblas_dgemm(CblasRowMajor, turn_a ? CblasTrans : CblasNoTrans,
-                turn_b ? CblasTrans : CblasNoTrans, m, n, k, 1.0, a, turn_a ? m : k, b,
-                turn_b ? k : n, 0.0, c, n);
+    kernels()->multiply((struct lsq_shape){m, n, k, lda, ldb, ldc, false, false}, a, b, c);
 }

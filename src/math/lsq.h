@@ -1,7 +1,7 @@
-// lsq.h - small dense linear algebra; the one place that knows BLAS and LAPACK
+// lsq.h - small dense linear algebra, by Eigen (lsq_eigen.cpp)
 //
-// Matrices are row by row. BLAS is told to use one thread for the whole process on first use: the
-// library brings its own threads, and equal bits for any number of them need a fixed order of sums.
+// Matrices are row by row. Every call runs in its caller's thread: the library brings its own
+// threads, and equal bits for any number of them need a fixed order of sums.
 #ifndef MATH_LSQ_H
 #define MATH_LSQ_H
 

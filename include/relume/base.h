@@ -57,7 +57,8 @@ enum relume_cpu {
     RELUME_CPU_AVX2 = 1 << 0,  // AVX2, FMA and F16C together
 };
 
-// The features this CPU has, as RELUME_CPU_* bits.
+// The features this CPU has, as RELUME_CPU_* bits; none where the environment has RELUME_CPU=plain,
+// so that every kernel of the process is the portable one.
 RELUME_API unsigned relume_cpu_features(void);
 
 // The number of cores that this process may use, at least 1.

@@ -1,6 +1,7 @@
 #include "test.h"
 
 #include "math/lsq.h"
+#include "math/lsq_kernels.h"
 
 enum { N = 24 };
 
@@ -201,13 +202,62 @@ static void test_multiply(void **state)
         }
 }
 
+// Both tables, whole or turned, small and beyond a block, against sums in order.
+static void check_products(const struct lsq_kernels *k)
+{
+    static const int sizes[][3] = {{1, 1, 1}, {5, 3, 4}, {27, 130, 49}, {70, 9, 300}};
+    uint32_t seed = 9;
+    for (int t = 0; t < 16; t++) {
+        const int m = sizes[t / 4][0], n = sizes[t / 4][1], l = sizes[t / 4][2];
+        const bool ta = t & 1, tb = t & 2;
+        double *a = malloc((size_t)(m * l) * sizeof *a), *b = malloc((size_t)(l * n) * sizeof *b);
+        double *c = malloc((size_t)(m * n) * sizeof *c);
+        for (int i = 0; i < m * l; i++)
+            a[i] = test_uniform(&seed) - 0.5;
+        for (int i = 0; i < l * n; i++)
+            b[i] = test_uniform(&seed) - 0.5;
+        const struct lsq_shape s = {m, n, l, ta ? m : l, tb ? l : n, n, ta, tb};
+        k->multiply_double(s, a, b, c);
+        for (int i = 0; i < m; i++)
+            for (int j = 0; j < n; j++) {
+                double want = 0.0;
+                for (int x = 0; x < l; x++)
+                    want += a[ta ? x * m + i : i * l + x] * b[tb ? j * l + x : x * n + j];
+                CHECK_NEAR(c[i * n + j], want, 1e-13);  // 300 products below 1/4, 2^-53 each
+            }
+        free(a);
+        free(b);
+        free(c);
+    }
+}
+
+static void test_tables(void **state)
+{
+    (void)state;
+    check_products(&lsq_kernels_plain);
+    if (relume_cpu_features() & RELUME_CPU_AVX2)
+        check_products(&lsq_kernels_avx2);
+}
+
+// RELUME_CPU=plain turns every kernel off.
+static void test_plain_cpu(void **state)
+{
+    (void)state;
+    const unsigned before = relume_cpu_features();
+    setenv("RELUME_CPU", "plain", 1);
+    assert_int_equal(relume_cpu_features(), 0);
+    unsetenv("RELUME_CPU");
+    assert_int_equal(relume_cpu_features(), before);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_eigenvectors),       cmocka_unit_test(test_degenerate_eigenvectors),
         cmocka_unit_test(test_large_eigenvectors), cmocka_unit_test(test_invert),
         cmocka_unit_test(test_add_gram),           cmocka_unit_test(test_cholesky),
-        cmocka_unit_test(test_multiply),
+        cmocka_unit_test(test_multiply),           cmocka_unit_test(test_tables),
+        cmocka_unit_test(test_plain_cpu),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

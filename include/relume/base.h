@@ -35,6 +35,16 @@ enum relume_level { RELUME_ERROR, RELUME_WARNING, RELUME_NOTE };
 // none is near.
 RELUME_API const char *relume_name_nearest(const char *given, const char *const *names);
 
+// The files that a run reads. A log that holds them (below) keeps outputs off them: each file that
+// is opened for reading is noted, by device and number so that links and other spellings do not
+// matter, and no output replaces one of them. Thread-safety: all functions may be called from any
+// thread.
+typedef struct relume_inputs relume_inputs;
+RELUME_RESULT relume_status relume_inputs_create(relume_inputs **out);
+RELUME_API void relume_inputs_destroy(relume_inputs **inputs);
+// Note a file or a folder before it is opened; what does not exist is passed over.
+RELUME_API void relume_inputs_add(relume_inputs *inputs, const char *path);
+
 // Where sentences for people go. Every params struct takes one; NULL is silent.
 // Thread-safety: all calls come from the thread that called the library.
 struct relume_log {
@@ -43,6 +53,7 @@ struct relume_log {
     // `done` in [0, 1]; false asks the work to stop with RELUME_ECANCEL. May be NULL.
     bool (*progress)(void *user, const char *what, double done);
     void *user;
+    relume_inputs *inputs;  // what is read is noted here and never replaced; may be NULL
 };
 
 // Upper bounds for sizes read from files; zero in a field means its default.
@@ -85,9 +96,31 @@ static inline int relume_whole(double value)
 }
 
 // Write a whole file: it appears under its name complete or not at all; devices and pipes are
-// written directly. RELUME_EIO with a sentence, RELUME_ENOMEM.
+// written directly. RELUME_EIO with a sentence, RELUME_EINVAL when it would replace an input,
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_file_save(const char *path, const void *bytes, size_t size,
                                              const struct relume_log *log);
+
+// What relume_file_save would refuse before it writes, for work that takes long: `path` is a file
+// that is read here. RELUME_EINVAL with a sentence.
+RELUME_RESULT relume_status relume_file_check(const char *path, const struct relume_log *log);
+
+// Something that takes long to make, a folder or a file written by others (a film): made in a place
+// of its own beside its name, and given the name when it is whole. What a stopped run leaves there
+// is removed by the next one that writes beside it.
+typedef struct relume_making relume_making;
+enum relume_made { RELUME_MADE_FILE, RELUME_MADE_FOLDER };
+// `path` NULL: a folder for temporary files in $TMPDIR or /tmp, never committed. A folder that is
+// there and not empty is RELUME_EINVAL, and with `force` unless relume made it, all that is in it,
+// and nothing of it is read here. RELUME_EIO with a sentence, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_making_open(relume_making **out, const char *path,
+                                               enum relume_made kind, bool force,
+                                               const struct relume_log *log);
+// Where to make it: an empty folder, or the name of a file that does not exist.
+RELUME_API const char *relume_making_path(const relume_making *making);
+// Ends `*making` in every case; on failure what was there before is there still.
+RELUME_RESULT relume_status relume_making_commit(relume_making **making);
+RELUME_API void relume_making_abort(relume_making **making);
 
 // World axes: right-handed, x right, y up, z towards the viewer.
 // A light direction points from the scene TOWARDS the light.

@@ -1,6 +1,7 @@
 // json.c - the one file that knows jansson
 #include "base/json.h"
 
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 
@@ -11,6 +12,7 @@
 relume_status jvalue_load(jvalue **root, const char *path, const struct relume_log *log)
 {
     json_error_t error;
+    input_note(log, path);
     *root = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
     if (*root)
         return RELUME_OK;

@@ -1,71 +1,60 @@
 #include "base/outfile.h"
 
+#include "base/beside.h"
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/scratch.h"
+#include "base/tree.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <ftw.h>
-#include <libgen.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
+enum kind {
+    UNNAMED,  // a name comes with the commit
+    BESIDE,   // in `beside`
+    INSIDE,   // under its own name, in a folder that is not finished
+    DEVICE,   // gathered in a scratch file
+};
+
 struct outfile {
+    enum kind kind;
     int fd;
-    char *path;
-    char *beside;  // the temporary name; NULL for a device
+    int device;      // where a device's bytes go; -1: to be opened
+    char *path;      // as it was given
+    char *target;    // where that leads
+    char *dir;       // the folder of `target`
+    beside *beside;  // NULL: not yet
     const struct relume_log *log;
 };
 
-struct outdir {
-    char *path;
-    char *part;
-    bool force;
-    const struct relume_log *log;
-};
-
-static relume_status fail(const char *path, const char *what, const struct relume_log *log)
+static relume_status fail(const outfile *f, const char *what)
 {
-    return log_fail(log, RELUME_EIO, "%s: %s; %s", path, what, strerror(errno));
+    if (errno == ENOMEM)
+        return RELUME_ENOMEM;
+    return log_fail(f->log, RELUME_EIO, "%s: %s; %s", f->path, what, strerror(errno));
 }
 
-bool scratch_write(int fd, const void *bytes, size_t size, off_t offset)
-{
-    const char *from = bytes;
-    while (size) {
-        const ssize_t n = pwrite(fd, from, size, offset);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n <= 0)
-            return false;
-        from += n;
-        offset += n;
-        size -= (size_t)n;
-    }
-    return true;
-}
+// ---------------------------------------------------------------- devices
 
-bool scratch_read(int fd, void *bytes, size_t size, off_t offset)
+// The descriptor that such a name stands for, -1 for other names. What it leads to may be a file
+// that somebody appends to: it is written, not replaced.
+static int descriptor_of(const char *path)
 {
-    char *to = bytes;
-    while (size) {
-        const ssize_t n = pread(fd, to, size, offset);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n <= 0) {
-            errno = n ? errno : EIO;
-            return false;
-        }
-        to += n;
-        offset += n;
-        size -= (size_t)n;
-    }
-    return true;
+    int fd = -1, end = 0;
+    if (!strcmp(path, "/dev/stdout"))
+        return STDOUT_FILENO;
+    if (!strcmp(path, "/dev/stderr"))
+        return STDERR_FILENO;
+    if ((sscanf(path, "/dev/fd/%d%n", &fd, &end) == 1 ||
+         sscanf(path, "/proc/self/fd/%d%n", &fd, &end) == 1) &&
+        !path[end])
+        return fd;
+    return -1;
 }
 
 static bool is_device(const char *path)
@@ -74,154 +63,213 @@ static bool is_device(const char *path)
     return !stat(path, &s) && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode);
 }
 
-int scratch_open(const char *near)
+static relume_status open_device(outfile *f, int descriptor)
 {
-    if (near && is_device(near))
-        near = NULL;
-    const char *temp = getenv("TMPDIR");
-    char *copy = near ? mem_text(near) : NULL;
-    const char *folder = copy ? dirname(copy) : temp && *temp ? temp : "/tmp";
-    char *name = near && !copy ? NULL : mem_format("%s/.relume-XXXXXX", folder);
-    int fd = -1;
-    if (name) {
-        fd = mkostemp(name, O_CLOEXEC);
-        if (fd >= 0)
-            unlink(name);
-    } else {
-        errno = ENOMEM;
+    f->kind = DEVICE;
+    if (descriptor >= 0)
+        f->device = fcntl(descriptor, F_DUPFD_CLOEXEC, 3);
+    if (descriptor < 0 || f->device >= 0)
+        f->fd = scratch_open(NULL);
+    return f->fd < 0 ? fail(f, "cannot be written") : RELUME_OK;
+}
+
+static bool write_all(int to, const char *bytes, size_t size)
+{
+    while (size) {
+        const ssize_t n = write(to, bytes, size);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            return false;
+        bytes += n;
+        size -= (size_t)n;
     }
+    return true;
+}
+
+static relume_status copy_to_device(outfile *f)
+{
+    enum { BLOCK = 1 << 20 };
+    if (f->device < 0)
+        f->device = open(f->target, O_WRONLY | O_CLOEXEC);
+    char *block = mem_array(BLOCK, 1);
+    const off_t size = lseek(f->fd, 0, SEEK_END);
+    bool good = f->device >= 0 && block && size >= 0;
+    for (off_t at = 0; good && at < size; at += BLOCK) {
+        const size_t n = size - at < BLOCK ? (size_t)(size - at) : BLOCK;
+        good = scratch_read(f->fd, block, n, at) && write_all(f->device, block, n);
+    }
+    relume_status status = good ? RELUME_OK : fail(f, "writing failed");
+    if (f->device >= 0 && close(f->device) && good)
+        status = fail(f, "writing failed");
+    f->device = -1;
+    free(block);
+    return status;
+}
+
+// ---------------------------------------------------------------- files
+
+static relume_status open_inside(outfile *f)
+{
+    f->kind = INSIDE;
+    unlink(f->target);
+    f->fd = open(f->target, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    return f->fd < 0 ? fail(f, "cannot be written") : RELUME_OK;
+}
+
+static relume_status enter_beside(outfile *f)
+{
+    char *name = tree_base(f->target);
+    f->beside = name ? beside_open(f->dir, name) : NULL;
     free(name);
-    free(copy);
-    return fd;
+    return f->beside ? RELUME_OK : fail(f, "cannot be written");
 }
 
-void *scratch_map(const char *near, size_t size)
+static char *name_of_descriptor(int fd)
 {
-    const int fd = scratch_open(near);
-    if (fd < 0)
-        return NULL;
-    errno = posix_fallocate(fd, 0, (off_t)size);
-    void *memory = errno ? MAP_FAILED : mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-    const int error = errno;
-    close(fd);
-    errno = error;
-    return memory == MAP_FAILED ? NULL : memory;
+    return mem_format("/proc/self/fd/%d", fd);
 }
 
-void scratch_unmap(void *memory, size_t size)
+// Only where it can be given a name later: that needs /proc.
+static bool open_unnamed(outfile *f)
 {
-    if (memory)
-        munmap(memory, size);
-}
-
-// A new file with the permissions that the user's mask leaves; mkstemp would make it private.
-static relume_status open_beside(outfile *file)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    unsigned tag = (unsigned)t.tv_nsec ^ ((unsigned)getpid() << 12);
-    for (int tries = 0; tries < 100; tries++, tag = tag * 1664525u + 1013904223u) {
-        free(file->beside);
-        file->beside = mem_format("%s.part-%06x", file->path, tag & 0xffffff);
-        if (!file->beside)
-            return RELUME_ENOMEM;
-        file->fd = open(file->beside, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file->fd >= 0 || errno != EEXIST)
-            break;
+    f->kind = UNNAMED;
+    f->fd = open(f->dir, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    char *name = f->fd >= 0 ? name_of_descriptor(f->fd) : NULL;
+    const bool good = name && !access(name, F_OK);
+    free(name);
+    if (f->fd >= 0 && !good) {
+        close(f->fd);
+        f->fd = -1;
     }
-    return RELUME_OK;
+    return good;
+}
+
+static relume_status open_new(outfile *f)
+{
+    beside_sweep(f->dir);
+    if (open_unnamed(f))
+        return RELUME_OK;
+    f->kind = BESIDE;
+    const relume_status status = enter_beside(f);
+    if (status)
+        return status;
+    f->fd = open(beside_new(f->beside), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    return f->fd < 0 ? fail(f, "cannot be written") : RELUME_OK;
+}
+
+relume_status outfile_check(const char *target, const char *path, const struct relume_log *log)
+{
+    struct stat s;
+    if (stat(target, &s))
+        return RELUME_OK;
+    errno = S_ISDIR(s.st_mode) ? EISDIR : 0;
+    if (errno || access(target, W_OK))
+        return log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path, strerror(errno));
+    return input_refuse(target, path, log);
 }
 
 relume_status outfile_open(outfile **out, const char *path, const struct relume_log *log)
 {
     *out = NULL;
-    outfile *file = mem_zeroed(1, sizeof *file);
-    if (!file)
+    outfile *f = mem_zeroed(1, sizeof *f);
+    if (!f)
         return RELUME_ENOMEM;
-    file->log = log;
-    file->fd = -1;
-    file->path = mem_text(path);
-    relume_status status = RELUME_ENOMEM;
-    if (!file->path)
-        goto fail;
-
-    struct stat s;
-    if (!stat(path, &s) && S_ISDIR(s.st_mode)) {
-        errno = EISDIR;
-        status = fail(path, "cannot be written", log);
-        goto fail;
+    *f = (outfile){.log = log, .fd = -1, .device = -1, .path = mem_text(path)};
+    relume_status status = f->path ? RELUME_OK : RELUME_ENOMEM;
+    if (!status) {
+        f->target = tree_resolve(path);
+        status = f->target ? RELUME_OK : fail(f, "cannot be written");
     }
-    if (is_device(path)) {
-        file->fd = scratch_open(NULL);
-    } else {
-        status = open_beside(file);
-        if (status)
-            goto fail;
+    if (!status) {
+        f->dir = tree_parent(f->target);
+        status = f->dir ? RELUME_OK : RELUME_ENOMEM;
     }
-    if (file->fd < 0) {
-        free(file->beside);
-        file->beside = NULL;
-        status = fail(path, "cannot be written", log);
-        goto fail;
-    }
-    *out = file;
-    return RELUME_OK;
-fail:
-    outfile_abort(&file);
+    const int descriptor = descriptor_of(path);
+    if (!status && (descriptor >= 0 || is_device(path)))
+        status = open_device(f, descriptor);
+    else if (!status && beside_holds(f->target))
+        status = open_inside(f);
+    else if (!status && !(status = outfile_check(f->target, f->path, f->log)))
+        status = open_new(f);
+    if (status)
+        outfile_abort(&f);
+    *out = f;
     return status;
 }
 
-relume_status outfile_write(outfile *file, const void *bytes, size_t size, off_t offset)
+relume_status outfile_write(outfile *f, const void *bytes, size_t size, off_t offset)
 {
-    if (scratch_write(file->fd, bytes, size, offset))
+    if (scratch_write(f->fd, bytes, size, offset))
         return RELUME_OK;
-    return fail(file->path, "writing failed", file->log);
+    return fail(f, "writing failed");
 }
 
-static relume_status copy_to_device(outfile *file)
+// ---------------------------------------------------------------- the final name
+
+static bool give_name(int fd, const char *name)
 {
-    enum { BLOCK = 1 << 20 };
-    const int to = open(file->path, O_WRONLY | O_CLOEXEC);
-    char *block = mem_array(BLOCK, 1);
-    const off_t size = lseek(file->fd, 0, SEEK_END);
-    bool good = to >= 0 && block && size >= 0;
-    for (off_t at = 0; good && at < size;) {
-        const size_t n = size - at < BLOCK ? (size_t)(size - at) : BLOCK;
-        good = scratch_read(file->fd, block, n, at);
-        for (size_t sent = 0; good && sent < n;) {
-            const ssize_t m = write(to, block + sent, n - sent);
-            if (m < 0 && errno == EINTR)
-                continue;
-            good = m > 0;
-            sent += good ? (size_t)m : 0;
-        }
-        at += (off_t)n;
-    }
-    relume_status status = good ? RELUME_OK : fail(file->path, "writing failed", file->log);
-    if (to >= 0 && close(to) && good)
-        status = fail(file->path, "writing failed", file->log);
-    free(block);
+    char *from = name_of_descriptor(fd);
+    const bool good = from && !linkat(AT_FDCWD, from, AT_FDCWD, name, AT_SYMLINK_FOLLOW);
+    if (!from)
+        errno = ENOMEM;
+    free(from);
+    return good;
+}
+
+// A link replaces nothing: where there is a file already, the new one is renamed onto it.
+static relume_status name_unnamed(outfile *f)
+{
+    if (give_name(f->fd, f->target))
+        return RELUME_OK;
+    if (errno != EEXIST)
+        return fail(f, "cannot be written");
+    const relume_status status = enter_beside(f);
+    if (status)
+        return status;
+    return give_name(f->fd, beside_new(f->beside)) ? RELUME_OK : fail(f, "cannot be written");
+}
+
+static relume_status publish(outfile *f)
+{
+    struct stat old;
+    relume_status status = outfile_check(f->target, f->path, f->log);
+    if (!status && !stat(f->target, &old))
+        (void)fchmod(f->fd, old.st_mode & 0777);
+    if (!status && fsync(f->fd))
+        status = fail(f, "writing failed");
+    if (!status && f->kind == UNNAMED)
+        status = name_unnamed(f);
+    const int fd = f->fd;
+    f->fd = -1;
+    if (close(fd) && !status)
+        status = fail(f, "writing failed");
+    if (!status && f->beside && rename(beside_new(f->beside), f->target))
+        status = fail(f, "cannot be written");
+    if (!status && !tree_sync(f->dir))
+        status = fail(f, "cannot be flushed to disk");
     return status;
 }
 
-static relume_status publish(outfile *file)
+// Flushed with its folder.
+static relume_status leave_inside(outfile *f)
 {
-    if (fsync(file->fd))
-        return fail(file->path, "writing failed", file->log);
-    const int fd = file->fd;
-    file->fd = -1;
-    if (close(fd))
-        return fail(file->path, "writing failed", file->log);
-    if (rename(file->beside, file->path))
-        return fail(file->path, "cannot be written", file->log);
-    free(file->beside);
-    file->beside = NULL;
+    const int fd = f->fd;
+    f->fd = -1;
+    if (close(fd)) {
+        const relume_status status = fail(f, "writing failed");
+        unlink(f->target);
+        return status;
+    }
     return RELUME_OK;
 }
 
 relume_status outfile_commit(outfile **file)
 {
-    const relume_status status = (*file)->beside ? publish(*file) : copy_to_device(*file);
+    outfile *f = *file;
+    const relume_status status = f->kind == DEVICE   ? copy_to_device(f)
+                                 : f->kind == INSIDE ? leave_inside(f)
+                                                     : publish(f);
     outfile_abort(file);
     return status;
 }
@@ -232,19 +280,18 @@ void outfile_abort(outfile **file)
     *file = NULL;
     if (!f)
         return;
-    if (f->fd >= 0)
+    if (f->fd >= 0) {
         close(f->fd);
-    if (f->beside)
-        unlink(f->beside);
-    free(f->beside);
+        if (f->kind == INSIDE)
+            unlink(f->target);
+    }
+    if (f->device >= 0)
+        close(f->device);
+    beside_close(&f->beside);
     free(f->path);
+    free(f->target);
+    free(f->dir);
     free(f);
-}
-
-relume_status relume_file_save(const char *path, const void *bytes, size_t size,
-                               const struct relume_log *log)
-{
-    return outfile_save(path, bytes, size, log);
 }
 
 relume_status outfile_save(const char *path, const void *bytes, size_t size,
@@ -260,117 +307,17 @@ relume_status outfile_save(const char *path, const void *bytes, size_t size,
     return status;
 }
 
-static int remove_entry(const char *path, const struct stat *s, int type, struct FTW *walk)
-{
-    (void)s, (void)type, (void)walk;
-    return remove(path);
-}
-
-static void remove_tree(const char *path)
-{
-    nftw(path, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
-}
-
-// Something that a new folder of that name would hide or replace.
-static bool is_occupied(const char *path)
+relume_status relume_file_check(const char *path, const struct relume_log *log)
 {
     struct stat s;
-    if (lstat(path, &s))
-        return false;
-    DIR *dir = opendir(path);
-    if (!dir)
-        return true;
-    int entries = 0;
-    while (entries < 3 && readdir(dir))
-        entries++;
-    closedir(dir);
-    return entries > 2;
-}
-
-relume_status outdir_open(outdir **out, const char *path, bool force, const struct relume_log *log)
-{
-    *out = NULL;
-    outdir *dir = mem_zeroed(1, sizeof *dir);
-    if (!dir)
-        return RELUME_ENOMEM;
-    dir->log = log;
-    dir->force = force;
-    dir->path = mem_text(path);
-    relume_status status = RELUME_ENOMEM;
-    if (!dir->path)
-        goto fail;
-    for (size_t n = strlen(dir->path); n > 1 && dir->path[n - 1] == '/'; n--)
-        dir->path[n - 1] = '\0';
-
-    if (!force && is_occupied(dir->path)) {
-        status = log_fail(log, RELUME_EINVAL,
-                          "%s: already exists; expected a new or empty folder, or --force", path);
-        goto fail;
-    }
-    char *part = mem_format("%s.part", dir->path);
-    if (!part)
-        goto fail;
-    remove_tree(part);
-    if (mkdir(part, 0777)) {
-        status = fail(path, "cannot be created", log);
-        free(part);
-        goto fail;
-    }
-    dir->part = part;
-    *out = dir;
-    return RELUME_OK;
-fail:
-    outdir_abort(&dir);
+    char *target = stat(path, &s) || !S_ISREG(s.st_mode) ? NULL : tree_resolve(path);
+    const relume_status status = target ? input_refuse(target, path, log) : RELUME_OK;
+    free(target);
     return status;
 }
 
-const char *outdir_path(const outdir *dir)
+relume_status relume_file_save(const char *path, const void *bytes, size_t size,
+                               const struct relume_log *log)
 {
-    return dir->part;
-}
-
-relume_status outdir_commit(outdir **dir)
-{
-    outdir *d = *dir;
-    relume_status status = RELUME_OK;
-    char *old = d->force && is_occupied(d->path) ? mem_format("%s.old", d->path) : NULL;
-    if (old) {
-        remove_tree(old);
-        if (rename(d->path, old))
-            status = fail(d->path, "cannot be replaced", d->log);
-    }
-    if (!status && rename(d->part, d->path)) {
-        status = fail(d->path, "cannot be created", d->log);
-        if (old && rename(old, d->path))
-            status = fail(old, "cannot be moved back", d->log);
-    } else if (!status) {
-        free(d->part);
-        d->part = NULL;
-        if (old)
-            remove_tree(old);
-    }
-    free(old);
-    outdir_abort(dir);
-    return status;
-}
-
-void outdir_abort(outdir **dir)
-{
-    outdir *d = *dir;
-    *dir = NULL;
-    if (!d)
-        return;
-    if (d->part)
-        remove_tree(d->part);
-    free(d->part);
-    free(d->path);
-    free(d);
-}
-
-relume_status outdir_end(outdir **dir, relume_status status)
-{
-    if (!status)
-        return outdir_commit(dir);
-    outdir_abort(dir);
-    return status;
+    return outfile_save(path, bytes, size, log);
 }

@@ -1,5 +1,6 @@
 #include "btf/btf.h"
 
+#include "base/scratch.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/half.h"

@@ -1,4 +1,6 @@
 // folder.c - a BTF on disk: btf.json and values.npy
+#include "base/outdir.h"
+#include "base/outfile.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/memory.h"

@@ -1,4 +1,6 @@
 // model_file.c - a fitted model on disk: model.json and one .npy file for each of its arrays
+#include "base/outdir.h"
+#include "base/outfile.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/memory.h"

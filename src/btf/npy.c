@@ -1,5 +1,7 @@
 #include "btf/npy.h"
 
+#include "base/inputs.h"
+#include "base/outfile.h"
 #include "base/log.h"
 #include "base/memory.h"
 
@@ -100,7 +102,7 @@ static bool read_header(struct npy_file *f, size_t *offset)
 
 static relume_status map_file(struct npy_file *f, const char *path, const struct relume_log *log)
 {
-    const int fd = open(path, O_RDONLY | O_CLOEXEC);
+    const int fd = input_descriptor(path, log);
     struct stat info;
     if (fd < 0 || fstat(fd, &info)) {
         const int error = errno;

@@ -5,7 +5,7 @@
 #ifndef BTF_NPY_H
 #define BTF_NPY_H
 
-#include "base/outfile.h"
+#include <relume/base.h>
 
 enum npy_kind { NPY_HALF, NPY_FLOAT, NPY_U8, NPY_U16, NPY_U32 };
 enum { NPY_DIMS = 5 };

@@ -1,4 +1,6 @@
 // surface_file.c - a surface on disk: surface.json, texel.npy, matrix.npy and the folder of a model
+#include "base/outdir.h"
+#include "base/outfile.h"
 #include "base/json.h"
 #include "base/log.h"
 #include "base/memory.h"

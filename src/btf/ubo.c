@@ -4,6 +4,7 @@
 // is assumed. Little endian throughout, nothing is aligned.
 #include "btf/ubo.h"
 
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 
@@ -354,7 +355,7 @@ static relume_status read_all(struct ubo *u)
 
 static relume_status map_file(struct ubo *u)
 {
-    const int fd = open(u->path, O_RDONLY | O_CLOEXEC);
+    const int fd = input_descriptor(u->path, &u->log);
     struct stat info;
     if (fd < 0 || fstat(fd, &info)) {
         const int error = errno;
@@ -425,7 +426,9 @@ relume_status btf_open_ubo(relume_btf **out, const char *path,
     struct ubo u = {.path = path,
                     .params = params,
                     .limits = limits_or_default(params ? params->limits : NULL),
-                    .log = {.message = say, .progress = go_on}};
+                    .log = {.message = say,
+                            .progress = go_on,
+                            .inputs = inputs_of(params ? params->log : NULL)}};
     u.log.user = &u;
     *out = NULL;
     relume_status status = map_file(&u);

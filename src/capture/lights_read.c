@@ -1,4 +1,5 @@
 // lights_read.c - lights from whatever file holds some
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "capture/manifest.h"
@@ -31,7 +32,7 @@ static bool is_count(const char *line)
 // JSON starts with a brace, a .lp file with a lone count before lines that start with names.
 static relume_status look(enum kind *kind, const char *path, const struct relume_log *log)
 {
-    FILE *file = fopen(path, "r");
+    FILE *file = input_open(path, log);
     if (!file)
         return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
     char line[256];
@@ -135,7 +136,7 @@ static relume_status read_lines(struct relume_light_list *out, FILE *file, const
 static relume_status from_lines(struct relume_light_list *out, const char *path,
                                 const struct relume_log *log)
 {
-    FILE *file = fopen(path, "r");
+    FILE *file = input_open(path, log);
     if (!file)
         return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
     const relume_status status = read_lines(out, file, path, log);

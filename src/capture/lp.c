@@ -1,4 +1,5 @@
 // lp.c - the light position files of RTI: a count, then "name x y z" a line
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "capture/manifest.h"
@@ -83,7 +84,7 @@ static relume_status read_text(char **out, const char *path, const struct relume
 {
     enum { MOST = 64 << 20 };
     *out = NULL;
-    FILE *file = fopen(path, "rb");
+    FILE *file = input_open(path, log);
     if (!file)
         return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
     char *text = NULL;

@@ -3,6 +3,7 @@
 #define CAPTURE_PANORAMA_H
 
 #include "capture/views.h"
+#include "base/outdir.h"
 
 struct panorama_job {
     struct photo_set set;

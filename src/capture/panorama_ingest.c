@@ -1,6 +1,7 @@
 // panorama_ingest.c - relume_panorama_ingest: pictures of all directions become a capture
 #include "capture/panorama.h"
 
+#include "base/outdir.h"
 #include "base/log.h"
 
 #include <math.h>

@@ -4,6 +4,7 @@
 // mean direction, the cameras' middle 3 above it.
 #include "capture/views.h"
 
+#include "base/outdir.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"

@@ -1,6 +1,8 @@
 // shoot.c - the steps from photographs to a capture folder
 #include "capture/shoot.h"
 
+#include "base/outdir.h"
+#include "base/outfile.h"
 #include "base/log.h"
 #include "base/memory.h"
 

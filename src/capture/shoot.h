@@ -2,7 +2,7 @@
 #ifndef CAPTURE_SHOOT_H
 #define CAPTURE_SHOOT_H
 
-#include "base/outfile.h"
+#include "base/outdir.h"
 #include "math/vec.h"
 
 #include <relume/photograph.h>

@@ -1,6 +1,7 @@
 // shoot_read.c - photographs become the images of the folder, one at a time
 #include "capture/shoot.h"
 
+#include "base/outdir.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "capture/ball.h"

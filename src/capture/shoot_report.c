@@ -1,6 +1,7 @@
 // shoot_report.c - report.html: what was made, how good it is, and what to do better
 #include "capture/shoot.h"
 
+#include "base/outfile.h"
 #include "base/memory.h"
 #include "capture/report_picture.h"
 

@@ -1,6 +1,8 @@
 // slab_depth.c - relume_slab_depth: a slab gets depth images
 #include "capture/slab_depth.h"
 
+#include "base/scratch.h"
+#include "base/outdir.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "capture/views.h"

@@ -2,7 +2,6 @@
 #ifndef CAPTURE_SLAB_DEPTH_H
 #define CAPTURE_SLAB_DEPTH_H
 
-#include "base/outfile.h"
 #include "capture/sweep.h"
 
 #include <relume/lightfield.h>

@@ -1,6 +1,7 @@
 // slab_depth_sweep.c - pictures of a slab loaded, planes chosen, views swept
 #include "capture/slab_depth.h"
 
+#include "base/scratch.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"

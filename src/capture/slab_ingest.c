@@ -1,6 +1,7 @@
 // slab_ingest.c - relume_slab_ingest: photographs named by their places become a slab
 #include "capture/views_order.h"
 
+#include "base/outdir.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "capture/views_shift.h"

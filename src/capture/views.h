@@ -3,7 +3,7 @@
 #define CAPTURE_VIEWS_H
 
 #include "base/arena.h"
-#include "base/outfile.h"
+#include "base/outdir.h"
 
 #include <relume/capture.h>
 #include <relume/views.h>

@@ -1,6 +1,7 @@
 // views_colmap.c - the text files of COLMAP (Schoenberger, Frahm 2016), format of its documentation
 #include "capture/views_colmap.h"
 
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/vec.h"
@@ -46,7 +47,7 @@ static relume_status text_open(struct text *t, const char *folder, const char *n
     *t = (struct text){.path = mem_format("%s/%s", folder, name), .log = log};
     if (!t->path)
         return RELUME_ENOMEM;
-    t->file = fopen(t->path, "re");
+    t->file = input_open(t->path, log);
     return t->file ? RELUME_OK
                    : log_fail(log, RELUME_EDATA,
                               "%s: cannot be opened; %s; expected COLMAP's text "

@@ -1,6 +1,7 @@
 // views_photos.c - what was named on the command line becomes cameras and their photographs
 #include "capture/views.h"
 
+#include "base/outdir.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/photograph.h"

@@ -1,6 +1,7 @@
 // views_shift.c - pictures of parallel cameras moved so that a plane stands still in them
 #include "capture/views_shift.h"
 
+#include "base/outdir.h"
 #include "base/log.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
 #define CAPTURE_VIEWS_SHIFT_H
 
 #include "capture/views_order.h"
+#include "base/outdir.h"
 
 // Save every camera's pictures, moved by `disparity` pixels for each step of the grid from its
 // middle and cropped to what all show, as linear half EXR files inside `folder`, and name them in

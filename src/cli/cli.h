@@ -5,7 +5,9 @@
 #include <relume/relume.h>
 #include <stdio.h>
 
-enum option_kind { OPTION_FLAG, OPTION_INT, OPTION_NUMBER, OPTION_TEXT };
+// OPTION_OUTPUT is text that names what is written; any other text, and any input, that names a
+// file or folder is taken as read: no output replaces it.
+enum option_kind { OPTION_FLAG, OPTION_INT, OPTION_NUMBER, OPTION_TEXT, OPTION_OUTPUT };
 
 struct option {
     const char *name;  // "--size" or "-o"

@@ -7,7 +7,7 @@
 #include <string.h>
 
 static const struct option options[] = {
-    {"-o", OPTION_TEXT, "DIR", "fit, tile: the folder to make; render: the picture", 0, 0},
+    {"-o", OPTION_OUTPUT, "DIR", "fit, tile: the folder to make; render: the picture", 0, 0},
     {"--model", OPTION_TEXT, "NAME", "fit, tile: rfp, rfnl, rfnlc, vpca, lpca, ...; default rfnlc",
      0, 0},
     {"--models", OPTION_TEXT, "A,B,...", "compare: only these", 0, 0},
@@ -42,7 +42,7 @@ static const struct option options[] = {
      "render: dir, env, point, spot, ... (docs/lights.md), area on objects only; may be repeated",
      0, 0},
     {"--rig", OPTION_TEXT, "FILE", "render objects: lights of a rig, before --light", 0, 0},
-    {"--save-rig", OPTION_TEXT, "FILE", "render objects: write all lights as a rig", 0, 0},
+    {"--save-rig", OPTION_OUTPUT, "FILE", "render objects: write all lights as a rig", 0, 0},
     {"--mesh", OPTION_TEXT, "FILE", "render: an object of it: .obj, .ply, .gltf, .glb, ...", 0, 0},
     {"--repeat", OPTION_NUMBER, "N", "--mesh: samples along its texture; default 1", 0.001, 10000},
     {"--samples", OPTION_INT, "N", "render objects: N x N rays a pixel; default 3", 1, 16},
@@ -60,7 +60,7 @@ static const struct option options[] = {
     {"--crop", OPTION_TEXT, "x,y,w,h", "of a .btf file: only these texels, from its upper left", 0,
      0},
     {"--seed", OPTION_INT, "S", "of materials, clusters and tiles; default 0", 0, 2147483647},
-    {"--force", OPTION_FLAG, NULL, "fit, tile: replace an existing folder", 0, 0},
+    {"--force", OPTION_FLAG, NULL, "fit, tile: replace a folder that relume made", 0, 0},
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };

@@ -5,7 +5,8 @@
 #include "frame_options.h"
 
 static const struct option options[] = {
-    {"-o", OPTION_TEXT, "DIR", "the capture folder to make; with --hdr the picture OUT.exr", 0, 0},
+    {"-o", OPTION_OUTPUT, "DIR", "the capture folder to make; with --hdr the picture OUT.exr", 0,
+     0},
     // where the lights are
     {"--ball", OPTION_TEXT, "x,y,r",
      "outline of a mirror ball, pixels from the top left; may be repeated; default: found", 0, 0},
@@ -36,20 +37,20 @@ static const struct option options[] = {
      0},
     // what is made
     {"--mask", OPTION_TEXT, "FILE", "white where the object is", 0, 0},
-    {"--normals", OPTION_TEXT, "FILE.exr", "write surface normals", 0, 0},
-    {"--albedo", OPTION_TEXT, "FILE.exr", "write what the surface reflects", 0, 0},
-    {"--height", OPTION_TEXT, "FILE.exr", "write the surface's height, world units", 0, 0},
-    {"--encode", OPTION_TEXT, "FILE.exr", "encode the capture as well", 0, 0},
+    {"--normals", OPTION_OUTPUT, "FILE.exr", "write surface normals", 0, 0},
+    {"--albedo", OPTION_OUTPUT, "FILE.exr", "write what the surface reflects", 0, 0},
+    {"--height", OPTION_OUTPUT, "FILE.exr", "write the surface's height, world units", 0, 0},
+    {"--encode", OPTION_OUTPUT, "FILE.exr", "encode the capture as well", 0, 0},
     {"--relight", OPTION_TEXT, "PICTURE", "and relight that by --light", 0, 0},
     LIGHT_OPTIONS,
     CPU_OPTION,
     {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; default: by file", 0, 0},
-    {"--force", OPTION_FLAG, NULL, "replace an existing folder", 0, 0},
+    {"--force", OPTION_FLAG, NULL, "replace a folder that relume made", 0, 0},
     // brackets
     {"--hdr", OPTION_FLAG, NULL, "the photographs are exposures of one picture: merge them", 0, 0},
     {"--times", OPTION_TEXT, "FILE", "--hdr: exposure times, lines 'name seconds'", 0, 0},
     {"--response", OPTION_TEXT, "FILE", "--hdr: the camera's response is known", 0, 0},
-    {"--save-response", OPTION_TEXT, "FILE", "--hdr: write the response that was found", 0, 0},
+    {"--save-response", OPTION_OUTPUT, "FILE", "--hdr: write the response that was found", 0, 0},
     {"--weights", OPTION_TEXT, "W", "--hdr: spline (default), hat or gaussian", 0, 0},
     {"--align", OPTION_TEXT, "A", "none, blocks or homography; default: none", 0, 0},
     {"--ghosts", OPTION_FLAG, NULL, "--hdr: leave out what moved between exposures", 0, 0},

@@ -3,7 +3,7 @@
 #include <string.h>
 
 static const struct option options[] = {
-    {"-o", OPTION_TEXT, "OUT", "the file (.ptm, .rti) or folder to write", 0, 0},
+    {"-o", OPTION_OUTPUT, "OUT", "the file (.ptm, .rti) or folder to write", 0, 0},
     {"--to", OPTION_TEXT, "FORMAT", "relight, ptm, lptm, rti or deepzoom; default: relight", 0, 0},
     {"--type", OPTION_TEXT, "T", "relight, deepzoom: bilinear, rbf, ptm, lptm, hsh or sh", 0, 0},
     {"--colorspace", OPTION_TEXT, "C",
@@ -20,7 +20,7 @@ static const struct option options[] = {
     {"--resolution", OPTION_INT, "R",
      "bilinear: side of the grid of lights; default: 15 to 33, by the lights", 3, 33},
     {"--view", OPTION_INT, "N", "which view of a slab; default: 0", 0, 65535},
-    {"--force", OPTION_FLAG, NULL, "replace a folder that is not empty", 0, 0},
+    {"--force", OPTION_FLAG, NULL, "replace a folder that relume made", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
 

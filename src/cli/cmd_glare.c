@@ -8,7 +8,7 @@
 #include <string.h>
 
 static const struct option options[] = {
-    {"-o", OPTION_TEXT, "OUT",
+    {"-o", OPTION_OUTPUT, "OUT",
      "picture to write: .exr (linear), .png, ...; with --frames: name.%04d.png, a folder or .mp4",
      0, 0},
     {"--fov", OPTION_NUMBER, "DEG", "horizontal field of view of the picture; default: 45", 0.01,
@@ -23,7 +23,7 @@ static const struct option options[] = {
     {"--tilt", OPTION_NUMBER, "A", "IN is a whole sphere: look this far up", -90, 90},
     {"--picture", OPTION_TEXT, "WxH",
      "IN is a whole sphere: size of the picture; default: 1280x720", 0, 0},
-    {"--psf", OPTION_TEXT, "OUT",
+    {"--psf", OPTION_OUTPUT, "OUT",
      "write the eye's pattern: a picture, or a folder with aperture and diagrams as well", 0, 0},
     {"--luminance", OPTION_NUMBER, "L", "--psf without IN: of the field, cd/m^2; default: 1", 0,
      1e9},

@@ -2,7 +2,6 @@
 #include "book_options.h"
 #include "sweep.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +9,8 @@
 #include <unistd.h>
 
 static const struct option options[] = {
-    {"-o", OPTION_TEXT, "OUT", "write OUT.csv, OUT.json, OUT.svg, OUT.png; keep OUT.resume", 0, 0},
+    {"-o", OPTION_OUTPUT, "OUT", "write OUT.csv, OUT.json, OUT.svg, OUT.png; keep OUT.resume", 0,
+     0},
     {"--basis", OPTION_TEXT, "LIST", "bases, separated by commas; default: all", 0, 0},
     {"--coefficients", OPTION_TEXT, "LIST", "sizes; default: those natural to each basis", 0, 0},
     {"--interpolant", OPTION_TEXT, "LIST", "of pca and table, also auto; default: their own", 0, 0},
@@ -299,8 +299,8 @@ static bool hold_progress(void *user, const char *what, double done)
 static struct listener *listen_to(struct listener *l, const struct relume_log *to, double first,
                                   double extent)
 {
-    *l = (struct listener){.log = {hear, pass_progress, l},
-                           .inner = {hear, hold_progress, l},
+    *l = (struct listener){.log = {hear, pass_progress, l, to->inputs},
+                           .inner = {hear, hold_progress, l, to->inputs},
                            .to = to,
                            .first = first,
                            .extent = extent,
@@ -313,7 +313,7 @@ struct work {
     relume_capture *capture;
     relume_heldout *heldout;
     sweep_resume *resume;
-    char folder[256];  // for files whose size is wanted
+    relume_making *folder;  // for files whose size is wanted
 };
 
 static struct relume_coder_params coder_params(const struct sweep_row *row,
@@ -338,8 +338,8 @@ static relume_status encode_row(struct work *w, struct sweep_row *row, const str
 {
     const struct args *args = w->sweep->args;
     const struct relume_coder_params params = coder_params(row, log);
-    char path[300];
-    snprintf(path, sizeof path, "%s/row.exr", w->folder);
+    char path[4096];
+    snprintf(path, sizeof path, "%s/row.exr", relume_making_path(w->folder));
     relume_coder *coder = NULL;
     relume_pack *pack = NULL;
     const double start = seconds_now();
@@ -458,17 +458,6 @@ static void note(const struct args *args, const char *text)
     args_log(args)->message(args_log(args)->user, RELUME_NOTE, text);
 }
 
-static relume_status make_folder(struct work *w)
-{
-    const char *tmp = getenv("TMPDIR");
-    snprintf(w->folder, sizeof w->folder, "%s/relume-sweep-XXXXXX", tmp && *tmp ? tmp : "/tmp");
-    if (mkdtemp(w->folder))
-        return RELUME_OK;
-    (void)usage_error("%s: cannot be made; %s", w->folder, strerror(errno));
-    *w->folder = '\0';
-    return RELUME_EIO;
-}
-
 static bool all_known(const struct sweep *sweep)
 {
     for (int i = 0; i < sweep->rows; i++)
@@ -488,7 +477,7 @@ static relume_status measure_all(struct work *w, const relume_capture *test)
     if (!status) {
         const struct relume_heldout_info info = relume_heldout_info(w->heldout);
         s->measured = (double)info.pixels / (double)info.all_pixels;
-        status = make_folder(w);
+        status = relume_making_open(&w->folder, NULL, RELUME_MADE_FOLDER, false, args_log(s->args));
     }
     if (!status && s->measured < 1.0) {
         char text[128];
@@ -500,17 +489,19 @@ static relume_status measure_all(struct work *w, const relume_capture *test)
         end = group_end(s, first);
         status = measure_group(w, first, end);
     }
-    if (*w->folder)
-        rmdir(w->folder);
+    relume_making_abort(&w->folder);
     relume_heldout_destroy(&w->heldout);
     return status;
 }
 
-static relume_status finish(struct sweep *sweep)
+// The four files are of one sweep, also where two write them.
+static relume_status finish(struct sweep *sweep, sweep_resume *resume)
 {
     relume_status status = sweep_mark_hull(sweep);
+    sweep_resume_lock(resume);
     if (!status && sweep->out)
         status = sweep_save(sweep);
+    sweep_resume_unlock(resume);
     if (status)
         return status;
     if (args_has(sweep->args, "--json"))
@@ -528,13 +519,17 @@ static relume_status sweep_captures(struct sweep *sweep, relume_capture *capture
     const relume_capture *both[] = {capture, test, NULL};
     struct work w = {.sweep = sweep, .capture = capture};
     const uint64_t memory = (uint64_t)args_int(sweep->args, "--memory", 1024) << 20;
-    relume_status status = sweep_resume_open(&w.resume, sweep, both, memory);
+    relume_status status = sweep->out ? sweep_check(sweep) : RELUME_OK;
+    if (!status)
+        status = sweep_resume_open(&w.resume, sweep, both, memory);
     if (!status && !all_known(sweep))
         status = measure_all(&w, test);
     if (status == RELUME_ECANCEL && sweep->out)
         note(sweep->args, "finished rows are kept; the same command goes on from there");
+    if (!status)
+        status = finish(sweep, w.resume);
     sweep_resume_close(&w.resume);
-    return status ? status : finish(sweep);
+    return status;
 }
 
 static relume_status open_capture(const struct args *args, const char *path, relume_capture **out)

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 static const struct option options[] = {
-    {"-o", OPTION_TEXT, "DIR", "the capture folder to make", 0, 0},
+    {"-o", OPTION_OUTPUT, "DIR", "the capture folder to make", 0, 0},
     {"--size", OPTION_INT, "N",
      "width (planar, slab, cube face) or height (panoramas); default 256", 1, 65536},
     {"--views", OPTION_TEXT, "GxG", "slab: grid of cameras; default 5x5", 0, 0},
@@ -34,7 +34,7 @@ static const struct option options[] = {
      16},
     {"--directions", OPTION_TEXT, "SET",
      "BTF: of views and lights: bonn (default), dome, coarse, or a file of directions", 0, 0},
-    {"--force", OPTION_FLAG, NULL, "replace an existing folder", 0, 0},
+    {"--force", OPTION_FLAG, NULL, "replace a folder that relume made", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
 

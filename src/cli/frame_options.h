@@ -15,7 +15,7 @@
      0,                                                                                            \
      0},                                                                                           \
         {"--rig", OPTION_TEXT, "FILE", "lights of a rig (JSON), before those of --light", 0, 0},   \
-        {"--save-rig", OPTION_TEXT, "FILE", "write all lights as a rig", 0, 0},                    \
+        {"--save-rig", OPTION_OUTPUT, "FILE", "write all lights as a rig", 0, 0},                  \
     {                                                                                              \
         "--assume-depth", OPTION_NUMBER, "D",                                                      \
             "near lights, file without depth: the surface is this far from the eye", 1e-6, 1e9     \

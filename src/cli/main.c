@@ -51,14 +51,13 @@ struct args {
 
 // ---------------------------------------------------------------- messages and progress
 
-static FILE *people;  // standard error
-static volatile sig_atomic_t interrupted;
+static FILE *people;                       // standard error
+static volatile sig_atomic_t interrupted;  // the signal that asked to stop, 0: none
 static bool bar_drawn;
 
 static void on_interrupt(int signal_number)
 {
-    (void)signal_number;
-    interrupted = 1;
+    interrupted = signal_number;
 }
 
 static void clear_bar(void)
@@ -100,7 +99,7 @@ static bool on_prefixed_progress(void *user, const char *what, double done)
 const struct relume_log *prefix_log(struct prefix_log *p, const struct relume_log *to,
                                     const char *prefix)
 {
-    *p = (struct prefix_log){{on_prefixed, on_prefixed_progress, p}, to, prefix};
+    *p = (struct prefix_log){{on_prefixed, on_prefixed_progress, p, to->inputs}, to, prefix};
     return &p->log;
 }
 
@@ -310,7 +309,7 @@ static relume_status check_value(struct given *g)
     const struct option *o = g->option;
     if (!*g->text)
         return usage_error("%s: expected a value (%s); found an empty one", o->name, o->argument);
-    if (o->kind == OPTION_TEXT)
+    if (o->kind == OPTION_TEXT || o->kind == OPTION_OUTPUT)
         return RELUME_OK;
     char *end;
     errno = 0;
@@ -415,6 +414,14 @@ static relume_status unknown_command(const char *given)
 
 // ---------------------------------------------------------------- main
 
+// By the signal itself, so that shells and scripts see what ended the program.
+static int die_of(int signal_number)
+{
+    signal(signal_number, SIG_DFL);
+    raise(signal_number);
+    return 128 + signal_number;
+}
+
 static int exit_code(relume_status status)
 {
     switch (status) {
@@ -426,11 +433,25 @@ static int exit_code(relume_status status)
     case RELUME_ESYSTEM: return 3;
     case RELUME_ECANCEL:
         fputs("relume: interrupted; nothing was written\n", people);
-        signal(SIGINT, SIG_DFL);
-        raise(SIGINT);
-        return 130;
+        return die_of(interrupted ? interrupted : SIGINT);
     }
     return 3;
+}
+
+// What the command line names and is there is read, except what it says is written. Files that
+// these name in turn are noted as they are opened.
+static relume_status note_inputs(struct args *args)
+{
+    relume_status status = relume_inputs_create(&args->log.inputs);
+    for (int i = 0; !status && i < args->input_count; i++)
+        relume_inputs_add(args->log.inputs, args->inputs[i]);
+    for (int i = 0; !status && i < args->given_count; i++)
+        if (args->given[i].option->kind == OPTION_TEXT)
+            relume_inputs_add(args->log.inputs, args->given[i].text);
+    for (int i = 0; !status && i < args->given_count; i++)
+        if (args->given[i].option->kind == OPTION_OUTPUT)
+            status = relume_file_check(args->given[i].text, &args->log);
+    return status;
 }
 
 static relume_status run_command(struct args *args, int argc, char **argv)
@@ -447,7 +468,8 @@ static relume_status run_command(struct args *args, int argc, char **argv)
     if (args->input_count < c->min_inputs || args->input_count > c->max_inputs)
         return usage_error("%s: expected 'relume %s %s'; found %d input%s", c->name, c->name,
                            c->usage, args->input_count, args->input_count == 1 ? "" : "s");
-    return c->run(args);
+    const relume_status noted = note_inputs(args);
+    return noted ? noted : c->run(args);
 }
 
 static bool flush_stdout(void)
@@ -500,15 +522,24 @@ static void keep_freed_memory(void)
 #endif
 }
 
+// Each asks to stop and clean up; a second one of its kind stops at once. nohup's choice is kept.
+static void listen_to_signals(void)
+{
+    const struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = SA_RESETHAND};
+    struct sigaction before;
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    if (!sigaction(SIGHUP, NULL, &before) && before.sa_handler != SIG_IGN)
+        sigaction(SIGHUP, &action, NULL);
+}
+
 int main(int argc, char **argv)
 {
     keep_freed_memory();
     occupy_standard_streams();
     keep_stderr_for_people();
     allow_many_files();
-    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = SA_RESETHAND};
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    listen_to_signals();
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);  // a file size limit is a write error, not a death
 
@@ -523,7 +554,7 @@ int main(int argc, char **argv)
     struct args *args = calloc(1, sizeof *args);
     if (!args)
         return exit_code(RELUME_ENOMEM);
-    args->log = (struct relume_log){on_message, on_progress, args};
+    args->log = (struct relume_log){on_message, on_progress, args, NULL};
     for (const struct command *const *c = commands; *c; c++)
         if (!strcmp((*c)->name, argv[1]))
             args->command = *c;
@@ -532,6 +563,7 @@ int main(int argc, char **argv)
     clear_bar();
     if (!flush_stdout() && !status)
         status = RELUME_EIO;
+    relume_inputs_destroy(&args->log.inputs);
     free(args);
     return exit_code(status);
 }

@@ -48,6 +48,8 @@ void sweep_print_csv(const struct sweep *sweep, FILE *out);
 void sweep_print_json(const struct sweep *sweep, FILE *out);
 // OUT.csv, OUT.json, OUT.svg and OUT.png.
 relume_status sweep_save(const struct sweep *sweep);
+// Whether one of these is a file that is read: RELUME_EINVAL with a sentence.
+relume_status sweep_check(const struct sweep *sweep);
 
 // OUT.resume: finished rows, one a line, found again by what was swept over.
 typedef struct sweep_resume sweep_resume;
@@ -58,6 +60,9 @@ relume_status sweep_resume_open(sweep_resume **out, struct sweep *sweep,
                                 const relume_capture *const *captures, uint64_t memory);
 // Keep one row that has just been measured. RELUME_EIO.
 relume_status sweep_resume_keep(sweep_resume *resume, const struct sweep_row *row);
+// For what two sweeps must not do at once; NULL is fine.
+void sweep_resume_lock(sweep_resume *resume);
+void sweep_resume_unlock(sweep_resume *resume);
 void sweep_resume_close(sweep_resume **resume);
 
 #endif

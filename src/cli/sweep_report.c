@@ -368,3 +368,15 @@ relume_status sweep_save(const struct sweep *sweep)
         status = save_table(sweep, ".json", sweep_print_json);
     return status ? status : save_diagram(sweep);
 }
+
+relume_status sweep_check(const struct sweep *sweep)
+{
+    static const char *const extensions[] = {".csv", ".json", ".svg", ".png"};
+    relume_status status = RELUME_OK;
+    char path[4096];
+    for (size_t i = 0; !status && i < sizeof extensions / sizeof *extensions; i++) {
+        snprintf(path, sizeof path, "%s%s", sweep->out, extensions[i]);
+        status = relume_file_check(path, args_log(sweep->args));
+    }
+    return status;
+}

@@ -2,13 +2,15 @@
 //
 // The file is text: a first line that says what it is, then one line a row: a key, the figures as
 // hexadecimal floats, and a sum over the line. The key is a hash (FNV-1a) of everything that the
-// figures depend on, so that a changed photograph or option finds nothing.
+// figures depend on, so that a changed photograph or option finds nothing. Lines are only ever
+// appended, each under the file's lock, so that several sweeps may keep theirs in one file.
 #include "sweep.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -175,6 +177,19 @@ static bool finish_writing(sweep_resume *r)
     return !fflush(r->file) && !ferror(r->file) && !fsync(fileno(r->file));
 }
 
+// A file system without locks has one sweep at a time.
+void sweep_resume_lock(sweep_resume *r)
+{
+    if (r && r->file)
+        (void)flock(fileno(r->file), LOCK_EX);
+}
+
+void sweep_resume_unlock(sweep_resume *r)
+{
+    if (r && r->file)
+        (void)flock(fileno(r->file), LOCK_UN);
+}
+
 // A line that was being written when the machine stopped stays alone.
 static bool end_last_line(sweep_resume *r)
 {
@@ -198,8 +213,13 @@ relume_status sweep_resume_keep(sweep_resume *resume, const struct sweep_row *ro
                            row->bytes_per_pixel, row->before_db, row->quality.psnr_db,
                            row->quality.psnr_pooled_db, row->quality.ssim, row->seconds,
                            resume->sweep->measured);
-    fprintf(resume->file, "%s %" PRIx64 "\n", line, line_sum(line, (size_t)n));
-    return finish_writing(resume) ? RELUME_OK : cannot_write(resume);
+    sweep_resume_lock(resume);
+    bool good = end_last_line(resume);
+    good = good && fprintf(resume->file, "%s %" PRIx64 "\n", line, line_sum(line, (size_t)n)) > 0;
+    good = finish_writing(resume) && good;
+    const relume_status status = good ? RELUME_OK : cannot_write(resume);
+    sweep_resume_unlock(resume);
+    return status;
 }
 
 // ---------------------------------------------------------------- opening
@@ -227,10 +247,12 @@ relume_status sweep_resume_open(sweep_resume **out, struct sweep *sweep,
     r->key = hash_number(r->key, sweep->test ? -1 : sweep->leave_out);
     r->key = hash_number(r->key, sweep->domain);
     r->key = hash_number(r->key, (int64_t)memory);
-    r->file = fopen(r->path, "r+e");
-    if (!r->file && errno == ENOENT)
-        r->file = fopen(r->path, "w+e");
-    relume_status status = r->file ? RELUME_OK : cannot_write(r);
+    relume_status status = relume_file_check(r->path, args_log(sweep->args));
+    if (!status) {
+        r->file = fopen(r->path, "a+e");
+        status = r->file ? RELUME_OK : cannot_write(r);
+    }
+    sweep_resume_lock(r);
     if (!status && !read_rows(r, sweep)) {
         warn(r, "not written by relume sweep; it is left alone and no finished rows are kept");
         fclose(r->file);
@@ -238,6 +260,7 @@ relume_status sweep_resume_open(sweep_resume **out, struct sweep *sweep,
     }
     if (!status && r->file && !(end_last_line(r) && finish_writing(r)))
         status = cannot_write(r);
+    sweep_resume_unlock(r);
     if (status)
         sweep_resume_close(&r);
     *out = r;

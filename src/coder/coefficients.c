@@ -2,7 +2,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/outfile.h"
+#include "base/scratch.h"
 #include "image/half.h"
 #include "image/unpack.h"
 

@@ -5,7 +5,7 @@
 // (coefficients.h).
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/outfile.h"
+#include "base/scratch.h"
 #include "base/thread.h"
 #include "coder/basis.h"
 #include "coder/census.h"

@@ -1,6 +1,6 @@
 // heldout_books.c - coefficients in memory as codebooks would keep them
 #include "base/memory.h"
-#include "base/outfile.h"
+#include "base/scratch.h"
 #include "coder/coefficients.h"
 #include "coder/heldout.h"
 #include "image/half.h"

@@ -1,5 +1,6 @@
 #include "exchange/bytes.h"
 
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 
@@ -13,7 +14,7 @@ relume_status bytes_load(struct bytes *out, const char *path, const struct relum
 {
     struct stat st;
     *out = (struct bytes){0};
-    FILE *f = fopen(path, "rb");
+    FILE *f = input_open(path, log);
     if (!f)
         return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
     relume_status status = RELUME_OK;

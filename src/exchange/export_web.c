@@ -10,7 +10,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/outfile.h"
+#include "base/outdir.h"
 
 #include <limits.h>
 #include <math.h>

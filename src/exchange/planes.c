@@ -2,7 +2,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/outfile.h"
+#include "base/scratch.h"
 #include "base/thread.h"
 #include "math/lsq.h"
 

@@ -1,6 +1,7 @@
 // exr.c - the one file that knows OpenEXR (its C core)
 #include "image/exr.h"
 
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"
@@ -351,6 +352,7 @@ relume_status exr_open(exr_file **out, const char *path, const struct relume_lim
     init.error_handler_fn = ignore_error;
     init.max_image_width = l.max_side;
     init.max_image_height = l.max_side;
+    input_note(log, path);
     const exr_result_t r = exr_start_read(&file->exr, path, &init);
     relume_status status;
     if (r == EXR_ERR_OUT_OF_MEMORY)

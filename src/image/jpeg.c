@@ -1,6 +1,7 @@
 // jpeg.c - the one file that knows libjpeg
 #include "image/jpeg.h"
 
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/picture_format.h"
@@ -170,7 +171,7 @@ relume_status jpeg_picture_open(picture_reader **out, const char *path,
     }
     const struct picture_info *info = &p->reader.info;
     relume_status status = RELUME_OK;
-    p->file = fopen(path, "rb");
+    p->file = input_open(path, log);
     if (!p->file)
         status = log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
     else if (!read_header(p))
@@ -289,7 +290,7 @@ static relume_status load(uint8_t **out, size_t *size, const char *path,
                           const struct relume_log *log)
 {
     struct stat st;
-    FILE *f = fopen(path, "rb");
+    FILE *f = input_open(path, log);
     *out = NULL;
     if (!f)
         return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));

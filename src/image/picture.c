@@ -2,6 +2,7 @@
 // when the first file needs it
 #include "image/picture.h"
 
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/module.h"
@@ -46,7 +47,7 @@ static relume_status look(char bytes[MAGIC], const char *path, const struct relu
         return log_fail(log, RELUME_EDATA, "%s: no such file; expected an image", path);
     if (!S_ISREG(s.st_mode) || s.st_size == 0)
         return log_fail(log, RELUME_EDATA, "%s: empty file or folder; expected an image", path);
-    FILE *f = fopen(path, "rb");
+    FILE *f = input_open(path, log);
     if (!f)
         return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
     if (fread(bytes, 1, MAGIC, f) < MAGIC)

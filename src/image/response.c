@@ -1,6 +1,7 @@
 // response.c - response curves: evaluated, made of known curves, read and written
 #include <relume/response.h>
 
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"
@@ -79,7 +80,7 @@ relume_status relume_response_load(struct relume_response *out, const char *path
     char line[256];
     int found;
     *out = (struct relume_response){0};
-    FILE *f = fopen(path, "re");
+    FILE *f = input_open(path, log);
     if (!f)
         return log_fail(log, RELUME_EDATA, "%s: cannot be opened; expected a response-curve file",
                         path);

@@ -5,6 +5,7 @@
 // it; what is left out by symmetry is folded back when a value is asked for.
 #include <relume/light.h>
 
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 
@@ -294,7 +295,7 @@ relume_status relume_ies_parse(relume_ies **out, const char *text, size_t size, 
 relume_status relume_ies_load(relume_ies **out, const char *path, const struct relume_log *log)
 {
     *out = NULL;
-    FILE *file = fopen(path, "rb");
+    FILE *file = input_open(path, log);
     if (!file)
         return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
     char *text = mem_array(MOST_BYTES + 1, 1);

@@ -1,5 +1,6 @@
 // mesh_obj.c - Wavefront OBJ: v, vt, vn, f, mtllib, usemtl and g; every other keyword is passed
 // over
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "scene/mesh_read.h"
@@ -157,7 +158,7 @@ static relume_status read_library(struct obj *o, const char *name)
     if (!path)
         return RELUME_ENOMEM;
     if (!o->out->picture)
-        o->out->picture = mesh_mtl_picture(path);
+        o->out->picture = mesh_mtl_picture(path, o->log);
     free(path);
     return RELUME_OK;
 }
@@ -268,9 +269,9 @@ relume_status mesh_read_obj(struct mesh_file *out, const char *text, size_t size
     return status;
 }
 
-char *mesh_mtl_picture(const char *path)
+char *mesh_mtl_picture(const char *path, const struct relume_log *log)
 {
-    FILE *file = fopen(path, "r");
+    FILE *file = input_open(path, log);
     char line[4096], *picture = NULL;
     while (file && !picture && fgets(line, sizeof line, file)) {
         char *text = line + strspn(line, " \t");

@@ -1,5 +1,6 @@
 #include "scene/mesh_other.h"
 
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/module.h"
 
@@ -32,6 +33,7 @@ relume_status mesh_read_other(struct mesh_file *out, const char *path, const str
 {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
     char why[MESH_OTHER_WHY] = "";
+    input_note(log, path);
     const relume_status status = check_file(path, log);
     if (status)
         return status;

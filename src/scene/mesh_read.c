@@ -1,5 +1,6 @@
 #include "scene/mesh_read.h"
 
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "scene/mesh_other.h"
@@ -51,7 +52,7 @@ relume_status mesh_load_text(char **out, size_t *size, const char *path,
                              const struct relume_log *log)
 {
     *out = NULL;
-    FILE *file = fopen(path, "rb");
+    FILE *file = input_open(path, log);
     struct stat s;
     if (!file || fstat(fileno(file), &s)) {
         const int error = errno;

@@ -2,7 +2,7 @@
 #include "base/arena.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "base/outfile.h"
+#include "base/outdir.h"
 #include "base/thread.h"
 #include "scene/render.h"
 

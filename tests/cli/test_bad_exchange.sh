@@ -105,7 +105,7 @@ no 'terms that ptm has not' 2 '5 coefficients; expected 3 or 6' --type ptm --coe
 no 'a PSNR out of reach' 1 'out: 99 dB cannot be reached.*found at most' --psnr 99
 no 'a size out of reach' 1 'cannot be reached; found at least' --bytes-per-pixel 0.001
 expect_fail '.ptm of JPEG planes on a full device' 3 '/dev/full' - "$RELUME" export ptm.exr --to ptm -o /dev/full --quality 80
-mkdir full; : >full/file
+"$RELUME" export pca.exr -o full --quality 70 2>/dev/null
 expect_fail 'a folder that is not empty' 2 'full: already exists' - "$RELUME" export pca.exr -o full
 expect_ok 'a folder that is not empty, --force' - "$RELUME" export pca.exr -o full --force --quality 60
 expect_fail '.ptm on a full device' 3 '/dev/full' - "$RELUME" export pca.exr --to ptm -o /dev/full

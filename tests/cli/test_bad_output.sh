@@ -62,8 +62,8 @@ expect_fail 'too few open files' 1 'good.*' few.exr sh -c "ulimit -n 10; exec $e
 mkdir full && echo x >full/keep
 expect_fail 'synth into a folder with files' 2 'full: already exists.*--force' - "$RELUME" synth box -o full --size 8 --lights 1 --samples 1
 if [ -f full/keep ]; then ok 'the files are kept'; else not_ok 'the files are kept' 'they are gone'; fi
-expect_ok 'synth --force' - "$RELUME" synth box -o full --size 8 --lights 1 --samples 1 --force
-if [ -f full/capture.json ] && [ ! -e full/keep ]; then ok '--force replaces'; else not_ok '--force replaces' "$(ls full)"; fi
+expect_fail 'synth --force into a folder that relume did not make' 2 'full: not made by relume' - "$RELUME" synth box -o full --size 8 --lights 1 --samples 1 --force
+if [ -f full/keep ]; then ok '--force keeps them too'; else not_ok '--force keeps them too' 'they are gone'; fi
 expect_fail 'synth into nowhere' 3 'nowhere/deep: cannot be created' nowhere "$RELUME" synth box -o nowhere/deep --size 8 --lights 1
 expect_fail 'unknown scene' 2 "unknown scene 'tea'" none "$RELUME" synth tea -o none
 

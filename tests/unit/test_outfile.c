@@ -1,6 +1,8 @@
 #include "test.h"
 
+#include "base/inputs.h"
 #include "base/outfile.h"
+#include "base/scratch.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -114,49 +116,80 @@ static void test_size_limit(void **state)
     assert_int_equal(entries(folder), 0);
 }
 
-static void put(const outdir *dir, const char *name)
-{
-    char where[160];
-    snprintf(where, sizeof where, "%s/%s", outdir_path(dir), name);
-    test_write(where, name, strlen(name));
-}
-
-static void test_folders(void **state)
+static void test_replaces(void **state)
 {
     (void)state;
-    outdir *dir;
-    char where[160], slash[128];
+    char link[128], name[320];
+    struct stat s;
     struct test_log log;
     test_log_init(&log);
-    snprintf(slash, sizeof slash, "%s//", path);
-    CHECK_OK(outdir_open(&dir, slash, false, NULL));
-    put(dir, "a");
-    assert_int_not_equal(access(path, F_OK), 0);
-    CHECK_OK(outdir_commit(&dir));
-    assert_int_equal(entries(path), 1);
+    test_write(path, "old", 3);
+    chmod(path, 0640);
+    snprintf(link, sizeof link, "%s/link", folder);
+    assert_int_equal(symlink("out", link), 0);
+    CHECK_OK(outfile_save(link, "new", 3, NULL));  // a link stays one
+    expect_content(path, "new");
+    assert_int_equal(lstat(link, &s), 0);
+    assert_true(S_ISLNK(s.st_mode));
+    assert_int_equal(stat(path, &s), 0);
+    assert_int_equal(s.st_mode & 0777, 0640);
+    unlink(path);
+    CHECK_OK(outfile_save(link, "there", 5, NULL));  // and one that led nowhere
+    expect_content(path, "there");
+    unlink(link);
+    symlink("link", link);
+    assert_int_equal(outfile_save(link, "x", 1, &log.log), RELUME_EIO);
+    assert_non_null(strstr(log.text, "link: cannot be written; Too many levels"));
+    unlink(link);
+    unlink(path);
 
-    assert_int_equal(outdir_open(&dir, path, false, &log.log), RELUME_EINVAL);
-    assert_null(dir);
-    assert_non_null(strstr(log.text, "--force"));
-    CHECK_OK(outdir_open(&dir, path, true, NULL));
-    put(dir, "b");
-    outdir_abort(&dir);
-    snprintf(where, sizeof where, "%s/a", path);
-    expect_content(where, "a");
-    CHECK_OK(outdir_open(&dir, path, true, NULL));
-    put(dir, "b");
-    CHECK_OK(outdir_commit(&dir));
-    assert_int_not_equal(access(where, F_OK), 0);
-    snprintf(where, sizeof where, "%s/b", path);
-    expect_content(where, "b");
+    snprintf(name, sizeof name, "%s/%0255d", folder, 0);  // as long as a name may be
+    CHECK_OK(outfile_save(name, "a", 1, NULL));
+    CHECK_OK(outfile_save(name, "b", 1, NULL));
+    expect_content(name, "b");
+    unlink(name);
+    assert_int_equal(entries(folder), 0);
+}
 
-    unlink(where);  // an empty folder may be filled
-    CHECK_OK(outdir_open(&dir, path, false, NULL));
-    put(dir, "c");
-    CHECK_OK(outdir_commit(&dir));
-    assert_int_equal(entries(path), 1);
-    assert_int_equal(entries(folder), 1);
-    assert_int_equal(outdir_open(&dir, "/nowhere/at/all", false, &log.log), RELUME_EIO);
+static void test_inputs(void **state)
+{
+    (void)state;
+    relume_inputs *inputs;
+    char hard[128];
+    struct test_log log;
+    test_log_init(&log);
+    CHECK_OK(relume_inputs_create(&inputs));
+    log.log.inputs = inputs;
+    test_write(path, "photo", 5);
+    snprintf(hard, sizeof hard, "%s/hard", folder);
+    assert_int_equal(link(path, hard), 0);
+    outfile *f;
+    CHECK_OK(outfile_open(&f, hard, &log.log));
+    CHECK_OK(outfile_write(f, "x", 1, 0));
+    fclose(input_open(path, &log.log));  // met after the output was opened
+    assert_int_equal(outfile_commit(&f), RELUME_EINVAL);
+    assert_non_null(strstr(log.text, "hard: is read here"));
+    assert_int_equal(outfile_open(&f, path, &log.log), RELUME_EINVAL);
+    assert_int_equal(relume_file_check(hard, &log.log), RELUME_EINVAL);
+    CHECK_OK(relume_file_check(folder, &log.log));
+    expect_content(path, "photo");
+    for (int i = 0; i < 1000; i++) {  // more than the table begins with
+        char many[128];
+        snprintf(many, sizeof many, "%s/%d", folder, i);
+        test_write(many, "", 0);
+        relume_inputs_add(inputs, many);
+        assert_int_equal(relume_file_check(many, &log.log), RELUME_EINVAL);
+        assert_int_equal(relume_file_check(path, &log.log), RELUME_EINVAL);
+    }
+    for (int i = 0; i < 1000; i++) {
+        char many[128];
+        snprintf(many, sizeof many, "%s/%d", folder, i);
+        unlink(many);
+    }
+    unlink(path);
+    unlink(hard);
+    assert_int_equal(entries(folder), 0);
+    relume_inputs_destroy(&inputs);
 }
 
 static void test_scratch(void **state)
@@ -183,7 +216,8 @@ int main(void)
         cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_size_limit),
         cmocka_unit_test(test_scratch),
-        cmocka_unit_test(test_folders),
+        cmocka_unit_test(test_replaces),
+        cmocka_unit_test(test_inputs),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -1,0 +1,157 @@
+#include "base/inputs.h"
+
+#include "base/beside.h"
+#include "base/log.h"
+#include "base/memory.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+struct identity {
+    dev_t device;
+    ino_t number;
+};
+
+struct relume_inputs {
+    pthread_mutex_t mutex;
+    struct identity *item;
+    size_t count, room;
+    bool incomplete;  // memory was short: everything there counts as read
+};
+
+relume_status relume_inputs_create(relume_inputs **out)
+{
+    *out = mem_zeroed(1, sizeof **out);
+    if (!*out)
+        return RELUME_ENOMEM;
+    pthread_mutex_init(&(*out)->mutex, NULL);
+    return RELUME_OK;
+}
+
+void relume_inputs_destroy(relume_inputs **inputs)
+{
+    relume_inputs *i = *inputs;
+    *inputs = NULL;
+    if (!i)
+        return;
+    pthread_mutex_destroy(&i->mutex);
+    free(i->item);
+    free(i);
+}
+
+// Open addressing; `room` is a power of two, a free place has the number 0, which no file has.
+static struct identity *find(struct identity *item, size_t room, struct identity id)
+{
+    size_t at = (size_t)(id.number * 0x9e3779b97f4a7c15u ^ id.device) & (room - 1);
+    while (item[at].number && (item[at].number != id.number || item[at].device != id.device))
+        at = (at + 1) & (room - 1);
+    return &item[at];
+}
+
+static bool grow(relume_inputs *i)
+{
+    const size_t room = i->room ? 2 * i->room : 64;
+    struct identity *item = mem_zeroed(room, sizeof *item);
+    if (!item)
+        return false;
+    for (size_t n = 0; n < i->room; n++)
+        if (i->item[n].number)
+            *find(item, room, i->item[n]) = i->item[n];
+    free(i->item);
+    i->item = item;
+    i->room = room;
+    return true;
+}
+
+static void add(relume_inputs *i, struct identity id)
+{
+    if (2 * (i->count + 1) > i->room && !grow(i)) {
+        i->incomplete = true;
+        return;
+    }
+    struct identity *place = find(i->item, i->room, id);
+    i->count += !place->number;
+    *place = id;
+}
+
+// Devices and pipes cannot be replaced, and a terminal may well be read and written.
+void relume_inputs_add(relume_inputs *inputs, const char *path)
+{
+    struct stat s;
+    if (!inputs || stat(path, &s) || !(S_ISREG(s.st_mode) || S_ISDIR(s.st_mode)))
+        return;
+    pthread_mutex_lock(&inputs->mutex);
+    add(inputs, (struct identity){s.st_dev, s.st_ino});
+    pthread_mutex_unlock(&inputs->mutex);
+}
+
+void input_note(const struct relume_log *log, const char *path)
+{
+    if (inputs_of(log) && !beside_holds(path))  // what is being made here is not an input
+        relume_inputs_add(log->inputs, path);
+}
+
+int input_descriptor(const char *path, const struct relume_log *log)
+{
+    input_note(log, path);
+    return open(path, O_RDONLY | O_CLOEXEC);
+}
+
+FILE *input_open(const char *path, const struct relume_log *log)
+{
+    input_note(log, path);
+    return fopen(path, "rbe");
+}
+
+static bool holds(relume_inputs *i, const struct stat *s)
+{
+    pthread_mutex_lock(&i->mutex);
+    const struct identity id = {s->st_dev, s->st_ino};
+    const bool found = i->incomplete || (i->room && find(i->item, i->room, id)->number);
+    pthread_mutex_unlock(&i->mutex);
+    return found;
+}
+
+// The first thing in or below `path` that is read, as a new string; NULL when there is none. Links
+// are not followed: removing them takes nothing away.
+static char *find_read(relume_inputs *inputs, const char *path)
+{
+    struct stat s;
+    if (lstat(path, &s))
+        return NULL;
+    if (holds(inputs, &s))
+        return mem_text(path);
+    DIR *dir = S_ISDIR(s.st_mode) ? opendir(path) : NULL;
+    char *found = NULL;
+    for (struct dirent *e; dir && !found && (e = readdir(dir));) {
+        if (!strcmp(e->d_name, ".") || !strcmp(e->d_name, ".."))
+            continue;
+        char *inner = mem_format("%s/%s", path, e->d_name);
+        found = inner ? find_read(inputs, inner) : mem_text(path);
+        free(inner);
+    }
+    if (dir)
+        closedir(dir);
+    return found;
+}
+
+relume_status input_refuse(const char *path, const char *output, const struct relume_log *log)
+{
+    char *found = inputs_of(log) ? find_read(log->inputs, path) : NULL;
+    if (!found)
+        return RELUME_OK;
+    const char *inner = strcmp(found, path) ? found + strlen(path) + 1 : NULL;
+    const relume_status status =
+        inner ? log_fail(log, RELUME_EINVAL,
+                         "%s: holds %s, which is read here and would be lost; choose another "
+                         "folder",
+                         output, inner)
+              : log_fail(log, RELUME_EINVAL,
+                         "%s: is read here and would be lost; choose another name", output);
+    free(found);
+    return status;
+}

@@ -1,0 +1,103 @@
+#include "base/scratch.h"
+
+#include "base/memory.h"
+#include "base/tree.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+bool scratch_write(int fd, const void *bytes, size_t size, off_t offset)
+{
+    const char *from = bytes;
+    while (size) {
+        const ssize_t n = pwrite(fd, from, size, offset);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            return false;
+        from += n;
+        offset += n;
+        size -= (size_t)n;
+    }
+    return true;
+}
+
+bool scratch_read(int fd, void *bytes, size_t size, off_t offset)
+{
+    char *to = bytes;
+    while (size) {
+        const ssize_t n = pread(fd, to, size, offset);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0) {
+            errno = n ? errno : EIO;
+            return false;
+        }
+        to += n;
+        offset += n;
+        size -= (size_t)n;
+    }
+    return true;
+}
+
+const char *scratch_folder(void)
+{
+    const char *temp = getenv("TMPDIR");
+    return temp && *temp ? temp : "/tmp";
+}
+
+// Where a file system knows no files without names, one has a name for a moment.
+static int open_unnamed(const char *folder)
+{
+    int fd = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (fd >= 0 || (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL && errno != ENOENT))
+        return fd;
+    char *name = mem_format("%s/.relume-XXXXXX", folder);
+    fd = name ? mkostemp(name, O_CLOEXEC) : -1;
+    if (fd >= 0)
+        unlink(name);
+    else if (!name)
+        errno = ENOMEM;
+    free(name);
+    return fd;
+}
+
+static bool is_device(const char *path)
+{
+    struct stat s;
+    return !stat(path, &s) && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode);
+}
+
+int scratch_open(const char *near)
+{
+    if (!near || is_device(near))
+        return open_unnamed(scratch_folder());
+    char *folder = tree_parent(near);
+    const int fd = folder ? open_unnamed(folder) : -1;
+    if (!folder)
+        errno = ENOMEM;
+    free(folder);
+    return fd;
+}
+
+void *scratch_map(const char *near, size_t size)
+{
+    const int fd = scratch_open(near);
+    if (fd < 0)
+        return NULL;
+    errno = posix_fallocate(fd, 0, (off_t)size);
+    void *memory = errno ? MAP_FAILED : mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+    const int error = errno;
+    close(fd);
+    errno = error;
+    return memory == MAP_FAILED ? NULL : memory;
+}
+
+void scratch_unmap(void *memory, size_t size)
+{
+    if (memory)
+        munmap(memory, size);
+}

@@ -1,0 +1,193 @@
+#include "base/tree.h"
+
+#include "base/memory.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <ftw.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+bool tree_rename(const char *from, const char *to, enum tree_rename how)
+{
+#ifdef RENAME_EXCHANGE
+    if (how == TREE_EXCHANGE)
+        return !renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_EXCHANGE);
+#endif
+    struct stat s, t;
+    if (how == TREE_EXCHANGE) {
+        errno = ENOSYS;
+        return false;
+    }
+    // rename() replaces no folder that has anything in it, and no file by a folder.
+    if (how == TREE_NEW && !lstat(to, &t) && !lstat(from, &s) && !S_ISDIR(s.st_mode)) {
+        errno = EEXIST;
+        return false;
+    }
+    return !rename(from, to);
+}
+
+// ---------------------------------------------------------------- names
+
+static char *without_slashes(const char *path)
+{
+    char *copy = mem_text(path);
+    for (size_t n = copy ? strlen(copy) : 0; n > 1 && copy[n - 1] == '/'; n--)
+        copy[n - 1] = '\0';
+    return copy;
+}
+
+char *tree_parent(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash)
+        return mem_text(".");
+    return slash == path ? mem_text("/") : mem_format("%.*s", (int)(slash - path), path);
+}
+
+char *tree_base(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return mem_text(slash ? slash + 1 : path);
+}
+
+// One step along a link; the old string is freed.
+static char *follow(char *path)
+{
+    char to[PATH_MAX];
+    const ssize_t n = readlink(path, to, sizeof to - 1);
+    char *parent = n > 0 && *to != '/' ? tree_parent(path) : NULL;
+    char *next = NULL;
+    if (n > 0) {
+        to[n] = '\0';
+        next = *to == '/' ? without_slashes(to) : parent ? mem_format("%s/%s", parent, to) : NULL;
+    }
+    free(parent);
+    free(path);
+    return next;
+}
+
+char *tree_resolve(const char *path)
+{
+    enum { MOST = 40 };  // as the kernel's own bound
+    struct stat s;
+    char *at = without_slashes(path);
+    for (int i = 0; at && !lstat(at, &s) && S_ISLNK(s.st_mode); i++) {
+        if (i == MOST) {
+            free(at);
+            errno = ELOOP;
+            return NULL;
+        }
+        at = follow(at);
+    }
+    if (!at)
+        errno = errno ? errno : ENOMEM;
+    return at;
+}
+
+// ---------------------------------------------------------------- contents
+
+static struct tree_entry *more(struct tree_list *list)
+{
+    if (list->count == list->room) {
+        const size_t room = list->room ? 2 * list->room : 64;
+        struct tree_entry *item = mem_resize(list->item, room, sizeof *item);
+        if (!item)
+            return NULL;
+        list->item = item;
+        list->room = room;
+    }
+    return &list->item[list->count++];
+}
+
+static bool list_into(struct tree_list *out, const char *root, const char *within);
+
+// `within` is "" or ends in a slash.
+static bool list_entry(struct tree_list *out, const char *root, const char *within,
+                       const char *name)
+{
+    struct tree_entry *e = more(out);
+    if (!e)
+        return false;
+    *e = (struct tree_entry){.name = mem_format("%s%s", within, name)};
+    char *path = e->name ? mem_format("%s/%s", root, e->name) : NULL;
+    struct stat s;
+    const bool good = path && !lstat(path, &s);
+    free(path);
+    if (!good)
+        return false;
+    e->is_folder = S_ISDIR(s.st_mode);
+    e->size = S_ISREG(s.st_mode) ? (int64_t)s.st_size : -1;
+    char *inner = e->is_folder ? mem_format("%s/", e->name) : NULL;
+    const bool listed = !e->is_folder || (inner && list_into(out, root, inner));
+    free(inner);
+    return listed;
+}
+
+static bool list_into(struct tree_list *out, const char *root, const char *within)
+{
+    char *path = mem_format("%s/%s", root, within);
+    DIR *dir = path ? opendir(path) : NULL;
+    bool good = dir;
+    for (struct dirent *e; good && (e = readdir(dir));)
+        if (strcmp(e->d_name, ".") && strcmp(e->d_name, ".."))
+            good = list_entry(out, root, within, e->d_name);
+    const int error = errno;
+    if (dir)
+        closedir(dir);
+    free(path);
+    errno = error;
+    return good;
+}
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(((const struct tree_entry *)a)->name, ((const struct tree_entry *)b)->name);
+}
+
+bool tree_list(struct tree_list *out, const char *path)
+{
+    *out = (struct tree_list){0};
+    if (!list_into(out, path, ""))
+        return false;
+    if (out->count)
+        qsort(out->item, out->count, sizeof *out->item, by_name);
+    return true;
+}
+
+void tree_list_free(struct tree_list *list)
+{
+    for (size_t i = 0; i < list->count; i++)
+        free(list->item[i].name);
+    free(list->item);
+    *list = (struct tree_list){0};
+}
+
+// ---------------------------------------------------------------- disk
+
+bool tree_sync(const char *path)
+{
+    const int fd = open(path, O_RDONLY | O_CLOEXEC);
+    const bool good = fd >= 0 && (!fsync(fd) || errno == EINVAL);  // a file system without it
+    const int error = errno;
+    if (fd >= 0)
+        close(fd);
+    errno = error;
+    return good;
+}
+
+static int remove_entry(const char *path, const struct stat *s, int type, struct FTW *walk)
+{
+    (void)s, (void)type, (void)walk;
+    remove(path);
+    return 0;
+}
+
+void tree_remove(const char *path)
+{
+    nftw(path, remove_entry, 16, FTW_DEPTH | FTW_PHYS | FTW_MOUNT);
+}

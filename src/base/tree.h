@@ -1,0 +1,42 @@
+// tree.h - folders as wholes: walked, renamed, flushed, removed
+#ifndef BASE_TREE_H
+#define BASE_TREE_H
+
+#include <relume/base.h>
+
+enum tree_rename {
+    TREE_NEW,      // nothing there may be replaced; an empty folder may
+    TREE_REPLACE,  // as rename() does
+    TREE_EXCHANGE  // the two change places, at once
+};
+// False with errno: EEXIST or ENOTEMPTY when something is there, ENOSYS or EINVAL when the file
+// system cannot exchange.
+bool tree_rename(const char *from, const char *to, enum tree_rename how);
+
+// The folder that `path` lies in, and the last part of it: new strings.
+char *tree_parent(const char *path);
+char *tree_base(const char *path);
+// Where `path` leads when it is a symbolic link, there or not, and without slashes at the end: a
+// new string. NULL with errno, ELOOP among others.
+char *tree_resolve(const char *path);
+
+// One entry of a folder: `name` is relative to it.
+struct tree_entry {
+    char *name;
+    bool is_folder;
+    int64_t size;  // of a file
+};
+struct tree_list {
+    struct tree_entry *item;
+    size_t count, room;
+};
+// All that is in `path`, sorted by name. False with errno; to be freed in either case.
+bool tree_list(struct tree_list *out, const char *path);
+void tree_list_free(struct tree_list *list);
+
+// To disk. False with errno.
+bool tree_sync(const char *path);
+// Remove a file, or a folder with all that is in it; links are removed, never followed.
+void tree_remove(const char *path);
+
+#endif

@@ -1,0 +1,73 @@
+#!/bin/sh
+# Nothing of the user's is ever lost: no command replaces what it reads or what relume did not make,
+# writers of one place do not mix, and stopped runs leave nothing that stays.
+. "$(dirname "$0")/lib.sh"
+"$sphere" cap --size 16 --lights 9 --half || exit 1
+"$sphere" shots --size 24 --lights 9 --format jpg || exit 1
+"$RELUME" encode cap -o file.exr --basis sh --coefficients 4 2>/dev/null || not_ok encode failed
+synth="$RELUME synth box --size 8 --lights 1 --samples 1 -o"
+
+state() { find . ! -name out.txt ! -name err.txt ! -name only.txt -type f -exec md5sum {} + | sort; find . -type d -o -type l | sort; }
+# refused NAME PATTERN COMMAND...: status 2, one sentence, and every file, folder and link is as before
+refused() {
+    name=$1 pattern=$2
+    shift 2
+    state >../before.$$
+    expect_fail "$name" 2 "$pattern" - "$@"
+    state >../after.$$
+    same "$name: nothing changed" ../before.$$ ../after.$$
+    rm -f ../before.$$ ../after.$$
+}
+# kept NAME FILE TEXT
+kept() { if [ "$(cat "$2" 2>&1)" = "$3" ]; then ok "$1"; else not_ok "$1" "$2: $(cat "$2" 2>&1)"; fi; }
+
+# ---- neighbours of an output
+mkdir w.part && echo mine >w.part/keep
+expect_ok 'export beside a folder w.part' - "$RELUME" export file.exr --to relight -o w
+kept 'w.part is kept' w.part/keep mine
+mkdir v.old && echo mine >v.old/keep
+$synth v 2>/dev/null
+expect_ok 'replacing v beside a folder v.old' - $synth v --force
+kept 'v.old is kept' v.old/keep mine
+rm -rf w.part v.old
+
+# ---- what relume did not make
+echo mine >plain
+refused '--force on a file' 'plain: ' $synth plain --force
+mkdir album && echo mine >album/keep
+refused '--force on a folder of the user' 'album: .*not made by relume' $synth album --force
+"$RELUME" synth box --size 8 --lights 1 --samples 1 -o mixed 2>/dev/null && echo mine >mixed/notes.txt
+refused '--force on a folder with a file of the user' 'mixed: .*notes.txt' $synth mixed --force
+mkdir -p mixed2 && rmdir mixed2 && $synth mixed2 2>/dev/null && mkdir -p mixed2/mine
+refused '--force on a folder with a folder of the user' 'mixed2: .*mine' $synth mixed2 --force
+expect_ok '--force on a folder of relume' - $synth w --force
+expect_ok 'an empty folder' - sh -c "mkdir empty; $synth empty"
+
+# ---- what is read
+lp=shots/dirs.lp
+refused 'capture onto its photographs' 'shots' "$RELUME" capture shots/view00/*.jpg --lights $lp -o shots --force
+refused 'capture onto their folder' 'shots/view00' "$RELUME" capture shots/view00/*.jpg --lights $lp -o shots/view00 --force
+refused 'encode onto its .lp' 'cap/dirs.lp: .*read' "$RELUME" encode cap/dirs.lp -o cap/dirs.lp
+refused 'encode onto a photograph' 'light0003.exr: .*read' "$RELUME" encode cap/dirs.lp -o cap/view00/light0003.exr
+refused 'encode onto the manifest' 'capture.json: .*read' "$RELUME" encode cap -o cap/capture.json
+refused 'relight onto its input' 'file.exr: .*read' "$RELUME" relight file.exr -o file.exr
+ln -s file.exr link.exr && ln file.exr hard.exr
+refused 'relight onto a link to its input' '(link|file).exr: .*read' "$RELUME" relight file.exr -o link.exr
+refused 'relight onto a hard link of its input' 'hard.exr: .*read' "$RELUME" relight file.exr -o hard.exr
+refused 'relight a link onto its input' 'file.exr: .*read' "$RELUME" relight link.exr -o file.exr
+refused 'glare onto its input' 'light0000.exr: .*read' "$RELUME" glare cap/view00/light0000.exr -o cap/view00/light0000.exr
+cp cap/view00/light0000.exr sky.exr
+refused 'relight onto its environment' 'sky.exr: .*read' "$RELUME" relight file.exr --light 'env sky.exr' -o sky.exr
+refused 'compare onto an input' 'sky.exr: .*read' "$RELUME" compare sky.exr cap/view00/light0001.exr -o sky.exr
+"$RELUME" export file.exr --to relight -o web 2>/dev/null
+plane=$(find web -name 'plane_0*')
+refused 'import onto a plane' "$plane: .*read" "$RELUME" import web -o "$plane"
+state >../before.$$
+"$RELUME" import web -o web 2>/dev/null && not_ok 'import onto its folder' 'it worked'
+state >../after.$$
+same 'import onto its folder: nothing changed' ../before.$$ ../after.$$
+refused 'sweep onto the manifest' 'capture.json: .*read' "$RELUME" sweep cap -o cap/capture --basis sh --coefficients 4
+mkdir -p deep && $synth deep/made 2>/dev/null && "$RELUME" encode deep/made -o deep/made.exr 2>/dev/null
+refused 'synth onto the folder of its lights' 'deep/made' "$RELUME" synth box --size 8 --lights-from deep/made/capture.json -o deep/made --force
+refused 'synth around it' 'deep: ' "$RELUME" synth box --size 8 --lights-from deep/made/capture.json -o deep --force
+finish

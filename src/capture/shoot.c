@@ -20,23 +20,6 @@ const char *shoot_base_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-relume_status shoot_warn(struct shoot *s, const char *format, ...)
-{
-    char text[1024];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(text, sizeof text, format, list);
-    va_end(list);
-    log_line(s->p.log, RELUME_WARNING, "%s", text);
-    struct relume_shoot *out = s->out;
-    char **grown = mem_resize(out->warning, (size_t)out->warnings + 1, sizeof *grown);
-    if (!grown)
-        return RELUME_ENOMEM;
-    out->warning = grown;
-    out->warning[out->warnings] = mem_text(text);
-    return out->warning[out->warnings++] ? RELUME_OK : RELUME_ENOMEM;
-}
-
 static void forget(struct shoot *s, int i)
 {
     relume_image_destroy(&s->shot[i].small);
@@ -274,11 +257,11 @@ static relume_status name_outliers(struct shoot *s)
     for (int i = 0; i < p->lights && !status; i++) {
         s->out->photo[i].outlier = p->light_residual[i] > fmax(OUTLIER * usual, CONTRADICTION);
         if (s->out->photo[i].outlier)
-            status = shoot_warn(s,
-                                "%s: contradicts the others and its light: matte surfaces miss by "
-                                "%.2f of their albedo, usual are %.2f; damaged, moved, or a lamp "
-                                "elsewhere or of another brightness (--refine-lights)?",
-                                s->shot[i].path, p->light_residual[i], usual);
+            status = shoot_warn_alike(
+                s, ALIKE_MISFIT, p->light_residual[i],
+                "%s does not fit its light: %.0f %% brightness error, the others %.0f %%; moved, "
+                "damaged, or a lamp elsewhere or dimmer (--refine-lights)?",
+                s->shot[i].path, 100.0 * p->light_residual[i], 100.0 * usual);
     }
     free(sorted);
     return status;
@@ -297,9 +280,9 @@ static relume_status fit(struct shoot *s, const relume_capture *capture)
     if (!status && mean_miss(&out->photometric) > CONTRADICTION)
         status = shoot_warn(
             s,
-            "the photographs contradict the lights: matte surfaces miss by %.2f of their "
-            "albedo; are they in the order of the lights?",
-            mean_miss(&out->photometric));
+            "the photographs do not fit the lights: %.0f %% brightness error; wrong order, lamps "
+            "of unequal brightness (--refine-lights), or linear photographs (--transfer linear)?",
+            100.0 * mean_miss(&out->photometric));
     return status;
 }
 
@@ -321,6 +304,8 @@ static relume_status run(struct shoot *s)
     if (!status)
         status = shoot_check_pictures(s);
     if (!status)
+        shoot_say_alike(s);
+    if (!status)
         status = shoot_find_lights(s);
     if (!status)
         status = shoot_whiten(s);
@@ -334,6 +319,8 @@ static relume_status run(struct shoot *s)
         status = open_and(s, refine);
     if (!status)
         status = open_and(s, fit);
+    if (!status)
+        shoot_say_alike(s);
     return status ? status : shoot_report(s, outdir_path(s->dir));
 }
 

@@ -24,6 +24,23 @@ struct shot {
 };
 enum { SHOT_SMALL = 168 };
 
+// Warnings that many photographs may share.
+enum shoot_alike {
+    ALIKE_SATURATED,
+    ALIKE_BLACK,
+    ALIKE_SCENE,
+    ALIKE_UNALIGNED,
+    ALIKE_RIM,
+    ALIKE_TWO,
+    ALIKE_MISFIT,
+    ALIKE_KINDS
+};
+enum { SHOOT_FEW = 3 };  // said one by one
+struct alike {
+    int count, first[SHOOT_FEW], worst;  // indices of warnings
+    double how_bad;                      // the worst one
+};
+
 struct shoot {
     struct relume_shoot_params p;
     struct relume_shoot *out;
@@ -40,11 +57,19 @@ struct shoot {
     struct relume_image mean, peak;
     struct relume_image change;  // how light differs between photographs: RMS of its logarithm
     int summed;
+    struct alike alike[ALIKE_KINDS];
 };
 
 // Log a warning and keep it for the report. RELUME_ENOMEM.
 __attribute__((format(printf, 2, 3))) relume_status shoot_warn(struct shoot *s, const char *format,
                                                                ...);
+// The same for one of a kind, kept for the report; what was kept is said by shoot_say_alike, of
+// more than a few only the worst and their number.
+__attribute__((format(printf, 4, 5))) relume_status shoot_warn_alike(struct shoot *s,
+                                                                     enum shoot_alike kind,
+                                                                     double how_bad,
+                                                                     const char *format, ...);
+void shoot_say_alike(struct shoot *s);
 // Photograph `i` is of no use: leave it out with a warning where that is allowed, else fail.
 __attribute__((format(printf, 3, 4))) relume_status shoot_drop(struct shoot *s, int i,
                                                                const char *format, ...);

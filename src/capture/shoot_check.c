@@ -62,10 +62,10 @@ static relume_status check_scene(struct shoot *s)
                                 like, usual);
             continue;
         }
-        status = shoot_warn(s,
-                            "%s: seems to show another scene: likeness to the others %.2f, "
-                            "usual are %.2f",
-                            s->shot[i].path, like, usual);
+        status = shoot_warn_alike(s, ALIKE_SCENE, -like,
+                                  "%s: seems to show another scene: likeness to the others %.2f, "
+                                  "usual are %.2f",
+                                  s->shot[i].path, like, usual);
         i++;
     }
     return status;
@@ -79,14 +79,15 @@ relume_status shoot_check_pictures(struct shoot *s)
         const struct shot *shot = &s->shot[i];
         full += shot->saturated > 0.9f;
         if (shot->saturated > SATURATED)
-            status = shoot_warn(s, "%s: %.1f %% of the pixels are saturated", shot->path,
-                                100.0 * (double)shot->saturated);
+            status = shoot_warn_alike(s, ALIKE_SATURATED, (double)shot->saturated,
+                                      "%s: %.1f %% of the pixels are overexposed", shot->path,
+                                      100.0 * (double)shot->saturated);
         else if (shot->black > DARK)
-            status = shoot_warn(s, "%s: black", shot->path);
+            status = shoot_warn_alike(s, ALIKE_BLACK, 0.0, "%s: black", shot->path);
     }
     if (!status && full == s->shots)
         status = log_fail(s->p.log, RELUME_EDATA,
-                          "all %d photographs are saturated; expected shorter exposures", full);
+                          "all %d photographs are overexposed; expected shorter exposures", full);
     return status;
 }
 

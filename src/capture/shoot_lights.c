@@ -184,6 +184,18 @@ static relume_status find_telling(struct shoot *s, const struct relume_ball_para
     return status;
 }
 
+static relume_status no_ball(const struct shoot *s)
+{
+    const int n = s->out->balls;
+    char what[48] = "no";
+    if (n > 1)
+        snprintf(what, sizeof what, "fewer than %d", n);
+    return log_fail(s->p.log, RELUME_EDATA,
+                    "%s: %s %s ball%s found; give --lights FILE, or --ball x,y,r where one is%s",
+                    ball_photo(&s->shot[0]), what, s->p.matte ? "matte" : "mirror",
+                    n > 1 ? "s" : "", s->p.matte ? "" : ", or --matte for a white ball");
+}
+
 static relume_status find_balls(struct shoot *s)
 {
     struct relume_shoot *out = s->out;
@@ -206,11 +218,7 @@ static relume_status find_balls(struct shoot *s)
                                ? relume_ball_find(out->ball, out->balls, &s->mean, &s->camera, &p)
                                : find_telling(s, &p);
     if (status == RELUME_EDATA)
-        status =
-            log_fail(s->p.log, status,
-                     "%s: fewer than %d ball%s found in it and the other photographs; expected "
-                     "round outlines against the background, or --ball x,y,r",
-                     ball_photo(&s->shot[0]), out->balls, out->balls > 1 ? "s" : "");
+        status = no_ball(s);
     relume_image_destroy(&mask);
     return status;
 }
@@ -251,17 +259,32 @@ struct sights {
     vec3 origin[MOST_BALLS], direction[MOST_BALLS];
 };
 
-static relume_status look(struct shoot *s, int i, struct sights *to, const char **why)
+// What every ball shows of every lamp: light[shots][balls].
+static relume_status look_all(const struct shoot *s, struct relume_ball_light *light)
 {
-    const char *path = ball_photo(&s->shot[i]);
-    struct relume_image image;
-    relume_status status = shoot_load_balls(&image, s, i);
-    *to = (struct sights){0};
+    const int balls = s->out->balls;
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < s->shots; i++) {
+        struct relume_image image;
+        status = shoot_load_balls(&image, s, i);
+        for (int b = 0; !status && b < balls; b++)
+            status = (s->p.matte ? relume_ball_matte : relume_ball_mirror)(
+                &light[(size_t)i * (size_t)balls + (size_t)b], &s->out->ball[b], &s->camera,
+                &image);
+        relume_image_destroy(&image);
+    }
+    return status;
+}
+
+// What the balls tell of the lamp of photograph `i`; `why` the last of them does not.
+static relume_status gather(struct shoot *s, int i, const struct relume_ball_light *light,
+                            struct sights *to, const char **why)
+{
+    relume_status status = RELUME_OK;
+    to->n = 0;
     *why = NULL;
     for (int b = 0; !status && b < s->out->balls; b++) {
-        struct relume_ball_light *l = &to->light[to->n];
-        status = (s->p.matte ? relume_ball_matte : relume_ball_mirror)(l, &s->out->ball[b],
-                                                                       &s->camera, &image);
+        const struct relume_ball_light *l = &light[b];
         const char *objects = objection(l, s->p.matte);
         if (objects) {
             *why = objects;
@@ -269,14 +292,15 @@ static relume_status look(struct shoot *s, int i, struct sights *to, const char 
         }
         vec3 middle;
         const double radius = place_ball(s, &s->out->ball[b], &middle);
+        to->light[to->n] = *l;
         to->origin[to->n] = vec3_add(middle, vec3_scale(l->origin, radius));
         to->direction[to->n++] = l->direction;
-        if (!status && (l->sight == RELUME_BALL_RIM || l->sight == RELUME_BALL_TWO))
-            status =
-                shoot_warn(s, "%s: %s of the ball at %.0f,%.0f", path,
-                           relume_ball_sight_text(l->sight), s->out->ball[b].x, s->out->ball[b].y);
+        if (l->sight == RELUME_BALL_RIM || l->sight == RELUME_BALL_TWO)
+            status = shoot_warn_alike(s, l->sight == RELUME_BALL_RIM ? ALIKE_RIM : ALIKE_TWO, 0.0,
+                                      "%s: %s of the ball at %.0f,%.0f", ball_photo(&s->shot[i]),
+                                      relume_ball_sight_text(l->sight), s->out->ball[b].x,
+                                      s->out->ball[b].y);
     }
-    relume_image_destroy(&image);
     return status;
 }
 
@@ -334,44 +358,92 @@ static relume_status warn_below(struct shoot *s)
         b->x, b->y, b->radius, below);
 }
 
-static relume_status lights_from_balls(struct shoot *s)
+// What a ball that was searched for must show: in nearly every photograph one small highlight,
+// alone in most, and not always in the same place. In light domes round things that are no mirrors
+// (heads, coins, bears) show one in at most 3 of 4 photographs, and alone in at most 2 of 5; balls
+// in all.
+static const double SHOWN = 0.8, ALONE = 0.5;  // shares of the photographs
+static const double MOVES = 2.0;               // degrees
+
+static bool is_mirror(const struct shoot *s, const struct relume_ball_light *light, int b)
 {
-    double disagree = 0.0;
-    int seen_well = 0;
-    if (s->p.near && (s->p.ball || s->p.balls ? s->p.balls : 1) < 2)
-        return log_fail(s->p.log, RELUME_EINVAL,
-                        "positions of near lights need two balls or more; found %d",
-                        s->p.balls > 0 ? s->p.balls : 1);
-    relume_status status = find_balls(s);
-    if (!status)
-        status = warn_cut_off(s);
-    for (int i = 0; !status && i < s->shots;) {
-        struct sights seen;
-        const char *why, *path = ball_photo(&s->shot[i]);
-        status = look(s, i, &seen, &why);
-        if (!status && !seen.n) {
-            status =
-                shoot_drop(s, i,
-                           "%s: ball at %.0f,%.0f with radius %.0f: %s; expected the "
-                           "lamp's highlight",
-                           path, s->out->ball[0].x, s->out->ball[0].y, s->out->ball[0].radius, why);
+    int shown = 0, alone = 0;
+    double moves = 0.0;
+    const vec3 *first = NULL;
+    for (int i = 0; i < s->shots; i++) {
+        const struct relume_ball_light *l = &light[(size_t)i * (size_t)s->out->balls + (size_t)b];
+        if (objection(l, false))
             continue;
-        }
-        if (!status)
-            status = locate(s, i, &seen, &disagree);
-        seen_well++;
-        i++;
+        first = first ? first : &l->direction;
+        moves = fmax(moves, vec3_angle(*first, l->direction) * 180.0 / M_PI);
+        shown++;
+        alone += l->sight != RELUME_BALL_TWO;
     }
+    return s->shots - shown <= fmax((1.0 - SHOWN) * s->shots, 1.0) && alone >= ALONE * s->shots &&
+           moves > MOVES;
+}
+
+// Where the balls' outlines were given, they are what somebody says they are.
+static relume_status check_mirrors(const struct shoot *s, const struct relume_ball_light *light)
+{
+    if (s->p.matte || s->p.ball || s->p.ball_mask)
+        return RELUME_OK;
+    for (int b = 0; b < s->out->balls; b++)
+        if (!is_mirror(s, light, b))
+            return no_ball(s);
+    return RELUME_OK;
+}
+
+static relume_status locate_all(struct shoot *s, const struct relume_ball_light *light)
+{
+    const int shots = s->shots;
+    double disagree = 0.0;
+    relume_status status = RELUME_OK;
+    for (int k = 0, i = 0; !status && k < shots; k++) {
+        struct sights seen;
+        const char *why;
+        const struct relume_ball *ball = &s->out->ball[0];
+        status = gather(s, i, light + (size_t)k * (size_t)s->out->balls, &seen, &why);
+        if (!status && !seen.n)
+            status = shoot_drop(s, i,
+                                "%s: ball at %.0f,%.0f with radius %.0f: %s; expected the lamp's "
+                                "highlight",
+                                ball_photo(&s->shot[i]), ball->x, ball->y, ball->radius, why);
+        else if (!status)
+            status = locate(s, i++, &seen, &disagree);
+    }
+    if (!status && !s->shots)
+        status = log_fail(s->p.log, RELUME_EDATA, "no photograph shows the lamp in the ball");
     if (!status)
         status = warn_below(s);
-    if (!status && !seen_well)
-        status = log_fail(s->p.log, RELUME_EDATA, "no photograph shows the lamp in the ball");
     if (!status && !s->p.near && disagree > DISAGREE)
         status = shoot_warn(s,
                             "the balls disagree by up to %.1f degrees; near lights? --near "
                             "makes positions",
                             disagree);
+    return status;
+}
+
+static relume_status lights_from_balls(struct shoot *s)
+{
+    if (s->p.near && (s->p.ball || s->p.balls ? s->p.balls : 1) < 2)
+        return log_fail(s->p.log, RELUME_EINVAL,
+                        "positions of near lights need two balls or more; found %d",
+                        s->p.balls > 0 ? s->p.balls : 1);
+    relume_status status = find_balls(s);
+    if (status)
+        return status;
+    struct relume_ball_light *light =
+        mem_zeroed((size_t)s->shots * (size_t)s->out->balls, sizeof *light);
+    status = light ? look_all(s, light) : RELUME_ENOMEM;
+    if (!status)
+        status = check_mirrors(s, light);
+    if (!status)
+        status = warn_cut_off(s);
+    if (!status)
+        status = locate_all(s, light);
     s->has_intensities = s->p.matte;
+    free(light);
     return status;
 }
 

@@ -99,8 +99,9 @@ static relume_status align(struct shoot *s, int i, struct relume_image *image)
         &h, &s->first, image,
         &(struct relume_align_params){.log = s->p.log, .threads = s->p.threads});
     if (!status && h.correlation < 0.3)
-        return shoot_warn(s, "%s: does not align with the first photograph; left as it is",
-                          s->shot[i].path);
+        return shoot_warn_alike(s, ALIKE_UNALIGNED, -h.correlation,
+                                "%s: does not align with the first photograph; left as it is",
+                                s->shot[i].path);
     if (!status)
         status = relume_warp_homography(&moved, NULL, image, &h,
                                         &(struct relume_align_params){.threads = s->p.threads});

@@ -74,7 +74,7 @@ static void no_ball(void **state)
     begin(&p);
     for (int i = 0; i < LAMPS; i++)
         photograph(&p, i, (struct made_scene){0});
-    expect_refused(&p, "p0.png: fewer than 1 ball found");
+    expect_refused(&p, "p0.png: no mirror ball found; give --lights");
     test_folder_remove(p.folder);
 }
 
@@ -112,6 +112,45 @@ static void highlights_that_do_not_tell(void **state)
     assert_true(warns(&shoot, "p1.png", "two highlights"));
     assert_true(warns(&shoot, "p2.png", "rim"));
     assert_false(warns(&shoot, "p0.png", "of the ball") || warns(&shoot, "p3.png", "of the ball"));
+    relume_shoot_destroy(&shoot);
+    test_folder_remove(p.folder);
+}
+
+struct counted {
+    struct relume_log log;
+    int alike, lines;
+};
+
+static void count_alike(void *user, enum relume_level level, const char *text)
+{
+    struct counted *c = user;
+    c->lines += level == RELUME_WARNING && strstr(text, "two highlights");
+    c->alike += strstr(text, "the worst of 4 photographs like it") != NULL;
+}
+
+// Dozens of like warnings hid what mattered: they are one line, the list keeps all.
+static void many_alike(void **state)
+{
+    (void)state;
+    static const double circle[1][3] = {{0.55 * MADE_WIDTH, 0.5 * MADE_HEIGHT, 0.2 * MADE_WIDTH}};
+    struct photographs p;
+    struct relume_shoot shoot;
+    struct counted counted = {.log = {.message = count_alike}};
+    begin(&p);
+    counted.log.user = &counted;
+    p.params.log = &counted.log;
+    p.params.ball = circle;
+    for (int i = 0; i < LAMPS; i++) {
+        struct made_scene two = a_ball(0.1);
+        two.second = (struct relume_vec3){-0.5, 0.1, 1};
+        two.lamp = (struct relume_vec3){0.5, 0.1 + 0.1 * i, 1};
+        photograph(&p, i, two);
+    }
+    CHECK_OK(relume_shoot_make(&shoot, p.out, &p.params));
+    for (int i = 0; i < LAMPS; i++)
+        assert_true(warns(&shoot, strrchr(p.path[i], '/') + 1, "two highlights"));
+    assert_int_equal(counted.lines, 1);
+    assert_int_equal(counted.alike, 1);
     relume_shoot_destroy(&shoot);
     test_folder_remove(p.folder);
 }
@@ -172,7 +211,7 @@ static void nothing_but_white(void **state)
     begin_boards(&p, lights);
     for (int i = 0; i < LAMPS; i++)
         board(&p, i, 1, 20.0);
-    expect_refused(&p, "all 4 photographs are saturated; expected shorter exposures");
+    expect_refused(&p, "all 4 photographs are overexposed; expected shorter exposures");
     test_folder_remove(p.folder);
 }
 
@@ -180,6 +219,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(no_ball),
+        cmocka_unit_test(many_alike),
         cmocka_unit_test(a_ball_that_is_cut_off),
         cmocka_unit_test(highlights_that_do_not_tell),
         cmocka_unit_test(another_scene),

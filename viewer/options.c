@@ -320,9 +320,12 @@ static relume_status take_white(struct options *o, const char *name, const char 
 static relume_status take_offscreen(struct options *o, const char *name, const char *text,
                                     const struct relume_log *log)
 {
-    (void)name, (void)log;
     o->offscreen = text;
-    return RELUME_OK;
+    if (relume_image_can_save(text))
+        return RELUME_OK;
+    return say(log, RELUME_EINVAL,
+               "%s: %s: no picture format for this ending; expected .png, .jpg, .exr, ...", name,
+               text);
 }
 
 static relume_status take_script(struct options *o, const char *name, const char *text,

@@ -65,6 +65,11 @@ RELUME_RESULT relume_status relume_image_load(struct relume_image *out, const ch
 RELUME_RESULT relume_status relume_image_save(const struct relume_image *image, const char *path,
                                               const struct relume_image_params *params);
 
+// Whether relume_image_save has a format for that name's ending: .exr, .hdr, .rgbe, .pfm, .png,
+// .jpg, .jpeg, .jpe, .tif, .tiff, .bmp, .tga, .targa, .ppm, .pnm, .webp, .jp2, .j2k, .avif, .heic,
+// .heif; devices without an ending get OpenEXR.
+RELUME_API bool relume_image_can_save(const char *path);
+
 // Whether relume_image_save would write linear light under that name.
 RELUME_API bool relume_image_saves_linear(const char *path);
 

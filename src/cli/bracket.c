@@ -280,6 +280,27 @@ static void report_bias(const struct bracket *b, const struct args *args)
     args_log(args)->message(args_log(args)->user, RELUME_WARNING, text);
 }
 
+// Numbers of a float file do not end at 1: nothing is saturated there, and above 1, where the merge
+// knows no codes, the shortest exposure says what there is.
+static void continue_floats(struct bracket *b)
+{
+    int shortest = -1;
+    for (int i = 0; i < b->n; i++) {
+        if (!b->notes[i].floats)
+            continue;
+        b->report[i].saturated = 0.0;
+        if (shortest < 0 || b->exposure[i] < b->exposure[shortest])
+            shortest = i;
+    }
+    if (shortest < 0 || strcmp(b->response_source, "linear") != 0)
+        return;
+    const struct relume_image *mask = &b->masks[shortest], *codes = &b->codes[shortest];
+    const size_t samples = 3 * (size_t)codes->width * (size_t)codes->height;
+    for (size_t i = 0; i < samples; i++)
+        if (codes->data[i] > 1.0f && !(mask->data && mask->data[i / 3] < 0.5f))
+            b->out.data[i] = (float)((double)codes->data[i] / b->exposure[shortest]);
+}
+
 relume_status bracket_merge(struct bracket *b, enum relume_merge_weights weights,
                             const struct args *args)
 {
@@ -296,6 +317,7 @@ relume_status bracket_merge(struct bracket *b, enum relume_merge_weights weights
                                              .threads = args_threads(args)));
     if (status)
         return status;
+    continue_floats(b);
     report_bias(b, args);
     if (b->notes[b->anchor].profile)
         relume_primaries_apply(&b->out, b->notes[b->anchor].to_srgb);

@@ -35,12 +35,13 @@ static double mean_code(const struct relume_image *codes)
     return sum / (double)samples;
 }
 
-static bool shows_nothing(const struct relume_image *codes)
+// Float files do not end at 1.
+static bool shows_nothing(const struct relume_image *codes, bool floats)
 {
     const size_t samples = 3 * (size_t)codes->width * (size_t)codes->height;
     size_t ends = 0;
     for (size_t i = 0; i < samples; i++)
-        ends += codes->data[i] >= 0.995f || codes->data[i] <= 0.005f;
+        ends += (!floats && codes->data[i] >= 0.995f) || codes->data[i] <= 0.005f;
     return (double)ends > at_the_ends * (double)samples;
 }
 
@@ -49,7 +50,7 @@ static relume_status check_exposure(const struct bracket *b, bool *blank)
 {
     int blanks = 0;
     for (int i = 0; i < b->n; i++)
-        blanks += blank[i] = shows_nothing(&b->codes[i]);
+        blanks += blank[i] = shows_nothing(&b->codes[i], b->notes[i].floats);
     if (b->n < 2 || blanks < b->n)
         return RELUME_OK;
     const bool white = mean_code(&b->codes[0]) > 0.5;

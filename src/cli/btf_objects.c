@@ -1,6 +1,7 @@
 // btf_objects.c - relume btf render --mesh, or of a description of objects
 #include "btf_inputs.h"
 #include "frame_options.h"
+#include "output_name.h"
 
 #include <math.h>
 #include <string.h>
@@ -82,7 +83,9 @@ relume_status btf_render_objects(const struct args *args)
     int size[2];
     if (!args_has(args, "-o"))
         return usage_error("btf render: expected -o FILE");
-    relume_status status = open_them(&o, args);
+    relume_status status = picture_name("-o", args_text(args, "-o", NULL));
+    if (!status)
+        status = open_them(&o, args);
     if (!status)
         status = parse_window(&window, size, o, args);
     if (!status)

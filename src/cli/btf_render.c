@@ -1,5 +1,6 @@
 // btf_render.c - relume btf render
 #include "btf_inputs.h"
+#include "output_name.h"
 
 #include <math.h>
 
@@ -83,15 +84,18 @@ relume_status btf_render(const struct args *args)
         return btf_render_objects(args);
     if (!args_has(args, "-o"))
         return usage_error("btf render: expected -o FILE");
+    relume_status status = picture_name("-o", args_text(args, "-o", NULL));
+    if (status)
+        return status;
     if (btf_is_surface(args_input(args, 1))) {
-        relume_status status = relume_btf_surface_open(&surface, args_input(args, 1),
-                                                       relume_btf_params(.log = args_log(args)));
+        status = relume_btf_surface_open(&surface, args_input(args, 1),
+                                         relume_btf_params(.log = args_log(args)));
         if (!status)
             status = draw(surface, args);
         relume_btf_surface_destroy(&surface);
         return status;
     }
-    relume_status status = btf_open_sample(&sample, args_input(args, 1), args);
+    status = btf_open_sample(&sample, args_input(args, 1), args);
     if (!status)
         status = relume_btf_surface_create(&surface, sample.model, NULL, args_log(args));
     if (!status)

@@ -3,6 +3,7 @@
 
 #include "bracket.h"
 #include "capture_times.h"
+#include "output_name.h"
 #include "photo_list.h"
 
 #include <errno.h>
@@ -34,6 +35,8 @@ static relume_status parse_choices(struct choices *out, const struct args *args)
     if (!output)
         return usage_error("capture: expected -o OUT.exr, or a folder for several brackets");
     out->is_file = strchr(base_name(output), '.') || relume_image_saves_linear(output);
+    if (out->is_file && picture_name("-o", output))
+        return RELUME_EINVAL;
     for (int i = 0; relume_merge_weights_name((enum relume_merge_weights)i); i++)
         names[i] = relume_merge_weights_name((enum relume_merge_weights)i);
     if (relume_merge_weights_parse(&out->weights, weights))

@@ -5,9 +5,19 @@
 #include <relume/relume.h>
 #include <stdio.h>
 
-// OPTION_OUTPUT is text that names what is written; any other text, and any input, that names a
-// file or folder is taken as read: no output replaces it.
-enum option_kind { OPTION_FLAG, OPTION_INT, OPTION_NUMBER, OPTION_TEXT, OPTION_OUTPUT };
+// OPTION_OUTPUT and those behind it are text that names what is written; any other text, and any
+// input, that names a file or folder is taken as read: no output replaces it. The endings of the
+// last three are looked at before a command runs.
+enum option_kind {
+    OPTION_FLAG,
+    OPTION_INT,
+    OPTION_NUMBER,
+    OPTION_TEXT,
+    OPTION_OUTPUT,
+    OPTION_PICTURE,  // a picture of any format
+    OPTION_FLOATS,   // a picture of values that are no light
+    OPTION_RELUME,   // a relume file
+};
 
 struct option {
     const char *name;  // "--size" or "-o"

@@ -3,7 +3,7 @@
 #include <math.h>
 
 static const struct option options[] = {
-    {"-o", OPTION_OUTPUT, "OUT", "write the picture |A - B| of linear light", 0, 0},
+    {"-o", OPTION_PICTURE, "OUT", "write the picture |A - B| of linear light", 0, 0},
     {"--ramps", OPTION_FLAG, NULL, "also how smooth ramps of B keep their slope (contours)", 0, 0},
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},

@@ -5,7 +5,7 @@
 #include <string.h>
 
 static const struct option options[] = {
-    {"-o", OPTION_OUTPUT, "FILE.exr", "the relume file to write", 0, 0},
+    {"-o", OPTION_RELUME, "FILE.exr", "the relume file to write", 0, 0},
     {"--basis", OPTION_TEXT, "NAME", "auto, pca, table, sh, hsh, ptm, dct, dct-resampled", 0, 0},
     {"--coefficients", OPTION_INT, "K",
      "coefficients per colour channel (pca: for all three); default: by the basis", 1, 4096},

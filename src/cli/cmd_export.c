@@ -1,10 +1,15 @@
 #include "cli.h"
+#include "output_name.h"
 
 #include <string.h>
+#include <strings.h>
 
 static const struct option options[] = {
     {"-o", OPTION_OUTPUT, "OUT", "the file (.ptm, .rti) or folder to write", 0, 0},
-    {"--to", OPTION_TEXT, "FORMAT", "relight, ptm, lptm, rti or deepzoom; default: relight", 0, 0},
+    {"--to", OPTION_TEXT, "FORMAT",
+     "relight, ptm, lptm, rti or deepzoom; default: by OUT's ending (.ptm, .lptm, .rti), else "
+     "relight",
+     0, 0},
     {"--type", OPTION_TEXT, "T", "relight, deepzoom: bilinear, rbf, ptm, lptm, hsh or sh", 0, 0},
     {"--colorspace", OPTION_TEXT, "C",
      "rgb, ycc (ptm, hsh, sh: only the luminance follows the light) or mycc (bilinear, rbf: "
@@ -37,18 +42,66 @@ static void say_result(const struct args *args, const struct relume_export_repor
     args_log(args)->message(args_log(args)->user, RELUME_NOTE, text);
 }
 
+// What a name's ending means; NULL: nothing, or nothing that export writes.
+static const char *format_of_ending(const char *ending)
+{
+    static const char *const formats[] = {"ptm", "lptm", "rti"};
+    for (size_t i = 0; *ending && i < sizeof formats / sizeof *formats; i++)
+        if (!strcasecmp(ending + 1, formats[i]))
+            return formats[i];
+    return NULL;
+}
+
+// Files of the field that a folder should not be called by.
+static bool is_no_folder(const char *ending)
+{
+    static const char *const others[] = {".hsh", ".json", ".dzi", ".lp", ".zip"};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (!strcasecmp(ending, others[i]))
+            return true;
+    return false;
+}
+
+// --to, or what the ending of OUT says; both must not contradict each other.
+static relume_status choose_format(enum relume_exchange *format, const struct args *args)
+{
+    static const char *const formats[] = {"relight", "ptm", "lptm", "rti", "deepzoom", NULL};
+    const char *out = args_text(args, "-o", NULL), *ending = name_ending(out);
+    const char *said = format_of_ending(ending);
+    const char *to = args_text(args, "--to", said ? said : "relight");
+    if (*ending && relume_image_can_save(out))
+        return usage_error(
+            "-o: %s: export writes no pictures; expected .ptm, .rti or the name of a "
+            "folder ('relume relight' writes pictures)",
+            out);
+    if (is_no_folder(ending))
+        return usage_error(
+            "-o: %s: no export has this ending; expected .ptm, .rti or the name of a "
+            "folder",
+            out);
+    if (relume_exchange_parse(format, to))
+        return unknown_name("--to", to, formats);
+    if (said && strcmp(said, to) && (strcmp(said, "ptm") || strcmp(to, "lptm")))
+        return usage_error("-o: %s: --to %s writes %s; expected another name, or --to %s", out, to,
+                           strstr(to, "ptm")   ? "a .ptm file"
+                           : strcmp(to, "rti") ? "a folder"
+                                               : "an .rti file",
+                           said);
+    return RELUME_OK;
+}
+
 static relume_status parse(const struct args *args, enum relume_exchange *format,
                            struct relume_export_params *p)
 {
-    static const char *const formats[] = {"relight", "ptm", "lptm", "rti", "deepzoom", NULL};
     static const char *const types[] = {"bilinear", "rbf", "ptm", "lptm", "hsh", "sh", NULL};
     static const char *const spaces[] = {"rgb", "ycc", "mycc", NULL};
-    const char *to = args_text(args, "--to", "relight"), *type = args_text(args, "--type", NULL);
+    const char *type = args_text(args, "--type", NULL);
     const char *space = args_text(args, "--colorspace", "rgb");
     if (!args_has(args, "-o"))
         return usage_error("export: expected -o OUT");
-    if (relume_exchange_parse(format, to))
-        return unknown_name("--to", to, formats);
+    const relume_status status = choose_format(format, args);
+    if (status)
+        return status;
     if (type && relume_web_type_parse(&p->type, type))
         return unknown_name("--type", type, types);
     if (strcmp(space, "rgb") && strcmp(space, "ycc") && strcmp(space, "mycc"))

@@ -3,6 +3,7 @@
 #include "film.h"
 #include "glare_options.h"
 #include "glare_pattern.h"
+#include "output_name.h"
 
 #include <math.h>
 #include <string.h>
@@ -214,7 +215,13 @@ static relume_status check(const struct args *args)
         return usage_error("glare: expected --frames beside --fps and --cycle");
     if (out && !args_has(args, "--frames") && strchr(out, '%') && film_is(out))
         return usage_error("glare: expected --frames N for '%s'", out);
-    return RELUME_OK;
+    const char *const psf = args_text(args, "--psf", NULL);
+    relume_status status = RELUME_OK;
+    if (out && (!args_has(args, "--frames") || strchr(out, '%')))
+        status = picture_name("-o", out);
+    if (!status && psf && *name_ending(psf))
+        status = picture_name("--psf", psf);
+    return status;
 }
 
 static relume_status run(const struct args *args)

@@ -1,7 +1,7 @@
 #include "cli.h"
 
 static const struct option options[] = {
-    {"-o", OPTION_OUTPUT, "FILE.exr", "the relume file to write", 0, 0},
+    {"-o", OPTION_RELUME, "FILE.exr", "the relume file to write", 0, 0},
     {"--compression", OPTION_TEXT, "C", "none, rle, zip or piz (all lossless); default: piz", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };

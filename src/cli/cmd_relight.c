@@ -8,7 +8,7 @@
 #include <string.h>
 
 static const struct option options[] = {
-    {"-o", OPTION_OUTPUT, "OUT", "picture to write: .exr (linear), .png, .jpg, .tif, .hdr, ...", 0,
+    {"-o", OPTION_PICTURE, "OUT", "picture to write: .exr (linear), .png, .jpg, .tif, .hdr, ...", 0,
      0},
     LIGHT_OPTIONS,
     {"--view", OPTION_INT, "N", "a captured view at its own size (panoramas: unfolded)", 0, 65535},

@@ -1,5 +1,6 @@
 // main.c - the relume tool: finds the command, parses its options, turns statuses into exit codes
 #include "cli.h"
+#include "output_name.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -309,8 +310,14 @@ static relume_status check_value(struct given *g)
     const struct option *o = g->option;
     if (!*g->text)
         return usage_error("%s: expected a value (%s); found an empty one", o->name, o->argument);
-    if (o->kind == OPTION_TEXT || o->kind == OPTION_OUTPUT)
-        return RELUME_OK;
+    switch (o->kind) {
+    case OPTION_TEXT:
+    case OPTION_OUTPUT: return RELUME_OK;
+    case OPTION_PICTURE: return picture_name(o->name, g->text);
+    case OPTION_FLOATS: return floats_name(o->name, g->text);
+    case OPTION_RELUME: return relume_name(o->name, g->text);
+    default: break;
+    }
     char *end;
     errno = 0;
     g->number = strtod(g->text, &end);
@@ -449,7 +456,7 @@ static relume_status note_inputs(struct args *args)
         if (args->given[i].option->kind == OPTION_TEXT)
             relume_inputs_add(args->log.inputs, args->given[i].text);
     for (int i = 0; !status && i < args->given_count; i++)
-        if (args->given[i].option->kind == OPTION_OUTPUT)
+        if (args->given[i].option->kind >= OPTION_OUTPUT)
             status = relume_file_check(args->given[i].text, &args->log);
     return status;
 }

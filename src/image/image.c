@@ -317,12 +317,22 @@ bool relume_image_saves_linear(const char *path)
     return picture_has_extension(path, ".exr") || is_device(path) || picture_writes_floats(path);
 }
 
+bool relume_image_can_save(const char *path)
+{
+    return relume_image_saves_linear(path) || picture_writes_bytes(path);
+}
+
 relume_status relume_image_save(const struct relume_image *image, const char *path,
                                 const struct relume_image_params *params)
 {
     const struct relume_image_params p = params ? *params : (struct relume_image_params){0};
     if (image->channels != 1 && image->channels != 3)
         return RELUME_EINVAL;
+    if (!relume_image_can_save(path))
+        return log_fail(p.log, RELUME_EINVAL,
+                        "%s: no picture format for this ending; expected .exr, .png, .jpg, .tif, "
+                        ".hdr, ...",
+                        path);
     if (picture_has_extension(path, ".exr") || is_device(path))
         return save_exr(image, path, &p);
     if (picture_writes_floats(path))

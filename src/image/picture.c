@@ -143,9 +143,28 @@ bool picture_has_extension(const char *path, const char *extension)
     return dot && strcasecmp(dot, extension) == 0;
 }
 
+static bool has_one_of(const char *path, const char *const *extensions)
+{
+    while (*extensions && !picture_has_extension(path, *extensions))
+        extensions++;
+    return *extensions != NULL;
+}
+
 bool picture_writes_floats(const char *path)
 {
-    return picture_has_extension(path, ".hdr") || picture_has_extension(path, ".pfm");
+    static const char *const floats[] = {".hdr", ".rgbe", ".pfm", NULL};
+    return has_one_of(path, floats);
+}
+
+// What relume reads again as a matter of course. OpenImageIO writes more kinds; grey ones (.pgm),
+// palettes (.gif) and those that it cannot read back are not for pictures of light.
+bool picture_writes_bytes(const char *path)
+{
+    static const char *const bytes[] = {
+        ".png", ".jpg", ".jpeg", ".jpe", ".tif", ".tiff", ".bmp",  ".tga",  ".targa",
+        ".ppm", ".pnm", ".webp", ".jp2", ".j2k", ".avif", ".heic", ".heif", NULL,
+    };
+    return has_one_of(path, bytes);
 }
 
 relume_status picture_write_bytes(const char *path, int width, int height, int channels,

@@ -48,6 +48,7 @@ void picture_close(picture_reader **reader);
 // Write interleaved samples, whole or not at all: floats for formats that hold them, else bytes.
 // RELUME_EINVAL for an extension that nobody writes, RELUME_EIO.
 bool picture_writes_floats(const char *path);
+bool picture_writes_bytes(const char *path);
 // ".png", in any case.
 bool picture_has_extension(const char *path, const char *extension);
 relume_status picture_write_bytes(const char *path, int width, int height, int channels,

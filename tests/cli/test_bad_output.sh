@@ -17,8 +17,8 @@ expect_fail 'encode to a folder' 3 'folder: .*directory' - $encode folder
 expect_fail 'relight to a folder' 3 'folder.exr: .*directory' - sh -c "mkdir folder.exr; $relight folder.exr"
 expect_fail 'relight to hdr, no such folder' 3 'nowhere/o.hdr: ' nowhere/o.hdr $relight nowhere/o.hdr
 expect_fail 'relight to tif, no such folder' 3 'nowhere/o.tif: ' nowhere/o.tif $relight nowhere/o.tif
-expect_fail 'relight to an unknown kind' 2 'o.xyz: unknown image extension' o.xyz $relight o.xyz
-expect_fail 'relight to no kind' 2 'o: unknown image extension' o $relight o
+expect_fail 'relight to an unknown kind' 2 '-o: o.xyz: no picture format for this ending' o.xyz $relight o.xyz
+expect_fail 'relight to no kind' 2 '-o: o: no picture format for this ending' o $relight o
 if [ -w /dev/full ]; then
     expect_fail 'encode to a full device' 3 '/dev/full: writing failed; No space' - $encode /dev/full
     expect_fail 'relight to a full device' 3 '/dev/full: writing failed; No space' - $relight /dev/full

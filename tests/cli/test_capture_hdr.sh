@@ -25,6 +25,12 @@ mkdir shots && cp a.png b.png c.png shots && cp a.png shots/d.png && cp b.png sh
 expect_ok 'two brackets of a folder' - "$RELUME" capture --hdr shots --times times.txt -o made --json
 same 'one picture each' made/a.exr made/d.exr
 check 'both are reported' test "$(number output out.txt | wc -l)" -eq 2
+# numbers of float files do not end at 1: nothing is saturated, and the merge goes on above 1
+for gain in 5 10 20; do "$mkimage" gain truth.exr g$gain.exr $gain; done
+printf '1\n2\n4\n' >gains.txt
+expect_ok 'three exposures as floats' - "$RELUME" capture --hdr g5.exr g10.exr g20.exr --times gains.txt -o floats.exr --json
+below 'the radiance of the shortest' "$("$mkimage" maxdiff floats.exr g5.exr)" 1e-4 # of up to 100: rounding
+check 'no float is saturated' test "$(number saturated out.txt | sort -u)" = 0
 printf 'c.png 0.25\nb.png 4s\na.png 1\n' >names.txt
 expect_ok 'times by name' - "$RELUME" capture --hdr a.png b.png c.png --times names.txt -o again.exr --response curve.txt
 expect_ok 'in any order' - "$RELUME" capture --hdr c.png a.png b.png --times names.txt -o one.exr --response curve.txt

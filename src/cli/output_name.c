@@ -1,0 +1,42 @@
+#include "output_name.h"
+
+#include <string.h>
+#include <strings.h>
+
+const char *name_ending(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *dot = strrchr(name, '.');
+    return dot && dot > name ? dot : "";
+}
+
+relume_status picture_name(const char *option, const char *path)
+{
+    if (relume_image_can_save(path))
+        return RELUME_OK;
+    return usage_error("%s: %s: no picture format for this ending; expected .exr, .hdr or .pfm "
+                       "(linear light), .png, .jpg, .tif, .webp, ...",
+                       option, path);
+}
+
+relume_status floats_name(const char *option, const char *path)
+{
+    const char *ending = name_ending(path);
+    if (!strcasecmp(ending, ".exr") || !strcasecmp(ending, ".pfm") ||
+        (!*ending && relume_image_can_save(path)))
+        return RELUME_OK;
+    return usage_error("%s: %s: values below 0 and above 1 need a float format; expected .exr or "
+                       ".pfm",
+                       option, path);
+}
+
+relume_status relume_name(const char *option, const char *path)
+{
+    const char *ending = name_ending(path);
+    if (!*ending || !strcasecmp(ending, ".exr"))
+        return RELUME_OK;
+    return usage_error("%s: %s: a relume file is an OpenEXR file; expected a name that ends in "
+                       ".exr%s",
+                       option, path,
+                       relume_image_can_save(path) ? " ('relume relight' writes pictures)" : "");
+}

@@ -19,8 +19,10 @@ CC       ?= gcc
 CXX      ?= g++
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wvla -Wwrite-strings
 COMMON   := -g -fPIC -fvisibility=hidden -MMD -MP -pthread -ffp-contract=off \
-            -fno-math-errno -fno-trapping-math $(WARNINGS)
-release  := -O3 -DNDEBUG
+            -fno-math-errno -fno-trapping-math -ffile-prefix-map=$(CURDIR)=. $(WARNINGS)
+# What hostile files meet should a reader of ours or of a library be wrong. Checked by test_build.sh.
+release  := -O3 -DNDEBUG -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3 -fstack-protector-strong \
+            -fstack-clash-protection
 debug    := -O0
 asan     := -O1 -g1 -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer
 tsan     := -O0 -g1 -fsanitize=thread
@@ -163,26 +165,28 @@ $B/librelume.a: $(LIB_O)
 # libraries in its name, which only the older kind of run path allows.
 run_path = '-Wl,-rpath,$$ORIGIN$1'$(if $(filter asan tsan,$(config)),$(comma)--disable-new-dtags)
 comma := ,
+# Addresses of library functions are looked up at start and cannot be written over afterwards.
+HARD_LD := -Wl,-z,relro,-z,now
 $B/librelume.so: $(LIB_O)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) -shared -Wl,-soname,librelume.so.$(MAJOR) $(call run_path) -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(Q)$(CC) $(MODE) -shared -Wl,-soname,librelume.so.$(MAJOR) $(call run_path) $(HARD_LD) -o $@ $^ $(LDFLAGS) $(LIBS)
 	$(Q)ln -sfn $(@F) $@.$(MAJOR)
 	$(if $(STITCH),,@echo '  OpenCV is not there: built without stitching (make deps-stitch adds it)')
 $(MODULE): $(MODULE_CXX:%.cpp=$B/obj/%.o) $B/librelume.a
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) -shared -Wl,--exclude-libs,ALL -o $@ $^ $(LDFLAGS) $(OIIO_LIBS) $(LIBS)
+	$(Q)$(CXX) $(MODE) -shared -Wl,--exclude-libs,ALL $(HARD_LD) -o $@ $^ $(LDFLAGS) $(OIIO_LIBS) $(LIBS)
 $(MESHES): $(MESHES_C:%.c=$B/obj/%.o) $B/librelume.a
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) -shared -Wl,--exclude-libs,ALL -o $@ $^ $(LDFLAGS) -Wl,--as-needed -lassimp -lm
+	$(Q)$(CC) $(MODE) -shared -Wl,--exclude-libs,ALL $(HARD_LD) -o $@ $^ $(LDFLAGS) -Wl,--as-needed -lassimp -lm
 $(STITCH): $(STITCH_CXX:%.cpp=$B/obj/%.o)
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) -shared -o $@ $^ $(LDFLAGS) -Wl,--as-needed -lopencv_stitching -lopencv_features2d -lopencv_calib3d -lopencv_imgproc -lopencv_core
+	$(Q)$(CXX) $(MODE) -shared $(HARD_LD) -o $@ $^ $(LDFLAGS) -Wl,--as-needed -lopencv_stitching -lopencv_features2d -lopencv_calib3d -lopencv_imgproc -lopencv_core
 $B/relume: $(CLI_O) $B/librelume.a
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS)
+	$(Q)$(CC) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) $(HARD_LD) -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS)
 $B/relume-view: $(VIEWER_O) $B/librelume.a
 	$(call say,LD)
-	$(Q)$(CXX) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS)
+	$(Q)$(CXX) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) $(HARD_LD) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS)
 
 $(UNIT): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)

@@ -27,6 +27,26 @@ else
     check "an unknown config is refused" grep -q "expected release, debug, asan or tsan" make.txt
 fi
 
+# ---------------------------------------------------------------- hardened and reproducible
+# reads FILE OPTION PATTERN: `readelf OPTION FILE` has a line that matches
+reads() { readelf "$2" "$1" 2>/dev/null | grep -qE -e "$3"; }
+for f in relume relume-view librelume.so librelume-oiio.so.0 librelume-assimp.so.0; do
+    check "$f: read-only relocations" reads "$BUILD/$f" -lW GNU_RELRO
+    check "$f: bound at start" reads "$BUILD/$f" -dW 'NOW'
+    if [ $config = release ]; then
+        check "$f: guarded stack" reads "$BUILD/$f" -sW '__stack_chk_fail'
+        case $f in *.so.*) ;; *) check "$f: checked copies" reads "$BUILD/$f" -sW '__(memcpy|snprintf|fprintf)_chk' ;; esac
+    fi
+done
+# What differs between two builds of one tree is where they were made; no file may say that.
+for f in relume relume-view librelume.so librelume.a; do
+    if grep -qF "$TOP/" "$BUILD/$f"; then
+        not_ok "$f does not depend on where it was built" "it holds $TOP"
+    else
+        ok "$f does not depend on where it was built"
+    fi
+done
+
 # ---------------------------------------------------------------- layers
 check "layers hold" "$TOP/scripts/layers.sh"
 mkdir tree

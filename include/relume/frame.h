@@ -30,8 +30,23 @@ struct relume_camera {
         aim;      // EYE, several slabs: where it looks. Of one slab: all zero is the window
     int through;  // EYE, several slabs: 1 + the slab whose st window it looks through
     struct relume_look look;
-    int width, height;  // default: the view's own size; LOOK: 1024 x 512
+    // Default: the view's own size, LOOK 1024 x 512; of one of them the other, by proportion.
+    int width, height;
 };
+
+// Where a picture lies in a frame, pixels.
+struct relume_place {
+    int left, top, width, height;
+};
+// In the middle, as large as a picture of width x height pixels can be without being stretched;
+// black is beside it. All of the frame where that leaves less than a pixel.
+RELUME_API struct relume_place relume_place_fit(int width, int height, int frame_width,
+                                                int frame_height);
+// The frame that `camera` asks for, in `*frame`, and the part of it that shows something: all of it
+// in a look and with a field of view, whose pixels are square whatever the frame.
+RELUME_API struct relume_place relume_camera_place(int frame[2],
+                                                   const struct relume_pack_info *info,
+                                                   const struct relume_camera *camera);
 
 struct relume_frame_params {
     const struct relume_log *log;
@@ -47,16 +62,18 @@ struct relume_frame_params {
     const relume_capture
         *capture;  // PASS_DIFFERENCE: of the file; the nearest view and light count
     enum relume_interpolation interpolation;  // slab; default: by depth where the file has it
-    double aperture, focus;  // slab; as relume_view_params, several: relume_lens_window
+    double aperture, focus;     // slab; as relume_view_params, several: relume_lens_window
+    enum relume_filter filter;  // as relume_view_params, and of views in another size
     // Show where the surface is instead of light: world positions, background far along its ray,
     // NaN where no view sees. Lights and pass are not looked at.
     bool places;
 };
 #define relume_frame_params(...) (&(const struct relume_frame_params){__VA_ARGS__})
 
-// Create `*out`, linear, three channels. Only the views that the frame touches are read and relit.
-// Returns RELUME_EINVAL (camera does not fit the file, a light is wrong), RELUME_EDATA (also: near
-// lights and no depth), RELUME_ENOMEM.
+// Create `*out`, linear, three channels; relume_camera_place says where in it the picture is and a
+// note in the log that there is something beside it. Only the views that the frame touches are read
+// and relit. Returns RELUME_EINVAL (camera does not fit the file, a light is wrong), RELUME_EDATA
+// (also: near lights and no depth), RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_frame(struct relume_image *out, relume_pack *pack,
                                          const struct relume_camera *camera,
                                          const struct relume_light *lights, int n,

@@ -73,6 +73,32 @@ RELUME_API bool relume_image_can_save(const char *path);
 // Whether relume_image_save would write linear light under that name.
 RELUME_API bool relume_image_saves_linear(const char *path);
 
+// How a picture is looked at between its texels. Reduced, all but NEAREST show the mean of what a
+// pixel covers, in linear light.
+enum relume_filter {
+    RELUME_FILTER_DEFAULT = 0,  // LINEAR
+    RELUME_FILTER_NEAREST,      // one texel, however large a pixel is
+    RELUME_FILTER_LINEAR,
+    RELUME_FILTER_CUBIC,  // enlarged: Catmull-Rom, within the range of the texels around
+};
+// "auto", "nearest", "linear", "cubic". RELUME_EINVAL when `name` is none of these.
+RELUME_RESULT relume_status relume_filter_parse(enum relume_filter *out, const char *name);
+
+struct relume_scale_params {
+    int threads;  // default: all cores
+    enum relume_filter filter;
+    bool wrap;  // the left border goes on at the right one
+    int tiles;  // so many pictures side by side do not mix at their borders; default 1
+};
+#define relume_scale_params(...) (&(const struct relume_scale_params){__VA_ARGS__})
+
+// Create `*out`: the whole of `image` in another size. The same size gives the same values.
+// RELUME_EINVAL, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_image_scale(struct relume_image *out,
+                                               const struct relume_image *image, int width,
+                                               int height,
+                                               const struct relume_scale_params *params);
+
 // How far `image` is from `reference`. All but rms and max_abs are of display values:
 // coded by `display`, clipped to [0, 1].
 struct relume_difference {

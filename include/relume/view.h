@@ -21,9 +21,11 @@ enum relume_interpolation {
 RELUME_RESULT relume_status relume_interpolation_parse(enum relume_interpolation *out,
                                                        const char *name);
 
-// All but `threads` is of slabs.
+// All but the first three is of slabs.
 struct relume_view_params {
-    int threads;  // default: all cores
+    int threads;                // default: all cores
+    enum relume_filter filter;  // panoramas; slabs: NEAREST is as `one`, all else linear
+    bool one;                   // one ray a pixel, for what has no mean, as positions
     enum relume_interpolation interpolation;
     // By view number, as relume_slab_disparity makes them, read where views are. NULL: not known.
     const struct relume_image *disparity;
@@ -74,6 +76,10 @@ RELUME_API struct relume_vec3 relume_slab_middle(const relume_slab *slab);
 RELUME_API bool relume_slab_uv(double uv[2], const relume_slab *slab, struct relume_vec3 eye,
                                double s, double t);
 
+// The share of the window that `eye` sees through the uv grid, 0 to 1. The other rays of a frame
+// are those of the nearest camera.
+RELUME_API double relume_slab_share(const relume_slab *slab, struct relume_vec3 eye);
+
 // The up to four views and weights (summing to 1) for a point of the uv plane; returns how many,
 // 0 outside the grid (1e-9 of its size beside it is still inside). Views of weight 0 are left out.
 RELUME_API int relume_slab_blend(int view[4], double weight[4], const relume_slab *slab,
@@ -111,7 +117,9 @@ RELUME_API int relume_slab_needs(bool *needed, const relume_slab *slab, struct r
                                  const struct relume_view_params *params);
 
 // The window st_min..st_max as seen from `eye`. `views` are the relit images by view number, read
-// where needed; a pixel whose ray misses the uv grid is black. `out` has the wanted size already.
+// where needed. A pixel whose ray misses the uv grid shows what the cameras nearest to it see of
+// its point: on the st plane, or by depth on the surface. A pixel that covers several texels is
+// their mean. `out` has the wanted size already.
 // A captured eye and size give back that view bit by bit, unless an aperture or a focus is given.
 // RELUME_EINVAL for an eye that sees nothing, a needed view or disparity that is missing or of
 // another size, a plane of focus on or behind the cameras; RELUME_ENOMEM.
@@ -158,7 +166,8 @@ RELUME_API bool relume_panorama_sample(float rgb[3], const struct relume_geometr
                                        const struct relume_image *image,
                                        struct relume_vec3 direction);
 
-// A frame; `out` has the wanted size already. RELUME_EINVAL when `image` is no panorama
+// A frame; a pixel that covers several texels is the mean of rays through all of it. `out` has the
+// wanted size already. RELUME_EINVAL when `image` is no panorama
 // of three channels or `look` is not finite.
 RELUME_RESULT relume_status relume_panorama_frame(struct relume_image *out,
                                                   const struct relume_geometry *geometry,

@@ -25,7 +25,9 @@ static const struct option options[] = {
     {"--zoom", OPTION_NUMBER, "F", "panorama: 1 shows 90 degrees; default: 1", 0.01, 1000},
     {"--projection", OPTION_TEXT, "P",
      "panorama: perspective (default), stereographic, planet (looking down on it)", 0, 0},
-    {"--size", OPTION_TEXT, "WxH", "size of an --eye or --pan frame", 0, 0},
+    {"--size", OPTION_TEXT, "WxH", SIZE_HELP, 0, 0},
+    {"--filter", OPTION_TEXT, "F",
+     "enlarged: linear (auto), cubic, nearest; reduced, all but nearest average", 0, 0},
     {"--interpolate", OPTION_TEXT, "I",
      "slab: constant, linear or depth; default: depth where the file has it, else linear", 0, 0},
     {"--nearest", OPTION_FLAG, NULL, "slab: the same as --interpolate constant", 0, 0},
@@ -54,17 +56,12 @@ static bool wants_glare(const struct args *args)
     return !strcmp(args_text(args, "--pass", ""), "glare");
 }
 
-static relume_status parse_size(const char *text, struct relume_camera *camera)
+static relume_status parse_filter(const struct args *args, struct relume_frame_params *params)
 {
-    char rest;
-    if (!text)
-        return RELUME_OK;
-    if (sscanf(text, "%dx%d%c", &camera->width, &camera->height, &rest) == 2 &&
-        camera->width >= 1 && camera->width <= 65536 && camera->height >= 1 &&
-        camera->height <= 65536 && (int64_t)camera->width * camera->height <= 1 << 30)
-        return RELUME_OK;
-    return usage_error(
-        "--size: expected WIDTHxHEIGHT, at most 65536 a side and 2^30 pixels; found '%s'", text);
+    static const char *const names[] = {"auto", "nearest", "linear", "cubic", NULL};
+    const char *name = args_text(args, "--filter", names[0]);
+    return relume_filter_parse(&params->filter, name) ? unknown_name("--filter", name, names)
+                                                      : RELUME_OK;
 }
 
 static relume_status parse_look(const struct args *args, struct relume_look *look)
@@ -124,7 +121,7 @@ static relume_status parse_camera(const struct args *args, struct relume_camera 
         camera->framing = RELUME_FRAME_LOOK;
         status = parse_look(args, &camera->look);
     }
-    return status ? status : parse_size(args_text(args, "--size", NULL), camera);
+    return status ? status : parse_size(args, &camera->width, &camera->height);
 }
 
 static relume_status parse_slab(const struct args *args, struct relume_frame_params *params)
@@ -218,12 +215,14 @@ static double field_of_view(const struct relume_pack_info *info, const struct re
     if (camera->framing == RELUME_FRAME_EYE && camera->aim.field_of_view_deg > 0.0)
         return camera->aim.field_of_view_deg;
     double width = g->window_max[0] - g->window_min[0], distance = 0.0;
+    int size[2];
     if (g->projection == RELUME_SLAB) {
         width = g->st_max[0] - g->st_min[0];
         distance = (camera->framing == RELUME_FRAME_EYE ? camera->eye.z : g->uv_z) - g->st_z;
     } else if (g->projection == RELUME_PLANAR && g->perspective) {
         distance = g->camera_z;
     }
+    width *= (double)frame->width / relume_camera_place(size, info, camera).width;
     return distance > 0.0 ? 2.0 * atan(0.5 * width / distance) * 180.0 / M_PI : 0.0;
 }
 
@@ -309,6 +308,8 @@ static relume_status run(const struct args *args)
     relume_status status = parse_camera(args, &camera);
     if (!status)
         status = parse_slab(args, &params);
+    if (!status)
+        status = parse_filter(args, &params);
     if (!status)
         status = parse_pass(args, &params);
     if (!status)

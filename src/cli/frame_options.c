@@ -1,5 +1,8 @@
 #include "frame_options.h"
 
+#include <ctype.h>
+#include <stdlib.h>
+
 static relume_status open_rig(const struct args *args, relume_rig **rig)
 {
     const char *path = args_text(args, "--rig", NULL);
@@ -31,6 +34,33 @@ relume_status parse_lights(const struct args *args, relume_rig **rig,
     if (status)
         relume_rig_destroy(rig);
     return status;
+}
+
+// A number, at `*text` and moved beyond it; 0 where there is none.
+static int64_t take_side(const char **text)
+{
+    char *end;
+    const int64_t side = isdigit((unsigned char)**text) ? strtol(*text, &end, 10) : 0;
+    *text = side ? end : *text;
+    return side;
+}
+
+relume_status parse_size(const struct args *args, int *width, int *height)
+{
+    const char *const text = args_text(args, "--size", NULL), *rest = text;
+    if (!text)
+        return RELUME_OK;
+    const int64_t w = take_side(&rest);
+    const bool both = *rest == 'x';
+    rest += both;
+    const int64_t h = both ? take_side(&rest) : 0;
+    if (*rest || !(w || h) || w > 65536 || h > 65536 || w * h > 1 << 30)
+        return usage_error("--size: expected WIDTHxHEIGHT, WIDTH or xHEIGHT, at most 65536 a side "
+                           "and 2^30 pixels; found '%s'",
+                           text);
+    *width = (int)w;
+    *height = (int)h;
+    return RELUME_OK;
 }
 
 struct relume_frame_params parse_frame(const struct args *args)

@@ -25,6 +25,12 @@
         "--cpu-mask", OPTION_INT, "M", "CPU features to use, 0: plain C; default: all", 0, 65535   \
     }
 
+#define SIZE_HELP                                                                                  \
+    "size of the picture: WxH, W (or Wx), xH; one alone keeps the proportions, both fit it "       \
+    "inside, with black beside it"
+
+// --size: of one side alone the other one is 0; both are 0 without it.
+relume_status parse_size(const struct args *args, int *width, int *height);
 // The lights of --rig and --light, "dir 0 0 1" where both are missing; --save-rig is obeyed. They
 // belong to `*rig`, which is to be destroyed.
 relume_status parse_lights(const struct args *args, relume_rig **rig,

@@ -18,6 +18,8 @@ static struct renderer renderer_of(relume_pack *pack, const struct relume_light 
                  .interpolation = p.interpolation,
                  .aperture = p.aperture,
                  .focus = p.focus,
+                 .filter = p.filter,
+                 .one = p.places,
                  .nothing = p.places ? NAN : 0.0f},
     };
 }
@@ -179,18 +181,35 @@ relume_status renderer_relight(const struct renderer *r, int view, struct relume
 
 // ---------------------------------------------------------------- framings
 
+// Positions have no mean: the nearest texel's.
+static relume_status scale_view(const struct renderer *r, const struct relume_camera *camera,
+                                const struct relume_image *view, struct relume_image *out)
+{
+    const struct relume_geometry *g = &r->info->geometry;
+    const bool round = g->projection == RELUME_CYLINDRICAL || g->projection == RELUME_SPHERICAL;
+    return relume_image_scale(
+        out, view, camera->width, camera->height,
+        relume_scale_params(.threads = r->params.threads,
+                            .filter = r->params.places ? RELUME_FILTER_NEAREST : r->params.filter,
+                            .wrap = round && !g->disc,
+                            .tiles = g->projection == RELUME_CUBE ? 6 : 1));
+}
+
 static relume_status render_view(const struct renderer *r, const struct relume_camera *camera,
                                  struct relume_image *out)
 {
     if (camera->view < 0 || camera->view >= r->info->views)
         return log_fail(r->params.log, RELUME_EINVAL, "view %d does not exist; expected 0 to %d",
                         camera->view, r->info->views - 1);
-    if ((camera->width && camera->width != r->info->width) ||
-        (camera->height && camera->height != r->info->height))
-        return log_fail(r->params.log, RELUME_EINVAL,
-                        "a captured view has its own size; expected %d x %d, found %d x %d",
-                        r->info->width, r->info->height, camera->width, camera->height);
-    return renderer_relight(r, camera->view, out);
+    struct relume_image view = {0};
+    relume_status status = renderer_relight(r, camera->view, &view);
+    if (status || (camera->width == view.width && camera->height == view.height)) {
+        *out = view;
+        return status;
+    }
+    status = scale_view(r, camera, &view, out);
+    relume_image_destroy(&view);
+    return status;
 }
 
 static relume_status render_look(const struct renderer *r, const struct relume_camera *camera,
@@ -203,12 +222,34 @@ static relume_status render_look(const struct renderer *r, const struct relume_c
     struct relume_image view = {0};
     relume_status status = renderer_relight(r, camera->view, &view);
     if (!status)
-        status = relume_image_create(out, camera->width ? camera->width : 1024,
-                                     camera->height ? camera->height : 512, 3);
+        status = relume_image_create(out, camera->width, camera->height, 3);
     if (!status)
         status = relume_panorama_frame(out, &r->info->geometry, &view, camera->look, &r->view);
     relume_image_destroy(&view);
     return status;
+}
+
+static relume_status check_size(const struct renderer *r, const int frame[2])
+{
+    if (frame[0] >= 1 && frame[1] >= 1 && (int64_t)frame[0] * frame[1] <= 1 << 30)
+        return RELUME_OK;
+    return log_fail(r->params.log, RELUME_EINVAL,
+                    "a picture of %d x %d pixels is too large; expected at most 2^30", frame[0],
+                    frame[1]);
+}
+
+static relume_status render(const struct renderer *r, const struct relume_camera *camera,
+                            struct relume_image *out)
+{
+    switch (camera->framing) {
+    case RELUME_FRAME_DEFAULT:
+        return r->info->geometry.projection == RELUME_SLAB ? frame_eye(r, camera, out)
+                                                           : render_view(r, camera, out);
+    case RELUME_FRAME_VIEW: return render_view(r, camera, out);
+    case RELUME_FRAME_EYE: return frame_eye(r, camera, out);
+    case RELUME_FRAME_LOOK: return render_look(r, camera, out);
+    }
+    return RELUME_EINVAL;
 }
 
 relume_status relume_frame(struct relume_image *out, relume_pack *pack,
@@ -217,17 +258,17 @@ relume_status relume_frame(struct relume_image *out, relume_pack *pack,
 {
     struct shared shared = {0};
     const struct renderer r = renderer_of(pack, lights, n, params, &shared);
+    struct relume_camera within = *camera;
+    int frame[2];
+    const struct relume_place place = relume_camera_place(frame, r.info, camera);
     *out = (struct relume_image){0};
-    relume_status status = RELUME_EINVAL;
-    switch (camera->framing) {
-    case RELUME_FRAME_DEFAULT:
-        status = r.info->geometry.projection == RELUME_SLAB ? frame_eye(&r, camera, out)
-                                                            : render_view(&r, camera, out);
-        break;
-    case RELUME_FRAME_VIEW: status = render_view(&r, camera, out); break;
-    case RELUME_FRAME_EYE: status = frame_eye(&r, camera, out); break;
-    case RELUME_FRAME_LOOK: status = render_look(&r, camera, out); break;
-    }
+    within.width = place.width;
+    within.height = place.height;
+    relume_status status = check_size(&r, frame);
+    if (!status)
+        status = render(&r, &within, out);
+    if (!status)
+        status = frame_put(out, &place, frame, r.params.places ? NULL : r.params.log);
     if (status)
         relume_image_destroy(out);
     shared_destroy(&shared);

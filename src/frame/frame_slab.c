@@ -39,6 +39,18 @@ static relume_status make_slab(relume_slab **slab, const struct renderer *r)
                   : RELUME_OK;
 }
 
+// A frame whose rays partly miss the cameras is no light field there any more.
+static void say_beside(const struct renderer *r, const relume_slab *slab, vec3 eye, bool by_depth)
+{
+    const double beside = 1.0 - relume_slab_share(slab, eye);
+    if (beside < 0.01 || r->params.places)
+        return;
+    log_line(r->params.log, RELUME_NOTE,
+             "%.0f %% of the picture lies beyond the cameras: shown as the nearest of them sees %s",
+             100.0 * beside,
+             by_depth ? "the surface there" : "it, without parallax; a file with depth moves it");
+}
+
 static relume_status draw(const struct renderer *r, const struct relume_camera *camera,
                           const relume_slab *slab, struct gathered *g, struct relume_image *out)
 {
@@ -52,9 +64,12 @@ static relume_status draw(const struct renderer *r, const struct relume_camera *
     relume_status status = gathered_fill(g, r, renderer_takes_depth(r), only_slab, slab);
     params.disparity = g->disparity;
     if (!status)
-        status = relume_image_create(out, camera->width ? camera->width : r->info->width,
-                                     camera->height ? camera->height : r->info->height, 3);
-    return status ? status : relume_slab_frame(out, slab, eye, g->images, &params);
+        status = relume_image_create(out, camera->width, camera->height, 3);
+    if (!status)
+        status = relume_slab_frame(out, slab, eye, g->images, &params);
+    if (!status)
+        say_beside(r, slab, eye, g->disparity != NULL);
+    return status;
 }
 
 relume_status frame_eye(const struct renderer *r, const struct relume_camera *camera,

@@ -73,8 +73,7 @@ static relume_status check_lens(const struct renderer *r, const struct relume_wi
 relume_status frame_around(const struct renderer *r, const struct relume_camera *camera,
                            struct relume_image *out)
 {
-    const int width = camera->width ? camera->width : r->info->width;
-    const int height = camera->height ? camera->height : r->info->height;
+    const int width = camera->width, height = camera->height;
     struct relume_view_params params = r->view;
     struct relume_window window;
     struct gathered g = {0};

@@ -51,6 +51,10 @@ relume_status frame_around(const struct renderer *r, const struct relume_camera 
 relume_status query_slab(const struct renderer *r, vec3 eye, vec3 direction, float rgb[3]);
 relume_status query_slabs(const struct renderer *r, vec3 eye, vec3 direction, float rgb[3]);
 
+// Put the picture into its place of a frame, with black beside it.
+relume_status frame_put(struct relume_image *image, const struct relume_place *place,
+                        const int frame[2], const struct relume_log *log);
+
 // ---------------------------------------------------------------- one ray
 relume_status ray_none(const struct renderer *r, const char *why);
 // Bilinear in linear light with the border clamped; pixel centres are at +0.5.

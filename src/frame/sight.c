@@ -59,8 +59,19 @@ relume_status relume_frame_sight(struct relume_sight *out, relume_pack *pack,
     const struct relume_pack_info *info = relume_pack_info(pack);
     const bool slab = info->geometry.projection == RELUME_SLAB;
     const int view = camera->framing == RELUME_FRAME_VIEW ? camera->view : 0;
-    *out = (struct relume_sight){
-        .width = width, .height = height, .geometry = info->geometry, .look = camera->look};
+    struct relume_camera sized = *camera;
+    int frame[2];
+    sized.width = width;
+    sized.height = height;
+    const struct relume_place place = relume_camera_place(frame, info, &sized);
+    *out = (struct relume_sight){.width = width,
+                                 .height = height,
+                                 .left = place.left,
+                                 .top = place.top,
+                                 .wide = place.width,
+                                 .high = place.height,
+                                 .geometry = info->geometry,
+                                 .look = camera->look};
     if (view < 0 || view >= info->views)
         return RELUME_EINVAL;
     if (camera->framing == RELUME_FRAME_LOOK)

@@ -149,6 +149,18 @@ static relume_status layer(struct relume_image *out, const struct layered *l,
     return status ? status : objects_trace(out, layered_value, l, params);
 }
 
+// What is to be noted of a frame is so under the first light.
+static void say_no_note(void *user, enum relume_level level, const char *text)
+{
+    if (level != RELUME_NOTE)
+        log_line(user, level, "%s", text);
+}
+
+static bool pass_progress(void *user, const char *what, double done)
+{
+    return log_progress(user, what, done);
+}
+
 static relume_status light_scene(struct relume_image *scene, const struct relume_image *places,
                                  const relume_objects *o, relume_pack *pack,
                                  const struct relume_camera *camera,
@@ -158,9 +170,13 @@ static relume_status light_scene(struct relume_image *scene, const struct relume
 {
     struct shadows s = {
         .o = o, .places = places, .sum = scene, .none = params && params->no_shadows};
+    const struct relume_log errors = {say_no_note, pass_progress, (void *)(uintptr_t)frame->log};
+    struct relume_frame_params each = *frame;
     relume_status status = relume_image_create(scene, places->width, places->height, 3);
-    for (int i = 0; i < n && !status; i++)
-        status = add_light(&s, pack, camera, &lights[i], frame, params ? params->threads : 0);
+    for (int i = 0; i < n && !status; i++) {
+        status = add_light(&s, pack, camera, &lights[i], &each, params ? params->threads : 0);
+        each.log = &errors;
+    }
     return status;
 }
 

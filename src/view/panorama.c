@@ -9,6 +9,7 @@
 #include <relume/view.h>
 
 #include "base/thread.h"
+#include "image/footprint.h"
 #include "view/panorama.h"
 
 #include <string.h>
@@ -32,8 +33,11 @@ static const struct face faces[6] = {
 struct layout {
     vec3 (*ray)(const struct panorama *p, double x, double y);
     bool (*pixel)(double xy[2], const struct panorama *p, vec3 direction);
-    // Texel (x, y), which may lie one step outside the image or, for a cube, outside `face`.
+    // Texel (x, y), which may lie two steps outside the image or, for a cube, outside `face`.
     panorama_texel *texel;
+    // Texels per radian in a unit direction, the more of the two axes; at a sphere's poles as at
+    // its equator: rows stay as far apart.
+    double (*density)(const struct panorama *p, vec3 unit);
 };
 
 // ---------------------------------------------------------------- shared
@@ -62,6 +66,40 @@ void panorama_bilinear(float rgb[3], const struct panorama *p, panorama_texel *t
             for (int c = 0; c < 3; c++)
                 rgb[c] += w * t[c];
         }
+}
+
+static void cubic(float rgb[3], const struct panorama *p, panorama_texel *texel, int face, double x,
+                  double y)
+{
+    const int left = relume_whole(floor(x)), top = relume_whole(floor(y));
+    double across[4], down[4], sum[3] = {0.0, 0.0, 0.0};
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    footprint_cubic(across, x - left);
+    footprint_cubic(down, y - top);
+    for (int j = 0; j < 4; j++)
+        for (int i = 0; i < 4; i++) {
+            float t[3];
+            texel(t, p, face, left - 1 + i, top - 1 + j);
+            for (int c = 0; c < 3; c++) {
+                sum[c] += across[i] * down[j] * (double)t[c];
+                low[c] = fminf(low[c], t[c]);
+                high[c] = fmaxf(high[c], t[c]);
+            }
+        }
+    for (int c = 0; c < 3; c++)
+        rgb[c] = fminf(fmaxf((float)sum[c], low[c]), high[c]);
+}
+
+// As the panorama's filter has it.
+static void between(float rgb[3], const struct panorama *p, panorama_texel *texel, int face,
+                    double x, double y)
+{
+    if (p->filter == RELUME_FILTER_NEAREST)
+        texel(rgb, p, face, relume_whole(floor(x + 0.5)), relume_whole(floor(y + 0.5)));
+    else if (p->filter == RELUME_FILTER_CUBIC)
+        cubic(rgb, p, texel, face, x, y);
+    else
+        panorama_bilinear(rgb, p, texel, face, x, y);
 }
 
 static int clamp_index(int i, int n)
@@ -123,6 +161,18 @@ static void cylinder_texel(float rgb[3], const struct panorama *p, int face, int
     panorama_fetch(rgb, p, wrap_index(x, p->width), clamp_index(y, panorama_rows(p)));
 }
 
+// A step of azimuth is 1 / sqrt(1 + h^2) of what it is on the horizon; dh = (1 + h^2) da.
+static double cylinder_density(const struct panorama *p, vec3 d)
+{
+    const struct relume_geometry *g = p->geometry;
+    const double across = hypot(d.x, d.z);
+    const double h = d.y / across;
+    if (g->disc && !(h >= g->v_min && h <= g->v_max))
+        return disc_density(p, d);
+    return fmax(p->width / (2.0 * PI) / across,
+                panorama_rows(p) / (g->v_max - g->v_min) / (across * across));
+}
+
 // ---------------------------------------------------------------- sphere
 
 static vec3 sphere_ray(const struct panorama *p, double x, double y)
@@ -147,12 +197,18 @@ static void sphere_texel(float rgb[3], const struct panorama *p, int face, int x
         panorama_fetch(rgb, p, wrap_index(x, p->width), y);
         return;
     }
-    const int row = clamp_index(y, p->height);
+    const int row = clamp_index(y < 0 ? -1 - y : 2 * p->height - 1 - y, p->height);
     float other[3];
     panorama_fetch(rgb, p, wrap_index(x + p->width / 2, p->width), row);
     panorama_fetch(other, p, wrap_index(x + (p->width + 1) / 2, p->width), row);
     for (int c = 0; c < 3; c++)
         rgb[c] = 0.5f * (rgb[c] + other[c]);
+}
+
+static double sphere_density(const struct panorama *p, vec3 d)
+{
+    (void)d;
+    return fmax(p->width / (2.0 * PI), p->height / PI);
 }
 
 // ---------------------------------------------------------------- cube
@@ -229,12 +285,19 @@ static void cube_texel(float rgb[3], const struct panorama *p, int face, int x, 
         rgb[c] = (rgb[c] + beside[c] + above[c]) / 3.0f;
 }
 
+// The distance from a face's middle is half a side times the tangent of the angle.
+static double cube_density(const struct panorama *p, vec3 d)
+{
+    const double ahead = fmax(fmax(fabs(d.x), fabs(d.y)), fabs(d.z));
+    return 0.5 * p->height / (ahead * ahead);
+}
+
 // ---------------------------------------------------------------- public
 
 static const struct layout layouts[] = {
-    [RELUME_CYLINDRICAL] = {cylinder_ray, cylinder_pixel, cylinder_texel},
-    [RELUME_SPHERICAL] = {sphere_ray, sphere_pixel, sphere_texel},
-    [RELUME_CUBE] = {cube_ray, cube_pixel, cube_texel},
+    [RELUME_CYLINDRICAL] = {cylinder_ray, cylinder_pixel, cylinder_texel, cylinder_density},
+    [RELUME_SPHERICAL] = {sphere_ray, sphere_pixel, sphere_texel, sphere_density},
+    [RELUME_CUBE] = {cube_ray, cube_pixel, cube_texel, cube_density},
 };
 
 static const struct layout *layout_of(const struct relume_geometry *geometry)
@@ -249,26 +312,57 @@ static bool has_direction(vec3 d)
     return isfinite(d.x) && isfinite(d.y) && isfinite(d.z) && (d.x != 0 || d.y != 0 || d.z != 0);
 }
 
+// A look, with what is the same in all its pixels.
+struct gaze {
+    vec3 right, up, ahead;
+    bool stereographic;
+    double pixel;  // of the plane before the eye, at distance 1
+    double half_width, half_height;
+};
+
+static struct gaze gaze_of(struct relume_look look, int width, int height)
+{
+    const double tilt = look.tilt_deg * PI / 180.0, pan = look.pan_deg * PI / 180.0;
+    return (struct gaze){
+        .right = {cos(pan), 0.0, sin(pan)},
+        .up = {-sin(tilt) * sin(pan), cos(tilt), sin(tilt) * cos(pan)},
+        .ahead = {cos(tilt) * sin(pan), sin(tilt), -cos(tilt) * cos(pan)},
+        .stereographic = look.stereographic,
+        .pixel = 2.0 / width * (look.zoom > 0.0 ? 1.0 / look.zoom : 1.0),
+        .half_width = 0.5 * width,
+        .half_height = 0.5 * height,
+    };
+}
+
+// Stereographic: seen from the far end of a sphere's axis.
+static vec3 gaze_ray(const struct gaze *g, double x, double y)
+{
+    const double a = (x - g->half_width) * g->pixel, b = (g->half_height - y) * g->pixel;
+    const double depth = g->stereographic ? 0.5 * (1.0 - a * a - b * b) : 1.0;
+    return vec3_unit(vec3_add(vec3_add(vec3_scale(g->right, a), vec3_scale(g->up, b)),
+                              vec3_scale(g->ahead, depth)));
+}
+
+// Of a pixel there, radians: across and down.
+static void gaze_extent(double extent[2], const struct gaze *g, double x, double y)
+{
+    const double a = (x - g->half_width) * g->pixel, b = (g->half_height - y) * g->pixel;
+    const double away = 1.0 + a * a + b * b;
+    extent[0] = g->pixel * (g->stereographic ? 2.0 : sqrt(1.0 + b * b)) / away;
+    extent[1] = g->pixel * (g->stereographic ? 2.0 : sqrt(1.0 + a * a)) / away;
+}
+
 struct relume_vec3 relume_look_ray(struct relume_look look, int width, int height, double x,
                                    double y)
 {
-    const double reach = look.zoom > 0.0 ? 1.0 / look.zoom : 1.0;
-    const double a = (2.0 * x / width - 1.0) * reach;
-    const double b = (height - 2.0 * y) / width * reach;
-    const double tilt = look.tilt_deg * PI / 180.0;
-    const double pan = look.pan_deg * PI / 180.0;
-    // The ray before it is turned; stereographic: seen from the far end of a sphere's axis.
-    const double square = look.stereographic ? a * a + b * b : 0.0;
-    const double depth = look.stereographic ? 0.5 * (1.0 - square) : 1.0;
-    const double up = b * cos(tilt) + depth * sin(tilt);
-    const double ahead = depth * cos(tilt) - b * sin(tilt);
-    return vec3_unit(vec3_of(a * cos(pan) + ahead * sin(pan), up, a * sin(pan) - ahead * cos(pan)));
+    const struct gaze g = gaze_of(look, width, height);
+    return gaze_ray(&g, x, y);
 }
 
 struct relume_vec3 relume_panorama_ray(const struct relume_geometry *geometry, int width,
                                        int height, double x, double y)
 {
-    const struct panorama p = {geometry, width, height, NULL};
+    const struct panorama p = {.geometry = geometry, .width = width, .height = height};
     const struct layout *layout = layout_of(geometry);
     return layout ? layout->ray(&p, x, y) : (vec3){0};
 }
@@ -276,7 +370,7 @@ struct relume_vec3 relume_panorama_ray(const struct relume_geometry *geometry, i
 bool relume_panorama_pixel(double xy[2], const struct relume_geometry *geometry, int width,
                            int height, struct relume_vec3 direction)
 {
-    const struct panorama p = {geometry, width, height, NULL};
+    const struct panorama p = {.geometry = geometry, .width = width, .height = height};
     const struct layout *layout = layout_of(geometry);
     return layout && has_direction(direction) && layout->pixel(xy, &p, direction);
 }
@@ -294,7 +388,7 @@ static bool sample(float rgb[3], const struct panorama *p, const struct layout *
     }
     const int side = p->geometry->projection == RELUME_CUBE ? p->width / 6 : p->width;
     const int face = clamp_index(relume_whole(xy[0] / side), 6);
-    panorama_bilinear(rgb, p, layout->texel, face, xy[0] - face * side - 0.5, xy[1] - 0.5);
+    between(rgb, p, layout->texel, face, xy[0] - face * side - 0.5, xy[1] - 0.5);
     return true;
 }
 
@@ -312,7 +406,8 @@ static const struct layout *usable_layout(const struct relume_geometry *geometry
 bool relume_panorama_sample(float rgb[3], const struct relume_geometry *geometry,
                             const struct relume_image *image, struct relume_vec3 direction)
 {
-    const struct panorama p = {geometry, image->width, image->height, image->data};
+    const struct panorama p = {geometry, image->width, image->height, image->data,
+                               RELUME_FILTER_LINEAR};
     const struct layout *layout = usable_layout(geometry, image);
     if (layout)
         return sample(rgb, &p, layout, direction);
@@ -322,23 +417,48 @@ bool relume_panorama_sample(float rgb[3], const struct relume_geometry *geometry
 
 struct frame {
     const struct relume_image *out;
-    struct relume_look look;
+    struct gaze gaze;
     struct panorama panorama;
     const struct layout *layout;
     float nothing;
+    bool one;  // ray a pixel
 };
+
+// The mean of what a pixel covers.
+static void draw_pixel(float rgb[3], const struct frame *f, double x, double y)
+{
+    const vec3 ray = gaze_ray(&f->gaze, x, y);
+    double extent[2], sum[3] = {0.0, 0.0, 0.0};
+    gaze_extent(extent, &f->gaze, x, y);
+    const double texels = f->one ? 0.0 : f->layout->density(&f->panorama, ray);
+    const struct footprint across = footprint_of(texels * extent[0], FOOTPRINT_MOST);
+    const struct footprint down = footprint_of(texels * extent[1], FOOTPRINT_MOST);
+    const int n = across.count * down.count;
+    if (n == 1) {
+        if (!sample(rgb, &f->panorama, f->layout, ray))
+            rgb[0] = rgb[1] = rgb[2] = f->nothing;
+        return;
+    }
+    for (int j = 0; j < down.count; j++)
+        for (int i = 0; i < across.count; i++) {
+            float part[3];
+            sample(
+                part, &f->panorama, f->layout,
+                gaze_ray(&f->gaze, x + footprint_place(across, i), y + footprint_place(down, j)));
+            for (int c = 0; c < 3; c++)
+                sum[c] += (double)part[c];
+        }
+    for (int c = 0; c < 3; c++)
+        rgb[c] = (float)(sum[c] / n);
+}
 
 static void draw_row(void *context, size_t row, int worker)
 {
     const struct frame *f = context;
     (void)worker;
     float *rgb = f->out->data + 3 * row * (size_t)f->out->width;
-    for (int x = 0; x < f->out->width; x++, rgb += 3) {
-        const vec3 ray =
-            relume_look_ray(f->look, f->out->width, f->out->height, x + 0.5, (double)row + 0.5);
-        if (!sample(rgb, &f->panorama, f->layout, ray))
-            rgb[0] = rgb[1] = rgb[2] = f->nothing;
-    }
+    for (int x = 0; x < f->out->width; x++, rgb += 3)
+        draw_pixel(rgb, f, x + 0.5, (double)row + 0.5);
 }
 
 relume_status relume_panorama_frame(struct relume_image *out,
@@ -350,13 +470,15 @@ relume_status relume_panorama_frame(struct relume_image *out,
     const bool finite = isfinite(look.pan_deg) && isfinite(look.tilt_deg) && isfinite(look.zoom);
     if (!layout || !finite || look.zoom < 0.0 || !out->data || out->channels != 3)
         return RELUME_EINVAL;
+    const struct relume_view_params p = params ? *params : (struct relume_view_params){0};
     struct frame frame = {
         .out = out,
-        .look = look,
-        .panorama = {geometry, image->width, image->height, image->data},
+        .gaze = gaze_of(look, out->width, out->height),
+        .panorama = {geometry, image->width, image->height, image->data, p.filter},
         .layout = layout,
-        .nothing = params ? params->nothing : 0.0f,
+        .nothing = p.nothing,
+        .one = p.one || p.filter == RELUME_FILTER_NEAREST,
     };
-    thread_for(params ? params->threads : 0, (size_t)out->height, draw_row, &frame);
+    thread_for(p.threads, (size_t)out->height, draw_row, &frame);
     return RELUME_OK;
 }

@@ -9,7 +9,8 @@
 struct panorama {
     const struct relume_geometry *geometry;
     int width, height;
-    const float *data;  // three channels; NULL when only the geometry is asked for
+    const float *data;          // three channels; NULL when only the geometry is asked for
+    enum relume_filter filter;  // of a frame; discs are bilinear
 };
 
 // Rows of a cylinder, which its discs lie below.
@@ -33,6 +34,8 @@ void panorama_bilinear(float rgb[3], const struct panorama *p, panorama_texel *t
 vec3 disc_ray(const struct panorama *p, double x, double y);
 // Of a direction that is above or below the cylinder; at or below its last row.
 void disc_pixel(double xy[2], const struct panorama *p, vec3 d);
+// Texels per radian there, at most.
+double disc_density(const struct panorama *p, vec3 unit);
 // Bilinear value at a position of the image that shows something; `cylinder` makes texels of the
 // rows above the discs and repeats its first and last one.
 void disc_sample(float rgb[3], const struct panorama *p, panorama_texel *cylinder,

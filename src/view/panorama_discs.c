@@ -51,6 +51,12 @@ void disc_pixel(double xy[2], const struct panorama *p, vec3 d)
     xy[1] = fmin(fmax(xy[1], 0.0), side) + panorama_rows(p);
 }
 
+// The radius on the disc is v tan(a) of the angle a from its axis.
+double disc_density(const struct panorama *p, vec3 unit)
+{
+    return 0.5 * p->geometry->disc * fabs(height_of(p, unit.y < 0.0)) / (unit.y * unit.y);
+}
+
 // In the rows; h is within the cylinder.
 static void cylinder_value(float rgb[3], const struct panorama *p, panorama_texel *cylinder, vec3 d)
 {

@@ -220,6 +220,29 @@ bool relume_slab_uv(double uv[2], const relume_slab *slab, struct relume_vec3 ey
     return true;
 }
 
+// Of one axis: the eye sees the window from `low` to `high` through the lines between `first` and
+// `last`.
+static double share_of(double eye, double reach, double low, double high, double first, double last)
+{
+    const double a = slab_hit(eye, low, reach), b = slab_hit(eye, high, reach);
+    if (a == b)
+        return a >= first && a <= last;
+    const double within = fmin(fmax(a, b), last) - fmax(fmin(a, b), first);
+    return fmin(fmax(within / fabs(a - b), 0.0), 1.0);
+}
+
+double relume_slab_share(const relume_slab *slab, struct relume_vec3 eye)
+{
+    const struct relume_geometry *g = &slab->geometry;
+    double reach;
+    if (!slab_reach(&reach, slab, eye))
+        return 0.0;
+    return share_of(eye.x, reach, g->st_min[0], g->st_max[0], slab->u[0] - slab->slack,
+                    slab->u[slab->columns - 1] + slab->slack) *
+           share_of(eye.y, reach, g->st_min[1], g->st_max[1], slab->v[0] - slab->slack,
+                    slab->v[slab->rows - 1] + slab->slack);
+}
+
 // ---------------------------------------------------------------- weights
 
 static struct neighbours find_neighbours(const double *lines, int n, double slack, bool constant,

@@ -2,6 +2,8 @@
 #ifndef VIEW_SLAB_H
 #define VIEW_SLAB_H
 
+#include "image/footprint.h"
+
 #include <relume/view.h>
 
 struct relume_slab {
@@ -28,6 +30,11 @@ struct neighbours {
 // How far along the way from the eye (0) to the st plane (1) the uv plane lies; false when the eye
 // sees nothing of the slab from there.
 bool slab_reach(double *reach, const relume_slab *slab, struct relume_vec3 eye);
+// The nearest place on or between the lines.
+static inline double slab_nearest(const double *lines, int n, double at)
+{
+    return at < lines[0] ? lines[0] : at > lines[n - 1] ? lines[n - 1] : at;
+}
 // u (or v) of the ray from `eye` through `st`. Exact for a reach of 0, monotone in `st`, rounding
 // included.
 double slab_hit(double eye, double st, double reach);
@@ -72,30 +79,44 @@ double slab_depth_shade(float rgb[3], const struct slab_frame *frame, const stru
 // A ray by the quadralinear basis, or of the nearest camera.
 void slab_flat_shade(float rgb[3], const struct slab_frame *frame, const struct slab_ray *ray);
 
+// Samples a side of what a pixel covers.
+static inline struct footprint slab_footprint(const struct relume_view_params *params,
+                                              double texels)
+{
+    const bool one = params->one || params->filter == RELUME_FILTER_NEAREST;
+    return footprint_of(one ? 0.0 : texels, FOOTPRINT_MOST);
+}
+
 static inline bool slab_is_lens(const struct relume_view_params *params)
 {
     return params && (params->aperture != 0.0 || params->focus != 0.0);
 }
 
-// The place on the st plane that the centre of a column (row) of the frame looks at.
-static inline double slab_s(const struct slab_frame *f, int column)
+// The place on the st plane that a column (row) of the frame looks at, centres at +0.5.
+static inline double slab_s(const struct slab_frame *f, double x)
 {
     const struct relume_geometry *g = &f->slab->geometry;
-    return g->st_min[0] + (column + 0.5) / f->out->width * (g->st_max[0] - g->st_min[0]);
+    return g->st_min[0] + x / f->out->width * (g->st_max[0] - g->st_min[0]);
 }
-static inline double slab_t(const struct slab_frame *f, int row)
+static inline double slab_t(const struct slab_frame *f, double y)
 {
     const struct relume_geometry *g = &f->slab->geometry;
-    return g->st_max[1] - (row + 0.5) / f->out->height * (g->st_max[1] - g->st_min[1]);
+    return g->st_max[1] - y / f->out->height * (g->st_max[1] - g->st_min[1]);
 }
 
 // The ray of a pixel: where it meets the uv plane, and the place in a view (texels, centres at
-// +0.5) that shows its point on the st plane.
+// +0.5) that shows its point on the st plane. Rays that miss the grid ask the cameras around `at`,
+// its place nearest to `uv`.
 struct slab_ray {
-    double uv[2], texel[2];
+    double uv[2], at[2], texel[2];
 };
-struct slab_ray slab_ray_of(const struct slab_frame *frame, int column, int row);
+// At (x, y) of the frame, pixel centres at +0.5.
+struct slab_ray slab_ray_of(const struct slab_frame *frame, double x, double y);
 struct slab_ray slab_ray_at(const struct slab_frame *frame, const double st[2]);
+// The mean of what a pixel covers, ray by ray.
+typedef void slab_shader(float rgb[3], const void *context, const struct slab_ray *ray);
+void slab_pixel(float rgb[3], const struct slab_frame *frame, int column, int row,
+                slab_shader *shade, const void *context);
 // How far the texel of the ray's point moves in the view of the camera at (u, v) when the point's
 // disparity rises by 1.
 void slab_shift(double shift[2], const struct slab_frame *frame, const struct slab_ray *ray,

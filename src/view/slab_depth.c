@@ -182,8 +182,8 @@ static double shade(float rgb[3], const struct around *a, double nearest, double
 
 static void find_cameras(struct around *a, const struct slab_frame *f, const struct slab_ray *ray)
 {
-    const struct neighbours across = slab_columns_at(f->slab, false, ray->uv[0]);
-    const struct neighbours down = slab_rows_at(f->slab, false, ray->uv[1]);
+    const struct neighbours across = slab_columns_at(f->slab, false, ray->at[0]);
+    const struct neighbours down = slab_rows_at(f->slab, false, ray->at[1]);
     *a = (struct around){.frame = f, .texel = {ray->texel[0], ray->texel[1]}};
     for (int j = 0; j < down.count; j++)
         for (int i = 0; i < across.count; i++) {
@@ -206,17 +206,21 @@ double slab_depth_shade(float rgb[3], const struct slab_frame *frame, const stru
     return shade(rgb, &a, range[1], range[0]);
 }
 
+static void shade_ray(float rgb[3], const void *context, const struct slab_ray *ray)
+{
+    const struct frame *f = context;
+    if (!(slab_depth_shade(rgb, f->of, ray, f->range) > 0.0))
+        rgb[0] = rgb[1] = rgb[2] = f->of->params.nothing;
+}
+
 static void draw_row(void *context, size_t row, int worker)
 {
     const struct frame *f = context;
     const struct relume_image *out = f->of->out;
     (void)worker;
     float *rgb = out->data + 3 * row * (size_t)out->width;
-    for (int x = 0; x < out->width; x++, rgb += 3) {
-        const struct slab_ray ray = slab_ray_of(f->of, x, (int)row);
-        if (!(slab_depth_shade(rgb, f->of, &ray, f->range) > 0.0))
-            rgb[0] = rgb[1] = rgb[2] = f->of->params.nothing;
-    }
+    for (int x = 0; x < out->width; x++, rgb += 3)
+        slab_pixel(rgb, f->of, x, (int)row, shade_ray, f);
 }
 
 // ---------------------------------------------------------------- frame

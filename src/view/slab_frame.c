@@ -1,14 +1,15 @@
 // slab_frame.c - a frame of a light slab: the quadralinear basis, four cameras times four texels
 //
 // A pixel fixes (s, t); its ray meets the uv plane in (u, v). Since u depends on s alone and v on t
-// alone, every weight of a frame is the product of one factor per column and one per row. Frames by
-// depth and through an aperture are in slab_depth.c and slab_lens.c.
+// alone, every weight of a frame is the product of one factor per column and one per row. A pixel
+// that covers several texels is the mean of several such rays (footprint.h). Frames by depth and
+// through an aperture are in slab_depth.c and slab_lens.c.
 #include "view/slab.h"
 
 #include "base/memory.h"
 #include "base/thread.h"
 
-// One factor of a pixel's weights: up to two camera lines times up to two texels of the view.
+// One factor of a ray's weights: up to two camera lines times up to two texels of the view.
 struct taps {
     int count;
     int line[4];
@@ -16,11 +17,11 @@ struct taps {
     float weight[4];
 };
 
-// Pixel `i` of `pixels` lies at this place between the texel centres of a view of `texels`; a frame
-// of the view's own size hits them exactly.
-static struct neighbours texel_neighbours(int i, int pixels, int texels)
+// Place `x` of `pixels` lies there between the texel centres of a view of `texels`; a frame of the
+// view's own size hits them exactly.
+static struct neighbours texel_neighbours(double x, int pixels, int texels)
 {
-    const double at = ((2.0 * i + 1.0) * texels) / (2.0 * pixels) - 0.5;
+    const double at = 2.0 * x * texels / (2.0 * pixels) - 0.5;
     if (at <= 0.0)
         return one_neighbour(0);
     if (at >= texels - 1)
@@ -46,8 +47,9 @@ static struct taps combine(struct neighbours lines, struct neighbours texels)
 
 struct frame {
     const struct slab_frame *of;
-    const struct taps *across;  // [width]
-    const struct taps *down;    // [height]
+    struct footprint wide, high;  // of a pixel
+    struct taps *across;          // [width][wide.count]
+    struct taps *down;            // [height][high.count]
 };
 
 static const float *texel(const struct slab_frame *f, const struct taps *across, int i,
@@ -61,19 +63,26 @@ static const float *texel(const struct slab_frame *f, const struct taps *across,
            3 * ((size_t)down->texel[j] * (size_t)image->width + (size_t)across->texel[i]);
 }
 
-static void draw_pixel(float *rgb, const struct frame *f, const struct taps *across,
-                       const struct taps *down)
+static void add_ray(float *rgb, const struct slab_frame *f, const struct taps *across,
+                    const struct taps *down)
 {
-    const bool inside = across->count && down->count;
-    // -0 + x is x for every x, 0 included: a single texel of weight 1 arrives bit by bit.
-    rgb[0] = rgb[1] = rgb[2] = inside ? -0.0f : f->of->params.nothing;
     for (int j = 0; j < down->count; j++)
         for (int i = 0; i < across->count; i++) {
             const float w = down->weight[j] * across->weight[i];
-            const float *from = texel(f->of, across, i, down, j);
+            const float *from = texel(f, across, i, down, j);
             for (int c = 0; c < 3; c++)
                 rgb[c] += w * from[c];
         }
+}
+
+static void draw_pixel(float *rgb, const struct frame *f, const struct taps *across,
+                       const struct taps *down)
+{
+    // -0 + x is x for every x, 0 included: a single texel of weight 1 arrives bit by bit.
+    rgb[0] = rgb[1] = rgb[2] = -0.0f;
+    for (int j = 0; j < f->high.count; j++)
+        for (int i = 0; i < f->wide.count; i++)
+            add_ray(rgb, f->of, &across[i], &down[j]);
 }
 
 static void draw_row(void *context, size_t row, int worker)
@@ -81,39 +90,60 @@ static void draw_row(void *context, size_t row, int worker)
     const struct frame *f = context;
     (void)worker;
     const struct relume_image *out = f->of->out;
+    const struct taps *down = &f->down[row * (size_t)f->high.count];
     float *rgb = out->data + 3 * row * (size_t)out->width;
     for (int x = 0; x < out->width; x++, rgb += 3)
-        draw_pixel(rgb, f, &f->across[x], &f->down[row]);
+        draw_pixel(rgb, f, &f->across[(size_t)x * (size_t)f->wide.count], down);
+}
+
+static struct taps share(struct taps taps, int rays)
+{
+    for (int i = 0; rays > 1 && i < taps.count; i++)
+        taps.weight[i] /= (float)rays;
+    return taps;
 }
 
 // Column c looks at s = st_min + (c+.5)/W * extent; row 0 is at the top, where t is largest.
-static void prepare_taps(struct taps *across, struct taps *down, const struct slab_frame *f,
-                         bool constant)
+static void prepare_taps(struct frame *frame, bool constant)
 {
-    for (int x = 0; x < f->out->width; x++) {
+    const struct slab_frame *f = frame->of;
+    const relume_slab *slab = f->slab;
+    const int across = frame->wide.count, down = frame->high.count;
+    for (int i = 0; i < f->out->width * across; i++) {
+        const double x = i / across + 0.5 + footprint_place(frame->wide, i % across);
         const double u = slab_hit(f->eye.x, slab_s(f, x), f->reach);
-        across[x] = combine(slab_columns_at(f->slab, constant, u),
-                            texel_neighbours(x, f->out->width, f->width));
+        frame->across[i] =
+            share(combine(slab_columns_at(slab, constant, slab_nearest(slab->u, slab->columns, u)),
+                          texel_neighbours(x, f->out->width, f->width)),
+                  across);
     }
-    for (int y = 0; y < f->out->height; y++) {
+    for (int i = 0; i < f->out->height * down; i++) {
+        const double y = i / down + 0.5 + footprint_place(frame->high, i % down);
         const double v = slab_hit(f->eye.y, slab_t(f, y), f->reach);
-        down[y] = combine(slab_rows_at(f->slab, constant, v),
-                          texel_neighbours(y, f->out->height, f->height));
+        frame->down[i] =
+            share(combine(slab_rows_at(slab, constant, slab_nearest(slab->v, slab->rows, v)),
+                          texel_neighbours(y, f->out->height, f->height)),
+                  down);
     }
 }
 
 static relume_status draw_linear(const struct slab_frame *f, bool constant)
 {
-    struct taps *across = mem_array((size_t)f->out->width, sizeof *across);
-    struct taps *down = mem_array((size_t)f->out->height, sizeof *down);
-    struct frame frame = {f, across, down};
-    if (across && down) {
-        prepare_taps(across, down, f, constant);
+    struct frame frame = {
+        .of = f,
+        .wide = slab_footprint(&f->params, (double)f->width / f->out->width),
+        .high = slab_footprint(&f->params, (double)f->height / f->out->height),
+    };
+    frame.across =
+        mem_array((size_t)f->out->width * (size_t)frame.wide.count, sizeof *frame.across);
+    frame.down = mem_array((size_t)f->out->height * (size_t)frame.high.count, sizeof *frame.down);
+    const relume_status status = frame.across && frame.down ? RELUME_OK : RELUME_ENOMEM;
+    if (!status) {
+        prepare_taps(&frame, constant);
         thread_for(f->params.threads, (size_t)f->out->height, draw_row, &frame);
     }
-    const relume_status status = across && down ? RELUME_OK : RELUME_ENOMEM;
-    free(across);
-    free(down);
+    free(frame.across);
+    free(frame.down);
     return status;
 }
 

@@ -81,20 +81,20 @@ static bool add_sample(double sum[3], const struct slab_frame *f, const float *r
     return true;
 }
 
-static void draw_pixel(float *rgb, const struct frame *f, int column, int row)
+static void shade_ray(float rgb[3], const void *context, const struct slab_ray *ray)
 {
-    const struct slab_ray ray = slab_ray_of(f->of, column, row);
+    const struct frame *f = context;
     double sum[3] = {0.0, 0.0, 0.0};
     double total = 0.0;
     for (int i = 0; i < f->count; i++) {
         const struct camera *c = &f->camera[i];
-        const double weight = relume_slab_lens_weight(&c->lens, ray.uv, f->radius);
+        const double weight = relume_slab_lens_weight(&c->lens, ray->at, f->radius);
         double shift[2];
         if (weight == 0.0)
             continue;
-        slab_shift(shift, f->of, &ray, c->lens.place[0], c->lens.place[1]);
-        const double at[2] = {ray.texel[0] + f->focus * shift[0],
-                              ray.texel[1] + f->focus * shift[1]};
+        slab_shift(shift, f->of, ray, c->lens.place[0], c->lens.place[1]);
+        const double at[2] = {ray->texel[0] + f->focus * shift[0],
+                              ray->texel[1] + f->focus * shift[1]};
         if (add_sample(sum, f->of, c->rgb, at, weight))
             total += weight;
     }
@@ -109,7 +109,7 @@ static void draw_row(void *context, size_t row, int worker)
     (void)worker;
     float *rgb = out->data + 3 * row * (size_t)out->width;
     for (int x = 0; x < out->width; x++, rgb += 3)
-        draw_pixel(rgb, f, x, (int)row);
+        slab_pixel(rgb, f->of, x, (int)row, shade_ray, f);
 }
 
 // ---------------------------------------------------------------- frame

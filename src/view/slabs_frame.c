@@ -24,7 +24,7 @@ struct picture {
     int pinholes;
     struct seen *seen;  // [pinholes][slabs]
     bool by_depth;
-    float nothing;
+    const struct relume_view_params *params;
 };
 
 bool slabs_ray(double uv[2], double st[2], const relume_slab *slab, vec3 eye, vec3 direction)
@@ -170,8 +170,55 @@ static bool shade(float rgb[3], const struct picture *p, double x, double y)
         n += sum[3] > 0.0;
     }
     for (int c = 0; c < 3; c++)
-        rgb[c] = n ? (float)(mean[c] / n) : p->nothing;
+        rgb[c] = n ? (float)(mean[c] / n) : p->params->nothing;
     return n > 0;
+}
+
+// ---------------------------------------------------------------- one pixel
+
+// Texels of a view that a pixel of the size (dx, dy) covers along its sides, at most over the
+// slabs that know its ray.
+static void find_texels(double texels[2], const struct picture *p, double x, double y, double dx,
+                        double dy)
+{
+    texels[0] = texels[1] = 0.0;
+    for (int i = 0; i < p->slabs->count; i++) {
+        const struct seen *s = &p->seen[i];
+        const struct relume_geometry *g = &s->frame.slab->geometry;
+        const vec3 way =
+            vec3_add(s->corner, vec3_add(vec3_scale(s->right, x), vec3_scale(s->down, y)));
+        const vec3 side[2] = {vec3_scale(s->right, dx), vec3_scale(s->down, dy)};
+        double uv[2], st[2], beside[2];
+        if (!s->any || !slabs_ray(uv, st, s->frame.slab, s->frame.eye, way) ||
+            !(relume_slab_weight(s->frame.slab, uv, st) > 0.0))
+            continue;
+        for (int k = 0; k < 2; k++)
+            if (slabs_ray(uv, beside, s->frame.slab, s->frame.eye, vec3_add(way, side[k])))
+                texels[k] = fmax(
+                    texels[k],
+                    hypot((beside[0] - st[0]) / (g->st_max[0] - g->st_min[0]) * s->frame.width,
+                          (beside[1] - st[1]) / (g->st_max[1] - g->st_min[1]) * s->frame.height));
+    }
+}
+
+// The mean of what it covers.
+static void draw_pixel(float rgb[3], const struct picture *p, int column, int row)
+{
+    const double dx = 1.0 / p->out->width, dy = 1.0 / p->out->height;
+    const double x = (column + 0.5) * dx, y = (row + 0.5) * dy;
+    double texels[2], sum[3] = {0.0, 0.0, 0.0};
+    find_texels(texels, p, x, y, dx, dy);
+    const struct footprint across = slab_footprint(p->params, texels[0]);
+    const struct footprint down = slab_footprint(p->params, texels[1]);
+    const int n = across.count * down.count;
+    for (int j = 0; j < down.count; j++)
+        for (int i = 0; i < across.count; i++) {
+            shade(rgb, p, x + footprint_place(across, i) * dx, y + footprint_place(down, j) * dy);
+            for (int c = 0; c < 3; c++)
+                sum[c] += (double)rgb[c];
+        }
+    for (int c = 0; n > 1 && c < 3; c++)
+        rgb[c] = (float)(sum[c] / n);
 }
 
 static void draw_row(void *context, size_t row, int worker)
@@ -180,7 +227,7 @@ static void draw_row(void *context, size_t row, int worker)
     (void)worker;
     float *rgb = p->out->data + 3 * row * (size_t)p->out->width;
     for (int x = 0; x < p->out->width; x++, rgb += 3)
-        shade(rgb, p, (x + 0.5) / p->out->width, ((double)row + 0.5) / p->out->height);
+        draw_pixel(rgb, p, x, (int)row);
 }
 
 // ---------------------------------------------------------------- picture
@@ -249,12 +296,11 @@ static relume_status begin(struct job *job, const relume_slabs *slabs,
                            const struct relume_image *views,
                            const struct relume_view_params *params)
 {
-    *job = (struct job){.picture = {.slabs = slabs}};
+    *job = (struct job){.picture = {.slabs = slabs, .params = &job->params}};
     if (params)
         job->params = *params;
     struct picture *p = &job->picture;
     p->by_depth = takes_depth(&job->params);
-    p->nothing = job->params.nothing;
     p->pinholes = count_pinholes(window, width, &job->params);
     if (p->pinholes == 0 ||
         (job->params.interpolation == RELUME_INTERPOLATE_DEPTH && !job->params.disparity))

@@ -5,6 +5,8 @@
 relume() { "$RELUME" "$@" -q; }
 psnr() { "$RELUME" compare "$1" "$2" | awk '$1 == "psnr_db" { print $2 }'; }
 
+is() { if [ "$2" = "$3" ]; then ok "$1"; else not_ok "$1" "found '$2', expected '$3'"; fi; }
+
 # ---- a camera left out: synth renders the truth
 relume synth teapot -o slab --views 3x3 --lights 4 --hemisphere --size 96 --samples 4 || exit 1
 relume synth teapot -o truth --eye 0.25,0.25,3 --lights-from slab/capture.json --size 96 --samples 4 || exit 1
@@ -43,6 +45,61 @@ for i in 1 2 3; do
     below "query is the pixel, channel $i" \
         "$(awk -v i=$i 'NR == FNR { a = $i; next } { d = $i - a; print d < 0 ? -d : d }' q.txt p.txt)" 1e-4
 done
+
+# ---- an eye nearer than the cameras: rays beside the grid go by depth, or to the nearest camera
+relume synth teapot -o near --views 1x1 --eye 0,0,1.6 --lights-from slab/capture.json --size 96 --samples 4 || exit 1
+relume relight slab.exr -o near.exr --eye 0,0,1.6 --light "$light"
+relume relight bare.exr -o clamped.exr --eye 0,0,1.6 --light "$light"
+# they were black: 16 dB
+above 'by depth most of it is filled' "$(psnr near.exr near/view00/light0001.exr)" 24
+above 'without depth the nearest camera stands in' "$(psnr clamped.exr near/view00/light0001.exr)" 18
+expect_ok 'and it is said' 'beyond the cameras: shown as the nearest' \
+    "$RELUME" relight slab.exr -o x.png --eye 0,0,1.6
+expect_fail 'an eye that sees no camera is refused' 1 'sees nothing of the slab' x.exr \
+    "$RELUME" relight slab.exr -o x.exr --eye 9,9,3
+
+# ---- other sizes: proportions are kept, one side gives the other
+size_of() { "$mkimage" size "$1"; }
+relume synth box -o flat --lights 9 --hemisphere --size 64 --samples 1 || exit 1
+relume encode flat -o flat.exr || exit 1
+for size in 32 32x x32 32x32; do
+    relume relight flat.exr -o s.exr --size $size || not_ok "--size $size" 'refused'
+    is "--size $size" "$(size_of s.exr)" '32 32'
+done
+relume relight flat.exr -o full.exr
+relume relight flat.exr -o own.exr --size 64
+same 'its own size is as it is' own.exr full.exr
+expect_ok 'another shape is fitted in, and said' 'it is 32 x 32, black beside it' \
+    "$RELUME" relight flat.exr -o wide.exr --size 48x32
+is 'in a picture as large as asked for' "$(size_of wide.exr)" '48 32'
+relume relight flat.exr -o small.exr --size 32
+is 'black beside it' "$("$mkimage" read wide.exr 7 16)" "$("$mkimage" read wide.exr 40 16)"
+is 'the picture in the middle' "$("$mkimage" read wide.exr 18 16)" "$("$mkimage" read small.exr 10 16)"
+for y in 20 21; do for x in 20 21; do "$mkimage" read full.exr $x $y; done; done |
+    awk '{ for (i = 1; i <= 3; i++) s[i] += $i / 4 } END { print s[1], s[2], s[3] }' >mean.txt
+"$mkimage" read small.exr 10 10 >pixel.txt
+for i in 1 2 3; do
+    below "a pixel is the mean of its four, channel $i" \
+        "$(awk -v i=$i 'NR == FNR { a = $i; next } { d = $i - a; print d < 0 ? -d : d }' mean.txt pixel.txt)" 1e-6
+done
+relume relight flat.exr -o nearest.exr --size 32 --filter nearest
+differ 'the nearest texel is no mean' nearest.exr small.exr
+relume relight flat.exr -o linear.exr --size 200
+relume relight flat.exr -o cubic.exr --size 200 --filter cubic
+differ 'cubic is not linear' cubic.exr linear.exr
+for n in 1 3; do relume relight flat.exr -o z$n.exr --size 41x77 --threads $n; done
+same 'threads do not matter there' z1.exr z3.exr
+relume relight slab.exr -o fitted.exr --size 48x96 --light "$light"
+is 'a slab is not stretched' "$("$mkimage" read fitted.exr 20 10)" "$("$mkimage" read fitted.exr 20 90)"
+rm -f x.png
+for bad in 0 0x10 10x0 x 12x12x 1e3 -5x5 70000 99999999999999999999; do
+    expect_fail "--size=$bad" 2 'expected WIDTHxHEIGHT, WIDTH or xHEIGHT' x.png \
+        "$RELUME" relight flat.exr -o x.png "--size=$bad"
+done
+expect_fail 'a size that no memory holds' 2 'too large' x.png \
+    "$RELUME" relight flat.exr -o x.png --size 65536
+expect_fail 'unknown filter' 2 "did you mean 'cubic'" x.png \
+    "$RELUME" relight flat.exr -o x.png --filter cubik
 
 # ---- developing
 relume synth attic -o pano --lights 9 --hemisphere --size 32 --samples 1 || exit 1

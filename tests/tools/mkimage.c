@@ -3,13 +3,15 @@
 //   mkimage png  DEPTH CHANNELS DIR IN...  PNG of 8 or 16 bits; 1 grey, 2 + alpha, 3 RGB, 4 + alpha
 //   mkimage tiff DEPTH CHANNELS DIR IN...  TIFF of 8, 16 or 32 (float) bits; 1, 3 or 4 channels;
 //                                          both write DIR/NAME under each input's own name
-//   mkimage poke IN OUT X Y VALUE          all channels of one pixel, as float EXR ("nan", "inf",
-//   ...) mkimage gain IN OUT FACTOR             every value times FACTOR, as float EXR mkimage
-//   plane IN OUT VALUE             one channel of VALUE of the size of IN, as float EXR mkimage
-//   bigpng OUT W H | bigexr OUT W H    a few bytes that claim a size mkimage cmyk OUT W H C M Y K
-//   CMYK JPEG of one colour, inks 0 to 255, as Adobe writes it mkimage read IMAGE X Y the linear
-//   value of a pixel mkimage maxdiff A B                    the largest difference, linear mkimage
-//   sum OUT A B                    A + B, as float EXR
+//   mkimage poke IN OUT X Y VALUE          all channels of a pixel, float EXR ("nan", "inf", ...)
+//   mkimage gain IN OUT FACTOR             every value times FACTOR, as float EXR
+//   mkimage plane IN OUT VALUE             one channel of VALUE of the size of IN, as float EXR
+//   mkimage bigpng OUT W H                 a few bytes that claim a size; bigexr likewise
+//   mkimage cmyk OUT W H C M Y K           CMYK JPEG of one colour, inks 0 to 255, as Adobe's
+//   mkimage read IMAGE X Y                 the linear value of a pixel
+//   mkimage size IMAGE                     its width and height
+//   mkimage maxdiff A B                    the largest difference, linear
+//   mkimage sum OUT A B                    A + B, as float EXR
 #include "png_crc.h"
 
 #include <relume/relume.h>
@@ -390,6 +392,13 @@ static void print_pixel(const char *path, int x, int y)
     relume_image_destroy(&image);
 }
 
+static void print_size(const char *path)
+{
+    struct relume_image image = load(path);
+    printf("%d %d\n", image.width, image.height);
+    relume_image_destroy(&image);
+}
+
 static void convert(void (*write)(const char *, const char *, int, int), int argc, char **argv)
 {
     for (int i = 5; i < argc; i++) {
@@ -419,6 +428,8 @@ int main(int argc, char **argv)
         write_cmyk(argv[2], atoi(argv[3]), atoi(argv[4]), argv + 5);
     else if (!strcmp(what, "read") && argc == 5)
         print_pixel(argv[2], atoi(argv[3]), atoi(argv[4]));
+    else if (!strcmp(what, "size") && argc == 3)
+        print_size(argv[2]);
     else if (!strcmp(what, "maxdiff") && argc == 4)
         return max_difference(argv[2], argv[3]);
     else if (!strcmp(what, "sum") && argc == 5)

@@ -326,7 +326,8 @@ static void frames_show_the_directions_they_look_at(void **state)
         struct relume_image image = direction_image(p);
         const bool cylinder = p->geometry.projection == RELUME_CYLINDRICAL && !p->geometry.disc;
         for (int k = 0; k < (cylinder ? 4 : 8); k++) {
-            assert_int_equal(relume_panorama_frame(&out, &p->geometry, &image, looks[k], NULL),
+            assert_int_equal(relume_panorama_frame(&out, &p->geometry, &image, looks[k],
+                                                   relume_view_params(.one = true)),
                              RELUME_OK);
             for (int y = 0; y < H; y++)
                 for (int x = 0; x < W; x++) {

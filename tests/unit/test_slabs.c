@@ -387,7 +387,7 @@ static void a_ray_is_its_pixel(void **state)
     (void)state;
     const struct relume_window w = window_from(eye_at(28, 0.5, 2.8));
     for (int i = 0; i < 2; i++) {
-        const struct relume_view_params params = {.disparity = i ? c.disparity : NULL};
+        const struct relume_view_params params = {.one = true, .disparity = i ? c.disparity : NULL};
         struct relume_image frame = draw(&w, &params);
         for (int at = 11; at < W * W; at += 397) {
             const vec3 way = ray_of(&w, (at % W + 0.5) / W, (at / W + 0.5) / W);

@@ -1,0 +1,191 @@
+// scale.c - a picture in another size: the mean of what a pixel covers, or between texels
+//
+// Both axes one after the other. Enlarged: bilinear, or Catmull and Rom's cubic (1974), held within
+// the range of its four texels so that light does not become negative beside an edge.
+#include <relume/image.h>
+
+#include "base/memory.h"
+#include "base/thread.h"
+#include "image/footprint.h"
+
+#include <string.h>
+
+relume_status relume_filter_parse(enum relume_filter *out, const char *name)
+{
+    static const struct {
+        const char *name;
+        enum relume_filter value;
+    } table[] = {{"auto", RELUME_FILTER_DEFAULT},
+                 {"nearest", RELUME_FILTER_NEAREST},
+                 {"linear", RELUME_FILTER_LINEAR},
+                 {"cubic", RELUME_FILTER_CUBIC}};
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+        if (!strcmp(name, table[i].name)) {
+            *out = table[i].value;
+            return RELUME_OK;
+        }
+    return RELUME_EINVAL;
+}
+
+// Pixels of one axis as sums of texels.
+struct axis {
+    int taps;   // a pixel
+    bool held;  // within the range of its texels
+    int *texel;
+    float *weight;  // [pixels][taps]
+};
+
+struct side {
+    int texels, pixels;
+    int tiles;  // pictures side by side, that do not mix
+    bool wrap;
+};
+
+// A texel of the tile that pixel `i` is of.
+static int texel_within(const struct side *s, int i, int texel)
+{
+    const int tile = (int)((i + 0.5) * s->tiles / s->pixels);
+    const int first = (int)((int64_t)tile * s->texels / s->tiles);
+    const int end = (int)((int64_t)(tile + 1) * s->texels / s->tiles);
+    if (s->wrap)
+        return ((texel % s->texels) + s->texels) % s->texels;
+    return texel < first ? first : texel >= end ? end - 1 : texel;
+}
+
+static void add_tap(struct axis *a, const struct side *s, int i, int *n, int texel, double weight)
+{
+    const size_t at = (size_t)i * (size_t)a->taps + (size_t)(*n)++;
+    a->texel[at] = texel_within(s, i, texel);
+    a->weight[at] = (float)weight;
+}
+
+static void set_linear(struct axis *a, const struct side *s, int i, struct footprint f)
+{
+    int n = 0;
+    for (int k = 0; k < f.count; k++) {
+        const double at = (i + 0.5 + footprint_place(f, k)) * s->texels / s->pixels - 0.5;
+        const double low = floor(at);
+        add_tap(a, s, i, &n, (int)low, (1.0 - (at - low)) / f.count);
+        add_tap(a, s, i, &n, (int)low + 1, (at - low) / f.count);
+    }
+}
+
+static void set_cubic(struct axis *a, const struct side *s, int i)
+{
+    const double at = (i + 0.5) * s->texels / s->pixels - 0.5;
+    const int low = (int)floor(at);
+    double weight[4];
+    int n = 0;
+    footprint_cubic(weight, at - low);
+    for (int k = 0; k < 4; k++)
+        add_tap(a, s, i, &n, low - 1 + k, weight[k]);
+}
+
+static void set_nearest(struct axis *a, const struct side *s, int i)
+{
+    int n = 0;
+    add_tap(a, s, i, &n, (int)((i + 0.5) * s->texels / s->pixels), 1.0);
+}
+
+static bool create_axis(struct axis *a, const struct side *s, enum relume_filter filter)
+{
+    const double ratio = (double)s->texels / s->pixels;
+    const struct footprint f = footprint_of(ratio, s->texels);
+    const bool cubic = filter == RELUME_FILTER_CUBIC && ratio < 1.0;
+    const bool nearest = filter == RELUME_FILTER_NEAREST;
+    *a = (struct axis){.taps = nearest ? 1 : cubic ? 4 : 2 * f.count, .held = cubic};
+    const size_t n = (size_t)s->pixels * (size_t)a->taps;
+    a->texel = mem_array(n, sizeof *a->texel);
+    a->weight = mem_array(n, sizeof *a->weight);
+    for (int i = 0; a->texel && a->weight && i < s->pixels; i++)
+        if (nearest)
+            set_nearest(a, s, i);
+        else if (cubic)
+            set_cubic(a, s, i);
+        else
+            set_linear(a, s, i, f);
+    return a->texel && a->weight;
+}
+
+static void destroy_axis(struct axis *a)
+{
+    free(a->texel);
+    free(a->weight);
+}
+
+// ---------------------------------------------------------------- passes
+
+struct pass {
+    const struct relume_image *from;
+    struct relume_image *to;
+    struct axis axis;
+    bool down;
+};
+
+// The samples of pixel `i`: a row of texels `step` apart.
+static void add_up(float *to, const struct axis *a, int i, const float *from, size_t step,
+                   int channels)
+{
+    const int *texel = &a->texel[(size_t)i * (size_t)a->taps];
+    const float *weight = &a->weight[(size_t)i * (size_t)a->taps];
+    for (int c = 0; c < channels; c++) {
+        float sum = 0.0f, low = INFINITY, high = -INFINITY;
+        for (int k = 0; k < a->taps; k++) {
+            const float v = from[(size_t)texel[k] * step + (size_t)c];
+            sum += weight[k] != 0.0f ? weight[k] * v : 0.0f;  // 0 x infinite is nothing
+            low = fminf(low, v);
+            high = fmaxf(high, v);
+        }
+        to[c] = a->held ? fminf(fmaxf(sum, low), high) : sum;
+    }
+}
+
+static void scale_row(void *context, size_t row, int worker)
+{
+    const struct pass *p = context;
+    const size_t channels = (size_t)p->to->channels;
+    const size_t stride = (size_t)p->from->width * channels;
+    float *to = p->to->data + row * (size_t)p->to->width * channels;
+    (void)worker;
+    for (int x = 0; x < p->to->width; x++, to += channels)
+        if (p->down)
+            add_up(to, &p->axis, (int)row, p->from->data + (size_t)x * channels, stride,
+                   p->to->channels);
+        else
+            add_up(to, &p->axis, x, p->from->data + row * stride, channels, p->to->channels);
+}
+
+static relume_status run(struct pass *p, const struct side *side, int threads,
+                         enum relume_filter filter)
+{
+    const relume_status status = create_axis(&p->axis, side, filter) ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        thread_for(threads, (size_t)p->to->height, scale_row, p);
+    destroy_axis(&p->axis);
+    return status;
+}
+
+relume_status relume_image_scale(struct relume_image *out, const struct relume_image *image,
+                                 int width, int height, const struct relume_scale_params *params)
+{
+    const struct relume_scale_params p = params ? *params : (struct relume_scale_params){0};
+    const struct side across = {image->width, width, p.tiles > 1 ? p.tiles : 1, p.wrap};
+    const struct side down = {image->height, height, 1, false};
+    struct relume_image wide = {0};
+    *out = (struct relume_image){0};
+    if (!image->data || (across.tiles > 1 && across.tiles > image->width))
+        return RELUME_EINVAL;
+    relume_status status = relume_image_create(&wide, width, image->height, image->channels);
+    if (!status)
+        status = relume_image_create(out, width, height, image->channels);
+    struct pass pass = {.from = image, .to = &wide};
+    if (!status)
+        status = run(&pass, &across, p.threads, p.filter);
+    pass = (struct pass){.from = &wide, .to = out, .down = true};
+    if (!status)
+        status = run(&pass, &down, p.threads, p.filter);
+    relume_image_destroy(&wide);
+    if (status)
+        relume_image_destroy(out);
+    return status;
+}

@@ -58,21 +58,19 @@ static bool clip(struct strip *strip, double from, double to, const double windo
 }
 
 // The strip of cell `i` of `n` lines, as seen from `eye` with the uv plane `reach` on the way to
-// st. Cells at the border are open a hair wider, as relume_slab_blend has it.
+// st. Cells at the border go on beyond it, as frames of the library do.
 static bool find_strip(struct strip *strip, const double *lines, int n, int i, double eye,
                        double reach, const double window[2])
 {
-    const double slack = 1e-6 * (1.0 + fabs(lines[0]) + fabs(lines[n - 1]));
     const int high = n > 1 ? i + 1 : i;
-    const double low_u = lines[i] - (i == 0 ? slack : 0.0);
-    const double high_u = lines[high] + (high == n - 1 ? slack : 0.0);
+    const bool last = high == n - 1;
+    const double low_u = i == 0 ? -(double)INFINITY : lines[i];
+    const double high_u = last ? (double)INFINITY : lines[high];
     *strip = (struct strip){.low = i, .high = high};
     if (reach != 0.0)
         return clip(strip, eye + (low_u - eye) / reach, eye + (high_u - eye) / reach, window);
     // An eye on the uv plane sees the whole window through one point of it.
-    const bool last = high == n - 1;
-    return eye >= low_u && (eye < high_u || (last && eye <= high_u)) &&
-           clip(strip, window[0], window[1], window);
+    return eye >= low_u && eye < high_u && clip(strip, window[0], window[1], window);
 }
 
 bool draw_use_cell(const struct gl *gl, const struct target *const *views, const GLuint *disparity,

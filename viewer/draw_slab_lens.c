@@ -1,9 +1,9 @@
 // draw_slab_lens.c - a slab through an aperture: cameras are added one by one, then divided
 #include "draw.h"
 
-enum { VIEW = DRAW_OWN, PICTURE, ST, EYE, PLACE, STEPS, LENS, COUNT };
+enum { VIEW = DRAW_OWN, PICTURE, ST, EYE, PLACE, STEPS, GRID, LENS, COUNT };
 static const char *const uniforms[] = {
-    "rectangle", "frame_size", "view", "picture", "st", "eye", "place", "steps", "lens",
+    "rectangle", "frame_size", "view", "picture", "st", "eye", "place", "steps", "grid", "lens",
 };
 enum { SUM = DRAW_OWN, EXPOSURE, MEAN_COUNT };
 static const char *const mean_uniforms[] = {"rectangle", "frame_size", "sum", "exposure"};
@@ -25,6 +25,7 @@ static void set_uniforms(const struct program *program, const struct gl *gl,
                          double focus)
 {
     const struct relume_geometry *g = seen->geometry;
+    const struct relume_slab_grid grid = relume_slab_grid(seen->slab);
     const struct app_rectangle *p = &place->picture;
     const double reach = (g->uv_z - seen->eye.z) / (g->st_z - seen->eye.z);
     const double disparity = relume_slab_plane_disparity(seen->slab, g->st_z + focus);
@@ -35,6 +36,8 @@ static void set_uniforms(const struct program *program, const struct gl *gl,
     gl->Uniform4f(at[ST], (float)g->st_min[0], (float)g->st_min[1], (float)g->st_max[0],
                   (float)g->st_max[1]);
     gl->Uniform3f(at[EYE], (float)seen->eye.x, (float)seen->eye.y, (float)reach);
+    gl->Uniform4f(at[GRID], (float)grid.u[0], (float)grid.v[0], (float)grid.u[grid.columns - 1],
+                  (float)grid.v[grid.rows - 1]);
     gl->Uniform2f(at[LENS], (float)(0.5 * aperture), (float)disparity);
 }
 

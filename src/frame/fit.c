@@ -40,7 +40,7 @@ struct relume_place relume_camera_place(int frame[2], const struct relume_pack_i
 }
 
 relume_status frame_put(struct relume_image *image, const struct relume_place *place,
-                        const int frame[2], const struct relume_log *log)
+                        const int frame[2], const struct renderer *r)
 {
     struct relume_image out;
     if (image->width == frame[0] && image->height == frame[1])
@@ -49,11 +49,14 @@ relume_status frame_put(struct relume_image *image, const struct relume_place *p
     if (status)
         return status;
     const size_t channels = (size_t)image->channels, row = channels * (size_t)image->width;
+    const size_t samples = channels * (size_t)out.width * (size_t)out.height;
+    for (size_t i = 0; r->params.places && i < samples; i++)
+        out.data[i] = r->view.nothing;
     for (int y = 0; y < image->height; y++)
         memcpy(out.data +
                    channels * ((size_t)(place->top + y) * (size_t)out.width + (size_t)place->left),
                image->data + row * (size_t)y, row * sizeof *image->data);
-    log_line(log, RELUME_NOTE,
+    log_line(r->params.places ? NULL : r->params.log, RELUME_NOTE,
              "the picture has other proportions than %d x %d: it is %d x %d, black beside it; a "
              "width alone keeps them",
              frame[0], frame[1], image->width, image->height);

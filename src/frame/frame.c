@@ -268,7 +268,7 @@ relume_status relume_frame(struct relume_image *out, relume_pack *pack,
     if (!status)
         status = render(&r, &within, out);
     if (!status)
-        status = frame_put(out, &place, frame, r.params.places ? NULL : r.params.log);
+        status = frame_put(out, &place, frame, &r);
     if (status)
         relume_image_destroy(out);
     shared_destroy(&shared);

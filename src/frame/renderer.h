@@ -53,7 +53,7 @@ relume_status query_slabs(const struct renderer *r, vec3 eye, vec3 direction, fl
 
 // Put the picture into its place of a frame, with black beside it.
 relume_status frame_put(struct relume_image *image, const struct relume_place *place,
-                        const int frame[2], const struct relume_log *log);
+                        const int frame[2], const struct renderer *r);
 
 // ---------------------------------------------------------------- one ray
 relume_status ray_none(const struct renderer *r, const char *why);

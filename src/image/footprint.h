@@ -11,7 +11,7 @@
 #include <math.h>
 
 // Sizes are computed: this much more than a whole number of texels is that number.
-#define FOOTPRINT_SLACK 1e-6
+#define FOOTPRINT_SLACK 1e-4
 // Of so many texels a pixel is not said to be a mean yet.
 #define FOOTPRINT_ONE 1.25
 // Where a pixel may cover any number of texels, so many samples a side stand for them.

@@ -113,8 +113,8 @@ struct slab_ray {
 // At (x, y) of the frame, pixel centres at +0.5.
 struct slab_ray slab_ray_of(const struct slab_frame *frame, double x, double y);
 struct slab_ray slab_ray_at(const struct slab_frame *frame, const double st[2]);
-// The mean of what a pixel covers, ray by ray.
-typedef void slab_shader(float rgb[3], const void *context, const struct slab_ray *ray);
+// The mean of what a pixel covers: a shader adds to r, g, b and weight what a ray sees.
+typedef void slab_shader(double sum[4], const void *context, const struct slab_ray *ray);
 void slab_pixel(float rgb[3], const struct slab_frame *frame, int column, int row,
                 slab_shader *shade, const void *context);
 // How far the texel of the ray's point moves in the view of the camera at (u, v) when the point's

@@ -206,11 +206,15 @@ double slab_depth_shade(float rgb[3], const struct slab_frame *frame, const stru
     return shade(rgb, &a, range[1], range[0]);
 }
 
-static void shade_ray(float rgb[3], const void *context, const struct slab_ray *ray)
+static void shade_ray(double sum[4], const void *context, const struct slab_ray *ray)
 {
     const struct frame *f = context;
+    float rgb[3];
     if (!(slab_depth_shade(rgb, f->of, ray, f->range) > 0.0))
         rgb[0] = rgb[1] = rgb[2] = f->of->params.nothing;
+    for (int k = 0; k < 3; k++)
+        sum[k] += (double)rgb[k];
+    sum[3] += 1.0;
 }
 
 static void draw_row(void *context, size_t row, int worker)

@@ -81,11 +81,9 @@ static bool add_sample(double sum[3], const struct slab_frame *f, const float *r
     return true;
 }
 
-static void shade_ray(float rgb[3], const void *context, const struct slab_ray *ray)
+static void shade_ray(double sum[4], const void *context, const struct slab_ray *ray)
 {
     const struct frame *f = context;
-    double sum[3] = {0.0, 0.0, 0.0};
-    double total = 0.0;
     for (int i = 0; i < f->count; i++) {
         const struct camera *c = &f->camera[i];
         const double weight = relume_slab_lens_weight(&c->lens, ray->at, f->radius);
@@ -96,10 +94,8 @@ static void shade_ray(float rgb[3], const void *context, const struct slab_ray *
         const double at[2] = {ray->texel[0] + f->focus * shift[0],
                               ray->texel[1] + f->focus * shift[1]};
         if (add_sample(sum, f->of, c->rgb, at, weight))
-            total += weight;
+            sum[3] += weight;
     }
-    for (int k = 0; k < 3; k++)
-        rgb[k] = total > 0.0 ? (float)(sum[k] / total) : f->of->params.nothing;
 }
 
 static void draw_row(void *context, size_t row, int worker)

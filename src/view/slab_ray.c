@@ -33,18 +33,15 @@ void slab_pixel(float rgb[3], const struct slab_frame *f, int column, int row, s
 {
     const struct footprint across = slab_footprint(&f->params, (double)f->width / f->out->width);
     const struct footprint down = slab_footprint(&f->params, (double)f->height / f->out->height);
-    const int n = across.count * down.count;
-    double sum[3] = {0.0, 0.0, 0.0};
+    double sum[4] = {0.0, 0.0, 0.0, 0.0};
     for (int j = 0; j < down.count; j++)
         for (int i = 0; i < across.count; i++) {
             const struct slab_ray ray = slab_ray_of(f, column + 0.5 + footprint_place(across, i),
                                                     row + 0.5 + footprint_place(down, j));
-            shade(rgb, context, &ray);
-            for (int c = 0; c < 3; c++)
-                sum[c] += (double)rgb[c];
+            shade(sum, context, &ray);
         }
-    for (int c = 0; n > 1 && c < 3; c++)
-        rgb[c] = (float)(sum[c] / n);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = sum[3] > 0.0 ? (float)(sum[c] / sum[3]) : f->params.nothing;
 }
 
 void slab_shift(double shift[2], const struct slab_frame *frame, const struct slab_ray *ray,

@@ -25,6 +25,7 @@ struct picture {
     struct seen *seen;  // [pinholes][slabs]
     bool by_depth;
     const struct relume_view_params *params;
+    double pixel[2];  // of the window; 0 for a ray
 };
 
 bool slabs_ray(double uv[2], double st[2], const relume_slab *slab, vec3 eye, vec3 direction)
@@ -133,18 +134,23 @@ int relume_slabs_needs(bool *needed, const relume_slabs *slabs, const struct rel
     return n;
 }
 
-// ---------------------------------------------------------------- one ray
+// ---------------------------------------------------------------- one pixel
 
-// Adds what a slab says of the ray, times its weight: r, g, b, weight.
-static void add(double sum[4], const struct picture *p, const struct seen *s, double x, double y)
+static vec3 way_to(const struct seen *s, double x, double y)
 {
-    const vec3 way = vec3_add(vec3_scale(s->right, x), vec3_scale(s->down, y));
+    return vec3_add(s->corner, vec3_add(vec3_scale(s->right, x), vec3_scale(s->down, y)));
+}
+
+// Adds what a slab says of a ray, times its weight: r, g, b, weight. False without weight.
+static bool add_ray(double sum[4], const struct picture *p, const struct seen *s, double x,
+                    double y)
+{
     double uv[2], st[2];
-    if (!s->any || !slabs_ray(uv, st, s->frame.slab, s->frame.eye, vec3_add(s->corner, way)))
-        return;
+    if (!slabs_ray(uv, st, s->frame.slab, s->frame.eye, way_to(s, x, y)))
+        return false;
     double weight = relume_slab_weight(s->frame.slab, uv, st);
     if (!(weight > 0.0))
-        return;
+        return false;
     const struct slab_ray ray = slab_ray_at(&s->frame, st);
     float rgb[3];
     if (p->by_depth)
@@ -154,6 +160,47 @@ static void add(double sum[4], const struct picture *p, const struct seen *s, do
     for (int c = 0; c < 3; c++)
         sum[c] += weight * (double)rgb[c];
     sum[3] += weight;
+    return true;
+}
+
+// Texels of a slab's view between the places of two rays.
+static double texels_between(const struct seen *s, vec3 a, vec3 b)
+{
+    const struct relume_geometry *g = &s->frame.slab->geometry;
+    double uv[2], from[2], to[2];
+    if (!slabs_ray(uv, from, s->frame.slab, s->frame.eye, a) ||
+        !slabs_ray(uv, to, s->frame.slab, s->frame.eye, b))
+        return 0.0;
+    return hypot((to[0] - from[0]) / (g->st_max[0] - g->st_min[0]) * s->frame.width,
+                 (to[1] - from[1]) / (g->st_max[1] - g->st_min[1]) * s->frame.height);
+}
+
+// The mean over what a pixel at (x, y) covers, where the slab knows its middle.
+static void add(double sum[4], const struct picture *p, const struct seen *s, double x, double y)
+{
+    const double dx = p->pixel[0], dy = p->pixel[1];
+    const vec3 way = way_to(s, x, y);
+    if (!s->any)
+        return;
+    const struct footprint across =
+        slab_footprint(p->params, texels_between(s, way, way_to(s, x + dx, y)));
+    const struct footprint down =
+        slab_footprint(p->params, texels_between(s, way, way_to(s, x, y + dy)));
+    const int n = across.count * down.count;
+    double own[4] = {0.0, 0.0, 0.0, 0.0};
+    if (n == 1) {
+        add_ray(sum, p, s, x, y);
+        return;
+    }
+    if (!add_ray(own, p, s, x, y))
+        return;
+    memset(own, 0, sizeof own);
+    for (int j = 0; j < down.count; j++)
+        for (int i = 0; i < across.count; i++)
+            add_ray(own, p, s, x + footprint_place(across, i) * dx,
+                    y + footprint_place(down, j) * dy);
+    for (int c = 0; c < 4; c++)
+        sum[c] += own[c] / n;
 }
 
 // At (x, y) of the window. False, and `nothing`, where no slab has weight.
@@ -174,60 +221,13 @@ static bool shade(float rgb[3], const struct picture *p, double x, double y)
     return n > 0;
 }
 
-// ---------------------------------------------------------------- one pixel
-
-// Texels of a view that a pixel of the size (dx, dy) covers along its sides, at most over the
-// slabs that know its ray.
-static void find_texels(double texels[2], const struct picture *p, double x, double y, double dx,
-                        double dy)
-{
-    texels[0] = texels[1] = 0.0;
-    for (int i = 0; i < p->slabs->count; i++) {
-        const struct seen *s = &p->seen[i];
-        const struct relume_geometry *g = &s->frame.slab->geometry;
-        const vec3 way =
-            vec3_add(s->corner, vec3_add(vec3_scale(s->right, x), vec3_scale(s->down, y)));
-        const vec3 side[2] = {vec3_scale(s->right, dx), vec3_scale(s->down, dy)};
-        double uv[2], st[2], beside[2];
-        if (!s->any || !slabs_ray(uv, st, s->frame.slab, s->frame.eye, way) ||
-            !(relume_slab_weight(s->frame.slab, uv, st) > 0.0))
-            continue;
-        for (int k = 0; k < 2; k++)
-            if (slabs_ray(uv, beside, s->frame.slab, s->frame.eye, vec3_add(way, side[k])))
-                texels[k] = fmax(
-                    texels[k],
-                    hypot((beside[0] - st[0]) / (g->st_max[0] - g->st_min[0]) * s->frame.width,
-                          (beside[1] - st[1]) / (g->st_max[1] - g->st_min[1]) * s->frame.height));
-    }
-}
-
-// The mean of what it covers.
-static void draw_pixel(float rgb[3], const struct picture *p, int column, int row)
-{
-    const double dx = 1.0 / p->out->width, dy = 1.0 / p->out->height;
-    const double x = (column + 0.5) * dx, y = (row + 0.5) * dy;
-    double texels[2], sum[3] = {0.0, 0.0, 0.0};
-    find_texels(texels, p, x, y, dx, dy);
-    const struct footprint across = slab_footprint(p->params, texels[0]);
-    const struct footprint down = slab_footprint(p->params, texels[1]);
-    const int n = across.count * down.count;
-    for (int j = 0; j < down.count; j++)
-        for (int i = 0; i < across.count; i++) {
-            shade(rgb, p, x + footprint_place(across, i) * dx, y + footprint_place(down, j) * dy);
-            for (int c = 0; c < 3; c++)
-                sum[c] += (double)rgb[c];
-        }
-    for (int c = 0; n > 1 && c < 3; c++)
-        rgb[c] = (float)(sum[c] / n);
-}
-
 static void draw_row(void *context, size_t row, int worker)
 {
     const struct picture *p = context;
     (void)worker;
     float *rgb = p->out->data + 3 * row * (size_t)p->out->width;
     for (int x = 0; x < p->out->width; x++, rgb += 3)
-        draw_pixel(rgb, p, x, (int)row);
+        shade(rgb, p, (x + 0.5) / p->out->width, ((double)row + 0.5) / p->out->height);
 }
 
 // ---------------------------------------------------------------- picture
@@ -328,6 +328,8 @@ relume_status relume_slabs_frame(struct relume_image *out, const relume_slabs *s
         return RELUME_EINVAL;
     const relume_status status = begin(&job, slabs, window, out->width, views, params);
     job.picture.out = out;
+    job.picture.pixel[0] = 1.0 / out->width;
+    job.picture.pixel[1] = 1.0 / out->height;
     if (!status)
         thread_for(job.params.threads, (size_t)out->height, draw_row, &job.picture);
     end(&job);

@@ -12,6 +12,8 @@ out vec4 color;
 const float PI = 3.14159265358979;
 
 vec3 panorama_sample(vec3 direction);
+// Texels per radian in a unit direction, at most.
+float panorama_density(vec3 unit);
 
 vec3 look_ray(vec3 l, vec2 size, vec2 position)
 {
@@ -21,6 +23,15 @@ vec3 look_ray(vec3 l, vec2 size, vec2 position)
     float up = b * cos(l.y) + depth * sin(l.y);
     float ahead = depth * cos(l.y) - b * sin(l.y);
     return vec3(a * cos(l.x) + ahead * sin(l.x), up, a * sin(l.x) - ahead * cos(l.x));
+}
+
+// Of a pixel, radians: across and down.
+vec2 look_extent(float zoom, vec2 size, vec2 position)
+{
+    float pixel = 2.0 / size.x * zoom;
+    vec2 ab = (position - 0.5 * size) * pixel;
+    float away = 1.0 + dot(ab, ab);
+    return pixel * (stereographic ? vec2(2.0) : sqrt(1.0 + ab.yx * ab.yx)) / away;
 }
 
 vec3 fetch(int x, int y)
@@ -40,5 +51,15 @@ float azimuth_column(vec3 d)
 
 void main()
 {
-    color = vec4(exposure * panorama_sample(look_ray(look, look_size, gl_FragCoord.xy)), 1.0);
+    vec3 ray = look_ray(look, look_size, gl_FragCoord.xy);
+    vec2 texels = panorama_density(normalize(ray)) * look_extent(look.z, look_size, gl_FragCoord.xy);
+    Footprint across = footprint_of(texels.x);
+    Footprint down = footprint_of(texels.y);
+    vec3 sum = vec3(0.0);
+    for (int j = 0; j < down.count; j++)
+        for (int i = 0; i < across.count; i++) {
+            vec2 within = vec2(footprint_place(across, i), footprint_place(down, j));
+            sum += panorama_sample(look_ray(look, look_size, gl_FragCoord.xy + within));
+        }
+    color = vec4(exposure * sum / float(across.count * down.count), 1.0);
 }

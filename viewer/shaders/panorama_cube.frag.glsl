@@ -1,5 +1,6 @@
 #version 330 core
 // A look into a cube.
+#include "footprint.glsl"
 #include "panorama.glsl"
 #include "panorama_layout.glsl"
 #include "cube.glsl"
@@ -41,6 +42,12 @@ vec3 panorama_texel(int face, int x, int y)
         return across_edge(face, x, y);
     return (fetch(face * side + inner.x, inner.y) + across_edge(face, x, inner.y) +
             across_edge(face, inner.x, y)) / 3.0;
+}
+
+float panorama_density(vec3 d)
+{
+    float ahead = max(max(abs(d.x), abs(d.y)), abs(d.z));
+    return 0.5 * float(textureSize(view, 0).y) / (ahead * ahead);
 }
 
 bool panorama_pixel(out vec2 xy, out int face, vec3 d)

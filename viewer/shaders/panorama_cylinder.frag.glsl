@@ -1,5 +1,6 @@
 #version 330 core
 // A look into a cylinder.
+#include "footprint.glsl"
 #include "panorama.glsl"
 #include "panorama_layout.glsl"
 
@@ -12,6 +13,14 @@ bool panorama_pixel(out vec2 xy, out int face, vec3 d)
     float down = (elevation.y - h) / (elevation.y - elevation.x);
     xy = vec2(azimuth_column(d), down * float(textureSize(view, 0).y));
     return true;
+}
+
+float panorama_density(vec3 d)
+{
+    vec2 size = vec2(textureSize(view, 0));
+    float across = length(d.xz);
+    return max(size.x / (2.0 * PI) / across,
+               size.y / (elevation.y - elevation.x) / (across * across));
 }
 
 vec3 panorama_texel(int face, int x, int y)

@@ -1,5 +1,6 @@
 #version 330 core
 // A look into a cylinder with end discs; twin of src/view/panorama_discs.c.
+#include "footprint.glsl"
 #include "panorama.glsl"
 
 uniform int disc;  // side of a disc's square in the rows below the cylinder
@@ -68,6 +69,16 @@ vec3 disc_value(bool lower, vec2 position)
     vec3 bottom = mix(disc_texel(lower, at.x, at.y + 1), disc_texel(lower, at.x + 1, at.y + 1),
                       part.x);
     return mix(top, bottom, part.y);
+}
+
+float panorama_density(vec3 d)
+{
+    float across = length(d.xz);
+    float h = d.y / across;
+    if (!(h >= elevation.x && h <= elevation.y))
+        return 0.5 * float(disc) * abs(height_of(d.y < 0.0)) / (d.y * d.y);
+    return max(float(textureSize(view, 0).x) / (2.0 * PI) / across,
+               float(panorama_rows()) / (elevation.y - elevation.x) / (across * across));
 }
 
 // Of the cylinder's outermost half row, `part` of which lies between the rim and the position.

@@ -1,5 +1,6 @@
 #version 330 core
 // A look into a sphere.
+#include "footprint.glsl"
 #include "panorama.glsl"
 #include "panorama_layout.glsl"
 
@@ -9,6 +10,12 @@ bool panorama_pixel(out vec2 xy, out int face, vec3 d)
     float down = 0.5 - atan(d.y, length(d.xz)) / PI;
     xy = vec2(azimuth_column(d), down * float(textureSize(view, 0).y));
     return true;
+}
+
+float panorama_density(vec3 d)
+{
+    vec2 size = vec2(textureSize(view, 0));
+    return max(size.x / (2.0 * PI), size.y / PI);
 }
 
 vec3 panorama_texel(int face, int x, int y)

@@ -1,5 +1,6 @@
 #version 330 core
 // One cell of one of several slabs: the quadralinear basis, times the slab's weight, and the weight.
+#include "footprint.glsl"
 #include "texels.glsl"
 #include "slabs_ray.glsl"
 uniform sampler2D view00;  // low u, low v
@@ -11,12 +12,9 @@ uniform vec4 cell;     // low u, low v, high u, high v
 uniform bool nearest;  // the nearest camera instead
 out vec4 color;
 
-void main()
+// What the slab says of a ray, and its weight.
+vec4 slabs_value(vec2 uv, vec2 hit)
 {
-    vec2 at = (gl_FragCoord.xy - picture.xy) / (picture.zw - picture.xy);
-    vec2 uv, hit;
-    if (!slabs_ray(uv, hit, eye, direction_at(at)) || !in_cell(uv, cell))
-        discard;
     vec2 part = clamp((uv - cell.xy) / max(cell.zw - cell.xy, vec2(1e-30)), 0.0, 1.0);
     if (nearest)
         part = step(0.5, part);
@@ -24,5 +22,25 @@ void main()
     vec2 position = vec2(place.x, 1.0 - place.y) * vec2(textureSize(view00, 0));
     vec3 low = mix(texels_bilinear(view00, position), texels_bilinear(view10, position), part.x);
     vec3 high = mix(texels_bilinear(view01, position), texels_bilinear(view11, position), part.x);
-    color = slab_weight(uv, hit, st) * vec4(mix(low, high, part.y), 1.0);
+    return slab_weight(uv, hit, st) * vec4(mix(low, high, part.y), 1.0);
+}
+
+void main()
+{
+    vec2 at = (gl_FragCoord.xy - picture.xy) / (picture.zw - picture.xy);
+    vec2 uv, hit;
+    if (!slabs_ray(uv, hit, eye, direction_at(at)) || !in_cell(uv, cell) ||
+        slab_weight(uv, hit, st) <= 0.0)
+        discard;
+    vec2 texels = slabs_texels(hit, at, vec2(textureSize(view00, 0)) / (st.zw - st.xy));
+    Footprint across = footprint_of(texels.x);
+    Footprint down = footprint_of(texels.y);
+    color = vec4(0.0);
+    for (int j = 0; j < down.count; j++)
+        for (int i = 0; i < across.count; i++) {
+            vec2 within = vec2(footprint_place(across, i), footprint_place(down, j));
+            if (slabs_ray(uv, hit, eye, direction_at(at + within / (picture.zw - picture.xy))))
+                color += slabs_value(uv, hit);
+        }
+    color /= float(across.count * down.count);
 }

@@ -26,6 +26,17 @@ bool slabs_ray(out vec2 uv, out vec2 hit, vec3 from, vec3 direction)
     return way > 0.0;
 }
 
+// Texels that a pixel whose ray meets the window in `hit` covers along its sides.
+vec2 slabs_texels(vec2 hit, vec2 at, vec2 per_st)
+{
+    vec2 pixel = 1.0 / (picture.zw - picture.xy);
+    vec2 uv, beside, below;
+    bool right_hits = slabs_ray(uv, beside, eye, direction_at(at + vec2(pixel.x, 0.0)));
+    bool low_hits = slabs_ray(uv, below, eye, direction_at(at + vec2(0.0, pixel.y)));
+    return vec2(right_hits ? length((beside - hit) * per_st) : 0.0,
+                low_hits ? length((below - hit) * per_st) : 0.0);
+}
+
 // Every place of the grid is in one cell.
 bool in_cell(vec2 uv, vec4 of)
 {

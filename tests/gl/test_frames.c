@@ -122,8 +122,12 @@ static void open_slab(struct slab_test *t, int width, int height)
         t->uv[i][1] = rows[(i * 5 % CAMERAS) / COLUMNS];
     }
     t->file = fixture_make(CAMERAS, width, height, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
-    t->about = (struct app_file){slab_geometry(), width,    height, CAMERAS,
-                                 {-1, -0.5},      {1, 0.5}, NULL,   NULL};
+    t->about = (struct app_file){.geometry = slab_geometry(),
+                                 .width = width,
+                                 .height = height,
+                                 .views = CAMERAS,
+                                 .uv_min = {-1, -0.5},
+                                 .uv_max = {1, 0.5}};
     const struct code_source source = {fixture_fetch, NULL, &t->file, NULL};
     assert_int_equal(renderer_create(&t->renderer, &fixture_gl, &source, &t->about.geometry,
                                      (const double(*)[2])t->uv, CAMERAS, &fixture_log),
@@ -361,7 +365,12 @@ static void one_row_and_one_camera_are_drawn(void **state)
     const struct relume_geometry g = slab_geometry();
     for (int n = 1; n <= 2; n++) {
         struct fixture_file f = fixture_make(n, 9, 7, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, false);
-        const struct app_file file = {g, 9, 7, n, {-0.5, 0.2}, {0.5, 0.2}, NULL, NULL};
+        const struct app_file file = {.geometry = g,
+                                      .width = 9,
+                                      .height = 7,
+                                      .views = n,
+                                      .uv_min = {-0.5, 0.2},
+                                      .uv_max = {0.5, 0.2}};
         const struct code_source source = {fixture_fetch, NULL, &f, NULL};
         struct renderer r;
         assert_int_equal(renderer_create(&r, &fixture_gl, &source, &g, uv, n, &fixture_log),
@@ -396,7 +405,7 @@ static void compare_panorama(const struct relume_geometry *g, int width, int hei
         {70, -80, 0.7, 0}, {135, 35, 2, 0}, {20, -90, 0.5, 1}, {-130, 25, 0.8, 1}};
     struct fixture_file f =
         fixture_make(1, width, height, RELUME_STORE_8, RELUME_DOMAIN_LINEAR, true);
-    const struct app_file file = {*g, width, height, 1, {0}, {0}, NULL, NULL};
+    const struct app_file file = {.geometry = *g, .width = width, .height = height, .views = 1};
     const struct code_source source = {fixture_fetch, NULL, &f, NULL};
     struct renderer r;
     assert_int_equal(renderer_create(&r, &fixture_gl, &source, g, NULL, 1, &fixture_log),
@@ -483,6 +492,8 @@ static void the_ball_is_bright_where_the_light_comes_from(void **state)
 // ---------------------------------------------------------------- screen
 
 // The screen of an OSMesa context is the one pixel it was opened with.
+static const struct window_place whole = {0, 1, 1};
+
 static void the_screen_shows_srgb(void **state)
 {
     (void)state;
@@ -500,7 +511,7 @@ static void the_screen_shows_srgb(void **state)
         target_begin(&frame, &fixture_gl);
         fixture_gl.ClearColor(values[i], 0.25f, 0, 1);
         fixture_gl.Clear(GL_COLOR_BUFFER_BIT);
-        draw_present(&present, &fixture_gl, &frame, 0, 4, 0);
+        draw_present(&present, &fixture_gl, &frame, &whole, 0, 4, 0);
         fixture_gl.ReadPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, shown);
         const float code = relume_transfer_encode(srgb, fminf(fmaxf(values[i], 0), 1));
         assert_true(abs(shown[0] - (int)lroundf(255 * code)) <= 1);
@@ -531,7 +542,7 @@ static void tones_are_the_library_s(void **state)
             target_begin(&frame, &fixture_gl);
             fixture_gl.ClearColor(values[i][0], values[i][1], values[i][2], 1);
             fixture_gl.Clear(GL_COLOR_BUFFER_BIT);
-            draw_present(&present, &fixture_gl, &frame, t, 2.5, 0);
+            draw_present(&present, &fixture_gl, &frame, &whole, t, 2.5, 0);
             fixture_gl.ReadPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, shown);
             relume_tones[t]->apply(want, values[i], 2.5f);
             for (int c = 0; c < 3; c++)

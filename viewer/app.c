@@ -134,8 +134,8 @@ relume_status app_start(struct app *app, const struct app_file *file, const stru
         return RELUME_ENOMEM;
     }
     const bool look = s->camera.framing == RELUME_FRAME_LOOK;
-    app->width = s->camera.width ? s->camera.width : look ? 1024 : file->width;
-    app->height = s->camera.height ? s->camera.height : look ? 512 : file->height;
+    const int own[2] = {look ? 1024 : file->width, look ? 512 : file->height};
+    relume_frame_size(&app->width, &app->height, own, &s->camera);
     return RELUME_OK;
 }
 
@@ -179,21 +179,13 @@ struct app_rectangle app_picture(const struct app *app)
     const struct app_state *s = &app->now;
     if (s->camera.framing == RELUME_FRAME_LOOK)
         return (struct app_rectangle){0, 0, app->width, app->height};
-    double width = app->width;
-    double height = app->height;
-    if (app->letterbox && s->camera.aim.field_of_view_deg == 0.0) {
-        const double fit = fmin(width / app->file.width, height / app->file.height);
-        width = app->file.width * fit;
-        height = app->file.height * fit;
-    }
-    const double x = 0.5 * app->width + s->shift[0];
-    const double y = 0.5 * app->height + s->shift[1];
-    return (struct app_rectangle){
-        x - 0.5 * width * s->zoom,
-        y - 0.5 * height * s->zoom,
-        x + 0.5 * width * s->zoom,
-        y + 0.5 * height * s->zoom,
-    };
+    struct relume_place at = {0, 0, app->width, app->height};
+    if (s->camera.aim.field_of_view_deg == 0.0)
+        at = relume_place_fit(app->file.width, app->file.height, app->width, app->height);
+    const double middle[2] = {0.5 * app->width, 0.5 * app->height};
+    const double left = middle[0] + s->shift[0] + (at.left - middle[0]) * s->zoom;
+    const double top = middle[1] + s->shift[1] + (at.top - middle[1]) * s->zoom;
+    return (struct app_rectangle){left, top, left + at.width * s->zoom, top + at.height * s->zoom};
 }
 
 bool app_window(const struct app *app, struct relume_window *window)

@@ -140,7 +140,6 @@ struct app {
     int beside[2];      // pixels of the window to the left and right of the frame, for the panel
     enum app_dock dock;
     int dock_width;  // pixels that a panel beside the frame takes; 0: there is none
-    bool letterbox;  // keep the picture's proportions; else it fills the frame
     enum app_drag drag;
     double cursor[2];
     bool light_key;                     // L is held

@@ -150,7 +150,6 @@ static struct script_host host_of(struct session *s)
 // A film of a script shows what a window would.
 static relume_status begin_film(struct session *s, const struct options *o)
 {
-    s->app.letterbox = true;
     return record_open(&s->film, o->output, s->log);
 }
 
@@ -313,7 +312,6 @@ static relume_status open_window(struct session *s, struct options *o,
     } else {
         choose_size(&s->app, o->sized);
     }
-    s->app.letterbox = true;
     s->app.panel = o->panel || settings->panel;
     s->app.dock = o->docked ? o->dock : (enum app_dock)settings->dock;
     s->app.keep_lights = o->keep_lights || settings->keep_lights;

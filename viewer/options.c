@@ -186,15 +186,28 @@ static relume_status take_focus(struct options *o, const char *name, const char 
     return take_number(&o->start.focus_z, name, text, -1e9, 1e9, log);
 }
 
+// 1 to 99999, and moves on; 0 where there is none.
+static int take_side(const char **text)
+{
+    const size_t digits = strspn(*text, "0123456789");
+    const int side = digits <= 5 ? atoi(*text) : 0;
+    *text += side ? digits : 0;
+    return side;
+}
+
 static relume_status take_size(struct options *o, const char *name, const char *text,
                                const struct relume_log *log)
 {
-    int used = 0;
+    const char *rest = text;
     struct relume_camera *camera = &o->start.camera;
     (void)name;
-    if (sscanf(text, "%5dx%5d%n", &camera->width, &camera->height, &used) != 2 || text[used] ||
-        camera->width < 1 || camera->height < 1)
-        return say(log, RELUME_EINVAL, "--size: expected WxH, as in 800x600; found '%s'", text);
+    camera->width = take_side(&rest);
+    const bool both = *rest == 'x';
+    rest += both;
+    camera->height = both ? take_side(&rest) : 0;
+    if (*rest || !(camera->width || camera->height))
+        return say(log, RELUME_EINVAL, "--size: expected WxH, W or xH, as in 800x600; found '%s'",
+                   text);
     o->sized = true;
     return RELUME_OK;
 }
@@ -497,7 +510,8 @@ static const struct option options[] = {
      take_aperture},
     {"--focus", "Z", "slab: the plane at z = Z is sharp; free eye: Z before the middle",
      take_focus},
-    {"--size", "WxH", "pixels of the window or picture", take_size},
+    {"--size", "WxH", "pixels of the window or picture; W or xH alone keeps the proportions",
+     take_size},
     {"--exposure", "EV", "brighter by 2^EV, or auto", take_exposure},
     {"--tone", "T", "linear, reinhard, filmic or gamma; .exr, .hdr and .pfm stay linear",
      take_tone},
@@ -583,7 +597,7 @@ void options_help(void)
          "option\n"
          "shows what `relume relight` shows: planar files and panoramas their view 0, slabs the "
          "middle\n"
-         "eye. Its picture fills --size; a window keeps the proportions.\n\n"
+         "eye. Pictures keep their proportions in any --size, as in a window.\n\n"
          "script: one event a line, # begins a comment:\n"
          "        size W H              wheel STEPS [X Y]\n"
          "        drag left|right X0 Y0 X1 Y1 [S]   S: seconds that it takes\n"

@@ -286,7 +286,6 @@ static void keep_window(struct app *app, const struct app *was)
     memcpy(app->beside, was->beside, sizeof app->beside);
     app->dock = was->dock;
     app->dock_width = was->dock_width;
-    app->letterbox = was->letterbox;
     app->panel = was->panel;
     app->gizmos = was->gizmos;
     app->keep_lights = was->keep_lights;

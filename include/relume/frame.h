@@ -42,6 +42,10 @@ struct relume_place {
 // black is beside it. All of the frame where that leaves less than a pixel.
 RELUME_API struct relume_place relume_place_fit(int width, int height, int frame_width,
                                                 int frame_height);
+// Of a frame whose own size is `own`: what `camera` says, one side alone with the other by
+// proportion.
+RELUME_API void relume_frame_size(int *width, int *height, const int own[2],
+                                  const struct relume_camera *camera);
 // The frame that `camera` asks for, in `*frame`, and the part of it that shows something: all of it
 // in a look and with a field of view, whose pixels are square whatever the frame.
 RELUME_API struct relume_place relume_camera_place(int frame[2],

@@ -31,6 +31,10 @@ awk 'BEGIN {
             i % 200 ? "dir" : "point", cos(i), sin(i), i / 1e8, i < 9999 ? "," : " ] }"
 }' >many.json
 same 'ten thousand lights' --rig many.json
+same 'a slab in a frame of another shape' --eye 0.1,-0.2,3 --interpolate linear --size 61x24
+same 'a view of half the size' --view 1 --size 12
+same 'a view by its height, in no whole proportion' --view 1 --size x9
+same 'a view enlarged, with black above and below' --view 1 --size 50x70
 same 'an aperture' --eye 0.1,-0.2,3 --aperture 0.6 --focus 0.5
 
 # by depth a rounding may send a ray to another texel, a few in a frame: PSNR instead of the worst

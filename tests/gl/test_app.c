@@ -329,12 +329,19 @@ static void windows_keep_the_proportions(void **state)
     OWNED_APP app = make_app(RELUME_PLANAR, true);
     assert_true(
         app_handle(&app, &(struct app_event){.kind = APP_SIZE, .width = 800, .height = 800}));
-    struct app_rectangle p = app_picture(&app);
-    assert_true(p.right == 800 && p.bottom == 800);
-    app.letterbox = true;
-    p = app_picture(&app);
+    const struct app_rectangle p = app_picture(&app);
     assert_true(p.left == 0 && p.right == 800 && p.top == 200 && p.bottom == 600);
     assert_false(app_handle(&app, &(struct app_event){.kind = APP_SIZE}));
+}
+
+static void one_side_gives_the_other(void **state)
+{
+    (void)state;
+    const struct app_file file = make_file(RELUME_PLANAR);
+    const struct app_state start = {.camera = {.height = 3 * file.height}};
+    OWNED_APP app = {0};
+    assert_int_equal(app_start(&app, &file, &start, true, NULL), RELUME_OK);
+    assert_true(app.width == 3 * file.width && app.height == 3 * file.height);
 }
 
 static void the_light_turns_like_a_ball(void **state)
@@ -590,6 +597,10 @@ static void options_are_read(void **state)
     assert_int_equal(o.start.camera.framing, RELUME_FRAME_EYE);
     assert_true(o.start.camera.eye.y == -2 && o.start.exposure_ev == -1);
     assert_true(o.start.camera.width == 800 && o.start.camera.height == 600);
+    assert_int_equal(parse(&o, "a.exr --size 640"), RELUME_OK);
+    assert_true(o.start.camera.width == 640 && o.start.camera.height == 0);
+    assert_int_equal(parse(&o, "a.exr --size x480"), RELUME_OK);
+    assert_true(o.start.camera.width == 0 && o.start.camera.height == 480);
     assert_int_equal(parse(&o, "--pan 20 --tilt -5 a.exr --zoom 2 --ball"), RELUME_OK);
     assert_int_equal(o.start.camera.framing, RELUME_FRAME_LOOK);
     assert_true(o.start.camera.look.tilt_deg == -5 && o.start.ball);
@@ -633,7 +644,7 @@ static void wrong_options_are_refused(void **state)
         {"a.exr --eye 1,2,3 --fov 180", "from 0.01 to 179"},
         {"a.exr --up 0,1,0", "expected --eye"},
         {"a.exr --size 0x10", "WxH"},
-        {"a.exr --size 10", "WxH"},
+        {"a.exr --size x", "WxH"},
         {"a.exr --size 10x10x10", "WxH"},
         {"a.exr --zoom 0", "from"},
         {"a.exr --pan nan", "found 'nan'"},
@@ -1187,6 +1198,7 @@ int main(void)
         cmocka_unit_test(automatic_exposure_adapts),
         cmocka_unit_test(the_picture_moves_and_zooms_about_the_cursor),
         cmocka_unit_test(windows_keep_the_proportions),
+        cmocka_unit_test(one_side_gives_the_other),
         cmocka_unit_test(the_light_turns_like_a_ball),
         cmocka_unit_test(l_and_drag_turn_the_light_too),
         cmocka_unit_test(the_light_turns_as_seen_in_a_panorama),

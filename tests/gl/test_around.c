@@ -160,8 +160,8 @@ static void frames_are_the_library_s(void **state)
     open_around(t);
     for (size_t i = 0; i < sizeof eyes / sizeof *eyes; i++) {
         t->app.now.camera.eye = eyes[i];
-        t->app.width = i % 2 ? W : 67;
-        t->app.height = i % 2 ? H : 45;
+        t->app.width = i % 2 ? W : 68;
+        t->app.height = i % 2 ? H : 51;
         t->app.now.interpolation = RELUME_INTERPOLATE_LINEAR;
         char text[64];
         snprintf(text, sizeof text, "eye %g %g %g", eyes[i].x, eyes[i].y, eyes[i].z);

@@ -158,8 +158,8 @@ static void slab_frames_are_the_library_s(void **state)
     relume_slab *slab;
     assert_int_equal(relume_slab_create(&slab, &g, (const double(*)[2])t.uv, CAMERAS), RELUME_OK);
     for (size_t i = 0; i < sizeof eyes / sizeof *eyes; i++) {
-        const int width = i % 2 ? 40 : 67;
-        const int height = i % 2 ? 30 : 45;
+        const int width = i % 2 ? 40 : 68;
+        const int height = i % 2 ? 30 : 51;
         struct relume_image want;
         char text[64];
         snprintf(text, sizeof text, "eye %g %g %g", eyes[i].x, eyes[i].y, eyes[i].z);
@@ -238,12 +238,12 @@ static void slab_frames_by_depth_are_the_library_s(void **state)
         struct relume_image want, got;
         char text[64];
         snprintf(text, sizeof text, "by depth, eye %g %g %g", eyes[i].x, eyes[i].y, eyes[i].z);
-        assert_int_equal(relume_image_create(&want, 67, 45, 3), RELUME_OK);
+        assert_int_equal(relume_image_create(&want, 68, 51, 3), RELUME_OK);
         assert_int_equal(relume_slab_frame(&want, t.renderer.grid, eyes[i], t.views,
                                            relume_view_params(.disparity = disparity)),
                          RELUME_OK);
         const struct relume_camera camera = {
-            .framing = RELUME_FRAME_EYE, .eye = eyes[i], .width = 67, .height = 45};
+            .framing = RELUME_FRAME_EYE, .eye = eyes[i], .width = 68, .height = 51};
         OWNED_APP app = make_app(&t.about, &camera);
         assert_int_equal(renderer_draw(&t.renderer, &app), RELUME_OK);
         assert_int_equal(renderer_read(&got, &t.renderer), RELUME_OK);
@@ -280,11 +280,11 @@ static void other_ways_to_see_a_slab_are_the_library_s(void **state)
             snprintf(text, sizeof text, "way %d, aperture %g, focus %g, eye %g %g %g",
                      ways[i].interpolation, ways[i].aperture, ways[i].focus, eyes[e].x, eyes[e].y,
                      eyes[e].z);
-            assert_int_equal(relume_image_create(&want, 67, 45, 3), RELUME_OK);
+            assert_int_equal(relume_image_create(&want, 68, 51, 3), RELUME_OK);
             assert_int_equal(relume_slab_frame(&want, t.renderer.grid, eyes[e], t.views, &ways[i]),
                              RELUME_OK);
             const struct relume_camera camera = {
-                .framing = RELUME_FRAME_EYE, .eye = eyes[e], .width = 67, .height = 45};
+                .framing = RELUME_FRAME_EYE, .eye = eyes[e], .width = 68, .height = 51};
             OWNED_APP app = make_app(&t.about, &camera);
             app.now.interpolation = ways[i].interpolation;
             app.now.aperture = ways[i].aperture;

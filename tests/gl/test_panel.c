@@ -379,13 +379,12 @@ static void the_inspector_magnifies_about_the_light(void **state)
 static void the_cursor_finds_its_pixel(void **state)
 {
     (void)state;
-    OWNED_APP app = make_app();  // 400 x 400 in 640 x 560, not letterboxed
+    OWNED_APP app = make_app();  // 400 x 400 in 640 x 560: 560 x 560 of them
     int view, pixel[2];
     assert_true(inspect_pick(&view, pixel, &app, NULL, 320, 280));
     assert_true(view == 0 && pixel[0] == 200 && pixel[1] == 200);
-    assert_true(inspect_pick(&view, pixel, &app, NULL, 639.9, 0));
+    assert_true(inspect_pick(&view, pixel, &app, NULL, 599.9, 0));
     assert_true(pixel[0] == 399 && pixel[1] == 0);
-    app.letterbox = true;
     assert_false(inspect_pick(&view, pixel, &app, NULL, 20, 280));
     assert_true(inspect_pick(&view, pixel, &app, NULL, 40.5, 280));
     assert_int_equal(pixel[0], 0);

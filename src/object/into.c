@@ -1,4 +1,5 @@
 // into.c - objects in a relit scene
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -170,7 +171,8 @@ static relume_status light_scene(struct relume_image *scene, const struct relume
 {
     struct shadows s = {
         .o = o, .places = places, .sum = scene, .none = params && params->no_shadows};
-    const struct relume_log errors = {say_no_note, pass_progress, (void *)(uintptr_t)frame->log};
+    const struct relume_log errors = {say_no_note, pass_progress, (void *)(uintptr_t)frame->log,
+                                      inputs_of(frame->log)};
     struct relume_frame_params each = *frame;
     relume_status status = relume_image_create(scene, places->width, places->height, 3);
     for (int i = 0; i < n && !status; i++) {

@@ -12,7 +12,7 @@ image:base math:base image photograph response
 capture:base math image:base image lights capture ball photometric shoot photograph response align views lightfield
 coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack
-exchange:base math image:base image lights codebook coder capture pack relight exchange
+exchange:base math image:base image photograph lights codebook coder capture pack relight exchange
 relight:base math image:base image coder light relight rig normals enhance
 view:base math image:base image light relight view slabs capture
 pass:base math image:base image tone eye psf glare

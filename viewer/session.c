@@ -4,6 +4,7 @@
 #include "say.h"
 
 #include <math.h>
+#include <relume/exchange.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -159,7 +160,9 @@ relume_status session_open(struct session *s, const char *path, const struct app
     if (session_is_objects(path))
         return session_open_objects(s, path, start);
     relume_status status =
-        relume_pack_open(&pack, path, relume_pack_params(.log = s->log, .threads = s->threads));
+        relume_open(&pack, path,
+                    relume_open_params(.log = s->log, .threads = s->threads,
+                                       .sphere = start->camera.framing == RELUME_FRAME_LOOK));
     if (status)
         return status;
     struct app_file file = describe(pack);

@@ -6,6 +6,7 @@
 #include "say.h"
 
 #include <stdio.h>
+#include <relume/exchange.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -30,6 +31,9 @@ static bool is_folder(const char *path)
 bool session_is_objects(const char *path)
 {
     const char *dot = strrchr(path, '.');
+    const enum relume_kind kind = relume_kind_of(path);
+    if (kind == RELUME_KIND_CAPTURE || kind == RELUME_KIND_FOREIGN)
+        return false;
     return (dot && !strcmp(dot, ".json")) || is_folder(path);
 }
 

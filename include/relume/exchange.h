@@ -24,6 +24,33 @@ struct relume_import_params {
 RELUME_RESULT relume_status relume_import(const char *path, const char *out,
                                           const struct relume_import_params *params);
 
+// What lies under a name, by its first bytes, its ending and what a folder holds.
+enum relume_kind {
+    RELUME_KIND_RELUME = 0,  // a relume file, or nothing else that is known
+    RELUME_KIND_FOREIGN,     // what relume_import reads
+    RELUME_KIND_CAPTURE,     // a capture.json, its folder, a .lp file or a folder with one
+    RELUME_KIND_PICTURE,     // a picture or photograph
+    RELUME_KIND_UNKNOWN,     // nothing there, or a folder of something else
+};
+RELUME_API enum relume_kind relume_kind_of(const char *path);
+RELUME_API const char *relume_kind_name(enum relume_kind kind);
+
+struct relume_open_params {
+    const struct relume_log *log;
+    const struct relume_limits *limits;
+    bool sphere;  // a picture shows all directions, twice as wide as high: a panorama
+    int threads;  // default: all cores
+};
+#define relume_open_params(...) (&(const struct relume_open_params){__VA_ARGS__})
+
+// Open anything that can be shown as a relume file: relume files themselves; what relume_import
+// reads; captures, encoded by the defaults; a picture of linear light (floats), which looks the
+// same under any light. What is made on the way is a file without a name in $TMPDIR or /tmp.
+// Photographs and other folders are refused with a sentence that says what to do. Returns
+// RELUME_EDATA, RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
+RELUME_RESULT relume_status relume_open(relume_pack **out, const char *path,
+                                        const struct relume_open_params *params);
+
 enum relume_exchange {
     RELUME_EXCHANGE_RELIGHT = 0,  // info.json and plane JPEGs, for OpenLIME and relight
     RELUME_EXCHANGE_PTM,          // .ptm, PTM_FORMAT_RGB; with a quality, size or PSNR JPEG_RGB

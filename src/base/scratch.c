@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -65,15 +66,18 @@ static int open_unnamed(const char *folder)
     return fd;
 }
 
-static bool is_device(const char *path)
+// No folder of its own to put anything beside it: devices, and the names of descriptors.
+static bool is_nowhere(const char *path)
 {
     struct stat s;
-    return !stat(path, &s) && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode);
+    return !strncmp(path, "/dev/fd/", 8) || !strncmp(path, "/dev/std", 8) ||
+           !strncmp(path, "/proc/", 6) ||
+           (!stat(path, &s) && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode));
 }
 
 int scratch_open(const char *near)
 {
-    if (!near || is_device(near))
+    if (!near || is_nowhere(near))
         return open_unnamed(scratch_folder());
     char *folder = tree_parent(near);
     const int fd = folder ? open_unnamed(folder) : -1;

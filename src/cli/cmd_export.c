@@ -147,8 +147,8 @@ static relume_status run(const struct args *args)
         return status;
     relume_pack *pack;
     struct relume_export_report report;
-    status = relume_pack_open(&pack, args_input(args, 0),
-                              relume_pack_params(.log = p.log, .threads = p.threads));
+    status = relume_open(&pack, args_input(args, 0),
+                         relume_open_params(.log = p.log, .threads = p.threads));
     if (!status)
         status = relume_export(pack, args_text(args, "-o", NULL), format, &report, &p);
     relume_pack_destroy(&pack);

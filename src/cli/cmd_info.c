@@ -13,12 +13,13 @@ static double bits_per_pixel(const struct relume_pack_info *i)
 }
 
 static void print_json(const struct relume_pack_info *i, const struct relume_coder_info *c,
-                       const char *display)
+                       const char *display, enum relume_kind kind)
 {
-    printf("{\"format\": \"relume\", \"version\": %d, \"projection\": \"%s\", \"views\": %d, "
+    printf("{\"format\": \"relume\", \"source\": \"%s\", \"version\": %d, \"projection\": \"%s\", "
+           "\"views\": %d, "
            "\"width\": %d, \"height\": %d, \"lights\": %d, \"hemispherical\": %s, ",
-           i->version, relume_projection_name(i->geometry.projection), i->views, i->width,
-           i->height, c->lights, c->hemispherical ? "true" : "false");
+           relume_kind_name(kind), i->version, relume_projection_name(i->geometry.projection),
+           i->views, i->width, i->height, c->lights, c->hemispherical ? "true" : "false");
     printf("\"discs\": %s, ", i->geometry.disc ? "true" : "false");
     printf("\"slabs\": %d, ", i->slabs ? i->slabs : i->geometry.projection == RELUME_SLAB);
     printf("\"basis\": \"%s\", \"coefficients\": %d, \"planes\": %d, \"interpolant\": %s%s%s, "
@@ -42,8 +43,10 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
 }
 
 static void print_text(const struct relume_pack_info *i, const struct relume_coder_info *c,
-                       const char *display)
+                       const char *display, enum relume_kind kind)
 {
+    if (kind != RELUME_KIND_RELUME)
+        printf("source        %s; below: what relume makes of it\n", relume_kind_name(kind));
     printf("projection    %s%s\n", relume_projection_name(i->geometry.projection),
            i->geometry.disc ? ", with end discs" : "");
     if (i->slabs)
@@ -80,16 +83,17 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
 
 static relume_status run(const struct args *args)
 {
+    const char *path = args_input(args, 0);
     relume_pack *pack;
     const relume_status status =
-        relume_pack_open(&pack, args_input(args, 0), relume_pack_params(.log = args_log(args)));
+        relume_open(&pack, path, relume_open_params(.log = args_log(args)));
     if (status)
         return status;
     const struct relume_pack_info *info = relume_pack_info(pack);
     char display[32];
     relume_transfer_text(info->display, display, sizeof display);
     (args_has(args, "--json") ? print_json : print_text)(info, relume_coder_info(info->coder),
-                                                         display);
+                                                         display, relume_kind_of(path));
     relume_pack_destroy(&pack);
     return RELUME_OK;
 }
@@ -97,7 +101,7 @@ static relume_status run(const struct args *args)
 const struct command command_info = {
     .name = "info",
     .usage = "FILE [--json]",
-    .summary = "say what a relume file holds",
+    .summary = "say what a file holds: a relume file, .ptm, .rti, web folder, capture, HDR picture",
     .example = "relume info statue.exr --json",
     .min_inputs = 1,
     .max_inputs = 1,

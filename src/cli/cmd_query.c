@@ -35,9 +35,8 @@ static relume_status query(const struct args *args, const struct relume_light *l
     relume_pack *pack;
     struct prefix_log about;
     float rgb[3];
-    status =
-        relume_pack_open(&pack, args_input(args, 0),
-                         relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
+    status = relume_open(&pack, args_input(args, 0),
+                         relume_open_params(.log = args_log(args), .threads = args_threads(args)));
     struct relume_frame_params params = parse_frame(args);
     params.log = prefix_log(&about, args_log(args), args_input(args, 0));
     params.interpolation =

@@ -266,8 +266,9 @@ static relume_status render(const struct args *args, const struct relume_camera 
     struct relume_image frame = {0};
     const char *output = args_text(args, "-o", NULL);
     relume_status status =
-        relume_pack_open(&pack, args_input(args, 0),
-                         relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
+        relume_open(&pack, args_input(args, 0),
+                    relume_open_params(.log = args_log(args), .threads = args_threads(args),
+                                       .sphere = camera->framing == RELUME_FRAME_LOOK));
     if (status)
         return status;
     const struct relume_pack_info *info = relume_pack_info(pack);

@@ -5,8 +5,14 @@
 
 relume_status parse_developing(const struct args *args, struct developing *d)
 {
-    const char *exposure = args_text(args, "--exposure", "0");
-    const char *tone = args_text(args, "--tone", relume_tone_linear.name);
+    return parse_developing_from(args, "0", relume_tone_linear.name, d);
+}
+
+relume_status parse_developing_from(const struct args *args, const char *default_exposure,
+                                    const char *default_tone, struct developing *d)
+{
+    const char *exposure = args_text(args, "--exposure", default_exposure);
+    const char *tone = args_text(args, "--tone", default_tone);
     const char *names[16] = {NULL};
     *d = (struct developing){.automatic = !strcmp(exposure, "auto")};
     if (!d->automatic && (!parse_numbers(exposure, &d->tone.exposure_ev, 1) ||

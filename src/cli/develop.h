@@ -24,6 +24,9 @@ struct developing {
 };
 // RELUME_EINVAL with a sentence.
 relume_status parse_developing(const struct args *args, struct developing *d);
+// The same with other defaults.
+relume_status parse_developing_from(const struct args *args, const char *default_exposure,
+                                    const char *default_tone, struct developing *d);
 // In place, for a file of that name: linear formats stay linear.
 relume_status develop(struct relume_image *frame, struct developing d, const char *path);
 

@@ -97,11 +97,11 @@ interrupted 'encode interrupted' slow.exr "$RELUME" encode long.lp -o slow.exr -
 # ---- relume files
 info() { expect_fail "$1" 1 "$2" - "$RELUME" info "$3"; }
 info 'no such file' 'nothing.exr: no such file' nothing.exr
-info 'a folder' 'folder: no such file' folder
+info 'a folder' 'folder: a folder without capture.json' folder
 : >empty.exr; info 'empty file' 'empty.exr: cannot be read as OpenEXR' empty.exr
 echo text >text.exr; info 'text file' 'text.exr: cannot be read as OpenEXR' text.exr
-info 'an ordinary EXR' 'light0000.exr: an OpenEXR file, but not a relume file' good/view00/light0000.exr
-$relight picture.png; info 'a PNG' 'picture.png: cannot be read as OpenEXR' picture.png
+expect_fail 'an ordinary EXR' 1 'light0000.exr: an OpenEXR file, but not a relume file' - "$RELUME" eval good/view00/light0000.exr good
+$relight picture.png; info 'a PNG' 'picture.png: one photograph under one light cannot be relit' picture.png
 "$mkimage" bigexr big.exr 1000000 1000000; info 'an EXR that claims 1000000 x 1000000' 'big.exr: ' big.exr
 python=$(command -v python3 || true)
 if [ "$python" ]; then

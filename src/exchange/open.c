@@ -1,0 +1,227 @@
+// open.c - a file of another kind is opened as if it were a relume file: by way of one without a
+// name
+#include <relume/exchange.h>
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/scratch.h"
+#include "exchange/still.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <relume/capture.h>
+#include <relume/photograph.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static bool ends_with(const char *path, const char *end)
+{
+    const size_t n = strlen(path), m = strlen(end);
+    return n >= m && !strcasecmp(path + n - m, end);
+}
+
+// ---------------------------------------------------------------- what it is
+
+static bool holds(const char *folder, const char *name)
+{
+    char *path = mem_format("%s/%s", folder, name);
+    const bool found = path && !access(path, F_OK);
+    free(path);
+    return found;
+}
+
+// The only .lp file of a folder; NULL when there is none or more than one.
+static char *only_lp(const char *folder)
+{
+    char *found = NULL;
+    int n = 0;
+    DIR *dir = opendir(folder);
+    for (const struct dirent *e; dir && (e = readdir(dir));)
+        if (ends_with(e->d_name, ".lp") && n++ == 0)
+            found = mem_format("%s/%s", folder, e->d_name);
+    if (dir)
+        closedir(dir);
+    if (n == 1)
+        return found;
+    free(found);
+    return NULL;
+}
+
+static enum relume_kind kind_of_folder(const char *path)
+{
+    if (holds(path, "info.json"))
+        return RELUME_KIND_FOREIGN;
+    char *lp = holds(path, "capture.json") ? NULL : only_lp(path);
+    const bool capture = lp || holds(path, "capture.json");
+    free(lp);
+    return capture ? RELUME_KIND_CAPTURE : RELUME_KIND_UNKNOWN;
+}
+
+enum { HEAD = 4096 };
+static const char exr_magic[] = "\x76\x2f\x31\x01", attributes[] = "relume.";
+
+static size_t read_head(char head[HEAD], const char *path)
+{
+    FILE *f = fopen(path, "rb");
+    const size_t n = f ? fread(head, 1, HEAD, f) : 0;
+    if (f)
+        fclose(f);
+    return n;
+}
+
+static bool is_among(const char *path, const char *const *endings)
+{
+    while (*endings && !ends_with(path, *endings))
+        endings++;
+    return *endings != NULL;
+}
+
+static enum relume_kind kind_of_json(const char *head, size_t n, const char *path)
+{
+    if (memmem(head, n, "relume-capture", strlen("relume-capture")))
+        return RELUME_KIND_CAPTURE;
+    return ends_with(path, "info.json") || memmem(head, n, "colorspace", strlen("colorspace"))
+               ? RELUME_KIND_FOREIGN
+               : RELUME_KIND_UNKNOWN;
+}
+
+enum relume_kind relume_kind_of(const char *path)
+{
+    static const char *const foreign[] = {".ptm", ".rti", ".hsh", NULL};
+    static const char *const photographs[] = {".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", NULL};
+    char head[HEAD];
+    struct stat s;
+    if (stat(path, &s))
+        return RELUME_KIND_UNKNOWN;
+    if (S_ISDIR(s.st_mode))
+        return kind_of_folder(path);
+    if (is_among(path, foreign))
+        return RELUME_KIND_FOREIGN;
+    if (ends_with(path, ".lp"))
+        return RELUME_KIND_CAPTURE;
+    const size_t n = read_head(head, path);
+    if (ends_with(path, ".json"))
+        return kind_of_json(head, n, path);
+    if (n > 4 && !memcmp(head, exr_magic, 4))
+        return memmem(head, n, attributes, strlen(attributes)) ? RELUME_KIND_RELUME
+                                                               : RELUME_KIND_PICTURE;
+    if (relume_image_can_save(path) || is_among(path, photographs))
+        return ends_with(path, ".exr") ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
+    return RELUME_KIND_UNKNOWN;
+}
+
+const char *relume_kind_name(enum relume_kind kind)
+{
+    static const char *const names[] = {"relume file", "RTI of another format", "capture",
+                                        "picture", "nothing known"};
+    return names[kind];
+}
+
+// ---------------------------------------------------------------- what it becomes
+
+// As `relume encode` does without options.
+static relume_status encode(const char *path, const char *out, const struct relume_open_params *p)
+{
+    relume_capture *capture;
+    relume_coder *coder = NULL;
+    char *lp = NULL;
+    struct stat s;
+    if (!stat(path, &s) && S_ISDIR(s.st_mode) && !holds(path, "capture.json"))
+        lp = only_lp(path);
+    relume_status status =
+        relume_capture_open(&capture, lp ? lp : path, relume_capture_params(.log = p->log));
+    free(lp);
+    if (!status)
+        status = relume_coder_learn(&coder, &relume_basis_pca, capture,
+                                    relume_coder_params(.log = p->log, .choose = true),
+                                    relume_encode_params(.log = p->log, .threads = p->threads));
+    if (!status)
+        status =
+            relume_pack_encode(capture, coder, out, NULL,
+                               relume_pack_encode_params(.log = p->log, .threads = p->threads));
+    relume_coder_destroy(&coder);
+    relume_capture_destroy(&capture);
+    return status;
+}
+
+static relume_status picture(const char *path, const char *out, const struct relume_open_params *p)
+{
+    struct relume_notes notes;
+    const relume_status status = relume_notes_read(&notes, path, p->log);
+    if (status)
+        return status;
+    if (!notes.floats)
+        return log_fail(p->log, RELUME_EDATA,
+                        "%s: one photograph under one light cannot be relit; expected the .lp file "
+                        "or the folder of all of them, or 'relume capture PHOTO... -o DIR' first",
+                        path);
+    return still_write(path, out, p);
+}
+
+static relume_status unknown(const char *path, const struct relume_open_params *p)
+{
+    struct stat s;
+    if (stat(path, &s))
+        return log_fail(p->log, RELUME_EDATA, "%s: no such file; expected a relume file", path);
+    if (!S_ISDIR(s.st_mode))
+        return log_fail(p->log, RELUME_EDATA,
+                        "%s: nothing that relume opens; expected a relume file (.exr), .ptm, .rti, "
+                        ".hsh, a web folder, a capture (.lp, capture.json) or an HDR picture",
+                        path);
+    return log_fail(p->log, RELUME_EDATA,
+                    "%s: a folder without capture.json, info.json and one .lp file; of photographs "
+                    "'relume capture %s -o DIR' makes a capture",
+                    path, path);
+}
+
+static relume_status convert(enum relume_kind kind, const char *path, const char *out,
+                             const struct relume_open_params *p)
+{
+    switch (kind) {
+    case RELUME_KIND_FOREIGN:
+        return relume_import(path, out,
+                             relume_import_params(.log = p->log, .limits = p->limits,
+                                                  .threads = p->threads,
+                                                  .compression = RELUME_COMPRESS_NONE));
+    case RELUME_KIND_CAPTURE: return encode(path, out, p);
+    case RELUME_KIND_PICTURE: return picture(path, out, p);
+    default: return unknown(path, p);
+    }
+}
+
+// The relume file never has a name, so nothing of it is left, whatever happens.
+static relume_status open_converted(relume_pack **out, enum relume_kind kind, const char *path,
+                                    const struct relume_open_params *p)
+{
+    const int fd = scratch_open(NULL);
+    if (fd < 0)
+        return log_fail(p->log, RELUME_EIO, "%s: no temporary file can be made; %s",
+                        scratch_folder(), strerror(errno));
+    char *name = mem_format("/proc/self/fd/%d", fd);
+    relume_status status = name ? convert(kind, path, name, p) : RELUME_ENOMEM;
+    if (!status)
+        status = relume_pack_open(
+            out, name,
+            relume_pack_params(.log = p->log, .limits = p->limits, .threads = p->threads));
+    free(name);
+    close(fd);
+    return status;
+}
+
+relume_status relume_open(relume_pack **out, const char *path,
+                          const struct relume_open_params *params)
+{
+    const struct relume_open_params p = params ? *params : (struct relume_open_params){0};
+    const enum relume_kind kind = relume_kind_of(path);
+    *out = NULL;
+    if (kind == RELUME_KIND_UNKNOWN)
+        return unknown(path, &p);
+    return kind == RELUME_KIND_RELUME
+               ? relume_pack_open(
+                     out, path,
+                     relume_pack_params(.log = p.log, .limits = p.limits, .threads = p.threads))
+               : open_converted(out, kind, path, &p);
+}

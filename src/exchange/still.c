@@ -1,0 +1,100 @@
+#include "exchange/still.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "image/half.h"
+
+#include <math.h>
+#include <relume/photograph.h>
+
+#define MOST_HALF 65504.0f
+
+// Planes of halves: all that a relume file can hold of values that do not end at 1.
+static size_t fill(uint16_t *planes, const struct relume_image *image)
+{
+    const size_t pixels = (size_t)image->width * (size_t)image->height;
+    size_t cut = 0;
+    for (size_t i = 0; i < pixels; i++)
+        for (size_t c = 0; c < 3; c++) {
+            const float v = image->data[3 * i + c];
+            cut += fabsf(v) > MOST_HALF;
+            planes[c * pixels + i] = half_from_float(fminf(fmaxf(v, -MOST_HALF), MOST_HALF));
+        }
+    return cut;
+}
+
+static relume_status write(const struct relume_codes *codes, bool sphere, const char *out,
+                           const struct relume_open_params *p)
+{
+    relume_coefficients *coefficients = NULL;
+    relume_status status = relume_coefficients_keep(
+        &coefficients, codes, relume_encode_params(.log = p->log, .scratch = out));
+    const struct relume_pack_view view = {.coefficients = coefficients};
+    const struct relume_pack_contents contents = {
+        .coder = codes->coder,
+        .domain = RELUME_DOMAIN_LINEAR,
+        .display = {.curve = RELUME_CURVE_SRGB},
+        .geometry = relume_geometry_default(sphere ? RELUME_SPHERICAL : RELUME_PLANAR, codes->width,
+                                            codes->height),
+        .views = 1,
+        .view = &view,
+        .report = {(double)NAN, (double)NAN},
+    };
+    if (!status)
+        status = relume_pack_write(&contents, out,
+                                   relume_pack_params(.log = p->log, .threads = p->threads,
+                                                      .compression = RELUME_COMPRESS_NONE));
+    relume_coefficients_destroy(&coefficients);
+    return status;
+}
+
+static relume_status encode(const struct relume_image *image, const char *path, const char *out,
+                            const struct relume_open_params *p)
+{
+    static const float one[3] = {1.0f, 1.0f, 1.0f}, zero[3] = {0.0f, 0.0f, 0.0f};
+    const struct relume_vec3 light =
+        p->sphere ? (struct relume_vec3){0.0, 1.0, 0.0} : (struct relume_vec3){0.0, 0.0, 1.0};
+    const size_t pixels = (size_t)image->width * (size_t)image->height;
+    relume_coder *coder = NULL;
+    uint16_t *planes = mem_array(3 * pixels, sizeof *planes);
+    relume_status status = planes ? RELUME_OK : RELUME_ENOMEM;
+    if (!status && fill(planes, image))
+        log_line(p->log, RELUME_WARNING,
+                 "%s: brighter than half floats can hold; shown no brighter than 65504", path);
+    if (!status)
+        status = relume_coder_create(&coder, &relume_basis_table, &light, 1,
+                                     relume_coder_params(.log = p->log, .pole_y = p->sphere));
+    const void *plane[3] = {planes, planes + pixels, planes + 2 * pixels};
+    const struct relume_codes codes = {
+        .coder = coder,
+        .width = image->width,
+        .height = image->height,
+        .planes = 3,
+        .storage = RELUME_STORE_HALF,
+        .plane = plane,
+        .scale = one,
+        .offset = zero,
+    };
+    if (!status)
+        status = write(&codes, p->sphere, out, p);
+    relume_coder_destroy(&coder);
+    free(planes);
+    return status;
+}
+
+relume_status still_write(const char *path, const char *out,
+                          const struct relume_open_params *params)
+{
+    struct relume_image image = {0};
+    relume_status status = relume_photograph_load(
+        &image, NULL, path, relume_photograph_params(.log = params->log, .limits = params->limits));
+    if (!status && params->sphere && image.width != 2 * image.height)
+        status =
+            log_fail(params->log, RELUME_EDATA,
+                     "%s: %d x %d pixels; a picture of all directions is twice as wide as high",
+                     path, image.width, image.height);
+    if (!status)
+        status = encode(&image, path, out, params);
+    relume_image_destroy(&image);
+    return status;
+}

@@ -36,13 +36,15 @@ struct relume_shoot_params {
     const char *lights;
     bool near;        // positions: from two balls or more, or from `lights`
     bool refine;      // relume_lights_refine afterwards
+    bool brightness;  // the same with its `brightness`
     bool integrable;  // the same with its `integrable`
     bool align;       // bring photographs on top of the first one by homographies
     bool skip_bad;    // leave photographs out that cannot be read, show another scene, or
                       // no highlight; default: an error that names them
     bool force;       // replace an existing folder
-    struct relume_transfer transfer;  // overrides what the files say
-    int threads;                      // default: all cores
+    struct relume_transfer transfer;       // overrides what the files say
+    struct relume_transfer ball_transfer;  // the same of the balls' own photographs; default: too
+    int threads;                           // default: all cores
     // Photographs of an even surface, which the others are divided by: one against vignetting, or
     // one under each light; `radial`: by an even polynomial of the distance from the middle that is
     // fitted to them, else pixel by pixel.
@@ -93,6 +95,7 @@ RELUME_API void relume_shoot_destroy(struct relume_shoot *shoot);
 struct relume_refine_params {
     const struct relume_log *log;
     int threads;
+    bool brightness;  // of the lights alone; their directions stay
     // Of the linear map that the images leave open, what makes the surface one of heights (its
     // slopes have no curl; Yuille, Snow 1997) counts more than nearness to the lights given, within
     // some degrees.

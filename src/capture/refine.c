@@ -18,6 +18,9 @@
 #include <string.h>
 
 enum { PIXELS = 6000, ROUNDS = 30, LEAST_LIGHTS = 6 };
+// Brightness alone: in turn with robust surfaces it drifts, since what brightness explains looks
+// like shadow at first; with plain ones it converges, and few robust rounds take shadows out.
+enum { PLAIN_ROUNDS = 100, ROBUST_ROUNDS = 3 };
 static const float DARK = 0.01f;       // median over lights below which a pixel says little
 static const float CLIPPED = 0.995f;   // of white
 static const double MOST_MOVED = 5.0;  // degrees, by integrability
@@ -31,6 +34,9 @@ static const double CLEAR = 2.0;          // moved by as many times what halves 
 struct refiner {
     const relume_capture *capture;
     int lights, threads;
+    bool brightness;  // alone: directions stay
+    bool plain;       // surfaces are fitted to all samples, outliers too
+    const vec3 *given;
     size_t pixels;
     int step, columns, rows;         // of the lattice of pixels
     int *slot;                       // [rows][columns]: which pixel; -1: none
@@ -132,16 +138,21 @@ static relume_status read_pixels(struct refiner *r, const struct relume_log *log
 
 // ---------------------------------------------------------------- in turn
 
+// Where brightness alone is sought it is divided out, so that what is left looks like shadow or
+// gloss only where it is.
 static void fit_pixel(void *context, size_t item, int worker)
 {
     struct refiner *r = context;
+    const vec3 *light = r->brightness ? r->given : r->light;
     struct lambert_sample *s = r->scratch + (size_t)worker * (size_t)r->lights;
     const float *value = r->value + item * (size_t)r->lights;
     int n = 0;
     for (int i = 0; i < r->lights; i++)
-        if (!isnan(value[i]))
-            s[n++] = (struct lambert_sample){value[i], 1.0f, i};
-    r->known[item] = n >= 4 && lambert_fit(&r->g[item], r->light, s, &n, false) != NULL;
+        if (!isnan(value[i])) {
+            const float bright = r->brightness ? (float)vec3_length(r->light[i]) : 1.0f;
+            s[n++] = (struct lambert_sample){value[i] / bright, 1.0f, i};
+        }
+    r->known[item] = n >= 4 && lambert_fit(&r->g[item], light, s, &n, r->plain) != NULL;
 }
 
 static int bin_of(double component)
@@ -180,6 +191,20 @@ static bool is_in(const struct half *half, vec3 g)
     return vec3_dot(g, half->axis) >= half->least * vec3_length(g);
 }
 
+// The solution of m l = b, in place of b, among the multiples of a light.
+static bool solve_along(double b[3], const double m[9], vec3 light)
+{
+    const double l[3] = {light.x, light.y, light.z};
+    double square = 0.0, along = 0.0;
+    for (int j = 0; j < 9; j++)
+        square += m[j] * l[j / 3] * l[j % 3];
+    for (int j = 0; j < 3; j++)
+        along += b[j] * l[j];
+    for (int j = 0; j < 3; j++)
+        b[j] = along / square * l[j];
+    return square > 0.0 && along > 0.0;
+}
+
 // Reweighted least squares of one light over the pixels that it meets.
 static bool light_from(vec3 *out, const struct refiner *r, size_t item, const struct half *half)
 {
@@ -205,7 +230,7 @@ static bool light_from(vec3 *out, const struct refiner *r, size_t item, const st
             sum += trust * miss * miss;
             weight += trust;
         }
-        if (weight < 20.0 || !lsq_solve(m, 3, b, 1))
+        if (weight < 20.0 || !(r->brightness ? solve_along(b, m, light) : lsq_solve(m, 3, b, 1)))
             return false;
         light = vec3_of(b[0], b[1], b[2]);
         scale = fmax(2.0 * sqrt(sum / weight), 1e-3);
@@ -254,6 +279,17 @@ static bool fix_gauge(struct refiner *r, const vec3 *given)
         }
     }
     return good;
+}
+
+// Where directions stay, what is free is the mean brightness.
+static bool fix_mean(struct refiner *r)
+{
+    double mean = 0.0;
+    for (int i = 0; i < r->lights; i++)
+        mean += vec3_length(r->light[i]) / r->lights;
+    for (int i = 0; i < r->lights; i++)
+        r->light[i] = vec3_scale(r->light[i], 1.0 / mean);
+    return isfinite(mean) && mean > 0.0;
 }
 
 static int ascending(const void *a, const void *b)
@@ -385,21 +421,39 @@ static void give_back(struct refiner *r, const vec3 *given)
         r->light[i] = given[i];
 }
 
+static relume_status judge_brightness(bool *believed, struct refiner *r, const vec3 *given,
+                                      double residual[2], const struct relume_log *log)
+{
+    const relume_status status = find_residual(&residual[1], r);
+    *believed = !status && residual[1] < residual[0];
+    if (!status && !*believed) {
+        log_line(log, RELUME_WARNING,
+                 "brightness not refined: the photographs fit lamps of equal brightness best");
+        residual[1] = residual[0];
+        give_back(r, given);
+    }
+    return status;
+}
+
 static relume_status solve(struct refiner *r, bool *believed, const vec3 *given, double residual[2],
                            const struct relume_log *log)
 {
     relume_status status = find_residual(&residual[0], r);
     bool good = true;
-    for (int round = 0; !status && good && round < ROUNDS; round++) {
+    const int rounds = r->brightness ? PLAIN_ROUNDS + ROBUST_ROUNDS : ROUNDS;
+    for (int round = 0; !status && good && round < rounds; round++) {
+        r->plain = r->brightness && round < PLAIN_ROUNDS;
         weigh_pixels(r);
         thread_for(r->threads, (size_t)r->lights, fit_light, r);
-        good = fix_gauge(r, given);
+        good = r->brightness ? fix_mean(r) : fix_gauge(r, given);
         thread_for(r->threads, r->pixels, fit_pixel, r);
-        if (!log_progress(log, "refining", (round + 1.0) / ROUNDS))
+        if (!log_progress(log, "refining", (round + 1.0) / rounds))
             return RELUME_ECANCEL;
     }
     if (!status)
         weigh_pixels(r);
+    if (!status && r->brightness)
+        return judge_brightness(believed, r, given, residual, log);
     if (!status)
         status = judge(believed, r, given, log);
     residual[1] = residual[0];
@@ -418,7 +472,12 @@ relume_status relume_lights_refine(struct relume_vec3 *direction, double *intens
     double curl[2] = {0.0, 0.0};
     bool believed = false;
     struct refiner r = {
-        .capture = capture, .lights = m->lights, .threads = thread_count(p.threads)};
+        .capture = capture,
+        .lights = m->lights,
+        .threads = thread_count(p.threads),
+        .brightness = p.brightness,
+        .given = m->directions,
+    };
     if (m->lights < LEAST_LIGHTS || m->positions || !lambert_spans(m->directions, m->lights))
         return log_fail(p.log, RELUME_EDATA,
                         "lights cannot be refined: expected %d distant ones or more, in different "

@@ -6,8 +6,10 @@
 #include "base/log.h"
 #include "base/memory.h"
 
+#include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -208,7 +210,12 @@ static relume_status refine(struct shoot *s, const relume_capture *capture)
     double residual[2], curl[2] = {0.0, 0.0};
     double *bright = mem_array((size_t)out->lights, sizeof *bright);
     const struct relume_refine_params p = {
-        .log = s->p.log, .threads = s->p.threads, .integrable = s->p.integrable, .curl = curl};
+        .log = s->p.log,
+        .threads = s->p.threads,
+        .brightness = s->p.brightness,
+        .integrable = s->p.integrable,
+        .curl = curl,
+    };
     relume_status status = bright
                                ? relume_lights_refine(out->direction, bright, residual, capture, &p)
                                : RELUME_ENOMEM;
@@ -218,9 +225,8 @@ static relume_status refine(struct shoot *s, const relume_capture *capture)
     free(bright);
     if (status || residual[1] == residual[0])  // they stay, and that has been said
         return status ? status : describe(s);
-    log_line(s->p.log, RELUME_NOTE,
-             "lights refined: the images miss Lambert's law by %.3f of the albedo, %.3f before",
-             residual[1], residual[0]);
+    log_line(s->p.log, RELUME_NOTE, "%s refined: brightness error %.1f %%, %.1f %% before",
+             s->p.brightness ? "brightness" : "lights", 100.0 * residual[1], 100.0 * residual[0]);
     if (s->p.integrable)
         log_line(s->p.log, RELUME_NOTE,
                  "lights refined: the surface's curl is %.3f of its curvature, %.3f before",
@@ -324,15 +330,66 @@ static relume_status run(struct shoot *s)
     return status ? status : shoot_report(s, outdir_path(s->dir));
 }
 
+// The last number in a file's name, -1 where there is none.
+static long number_of(const char *path)
+{
+    const char *name = shoot_base_name(path), *dot = strrchr(name, '.');
+    const char *at = dot ? dot : name + strlen(name);
+    while (at > name && !isdigit((unsigned char)at[-1]))
+        at--;
+    while (at > name && isdigit((unsigned char)at[-1]))
+        at--;
+    return isdigit((unsigned char)*at) ? strtol(at, NULL, 10) : -1;
+}
+
+static bool has_number(const char *const *list, int n, long number)
+{
+    for (int i = 0; i < n; i++)
+        if (number_of(list[i]) == number)
+            return true;
+    return false;
+}
+
+// What of `list` has a number that none of `others` has; NULL unless that is all that is too many.
+static const char *odd_one(const char *const *list, int n, const char *const *others, int m)
+{
+    const char *odd = NULL;
+    int count = 0;
+    for (int i = n - 1; i >= 0; i--)
+        if (!has_number(others, m, number_of(list[i]))) {
+            odd = list[i];
+            count++;
+        }
+    return count == n - m ? odd : NULL;
+}
+
+static relume_status check_balls(const struct relume_shoot_params *p)
+{
+    const int balls = p->ball_photograph_count, objects = p->photograph_count;
+    if (!p->ball_photographs || balls == objects)
+        return RELUME_OK;
+    const bool more = balls > objects;
+    const char *odd = more ? odd_one(p->ball_photographs, balls, p->photographs, objects)
+                           : odd_one(p->photographs, objects, p->ball_photographs, balls);
+    const char *what = more ? "photograph of the object" : "photograph of the ball";
+    if (odd)
+        return log_fail(p->log, RELUME_EDATA,
+                        "%s: there is no %s with this number; expected one for each; found %d of "
+                        "the ball, %d of the object",
+                        odd, what, balls, objects);
+    return log_fail(p->log, RELUME_EDATA,
+                    "%d photographs of the ball; expected %d, one for each of the object", balls,
+                    objects);
+}
+
 static relume_status check_params(const struct relume_shoot_params *p)
 {
     if (p->photograph_count < 3)
         return log_fail(p->log, RELUME_EDATA, "%d photographs; expected at least 3",
                         p->photograph_count);
-    if (p->ball_photographs && p->ball_photograph_count != p->photograph_count)
-        return log_fail(p->log, RELUME_EDATA,
-                        "%d photographs of the ball; expected %d, one for each of the object",
-                        p->ball_photograph_count, p->photograph_count);
+    const relume_status status = check_balls(p);
+    if (status)
+        return status;
     if (p->flat_count > 1 && p->flat_count != p->photograph_count)
         return log_fail(p->log, RELUME_EDATA,
                         "%d flat fields; expected 1, or %d as photographs, each under its light",

@@ -56,9 +56,11 @@ static const char *ball_photo(const struct shot *shot)
 
 relume_status shoot_load_balls(struct relume_image *out, const struct shoot *s, int i)
 {
-    return relume_photograph_load(out, NULL, ball_photo(&s->shot[i]),
-                                  relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
-                                                           .transfer = s->p.transfer));
+    const bool own = s->shot[i].ball_path && s->p.ball_transfer.curve != RELUME_CURVE_AUTO;
+    return relume_photograph_load(
+        out, NULL, ball_photo(&s->shot[i]),
+        relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
+                                 .transfer = own ? s->p.ball_transfer : s->p.transfer));
 }
 
 // What is wrong with how ball `b` shows the light; NULL when nothing is.

@@ -75,14 +75,6 @@ static relume_status add_to_mean(struct shoot *s, const struct relume_image *ima
     return RELUME_OK;
 }
 
-static relume_status load(const struct shoot *s, struct relume_image *out,
-                          struct relume_notes *notes, const char *path)
-{
-    return relume_photograph_load(out, notes, path,
-                                  relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
-                                                           .transfer = s->p.transfer));
-}
-
 static relume_status align(struct shoot *s, int i, struct relume_image *image)
 {
     if (!s->p.align)
@@ -135,7 +127,7 @@ relume_status shoot_check_size(const struct shoot *s, const struct relume_image 
 static relume_status take_ball(struct shoot *s, int i)
 {
     struct relume_image image;
-    relume_status status = load(s, &image, NULL, s->shot[i].ball_path);
+    relume_status status = shoot_load_balls(&image, s, i);
     if (!status && s->mean.data)
         status = shoot_check_size(s, &image, s->shot[i].ball_path, s->mean.width, s->mean.height);
     if (!status)
@@ -175,7 +167,10 @@ relume_status shoot_read(struct shoot *s)
         struct relume_image image;
         struct shot *shot = &s->shot[i];
         snprintf(shot->name, sizeof shot->name, "light%04d.exr", done);
-        status = load(s, &image, &shot->notes, shot->path);
+        status =
+            relume_photograph_load(&image, &shot->notes, shot->path,
+                                   relume_photograph_params(.log = s->p.log, .limits = s->p.limits,
+                                                            .transfer = s->p.transfer));
         if (!status)
             status = take(s, i, &image);
         relume_image_destroy(&image);

@@ -130,6 +130,12 @@ static relume_status check_options(const struct args *args)
         return usage_error("capture: expected -o DIR");
     if (args_has(args, "--fov") && args_has(args, "--focal"))
         return usage_error("capture: expected one of --fov and --focal");
+    if (args_has(args, "--refine-brightness") && args_has(args, "--refine-lights"))
+        return usage_error("capture: expected one of --refine-lights, which refines brightness as "
+                           "well, and --refine-brightness");
+    if (args_has(args, "--ball-transfer") && !args_has(args, "--ball-photos"))
+        return usage_error("capture: --ball-transfer needs --ball-photos; of the photographs "
+                           "themselves it is --transfer");
     if (args_has(args, "--integrable") && !args_has(args, "--refine-lights"))
         return usage_error("capture: --integrable needs --refine-lights");
     if (args_has(args, "--radial") && !args_has(args, "--flat"))
@@ -142,6 +148,7 @@ static relume_status check_options(const struct args *args)
 static relume_status read_options(const struct args *args, struct job *job)
 {
     const char *transfer = args_text(args, "--transfer", NULL);
+    const char *of_balls = args_text(args, "--ball-transfer", NULL);
     job->p = (struct relume_shoot_params){
         .log = args_log(args),
         .mask = args_text(args, "--mask", job->mask),
@@ -159,7 +166,8 @@ static relume_status read_options(const struct args *args, struct job *job)
         .flat_count = job->flats.count,
         .radial = args_has(args, "--radial"),
         .near = args_has(args, "--near"),
-        .refine = args_has(args, "--refine-lights"),
+        .refine = args_has(args, "--refine-lights") || args_has(args, "--refine-brightness"),
+        .brightness = args_has(args, "--refine-brightness"),
         .integrable = args_has(args, "--integrable"),
         .skip_bad = args_has(args, "--skip-bad"),
         .force = args_has(args, "--force"),
@@ -167,6 +175,9 @@ static relume_status read_options(const struct args *args, struct job *job)
     };
     if (transfer && relume_transfer_parse(&job->p.transfer, transfer))
         return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", transfer);
+    if (of_balls && relume_transfer_parse(&job->p.ball_transfer, of_balls))
+        return usage_error("--ball-transfer: expected linear, srgb or gamma:G; found '%s'",
+                           of_balls);
     relume_status status = read_outlines(args, job);
     if (!status)
         status = read_white(args, job);

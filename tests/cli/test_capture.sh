@@ -53,6 +53,11 @@ expect_fail 'an integrable surface of given lights' 2 'needs --refine-lights' ou
     --lights lights.txt --integrable -o out
 expect_ok 'refined, integrable' 'curl is' "$RELUME" capture photos --lights lights.txt --refine-lights --integrable -o curl
 below 'lights that were right stay so' "$(angles curl)" 2
+expect_ok 'brightness alone' 'lamps of equal brightness' "$RELUME" capture photos --lights lights.txt --refine-brightness -o bright
+same 'leaves directions' bright/lights.lp known/lights.lp
+expect_fail 'one kind of refining' 2 'one of --refine-lights' out "$RELUME" capture photos --lights lights.txt \
+    --refine-lights --refine-brightness -o out
+expect_fail 'a transfer of no ball' 2 'ball-transfer needs --ball-photos' out "$RELUME" capture photos --ball-transfer srgb -o out
 expect_fail 'a polynomial of nothing' 2 'needs --flat' out "$RELUME" capture photos --lights lights.txt --radial -o out
 
 # ---- the same from the ball
@@ -140,6 +145,17 @@ below 'its radius' "$(number radius | awk '{ d = $1 - 119.3; print d < 0 ? -d : 
 tail -n +2 "$data/lights.txt" >lights.txt
 # that list is itself 3.8 degrees off what the set's gray ball shows (docs/capture.md)
 below 'directions as in the set' "$(angles buddha)" 4
+# ---- as many photographs of the ball as of the object; their own transfer
+fresh chrome more && cp chrome/chrome.0.png more/chrome.12.png
+bad 'a photograph of the ball too many is named' 'more/chrome.12.png: there is no photograph of the object with this number' \
+    "$data/buddha" --ball-photos more
+rm more/chrome.12.png more/chrome.5.png
+bad 'one too few' 'buddha.5.png: there is no photograph of the ball with this number' "$data/buddha" --ball-photos more
+expect_ok 'a transfer of the ball alone' 'uneven light' "$RELUME" capture "$data/buddha" --ball-photos chrome -o curved \
+    --ball-transfer gamma:2.2 -q
+differ 'moves what the ball tells' curved/lights.lp buddha/lights.lp
+same 'and leaves the photographs' curved/light0003.exr buddha/light0003.exr
+
 # ---- round things that are no mirror balls: a highlight that never moves, a head, a coin
 mkdir still && for i in 0 1 2 3 4 5 6 7 8; do cp chrome/chrome.0.png still/$i.png; done
 bad 'a highlight that never moves' 'no mirror ball found' still

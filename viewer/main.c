@@ -31,6 +31,31 @@ static void on_message(void *user, enum relume_level level, const char *text)
             relume_printable(line));
 }
 
+static volatile sig_atomic_t stopped;  // the signal that asked to stop, 0: none
+
+static void on_signal(int number)
+{
+    stopped = number;
+}
+
+static bool on_progress(void *user, const char *what, double done)
+{
+    (void)user, (void)what, (void)done;
+    return !stopped;
+}
+
+// Without a window nobody else asks it to stop, and what is unfinished is to be removed. A second
+// signal of its kind stops at once; nohup's choice is kept.
+static void listen_to_signals(void)
+{
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+    const struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESETHAND};
+    struct sigaction before;
+    for (int i = 0; i < 3; i++)
+        if (!sigaction(numbers[i], NULL, &before) && before.sa_handler != SIG_IGN)
+            sigaction(numbers[i], &action, NULL);
+}
+
 static int exit_code(relume_status status)
 {
     switch (status) {
@@ -38,6 +63,11 @@ static int exit_code(relume_status status)
     case RELUME_EDATA: return 1;
     case RELUME_EINVAL: return 2;
     case RELUME_ENOMEM: fputs("relume-view: out of memory\n", stderr); return 3;
+    case RELUME_ECANCEL:
+        fputs("relume-view: interrupted; nothing was written\n", stderr);
+        signal(stopped, SIG_DFL);
+        raise(stopped);
+        return 128 + stopped;
     default: return 3;
     }
 }
@@ -350,12 +380,16 @@ static relume_status run_window(struct session *s, struct options *o)
 int main(int argc, char **argv)
 {
     static struct session session;
-    static const struct relume_log log = {.message = on_message, .user = &session};
+    static struct relume_log log = {
+        .message = on_message, .progress = on_progress, .user = &session};
     session.log = &log;
     struct options options;
     signal(SIGXFSZ, SIG_IGN);  // a file size limit is a write error, not a death
     signal(SIGPIPE, SIG_IGN);
-    relume_status status = options_parse(&options, argc, argv, &log);
+    relume_status status = relume_inputs_create(&log.inputs);
+    if (status)
+        return exit_code(status);
+    status = options_parse(&options, argc, argv, &log);
     session.threads = options.threads;
     session.relight = options.relight;
     session.glare = options.glare;
@@ -364,11 +398,14 @@ int main(int argc, char **argv)
     session.vram_bytes = (size_t)(options.vram_mb * 1048576.0);
     const bool offscreen =
         options.offscreen || options.record || (options.script && !options.window);
+    if (offscreen)
+        listen_to_signals();
     if (!status && options.help)
         options_help();
     else if (!status)
         status = (offscreen ? run_offscreen : run_window)(&session, &options);
     session_close(&session);
     options_release(&options);
+    relume_inputs_destroy(&log.inputs);
     return exit_code(status);
 }

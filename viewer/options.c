@@ -72,7 +72,9 @@ static relume_status take_rig(struct options *o, const char *name, const char *t
 {
     if (o->rig)
         return say(log, RELUME_EINVAL, "%s: expected it once and before --light", name);
-    return relume_rig_load(&o->rig, text, log);
+    struct relume_log saves = *log;
+    saves.inputs = NULL;  // lights may be saved where they came from
+    return relume_rig_load(&o->rig, text, &saves);
 }
 
 static relume_status take_view(struct options *o, const char *name, const char *text,

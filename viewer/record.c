@@ -4,14 +4,12 @@
 #include "orbit.h"
 #include "say.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,7 +22,7 @@ static const double highest_deg = 60;
 struct record {
     const struct relume_log *log;
     char path[PATH];  // the final name
-    char part[PATH];  // what is written meanwhile
+    relume_making *making;
     bool film;
     int pictures;
     int width, height;
@@ -109,41 +107,11 @@ static relume_status cannot(const struct record *r, const char *what)
     return say(r->log, RELUME_EIO, "%s: %s; %s", r->path, what, strerror(errno));
 }
 
-static bool has_entries(const char *path)
-{
-    DIR *dir = opendir(path);
-    int entries = 0;
-    while (dir && readdir(dir))
-        entries++;
-    if (dir)
-        closedir(dir);
-    return entries > 2;  // "." and ".."
-}
-
-static void remove_pictures(const struct record *r)
-{
-    char path[PATH + 32];
-    for (int i = 0; i < r->pictures; i++) {
-        snprintf(path, sizeof path, "%s/%04d.png", r->part, i);
-        (void)unlink(path);
-    }
-    (void)rmdir(r->part);
-}
-
-static relume_status open_folder(struct record *r)
-{
-    struct stat is;
-    if (!stat(r->path, &is) && (!S_ISDIR(is.st_mode) || has_entries(r->path)))
-        return say(r->log, RELUME_EINVAL,
-                   "%s: is there already; expected a new name, an empty folder or FILE.mp4",
-                   r->path);
-    return mkdir(r->part, 0777) ? cannot(r, "the folder cannot be made") : RELUME_OK;
-}
-
 static relume_status add_to_folder(struct record *r, const struct relume_image *image)
 {
     char path[PATH + 32];
-    snprintf(path, sizeof path, "%s/%04d.png", r->part, r->pictures++);
+    snprintf(path, sizeof path, "%.*s/%04d.png", PATH, relume_making_path(r->making),
+             r->pictures++);
     return relume_image_save(image, path, relume_image_params(.log = r->log));
 }
 
@@ -162,7 +130,7 @@ static void become_ffmpeg(const struct record *r, int input)
     char size[32], rate[16], to[PATH + 8];
     snprintf(rate, sizeof rate, "%d", RECORD_RATE);
     snprintf(size, sizeof size, "%dx%d", r->width, r->height);
-    snprintf(to, sizeof to, "file:%s", r->part);
+    snprintf(to, sizeof to, "file:%.*s", PATH, relume_making_path(r->making));
     const char *format = strrchr(r->path, '.');
     const char *const arguments[] = {
         "ffmpeg",   "-v",       "error",    "-y",
@@ -259,9 +227,9 @@ relume_status record_open(struct record **out, const char *path, const struct re
     snprintf(r->path, sizeof r->path, "%s", path);
     for (size_t n = strlen(r->path); n > 1 && r->path[n - 1] == '/'; n--)
         r->path[n - 1] = '\0';
-    snprintf(r->part, sizeof r->part, "%.*s.part", PATH - 8, r->path);
-    if (!status && !r->film)
-        status = open_folder(r);
+    if (!status)
+        status = relume_making_open(&r->making, r->path,
+                                    r->film ? RELUME_MADE_FILE : RELUME_MADE_FOLDER, false, log);
     if (!status)
         return RELUME_OK;
     free(r);
@@ -271,6 +239,8 @@ relume_status record_open(struct record **out, const char *path, const struct re
 
 relume_status record_add(struct record *r, const struct relume_image *image)
 {
+    if (r->log && r->log->progress && !r->log->progress(r->log->user, "recording", 0))
+        return RELUME_ECANCEL;
     if (!r->pictures) {
         r->width = image->width;
         r->height = image->height;
@@ -287,10 +257,7 @@ void record_abort(struct record **record)
         return;
     r->log = NULL;
     (void)end_ffmpeg(r);
-    if (r->film)
-        (void)unlink(r->part);
-    else
-        remove_pictures(r);
+    relume_making_abort(&r->making);
     free(r);
     *record = NULL;
 }
@@ -299,8 +266,8 @@ relume_status record_commit(struct record **record)
 {
     struct record *r = *record;
     relume_status status = end_ffmpeg(r);
-    if (!status && rename(r->part, r->path))
-        status = cannot(r, "cannot be given its name");
+    if (!status)
+        status = relume_making_commit(&r->making);
     if (status) {
         record_abort(record);
         return status;

@@ -23,6 +23,7 @@ struct relume_making {
     beside *beside;
     enum relume_made kind;
     bool force;
+    const char *otherwise;  // what may be done where a folder is there already
     const struct relume_log *log;
 };
 
@@ -67,7 +68,8 @@ static relume_status check_old(relume_making *m)
     }
     if (!m->force)
         return log_fail(m->log, RELUME_EINVAL,
-                        "%s: already exists; expected a new or empty folder, or --force", m->path);
+                        "%s: already exists; expected a new or empty folder%s", m->path,
+                        m->otherwise);
     return check_old_folder(m);
 }
 
@@ -96,14 +98,14 @@ static relume_status make_place(relume_making *m)
     return RELUME_OK;
 }
 
-relume_status relume_making_open(relume_making **out, const char *path, enum relume_made kind,
-                                 bool force, const struct relume_log *log)
+static relume_status open_place(relume_making **out, const char *path, enum relume_made kind,
+                                bool force, const char *otherwise, const struct relume_log *log)
 {
     *out = NULL;
     relume_making *m = mem_zeroed(1, sizeof *m);
     if (!m)
         return RELUME_ENOMEM;
-    *m = (relume_making){.kind = kind, .force = force, .log = log};
+    *m = (relume_making){.kind = kind, .force = force, .otherwise = otherwise, .log = log};
     relume_status status = find_target(m, path);
     if (!status && path)
         status = check_old(m);
@@ -113,6 +115,12 @@ relume_status relume_making_open(relume_making **out, const char *path, enum rel
         relume_making_abort(&m);
     *out = m;
     return status;
+}
+
+relume_status relume_making_open(relume_making **out, const char *path, enum relume_made kind,
+                                 bool force, const struct relume_log *log)
+{
+    return open_place(out, path, kind, force, "", log);
 }
 
 const char *relume_making_path(const relume_making *making)
@@ -217,7 +225,7 @@ void relume_making_abort(relume_making **making)
 
 relume_status outdir_open(outdir **out, const char *path, bool force, const struct relume_log *log)
 {
-    return relume_making_open(out, path, RELUME_MADE_FOLDER, force, log);
+    return open_place(out, path, RELUME_MADE_FOLDER, force, ", or --force", log);
 }
 
 const char *outdir_path(const outdir *dir)

@@ -3,13 +3,12 @@
 
 #include "bracket.h"
 #include "capture_times.h"
+#include "fill.h"
 #include "output_name.h"
 #include "photo_list.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 struct choices {
     enum relume_merge_weights weights;
@@ -151,7 +150,7 @@ static relume_status whiten(struct bracket *b, const struct choices *c, const st
 }
 
 static relume_status run_bracket(struct bracket *b, const struct choices *c, const char *output,
-                                 int index, FILE *report, const struct args *args)
+                                 const char *to, int index, FILE *report, const struct args *args)
 {
     const char *flat = args_text(args, "--flat", NULL);
     relume_status status = bracket_load(b, args);
@@ -167,7 +166,7 @@ static relume_status run_bracket(struct bracket *b, const struct choices *c, con
         status = whiten(b, c, args);
     if (!status)
         status = relume_image_save(
-            &b->out, output,
+            &b->out, to,
             relume_image_params(.log = args_log(args), .threads = args_threads(args) > 0
                                                                       ? args_threads(args)
                                                                       : relume_cpu_count()));
@@ -216,9 +215,9 @@ static int photos_of(struct bracket *b, const struct photo_list *list,
 }
 
 static void output_name(char *out, size_t size, const struct choices *c, const struct bracket *b,
-                        const struct args *args)
+                        const char *output)
 {
-    const char *output = args_text(args, "-o", NULL), *name = base_name(b->path[0]);
+    const char *name = base_name(b->path[0]);
     const char *dot = strrchr(name, '.');
     const int length = dot ? (int)(dot - name) : (int)strlen(name);
     if (c->is_file)
@@ -229,29 +228,22 @@ static void output_name(char *out, size_t size, const struct choices *c, const s
 
 static relume_status run_group(const struct choices *c, const struct photo_list *list,
                                const struct relume_notes *notes, const int *group, int which,
-                               FILE *report, const struct args *args)
+                               const char *to, FILE *report, const struct args *args)
 {
-    char output[4096];
+    char output[4096], written[4096];
     struct bracket *b = calloc(1, sizeof *b);
     if (!b)
         return RELUME_ENOMEM;
     const int n = photos_of(b, list, notes, group, which);
-    output_name(output, sizeof output, c, b, args);
+    output_name(output, sizeof output, c, b, args_text(args, "-o", NULL));
+    output_name(written, sizeof written, c, b, to);
     const relume_status status =
         n > MAX_BRACKET ? data_error("%s: %d photographs in one bracket; expected at most %d",
                                      list->path[0], n, MAX_BRACKET)
-                        : run_bracket(b, c, output, which, report, args);
+                        : run_bracket(b, c, output, written, which, report, args);
     bracket_free(b);
     free(b);
     return status;
-}
-
-static relume_status make_folder(const char *path)
-{
-    if (!mkdir(path, 0777) || errno == EEXIST)
-        return RELUME_OK;
-    (void)data_error("%s: cannot be made; %s", path, strerror(errno));
-    return RELUME_EIO;
 }
 
 static relume_status run_groups(const struct choices *c, struct photo_list *list,
@@ -260,16 +252,17 @@ static relume_status run_groups(const struct choices *c, struct photo_list *list
 {
     const bool json = args_has(args, "--json");
     int groups = 1;
+    struct fill folder = {.path = args_text(args, "-o", NULL)};
     relume_status status = read_notes(notes, list, args);
     if (!status && !c->is_file) {
         groups = relume_notes_group(group, notes, list->count, 0.0);
-        status = groups > 0 ? make_folder(args_text(args, "-o", NULL)) : RELUME_ENOMEM;
+        status = groups > 0 ? fill_open(&folder, folder.path, args_log(args)) : RELUME_ENOMEM;
     }
     fputs(json ? "{\"brackets\": [" : "", report);
     for (int i = 0; !status && i < groups; i++)
-        status = run_group(c, list, notes, group, i, report, args);
+        status = run_group(c, list, notes, group, i, folder.path, report, args);
     fputs(json ? "]}\n" : "", report);
-    return status;
+    return fill_end(&folder, status);
 }
 
 // The report is printed when all went well.

@@ -8,7 +8,6 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,9 +17,10 @@ enum kind { NUMBERED, FOLDER, FILM };
 struct film {
     const struct relume_log *log;
     enum kind kind;
-    char path[PATH], part[PATH], name[PATH];
-    int digits;     // of a number
-    size_t before;  // where it stands in `path`
+    char path[PATH], name[PATH];
+    relume_making *making;  // NULL: numbered files
+    int digits;             // of a number
+    size_t before;          // where it stands in `path`
     const char *after;
     double fps;
     int pictures;
@@ -77,7 +77,8 @@ const char *film_name(struct film *f)
         snprintf(f->name, sizeof f->name, "%.*s%0*d%s", (int)f->before, f->path, f->digits,
                  f->pictures, f->after);
     else
-        snprintf(f->name, sizeof f->name, "%.4000s/%04d.png", f->part, f->pictures);
+        snprintf(f->name, sizeof f->name, "%.4000s/%04d.png", relume_making_path(f->making),
+                 f->pictures);
     return f->name;
 }
 
@@ -95,15 +96,13 @@ relume_status film_open(struct film **out, const char *path, double fps,
     f->kind = is_film(path)                                             ? FILM
               : find_number(f->path, &f->before, &f->digits, &f->after) ? NUMBERED
                                                                         : FOLDER;
-    snprintf(f->part, sizeof f->part, "%.4000s.part", f->path);
     relume_status status = RELUME_OK;
     if (strlen(path) > 4000)
         status = fail(f, RELUME_EINVAL, "-o: expected a shorter name");
-    else if (f->kind == FOLDER && !access(f->path, F_OK) && rmdir(f->path))
+    else if (f->kind != NUMBERED)
         status =
-            fail(f, RELUME_EINVAL, "%s: is there already; expected a new or empty folder", f->path);
-    else if (f->kind == FOLDER && mkdir(f->part, 0777))
-        status = fail(f, RELUME_EIO, "%s: cannot be made; %s", f->part, strerror(errno));
+            relume_making_open(&f->making, f->path,
+                               f->kind == FILM ? RELUME_MADE_FILE : RELUME_MADE_FOLDER, false, log);
     if (status) {
         free(f);
         *out = NULL;
@@ -120,7 +119,7 @@ static void become_ffmpeg(const struct film *f, const struct relume_image *image
     char size[32], rate[32], to[PATH + 8];
     snprintf(rate, sizeof rate, "%g", f->fps);
     snprintf(size, sizeof size, "%dx%d", image->width, image->height);
-    snprintf(to, sizeof to, "file:%s", f->part);
+    snprintf(to, sizeof to, "file:%.4000s", relume_making_path(f->making));
     const char *const format = !strcmp(strrchr(f->path, '.'), ".mp4") ? "mp4" : "matroska";
     const char *const arguments[] = {
         "ffmpeg",   "-v",       "error",    "-y",
@@ -216,15 +215,6 @@ relume_status film_add(struct film *f, const struct relume_image *image)
     return status;
 }
 
-static void remove_folder(struct film *f)
-{
-    while (f->pictures > 0) {
-        f->pictures--;
-        (void)unlink(film_name(f));
-    }
-    (void)rmdir(f->part);
-}
-
 relume_status film_close(struct film **film, bool keep)
 {
     struct film *const f = *film;
@@ -233,12 +223,9 @@ relume_status film_close(struct film **film, bool keep)
     if (!keep)
         f->log = NULL;
     relume_status status = end_ffmpeg(f);
-    if (keep && !status && f->kind != NUMBERED && rename(f->part, f->path))
-        status = fail(f, RELUME_EIO, "%s: cannot be given its name; %s", f->path, strerror(errno));
-    if ((!keep || status) && f->kind == FOLDER)
-        remove_folder(f);
-    if ((!keep || status) && f->kind == FILM)
-        (void)unlink(f->part);
+    if (keep && !status && f->making)
+        status = relume_making_commit(&f->making);
+    relume_making_abort(&f->making);
     free(f);
     *film = NULL;
     return status;

@@ -1,13 +1,13 @@
 #include "glare_pattern.h"
 
+#include "fill.h"
+
 #include "develop.h"
 #include "plot.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 // ---------------------------------------------------------------- pictures
 
@@ -198,10 +198,9 @@ relume_status save_pattern(struct viewer_eye *e, const struct args *args, const 
         return status ? status : save_psf(e, path, log);
     if (strlen(path) > 4000)
         return usage_error("--psf: expected a shorter name");
-    if (mkdir(path, 0777) && errno != EEXIST) {
-        data_error("%s: cannot be made; %s", path, strerror(errno));
-        return RELUME_EIO;
-    }
+    struct fill folder;
+    status = fill_open(&folder, path, log);
+    path = folder.path;
     static const char *const patterns[] = {"psf.exr", "psf.png"};
     for (int i = 0; !status && i < 2; i++) {
         snprintf(name, sizeof name, "%s/%s", path, patterns[i]);
@@ -212,5 +211,7 @@ relume_status save_pattern(struct viewer_eye *e, const struct args *args, const 
         status = save_aperture(e, name, log);
     if (!status)
         status = save_pupil(e, path, log);
-    return status ? status : save_observer(e, path, log);
+    if (!status)
+        status = save_observer(e, path, log);
+    return fill_end(&folder, status);
 }

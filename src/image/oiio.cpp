@@ -203,25 +203,31 @@ relume_status write_in_memory(ImageOutput &output, const char *path, const Image
     return save(path, bytes.data(), bytes.size(), log);
 }
 
-relume_status write_beside(ImageOutput &output, const char *path, const ImageSpec &spec,
-                           TypeDesc type, const void *samples, picture_save *save,
-                           const relume_log *log)
+// Elsewhere, since OpenImageIO writes names only.
+relume_status write_elsewhere(ImageOutput &output, const char *path, const ImageSpec &spec,
+                              TypeDesc type, const void *samples, picture_save *save,
+                              const relume_log *log)
 {
-    const std::string beside =
-        std::string(path) + ".part-" + std::to_string(getpid()) + Filesystem::extension(path);
-    bool good = output.open(beside, spec) && output.write_image(type, samples) && output.close();
+    relume_making *folder;
+    const relume_status status =
+        relume_making_open(&folder, nullptr, RELUME_MADE_FOLDER, false, log);
+    if (status)
+        return status;
+    const std::string name =
+        std::string(relume_making_path(folder)) + "/picture" + Filesystem::extension(path);
+    bool good = output.open(name, spec) && output.write_image(type, samples) && output.close();
     std::string why = good ? "" : one_line(output.geterror());
     std::string bytes;
     if (good) {  // read it back: a full disk is not always reported
         std::vector<float> row(size_t(spec.width) * spec.nchannels);
-        auto check = ImageInput::open(beside);
+        auto check = ImageInput::open(name);
         good = check && check->read_scanlines(0, 0, spec.height - 1, spec.height, 0, 0,
                                               spec.nchannels, TypeFloat, row.data());
         why = good ? "" : "incomplete; no space left?";
         check.reset();
-        good = good && Filesystem::read_text_file(beside, bytes);
+        good = good && Filesystem::read_text_file(name, bytes);
     }
-    std::remove(beside.c_str());
+    relume_making_abort(&folder);
     if (!good)
         return log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path, why.c_str());
     return save(path, bytes.data(), bytes.size(), log);
@@ -244,7 +250,7 @@ relume_status write_image(const char *path, int width, int height, int channels,
         const bool in_memory =
             output->supports("ioproxy") && std::string(output->format_name()) != "tiff";
         return in_memory ? write_in_memory(*output, path, spec, type, samples, save, log)
-                         : write_beside(*output, path, spec, type, samples, save, log);
+                         : write_elsewhere(*output, path, spec, type, samples, save, log);
     } catch (const std::bad_alloc &) {
         return RELUME_ENOMEM;
     } catch (const std::exception &e) {

@@ -49,7 +49,7 @@ expect_ok 'a folder' - "$RELUME" glare lamp.exr -o film $quick --frames 3 --fps 
 same 'the same pictures' f.002.png film/0002.png
 glare lamp.exr -o single.png $quick --time 1.08
 same 'a picture of a film is that of its time' f.002.png single.png
-bad 'a folder that is there' 2 'film: is there already' lamp.exr -o film $quick --frames 2
+bad 'a folder that is there' 2 'film: already exists; expected a new or empty folder$' lamp.exr -o film $quick --frames 2
 if command -v ffmpeg >ffmpeg.txt; then
     expect_ok 'a film' - "$RELUME" glare lamp.exr -o film.mp4 $quick --frames 3
 else

@@ -70,4 +70,60 @@ refused 'sweep onto the manifest' 'capture.json: .*read' "$RELUME" sweep cap -o 
 mkdir -p deep && $synth deep/made 2>/dev/null && "$RELUME" encode deep/made -o deep/made.exr 2>/dev/null
 refused 'synth onto the folder of its lights' 'deep/made' "$RELUME" synth box --size 8 --lights-from deep/made/capture.json -o deep/made --force
 refused 'synth around it' 'deep: ' "$RELUME" synth box --size 8 --lights-from deep/made/capture.json -o deep --force
+
+# ---- films and folders of pictures
+lamp=cap/view00/light0000.exr
+echo mine >f.mp4.part && mkdir film.part && echo mine >film.part/keep
+expect_ok 'a folder of frames beside film.part' - "$RELUME" glare $lamp -o film --frames 1
+kept 'film.part is kept' film.part/keep mine
+if command -v ffmpeg >/dev/null; then
+    expect_ok 'a film beside f.mp4.part' - "$RELUME" glare $lamp -o f.mp4 --frames 1
+    kept 'f.mp4.part is kept' f.mp4.part mine
+    cp $lamp film.mkv
+    refused 'a film onto its input' 'film.mkv: .*read' "$RELUME" glare film.mkv -o film.mkv --frames 1
+    rm -f film.mkv
+else
+    skip 'films' 'no ffmpeg'
+fi
+refused 'frames into a folder of the user' 'album: already exists' "$RELUME" glare $lamp -o album --frames 1
+refused 'merged brackets onto a photograph' 'light0000.exr: .*read' "$RELUME" capture --hdr cap/view00/light000[01].exr -o cap/view00/light0000.exr
+if [ -x "$VIEWER" ]; then
+    refused 'the viewer onto its file' 'file.exr: .*read' sh -c "exec \"$VIEWER\" file.exr --offscreen file.exr --size 32x32 2>&1 >&2 | sed 's/^relume-view/relume/' >&2; exit 2"
+fi
+
+# ---- several writers
+for i in 1 2 3 4; do $synth four 2>err$i.txt & done
+wait
+check 'four synths into one folder: no error' sh -c '! grep -v "warning: four: another run made this folder meanwhile" err[1-4].txt'
+expect_ok 'their folder is whole' 'four.exr: ' "$RELUME" encode four -o four.exr --skip-missing
+check 'nothing of them is left' test -z "$(leftovers)"
+rm -f err[1-4].txt
+"$sphere" half --size 16 --lights 9 --half --hemisphere
+sweep="$RELUME sweep half -o two --basis sh,hsh,table --coefficients 4 -q"
+for i in 1 2; do $sweep --csv >sweep$i.csv 2>&1 & done
+wait
+for i in 1 2; do cut -d , -f 1-12,14- sweep$i.csv >rows$i.csv; done  # without the seconds it took
+check 'two sweeps into one table' cmp rows1.csv rows2.csv
+expect_ok 'their rows are kept, none is broken' - $sweep --csv
+check 'those of one of them' test "$(grep -cxFf two.csv out.txt)" -eq 4
+
+# ---- signals: the sign of each, nothing left
+for signal in INT TERM HUP; do
+    for delay in 1 0.5 0.2 0.1; do
+        timeout --foreground -s $signal $delay "$RELUME" synth box -o slow --size 400 --lights 100 --samples 256 2>err.txt
+        status=$?
+        [ $status -eq 0 ] || break
+    done
+    if [ $status -ne 124 ] || [ -e slow ] || [ "$(leftovers)" ] || ! grep -q interrupted err.txt; then
+        not_ok "SIG$signal" "status $status, $(cat err.txt), left: $(ls -d slow 2>&1) $(leftovers)"
+    else
+        ok "SIG$signal"
+    fi
+done
+"$RELUME" synth box -o slow --size 400 --lights 100 --samples 256 2>err.txt & pid=$!
+sleep 0.3; kill -HUP $pid; wait $pid 2>/dev/null; status=$?
+if [ $status -eq 129 ]; then ok 'the shell sees the signal'; else not_ok 'the shell sees the signal' "$status, expected 129"; fi
+
+# ---- killed: the old one or the new one, and no litter after the next run
+KILLS=1 expect_ok 'killed at random' - "$TOP/tests/tools/kills.sh"
 finish

@@ -129,7 +129,7 @@ if [ "$("$RELUME" compare rigged.png seen.png | awk '$1 == "max_abs" { print ($2
     ok 'the lights of a rig'; else not_ok 'the lights of a rig' "$("$RELUME" compare rigged.png seen.png)"; fi
 
 "$VIEWER" teapot.exr --record turntable -o turn --frames 3
-check 'a recording is a folder of pictures' test -s turn/0002.png -a ! -e turn/0003.png -a ! -e turn.part
+check 'a recording is a folder of pictures' test -s turn/0002.png -a ! -e turn/0003.png -a -z "$(leftovers)"
 mkdir fake
 cat >fake/ffmpeg <<'END'
 #!/bin/sh
@@ -194,7 +194,7 @@ if cmp -s played/0004.png played/0005.png; then not_ok 'another file' 'the same 
 printf 'wait 0.1\nopen none.exr\n' >none.txt
 "$VIEWER" teapot.exr --script none.txt --record script -o broken 2>broken.txt
 check 'a film that ends early' grep -q 'none.txt: line 2, column 6; none.exr' broken.txt
-check 'nothing is left of it' test ! -e broken -a ! -e broken.part
+check 'nothing is left of it' test ! -e broken -a -z "$(leftovers)"
 
 # Half floats hold the weights of near lights on the GPU: 1/255 is promised.
 "$RELUME" synth box -q -o sky --projection spherical --lights 1 --size 16 --samples 1 || exit 1
@@ -271,7 +271,7 @@ refuse 'a near light without depth' 1 'need to know where the surface is' \
     sh -c 'printf "add point 0 0 1\n" >near.txt; "$VIEWER" bare.exr --script near.txt'
 refuse 'a turntable of one view' 2 'turntable: expected a slab' \
     "$VIEWER" teapot.exr --view 0 --record turntable -o none.png
-refuse 'a recording over a folder' 2 'is there already' "$VIEWER" teapot.exr --record sweep -o teapot
+refuse 'a recording over a folder' 2 'already exists; expected a new or empty folder$' "$VIEWER" teapot.exr --record sweep -o teapot
 refuse 'a recording without a name' 2 'expected --record KIND and -o OUT' \
     "$VIEWER" teapot.exr --record sweep
 refuse 'a film without ffmpeg' 3 'ffmpeg is not installed' \

@@ -8,7 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DETAIL = 4 };  // pixels: what is finer counts as detail
+// The defaults of relume_pass_params.
+static const float highlight = 0.6f, exponent = 40.0f;
+enum { DETAIL = 4 };
 
 enum {
     RECTANGLE,
@@ -24,11 +26,14 @@ enum {
     LIGHTS,
     LAMPS,
     STRENGTH,
+    RANGE,
+    STEP,
     COUNT
 };
 static const char *const uniforms[] = {
-    "rectangle", "frame_size", "view",          "normals", "albedos", "details",  "towards",
-    "reference", "pass",       "towards_given", "lights",  "lamps",   "strength",
+    "rectangle", "frame_size", "view",      "normals", "albedos",
+    "details",   "towards",    "reference", "pass",    "towards_given",
+    "lights",    "lamps",      "strength",  "range",   "step_of",
 };
 // Texture units, by their uniform
 enum {
@@ -41,9 +46,6 @@ enum {
     UNIT_LAMPS
 };
 enum { LAMPS_WIDE = 512 };
-
-// gain, specular, exponent, top: the defaults of relume_pass_params
-static const float strength[4] = {2.0f, 0.6f, 40.0f, 1.0f};
 
 relume_status enhancer_create(struct enhancer *e, const struct gl *gl,
                               const struct code_source *source,
@@ -82,7 +84,10 @@ void enhancer_destroy(struct enhancer *e)
         const GLuint textures[] = {v->normal, v->albedo, v->detail, v->reference};
         e->gl->DeleteTextures(4, textures);
         target_destroy(&v->shown, e->gl);
+        relume_image_destroy(&v->albedo_grid);
+        relume_image_destroy(&v->normals);
     }
+    target_destroy(&e->grid, e->gl);
     e->gl->DeleteTextures(1, &e->lamps);
     e->gl->DeleteTextures(RELUME_MOST_SLABS, e->towards);
     e->gl->DeleteVertexArrays(1, &e->vertices);
@@ -105,26 +110,53 @@ static GLuint upload(const struct gl *gl, GLuint texture, const struct relume_im
     return texture;
 }
 
+// Every step-th pixel.
+static relume_status thin(struct relume_image *out, const struct relume_image *image)
+{
+    const int step = relume_pass_step(image->width, image->height);
+    const relume_status status = relume_image_create(out, (image->width + step - 1) / step,
+                                                     (image->height + step - 1) / step, 3);
+    float *to = out->data;
+    for (int y = 0; !status && y < image->height; y += step)
+        for (int x = 0; x < image->width; x += step, to += 3)
+            memcpy(to, image->data + 3 * ((size_t)y * (size_t)image->width + (size_t)x),
+                   3 * sizeof *to);
+    return status;
+}
+
+static relume_status find_detail(struct enhancer *e, struct enhanced_view *v)
+{
+    const int radius = e->params.radius > 0 ? e->params.radius : DETAIL;
+    struct relume_image detail = {0};
+    if (v->detail && v->radius == radius)
+        return RELUME_OK;
+    const relume_status status = relume_normals_detail(&detail, &v->normals, radius, e->threads);
+    if (!status)
+        v->detail = upload(e->gl, v->detail, &detail);
+    v->radius = radius;
+    relume_image_destroy(&detail);
+    return status;
+}
+
 static relume_status fit(struct enhancer *e, int view)
 {
     struct enhanced_view *v = &e->view[view];
     const struct relume_codes *codes;
     struct relume_normals normals = {0};
-    struct relume_image detail = {0};
     relume_status status = e->source.codes(&codes, e->source.user, view);
     if (status)
         return status;
     status = relume_normals_fit(&normals, codes,
                                 relume_normals_params(.log = e->log, .threads = e->threads));
     if (!status)
-        status = relume_normals_detail(&detail, &normals.normal, DETAIL, e->threads);
+        status = thin(&v->albedo_grid, &normals.albedo);
     if (!status) {
         v->normal = upload(e->gl, 0, &normals.normal);
         v->albedo = upload(e->gl, 0, &normals.albedo);
-        v->detail = upload(e->gl, 0, &detail);
+        v->normals = normals.normal;
+        normals.normal = (struct relume_image){0};
     }
     relume_normals_destroy(&normals);
-    relume_image_destroy(&detail);
     if (e->source.drop)
         e->source.drop(e->source.user, view);
     return status;
@@ -228,6 +260,8 @@ static relume_status prepare(struct enhancer *e, int view, const struct target *
         status = target_create(&v->shown, e->gl, relit->width, relit->height, e->log);
     if (!status && relume_pass_needs_normals(pass) && !v->normal)
         status = fit(e, view);
+    if (!status && pass == RELUME_PASS_UNSHARP)
+        status = find_detail(e, v);
     if (!status && pass == RELUME_PASS_SPECULAR && !e->towards[slab_of(e, view)] &&
         (e->around || e->geometry.projection >= RELUME_CYLINDRICAL))
         status = find_towards(e, slab_of(e, view), relit);
@@ -282,6 +316,54 @@ static void set_textures(const struct enhancer *e, int view, const struct target
     gl->Uniform1i(e->program.at[TOWARDS_GIVEN], towards != 0);
 }
 
+static void draw(const struct enhancer *e, const struct target *onto, enum relume_pass pass,
+                 int step)
+{
+    const struct gl *gl = e->gl;
+    const GLint *at = e->program.at;
+    const struct relume_pass_params *p = &e->params;
+    gl->Uniform1i(at[PASS], (GLint)pass);
+    gl->Uniform1i(at[STEP], step);
+    gl->Uniform4f(at[STRENGTH], p->gain != 0 ? p->gain : RELUME_PASS_GAIN,
+                  p->specular != 0 ? p->specular : highlight,
+                  p->exponent > 0 ? p->exponent : exponent, 0);
+    gl->Uniform4f(at[RANGE], e->range.low, e->range.high, e->range.pivot, e->range.scale);
+    gl->Uniform4f(at[RECTANGLE], 0, 0, (float)onto->width, (float)onto->height);
+    gl->Uniform2f(at[SIZE], (float)onto->width, (float)onto->height);
+    gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+// As the library does, of a grid of pixels alone.
+static relume_status measure(struct enhancer *e, int view, const struct target *relit,
+                             enum relume_pass pass, const struct relume_light *lights, int n)
+{
+    const struct enhanced_view *v = &e->view[view];
+    const int step = relume_pass_step(relit->width, relit->height);
+    const int width = (relit->width + step - 1) / step, height = (relit->height + step - 1) / step;
+    struct relume_image grid;
+    relume_status status = RELUME_OK;
+    if (e->grid.width != width || e->grid.height != height) {
+        target_destroy(&e->grid, e->gl);
+        status = target_create(&e->grid, e->gl, width, height, e->log);
+    }
+    if (status)
+        return status;
+    set_textures(e, view, relit);  // making a target takes the first
+    target_begin(&e->grid, e->gl);
+    draw(e, &e->grid, RELUME_PASS_COLOUR, step);
+    status = target_read(&grid, &e->grid, e->gl);
+    if (!status)
+        status = relume_pass_measure(&e->range, &grid, pass,
+                                     v->albedo_grid.data ? &v->albedo_grid : NULL, lights, n,
+                                     e->params.gain);
+    relume_image_destroy(&grid);
+    if (e->params.top > e->params.low) {
+        e->range.low = e->params.low;
+        e->range.high = e->params.top;
+    }
+    return status;
+}
+
 relume_status enhancer_view(const struct target **out, struct enhancer *e, int view,
                             const struct target *relit, enum relume_pass pass,
                             const struct relume_light *lights, int n)
@@ -292,17 +374,15 @@ relume_status enhancer_view(const struct target **out, struct enhancer *e, int v
     if (status)
         return status;
     gl->BindVertexArray(e->vertices);
-    target_begin(&v->shown, gl);
     gl->UseProgram(e->program.id);
-    set_textures(e, view, relit);
     status = set_lights(e, lights, n);
+    if (!status && relume_pass_needs_range(pass))
+        status = measure(e, view, relit, pass, lights, n);
     if (status)
         return status;
-    gl->Uniform1i(e->program.at[PASS], (GLint)pass);
-    gl->Uniform4f(e->program.at[STRENGTH], strength[0], strength[1], strength[2], strength[3]);
-    gl->Uniform4f(e->program.at[RECTANGLE], 0, 0, (float)relit->width, (float)relit->height);
-    gl->Uniform2f(e->program.at[SIZE], (float)relit->width, (float)relit->height);
-    gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    set_textures(e, view, relit);
+    target_begin(&v->shown, gl);
+    draw(e, &v->shown, pass, 1);
     *out = &v->shown;
     return gl_check(gl, "enhancing", e->log);
 }

@@ -10,8 +10,12 @@
 
 struct enhanced_view {
     GLuint normal, albedo, detail;  // 0: not fitted yet
+    struct relume_image normals;    // the same as `normal`
+    int radius;                     // of `detail`
     GLuint reference;               // photograph under captured light `light`
     int light;
+    struct relume_image
+        albedo_grid;  // every `step`-th pixel of the albedo, for relume_pass_measure
     struct target shown;
 };
 
@@ -32,6 +36,9 @@ struct enhancer {
     struct enhanced_view *view;
     int views;
     int threads;
+    struct target grid;                // every `step`-th pixel of a relit view
+    struct relume_pass_params params;  // 0: defaults
+    struct relume_pass_range range;    // of the view that was shown last
 };
 
 // All that is pointed at must outlive it. RELUME_ESYSTEM, RELUME_ENOMEM.

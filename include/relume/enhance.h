@@ -30,14 +30,29 @@ RELUME_API const char *relume_pass_name(enum relume_pass pass);
 RELUME_RESULT relume_status relume_pass_parse(enum relume_pass *out, const char *name);
 // Whether the pass needs to know normals.
 RELUME_API bool relume_pass_needs_normals(enum relume_pass pass);
+// Whether the pass is scaled to the picture.
+RELUME_API bool relume_pass_needs_range(enum relume_pass pass);
+
+#define RELUME_PASS_GAIN 2.0f
+
+// What a pass scales to the picture, luminances.
+struct relume_pass_range {
+    float low, high;  // a hundredth of the picture is darker, or brighter; background left out
+    float pivot;      // diffuse gain: the share of the full shading that stays as it is
+    float scale;      // diffuse gain: a factor, so that the brightest stays as bright; specular: of
+                      // the highlight
+};
 
 struct relume_pass_params {
     float gain;      // diffuse gain: of the shading's curvature; unsharp: of the detail; default 2
-    float specular;  // value of the highlight where it is brightest; default 0.6
+    float specular;  // the highlight where it is brightest, in `high`s of the picture; default 0.6
     float exponent;  // of the highlight; default 40
     int radius;      // unsharp: detail is finer than this, pixels; default 4
-    float top;       // false colour: what is brightest; default 1
-    int threads;     // default: all cores
+    float low, top;  // false colour: from here to there; default: from the picture
+    bool fixed;      // nothing is scaled to the picture: low 0, high, pivot and scale 1
+    const struct relume_pass_range
+        *range;   // measured before; default: of the picture that is given
+    int threads;  // default: all cores
     // Specular: unit vectors towards the viewer, three channels. Default: +z everywhere.
     const struct relume_image *towards;
     const struct relume_image *reference;  // difference: a linear picture of the same size
@@ -51,6 +66,15 @@ RELUME_RESULT relume_status relume_pass_apply(struct relume_image *image, enum r
                                               const struct relume_normals *normals,
                                               const struct relume_light *lights, int n,
                                               const struct relume_pass_params *params);
+
+// Every so many pixels of a picture of that size, along and down, are measured.
+RELUME_API int relume_pass_step(int width, int height);
+// What `pass` would scale of `image`, relit by `lights`, whose normals' albedo is given (NULL where
+// the pass needs none). A picture of every relume_pass_step-th pixel alone has the same range.
+// RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_pass_measure(
+    struct relume_pass_range *out, const struct relume_image *image, enum relume_pass pass,
+    const struct relume_image *albedo, const struct relume_light *lights, int n, float gain);
 
 // `normal` less its mean over (2 radius + 1)^2 pixels: what unsharp exaggerates. `out` is created.
 // RELUME_ENOMEM.

@@ -3,7 +3,8 @@
 // Malzbender, Gelb, Wolters, "Polynomial Texture Maps", 2001. Diffuse gain multiplies the second
 // derivatives of the reflectance by g and keeps where its maximum is and how large: there the
 // gradient is zero, so that f'(L) = f(N) + g (f(L) - f(N)) for their polynomials, and f(N) is the
-// albedo. Written so, it holds for every basis.
+// albedo. Written so, it holds for every basis. Kept at the maximum alone it leaves little of a
+// coin or a raking light but black: what is kept is chosen from the picture (enhance_range.c).
 #include <relume/enhance.h>
 
 #include "base/memory.h"
@@ -20,6 +21,7 @@ struct enhance {
     const struct relume_light *lights;
     int n;
     struct relume_pass_params params;
+    struct relume_pass_range range;
 };
 
 static const char *const names[RELUME_PASSES] = {
@@ -45,6 +47,12 @@ relume_status relume_pass_parse(enum relume_pass *out, const char *name)
 bool relume_pass_needs_normals(enum relume_pass pass)
 {
     return pass >= RELUME_PASS_NORMALS && pass <= RELUME_PASS_UNSHARP;
+}
+
+bool relume_pass_needs_range(enum relume_pass pass)
+{
+    return pass == RELUME_PASS_SPECULAR || pass == RELUME_PASS_DIFFUSE_GAIN ||
+           pass == RELUME_PASS_FALSE_COLOUR;
 }
 
 // ---------------------------------------------------------------- pixels
@@ -84,9 +92,9 @@ static void show_specular(const struct enhance *e, size_t at, float rgb[3])
         if (!(length > 1e-6))
             continue;
         const double cosine = vec3_dot(normal, half) / length;
-        const double lobe =
-            cosine > 0.0 ? (double)e->params.specular * pow(cosine, (double)e->params.exponent)
-                         : 0.0;
+        const double lobe = cosine > 0.0 ? (double)(e->range.scale * e->params.specular) *
+                                               pow(cosine, (double)e->params.exponent)
+                                         : 0.0;
         for (int c = 0; c < 3; c++)
             rgb[c] += (float)lobe * e->lights[i].rgb[c];
     }
@@ -99,8 +107,8 @@ static void show_diffuse_gain(const struct enhance *e, size_t at, float rgb[3])
         float light = 0.0f;
         for (int i = 0; i < e->n; i++)
             light += shines(&e->lights[i]) ? e->lights[i].rgb[c] : 0.0f;
-        const float most = light * e->normals->albedo.data[at + (size_t)c];
-        rgb[c] = fmaxf(most + g * (rgb[c] - most), 0.0f);
+        const float most = e->range.pivot * light * e->normals->albedo.data[at + (size_t)c];
+        rgb[c] = fmaxf(e->range.scale * (most + g * (rgb[c] - most)), 0.0f);
     }
 }
 
@@ -135,7 +143,8 @@ static void show_false_colour(const struct enhance *e, size_t at, float rgb[3])
         {0.95f, 0.30f, 0.00f}, {1.00f, 0.95f, 0.30f},
     };
     (void)at;
-    const double place = 4.0 * luminance(rgb) / (double)e->params.top;
+    const double low = (double)e->range.low, high = (double)e->range.high;
+    const double place = 4.0 * (luminance(rgb) - low) / (high - low);
     const double x = fmin(fmax(place, 0.0), 4.0);
     const int step = x < 3.0 ? (int)x : 3;
     const float part = (float)(x - step);
@@ -231,12 +240,29 @@ static bool fits(const struct relume_image *image, const struct relume_image *ot
 
 static void fill_defaults(struct relume_pass_params *p)
 {
-    p->gain = p->gain != 0.0f ? p->gain : 2.0f;
+    p->gain = p->gain != 0.0f ? p->gain : RELUME_PASS_GAIN;
     p->specular = p->specular != 0.0f ? p->specular : 0.6f;
     p->exponent = p->exponent > 0.0f ? p->exponent : 40.0f;
     p->radius = p->radius > 0 ? p->radius : 4;
-    p->top = p->top > 0.0f ? p->top : 1.0f;
     p->threads = thread_count(p->threads);
+}
+
+static relume_status find_range(struct enhance *e)
+{
+    const struct relume_pass_params *p = &e->params;
+    relume_status status = RELUME_OK;
+    e->range = (struct relume_pass_range){.high = 1.0f, .pivot = 1.0f, .scale = 1.0f};
+    if (p->range)
+        e->range = *p->range;
+    else if (!p->fixed && relume_pass_needs_range(e->pass))
+        status =
+            relume_pass_measure(&e->range, e->image, e->pass,
+                                e->normals ? &e->normals->albedo : NULL, e->lights, e->n, p->gain);
+    if (p->top > p->low) {
+        e->range.low = p->low;
+        e->range.high = p->top;
+    }
+    return status;
 }
 
 relume_status relume_pass_apply(struct relume_image *image, enum relume_pass pass,
@@ -261,8 +287,8 @@ relume_status relume_pass_apply(struct relume_image *image, enum relume_pass pas
         return RELUME_EINVAL;
     if (!shows[pass])
         return RELUME_OK;
-    relume_status status = RELUME_OK;
-    if (pass == RELUME_PASS_UNSHARP)
+    relume_status status = find_range(&e);
+    if (!status && pass == RELUME_PASS_UNSHARP)
         status =
             relume_normals_detail(&e.detail, &normals->normal, e.params.radius, e.params.threads);
     if (!status)

@@ -260,7 +260,8 @@ static void a_highlight_is_added(void **state)
 {
     (void)state;
     struct scene s = make_scene();
-    apply(&s, RELUME_PASS_SPECULAR, relume_pass_params(.specular = 0.25f, .exponent = 10));
+    apply(&s, RELUME_PASS_SPECULAR,
+          relume_pass_params(.fixed = true, .specular = 0.25f, .exponent = 10));
     for (int c = 0; c < 3; c++)
         CHECK_NEAR(s.image.data[c], s.light.rgb[c] * (0.4 + 0.25 * pow(0.8, 10)), 1e-6);
     free_scene(&s);
@@ -271,12 +272,12 @@ static void diffuse_gain_keeps_the_maximum(void **state)
 {
     (void)state;
     struct scene s = make_scene();
-    apply(&s, RELUME_PASS_DIFFUSE_GAIN, relume_pass_params(.gain = 3));
+    apply(&s, RELUME_PASS_DIFFUSE_GAIN, relume_pass_params(.fixed = true, .gain = 3));
     CHECK_NEAR(s.image.data[0], 0.2, 1e-6);
     CHECK_NEAR(s.image.data[1], 0.4, 1e-6);
     for (int i = 0; i < 96; i++)  // where the surface faces the light nothing changes
         s.image.data[i] = s.normals.albedo.data[i] * s.light.rgb[i % 3];
-    apply(&s, RELUME_PASS_DIFFUSE_GAIN, relume_pass_params(.gain = 3));
+    apply(&s, RELUME_PASS_DIFFUSE_GAIN, relume_pass_params(.fixed = true, .gain = 3));
     CHECK_NEAR(s.image.data[1], 1.0, 1e-6);
     free_scene(&s);
 }
@@ -312,7 +313,7 @@ static void luminance_and_false_colour(void **state)
     for (int i = 0; i <= 20; i++) {  // lighter and lighter
         for (int c = 0; c < 3; c++)
             s.image.data[c] = (float)(i / 20.0);
-        apply(&s, RELUME_PASS_FALSE_COLOUR, NULL);
+        apply(&s, RELUME_PASS_FALSE_COLOUR, relume_pass_params(.fixed = true));
         const double lightness = 0.2126 * (double)s.image.data[0] +
                                  0.7152 * (double)s.image.data[1] +
                                  0.0722 * (double)s.image.data[2];
@@ -320,6 +321,89 @@ static void luminance_and_false_colour(void **state)
         before = lightness;
     }
     CHECK_NEAR(s.image.data[0], 1.0, 1e-6);
+    free_scene(&s);
+}
+
+// A picture of shading f from 0.02 to 0.2 of its albedo of 0.5: as dark as a coin under a raking
+// light.
+static struct scene make_dark_scene(void)
+{
+    struct scene s = {.light = {.direction = {0, 0, 1}, .rgb = {1, 1, 1}}};
+    CHECK_OK(relume_image_create(&s.normals.normal, 50, 20, 3));
+    CHECK_OK(relume_image_create(&s.normals.albedo, 50, 20, 3));
+    CHECK_OK(relume_image_create(&s.image, 50, 20, 3));
+    for (int i = 0; i < 1000; i++)
+        for (int c = 0; c < 3; c++) {
+            s.normals.albedo.data[3 * i + c] = 0.5f;
+            s.image.data[3 * i + c] = 0.5f * (0.02f + 0.18f * (float)i / 999);
+        }
+    return s;
+}
+
+// By the maximum alone all of it would be black: 2 f - 0.5 < 0.
+static void diffuse_gain_suits_the_picture(void **state)
+{
+    (void)state;
+    struct scene s = make_dark_scene();
+    apply(&s, RELUME_PASS_DIFFUSE_GAIN, NULL);
+    int black = 0;
+    for (int i = 0; i < 1000; i++)
+        black += s.image.data[3 * i] <= 0;
+    assert_true(black > 20 && black < 60);  // a twentieth
+    CHECK_NEAR(s.image.data[3 * 989], 0.5 * (0.02 + 0.18 * 989 / 999),
+               1e-4);  // as bright as it was
+    double before = -1;
+    for (int i = 100; i < 1000; i += 50) {
+        assert_true((double)s.image.data[3 * i] > before);
+        before = (double)s.image.data[3 * i];
+    }
+    free_scene(&s);
+}
+
+static void false_colour_suits_the_picture(void **state)
+{
+    (void)state;
+    struct scene s = make_dark_scene();
+    struct relume_pass_range r;
+    for (int i = 0; i < 500; i++)  // a background does not count
+        memset(s.image.data + 3 * i, 0, 3 * sizeof(float));
+    CHECK_OK(relume_pass_measure(&r, &s.image, RELUME_PASS_FALSE_COLOUR, NULL, &s.light, 1, 0));
+    CHECK_NEAR(r.low, 0.5 * (0.02 + 0.18 * 505 / 999), 1e-3);
+    CHECK_NEAR(r.high, 0.5 * (0.02 + 0.18 * 994 / 999), 1e-3);
+    assert_true(r.pivot == 1 && r.scale == 1);
+    struct relume_image fixed = {0};
+    CHECK_OK(relume_image_create(&fixed, 50, 20, 3));
+    memcpy(fixed.data, s.image.data, 3000 * sizeof(float));
+    apply(&s, RELUME_PASS_FALSE_COLOUR, NULL);
+    CHECK_NEAR(s.image.data[3 * 999], 1.0, 1e-6);       // yellow
+    CHECK_NEAR(s.image.data[3 * 500 + 2], 0.10, 0.02);  // dark blue
+    CHECK_OK(relume_pass_apply(&fixed, RELUME_PASS_FALSE_COLOUR, NULL, NULL, 0,
+                               relume_pass_params(.low = r.low, .top = r.high)));
+    for (int i = 0; i < 3000; i++)
+        CHECK_NEAR(fixed.data[i], s.image.data[i], 1e-6);
+    relume_image_destroy(&fixed);
+    // nothing, or one value: no division by zero
+    for (int i = 0; i < 3000; i++)
+        s.image.data[i] = 0;
+    CHECK_OK(relume_pass_measure(&r, &s.image, RELUME_PASS_DIFFUSE_GAIN, &s.normals.albedo,
+                                 &s.light, 1, 0));
+    assert_true(r.high > r.low && r.pivot == 1 && r.scale == 1);
+    for (int i = 0; i < 3000; i++)
+        s.image.data[i] = 0.25f;
+    CHECK_OK(relume_pass_measure(&r, &s.image, RELUME_PASS_FALSE_COLOUR, NULL, &s.light, 1, 0));
+    CHECK_NEAR(0.5 * (double)(r.low + r.high), 0.25, 1e-6);
+    free_scene(&s);
+}
+
+// The highlight is as much brighter than a dark picture as than a bright one.
+static void a_highlight_suits_the_picture(void **state)
+{
+    (void)state;
+    struct scene s = make_scene();
+    const double high = 0.4 * (0.2126 * 1 + 0.7152 * 2 + 0.0722 * 0.5);
+    apply(&s, RELUME_PASS_SPECULAR, relume_pass_params(.specular = 0.25f, .exponent = 10));
+    for (int c = 0; c < 3; c++)
+        CHECK_NEAR(s.image.data[c], s.light.rgb[c] * (0.4 + high * 0.25 * pow(0.8, 10)), 1e-6);
     free_scene(&s);
 }
 
@@ -373,6 +457,9 @@ int main(void)
         cmocka_unit_test(diffuse_gain_keeps_the_maximum),
         cmocka_unit_test(unsharp_exaggerates_detail),
         cmocka_unit_test(luminance_and_false_colour),
+        cmocka_unit_test(diffuse_gain_suits_the_picture),
+        cmocka_unit_test(false_colour_suits_the_picture),
+        cmocka_unit_test(a_highlight_suits_the_picture),
         cmocka_unit_test(differences_and_wrong_sizes),
         cmocka_unit_test(passes_have_names),
     };

@@ -11,7 +11,9 @@ uniform int pass;             // enum relume_pass
 uniform bool towards_given;   // else +z
 uniform int lights;
 uniform sampler2D lamps;      // 512 lights in two rows: unit directions, values; then the next ones
-uniform vec4 strength;        // gain, specular, exponent, top
+uniform vec4 strength;        // gain, specular, exponent
+uniform vec4 range;           // struct relume_pass_range
+uniform int step_of;          // every so many pixels of the view are drawn
 out vec4 color;
 
 const int NORMALS = 1;
@@ -62,7 +64,7 @@ vec3 show_specular(ivec2 at, vec3 rgb)
         if (!(size > 1e-6))
             continue;
         float cosine = dot(normal, halfway) / size;
-        float lobe = cosine > 0.0 ? strength.y * pow(cosine, strength.z) : 0.0;
+        float lobe = cosine > 0.0 ? range.w * strength.y * pow(cosine, strength.z) : 0.0;
         rgb += lobe * value(i);
     }
     return rgb;
@@ -73,8 +75,8 @@ vec3 show_diffuse_gain(ivec2 at, vec3 rgb)
     vec3 light = vec3(0.0);
     for (int i = 0; i < lights; i++)
         light += value(i);
-    vec3 most = light * vector_at(albedos, at);
-    return max(most + strength.x * (rgb - most), vec3(0.0));
+    vec3 most = range.z * light * vector_at(albedos, at);
+    return max(range.w * (most + strength.x * (rgb - most)), vec3(0.0));
 }
 
 vec3 show_unsharp(ivec2 at, vec3 rgb)
@@ -91,14 +93,14 @@ vec3 show_false_colour(vec3 rgb)
     const vec3 steps[5] = vec3[5](vec3(0.00, 0.00, 0.10), vec3(0.15, 0.00, 0.35),
                                   vec3(0.65, 0.02, 0.10), vec3(0.95, 0.30, 0.00),
                                   vec3(1.00, 0.95, 0.30));
-    float x = clamp(4.0 * luminance(rgb) / strength.w, 0.0, 4.0);
+    float x = clamp(4.0 * (luminance(rgb) - range.x) / (range.y - range.x), 0.0, 4.0);
     int step = min(int(x), 3);
     return mix(steps[step], steps[step + 1], x - float(step));
 }
 
 void main()
 {
-    ivec2 at = ivec2(gl_FragCoord.xy);
+    ivec2 at = step_of * ivec2(gl_FragCoord.xy);
     vec3 rgb = texelFetch(view, at, 0).rgb;
     if (pass == NORMALS)
         rgb = show_normals(at);

@@ -77,6 +77,7 @@ struct relume_coder_params {
     bool hemispherical;  // the lights cover only the pole's hemisphere
     bool pole_y;         // theta is measured from +y (panoramas); default +z
     double ridge;        // Tikhonov weight relative to the data, [0, 1]; default: the basis's own
+    bool no_ridge;       // its weight is 0
     bool luminance;      // one set of coefficients for the luminance and one colour per pixel
                          // (LRGB); not for learned bases
     bool robust;  // shadows, highlights and stray values weigh less; slower. Not for table and

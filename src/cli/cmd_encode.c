@@ -23,7 +23,7 @@ static const struct option options[] = {
      "auto, linear or display; default: auto, by the capture's transfer", 0, 0},
     {"--compression", OPTION_TEXT, "C", "none, rle, zip or piz (all lossless); default: piz", 0, 0},
     {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
-    {"--ridge", OPTION_NUMBER, "R", "smoothing of the fit, 0 to 1; default: 1e-6", 0, 1},
+    {"--ridge", OPTION_NUMBER, "R", "smoothing of the fit, 0 (none) to 1; default: 1e-6", 0, 1},
     BOOK_OPTIONS,
     {"--no-depth", OPTION_FLAG, NULL, "leave depth out: no near lights, no eyes by depth", 0, 0},
     {"--assume-depth", OPTION_NUMBER, "D",
@@ -228,6 +228,7 @@ static relume_status parse(const struct args *args, struct request *r)
     *r = (struct request){
         .coder = {.coefficients = args_int(args, "--coefficients", 0),
                   .ridge = args_number(args, "--ridge", 0.0),
+                  .no_ridge = args_number(args, "--ridge", 1.0) == 0.0,
                   .robust = args_has(args, "--robust"),
                   .force = args_has(args, "--force")},
         .pack = {.log = args_log(args), .threads = args_threads(args)},

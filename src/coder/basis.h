@@ -24,7 +24,7 @@ struct relume_coder {
     struct robust *robust;                 // or NULL: plain least squares
     const struct relume_samples *samples;  // while being prepared
     int threads;                           // for that
-    bool decode, force;
+    bool decode, force, no_ridge;
     void *interpolant;  // data of info.interpolant
     void *data;         // the basis's own
 };

@@ -166,7 +166,7 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
 {
     const struct relume_coder_params p = params ? *params : (struct relume_coder_params){0};
     *out = NULL;
-    if (n < 1 || p.ridge < 0.0 || p.ridge > 1.0)
+    if (n < 1 || p.ridge < 0.0 || p.ridge > 1.0 || (p.no_ridge && p.ridge > 0.0))
         return RELUME_EINVAL;
     if (p.luminance && basis->learned)
         return log_fail(p.log, RELUME_EINVAL, "basis %s has no luminance form", basis->name);
@@ -208,6 +208,7 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
     memcpy(c->info.parameter, p.parameter, sizeof p.parameter);
     c->decode = p.decode;
     c->force = p.force;
+    c->no_ridge = p.no_ridge;
     c->samples = p.samples;
     c->threads = p.threads;
     status = copy_lights(c, lights);

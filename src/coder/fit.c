@@ -100,7 +100,8 @@ static relume_status check_rank(const struct system *s, const relume_coder *code
     int rank = 0;
     for (int i = 0; !status && i < s->k; i++)
         rank += values[i] > RANK_TOLERANCE * values[s->k - 1];
-    if (!status && rank < s->k && coder->force)
+    const bool open = coder->no_ridge && s->m == 0;  // nothing would decide what lights leave open
+    if (!status && rank < s->k && coder->force && !open)
         log_line(log, RELUME_WARNING,
                  "the %d light directions determine only %d of %d coefficients", s->n, rank, s->k);
     else if (!status && rank < s->k)
@@ -195,7 +196,7 @@ relume_status fit_map(relume_coder *coder, const double *roughness, const struct
     struct system s = {.n = coder->info.lights,
                        .k = coder->info.coefficients,
                        .m = coder->info.hemispherical ? FILL_SAMPLES : 0};
-    if (coder->info.ridge == 0.0)
+    if (coder->info.ridge == 0.0 && !coder->no_ridge)
         coder->info.ridge = DEFAULT_RIDGE;
     relume_status status = alloc_system(&s) ? RELUME_OK : RELUME_ENOMEM;
     if (!status) {

@@ -71,6 +71,54 @@ static void test_ptm_holds_quadratics(void **state)
     relume_coder_destroy(&coder);
 }
 
+// Without smoothing what is left is orthogonal to every function, as least squares has it; the usual
+// ridge leaves 4e-5 of the second degree. Lights that do not determine the fit are refused then.
+static void test_no_ridge(void **state)
+{
+    (void)state;
+    enum { N = 40, K = 9 };
+    struct relume_vec3 light[N];
+    relume_coder *coder;
+    float samples[N][3], planes[3 * K];
+    double left[N], most = 0.0;
+    uint32_t seed = 3;
+    for (int i = 0; i < N; i++) {
+        const double z = 1.0 - (2 * i + 1.0) / N, r = sqrt(1.0 - z * z), phi = 2.399963 * i;
+        light[i] = (struct relume_vec3){r * cos(phi), r * sin(phi), z};
+        for (int c = 0; c < 3; c++)
+            samples[i][c] = (float)(test_direction(&seed).x + (i % 5 == 0));
+    }
+    CHECK_OK(relume_coder_create(&coder, &relume_basis_sh, light, N,
+                                 relume_coder_params(.coefficients = K, .no_ridge = true)));
+    CHECK_NEAR(relume_coder_info(coder)->ridge, 0.0, 0.0);
+    CHECK_OK(relume_coder_apply(coder, &samples[0][0], 3, 1, planes, 1));
+    for (int i = 0; i < N; i++) {
+        double rgb[3];
+        value(coder, planes, light[i], rgb);
+        left[i] = (double)samples[i][0] - rgb[0];
+    }
+    for (int k = 0; k < K; k++) {
+        double sum = 0.0, values[K];
+        for (int i = 0; i < N; i++) {
+            relume_basis_sh.evaluate(coder, light[i], values);
+            sum += left[i] * values[k] / N;
+        }
+        most = fmax(most, fabs(sum));
+    }
+    assert_true(most < 2e-6);  // floats
+    relume_coder_destroy(&coder);
+    for (int i = 0; i < N; i++)
+        light[i] = (struct relume_vec3){cos(0.5 * i), sin(0.5 * i), 0.0};
+    const struct relume_coder_params ring = {.coefficients = K, .force = true};
+    CHECK_OK(relume_coder_create(&coder, &relume_basis_sh, light, N, &ring));
+    relume_coder_destroy(&coder);
+    struct relume_coder_params bare = ring;
+    bare.no_ridge = true;
+    assert_int_equal(relume_coder_create(&coder, &relume_basis_sh, light, N, &bare), RELUME_EDATA);
+    bare.ridge = 0.1;
+    assert_int_equal(relume_coder_create(&coder, &relume_basis_sh, light, N, &bare), RELUME_EINVAL);
+}
+
 // A grey shading times a colour: the colour plane holds what differs, exactly where the basis holds
 // the shading.
 static void test_luminance_of_coloured_greys(void **state)
@@ -325,6 +373,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_ptm_holds_quadratics),
+        cmocka_unit_test(test_no_ridge),
         cmocka_unit_test(test_luminance_of_coloured_greys),
         cmocka_unit_test(test_luminance_of_black),
         cmocka_unit_test(test_apply_is_pixel_by_pixel),

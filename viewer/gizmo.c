@@ -35,15 +35,35 @@ void gizmo_drag_ball(struct app *app, double x, double y)
     app_point_light(app, app->now.selected, (x - ball.x) / ball.radius, (ball.y - y) / ball.radius);
 }
 
-static bool place_direction(struct gizmo *out, const struct app *app, int light)
+// `d`: right, up, towards the viewer.
+static struct gizmo on_disc(const struct app *app, struct relume_vec3 d)
 {
     const struct gizmo_circle disc = gizmo_disc(app);
-    const struct relume_vec3 d = app_seen_light(app, light);
-    *out = (struct gizmo){
+    return (struct gizmo){
         .x = disc.x + disc.radius * d.x,
         .y = disc.y - disc.radius * d.y,
         .behind = d.z < 0,
     };
+}
+
+static struct relume_vec3 add(struct relume_vec3 a, struct relume_vec3 b)
+{
+    return vec_sub(a, vec_scale(b, -1.0));
+}
+
+bool gizmo_border(struct gizmo *out, const struct app *app, int step)
+{
+    const struct relume_zone *z = app->file.zone;
+    if (!z || z->everywhere)
+        return false;
+    const double phi = 2 * M_PI * step / RELUME_ZONE_STEPS;
+    const double border = z->border[step % RELUME_ZONE_STEPS], r = sin(border);
+    const struct relume_vec3 across =
+        add(vec_scale(z->right, r * cos(phi)), vec_scale(z->up, r * sin(phi)));
+    const struct relume_vec3 d = add(vec_scale(z->axis, cos(border)), across);
+    const struct app_axes a = app_frame_axes(app);
+    *out = on_disc(app,
+                   (struct relume_vec3){vec_dot(d, a.right), vec_dot(d, a.up), vec_dot(d, a.back)});
     return true;
 }
 
@@ -190,8 +210,10 @@ bool gizmo_place(double xy[2], const struct app *app, struct relume_vec3 point)
 bool gizmo_of(struct gizmo *out, const struct app *app, int light)
 {
     double xy[2];
-    if (!is_near(app, light))
-        return place_direction(out, app, light);
+    if (!is_near(app, light)) {
+        *out = on_disc(app, app_seen_light(app, light));
+        return true;
+    }
     if (!gizmo_place(xy, app, app->now.light[light].position))
         return false;
     *out = (struct gizmo){.x = xy[0], .y = xy[1], .near = true};

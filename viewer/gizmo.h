@@ -16,6 +16,10 @@ struct gizmo_circle {
 };
 struct gizmo_circle gizmo_disc(const struct app *app);
 
+// Step 0 to RELUME_ZONE_STEPS of the border of the captured light directions, on the disc; false
+// where there is none.
+bool gizmo_border(struct gizmo *out, const struct app *app, int step);
+
 // The ball in the lower right corner that shows the light, while app.now.ball. A place on it is
 // where the selected light shall come from.
 struct gizmo_circle gizmo_ball(const struct app *app);

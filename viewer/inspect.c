@@ -61,8 +61,10 @@ static void make_weights(struct inspector *in, const relume_coder *coder)
     const size_t size = 3 * (size_t)info->coefficients;
     for (int i = 0; i < INSPECT_GRID * INSPECT_GRID; i++) {
         struct relume_vec3 d;
-        if (cell_direction(&d, in, i, info->pole_y))
+        if (cell_direction(&d, in, i, info->pole_y)) {
+            in->share[i] = (float)relume_coder_captured(&d, coder, d);
             relume_coder_weights(coder, d, in->weights + (size_t)i * size, in->constant[i]);
+        }
     }
 }
 
@@ -86,9 +88,10 @@ relume_status inspect_create(struct inspector *in, const struct relume_pack_info
     in->capture = capture && fits(capture, info) ? capture : NULL;
     in->weights = calloc(places * size, sizeof *in->weights);
     in->constant = calloc(places, sizeof *in->constant);
+    in->share = calloc(places, sizeof *in->share);
     in->coefficient = calloc(size, sizeof *in->coefficient);
     relume_status status = RELUME_ENOMEM;
-    if (in->weights && in->constant && in->coefficient)
+    if (in->weights && in->constant && in->share && in->coefficient)
         status = relume_image_create(&in->plot, INSPECT_SIDE, INSPECT_SIDE, 3);
     if (status)
         inspect_destroy(in);
@@ -109,6 +112,7 @@ void inspect_destroy(struct inspector *in)
     drop_codes(in);
     free(in->weights);
     free(in->constant);
+    free(in->share);
     free(in->coefficient);
     free(in->measured);
     relume_image_destroy(&in->plot);
@@ -283,6 +287,8 @@ static void fill_disc(struct inspector *in, const struct app *app, const struct 
         }
         inspect_value(rgb, codes, in->coefficient, colour, in->weights + (size_t)i * size,
                       in->constant[i]);
+        for (int c = 0; c < 3; c++)
+            rgb[c] *= in->share[i];
         for (int c = 0; c < 3; c++)
             rgb[c] = fminf(fmaxf(relume_transfer_encode(srgb, gain * rgb[c]), 0), 1);
         fill_cell(in, i, rgb);

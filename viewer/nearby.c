@@ -25,6 +25,12 @@ enum uniform {
     FACETS = LIGHT + SHINE_UNIFORMS,
     HEMISPHERE,
     POLE_Y,
+    ZONE_EVERYWHERE,
+    ZONE_RIGHT,
+    ZONE_UP,
+    ZONE_FACING,
+    ZONE_AXIS,
+    ZONE_BORDER,
     FORM,
     COEFFICIENTS,
     LAYERS,
@@ -35,10 +41,12 @@ enum uniform {
     UNIFORMS
 };
 static const char *const uniforms[] = {
-    "rectangle",    "frame_size",     "codes",     "picture",    "surface",       "grid",
-    "triangles",    "triangle_count", "grid_rows", "tiles",      "affine",        "indices",
-    "vectors",      SHINE_NAMES,      "facets",    "hemisphere", "pole_y",        "form",
-    "coefficients", "layers",         "books",     "coded",      "display.curve", "display.gamma",
+    "rectangle",   "frame_size", "codes",           "picture",       "surface",
+    "grid",        "triangles",  "triangle_count",  "grid_rows",     "tiles",
+    "affine",      "indices",    "vectors",         SHINE_NAMES,     "facets",
+    "hemisphere",  "pole_y",     "zone_everywhere", "zone_right",    "zone_up",
+    "zone_facing", "zone_axis",  "zone_border",     "form",          "coefficients",
+    "layers",      "books",      "coded",           "display.curve", "display.gamma",
 };
 
 // Texture units; each sampler has its own.
@@ -50,7 +58,8 @@ enum unit {
     UNIT_TRIANGLES,
     UNIT_AFFINE,
     UNIT_INDICES,
-    UNIT_VECTORS
+    UNIT_VECTORS,
+    UNIT_BORDER
 };
 
 // As in near.frag.
@@ -63,6 +72,7 @@ relume_status nearby_create(struct nearby *near, const struct gl *gl, const stru
     gl->GenTextures(1, &near->grid);
     gl->GenTextures(1, &near->triangles);
     gl->GenTextures(1, &near->facets);
+    gl->GenTextures(1, &near->border);
     return program_create(&near->program, gl, "near.frag", uniforms, UNIFORMS, log);
 }
 
@@ -79,6 +89,7 @@ void nearby_destroy(struct nearby *near)
     near->gl->DeleteTextures(1, &near->grid);
     near->gl->DeleteTextures(1, &near->triangles);
     near->gl->DeleteTextures(1, &near->facets);
+    near->gl->DeleteTextures(1, &near->border);
     program_destroy(&near->program, near->gl);
     *near = (struct nearby){0};
 }
@@ -233,6 +244,9 @@ static relume_status need_grid(struct nearby *near, const relume_coder *coder)
         status = upload_tiles(near, info);
     if (!status)
         status = upload_grid(near, info);
+    if (!status)
+        shine_upload(near->gl, UNIT_BORDER, near->border, GL_R32F, GL_RED, RELUME_ZONE_STEPS, 1,
+                     relume_coder_zone(coder)->border);
     relume_weight_grid_destroy(&grid);
     return status;
 }
@@ -381,6 +395,25 @@ static relume_status set_light(struct nearby *near, const struct nearby_view *vi
     return shine_set(&near->shine, at + LIGHT, UNIT_PICTURE, l);
 }
 
+static void set_vec3(const struct gl *gl, GLint at, struct relume_vec3 v)
+{
+    gl->Uniform3f(at, (float)v.x, (float)v.y, (float)v.z);
+}
+
+static void set_zone(const struct nearby *near, const struct relume_zone *zone)
+{
+    const struct gl *gl = near->gl;
+    const GLint *at = near->program.at;
+    texture_use(gl, UNIT_BORDER, GL_TEXTURE_2D, near->border);
+    gl->Uniform1i(at[ZONE_BORDER], UNIT_BORDER);
+    gl->Uniform1i(at[ZONE_EVERYWHERE], zone->everywhere);
+    set_vec3(gl, at[ZONE_RIGHT], zone->right);
+    set_vec3(gl, at[ZONE_UP], zone->up);
+    set_vec3(gl, at[ZONE_FACING], zone->facing);
+    gl->Uniform4f(at[ZONE_AXIS], (float)zone->axis.x, (float)zone->axis.y, (float)zone->axis.z,
+                  (float)zone->inside);
+}
+
 static void set_codes(const struct nearby *near, const struct nearby_view *view,
                       const struct nearby_codes *c)
 {
@@ -429,6 +462,7 @@ relume_status nearby_draw(struct nearby *near, const struct nearby_view *view,
     if (status)
         return status;
     set_codes(near, view, codes);
+    set_zone(near, relume_coder_zone(codes->codes->coder));
     gl->Uniform4f(near->program.at[RECTANGLE], 0, 0, width, height);
     gl->Uniform2f(near->program.at[SIZE], width, height);
     gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);

@@ -20,6 +20,7 @@ struct nearby {
     int triangle_count;    // 0: the nodes are a grid
     int grid_rows, tiles;  // its rows above the tiles of divided cells
     GLuint facets;         // a column for each facet of the area light in use
+    GLuint border;         // of the captured zone, by azimuth
     struct shine shine;
 };
 

@@ -128,6 +128,18 @@ void panel_help(const app *app, float scale)
     ImGui::End();
 }
 
+// Where the light was captured: from beyond, the picture is a guess.
+static void draw_border(ImDrawList *draw, const app *app, float scale)
+{
+    const float left = (float)app->beside[0];
+    gizmo from, to;
+    for (int i = 0; i < RELUME_ZONE_STEPS && gizmo_border(&from, app, i); i++)
+        if (gizmo_border(&to, app, i + 1) && !from.behind && !to.behind)
+            draw->AddLine(ImVec2(left + (float)from.x, (float)from.y),
+                          ImVec2(left + (float)to.x, (float)to.y), IM_COL32(255, 210, 90, 150),
+                          1.5f * scale);
+}
+
 void panel_handles(const app *app, float scale)
 {
     ImDrawList *draw = ImGui::GetBackgroundDrawList();
@@ -135,6 +147,7 @@ void panel_handles(const app *app, float scale)
     const float left = (float)app->beside[0];
     draw->AddCircle(ImVec2(left + (float)disc.x, (float)disc.y), (float)disc.radius,
                     IM_COL32(255, 255, 255, 70), 96);
+    draw_border(draw, app, scale);
     const int first = gizmo_first(app);
     for (int i = first; i < app->now.lights && i < first + GIZMOS; i++) {
         gizmo g;

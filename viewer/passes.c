@@ -1,6 +1,7 @@
 // passes.c - distant lights on the GPU: dot products of planes, look-ups of codebooks
 #include "books.h"
 #include "relighter_parts.h"
+#include "vec.h"
 #include "weights.h"
 
 #include <stdlib.h>
@@ -187,16 +188,22 @@ static relume_status add_displayed(struct relighter *r, struct relit_view *v, st
     for (int i = 0; !status && i < r->lights; i++) {
         if (r->light[i].kind != RELUME_LIGHT_DIRECTIONAL)
             continue;
+        struct relume_vec3 from;
+        const float share =
+            (float)relume_coder_captured(&from, v->codes.coder, vec_unit(r->light[i].direction));
+        float rgb[3];
+        for (int c = 0; c < 3; c++)
+            rgb[c] = share * r->light[i].rgb[c];
         target_begin(&r->coded, r->gl);
         if (v->codes.books) {
             status = pass_lookup(r, v, &r->light[i], 1, &r->coded);
         } else {
             weights_clear(w);
-            weights_add(w, &v->codes, code_format_of(&v->codes)->unit, r->light[i].direction, one);
+            weights_add(w, &v->codes, code_format_of(&v->codes)->unit, from, one);
             pass_dot(r, v, w, &r->coded);
         }
         target_resume(&v->relit, r->gl);
-        passes_develop(r, v, &r->coded, v->codes.display, r->light[i].rgb);
+        passes_develop(r, v, &r->coded, v->codes.display, rgb);
     }
     return status;
 }

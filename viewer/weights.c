@@ -65,9 +65,13 @@ static void add_basis(struct weights *w, const struct relume_codes *codes, doubl
 void weights_add(struct weights *w, const struct relume_codes *codes, double unit,
                  struct relume_vec3 direction, const float rgb[3])
 {
-    float constant[3];
-    relume_coder_weights(codes->coder, vec_unit(direction), w->basis, constant);
-    add_basis(w, codes, unit, constant, rgb);
+    float constant[3], value[3];
+    struct relume_vec3 from;
+    const float share = (float)relume_coder_captured(&from, codes->coder, vec_unit(direction));
+    relume_coder_weights(codes->coder, from, w->basis, constant);
+    for (int c = 0; c < 3; c++)
+        value[c] = share * rgb[c];
+    add_basis(w, codes, unit, constant, value);
 }
 
 void weights_add_environment(struct weights *w, const struct relume_codes *codes, double unit,

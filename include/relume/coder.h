@@ -104,6 +104,33 @@ RELUME_RESULT relume_status relume_coder_create(relume_coder **out,
                                                 const struct relume_coder_params *params);
 RELUME_API void relume_coder_destroy(relume_coder **coder);
 
+// Where light was captured: all directions but the widest gap between the lights, where that is 60
+// degrees wide or more and there are four lights. Its border is the hull of the lights, wider by
+// half their local spacing, a quarter with interpolants that do not extrapolate. Seen from its
+// middle, the axis, a direction at the azimuth atan2(d.up, d.right) is inside while it is no
+// farther from the axis than border[azimuth STEPS / 2 pi], linear between these and periodic.
+enum { RELUME_ZONE_STEPS = 256 };
+struct relume_zone {
+    bool everywhere;                     // there is no such gap; the rest is not set
+    struct relume_vec3 right, up, axis;  // unit vectors of the world, right-handed
+    struct relume_vec3 facing;           // what the scene faces; 0: all sides
+    float border[RELUME_ZONE_STEPS];     // radians
+    double inside;                       // the cosine of the least of them
+};
+
+// What stands for light from a unit direction: `*inside` is the direction itself, or that on the
+// border at its azimuth. Returns the share of it, in linear light: 1 inside; beyond, the cosine of
+// the light (and 0.05) over that at the border, or of how far beyond it lies where scenes face all sides.
+RELUME_API double relume_zone_clamp(struct relume_vec3 *inside, const struct relume_zone *zone,
+                                    struct relume_vec3 direction);
+
+// The zone of the coder's lights; it belongs to the coder.
+RELUME_API const struct relume_zone *relume_coder_zone(const relume_coder *coder);
+// Where relighting takes light from a unit direction from, and the share of it: the horizon of a
+// hemispherical capture, then the zone. relume_coder_weights knows the horizon only.
+RELUME_API double relume_coder_captured(struct relume_vec3 *from, const relume_coder *coder,
+                                        struct relume_vec3 direction);
+
 // What a coder is made of; pointers belong to the coder.
 struct relume_coder_info {
     const struct relume_basis *basis;

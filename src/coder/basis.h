@@ -26,7 +26,8 @@ struct relume_coder {
     int threads;                           // for that
     bool decode, force, no_ridge;
     void *interpolant;  // data of info.interpolant
-    void *data;         // the basis's own
+    struct relume_zone zone;
+    void *data;  // the basis's own
 };
 
 // The functions of a basis that interpolates.
@@ -93,6 +94,10 @@ void mesh_destroy(mesh **m);
 // are those of its border.
 struct blend mesh_blend(const mesh *m, vec3 d);
 struct relume_coder_triangles mesh_triangles(const mesh *m);
+// The direction that is farthest from every light, as near to the south pole as may be. Gaps
+// between the lights of real domes are below 40 degrees: one of MESH_WIDE was not captured.
+static const double MESH_WIDE = M_PI / 3.0;
+vec3 mesh_widest_gap(const vec3 *lights, int n, double *angle);
 
 // The direction at which the basis is really evaluated: below the horizon of a hemispherical
 // capture that is the horizon at the same azimuth.

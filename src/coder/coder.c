@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "coder/interpolant.h"
+#include "coder/zone.h"
 #include "math/lsq.h"
 
 #include <string.h>
@@ -107,6 +108,35 @@ static relume_status copy_functions(relume_coder *c, const struct relume_coder_p
             return RELUME_ENOMEM;
     }
     return RELUME_OK;
+}
+
+// What stays in the range of the captured values does not extrapolate.
+static bool stays_in_range(const struct relume_interpolant *i)
+{
+    return i == &interpolant_delaunay || i == &interpolant_natural || i == &interpolant_rbf ||
+           i == &interpolant_octahedral;
+}
+
+static void find_zone(relume_coder *c)
+{
+    const struct zone_params p = {.hemispherical = c->info.hemispherical,
+                                  .pole_y = c->info.pole_y,
+                                  .part = stays_in_range(c->info.interpolant) ? 0.25 : 0.5};
+    zone_find(&c->zone, c->world, c->info.lights, &p);
+}
+
+const struct relume_zone *relume_coder_zone(const relume_coder *coder)
+{
+    return &coder->zone;
+}
+
+double relume_coder_captured(struct relume_vec3 *from, const relume_coder *coder,
+                             struct relume_vec3 direction)
+{
+    const bool pole_y = coder->info.pole_y;
+    const vec3 above =
+        clamp_to_captured(coder->info.hemispherical, pole_from_world(direction, pole_y));
+    return relume_zone_clamp(from, &coder->zone, world_from_pole(above, pole_y));
 }
 
 // Lights on a circle, great or small, say nothing about directions off it. They lie in a plane
@@ -227,6 +257,7 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
         relume_coder_destroy(&c);
         return status;
     }
+    find_zone(c);
     c->info.directions = c->world;
     c->info.transform = c->transform;
     c->info.mean = c->mean;

@@ -37,8 +37,7 @@ static int nearest(const vec3 *p, int n, vec3 d)
     return best;
 }
 
-// The largest gap around: the direction among candidates that is farthest from every light.
-static vec3 widest_gap(const vec3 *p, int n, double *angle)
+vec3 mesh_widest_gap(const vec3 *p, int n, double *angle)
 {
     enum { CANDIDATES = 2048 };
     vec3 best = vec3_of(0.0, 0.0, -1.0);
@@ -59,7 +58,6 @@ static vec3 widest_gap(const vec3 *p, int n, double *angle)
 relume_status mesh_create(mesh **out, const vec3 *lights, int n)
 {
     enum { MAX_HELPERS = 6 };
-    const double wide = M_PI / 3.0;  // gaps between the lights of real domes are below 40 degrees
     *out = NULL;
     mesh *m = mem_zeroed(1, sizeof *m);
     if (!m)
@@ -74,8 +72,8 @@ relume_status mesh_create(mesh **out, const vec3 *lights, int n)
         m->point[i] = lights[i];
     while (m->points < n + MAX_HELPERS) {
         double angle;
-        const vec3 gap = widest_gap(m->point, m->points, &angle);
-        if (angle < wide)
+        const vec3 gap = mesh_widest_gap(m->point, m->points, &angle);
+        if (angle < MESH_WIDE)
             break;
         m->point[m->points++] = gap;
     }

@@ -236,15 +236,18 @@ void relume_environment_weights(float *weights, float constant[3], const relume_
                                 const struct relume_light *light)
 {
     const relume_environment *e = light->environment;
-    const struct relume_coder_info *info = relume_coder_info(relume_weight_grid_info(grid)->coder);
+    const relume_coder *coder = relume_weight_grid_info(grid)->coder;
+    const struct relume_coder_info *info = relume_coder_info(coder);
     for (int i = 0; i < e->count; i++) {
         const vec3 d = relume_environment_turn(e->cell[i].direction, light->rotate_deg);
         float value[3];
+        vec3 from;
         if (info->hemispherical && pole_from_world(d, info->pole_y).z < 0.0)
             continue;
+        const float share = (float)relume_coder_captured(&from, coder, d);
         for (int c = 0; c < 3; c++)
-            value[c] = light->rgb[c] * e->cell[i].rgb[c];
-        relume_weight_grid_add(weights, constant, grid, d, value);
+            value[c] = share * light->rgb[c] * e->cell[i].rgb[c];
+        relume_weight_grid_add(weights, constant, grid, from, value);
     }
 }
 

@@ -66,14 +66,26 @@ static bool is_captured(const struct near *near, vec3 towards)
     return !info->hemispherical || pole_from_world(towards, info->pole_y).z >= 0.0;
 }
 
-// Areas are integrals: from below the horizon of a hemispherical capture they add nothing. Others
-// are taken at the horizon there, as directional lights are.
-static bool arrives(vec3 *towards, float rgb[3], const struct near *near, const struct emitter *e,
+// Areas are integrals: from below the horizon of a hemispherical capture they add nothing.
+static bool reaches(vec3 *towards, float rgb[3], const struct near *near, const struct emitter *e,
                     vec3 point)
 {
     if (e->light)
         return relume_light_at(towards, rgb, e->light, point);
     return relume_facet_at(towards, rgb, &e->facet, point) && is_captured(near, *towards);
+}
+
+// Where the light is taken from, as with directional lights, and its share of what reaches a point.
+static bool arrives(vec3 *from, float rgb[3], const struct near *near, const struct emitter *e,
+                    vec3 point)
+{
+    vec3 towards;
+    if (!reaches(&towards, rgb, near, e, point))
+        return false;
+    const float share = (float)relume_coder_captured(from, near->codes->coder, towards);
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= share;
+    return true;
 }
 
 // ---------------------------------------------------------------- blocks

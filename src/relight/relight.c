@@ -73,11 +73,14 @@ static void add_light(struct pass *pass, const relume_coder *coder,
 {
     const int k = relume_coder_info(coder)->coefficients;
     float constant[3];
-    relume_coder_weights(coder, vec3_unit(light->direction), one, constant);
+    vec3 from;
+    const float share = (float)relume_coder_captured(&from, coder, vec3_unit(light->direction));
+    relume_coder_weights(coder, from, one, constant);
     for (int c = 0; c < 3; c++) {
+        const float value = share * light->rgb[c];
         for (int i = 0; i < k; i++)
-            pass->weights[c * k + i] += light->rgb[c] * one[c * k + i];
-        pass->bias[c] += light->rgb[c] * constant[c];
+            pass->weights[c * k + i] += value * one[c * k + i];
+        pass->bias[c] += value * constant[c];
     }
 }
 
@@ -89,13 +92,15 @@ static int count_kind(const struct relume_light *lights, int n, enum relume_ligh
     return count;
 }
 
-// One directional light alone, its colour kept for later.
+// One directional light alone, its colour and share kept for later.
 static void set_displayed(struct pass *pass, const relume_coder *coder,
                           const struct relume_light *light, float *one)
 {
-    struct relume_light white = *light;
-    memcpy(pass->rgb, light->rgb, sizeof pass->rgb);
-    white.rgb[0] = white.rgb[1] = white.rgb[2] = 1.0f;
+    struct relume_light white = {.rgb = {1.0f, 1.0f, 1.0f}};
+    const float share =
+        (float)relume_coder_captured(&white.direction, coder, vec3_unit(light->direction));
+    for (int c = 0; c < 3; c++)
+        pass->rgb[c] = share * light->rgb[c];
     add_light(pass, coder, &white, one);
 }
 
@@ -377,6 +382,29 @@ static void warn_below_horizon(const struct relume_codes *codes, const struct re
         }
 }
 
+// Told once for all lights, of the one that is farthest off.
+static void warn_beyond(const struct relume_codes *codes, const struct relume_light *lights, int n,
+                        const struct relume_log *log)
+{
+    static const double little = 3.0;  // degrees that nobody sees
+    double most = 0.0;
+    int which = 0;
+    for (int i = 0; i < n; i++) {
+        if (lights[i].kind != RELUME_LIGHT_DIRECTIONAL)
+            continue;
+        vec3 d = vec3_unit(lights[i].direction), from;
+        (void)relume_zone_clamp(&from, relume_coder_zone(codes->coder), d);
+        const double off = vec3_angle(from, d) * (180.0 / M_PI);
+        which = off > most ? i : which;
+        most = fmax(off, most);
+    }
+    if (most > little)
+        log_line(log, RELUME_WARNING,
+                 "light %d comes from %.0f degrees outside the captured light directions; it is "
+                 "shown as from their edge, dimmed",
+                 which + 1, most);
+}
+
 static relume_status check_each(const struct relume_light *lights, int n,
                                 const struct relume_log *log)
 {
@@ -559,6 +587,7 @@ static relume_status start_job(struct job *job, const struct relume_codes *codes
     if (status)
         return status;
     warn_below_horizon(codes, lights, n, p->log);
+    warn_beyond(codes, lights, n, p->log);
     return begin_all(job, codes, lights, n, p);
 }
 
@@ -646,9 +675,12 @@ void relume_relight_pixel(double rgb[3], const struct relume_codes *codes, int x
     rgb[0] = rgb[1] = rgb[2] = 0.0;
     for (int i = 0; i < n; i++) {
         double value[3];
-        decode_pixel(value, codes, pixel, vec3_unit(lights[i].direction));
+        vec3 from;
+        const double share =
+            relume_coder_captured(&from, codes->coder, vec3_unit(lights[i].direction));
+        decode_pixel(value, codes, pixel, from);
         for (int c = 0; c < 3; c++)
-            rgb[c] += (double)lights[i].rgb[c] *
+            rgb[c] += share * (double)lights[i].rgb[c] *
                       (display ? (double)relume_transfer_decode(codes->display, (float)value[c])
                                : value[c]);
     }

@@ -1021,6 +1021,33 @@ static void recordings_go_once_around(void **state)
 
 // ---------------------------------------------------------------- handles
 
+// A dome whose lowest ring stands 45 degrees high, 12 lamps: its border is half of their 21.1
+// degrees of spacing lower, a little less between them, and drawn on the disc as a ring.
+static void captured_light_is_outlined(void **state)
+{
+    (void)state;
+    OWNED_APP app = make_app(RELUME_PLANAR, false);
+    struct relume_vec3 light[13] = {{0, 0, 1}};
+    struct gizmo g;
+    relume_coder *coder;
+    assert_false(gizmo_border(&g, &app, 0));
+    for (int i = 0; i < 12; i++)
+        light[i + 1] = (struct relume_vec3){sqrt(0.5) * cos(i * M_PI / 6),
+                                            sqrt(0.5) * sin(i * M_PI / 6), sqrt(0.5)};
+    assert_int_equal(relume_coder_create(&coder, &relume_basis_ptm, light, 13,
+                                         relume_coder_params(.hemispherical = true)),
+                     RELUME_OK);
+    app.file.zone = relume_coder_zone(coder);
+    const struct gizmo_circle disc = gizmo_disc(&app);
+    for (int step = 0; step <= RELUME_ZONE_STEPS; step++) {
+        assert_true(gizmo_border(&g, &app, step) && !g.behind);
+        const double r = hypot(g.x - disc.x, g.y - disc.y) / disc.radius;
+        assert_true(r > sin((45 + 8.5) * M_PI / 180) && r < sin((45 + 10.6) * M_PI / 180));
+    }
+    app.file.zone = NULL;
+    relume_coder_destroy(&coder);
+}
+
 static void handles_are_grabbed_and_follow(void **state)
 {
     (void)state;
@@ -1225,6 +1252,7 @@ int main(void)
         cmocka_unit_test(every_key_is_bound_once),
         cmocka_unit_test(recordings_go_once_around),
         cmocka_unit_test(handles_are_grabbed_and_follow),
+        cmocka_unit_test(captured_light_is_outlined),
         cmocka_unit_test(near_lights_stand_where_they_are),
         cmocka_unit_test(near_lights_stand_in_panoramas),
         cmocka_unit_test(near_lights_turn_about_the_middle),

@@ -162,8 +162,8 @@ static void separate_channels(void **state)
 }
 
 // The same codes under another coder, on one hemisphere.
-static void check_coder(const struct relume_basis *basis, struct relume_coder_params p,
-                        enum relume_domain domain, const char *name)
+static void check_dome(const struct relume_basis *basis, struct relume_coder_params p,
+                       enum relume_domain domain, double lowest, const char *name)
 {
     struct fixture_file f = fixture_make(1, W, H, RELUME_STORE_8, domain, false);
     const struct relume_codes *codes;
@@ -172,6 +172,11 @@ static void check_coder(const struct relume_basis *basis, struct relume_coder_pa
     assert_int_equal(relume_lights_make(lights, FIXTURE_LIGHTS, relume_pattern_find("hammersley"),
                                         relume_lights_params(.hemisphere = true)),
                      RELUME_OK);
+    for (int i = 0; i < FIXTURE_LIGHTS; i++) {
+        const double z = lowest + (1.0 - lowest) * lights[i].z;
+        const double r = sqrt((1.0 - z * z) / (1.0 - lights[i].z * lights[i].z + 1e-12));
+        lights[i] = (struct relume_vec3){r * lights[i].x, r * lights[i].y, z};
+    }
     p.hemispherical = true;
     p.decode = true;
     assert_int_equal(relume_coder_create(&coder, basis, lights, FIXTURE_LIGHTS, &p), RELUME_OK);
@@ -183,6 +188,22 @@ static void check_coder(const struct relume_basis *basis, struct relume_coder_pa
     assert_int_equal(fixture_fetch(&codes, &f, 0), RELUME_OK);
     check_codes(codes, name);
     fixture_free(&f);
+}
+
+static void check_coder(const struct relume_basis *basis, struct relume_coder_params p,
+                        enum relume_domain domain, const char *name)
+{
+    check_dome(basis, p, domain, 0.0, name);
+}
+
+// Near lights beyond what was captured: lamps above 76 degrees only.
+static void high_domes(void **state)
+{
+    (void)state;
+    check_dome(&relume_basis_ptm, (struct relume_coder_params){.coefficients = 6},
+               RELUME_DOMAIN_LINEAR, 0.97, "ptm, high dome");
+    check_dome(&relume_basis_hsh, (struct relume_coder_params){.coefficients = 9},
+               RELUME_DOMAIN_DISPLAY, 0.97, "hsh 9, display, high dome");
 }
 
 static void other_bases(void **state)
@@ -368,6 +389,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(separate_channels),
         cmocka_unit_test(other_bases),
+        cmocka_unit_test(high_domes),
         cmocka_unit_test(components),
         cmocka_unit_test(codebooks),
         cmocka_unit_test(without_a_surface),

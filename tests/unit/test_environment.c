@@ -145,10 +145,12 @@ static void slow(double *sum, const struct learned *l, const struct relume_image
                                           -cos(phi) * sin(theta)};
             if (info->hemispherical && (info->pole_y ? d.y : d.z) < 0)
                 continue;
-            relume_coder_weights(l->coder, d, weights, constant);
+            struct relume_vec3 from;
+            const double share = relume_coder_captured(&from, l->coder, d);
+            relume_coder_weights(l->coder, from, weights, constant);
             const float *e = map->data + 3 * (y / CUT * MAP_W + x / CUT);
             for (int c = 0; c < 3; c++) {
-                const double f = (double)e[c] * (double)tint[c] * dw / M_PI;
+                const double f = share * (double)e[c] * (double)tint[c] * dw / M_PI;
                 for (int i = 0; i < k; i++)
                     sum[c * k + i] += f * (double)weights[c * k + i];
                 sum[3 * k + c] += f * (double)constant[c];

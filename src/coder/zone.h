@@ -1,0 +1,15 @@
+// zone.h - making the zone that a capture's lights cover (struct relume_zone)
+#ifndef CODER_ZONE_H
+#define CODER_ZONE_H
+
+#include <relume/coder.h>
+
+struct zone_params {
+    bool hemispherical, pole_y;
+    double part;  // of the way to its nearest neighbour that a light speaks for
+};
+// Of `n` unit directions of the world.
+void zone_find(struct relume_zone *zone, const struct relume_vec3 *lights, int n,
+               const struct zone_params *params);
+
+#endif

@@ -12,6 +12,7 @@ static const struct code_format formats[] = {
     [RELUME_STORE_12] = {GL_RGBA16, GL_UNSIGNED_SHORT, 2, 65535.0},
     [RELUME_STORE_16] = {GL_RGBA16, GL_UNSIGNED_SHORT, 2, 65535.0},
     [RELUME_STORE_HALF] = {GL_RGBA16F, GL_HALF_FLOAT, 2, 1.0},
+    [RELUME_STORE_FLOAT] = {GL_RGBA32F, GL_FLOAT, 4, 1.0},
 };
 
 const struct code_format *code_format_of(const struct relume_codes *codes)

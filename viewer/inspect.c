@@ -209,6 +209,8 @@ static float plane_value(const struct relume_codes *codes, int plane, size_t at)
     float code;
     if (codes->storage == RELUME_STORE_8)
         code = ((const uint8_t *)codes_of)[at];
+    else if (codes->storage == RELUME_STORE_FLOAT)
+        code = ((const float *)codes_of)[at];
     else if (codes->storage == RELUME_STORE_HALF)
         code = half_value(((const uint16_t *)codes_of)[at]);
     else

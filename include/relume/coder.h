@@ -193,7 +193,9 @@ RELUME_RESULT relume_status relume_coder_apply(const relume_coder *coder, const 
 // In which light the coefficients live (architecture: "Domain").
 enum relume_domain { RELUME_DOMAIN_AUTO = 0, RELUME_DOMAIN_LINEAR, RELUME_DOMAIN_DISPLAY };
 
-// In memory codes of 8 bits are uint8_t, all others 16-bit words.
+// In memory codes of 8 bits are uint8_t, floats float, all others 16-bit words. `log` is a way of
+// encoding: half floats rounded to 8 significant bits, even steps of brightness that compress
+// better; what is stored is `half`.
 enum relume_storage {
     RELUME_STORE_DEFAULT = 0,
     RELUME_STORE_8,
@@ -201,13 +203,20 @@ enum relume_storage {
     RELUME_STORE_HALF,
     RELUME_STORE_10,
     RELUME_STORE_12,
+    RELUME_STORE_FLOAT,
+    RELUME_STORE_LOG,
 };
-// "8", "10", "12", "16", "half".
+// "8", "10", "12", "16", "half", "float", "log".
 RELUME_API const char *relume_storage_name(enum relume_storage storage);
 // RELUME_EINVAL when `name` is none of these.
 RELUME_RESULT relume_status relume_storage_parse(enum relume_storage *out, const char *name);
-// The largest code: 255, 1023, 4095, 65535; 0 for half.
+// The largest code: 255, 1023, 4095, 65535; 0 for half, log and float.
 RELUME_API int relume_storage_top(enum relume_storage storage);
+// Of a code in memory.
+static inline size_t relume_storage_bytes(enum relume_storage storage)
+{
+    return storage == RELUME_STORE_8 ? 1 : storage == RELUME_STORE_FLOAT ? 4 : 2;
+}
 
 // The quantiser's step: every plane's own range over all codes, or one step for all planes, which
 // is the rate-distortion optimum where the functions are orthonormal.
@@ -249,6 +258,24 @@ RELUME_RESULT relume_status relume_coder_learn(relume_coder **out, const struct 
                                                const struct relume_coder_params *coder,
                                                const struct relume_encode_params *encode);
 
+// What the capture itself asks for: `pca` and an interpolant as in `coder` (default: chosen), with
+// as many coefficients and in the domain in which samples of the captured lights are met to
+// `quality_db` (PSNR of display values as `relume eval` measures it; default 38), and the least
+// storage that adds nothing visible; one light is kept as `table`. What the params fix -
+// coefficients, domain, storage - stays. Errors of relume_coder_learn.
+#define RELUME_USUAL_DB 38.0
+struct relume_decision {
+    enum relume_domain domain;
+    enum relume_storage storage;
+    double psnr_db;    // captured lights, before storing, mean over lights of at most 60
+    double unseen_db;  // lights left out, likewise; 0: not known
+};
+RELUME_RESULT relume_status relume_coder_decide(relume_coder **out,
+                                                struct relume_decision *decision,
+                                                const relume_capture *capture, double quality_db,
+                                                const struct relume_coder_params *coder,
+                                                const struct relume_encode_params *encode);
+
 // Run `coder` over one view of `capture`. Pixels outside the view's mask become 0.
 // Returns RELUME_EDATA, RELUME_EIO (temporary file), RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_encode(relume_coefficients **out, const relume_coder *coder,
@@ -271,6 +298,7 @@ struct relume_encode_census {
 struct relume_encode_report {
     double fit_rms;    // captured samples against unquantised coefficients
     double store_rms;  // unquantised against stored coefficients
+    double psnr_db;    // of display values, as `relume eval` measures it; 0 from a file
     double typical;    // captured sample above 0: squared mean of the roots; 0 from a file
     struct relume_encode_census census;  // zeros where it is read from a file
 };
@@ -286,8 +314,8 @@ struct relume_coefficients_info {
 RELUME_API const struct relume_coefficients_info *relume_coefficients_info(
     const relume_coefficients *coefficients);
 
-// Codes of `rows` rows from `row` on of every plane: out[row][plane][x], uint8_t, uint16_t or half
-// bits by the storage. RELUME_EIO when the temporary file cannot be read back.
+// Codes of `rows` rows from `row` on of every plane: out[row][plane][x], uint8_t, uint16_t, half
+// bits or float by the storage. RELUME_EIO when the temporary file cannot be read back.
 RELUME_RESULT relume_status relume_coefficients_read(const relume_coefficients *coefficients,
                                                      int row, int rows, void *out);
 
@@ -298,7 +326,7 @@ struct relume_codes {
     struct relume_transfer display;  // the curve of DOMAIN_DISPLAY
     int width, height, planes;
     enum relume_storage storage;
-    const void *const *plane;     // [planes] -> [height][width] of uint8_t, uint16_t or half bits
+    const void *const *plane;     // [planes] -> [height][width] of codes, as `storage`
     const float *scale, *offset;  // [planes]: coefficient = code * scale + offset
     // With codebooks there are no planes: storage is 0, plane, scale and offset are NULL, and the
     // coefficients of a pixel are the sum over books b of vectors[b][index[b][pixel]].
@@ -308,8 +336,9 @@ struct relume_codes {
     const int *book_codes;         // [books]
 };
 
-// Codes that are there already, of any positive scales, as what a file is written from: the codes
-// come back as they are. Of `params` log and scratch are used. RELUME_EIO, RELUME_ENOMEM.
+// Codes that are there already, of any positive scales, halves of powers of two, as what a file is
+// written from: the codes come back as they are. Not for floats. Of `params` log and scratch are
+// used. RELUME_EIO, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_coefficients_keep(relume_coefficients **out,
                                                      const struct relume_codes *codes,
                                                      const struct relume_encode_params *params);

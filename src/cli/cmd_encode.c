@@ -1,26 +1,39 @@
 #include "book_options.h"
 #include "cli.h"
 
-#include <math.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const struct option options[] = {
     {"-o", OPTION_RELUME, "FILE.exr", "the relume file to write", 0, 0},
     {"--basis", OPTION_TEXT, "NAME", "auto, pca, table, sh, hsh, ptm, dct, dct-resampled", 0, 0},
     {"--coefficients", OPTION_INT, "K",
-     "coefficients per colour channel (pca: for all three); default: by the basis", 1, 4096},
+     "coefficients per colour channel (pca: for all three); default: auto: as --quality asks, at "
+     "least 27; "
+     "others: by the basis",
+     1, 4096},
+    {"--quality", OPTION_NUMBER, "DB",
+     "auto: as few coefficients as reproduce the photographs at this PSNR; default: 38, at most "
+     "128 of them",
+     10, 60},
     {"--interpolant", OPTION_TEXT, "NAME",
      "pca, table: auto, chord, angular, tps, rbf, natural, hsh, delaunay", 0, 0},
     {"--colour", OPTION_TEXT, "C",
      "rgb, or luminance: one set of coefficients and a colour per pixel; default: rgb", 0, 0},
-    {"--bits", OPTION_TEXT, "B", "8, 10, 12, 16 or half; default: 8", 0, 0},
+    {"--bits", OPTION_TEXT, "B",
+     "8, 10, 12, 16, half, log (half, coarser and smaller) or float; default: auto: the least that "
+     "adds nothing "
+     "visible; others: 8, half for high dynamic range",
+     0, 0},
     {"--step", OPTION_TEXT, "S", "plane: each its own range; common: one step; default: plane", 0,
      0},
     {"--robust", OPTION_FLAG, NULL,
      "shadows, highlights and stray values weigh less in the fit; slower", 0, 0},
     {"--force", OPTION_FLAG, NULL, "allow more coefficients than the lights determine", 0, 0},
     {"--domain", OPTION_TEXT, "D",
-     "auto, linear or display; default: auto, by the capture's transfer", 0, 0},
+     "auto, linear or display; default: auto, by the capture's transfer, and by error where the "
+     "basis is auto",
+     0, 0},
     {"--compression", OPTION_TEXT, "C", "none, rle, zip or piz (all lossless); default: piz", 0, 0},
     {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
     {"--ridge", OPTION_NUMBER, "R", "smoothing of the fit, 0 (none) to 1; default: 1e-6", 0, 1},
@@ -58,7 +71,7 @@ static relume_status parse_interpolant(const char *name, struct relume_coder_par
 
 static relume_status parse_bits(const char *text, enum relume_storage *out)
 {
-    static const char *const names[] = {"8", "10", "12", "16", "half", NULL};
+    static const char *const names[] = {"8", "10", "12", "16", "half", "log", "float", NULL};
     return relume_storage_parse(out, text) ? unknown_name("--bits", text, names) : RELUME_OK;
 }
 
@@ -98,54 +111,80 @@ static relume_status parse_transfer(const char *text, struct relume_transfer *ou
     return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", text);
 }
 
-static double decibel(double mse)
-{
-    return mse > 1e-20 ? -10.0 * log10(mse) : 200.0;
-}
-
-static void say_result(const struct args *args, const relume_coder *coder,
-                       const struct relume_encode_report *report, const char *path)
-{
-    const struct relume_coder_info *info = relume_coder_info(coder);
-    const double fit = report->fit_rms * report->fit_rms;
-    const double store = report->store_rms * report->store_rms;
-    char text[512], chosen[192] = "";
-    if (info->predicted_rms > 0.0)
-        snprintf(chosen, sizeof chosen, "; %s %g %g %g %g predicts lights left out to %.2f dB",
-                 info->interpolant->name, info->parameter[0], info->parameter[1],
-                 info->parameter[2], info->parameter[3],
-                 decibel(info->predicted_rms * info->predicted_rms));
-    snprintf(text, sizeof text,
-             "%s: %s with %d coefficients; captured lights are met to %.2f dB (%.2f dB before "
-             "storing)%s",
-             path, info->basis->name, info->coefficients, decibel(fit + store), decibel(fit),
-             chosen);
-    args_log(args)->message(args_log(args)->user, RELUME_NOTE, text);
-}
-
 struct request {
     const struct relume_basis *basis;
     struct relume_transfer transfer;
     struct relume_coder_params coder;
     struct relume_pack_encode_params pack;
     struct relume_books_params books;
+    bool decide;     // the capture decides what the options leave open
+    double quality;  // 0: the usual
+    double unseen;   // dB; 0: not known
 };
+
+static const char *storage_words(enum relume_storage storage)
+{
+    static const char *const words[] = {
+        [RELUME_STORE_DEFAULT] = "8 bits", [RELUME_STORE_8] = "8 bits",
+        [RELUME_STORE_10] = "10 bits",     [RELUME_STORE_12] = "12 bits",
+        [RELUME_STORE_16] = "16 bits",     [RELUME_STORE_HALF] = "half floats",
+        [RELUME_STORE_FLOAT] = "floats",   [RELUME_STORE_LOG] = "half floats, rounded",
+    };
+    return words[storage];
+}
+
+// ", 12.3 bytes a pixel"; nothing of outputs that are no file.
+static void bytes_words(char text[48], const relume_capture *capture, const char *path)
+{
+    struct stat file;
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    const double pixels =
+        (double)m->views * relume_capture_width(capture) * relume_capture_height(capture);
+    text[0] = 0;
+    if (!stat(path, &file) && S_ISREG(file.st_mode))
+        snprintf(text, 48, ", %.1f bytes a pixel", (double)file.st_size / pixels);
+}
+
+static void say_result(const struct args *args, const relume_capture *capture,
+                       const relume_coder *coder, const struct relume_encode_report *report,
+                       const struct request *r)
+{
+    const struct relume_coder_info *info = relume_coder_info(coder);
+    const char *path = args_text(args, "-o", NULL);
+    char text[512], bytes[48], unseen[64] = "", more[96] = "";
+    const bool one = info->lights == 1, short_of = r->decide && r->quality > report->psnr_db + 0.5;
+    bytes_words(bytes, capture, path);
+    if (r->unseen > 0.0 && !one)
+        snprintf(unseen, sizeof unseen, "; unseen light directions: about %.0f dB", r->unseen);
+    if (short_of && !one && !r->coder.coefficients)
+        snprintf(more, sizeof more, "; %g dB is more than %d coefficients reach", r->quality,
+                 info->coefficients);
+    snprintf(text, sizeof text,
+             "%s: reproduces your photograph%s at %.1f dB PSNR with %d coefficient%s%s, %s%s%s%s",
+             path, one ? "" : "s", report->psnr_db, info->coefficients,
+             info->coefficients == 1 ? "" : "s", info->joint ? "" : " a colour",
+             storage_words(r->pack.storage), bytes, unseen, more);
+    args_log(args)->message(args_log(args)->user, RELUME_NOTE, text);
+}
 
 // Codes are even steps up to the brightest value: a lamp in the picture of HDR radiance leaves the
 // rest few of them.
-static void say_steps(const struct args *args, const struct relume_encode_report *report,
-                      const struct request *r, const char *path)
+static bool is_coarse(const struct relume_encode_report *report, const struct request *r)
 {
     static const double COARSE = 0.05;  // photographs of 8 bits lose a hundredth of this
-    char text[384];
     const double lost = report->typical > 0.0 ? report->store_rms / report->typical : 0.0;
-    if (r->pack.storage == RELUME_STORE_HALF || r->pack.books || lost < COARSE ||
-        report->store_rms < report->fit_rms)
+    return lost >= COARSE && report->store_rms >= report->fit_rms && !r->pack.books;
+}
+
+static void say_coarse(const struct args *args, const struct relume_encode_report *report,
+                       const struct request *r)
+{
+    char text[384];
+    if (!args_has(args, "--bits") || !is_coarse(report, r))
         return;
     snprintf(text, sizeof text,
-             "%s: %s bits are too few beside values so much brighter than others: storing loses "
-             "%.0f %% of a typical one; expected --bits half",
-             path, args_text(args, "--bits", "8"), 100.0 * lost);
+             "%s: very bright highlights: %s will ruin the picture; use --bits half",
+             args_text(args, "-o", ""), storage_words(r->pack.storage));
     args_log(args)->message(args_log(args)->user, RELUME_WARNING, text);
 }
 
@@ -162,7 +201,7 @@ static void say_census(const struct args *args, const struct relume_encode_censu
     }
     if (c->clipped) {
         snprintf(text, sizeof text,
-                 "%s: %zu of %zu pixels are saturated under some light, %zu of them under all",
+                 "%s: %zu of %zu pixels are overexposed in at least one photograph, %zu in all",
                  args_input(args, 0), c->clipped, c->pixels, c->always_clipped);
         log->message(log->user, c->always_clipped == c->pixels ? RELUME_WARNING : RELUME_NOTE,
                      text);
@@ -184,9 +223,39 @@ static bool ignores_positions(const struct relume_manifest *m)
 // Learning reads the images once before the encoder does: decoded images of up to this size wait.
 #define KEEP_BYTES ((size_t)640 << 20)
 
-static relume_status encode(const struct args *args, struct request *r)
+static relume_status learn(relume_coder **coder, const relume_capture *capture, struct request *r)
+{
+    const struct relume_encode_params encode = {.log = r->pack.log,
+                                                .domain = r->pack.domain,
+                                                .storage = r->pack.storage,
+                                                .threads = r->pack.threads};
+    struct relume_decision decision;
+    if (!r->decide)
+        return relume_coder_learn(coder, r->basis, capture, &r->coder, &encode);
+    const relume_status status =
+        relume_coder_decide(coder, &decision, capture, r->quality, &r->coder, &encode);
+    r->pack.domain = decision.domain;
+    r->pack.storage = decision.storage;
+    r->unseen = decision.unseen_db;
+    r->quality = r->quality > 0.0 ? r->quality : RELUME_USUAL_DB;
+    return status;
+}
+
+// Where nobody asked for even steps and they turn out too coarse, as halves.
+static relume_status write_file(const struct args *args, const relume_capture *capture,
+                                const relume_coder *coder, struct request *r,
+                                struct relume_encode_report *report)
 {
     const char *path = args_text(args, "-o", NULL);
+    relume_status status = relume_pack_encode(capture, coder, path, report, &r->pack);
+    if (status || args_has(args, "--bits") || !is_coarse(report, r))
+        return status;
+    r->pack.storage = RELUME_STORE_HALF;
+    return relume_pack_encode(capture, coder, path, report, &r->pack);
+}
+
+static relume_status encode(const struct args *args, struct request *r)
+{
     relume_capture *capture;
     relume_coder *coder = NULL;
     struct prefix_log about;
@@ -204,16 +273,14 @@ static relume_status encode(const struct args *args, struct request *r)
     if (ignores_positions(relume_capture_manifest(capture)))
         about.log.message(about.log.user, RELUME_WARNING,
                           "the lights are near; they are taken as distant ones");
-    status = relume_coder_learn(&coder, r->basis, capture, &r->coder,
-                                relume_encode_params(.log = r->pack.log, .domain = r->pack.domain,
-                                                     .threads = r->pack.threads));
+    status = learn(&coder, capture, r);
     struct relume_encode_report report;
     if (!status)
-        status = relume_pack_encode(capture, coder, path, &report, &r->pack);
+        status = write_file(args, capture, coder, r, &report);
     if (!status) {
         say_census(args, &report.census, relume_capture_hemispherical(capture));
-        say_result(args, coder, &report, path);
-        say_steps(args, &report, r, path);
+        say_result(args, capture, coder, &report, r);
+        say_coarse(args, &report, r);
     }
     relume_coder_destroy(&coder);
     relume_capture_destroy(&capture);
@@ -241,7 +308,9 @@ static relume_status parse(const struct args *args, struct request *r)
         status = parse_interpolant(
             args_text(args, "--interpolant", strcmp(basis, "auto") ? NULL : "auto"), &r->coder);
     if (!status)
-        status = parse_bits(args_text(args, "--bits", "8"), &r->pack.storage);
+        status = args_has(args, "--bits")
+                     ? parse_bits(args_text(args, "--bits", "8"), &r->pack.storage)
+                     : RELUME_OK;
     if (!status)
         status = parse_choice(args, "--step", steps, &step);
     if (!status)
@@ -260,6 +329,11 @@ static relume_status parse(const struct args *args, struct request *r)
     r->pack.share = args_has(args, "--share");
     r->pack.step = step ? RELUME_STEP_COMMON : RELUME_STEP_PLANE;
     r->coder.luminance = colour;
+    r->decide = !strcmp(basis, "auto") && !books && !r->coder.robust && !colour;
+    r->quality = args_number(args, "--quality", 0.0);
+    if (!status && r->quality > 0.0 && (!r->decide || r->coder.coefficients))
+        return usage_error("--quality chooses the coefficients of basis auto; expected without "
+                           "--basis, --coefficients, --codebook and --robust");
     return status;
 }
 

@@ -65,7 +65,7 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
     else
         printf("domain        display (%s)\n", display);
     printf("storage       %s%s, %s\n", relume_storage_name(i->storage),
-           i->storage == RELUME_STORE_HALF ? "" : " bits", i->compression);
+           relume_storage_top(i->storage) ? " bits" : "", i->compression);
     if (i->books)
         printf("codebooks     %d of %d vectors, %s\n", i->books, i->codes,
                i->shared ? "for all views" : "for each view");

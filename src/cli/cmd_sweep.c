@@ -125,7 +125,7 @@ static relume_status accept_colour(struct grid *grid, int i, const char *word)
 
 static relume_status accept_storage(struct grid *grid, int i, const char *word)
 {
-    static const char *const names[] = {"8", "10", "12", "16", "half", NULL};
+    static const char *const names[] = {"8", "10", "12", "16", "half", "log", "float", NULL};
     return relume_storage_parse(&grid->storage[i], word) ? unknown_name("--bits", word, names)
                                                          : RELUME_OK;
 }

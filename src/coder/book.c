@@ -1,5 +1,6 @@
 // book.c - one codebook as numbers in a file, and what they stand for
 #include "coder/books.h"
+#include "coder/coefficients.h"
 
 #include "image/half.h"
 
@@ -22,7 +23,8 @@ int relume_book_dim(enum relume_book_kind kind, int first, int last)
 float book_number(const struct relume_book *b, int d, int code)
 {
     const size_t at = (size_t)d * (size_t)b->codes + (size_t)code;
-    const float v = b->storage == RELUME_STORE_8 ? (float)((const uint8_t *)b->numbers)[at]
+    const float v = b->storage == RELUME_STORE_8       ? (float)((const uint8_t *)b->numbers)[at]
+                    : b->storage == RELUME_STORE_FLOAT ? ((const float *)b->numbers)[at]
                     : b->storage == RELUME_STORE_HALF
                         ? float_from_half(((const uint16_t *)b->numbers)[at])
                         : (float)((const uint16_t *)b->numbers)[at];
@@ -73,9 +75,11 @@ void book_project(float *out, const struct relume_book *b, const float *v)
 
 // Codes 0 .. top span the numbers; where these hold 0, 0 is a code of its own, so that black stays
 // black.
-static void choose_step(const float *vectors, int codes, int dim, int d, int top, float *scale,
-                        float *offset)
+static void choose_step(const float *vectors, int codes, int dim, int d,
+                        enum relume_storage storage, float *scale, float *offset)
 {
+    const int top = relume_storage_top(storage);
+    const bool whole = storage == RELUME_STORE_FLOAT;
     float min = vectors[d], max = vectors[d];
     for (int c = 0; c < codes; c++) {
         const float v = vectors[(size_t)c * (size_t)dim + (size_t)d];
@@ -83,7 +87,9 @@ static void choose_step(const float *vectors, int codes, int dim, int d, int top
         max = v > max ? v : max;
     }
     const bool holds_zero = min <= 0.0f && max >= 0.0f;
-    *scale = top && max - min > 1e-30f ? (max - min) / (float)(holds_zero ? top - 1 : top) : 1.0f;
+    *scale = top && max - min > 1e-30f ? (max - min) / (float)(holds_zero ? top - 1 : top)
+             : top || whole            ? 1.0f
+                                       : coefficients_half_scale((struct range){min, max});
     *offset = !top ? 0.0f : holds_zero ? -ceilf(-min / *scale) * *scale : min;
 }
 
@@ -92,7 +98,7 @@ void book_store(void *numbers, float *scale, float *offset, const float *vectors
 {
     const int top = relume_storage_top(storage);
     for (int d = 0; d < dim; d++) {
-        choose_step(vectors, codes, dim, d, top, &scale[d], &offset[d]);
+        choose_step(vectors, codes, dim, d, storage, &scale[d], &offset[d]);
         for (int c = 0; c < codes; c++) {
             const size_t at = (size_t)d * (size_t)codes + (size_t)c;
             const float v = vectors[(size_t)c * (size_t)dim + (size_t)d];
@@ -100,9 +106,11 @@ void book_store(void *numbers, float *scale, float *offset, const float *vectors
             const float kept = code > 0.0f ? fminf(code, (float)top) : 0.0f;
             if (storage == RELUME_STORE_8)
                 ((uint8_t *)numbers)[at] = (uint8_t)kept;
+            else if (storage == RELUME_STORE_FLOAT)
+                ((float *)numbers)[at] = v;
             else
                 ((uint16_t *)numbers)[at] =
-                    storage == RELUME_STORE_HALF ? half_from_float(v) : (uint16_t)kept;
+                    storage == RELUME_STORE_HALF ? half_from_float(v / scale[d]) : (uint16_t)kept;
         }
     }
 }

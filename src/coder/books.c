@@ -69,7 +69,7 @@ static relume_status draw_sample(struct sample *s, const relume_coefficients *co
 {
     const size_t width = (size_t)views[0]->info.width, planes = s->planes;
     float *row = mem_array(width * planes, sizeof *row);
-    uint16_t *waiting = mem_array(width * planes, sizeof *waiting);
+    void *waiting = mem_array(width * planes, sizeof *row);
     relume_status status = row && waiting ? RELUME_OK : RELUME_ENOMEM;
     struct random random = random_stream(seed, 2, 0);
     size_t taken = 0, left = pixels;
@@ -94,7 +94,7 @@ static relume_status draw_sample(struct sample *s, const relume_coefficients *co
 static bool alloc_book(struct own *own, const struct relume_book *b, int planes)
 {
     const size_t codes = (size_t)b->codes, dim = (size_t)b->dim;
-    own->numbers = mem_array(codes * dim, b->storage == RELUME_STORE_8 ? 1 : 2);
+    own->numbers = mem_array(codes * dim, relume_storage_bytes(b->storage));
     own->scale = mem_array(dim, sizeof *own->scale);
     own->offset = mem_array(dim, sizeof *own->offset);
     own->vectors = mem_array(codes * (size_t)planes, sizeof *own->vectors);

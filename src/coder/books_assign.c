@@ -12,7 +12,7 @@
 #include <string.h>
 
 struct work {
-    uint16_t *waiting;
+    void *waiting;
     float *row;       // [planes][x]
     float *residual;  // [x][planes]
     float *part;      // [x][dim]
@@ -57,7 +57,7 @@ static bool alloc_work(struct work *w, const struct assignment *a)
         const size_t s = nearest_scratch(&a->books->own[b].nearest);
         scratch = s > scratch ? s : scratch;
     }
-    w->waiting = mem_array(size, sizeof *w->waiting);
+    w->waiting = mem_array(size, sizeof *w->row);
     w->row = mem_array(size, sizeof *w->row);
     w->residual = mem_array(size, sizeof *w->residual);
     w->part = mem_array(size, sizeof *w->part);

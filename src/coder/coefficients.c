@@ -38,12 +38,15 @@ relume_status coefficients_create(relume_coefficients **out, const relume_coder 
     c->offset = mem_zeroed(planes, sizeof *c->offset);
     c->band = mem_zeroed((size_t)c->bands * planes, sizeof *c->band);
     c->fd = scratch_open(p->scratch);
+    c->coarse = p->storage == RELUME_STORE_LOG;
     c->info = (struct relume_coefficients_info){
         .coder = coder,
         .width = width,
         .height = height,
         .planes = relume_coder_info(coder)->planes,
-        .storage = p->storage ? p->storage : RELUME_STORE_8,
+        .storage = p->storage == RELUME_STORE_LOG ? RELUME_STORE_HALF
+                   : p->storage                   ? p->storage
+                                                  : RELUME_STORE_8,
         .scale = c->scale,
         .offset = c->offset,
     };
@@ -92,7 +95,35 @@ struct range range_settle(struct range r)
 
 off_t coefficients_offset(const relume_coefficients *c, int row)
 {
-    return (off_t)row * c->info.planes * c->info.width * (off_t)sizeof(uint16_t);
+    return (off_t)row * c->info.planes * c->info.width * (off_t)coefficients_waiting(c);
+}
+
+size_t coefficients_waiting(const relume_coefficients *c)
+{
+    return c->info.storage == RELUME_STORE_FLOAT ? sizeof(float) : sizeof(uint16_t);
+}
+
+float coefficients_half_scale(struct range r)
+{
+    const float most = fmaxf(fabsf(r.min), fabsf(r.max));
+    float scale = 1.0f;
+    while (most / scale > 65504.0f && r.min <= r.max)
+        scale *= 2.0f;
+    return scale;
+}
+
+// To 8 significant bits: steps of a 128th to a 256th, which no display of 8 bits shows.
+static float round_coarse(float value)
+{
+    int exponent;
+    const float part = frexpf(value, &exponent);
+    return ldexpf(rintf(ldexpf(part, 8)), exponent - 8);
+}
+
+uint16_t coefficients_half(float value, float scale, bool coarse)
+{
+    const float v = value / scale;
+    return half_from_float(coarse ? fminf(fmaxf(round_coarse(v), -65504.0f), 65504.0f) : v);
 }
 
 // What a plane's codes must span. A mask makes it hold 0.
@@ -128,13 +159,16 @@ void coefficients_choose_steps(relume_coefficients *c, const struct range *total
     float common = 0.0f;
     for (int p = 0; p < c->info.planes; p++) {
         const bool colour = coder->luminance && p >= coder->coefficients;
-        c->scale[p] = top ? least_step(whole_range(total[p], masked), top) : 1.0f;
-        common = !colour && c->scale[p] > common ? c->scale[p] : common;
+        const struct range r = whole_range(total[p], masked);
+        c->scale[p] = top                                     ? least_step(r, top)
+                      : c->info.storage == RELUME_STORE_FLOAT ? 1.0f
+                                                              : coefficients_half_scale(r);
+        common = top && !colour && c->scale[p] > common ? c->scale[p] : common;
     }
     for (int p = 0; p < c->info.planes; p++) {
         const struct range r = whole_range(total[p], masked);
         const bool colour = coder->luminance && p >= coder->coefficients;
-        if (step == RELUME_STEP_COMMON && !colour)
+        if (step == RELUME_STEP_COMMON && top && !colour)
             c->scale[p] = common;
         c->scale[p] = c->scale[p] > 0.0f ? c->scale[p] : 1.0f;
         c->offset[p] = !top            ? 0.0f
@@ -153,35 +187,60 @@ static inline float clamp(float v, float top)
     return v > 0.0f ? v < top ? v : top : 0.0f;
 }
 
-void coefficients_quantise(const relume_coefficients *c, int plane, int row, const uint16_t *from,
+// Halves over one power of two become halves over another.
+static void rescale_halves(const uint16_t *from, size_t n, float factor, uint16_t *to)
+{
+    if (factor == 1.0f)
+        memcpy(to, from, n * sizeof *to);
+    else
+        for (size_t x = 0; x < n; x++)
+            to[x] = half_from_float(float_from_half(from[x]) * factor);
+}
+
+void coefficients_quantise(const relume_coefficients *c, int plane, int row, const void *from,
                            void *to)
 {
     const struct range r = c->band[(row / BAND_ROWS) * c->info.planes + plane];
     const float a = coefficients_band_step(r) / c->scale[plane];
     const float b = (r.min - c->offset[plane]) / c->scale[plane] + 0.5f;
+    const uint16_t *waiting = from;
     uint16_t *words = to;
     const float top = (float)relume_storage_top(c->info.storage);
     const size_t width = (size_t)c->info.width;
-    if (c->info.storage == RELUME_STORE_8)
+    if (c->info.storage == RELUME_STORE_FLOAT)
+        memcpy(to, from, width * sizeof(float));
+    else if (c->info.storage == RELUME_STORE_HALF)
+        rescale_halves(from, width, coefficients_half_scale(r) / c->scale[plane], to);
+    else if (c->info.storage == RELUME_STORE_8)
         unpack_choose(0)->codes(from, width, a, b, to);
     else
         for (size_t x = 0; x < width; x++)
-            words[x] = (uint16_t)(int)clamp((float)from[x] * a + b, top);
+            words[x] = (uint16_t)(int)clamp((float)waiting[x] * a + b, top);
 }
 
-relume_status coefficients_values(const relume_coefficients *c, int row, uint16_t *waiting,
-                                  float *out)
+static void values_of(const relume_coefficients *c, struct range r, const uint16_t *waiting,
+                      float *out)
+{
+    const float step = coefficients_band_step(r), scale = coefficients_half_scale(r);
+    const size_t width = (size_t)c->info.width;
+    if (c->info.storage == RELUME_STORE_HALF)
+        for (size_t x = 0; x < width; x++)
+            out[x] = float_from_half(waiting[x]) * scale;
+    else
+        for (size_t x = 0; x < width; x++)
+            out[x] = r.min + step * (float)waiting[x];
+}
+
+relume_status coefficients_values(const relume_coefficients *c, int row, void *waiting, float *out)
 {
     const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
-    if (!scratch_read(c->fd, waiting, planes * width * 2, coefficients_offset(c, row)))
+    const bool whole = c->info.storage == RELUME_STORE_FLOAT;
+    if (!scratch_read(c->fd, whole ? (void *)out : waiting,
+                      planes * width * coefficients_waiting(c), coefficients_offset(c, row)))
         return RELUME_EIO;
-    for (size_t p = 0; p < planes; p++) {
-        const struct range r = c->band[(size_t)(row / BAND_ROWS) * planes + p];
-        const float step = coefficients_band_step(r);
-        const bool half = c->info.storage == RELUME_STORE_HALF;
-        for (size_t x = p * width; x < (p + 1) * width; x++)
-            out[x] = half ? float_from_half(waiting[x]) : r.min + step * (float)waiting[x];
-    }
+    for (size_t p = 0; !whole && p < planes; p++)
+        values_of(c, c->band[(size_t)(row / BAND_ROWS) * planes + p],
+                  (const uint16_t *)waiting + p * width, out + p * width);
     return RELUME_OK;
 }
 
@@ -190,21 +249,17 @@ relume_status relume_coefficients_read(const relume_coefficients *coefficients, 
 {
     const relume_coefficients *c = coefficients;
     const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
-    const size_t n = planes * width;
-    if (c->info.storage == RELUME_STORE_HALF)
-        return scratch_read(c->fd, out, (size_t)rows * n * 2, coefficients_offset(c, row))
-                   ? RELUME_OK
-                   : RELUME_EIO;
-    uint16_t *packed = mem_array(n, sizeof *packed);  // a row stays in the cache
+    const size_t n = planes * width, wait = coefficients_waiting(c);
+    char *packed = mem_array(n, wait);  // a row stays in the cache
     if (!packed)
         return RELUME_ENOMEM;
-    const size_t bytes = c->info.storage == RELUME_STORE_8 ? 1 : 2;
-    uint8_t *to = out;
+    const size_t bytes = relume_storage_bytes(c->info.storage);
+    char *to = out;
     bool good = true;
     for (int y = row; good && y < row + rows; y++) {
-        good = scratch_read(c->fd, packed, n * sizeof *packed, coefficients_offset(c, y));
+        good = scratch_read(c->fd, packed, n * wait, coefficients_offset(c, y));
         for (size_t p = 0; good && p < planes; p++, to += width * bytes)
-            coefficients_quantise(c, (int)p, y, packed + p * width, to);
+            coefficients_quantise(c, (int)p, y, packed + p * width * wait, to);
     }
     free(packed);
     return good ? RELUME_OK : RELUME_EIO;
@@ -222,8 +277,10 @@ static relume_status keep_row(relume_coefficients *c, const struct relume_codes 
         for (size_t x = 0; x < width; x++)
             to[x] = codes->storage == RELUME_STORE_8 ? bytes[x] : words[x];
         c->band[row / BAND_ROWS * codes->planes + p] =
-            (struct range){codes->offset[p],
-                           (float)((double)codes->offset[p] + 65535.0 * (double)codes->scale[p])};
+            relume_storage_top(codes->storage)
+                ? (struct range){codes->offset[p], (float)((double)codes->offset[p] +
+                                                           65535.0 * (double)codes->scale[p])}
+                : (struct range){0.0f, 65504.0f * codes->scale[p]};
     }
     return scratch_write(c->fd, room, width * (size_t)codes->planes * sizeof *room,
                          coefficients_offset(c, row))
@@ -236,6 +293,8 @@ relume_status relume_coefficients_keep(relume_coefficients **out, const struct r
 {
     struct relume_encode_params p = params ? *params : (struct relume_encode_params){0};
     p.storage = codes->storage;
+    if (codes->storage == RELUME_STORE_FLOAT)
+        return RELUME_EINVAL;
     uint16_t *room = mem_array((size_t)codes->width * (size_t)codes->planes, sizeof *room);
     relume_status status = coefficients_create(out, codes->coder, codes->width, codes->height, &p);
     if (!status && !room)

@@ -21,12 +21,14 @@ struct range range_join(struct range a, struct range b);
 struct range range_settle(struct range r);
 
 // Planes of integer codes wait as 16-bit numbers with a scale of their own per band of rows, finer
-// than any code that follows; halves wait as they are. The file's order is [row][plane][x].
+// than any code that follows; halves wait as they are, over a power of two where they would be too
+// large; floats wait as they are. The file's order is [row][plane][x].
 struct relume_coefficients {
     struct relume_coefficients_info info;
     float *scale, *offset;  // [planes]
-    struct range *band;     // [bands][planes]: 65535 steps each; unused for halves
+    struct range *band;     // [bands][planes]: 65535 steps each, or a scale of halves
     int bands;
+    bool coarse;  // `log`: halves of 8 significant bits
     int fd;
     struct relume_encode_report report;
 };
@@ -43,16 +45,21 @@ static inline uint16_t coefficients_code(float value, struct range r, float scal
     const float code = (value - r.min) * scale + 0.5f;
     return (uint16_t)(int)(code > 0.0f ? code : 0.0f);
 }
+// The power of two, 1 or more, over which all of a range are halves.
+float coefficients_half_scale(struct range r);
+// A value as a half over such a scale; `coarse`: of 8 significant bits.
+uint16_t coefficients_half(float value, float scale, bool coarse);
+// Bytes of a number that waits.
+size_t coefficients_waiting(const relume_coefficients *c);
 // Fix scale and offset of every plane for the range that it has in the whole view.
 void coefficients_choose_steps(relume_coefficients *c, const struct range *total, bool masked,
                                enum relume_step step);
-// One row of one plane: waiting numbers -> codes (uint8_t or uint16_t by the storage).
-void coefficients_quantise(const relume_coefficients *c, int plane, int row, const uint16_t *from,
+// One row of one plane: waiting numbers -> codes as the storage has them.
+void coefficients_quantise(const relume_coefficients *c, int plane, int row, const void *from,
                            void *to);
 
 // One row as it waits, unquantised: out[plane][x]; `waiting` has room for as many numbers.
 // RELUME_EIO.
-relume_status coefficients_values(const relume_coefficients *c, int row, uint16_t *waiting,
-                                  float *out);
+relume_status coefficients_values(const relume_coefficients *c, int row, void *waiting, float *out);
 
 #endif

@@ -11,6 +11,7 @@
 #include "coder/census.h"
 #include "coder/coefficients.h"
 #include "coder/seen.h"
+#include "image/encoder.h"
 #include "image/half.h"
 
 #include <errno.h>
@@ -18,7 +19,7 @@
 #include <math.h>
 #include <string.h>
 
-struct encoder {
+struct encoding {
     const relume_coder *coder;
     relume_coefficients *out;
     int lights, width, height, planes;
@@ -30,10 +31,10 @@ struct encoder {
     float *values;        // [planes][rows][x]
     struct range *chunk;  // [chunks of a band][planes]
     float *work;          // [workers][coder_work]
-    uint16_t *packed[2];  // [rows][planes][x]: one is filled while the other is written
+    void *packed[2];      // [rows][planes][x]: one is filled while the other is written
     int filling;
     struct thread_task writing;
-    const uint16_t *write_from;
+    const void *write_from;
     size_t write_bytes;
     off_t write_at;
     int write_error;  // errno of a write that failed
@@ -44,6 +45,9 @@ struct encoder {
     struct census census;
     size_t repaired;
     double error_sum, root_sum;
+    struct encoder *screen;  // the display's coding of linear coefficients, or NULL: they are coded
+    double *shown_error;     // [lights]: squared, of display values, by the basis
+    double stored_error;     // mean square of them by storing
     size_t error_count, lit_count;
     int threads;
 };
@@ -54,7 +58,7 @@ static bool is_inside(const struct relume_image *mask, size_t pixel)
 }
 
 // Pixels outside the mask are 0.
-static void apply_mask(const struct encoder *e, size_t first, size_t n)
+static void apply_mask(const struct encoding *e, size_t first, size_t n)
 {
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
     const size_t at = (size_t)e->row * (size_t)e->width;
@@ -64,7 +68,7 @@ static void apply_mask(const struct encoder *e, size_t first, size_t n)
                 e->values[p * pixels + x] = 0.0f;
 }
 
-static struct range band_range(const struct encoder *e, size_t plane)
+static struct range band_range(const struct encoding *e, size_t plane)
 {
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
     struct range r = e->chunk[plane];
@@ -74,7 +78,7 @@ static struct range band_range(const struct encoder *e, size_t plane)
 }
 
 // Samples of `n` pixels of the band: [channel][light][pixel].
-static void gather(const struct encoder *e, size_t first, size_t n, float *separated)
+static void gather(const struct encoding *e, size_t first, size_t n, float *separated)
 {
     const size_t pixels = (size_t)e->rows * (size_t)e->width, lights = (size_t)e->lights;
     if (e->seen)
@@ -86,7 +90,7 @@ static void gather(const struct encoder *e, size_t first, size_t n, float *separ
 
 static void apply_chunk(void *context, size_t item, int worker)
 {
-    struct encoder *e = context;
+    struct encoding *e = context;
     const size_t pixels = (size_t)e->rows * (size_t)e->width, first = item * CODER_CHUNK;
     const size_t n = pixels - first < CODER_CHUNK ? pixels - first : CODER_CHUNK;
     const size_t at = (size_t)e->row * (size_t)e->width + first;
@@ -103,20 +107,24 @@ static void apply_chunk(void *context, size_t item, int worker)
 static void pack_plane(void *context, size_t plane, int worker)
 {
     (void)worker;
-    struct encoder *e = context;
+    struct encoding *e = context;
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
     const float *v = e->values + plane * pixels;
-    const bool half = e->out->info.storage == RELUME_STORE_HALF;
+    const enum relume_storage storage = e->out->info.storage;
     const struct range r = band_range(e, plane);
     const float scale = r.max > r.min ? 65535.0f / (r.max - r.min) : 0.0f;
+    const float over = coefficients_half_scale(r);
     e->out->band[(size_t)(e->row / BAND_ROWS) * (size_t)e->planes + plane] = r;
     e->total[plane] = range_join(e->total[plane], r);
     for (int y = 0; y < e->rows; y++) {
-        uint16_t *to = e->packed[e->filling] + ((size_t)y * (size_t)e->planes + plane) * width;
+        const size_t at = ((size_t)y * (size_t)e->planes + plane) * width;
+        uint16_t *to = (uint16_t *)e->packed[e->filling] + at;
         const float *from = v + (size_t)y * width;
-        if (half)
+        if (storage == RELUME_STORE_FLOAT)
+            memcpy((float *)e->packed[e->filling] + at, from, width * sizeof *from);
+        else if (storage == RELUME_STORE_HALF)
             for (size_t x = 0; x < width; x++)
-                to[x] = half_from_float(from[x]);
+                to[x] = coefficients_half(from[x], over, e->out->coarse);
         else
             for (size_t x = 0; x < width; x++)
                 to[x] = coefficients_code(from[x], r, scale);
@@ -130,14 +138,24 @@ static bool is_measured(const relume_coefficients *c, int row)
 }
 
 // Black says nothing of what is typical.
-static void add_root(struct encoder *e, double sample)
+static void add_root(struct encoding *e, double sample)
 {
     e->root_sum += sample > 0.0 ? sqrt(sample) : 0.0;
     e->lit_count += sample > 0.0;
 }
 
+// The squared difference on a display.
+static double shown_difference(const struct encoding *e, float a, float b)
+{
+    float v[2] = {a, b};
+    if (e->screen)
+        encoder_apply(e->screen, v, v, 2);
+    const double d = (double)encoder_clip(v[0]) - (double)encoder_clip(v[1]);
+    return d * d;
+}
+
 // What the basis cannot express, on the first row of the band.
-static relume_status measure_fit(struct encoder *e)
+static relume_status measure_fit(struct encoding *e)
 {
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
     const size_t size = (size_t)e->lights * width;
@@ -154,6 +172,7 @@ static relume_status measure_fit(struct encoder *e)
                     const double sample = (double)seen[(size_t)c * size + i * width + x];
                     const double d = sample - (double)again[i * width + x];
                     e->error_sum += d * d;
+                    e->shown_error[i] += shown_difference(e, (float)sample, again[i * width + x]);
                     add_root(e, sample);
                     e->error_count++;
                 }
@@ -163,7 +182,7 @@ static relume_status measure_fit(struct encoder *e)
 }
 
 // The same of near lights: a pixel in 8.
-static relume_status measure_seen(struct encoder *e)
+static relume_status measure_seen(struct encoding *e)
 {
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
     float *again = mem_array(3 * (size_t)e->lights, sizeof *again);
@@ -177,6 +196,7 @@ static relume_status measure_seen(struct encoder *e)
             const double sample = (double)e->own[(i / 3 * pixels + x) * 3 + i % 3];
             const double d = sample - (double)again[i];
             e->error_sum += d * d;
+            e->shown_error[i / 3] += shown_difference(e, (float)sample, again[i]);
             add_root(e, sample);
             e->error_count++;
         }
@@ -185,11 +205,10 @@ static relume_status measure_seen(struct encoder *e)
     return RELUME_OK;
 }
 
-// Ranges and steps are differences of coefficients, which must not overflow; halves end at 65504.
-static relume_status check_size(const struct encoder *e, const struct relume_encode_params *p)
+// Ranges and steps are differences of coefficients, which must not overflow.
+static relume_status check_size(const struct encoding *e, const struct relume_encode_params *p)
 {
-    const bool half = e->out->info.storage == RELUME_STORE_HALF;
-    const float most = half ? 65504.0f : FLT_MAX / 4.0f;
+    const float most = FLT_MAX / 4.0f;
     const struct range *r = e->out->band + (size_t)(e->row / BAND_ROWS) * (size_t)e->planes;
     bool fits = true;
     for (int i = 0; i < e->planes; i++)
@@ -197,19 +216,19 @@ static relume_status check_size(const struct encoder *e, const struct relume_enc
     if (fits)
         return RELUME_OK;
     return log_fail(p->log, RELUME_EDATA,
-                    "%s: coefficients in rows %d to %d are too large for %s; expected at most %g",
-                    e->images[0], e->row, e->row + e->rows - 1,
-                    half ? "half storage" : "single precision", (double)most);
+                    "%s: rows %d to %d are too bright to be stored; expected values of at most %g: "
+                    "lower the exposure",
+                    e->images[0], e->row, e->row + e->rows - 1, (double)most);
 }
 
 static void write_packed(void *context)
 {
-    struct encoder *e = context;
+    struct encoding *e = context;
     if (!scratch_write(e->out->fd, e->write_from, e->write_bytes, e->write_at))
         e->write_error = errno;
 }
 
-static relume_status finish_writing(struct encoder *e, const struct relume_encode_params *p)
+static relume_status finish_writing(struct encoding *e, const struct relume_encode_params *p)
 {
     thread_wait(&e->writing);
     if (!e->write_error)
@@ -219,21 +238,21 @@ static relume_status finish_writing(struct encoder *e, const struct relume_encod
 }
 
 // Send the band just packed to the scratch file while the next one is read.
-static relume_status write_band(struct encoder *e, size_t pixels,
+static relume_status write_band(struct encoding *e, size_t pixels,
                                 const struct relume_encode_params *p)
 {
     const relume_status status = finish_writing(e, p);
     if (status)
         return status;
     e->write_from = e->packed[e->filling];
-    e->write_bytes = pixels * (size_t)e->planes * sizeof *e->write_from;
+    e->write_bytes = pixels * (size_t)e->planes * coefficients_waiting(e->out);
     e->write_at = coefficients_offset(e->out, e->row);
     e->filling ^= 1;
     thread_start(&e->writing, write_packed, e);
     return RELUME_OK;
 }
 
-static relume_status encode_band(struct encoder *e, const struct relume_encode_params *p)
+static relume_status encode_band(struct encoding *e, const struct relume_encode_params *p)
 {
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
     relume_status status = e->seen ? relume_table_read_seen(e->table, e->rows, e->samples, e->own)
@@ -254,7 +273,7 @@ static relume_status encode_band(struct encoder *e, const struct relume_encode_p
     return write_band(e, pixels, p);
 }
 
-static void say_repaired(struct encoder *e, int light, size_t pixels, const struct relume_log *log)
+static void say_repaired(struct encoding *e, int light, size_t pixels, const struct relume_log *log)
 {
     e->repaired += pixels;
     if (pixels)
@@ -262,7 +281,7 @@ static void say_repaired(struct encoder *e, int light, size_t pixels, const stru
                  e->images[light], pixels, pixels > 1 ? "s are" : " is");
 }
 
-static relume_status see_near(struct encoder *e)
+static relume_status see_near(struct encoding *e)
 {
     const size_t lights = 3 * (size_t)e->lights * BAND_ROWS, row = (size_t)e->width;
     e->samples = mem_array(lights, row * sizeof *e->samples);
@@ -272,7 +291,7 @@ static relume_status see_near(struct encoder *e)
     return seen_create(&e->seen, e->coder, e->table, e->width, e->height, e->threads);
 }
 
-static relume_status encode_bands(struct encoder *e, const relume_capture *capture, int view,
+static relume_status encode_bands(struct encoding *e, const relume_capture *capture, int view,
                                   struct relume_transfer display,
                                   const struct relume_encode_params *p)
 {
@@ -321,7 +340,7 @@ static relume_status read_row(const relume_coefficients *c, int row, uint16_t *w
 }
 
 // What storing cost, over the captured lights, on the same rows.
-static relume_status measure_storage(relume_coefficients *c, const struct encoder *e)
+static relume_status measure_storage(relume_coefficients *c, struct encoding *e)
 {
     const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
     const size_t size = (size_t)e->lights * width;
@@ -345,11 +364,13 @@ static relume_status measure_storage(relume_coefficients *c, const struct encode
                 if (is_inside(e->mask, (size_t)row * width + i % width)) {
                     const double d = (double)wanted[i] - (double)stored[i];
                     sum += d * d;
+                    e->stored_error += shown_difference(e, wanted[i], stored[i]);
                     count++;
                 }
         }
     }
     c->report.store_rms = count ? sqrt(sum / (double)count) : 0.0;
+    e->stored_error /= count ? (double)count : 1.0;
     free(waiting);
     free(codes);
     free(before);
@@ -374,23 +395,35 @@ struct relume_transfer relume_encode_display(const relume_capture *capture)
     return t.curve == RELUME_CURVE_GAMMA ? t : (struct relume_transfer){.curve = RELUME_CURVE_SRGB};
 }
 
-static relume_status alloc_encoder(struct encoder *e)
+// Mean over lights; those that are met exactly count as 100 dB.
+static double shown_psnr(const struct encoding *e)
+{
+    const double each = (double)e->error_count / e->lights;
+    double sum = 0.0;
+    for (int i = 0; each > 0.0 && i < e->lights; i++)
+        sum -= 10.0 * log10(fmax(e->shown_error[i] / each + e->stored_error, 1e-10)) / e->lights;
+    return sum;
+}
+
+static relume_status alloc_encoder(struct encoding *e)
 {
     const size_t band = (size_t)BAND_ROWS * (size_t)e->width, planes = (size_t)e->planes;
     e->values = mem_array(planes * band, sizeof *e->values);
     e->chunk = mem_array((band + CODER_CHUNK - 1) / CODER_CHUNK * planes, sizeof *e->chunk);
     e->work = mem_array((size_t)thread_count(e->threads) * coder_work(e->coder), sizeof *e->work);
     for (int i = 0; i < 2; i++)
-        e->packed[i] = mem_array(planes * band, sizeof *e->packed[i]);
+        e->packed[i] = mem_array(planes * band, coefficients_waiting(e->out));
     e->total = mem_array(planes, sizeof *e->total);
-    if (!e->values || !e->chunk || !e->work || !e->packed[0] || !e->packed[1] || !e->total)
+    e->shown_error = mem_zeroed((size_t)e->lights, sizeof *e->shown_error);
+    if (!e->values || !e->shown_error || !e->chunk || !e->work || !e->packed[0] || !e->packed[1] ||
+        !e->total)
         return RELUME_ENOMEM;
     for (size_t p = 0; p < planes; p++)
         e->total[p] = (struct range){FLT_MAX, -FLT_MAX};
     return captured_create(&e->captured, e->coder, e->coder->world, e->lights);
 }
 
-static void free_encoder(struct encoder *e)
+static void free_encoder(struct encoding *e)
 {
     free(e->samples);
     free(e->own);
@@ -400,6 +433,8 @@ static void free_encoder(struct encoder *e)
     free(e->packed[0]);
     free(e->packed[1]);
     free(e->total);
+    free(e->shown_error);
+    free(e->screen);
     captured_destroy(&e->captured);
     census_destroy(&e->census);
 }
@@ -419,7 +454,7 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
     if (status)
         return status;
     relume_coefficients *c = NULL;
-    struct encoder e = {
+    struct encoding e = {
         .coder = coder,
         .lights = m->lights,
         .width = relume_capture_width(capture),
@@ -437,6 +472,12 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
     e.out = c;
     if (!status)
         status = alloc_encoder(&e);
+    if (!status && display.curve == RELUME_CURVE_LINEAR) {
+        e.screen = mem_array(1, sizeof *e.screen);
+        status = e.screen ? RELUME_OK : RELUME_ENOMEM;
+        if (e.screen)
+            encoder_init(e.screen, relume_encode_display(capture));
+    }
     if (!status)
         status = census_create(&e.census, capture, display, thread_count(p.threads));
     if (!status)
@@ -448,8 +489,9 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
         const double root = e.lit_count ? e.root_sum / (double)e.lit_count : 0.0;
         c->report.typical = root * root;
         coefficients_choose_steps(c, e.total, mask.data != NULL, p.step);
-        if (c->info.storage != RELUME_STORE_HALF)
+        if (relume_storage_top(c->info.storage))
             status = measure_storage(c, &e);
+        c->report.psnr_db = shown_psnr(&e);
     }
     free_encoder(&e);
     relume_image_destroy(&mask);

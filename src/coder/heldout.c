@@ -229,8 +229,11 @@ static void store_and_restore(const struct fold *f, struct chunk c, float *to)
             const float code = (from[i] - offset) * inverse + 0.5f;
             row[i] = (float)(int)(code > 0.0f ? code < top ? code : top : 0.0f) * scale + offset;
         }
+        const bool whole = f->store->storage == RELUME_STORE_FLOAT;
+        const bool coarse = f->store->storage == RELUME_STORE_LOG;
         for (size_t i = 0; top == 0.0f && i < c.n; i++)
-            row[i] = float_from_half(half_from_float(from[i]));
+            row[i] = whole ? from[i]
+                           : float_from_half(coefficients_half(from[i], scale, coarse)) * scale;
     }
 }
 
@@ -253,10 +256,10 @@ static void compare_row(const struct fold *f, struct chunk c, int place, int cha
     }
     double coded = 0.0, unrounded = 0.0;
     for (size_t i = 0; i < c.n; i++) {
-        row[i] = encoder_clip(row[i]);
+        const bool inside = !mask || mask[i] > 0.5f;
+        row[i] = inside ? encoder_clip(row[i]) : 0.0f;
         const int d = encoder_code(row[i]) - code[3 * i];
         const double e = (double)row[i] - (double)encoder_clip(shown[i]);
-        const bool inside = !mask || mask[i] > 0.5f;
         coded += inside ? (double)(d * d) : 0.0;
         unrounded += inside ? e * e : 0.0;
         s->samples += inside;

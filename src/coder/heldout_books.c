@@ -35,22 +35,30 @@ static int rows_of(const relume_heldout *h, int view, size_t *first)
 
 // One band of rows as it waits in a scratch file (coefficients.h).
 static relume_status keep_band(relume_coefficients *c, int row, const float *value, size_t stride,
-                               uint16_t *packed)
+                               void *packed)
 {
+    uint16_t *words = packed;
+    float *floats = packed;
     const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
     const size_t rows =
         (size_t)(c->info.height - row < BAND_ROWS ? c->info.height - row : BAND_ROWS);
-    const bool half = c->info.storage == RELUME_STORE_HALF;
+    const enum relume_storage storage = c->info.storage;
     for (size_t p = 0; p < planes; p++) {
         const float *v = value + p * stride;
         const struct range r = range_settle(range_of(v, rows * width));
         const float scale = r.max > r.min ? 65535.0f / (r.max - r.min) : 0.0f;
+        const float over = coefficients_half_scale(r);
         c->band[(size_t)(row / BAND_ROWS) * planes + p] = r;
-        for (size_t i = 0; i < rows * width; i++)
-            packed[(i / width * planes + p) * width + i % width] =
-                half ? half_from_float(v[i]) : coefficients_code(v[i], r, scale);
+        for (size_t i = 0; i < rows * width; i++) {
+            const size_t at = (i / width * planes + p) * width + i % width;
+            if (storage == RELUME_STORE_FLOAT)
+                floats[at] = v[i];
+            else
+                words[at] = storage == RELUME_STORE_HALF ? coefficients_half(v[i], over, c->coarse)
+                                                         : coefficients_code(v[i], r, scale);
+        }
     }
-    return scratch_write(c->fd, packed, rows * planes * width * sizeof *packed,
+    return scratch_write(c->fd, packed, rows * planes * width * coefficients_waiting(c),
                          coefficients_offset(c, row))
                ? RELUME_OK
                : RELUME_EIO;
@@ -62,7 +70,7 @@ static relume_status keep_view(relume_coefficients **out, const relume_heldout *
 {
     const int rows = rows_of(h, view, first);
     const size_t width = (size_t)h->width, planes = (size_t)relume_coder_info(coder)->planes;
-    uint16_t *packed = mem_array(planes * BAND_ROWS * width, sizeof *packed);
+    void *packed = mem_array(planes * BAND_ROWS * width, sizeof(float));
     relume_status status = packed ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
         status = coefficients_create(

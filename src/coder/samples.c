@@ -3,11 +3,12 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "coder/coefficients.h"
+#include "coder/samples.h"
 #include "math/random.h"
 
 #include <string.h>
 
-enum { DEFAULT_PIXELS = 65536, LEAST_PIXELS = 4096 };
+enum { DEFAULT_PIXELS = 65536, LEAST_PIXELS = 4096, ONE_LIGHT = 1 << 20 };
 
 struct sampler {
     struct relume_samples *out;
@@ -126,10 +127,11 @@ void relume_samples_destroy(struct relume_samples *samples)
     *samples = (struct relume_samples){0};
 }
 
-// The work of learning grows with the square of the lights.
-static size_t enough_pixels(int lights)
+size_t samples_enough(int lights)
 {
     const double values = 3.0 * lights, most = 1e11 / (values * values);
+    if (lights == 1)
+        return ONE_LIGHT;
     return most < LEAST_PIXELS     ? LEAST_PIXELS
            : most < DEFAULT_PIXELS ? (size_t)most
                                    : DEFAULT_PIXELS;
@@ -149,7 +151,7 @@ relume_status relume_coder_learn(relume_coder **out, const struct relume_basis *
     relume_status status = RELUME_OK;
     *out = NULL;
     if (basis->learned || p.choose) {
-        status = relume_samples_read(&samples, capture, enough_pixels(m->lights), encode);
+        status = relume_samples_read(&samples, capture, samples_enough(m->lights), encode);
         p.samples = &samples;
     }
     if (!status)

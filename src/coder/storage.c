@@ -9,7 +9,8 @@ static const struct {
 } kinds[] = {
     [RELUME_STORE_8] = {"8", 255},     [RELUME_STORE_10] = {"10", 1023},
     [RELUME_STORE_12] = {"12", 4095},  [RELUME_STORE_16] = {"16", 65535},
-    [RELUME_STORE_HALF] = {"half", 0},
+    [RELUME_STORE_HALF] = {"half", 0}, [RELUME_STORE_FLOAT] = {"float", 0},
+    [RELUME_STORE_LOG] = {"log", 0},
 };
 
 const char *relume_storage_name(enum relume_storage storage)

@@ -89,10 +89,12 @@ static void read_plane(const struct relume_codes *codes, int plane, size_t first
     const float scale = codes->scale[plane], offset = codes->offset[plane];
     const uint8_t *bytes = (const uint8_t *)codes->plane[plane] + first;
     const uint16_t *words = (const uint16_t *)codes->plane[plane] + first;
+    const float *floats = (const float *)codes->plane[plane] + first;
     for (size_t i = 0; i < n; i++) {
-        const float code = codes->storage == RELUME_STORE_8      ? (float)bytes[i]
-                           : codes->storage == RELUME_STORE_HALF ? float_from_half(words[i])
-                                                                 : (float)words[i];
+        const float code = codes->storage == RELUME_STORE_8       ? (float)bytes[i]
+                           : codes->storage == RELUME_STORE_FLOAT ? floats[i]
+                           : codes->storage == RELUME_STORE_HALF  ? float_from_half(words[i])
+                                                                  : (float)words[i];
         out[i] = code * scale + offset;
     }
 }
@@ -129,7 +131,7 @@ struct band {
 static relume_status open_band(struct band *band, const struct source *s, int row, int rows)
 {
     const struct relume_codes *whole = s->codes;
-    const size_t code = whole->storage == RELUME_STORE_8 ? 1 : 2;
+    const size_t code = relume_storage_bytes(whole->storage);
     const size_t first = (size_t)row * (size_t)s->width;
     *band = (struct band){.codes = *whole};
     band->plane = mem_array((size_t)whole->planes, sizeof *band->plane);

@@ -88,6 +88,7 @@ static struct relume_encode_report mean_report(const struct material *m)
         sum.fit_rms += r.fit_rms * r.fit_rms / m->views;
         sum.store_rms += r.store_rms * r.store_rms / m->views;
         sum.typical += r.typical / m->views;
+        sum.psnr_db += r.psnr_db / m->views;
         add_census(&sum.census, &r.census);
     }
     sum.fit_rms = sqrt(sum.fit_rms);

@@ -9,7 +9,9 @@
 
 enum exr_sample reader_sample(const relume_pack *p)
 {
-    return relume_storage_top(p->info.storage) > 2047 ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF;
+    return p->info.storage == RELUME_STORE_FLOAT        ? EXR_SAMPLE_FLOAT
+           : relume_storage_top(p->info.storage) > 2047 ? EXR_SAMPLE_UINT
+                                                        : EXR_SAMPLE_HALF;
 }
 
 static void book_name(char name[48], int view, int book)
@@ -105,7 +107,7 @@ static relume_status load_book(relume_pack *p, int part, const struct relume_boo
     struct relume_book book = *b;
     const size_t dim = (size_t)b->dim, codes = (size_t)b->codes;
     const int planes = relume_coder_info(p->coder)->planes;
-    void *numbers = mem_array(dim * codes, b->storage == RELUME_STORE_8 ? 1 : 2);
+    void *numbers = mem_array(dim * codes, relume_storage_bytes(b->storage));
     size_t *place = mem_array(dim, sizeof *place);
     float *out = mem_zeroed((codes + 1) * (size_t)planes, sizeof *out);
     relume_status status = numbers && place && out ? RELUME_OK : RELUME_ENOMEM;

@@ -19,6 +19,8 @@ relume_status reader_mask_plane(relume_pack *p, int view, void *plane)
         const bool inside = !mask.data || mask.data[i] > 0.5f;
         if (p->info.storage == RELUME_STORE_8)
             ((uint8_t *)plane)[i] = inside;
+        else if (p->info.storage == RELUME_STORE_FLOAT)
+            ((float *)plane)[i] = inside;
         else
             ((uint16_t *)plane)[i] = inside ? one : 0;
     }

@@ -73,8 +73,9 @@ static relume_status read_kinds(relume_pack *p)
     if (!display || relume_transfer_parse(&p->info.display, display))
         return reader_bad(p, ATTR_DISPLAY, "srgb or gamma:NUMBER");
     p->info.domain = strcmp(domain, "linear") ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR;
-    if (!storage || relume_storage_parse(&p->info.storage, storage))
-        return reader_bad(p, ATTR_STORAGE, "8, 10, 12, 16 or half");
+    if (!storage || relume_storage_parse(&p->info.storage, storage) ||
+        p->info.storage == RELUME_STORE_LOG)
+        return reader_bad(p, ATTR_STORAGE, "8, 10, 12, 16, half or float");
     return RELUME_OK;
 }
 
@@ -415,6 +416,7 @@ static bool load_row(const struct loading *l, const void *samples, size_t i, voi
     const uint32_t *uints = (const uint32_t *)samples + i;
     uint8_t *bytes = (uint8_t *)to + at;
     uint16_t *words = (uint16_t *)to + at;
+    float *floats = (float *)to + at;
     const uint16_t top = (uint16_t)relume_storage_top(storage);
     unsigned wrong = 0;
     for (size_t x = 0; x < l->width; x++)
@@ -427,6 +429,10 @@ static bool load_row(const struct loading *l, const void *samples, size_t i, voi
         case RELUME_STORE_HALF:
             words[x] = halves[x];
             wrong |= (halves[x] & 0x7c00) == 0x7c00;
+            break;
+        case RELUME_STORE_FLOAT:
+            floats[x] = ((const float *)samples)[i + x];
+            wrong |= !isfinite(floats[x]);
             break;
         case RELUME_STORE_10:
             words[x] = l->pack->code_of_half[halves[x]];
@@ -492,8 +498,8 @@ static relume_status load_planes(relume_pack *p, int view)
     struct loaded *to = &p->loaded[view];
     const struct relume_coder_info *coder = relume_coder_info(p->coder);
     const size_t planes = (size_t)coder->planes, stored = (size_t)p->info.planes;
-    const size_t plane_bytes = (size_t)p->info.width * (size_t)p->info.height *
-                               (p->info.storage == RELUME_STORE_8 ? 1 : 2);
+    const size_t plane_bytes =
+        (size_t)p->info.width * (size_t)p->info.height * relume_storage_bytes(p->info.storage);
     const int part = p->parts[view].codes;
     size_t *place = mem_array(planes, sizeof *place);
     to->plane = mem_array(planes, sizeof *to->plane);

@@ -56,7 +56,14 @@ static int file_channel(const struct relume_coder_info *info, int plane)
 // Codes beyond halves' whole numbers are UINT.
 static bool is_wide(enum relume_storage storage)
 {
-    return relume_storage_top(storage) > 2047;
+    return storage == RELUME_STORE_FLOAT || relume_storage_top(storage) > 2047;
+}
+
+static enum exr_sample sample_of(enum relume_storage storage)
+{
+    return storage == RELUME_STORE_FLOAT ? EXR_SAMPLE_FLOAT
+           : is_wide(storage)            ? EXR_SAMPLE_UINT
+                                         : EXR_SAMPLE_HALF;
 }
 
 struct view_source {
@@ -71,8 +78,8 @@ static void store_row(enum relume_storage storage, const uint16_t *half_of_code,
     const uint16_t *words = codes;
     uint16_t *halves = samples;
     uint32_t *uints = samples;
-    if (storage == RELUME_STORE_HALF)
-        memcpy(halves, words, width * sizeof *halves);
+    if (storage == RELUME_STORE_HALF || storage == RELUME_STORE_FLOAT)
+        memcpy(samples, codes, width * relume_storage_bytes(storage));
     else if (is_wide(storage))
         for (size_t x = 0; x < width; x++)
             uints[x] = words[x];
@@ -86,7 +93,7 @@ static relume_status view_rows(void *context, int row, int rows, void *samples)
     const struct view_source *source = context;
     const struct relume_coefficients_info *info = relume_coefficients_info(source->coefficients);
     const size_t width = (size_t)info->width, planes = (size_t)info->planes;
-    const size_t code = info->storage == RELUME_STORE_8 ? 1 : 2;
+    const size_t code = relume_storage_bytes(info->storage);
     const size_t sample = is_wide(info->storage) ? 4 : 2;
     char *codes = mem_array(planes * width, code);  // a row stays in the cache
     relume_status status = codes ? RELUME_OK : RELUME_ENOMEM;
@@ -130,7 +137,7 @@ static relume_status book_row(void *context, int row, int rows, void *samples)
     for (int d = 0; d < b->dim; d++) {
         const int channel =
             b->kind == RELUME_BOOK_PLANES ? file_channel(s->coder, b->first + d) - b->first : d;
-        const size_t number = b->storage == RELUME_STORE_8 ? 1 : 2;
+        const size_t number = relume_storage_bytes(b->storage);
         store_row(b->storage, s->half_of_code,
                   (const char *)b->numbers + (size_t)d * codes * number, codes,
                   (char *)samples + (size_t)channel * codes * (is_wide(b->storage) ? 4 : 2));
@@ -152,12 +159,14 @@ static void add_plane(const struct relume_coefficients_info *info, const void *c
 {
     const uint8_t *bytes = (const uint8_t *)codes + at;
     const uint16_t *words = (const uint16_t *)codes + at;
+    const float *floats = (const float *)codes + at;
     const size_t width = (size_t)info->width;
     const float step = weight * info->scale[plane], base = weight * info->offset[plane];
     for (size_t x = 0; x < width; x++)
-        sum[x] += info->storage == RELUME_STORE_8      ? step * (float)bytes[x] + base
-                  : info->storage == RELUME_STORE_HALF ? weight * float_from_half(words[x])
-                                                       : step * (float)words[x] + base;
+        sum[x] += info->storage == RELUME_STORE_8       ? step * (float)bytes[x] + base
+                  : info->storage == RELUME_STORE_FLOAT ? weight * floats[x]
+                  : info->storage == RELUME_STORE_HALF  ? step * float_from_half(words[x])
+                                                        : step * (float)words[x] + base;
 }
 
 // sum[x] *= the pixel's colour
@@ -230,7 +239,8 @@ static relume_status preview_planes(const struct preview *p, int row, int rows, 
 {
     const struct relume_coefficients_info *info = relume_coefficients_info(p->coefficients);
     const size_t width = (size_t)info->width;
-    void *codes = mem_array((size_t)rows * (size_t)info->planes * width, 2);
+    void *codes =
+        mem_array((size_t)rows * (size_t)info->planes * width, relume_storage_bytes(info->storage));
     float *sum = mem_array(2 * width, sizeof *sum);
     relume_status status = codes && sum ? RELUME_OK : RELUME_ENOMEM;
     if (!status)
@@ -516,7 +526,7 @@ static bool fill_with_planes(struct builder *b, struct exr_part *part, struct ex
     if (!source)
         return false;
     *source = (struct view_source){view->coefficients, b->half_of_code};
-    part->sample = is_wide(info->storage) ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF;
+    part->sample = sample_of(info->storage);
     part->channels = info->planes;
     part->channel = b->channels;
     part->rows = view_rows;
@@ -569,7 +579,7 @@ static bool add_book(struct builder *b, const char *name, const struct relume_co
         .name = name,
         .width = book->codes,
         .height = 1,
-        .sample = is_wide(book->storage) ? EXR_SAMPLE_UINT : EXR_SAMPLE_HALF,
+        .sample = sample_of(book->storage),
         .codec = codec,
         .channels = book->dim,
         .channel = channels,

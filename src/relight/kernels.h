@@ -13,6 +13,8 @@ struct kernels {
                       const float *weights, int count);
     void (*dot_halves)(float *out, size_t n, float bias, const uint16_t *const *planes,
                        const float *weights, int count);
+    void (*dot_floats)(float *out, size_t n, float bias, const float *const *planes,
+                       const float *weights, int count);
     // out[i] = table[index[i]]
     void (*look_up)(uint32_t *out, size_t n, const uint16_t *index, const uint32_t *table);
 };

@@ -21,6 +21,11 @@ static inline __m256 load_halves(const void *p)
     return _mm256_cvtph_ps(_mm_loadu_si128(p));
 }
 
+static inline __m256 load_floats(const void *p)
+{
+    return _mm256_loadu_ps(p);
+}
+
 static inline float byte_value(const void *p)
 {
     return *(const uint8_t *)p;
@@ -34,6 +39,11 @@ static inline float word_value(const void *p)
 static inline float half_value(const void *p)
 {
     return _cvtsh_ss(*(const uint16_t *)p);
+}
+
+static inline float float_value(const void *p)
+{
+    return *(const float *)p;
 }
 
 // One sweep over up to 4 planes. `load`, `value` and `size` are constants at each call, so that
@@ -93,6 +103,12 @@ static void dot_halves(float *out, size_t n, float bias, const uint16_t *const *
     dot(out, n, bias, planes, weights, count, 2, load_halves, half_value);
 }
 
+static void dot_floats(float *out, size_t n, float bias, const float *const *planes,
+                       const float *weights, int count)
+{
+    dot(out, n, bias, planes, weights, count, 4, load_floats, float_value);
+}
+
 // Eight plain loads are faster than a gather, and stores past the cache save reading what is
 // overwritten.
 static void look_up(uint32_t *out, size_t n, const uint16_t *index, const uint32_t *table)
@@ -112,7 +128,7 @@ static void look_up(uint32_t *out, size_t n, const uint16_t *index, const uint32
         out[i] = table[index[i]];
 }
 
-const struct kernels kernels_avx2 = {"avx2", dot_bytes, dot_words, dot_halves, look_up};
+const struct kernels kernels_avx2 = {"avx2", dot_bytes, dot_words, dot_halves, dot_floats, look_up};
 #else
 const struct kernels kernels_avx2;  // never chosen: relume_cpu_features has no such bit here
 #endif

@@ -36,13 +36,22 @@ static void dot_halves(float *out, size_t n, float bias, const uint16_t *const *
             out[i] += weights[k] * float_from_half(planes[k][i]);
 }
 
+static void dot_floats(float *out, size_t n, float bias, const float *const *planes,
+                       const float *weights, int count)
+{
+    fill(out, n, bias);
+    for (int k = 0; k < count; k++)
+        for (size_t i = 0; i < n; i++)
+            out[i] += weights[k] * planes[k][i];
+}
+
 static void look_up(uint32_t *out, size_t n, const uint16_t *index, const uint32_t *table)
 {
     for (size_t i = 0; i < n; i++)
         out[i] = table[index[i]];
 }
 
-const struct kernels kernels_c = {"c", dot_bytes, dot_words, dot_halves, look_up};
+const struct kernels kernels_c = {"c", dot_bytes, dot_words, dot_halves, dot_floats, look_up};
 
 const struct kernels *kernels_choose(unsigned cpu_off)
 {

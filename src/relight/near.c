@@ -162,6 +162,9 @@ static const float *read_plane(float room[LANES], struct block *b, const struct 
     else if (codes->storage == RELUME_STORE_HALF)
         for (int i = 0; i < b->n; i++)
             room[i] = float_from_half(words[i]);
+    else if (codes->storage == RELUME_STORE_FLOAT)
+        for (int i = 0; i < b->n; i++)
+            room[i] = ((const float *)from + b->first)[i];
     else
         for (int i = 0; i < b->n; i++)
             room[i] = words[i];

@@ -89,7 +89,7 @@ static struct relume_codes cut_band(const struct fit *f, const void **planes,
 {
     struct relume_codes band = *f->codes;
     const size_t before = (size_t)f->row * (size_t)band.width;
-    const size_t bytes = band.storage == RELUME_STORE_8 ? 1 : 2;
+    const size_t bytes = relume_storage_bytes(band.storage);
     for (int i = 0; !band.books && i < band.planes; i++)
         planes[i] = (const char *)band.plane[i] + before * bytes;
     for (int b = 0; b < band.books; b++)

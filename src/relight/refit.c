@@ -96,7 +96,7 @@ static void some_destroy(struct some *some)
 static relume_status some_create(struct some *some, const struct relume_codes *from, size_t first,
                                  size_t step, size_t n)
 {
-    const size_t size = !from->books && from->storage == RELUME_STORE_8 ? 1 : 2;
+    const size_t size = from->books ? 2 : relume_storage_bytes(from->storage);
     const size_t rows = (size_t)(from->books ? from->books : from->planes);
     *some = (struct some){.codes = *from};
     some->bytes = mem_array(rows * n, size);

@@ -190,6 +190,8 @@ static void dot_group(const struct job *job, float *out, size_t n, float bias,
         job->kernels->dot_bytes(out, n, bias, p, weights, count);
     else if (job->codes->storage == RELUME_STORE_HALF)
         job->kernels->dot_halves(out, n, bias, p, weights, count);
+    else if (job->codes->storage == RELUME_STORE_FLOAT)
+        job->kernels->dot_floats(out, n, bias, p, weights, count);
     else
         job->kernels->dot_words(out, n, bias, p, weights, count);
 }
@@ -209,7 +211,7 @@ static void dot_planes(const struct job *job, const struct pass *pass, int chann
 {
     const struct relume_codes *codes = job->codes;
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
-    const size_t offset = first * (codes->storage == RELUME_STORE_8 ? 1 : 2);
+    const size_t offset = first * relume_storage_bytes(codes->storage);
     const float *w = pass->weights + channel * info->coefficients;
     const void *planes[GROUP];
     float weights[GROUP], part[CHUNK];
@@ -250,6 +252,8 @@ static double code_at(const struct relume_codes *codes, int plane, size_t pixel)
 {
     if (codes->storage == RELUME_STORE_8)
         return ((const uint8_t *)codes->plane[plane])[pixel];
+    if (codes->storage == RELUME_STORE_FLOAT)
+        return (double)((const float *)codes->plane[plane])[pixel];
     const uint16_t word = ((const uint16_t *)codes->plane[plane])[pixel];
     return codes->storage == RELUME_STORE_HALF ? (double)float_from_half(word) : (double)word;
 }

@@ -75,12 +75,18 @@ for v in nan inf; do
     bad "$v in an image" "c/view00/light0003.exr: .*finite" c
 done
 fresh float c; "$mkimage" poke float/view00/light0003.exr c/view00/light0003.exr 5 6 3.4e38
-bad 'values that overflow the codes' 'c/view00/.*too large for single precision' c --basis table
+bad 'values that overflow the codes' 'c/view00/.*too bright to be stored' c --basis table
 fresh float c; "$mkimage" poke float/view00/light0003.exr c/view00/light0003.exr 5 6 1e6
-bad 'values that no half holds' "half" c --basis table --bits half
+expect_ok 'values that no half holds' - "$RELUME" encode c -o out.exr --basis table --bits half
+"$RELUME" eval out.exr c -q >eval.txt  # 2^-11 of 1e6, over all pixels
+check 'are kept over a power of two' awk '$1 == "rms" { exit !($2 < 500) }' eval.txt
 fresh float c; "$mkimage" poke float/view00/light0003.exr c/view00/light0003.exr 5 6 1e4
-expect_ok 'a value far above the others' 'warning: out.exr: 8 bits are too few' \
-    "$RELUME" encode c -o out.exr --basis table
+expect_ok 'a value far above the others' 'warning: out.exr: very bright highlights: 8 bits' \
+    "$RELUME" encode c -o out.exr --basis table --bits 8
+expect_ok 'and where nobody asks for 8 bits' - "$RELUME" encode c -o out.exr --basis table
+check 'halves' grep -q 'storage *half' <<INFO
+$("$RELUME" info out.exr)
+INFO
 expect_ok 'halfs hold both' - "$RELUME" encode c -o out.exr --basis table --bits half
 expect_ok 'the others alone fit 8 bits' - "$RELUME" encode float -o out.exr --basis table
 rm -f out.exr

@@ -79,7 +79,7 @@ struct fixture_file {
 
 static size_t fixture_bytes(enum relume_storage storage)
 {
-    return storage == RELUME_STORE_8 ? 1 : 2;
+    return relume_storage_bytes(storage);
 }
 
 // A half of [-1, 1] with full precision: random sign, exponent in 2^-7 .. 1, random fraction.
@@ -95,6 +95,8 @@ static void fill_codes(void *memory, size_t n, enum relume_storage storage, uint
     for (size_t i = 0; i < n; i++) {
         if (storage == RELUME_STORE_8)
             ((uint8_t *)memory)[i] = (uint8_t)(256 * uniform(random));
+        else if (storage == RELUME_STORE_FLOAT)
+            ((float *)memory)[i] = (float)(2.0 * uniform(random) - 1.0);
         else if (storage == RELUME_STORE_HALF)
             ((uint16_t *)memory)[i] = random_half(random);
         else
@@ -110,11 +112,11 @@ static inline struct fixture_file fixture_make(int views, int width, int height,
 {
     struct fixture_file f = {.coder = fixture_coder(pole_y), .views = views};
     const size_t pixels = (size_t)width * (size_t)height;
-    const float range = storage == RELUME_STORE_HALF ? 1 : (float)relume_storage_top(storage);
+    const bool half = !relume_storage_top(storage);
+    const float range = half ? 1 : (float)relume_storage_top(storage);
     uint64_t random = 11;
     for (int p = 0; p < FIXTURE_PLANES; p++) {
         const float spread = p < 3 ? 1.5f : 0.4f;
-        const bool half = storage == RELUME_STORE_HALF;
         f.scale[p] = spread / range * (half ? 0.5f : 1.0f);
         f.offset[p] = p < 3 ? 0.8f : half ? 0.0f : -0.5f * spread;
     }

@@ -55,6 +55,7 @@ static void linear_files(void **state)
     run(RELUME_STORE_8, RELUME_DOMAIN_LINEAR, "8 bits, linear", linear_bound);
     run(RELUME_STORE_16, RELUME_DOMAIN_LINEAR, "16 bits, linear", linear_bound);
     run(RELUME_STORE_HALF, RELUME_DOMAIN_LINEAR, "half, linear", linear_bound);
+    run(RELUME_STORE_FLOAT, RELUME_DOMAIN_LINEAR, "float, linear", linear_bound);
 }
 
 static void display_files(void **state)

@@ -6,10 +6,11 @@
 
 #include <time.h>
 
-enum { MOST = 3000, PLANES = 9 };
+enum { MOST = 3000, PLANES = 9, KINDS = 4 };
 
 static uint8_t bytes[PLANES][MOST + 64];
 static uint16_t words[PLANES][MOST + 64], halves[PLANES][MOST + 64];
+static float floats[PLANES][MOST + 64];
 
 struct pattern {
     const char *name;
@@ -32,6 +33,7 @@ static void fill(const struct pattern *p, float *weights)
             bytes[k][i] = (uint8_t)r;
             words[k][i] = (uint16_t)r;
             halves[k][i] = (uint16_t)(r & 0xfbff);  // finite
+            floats[k][i] = ((float)r - 3e4f) * 1.7f;
         }
     }
 }
@@ -40,7 +42,8 @@ static double code(int kind, int k, size_t i)
 {
     return kind == 0   ? bytes[k][i]
            : kind == 1 ? words[k][i]
-                       : (double)float_from_half(halves[k][i]);
+           : kind == 2 ? (double)float_from_half(halves[k][i])
+                       : (double)floats[k][i];
 }
 
 static void run(const struct kernels *kernels, int kind, size_t offset, size_t n, float bias,
@@ -48,16 +51,20 @@ static void run(const struct kernels *kernels, int kind, size_t offset, size_t n
 {
     const uint8_t *b[PLANES];
     const uint16_t *w[PLANES];
+    const float *f[PLANES];
     for (int k = 0; k < count; k++) {
         b[k] = bytes[k] + offset;
+        f[k] = floats[k] + offset;
         w[k] = (kind == 1 ? words[k] : halves[k]) + offset;
     }
     if (kind == 0)
         kernels->dot_bytes(out, n, bias, b, weights, count);
     else if (kind == 1)
         kernels->dot_words(out, n, bias, w, weights, count);
-    else
+    else if (kind == 2)
         kernels->dot_halves(out, n, bias, w, weights, count);
+    else
+        kernels->dot_floats(out, n, bias, f, weights, count);
 }
 
 // Both against double precision: each of the `count` additions rounds once, at most 2^-24 of the
@@ -103,7 +110,7 @@ static void test_tails(void **state)
 {
     (void)state;
     for (int s = 0; sets[s]; s++)
-        for (int kind = 0; kind < 3; kind++)
+        for (int kind = 0; kind < KINDS; kind++)
             for (size_t n = 0; n <= 40; n++)
                 for (int count = 0; count <= PLANES; count += 3)
                     check(sets[s], &patterns[0], kind, n % 5, n, count);
@@ -113,7 +120,7 @@ static void test_patterns(void **state)
 {
     (void)state;
     for (int s = 0; sets[s]; s++)
-        for (int kind = 0; kind < 3; kind++)
+        for (int kind = 0; kind < KINDS; kind++)
             for (size_t p = 0; p < sizeof patterns / sizeof *patterns; p++)
                 for (int count = 1; count <= PLANES; count++)
                     check(sets[s], &patterns[p], kind, (size_t)count, 333, count);
@@ -160,7 +167,7 @@ static void test_chunks(void **state)
     float weights[PLANES];
     fill(&patterns[0], weights);
     for (int s = 0; sets[s]; s++)
-        for (int kind = 0; kind < 3; kind++) {
+        for (int kind = 0; kind < KINDS; kind++) {
             run(sets[s], kind, 0, 500, 0.25f, weights, PLANES, whole);
             for (size_t from = 0; from < 20; from++)
                 for (size_t n = 1; n < 40; n += 3) {
@@ -186,13 +193,13 @@ static int by_value(const void *a, const void *b)
 static void bench(void)
 {
     enum { RUNS = 401, N = 2048 };
-    static const char *const kinds[] = {"bytes", "words", "halves"};
+    static const char *const kinds[] = {"bytes", "words", "halves", "floats"};
     static float out[N];
     float weights[PLANES];
     double ns[RUNS];
     fill(&patterns[0], weights);
     for (int s = 0; sets[s]; s++)
-        for (int kind = 0; kind < 3; kind++) {
+        for (int kind = 0; kind < KINDS; kind++) {
             for (int i = 0; i < RUNS; i++) {
                 const double start = now_ns();
                 run(sets[s], kind, 0, N, 0.0f, weights, PLANES, out);

@@ -1,0 +1,64 @@
+#!/bin/sh
+# What encode chooses by itself: domain, coefficients and storage by error, and one light as it is.
+. "$(dirname "$0")/lib.sh"
+data=$TOP/../shared/data
+told() { sed -n "s/.*\"$1\": \"*\([^\",]*\).*/\1/p" told.json; }
+encode() { # capture, options: into e.exr, its facts into told.json, its sentence into said.txt
+    "$RELUME" encode "$@" -o e.exr 2>said.txt && "$RELUME" info e.exr --json >told.json
+}
+psnr() { "$RELUME" eval "$1" "$2" -q | sed -n 's/^PSNR *\([0-9.]*\) dB (mean.*/\1/p'; }
+
+# A ball in few lights is met by what was always chosen.
+"$sphere" ball --size 32 --lights 12 --hemisphere
+encode ball
+check 'a smooth thing: 27 coefficients' [ "$(told coefficients)" = 27 ]
+check 'in 8 bits' [ "$(told bits)" = 8 ]
+check 'told in one sentence' grep -q '^relume: e.exr: reproduces your photographs at [0-9.]* dB PSNR with 27 coefficients, 8 bits, [0-9.]* bytes a pixel; unseen light directions: about [0-9]* dB$' said.txt
+
+# Sun through slats: 22 dB in linear light with 27 coefficients.
+scene="attic --projection cylindrical --size 48 --samples 4"
+"$RELUME" synth $scene -o hard --lights 40 -q
+"$RELUME" synth $scene -o unseen --lights 10 --pattern random --seed 7 -q
+"$RELUME" encode hard -o usual.exr --basis pca --interpolant auto --domain linear --bits 8 -q
+encode hard
+above 'hard shadows are met to 38 dB' "$(psnr e.exr hard)" 38
+below 'which the usual choice does not' "$(psnr usual.exr hard)" 30
+check 'in the display domain' [ "$(told domain)" = display ]
+above 'unseen lights gain too' "$(psnr e.exr unseen)" "$(psnr usual.exr unseen)"
+encode hard --domain linear --coefficients 40 --bits 16
+check 'what is asked for stays' [ "$(told domain) $(told coefficients) $(told bits)" = 'linear 40 16' ]
+"$RELUME" encode hard -o one.exr --threads 1 -q
+"$RELUME" encode hard -o many.exr --threads 3 -q
+check 'equal bytes for any threads' cmp one.exr many.exr
+encode hard --quality 24
+check 'fewer coefficients for less' [ "$(told coefficients)" -lt 27 ]
+above 'as good as was asked' "$(psnr e.exr hard)" 23.5  # judged on samples
+expect_fail 'quality of another basis' 2 'quality' no.exr "$RELUME" encode hard -o no.exr --quality 30 --basis sh
+expect_fail 'quality and coefficients' 2 'quality' no.exr "$RELUME" encode hard -o no.exr --quality 30 --coefficients 9
+
+# One picture of high dynamic range: as half floats, of which 2^-11 is the step.
+"$sphere" light --size 32 --lights 1 --hemisphere
+"$mkimage" gain light/view00/light0000.exr bright.exr 1e6 && mv bright.exr light/view00/light0000.exr
+encode light
+check 'one light: its picture' [ "$(told basis) $(told bits)" = 'table half' ]
+above 'beyond 65504, without loss' "$(psnr e.exr light)" 80
+
+# A photograph for the screen: 8 bits.
+"$sphere" photo --size 32 --lights 1 --hemisphere --format png
+encode photo
+check 'a photograph: 8 bits' [ "$(told basis) $(told bits) $(told domain)" = 'table 8 display' ]
+
+# Real maps, at several exposures: peaks of thousands, and shadows.
+for map in hdri-polyhaven-1k/studio.hdr exr-openexr-images/StageEnvLatLong.exr; do
+    if [ ! -f "$data/$map" ]; then skip "$map" 'no shared data'; continue; fi
+    "$RELUME" capture "$data/$map" --panorama sphere -o map --force -q 2>/dev/null
+    "$mkimage" gain "$data/$map" truth.exr 1
+    "$RELUME" encode map -o e.exr -q
+    "$RELUME" relight e.exr -o e.relit.exr -q
+    for ev in -8 0 4; do
+        factor=$(awk -v e=$ev 'BEGIN { print 2^e }')
+        "$mkimage" gain e.relit.exr a.exr "$factor" && "$mkimage" gain truth.exr b.exr "$factor"
+        above "$map at $ev EV" "$("$RELUME" compare a.exr b.exr | awk '$1 == "psnr_db" { print $2 }')" 55
+    done
+done
+finish

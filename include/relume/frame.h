@@ -90,6 +90,16 @@ RELUME_RESULT relume_status relume_query(float rgb[3], relume_pack *pack, struct
                                          const struct relume_light *lights, int n,
                                          const struct relume_frame_params *params);
 
+struct relume_ray {
+    struct relume_vec3 eye, direction;  // of any length, into the scene
+};
+// The same for many rays, whose views are relit once: what lies in memory is every view that a ray
+// needs. Rays that the file does not hold give NaN, a single one RELUME_EDATA with a sentence.
+RELUME_RESULT relume_status relume_query_rays(float (*rgb)[3], relume_pack *pack,
+                                              const struct relume_ray *rays, int n,
+                                              const struct relume_light *lights, int light_count,
+                                              const struct relume_frame_params *params);
+
 #ifdef __cplusplus
 }
 #endif

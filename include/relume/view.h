@@ -29,6 +29,7 @@ struct relume_view_params {
     enum relume_interpolation interpolation;
     // By view number, as relume_slab_disparity makes them, read where views are. NULL: not known.
     const struct relume_image *disparity;
+    const double (*range)[2];  // of these (relume_slab_range), where they are; default: looked for
     // Synthetic aperture: its diameter on the uv plane, world units, and how far the plane in focus
     // lies from the st plane (z minus st_z). With either of them not 0 all cameras within the
     // aperture are averaged in linear light, whatever `interpolation` says. Default: a pinhole, the

@@ -28,9 +28,7 @@ static const struct option options[] = {
     {"--size", OPTION_TEXT, "WxH", SIZE_HELP, 0, 0},
     {"--filter", OPTION_TEXT, "F",
      "enlarged: linear (auto), cubic, nearest; reduced, all but nearest average", 0, 0},
-    {"--interpolate", OPTION_TEXT, "I",
-     "slab: constant, linear or depth; default: depth where the file has it, else linear", 0, 0},
-    {"--nearest", OPTION_FLAG, NULL, "slab: the same as --interpolate constant", 0, 0},
+    INTERPOLATE_OPTIONS,
     {"--aperture", OPTION_NUMBER, "A",
      "slab: average the cameras within A/2 of the eye, of a free eye a lens as wide; default: 0", 0,
      1e9},
@@ -126,19 +124,13 @@ static relume_status parse_camera(const struct args *args, struct relume_camera 
 
 static relume_status parse_slab(const struct args *args, struct relume_frame_params *params)
 {
-    static const char *const names[] = {"constant", "linear", "depth", NULL};
     const bool nearest = args_has(args, "--nearest");
     const bool named = args_has(args, "--interpolate");
     const bool lens = args_has(args, "--aperture") || args_has(args, "--focus");
     if (nearest + named + lens > 1)
         return usage_error("relight: expected one of --interpolate, --nearest, --aperture/--focus");
-    if (nearest)
-        params->interpolation = RELUME_INTERPOLATE_CONSTANT;
     params->aperture = args_number(args, "--aperture", 0.0);
-    if (named &&
-        relume_interpolation_parse(&params->interpolation, args_text(args, "--interpolate", NULL)))
-        return unknown_name("--interpolate", args_text(args, "--interpolate", NULL), names);
-    return RELUME_OK;
+    return parse_interpolation(args, params);
 }
 
 static relume_status parse_pass(const struct args *args, struct relume_frame_params *params)

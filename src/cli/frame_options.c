@@ -63,6 +63,19 @@ relume_status parse_size(const struct args *args, int *width, int *height)
     return RELUME_OK;
 }
 
+relume_status parse_interpolation(const struct args *args, struct relume_frame_params *params)
+{
+    static const char *const names[] = {"constant", "linear", "depth", NULL};
+    const char *name = args_text(args, "--interpolate", NULL);
+    if (name && args_has(args, "--nearest"))
+        return usage_error("expected one of --interpolate and --nearest");
+    if (args_has(args, "--nearest"))
+        params->interpolation = RELUME_INTERPOLATE_CONSTANT;
+    return name && relume_interpolation_parse(&params->interpolation, name)
+               ? unknown_name("--interpolate", name, names)
+               : RELUME_OK;
+}
+
 struct relume_frame_params parse_frame(const struct args *args)
 {
     return (struct relume_frame_params){

@@ -20,6 +20,16 @@
         "--assume-depth", OPTION_NUMBER, "D",                                                      \
             "near lights, file without depth: the surface is this far from the eye", 1e-6, 1e9     \
     }
+#define INTERPOLATE_OPTIONS                                                                        \
+    {"--interpolate",                                                                              \
+     OPTION_TEXT,                                                                                  \
+     "I",                                                                                          \
+     "slab: constant, linear or depth; default: depth where the file has it, else linear",         \
+     0,                                                                                            \
+     0},                                                                                           \
+    {                                                                                              \
+        "--nearest", OPTION_FLAG, NULL, "slab: the same as --interpolate constant", 0, 0           \
+    }
 #define CPU_OPTION                                                                                 \
     {                                                                                              \
         "--cpu-mask", OPTION_INT, "M", "CPU features to use, 0: plain C; default: all", 0, 65535   \
@@ -35,6 +45,8 @@ relume_status parse_size(const struct args *args, int *width, int *height);
 // belong to `*rig`, which is to be destroyed.
 relume_status parse_lights(const struct args *args, relume_rig **rig,
                            const struct relume_light **lights, int *count);
+// --interpolate and --nearest, not both.
+relume_status parse_interpolation(const struct args *args, struct relume_frame_params *params);
 // Threads, kernels and depth; the log is still to be set.
 struct relume_frame_params parse_frame(const struct args *args);
 

@@ -275,62 +275,23 @@ relume_status relume_frame(struct relume_image *out, relume_pack *pack,
     return status;
 }
 
-// ---------------------------------------------------------------- one ray
+// ---------------------------------------------------------------- rays
 
-static relume_status query_planar(const struct renderer *r, vec3 eye, vec3 direction, float rgb[3])
+relume_status relume_query_rays(float (*rgb)[3], relume_pack *pack, const struct relume_ray *rays,
+                                int n, const struct relume_light *lights, int light_count,
+                                const struct relume_frame_params *params)
 {
-    const struct relume_geometry *g = &r->info->geometry;
-    double at[2], xy[2];
-    if (!ray_goes_towards(eye, direction, 0.0) || !ray_meets_plane(eye, direction, 0.0, at) ||
-        !ray_window_pixel(g->window_min, g->window_max, r->info->width, r->info->height, at, xy))
-        return ray_none(r, "it misses the window");
-    struct relume_image view = {0};
-    const relume_status status = renderer_relight(r, 0, &view);
-    if (!status)
-        ray_sample(rgb, &view, xy[0], xy[1]);
-    relume_image_destroy(&view);
+    struct shared shared = {0};
+    const struct renderer r = renderer_of(pack, lights, light_count, params, &shared);
+    const relume_status status = query_rays(rgb, &r, rays, n);
+    shared_destroy(&shared);
     return status;
-}
-
-static relume_status query_panorama(const struct renderer *r, vec3 eye, vec3 direction,
-                                    float rgb[3])
-{
-    const struct relume_geometry *g = &r->info->geometry;
-    // files keep the centre in single precision
-    if (vec3_length(vec3_sub(eye, g->center)) > 1e-6 * (1.0 + vec3_length(g->center)))
-        return ray_none(r, "a panorama has one eye, its centre");
-    struct relume_image view = {0};
-    relume_status status = renderer_relight(r, 0, &view);
-    if (!status && !relume_panorama_sample(rgb, g, &view, vec3_unit(direction)))
-        status = ray_none(r, "it misses the panorama");
-    relume_image_destroy(&view);
-    return status;
-}
-
-static relume_status query(const struct renderer *r, vec3 eye, vec3 direction, float rgb[3])
-{
-    switch (r->info->geometry.projection) {
-    case RELUME_PLANAR: return query_planar(r, eye, direction, rgb);
-    case RELUME_SLAB:
-        return r->info->slabs ? query_slabs(r, eye, direction, rgb)
-                              : query_slab(r, eye, direction, rgb);
-    case RELUME_CYLINDRICAL:
-    case RELUME_SPHERICAL:
-    case RELUME_CUBE: break;
-    }
-    return query_panorama(r, eye, direction, rgb);
 }
 
 relume_status relume_query(float rgb[3], relume_pack *pack, struct relume_vec3 eye,
                            struct relume_vec3 direction, const struct relume_light *lights, int n,
                            const struct relume_frame_params *params)
 {
-    struct shared shared = {0};
-    const struct renderer r = renderer_of(pack, lights, n, params, &shared);
-    if (!(vec3_length(direction) > 0.0))
-        return log_fail(r.params.log, RELUME_EINVAL,
-                        "direction: expected three numbers, not all 0");
-    const relume_status status = query(&r, eye, direction, rgb);
-    shared_destroy(&shared);
-    return status;
+    const struct relume_ray ray = {eye, direction};
+    return relume_query_rays((float(*)[3])rgb, pack, &ray, 1, lights, n, params);
 }

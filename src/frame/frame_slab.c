@@ -1,4 +1,4 @@
-// frame_slab.c - a frame, or a ray, of a single slab: its window from an eye
+// frame_slab.c - a frame of a single slab: its window from an eye
 #include "base/log.h"
 #include "frame/renderer.h"
 
@@ -15,7 +15,7 @@ static relume_status check_focus(const struct renderer *r)
                     g->uv_z, g->st_z + v->focus);
 }
 
-static relume_status check_slab(const struct renderer *r)
+relume_status renderer_check_depth(const struct renderer *r)
 {
     if (r->view.interpolation == RELUME_INTERPOLATE_DEPTH && !r->info->has_depth)
         return log_fail(r->params.log, RELUME_EDATA,
@@ -30,7 +30,7 @@ static const relume_slab *only_slab(const void *slab, int view)
     return slab;
 }
 
-static relume_status make_slab(relume_slab **slab, const struct renderer *r)
+relume_status renderer_slab(relume_slab **slab, const struct renderer *r)
 {
     const relume_status status =
         relume_slab_create(slab, &r->info->geometry, r->info->uv, r->info->views);
@@ -80,77 +80,18 @@ relume_status frame_eye(const struct renderer *r, const struct relume_camera *ca
                         relume_projection_name(r->info->geometry.projection));
     relume_slab *slab = NULL;
     struct gathered gathered = {0};
-    relume_status status = check_slab(r);
+    relume_status status = renderer_check_depth(r);
     if (!status && (r->info->slabs || relume_aim_given(&camera->aim)))
         return frame_around(r, camera, out);
     if (!status)
         status = check_focus(r);
     if (!status)
-        status = make_slab(&slab, r);
+        status = renderer_slab(&slab, r);
     if (!status)
         status = gathered_create(&gathered, r);
     if (!status)
         status = draw(r, camera, slab, &gathered, out);
     gathered_destroy(&gathered);
-    relume_slab_destroy(&slab);
-    return status;
-}
-
-// ---------------------------------------------------------------- one ray
-
-// As a frame from `eye` shows it: by depth from the cameras around the ray.
-static relume_status query_depth(const struct renderer *r, const relume_slab *slab, vec3 eye,
-                                 const double st[2], const int *around, int count, float rgb[3])
-{
-    struct relume_view_params params = r->view;
-    struct gathered g;
-    relume_status status = gathered_create(&g, r);
-    for (int i = 0; !status && i < count; i++)
-        g.needed[around[i]] = true;
-    if (!status)
-        status = gathered_fill(&g, r, true, only_slab, slab);
-    params.disparity = g.disparity;
-    if (!status)
-        status = relume_slab_value(rgb, slab, eye, st, g.images, &params);
-    gathered_destroy(&g);
-    return status;
-}
-
-relume_status query_slab(const struct renderer *r, vec3 eye, vec3 direction, float rgb[3])
-{
-    const struct relume_geometry *g = &r->info->geometry;
-    double st[2], uv[2], xy[2];
-    if ((eye.z - g->st_z) * (g->uv_z - g->st_z) <= 0.0 ||
-        !ray_goes_towards(eye, direction, g->st_z) ||
-        !ray_meets_plane(eye, direction, g->st_z, st) ||
-        !ray_meets_plane(eye, direction, g->uv_z, uv) ||
-        !ray_window_pixel(g->st_min, g->st_max, r->info->width, r->info->height, st, xy))
-        return ray_none(r, "it misses the window");
-    relume_slab *slab;
-    relume_status status =
-        relume_slab_create(&slab, &r->info->geometry, r->info->uv, r->info->views);
-    if (status)
-        return status == RELUME_EINVAL ? ray_none(r, "the cameras do not form a grid") : status;
-    int view[4];
-    double weight[4];
-    const int count = relume_slab_blend(view, weight, slab, uv, &r->view);
-    rgb[0] = rgb[1] = rgb[2] = 0.0f;
-    if (count == 0)
-        status = ray_none(r, "it misses the camera grid");
-    const bool by_depth = count > 1 && renderer_takes_depth(r);
-    if (!status && by_depth)
-        status = query_depth(r, slab, eye, st, view, count, rgb);
-    for (int i = 0; !status && !by_depth && i < count; i++) {
-        struct relume_image image = {0};
-        float value[3];
-        status = renderer_relight(r, view[i], &image);
-        if (!status) {
-            ray_sample(value, &image, xy[0], xy[1]);
-            for (int c = 0; c < 3; c++)
-                rgb[c] += (float)weight[i] * value[c];
-        }
-        relume_image_destroy(&image);
-    }
     relume_slab_destroy(&slab);
     return status;
 }

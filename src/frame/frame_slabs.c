@@ -1,4 +1,4 @@
-// frame_slabs.c - a frame, or a ray, of several slabs around an object
+// frame_slabs.c - a frame of several slabs around an object
 #include "base/log.h"
 #include "frame/renderer.h"
 
@@ -16,7 +16,7 @@ static const relume_slab *member(const void *members, int view)
     return relume_slabs_slab(m->slabs, m->slab_of ? m->slab_of[view] : 0);
 }
 
-static relume_status make_slabs(relume_slabs **slabs, const struct renderer *r)
+relume_status renderer_slabs(relume_slabs **slabs, const struct renderer *r)
 {
     const struct relume_pack_info *info = r->info;
     const relume_status status =
@@ -78,7 +78,7 @@ relume_status frame_around(const struct renderer *r, const struct relume_camera 
     struct relume_window window;
     struct gathered g = {0};
     relume_slabs *slabs;
-    relume_status status = make_slabs(&slabs, r);
+    relume_status status = renderer_slabs(&slabs, r);
     if (!status)
         status = choose_window(&window, r, slabs, camera, width, height);
     if (!status)
@@ -90,26 +90,6 @@ relume_status frame_around(const struct renderer *r, const struct relume_camera 
     params.disparity = g.disparity;
     if (!status)
         status = relume_slabs_frame(out, slabs, &window, g.images, &params);
-    gathered_destroy(&g);
-    relume_slabs_destroy(&slabs);
-    return status;
-}
-
-relume_status query_slabs(const struct renderer *r, vec3 eye, vec3 direction, float rgb[3])
-{
-    const struct relume_window window = {.eye = eye, .corner = vec3_add(eye, direction)};
-    struct relume_view_params params = r->view;
-    struct gathered g = {0};
-    relume_slabs *slabs;
-    relume_status status = make_slabs(&slabs, r);
-    if (!status)
-        status = gather(&g, r, slabs, &window, 1);
-    params.disparity = g.disparity;
-    if (!status) {
-        status = relume_slabs_value(rgb, slabs, eye, direction, g.images, &params);
-        if (status == RELUME_EINVAL)
-            status = ray_none(r, "it misses the camera grids or the windows");
-    }
     gathered_destroy(&g);
     relume_slabs_destroy(&slabs);
     return status;

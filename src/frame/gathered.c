@@ -38,8 +38,8 @@ bool renderer_takes_depth(const struct renderer *r)
     return r->view.aperture == 0.0 && r->view.focus == 0.0 && renderer_may_take_depth(r);
 }
 
-static relume_status find_disparity(struct relume_image *out, const struct renderer *r,
-                                    const relume_slab *slab, int view)
+relume_status renderer_disparity(struct relume_image *out, const struct renderer *r,
+                                 const relume_slab *slab, int view)
 {
     struct relume_image depth = {0};
     relume_status status = relume_pack_depth(&depth, r->pack, view);
@@ -65,7 +65,7 @@ relume_status gathered_fill(struct gathered *g, const struct renderer *r, bool b
             continue;
         status = renderer_relight(&quiet, v, &g->images[v]);
         if (!status && by_depth)
-            status = find_disparity(&g->disparity[v], r, slab_of(slabs, v), v);
+            status = renderer_disparity(&g->disparity[v], r, slab_of(slabs, v), v);
         quiet.params.log = NULL;  // what there is to say of the lights has been said
     }
     return status;

@@ -1,5 +1,4 @@
 // ray.c - a single ray and the planes that it meets
-#include "base/log.h"
 #include "frame/renderer.h"
 
 void ray_sample(float rgb[3], const struct relume_image *image, double x, double y)
@@ -40,9 +39,4 @@ bool ray_window_pixel(const double min[2], const double max[2], int width, int h
 bool ray_goes_towards(vec3 eye, vec3 direction, double z)
 {
     return (z - eye.z) * direction.z >= 0.0;
-}
-
-relume_status ray_none(const struct renderer *r, const char *why)
-{
-    return log_fail(r->params.log, RELUME_EDATA, "the file holds no such ray; %s", why);
 }

@@ -5,6 +5,7 @@
 #include "math/vec.h"
 
 #include <relume/frame.h>
+#include <relume/slabs.h>
 
 // What all views of a frame use; made when first needed.
 struct shared {
@@ -48,15 +49,22 @@ relume_status frame_eye(const struct renderer *r, const struct relume_camera *ca
                         struct relume_image *out);
 relume_status frame_around(const struct renderer *r, const struct relume_camera *camera,
                            struct relume_image *out);
-relume_status query_slab(const struct renderer *r, vec3 eye, vec3 direction, float rgb[3]);
-relume_status query_slabs(const struct renderer *r, vec3 eye, vec3 direction, float rgb[3]);
+// The cameras of the file. RELUME_EDATA with a sentence, RELUME_ENOMEM.
+relume_status renderer_slab(relume_slab **slab, const struct renderer *r);
+relume_status renderer_slabs(relume_slabs **slabs, const struct renderer *r);
+// RELUME_EDATA when depth is asked for that the file does not have.
+relume_status renderer_check_depth(const struct renderer *r);
+relume_status renderer_disparity(struct relume_image *out, const struct renderer *r,
+                                 const relume_slab *slab, int view);
+// As relume_query_rays.
+relume_status query_rays(float (*rgb)[3], const struct renderer *r, const struct relume_ray *rays,
+                         int n);
 
 // Put the picture into its place of a frame, with black beside it.
 relume_status frame_put(struct relume_image *image, const struct relume_place *place,
                         const int frame[2], const struct renderer *r);
 
 // ---------------------------------------------------------------- one ray
-relume_status ray_none(const struct renderer *r, const char *why);
 // Bilinear in linear light with the border clamped; pixel centres are at +0.5.
 void ray_sample(float rgb[3], const struct relume_image *image, double x, double y);
 // Where the line of the ray meets the plane z; false when it never does.

@@ -12,6 +12,7 @@
 #include "base/thread.h"
 
 #include <math.h>
+#include <string.h>
 
 // Steps of a walk at most: a texel each up to that many.
 static const int most_steps = 256;
@@ -243,7 +244,11 @@ void slab_depth_extent(double range[2], const struct slab_frame *f)
     for (int i = 0; i < f->slab->columns * f->slab->rows; i++) {
         const int view = f->slab->view[i];
         double one[2];
-        if (!f->needed[view] || !relume_slab_range(one, &f->params.disparity[view]))
+        if (!f->needed[view])
+            continue;
+        if (f->params.range)
+            memcpy(one, f->params.range[view], sizeof one);
+        else if (!relume_slab_range(one, &f->params.disparity[view]))
             continue;
         range[0] = fmin(range[0], one[0]);
         range[1] = fmax(range[1], one[1]);

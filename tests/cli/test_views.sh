@@ -46,6 +46,49 @@ for i in 1 2 3; do
         "$(awk -v i=$i 'NR == FNR { a = $i; next } { d = $i - a; print d < 0 ? -d : d }' q.txt p.txt)" 1e-4
 done
 
+# ---- many rays at once are those one by one
+cat >rays.txt <<'END'
+# eye, then direction
+0.25 0.25 3 -0.40625 -0.5104167 -3
+0,0,3, 0,0,-1   # commas do as well
+
+0.1 -0.3 3 0.05 0.1 -1
+0 0 3 9 9 -1
+END
+for i in depth linear constant; do
+    relume query slab.exr --rays rays.txt --light "$light" --interpolate $i >list.txt 2>/dev/null
+    {
+        relume query slab.exr --eye 0.25,0.25,3 --direction=-0.40625,-0.5104167,-3 --light "$light" --interpolate $i
+        relume query slab.exr --eye 0,0,3 --direction=0,0,-1 --light "$light" --interpolate $i
+        relume query slab.exr --eye 0.1,-0.3,3 --direction=0.05,0.1,-1 --light "$light" --interpolate $i
+        echo none
+    } >one.txt
+    same "rays from a file, $i" list.txt one.txt
+done
+differ 'interpolations differ' list.txt q.txt
+relume query slab.exr --rays - --light "$light" <rays.txt >stdin.txt 2>/dev/null
+relume query slab.exr --rays rays.txt --light "$light" >list.txt 2>/dev/null
+same 'rays from stdin' stdin.txt list.txt
+relume query slab.exr --rays rays.txt --light "$light" --json 2>/dev/null | tr -d '[]{}:,"' | tr -s ' ' '\n' |
+    grep -v '^rgb$' >json.txt
+tr ' ' '\n' <list.txt | sed 's/none/null/' >flat.txt
+same 'rays as JSON' json.txt flat.txt
+expect_ok 'rays that are not there are counted' '1 of 4 rays are not in the file' \
+    "$RELUME" query slab.exr --rays rays.txt
+printf '0 0 3 0 0 -1\n0 0 3 0 0\n' >short.txt
+printf '0 0 3 0 0 0\n' >nowhere.txt
+printf '0 0 3 0 0 nan\n' >nan.txt
+printf '# nothing\n' >empty.txt
+expect_fail 'a line of five numbers' 1 'short.txt: line 2: expected six numbers' - "$RELUME" query slab.exr --rays short.txt
+expect_fail 'no direction' 1 'line 1: expected a direction that is not 0 0 0' - "$RELUME" query slab.exr --rays nowhere.txt
+expect_fail 'a direction that is no number' 1 'line 1: expected six numbers' - "$RELUME" query slab.exr --rays nan.txt
+expect_fail 'no rays' 1 'expected a ray a line; found none' - "$RELUME" query slab.exr --rays empty.txt
+expect_fail 'no file of rays' 1 'cannot be read' - "$RELUME" query slab.exr --rays missing.txt
+expect_fail 'a picture for rays' 1 'line 1: expected six numbers' - "$RELUME" query slab.exr --rays slab.exr
+expect_fail 'a ray and rays' 2 'or --rays FILE' - "$RELUME" query slab.exr --rays rays.txt --eye 0,0,3
+expect_fail 'by depth without depth' 1 'expected a file with depth' - \
+    "$RELUME" query bare.exr --rays rays.txt --interpolate depth
+
 # ---- an eye nearer than the cameras: rays beside the grid go by depth, or to the nearest camera
 relume synth teapot -o near --views 1x1 --eye 0,0,1.6 --lights-from slab/capture.json --size 96 --samples 4 || exit 1
 relume relight slab.exr -o near.exr --eye 0,0,1.6 --light "$light"

@@ -1,0 +1,213 @@
+// query.c - single rays: the plenoptic-illumination function (Wong 1998, 6.4)
+//
+// A view is relit when the first ray needs it and kept for the others of the call.
+#include "base/log.h"
+#include "base/memory.h"
+#include "frame/renderer.h"
+
+#include <relume/slabs.h>
+#include <string.h>
+
+struct rays {
+    const struct renderer *r;
+    bool by_depth;
+    struct relume_image *image;      // [views], of those that were needed
+    struct relume_image *disparity;  // [views]
+    double (*range)[2];              // [views], of disparities
+    bool *needed;                    // [views], by one ray
+    relume_slab *slab;               // a single slab, or ...
+    relume_slabs *slabs;             // ... several
+    const char *none;                // why the file does not hold a ray
+};
+
+// ---------------------------------------------------------------- views
+
+static relume_status need(struct rays *q, int view)
+{
+    struct renderer quiet = *q->r;
+    const relume_slab *slab = q->slab;
+    if (q->image[view].data)
+        return RELUME_OK;
+    for (int i = 0; i < q->r->info->views; i++)  // what there is to say of lights is said once
+        if (q->image[i].data)
+            quiet.params.log = NULL;
+    relume_status status = renderer_relight(&quiet, view, &q->image[view]);
+    if (q->slabs)
+        slab = relume_slabs_slab(q->slabs, q->r->info->slab_of[view]);
+    if (!status && q->by_depth)
+        status = renderer_disparity(&q->disparity[view], q->r, slab, view);
+    if (!status && q->by_depth)
+        (void)relume_slab_range(q->range[view], &q->disparity[view]);
+    return status;
+}
+
+// ---------------------------------------------------------------- one ray
+
+static relume_status none(struct rays *q, const char *why)
+{
+    q->none = why;
+    return RELUME_OK;
+}
+
+static relume_status planar(struct rays *q, const struct relume_ray *ray, float rgb[3])
+{
+    const struct relume_pack_info *info = q->r->info;
+    const struct relume_geometry *g = &info->geometry;
+    double at[2], xy[2];
+    if (!ray_goes_towards(ray->eye, ray->direction, 0.0) ||
+        !ray_meets_plane(ray->eye, ray->direction, 0.0, at) ||
+        !ray_window_pixel(g->window_min, g->window_max, info->width, info->height, at, xy))
+        return none(q, "it misses the window");
+    const relume_status status = need(q, 0);
+    if (!status)
+        ray_sample(rgb, &q->image[0], xy[0], xy[1]);
+    return status;
+}
+
+static relume_status panorama(struct rays *q, const struct relume_ray *ray, float rgb[3])
+{
+    const struct relume_geometry *g = &q->r->info->geometry;
+    // files keep the centre in single precision
+    if (vec3_length(vec3_sub(ray->eye, g->center)) > 1e-6 * (1.0 + vec3_length(g->center)))
+        return none(q, "a panorama has one eye, its centre");
+    const relume_status status = need(q, 0);
+    if (!status && !relume_panorama_sample(rgb, g, &q->image[0], vec3_unit(ray->direction)))
+        return none(q, "it misses the panorama");
+    return status;
+}
+
+static relume_status blend(struct rays *q, const int *view, const double *weight, int count,
+                           const double xy[2], float rgb[3])
+{
+    for (int i = 0; i < count; i++) {
+        float value[3];
+        ray_sample(value, &q->image[view[i]], xy[0], xy[1]);
+        for (int c = 0; c < 3; c++)
+            rgb[c] += (float)weight[i] * value[c];
+    }
+    return RELUME_OK;
+}
+
+static struct relume_view_params view_params(const struct rays *q)
+{
+    struct relume_view_params params = q->r->view;
+    params.disparity = q->by_depth ? q->disparity : NULL;
+    params.range = q->by_depth ? (const double(*)[2])q->range : NULL;
+    return params;
+}
+
+static relume_status one_slab(struct rays *q, const struct relume_ray *ray, float rgb[3])
+{
+    const struct relume_pack_info *info = q->r->info;
+    const struct relume_geometry *g = &info->geometry;
+    const struct relume_view_params params = view_params(q);
+    const vec3 eye = ray->eye, direction = ray->direction;
+    double st[2], uv[2], xy[2], weight[4];
+    int view[4];
+    relume_status status = RELUME_OK;
+    if ((eye.z - g->st_z) * (g->uv_z - g->st_z) <= 0.0 ||
+        !ray_goes_towards(eye, direction, g->st_z) ||
+        !ray_meets_plane(eye, direction, g->st_z, st) ||
+        !ray_meets_plane(eye, direction, g->uv_z, uv) ||
+        !ray_window_pixel(g->st_min, g->st_max, info->width, info->height, st, xy))
+        return none(q, "it misses the window");
+    const int count = relume_slab_blend(view, weight, q->slab, uv, &q->r->view);
+    if (count == 0)
+        return none(q, "it misses the camera grid");
+    for (int i = 0; !status && i < count; i++)
+        status = need(q, view[i]);
+    if (status)
+        return status;
+    return count > 1 && q->by_depth ? relume_slab_value(rgb, q->slab, eye, st, q->image, &params)
+                                    : blend(q, view, weight, count, xy, rgb);
+}
+
+static relume_status several_slabs(struct rays *q, const struct relume_ray *ray, float rgb[3])
+{
+    const struct relume_window window = {.eye = ray->eye,
+                                         .corner = vec3_add(ray->eye, ray->direction)};
+    const struct relume_view_params params = view_params(q);
+    if (relume_slabs_needs(q->needed, q->slabs, &window, 1, &params) == 0)
+        return none(q, "it misses the camera grids or the windows");
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < q->r->info->views; i++)
+        if (q->needed[i])
+            status = need(q, i);
+    if (!status)
+        status = relume_slabs_value(rgb, q->slabs, ray->eye, ray->direction, q->image, &params);
+    return status == RELUME_EINVAL ? none(q, "it misses the camera grids or the windows") : status;
+}
+
+static relume_status one_ray(struct rays *q, const struct relume_ray *ray, float rgb[3])
+{
+    q->none = NULL;
+    rgb[0] = rgb[1] = rgb[2] = 0.0f;
+    if (!(vec3_length(ray->direction) > 0.0) || !isfinite(vec3_length(ray->direction)))
+        return log_fail(q->r->params.log, RELUME_EINVAL,
+                        "direction: expected three numbers, not all 0");
+    switch (q->r->info->geometry.projection) {
+    case RELUME_PLANAR: return planar(q, ray, rgb);
+    case RELUME_SLAB: return q->slabs ? several_slabs(q, ray, rgb) : one_slab(q, ray, rgb);
+    case RELUME_CYLINDRICAL:
+    case RELUME_SPHERICAL:
+    case RELUME_CUBE: break;
+    }
+    return panorama(q, ray, rgb);
+}
+
+// ---------------------------------------------------------------- all rays
+
+static void end(struct rays *q)
+{
+    for (int i = 0; i < q->r->info->views; i++) {
+        if (q->image)
+            relume_image_destroy(&q->image[i]);
+        if (q->disparity)
+            relume_image_destroy(&q->disparity[i]);
+    }
+    free(q->image);
+    free(q->disparity);
+    free(q->range);
+    free(q->needed);
+    relume_slab_destroy(&q->slab);
+    relume_slabs_destroy(&q->slabs);
+}
+
+static relume_status begin(struct rays *q, const struct renderer *r)
+{
+    const size_t views = (size_t)r->info->views;
+    *q = (struct rays){.r = r, .by_depth = renderer_takes_depth(r)};
+    relume_status status = renderer_check_depth(r);
+    if (status)
+        return status;
+    q->image = mem_zeroed(views, sizeof *q->image);
+    q->disparity = mem_zeroed(views, sizeof *q->disparity);
+    q->range = mem_zeroed(views, sizeof *q->range);
+    q->needed = mem_zeroed(views, sizeof *q->needed);
+    if (!q->image || !q->disparity || !q->range || !q->needed)
+        return RELUME_ENOMEM;
+    if (r->info->geometry.projection != RELUME_SLAB) {
+        q->by_depth = false;
+        return RELUME_OK;
+    }
+    return r->info->slabs ? renderer_slabs(&q->slabs, r) : renderer_slab(&q->slab, r);
+}
+
+relume_status query_rays(float (*rgb)[3], const struct renderer *r, const struct relume_ray *rays,
+                         int n)
+{
+    struct rays q;
+    relume_status status = begin(&q, r);
+    for (int i = 0; !status && i < n; i++) {
+        status = one_ray(&q, &rays[i], rgb[i]);
+        if (!status && q.none && n == 1)
+            status =
+                log_fail(r->params.log, RELUME_EDATA, "the file holds no such ray; %s", q.none);
+        else if (!status && q.none)
+            rgb[i][0] = rgb[i][1] = rgb[i][2] = NAN;
+        if (!status && i % 4096 == 4095 && !log_progress(r->params.log, "looking", (double)i / n))
+            status = RELUME_ECANCEL;
+    }
+    end(&q);
+    return status;
+}

@@ -126,6 +126,21 @@ RELUME_RESULT relume_status relume_pack_depth(struct relume_image *out, relume_p
                                               int view);
 RELUME_RESULT relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view);
 
+// Read all of a file and call `found` for each run of rows of a part that is missing or cannot be
+// decoded, rows from the top of the part. Returns RELUME_OK when the file is whole; RELUME_EDATA
+// when it is not, with a sentence where it is more than those rows: a header, a value out of range.
+// What PIZ and no compression decode in spite of damage to single bits is not noticed.
+struct relume_pack_check_params {
+    const struct relume_log *log;
+    const struct relume_limits *limits;
+    int threads;
+    void (*found)(void *user, const char *part, int row, int rows);  // or NULL
+    void *user;
+};
+#define relume_pack_check_params(...) (&(const struct relume_pack_check_params){__VA_ARGS__})
+RELUME_RESULT relume_status relume_pack_check(const char *path,
+                                              const struct relume_pack_check_params *params);
+
 #ifdef __cplusplus
 }
 #endif

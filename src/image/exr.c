@@ -338,8 +338,8 @@ static relume_status check_ends(const exr_file *file, const struct relume_log *l
     return RELUME_OK;
 }
 
-relume_status exr_open(exr_file **out, const char *path, const struct relume_limits *limits,
-                       const struct relume_log *log)
+relume_status exr_open_damaged(exr_file **out, const char *path, const struct relume_limits *limits,
+                               const struct relume_log *log)
 {
     *out = NULL;
     exr_file *file = mem_zeroed(1, sizeof *file);
@@ -362,11 +362,20 @@ relume_status exr_open(exr_file **out, const char *path, const struct relume_lim
                           exr_get_default_error_message(r));
     else
         status = check_parts(file, limits, log);
-    if (!status)
-        status = check_ends(file, log);
     if (status)
         exr_close(&file);
     *out = file;
+    return status;
+}
+
+relume_status exr_open(exr_file **out, const char *path, const struct relume_limits *limits,
+                       const struct relume_log *log)
+{
+    relume_status status = exr_open_damaged(out, path, limits, log);
+    if (!status)
+        status = check_ends(*out, log);
+    if (status)
+        exr_close(out);
     return status;
 }
 
@@ -590,6 +599,56 @@ relume_status exr_read(const exr_file *file, int part, int threads,
                         "%s: truncated or damaged in part '%s'; expected %d rows", file->path,
                         exr_part_info(file, part).name, r.layout.height);
     return RELUME_OK;
+}
+
+struct finding {
+    struct layout layout;
+    exr_decode_pipeline_t *pipelines;  // one a worker
+    bool *damaged;                     // of each block
+};
+
+static void try_block(void *context, size_t item, int worker)
+{
+    struct finding *f = context;
+    struct block block = {0};
+    f->damaged[item] = !decode(&block, &f->layout, &f->pipelines[worker], item);
+}
+
+static void report_runs(const struct finding *f, size_t blocks, void (*found)(void *, int, int),
+                        void *context)
+{
+    const int rows = f->layout.block_rows, height = f->layout.height;
+    for (size_t i = 0, end; i < blocks; i = end + 1) {
+        for (end = i; end < blocks && f->damaged[end];)
+            end++;
+        const int first = (int)i * rows, last = (int)end * rows;
+        if (end > i)
+            found(context, first, (last < height ? last : height) - first);
+    }
+}
+
+relume_status exr_find_damage(const exr_file *file, int part, int threads,
+                              void (*found)(void *, int, int), void *context,
+                              const struct relume_log *log)
+{
+    threads = thread_count(threads);
+    struct finding f = {0};
+    if (!find_layout(&f.layout, file, part))
+        return log_fail(log, RELUME_EDATA, "%s: part %d is broken", file->path, part);
+    const size_t height = (size_t)f.layout.height, rows = (size_t)f.layout.block_rows;
+    const size_t blocks = (height + rows - 1) / rows;
+    f.pipelines = mem_zeroed((size_t)threads, sizeof *f.pipelines);
+    f.damaged = mem_zeroed(blocks, sizeof *f.damaged);
+    if (f.pipelines && f.damaged) {
+        thread_for(threads, blocks, try_block, &f);
+        report_runs(&f, blocks, found, context);
+    }
+    for (int i = 0; f.pipelines && i < threads; i++)
+        exr_decoding_destroy(file->exr, &f.pipelines[i]);
+    const bool done = f.pipelines && f.damaged;
+    free(f.pipelines);
+    free(f.damaged);
+    return done ? RELUME_OK : RELUME_ENOMEM;
 }
 
 struct exr_blocks {

@@ -46,6 +46,9 @@ typedef struct exr_file exr_file;
 // RELUME_EDATA with a sentence when it is not a readable scanline EXR within the limits.
 relume_status exr_open(exr_file **out, const char *path, const struct relume_limits *limits,
                        const struct relume_log *log);
+// The same for those who look for damage: blocks may be missing.
+relume_status exr_open_damaged(exr_file **out, const char *path, const struct relume_limits *limits,
+                               const struct relume_log *log);
 void exr_close(exr_file **file);
 int exr_part_count(const exr_file *file);
 
@@ -73,6 +76,12 @@ const float *exr_get_floats(const exr_file *file, int part, const char *name, in
 relume_status exr_read(const exr_file *file, int part, int threads,
                        void (*sink)(void *context, int row, int rows, const void *samples),
                        void *context, const struct relume_log *log);
+
+// Decode every block of a part and call `found` for each run of rows that cannot be, from the top
+// down. RELUME_ENOMEM, RELUME_ECANCEL.
+relume_status exr_find_damage(const exr_file *file, int part, int threads,
+                              void (*found)(void *context, int row, int rows), void *context,
+                              const struct relume_log *log);
 
 // The blocks of a part as they are asked for. Thread-safety: one thread at a time.
 typedef struct exr_blocks exr_blocks;

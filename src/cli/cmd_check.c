@@ -1,0 +1,77 @@
+#include "cli.h"
+
+static const struct option options[] = {
+    {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
+    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+};
+
+struct findings {
+    const char *path;
+    bool json;
+    int count;
+};
+
+static void print_damage(void *user, const char *part, int row, int rows)
+{
+    struct findings *f = user;
+    struct shown path, name;
+    if (f->json) {
+        printf("%s{\"part\": ", f->count ? ", " : "");
+        json_text(stdout, part);
+        printf(", \"first_row\": %d, \"rows\": %d}", row, rows);
+    } else {
+        printf("%s: part '%s', rows %d to %d: missing or damaged\n", shown(&path, f->path),
+               shown(&name, part), row, row + rows - 1);
+    }
+    f->count++;
+}
+
+static relume_status check_file(const struct args *args, const char *path)
+{
+    struct findings f = {.path = path, .json = args_has(args, "--json")};
+    struct shown name;
+    if (f.json) {
+        printf("{\"file\": ");
+        json_text(stdout, path);
+        printf(", \"damaged\": [");
+    }
+    const relume_status status = relume_pack_check(
+        path, relume_pack_check_params(.log = args_log(args), .threads = args_threads(args),
+                                       .found = print_damage, .user = &f));
+    if (f.json)
+        printf("], \"whole\": %s}", status ? "false" : "true");
+    else if (!status)
+        printf("%s: whole\n", shown(&name, path));
+    else if (f.count && status == RELUME_EDATA)
+        (void)data_error("%s: damaged; encode it again or take it from a copy", path);
+    return status;
+}
+
+// All files are looked at; the worst status is the command's.
+static relume_status run(const struct args *args)
+{
+    const bool json = args_has(args, "--json");
+    relume_status worst = RELUME_OK;
+    if (json)
+        printf("{\"files\": [");
+    for (int i = 0; i < args_inputs(args) && worst != RELUME_ECANCEL; i++) {
+        if (json && i)
+            printf(", ");
+        const relume_status status = check_file(args, args_input(args, i));
+        worst = status && worst != RELUME_ENOMEM ? status : worst;
+    }
+    if (json)
+        printf("]}\n");
+    return worst;
+}
+
+const struct command command_check = {
+    .name = "check",
+    .usage = "FILE... [--json]",
+    .summary = "read all of a relume file and say what is damaged, and where",
+    .example = "relume check archive/*.exr",
+    .min_inputs = 1,
+    .max_inputs = 4096,
+    .options = options,
+    .run = run,
+};

@@ -1,0 +1,69 @@
+// check.c - what of a relume file is damaged, and where: first every block of the container, then
+// what the blocks say
+#include "image/exr.h"
+
+#include <relume/pack.h>
+
+struct check {
+    const struct relume_pack_check_params *p;
+    const char *part;
+    bool damaged;
+};
+
+static void note(void *context, int row, int rows)
+{
+    struct check *c = context;
+    c->damaged = true;
+    if (c->p->found)
+        c->p->found(c->p->user, c->part, row, rows);
+}
+
+static relume_status check_blocks(struct check *c, const char *path)
+{
+    exr_file *file;
+    relume_status status = exr_open_damaged(&file, path, c->p->limits, c->p->log);
+    for (int i = 0; !status && i < exr_part_count(file); i++) {
+        c->part = exr_part_info(file, i).name;
+        status = exr_find_damage(file, i, c->p->threads, note, c, c->p->log);
+    }
+    exr_close(&file);
+    return status;
+}
+
+static relume_status check_view(relume_pack *pack, int view)
+{
+    struct relume_image image;
+    const struct relume_codes *codes;
+    relume_status status = relume_pack_codes(&codes, pack, view);
+    relume_pack_drop(pack, view);
+    if (!status) {
+        status = relume_pack_depth(&image, pack, view);
+        relume_image_destroy(&image);
+    }
+    if (!status) {
+        status = relume_pack_mask(&image, pack, view);
+        relume_image_destroy(&image);
+    }
+    return status;
+}
+
+static relume_status check_values(const struct relume_pack_check_params *p, const char *path)
+{
+    relume_pack *pack;
+    relume_status status = relume_pack_open(
+        &pack, path, relume_pack_params(.log = p->log, .limits = p->limits, .threads = p->threads));
+    for (int i = 0; !status && i < relume_pack_info(pack)->views; i++)
+        status = check_view(pack, i);
+    relume_pack_destroy(&pack);
+    return status;
+}
+
+relume_status relume_pack_check(const char *path, const struct relume_pack_check_params *params)
+{
+    const struct relume_pack_check_params none = {0};
+    struct check c = {.p = params ? params : &none};
+    const relume_status status = check_blocks(&c, path);
+    if (status)
+        return status;
+    return c.damaged ? RELUME_EDATA : check_values(c.p, path);
+}

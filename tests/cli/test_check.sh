@@ -1,0 +1,50 @@
+#!/bin/sh
+# relume check: whole files are whole, and damage is found where it was done.
+. "$(dirname "$0")/lib.sh"
+relume() { "$RELUME" "$@"; }
+"$sphere" cap --size 40 --lights 9 --hemisphere || exit 1
+relume encode cap -o zip.exr --basis ptm --compression zip 2>/dev/null
+relume encode cap -o piz.exr --basis ptm 2>/dev/null
+relume encode cap -o book.exr --basis ptm --codebook 16 2>/dev/null
+size=$(wc -c <zip.exr)
+
+# damage FILE OFFSET: a copy of zip.exr with 8 bytes of it overwritten
+damage() {
+    cp zip.exr "$1"
+    printf 'spoiled!' | dd of="$1" bs=1 seek="$2" conv=notrunc 2>/dev/null
+}
+# check_says NAME STATUS PATTERN FILE...: lines of stdout that match PATTERN, and the status
+check_says() {
+    name=$1 want=$2 pattern=$3
+    shift 3
+    relume check "$@" >out.txt 2>err.txt
+    status=$?
+    if [ $status -eq "$want" ] && grep -qE -e "$pattern" out.txt; then
+        ok "$name"
+    else
+        not_ok "$name" "status $status; $(cat out.txt err.txt)"
+    fi
+}
+
+for f in zip piz book; do
+    check_says "$f.exr is whole" 0 "^$f.exr: whole$" $f.exr; done
+damage middle.exr $((size / 2))
+check_says "eight bytes in the middle" 1 "^middle.exr: part '.*', rows [0-9]+ to [0-9]+: " middle.exr
+below "they spoil one block of zip, 16 rows" "$(awk '{ print $6 - $4 + 1 }' out.txt | tr -d :)" 16
+below "one block alone" "$(wc -l <out.txt)" 1
+damage last.exr $((size - 8))
+check_says "the last bytes are the last rows" 1 "rows 32 to 39: missing or damaged" last.exr
+head -c $((size * 3 / 4)) zip.exr >cut.exr
+check_says "what a cut file lacks ends with the last row" 1 "rows [0-9]+ to 39: missing" cut.exr
+expect_fail "a damaged header" 1 "cannot be read as OpenEXR" - "$RELUME" check "$TOP/README.md"
+check_says "all files are looked at" 1 "piz.exr: whole" middle.exr piz.exr
+relume check middle.exr zip.exr --json >out.txt 2>/dev/null
+check "as JSON" grep -q '"whole": false}, {"file": "zip.exr", "damaged": \[\], "whole": true}\]}' out.txt
+# Blocks that decode, to values that are no codes: 0xffff is NaN
+relume encode cap -o none.exr --basis ptm --compression none 2>/dev/null
+size=$(wc -c <none.exr)
+cp none.exr wrong.exr
+printf '\377\377\377\377' | dd of=wrong.exr bs=1 seek=$((size / 2)) conv=notrunc 2>/dev/null
+relume check wrong.exr >out.txt 2>err.txt; cp out.txt err.txt wrong.exr none.exr /tmp/poor
+check "values that are no codes" grep -q "wrong.exr: .*expected" err.txt
+finish

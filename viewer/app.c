@@ -411,8 +411,19 @@ static void (*const drag_camera[])(struct app *, double dx, double dy) = {
     [RELUME_FRAME_LOOK] = turn_look,
 };
 
+static bool pick_focus(struct app *app, const struct app_event *e)
+{
+    app->cursor[0] = e->x;
+    app->cursor[1] = e->y;
+    app->picks_focus = false;
+    app->wish = APP_WISH_FOCUS;
+    return true;
+}
+
 static bool on_press(struct app *app, const struct app_event *e)
 {
+    if (app->picks_focus && e->button == APP_LEFT)
+        return pick_focus(app, e);
     const bool light = e->button == APP_RIGHT || app->light_key;
     const int grabbed = app->gizmos && !light ? gizmo_hit(app, e->x, e->y) : -1;
     const bool ball = !light && grabbed < 0 && gizmo_on_ball(app, e->x, e->y);

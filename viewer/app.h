@@ -110,6 +110,8 @@ struct app_state {
     int selected;  // light that drags and keys change
     bool ball;     // show the light's direction on a ball in the corner
     enum relume_pass pass;
+    struct relume_pass_params
+        enhance;           // of it: gain, specular, exponent, radius, low, top; 0: usual
     enum app_split split;  // objects ...
     int other;             // ... in this of their materials as well
     struct gaze gaze;      // how an eye sees the frame
@@ -129,6 +131,7 @@ enum app_wish {
     APP_WISH_MAP,          // the environment map of the file app.spec
     APP_WISH_FULL_SCREEN,  // or back from it
     APP_WISH_FOLDER,       // a list of the folder app.spec; "": of the one that was listed last
+    APP_WISH_FOCUS,        // on what the frame shows at app.cursor
     APP_WISH_OPEN          // the file app.spec in place of this one
 };
 enum { APP_SPEC = 4096 };
@@ -148,6 +151,7 @@ struct app {
     bool asks;                          // whether to quit
     bool browse;                        // for a file to open
     bool keep_lights;                   // for the next file
+    bool picks_focus;                   // the next press does
     bool recording;                     // every frame becomes a picture
     double toast_s,
         hint_s;           // how long what was last said, and what the mouse does, stay to be seen

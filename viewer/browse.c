@@ -36,7 +36,8 @@ bool browse_path(char path[PATH_MAX], const struct browser *b, const char *name)
         return snprintf(path, PATH_MAX, "%.*s", length, b->folder) < PATH_MAX;
     }
     const bool parted = rest[0] == '/' || (from[0] && from[strlen(from) - 1] == '/');
-    return snprintf(path, PATH_MAX, "%s%s%s", from, parted || !from[0] || !rest[0] ? "" : "/", rest) < PATH_MAX;
+    return snprintf(path, PATH_MAX, "%s%s%s", from, parted || !from[0] || !rest[0] ? "" : "/",
+                    rest) < PATH_MAX;
 }
 
 void browse_destroy(struct browser *b)

@@ -24,7 +24,8 @@ static bool press_quit(struct app *app, int key)
 // the app hears of the key.
 static bool press_escape(struct app *app, int key)
 {
-    bool *const open[] = {&app->asks, &app->browse, &app->help, &app->inspect, &app->panel};
+    bool *const open[] = {&app->asks,        &app->browse,  &app->help,
+                          &app->picks_focus, &app->inspect, &app->panel};
     (void)key;
     for (size_t i = 0; i < sizeof open / sizeof *open; i++)
         if (*open[i]) {
@@ -184,6 +185,13 @@ static bool press_focus(struct app *app, int key)
         return false;
     const double from = app->file.around ? relume_window_distance(&window) : g->uv_z;
     *z = from + (*z - from) * (key == '.' ? focus_factor : 1 / focus_factor);
+    return true;
+}
+
+static bool press_pick_focus(struct app *app, int key)
+{
+    (void)key;
+    app->picks_focus = !app->picks_focus && app->now.camera.framing == RELUME_FRAME_EYE;
     return true;
 }
 
@@ -371,6 +379,7 @@ const struct key_binding key_bindings[] = {
     {'a', "A", "slab: next aperture", press_aperture, false},
     {',', ", .", "slab: focus nearer, farther", press_focus, true},
     {'.', NULL, NULL, press_focus, true},
+    {'f', "F", "slab: focus on what is clicked next", press_pick_focus, false},
     {'o', "O", "panorama: little planet", press_planet, false},
     {'v', "V", "next view: colour, normals, ...", press_next_pass, false},
     {'h', "H", "glare: halos, the picture as an eye sees it", press_glare, false},

@@ -72,8 +72,6 @@ static bool sight_of(struct relume_sight *out, const struct app *app, const stru
 
 // ---------------------------------------------------------------- what hides it
 
-// ---------------------------------------------------------------- what hides it
-
 // The view that best knows what lies on the way to `p`, and the place in [0, 1] where it shows it.
 static bool find_view(int *view, double at[2], const struct app *app, const struct lamp_scene *s,
                       struct relume_vec3 eye, struct relume_vec3 p)
@@ -106,13 +104,12 @@ struct looking {
     struct relume_sight sight;
 };
 
-static bool hidden(void *user, const double xy[2], struct relume_vec3 p)
+// What the view shows where it sees the point `p`; false where that is not known.
+static bool surface_near(struct relume_vec3 *out, const struct looking *l, struct relume_vec3 p)
 {
-    const struct looking *l = user;
     const struct relume_image *image = &l->scene->surface;
     double at[2];
     int view;
-    (void)xy;
     if (!find_view(&view, at, l->app, l->scene, relume_sight_eye(&l->sight), p) ||
         !need_surface(l->scene, view))
         return false;
@@ -120,8 +117,16 @@ static bool hidden(void *user, const double xy[2], struct relume_vec3 p)
     if (!(x >= 0 && y >= 0 && x < image->width && y < image->height))
         return false;
     const float *q = image->data + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
-    return relume_sight_hides(&l->sight,
-                              (struct relume_vec3){(double)q[0], (double)q[1], (double)q[2]}, p);
+    *out = (struct relume_vec3){(double)q[0], (double)q[1], (double)q[2]};
+    return isfinite(out->x) && isfinite(out->y) && isfinite(out->z);
+}
+
+static bool hidden(void *user, const double xy[2], struct relume_vec3 p)
+{
+    const struct looking *l = user;
+    struct relume_vec3 surface;
+    (void)xy;
+    return surface_near(&surface, l, p) && relume_sight_hides(&l->sight, surface, p);
 }
 
 int lamps_seen(struct relume_source *out, const struct app *app, const struct relume_light *lights,
@@ -131,4 +136,27 @@ int lamps_seen(struct relume_source *out, const struct app *app, const struct re
     if (!sight_of(&l.sight, app, scene))
         return 0;
     return relume_sight_lamps(out, &l.sight, lights, n, scene ? hidden : NULL, &l);
+}
+
+// A view beside the eye sees another place of the surface; its depth is a better guess, and so on.
+bool lamps_surface(struct relume_vec3 *out, const struct app *app, struct lamp_scene *scene,
+                   double x, double y)
+{
+    enum { ROUNDS = 8 };
+    struct looking l = {.app = app, .scene = scene};
+    struct relume_vec3 from, ray;
+    if (!sight_of(&l.sight, app, scene))
+        return false;
+    relume_sight_ray(&from, &ray, &l.sight, x, y);
+    double t = vec_dot(vec_sub(app_middle(app), from), ray);
+    for (int i = 0; i < ROUNDS; i++) {
+        const struct relume_vec3 p = {from.x + t * ray.x, from.y + t * ray.y, from.z + t * ray.z};
+        if (!surface_near(out, &l, p))
+            return false;
+        t = vec_dot(vec_sub(*out, from), ray);
+        if (!(t > 0))
+            return false;
+    }
+    *out = (struct relume_vec3){from.x + t * ray.x, from.y + t * ray.y, from.z + t * ray.z};
+    return true;
 }

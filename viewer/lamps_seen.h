@@ -24,4 +24,9 @@ void lamp_scene_forget(struct lamp_scene *scene);
 int lamps_seen(struct relume_source *out, const struct app *app, const struct relume_light *lights,
                int n, struct lamp_scene *scene);
 
+// The surface that the frame shows at (x, y), as the nearest view knows it; false where nothing is
+// known.
+bool lamps_surface(struct relume_vec3 *out, const struct app *app, struct lamp_scene *scene,
+                   double x, double y);
+
 #endif

@@ -610,6 +610,8 @@ void options_help(void)
          "        glare on|off|pause|run, glare magnify|nits|squint|cycle X, glare mode M\n"
          "        glare sources on|off: lamps in view\n"
          "        glare cornea|fibres|lens|vitreous|lids on|off: parts of the eye\n"
+         "        set gain|highlight|exponent|radius|exposure|aperture|focus|pan|tilt|zoom X\n"
+         "        set eye X Y Z         set range LOW HIGH               pass NAME\n"
          "        dock over|left|right  hint: what the mouse does        quit\n"
          "        wait [SECONDS]        frame OUT: the picture           shot OUT: with the "
          "panel\n\n"

@@ -148,7 +148,8 @@ extern "C" bool panel_takes(struct panel *panel, const struct app_event *event)
 extern "C" bool panel_shown(const struct app *app)
 {
     return app->panel || app->help || app->inspect || app->gizmos || app->asks || app->recording ||
-           app->browse || app->file.empty || app->toast_s > 0 || app->hint_s > 0;
+           app->browse || app->file.empty || app->picks_focus || app->toast_s > 0 ||
+           app->hint_s > 0;
 }
 
 static void tell_imgui(const app_event &e)
@@ -209,7 +210,9 @@ static bool sections(panel *panel, app *app, const panel_facts *facts)
     if (app->file.objects && ImGui::CollapsingHeader("Objects", ImGuiTreeNodeFlags_DefaultOpen))
         changed |= panel_objects(app, facts);
     if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen))
-        changed |= panel_picture(app);
+        changed |= panel_picture(app, facts);
+    if (ImGui::CollapsingHeader("Camera"))
+        changed |= panel_camera(app);
     if (ImGui::CollapsingHeader("Glare", app->now.gaze.on ? ImGuiTreeNodeFlags_DefaultOpen : 0))
         changed |= panel_glare(app, facts);
     panel->histogram = ImGui::CollapsingHeader("Histogram");

@@ -43,6 +43,7 @@ struct panel_facts {
     int materials;
     const double *objects_ms;
     const char *eye;                // what is known of the eye that looks, or NULL
+    float range[2];                 // of false colour, as it was drawn last
     const struct browser *browser;  // to choose a file from, or NULL
     const char *recording;          // where pictures go, or NULL ...
     double recorded_s, round_s;     // ... how many seconds of them there are, and will be

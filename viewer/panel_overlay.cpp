@@ -71,6 +71,8 @@ void panel_notes(const app *app, const panel_facts *facts, float scale)
     const bool toast = facts->message && facts->message[0];
     if (facts->recording)
         recording_note(app, facts);
+    else if (app->picks_focus)
+        note("pick", "click on what shall be sharp - Esc: never mind", app, 0.02f, 1, scale);
     else if (!app->help && !app->asks && !app->browse && !app->file.empty)
         note("hint", hint_of(app), app, 0.02f, (float)app_note_alpha(app->hint_s), scale);
     if (toast)

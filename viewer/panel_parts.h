@@ -35,7 +35,9 @@ struct panel {
 
 // Sections of the panel: what they return is whether the picture changed.
 bool panel_lights(panel *panel, app *app, const panel_facts *facts);
-bool panel_picture(app *app);
+bool panel_picture(app *app, const panel_facts *facts);
+bool panel_enhancement(app *app, const panel_facts *facts);
+bool panel_camera(app *app);
 bool panel_glare(app *app, const panel_facts *facts);
 bool panel_objects(app *app, const panel_facts *facts);
 void panel_histogram(const panel_facts *facts, float scale);

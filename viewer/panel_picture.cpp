@@ -37,7 +37,7 @@ static bool choose_tone(app *app)
     return changed;
 }
 
-bool panel_picture(app *app)
+bool panel_picture(app *app, const panel_facts *facts)
 {
     const double least = -10, most = 10;
     bool changed = ImGui::SliderScalar("exposure", ImGuiDataType_Double, &app->now.exposure_ev,
@@ -47,6 +47,7 @@ bool panel_picture(app *app)
         changed |= keys_press(app, 'e', false);
     changed |= choose_tone(app);
     changed |= choose_pass(app);
+    changed |= panel_enhancement(app, facts);
     changed |= ImGui::Checkbox("ball", &app->now.ball);
     ImGui::SameLine();
     changed |= ImGui::Checkbox("handles", &app->gizmos);

@@ -386,6 +386,7 @@ static relume_status need_lights(struct renderer *r, int n)
 relume_status renderer_relight_views(struct renderer *r, const struct app *app,
                                      const struct relume_light *lights, int count)
 {
+    r->enhancer.params = app->now.enhance;
     relume_status status = relighter_begin(&r->relighter, lights, count);
     relume_status (*const look_up)(const struct target **, struct relighter *, int) =
         app->now.pass == RELUME_PASS_COLOUR ? relighter_view : relighter_wait;  // no stand-ins

@@ -1,5 +1,6 @@
 #include "script.h"
 
+#include "adjust.h"
 #include "say.h"
 
 #include <errno.h>
@@ -218,14 +219,19 @@ static relume_status play_wheel(struct script *s)
     return RELUME_OK;
 }
 
+static void press_key(struct script *s, int key)
+{
+    send(s, (struct app_event){.kind = APP_KEY_DOWN, .key = key});
+    send(s, (struct app_event){.kind = APP_KEY_UP, .key = key});
+}
+
 static relume_status play_key(struct script *s)
 {
     int key;
     if (!take_key(s, &key))
         return wrong(s, "key K: one letter or sign, esc, tab, enter, left, right, up, down, ..., "
                         "ctrl+ a letter");
-    send(s, (struct app_event){.kind = APP_KEY_DOWN, .key = key});
-    send(s, (struct app_event){.kind = APP_KEY_UP, .key = key});
+    press_key(s, key);
     return RELUME_OK;
 }
 
@@ -354,14 +360,37 @@ static relume_status play_hint(struct script *s)
     return RELUME_OK;
 }
 
+static relume_status play_set(struct script *s)
+{
+    char copy[LINE];
+    const char *words = take_rest(s, copy), *expected;
+    return adjust_say(&s->host.app->now, words ? words : "", &expected) ? RELUME_OK
+                                                                        : wrong(s, expected);
+}
+
+static relume_status play_pass(struct script *s)
+{
+    char copy[LINE];
+    const char *name = take_rest(s, copy);
+    const enum relume_pass was = s->host.app->now.pass;
+    if (!name || relume_pass_parse(&s->host.app->now.pass, name) ||
+        (s->host.app->now.pass == RELUME_PASS_DIFFERENCE && !s->host.app->compared)) {
+        s->host.app->now.pass = was;
+        return wrong(s, "pass colour, normals, specular, diffuse-gain, unsharp, luminance, "
+                        "false-colour, or difference beside --capture");
+    }
+    return RELUME_OK;
+}
+
 static relume_status play_dock(struct script *s)
 {
     struct app *app = s->host.app;
     for (int i = 0; i < APP_DOCKS; i++)
         if (take_word(s, app_dock_names[i])) {
+            if (app->panel)
+                press_key(s, APP_KEY_TAB);
             app->dock = (enum app_dock)i;
-            app->panel = true;
-            app_arrange(app);
+            press_key(s, APP_KEY_TAB);  // whoever hears of it makes the panel at once
             return RELUME_OK;
         }
     return wrong(s, "dock over|left|right");
@@ -398,7 +427,7 @@ static const struct word {
     {"add", play_add, true},      {"rig", play_rig, true},    {"wait", play_wait, false},
     {"frame", play_frame, true},  {"shot", play_shot, true},  {"open", play_open, true},
     {"glare", play_glare, true},  {"hint", play_hint, false}, {"quit", play_quit, false},
-    {"dock", play_dock, false},
+    {"dock", play_dock, false},   {"set", play_set, true},    {"pass", play_pass, true},
 };
 
 static relume_status play_line(struct script *s)
@@ -414,7 +443,7 @@ static relume_status play_line(struct script *s)
         return status || words[i].whole || at_end(s) ? status : wrong(s, "the end of the line");
     }
     return wrong(s, "size, drag, click, press, move, release, wheel, key, hold, let, type, light, "
-                    "add, rig, open, glare, dock, hint, wait, frame, shot or quit");
+                    "add, rig, open, glare, dock, hint, set, pass, wait, frame, shot or quit");
 }
 
 relume_status script_open(struct script **out, const char *path, const struct script_host *host)

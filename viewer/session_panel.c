@@ -119,6 +119,7 @@ relume_status session_build_panel(struct session *s, bool histogram)
         .material_bytes = s->objects ? s->material_bytes : NULL,
         .materials = SESSION_MATERIALS,
         .objects_ms = s->renderer.things_ms,
+        .range = {s->renderer.enhancer.range.low, s->renderer.enhancer.range.high},
         .browser = s->browser.folder[0] ? &s->browser : NULL,
         .recording = session_records(s) ? s->recording.path : NULL,
         .recorded_s = (double)s->recording.frame / RECORD_RATE,
@@ -130,11 +131,13 @@ relume_status session_build_panel(struct session *s, bool histogram)
     return status;
 }
 
-// Once more, with the histogram of the frame that has just been drawn.
+// Once more, with what only the frame that has just been drawn tells: its histogram, its range.
 relume_status session_add_histogram(struct session *s)
 {
-    if (!panel_shown(&s->app) || !panel_wants_histogram(s->panel))
+    const bool histogram = panel_wants_histogram(s->panel);
+    if (!panel_shown(&s->app) || !(histogram || s->app.now.pass == RELUME_PASS_FALSE_COLOUR))
         return RELUME_OK;
-    count_histogram(s);
-    return session_build_panel(s, true);
+    if (histogram)
+        count_histogram(s);
+    return session_build_panel(s, histogram);
 }

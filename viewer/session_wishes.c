@@ -1,6 +1,10 @@
 // session_wishes.c - what keys and the panel ask for and the app cannot do
 #include "session.h"
 
+#include "keys.h"
+#include "vec.h"
+
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -110,6 +114,38 @@ static relume_status wish_open(struct session *s)
     return session_drop(s, path);
 }
 
+// Through the middle of an eye that goes around, planes in focus are told by how far before what it
+// looks at they are.
+static double focus_at(const struct session *s, struct relume_vec3 p)
+{
+    struct relume_window w;
+    if (!s->app.file.around || !app_window(&s->app, &w))
+        return p.z;
+    const struct relume_vec3 normal = vec_unit(vec_cross(w.right, w.down));
+    return relume_window_distance(&w) - fabs(vec_dot(vec_sub(p, w.eye), normal));
+}
+
+// With a pinhole everything is sharp: it is opened.
+static relume_status wish_focus(struct session *s)
+{
+    struct app *app = &s->app;
+    struct relume_vec3 p;
+    const bool known =
+        lamps_surface(&p, app, &s->renderer.backdrop, app->cursor[0], app->cursor[1]);
+    if (!known && app->file.around) {
+        session_say(s, "nothing to focus on there");
+        return RELUME_OK;
+    }
+    app->now.focus_z = known ? focus_at(s, p) : app->file.geometry.st_z;
+    if (app->now.aperture <= 0)
+        (void)keys_press(app, 'a', false);
+    session_say(s,
+                known ? "in focus: %.3g; aperture %.3g (A: the next one)"
+                      : "no depth in this file: in focus is the plane z = %.3g; aperture %.3g",
+                app->now.focus_z, app->now.aperture);
+    return RELUME_OK;
+}
+
 // What was wished for is done once; what fails is said in the panel and in the log.
 relume_status session_grant_wish(struct session *s)
 {
@@ -124,6 +160,7 @@ relume_status session_grant_wish(struct session *s)
         [APP_WISH_FULL_SCREEN] = wish_full_screen,
         [APP_WISH_FOLDER] = wish_folder,
         [APP_WISH_OPEN] = wish_open,
+        [APP_WISH_FOCUS] = wish_focus,
     };
     const enum app_wish wish = s->app.wish;
     s->app.wish = APP_WISH_NONE;

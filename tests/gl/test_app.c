@@ -4,6 +4,7 @@
 #include "gizmo.h"
 #include "keys.h"
 #include "lamps.h"
+#include "lamps_seen.h"
 #include "owned.h"
 #include "say.h"
 #include "options.h"
@@ -836,6 +837,102 @@ static void scripts_let_time_pass(void **state)
     assert_true(pan[1] > pan[0] + 1 && pan[2] > pan[1] + 1 && pan[3] == pan[2]);
 }
 
+static void scripts_set_numbers(void **state)
+{
+    (void)state;
+    static struct frames frames;
+    OWNED_APP slab = make_app(RELUME_SLAB, true);
+    assert_int_equal(play(&slab, &frames,
+                          "set gain 3.5\nset highlight 1\nset exponent 20\nset radius 7\n"
+                          "set range 0.1 0.4\nset exposure -1\nset eye 0.5 0.25 2\n"
+                          "set aperture 0.5\nset focus 0.3\nset zoom 2\npass unsharp\nframe a\n"),
+                     RELUME_OK);
+    const struct app_state *s = &frames.at[0].now;
+    assert_true(s->enhance.gain == 3.5f && s->enhance.specular == 1 && s->enhance.exponent == 20);
+    assert_true(s->enhance.radius == 7 && s->enhance.low == 0.1f && s->enhance.top == 0.4f);
+    assert_true(s->exposure_ev == -1 && s->camera.eye.x == 0.5 && s->camera.eye.z == 2);
+    assert_true(s->aperture == 0.5 && s->focus_z == 0.3 && s->zoom == 2);
+    assert_int_equal(s->pass, RELUME_PASS_UNSHARP);
+    OWNED_APP look = make_app(RELUME_SPHERICAL, true);
+    assert_int_equal(play(&look, &frames, "set pan 30\nset tilt -9\nset zoom 3\nframe a\n"),
+                     RELUME_OK);
+    assert_true(frames.at[0].now.camera.look.pan_deg == 30 && frames.at[0].now.zoom == 1);
+    assert_true(frames.at[0].now.camera.look.tilt_deg == -9 &&
+                frames.at[0].now.camera.look.zoom == 3);
+    assert_int_equal(play(&look, &frames, "set aperture 1\n"), RELUME_EDATA);
+    assert_non_null(strstr(said, "line 1, column 5; expected aperture A, of a slab"));
+    assert_true(look.now.aperture == 0);
+}
+
+// F, then the next press is a place to focus on; the drag that follows moves nothing.
+static void the_next_click_is_in_focus(void **state)
+{
+    (void)state;
+    OWNED_APP app = make_app(RELUME_SLAB, true);
+    const double x = app.now.camera.eye.x;
+    assert_true(key(&app, 'f') && app.picks_focus);
+    app_handle(&app, &(struct app_event){.kind = APP_PRESS, .x = 120, .y = 70});
+    app_handle(&app, &(struct app_event){.kind = APP_MOVE, .x = 150, .y = 70});
+    assert_int_equal(app.wish, APP_WISH_FOCUS);
+    assert_true(!app.picks_focus && app.now.camera.eye.x == x);
+    key(&app, 'f');
+    key(&app, APP_KEY_ESCAPE);
+    assert_false(app.picks_focus || app.asks);
+    OWNED_APP picture = make_app(RELUME_PLANAR, true);
+    key(&picture, 'f');
+    assert_false(picture.picks_focus);
+}
+
+// A plane that leans, z = 0.2 + 0.1 x, as nine cameras at z = 3 see it through the window of +-1 on
+// z = 0.
+static relume_status leaning_plane(struct relume_image *out, void *user, int view)
+{
+    const double(*uv)[2] = user;
+    const relume_status status = relume_image_create(out, 400, 200, 3);
+    for (int i = 0; !status && i < 400 * 200; i++) {
+        const double s = 2 * (i % 400 + 0.5) / 400 - 1, t = 1 - 2 * (i / 400 + 0.5) / 200;
+        // from (u, v, 3) towards (s, t, 0): z = 3 (1 - k), x = u + k (s - u)
+        const double u = uv[view][0], v = uv[view][1];
+        const double k = (2.8 - 0.1 * u) / (3 + 0.1 * (s - u));
+        out->data[3 * i] = (float)(u + k * (s - u));
+        out->data[3 * i + 1] = (float)(v + k * (t - v));
+        out->data[3 * i + 2] = (float)(3 - 3 * k);
+    }
+    return status;
+}
+
+static void a_click_finds_the_surface(void **state)
+{
+    (void)state;
+    double uv[9][2];
+    for (int i = 0; i < 9; i++) {
+        uv[i][0] = i % 3 - 1;
+        uv[i][1] = 0.5 * (i / 3 - 1);
+    }
+    OWNED_APP app = make_app(RELUME_SLAB, true);
+    memcpy(app.file.geometry.st_min, (double[]){-1, -1}, sizeof app.file.geometry.st_min);
+    memcpy(app.file.geometry.st_max, (double[]){1, 1}, sizeof app.file.geometry.st_max);
+    struct lamp_scene scene = {
+        .source = {.user = uv, .surface = leaning_plane}, .uv = (const double(*)[2])uv, .views = 9};
+    static const double eyes[][2] = {{0, 0}, {0.4, -0.2}, {-0.7, 0.45}};
+    for (int i = 0; i < 3; i++) {
+        const struct relume_vec3 eye = {eyes[i][0], eyes[i][1], 3};
+        struct relume_vec3 p;
+        app.now.camera.eye = eye;
+        assert_true(lamps_surface(&p, &app, &scene, 300, 50));  // s = 0.5, t = 0.5
+        // a pixel of a view is 0.005 wide, and the plane leans by a tenth of that
+        assert_float_equal(p.z, 0.2 + 0.1 * p.x, 2e-3);
+        const double k = (3 - p.z) / 3;
+        assert_float_equal(p.x, eye.x + k * (0.5 - eye.x), 1e-9);
+        assert_float_equal(p.y, eye.y + k * (0.5 - eye.y), 1e-9);
+    }
+    lamp_scene_forget(&scene);
+    scene.source.surface = NULL;
+    struct relume_vec3 p;
+    assert_false(lamps_surface(&p, &app, &scene, 300, 50));
+    lamp_scene_forget(&scene);
+}
+
 static void broken_scripts_name_the_line(void **state)
 {
     (void)state;
@@ -869,6 +966,16 @@ static void broken_scripts_name_the_line(void **state)
         {"key ctrl+", 5},
         {"key ctrl+qq", 5},
         {"dock top", 6},
+        {"set", 4},
+        {"set gain", 5},
+        {"set gain 0", 5},
+        {"set gain 3 4", 5},
+        {"set radius 2.5", 5},
+        {"set range 2 1", 5},
+        {"set brightness 2", 5},
+        {"set exposure nan", 5},
+        {"set eye 1 2 3", 5},
+        {"pass difference", 6},
         {"hint 3", 6},
     };
     static struct frames frames;
@@ -1243,6 +1350,9 @@ int main(void)
         cmocka_unit_test(scripts_play_events),
         cmocka_unit_test(scripts_let_an_eye_live),
         cmocka_unit_test(scripts_let_time_pass),
+        cmocka_unit_test(scripts_set_numbers),
+        cmocka_unit_test(the_next_click_is_in_focus),
+        cmocka_unit_test(a_click_finds_the_surface),
         cmocka_unit_test(broken_scripts_name_the_line),
         cmocka_unit_test(long_lines_are_refused),
         cmocka_unit_test(scripts_hold_keys_and_wait),

@@ -113,6 +113,39 @@ static void text_goes_into_the_field(void **state)
     panel_destroy(&panel);
 }
 
+static bool click(struct panel *panel, struct app *app, double x, double y)
+{
+    return drag(panel, app, x, y, x, y);
+}
+
+// The list of lights is closed: "Picture" is the second row, "Camera" comes behind it.
+static void sliders_move_the_camera_and_strengthen_views(void **state)
+{
+    (void)state;
+    static const struct panel_facts facts = {.range = {0.1f, 0.4f}};
+    OWNED_APP app = make_app();
+    struct panel *panel = make_panel(&app);
+    (void)click(panel, &app, 100, 26);
+    (void)click(panel, &app, 100, 49);
+    (void)click(panel, &app, 100, 72);
+    assert_true(drag(panel, &app, 106, 95, 140, 95));  // zoom, logarithmic from 0.1 to 64
+    assert_true(app.now.zoom > 2 && app.now.zoom < 30);
+    assert_true(click(panel, &app, 60, 118));  // fit the window
+    assert_true(app.now.zoom == 1);
+    (void)click(panel, &app, 100, 49);  // the view's slider lies below its list
+    app.now.pass = RELUME_PASS_DIFFUSE_GAIN;
+    assert_true(drag(panel, &app, 60, 164, 150, 164));
+    assert_true(app.now.enhance.gain > 5 && app.now.enhance.gain < 20);
+    app.now.pass = RELUME_PASS_FALSE_COLOUR;
+    panel_build(panel, &app, &facts);
+    const struct app_event press = {.kind = APP_PRESS, .x = 26, .y = 164};
+    assert_true(panel_takes(panel, &press));
+    assert_true(tell(panel, APP_RELEASE, 26, 164));
+    panel_build(panel, &app, &facts);  // from now on fixed, as it was
+    assert_true(app.now.enhance.low == 0.1f && app.now.enhance.top == 0.4f);
+    panel_destroy(&panel);
+}
+
 // Esc closes a list that is open, and is not the app's then.
 static void escape_closes_a_list(void **state)
 {
@@ -402,6 +435,7 @@ int main(void)
         cmocka_unit_test(a_click_turns_the_light_off),
         cmocka_unit_test(the_picture_keeps_its_events),
         cmocka_unit_test(text_goes_into_the_field),
+        cmocka_unit_test(sliders_move_the_camera_and_strengthen_views),
         cmocka_unit_test(escape_closes_a_list),
         cmocka_unit_test(notes_are_drawn),
         cmocka_unit_test(the_question_is_answered_by_its_buttons),

@@ -113,7 +113,8 @@ static inline relume_status fixture_encode_with(const char *folder, const char *
     const struct relume_encode_params learn = {.threads = params ? params->threads : 0};
     relume_capture *capture = NULL;
     relume_coder *coder = NULL;
-    relume_status status = relume_capture_open(&capture, folder, NULL);
+    relume_status status =
+        relume_capture_open(&capture, folder, relume_capture_params(.allow_outside = true));
     if (!status)
         status = relume_coder_learn(&coder, basis, capture, how, &learn);
     if (!status)

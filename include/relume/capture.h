@@ -112,6 +112,8 @@ struct relume_capture_params {
     const struct relume_limits *limits;
     struct relume_transfer transfer;  // overrides the manifest's; default: the manifest's
     bool skip_missing;                // drop lights whose image does not exist instead of failing
+    bool allow_outside;               // files may lie outside the folder of capture.json or .lp:
+                                      // names with "..", and absolute ones; default: refused
     bool repair;  // tables replace pixels that hold NaN or infinity instead of failing: by those
                   // of the same place under the three nearest lights where it is whole, weighted
                   // by 1 / angle; black where there is none

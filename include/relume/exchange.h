@@ -38,8 +38,9 @@ RELUME_API const char *relume_kind_name(enum relume_kind kind);
 struct relume_open_params {
     const struct relume_log *log;
     const struct relume_limits *limits;
-    bool sphere;  // a picture shows all directions, twice as wide as high: a panorama
-    int threads;  // default: all cores
+    bool allow_outside;  // of captures, as relume_capture_params
+    bool sphere;         // a picture shows all directions, twice as wide as high: a panorama
+    int threads;         // default: all cores
 };
 #define relume_open_params(...) (&(const struct relume_open_params){__VA_ARGS__})
 

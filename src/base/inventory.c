@@ -63,12 +63,19 @@ static bool write_list(const char *folder, const struct tree_list *list)
     return good;
 }
 
+// What a link leads to is not ours to flush, and may not be there yet; the link is in its folder.
+static bool sync_entry(const char *path)
+{
+    struct stat s;
+    return (!lstat(path, &s) && S_ISLNK(s.st_mode)) || tree_sync(path);
+}
+
 static bool sync_all(const char *folder, const struct tree_list *list)
 {
     bool good = true;
     for (size_t i = 0; good && i < list->count; i++) {
         char *path = mem_format("%s/%s", folder, list->item[i].name);
-        good = path && tree_sync(path);
+        good = path && sync_entry(path);
         free(path);
     }
     return good && tree_sync(folder);

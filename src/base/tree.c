@@ -121,7 +121,7 @@ static bool list_entry(struct tree_list *out, const char *root, const char *with
     if (!good)
         return false;
     e->is_folder = S_ISDIR(s.st_mode);
-    e->size = S_ISREG(s.st_mode) ? (int64_t)s.st_size : -1;
+    e->size = S_ISREG(s.st_mode) || S_ISLNK(s.st_mode) ? (int64_t)s.st_size : -1;
     char *inner = e->is_folder ? mem_format("%s/", e->name) : NULL;
     const bool listed = !e->is_folder || (inner && list_into(out, root, inner));
     free(inner);

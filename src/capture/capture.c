@@ -83,9 +83,9 @@ static relume_status read_description(relume_capture *c, const char *path,
     } else if (has_extension(path, ".lp")) {
         status = lp_read(&c->draft, path, p->limits, p->log);
         if (!status)
-            status = lp_resolve(&c->draft, path, p->skip_missing, p->log);
+            status = lp_resolve(&c->draft, path, p);
     } else {
-        status = manifest_read(&c->draft, path, p->limits, p->log);
+        status = manifest_read(&c->draft, path, p);
     }
     free(inside);
     return status;
@@ -131,6 +131,26 @@ static relume_status skip_missing(relume_capture *c, const struct relume_log *lo
     if (d->m.lights == 0)
         return log_fail(log, RELUME_EDATA, "%s: no image exists; expected %d", c->path, before);
     return RELUME_OK;
+}
+
+// Before images are looked at one by one.
+static relume_status count_missing(const relume_capture *c, const struct relume_log *log)
+{
+    const struct relume_manifest *m = &c->draft.m;
+    const char *first = NULL;
+    int missing = 0;
+    for (int v = 0; v < m->views; v++)
+        for (int i = 0; i < m->lights; i++)
+            if (access(m->view[v].images[i], F_OK) && missing++ == 0)
+                first = m->view[v].images[i];
+    if (!missing)
+        return RELUME_OK;
+    return log_fail(
+        log, RELUME_EDATA,
+        "%s: no such file; %d of %d images %s missing; --skip-missing continues without "
+        "%s",
+        first, missing, m->views * m->lights, missing == 1 ? "is" : "are",
+        missing == 1 ? "its light" : "their lights");
 }
 
 static relume_status check_image(relume_capture *c, const char *path,
@@ -200,8 +220,8 @@ relume_status relume_capture_open(relume_capture **out, const char *path,
     c->repair = p.repair;
     c->assume_depth = p.assume_depth;
     relume_status status = read_description(c, path, &p);
-    if (!status && p.skip_missing)
-        status = skip_missing(c, p.log);
+    if (!status)
+        status = p.skip_missing ? skip_missing(c, p.log) : count_missing(c, p.log);
     if (!status && p.transfer.curve != RELUME_CURVE_AUTO)
         c->draft.m.transfer = p.transfer;
     if (!status)

@@ -230,33 +230,46 @@ static int by_name(const struct dirent **a, const struct dirent **b)
 }
 
 // The file that a listed name means: the path itself, else its base name in the folder in any case.
+// A path that leaves the folder is `refused` where only that exists.
 static char *find_file(struct draft *d, const char *folder, const char *listed,
-                       struct dirent *const *files, int file_count)
+                       struct dirent *const *files, int file_count, bool allow_outside,
+                       bool *refused)
 {
     char *path = listed[0] == '/' ? arena_text(&d->arena, listed)
                                   : arena_format(&d->arena, "%s/%s", folder, listed);
-    if (!path || !access(path, F_OK))
+    const bool exists = path && !access(path, F_OK);
+    *refused = exists && !allow_outside && leaves_folder(listed);
+    if (!path || (exists && !*refused))
         return path;
     const char *base = base_name(listed);
     for (int exact = 1; exact >= 0; exact--)
         for (int i = 0; i < file_count; i++)
-            if (exact ? !strcmp(files[i]->d_name, base) : !strcasecmp(files[i]->d_name, base))
+            if (exact ? !strcmp(files[i]->d_name, base) : !strcasecmp(files[i]->d_name, base)) {
+                *refused = false;
                 return arena_format(&d->arena, "%s/%s", folder, files[i]->d_name);
+            }
     return path;
 }
 
 static relume_status resolve(struct draft *d, const char *path, const char *folder,
-                             struct dirent *const *files, int file_count, bool skip_missing,
-                             const struct relume_log *log)
+                             struct dirent *const *files, int file_count,
+                             const struct relume_capture_params *p)
 {
+    const struct relume_log *log = p->log;
     const char **images = d->view[0].images;
     int missing = 0;
     const char *first = NULL;
     for (int i = 0; i < d->m.lights; i++) {
         const char *listed = images[i];
-        images[i] = find_file(d, folder, listed, files, file_count);
+        bool refused;
+        images[i] = find_file(d, folder, listed, files, file_count, p->allow_outside, &refused);
         if (!images[i])
             return RELUME_ENOMEM;
+        if (refused)
+            return log_fail(log, RELUME_EDATA,
+                            "%s: names '%.200s', outside its folder; expected the image beside the "
+                            ".lp file; if you trust it, --allow-outside",
+                            path, listed);
         if (access(images[i], F_OK) && missing++ == 0)
             first = listed;
     }
@@ -268,16 +281,18 @@ static relume_status resolve(struct draft *d, const char *path, const char *fold
         for (int i = 0; i < file_count; i++)
             if (!(images[i] = arena_format(&d->arena, "%s/%s", folder, files[i]->d_name)))
                 return RELUME_ENOMEM;
-    } else if (missing && !skip_missing) {
+    } else if (missing && !p->skip_missing) {
         return log_fail(log, RELUME_EDATA,
-                        "%s: image '%s' does not exist; expected %d images, %d are missing", path,
-                        first, d->m.lights, missing);
+                        "%s: image '%.200s' does not exist; %d of %d images %s missing; "
+                        "--skip-missing continues without %s",
+                        path, first, missing, d->m.lights, missing == 1 ? "is" : "are",
+                        missing == 1 ? "it" : "them");
     }
     return RELUME_OK;
 }
 
-relume_status lp_resolve(struct draft *draft, const char *path, bool skip_missing,
-                         const struct relume_log *log)
+relume_status lp_resolve(struct draft *draft, const char *path,
+                         const struct relume_capture_params *params)
 {
     char *copy = mem_text(path);
     if (!copy)
@@ -286,7 +301,7 @@ relume_status lp_resolve(struct draft *draft, const char *path, bool skip_missin
     struct dirent **files = NULL;
     const int found = scandir(folder, &files, is_image, by_name);
     const int file_count = found > 0 ? found : 0;
-    const relume_status status = resolve(draft, path, folder, files, file_count, skip_missing, log);
+    const relume_status status = resolve(draft, path, folder, files, file_count, params);
     for (int i = 0; i < file_count; i++)
         free(files[i]);
     free(files);

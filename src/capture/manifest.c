@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "math/vec.h"
 
+#include <ctype.h>
 #include <libgen.h>
 #include <relume/response.h>
 #include <stdio.h>
@@ -17,6 +18,7 @@ struct parser {
     char *folder;
     struct relume_limits limits;
     const struct relume_log *log;
+    bool allow_outside;
 };
 
 static relume_status wrong(const struct parser *p, const char *where, const char *expected)
@@ -38,6 +40,24 @@ static relume_status get_numbers(const struct parser *p, const jvalue *object, c
     return jvalue_numbers(value, out, count) ? RELUME_OK : wrong(p, key, expected);
 }
 
+bool leaves_folder(const char *name)
+{
+    int depth = 0;
+    if (*name == '/' || *name == '\\' || (isalpha((unsigned char)*name) && name[1] == ':'))
+        return true;
+    for (const char *at = name; *at;) {
+        const size_t n = strcspn(at, "/\\");
+        if (n == 2 && !strncmp(at, "..", 2))
+            depth--;
+        else if (n && !(n == 1 && *at == '.'))
+            depth++;
+        if (depth < 0)
+            return true;
+        at += n + (at[n] != '\0');
+    }
+    return false;
+}
+
 // A file name as a path from the working folder.
 static relume_status get_path(const struct parser *p, const jvalue *value, const char *where,
                               const char **out)
@@ -45,6 +65,11 @@ static relume_status get_path(const struct parser *p, const jvalue *value, const
     const char *text = jvalue_text(value);
     if (!text || !*text)
         return wrong(p, where, "a file name");
+    if (!p->allow_outside && leaves_folder(text))
+        return log_fail(p->log, RELUME_EDATA,
+                        "%s: %s names '%.200s', outside its folder; expected a file inside; if you "
+                        "trust it, --allow-outside",
+                        p->path, where, text);
     *out = text[0] == '/' ? arena_text(&p->d->arena, text)
                           : arena_format(&p->d->arena, "%s/%s", p->folder, text);
     return *out ? RELUME_OK : RELUME_ENOMEM;
@@ -76,6 +101,8 @@ static relume_status read_vectors(const struct parser *p, const jvalue *array, c
         v[i] = vec3_of(xyz[0], xyz[1], xyz[2]);
         if (unit && !direction_normalise(&v[i]))
             return wrong(p, where, "a direction; found a zero vector");
+        if (!(vec3_length(v[i]) > 0.0))
+            return wrong(p, where, "a place of a lamp; found 0, 0, 0, the middle of the scene");
     }
     *out = v;
     *count = (int)n;
@@ -423,17 +450,19 @@ static relume_status read_root(const struct parser *p, const jvalue *root)
     return status;
 }
 
-relume_status manifest_read(struct draft *out, const char *path, const struct relume_limits *limits,
-                            const struct relume_log *log)
+relume_status manifest_read(struct draft *out, const char *path,
+                            const struct relume_capture_params *params)
 {
     *out = (struct draft){0};
     jvalue *root;
-    relume_status status = jvalue_load(&root, path, log);
+    relume_status status = jvalue_load(&root, path, params->log);
     if (status)
         return status;
     char *copy = mem_text(path);
     if (copy) {
-        const struct parser p = {out, path, dirname(copy), limits_or_default(limits), log};
+        const struct parser p = {out,           path,
+                                 dirname(copy), limits_or_default(params->limits),
+                                 params->log,   params->allow_outside};
         status = read_root(&p, root);
     } else {
         status = RELUME_ENOMEM;
@@ -450,7 +479,7 @@ relume_status manifest_lights(struct relume_light_list *out, const jvalue *root,
 {
     struct draft draft = {0};
     char no_folder[] = ".";
-    const struct parser p = {&draft, path, no_folder, limits_or_default(NULL), log};
+    const struct parser p = {&draft, path, no_folder, limits_or_default(NULL), log, false};
     const jvalue *lights = jvalue_member(root, "lights");
     *out = (struct relume_light_list){0};
     // The output of `relume lights --json` has the directions at its top.

@@ -27,13 +27,17 @@ void draft_free(struct draft *draft);
 relume_status lp_read(struct draft *out, const char *path, const struct relume_limits *limits,
                       const struct relume_log *log);
 // Replace the names by existing paths (docs/user-guide: "Names decide"); missing files stay as
-// they are when `skip_missing`.
-relume_status lp_resolve(struct draft *draft, const char *path, bool skip_missing,
-                         const struct relume_log *log);
+// they are when `skip_missing`. Names that leave the folder mean their base name in it, unless
+// `allow_outside`.
+relume_status lp_resolve(struct draft *draft, const char *path,
+                         const struct relume_capture_params *params);
 
 // A capture.json; paths are made relative to the working folder.
-relume_status manifest_read(struct draft *out, const char *path, const struct relume_limits *limits,
-                            const struct relume_log *log);
+relume_status manifest_read(struct draft *out, const char *path,
+                            const struct relume_capture_params *params);
+
+// Whether a name is absolute, here or on Windows, or climbs out of the folder that it begins in.
+bool leaves_folder(const char *name);
 
 // Only the lights of the tree of a capture.json or of `relume lights --json`.
 relume_status manifest_lights(struct relume_light_list *out, const jvalue *root, const char *path,

@@ -48,7 +48,8 @@ static relume_status one_picture(struct panorama_job *job)
     if (job->set.turned)
         return save_upright(job);
     for (int k = 0; k < job->set.lights; k++)
-        if (!(job->view.images[k] = path_from(&job->set.arena, job->dir, c->images[k])))
+        if (!(job->view.images[k] =
+                  path_from(&job->set.arena, job->folder, job->dir, c->images[k])))
             return RELUME_ENOMEM;
     return RELUME_OK;
 }

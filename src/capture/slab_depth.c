@@ -152,11 +152,11 @@ static relume_status write_manifest(const struct slab_depth *d, const char *path
         const struct relume_manifest_view *from = &d->m->view[i];
         view[i] = *from;
         view[i].depth = arena_format(&arena, "view%03d_depth.exr", i);
-        view[i].mask = from->mask ? path_from(&arena, path, from->mask) : NULL;
+        view[i].mask = from->mask ? path_from(&arena, dir, path, from->mask) : NULL;
         view[i].images = arena_array(&arena, (size_t)m.lights, sizeof *view[i].images);
         whole = view[i].depth && view[i].images && (!from->mask || view[i].mask);
         for (int k = 0; whole && k < m.lights; k++)
-            whole = (view[i].images[k] = path_from(&arena, path, from->images[k])) != NULL;
+            whole = (view[i].images[k] = path_from(&arena, dir, path, from->images[k])) != NULL;
     }
     m.view = view;
     const relume_status status = whole ? save_manifest(dir, &m, d->p.log) : RELUME_ENOMEM;

@@ -273,12 +273,12 @@ static struct relume_geometry geometry_of(const struct slab *s)
 }
 
 static relume_status refer(struct slab *s, struct relume_manifest_view *view, int camera,
-                           const char *dir)
+                           const char *dir, const outdir *folder)
 {
     struct arena *a = &s->set.arena;
     view->images = arena_array(a, (size_t)s->set.lights, sizeof *view->images);
     for (int k = 0; view->images && k < s->set.lights; k++)
-        if (!(view->images[k] = path_from(a, dir, s->set.camera[camera].images[k])))
+        if (!(view->images[k] = path_from(a, folder, dir, s->set.camera[camera].images[k])))
             return RELUME_ENOMEM;
     return view->images ? RELUME_OK : RELUME_ENOMEM;
 }
@@ -296,7 +296,7 @@ static relume_status write_slab(struct slab *s, const char *dir, const outdir *f
         view[i].uv[0] = s->u[i % s->columns];
         view[i].uv[1] = s->v[i / s->columns];
         if (!shift)
-            status = refer(s, &view[i], s->camera[i], dir);
+            status = refer(s, &view[i], s->camera[i], dir, folder);
     }
     if (!status && shift)
         status = save_shifted(view, &s->width, &s->height, folder, &s->set, &grid,

@@ -32,8 +32,10 @@ void photo_set_free(struct photo_set *set);
 relume_status photo_load(struct relume_image *out, const struct photo_set *set, int camera,
                          int light, const struct relume_ingest_params *p);
 
-// How `file` is called from inside the folder `dir`, which need not exist yet. NULL: no memory.
-const char *path_from(struct arena *arena, const char *dir, const char *file);
+// How `file` is called from inside the folder that is being made and will be `dir`. A file
+// elsewhere gets a link in its photos/, since a capture that leaves its folder has to be trusted
+// first; where the disk has no links its way from `dir`. NULL: no memory.
+const char *path_from(struct arena *arena, const outdir *folder, const char *dir, const char *file);
 
 // Where a file's name puts its camera.
 struct view_place {

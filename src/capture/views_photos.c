@@ -4,6 +4,7 @@
 #include "base/outdir.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "capture/manifest.h"
 #include "image/photograph.h"
 
 #include <dirent.h>
@@ -14,6 +15,7 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 void photo_set_free(struct photo_set *set)
 {
@@ -206,13 +208,39 @@ static const char *relative(struct arena *arena, const char *from, const char *t
     return out;
 }
 
-const char *path_from(struct arena *arena, const char *dir, const char *file)
+// A link to `target` (as the folder sees it) in the folder's photos/; NULL where the disk has none.
+static const char *link_photo(struct arena *arena, const outdir *folder, const char *target)
+{
+    char *photos = mem_format("%s/photos", outdir_path(folder)), seen[PATH_MAX];
+    const char *to = arena_format(arena, "../%s", target), *name = strrchr(target, '/') + 1;
+    const char *out = NULL;
+    bool more = photos && to && (!mkdir(photos, 0777) || errno == EEXIST);
+    for (int n = 0; more; n++) {
+        const char *inside = n ? arena_format(arena, "photos/%d_%s", n, name)
+                               : arena_format(arena, "photos/%s", name);
+        char *path = inside ? mem_format("%s/%s", outdir_path(folder), inside) : NULL;
+        const bool made = path && !symlink(to, path);
+        more = path && !made && errno == EEXIST;
+        const ssize_t length = more ? readlink(path, seen, sizeof seen) : -1;
+        const bool same =
+            length == (ssize_t)strlen(to) && !strncmp(seen, to, (size_t)length);  // linked before
+        if (made || same)
+            out = inside;
+        more = more && !same;
+        free(path);
+    }
+    free(photos);
+    return out;
+}
+
+const char *path_from(struct arena *arena, const outdir *folder, const char *dir, const char *file)
 {
     char *from = resolve(dir), *to = resolve(file);
     const char *out = from && to ? relative(arena, from, to) : NULL;
+    const char *linked = out && leaves_folder(out) ? link_photo(arena, folder, out) : NULL;
     free(from);
     free(to);
-    return out;
+    return linked ? linked : out;
 }
 
 // ---------------------------------------------------------------- the folder

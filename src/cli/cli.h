@@ -27,6 +27,13 @@ struct option {
     double min, max;  // range of numbers; both 0: any
 };
 
+// Of every command that reads captures.
+#define ALLOW_OUTSIDE_OPTION                                                                       \
+    {                                                                                              \
+        "--allow-outside", OPTION_FLAG, NULL,                                                      \
+            "files that the capture names may lie outside its folder", 0, 0                        \
+    }
+
 struct args;
 
 // One command, one cmd_*.c file, one entry in commands[] (main.c). Help is made from it.

@@ -42,6 +42,7 @@ static const struct option options[] = {
     {"--assume-depth", OPTION_NUMBER, "D",
      "near lights: views without depth are this far from the eye", 1e-6, 1e9},
     {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
+    ALLOW_OUTSIDE_OPTION,
     {"--repair", OPTION_FLAG, NULL,
      "replace pixels that are NaN or infinite by those under the nearest lights", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
@@ -264,6 +265,7 @@ static relume_status encode(const struct args *args, struct request *r)
         &capture, args_input(args, 0),
         relume_capture_params(.log = args_log(args), .transfer = r->transfer,
                               .skip_missing = args_has(args, "--skip-missing"),
+                              .allow_outside = args_has(args, "--allow-outside"),
                               .assume_depth = args_number(args, "--assume-depth", 0.0),
                               .repair = args_has(args, "--repair"), .keep_bytes = keep));
     if (status)

@@ -7,6 +7,7 @@ static const struct option options[] = {
     {"--assume-depth", OPTION_NUMBER, "D",
      "near lights: views without depth are this far from the eye", 1e-6, 1e9},
     {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
+    ALLOW_OUTSIDE_OPTION,
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
@@ -82,6 +83,7 @@ static relume_status run(const struct args *args)
             &capture, args_input(args, 1),
             relume_capture_params(.log = args_log(args), .transfer = transfer,
                                   .skip_missing = args_has(args, "--skip-missing"),
+                                  .allow_outside = args_has(args, "--allow-outside"),
                                   .assume_depth = args_number(args, "--assume-depth", 0.0)));
     if (!status)
         status = relume_evaluate(

@@ -26,6 +26,7 @@ static const struct option options[] = {
      "bilinear: side of the grid of lights; default: 15 to 33, by the lights", 3, 33},
     {"--view", OPTION_INT, "N", "which view of a slab; default: 0", 0, 65535},
     {"--force", OPTION_FLAG, NULL, "replace a folder that relume made", 0, 0},
+    ALLOW_OUTSIDE_OPTION,
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
 
@@ -148,7 +149,8 @@ static relume_status run(const struct args *args)
     relume_pack *pack;
     struct relume_export_report report;
     status = relume_open(&pack, args_input(args, 0),
-                         relume_open_params(.log = p.log, .threads = p.threads));
+                         relume_open_params(.log = p.log, .threads = p.threads,
+                                            .allow_outside = args_has(args, "--allow-outside")));
     if (!status)
         status = relume_export(pack, args_text(args, "-o", NULL), format, &report, &p);
     relume_pack_destroy(&pack);

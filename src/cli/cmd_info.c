@@ -4,6 +4,7 @@
 
 static const struct option options[] = {
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
+    ALLOW_OUTSIDE_OPTION,
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
 
@@ -86,7 +87,9 @@ static relume_status run(const struct args *args)
     const char *path = args_input(args, 0);
     relume_pack *pack;
     const relume_status status =
-        relume_open(&pack, path, relume_open_params(.log = args_log(args)));
+        relume_open(&pack, path,
+                    relume_open_params(.log = args_log(args),
+                                       .allow_outside = args_has(args, "--allow-outside")));
     if (status)
         return status;
     const struct relume_pack_info *info = relume_pack_info(pack);

@@ -15,6 +15,7 @@ static const struct option options[] = {
     INTERPOLATE_OPTIONS,
     CPU_OPTION,
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
+    ALLOW_OUTSIDE_OPTION,
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
 
@@ -83,7 +84,8 @@ static relume_status query(const struct args *args, const struct relume_ray *ray
     if (!rgb)
         return RELUME_ENOMEM;
     status = relume_open(&pack, args_input(args, 0),
-                         relume_open_params(.log = args_log(args), .threads = args_threads(args)));
+                         relume_open_params(.log = args_log(args), .threads = args_threads(args),
+                                            .allow_outside = args_has(args, "--allow-outside")));
     params.log = prefix_log(&about, args_log(args), args_input(args, 0));
     if (!status)
         status = relume_query_rays(rgb, pack, rays, n, lights, count, &params);

@@ -45,6 +45,7 @@ static const struct option options[] = {
      "objects covered with BTFs, in the scene (docs/objects.md); needs a file with depth", 0, 0},
     {"--samples", OPTION_INT, "N", "--objects: N x N rays a pixel; default 3", 1, 16},
     {"--capture", OPTION_TEXT, "CAPTURE", "--pass difference: the photographs", 0, 0},
+    ALLOW_OUTSIDE_OPTION,
     CPU_OPTION,
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
@@ -151,7 +152,10 @@ static relume_status parse_pass(const struct args *args, struct relume_frame_par
 static relume_status open_capture(const struct args *args, relume_capture **capture)
 {
     const char *path = args_text(args, "--capture", NULL);
-    return path ? relume_capture_open(capture, path, relume_capture_params(.log = args_log(args)))
+    return path ? relume_capture_open(
+                      capture, path,
+                      relume_capture_params(.log = args_log(args),
+                                            .allow_outside = args_has(args, "--allow-outside")))
                 : RELUME_OK;
 }
 
@@ -260,6 +264,7 @@ static relume_status render(const struct args *args, const struct relume_camera 
     relume_status status =
         relume_open(&pack, args_input(args, 0),
                     relume_open_params(.log = args_log(args), .threads = args_threads(args),
+                                       .allow_outside = args_has(args, "--allow-outside"),
                                        .sphere = camera->framing == RELUME_FRAME_LOOK));
     if (status)
         return status;

@@ -26,6 +26,7 @@ static const struct option options[] = {
      1048576},
     {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
     {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
+    ALLOW_OUTSIDE_OPTION,
     {"--json", OPTION_FLAG, NULL, "print one JSON object", 0, 0},
     {"--csv", OPTION_FLAG, NULL, "print comma-separated values", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
@@ -541,7 +542,8 @@ static relume_status open_capture(const struct args *args, const char *path, rel
     return relume_capture_open(
         out, path,
         relume_capture_params(.log = args_log(args), .transfer = transfer,
-                              .skip_missing = args_has(args, "--skip-missing")));
+                              .skip_missing = args_has(args, "--skip-missing"),
+                              .allow_outside = args_has(args, "--allow-outside")));
 }
 
 static relume_status parse_domain(const char *text, enum relume_domain *out)

@@ -131,8 +131,9 @@ static relume_status encode(const char *path, const char *out, const struct relu
     struct stat s;
     if (!stat(path, &s) && S_ISDIR(s.st_mode) && !holds(path, "capture.json"))
         lp = only_lp(path);
-    relume_status status =
-        relume_capture_open(&capture, lp ? lp : path, relume_capture_params(.log = p->log));
+    relume_status status = relume_capture_open(
+        &capture, lp ? lp : path,
+        relume_capture_params(.log = p->log, .allow_outside = p->allow_outside));
     free(lp);
     if (!status)
         status = relume_coder_learn(&coder, &relume_basis_pca, capture,

@@ -43,4 +43,32 @@ done
 expect_fail 'an empty input' 2 'info: expected .*found an empty name' - "$RELUME" info ''
 check 'the viewer: an empty output is wrong usage' sh -c "$VIEWER made.exr --offscreen ''; test \$? -eq 2"
 
+# ---- captures that name files outside their folder, and images that are missing
+"$BUILD/samples/sphere" c --size 16 --lights 6 --format png || exit 1
+mkdir lps && sed 's|view00/|../c/view00/|' c/dirs.lp >lps/outside.lp
+refused() { expect_fail "$1" 1 "$2" x.exr "$RELUME" encode "$3" -o x.exr --basis table; }
+refused '.lp, ..' "names '../c/view00/light0000.png', outside its folder.*--allow-outside" lps/outside.lp
+expect_ok '.lp, .. is trusted' - "$RELUME" encode lps/outside.lp -o x.exr --basis table --allow-outside && rm -f x.exr
+sed "s|view00/|$PWD/c/view00/|" c/dirs.lp >lps/absolute.lp
+refused '.lp, absolute' 'outside its folder' lps/absolute.lp
+sed 's|view00/|C:\\\\RTI\\\\coin\\\\|' c/dirs.lp >c/view00/windows.lp
+expect_ok '.lp of Windows: base names beside it' - "$RELUME" encode c/view00/windows.lp -o x.exr --basis table && rm -f x.exr
+sed 's|view00/|../elsewhere/|' c/dirs.lp >c/view00/moved.lp
+expect_ok '.lp, moved: base names beside it' - "$RELUME" encode c/view00/moved.lp -o x.exr --basis table && rm -f x.exr
+mkdir j && sed 's|"view00/|"../c/view00/|g; s|"depth": [^,]*, ||' c/capture.json >j/capture.json
+refused 'capture.json, ..' "names '../c/view00/light0000.png', outside its folder" j
+expect_ok 'capture.json is trusted' - "$RELUME" encode j -o x.exr --basis table --allow-outside && rm -f x.exr
+sed 's|"view00/|"a/../../c/view00/|g' c/capture.json >j/capture.json
+refused 'capture.json, .. further in' 'outside its folder' j
+sed 's|"view00/|"view00/../view00/|g' c/capture.json >c/in.json
+expect_ok 'capture.json, .. that stays inside' - "$RELUME" encode c/in.json -o x.exr --basis table && rm -f x.exr
+sed 's|"directions"|"positions"|; s|\[ *[-0-9.e]*, *[-0-9.e]*, *[-0-9.e]*\]|[0, 0, 0]|g' c/capture.json >c/zero.json
+refused 'lamps all at 0' 'lights.positions\[0\]; expected a place of a lamp; found 0, 0, 0' c/zero.json
+rm c/view00/light0002.png
+refused 'a missing image, .lp' '1 of 6 images is missing; --skip-missing continues without it' c/dirs.lp
+refused 'a missing image' '1 of 6 images is missing; --skip-missing continues without' c
+mkdir rays && for i in 0 1 2 3; do cp b.png "rays/r$((i / 2))_c$((i % 2))_.png"; done
+expect_ok 'a slab of photographs elsewhere' - "$RELUME" capture rays --slab -o slab --names 'r{row}_c{column}_' -q
+expect_ok 'needs no trust' - "$RELUME" encode slab -o x.exr --basis table -q && rm -f x.exr
+
 finish

@@ -45,7 +45,7 @@ static void test_round_trip(void **state)
         m.geometry.center = (struct relume_vec3){1, 2, 3};
         CHECK_OK(relume_manifest_write(&m, path, NULL));
         struct draft d;
-        CHECK_OK(manifest_read(&d, path, NULL, NULL));
+        CHECK_OK(manifest_read(&d, path, relume_capture_params(.log = NULL)));
         assert_int_equal(d.m.geometry.projection, p);
         assert_int_equal(d.m.transfer.curve, RELUME_CURVE_GAMMA);
         CHECK_NEAR(d.m.transfer.gamma, 2.2, 1e-6);
@@ -93,7 +93,8 @@ static void expect(const char *a, const char *b, const char *c, const char *d, c
     test_log_init(&log);
     snprintf(text, sizeof text, frame, a, b, c, d);
     test_write(path, text, strlen(text));
-    const relume_status status = manifest_read(&draft, path, NULL, &log.log);
+    const relume_status status =
+        manifest_read(&draft, path, relume_capture_params(.log = &log.log));
     if (!said) {
         assert_string_equal(log.text, "");
         CHECK_OK(status);
@@ -181,7 +182,8 @@ static void test_directions(void **state)
         struct test_log log;
         test_log_init(&log);
         test_write(path, rows[i].text, strlen(rows[i].text));
-        assert_int_equal(manifest_read(&d, path, NULL, &log.log), RELUME_EDATA);
+        assert_int_equal(manifest_read(&d, path, relume_capture_params(.log = &log.log)),
+                         RELUME_EDATA);
         if (log.lines != 1 || !strstr(log.text, rows[i].said) || !strstr(log.text, path))
             fail_msg("%s: '%s'; expected '%s'", rows[i].text, log.text, rows[i].said);
     }

@@ -119,7 +119,8 @@ static void wrong_manifests_are_refused(void **state)
         struct draft d;
         test_log_init(&log);
         write_json(wrong[i].slabs, wrong[i].views);
-        assert_int_equal(manifest_read(&d, json, NULL, &log.log), RELUME_EDATA);
+        assert_int_equal(manifest_read(&d, json, relume_capture_params(.log = &log.log)),
+                         RELUME_EDATA);
         if (log.lines != 1 || !strstr(log.text, wrong[i].says))
             fail_msg("%zu says '%s'; expected '%s'", i, log.text, wrong[i].says);
     }
@@ -159,7 +160,7 @@ static relume_capture *capture_slabs(void)
     m.slab = slab;
     CHECK_OK(relume_manifest_write(&m, json, NULL));
     relume_capture_destroy(&capture);
-    CHECK_OK(relume_capture_open(&capture, folder, NULL));
+    CHECK_OK(relume_capture_open(&capture, folder, relume_capture_params(.allow_outside = true)));
     return capture;
 }
 

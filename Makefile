@@ -61,6 +61,8 @@ MESHES_C := src/scene/mesh_assimp.c
 # Built where OpenCV's stitching is (make deps-stitch); opened when photographs are to be stitched
 OPENCV   := $(firstword $(wildcard $(addsuffix /opencv4,/usr/include /usr/local/include)))
 STITCH_CXX := $(if $(wildcard $(OPENCV)/opencv2/stitching/detail/matchers.hpp),src/capture/stitch.cpp)
+# The program in which foreign files are read (src/base/helper.h); it lies beside the modules
+HELPER_C := $(wildcard src/helper/*.c)
 CLI_C    := $(wildcard src/cli/*.c)
 VIEWER_C := $(wildcard viewer/*.c)
 VIEWER_CXX := $(wildcard viewer/*.cpp)
@@ -78,6 +80,7 @@ LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $B/obj/src/math/lsq_eigen.o $B/obj/src/math/
 MODULE   := $B/librelume-oiio.so.$(MAJOR)
 MESHES   := $B/librelume-assimp.so.$(MAJOR)
 STITCH   := $(if $(STITCH_CXX),$B/librelume-stitch.so.$(MAJOR))
+HELPER   := $B/relume-helper
 CLI_O    := $(CLI_C:%.c=$B/obj/%.o)
 VIEWER_O := $(VIEWER_C:%.c=$B/obj/%.o) $(VIEWER_CXX:%.cpp=$B/obj/%.o) $B/obj/viewer/shaders.o
 UNIT     := $(UNIT_C:%.c=$B/%)
@@ -91,7 +94,7 @@ VIEWER   := $(if $(VIEWER_C),$B/relume-view)
         clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
-lib: $B/librelume.a $B/librelume.so $(MODULE) $(MESHES) $(STITCH)
+lib: $B/librelume.a $B/librelume.so $(MODULE) $(MESHES) $(HELPER) $(STITCH)
 cli: $B/relume
 viewer: $(VIEWER)
 
@@ -181,6 +184,9 @@ $(MESHES): $(MESHES_C:%.c=$B/obj/%.o) $B/librelume.a
 $(STITCH): $(STITCH_CXX:%.cpp=$B/obj/%.o)
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) -shared $(HARD_LD) -o $@ $^ $(LDFLAGS) -Wl,--as-needed -lopencv_stitching -lopencv_features2d -lopencv_calib3d -lopencv_imgproc -lopencv_core
+$(HELPER): $(HELPER_C:%.c=$B/obj/%.o) $B/librelume.a | $(MODULE) $(MESHES)
+	$(call say,LD)
+	$(Q)$(CC) $(MODE) -pthread $(call run_path) $(HARD_LD) -o $@ $(filter %.o %.a,$^) $(LDFLAGS) -Wl,--gc-sections -Wl,--as-needed -lm -ldl
 $B/relume: $(CLI_O) $B/librelume.a
 	$(call say,LD)
 	$(Q)$(CC) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) $(HARD_LD) -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS)
@@ -208,7 +214,7 @@ $(GL) $(GL_BENCH): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O
 	$(Q)$(CXX) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
 
 # Programs open the module when they run.
-$B/relume $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE) $(MESHES)
+$B/relume $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE) $(MESHES) $(HELPER)
 
 -include $(shell find $B/obj -name '*.d' 2>/dev/null)
 
@@ -233,7 +239,7 @@ layers:
 	@scripts/layers.sh
 
 format:
-	clang-format -i $(LIB_C) $(MODULE_CXX) src/math/lsq_eigen.cpp $(MESHES_C) $(STITCH_CXX) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
+	clang-format -i $(LIB_C) $(MODULE_CXX) src/math/lsq_eigen.cpp $(MESHES_C) $(STITCH_CXX) $(HELPER_C) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
 	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*.h viewer/*.h tests/*.h samples/*.c)
 
 bench: all $(BENCH)

@@ -21,6 +21,7 @@ link "librelume.so.$version" "$dest/lib/librelume.so.$major"
 link "librelume.so.$major" "$dest/lib/librelume.so"
 put 755 "$build/librelume-oiio.so.$major" "$dest/lib"
 put 755 "$build/librelume-assimp.so.$major" "$dest/lib"
+put 755 "$build/relume-helper" "$dest/lib"
 [ ! -e "$build/librelume-stitch.so.$major" ] || put 755 "$build/librelume-stitch.so.$major" "$dest/lib"
 for header in "$here"/include/relume/*.h; do
     put 644 "$header" "$dest/include/relume"

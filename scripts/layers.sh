@@ -20,6 +20,7 @@ btf:base math image:base image light lights capture btf surface ambient
 frame:base math:base image capture coder pack light relight view slabs frame sight evaluate normals enhance
 scene:base math image:base image lights capture btf scene
 object:base math image scene:base image capture light relight view slabs pack frame sight btf ambient surface object
+helper:base image scene:base
 cli:cli:*
 viewer:viewer:*
 samples::*"

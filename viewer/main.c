@@ -380,10 +380,12 @@ static relume_status run_window(struct session *s, struct options *o)
 int main(int argc, char **argv)
 {
     static struct session session;
-    static struct relume_log log = {
-        .message = on_message, .progress = on_progress, .user = &session};
-    session.log = &log;
     struct options options;
+    struct relume_log log = {.message = on_message,
+                             .progress = on_progress,
+                             .user = &session,
+                             .limits = &options.limits};
+    session.log = &log;
     signal(SIGXFSZ, SIG_IGN);  // a file size limit is a write error, not a death
     signal(SIGPIPE, SIG_IGN);
     relume_status status = relume_inputs_create(&log.inputs);

@@ -214,6 +214,34 @@ static relume_status take_size(struct options *o, const char *name, const char *
     return RELUME_OK;
 }
 
+static relume_status take_bytes(uint64_t *out, const char *name, const char *text,
+                                const struct relume_log *log)
+{
+    if (!relume_size_parse(out, text))
+        return RELUME_OK;
+    return say(log, RELUME_EINVAL, "%s: expected a size like 500M or 4G; found '%s'", name, text);
+}
+
+static relume_status take_max_memory(struct options *o, const char *name, const char *text,
+                                     const struct relume_log *log)
+{
+    return take_bytes(&o->limits.max_memory, name, text, log);
+}
+
+static relume_status take_max_pixels(struct options *o, const char *name, const char *text,
+                                     const struct relume_log *log)
+{
+    return take_bytes(&o->limits.max_pixels, name, text, log);
+}
+
+static relume_status take_any_format(struct options *o, const char *name, const char *text,
+                                     const struct relume_log *log)
+{
+    (void)name, (void)text, (void)log;
+    o->limits.any_format = true;
+    return RELUME_OK;
+}
+
 static relume_status take_threads(struct options *o, const char *name, const char *text,
                                   const struct relume_log *log)
 {
@@ -528,6 +556,10 @@ static const struct option options[] = {
     {"--repeat", "N", "--mesh: samples along its texture; default 1", take_repeat},
     {"--capture", "CAPTURE", "the photographs, for --pass difference", take_capture},
     {"--threads", "N", "threads that read files; default: all cores", take_threads},
+    {"--max-memory", "SIZE",
+     "most memory of one picture, view or model; default: half of the machine's", take_max_memory},
+    {"--max-pixels", "N", "most pixels of one picture: 200M; default: 1G", take_max_pixels},
+    {"--any-format", NULL, "read pictures of every format that OpenImageIO knows", take_any_format},
     {"--vram", "MB", "graphics memory for views; those not used for long leave; default: 1024",
      take_vram},
     {"--relight", "BY",

@@ -31,6 +31,7 @@ struct options {
     bool sized;       // --size was given
     const char *gl;   // what offscreen frames are drawn by: a name that context_offscreen knows
     int threads;      // that read files; 0: all cores
+    struct relume_limits limits;
     double vram_mb;   // graphics memory for views
     enum session_relight relight, glare;
     int glare_size;

@@ -29,6 +29,7 @@ typedef enum relume_status {
 // A fixed English text for `status`, never NULL.
 RELUME_API const char *relume_status_text(relume_status status);
 
+struct relume_limits;
 enum relume_level { RELUME_ERROR, RELUME_WARNING, RELUME_NOTE };
 
 // The name in a NULL-terminated list that somebody most likely meant who typed `given`; NULL when
@@ -54,15 +55,23 @@ struct relume_log {
     bool (*progress)(void *user, const char *what, double done);
     void *user;
     relume_inputs *inputs;  // what is read is noted here and never replaced; may be NULL
+    // For everything that is opened with this log, where its own params name none. May be NULL.
+    const struct relume_limits *limits;
 };
 
-// Upper bounds for sizes read from files; zero in a field means its default.
+// Upper bounds for what is read from files; zero in a field means its default.
 struct relume_limits {
     int max_side;         // pixels along one side; default 65536
     uint64_t max_pixels;  // pixels of one image; default 2^30
     int max_lights;       // default 65536
     int max_views;        // default 65536
+    uint64_t max_memory;  // bytes of one picture, view or model; default: half of the machine's
+    bool any_format;      // pictures: also what is not on the list of formats (docs/reliability.md)
 };
+
+// "500M", "4G" or a plain number: k, M, G and T are powers of 1024. RELUME_EINVAL for anything else,
+// for nothing, and beyond 2^63.
+RELUME_RESULT relume_status relume_size_parse(uint64_t *out, const char *text);
 
 enum relume_cpu {
     RELUME_CPU_AVX2 = 1 << 0,  // AVX2, FMA and F16C together

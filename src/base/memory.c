@@ -1,9 +1,12 @@
 #include "base/memory.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 static atomic_long countdown;  // test hook only; 0 is off
 
@@ -66,6 +69,36 @@ char *mem_format(const char *format, ...)
     return text;
 }
 
+relume_status relume_size_parse(uint64_t *out, const char *text)
+{
+    static const char units[] = "kMGT";
+    char *end;
+    errno = 0;
+    const unsigned long long n = strtoull(text, &end, 10);
+    const char *unit = *end ? strchr(units, *end == 'K' ? 'k' : *end) : NULL;
+    const int bits = unit ? 10 * (int)(unit - units + 1) : 0;
+    if (text[0] < '0' || text[0] > '9' || errno || (*end && !unit) || (unit && end[1]) || n < 1 ||
+        n > (UINT64_MAX >> 1) >> bits)
+        return RELUME_EINVAL;
+    *out = (uint64_t)n << bits;
+    return RELUME_OK;
+}
+
+const struct relume_limits *limits_of(const struct relume_limits *own, const struct relume_log *log)
+{
+    return own ? own : log ? log->limits : NULL;
+}
+
+// What this process may have: the machine's memory, less where somebody has said so (ulimit -v).
+static uint64_t memory_there_is(void)
+{
+    struct rlimit l;
+    const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+    const uint64_t machine = pages > 0 && page > 0 ? (uint64_t)pages * (uint64_t)page : UINT64_MAX;
+    const bool limited = !getrlimit(RLIMIT_AS, &l) && l.rlim_cur < machine;
+    return limited ? l.rlim_cur : machine;
+}
+
 struct relume_limits limits_or_default(const struct relume_limits *limits)
 {
     struct relume_limits l = limits ? *limits : (struct relume_limits){0};
@@ -73,6 +106,7 @@ struct relume_limits limits_or_default(const struct relume_limits *limits)
     l.max_pixels = l.max_pixels ? l.max_pixels : (uint64_t)1 << 30;
     l.max_lights = l.max_lights ? l.max_lights : 65536;
     l.max_views = l.max_views ? l.max_views : 65536;
+    l.max_memory = l.max_memory ? l.max_memory : memory_there_is() / 2;
     return l;
 }
 

@@ -21,6 +21,9 @@ void mem_fail_after(long n);
 // Whether that failure is still to come.
 bool mem_fail_pending(void);
 
+// What counts where a call has limits of its own, or NULL, and a log, or NULL.
+const struct relume_limits *limits_of(const struct relume_limits *own,
+                                      const struct relume_log *log);
 // `limits` with defaults filled in; NULL gives all defaults.
 struct relume_limits limits_or_default(const struct relume_limits *limits);
 // Whether an image of that size is allowed.

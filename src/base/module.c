@@ -2,8 +2,11 @@
 #include "base/module.h"
 
 #include <dlfcn.h>
+#include <link.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define TEXT(x)  #x
 #define QUOTE(x) TEXT(x)
@@ -25,4 +28,34 @@ const void *module_open(const char *name, char why[MODULE_WHY])
         return bridge;
     snprintf(why, MODULE_WHY, "%s is of version %s; expected %s", file, version, RELUME_VERSION);
     return NULL;
+}
+
+// The folders in which the linker looks for what the program or library that this is part of needs.
+static Dl_serinfo *search_path(void)
+{
+    Dl_info own;
+    void *object = NULL;
+    Dl_serinfo size;
+    if (!dladdr1((void *)(size_t)module_open, &own, &object, RTLD_DL_LINKMAP) ||
+        dlinfo(object, RTLD_DI_SERINFOSIZE, &size))
+        return NULL;
+    Dl_serinfo *list = malloc(size.dls_size);
+    if (list &&
+        (dlinfo(object, RTLD_DI_SERINFOSIZE, list) || dlinfo(object, RTLD_DI_SERINFO, list))) {
+        free(list);
+        return NULL;
+    }
+    return list;
+}
+
+bool module_program(const char *name, char path[PATH_MAX])
+{
+    Dl_serinfo *list = search_path();
+    bool found = false;
+    for (unsigned i = 0; list && i < list->dls_cnt && !found; i++) {
+        const int n = snprintf(path, PATH_MAX, "%s/%s", list->dls_serpath[i].dls_name, name);
+        found = n > 0 && n < PATH_MAX && !access(path, X_OK);
+    }
+    free(list);
+    return found;
 }

@@ -2,6 +2,7 @@
 #ifndef BASE_MODULE_H
 #define BASE_MODULE_H
 
+#include <limits.h>
 #include <relume/base.h>
 
 enum { MODULE_WHY = 400 };
@@ -11,5 +12,8 @@ enum { MODULE_WHY = 400 };
 // first member is the RELUME_VERSION of its build. NULL with a reason in `why` when it is not there
 // or of another version. It stays open.
 const void *module_open(const char *name, char why[MODULE_WHY]);
+
+// The path of the program NAME that lies where modules do; false: there is none.
+bool module_program(const char *name, char path[PATH_MAX]);
 
 #endif

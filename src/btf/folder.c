@@ -163,7 +163,7 @@ relume_status relume_btf_open(relume_btf **out, const char *path,
         return log_fail(params->log, RELUME_EINVAL, "%s: expected a .btf file to take a part of",
                         path);
     struct folder f = {path, mem_format("%s/btf.json", path),
-                       limits_or_default(params ? params->limits : NULL),
+                       limits_or_default(params ? limits_of(params->limits, params->log) : NULL),
                        params ? params->log : NULL};
     if (!f.json)
         return RELUME_ENOMEM;

@@ -235,7 +235,7 @@ static relume_status open_level(relume_btf_fitted **out, const char *folder, int
                                 const struct relume_btf_params *params)
 {
     struct reader r = {folder, mem_format("%s/model.json", folder),
-                       limits_or_default(params ? params->limits : NULL),
+                       limits_or_default(params ? limits_of(params->limits, params->log) : NULL),
                        params ? params->log : NULL};
     relume_btf_fitted *m = mem_zeroed(1, sizeof *m);
     jvalue *root = NULL;

@@ -191,7 +191,7 @@ relume_status relume_btf_surface_open(relume_btf_surface **out, const char *path
                                       const struct relume_btf_params *params)
 {
     struct reader r = {path, mem_format("%s/surface.json", path),
-                       limits_or_default(params ? params->limits : NULL),
+                       limits_or_default(params ? limits_of(params->limits, params->log) : NULL),
                        params ? params->log : NULL};
     relume_btf_fitted *model = NULL;
     relume_btf_map *map = NULL;

@@ -423,13 +423,14 @@ static bool go_on(void *user, const char *what, double done)
 relume_status btf_open_ubo(relume_btf **out, const char *path,
                            const struct relume_btf_params *params)
 {
-    struct ubo u = {.path = path,
-                    .params = params,
-                    .limits = limits_or_default(params ? params->limits : NULL),
-                    .log = {.message = say,
-                            .progress = go_on,
-                            .inputs = inputs_of(params ? params->log : NULL)}};
+    struct ubo u = {
+        .path = path,
+        .params = params,
+        .limits = limits_or_default(params ? limits_of(params->limits, params->log) : NULL),
+        .log = {
+            .message = say, .progress = go_on, .inputs = inputs_of(params ? params->log : NULL)}};
     u.log.user = &u;
+    u.log.limits = &u.limits;
     *out = NULL;
     relume_status status = map_file(&u);
     if (!status)

@@ -157,11 +157,13 @@ static relume_status check_image(relume_capture *c, const char *path,
                                  const struct relume_capture_params *p)
 {
     picture_reader *reader;
-    const relume_status status = picture_open(&reader, path, p->limits, p->log);
+    relume_status status = picture_open(&reader, path, p->limits, p->log);
+    if (!status)
+        status = picture_need_colour(reader, path, p->log);
+    const struct picture_info info = status ? (struct picture_info){0} : *picture_info_of(reader);
+    picture_close(&reader);
     if (status)
         return status;
-    const struct picture_info info = *picture_info_of(reader);
-    picture_close(&reader);
     c->floats |= info.floats;
     if (c->width == 0) {
         c->width = info.width;
@@ -212,13 +214,15 @@ static relume_status check_discs(const relume_capture *c, const struct relume_lo
 relume_status relume_capture_open(relume_capture **out, const char *path,
                                   const struct relume_capture_params *params)
 {
-    const struct relume_capture_params p = params ? *params : (struct relume_capture_params){0};
+    struct relume_capture_params p = params ? *params : (struct relume_capture_params){0};
     *out = NULL;
     relume_capture *c = mem_zeroed(1, sizeof *c);
     if (!c)
         return RELUME_ENOMEM;
     c->repair = p.repair;
     c->assume_depth = p.assume_depth;
+    p.limits = limits_of(p.limits, p.log);
+    c->limits = limits_or_default(p.limits);
     relume_status status = read_description(c, path, &p);
     if (!status)
         status = p.skip_missing ? skip_missing(c, p.log) : count_missing(c, p.log);
@@ -254,7 +258,7 @@ relume_status capture_stream(struct image_stream *out, const relume_capture *cap
     static const float no_gain[3] = {1.0f, 1.0f, 1.0f};
     const char *path = m->view[view].images[light];
     picture_reader *reader;
-    const relume_status status = picture_open(&reader, path, NULL, log);
+    const relume_status status = picture_open(&reader, path, &capture->limits, log);
     if (status)
         return status;
     const struct picture_info *info = picture_info_of(reader);

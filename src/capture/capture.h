@@ -15,6 +15,7 @@ struct relume_capture {
     bool repair;
     double assume_depth;  // of near lights' views without depth; 0: none
     struct kept *kept;
+    struct relume_limits limits;
     struct relume_transfer stated;    // for all images; AUTO: each file's own
     struct relume_transfer transfer;  // of the first image, never AUTO
 };

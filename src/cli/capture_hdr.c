@@ -184,7 +184,8 @@ static relume_status run_bracket(struct bracket *b, const struct choices *c, con
 static relume_status read_notes(struct relume_notes *notes, struct photo_list *list,
                                 const struct args *args)
 {
-    struct relume_log silent = {.inputs = args_log(args)->inputs};
+    const struct relume_log silent = {.inputs = args_log(args)->inputs,
+                                      .limits = args_log(args)->limits};
     const bool skip = args_has(args, "--skip-bad");
     for (int i = 0; i < list->count; i++) {
         const relume_status status =

@@ -42,6 +42,11 @@ const struct command *const commands[] = {
 
 static const struct option common[] = {
     {"--threads", OPTION_INT, "N", "worker threads; default: all cores", 0, 256},
+    {"--max-memory", OPTION_TEXT, "SIZE",
+     "most memory of one picture, view or model: 4G; default: half of the machine's", 0, 0},
+    {"--max-pixels", OPTION_TEXT, "N", "most pixels of one picture: 200M; default: 1G", 0, 0},
+    {"--any-format", OPTION_FLAG, NULL,
+     "read pictures of every format that OpenImageIO knows, not only those for photographs", 0, 0},
     {"-q", OPTION_FLAG, NULL, "no progress bar and no remarks", 0, 0},
     {"--help", OPTION_FLAG, NULL, "this text", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
@@ -61,6 +66,7 @@ struct args {
     struct given given[MAX_ARGS];
     const char *inputs[MAX_ARGS];
     struct relume_log log;
+    struct relume_limits limits;  // of log
     bool quiet;
 };
 
@@ -114,7 +120,8 @@ static bool on_prefixed_progress(void *user, const char *what, double done)
 const struct relume_log *prefix_log(struct prefix_log *p, const struct relume_log *to,
                                     const char *prefix)
 {
-    *p = (struct prefix_log){{on_prefixed, on_prefixed_progress, p, to->inputs}, to, prefix};
+    *p = (struct prefix_log){
+        {on_prefixed, on_prefixed_progress, p, to->inputs, to->limits}, to, prefix};
     return &p->log;
 }
 
@@ -475,10 +482,28 @@ static relume_status note_inputs(struct args *args)
     return status;
 }
 
+static relume_status take_size(uint64_t *out, const struct args *args, const char *name)
+{
+    const char *text = args_text(args, name, NULL);
+    if (!text || !relume_size_parse(out, text))
+        return RELUME_OK;
+    return usage_error("%s: expected a size like 500M or 4G; found '%s'", name, text);
+}
+
+static relume_status take_limits(struct args *args)
+{
+    struct relume_limits *l = &args->limits;
+    l->any_format = args_has(args, "--any-format");
+    const relume_status status = take_size(&l->max_memory, args, "--max-memory");
+    return status ? status : take_size(&l->max_pixels, args, "--max-pixels");
+}
+
 static relume_status run_command(struct args *args, int argc, char **argv)
 {
     const struct command *c = args->command;
-    const relume_status status = parse(args, argc, argv);
+    relume_status status = parse(args, argc, argv);
+    if (!status)
+        status = take_limits(args);
     if (status)
         return status;
     if (args_has(args, "--help")) {
@@ -489,8 +514,8 @@ static relume_status run_command(struct args *args, int argc, char **argv)
     if (args->input_count < c->min_inputs || args->input_count > c->max_inputs)
         return usage_error("%s: expected 'relume %s %s'; found %d input%s", c->name, c->name,
                            c->usage, args->input_count, args->input_count == 1 ? "" : "s");
-    const relume_status noted = note_inputs(args);
-    return noted ? noted : c->run(args);
+    status = note_inputs(args);
+    return status ? status : c->run(args);
 }
 
 static bool flush_stdout(void)
@@ -575,7 +600,8 @@ int main(int argc, char **argv)
     struct args *args = calloc(1, sizeof *args);
     if (!args)
         return exit_code(RELUME_ENOMEM);
-    args->log = (struct relume_log){on_message, on_progress, args, NULL};
+    args->log = (struct relume_log){
+        .message = on_message, .progress = on_progress, .user = args, .limits = &args->limits};
     for (const struct command *const *c = commands; *c; c++)
         if (!strcmp((*c)->name, argv[1]))
             args->command = *c;

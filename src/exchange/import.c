@@ -29,15 +29,16 @@ static bool ends_with(const char *path, const char *end)
 static relume_status read_any(struct foreign *f, const char *path,
                               const struct relume_import_params *p)
 {
+    const struct relume_limits *limits = limits_of(p->limits, p->log);
     struct stat st;
     if (stat(path, &st))
         return log_fail(p->log, RELUME_EDATA, "%s: no such file or folder", path);
     if (S_ISDIR(st.st_mode) || ends_with(path, ".json"))
-        return web_read(f, path, p->limits, p->log);
+        return web_read(f, path, limits, p->log);
     if (ends_with(path, ".ptm"))
-        return ptm_read(f, path, p->limits, p->log);
+        return ptm_read(f, path, limits, p->log);
     if (ends_with(path, ".rti") || ends_with(path, ".hsh"))
-        return rti_read(f, path, ends_with(path, ".hsh"), p->limits, p->log);
+        return rti_read(f, path, ends_with(path, ".hsh"), limits, p->log);
     return log_fail(p->log, RELUME_EDATA,
                     "%s: not a format to import; expected .ptm, .rti, .hsh or a folder with "
                     "info.json",

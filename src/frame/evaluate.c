@@ -188,7 +188,8 @@ static relume_status compare_light(struct evaluator *e, const struct relume_imag
         lamp.position = e->manifest->positions[light];
     }
     struct about about = {.to = e->params.log, .name = e->params.file};
-    about.log = (struct relume_log){say_about, pass_progress, &about, inputs_of(e->params.log)};
+    about.log = (struct relume_log){say_about, pass_progress, &about, inputs_of(e->params.log),
+                                    limits_of(NULL, e->params.log)};
     struct relume_image relit;
     struct relume_difference difference;
     relume_status status = relume_frame(

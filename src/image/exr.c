@@ -289,6 +289,36 @@ void exr_close(exr_file **file)
     *file = NULL;
 }
 
+// What parts claim, before anything is set aside for them: not more than a picture of one colour
+// comes to (64 MiB always), not more than memory holds.
+static relume_status check_bytes(const exr_file *file, const struct relume_limits *limits,
+                                 const struct relume_log *log)
+{
+    static const uint64_t ratio = 20000, always = 64 << 20;
+    const uint64_t most = limits_or_default(limits).max_memory;
+    struct stat s;
+    if (stat(file->path, &s))
+        return log_fail(log, RELUME_EDATA, "%s: vanished", file->path);
+    for (int i = 0; i < exr_part_count(file); i++) {
+        const struct exr_part_info part = exr_part_info(file, i);
+        const uint64_t planes = (uint64_t)part.channels;
+        const uint64_t bytes = (uint64_t)part.width * (uint64_t)part.height * planes * 4;
+        if (bytes > always && bytes / ratio > (uint64_t)s.st_size)
+            return log_fail(log, RELUME_EDATA,
+                            "%s: part %d claims %d x %d pixels of %d channels in %lld bytes; "
+                            "damaged, or made to fill memory",
+                            file->path, i, part.width, part.height, part.channels,
+                            (long long)s.st_size);
+        if (bytes > most)
+            return log_fail(log, RELUME_EDATA,
+                            "%s: part %d of %d x %d pixels and %d channels takes %llu MB; expected "
+                            "at most %llu MB (--max-memory)",
+                            file->path, i, part.width, part.height, part.channels,
+                            (unsigned long long)(bytes >> 20), (unsigned long long)(most >> 20));
+    }
+    return RELUME_OK;
+}
+
 // Everything later code relies on: scanlines, channels, a size within the limits.
 static relume_status check_parts(const exr_file *file, const struct relume_limits *limits,
                                  const struct relume_log *log)
@@ -314,7 +344,7 @@ static relume_status check_parts(const exr_file *file, const struct relume_limit
                             "%s: part %d is %lld x %lld pixels; expected sizes within the limits",
                             file->path, i, (long long)width, (long long)height);
     }
-    return RELUME_OK;
+    return check_bytes(file, limits, log);
 }
 
 // Parts are written one after the other, so a file cut anywhere lacks the last block of some part.

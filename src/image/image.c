@@ -221,6 +221,12 @@ relume_status relume_image_load(struct relume_image *out, const char *path,
     relume_status status = picture_open(&reader, path, p.limits, p.log);
     if (status)
         return status;
+    if (channels == 3)
+        status = picture_need_colour(reader, path, p.log);
+    if (status) {
+        picture_close(&reader);
+        return status;
+    }
     const struct picture_info info = *picture_info_of(reader);
     struct image_stream stream;
     status = image_stream_open(&stream, reader, channels, image_transfer(p.transfer, &info),

@@ -156,7 +156,8 @@ static bool read_header(struct jpeg_picture_reader *p)
                                           .channels = planes,
                                           .rgb = {0, last / 2, last},
                                           .bytes = true},
-                                 .exif = has_exif(i) ? p->path : NULL};
+                                 .exif = has_exif(i) ? p->file : NULL,
+                                 .path = p->path};
     return true;
 }
 
@@ -165,7 +166,7 @@ relume_status jpeg_picture_open(picture_reader **out, const char *path,
 {
     struct jpeg_picture_reader *p = mem_zeroed(1, sizeof *p);
     *out = NULL;
-    if (!p || !(p->path = mem_format("%s", path))) {
+    if (!p || !(p->path = mem_text(path))) {
         free(p);
         return RELUME_ENOMEM;
     }

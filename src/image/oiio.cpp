@@ -1,4 +1,5 @@
-// oiio.cpp - the one file that knows OpenImageIO: a module, opened by picture.c
+// oiio.cpp - the one file that knows OpenImageIO: a module, opened by the helper for reading and by
+// picture.c for writing
 #include "image/picture_format.h"
 
 extern "C" {
@@ -10,12 +11,16 @@ extern "C" {
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/strutil.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <memory>
 #include <new>
 #include <string>
+#include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
 
@@ -24,10 +29,57 @@ using namespace OIIO;
 namespace
 {
 
+// The whole file as memory, which every format takes that takes more than names.
+class mapped_file
+{
+  public:
+    explicit mapped_file(int file)
+    {
+        struct stat s;
+        const bool known = !::fstat(file, &s) && s.st_size > 0;
+        void *map =
+            known ? mmap(nullptr, size_t(s.st_size), PROT_READ, MAP_PRIVATE, file, 0) : MAP_FAILED;
+        ::close(file);
+        if (map == MAP_FAILED)
+            throw std::bad_alloc();
+        m_bytes = static_cast<const char *>(map);
+        m_size = size_t(s.st_size);
+    }
+    ~mapped_file()
+    {
+        munmap(const_cast<char *>(m_bytes), m_size);
+    }
+    mapped_file(const mapped_file &) = delete;
+    mapped_file &operator=(const mapped_file &) = delete;
+    const char *bytes() const
+    {
+        return m_bytes;
+    }
+    size_t size() const
+    {
+        return m_size;
+    }
+
+  private:
+    const char *m_bytes;
+    size_t m_size;
+};
+
 struct oiio_reader : picture_reader {
+    std::unique_ptr<mapped_file> file;
+    std::unique_ptr<Filesystem::IOMemReader> proxy;
+    int copy = -1;  // of the file, for formats that want a name
     std::unique_ptr<ImageInput> input;
-    std::string path, error;
-    std::vector<float> whole;  // tiled files have no scanlines to stream: read at once
+    std::string name, error;
+    std::vector<unsigned char> tiles;  // the row of tiles that is being read
+    int tiles_row = -1;                // its first row
+    TypeDesc tiles_type;
+    ~oiio_reader()
+    {
+        input.reset();
+        if (copy >= 0)
+            ::close(copy);
+    }
 };
 
 const ImageSpec &spec_of(const picture_reader *reader)
@@ -52,14 +104,14 @@ relume_status broken(oiio_reader *r, const std::string &what)
     return RELUME_EDATA;
 }
 
+// Some formats leave their channels without names.
 void find_colour(const ImageSpec &spec, picture_info &info)
 {
-    const int last = spec.nchannels >= 3 ? 2 : 0;
-    static const char *const names[] = {"R", "G", "B"};
-    for (int c = 0; c < 3; c++) {
-        const int named = spec.channelindex(names[c]);
-        info.rgb[c] = named >= 0 ? named : c < last ? c : last;
-    }
+    std::vector<const char *> names;
+    for (const std::string &name : spec.channelnames)
+        names.push_back(name.c_str());
+    names.resize(size_t(spec.nchannels), "");
+    picture_find_colour(&info, names.data());
 }
 
 bool says_linear(const ImageSpec &spec, const std::string &format)
@@ -68,16 +120,6 @@ bool says_linear(const ImageSpec &spec, const std::string &format)
     return spec.format.is_floating_point() || format == "raw" ||
            Strutil::iequals(space, "linear") || Strutil::istarts_with(space, "lin_") ||
            Strutil::iequals(space, "scene_linear");
-}
-
-bool is_raw_name(const std::string &path)
-{
-    static const char *const raw[] = {".dng", ".cr2", ".cr3", ".crw", ".nef", ".nrw", ".arw",
-                                      ".orf", ".raf", ".rw2", ".pef", ".srw", ".erf", ".3fr"};
-    for (const char *extension : raw)
-        if (Strutil::iequals(Filesystem::extension(path), extension))
-            return true;
-    return false;
 }
 
 // "YYYY:MM:DD HH:MM:SS" (EXIF 2.3) as seconds since 1970, whatever the time zone; 0: not a date.
@@ -110,29 +152,78 @@ double shutter_of(const ImageSpec &spec)
     return time > 0.0 ? time : apex ? std::exp2(-double(apex->get_float())) : 0.0;
 }
 
-relume_status open_input(oiio_reader *r, const relume_limits *limits)
+// A copy of the file under a name that needs no right to open files; "" when memory is short.
+std::string name_copy(oiio_reader *r)
+{
+    if (r->copy < 0) {
+        r->copy = memfd_create("relume", MFD_CLOEXEC);
+        for (size_t at = 0; r->copy >= 0 && at < r->file->size();) {
+            const ssize_t n = ::write(r->copy, r->file->bytes() + at, r->file->size() - at);
+            if (n <= 0)
+                return "";
+            at += size_t(n);
+        }
+    }
+    return r->copy < 0 ? "" : "/proc/self/fd/" + std::to_string(r->copy);
+}
+
+bool try_format(oiio_reader *r, const std::string &format, const ImageSpec &hints)
+{
+    auto input = ImageInput::create(format);
+    ImageSpec spec;
+    if (!input)
+        return false;
+    r->proxy.reset(new Filesystem::IOMemReader(r->file->bytes(), r->file->size()));
+    const bool proxy = input->supports("ioproxy") && input->set_ioproxy(r->proxy.get());
+    const std::string name = proxy ? r->name : name_copy(r);
+    if (name.empty() || !input->open(name, spec, hints)) {
+        r->error = Strutil::replace(one_line(input->geterror()), name, r->name);
+        return false;
+    }
+    r->input = std::move(input);
+    return true;
+}
+
+// By the ending, then whatever fits.
+bool try_all(oiio_reader *r, const ImageSpec &hints)
+{
+    std::string names;
+    OIIO::getattribute("format_list", names);
+    const std::string ending = Strutil::lower(Filesystem::extension(r->name, false));
+    const bool made_up = ending == "null" || ending == "term";  // read whatever is there
+    if (!ending.empty() && !made_up && try_format(r, ending, hints))
+        return true;
+    for (const std::string &name : Strutil::splits(names, ","))
+        if (name != "null" && name != "term" && try_format(r, name, hints))
+            return true;
+    r->error = "of no format that OpenImageIO knows";
+    return false;
+}
+
+relume_status open_input(oiio_reader *r, const std::string &format, const relume_limits *limits)
 {
     OIIO::attribute("exr_threads", -1);  // our own threads work on many files at once
+    OIIO::attribute("threads", 1);
     ImageSpec hints;
     hints["oiio:UnassociatedAlpha"] = 1;
     hints["raw:ColorSpace"] = "Linear";
     hints["raw:auto_bright"] = 0;  // exposures of a bracket keep their ratios
     hints["raw:adjust_maximum_thr"] = 0.0f;
     hints["raw:use_camera_wb"] = 1;
-    r->input = ImageInput::open(r->path, &hints);
-    if (!r->input && is_raw_name(r->path))
+    const bool opened = format.empty() ? try_all(r, hints) : try_format(r, format, hints);
+    const std::string why = one_line(r->error.empty() ? OIIO::geterror() : r->error);
+    if (!opened && format == "raw")
         return broken(r, "a RAW photograph that the installed OpenImageIO cannot read; expected a "
                          "build with LibRaw that knows this camera, or TIFF; " +
-                             one_line(OIIO::geterror()));
-    if (!r->input)
-        return broken(r, "not a readable image; " + one_line(OIIO::geterror()));
+                             why);
+    if (!opened)
+        return broken(r, "not a readable image; " + why);
     const ImageSpec &spec = r->input->spec();
     if (spec.depth > 1 || spec.deep || spec.nchannels < 1)
         return broken(r, "expected a flat image with colour channels");
     if (!limits_allow(limits, spec.width, spec.height))
         return broken(r, "size " + std::to_string(spec.width) + " x " +
                              std::to_string(spec.height) + "; expected sizes within the limits");
-    const std::string format = r->input->format_name();
     r->info.width = spec.width;
     r->info.height = spec.height;
     r->info.x = spec.x;
@@ -140,21 +231,41 @@ relume_status open_input(oiio_reader *r, const relume_limits *limits)
     r->info.channels = spec.nchannels;
     r->info.bytes = spec.format == TypeUInt8 && spec.channelformats.empty();
     r->info.floats = spec.format.is_floating_point();
-    r->info.linear = says_linear(spec, format);
+    r->info.linear = says_linear(spec, r->input->format_name());
     find_colour(spec, r->info);
     return RELUME_OK;
 }
 
-bool read_tiled_rows(oiio_reader *r, int row, int rows, TypeDesc type, void *out)
+// Row `y` lies in a row of tiles: they are read once, in the type that is asked for.
+const void *row_in_tiles(oiio_reader *r, int y, TypeDesc type)
 {
     const ImageSpec &spec = r->input->spec();
-    const size_t stride = size_t(spec.width) * spec.nchannels;
-    if (r->whole.empty()) {
-        r->whole.resize(stride * spec.height);
-        if (!r->input->read_image(0, 0, 0, -1, TypeFloat, r->whole.data()))
-            return false;
+    const int first = y - y % spec.tile_height;
+    const int end = std::min(first + spec.tile_height, spec.height);
+    const size_t stride = size_t(spec.width) * size_t(spec.nchannels) * type.size();
+    if (r->tiles_row != first || r->tiles_type != type) {
+        r->tiles.resize(stride * size_t(spec.tile_height));
+        r->tiles_row = -1;
+        if (!r->input->read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + first, spec.y + end,
+                                  spec.z, spec.z + 1, 0, spec.nchannels, type, r->tiles.data()))
+            return nullptr;
+        r->tiles_row = first;
+        r->tiles_type = type;
     }
-    return convert_pixel_values(TypeFloat, &r->whole[stride * row], type, out, int(stride * rows));
+    return &r->tiles[stride * size_t(y - first)];
+}
+
+bool read_tiled_rows(oiio_reader *r, int row, int rows, TypeDesc type, char *out)
+{
+    const ImageSpec &spec = r->input->spec();
+    const size_t stride = size_t(spec.width) * size_t(spec.nchannels) * type.size();
+    for (int i = 0; i < rows; i++, out += stride) {
+        const void *from = row_in_tiles(r, row + i, type);
+        if (!from)
+            return false;
+        std::memcpy(out, from, stride);
+    }
+    return true;
 }
 
 relume_status read_rows(oiio_reader *r, int row, int rows, TypeDesc type, void *out)
@@ -165,7 +276,7 @@ relume_status read_rows(oiio_reader *r, int row, int rows, TypeDesc type, void *
         const size_t stride = size_t(spec.width) * spec.nchannels * type.size();
         bool good = true;
         if (spec.tile_width)
-            good = read_tiled_rows(r, row, rows, type, out);
+            good = read_tiled_rows(r, row, rows, type, (char *)out);
         else if (type == spec.format && spec.channelformats.empty())
             good = r->input->read_native_scanlines(0, 0, y, y + rows, spec.z, out);
         else  // one by one: the call for many rows sets aside 64 MB at every call
@@ -308,23 +419,24 @@ void close(picture_reader *reader)
 
 const picture_format format = {read_floats, read_bytes, notes, profile, error, close};
 
-relume_status bridge_open(picture_reader **out, const char *path, const relume_limits *limits,
-                          const relume_log *log)
+relume_status bridge_open(picture_reader **out, int file, const char *format_name, const char *name,
+                          const relume_limits *limits, const relume_log *log)
 {
     *out = nullptr;
     try {
         std::unique_ptr<oiio_reader> r(new oiio_reader());
         r->format = &format;
-        r->path = path;
-        const relume_status status = open_input(r.get(), limits);
+        r->name = name;
+        r->file.reset(new mapped_file(file));
+        const relume_status status = open_input(r.get(), format_name, limits);
         if (status)
-            return log_fail(log, status, "%s: %s", path, r->error.c_str());
+            return log_fail(log, status, "%s", r->error.c_str());
         *out = r.release();
         return RELUME_OK;
     } catch (const std::bad_alloc &) {
         return RELUME_ENOMEM;
     } catch (const std::exception &e) {
-        return log_fail(log, RELUME_EDATA, "%s: not a readable image; %s", path, e.what());
+        return log_fail(log, RELUME_EDATA, "not a readable image; %s", e.what());
     }
 }
 

@@ -147,7 +147,9 @@ relume_status relume_photograph_load(struct relume_image *out, struct relume_not
         free(profile);
         return status;
     }
-    status = notes_of(notes, reader, profile, p.log);
+    status = picture_need_colour(reader, path, p.log);
+    if (!status)
+        status = notes_of(notes, reader, profile, p.log);
     const bool follow = notes->profile && !p.codes && p.transfer.curve == RELUME_CURVE_AUTO;
     if (!notes->profile && picture_profile(reader, &icc_size))
         log_line(p.log, RELUME_WARNING,

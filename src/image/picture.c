@@ -1,5 +1,5 @@
 // picture.c - which reader and writer a picture file gets; opens the module that knows OpenImageIO
-// when the first file needs it
+// when the first file is written by it
 #include "image/picture.h"
 
 #include "base/inputs.h"
@@ -10,11 +10,13 @@
 #include "image/picture_format.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static const struct oiio_bridge *bridge;
 static char why_not[MODULE_WHY];
@@ -36,41 +38,99 @@ static relume_status need_bridge(const char *path, const struct relume_log *log)
 
 // ---------------------------------------------------------------- reading
 
-enum { MAGIC = 8 };
+// An open file and what it is.
+struct source {
+    const char *path;
+    int file;
+    struct picture_look look;
+    const struct picture_kind *kind;
+};
 
-// The first bytes of the file, 0 where it has fewer.
-static relume_status look(char bytes[MAGIC], const char *path, const struct relume_log *log)
+static relume_status look(struct source *s, const struct relume_log *log)
 {
-    struct stat s;
-    memset(bytes, 0, MAGIC);
-    if (stat(path, &s))
-        return log_fail(log, RELUME_EDATA, "%s: no such file; expected an image", path);
-    if (!S_ISREG(s.st_mode) || s.st_size == 0)
-        return log_fail(log, RELUME_EDATA, "%s: empty file or folder; expected an image", path);
-    FILE *f = input_open(path, log);
-    if (!f)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
-    if (fread(bytes, 1, MAGIC, f) < MAGIC)
-        memset(bytes, 0, MAGIC);
-    fclose(f);
+    struct stat st;
+    input_note(log, s->path);
+    s->file = open(s->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // pipes are not waited for
+    if (s->file < 0 && errno == ENOENT)
+        return log_fail(log, RELUME_EDATA, "%s: no such file; expected an image", s->path);
+    if (s->file < 0 || fstat(s->file, &st))
+        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", s->path, strerror(errno));
+    if (!S_ISREG(st.st_mode) || st.st_size == 0)
+        return log_fail(log, RELUME_EDATA, "%s: empty file or folder; expected an image", s->path);
+    s->look.bytes = (uint64_t)st.st_size;
+    const off_t foot = st.st_size > PICTURE_FOOT ? st.st_size - PICTURE_FOOT : 0;
+    if (pread(s->file, s->look.head, PICTURE_HEAD, 0) < 0 ||
+        pread(s->file, s->look.foot, PICTURE_FOOT, foot) < 0)
+        return log_fail(log, RELUME_EDATA, "%s: cannot be read; %s", s->path, strerror(errno));
+    s->kind = picture_kind_of(&s->look, s->path);
+    return RELUME_OK;
+}
+
+static relume_status open_inside(picture_reader **out, const struct source *s,
+                                 const struct relume_limits *limits, const struct relume_log *log)
+{
+    if (!s->kind->inside)
+        return RELUME_OK;
+    if (!strcmp(s->kind->reader, "openexr"))
+        return exr_picture_open(out, s->path, limits);
+    if (!strcmp(s->kind->reader, "png"))
+        return png_picture_open(out, s->path, limits);
+    return jpeg_picture_open(out, s->path, limits, log);
+}
+
+static relume_status open_helped(picture_reader **out, const struct source *s,
+                                 const struct relume_limits *limits, const struct relume_log *log)
+{
+    static const char expected[] = "a photograph (JPEG, PNG, TIFF, EXR, HDR, RAW ...)";
+    const struct picture_kind *k = s->kind;
+    if (!k->listed && !(k->reader && limits && limits->any_format))
+        return log_fail(log, RELUME_EDATA, "%s: not a readable image%s%s; expected %s; %s", s->path,
+                        k->what ? " but " : "", k->what ? k->what : "", expected, k->advice);
+    return helped_picture_open(out, s->file, s->path, k, s->look.bytes, limits, log);
+}
+
+// What a header claims, before anything is set aside for it.
+static relume_status check_size(const picture_reader *reader, const struct source *s,
+                                const struct relume_limits *limits, const struct relume_log *log)
+{
+    const struct picture_info *i = &reader->info;
+    const uint64_t bytes =
+        (uint64_t)i->width * (uint64_t)i->height * (uint64_t)i->channels * (i->bytes ? 1 : 4);
+    const struct relume_limits most = limits_or_default(limits);
+    if (!picture_kind_is_likely(s->kind, s->look.bytes, bytes))
+        return log_fail(
+            log, RELUME_EDATA,
+            "%s: claims %d x %d pixels of %d channels in %llu bytes; damaged, or made to "
+            "fill memory",
+            s->path, i->width, i->height, i->channels, (unsigned long long)s->look.bytes);
+    if (bytes > most.max_memory)
+        return log_fail(log, RELUME_EDATA,
+                        "%s: %d x %d pixels of %d channels are %llu MB; expected at most %llu MB "
+                        "(--max-memory)",
+                        s->path, i->width, i->height, i->channels,
+                        (unsigned long long)(bytes >> 20),
+                        (unsigned long long)(most.max_memory >> 20));
     return RELUME_OK;
 }
 
 relume_status picture_open(picture_reader **out, const char *path,
                            const struct relume_limits *limits, const struct relume_log *log)
 {
-    char bytes[MAGIC];
+    struct source s = {.path = path, .file = -1};
     *out = NULL;
-    relume_status status = look(bytes, path, log);
-    if (!status && !memcmp(bytes, "\x76\x2f\x31\x01", 4))
-        status = exr_picture_open(out, path, limits);
-    else if (!status && !memcmp(bytes, "\x89PNG\r\n\x1a\n", MAGIC))
-        status = png_picture_open(out, path, limits);
-    else if (!status && !memcmp(bytes, "\xff\xd8\xff", 3))
-        status = jpeg_picture_open(out, path, limits, log);
-    if (!*out && !status)
-        status = need_bridge(path, log);
-    return *out || status ? status : bridge->open(out, path, limits, log);
+    limits = limits_of(limits, log);
+    relume_status status = look(&s, log);
+    if (!status)
+        status = open_inside(out, &s, limits, log);
+    if (!status && !*out)
+        status = open_helped(out, &s, limits, log);
+    if (!status)
+        status = check_size(*out, &s, limits, log);
+    if (status)
+        picture_close(out);
+    if (s.file >= 0)
+        close(s.file);
+    return status;
 }
 
 const struct picture_info *picture_info_of(const picture_reader *reader)
@@ -88,13 +148,16 @@ relume_status picture_read_bytes(picture_reader *reader, int row, int rows, uint
     return reader->format->read_bytes(reader, row, rows, out);
 }
 
-static relume_status exif_notes(const char *path, struct relume_notes *out,
+static relume_status exif_notes(const picture_reader *of, struct relume_notes *out,
                                 const struct relume_log *log)
 {
+    static const struct picture_kind jpeg = {.what = "JPEG", .reader = "jpeg", .listed = true};
     picture_reader *reader;
-    relume_status status = need_bridge(path, log);
-    if (!status)
-        status = bridge->open(&reader, path, NULL, log);
+    struct stat st;
+    if (fstat(fileno(of->exif), &st))
+        return log_fail(log, RELUME_EDATA, "%s: cannot be read; %s", of->path, strerror(errno));
+    const relume_status status = helped_picture_open(&reader, fileno(of->exif), of->path, &jpeg,
+                                                     (uint64_t)st.st_size, NULL, log);
     if (status)
         return status;
     reader->format->notes(reader, out);
@@ -106,21 +169,36 @@ relume_status picture_notes(const picture_reader *reader, struct relume_notes *o
                             const struct relume_log *log)
 {
     const struct picture_info *info = &reader->info;
-    *out = (struct relume_notes){.width = info->width,
-                                 .height = info->height,
-                                 .orientation = 1,
-                                 .linear = info->linear,
-                                 .bytes = info->bytes,
-                                 .floats = info->floats};
+    relume_status status = RELUME_OK;
+    *out = (struct relume_notes){0};
     if (reader->format->notes)
         reader->format->notes(reader, out);
-    return reader->exif ? exif_notes(reader->exif, out, log) : RELUME_OK;
+    if (reader->exif)
+        status = exif_notes(reader, out, log);
+    out->width = info->width;
+    out->height = info->height;
+    out->linear = info->linear;
+    out->bytes = info->bytes;
+    out->floats = info->floats;
+    if (out->orientation < 1 || out->orientation > 8)
+        out->orientation = 1;
+    return status;
 }
 
 const void *picture_profile(const picture_reader *reader, size_t *size)
 {
     *size = 0;
     return reader->format->profile ? reader->format->profile(reader, size) : NULL;
+}
+
+relume_status picture_need_colour(const picture_reader *reader, const char *path,
+                                  const struct relume_log *log)
+{
+    const struct picture_info *info = picture_info_of(reader);
+    if (!info->other[0])
+        return RELUME_OK;
+    return log_fail(log, RELUME_EDATA, "%s: has no colour but %s; expected channels R, G, B or Y",
+                    path, info->other);
 }
 
 const char *picture_error(const picture_reader *reader)

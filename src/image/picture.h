@@ -1,9 +1,10 @@
 // picture.h - picture files of every format, row by row
 //
 // JPEG files and EXR and PNG files of the plain kind, which are most, are read by jpeg.c, exr.c and
-// png.c; all others, and EXIF, by OpenImageIO. That one brings over 200 shared libraries, a third
-// of a second at every start: so the C++ that knows it (oiio.cpp) is a module of its own,
-// librelume-oiio.so, which picture.c opens when the first file asks for it; nobody else notices.
+// png.c; all others of the formats that picture_kind.c lists, and EXIF, by OpenImageIO in a process
+// of their own (base/helper.h). That one brings over 200 shared libraries, a third of a second at
+// every start: so the C++ that knows it (oiio.cpp) is a module, librelume-oiio.so. The helper opens
+// it when the first file asks for it, picture.c when one is to be written; nobody else notices.
 #ifndef IMAGE_PICTURE_H
 #define IMAGE_PICTURE_H
 
@@ -19,12 +20,13 @@ typedef struct picture_reader picture_reader;
 
 struct picture_info {
     int width, height;
-    int x, y;      // where the data window begins
-    int channels;  // as read_* delivers them
-    int rgb[3];    // which channel is red, green, blue; all equal for grey
-    bool bytes;    // 8-bit integers: picture_read_bytes works
-    bool floats;   // floating point: values do not end at 1
-    bool linear;   // float samples, or an integer file that says it is linear
+    int x, y;        // where the data window begins
+    int channels;    // as read_* delivers them
+    int rgb[3];      // which channel is red, green, blue; all equal for grey
+    bool bytes;      // 8-bit integers: picture_read_bytes works
+    bool floats;     // floating point: values do not end at 1
+    bool linear;     // float samples, or an integer file that says it is linear
+    char other[96];  // "", or the names of the channels, where none of them is colour
 };
 
 // RELUME_EDATA with a sentence that names the file.
@@ -36,11 +38,18 @@ const struct picture_info *picture_info_of(const picture_reader *reader);
 // each. No log: threads that read must not speak; picture_error tells.
 relume_status picture_read_floats(picture_reader *reader, int row, int rows, float *out);
 relume_status picture_read_bytes(picture_reader *reader, int row, int rows, uint8_t *out);
-// What the camera noted: all but the profile. RELUME_EIO without the module, where it takes that.
+// What the camera noted: all but the profile. RELUME_ESYSTEM without the helper, where it takes
+// that.
 relume_status picture_notes(const picture_reader *reader, struct relume_notes *out,
                             const struct relume_log *log);
 // The ICC profile, NULL when there is none; belongs to the reader.
 const void *picture_profile(const picture_reader *reader, size_t *size);
+// RELUME_EDATA with a sentence that names the channels, when none of them is colour.
+relume_status picture_need_colour(const picture_reader *reader, const char *path,
+                                  const struct relume_log *log);
+// Which of `info->channels` are colour, by their names: red, green and blue, else luminance, else
+// the only one unless it is depth or coverage. Without names (NULL): the first ones.
+void picture_find_colour(struct picture_info *info, const char *const *names);
 // What went wrong last, for a sentence; "" when nothing did. Belongs to the reader.
 const char *picture_error(const picture_reader *reader);
 void picture_close(picture_reader **reader);

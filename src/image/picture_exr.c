@@ -48,22 +48,16 @@ static void close(picture_reader *reader)
 static const struct picture_format format = {
     .read_floats = read_floats, .error = error, .close = close};
 
-// Where red, green and blue are; false for other channels.
-static bool find_colour(int rgb[3], const exr_file *file, int channels)
+// What is neither grey nor R, G, B with or without A is left to OpenImageIO.
+static bool find_colour(struct picture_info *info, const exr_file *file)
 {
-    static const char *const names[] = {"A", "B", "G", "R"};
-    if (channels == 1) {
-        rgb[0] = rgb[1] = rgb[2] = 0;
-        return true;
-    }
-    if (channels != 3 && channels != 4)
+    const char *names[4];
+    if (info->channels != 1 && info->channels != 3 && info->channels != 4)
         return false;
-    for (int i = 0; i < channels; i++)
-        if (strcmp(exr_channel_name(file, 0, i), names[4 - channels + i]))
-            return false;
-    for (int c = 0; c < 3; c++)
-        rgb[c] = channels - 1 - c;
-    return true;
+    for (int i = 0; i < info->channels; i++)
+        names[i] = exr_channel_name(file, 0, i);
+    picture_find_colour(info, names);
+    return !info->other[0] && (info->channels == 1) == (info->rgb[0] == info->rgb[2]);
 }
 
 static bool is_plain(struct picture_info *out, const exr_file *file)
@@ -77,8 +71,7 @@ static bool is_plain(struct picture_info *out, const exr_file *file)
                                  .floats = true,
                                  .linear = true};
     return exr_part_count(file) == 1 && info.uniform && info.sample != EXR_SAMPLE_UINT &&
-           strcmp(info.codec, "other") && exr_is_plain(file, 0) &&
-           find_colour(out->rgb, file, info.channels);
+           strcmp(info.codec, "other") && exr_is_plain(file, 0) && find_colour(out, file);
 }
 
 relume_status exr_picture_open(picture_reader **out, const char *path,

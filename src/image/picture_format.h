@@ -3,6 +3,9 @@
 #define IMAGE_PICTURE_FORMAT_H
 
 #include "image/picture.h"
+#include "image/picture_kind.h"
+
+#include <stdio.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -23,7 +26,8 @@ struct picture_format {
 struct picture_reader {
     const struct picture_format *format;
     struct picture_info info;
-    const char *exif;  // NULL, or the file, for its notes: only the module knows EXIF
+    FILE *exif;  // NULL, or the file `path`, for its notes: only the module knows EXIF
+    const char *path;
 };
 
 // `*out` is NULL with RELUME_OK where the file is not of the plain kind: broken ones are not, and
@@ -36,6 +40,12 @@ relume_status png_picture_open(picture_reader **out, const char *path,
 relume_status jpeg_picture_open(picture_reader **out, const char *path,
                                 const struct relume_limits *limits, const struct relume_log *log);
 
+// Files of `kind`, by OpenImageIO in the helper; `file` is open for reading, `path` for sentences.
+// RELUME_EDATA with a sentence, RELUME_ENOMEM, RELUME_ESYSTEM.
+relume_status helped_picture_open(picture_reader **out, int file, const char *path,
+                                  const struct picture_kind *kind, uint64_t file_bytes,
+                                  const struct relume_limits *limits, const struct relume_log *log);
+
 // RELUME_EIO, RELUME_ENOMEM.
 relume_status png_write(const char *path, int width, int height, int channels,
                         const uint8_t *samples, const struct relume_log *log);
@@ -46,7 +56,9 @@ typedef relume_status picture_save(const char *path, const void *bytes, size_t s
 // What the module exports, as `relume_oiio_bridge`.
 struct oiio_bridge {
     const char *version;  // RELUME_VERSION of its build; another one's is not used
-    relume_status (*open)(picture_reader **out, const char *path,
+    // `file`, which the reader takes over, as `format` ("": whatever fits); `name` is the file's,
+    // for its extension. Sentences have no file name. Opens no other file.
+    relume_status (*open)(picture_reader **out, int file, const char *format, const char *name,
                           const struct relume_limits *limits, const struct relume_log *log);
     // `save` is the library's own outfile_save.
     relume_status (*write_bytes)(const char *path, int width, int height, int channels,

@@ -172,7 +172,7 @@ static relume_status light_scene(struct relume_image *scene, const struct relume
     struct shadows s = {
         .o = o, .places = places, .sum = scene, .none = params && params->no_shadows};
     const struct relume_log errors = {say_no_note, pass_progress, (void *)(uintptr_t)frame->log,
-                                      inputs_of(frame->log)};
+                                      inputs_of(frame->log), limits_of(NULL, frame->log)};
     struct relume_frame_params each = *frame;
     relume_status status = relume_image_create(scene, places->width, places->height, 3);
     for (int i = 0; i < n && !status; i++) {

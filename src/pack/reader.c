@@ -353,7 +353,7 @@ relume_status relume_pack_open(relume_pack **out, const char *path,
         return RELUME_ENOMEM;
     p->log = params_.log;
     p->threads = params_.threads;
-    p->limits = limits_or_default(params_.limits);
+    p->limits = limits_or_default(limits_of(params_.limits, params_.log));
     p->path = mem_text(path);
     relume_status status = p->path ? RELUME_OK : RELUME_ENOMEM;
     struct stat s;

@@ -127,8 +127,11 @@ static relume_status take_lights(relume_rig *rig, const jvalue *root, const char
     relume_status status = copy ? RELUME_OK : RELUME_ENOMEM;
     const char *folder = copy ? dirname(copy) : NULL;
     for (size_t i = 0; !status && i < jvalue_count(lights); i++) {
-        struct about about = {
-            {say_about, NULL, &about, inputs_of(log)}, log, path, (int)i + 1, NULL};
+        struct about about = {{say_about, NULL, &about, inputs_of(log), limits_of(NULL, log)},
+                              log,
+                              path,
+                              (int)i + 1,
+                              NULL};
         status = take_light(rig, jvalue_item(lights, i), folder, &about);
     }
     free(copy);

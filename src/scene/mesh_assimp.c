@@ -1,12 +1,15 @@
-// mesh_assimp.c - the one file that knows Assimp; a module of its own (mesh_other.h)
+// mesh_assimp.c - the one file that knows Assimp; a module of its own, in the helper (mesh_other.h)
 #include "scene/mesh_other.h"
 
+#include <assimp/cfileio.h>
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
-#include <pthread.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 static vec3 vector(const struct aiVector3D *list, unsigned i)
 {
@@ -54,20 +57,105 @@ static void hear(const char *message, char *user)
         *(bool *)(void *)user = true;
 }
 
-static const struct aiScene *import(const char *path, unsigned steps,
+// ---------------------------------------------------------------- files, as Assimp asks for them
+
+struct stream {
+    struct aiFile file;  // first
+    int descriptor;
+    size_t at, size;
+};
+
+static size_t stream_read(struct aiFile *file, char *to, size_t size, size_t count)
+{
+    struct stream *s = (struct stream *)file;
+    size_t want, got = 0;
+    if (!size || __builtin_mul_overflow(size, count, &want))
+        return 0;
+    while (got < want) {
+        const ssize_t n = pread(s->descriptor, to + got, want - got, (off_t)(s->at + got));
+        if (n <= 0)
+            break;
+        got += (size_t)n;
+    }
+    s->at += got;
+    return got / size;
+}
+
+static size_t stream_write(struct aiFile *file, const char *from, size_t size, size_t count)
+{
+    (void)file, (void)from, (void)size, (void)count;
+    return 0;
+}
+
+static size_t stream_tell(struct aiFile *file)
+{
+    return ((const struct stream *)file)->at;
+}
+
+static size_t stream_size(struct aiFile *file)
+{
+    return ((const struct stream *)file)->size;
+}
+
+static void stream_flush(struct aiFile *file)
+{
+    (void)file;
+}
+
+static enum aiReturn stream_seek(struct aiFile *file, size_t by, enum aiOrigin from)
+{
+    struct stream *s = (struct stream *)file;
+    const size_t at = by + (from == aiOrigin_CUR ? s->at : from == aiOrigin_END ? s->size : 0);
+    if (at > s->size)
+        return aiReturn_FAILURE;
+    s->at = at;
+    return aiReturn_SUCCESS;
+}
+
+static struct aiFile *stream_open(struct aiFileIO *io, const char *name, const char *mode)
+{
+    const struct mesh_source *source = (const struct mesh_source *)(const void *)io->UserData;
+    struct stat st;
+    const int descriptor = strchr(mode, 'w') ? -1 : source->open(source->context, name);
+    struct stream *s = descriptor < 0 || fstat(descriptor, &st) ? NULL : malloc(sizeof *s);
+    if (!s) {
+        if (descriptor >= 0)
+            close(descriptor);
+        return NULL;
+    }
+    *s = (struct stream){.file = {.ReadProc = stream_read,
+                                  .WriteProc = stream_write,
+                                  .TellProc = stream_tell,
+                                  .FileSizeProc = stream_size,
+                                  .SeekProc = stream_seek,
+                                  .FlushProc = stream_flush},
+                         .descriptor = descriptor,
+                         .size = (size_t)st.st_size};
+    return &s->file;
+}
+
+static void stream_close(struct aiFileIO *io, struct aiFile *file)
+{
+    (void)io;
+    close(((const struct stream *)file)->descriptor);
+    free(file);
+}
+
+// ---------------------------------------------------------------- models
+
+static const struct aiScene *import(const struct mesh_source *source, unsigned steps,
                                     const struct aiPropertyStore *settings, bool *dropped)
 {
-    static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;  // all hear all messages
+    struct aiFileIO io = {stream_open, stream_close, (char *)(size_t)source};
     const struct aiLogStream stream = {hear, (char *)dropped};
-    pthread_mutex_lock(&one_at_a_time);
     aiAttachLogStream(&stream);
-    const struct aiScene *scene = aiImportFileExWithProperties(path, steps, NULL, settings);
+    const struct aiScene *scene = aiImportFileExWithProperties(source->name, steps, &io, settings);
     aiDetachLogStream(&stream);
-    pthread_mutex_unlock(&one_at_a_time);
     return scene;
 }
 
-static bool read(struct mesh_file *out, const char *path, char why[MESH_OTHER_WHY])
+static bool read_model(struct mesh_file *out, const struct mesh_source *source,
+                       char why[MESH_OTHER_WHY])
 {
     bool dropped = false;
     const unsigned steps = aiProcess_Triangulate | aiProcess_PreTransformVertices |
@@ -76,11 +164,11 @@ static bool read(struct mesh_file *out, const char *path, char why[MESH_OTHER_WH
     // lines and points are no surface
     aiSetImportPropertyInteger(settings, AI_CONFIG_PP_SBP_REMOVE,
                                aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-    const struct aiScene *scene = import(path, steps, settings, &dropped);
+    const struct aiScene *scene = import(source, steps, settings, &dropped);
     aiReleasePropertyStore(settings);
     if (!scene || dropped) {
-        snprintf(why, MESH_OTHER_WHY, "%s",
-                 dropped ? "faces of vertices that are not there" : aiGetErrorString());
+        const char *error = dropped ? "faces of vertices that are not there" : aiGetErrorString();
+        snprintf(why, MESH_OTHER_WHY, "%s", strstr(error, "bad_alloc") ? "" : error);
         why[strcspn(why, "\r\n")] = '\0';
         aiReleaseImport(scene);
         return false;
@@ -97,4 +185,4 @@ static bool read(struct mesh_file *out, const char *path, char why[MESH_OTHER_WH
 }
 
 __attribute__((visibility("default"))) extern const struct assimp_bridge relume_assimp_bridge;
-const struct assimp_bridge relume_assimp_bridge = {RELUME_VERSION, read};
+const struct assimp_bridge relume_assimp_bridge = {RELUME_VERSION, read_model};

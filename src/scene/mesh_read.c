@@ -88,13 +88,14 @@ static char *picture_beside(const char *path)
     return NULL;
 }
 
-// Rounding keeps a float32 finite; anything larger is a broken file.
+// Embree takes places below 1.84e18, so that their squares are floats; anything larger is a broken
+// file.
 static bool is_sane(const struct mesh *mesh)
 {
     for (size_t i = 0; i < mesh->vertex_count; i++)
         for (int c = 0; c < 3; c++)
-            if (!(fabsf(mesh->vertices[i].position[c]) < 1e30f) ||
-                !isfinite(mesh->vertices[i].texture[c]))
+            if (!(fabsf(mesh->vertices[i].position[c]) < 1e18f) ||
+                !isfinite(mesh->vertices[i].texture[c]) || !isfinite(mesh->vertices[i].normal[c]))
                 return false;
     return true;
 }
@@ -106,7 +107,7 @@ static relume_status check(struct mesh_file *out, const char *path, const struct
     if (!out->mesh.triangle_count)
         return log_fail(log, RELUME_EDATA, "%s: no faces; expected a surface model", path);
     if (!is_sane(&out->mesh))
-        return log_fail(log, RELUME_EDATA, "%s: a vertex is not a finite number below 1e30", path);
+        return log_fail(log, RELUME_EDATA, "%s: a vertex is not a finite number below 1e18", path);
     const struct bounds b = mesh_bounds(&out->mesh);
     if (!(vec3_length(vec3_sub(b.max, b.min)) > 0.0))
         return log_fail(log, RELUME_EDATA, "%s: all vertices are one point", path);

@@ -24,6 +24,7 @@ export PKG_CONFIG_PATH="$prefix/lib/pkgconfig"
 check "pkg-config knows the version" test "$(pkg-config --modversion relume)" = "$version"
 check "the module for images is installed" test -s "$prefix/lib/librelume-oiio.so.${version%%.*}"
 check "the module for models is installed" test -s "$prefix/lib/librelume-assimp.so.${version%%.*}"
+check "the helper is installed" test -x "$prefix/lib/relume-helper"
 check "the installed tool runs" test "$("$prefix/bin/relume" --version)" = "relume $version"
 
 # ---------------------------------------------------------------- a program of the library's user
@@ -56,9 +57,13 @@ else
     check "minimal.c says what is wrong" grep -q "nothing.exr: no such file" err.txt
 fi
 
-# ---------------------------------------------------------------- without its module
+# ---------------------------------------------------------------- the helper, and none
+printf 'P6 2 2 255 abcdefabcdef' >small.ppm
+check "the installed tool finds its helper" "$prefix/bin/relume" compare small.ppm small.ppm
 mkdir alone && cp "$RELUME" alone/
 check "a tool without its module shows relume files" alone/relume relight box.exr -o alone.png
+expect_fail "a tool without its helper says so" 3 'relume-helper is not beside the library' - \
+    alone/relume compare small.ppm small.ppm
 expect_fail "a tool without its module says so" 3 'module for image formats cannot be loaded' none.jpg \
     alone/relume relight box.exr -o none.jpg
 

@@ -1,0 +1,38 @@
+// picture_serve.h - pictures read in a process of their own: what it is asked, and what it answers
+#ifndef IMAGE_PICTURE_SERVE_H
+#define IMAGE_PICTURE_SERVE_H
+
+#include "base/helper.h"
+#include "image/picture.h"
+
+// Messages to the process. An answer follows PICTURE_OPEN and the READs.
+enum picture_ask_what {
+    PICTURE_OPEN,        // with the file
+    PICTURE_PROFILE,     // with memory for the profile, which is put there
+    PICTURE_BAND,        // with memory for `rows` rows
+    PICTURE_READ_BYTES,  // rows `row` to row + rows - 1 into the band
+    PICTURE_READ_FLOATS,
+};
+struct picture_ask {
+    int what;
+    int row, rows;
+    struct relume_limits limits;  // PICTURE_OPEN
+    uint64_t file_bytes;
+    char format[16];  // OpenImageIO's name; "": any
+    char name[256];   // of the file, for its extension
+};
+struct picture_answer {
+    int status;  // relume_status
+    char why[HELPER_WHY];
+    struct picture_info info;  // PICTURE_OPEN
+    struct relume_notes notes;
+    uint64_t profile_bytes;
+};
+
+// Bytes of a row as READs deliver it.
+size_t picture_row_bytes(const struct picture_info *info, bool floats);
+
+// What the process does until its channel is closed; `bridge` is the module's.
+void picture_serve(int channel, const void *bridge);
+
+#endif

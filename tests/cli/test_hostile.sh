@@ -1,0 +1,125 @@
+#!/bin/sh
+# Files that are made to do harm: each ends in one line and status 1, whatever the library that reads
+# it does, within a time and with a bound on addresses; the next file goes on.
+. "$(dirname "$0")/lib.sh"
+mkhostile="$BUILD/tests/tools/mkhostile"
+
+# 3 GB of addresses: the helper with OpenImageIO takes 0.6 of them before it reads anything.
+printf '#!/bin/sh\nulimit -v ${KB:-3000000}\nexec "$@"\n' >bounded
+chmod +x bounded
+refused() { # name, pattern, command...: status 1 and one line
+    name=$1 pattern=$2
+    shift 2
+    expect_fail "$name" 1 "$pattern" out.bad ./bounded "$@"
+}
+
+# ---------------------------------------------------------------- what is no photograph
+make_file() { "$mkhostile" "$1" "$2" || not_ok "$2" "cannot be made"; }
+make_file iff evil.jpg
+make_file video film.png
+make_file fits sky.tif
+make_file softimage old.pic
+make_file psd big.psd
+make_file dpx big.dpx
+printf 'hello' >a.null
+printf '%%PDF-1.4\n' >doc.jpg
+printf 'GIF89a\1\0\1\0\0\0\0;' >a.gif
+printf 'PK\3\4zip' >all.tif
+for case in 'evil.jpg:an IFF image' 'film.png:a video' 'sky.tif:a FITS file' 'old.pic:a Softimage picture' \
+    'big.psd:a Photoshop document' 'big.dpx:a DPX frame' 'doc.jpg:a PDF document' 'a.gif:a GIF image' \
+    'all.tif:a ZIP archive'; do
+    file=${case%%:*} what=${case#*:}
+    refused "$file is not read" "$file: not a readable image but $what.*; expected a photograph" \
+        "$RELUME" compare "$file" "$file"
+done
+refused "a.null is not read" 'a.null: not a readable image; expected .*--any-format' \
+    "$RELUME" compare a.null a.null
+expect_fail "a folder is no picture" 1 'empty file or folder' - "$RELUME" compare . .
+mkfifo pipe
+expect_fail "a pipe is not waited for" 1 'empty file or folder' - timeout 10 "$RELUME" compare pipe pipe
+
+# ---------------------------------------------------------------- read all the same, in the helper
+refused "Softimage crashes its reader, not relume" 'old.pic: its reader crashed' \
+    "$RELUME" compare old.pic old.pic --any-format
+refused "IFF by any format" 'evil.jpg: ' "$RELUME" compare evil.jpg evil.jpg --any-format
+refused "FITS by any format" 'sky.tif: ' "$RELUME" compare sky.tif sky.tif --any-format
+refused "a video by any format" 'film.png: ' "$RELUME" compare film.png film.png --any-format
+refused "a.null by any format" 'a.null: .*no format' "$RELUME" compare a.null a.null --any-format
+refused "PSD of 626 bytes" 'claims 30000 x 30000 .*in 626 bytes' "$RELUME" compare big.psd big.psd --any-format
+refused "DPX of 7 kB" 'claims 30000 x 30000' "$RELUME" compare big.dpx big.dpx --any-format
+
+# ---------------------------------------------------------------- headers that promise too much
+make_file jpeg big.jpg
+"$mkimage" bigpng big.png 30000 30000
+"$mkimage" bigexr big.exr 30000 30000
+printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 20000 +X 20000\n' >big.hdr
+printf 'P6\n20000 20000\n255\n' >big.ppm
+for file in big.jpg big.png big.exr big.hdr big.ppm; do
+    refused "$file" "$file: (claims [0-9]+ x [0-9]+ .*fill memory|not a readable image|truncated)" "$RELUME" compare "$file" "$file"
+done
+
+# ---------------------------------------------------------------- limits that people give
+"$sphere" cap --size 64 --lights 9 || not_ok "a capture" "cannot be made"
+image=$(find cap -name "*.exr" | head -n 1)
+expect_fail "--max-pixels" 1 "limits" - "$RELUME" compare "$image" "$image" --max-pixels 1000
+expect_fail "--max-memory" 1 "max-memory" - "$RELUME" compare "$image" "$image" --max-memory 1k
+expect_fail "a size that is none" 2 "--max-memory: expected a size" - \
+    "$RELUME" compare "$image" "$image" --max-memory lots
+expect_fail "limits reach captures" 1 "limits" c.exr "$RELUME" encode cap -o c.exr --max-pixels 1000
+"$RELUME" encode cap -o c.exr -q || not_ok "a file" "cannot be made"
+expect_fail "limits reach relume files" 1 "limits" - "$RELUME" info c.exr --max-pixels 1000
+expect_fail "memory of relume files" 1 "max-memory" - "$RELUME" info c.exr --max-memory 1k
+expect_ok "limits that fit" - "$RELUME" compare "$image" "$image" --max-pixels 1M --max-memory 100M
+
+# ---------------------------------------------------------------- tiles by rows
+# 6 pictures of 16 megapixels: as floats of whole pictures 1.2 GB beside what encoding takes.
+make_file tiles tile.tif
+lp() { # a capture of the file, six times
+    echo 6
+    for place in '0 0 1' '.5 0 .9' '0 .5 .9' '-.5 0 .9' '0 -.5 .9' '.4 .4 .8'; do
+        echo "tile$((n = n + 1)).tif $place"
+        ln -sf tile.tif "tile$n.tif"
+    done
+}
+n=0
+lp >tiles.lp
+expect_ok "tiles are read by rows" - env KB=1200000 ./bounded "$RELUME" encode tiles.lp -o tiles.exr --basis ptm -q --threads 2
+
+# ---------------------------------------------------------------- channels that are no colour
+for case in 'exr-z:Z' 'exr-rg:R, G' 'exr-100:c00, .*100 channels.'; do
+    make_file "${case%%:*}" odd.exr
+    refused "channels ${case%%:*}" "odd.exr: has no colour but ${case#*:}; expected channels R, G, B" \
+        "$RELUME" compare odd.exr odd.exr
+done
+
+# ---------------------------------------------------------------- models
+make_file collada round.dae
+make_file gltf many.gltf
+make_file far far.obj
+refused "COLLADA that goes round" 'round.dae: .*its reader crashed' \
+    "$RELUME" synth bust -o out.bad --size 16 --lights 4 -q --mesh round.dae
+refused "glTF of 20 million vertices in 88 kB" 'many.gltf: .*memory' \
+    "$RELUME" synth bust -o out.bad --size 16 --lights 4 -q --max-memory 700M --mesh many.gltf
+refused "a vertex farther than Embree can see" 'far.obj: a vertex .*1e18' \
+    "$RELUME" synth bust -o out.bad --size 16 --lights 4 -q --mesh far.obj
+
+# ---------------------------------------------------------------- the next one goes on
+# The lights' pictures are opened one after the other: the reader of the third crashes.
+"$mkimage" tiff 8 3 . "$image" && mv "$(basename "$image")" good.tif
+expect_ok "a good file" - ./bounded "$RELUME" compare good.tif good.tif
+cp old.pic bad.tif
+refused "a good file, then a bad one" 'bad.tif: its reader crashed' \
+    "$RELUME" compare good.tif bad.tif --any-format
+helpers_of_mark() { # how many helpers run that have our mark in their environment
+    for p in /proc/[0-9]*; do
+        [ "$(tr '\0' ' ' <"$p/cmdline" 2>/dev/null)" = "relume-helper " ] &&
+            grep -q "RELUME_TEST_MARK=$$" "$p/environ" && echo x
+    done 2>/dev/null | wc -l
+}
+RELUME_TEST_MARK=$$ "$RELUME" compare good.tif good.tif >out.txt
+for _ in 1 2 3 4 5 6 7 8 9 10; do
+    [ "$(helpers_of_mark)" = 0 ] && break
+    sleep 0.2
+done
+check "helpers end with the tool" test "$(helpers_of_mark)" = 0
+finish

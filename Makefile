@@ -213,6 +213,13 @@ $(GL) $(GL_BENCH): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
 
+# Lets calls to the system fail (tests/tools/faults.sh)
+FAULTS := $B/tests/tools/faults.so
+$(FAULTS): tests/tools/preload/faults.c | $(DEPS)
+	@mkdir -p $(@D)
+	$(call say,LD)
+	$(Q)$(CC) -std=c11 -O1 $(filter-out -Wpedantic,$(WARNINGS)) -shared -fPIC -o $@ $< -ldl
+
 # Programs open the module when they run.
 $B/relume $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE) $(MESHES) $(HELPER)
 
@@ -223,7 +230,7 @@ $B/relume $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE) $(
 # `make test` is everything; `make check` is the part that one config runs.
 test: all
 	@tests/run.sh $(MAKE)
-check: all $(UNIT) $(GL) $(TOOLS)
+check: all $(UNIT) $(GL) $(TOOLS) $(FAULTS)
 	@tests/check.sh $B
 check-threads: $(filter $B/tests/threads/%,$(UNIT))
 	@ONLY_BINARIES=1 tests/check.sh $B

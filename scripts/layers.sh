@@ -28,7 +28,7 @@ samples::*"
 # external header: the files it may appear in
 external="openexr:src/image/exr.c tests/tools/decode.c
 OpenImageIO:src/image/oiio.cpp
-dlfcn:src/base/module.c
+dlfcn:src/base/module.c tests/tools/preload/faults.c
 opencv:src/capture/stitch.cpp
 embree:src/scene/trace.c
 assimp:src/scene/mesh_assimp.c

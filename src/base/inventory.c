@@ -99,26 +99,34 @@ static char *read_text(const char *path)
     struct stat s;
     const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
     char *text = NULL;
-    if (fd >= 0 && !fstat(fd, &s) && S_ISREG(s.st_mode))
+    if (fd < 0)
+        return NULL;
+    errno = 0;
+    if (!fstat(fd, &s) && S_ISREG(s.st_mode))
         text = mem_zeroed((size_t)s.st_size + 1, 1);
-    if (text && read(fd, text, (size_t)s.st_size) != (ssize_t)s.st_size)
-        *text = '\0';
-    if (fd >= 0)
-        close(fd);
+    if (text && read(fd, text, (size_t)s.st_size) != (ssize_t)s.st_size) {
+        free(text);
+        text = NULL;
+    }
+    const int error = errno;
+    close(fd);
+    errno = error;
     return text;
 }
 
-// False when there is none, or none that relume wrote. Lines that are not understood list nothing.
+// False when there is none, or none that relume wrote; errno then says what else went wrong, 0
+// nothing. Lines that are not understood list nothing.
 static bool read_inventory(struct tree_list *list, const char *folder)
 {
     *list = (struct tree_list){0};
     char *path = path_of(folder), *text = path ? read_text(path) : NULL;
     const bool good = text && !strncmp(text, HEADER, sizeof HEADER - 1);
+    const int error = text || errno == ENOENT || errno == ELOOP ? 0 : errno;
     char *rest = good ? text + sizeof HEADER - 1 : NULL;
     size_t lines = 0;
     for (const char *c = rest; c && *c; c++)
         lines += *c == '\n';
-    list->item = mem_zeroed(lines, sizeof *list->item);
+    list->item = good ? mem_zeroed(lines, sizeof *list->item) : NULL;
     for (char *end; list->item && rest && (end = strchr(rest, '\n')); rest = end + 1) {
         struct tree_entry e = {.is_folder = *rest == '-'};
         char *name = rest + 1;
@@ -131,6 +139,7 @@ static bool read_inventory(struct tree_list *list, const char *folder)
     }
     free(text);
     free(path);
+    errno = good ? ENOMEM : error;
     return good && list->item;
 }
 
@@ -169,7 +178,12 @@ relume_status inventory_check(const char *folder, const char *output, const stru
         return log_fail(log, RELUME_EINVAL,
                         "%s: is a file; a folder replaces none, choose another name", output);
     relume_status status = RELUME_OK;
-    if (!read_inventory(&made, folder))
+    if (!read_inventory(&made, folder) && errno == ENOMEM)
+        status = RELUME_ENOMEM;
+    else if (!made.item && errno)
+        status = log_fail(log, RELUME_EIO, "%s: its list .relume cannot be read; %s", output,
+                          strerror(errno));
+    else if (!made.item)
         status =
             log_fail(log, RELUME_EINVAL,
                      "%s: not made by relume, or by a version that kept no list in it (.relume); "
@@ -224,7 +238,10 @@ void inventory_remove(const char *path, const char *beside)
         return;
     const bool finished = S_ISDIR(s.st_mode) && read_inventory(&made, path);
     if (!finished) {
-        tree_remove(path);
+        if (S_ISDIR(s.st_mode) && errno)
+            set_apart(path, beside);  // it may have a list
+        else
+            tree_remove(path);
         return;
     }
     remove_listed(path, &made);

@@ -1,11 +1,14 @@
 // report_picture.c - see report_picture.h
 #include "capture/report_picture.h"
 
+#include "base/log.h"
 #include "base/memory.h"
 #include "image/picture.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 static void put_base64(FILE *f, const uint8_t *p, size_t n)
@@ -21,13 +24,13 @@ static void put_base64(FILE *f, const uint8_t *p, size_t n)
     }
 }
 
-static relume_status put_file(FILE *f, const char *path)
+static relume_status put_file(FILE *f, const char *path, const struct relume_log *log)
 {
     uint8_t block[3 * 4096];
     size_t n;
     FILE *from = fopen(path, "rb");
     if (!from)
-        return RELUME_EIO;
+        return log_fail(log, RELUME_EIO, "%s: cannot be read back; %s", path, strerror(errno));
     while ((n = fread(block, 1, sizeof block, from)) > 0)
         put_base64(f, block, n);
     fclose(from);
@@ -87,7 +90,7 @@ static relume_status put_bytes(FILE *page, const char *dir, int width, int heigh
     relume_status status = picture_write_bytes(path, width, height, 3, bytes, log);
     fprintf(page, "<img width=\"%d\" height=\"%d\" src=\"data:image/jpeg;base64,", width, height);
     if (!status)
-        status = put_file(page, path);
+        status = put_file(page, path, log);
     fputs("\" alt=\"\">", page);
     unlink(path);
     free(path);

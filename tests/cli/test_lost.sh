@@ -127,4 +127,44 @@ if [ $status -eq 129 ]; then ok 'the shell sees the signal'; else not_ok 'the sh
 
 # ---- killed: the old one or the new one, and no litter after the next run
 KILLS=1 expect_ok 'killed at random' - "$TOP/tests/tools/kills.sh"
+
+# ---- calls to the system that fail
+if [ -e "$BUILD/tests/tools/faults.so" ]; then
+    expect_ok 'writing, flushing and renaming that fail' - "$TOP/tests/tools/faults.sh" 1000 'encode export synth'
+else
+    skip 'calls that fail' 'tests/tools/faults.so is not built'
+fi
+
+# ---- a full disk
+mkdir small
+if mount -t tmpfs -o size=64k tmpfs small 2>/dev/null; then
+    trap 'umount small; cd /; rm -rf "$work"' EXIT
+    head -c 60000 /dev/zero >small/filler
+    $synth small/v 2>/dev/null
+    expect_fail 'encode on a full disk' 3 'small/full.exr: .*No space left' small/full.exr "$RELUME" encode cap -o small/full.exr --basis table --compression none
+    expect_fail 'synth on a full disk' 3 'No space left' small/w "$RELUME" synth box --size 64 --lights 2 --samples 1 -o small/w
+    check 'what was there is there' test "$(wc -c <small/filler)" -eq 60000
+    umount small
+    trap 'cd /; rm -rf "$work"' EXIT
+else
+    skip 'a full disk' 'no right to mount one'
+fi
+
+# ---- the longest names
+for n in 243 251; do  # and .exr
+    long=$(printf "%0${n}d" 0)
+    expect_ok "a name of $((n + 4)) bytes" - "$RELUME" relight file.exr -o $long.exr -q
+    expect_ok "twice" - "$RELUME" relight file.exr -o $long.exr -q
+    expect_ok "a folder of $n bytes" - $synth $long
+    expect_ok "twice, --force" - $synth $long --force
+done
+
+# ---- folders of before: they have no list
+$synth before 2>/dev/null && rm before/.relume
+refused '--force on a folder of an older version' 'before: not made by relume, or by a version that kept no list' $synth before --force
+
+# ---- /dev/stdout that somebody appends to
+echo first >log
+"$RELUME" encode cap -o /dev/stdout -q --basis sh --coefficients 4 >>log 2>err.txt
+check 'appending to a file by /dev/stdout' sh -c 'head -n 1 log | grep -qx first && [ "$(wc -c <log)" -gt 100 ]'
 finish

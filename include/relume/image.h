@@ -60,7 +60,7 @@ RELUME_RESULT relume_status relume_image_load(struct relume_image *out, const ch
                                               const struct relume_image_params *params);
 // Write linear `image` in the format of the file name's extension: EXR, HDR, PFM linear, every
 // other sRGB-coded and clipped to [0, 1]; 8 bits (TIFF and PNG of 1 channel: 8 bits as well). A
-// device or pipe without an extension gets EXR. The file appears under its name whole or not at
+// device or pipe without an extension gets EXR. A fourth channel is alpha, in .png and .exr only. The file appears under its name whole or not at
 // all. Returns RELUME_EINVAL for an unknown extension, RELUME_EIO.
 RELUME_RESULT relume_status relume_image_save(const struct relume_image *image, const char *path,
                                               const struct relume_image_params *params);
@@ -69,6 +69,9 @@ RELUME_RESULT relume_status relume_image_save(const struct relume_image *image, 
 // .jpg, .jpeg, .jpe, .tif, .tiff, .bmp, .tga, .targa, .ppm, .pnm, .webp, .jp2, .j2k, .avif, .heic,
 // .heif; devices without an ending get OpenEXR.
 RELUME_API bool relume_image_can_save(const char *path);
+
+// Whether relume_image_save writes pictures of four channels under that name: .png and .exr.
+RELUME_API bool relume_image_saves_alpha(const char *path);
 
 // Whether relume_image_save would write linear light under that name.
 RELUME_API bool relume_image_saves_linear(const char *path);

@@ -41,6 +41,8 @@ static const struct option options[] = {
      "colour, normals, specular, diffuse-gain, unsharp, luminance, false-colour, difference, glare",
      0, 0},
     GLARE_OPTIONS,
+    {"--alpha", OPTION_FLAG, NULL,
+     "transparent where the capture's mask leaves out: .png and .exr of a captured view", 0, 0},
     {"--objects", OPTION_TEXT, "FILE",
      "objects covered with BTFs, in the scene (docs/objects.md); needs a file with depth", 0, 0},
     {"--samples", OPTION_INT, "N", "--objects: N x N rays a pixel; default 3", 1, 16},
@@ -252,6 +254,33 @@ static relume_status add_glare(struct relume_image *frame, relume_pack *pack,
     return status;
 }
 
+// The mask of the view as a fourth channel; 1 everywhere where there is none.
+static relume_status add_alpha(struct relume_image *frame, relume_pack *pack,
+                               const struct relume_camera *camera)
+{
+    const struct relume_pack_info *info = relume_pack_info(pack);
+    const bool slab = info->geometry.projection == RELUME_SLAB;
+    const bool view =
+        camera->framing == RELUME_FRAME_VIEW || (camera->framing == RELUME_FRAME_DEFAULT && !slab);
+    if (!view || frame->width != info->width || frame->height != info->height)
+        return usage_error("--alpha: expected a captured view at its own size (--view N)");
+    struct relume_image mask, with = {0};
+    const size_t pixels = (size_t)frame->width * (size_t)frame->height;
+    relume_status status = relume_pack_mask(&mask, pack, camera->view);
+    if (!status)
+        status = relume_image_create(&with, frame->width, frame->height, 4);
+    for (size_t i = 0; !status && i < pixels; i++) {
+        memcpy(with.data + 4 * i, frame->data + 3 * i, 3 * sizeof *with.data);
+        with.data[4 * i + 3] = !mask.data || mask.data[i] > 0.5f ? 1.0f : 0.0f;
+    }
+    relume_image_destroy(&mask);
+    if (status)
+        return status;
+    relume_image_destroy(frame);
+    *frame = with;
+    return RELUME_OK;
+}
+
 static relume_status render(const struct args *args, const struct relume_camera *camera,
                             struct relume_frame_params params, struct developing developing,
                             const struct relume_light *lights, int count)
@@ -285,6 +314,8 @@ static relume_status render(const struct args *args, const struct relume_camera 
         show_normals(&frame, output);
     else if (!status)
         status = develop(&frame, developing, output);
+    if (!status && args_has(args, "--alpha"))
+        status = add_alpha(&frame, pack, camera);
     if (!status)
         status = relume_image_save(&frame, output, relume_image_params(.log = args_log(args)));
     relume_image_destroy(&frame);
@@ -303,6 +334,9 @@ static relume_status run(const struct args *args)
     int count;
     if (!args_has(args, "-o"))
         return usage_error("relight: expected -o OUT");
+    if (args_has(args, "--alpha") && !relume_image_saves_alpha(args_text(args, "-o", NULL)))
+        return usage_error("--alpha: expected an output that ends in .png or .exr; found '%s'",
+                           args_text(args, "-o", NULL));
     relume_status status = parse_camera(args, &camera);
     if (!status)
         status = parse_slab(args, &params);

@@ -249,7 +249,7 @@ struct exr_source {
     bool half;
 };
 
-// Channels sort as B, G, R: the reverse of memory order.
+// Channels sort as A, B, G, R: the reverse of memory order.
 static relume_status exr_rows(void *context, int row, int rows, void *samples)
 {
     const struct exr_source *s = context;
@@ -272,7 +272,7 @@ static relume_status exr_rows(void *context, int row, int rows, void *samples)
 static relume_status save_exr(const struct relume_image *image, const char *path,
                               const struct relume_image_params *p)
 {
-    static const char *const rgb[] = {"B", "G", "R"};
+    static const char *const rgb[] = {"A", "B", "G", "R"};
     static const char *const grey[] = {"Y"};
     struct exr_source source = {image, p->half};
     const struct exr_part part = {
@@ -282,7 +282,7 @@ static relume_status save_exr(const struct relume_image *image, const char *path
         .sample = p->half ? EXR_SAMPLE_HALF : EXR_SAMPLE_FLOAT,
         .codec = EXR_CODEC_PIZ,
         .channels = image->channels,
-        .channel = image->channels == 3 ? rgb : grey,
+        .channel = image->channels == 1 ? grey : rgb + 4 - image->channels,
         .rows = exr_rows,
         .context = &source,
     };
@@ -300,7 +300,8 @@ static relume_status save_bytes(const struct relume_image *image, const char *pa
     if (!bytes)
         return RELUME_ENOMEM;
     for (size_t i = 0; i < n; i++) {
-        const float v = relume_transfer_encode(srgb, image->data[i]);
+        const bool alpha = image->channels == 4 && i % 4 == 3;
+        const float v = alpha ? image->data[i] : relume_transfer_encode(srgb, image->data[i]);
         bytes[i] = (uint8_t)(v >= 1.0f ? 255 : v > 0.0f ? (int)(v * 255.0f + 0.5f) : 0);
     }
     const relume_status status =
@@ -323,6 +324,11 @@ bool relume_image_saves_linear(const char *path)
     return picture_has_extension(path, ".exr") || is_device(path) || picture_writes_floats(path);
 }
 
+bool relume_image_saves_alpha(const char *path)
+{
+    return picture_has_extension(path, ".exr") || picture_has_extension(path, ".png");
+}
+
 bool relume_image_can_save(const char *path)
 {
     return relume_image_saves_linear(path) || picture_writes_bytes(path);
@@ -332,8 +338,12 @@ relume_status relume_image_save(const struct relume_image *image, const char *pa
                                 const struct relume_image_params *params)
 {
     const struct relume_image_params p = params ? *params : (struct relume_image_params){0};
-    if (image->channels != 1 && image->channels != 3)
+    const bool alpha = image->channels == 4;
+    if (image->channels != 1 && image->channels != 3 && !alpha)
         return RELUME_EINVAL;
+    if (alpha && !relume_image_saves_alpha(path))
+        return log_fail(p.log, RELUME_EINVAL, "%s: no alpha in this format; expected .png or .exr",
+                        path);
     if (!relume_image_can_save(path))
         return log_fail(p.log, RELUME_EINVAL,
                         "%s: no picture format for this ending; expected .exr, .png, .jpg, .tif, "

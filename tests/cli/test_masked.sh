@@ -25,6 +25,10 @@ black() { # name, options of relight
     fi
 }
 
+cmp_pixels() { "$mkimage" maxdiff "$1" "$2" | awk '$1 > 0 { bad = 1 } END { exit bad }'; }
+has_alpha() { exrheader "$1" | grep -q '^ *A, '; }
+lacks_alpha() { ! has_alpha "$1"; }
+
 for capture in linear photos; do
     for how in "" "--basis pca --coefficients 36" "--basis pca --bits half" "--basis pca --bits 16" \
         "--basis sh" "--codebook 16" "--basis sh --codebook 16" "--codebook 16 --stages 2"; do
@@ -55,4 +59,18 @@ INFO
     "$VIEWER" m.exr --offscreen v.png >/dev/null 2>err.txt
     check "$capture: the viewer" nothing v.png
 done
+
+# Alpha is the mask, on request: pictures stay what programs without alpha expect.
+for kind in exr png; do
+    "$RELUME" relight m.exr -o "a.$kind" --alpha -q
+    "$RELUME" relight m.exr -o "b.$kind" -q
+    check "the same colours with alpha, $kind" cmp_pixels "a.$kind" "b.$kind"
+done
+check 'PNG of four channels' [ "$(od -An -tu1 -j25 -N1 a.png | tr -d ' ')" = 6 ]
+if command -v exrheader >/dev/null; then
+    check 'EXR with alpha' has_alpha a.exr
+    check 'and without' lacks_alpha b.exr
+fi
+expect_fail 'alpha of JPEG' 2 'alpha' no.jpg "$RELUME" relight m.exr -o no.jpg --alpha
+expect_fail 'alpha of another size' 2 'alpha' no.png "$RELUME" relight m.exr -o no.png --alpha --size 16x16
 finish

@@ -88,7 +88,8 @@ struct relume_export_params {
                      // more
     double bytes_per_pixel;  // of all plane JPEGs together (PTM, LPTM: of the file), not exceeded
     double psnr_db;          // against the file's own pictures under its lights, reached
-    int quality;             // [1, 100]; default 80; PTM, LPTM: default 0, raw planes; not for RTI
+    int quality;             // [1, 100]; default: so high, 95 or more, that its error is not to be
+                             // seen; PTM, LPTM: default 0, raw planes; not for RTI
     bool force;              // replace an existing folder that is not empty
     int threads;             // default: all cores
 };
@@ -100,6 +101,7 @@ struct relume_export_report {
     double bytes_per_pixel;  // of plane JPEGs, or of the file
     double psnr_db;          // mean over the lights, 8-bit sRGB, against the file's own pictures
     bool exact;              // the file's codes as they are
+    int quality;             // of RELIGHT, DEEPZOOM: asked for or chosen; 0: by size or PSNR
 };
 
 // Write view `params->view` of `pack` as a file or folder `path`, whole or not at all; `report` may

@@ -19,9 +19,12 @@ static const struct option options[] = {
      "planes (bilinear, rbf; default: up to 27) or terms of the type", 1, 45},
     {"--bytes-per-pixel", OPTION_NUMBER, "B",
      "size of all plane JPEGs (ptm, lptm: of the file), not exceeded", 0.001, 100},
-    {"--psnr", OPTION_NUMBER, "DB", "quality against the file's own pictures, reached", 1, 100},
+    {"--psnr", OPTION_NUMBER, "DB",
+     "difference from the original, in decibels; at least that is reached", 1, 100},
     {"--quality", OPTION_INT, "Q",
-     "10 less doubles the quantiser step; default: 80 (ptm, lptm: raw planes)", 1, 100},
+     "10 less doubles the quantiser step; default: 95 or more, so that no blocks are seen (ptm, "
+     "lptm: raw planes)",
+     1, 100},
     {"--resolution", OPTION_INT, "R",
      "bilinear: side of the grid of lights; default: 15 to 33, by the lights", 3, 33},
     {"--view", OPTION_INT, "N", "which view of a slab; default: 0", 0, 65535},
@@ -30,16 +33,30 @@ static const struct option options[] = {
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
 
+// What an error means for who looks at the pictures.
+static const char *judgement(double psnr_db)
+{
+    return psnr_db >= 45.0   ? "not visible"
+           : psnr_db >= 38.0 ? "hardly visible"
+           : psnr_db >= 30.0 ? "visible"
+                             : "clearly visible";
+}
+
 static void say_result(const struct args *args, const struct relume_export_report *r)
 {
-    char text[256];
+    const char *out = args_text(args, "-o", NULL);
+    char text[512], quality[64] = "";
+    if (r->quality)
+        snprintf(quality, sizeof quality, "quality %d%s, ", r->quality,
+                 args_has(args, "--quality") ? "" : " (chosen)");
     if (r->exact)
-        snprintf(text, sizeof text, "%s: the file's codes as they are, %d planes",
-                 args_text(args, "-o", NULL), r->planes);
+        snprintf(text, sizeof text, "%s: %d planes, the same codes as in the file: nothing is lost",
+                 out, r->planes);
     else
         snprintf(text, sizeof text,
-                 "%s: %d planes, %.3f bytes per pixel; %.2f dB from the file's own pictures",
-                 args_text(args, "-o", NULL), r->planes, r->bytes_per_pixel, r->psnr_db);
+                 "%s: %s%d planes, %.3f bytes per pixel; the export differs from the original by "
+                 "%.2f dB (%s)",
+                 out, quality, r->planes, r->bytes_per_pixel, r->psnr_db, judgement(r->psnr_db));
     args_log(args)->message(args_log(args)->user, RELUME_NOTE, text);
 }
 

@@ -86,6 +86,28 @@ static void component(const struct sheet *s, const struct coding *coding, int c,
     }
 }
 
+// What a component adds to the squares of every block.
+static void add_blocks(const struct sheet *s, const struct coding *coding, int c, const float *dct,
+                       const int16_t *codes, struct sheet_block *block)
+{
+    const double weight = c < s->planes ? s->weight[c] * coding[c].unit : 0.0;
+    const float square = (float)(weight * weight * (s->ycbcr ? ycbcr_energy[c] : 1.0));
+    const float zero = s->ycbcr && c > 0 ? 0.0f : 8.0f * (float)(coding[c].zero - 128.0);
+    const size_t blocks = trellis_blocks(s->width, s->height);
+    for (size_t b = 0; b < blocks; b++) {
+        float error = 0.0f, texture = 0.0f;
+        for (size_t k = 64 * b; k < 64 * (b + 1); k++) {
+            const float d = dct[k] - (float)(coding[c].step * codes[k]);
+            error += d * d;
+            texture += k > 64 * b ? dct[k] * dct[k] : 0.0f;
+        }
+        const float mean = dct[64 * b] - zero;
+        block[b].error += square * error;
+        block[b].texture += square * texture;
+        block[b].energy += square * (texture + mean * mean);
+    }
+}
+
 static void report(const struct sheet *s, const struct coding *coding, struct sheet_result *out)
 {
     const double n = (double)s->width * s->height;
@@ -107,6 +129,8 @@ relume_status sheet_encode(struct sheet_result *out, const struct sheet *sheet, 
     float *codes = mem_array(n, sizeof *codes), *dct = mem_array(64 * blocks, sizeof *dct);
     int16_t *quantised = mem_array(SHEET_PLANES * 64 * blocks, sizeof *quantised);
     relume_status status = codes && dct && quantised ? RELUME_OK : RELUME_ENOMEM;
+    if (!status && sheet->blocks)
+        status = (out->block = mem_zeroed(blocks, sizeof *out->block)) ? RELUME_OK : RELUME_ENOMEM;
     struct jpeg_picture picture = {.width = sheet->width,
                                    .height = sheet->height,
                                    .planes = SHEET_PLANES,
@@ -118,6 +142,8 @@ relume_status sheet_encode(struct sheet_result *out, const struct sheet *sheet, 
         out->distortion[c] =
             trellis_quantise(dct, blocks, coding[c].step, SHEET_LAMBDA, quantised + c * 64 * blocks)
                 .distortion;
+        if (out->block)
+            add_blocks(sheet, coding, (int)c, dct, quantised + c * 64 * blocks, out->block);
         picture.step[c] = coding[c].step;
         picture.coefficients[c] = quantised + c * 64 * blocks;
     }

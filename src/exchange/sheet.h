@@ -22,6 +22,14 @@ struct sheet {
     double weight[SHEET_PLANES];  // error of the picture that a unit of error makes
     bool fixed;                   // codes are 255 x value: no scale of their own
     bool ycbcr;                   // red, green and blue of one thing
+    bool blocks;                  // tell of every block
+};
+
+// Squares of the picture's values, summed over the channels, in a block of 8 x 8 pixels.
+struct sheet_block {
+    float error;    // what quantising loses
+    float energy;   // what leaving the sheet out loses
+    float texture;  // without the block's mean
 };
 
 struct sheet_result {
@@ -29,6 +37,7 @@ struct sheet_result {
     size_t size;
     double scale[SHEET_PLANES], bias[SHEET_PLANES];  // value = (code / 255 - bias) * scale
     double distortion[SHEET_PLANES];                 // weighted squared error, mean over the pixels
+    struct sheet_block *block;                       // from malloc, NULL: not asked for
 };
 
 // `step`: in units of the picture's error. RELUME_ENOMEM.

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/outfile.h"
 #include "base/thread.h"
+#include "image/trellis.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -58,12 +59,20 @@ struct job {
     relume_status *status;
 };
 
+static void free_sheet(struct sheet_result *sheet)
+{
+    free(sheet->bytes);
+    free(sheet->block);
+    *sheet = (struct sheet_result){0};
+}
+
 static void encode_one(void *context, size_t item, int worker)
 {
     (void)worker;
     const struct job *job = context;
-    const struct sheet s = web_sheet(job->w, (int)item);
-    free(job->w->sheet[item].bytes);
+    struct sheet s = web_sheet(job->w, (int)item);
+    s.blocks = job->w->blocks;
+    free_sheet(&job->w->sheet[item]);
     job->status[item] = sheet_encode(&job->w->sheet[item], &s, job->step);
 }
 
@@ -126,10 +135,61 @@ int web_useful_chroma(const struct web_folder *w, double step)
     return 1;
 }
 
+// ---------------------------------------------------------------- what is to be seen
+
+// Texture hides errors: the threshold of seeing rises with the 0.7th power of what is there (Watson
+// 1993, contrast masking). Below so many levels of 255 nothing is hidden.
+#define MASKING_LEVELS 1.0
+#define MASKING_POWER  0.7
+#define SEEN_OF_BLOCKS 0.95
+
+static double levels_of(double square)
+{
+    return 255.0 * sqrt(square / (3.0 * 64.0));
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// Flat blocks of nothing, as around a masked object, would hide the others in a share of all.
+static double seen_in_block(const struct web_folder *w, size_t b)
+{
+    double error = 0.0, texture = 0.0;
+    for (int i = 0; i < w->sheets; i++) {
+        const struct sheet_block *block = &w->sheet[i].block[b];
+        error += (double)(i < w->kept ? block->error : block->energy);
+        texture += (double)block->texture;
+    }
+    const double there = levels_of(texture) / MASKING_LEVELS;
+    return texture > 0.0 ? levels_of(error) / fmax(1.0, pow(there, MASKING_POWER)) : 0.0;
+}
+
+relume_status web_visible_error(const struct web_folder *w, double *levels)
+{
+    const size_t blocks = trellis_blocks(w->planes->width, w->planes->height);
+    double *seen = mem_array(blocks, sizeof *seen);
+    size_t n = 0;
+    *levels = 0.0;
+    if (!seen)
+        return RELUME_ENOMEM;
+    for (size_t b = 0; b < blocks; b++) {
+        seen[n] = seen_in_block(w, b);
+        n += seen[n] > 0.0;
+    }
+    qsort(seen, n, sizeof *seen, ascending);
+    if (n)
+        *levels = seen[(size_t)(SEEN_OF_BLOCKS * (double)(n - 1))];
+    free(seen);
+    return RELUME_OK;
+}
+
 void web_folder_free(struct web_folder *w)
 {
     for (int i = 0; w->sheet && i < w->sheets; i++)
-        free(w->sheet[i].bytes);
+        free_sheet(&w->sheet[i]);
     free(w->sheet);
     *w = (struct web_folder){0};
 }

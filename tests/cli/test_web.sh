@@ -43,14 +43,14 @@ mkdir home
 "$sphere" dome --size 64 --lights 40 --hemisphere --shade wrap --format png || exit 1
 "$RELUME" encode dome -o dome.exr --basis pca --coefficients 27 -q || exit 1
 "$RELUME" export dome.exr -o web --quality 90 2>note.txt || exit 1
-promised=$(sed -n 's/.*; \([0-9.]*\) dB from.*/\1/p' note.txt)
+promised=$(sed -n 's/.*differs from the original by \([0-9.]*\) dB.*/\1/p' note.txt)
 compare web
 
 # ---- DeepZoom: levels and tiles as OpenLIME counts them
 "$sphere" dome --size 520 --lights 12 --hemisphere --shade wrap --format png || exit 1
 "$RELUME" encode dome -o dome.exr --basis pca --coefficients 12 -q || exit 1
 "$RELUME" export dome.exr -o zoom --to deepzoom --quality 90 2>note.txt || exit 1
-promised=$(sed -n 's/.*; \([0-9.]*\) dB from.*/\1/p' note.txt)
+promised=$(sed -n 's/.*differs from the original by \([0-9.]*\) dB.*/\1/p' note.txt)
 compare zoom
 above 'the root is a tile, not a speck' "$(sed -n 's/^root 0 \([0-9]*\) of.*/\1/p' dom.txt)" 127
 finish

@@ -1,5 +1,7 @@
 #include "browse.h"
 
+#include <relume/exchange.h>
+
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
@@ -10,7 +12,8 @@
 
 bool browse_opens(const char *name)
 {
-    static const char *const endings[] = {".exr", ".json", NULL};
+    static const char *const endings[] = {".exr", ".ptm", ".rti",  ".hsh", ".hdr",
+                                          ".pfm", ".lp",  ".json", NULL};
     const char *dot = strrchr(name, '.');
     for (int i = 0; dot && endings[i]; i++)
         if (!strcasecmp(dot, endings[i]))
@@ -22,6 +25,12 @@ bool browse_is_folder(const char *path)
 {
     struct stat s;
     return !stat(path, &s) && S_ISDIR(s.st_mode);
+}
+
+bool browse_opens_folder(const char *path)
+{
+    const enum relume_kind kind = relume_kind_of(path);
+    return kind == RELUME_KIND_FOREIGN || kind == RELUME_KIND_CAPTURE;
 }
 
 bool browse_path(char path[PATH_MAX], const struct browser *b, const char *name)
@@ -66,7 +75,8 @@ static bool add(struct browser *b, const char *name)
     const bool folder = browse_is_folder(path);
     if (!folder && !browse_opens(name))
         return true;
-    b->entry[b->count] = (struct browse_entry){strdup(name), folder};
+    b->entry[b->count] =
+        (struct browse_entry){strdup(name), folder, folder && browse_opens_folder(path)};
     return b->entry[b->count++].name != NULL;
 }
 

@@ -12,6 +12,7 @@ enum { BROWSE_MOST = 4096 };  // entries that are listed
 struct browse_entry {
     char *name;
     bool folder;
+    bool opens;  // a folder that is opened as a file is: a capture, a web export
 };
 
 // All zero: nothing was listed yet.
@@ -32,6 +33,8 @@ relume_status browse_list(struct browser *browser, const char *folder);
 // the home folder). False when it is too long.
 bool browse_path(char path[PATH_MAX], const struct browser *browser, const char *name);
 bool browse_is_folder(const char *path);
+// Whether a folder is opened as a file is.
+bool browse_opens_folder(const char *path);
 void browse_destroy(struct browser *browser);
 
 #endif

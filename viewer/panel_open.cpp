@@ -34,7 +34,9 @@ void panel_start(app *app, float scale)
     if (ImGui::Button("open a file (Ctrl+O)"))
         (void)keys_press(app, APP_CONTROL | 'o', false);
     ImGui::Dummy(ImVec2(1, margin));
-    ImGui::TextUnformatted("It can be a relume file (.exr) or a description of objects (.json).");
+    ImGui::TextUnformatted(
+        "It can be a relume file (.exr), an RTI (.ptm, .rti, a web folder), a folder of a");
+    ImGui::TextUnformatted("capture, an HDR picture (.hdr), or a description of objects (.json).");
     ImGui::TextUnformatted("No file yet? These commands in a terminal make one to try:");
     for (const char *line : examples)
         ImGui::TextColored(ImVec4(1, 0.85f, 0.5f, 1), "    %s", line);
@@ -52,7 +54,8 @@ static void wish_path(app *app, const browser *b, const char *name)
     char path[PATH_MAX];
     if (!name[0] || !browse_path(path, b, name) || std::strlen(path) >= sizeof app->spec)
         return;
-    app->wish = browse_is_folder(path) ? APP_WISH_FOLDER : APP_WISH_OPEN;
+    const bool enters = !std::strcmp(name, "..") || !browse_opens_folder(path);
+    app->wish = browse_is_folder(path) && enters ? APP_WISH_FOLDER : APP_WISH_OPEN;
     std::snprintf(app->spec, sizeof app->spec, "%s", path);
 }
 
@@ -64,17 +67,18 @@ static void entries(panel *panel, app *app, const browser *b)
     if (b->trouble)
         ImGui::TextWrapped("This folder cannot be read: %s", b->trouble);
     else if (!b->count)
-        ImGui::TextWrapped("Nothing here that the viewer can open (.exr, .json).");
+        ImGui::TextWrapped("Nothing here that the viewer can open.");
     ImGuiListClipper clipper;
     clipper.Begin(b->count);
     while (clipper.Step())
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; i++) {
             const browse_entry &e = b->entry[i];
             const bool chosen = !std::strcmp(panel->path, e.name);
-            std::snprintf(label, sizeof label, "%s%s##%d", e.name, e.folder ? "/" : "", i);
+            std::snprintf(label, sizeof label, "%s%s%s##%d", e.name, e.folder ? "/" : "",
+                          e.opens ? " (opens)" : "", i);
             if (!ImGui::Selectable(label, chosen, ImGuiSelectableFlags_AllowDoubleClick))
                 continue;
-            if (e.folder || ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
+            if ((e.folder && !e.opens) || ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
                 wish_path(app, b, e.name);
             else
                 std::snprintf(panel->path, sizeof panel->path, "%s", e.name);

@@ -105,13 +105,13 @@ static void help_row(const key_binding *b, float left, float scale)
     ImGui::TextUnformatted(b->what);
 }
 
-// In two columns where one is too long for the window.
+// In two columns where one is too long for the window, if it is wide enough; else it scrolls.
 void panel_help(const app *app, float scale)
 {
-    ImGui::SetNextWindowPos(panel_frame_point(app, 0.5f, 0.5f), ImGuiCond_Always,
+    const float all = (float)app_window_width(app), column = 440 * scale;
+    ImGui::SetNextWindowPos(ImVec2(0.5f * all, 0.5f * (float)app->height), ImGuiCond_Always,
                             ImVec2(0.5f, 0.5f));
-    ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0),
-                                        ImVec2((float)app->width, (float)app->height));
+    ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(all, (float)app->height));
     ImGui::Begin("keys", nullptr, fixed);
     std::vector<const key_binding *> shown;
     for (const key_binding *b = key_bindings; b->key; b++)
@@ -119,12 +119,12 @@ void panel_help(const app *app, float scale)
             shown.push_back(b);
     const bool fits = (float)shown.size() * ImGui::GetTextLineHeightWithSpacing() <
                       (float)app->height - 2 * ImGui::GetStyle().WindowPadding.y;
-    const size_t rows = fits ? shown.size() : (shown.size() + 1) / 2;
+    const size_t rows = fits || 2 * column > all ? shown.size() : (shown.size() + 1) / 2;
     for (size_t i = 0; i < rows; i++) {
         help_row(shown[i], 0, scale);
         if (i + rows < shown.size()) {
             ImGui::SameLine();
-            help_row(shown[i + rows], 440 * scale, scale);
+            help_row(shown[i + rows], column, scale);
         }
     }
     ImGui::End();

@@ -40,6 +40,8 @@ static int begin(void **state)
     for (size_t i = 0; i < sizeof files / sizeof *files; i++)
         make(files[i], false);
     make("attic/inside.exr", false);
+    make("cap", true);
+    make("cap/capture.json", false);
     return 0;
 }
 
@@ -53,14 +55,15 @@ static int end(void **state)
 
 static void folders_come_first_and_only_what_opens(void **state)
 {
-    static const char *const want[] = {"attic", "Zoo", "A.EXR", "b.exr", "c.json"};
+    static const char *const want[] = {"attic", "cap", "Zoo", "A.EXR", "b.exr", "c.json"};
     struct browser b = {.count = 0};
     (void)state;
     assert_int_equal(browse_list(&b, root), RELUME_OK);
-    assert_int_equal(b.count, 5);
-    for (int i = 0; i < 5; i++) {
+    assert_int_equal(b.count, 6);
+    for (int i = 0; i < 6; i++) {
         assert_string_equal(b.entry[i].name, want[i]);
-        assert_int_equal(b.entry[i].folder, i < 2);
+        assert_int_equal(b.entry[i].folder, i < 3);
+        assert_int_equal(b.entry[i].opens, i == 1);
     }
     assert_null(b.trouble);
     browse_destroy(&b);
@@ -125,7 +128,7 @@ static void click(struct panel *panel, double x, double y)
     assert_true(panel_takes(panel, &(struct app_event){.kind = APP_RELEASE, .x = x, .y = y}));
 }
 
-// Rows of 17 pixels, the first about y = 110: "..", attic, Zoo, A.EXR, b.exr.
+// Rows of 17 pixels, the first about y = 110: "..", attic, cap, Zoo, A.EXR, b.exr.
 static double row(int i)
 {
     return 110 + 17 * i;
@@ -146,14 +149,21 @@ static void clicks_go_into_folders_and_open_files(void **state)
     snprintf(want, sizeof want, "%s/attic", root);
     assert_string_equal(app.spec, want);
     app.wish = APP_WISH_NONE;
-    click(panel, 400, row(4));  // one click chooses, two open
+    click(panel, 400, row(5));  // one click chooses, two open
     panel_build(panel, &app, &facts);
     assert_int_equal(app.wish, APP_WISH_NONE);
-    click(panel, 400, row(4));
+    click(panel, 400, row(5));
     panel_build(panel, &app, &facts);
     assert_int_equal(app.wish, APP_WISH_OPEN);
     snprintf(want, sizeof want, "%s/b.exr", root);
     assert_string_equal(app.spec, want);
+    app.wish = APP_WISH_NONE;
+    click(panel, 400, row(2));  // a capture is opened as a file is
+    panel_build(panel, &app, &facts);
+    assert_int_equal(app.wish, APP_WISH_NONE);
+    click(panel, 400, row(2));
+    panel_build(panel, &app, &facts);
+    assert_int_equal(app.wish, APP_WISH_OPEN);
     panel_destroy(&panel);
     browse_destroy(&b);
 }
@@ -193,7 +203,7 @@ static void the_first_page_opens_the_list(void **state)
     app.browse = false;
     panel_build(panel, &app, &none);
     assert_true(panel_shown(&app));
-    click(panel, 300, 250);  // its button
+    click(panel, 250, 242);  // its button
     panel_build(panel, &app, &none);
     assert_true(app.browse);
     assert_int_equal(app.wish, APP_WISH_FOLDER);

@@ -221,31 +221,50 @@ static void add_forms(struct sweep *sweep, const struct grid *g, int number, int
                          });
 }
 
-// A basis that keeps every light has one size. The others have those asked for that they have, or
-// of the usual ones those that the lights determine.
+// "ptm has 6 coefficients" and what other sizes up to 36 the bases have.
+static relume_status no_such_size(const struct grid *g)
+{
+    char text[1024];
+    size_t at = 0;
+    for (int b = 0; b < g->bases && at < sizeof text; b++) {
+        if (g->automatic[b])
+            continue;
+        at += (size_t)snprintf(text + at, sizeof text - at, "%s%s has", at ? "; " : "",
+                               g->basis[b]->name);
+        for (int k = 1; k <= 36 && at < sizeof text; k++)
+            if (g->basis[b]->has_count(k))
+                at += (size_t)snprintf(text + at, sizeof text - at, " %d", k);
+    }
+    return usage_error("--coefficients: none of the bases has that many; up to 36, %s", text);
+}
+
+// A basis that keeps every light has one size. The others have a row for each that is asked for,
+// which says why where it cannot be, or of the usual ones those that the lights determine.
 static relume_status make_rows(struct sweep *sweep, const struct grid *g)
 {
     static const int usual[] = {1, 4, 6, 9, 16, 18, 25, 27, 36, 49};
     sweep->row = calloc(MOST_ROWS, sizeof *sweep->row);
     if (!sweep->row)
         return RELUME_ENOMEM;
+    bool possible = !g->sizes;
     for (int b = 0; b < g->bases; b++) {
         const struct relume_basis *basis = g->basis[b];
         if (basis->interpolates && !basis->learned) {
             add_forms(sweep, g, b, 0);
+            possible = true;
             continue;
         }
-        for (int i = 0; i < g->sizes; i++)
-            if (basis->has_count(g->size[i]))
-                add_forms(sweep, g, b, g->size[i]);
+        for (int i = 0; i < g->sizes; i++) {
+            add_forms(sweep, g, b, g->size[i]);
+            possible |= basis->has_count(g->size[i]);
+        }
         for (size_t i = 0; !g->sizes && i < sizeof usual / sizeof *usual; i++)
             if (basis->has_count(usual[i]) && basis->fit_count(usual[i], sweep->lights) == usual[i])
                 add_forms(sweep, g, b, usual[i]);
     }
     if (sweep->rows == MOST_ROWS)
         return usage_error("sweep: expected a grid of fewer than %d rows", MOST_ROWS);
-    return sweep->rows ? RELUME_OK
-                       : usage_error("--coefficients: none of the bases has a form of that size");
+    return possible ? RELUME_OK : no_such_size(g);
 }
 
 // ---------------------------------------------------------------- one group of rows

@@ -50,6 +50,9 @@ done
 if grep -q '^sh luminance,4,8,-,32,.*expected one book' out.txt; then ok 'luminance and several codebooks: a reason'; else not_ok 'luminance and codebooks' "$(cat out.txt)"; fi
 
 # ---- rows that cannot be measured are named, the others are there
+expect_ok 'sizes that a basis does not have' - $sweep --basis sh,ptm --coefficients 4,6
+check 'have a row, too' sh -c 'grep -q "^sh  *6 .*skipped: .*coefficients" out.txt && grep -q "^ptm  *4 .*skipped: .*coefficients" out.txt'
+expect_fail 'sizes that no basis has' 2 'none of the bases has that many; .*ptm has 3 6; sh has 1 4 9' - $sweep --basis ptm,sh --coefficients 7
 expect_ok 'more coefficients than lights' - $sweep --basis sh --coefficients 9,16 --json
 if grep -q '"coefficients": 16.*"skipped": "16 coefficients of basis sh need at least 16 lights; found 15"' out.txt; then ok 'the reason is given'; else not_ok 'the reason is given' "$(cat out.txt)"; fi
 expect_ok 'nothing can be measured' - $sweep --basis sh --coefficients 36 -o none

@@ -40,10 +40,11 @@ enum develop_uniform {
     DEVELOP_CURVE,
     DEVELOP_GAMMA,
     DEVELOP_LIGHT,
+    DEVELOP_GUARD,
     DEVELOP_COUNT
 };
 static const char *const develop_uniforms[] = {
-    "rectangle", "frame_size", "coded", "display.curve", "display.gamma", "light",
+    "rectangle", "frame_size", "coded", "display.curve", "display.gamma", "light", "guard",
 };
 
 // ---------------------------------------------------------------- making
@@ -94,7 +95,9 @@ static void draw_all(const struct gl *gl, const struct program *p, const struct 
 
 static relume_status need_grid(struct relighter *r, const relume_coder *coder)
 {
-    return r->grid ? RELUME_OK : relume_weight_grid_create(&r->grid, coder, NULL);
+    return r->grid ? RELUME_OK
+                   : relume_weight_grid_create(&r->grid, coder,
+                                               relume_weight_grid_params(.sums = true));
 }
 
 // The dot product of all planes, added to what `into` holds.
@@ -144,8 +147,9 @@ static relume_status pass_lookup(const struct relighter *r, const struct relit_v
 }
 
 // `coded` decoded by `display`, times the light, added to what the target in use holds.
-void passes_develop(const struct relighter *r, const struct relit_view *v,
-                    const struct target *coded, struct relume_transfer display, const float rgb[3])
+static void develop(const struct relighter *r, const struct relit_view *v,
+                    const struct target *coded, struct relume_transfer display, const float rgb[3],
+                    bool guard)
 {
     const struct gl *gl = r->gl;
     texture_use(gl, 0, GL_TEXTURE_2D, coded->texture);
@@ -154,7 +158,31 @@ void passes_develop(const struct relighter *r, const struct relit_view *v,
     gl->Uniform1i(r->develop.at[DEVELOP_CURVE], (GLint)display.curve);
     gl->Uniform1f(r->develop.at[DEVELOP_GAMMA], display.gamma);
     gl->Uniform3f(r->develop.at[DEVELOP_LIGHT], rgb[0], rgb[1], rgb[2]);
+    gl->Uniform1i(r->develop.at[DEVELOP_GUARD], guard);
     draw_all(gl, &r->develop, &v->relit);
+}
+
+void passes_develop(const struct relighter *r, const struct relit_view *v,
+                    const struct target *coded, struct relume_transfer display, const float rgb[3])
+{
+    develop(r, v, coded, display, rgb, false);
+}
+
+// What environments are part of is gathered in r->coded, then added without what is below 0.
+static void add_guarded(struct relighter *r, struct relit_view *v)
+{
+    static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
+    static const float one[3] = {1, 1, 1};
+    target_resume(&v->relit, r->gl);
+    develop(r, v, &r->coded, linear, one, true);
+}
+
+relume_status passes_scratch(struct relighter *r, const struct relit_view *v)
+{
+    if (r->coded.width == v->relit.width && r->coded.height == v->relit.height)
+        return RELUME_OK;
+    target_destroy(&r->coded, r->gl);
+    return target_create(&r->coded, r->gl, v->relit.width, v->relit.height, r->log);
 }
 
 static relume_status add_linear(struct relighter *r, struct relit_view *v, struct weights *w)
@@ -168,17 +196,17 @@ static relume_status add_linear(struct relighter *r, struct relit_view *v, struc
         else if (l->kind == RELUME_LIGHT_ENVIRONMENT && !(status = need_grid(r, v->codes.coder)))
             weights_add_environment(w, &v->codes, unit, r->grid, l);
     }
-    if (!status && relighter_has_kind(r, relighter_is_distant))
-        pass_dot(r, v, w, &v->relit);
-    return status;
-}
-
-relume_status passes_scratch(struct relighter *r, const struct relit_view *v)
-{
-    if (r->coded.width == v->relit.width && r->coded.height == v->relit.height)
-        return RELUME_OK;
-    target_destroy(&r->coded, r->gl);
-    return target_create(&r->coded, r->gl, v->relit.width, v->relit.height, r->log);
+    const bool guard = relighter_has_kind(r, relighter_is_environment);
+    if (!status && guard)
+        status = passes_scratch(r, v);
+    if (status || !relighter_has_kind(r, relighter_is_distant))
+        return status;
+    if (guard)
+        target_begin(&r->coded, r->gl);
+    pass_dot(r, v, w, guard ? &r->coded : &v->relit);
+    if (guard)
+        add_guarded(r, v);
+    return RELUME_OK;
 }
 
 static relume_status add_displayed(struct relighter *r, struct relit_view *v, struct weights *w)
@@ -220,10 +248,17 @@ static relume_status add_books(struct relighter *r, struct relit_view *v)
         if (r->light[i].kind == RELUME_LIGHT_DIRECTIONAL ||
             (!display && relighter_is_environment(r->light[i].kind)))
             distant[n++] = r->light[i];
-    if (!status && !display && relighter_has_kind(r, relighter_is_environment))
+    const bool guard = !display && relighter_has_kind(r, relighter_is_environment);
+    if (!status && guard)
         status = need_grid(r, v->codes.coder);
+    if (!status && guard)
+        status = passes_scratch(r, v);
+    if (!status && guard)
+        target_begin(&r->coded, r->gl);
     if (!status)
-        status = pass_lookup(r, v, distant, n, &v->relit);
+        status = pass_lookup(r, v, distant, n, guard ? &r->coded : &v->relit);
+    if (!status && guard)
+        add_guarded(r, v);
     free(distant);
     return status;
 }

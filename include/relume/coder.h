@@ -120,7 +120,8 @@ struct relume_zone {
 
 // What stands for light from a unit direction: `*inside` is the direction itself, or that on the
 // border at its azimuth. Returns the share of it, in linear light: 1 inside; beyond, the cosine of
-// the light (and 0.05) over that at the border, or of how far beyond it lies where scenes face all sides.
+// the light (and 0.05) over that at the border, or of how far beyond it lies where scenes face all
+// sides.
 RELUME_API double relume_zone_clamp(struct relume_vec3 *inside, const struct relume_zone *zone,
                                     struct relume_vec3 direction);
 
@@ -170,6 +171,11 @@ struct relume_coder_triangles {
 // False where the coder's interpolant is another one.
 RELUME_API bool relume_coder_triangles(struct relume_coder_triangles *out,
                                        const relume_coder *coder);
+
+// As relume_coder_triangles, of the lights of a coder whose interpolant extrapolates: shares for
+// sums over many lights, which may not be negative. False for other coders.
+RELUME_API bool relume_coder_surround(struct relume_coder_triangles *out,
+                                      const relume_coder *coder);
 
 // The plane that holds coefficient k of channel c.
 static inline int relume_coder_plane(const struct relume_coder_info *info, int k, int c)

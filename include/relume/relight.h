@@ -22,9 +22,11 @@ extern "C" {
 typedef struct relume_weight_grid relume_weight_grid;
 
 struct relume_weight_grid_params {
-    int steps;    // a grid, with so many columns in 90 degrees, [2, 1024]; default: triangles where
-                  // the basis has them, else 96, fewer where that takes more than 256 MB. Then
-                  // reflectance of smooth bases is met to 1e-3 of white
+    int steps;  // a grid, with so many columns in 90 degrees, [2, 1024]; default: triangles where
+                // the basis has them, else 96, fewer where that takes more than 256 MB. Then
+                // reflectance of smooth bases is met to 1e-3 of white
+    bool sums;  // for environments alone: where the basis interpolates, only the triangles between
+                // lights that relume_environment_weights goes by, at no cost
     int threads;  // default: all cores
 };
 #define relume_weight_grid_params(...) (&(const struct relume_weight_grid_params){__VA_ARGS__})
@@ -89,8 +91,9 @@ RELUME_API void relume_weight_grid_add(float *weights, float constant[3],
 
 // ------------------------------------------------------------------ environment
 // Add an environment light to weights[3][K] and constant[3]: sum over the map of E dw / pi times
-// the basis (Wong 1998, Eq. 7.6). Directions below the horizon of a hemispherical capture are 0.
-// For codes of the linear domain.
+// the basis (Wong 1998, Eq. 7.6). Bases that interpolate are asked over flat triangles of the
+// lights, whatever their interpolant, so that no weight of a captured value is negative. Directions
+// below the horizon of a hemispherical capture are 0. For codes of the linear domain.
 RELUME_API void relume_environment_weights(float *weights, float constant[3],
                                            const relume_weight_grid *grid,
                                            const struct relume_light *light);

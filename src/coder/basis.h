@@ -12,6 +12,9 @@
 
 enum { CODER_MAX_COEFFICIENTS = 4096 };
 
+// The captured lights as a triangulated sphere (mesh.c).
+typedef struct mesh mesh;
+
 struct relume_coder {
     struct relume_coder_info info;
     vec3 *world;       // [lights]
@@ -27,7 +30,8 @@ struct relume_coder {
     bool decode, force, no_ridge;
     void *interpolant;  // data of info.interpolant
     struct relume_zone zone;
-    void *data;  // the basis's own
+    mesh *around;  // of the lights, where the interpolant has none and extrapolates; or NULL
+    void *data;    // the basis's own
 };
 
 // The functions of a basis that interpolates.
@@ -86,8 +90,6 @@ struct blend {
     double weight[3];
 };
 
-// Spherical triangulation of the captured lights (basis_table.c).
-typedef struct mesh mesh;
 relume_status mesh_create(mesh **out, const vec3 *lights, int n);
 void mesh_destroy(mesh **m);
 // `d` unit, in the frame of the lights. Always sums to 1; outside the captured region the weights

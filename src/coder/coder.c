@@ -30,6 +30,7 @@ void relume_coder_destroy(relume_coder **coder)
     c->info.basis->release(c);
     if (c->info.interpolant)
         c->info.interpolant->release(c->interpolant);
+    mesh_destroy(&c->around);
     free(c->world);
     free(c->frame);
     free(c->transform);
@@ -115,6 +116,14 @@ static bool stays_in_range(const struct relume_interpolant *i)
 {
     return i == &interpolant_delaunay || i == &interpolant_natural || i == &interpolant_rbf ||
            i == &interpolant_octahedral;
+}
+
+// Sums over many lights need weights that are nowhere negative (relume_coder_surround).
+static relume_status find_surround(relume_coder *c)
+{
+    if (!c->info.interpolant || stays_in_range(c->info.interpolant))
+        return RELUME_OK;
+    return mesh_create(&c->around, c->frame, c->info.lights);
 }
 
 static void find_zone(relume_coder *c)
@@ -252,6 +261,8 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
         status = basis->prepare(c, p.log);
     if (!status && p.robust && !p.decode)
         status = robust_create(&c->robust, c);
+    if (!status)
+        status = find_surround(c);
     c->samples = NULL;
     if (status) {
         relume_coder_destroy(&c);
@@ -330,6 +341,12 @@ bool relume_coder_triangles(struct relume_coder_triangles *out, const relume_cod
         return false;
     *out = interpolant_triangles(coder->interpolant);
     return true;
+}
+
+bool relume_coder_surround(struct relume_coder_triangles *out, const relume_coder *coder)
+{
+    *out = coder->around ? mesh_triangles(coder->around) : (struct relume_coder_triangles){0};
+    return coder->around;
 }
 
 static double dot(const float *a, const double *b, int n)

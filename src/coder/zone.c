@@ -9,9 +9,9 @@
 // What is photographed from above lies flat more often than not, and the flatter light comes, the
 // less of it arrives: values at the border are taken times the cosine of the light over that at the
 // border. Lights below 24, 37 and 44 degrees predicted from those above, means of 18 surfaces
-// (SynthRTI, RealRTI): 27.2, 28.2, 26.0 dB for 23.5, 26.0, 20.6 by extrapolation with the best
-// kernel; over flat triangles 27 to 22 for 16.3, 18.7, 14.5. Reliefs and busts alike; a cosine of
-// how far beyond gives a tenth of that.
+// (SynthRTI, RealRTI): 27.3, 28.1, 26.0 dB for 23.5, 26.0, 20.6 by extrapolation with the best
+// kernel; over flat triangles 26.2, 25.8, 23.9 for 16.3, 18.7, 14.5. Reliefs and busts alike; a
+// cosine of how far beyond gives a tenth of that.
 #include "coder/zone.h"
 
 #include "coder/basis.h"

@@ -81,7 +81,7 @@ static relume_status find_grid(const struct renderer *r, const struct relume_cod
     if (!r->shared->grid)
         status = relume_weight_grid_create(
             &r->shared->grid, refitted ? relume_refit_codes(refit)->coder : codes->coder,
-            relume_weight_grid_params(.threads = r->params.threads));
+            relume_weight_grid_params(.sums = !find_near(r), .threads = r->params.threads));
     *grid = r->shared->grid;
     return status;
 }

@@ -31,6 +31,7 @@ struct relume_weight_grid {
     struct triangles *triangles;  // or NULL
     struct cells cells;
     float *turned;  // while it is made: [functions][stride], the coder's transform and mean
+    relume_weight_grid *sums;  // for environments, or NULL: itself
 };
 
 // The second row at the horizon lies a hair below it.
@@ -182,13 +183,15 @@ static void set_size(struct relume_weight_grid *g, int steps)
     g->info.rows = (g->hemispherical ? 1 : 2) * (g->down + 1);
 }
 
-static relume_status take_triangles(struct relume_weight_grid *g)
+static relume_status take_triangles(struct relume_weight_grid *g,
+                                    const struct relume_coder_triangles *from)
 {
-    const relume_status status = triangles_create(&g->triangles, g->info.coder);
+    const int lights = relume_coder_info(g->info.coder)->lights;
+    const relume_status status = triangles_create(&g->triangles, from, lights);
     if (status || !g->triangles)
         return status;
     g->info.rows = 1;
-    g->info.columns = relume_coder_info(g->info.coder)->lights;
+    g->info.columns = lights;
     g->info.triangles = g->triangles->count;
     g->info.triangle = g->triangles->triangle;
     g->info.start = g->triangles->start;
@@ -200,18 +203,12 @@ static size_t floats(const struct relume_weight_grid_info *info)
     return (size_t)relume_weight_grid_rows(info) * (size_t)info->columns * (size_t)info->stride;
 }
 
-relume_status relume_weight_grid_create(relume_weight_grid **out, const relume_coder *coder,
-                                        const struct relume_weight_grid_params *params)
+static struct relume_weight_grid *new_grid(const relume_coder *coder)
 {
-    const struct relume_weight_grid_params p =
-        params ? *params : (struct relume_weight_grid_params){0};
-    *out = NULL;
-    if (p.steps && (p.steps < 2 || p.steps > MOST_STEPS))
-        return RELUME_EINVAL;
     const struct relume_coder_info *info = relume_coder_info(coder);
     struct relume_weight_grid *g = mem_zeroed(1, sizeof *g);
     if (!g)
-        return RELUME_ENOMEM;
+        return NULL;
     const int sets = info->basis->learned ? 3 : 1;
     g->hemispherical = info->hemispherical;
     g->pole_y = info->pole_y;
@@ -221,35 +218,122 @@ relume_status relume_weight_grid_create(relume_weight_grid **out, const relume_c
         .coefficients = info->coefficients,
         .stride = sets * info->coefficients + (sets == 3 ? 3 : 0),
     };
-    int steps = p.steps ? p.steps : DEFAULT_STEPS;
-    set_size(g, steps);
-    while (!p.steps && steps > LEAST_STEPS && floats(&g->info) * sizeof(float) > MOST_BYTES)
-        set_size(g, steps /= 2);
-    relume_status status = p.steps ? RELUME_OK : take_triangles(g);
-    if (!status && !p.steps && !g->triangles && info->interpolant)
-        status = find_cells(g, p.threads);
-    if (!status)
-        g->info.data = g->data = mem_array(floats(&g->info), sizeof(float));
-    if (!status)
-        status = g->data ? turn_transform(g) : RELUME_ENOMEM;
-    if (status) {
-        relume_weight_grid_destroy(&g);
-        return status;
-    }
-    thread_for(p.threads, (size_t)g->info.rows, fill_row, g);
-    thread_for(p.threads, (size_t)g->cells.count, fill_tile, g);
-    free(g->cells.value);
-    g->cells.value = NULL;
+    return g;
+}
+
+static relume_status alloc_nodes(struct relume_weight_grid *g)
+{
+    g->info.data = g->data = mem_array(floats(&g->info), sizeof(float));
+    return g->data ? turn_transform(g) : RELUME_ENOMEM;
+}
+
+static void free_turned(struct relume_weight_grid *g)
+{
     free(g->turned);
     g->turned = NULL;
+}
+
+// The coder's functions at each light, whatever lies between.
+static void fill_lights(const struct relume_weight_grid *g)
+{
+    const int lights = g->info.columns;
+    double value[MOST_FUNCTIONS] = {0.0};
+    for (int i = 0; i < lights; i++) {
+        value[i] = 1.0;
+        put_node(g, value, node_at(g, 0, i));
+        value[i] = 0.0;
+    }
+}
+
+// Interpolants that extrapolate have weights below 0: under a sun among black pixels a sum of such
+// would be a hole. Environments are summed over flat triangles then, whose weights are shares.
+static relume_status make_sums(struct relume_weight_grid **out, const relume_coder *coder)
+{
+    struct relume_coder_triangles around;
+    *out = NULL;
+    if (!relume_coder_surround(&around, coder))
+        return RELUME_OK;
+    struct relume_weight_grid *g = new_grid(coder);
+    relume_status status = g ? take_triangles(g, &around) : RELUME_ENOMEM;
+    const bool any = g && g->triangles;  // lights that span nothing have none
+    if (!status && any)
+        status = alloc_nodes(g);
+    if (!status && any)
+        fill_lights(g);
+    if (g)
+        free_turned(g);
+    if (status || !any)
+        relume_weight_grid_destroy(&g);
     *out = g;
-    return RELUME_OK;
+    return status;
+}
+
+static relume_status fill(struct relume_weight_grid *g, const struct relume_weight_grid_params *p)
+{
+    const relume_status status = alloc_nodes(g);
+    if (!status) {
+        thread_for(p->threads, (size_t)g->info.rows, fill_row, g);
+        thread_for(p->threads, (size_t)g->cells.count, fill_tile, g);
+    }
+    free(g->cells.value);
+    g->cells.value = NULL;
+    free_turned(g);
+    return status;
+}
+
+static relume_status make_grid(struct relume_weight_grid *g,
+                               const struct relume_weight_grid_params *p)
+{
+    struct relume_coder_triangles own;
+    int steps = p->steps ? p->steps : DEFAULT_STEPS;
+    set_size(g, steps);
+    while (!p->steps && steps > LEAST_STEPS && floats(&g->info) * sizeof(float) > MOST_BYTES)
+        set_size(g, steps /= 2);
+    relume_status status = RELUME_OK;
+    if (!p->steps && relume_coder_triangles(&own, g->info.coder))
+        status = take_triangles(g, &own);
+    if (!status && !p->steps && !g->triangles && relume_coder_info(g->info.coder)->interpolant)
+        status = find_cells(g, p->threads);
+    return status ? status : fill(g, p);
+}
+
+relume_status relume_weight_grid_create(relume_weight_grid **out, const relume_coder *coder,
+                                        const struct relume_weight_grid_params *params)
+{
+    const struct relume_weight_grid_params p =
+        params ? *params : (struct relume_weight_grid_params){0};
+    struct relume_weight_grid *sums;
+    *out = NULL;
+    if (p.steps && (p.steps < 2 || p.steps > MOST_STEPS))
+        return RELUME_EINVAL;
+    relume_status status = make_sums(&sums, coder);
+    if (status || (p.sums && sums)) {
+        *out = sums;
+        return status;
+    }
+    struct relume_weight_grid *g = new_grid(coder);
+    if (g)
+        g->sums = sums;
+    else
+        relume_weight_grid_destroy(&sums);
+    status = g ? make_grid(g, &p) : RELUME_ENOMEM;
+    if (status)
+        relume_weight_grid_destroy(&g);
+    *out = g;
+    return status;
+}
+
+const relume_weight_grid *grid_for_sums(const relume_weight_grid *grid)
+{
+    return grid->sums ? grid->sums : grid;
 }
 
 void relume_weight_grid_destroy(relume_weight_grid **grid)
 {
     if (!*grid)
         return;
+    relume_weight_grid_destroy(&(*grid)->sums);
+    free((*grid)->turned);
     free((*grid)->data);
     triangles_destroy(&(*grid)->triangles);
     cells_destroy(&(*grid)->cells);

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "math/random.h"
 #include "math/vec.h"
+#include "relight/grid.h"
 
 #include <string.h>
 
@@ -236,6 +237,7 @@ void relume_environment_weights(float *weights, float constant[3], const relume_
                                 const struct relume_light *light)
 {
     const relume_environment *e = light->environment;
+    const relume_weight_grid *const sums = grid_for_sums(grid);
     const relume_coder *coder = relume_weight_grid_info(grid)->coder;
     const struct relume_coder_info *info = relume_coder_info(coder);
     for (int i = 0; i < e->count; i++) {
@@ -247,7 +249,7 @@ void relume_environment_weights(float *weights, float constant[3], const relume_
         const float share = (float)relume_coder_captured(&from, coder, d);
         for (int c = 0; c < 3; c++)
             value[c] = share * light->rgb[c] * e->cell[i].rgb[c];
-        relume_weight_grid_add(weights, constant, grid, from, value);
+        relume_weight_grid_add(weights, constant, sums, from, value);
     }
 }
 

@@ -7,6 +7,10 @@
 // The node values of relume_weight_grid_info at a unit direction: out[stride].
 void grid_blend(float *out, const relume_weight_grid *grid, struct relume_vec3 direction);
 
+// The one whose weights may be summed over many lights: nowhere negative where the coder
+// interpolates. It belongs to `grid`, or is it.
+const relume_weight_grid *grid_for_sums(const relume_weight_grid *grid);
+
 // That of a refit's coder; belongs to the refit, or to the one it is like.
 const relume_weight_grid *refit_grid(const relume_refit *refit);
 

@@ -336,8 +336,9 @@ static relume_status take_grid(relume_refit *refit, const struct relume_refit_pa
 {
     const relume_status status =
         p->like ? RELUME_OK
-                : relume_weight_grid_create(&refit->made, refit->coder,
-                                            relume_weight_grid_params(.threads = p->threads));
+                : relume_weight_grid_create(
+                      &refit->made, refit->coder,
+                      relume_weight_grid_params(.sums = true, .threads = p->threads));
     refit->grid = p->like ? p->like->grid : refit->made;
     return status;
 }

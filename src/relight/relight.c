@@ -43,6 +43,7 @@ struct job {
     int count;
     bool display;
     bool linear;  // passes give linear light; else they are to be made linear, then added
+    bool guard;   // environments are among what the passes sum
     struct curve curve;
     const relume_weight_grid *grid;  // borrowed, or made
     relume_weight_grid *made;
@@ -170,11 +171,27 @@ static void sum_single_book(struct job *job)
     job->linear = true;
 }
 
+// What too few components leave below 0 under an environment gives up colour, then is black; its
+// luminance stays.
+static void keep_above_zero(float *rgb, size_t n)
+{
+    for (size_t i = 0; i < n; i++, rgb += 3) {
+        const float least = fminf(rgb[0], fminf(rgb[1], rgb[2]));
+        const float grey = 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+        if (!(least < 0.0f))
+            continue;
+        for (int c = 0; c < 3; c++)
+            rgb[c] = grey > 0.0f ? fmaxf(grey * (rgb[c] - least) / (grey - least), 0.0f) : 0.0f;
+    }
+}
+
 static relume_status relight_vectors(struct job *job)
 {
     for (int p = 0; p < job->count; p++)
         if (!relight_books(job, &job->passes[p]))
             return RELUME_ENOMEM;
+    if (job->guard && job->codes->books == 1)
+        keep_above_zero(job->passes[0].book[0], (size_t)job->codes->book_codes[0]);
     if (job->display && job->codes->books == 1)
         sum_single_book(job);
     return RELUME_OK;
@@ -321,12 +338,15 @@ static size_t chunk_size(const struct job *job, size_t first)
 
 static void relight_distant(const struct job *job, size_t first, size_t n, float *out)
 {
-    float sum[CHUNK];
+    float sum[CHUNK], rgb[3 * CHUNK];
     for (int c = 0; c < 3; c++) {
         dot_channel(job, &job->passes[0], c, first, n, sum);
         for (size_t i = 0; i < n; i++)
-            out[3 * i + (size_t)c] += sum[i];
+            rgb[3 * i + (size_t)c] = sum[i];
     }
+    keep_above_zero(rgb, n);
+    for (size_t i = 0; i < 3 * n; i++)
+        out[i] += rgb[i];
 }
 
 // out[n][3]: linear values of the pixels from `first` on.
@@ -342,6 +362,8 @@ static void relight_pixels(const struct job *job, size_t first, size_t n, float 
     for (size_t i = 0; i < n; i++)
         for (size_t c = 0; c < 3; c++)
             out[3 * i + c] = sum[c][i];
+    if (job->guard)
+        keep_above_zero(out, n);
     if (job->near.count)
         near_add(&job->near, first, n, out);
     if (job->distant)
@@ -449,14 +471,15 @@ static relume_status check_lights(const struct relume_codes *codes,
 
 // ---------------------------------------------------------------- jobs
 
-static relume_status find_grid(struct job *job, const struct relume_relight_params *p)
+static relume_status find_grid(struct job *job, const struct relume_relight_params *p, bool sums)
 {
     if (p->grid && relume_weight_grid_info(p->grid)->coder == job->codes->coder) {
         job->grid = p->grid;
         return RELUME_OK;
     }
-    const relume_status status = relume_weight_grid_create(
-        &job->made, job->codes->coder, relume_weight_grid_params(.threads = p->threads));
+    const relume_status status =
+        relume_weight_grid_create(&job->made, job->codes->coder,
+                                  relume_weight_grid_params(.sums = sums, .threads = p->threads));
     job->grid = job->made;
     return status;
 }
@@ -483,8 +506,8 @@ static relume_status begin_job(struct job *job, const struct relume_codes *codes
         .linear = codes->domain != RELUME_DOMAIN_DISPLAY,
     };
     const bool near = p->surface && find_near(lights, n) >= 0;
-    const bool folded = job->linear && count_kind(lights, n, RELUME_LIGHT_ENVIRONMENT);
-    relume_status status = near || folded ? find_grid(job, p) : RELUME_OK;
+    job->guard = job->linear && count_kind(lights, n, RELUME_LIGHT_ENVIRONMENT);
+    relume_status status = near || job->guard ? find_grid(job, p, !near) : RELUME_OK;
     if (!status)
         status = make_passes(job, lights, n);
     if (!status && job->display)

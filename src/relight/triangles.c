@@ -101,12 +101,12 @@ static vec3 cell_middle(int cell)
                               : vec3_of(copysign(1.0 - fabs(y), x), copysign(1.0 - fabs(x), y), z));
 }
 
-relume_status triangles_create(struct triangles **out, const relume_coder *coder)
+relume_status triangles_create(struct triangles **out, const struct relume_coder_triangles *from,
+                               int lights)
 {
-    struct relume_coder_triangles of;
-    const int lights = relume_coder_info(coder)->lights;
+    const struct relume_coder_triangles of = *from;
     *out = NULL;
-    if (!relume_coder_triangles(&of, coder) || of.triangles == 0)
+    if (of.triangles == 0)
         return RELUME_OK;
     struct triangles *m = mem_zeroed(1, sizeof *m);
     if (m)

@@ -13,8 +13,9 @@ struct triangles {
     int start[RELUME_WEIGHT_STARTS * RELUME_WEIGHT_STARTS];
 };
 
-// `*out` is NULL where the coder's basis has none, or such that single precision does not bear.
-relume_status triangles_create(struct triangles **out, const relume_coder *coder);
+// `*out` is NULL where there are none, or such that single precision does not bear.
+relume_status triangles_create(struct triangles **out, const struct relume_coder_triangles *from,
+                               int lights);
 void triangles_destroy(struct triangles **triangles);
 
 // Three nodes and their shares of a unit direction of the pole's frame; the shares sum to 1.

@@ -1,5 +1,6 @@
 // test_environment.c - maps of distant light: solid angles, directions, and the one weight vector
 // that they fold into, against sums over the map
+#include "flat_coder.h"
 #include "learned_fixture.h"
 
 static struct test_log heard;
@@ -134,6 +135,7 @@ static void slow(double *sum, const struct learned *l, const struct relume_image
     const struct relume_coder_info *info = relume_coder_info(l->coder);
     const int k = info->coefficients;
     float weights[LEARNED_PLANES], constant[3];
+    relume_coder *flat = flat_coder(l->coder);
     memset(sum, 0, (size_t)(3 * k + 3) * sizeof *sum);
     for (int y = 0; y < MAP_H * CUT; y++)
         for (int x = 0; x < MAP_W * CUT; x++) {
@@ -147,7 +149,7 @@ static void slow(double *sum, const struct learned *l, const struct relume_image
                 continue;
             struct relume_vec3 from;
             const double share = relume_coder_captured(&from, l->coder, d);
-            relume_coder_weights(l->coder, from, weights, constant);
+            relume_coder_weights(flat ? flat : l->coder, from, weights, constant);
             const float *e = map->data + 3 * (y / CUT * MAP_W + x / CUT);
             for (int c = 0; c < 3; c++) {
                 const double f = share * (double)e[c] * (double)tint[c] * dw / M_PI;
@@ -156,6 +158,7 @@ static void slow(double *sum, const struct learned *l, const struct relume_image
                 sum[3 * k + c] += f * (double)constant[c];
             }
         }
+    relume_coder_destroy(&flat);
 }
 
 static void fold(float *weights, float constant[3], const struct learned *l,

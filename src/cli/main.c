@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -76,9 +77,24 @@ static FILE *people;                       // standard error
 static volatile sig_atomic_t interrupted;  // the signal that asked to stop, 0: none
 static bool bar_drawn;
 
+// Most phases ask every few milliseconds whether to stop, and clean up. A library's loop asks
+// nobody: who is still at work after this long ends without. Unfinished files have no name, and
+// what is left of folders the next run removes.
+static const struct itimerval PATIENCE = {.it_value = {.tv_usec = 800000}};
+
 static void on_interrupt(int signal_number)
 {
     interrupted = signal_number;
+    setitimer(ITIMER_REAL, &PATIENCE, NULL);
+}
+
+static void on_late(int signal_number)
+{
+    static const char line[] = "\nrelume: interrupted\n";
+    (void)signal_number;
+    (void)!write(STDERR_FILENO, line + !bar_drawn, sizeof line - 1 - !bar_drawn);
+    signal(interrupted, SIG_DFL);
+    raise(interrupted);
 }
 
 static void clear_bar(void)
@@ -573,6 +589,7 @@ static void listen_to_signals(void)
 {
     const struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = SA_RESETHAND};
     struct sigaction before;
+    signal(SIGALRM, on_late);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
     if (!sigaction(SIGHUP, NULL, &before) && before.sa_handler != SIG_IGN)

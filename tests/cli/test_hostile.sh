@@ -122,4 +122,13 @@ for _ in 1 2 3 4 5 6 7 8 9 10; do
     sleep 0.2
 done
 check "helpers end with the tool" test "$(helpers_of_mark)" = 0
+
+# ---------------------------------------------------------------- work that asks nobody
+# A helper that never answers stands for any loop of a library: SIGTERM must do, without SIGKILL.
+mkdir stuck && cp "$RELUME" stuck/
+printf '#!/bin/sh\nexec sleep 20\n' >stuck/relume-helper
+chmod +x stuck/relume-helper
+timeout --foreground -k 10 1 stuck/relume compare good.tif good.tif >out.txt 2>err.txt
+check "SIGTERM ends what waits for ever" test $? = 124
+check "it says so" grep -qx 'relume: interrupted' err.txt
 finish

@@ -135,14 +135,16 @@ static relume_status encode(const char *path, const char *out, const struct relu
         &capture, lp ? lp : path,
         relume_capture_params(.log = p->log, .allow_outside = p->allow_outside));
     free(lp);
-    if (!status)
-        status = relume_coder_learn(&coder, &relume_basis_pca, capture,
-                                    relume_coder_params(.log = p->log, .choose = true),
-                                    relume_encode_params(.log = p->log, .threads = p->threads));
+    struct relume_decision decision = {0};
     if (!status)
         status =
-            relume_pack_encode(capture, coder, out, NULL,
-                               relume_pack_encode_params(.log = p->log, .threads = p->threads));
+            relume_coder_decide(&coder, &decision, capture, 0.0, relume_coder_params(.log = p->log),
+                                relume_encode_params(.log = p->log, .threads = p->threads));
+    if (!status)
+        status = relume_pack_encode(capture, coder, out, NULL,
+                                    relume_pack_encode_params(.log = p->log, .threads = p->threads,
+                                                              .domain = decision.domain,
+                                                              .storage = decision.storage));
     relume_coder_destroy(&coder);
     relume_capture_destroy(&capture);
     return status;

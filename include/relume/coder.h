@@ -300,7 +300,7 @@ struct relume_encode_census {
 };
 
 // How well a view was encoded, in the coefficients' own domain over the captured lights, in units
-// where 1 is white; measured on every 16th or 64th row.
+// where 1 is white; measured on two rows of 16 or 64.
 struct relume_encode_report {
     double fit_rms;    // captured samples against unquantised coefficients
     double store_rms;  // unquantised against stored coefficients

@@ -131,10 +131,13 @@ static void pack_plane(void *context, size_t plane, int worker)
     }
 }
 
-// The report looks at the first row of every fourth band, of every band in small images.
+// The report looks at two rows of every fourth band, of every band in small images: not always the
+// same ones, since the first rows of JPEG's blocks are better than the others.
 static bool is_measured(const relume_coefficients *c, int row)
 {
-    return row % (c->bands < 64 ? BAND_ROWS : 4 * BAND_ROWS) == 0;
+    enum { APART = BAND_ROWS / 2 };
+    const int band = row / BAND_ROWS;
+    return (c->bands < 64 || band % 4 == 0) && row % APART == band * 3 % APART;
 }
 
 // Black says nothing of what is typical.
@@ -154,8 +157,8 @@ static double shown_difference(const struct encoding *e, float a, float b)
     return d * d;
 }
 
-// What the basis cannot express, on the first row of the band.
-static relume_status measure_fit(struct encoding *e)
+// What the basis cannot express, on a row of the band.
+static relume_status measure_fit(struct encoding *e, int row)
 {
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
     const size_t size = (size_t)e->lights * width;
@@ -163,12 +166,13 @@ static relume_status measure_fit(struct encoding *e)
     if (!again)
         return RELUME_ENOMEM;
     for (size_t i = 0; i < (size_t)e->lights; i++)
-        relume_table_planes(e->table, (int)i, 0, width, seen + i * width, size);
+        relume_table_planes(e->table, (int)i, (size_t)row * width, width, seen + i * width, size);
     for (int c = 0; c < 3; c++) {
-        captured_predict(&e->captured, e->coder, c, e->values, pixels, width, again);
+        captured_predict(&e->captured, e->coder, c, e->values + (size_t)row * width, pixels, width,
+                         again);
         for (size_t i = 0; i < (size_t)e->lights; i++)
             for (size_t x = 0; x < width; x++)
-                if (is_inside(e->mask, (size_t)e->row * width + x)) {
+                if (is_inside(e->mask, (size_t)(e->row + row) * width + x)) {
                     const double sample = (double)seen[(size_t)c * size + i * width + x];
                     const double d = sample - (double)again[i * width + x];
                     e->error_sum += d * d;
@@ -182,18 +186,19 @@ static relume_status measure_fit(struct encoding *e)
 }
 
 // The same of near lights: a pixel in 8.
-static relume_status measure_seen(struct encoding *e)
+static relume_status measure_seen(struct encoding *e, int row)
 {
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
     float *again = mem_array(3 * (size_t)e->lights, sizeof *again);
     if (!again)
         return RELUME_ENOMEM;
     for (size_t x = 0; x < width; x += 8) {
-        if (!is_inside(e->mask, (size_t)e->row * width + x))
+        const size_t at = (size_t)row * width + x;
+        if (!is_inside(e->mask, (size_t)e->row * width + at))
             continue;
-        seen_predict(e->seen, (int)x, e->row, e->values + x, pixels, again);
+        seen_predict(e->seen, (int)x, e->row + row, e->values + at, pixels, again);
         for (size_t i = 0; i < 3 * (size_t)e->lights; i++) {
-            const double sample = (double)e->own[(i / 3 * pixels + x) * 3 + i % 3];
+            const double sample = (double)e->own[(i / 3 * pixels + at) * 3 + i % 3];
             const double d = sample - (double)again[i];
             e->error_sum += d * d;
             e->shown_error[i / 3] += shown_difference(e, (float)sample, again[i]);
@@ -262,8 +267,9 @@ static relume_status encode_band(struct encoding *e, const struct relume_encode_
     if (status)
         return status;
     thread_for(e->threads, (pixels + CODER_CHUNK - 1) / CODER_CHUNK, apply_chunk, e);
-    if (is_measured(e->out, e->row))
-        status = e->seen ? measure_seen(e) : measure_fit(e);
+    for (int y = 0; !status && y < e->rows; y++)
+        if (is_measured(e->out, e->row + y))
+            status = e->seen ? measure_seen(e, y) : measure_fit(e, y);
     if (status)
         return status;
     thread_for(e->threads, (size_t)e->planes, pack_plane, e);
@@ -353,7 +359,7 @@ static relume_status measure_storage(relume_coefficients *c, struct encoding *e)
         waiting && codes && before && after && wanted && stored ? RELUME_OK : RELUME_ENOMEM;
     double sum = 0.0;
     size_t count = 0;
-    for (int row = 0; !status && row < e->height; row += BAND_ROWS) {
+    for (int row = 0; !status && row < e->height; row++) {
         if (!is_measured(c, row))
             continue;
         status = read_row(c, row, waiting, codes, before, after);

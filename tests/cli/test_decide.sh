@@ -22,6 +22,9 @@ scene="attic --projection cylindrical --size 48 --samples 4"
 "$RELUME" encode hard -o usual.exr --basis pca --interpolant auto --domain linear --bits 8 -q
 encode hard
 above 'hard shadows are met to 38 dB' "$(psnr e.exr hard)" 38
+said=$(sed -n 's/.*photographs at \([0-9.]*\) dB.*/\1/p' said.txt)
+above 'what is said is what eval says' "$said" "$(psnr e.exr hard | awk '{ print $1 - 1 }')"  # a row in 8
+below 'to a decibel' "$said" "$(psnr e.exr hard | awk '{ print $1 + 1 }')"
 below 'which the usual choice does not' "$(psnr usual.exr hard)" 30
 check 'in the display domain' [ "$(told domain)" = display ]
 above 'unseen lights gain too' "$(psnr e.exr unseen)" "$(psnr usual.exr unseen)"

@@ -9,7 +9,7 @@ extern "C" {
 #include <algorithm>
 #include <cmath>
 
-static void tip(const char *text)
+void panel_tip(const char *text)
 {
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("%s", text);
@@ -21,7 +21,7 @@ static bool slider(const char *label, double *value, double least, double most, 
     double now = *value;
     const bool moved =
         ImGui::SliderScalar(label, ImGuiDataType_Double, &now, &least, &most, format, flags);
-    tip(what);
+    panel_tip(what);
     if (!moved || !std::isfinite(now))
         return false;
     *value = std::clamp(now, least, most);  // typed values may lie beyond
@@ -45,7 +45,7 @@ static bool range_rows(relume_pass_params *p, const panel_facts *facts)
 {
     bool automatic = !(p->top > p->low);
     bool changed = ImGui::Checkbox("range from the picture", &automatic);
-    tip("from the darkest hundredth of the pixels to the brightest one, background left out");
+    panel_tip("from the darkest hundredth of the pixels to the brightest one, background left out");
     if (changed) {
         p->low = automatic ? 0 : facts->range[0];
         p->top = automatic ? 0 : facts->range[1];
@@ -61,7 +61,7 @@ static bool range_rows(relume_pass_params *p, const panel_facts *facts)
         p->top = ends[1];
         changed = true;
     }
-    tip("linear luminance that is shown as dark blue, and as yellow");
+    panel_tip("linear luminance that is shown as dark blue, and as yellow");
     return changed;
 }
 
@@ -138,7 +138,7 @@ static bool lens_rows(app *app)
                                     : "the plane z that is sharp, world units; also by , and .");
     if (ImGui::Button(app->picks_focus ? "now click in the picture" : "focus by a click (F)"))
         (void)keys_press(app, 'f', false);
-    tip("then click on what shall be sharp");
+    panel_tip("then click on what shall be sharp");
     return changed;
 }
 

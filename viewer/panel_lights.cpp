@@ -190,6 +190,7 @@ static bool edit_light(panel *panel, app *app)
     const double least = -8, most = 8;
     changed |=
         ImGui::SliderScalar("stops", ImGuiDataType_Double, &lamp->stops, &least, &most, "%+.2f");
+    panel_tip("brightness of this light: +1 doubles it, -1 halves it");
     changed |= choose_kind(app);
     return changed | edit_geometry(light);
 }
@@ -211,6 +212,7 @@ static bool light_buttons(panel *panel, app *app)
     ImGui::SameLine();
     if (ImGui::Button("save rig"))
         app->wish = APP_WISH_SAVE_RIG;
+    panel_tip("save these lights as a file, for --rig");
     for (const lamp_preset *p = lamp_presets; p->name; p++) {
         if (p != lamp_presets)
             ImGui::SameLine();
@@ -224,6 +226,7 @@ static bool light_buttons(panel *panel, app *app)
     if (ImGui::InputTextWithHint("##spec", "spot 0 0 2 0 0 -1 20 rgb 1 .8 .6", panel->spec,
                                  sizeof panel->spec, ImGuiInputTextFlags_EnterReturnsTrue))
         wish_light(app, panel->spec);
+    panel_tip("a light in words (docs/lights.md), then Enter: it is added");
     return changed;
 }
 

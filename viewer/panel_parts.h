@@ -38,6 +38,8 @@ bool panel_lights(panel *panel, app *app, const panel_facts *facts);
 bool panel_picture(app *app, const panel_facts *facts);
 bool panel_enhancement(app *app, const panel_facts *facts);
 bool panel_camera(app *app);
+// What the last item is for, while the pointer is on it.
+void panel_tip(const char *text);
 bool panel_glare(app *app, const panel_facts *facts);
 bool panel_objects(app *app, const panel_facts *facts);
 void panel_histogram(const panel_facts *facts, float scale);

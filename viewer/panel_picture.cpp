@@ -42,9 +42,11 @@ bool panel_picture(app *app, const panel_facts *facts)
     const double least = -10, most = 10;
     bool changed = ImGui::SliderScalar("exposure", ImGuiDataType_Double, &app->now.exposure_ev,
                                        &least, &most, "%+.2f EV");
+    panel_tip("brightness of the picture: +1 EV doubles it; also by + and -");
     bool automatic = app->now.auto_exposure;
     if (ImGui::Checkbox("automatic exposure", &automatic))
         changed |= keys_press(app, 'e', false);
+    panel_tip("as an eye adapts to what it sees");
     changed |= choose_tone(app);
     changed |= choose_pass(app);
     changed |= panel_enhancement(app, facts);
@@ -56,21 +58,24 @@ bool panel_picture(app *app, const panel_facts *facts)
     static const struct {
         const char *name;
         app_wish wish;
+        const char *what;
     } wishes[] = {
-        {"PNG", APP_WISH_PNG},
-        {"EXR", APP_WISH_EXR},
-        {"sweep", APP_WISH_SWEEP},
-        {"turntable", APP_WISH_TURNTABLE},
+        {"PNG", APP_WISH_PNG, "save the picture as it is shown"},
+        {"EXR", APP_WISH_EXR, "save the picture in linear light"},
+        {"sweep", APP_WISH_SWEEP, "record the light going once around"},
+        {"turntable", APP_WISH_TURNTABLE, "record the eye going once around"},
     };
     for (const auto &w : wishes) {
         if (ImGui::Button(w.name))
             app->wish = w.wish;
+        panel_tip(w.what);
         ImGui::SameLine();
     }
     if (ImGui::Button("reset")) {
         app_reset(app);
         changed = true;
     }
+    panel_tip("eye, lights and picture as they were at the start");
     return changed;
 }
 

@@ -47,6 +47,21 @@ GL/osmesa:viewer/context_osmesa.c
 EGL/:viewer/context_egl.c
 immintrin:$(echo src/*/*_avx2.c)"
 
+# Files are opened by base alone, which notes what is read (inputs.h) and replaces nothing else
+# (outfile.h, outdir.h). Elsewhere: what base has noted before, what no output could replace, and the
+# rows that a sweep appends.
+opens="src/image/png.c src/image/picture.c src/scene/mesh_other.c src/exchange/open.c src/pass/subject.c
+src/capture/report_picture.c src/cli/main.c src/cli/capture_times.c src/cli/rays.c src/cli/sweep_resume.c
+viewer/script.c viewer/settings.c"
+found=$(grep -rlE '(^|[^a-z_>.:])(fopen|open|openat|creat|rename|mkstemp|mkostemp|mkdtemp|tmpfile)\(' src viewer --include='*.c' --include='*.cpp' |
+    grep -v -e '^src/base/' -e '^src/helper/' | while read -r f; do
+        case " $(echo $opens) " in *" $f "*) ;; *) echo "$f" ;; esac
+    done)
+[ -z "$found" ] || {
+    echo "layers: opens or renames files itself; expected base/inputs.h, outfile.h or outdir.h:" $found >&2
+    exit 1
+}
+
 grep -rE '^#include [<"]' src viewer tests samples --include='*.c' --include='*.h' --include='*.cpp' |
     awk -F : -v rules="$rules" -v external="$external" '
     function complain(what) {

@@ -133,6 +133,25 @@ static void test_never_removes_others(void **state)
     assert_true(has("a") && has("notes") && !has("b"));
     test_folder_remove(path);
 
+    // Links that were made with it are listed, and go without what they lead to
+    char target[80], name[128];
+    outdir *linked;
+    snprintf(target, sizeof target, "%s/target", folder);
+    test_write(target, "mine", 4);
+    for (int i = 0; i < 2; i++) {
+        CHECK_OK(outdir_open(&linked, path, i > 0, NULL));
+        put(linked, "a");
+        snprintf(name, sizeof name, "%s/link", outdir_path(linked));
+        assert_int_equal(symlink(i ? "../target" : "nowhere", name), 0);
+        CHECK_OK(outdir_commit(&linked));
+        assert_int_equal(entries(path), 3);
+    }
+    make("b", true);
+    assert_true(has("b") && !has("link"));
+    assert_int_equal(access(target, F_OK), 0);
+    unlink(target);
+    test_folder_remove(path);
+
     // A list that names what lies behind a link
     char other[80], photo[100], link[128];
     snprintf(other, sizeof other, "%s/other", folder);

@@ -30,6 +30,8 @@ struct relume_slab_ingest_params {
     // (row by row), or {u}, {v}, and * for anything; default: found (relume_slab_ingest).
     const char *names;
     double baseline;         // world units from the leftmost to the rightmost camera; default 1
+    double baseline_v;       // from the highest to the lowest; default: where names hold positions
+                             // by these, else rows are as far apart as columns
     double distance;         // from the st plane to the cameras; default 3
     double st_z;             // height of the st plane; default 0
     double window;           // width of the st window; default 2
@@ -50,6 +52,7 @@ struct relume_slab_ingest_params {
 // other way: the first is checked, and the log told; the second, a world turned inside out (what
 // is near, below, to the left of a camera moves up and right where it should hide what is behind),
 // shows by what hides what, which is looked at and mentioned, no more.
+// Whether rows are as far apart as columns no photograph tells; the log hears that it is assumed.
 // The scale of depth follows from baseline and distance, which no photograph tells.
 // RELUME_EINVAL (params), RELUME_EDATA (names that do not match, a camera missing, two for one
 // place, sizes that differ), RELUME_EIO, RELUME_ENOMEM.

@@ -242,18 +242,33 @@ static void range_of(double range[2], const double *values, int n)
     }
 }
 
-// The grid around the origin, as wide as the baseline (one column: as high).
+// Photographs do not tell how far apart rows are; names do that hold positions.
+static void say_square(const struct slab *s)
+{
+    if (s->place[0].has_uv || s->p->baseline_v > 0.0 || s->rows < 2 || s->columns < 2)
+        return;
+    log_line(s->common->log, RELUME_NOTE,
+             "rows of cameras are taken to be as far apart as columns, %g from the first to the "
+             "last; if they are not, --baseline-v says how far",
+             s->v[0] > s->v[s->rows - 1] ? s->v[0] - s->v[s->rows - 1]
+                                         : s->v[s->rows - 1] - s->v[0]);
+}
+
+// The grid around the origin, as wide as the baseline (one column: as high). Rows are to scale,
+// unless their own baseline is known.
 static void scale_grid(struct slab *s)
 {
     double u[2], v[2];
     range_of(u, s->u, s->columns);
     range_of(v, s->v, s->rows);
-    const double span = u[1] > u[0] ? u[1] - u[0] : v[1] - v[0];
-    const double k = or_default(s->p->baseline, 1.0) / span;
+    const double high = v[1] - v[0];
+    const double k = or_default(s->p->baseline, 1.0) / (u[1] > u[0] ? u[1] - u[0] : high);
+    const double kv = s->p->baseline_v > 0.0 && high > 0.0 ? s->p->baseline_v / high : k;
     for (int i = 0; i < s->columns; i++)
         s->u[i] = (s->u[i] - 0.5 * (u[0] + u[1])) * k;
     for (int i = 0; i < s->rows; i++)
-        s->v[i] = (s->v[i] - 0.5 * (v[0] + v[1])) * k;
+        s->v[i] = (s->v[i] - 0.5 * (v[0] + v[1])) * kv;
+    say_square(s);
 }
 
 // ---------------------------------------------------------------- folder
@@ -316,8 +331,8 @@ static relume_status write_slab(struct slab *s, const char *dir, const outdir *f
 static relume_status check(const struct slab *s)
 {
     const struct relume_slab_ingest_params *p = s->p;
-    const double values[] = {p->baseline, p->distance, p->window};
-    for (int i = 0; i < 3; i++)
+    const double values[] = {p->baseline, p->baseline_v, p->distance, p->window};
+    for (int i = 0; i < 4; i++)
         if (!(values[i] >= 0.0) || isinf(values[i]))
             return log_fail(s->common->log, RELUME_EINVAL,
                             "baseline, distance and window: expected above 0; found %g", values[i]);
@@ -339,13 +354,16 @@ static relume_status ingest(struct slab *s, const char *dir, const char *const *
         turn(s->u, s->columns);
         turn(s->v, s->rows);
     }
+    if (!status && s->p->baseline_v > 0.0 && s->rows < 2)
+        status = log_fail(s->common->log, RELUME_EINVAL,
+                          "--baseline-v: expected rows of cameras; found one");
+    if (!status)
+        scale_grid(s);
     if (!status && !s->p->keep_order)
         status = check_order(s);
     outdir *folder = NULL;
-    if (!status) {
-        scale_grid(s);
+    if (!status)
         status = outdir_open(&folder, dir, s->common->force, s->common->log);
-    }
     if (!status)
         status = write_slab(s, dir, folder);
     return outdir_end(&folder, status);

@@ -26,6 +26,7 @@ static relume_status slab(const struct args *args, const char *const *photos, in
         args_text(args, "-o", NULL), photos, n,
         relume_slab_ingest_params(.names = args_text(args, "--names", NULL),
                                   .baseline = args_number(args, "--baseline", 0.0),
+                                  .baseline_v = args_number(args, "--baseline-v", 0.0),
                                   .distance = args_number(args, "--distance", 0.0),
                                   .st_z = args_number(args, "--st-z", 0.0),
                                   .window = args_number(args, "--window", 0.0),

@@ -19,6 +19,9 @@ relume_status capture_views(const struct args *args);
      "--slab: believe the names even where the photographs contradict", 0, 0}, \
     {"--baseline", OPTION_NUMBER, "W", \
      "--slab: world units from the first to the last column of cameras; default 1", 1e-6, 1e6}, \
+    {"--baseline-v", OPTION_NUMBER, "H", \
+     "--slab: world units from the first to the last row; default: by positions in the names, " \
+     "else rows are as far apart as columns", 1e-6, 1e6}, \
     {"--distance", OPTION_NUMBER, "D", \
      "--slab: world units from the cameras to the st plane, default 3; --colmap: units of " \
      "the model", 1e-6, 1e6}, \

@@ -35,9 +35,9 @@ struct layout {
     bool (*pixel)(double xy[2], const struct panorama *p, vec3 direction);
     // Texel (x, y), which may lie two steps outside the image or, for a cube, outside `face`.
     panorama_texel *texel;
-    // Texels per radian in a unit direction, the more of the two axes; at a sphere's poles as at
-    // its equator: rows stay as far apart.
-    double (*density)(const struct panorama *p, vec3 unit);
+    // How many texels further a direction comes to lie that moves by `step`, to first order; at a
+    // sphere's poles as at its equator: rows stay as far apart.
+    double (*texels)(const struct panorama *p, vec3 d, vec3 step);
 };
 
 // ---------------------------------------------------------------- shared
@@ -161,16 +161,16 @@ static void cylinder_texel(float rgb[3], const struct panorama *p, int face, int
     panorama_fetch(rgb, p, wrap_index(x, p->width), clamp_index(y, panorama_rows(p)));
 }
 
-// A step of azimuth is 1 / sqrt(1 + h^2) of what it is on the horizon; dh = (1 + h^2) da.
-static double cylinder_density(const struct panorama *p, vec3 d)
+static double cylinder_texels(const struct panorama *p, vec3 d, vec3 step)
 {
     const struct relume_geometry *g = p->geometry;
-    const double across = hypot(d.x, d.z);
+    const double square = d.x * d.x + d.z * d.z, across = sqrt(square);
     const double h = d.y / across;
     if (g->disc && !(h >= g->v_min && h <= g->v_max))
-        return disc_density(p, d);
-    return fmax(p->width / (2.0 * PI) / across,
-                panorama_rows(p) / (g->v_max - g->v_min) / (across * across));
+        return disc_texels(p, d, step);
+    const double turn = (d.x * step.z - d.z * step.x) / square;
+    const double rise = step.y / across - h * (d.x * step.x + d.z * step.z) / square;
+    return hypot(turn * p->width / (2.0 * PI), rise * panorama_rows(p) / (g->v_max - g->v_min));
 }
 
 // ---------------------------------------------------------------- sphere
@@ -205,10 +205,10 @@ static void sphere_texel(float rgb[3], const struct panorama *p, int face, int x
         rgb[c] = 0.5f * (rgb[c] + other[c]);
 }
 
-static double sphere_density(const struct panorama *p, vec3 d)
+static double sphere_texels(const struct panorama *p, vec3 d, vec3 step)
 {
-    (void)d;
-    return fmax(p->width / (2.0 * PI), p->height / PI);
+    const double angle = vec3_length(vec3_cross(d, step)) / vec3_dot(d, d);
+    return angle * fmax(p->width / (2.0 * PI), p->height / PI);
 }
 
 // ---------------------------------------------------------------- cube
@@ -285,19 +285,21 @@ static void cube_texel(float rgb[3], const struct panorama *p, int face, int x, 
         rgb[c] = (rgb[c] + beside[c] + above[c]) / 3.0f;
 }
 
-// The distance from a face's middle is half a side times the tangent of the angle.
-static double cube_density(const struct panorama *p, vec3 d)
+static double cube_texels(const struct panorama *p, vec3 d, vec3 step)
 {
-    const double ahead = fmax(fmax(fabs(d.x), fabs(d.y)), fabs(d.z));
-    return 0.5 * p->height / (ahead * ahead);
+    const struct face *f = &faces[cube_face_of(d)];
+    const double ahead = vec3_dot(d, f->ahead), nearer = vec3_dot(step, f->ahead) / ahead;
+    const double a = vec3_dot(step, f->right) - nearer * vec3_dot(d, f->right);
+    const double b = vec3_dot(step, f->up) - nearer * vec3_dot(d, f->up);
+    return 0.5 * p->height * hypot(a, b) / ahead;
 }
 
 // ---------------------------------------------------------------- public
 
 static const struct layout layouts[] = {
-    [RELUME_CYLINDRICAL] = {cylinder_ray, cylinder_pixel, cylinder_texel, cylinder_density},
-    [RELUME_SPHERICAL] = {sphere_ray, sphere_pixel, sphere_texel, sphere_density},
-    [RELUME_CUBE] = {cube_ray, cube_pixel, cube_texel, cube_density},
+    [RELUME_CYLINDRICAL] = {cylinder_ray, cylinder_pixel, cylinder_texel, cylinder_texels},
+    [RELUME_SPHERICAL] = {sphere_ray, sphere_pixel, sphere_texel, sphere_texels},
+    [RELUME_CUBE] = {cube_ray, cube_pixel, cube_texel, cube_texels},
 };
 
 static const struct layout *layout_of(const struct relume_geometry *geometry)
@@ -334,22 +336,27 @@ static struct gaze gaze_of(struct relume_look look, int width, int height)
     };
 }
 
-// Stereographic: seen from the far end of a sphere's axis.
-static vec3 gaze_ray(const struct gaze *g, double x, double y)
+// Not of unit length. Stereographic: seen from the far end of a sphere's axis.
+static vec3 gaze_way(const struct gaze *g, double x, double y)
 {
     const double a = (x - g->half_width) * g->pixel, b = (g->half_height - y) * g->pixel;
     const double depth = g->stereographic ? 0.5 * (1.0 - a * a - b * b) : 1.0;
-    return vec3_unit(vec3_add(vec3_add(vec3_scale(g->right, a), vec3_scale(g->up, b)),
-                              vec3_scale(g->ahead, depth)));
+    return vec3_add(vec3_add(vec3_scale(g->right, a), vec3_scale(g->up, b)),
+                    vec3_scale(g->ahead, depth));
 }
 
-// Of a pixel there, radians: across and down.
-static void gaze_extent(double extent[2], const struct gaze *g, double x, double y)
+static vec3 gaze_ray(const struct gaze *g, double x, double y)
 {
-    const double a = (x - g->half_width) * g->pixel, b = (g->half_height - y) * g->pixel;
-    const double away = 1.0 + a * a + b * b;
-    extent[0] = g->pixel * (g->stereographic ? 2.0 : sqrt(1.0 + b * b)) / away;
-    extent[1] = g->pixel * (g->stereographic ? 2.0 : sqrt(1.0 + a * a)) / away;
+    return vec3_unit(gaze_way(g, x, y));
+}
+
+// How that goes on over a pixel, to the right and down.
+static void gaze_steps(vec3 step[2], const struct gaze *g, double x, double y)
+{
+    const double bent = g->stereographic ? g->pixel : 0.0;
+    const double a = (x - g->half_width) * bent, b = (g->half_height - y) * bent;
+    step[0] = vec3_scale(vec3_sub(g->right, vec3_scale(g->ahead, a)), g->pixel);
+    step[1] = vec3_scale(vec3_sub(vec3_scale(g->ahead, b), g->up), g->pixel);
 }
 
 struct relume_vec3 relume_look_ray(struct relume_look look, int width, int height, double x,
@@ -427,15 +434,17 @@ struct frame {
 // The mean of what a pixel covers.
 static void draw_pixel(float rgb[3], const struct frame *f, double x, double y)
 {
-    const vec3 ray = gaze_ray(&f->gaze, x, y);
-    double extent[2], sum[3] = {0.0, 0.0, 0.0};
-    gaze_extent(extent, &f->gaze, x, y);
-    const double texels = f->one ? 0.0 : f->layout->density(&f->panorama, ray);
-    const struct footprint across = footprint_of(texels * extent[0], FOOTPRINT_MOST);
-    const struct footprint down = footprint_of(texels * extent[1], FOOTPRINT_MOST);
+    const vec3 way = gaze_way(&f->gaze, x, y);
+    double texels[2] = {0.0, 0.0}, sum[3] = {0.0, 0.0, 0.0};
+    vec3 step[2];
+    gaze_steps(step, &f->gaze, x, y);
+    for (int k = 0; k < 2 && !f->one; k++)
+        texels[k] = f->layout->texels(&f->panorama, way, step[k]);
+    const struct footprint across = footprint_of(texels[0], FOOTPRINT_MOST);
+    const struct footprint down = footprint_of(texels[1], FOOTPRINT_MOST);
     const int n = across.count * down.count;
     if (n == 1) {
-        if (!sample(rgb, &f->panorama, f->layout, ray))
+        if (!sample(rgb, &f->panorama, f->layout, vec3_unit(way)))
             rgb[0] = rgb[1] = rgb[2] = f->nothing;
         return;
     }

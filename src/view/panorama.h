@@ -34,8 +34,8 @@ void panorama_bilinear(float rgb[3], const struct panorama *p, panorama_texel *t
 vec3 disc_ray(const struct panorama *p, double x, double y);
 // Of a direction that is above or below the cylinder; at or below its last row.
 void disc_pixel(double xy[2], const struct panorama *p, vec3 d);
-// Texels per radian there, at most.
-double disc_density(const struct panorama *p, vec3 unit);
+// How many texels further on a disc a direction comes to lie that moves by `step`.
+double disc_texels(const struct panorama *p, vec3 d, vec3 step);
 // Bilinear value at a position of the image that shows something; `cylinder` makes texels of the
 // rows above the discs and repeats its first and last one.
 void disc_sample(float rgb[3], const struct panorama *p, panorama_texel *cylinder,

@@ -51,10 +51,11 @@ void disc_pixel(double xy[2], const struct panorama *p, vec3 d)
     xy[1] = fmin(fmax(xy[1], 0.0), side) + panorama_rows(p);
 }
 
-// The radius on the disc is v tan(a) of the angle a from its axis.
-double disc_density(const struct panorama *p, vec3 unit)
+double disc_texels(const struct panorama *p, vec3 d, vec3 step)
 {
-    return 0.5 * p->geometry->disc * fabs(height_of(p, unit.y < 0.0)) / (unit.y * unit.y);
+    const double scale = 0.5 * p->geometry->disc * height_of(p, d.y < 0.0) / d.y;
+    const double nearer = step.y / d.y;
+    return hypot(scale * (step.x - nearer * d.x), scale * (step.z - nearer * d.z));
 }
 
 // In the rows; h is within the cylinder.

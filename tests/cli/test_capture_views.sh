@@ -23,6 +23,10 @@ as_true 'rows and columns' out
 relume capture rows --slab -o wide --baseline 2 --distance 6 --window 4 --st-z 1
 check 'world units' grep -q '"uv_plane_z": 7, "st_plane_z": 1, "st_min": \[-2, -2\]' wide/capture.json
 check 'and the baseline' grep -q '"uv": \[-1, 1\]' wide/capture.json
+expect_ok 'that rows are as far apart as columns is said' 'from the first to the last; if they are not, --baseline-v' \
+    "$RELUME" capture rows --slab -o square
+relume capture rows --slab -o high --baseline 2 --baseline-v 0.5
+check 'rows nearer to each other than columns' grep -q '"uv": \[-1, 0.25\]' high/capture.json
 relume capture rows --slab -o moved --focus-disparity 2 --force
 below 'a focus disparity crops' "$(relume encode moved -o m.exr --no-depth && "$RELUME" info m.exr --json |
     sed -n 's/.*"width": *\([0-9]*\).*/\1/p')" 44

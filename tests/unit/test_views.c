@@ -140,10 +140,62 @@ static void test_names(void **state)
         CHECK_OK(relume_slab_ingest(p.out, p.list, GRID * GRID,
                                     relume_slab_ingest_params(.names = cases[i].pattern),
                                     relume_ingest_params(.log = &log.log)));
-        assert_int_equal(log.lines, 0);
+        // that the grid is square is assumed where names hold no positions
+        const bool positions = cases[i].name == name_archive;
+        assert_int_equal(log.lines, !positions);
+        assert_true(positions || strstr(log.text, "as far apart as columns"));
         check_places(&p);
         test_folder_remove(p.folder);
     }
+}
+
+static void name_high(char name[64], int row, int column)
+{
+    snprintf(name, 64, "out_%02d_%02d_%.3f_%.3f_.exr", row, column, 80.0 - 20.0 * row,
+             5.0 + 50.0 * column);
+}
+
+// Rows stand as far apart as names or the caller say: 2/5 of the columns' way, and 0.7.
+static void test_grids_that_are_not_square(void **state)
+{
+    (void)state;
+    static const struct {
+        name_function *name;
+        double baseline_v, want;
+    } cases[] = {{name_high, 0.0, 0.4}, {name_high, 0.7, 0.7}, {name_rows, 0.7, 0.7}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct photos p;
+        relume_capture *capture;
+        struct test_log log;
+        test_log_init(&log);
+        shoot(&p, cases[i].name);
+        CHECK_OK(relume_slab_ingest(
+            p.out, p.list, GRID * GRID,
+            relume_slab_ingest_params(.baseline_v = cases[i].baseline_v, .keep_order = true),
+            relume_ingest_params(.log = &log.log)));
+        assert_int_equal(log.lines, 0);
+        CHECK_OK(relume_capture_open(&capture, p.out, NULL));
+        const struct relume_manifest *m = relume_capture_manifest(capture);
+        double high[2] = {0, 0};
+        for (int k = 0; k < m->views; k++)
+            for (int axis = 0; axis < 2; axis++)
+                high[axis] = fmax(high[axis], m->view[k].uv[axis]);
+        CHECK_NEAR(2 * high[0], 1, 1e-9);
+        CHECK_NEAR(2 * high[1], cases[i].want, 1e-9);
+        relume_capture_destroy(&capture);
+        test_folder_remove(p.folder);
+    }
+    struct photos p;
+    shoot(&p, name_rows);
+    assert_int_equal(relume_slab_ingest(p.out, p.list, GRID,  // one row
+                                        relume_slab_ingest_params(.names = "view_{row}_{column}",
+                                                                  .baseline_v = 0.5),
+                                        NULL),
+                     RELUME_EINVAL);
+    assert_int_equal(relume_slab_ingest(p.out, p.list, GRID * GRID,
+                                        relume_slab_ingest_params(.baseline_v = -1), NULL),
+                     RELUME_EINVAL);
+    test_folder_remove(p.folder);
 }
 
 // Rows that count upwards contradict the parallax of columns.
@@ -185,9 +237,10 @@ static void test_bad_grids(void **state)
     refuse(&p, 1, NULL, "a single camera");
     refuse(&p, GRID * GRID, "x{row}_{column}", "does not match");
     refuse(&p, GRID * GRID, "view_{row}_*", "does not match");
-    CHECK_OK(relume_slab_ingest(p.out, p.list, GRID * GRID - 1,
-                                relume_slab_ingest_params(.fill = true, .keep_order = true),
-                                relume_ingest_params(.log = &log.log)));
+    CHECK_OK(relume_slab_ingest(
+        p.out, p.list, GRID * GRID - 1,
+        relume_slab_ingest_params(.fill = true, .keep_order = true, .baseline_v = 1),
+        relume_ingest_params(.log = &log.log)));
     assert_non_null(strstr(log.text, "filled by"));
     struct photos twice = p;
     snprintf(twice.out, sizeof twice.out, "%s/twice", p.folder);
@@ -338,9 +391,13 @@ static void test_turned(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_turned),          cmocka_unit_test(test_names),
-        cmocka_unit_test(test_rows_from_below), cmocka_unit_test(test_bad_grids),
-        cmocka_unit_test(test_depth),           cmocka_unit_test(test_depth_refuses),
+        cmocka_unit_test(test_turned),
+        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_grids_that_are_not_square),
+        cmocka_unit_test(test_rows_from_below),
+        cmocka_unit_test(test_bad_grids),
+        cmocka_unit_test(test_depth),
+        cmocka_unit_test(test_depth_refuses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,8 +12,8 @@ out vec4 color;
 const float PI = 3.14159265358979;
 
 vec3 panorama_sample(vec3 direction);
-// Texels per radian in a unit direction, at most.
-float panorama_density(vec3 unit);
+// How many texels further a direction comes to lie that moves by `move`.
+float panorama_texels(vec3 d, vec3 move);
 
 vec3 look_ray(vec3 l, vec2 size, vec2 position)
 {
@@ -25,13 +25,16 @@ vec3 look_ray(vec3 l, vec2 size, vec2 position)
     return vec3(a * cos(l.x) + ahead * sin(l.x), up, a * sin(l.x) - ahead * cos(l.x));
 }
 
-// Of a pixel, radians: across and down.
-vec2 look_extent(float zoom, vec2 size, vec2 position)
+// How a ray goes on over a pixel, to the right and down.
+void look_steps(out vec3 across, out vec3 down, vec3 l, vec2 size, vec2 position)
 {
-    float pixel = 2.0 / size.x * zoom;
-    vec2 ab = (position - 0.5 * size) * pixel;
-    float away = 1.0 + dot(ab, ab);
-    return pixel * (stereographic ? vec2(2.0) : sqrt(1.0 + ab.yx * ab.yx)) / away;
+    float pixel = 2.0 / size.x * l.z;
+    vec2 ab = stereographic ? (position - 0.5 * size) * pixel * vec2(1.0, -1.0) : vec2(0.0);
+    vec3 right = vec3(cos(l.x), 0.0, sin(l.x));
+    vec3 up = vec3(-sin(l.y) * sin(l.x), cos(l.y), sin(l.y) * cos(l.x));
+    vec3 ahead = vec3(cos(l.y) * sin(l.x), sin(l.y), -cos(l.y) * cos(l.x));
+    across = pixel * (right - ab.x * ahead);
+    down = pixel * (ab.y * ahead - up);
 }
 
 vec3 fetch(int x, int y)
@@ -52,9 +55,10 @@ float azimuth_column(vec3 d)
 void main()
 {
     vec3 ray = look_ray(look, look_size, gl_FragCoord.xy);
-    vec2 texels = panorama_density(normalize(ray)) * look_extent(look.z, look_size, gl_FragCoord.xy);
-    Footprint across = footprint_of(texels.x);
-    Footprint down = footprint_of(texels.y);
+    vec3 to_right, below;
+    look_steps(to_right, below, look, look_size, gl_FragCoord.xy);
+    Footprint across = footprint_of(panorama_texels(ray, to_right));
+    Footprint down = footprint_of(panorama_texels(ray, below));
     vec3 sum = vec3(0.0);
     for (int j = 0; j < down.count; j++)
         for (int i = 0; i < across.count; i++) {

@@ -44,10 +44,13 @@ vec3 panorama_texel(int face, int x, int y)
             across_edge(face, inner.x, y)) / 3.0;
 }
 
-float panorama_density(vec3 d)
+float panorama_texels(vec3 d, vec3 move)
 {
-    float ahead = max(max(abs(d.x), abs(d.y)), abs(d.z));
-    return 0.5 * float(textureSize(view, 0).y) / (ahead * ahead);
+    int face = cube_face_of(d);
+    float ahead = dot(d, face_ahead[face]);
+    vec3 beside = move - dot(move, face_ahead[face]) / ahead * d;
+    vec2 ab = vec2(dot(beside, face_right[face]), dot(beside, face_up[face]));
+    return 0.5 * float(textureSize(view, 0).y) * length(ab) / ahead;
 }
 
 bool panorama_pixel(out vec2 xy, out int face, vec3 d)

@@ -15,12 +15,14 @@ bool panorama_pixel(out vec2 xy, out int face, vec3 d)
     return true;
 }
 
-float panorama_density(vec3 d)
+float panorama_texels(vec3 d, vec3 move)
 {
-    vec2 size = vec2(textureSize(view, 0));
-    float across = length(d.xz);
-    return max(size.x / (2.0 * PI) / across,
-               size.y / (elevation.y - elevation.x) / (across * across));
+    float square = dot(d.xz, d.xz);
+    float h = d.y / sqrt(square);
+    float turn = (d.x * move.z - d.z * move.x) / square;
+    float rise = move.y / sqrt(square) - h * dot(d.xz, move.xz) / square;
+    return length(vec2(turn * float(textureSize(view, 0).x) / (2.0 * PI),
+                       rise * float(textureSize(view, 0).y) / (elevation.y - elevation.x)));
 }
 
 vec3 panorama_texel(int face, int x, int y)

@@ -71,14 +71,18 @@ vec3 disc_value(bool lower, vec2 position)
     return mix(top, bottom, part.y);
 }
 
-float panorama_density(vec3 d)
+float panorama_texels(vec3 d, vec3 move)
 {
-    float across = length(d.xz);
-    float h = d.y / across;
-    if (!(h >= elevation.x && h <= elevation.y))
-        return 0.5 * float(disc) * abs(height_of(d.y < 0.0)) / (d.y * d.y);
-    return max(float(textureSize(view, 0).x) / (2.0 * PI) / across,
-               float(panorama_rows()) / (elevation.y - elevation.x) / (across * across));
+    float square = dot(d.xz, d.xz);
+    float h = d.y / sqrt(square);
+    if (!(h >= elevation.x && h <= elevation.y)) {
+        float scale = 0.5 * float(disc) * height_of(d.y < 0.0) / d.y;
+        return length(scale * (move.xz - move.y / d.y * d.xz));
+    }
+    float turn = (d.x * move.z - d.z * move.x) / square;
+    float rise = move.y / sqrt(square) - h * dot(d.xz, move.xz) / square;
+    return length(vec2(turn * float(textureSize(view, 0).x) / (2.0 * PI),
+                       rise * float(panorama_rows()) / (elevation.y - elevation.x)));
 }
 
 // Of the cylinder's outermost half row, `part` of which lies between the rim and the position.

@@ -12,10 +12,10 @@ bool panorama_pixel(out vec2 xy, out int face, vec3 d)
     return true;
 }
 
-float panorama_density(vec3 d)
+float panorama_texels(vec3 d, vec3 move)
 {
     vec2 size = vec2(textureSize(view, 0));
-    return max(size.x / (2.0 * PI), size.y / PI);
+    return length(cross(d, move)) / dot(d, d) * max(size.x / (2.0 * PI), size.y / PI);
 }
 
 vec3 panorama_texel(int face, int x, int y)

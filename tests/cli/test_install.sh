@@ -119,7 +119,7 @@ offers() { # expected, words...
 if command -v bash >/dev/null; then
     check "completion of commands" offers "encode eval export" relume e
     check "completion of options" offers "--coefficients --colour --compression --codebook --codebook-start" relume encode --co
-    check "completion of values" offers "8 10 12 16 half" relume encode --bits ""
+    check "completion of values" offers "8 10 12 16 half log float" relume encode --bits ""
     check "completion of scenes" offers "teapot" relume synth te
     check "completion of the viewer" offers "--offscreen" relume-view --off
 else

@@ -530,13 +530,78 @@ static void interpolate(struct vector d, double *value)
 
 // ---------------------------------------------------------------- decoding
 
-// What the coefficients multiply, stored[3][k], and the constants.
-static void functions(int k, struct vector light, double *stored, double *constant)
+static double between(struct vector a, struct vector b)
+{
+    return 2.0 * asin(0.5 * sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) +
+                                 (a.z - b.z) * (a.z - b.z)));
+}
+
+// How far caps about the lights reach along each of 256 azimuths of the stereographic plane.
+static void find_reach(double *reach, double part)
+{
+    int n;
+    const float *xyz = floats_of(0, "relume.lights", &n);
+    for (int s = 0; s < 256; s++)
+        reach[s] = -1e9;
+    for (int i = 0; i < n / 3; i++) {
+        const struct vector l = pole_frame(unit(
+            (struct vector){(double)xyz[3 * i], (double)xyz[3 * i + 1], (double)xyz[3 * i + 2]}));
+        double nearest = M_PI / 3.0;
+        for (int j = 0; j < n / 3; j++) {
+            const struct vector m = pole_frame(unit((struct vector){
+                (double)xyz[3 * j], (double)xyz[3 * j + 1], (double)xyz[3 * j + 2]}));
+            nearest = between(l, m) > 1e-3 ? fmin(nearest, between(l, m)) : nearest;
+        }
+        const double cap = fmax(part * nearest, M_PI / 90.0), theta = acos(fmin(l.z, 1.0));
+        const double low = tan((theta - cap) / 2.0);
+        const double high = tan(fmin(theta + cap, 17.0 / 18.0 * M_PI) / 2.0);
+        for (int s = 0; s < 256; s++)
+            reach[s] =
+                fmax(reach[s], (high - low) / 2.0 +
+                                   (high + low) / 2.0 * cos(s * M_PI / 128.0 - atan2(l.y, l.x)));
+    }
+}
+
+// Beyond the lights of one planar hemisphere: `d` moves to their edge; the share that is left.
+static double captured(struct vector *d)
+{
+    static double reach[256];
+    const char *name =
+        text_or("relume.interpolant", strcmp(text_of("relume.basis"), "table") ? "" : "delaunay");
+    int n;
+    (void)floats_of(0, "relume.lights", &n);
+    if (!int_of("relume.hemispherical") || strcmp(text_of("relume.pole"), "z") || n / 3 < 4)
+        return 1.0;
+    const int bounded = !strcmp(name, "delaunay") || !strcmp(name, "natural") ||
+                        !strcmp(name, "rbf") || !strcmp(name, "octahedral");
+    find_reach(reach, bounded ? 0.25 : 0.5);
+    const double at = (atan2(d->y, d->x) / (2.0 * M_PI) + 1.0) * 256.0;
+    double border = 0.0;
+    for (int side = 0; side < 2; side++) {
+        double radius = 1e9;
+        for (int s = 0; s < 256; s++) {
+            if (reach[s] <= 0.0)
+                return 1.0;  // about another middle than the pole: not read here
+            const double along = cos((floor(at) + side - s) * M_PI / 128.0);
+            radius = along > 1e-3 ? fmin(radius, reach[s] / along) : radius;
+        }
+        border += (side ? at - floor(at) : 1.0 - (at - floor(at))) * 2.0 * atan(radius);
+    }
+    const double r = hypot(d->x, d->y), z = d->z;
+    if (atan2(r, z) <= border)
+        return 1.0;
+    *d = (struct vector){sin(border) * d->x / r, sin(border) * d->y / r, cos(border)};
+    return d->z > 0.0 ? (z + 0.05) / (d->z + 0.05) : 1.0;
+}
+
+// What the coefficients multiply, stored[3][k], and the constants. Returns the share of the light.
+static double functions(int k, struct vector light, double *stored, double *constant)
 {
     struct vector d = pole_frame(unit(light));
     const int hemispherical = int_of("relume.hemispherical");
     if (hemispherical && d.z < 0.0)
         d = unit((struct vector){d.x, d.y, 0.0});
+    const double share = captured(&d);
     int n, size, means;
     (void)floats_of(0, "relume.lights", &n);
     const float *transform = floats_of(0, "relume.transform", &size);
@@ -569,6 +634,7 @@ static void functions(int k, struct vector light, double *stored, double *consta
             constant[c] += (double)mean[c * raw + j] * value[j];
     }
     free(value);
+    return share;
 }
 
 static double linearised(double v)
@@ -772,11 +838,12 @@ int main(int argc, char **argv)
         add_part(part, x, y, 0);
 
     double *weight = calloc(3 * (size_t)k, sizeof *weight), rgb[3] = {0};
-    functions(k, (struct vector){atof(argv[5]), atof(argv[6]), atof(argv[7])}, weight, rgb);
+    const double share =
+        functions(k, (struct vector){atof(argv[5]), atof(argv[6]), atof(argv[7])}, weight, rgb);
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < k; i++)
             rgb[c] += weight[c * k + i] * coefficient[shared ? i : 3 * i + c];
-        rgb[c] = linearised(rgb[c] * (luminance ? coefficient[k + c] : 1.0));
+        rgb[c] = share * linearised(rgb[c] * (luminance ? coefficient[k + c] : 1.0));
         rgb[c] = is_shown(view, x, y) ? rgb[c] : 0.0;
     }
     printf("%.9g %.9g %.9g\n", rgb[0], rgb[1], rgb[2]);

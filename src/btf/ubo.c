@@ -186,7 +186,7 @@ static void check_lights(struct ubo *u)
         return;
     if (u->params && u->params->fill)
         log_line(&u->log, RELUME_WARNING,
-                 "light %d of view %d is not that of view 0; the lights of view 0 are taken for "
+                 "light %d of view %d is not that of view 0; the lights of view 0 are used for "
                  "all",
                  u->odd_light, u->odd_view);
     else

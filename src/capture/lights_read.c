@@ -172,7 +172,7 @@ relume_status relume_lights_load(struct relume_light_list *out, const char *path
     }
     if (!status && positions && !out->position)
         status = log_fail(log, RELUME_EDATA,
-                          "%s: tells directions only; expected positions of near lights", path);
+                          "%s: holds directions only; expected positions of near lights", path);
     if (status)
         relume_light_list_destroy(out);
     return status;

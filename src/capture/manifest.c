@@ -1,6 +1,7 @@
 // manifest.c - capture.json, read
 #include "capture/manifest.h"
 
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/vec.h"
@@ -450,11 +451,30 @@ static relume_status read_root(const struct parser *p, const jvalue *root)
     return status;
 }
 
+// Somebody gave a photograph where its list belongs.
+static bool is_picture(const char *path, const struct relume_log *log)
+{
+    static const char *const magic[] = {"\xff\xd8\xff", "\x89PNG", "II*", "MM", "\x76\x2f\x31\x01"};
+    char begin[8] = "";
+    FILE *f = input_open(path, log);
+    bool is = false;
+    if (f && fread(begin, 1, sizeof begin - 1, f))
+        for (size_t i = 0; i < sizeof magic / sizeof *magic; i++)
+            is |= !strncmp(begin, magic[i], strlen(magic[i]));
+    if (f)
+        fclose(f);
+    return is;
+}
+
 relume_status manifest_read(struct draft *out, const char *path,
                             const struct relume_capture_params *params)
 {
     *out = (struct draft){0};
     jvalue *root;
+    if (is_picture(path, params->log))
+        return log_fail(params->log, RELUME_EDATA,
+                        "%s: this is a photograph; give the .lp file, or use 'relume capture'",
+                        path);
     relume_status status = jvalue_load(&root, path, params->log);
     if (status)
         return status;

@@ -345,14 +345,14 @@ static relume_status judge(bool *believed, const struct refiner *r, const vec3 *
     const double change = sqrt(sum / r->lights);
     *believed = change < MOST_CHANGED && off < fmax(AGREED, change / CLEAR);
     if (!*believed && isfinite(off))
-        log_line(log, RELUME_WARNING,
-                 "lights are left as found: refined ones would move by %.1f degrees, but two "
-                 "halves of the surface place them %.1f degrees off each other; it is too flat or "
-                 "too glossy",
-                 change, 2.0 * off);
+        log_line(
+            log, RELUME_WARNING,
+            "lights not refined: the result would be unreliable, %.1f degrees from one half of "
+            "the surface to the other; it is too flat or too glossy; originals kept",
+            2.0 * off);
     else if (!*believed)
         log_line(log, RELUME_WARNING,
-                 "lights are left as found: the surface is too flat to tell them better");
+                 "lights not refined: the surface is too flat; originals kept");
     return RELUME_OK;
 }
 
@@ -401,10 +401,9 @@ static relume_status integrate(struct refiner *r, double curl[2], const struct r
     }
     if (angle > MOST_MOVED) {
         log_line(log, RELUME_WARNING,
-                 "the surface has a curl that no lights within %.0f degrees explain (%.1f would be "
-                 "needed): it is not matte, or the codes are not what --transfer says; lights are "
-                 "left as the images fit them best",
-                 MOST_MOVED, angle);
+                 "surface not made continuous: the lights would have to move by %.1f degrees, more "
+                 "than %.0f; it is glossy, or --transfer is wrong; lights as without --integrable",
+                 angle, MOST_MOVED);
         curl[1] = curl[0];
     } else {
         for (int i = 0; i < r->lights; i++)

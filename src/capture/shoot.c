@@ -395,8 +395,9 @@ static relume_status check_params(const struct relume_shoot_params *p)
                         "%d flat fields; expected 1, or %d as photographs, each under its light",
                         p->flat_count, p->photograph_count);
     if (p->white[2] && p->matte && !p->lights)
-        return log_fail(p->log, RELUME_EINVAL,
-                        "a matte ball tells the lamps' colour already; expected no grey region");
+        return log_fail(
+            p->log, RELUME_EINVAL,
+            "--white: the matte ball shows the lamps' colour already; leave out --white");
     if (p->integrable && !p->refine)
         return log_fail(p->log, RELUME_EINVAL,
                         "lights are made to fit a surface only where they are refined");

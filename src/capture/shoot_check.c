@@ -125,11 +125,25 @@ static double azimuth(vec3 d)
     return a < 0.0 ? a + 360.0 : a;
 }
 
+// "lower left, 16 degrees above the table (230 degrees counter-clockwise from the right)"
+static size_t put_place(char *out, size_t room, const char *before, vec3 d)
+{
+    static const char *const sides[] = {"right", "upper right", "top",    "upper left",
+                                        "left",  "lower left",  "bottom", "lower right"};
+    const double a = azimuth(d);
+    const int n =
+        snprintf(out, room,
+                 "%s%s, %.0f degrees above the table (%.0f degrees counter-clockwise from "
+                 "the right)",
+                 before, sides[(int)floor(a / 45.0 + 0.5) % 8], asin(d.z) * 180.0 / M_PI, a);
+    return n < 0 ? 0 : (size_t)n < room ? (size_t)n : room - 1;
+}
+
 static relume_status check_coverage(struct shoot *s)
 {
     enum { SAID = 4 };
     struct relume_shoot *out = s->out;
-    char places[256] = "";
+    char places[512] = "";
     size_t at = 0;
     int n = 0;
     out->gap_deg = find_gap(out, NULL, 0, &out->gap);
@@ -137,14 +151,11 @@ static relume_status check_coverage(struct shoot *s)
         n++;
     out->wanted_count = n;
     for (int i = 0; i < n && i < SAID; i++)
-        at += (size_t)snprintf(places + at, sizeof places - at, "%s%.0f/%.0f", i ? ", " : "",
-                               azimuth(out->wanted[i]), asin(out->wanted[i].z) * 180.0 / M_PI);
+        at += put_place(places + at, sizeof places - at, i ? "; " : "", out->wanted[i]);
     if (!n)
         return RELUME_OK;
-    return shoot_warn(s,
-                      "uneven light: the widest gap is %.0f degrees; lights to add, azimuth from "
-                      "the right/elevation: %s%s",
-                      out->gap_deg, places, n > SAID ? ", ..." : "");
+    return shoot_warn(s, "uneven light: the widest gap is %.0f degrees; add lamps: %s%s",
+                      out->gap_deg, places, n > SAID ? "; and more, see report.html" : "");
 }
 
 relume_status shoot_check_lights(struct shoot *s)
@@ -163,7 +174,7 @@ relume_status shoot_check_lights(struct shoot *s)
     if (values[0] < FLAT)
         status = shoot_warn(s,
                             "the light directions lie nearly in one plane (%.1f degrees off it): "
-                            "normals are not to be told",
+                            "normals cannot be computed",
                             asin(sqrt(fmax(values[0], 0.0))) * 180.0 / M_PI);
     return status ? status : check_coverage(s);
 }

@@ -68,7 +68,9 @@ static const char *objection(const struct relume_ball_light *l, bool matte)
 {
     if (l->sight == RELUME_BALL_DARK || l->sight == RELUME_BALL_FULL)
         return relume_ball_sight_text(l->sight);
-    return !matte && l->spread_deg > TOO_WIDE ? "what shines on it is too wide for a lamp" : NULL;
+    return !matte && l->spread_deg > TOO_WIDE ? "highlight too large for a lamp; is the photograph "
+                                                "of the ball linear (--ball-transfer)?"
+                                              : NULL;
 }
 
 enum { CANDIDATES = 16, TRIALS = 6 };
@@ -337,8 +339,8 @@ static relume_status locate(struct shoot *s, int i, const struct sights *seen, d
     if (relume_light_triangulate(&shot->position, &shot->position_sigma, seen->origin,
                                  seen->direction, seen->n))
         return log_fail(s->p.log, RELUME_EDATA,
-                        "%s: the directions from %d balls do not meet in a light; expected two "
-                        "balls or more that see it, and a light near enough to tell",
+                        "%s: the directions from %d balls do not cross at a lamp; expected two "
+                        "balls or more that show it, and a lamp near enough to measure",
                         shot->path, seen->n);
     return RELUME_OK;
 }

@@ -115,8 +115,8 @@ relume_status shoot_lights_from_poses(struct shoot *s)
         status = find_distance(&distance, &model, object);
     if (!status && !(distance > 0.0))
         status = log_fail(s->p.log, RELUME_EDATA,
-                          "%s: no points that '%s' sees; expected some on the object, which tell "
-                          "how far it is",
+                          "%s: no points that '%s' sees; expected some on the object, to know its "
+                          "distance",
                           s->p.lights, object->name);
     if (!status)
         place(s, object, lamp, distance);

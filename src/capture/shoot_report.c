@@ -94,7 +94,7 @@ static void put_summary(struct report *r)
     fprintf(f, "<tr><td>widest gap between lights</td><td>%.0f&#176;</td></tr>\n", out->gap_deg);
     if (out->photometric.normal.data)
         fprintf(f,
-                "<tr><td>what a matte surface misses</td><td>%.1f %% of its albedo (median)</td>"
+                "<tr><td>brightness error, if the surface were matte</td><td>%.1f %% (median)</td>"
                 "</tr>\n",
                 100.0 * out->photometric.residual);
     fputs("</table>\n", f);
@@ -151,7 +151,8 @@ static void put_surface(struct report *r)
     put_picture(r, &p->albedo, 320, report_gain(&p->albedo), LOOK_LIGHT);
     fputs("<figcaption>albedo</figcaption></figure><figure>", r->f);
     put_picture(r, &p->error, 320, 10.0f, LOOK_LIGHT);
-    fputs("<figcaption>what Lambert's law misses (white: 10 % of the albedo)</figcaption></figure>"
+    fputs("<figcaption>difference from a matte surface (white: 10 % of its "
+          "brightness)</figcaption></figure>"
           "</div>\n",
           r->f);
 }
@@ -195,7 +196,8 @@ static void put_table(struct report *r)
     const struct relume_shoot *out = r->s->out;
     const double most = most_missed(out);
     fputs("<h2>Lights</h2>\n<div class=\"wide\"><table><tr><th>photograph</th><th>x</th><th>y</th>"
-          "<th>z</th><th>error</th><th>lamp's width</th><th>misses</th><th>saturated</th></tr>\n",
+          "<th>z</th><th>error</th><th>lamp's width</th><th>brightness "
+          "error</th><th>overexposed</th></tr>\n",
           r->f);
     for (int i = 0; i < out->lights; i++)
         put_row(r->f, out, i, most);

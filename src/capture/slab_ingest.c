@@ -221,8 +221,8 @@ static relume_status check_order(struct slab *s)
     if (o.mixed && o.agreement > clear_agreement) {
         turn(s->v, s->rows);
         log_line(log, RELUME_WARNING,
-                 "rows run the other way than the names say, if columns do not (agreement %.2f): "
-                 "turned round; --keep-order believes the names, --turn turns both",
+                 "rows run against the names, columns with them (agreement %.2f): rows turned "
+                 "round; --keep-order keeps the names' order, --turn turns both",
                  o.agreement);
     }
     if (o.occlusion < -clear_occlusion)

@@ -33,8 +33,8 @@ static const struct option options[] = {
      "slab: average the cameras within A/2 of the eye, of a free eye a lens as wide; default: 0", 0,
      1e9},
     {"--focus", OPTION_NUMBER, "Z",
-     "slab: the plane at z = Z is sharp, of a free eye the one so much before what it looks at; "
-     "default: the st plane, what it looks at",
+     "slab: the plane at z = Z is sharp; free camera: distance from the look-at point to the plane "
+     "in focus; default: the st plane, the look-at point",
      0, 0},
     DEVELOP_OPTIONS,
     {"--pass", OPTION_TEXT, "NAME",

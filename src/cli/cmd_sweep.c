@@ -626,7 +626,7 @@ static relume_status run(const struct args *args)
 const struct command command_sweep = {
     .name = "sweep",
     .usage = "CAPTURE [--leave-out K | --test CAPTURE2] [-o OUT] [--json | --csv] [OPTION ...]",
-    .summary = "rate and distortion of coders and sizes, judged by lights they have not seen",
+    .summary = "compare file size and quality of coders on lights left out",
     .example = "relume sweep photos/dirs.lp --basis pca,hsh,ptm --leave-out 5 -o statue",
     .min_inputs = 1,
     .max_inputs = 1,

@@ -43,6 +43,12 @@ done
 expect_fail 'an empty input' 2 'info: expected .*found an empty name' - "$RELUME" info ''
 check 'the viewer: an empty output is wrong usage' sh -c "$VIEWER made.exr --offscreen ''; test \$? -eq 2"
 
+# ---- sentences that say what to do
+expect_fail 'a photograph for a capture' 1 "b.png: this is a photograph; give the .lp file, or use 'relume capture'" x.exr "$RELUME" encode b.png -o x.exr
+"$BUILD/samples/sphere" few --size 32 --lights 4 --hemisphere --format png
+expect_ok 'lamps to add, in words' 'add lamps: .*, [0-9]* degrees above the table \([0-9]* degrees counter-clockwise' \
+    "$RELUME" capture few/view00/light*.png --lights few/dirs.lp -o uneven
+
 # ---- captures that name files outside their folder, and images that are missing
 "$BUILD/samples/sphere" c --size 16 --lights 6 --format png || exit 1
 mkdir lps && sed 's|view00/|../c/view00/|' c/dirs.lp >lps/outside.lp

@@ -544,7 +544,7 @@ static void test_other_lights(void **state)
     free(copy.data);
     relume_btf *btf;
     CHECK_OK(relume_btf_open(&btf, path, relume_btf_params(.fill = true, .log = &log.log)));
-    assert_non_null(strstr(log.text, "the lights of view 0 are taken for all"));
+    assert_non_null(strstr(log.text, "the lights of view 0 are used for all"));
     CHECK_NEAR(value(btf, 1, 13, 4), known(1, 13, 4), 0.0);
     relume_btf_destroy(&btf);
     // two lights in one place, told with the file's name

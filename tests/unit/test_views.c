@@ -208,7 +208,7 @@ static void test_rows_from_below(void **state)
     shoot(&p, name_below);
     CHECK_OK(relume_slab_ingest(p.out, p.list, GRID * GRID, NULL,
                                 relume_ingest_params(.log = &log.log)));
-    assert_non_null(strstr(log.text, "rows run the other way"));
+    assert_non_null(strstr(log.text, "rows run against the names"));
     check_places(&p);
     test_folder_remove(p.folder);
 }

@@ -43,6 +43,16 @@ done
 expect_fail 'an empty input' 2 'info: expected .*found an empty name' - "$RELUME" info ''
 check 'the viewer: an empty output is wrong usage' sh -c "$VIEWER made.exr --offscreen ''; test \$? -eq 2"
 
+# ---- names as long as the disk allows
+for n in 239 251; do
+    long=$(printf "%0${n}d" 0)
+    expect_ok "a picture's name of $((n + 4)) bytes" - "$RELUME" capture --hdr "$red.png" b.png --times times.txt -o "$long.exr"
+    cp b.png "$long.png"
+    expect_ok "a photograph's of $((n + 4))" - "$RELUME" capture --hdr "$red.png" "$long.png" --times times.txt -o merged.exr
+    expect_ok "a folder's of $((n + 4))" - "$RELUME" synth box --size 8 --lights 2 -o "${long}0000"
+    expect_ok "a relume file's of $((n + 4))" - "$RELUME" encode "${long}0000" -o "$long.exr" --basis table
+done
+
 # ---- sentences that say what to do
 expect_fail 'a photograph for a capture' 1 "b.png: this is a photograph; give the .lp file, or use 'relume capture'" x.exr "$RELUME" encode b.png -o x.exr
 "$BUILD/samples/sphere" few --size 32 --lights 4 --hemisphere --format png

@@ -20,10 +20,14 @@ bool mem_fail_pending(void)
     return atomic_load(&countdown) > 0;
 }
 
+// As malloc does, it says why in errno.
 static bool refuse(void)
 {
-    return atomic_load_explicit(&countdown, memory_order_relaxed) > 0 &&
-           atomic_fetch_sub(&countdown, 1) == 1;
+    const bool refused = atomic_load_explicit(&countdown, memory_order_relaxed) > 0 &&
+                         atomic_fetch_sub(&countdown, 1) == 1;
+    if (refused)
+        errno = ENOMEM;
+    return refused;
 }
 
 void *mem_array(size_t count, size_t size)

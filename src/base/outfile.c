@@ -125,9 +125,15 @@ static relume_status enter_beside(outfile *f)
     return f->beside ? RELUME_OK : fail(f, "cannot be written");
 }
 
-static char *name_of_descriptor(int fd)
+struct fd_name {
+    char text[32];
+};
+
+static struct fd_name name_of_descriptor(int fd)
 {
-    return mem_format("/proc/self/fd/%d", fd);
+    struct fd_name name;
+    snprintf(name.text, sizeof name.text, "/proc/self/fd/%d", fd);
+    return name;
 }
 
 // Only where it can be given a name later: that needs /proc.
@@ -135,9 +141,7 @@ static bool open_unnamed(outfile *f)
 {
     f->kind = UNNAMED;
     f->fd = open(f->dir, O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
-    char *name = f->fd >= 0 ? name_of_descriptor(f->fd) : NULL;
-    const bool good = name && !access(name, F_OK);
-    free(name);
+    const bool good = f->fd >= 0 && !access(name_of_descriptor(f->fd).text, F_OK);
     if (f->fd >= 0 && !good) {
         close(f->fd);
         f->fd = -1;
@@ -209,12 +213,8 @@ relume_status outfile_write(outfile *f, const void *bytes, size_t size, off_t of
 
 static bool give_name(int fd, const char *name)
 {
-    char *from = name_of_descriptor(fd);
-    const bool good = from && !linkat(AT_FDCWD, from, AT_FDCWD, name, AT_SYMLINK_FOLLOW);
-    if (!from)
-        errno = ENOMEM;
-    free(from);
-    return good;
+    const struct fd_name from = name_of_descriptor(fd);
+    return !linkat(AT_FDCWD, from.text, AT_FDCWD, name, AT_SYMLINK_FOLLOW);
 }
 
 // A link replaces nothing: where there is a file already, the new one is renamed onto it.

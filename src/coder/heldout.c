@@ -30,6 +30,7 @@ struct fold {
     relume_heldout *h;
     relume_coder *coder;
     struct captured unseen;
+    float *share;         // [judged]: of light from outside the captured zone
     int learned, judged;  // lights; the judged ones lie in the places behind the learned ones
     size_t planes;
     size_t room_planes, room_judged;  // that the arrays below have room for
@@ -105,6 +106,18 @@ static relume_status samples_of_fold(struct relume_samples *out, const struct fo
     return RELUME_OK;
 }
 
+// The functions at the lights left out, as relighting takes them: from the zone that was captured.
+static relume_status find_unseen(struct fold *f, struct relume_vec3 *direction)
+{
+    f->share = mem_array((size_t)f->judged, sizeof *f->share);
+    for (int i = 0; f->share && i < f->judged; i++) {
+        struct relume_vec3 from;
+        f->share[i] = (float)relume_coder_captured(&from, f->coder, direction[i]);
+        direction[i] = from;
+    }
+    return f->share ? captured_create(&f->unseen, f->coder, direction, f->judged) : RELUME_ENOMEM;
+}
+
 static relume_status make_coder(struct fold *f, const struct relume_basis *basis,
                                 const struct relume_coder_params *coder)
 {
@@ -124,7 +137,7 @@ static relume_status make_coder(struct fold *f, const struct relume_basis *basis
         status = relume_coder_create(&f->coder, basis, directions, f->learned, &p);
     }
     if (!status)
-        status = captured_create(&f->unseen, f->coder, directions + f->learned, f->judged);
+        status = find_unseen(f, directions + f->learned);
     relume_samples_destroy(&samples);
     free(directions);
     return status;
@@ -239,6 +252,14 @@ static void store_and_restore(const struct fold *f, struct chunk c, float *to)
 
 // ---------------------------------------------------------------- predictions
 
+static void dim_row(const relume_heldout *h, float *row, size_t n, float share)
+{
+    for (size_t i = 0; share < 1.0f && i < n; i++)
+        row[i] = h->linear ? share * row[i]
+                           : relume_transfer_encode(
+                                 h->display, share * relume_transfer_decode(h->display, row[i]));
+}
+
 static void compare_row(const struct fold *f, struct chunk c, int place, int channel, float *row,
                         struct sums *s)
 {
@@ -293,6 +314,7 @@ static void judge_chunk(void *context, size_t item, int worker)
         for (int i = 0; i < f->judged; i++) {
             float *row = predicted + (size_t)i * c.n;
             float *grey = f->luma + (size_t)i * h->pixels + c.first;
+            dim_row(h, row, c.n, f->share[i]);
             compare_row(f, c, f->learned + i, channel, row, &part[i]);
             for (size_t x = 0; x < c.n; x++)
                 grey[x] = (channel ? grey[x] : 0.0f) + luma[channel] * row[x];
@@ -425,6 +447,8 @@ static relume_status measure_fold(struct fold *f, int number, const struct reque
     }
     relume_coder_destroy(&f->coder);
     captured_destroy(&f->unseen);
+    free(f->share);
+    f->share = NULL;
     return status;
 }
 

@@ -1,6 +1,6 @@
 # relume - the whole build. `make` builds, `make demo` and `make test` do all set-up by themselves.
 #
-#   config=release (default, into build/) | debug | asan | tsan   (into build/CONFIG/)
+#   config=release (default, into build/) | debug | asan | tsan | fuzzer   (into build/CONFIG/)
 #   FFT=fftw (default) | kiss   (a library without parts under the GPL; after make clean)
 
 config ?= release
@@ -26,9 +26,17 @@ release  := -O3 -DNDEBUG -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3 -fstack-protector
 debug    := -O0
 asan     := -O1 -g1 -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all -fno-omit-frame-pointer
 tsan     := -O0 -g1 -fsanitize=thread
+# clang's libFuzzer with its sanitizers: make config=fuzzer fuzzers
+fuzzer   := -O1 -g1 -fsanitize=fuzzer-no-link,address,undefined,float-cast-overflow \
+            -fno-sanitize=function,vptr -fno-sanitize-recover=all -DRELUME_LIBFUZZER
+FUZZ_ENGINE ?= -fsanitize=fuzzer
+ifeq ($(config),fuzzer)
+CC       := clang
+CXX      := clang++
+endif
 MODE     := $($(config))
 ifeq ($(MODE),)
-$(error config=$(config): expected release, debug, asan or tsan)
+$(error config=$(config): expected release, debug, asan, tsan or fuzzer)
 endif
 C11      := -std=c11 -D_GNU_SOURCE $(COMMON) $(MODE) -Wstrict-prototypes -Wmissing-prototypes
 CXX17    := -std=c++17 $(COMMON) $(MODE)
@@ -90,7 +98,7 @@ FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 
-.PHONY: all lib cli viewer deps deps-web deps-stitch demo tour figures golden test check check-threads bench fuzz headers layers format install \
+.PHONY: all lib cli viewer deps deps-web deps-stitch demo tour figures golden test check check-threads bench fuzz fuzzers headers layers format install \
         clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
@@ -166,7 +174,7 @@ $B/librelume.a: $(LIB_O)
 	$(Q)$(AR) rcs $@ $^
 # Where a program or library looks for the module: first where the build left it. Sanitizers open
 # libraries in its name, which only the older kind of run path allows.
-run_path = '-Wl,-rpath,$$ORIGIN$1'$(if $(filter asan tsan,$(config)),$(comma)--disable-new-dtags)
+run_path = '-Wl,-rpath,$$ORIGIN$1'$(if $(filter asan tsan fuzzer,$(config)),$(comma)--disable-new-dtags)
 comma := ,
 # Addresses of library functions are looked up at start and cannot be written over afterwards.
 HARD_LD := -Wl,-z,relro,-z,now
@@ -203,7 +211,7 @@ GL_BENCH := $(addprefix $B/tests/bench/,bench_viewer bench_objects bench_seeing)
 $(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(Q)$(CC) $(MODE) $(TEST_LD) $(if $(filter fuzzer,$(config)),$(FUZZ_ENGINE)) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS)
 $(TOOLS): $B/%: $B/obj/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
@@ -254,6 +262,7 @@ bench: all $(BENCH)
 
 fuzz: $(FUZZ)
 	@for f in $(FUZZ); do $$f $(FUZZ_S) || exit 1; done
+fuzzers: $(FUZZ)
 
 demo: all
 	@scripts/demo.sh $B build/demo

@@ -2,6 +2,16 @@
 
 #include <stdlib.h>
 #include <string.h>
+#if defined(__x86_64__)
+#include <cpuid.h>
+
+// clang 14 does not know this one by name.
+static bool has_f16c(void)
+{
+    unsigned a, b, c = 0, d;
+    return __get_cpuid(1, &a, &b, &c, &d) && (c & bit_F16C);
+}
+#endif
 
 unsigned relume_cpu_features(void)
 {
@@ -10,8 +20,7 @@ unsigned relume_cpu_features(void)
     if (most && strcmp(most, "plain") == 0)
         return 0;
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-        __builtin_cpu_supports("f16c"))
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && has_f16c())
         features |= RELUME_CPU_AVX2;
 #endif
     return features;

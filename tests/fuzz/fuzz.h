@@ -2,6 +2,10 @@
 //
 // `fuzz_X SECONDS [SEED]`: one input an iteration, written to a file whose name is printed, so that
 // the input of a crash is what lies there. Every eighth iteration an allocation fails as well.
+//
+// With RELUME_LIBFUZZER (config=fuzzer) the same file is a target of libFuzzer instead: its main()
+// runs once and makes what inputs meet; inputs come from the engine, and allocations fail as often as
+// the last byte of an input says. RELUME_FUZZ_SEEDS names a folder to write the seeds and words to.
 #ifndef FUZZ_H
 #define FUZZ_H
 
@@ -150,6 +154,8 @@ static inline void fuzz_begin(struct fuzz *f, const char *name, int argc, char *
     fflush(stdout);
 }
 
+#ifndef RELUME_LIBFUZZER
+
 // `one` returns true when the input was accepted.
 static inline int fuzz_run(struct fuzz *f, int argc, char **argv,
                            bool (*one)(struct fuzz *, struct bytes))
@@ -177,5 +183,76 @@ static inline int fuzz_run(struct fuzz *f, int argc, char **argv,
         free(f->seed[i].data);
     return system(command) != 0 || f->iterations == 0;
 }
+
+#else
+
+static struct fuzz fuzz_target;
+static bool (*fuzz_one)(struct fuzz *, struct bytes);
+
+// The seeds as files and the words as a dictionary, for engines that want them so.
+static inline void fuzz_publish(const struct fuzz *f, const char *folder)
+{
+    char path[4200];
+    for (int i = 0; i < f->seeds; i++) {
+        snprintf(path, sizeof path, "%s/seed-%02d", folder, i);
+        fuzz_store(path, f->seed[i]);
+    }
+    snprintf(path, sizeof path, "%s/words.dict", folder);
+    FILE *dict = fopen(path, "w");
+    for (int i = 0; dict && f->words && f->words[i]; i++)
+        fprintf(dict, "\"%s\"\n", f->words[i]);
+    if (!dict || fclose(dict))
+        abort();
+}
+
+static void fuzz_clean(void)
+{
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf '%s'", fuzz_target.folder);
+    if (system(command))
+        perror(command);
+}
+
+static inline int fuzz_run(struct fuzz *f, int argc, char **argv,
+                           bool (*one)(struct fuzz *, struct bytes))
+{
+    (void)argc, (void)argv;
+    fuzz_target = *f;
+    atexit(fuzz_clean);
+    fuzz_one = one;
+    const char *folder = getenv("RELUME_FUZZ_SEEDS");
+    if (folder)
+        fuzz_publish(f, folder);
+    return 0;
+}
+
+static int fuzz_main(int argc, char **argv);
+int LLVMFuzzerInitialize(int *argc, char ***argv);
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+int LLVMFuzzerInitialize(int *argc, char ***argv)
+{
+    (void)argc;
+    return fuzz_main(1, *argv);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    struct bytes b = {malloc(size + 8), size};
+    if (!b.data)
+        abort();
+    memcpy(b.data, data, size);
+    const int late = size ? data[size - 1] : 0;
+    mem_fail_after(late >= 224 ? late - 223 : 0);
+    fuzz_target.accepted += size > 0 && fuzz_one(&fuzz_target, b);
+    mem_fail_after(0);
+    fuzz_target.iterations++;
+    free(b.data);
+    return 0;
+}
+
+#define main fuzz_main
+
+#endif
 
 #endif

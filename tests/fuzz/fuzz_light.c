@@ -143,7 +143,5 @@ int main(int argc, char **argv)
     fuzz_add(&f,
              text("IESNA:LM-63-2002\n[TEST] x\nTILT=INCLUDE\n1 2\n0 90\n1 .5\n2 1000 1 3 3 1 1 0 "
                   "0 0\n1 1 10\n0 45 90\n0 45 90\n9 8 7\n6 5 4\n3 2 1\n"));
-    const int status = fuzz_run(&f, argc, argv, one);
-    relume_coder_destroy(&coder);
-    return status;
+    return fuzz_run(&f, argc, argv, one);
 }

@@ -98,8 +98,5 @@ int main(int argc, char **argv)
         whole[i] = fuzz_load(path);
         fuzz_add(&f, fuzz_load(path));
     }
-    const int status = fuzz_run(&f, argc, argv, one);
-    for (int i = 0; i < FILES; i++)
-        free(whole[i].data);
-    return status;
+    return fuzz_run(&f, argc, argv, one);
 }

@@ -199,8 +199,12 @@ static inline void fuzz_publish(const struct fuzz *f, const char *folder)
     }
     snprintf(path, sizeof path, "%s/words.dict", folder);
     FILE *dict = fopen(path, "w");
-    for (int i = 0; dict && f->words && f->words[i]; i++)
-        fprintf(dict, "\"%s\"\n", f->words[i]);
+    for (int i = 0; dict && f->words && f->words[i]; i++) {
+        fputc('"', dict);
+        for (const char *c = f->words[i]; *c; c++)
+            fprintf(dict, "\\x%02X", (unsigned char)*c);
+        fputs("\"\n", dict);
+    }
     if (!dict || fclose(dict))
         abort();
 }

@@ -42,10 +42,16 @@ static const int needs[] = {
 
 // Sums of products of values and 1 / distance^2 stay far from the largest float.
 static const double MOST_VALUE = 1e9;
+static const double MOST_EDGE = 1e6;  // values times areas too
 
 static bool all_finite(vec3 v)
 {
     return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
+}
+
+static bool fits(vec3 edge)
+{
+    return vec3_length(edge) <= MOST_EDGE;
 }
 
 static bool has_length(vec3 v)
@@ -69,6 +75,8 @@ const char *light_complaint(const struct relume_light *l, bool with_files)
         return "expected a half angle between 0 and 90 degrees, both excluded";
     if (need & EDGES && !has_length(vec3_cross(l->u, l->v)))
         return "expected two half edges that span an area";
+    if (need & EDGES && !(fits(l->u) && fits(l->v)))
+        return "expected half edges of at most 1e6";
     if (need & IMAGE && !(l->image && l->image->data && l->image->channels == 3))
         return "expected a picture of three channels";
     if (!(fabs(l->rotate_deg) <= MOST_VALUE))

@@ -223,6 +223,7 @@ static void test_checks(void **state)
     refuse((struct relume_light){.kind = RELUME_LIGHT_SLIDE, .direction = {1}, .half_angle_deg = 9},
            "picture");
     refuse((struct relume_light){.kind = RELUME_LIGHT_AREA, .u = {1}, .v = {-2}}, "area");
+    refuse((struct relume_light){.kind = RELUME_LIGHT_AREA, .u = {1e83}, .v = {0, 1}}, "1e6");
     refuse((struct relume_light){.kind = RELUME_LIGHT_ENVIRONMENT}, "map");
     refuse((struct relume_light){.kind = RELUME_LIGHT_IES, .direction = {1}}, "distribution");
     refuse((struct relume_light){.kind = (enum relume_light_kind)99}, "unknown kind");

@@ -205,7 +205,7 @@ static relume_status add_to_film(struct record *r, const struct relume_image *im
     }
     if (!status && !write_all(r->pipe, bytes, samples)) {
         status = end_ffmpeg(r);  // says why it went away
-        status = status ? status : cannot(r, "ffmpeg went away");
+        status = status ? status : cannot(r, "ffmpeg stopped before the film was complete");
     }
     free(bytes);
     r->pictures++;

@@ -58,13 +58,13 @@ static relume_status check_scene(struct shoot *s)
             continue;
         }
         if (s->p.skip_bad) {
-            status = shoot_drop(s, i, "shows another scene, likeness %.2f where %.2f is usual",
+            status = shoot_drop(s, i, "shows another scene: similarity %.2f, the others have %.2f",
                                 like, usual);
             continue;
         }
         status = shoot_warn_alike(s, ALIKE_SCENE, -like,
-                                  "%s: seems to show another scene: likeness to the others %.2f, "
-                                  "usual are %.2f",
+                                  "%s: seems to show another scene: similarity %.2f, the others "
+                                  "have %.2f",
                                   s->shot[i].path, like, usual);
         i++;
     }

@@ -44,7 +44,9 @@ void bracket_drop(struct bracket *b, int i)
 
 relume_status bracket_remains(const struct bracket *b)
 {
-    return b->n > 0 ? RELUME_OK : data_error("capture: no photograph is left; expected some");
+    return b->n > 0
+               ? RELUME_OK
+               : data_error("capture: none of the photographs can be used; expected at least one");
 }
 
 // ---------------------------------------------------------------- reading
@@ -274,9 +276,9 @@ static void report_bias(const struct bracket *b, const struct args *args)
         return;
     const double time_s = b->notes[worst].time_s;
     snprintf(text, sizeof text,
-             "%s: its time of %.4g s contradicts the pictures, which fit %.4g s%s", b->path[worst],
-             time_s, time_s * exp2(b->report[worst].bias_ev),
-             wrong > 1 ? "; so do other times, by less" : "");
+             "%s: its exposure time is given as %.4g s; its brightness fits %.4g s%s",
+             b->path[worst], time_s, time_s * exp2(b->report[worst].bias_ev),
+             wrong > 1 ? "; other times are wrong as well, by less" : "");
     args_log(args)->message(args_log(args)->user, RELUME_WARNING, text);
 }
 

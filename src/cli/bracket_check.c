@@ -90,12 +90,12 @@ static relume_status check_scene(struct bracket *b, const int *order, const bool
     const bool all_hang_on_it = b->aligned && order[foreign] == b->anchor;
     if (!args_has(args, "--skip-bad") || all_hang_on_it)
         return data_error(
-            "%s: another scene than the other exposures, or not aligned (likeness "
-            "%.2f); expected %.2f or more; leave it out, or try --align or --skip-bad",
+            "%s: shows another scene than the other exposures, or the camera moved (similarity "
+            "%.2f; expected %.2f or more); leave it out, or try --align or --skip-bad",
             path, likeness[foreign], least_likeness);
     char text[1024];
     snprintf(text, sizeof text,
-             "%s: another scene than the other exposures (likeness %.2f); left out", path,
+             "%s: shows another scene than the other exposures (similarity %.2f); left out", path,
              likeness[foreign]);
     args_log(args)->message(args_log(args)->user, RELUME_WARNING, text);
     bracket_drop(b, order[foreign]);
@@ -112,8 +112,8 @@ static relume_status check_order(const struct bracket *b, const int *order)
     for (int i = 0; i + 1 < b->n; i++)
         if (b->exposure[order[i + 1]] > clear_ratio * b->exposure[order[i]] &&
             mean[i + 1] < mean[i] - clear_codes)
-            return data_error("%s: darker than %s though its exposure is %.3g times as long; the "
-                              "times contradict the pictures; expected --times with the true ones",
+            return data_error("%s: darker than %s though its exposure is %.3g times as long; give "
+                              "the true exposure times with --times",
                               b->path[order[i + 1]], base_name(b->path[order[i]]),
                               b->exposure[order[i + 1]] / b->exposure[order[i]]);
     return RELUME_OK;

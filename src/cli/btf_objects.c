@@ -54,7 +54,8 @@ static relume_status parse_window(struct relume_window *out, int size[2], const 
     if (!status && args_has(args, "--up"))
         status = args_vec3(&aim.up, "--up", args_text(args, "--up", NULL));
     if (!status && !relume_objects_window(out, o, eye, &aim, size[0], size[1]))
-        status = usage_error("--eye: expected a place apart from where it looks, and not along up");
+        status = usage_error("--eye: expected a point away from --look-at, and not straight above "
+                             "or below it along --up");
     return status;
 }
 

@@ -30,7 +30,7 @@ static relume_status parse_camera(struct relume_btf_camera *camera, const struct
     if (eye && place)
         return usage_error("btf render: expected --eye or --camera; found both");
     if (at && !place)
-        return usage_error("--look-at: expected a --camera");
+        return usage_error("--look-at: works only with --camera; add --camera x,y,z");
     relume_status status = RELUME_OK;
     if (eye || place)
         status = args_vec3(&camera->eye, eye ? "--eye" : "--camera", eye ? eye : place);

@@ -56,8 +56,8 @@ void btf_say_surface(const struct relume_btf_surface_info *i, const struct relum
                "\"seam_share\": %.6f",
                s->inside, s->across, s->unrelated, s->share);
     else if (s && s->inside > 0.0)
-        printf("seams    %.1f %% of neighbours; steps over them %.2f of those in the sample "
-               "(unrelated texels: %.2f)\n",
+        printf("seams    %.1f %% of neighbouring texels; jumps across seams are %.2f times those "
+               "inside the sample (random neighbours: %.2f)\n",
                100.0 * s->share, s->across / s->inside, s->unrelated / s->inside);
     if (json)
         puts("}");

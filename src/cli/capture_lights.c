@@ -125,7 +125,7 @@ static relume_status check_options(const struct args *args)
                                               "--weights", "--ghosts",   NULL};
     for (int i = 0; of_brackets[i]; i++)
         if (args_has(args, of_brackets[i]))
-            return usage_error("capture: %s goes with --hdr", of_brackets[i]);
+            return usage_error("capture: %s works only with --hdr", of_brackets[i]);
     if (!args_has(args, "-o"))
         return usage_error("capture: expected -o DIR");
     if (args_has(args, "--fov") && args_has(args, "--focal"))
@@ -134,8 +134,8 @@ static relume_status check_options(const struct args *args)
         return usage_error("capture: expected one of --refine-lights, which refines brightness as "
                            "well, and --refine-brightness");
     if (args_has(args, "--ball-transfer") && !args_has(args, "--ball-photos"))
-        return usage_error("capture: --ball-transfer needs --ball-photos; of the photographs "
-                           "themselves it is --transfer");
+        return usage_error("capture: --ball-transfer needs --ball-photos; for the photographs "
+                           "themselves use --transfer");
     if (args_has(args, "--integrable") && !args_has(args, "--refine-lights"))
         return usage_error("capture: --integrable needs --refine-lights");
     if (args_has(args, "--radial") && !args_has(args, "--flat"))
@@ -193,8 +193,8 @@ static relume_status save(const struct args *args, const char *option,
     if (!path)
         return RELUME_OK;
     if (!image->data)
-        return data_error("%s: the lights do not determine normals; expected three or more in "
-                          "different planes",
+        return data_error("%s: normals cannot be computed; expected three lights or more that do "
+                          "not lie in one plane",
                           path);
     return relume_image_save(image, path, relume_image_params(.log = args_log(args)));
 }

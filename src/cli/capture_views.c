@@ -106,7 +106,7 @@ static void print_depth(const struct relume_slab_depth_report *r, bool json)
         printf("views     %d, searched at %d x %d under %d light%s\n", r->views, r->width,
                r->height, r->lights, r->lights == 1 ? "" : "s");
         printf("planes    %d, distances %.4g to %.4g\n", r->planes, r->range[0], r->range[1]);
-        printf("trusted   %.1f %% of pixels are confirmed by neighbouring views\n",
+        printf("trusted   %.1f %% of pixels agree with the neighbouring views\n",
                100.0 * r->trusted);
         if (known)
             printf(
@@ -154,8 +154,9 @@ static relume_status refuse_others(const struct args *args)
         "--ghosts",     "--align",       "--mask",    NULL};
     for (int i = 0; of_lights[i]; i++)
         if (args_has(args, of_lights[i]))
-            return usage_error("capture: %s does not go with photographs of many views",
-                               of_lights[i]);
+            return usage_error(
+                "capture: %s does not work with photographs of many views; leave it out",
+                of_lights[i]);
     return RELUME_OK;
 }
 
@@ -170,7 +171,7 @@ relume_status capture_views(const struct args *args)
             args_has(args, "--depth-from-views") >
         1)
         return usage_error("capture: expected one of --slab, --colmap, --panorama and "
-                           "--depth-from-views; a capture gets its depth afterwards");
+                           "--depth-from-views; compute depth in a second run");
     if (args_has(args, "--depth-from-views")) {
         if (args_inputs(args) != 1)
             return usage_error("--depth-from-views: expected one capture; found %d",

@@ -16,7 +16,7 @@ relume_status capture_views(const struct args *args);
     {"--fill", OPTION_FLAG, NULL, "--slab: a missing camera is filled by the nearest", 0, 0}, \
     {"--turn", OPTION_FLAG, NULL, "--slab: columns run to the left and rows upwards", 0, 0}, \
     {"--keep-order", OPTION_FLAG, NULL, \
-     "--slab: believe the names even where the photographs contradict", 0, 0}, \
+     "--slab: keep the order of the names even if the photographs suggest another", 0, 0}, \
     {"--baseline", OPTION_NUMBER, "W", \
      "--slab: world units from the first to the last column of cameras; default 1", 1e-6, 1e6}, \
     {"--baseline-v", OPTION_NUMBER, "H", \
@@ -28,7 +28,7 @@ relume_status capture_views(const struct args *args);
     {"--st-z", OPTION_NUMBER, "Z", "--slab: height of the st plane; default 0", -1e6, 1e6}, \
     {"--window", OPTION_NUMBER, "W", "--slab: width of the st window; default 2", 1e-6, 1e6}, \
     {"--focus-disparity", OPTION_NUMBER, "PX", \
-     "--slab: pixels that the plane to be st moves from camera to camera; default 0", -4096, 4096}, \
+     "--slab: pixels by which a point on the st (focus) plane moves from one camera to the next; default 0", -4096, 4096}, \
     {"--colmap", OPTION_TEXT, "DIR", \
      "poses of the photographs (cameras.txt, images.txt): resampled to a slab", 0, 0}, \
     {"--views", OPTION_TEXT, "GxG", "--colmap: grid of cameras to make; default 5x5", 0, 0}, \
@@ -39,8 +39,7 @@ relume_status capture_views(const struct args *args);
      1, 10}, \
     {"--depth-from-views", OPTION_FLAG, NULL, "estimate the depth of a slab's views", 0, 0}, \
     {"--depth-range", OPTION_TEXT, "A,B", \
-     "--depth-from-views: distances from the camera plane, nearest and farthest; --depth: of " \
-     "white and of black", 0, 0}, \
+     "--depth-from-views: nearest and farthest distance from the camera plane; --depth: distance of white and of black", 0, 0}, \
     {"--panorama", OPTION_TEXT, "P", \
      "cube (six faces), sphere, cylinder, or stitch (overlapping photographs)", 0, 0}, \
     {"--depth", OPTION_TEXT, "FILE", "--panorama: a picture of its depth", 0, 0}

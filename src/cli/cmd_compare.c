@@ -3,8 +3,9 @@
 #include <math.h>
 
 static const struct option options[] = {
-    {"-o", OPTION_PICTURE, "OUT", "write the picture |A - B| of linear light", 0, 0},
-    {"--ramps", OPTION_FLAG, NULL, "also how smooth ramps of B keep their slope (contours)", 0, 0},
+    {"-o", OPTION_PICTURE, "OUT", "write the difference |A - B| as a picture in linear light", 0,
+     0},
+    {"--ramps", OPTION_FLAG, NULL, "also measure banding: how well B keeps smooth gradients", 0, 0},
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
@@ -79,7 +80,7 @@ static relume_status run(const struct args *args)
 const struct command command_compare = {
     .name = "compare",
     .usage = "A B [-o OUT] [--ramps] [--json]",
-    .summary = "measure how far two pictures are apart",
+    .summary = "measure how different two pictures are",
     .example = "relume compare relit.exr photograph.jpg --json",
     .min_inputs = 2,
     .max_inputs = 2,

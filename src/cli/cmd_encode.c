@@ -38,9 +38,10 @@ static const struct option options[] = {
     {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
     {"--ridge", OPTION_NUMBER, "R", "smoothing of the fit, 0 (none) to 1; default: 1e-6", 0, 1},
     BOOK_OPTIONS,
-    {"--no-depth", OPTION_FLAG, NULL, "leave depth out: no near lights, no eyes by depth", 0, 0},
+    {"--no-depth", OPTION_FLAG, NULL,
+     "leave depth out: smaller file, but no near lights and no views corrected by depth", 0, 0},
     {"--assume-depth", OPTION_NUMBER, "D",
-     "near lights: views without depth are this far from the eye", 1e-6, 1e9},
+     "near lights, capture without depth: assume the surface this far from the eye", 1e-6, 1e9},
     {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
     ALLOW_OUTSIDE_OPTION,
     {"--repair", OPTION_FLAG, NULL,
@@ -274,7 +275,7 @@ static relume_status encode(const struct args *args, struct request *r)
     r->books.log = r->coder.log;
     if (ignores_positions(relume_capture_manifest(capture)))
         about.log.message(about.log.user, RELUME_WARNING,
-                          "the lights are near; they are taken as distant ones");
+                          "the lights stand near; they are treated as distant");
     status = learn(&coder, capture, r);
     struct relume_encode_report report;
     if (!status)

@@ -5,7 +5,7 @@
 static const struct option options[] = {
     {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
     {"--assume-depth", OPTION_NUMBER, "D",
-     "near lights: views without depth are this far from the eye", 1e-6, 1e9},
+     "near lights, capture without depth: assume the surface this far from the eye", 1e-6, 1e9},
     {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
     ALLOW_OUTSIDE_OPTION,
     {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},

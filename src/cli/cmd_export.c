@@ -12,15 +12,14 @@ static const struct option options[] = {
      0, 0},
     {"--type", OPTION_TEXT, "T", "relight, deepzoom: bilinear, rbf, ptm, lptm, hsh or sh", 0, 0},
     {"--colorspace", OPTION_TEXT, "C",
-     "rgb, ycc (ptm, hsh, sh: only the luminance follows the light) or mycc (bilinear, rbf: "
-     "planes for luminance and chroma apart); default: rgb",
+     "rgb, ycc (ptm, hsh, sh: only the luminance changes with the light) or mycc (bilinear, rbf: "
+     "separate planes for luminance and chroma); default: rgb",
      0, 0},
     {"--coefficients", OPTION_INT, "K",
      "planes (bilinear, rbf; default: up to 27) or terms of the type", 1, 45},
     {"--bytes-per-pixel", OPTION_NUMBER, "B",
      "size of all plane JPEGs (ptm, lptm: of the file), not exceeded", 0.001, 100},
-    {"--psnr", OPTION_NUMBER, "DB",
-     "difference from the original, in decibels; at least that is reached", 1, 100},
+    {"--psnr", OPTION_NUMBER, "DB", "at least this PSNR against the original", 1, 100},
     {"--quality", OPTION_INT, "Q",
      "10 less doubles the quantiser step; default: 95 or more, so that no blocks are seen (ptm, "
      "lptm: raw planes)",
@@ -50,8 +49,8 @@ static void say_result(const struct args *args, const struct relume_export_repor
         snprintf(quality, sizeof quality, "quality %d%s, ", r->quality,
                  args_has(args, "--quality") ? "" : " (chosen)");
     if (r->exact)
-        snprintf(text, sizeof text, "%s: %d planes, the same codes as in the file: nothing is lost",
-                 out, r->planes);
+        snprintf(text, sizeof text, "%s: %d planes, copied unchanged: nothing is lost", out,
+                 r->planes);
     else
         snprintf(text, sizeof text,
                  "%s: %s%d planes, %.3f bytes per pixel; the export differs from the original by "
@@ -94,8 +93,7 @@ static relume_status choose_format(enum relume_exchange *format, const struct ar
             out);
     if (is_no_folder(ending))
         return usage_error(
-            "-o: %s: no export has this ending; expected .ptm, .rti or the name of a "
-            "folder",
+            "-o: %s: export cannot write this ending; expected .ptm, .rti or the name of a folder",
             out);
     if (relume_exchange_parse(format, to))
         return unknown_name("--to", to, formats);
@@ -126,19 +124,20 @@ static relume_status parse(const struct args *args, enum relume_exchange *format
         return unknown_name("--colorspace", space, spaces);
     p->ycc = strcmp(space, "rgb");
     if (!strcmp(space, "mycc") && p->type > RELUME_WEB_RBF)
-        return usage_error("--colorspace mycc: only for --type bilinear and rbf");
+        return usage_error("--colorspace mycc: works only with --type bilinear and rbf");
     const bool folder = *format == RELUME_EXCHANGE_RELIGHT || *format == RELUME_EXCHANGE_DEEPZOOM;
     static const char *const only_folders[] = {"--type", "--colorspace", "--resolution"};
     static const char *const jpeg[] = {"--quality", "--bytes-per-pixel", "--psnr"};
     for (int i = 0; !folder && i < 3; i++)
         if (args_has(args, only_folders[i]))
-            return usage_error("%s: only for --to relight and deepzoom", only_folders[i]);
+            return usage_error("%s: works only with --to relight and deepzoom", only_folders[i]);
     if ((*format == RELUME_EXCHANGE_PTM || *format == RELUME_EXCHANGE_LPTM) &&
         args_has(args, "--coefficients"))
-        return usage_error("--coefficients: .ptm has six; expected another --to");
+        return usage_error(
+            "--coefficients: .ptm always has 6; leave it out, or choose another --to");
     for (int i = 0; *format == RELUME_EXCHANGE_RTI && i < 3; i++)
         if (args_has(args, jpeg[i]))
-            return usage_error("%s: .rti has no JPEG form; expected --to ptm or lptm", jpeg[i]);
+            return usage_error("%s: .rti cannot hold JPEG; use --to ptm or lptm", jpeg[i]);
     if (args_has(args, "--bytes-per-pixel") + args_has(args, "--psnr") +
             args_has(args, "--quality") >
         1)

@@ -15,10 +15,10 @@ static const struct option options[] = {
     {"--fov", OPTION_NUMBER, "DEG", "horizontal field of view of the picture; default: 45", 0.01,
      170},
     GLARE_OPTIONS,
-    {"--frames", OPTION_INT, "N", "as many pictures, from --time on", 1, 1000000},
+    {"--frames", OPTION_INT, "N", "number of pictures, starting at --time", 1, 1000000},
     {"--fps", OPTION_NUMBER, "F", "pictures a second; default: 30", 0.1, 1000},
-    {"--cycle", OPTION_NUMBER, "S", "--frames: S seconds are computed and shown in a seamless loop",
-     0.1, 120},
+    {"--cycle", OPTION_NUMBER, "S",
+     "--frames: compute S seconds and repeat them as a seamless loop", 0.1, 120},
     {"--pan", OPTION_NUMBER, "A", "IN is a whole sphere: look this far to the right, degrees", 0,
      0},
     {"--tilt", OPTION_NUMBER, "A", "IN is a whole sphere: look this far up", -90, 90},
@@ -26,22 +26,25 @@ static const struct option options[] = {
      "IN is a whole sphere: size of the picture; default: 1280x720", 0, 0},
     {"--psf", OPTION_OUTPUT, "OUT",
      "write the eye's pattern: a picture, or a folder with aperture and diagrams as well", 0, 0},
-    {"--luminance", OPTION_NUMBER, "L", "--psf without IN: of the field, cd/m^2; default: 1", 0,
-     1e9},
+    {"--luminance", OPTION_NUMBER, "L",
+     "--psf without IN: luminance that the eye adapts to, cd/m^2; default: 1", 0, 1e9},
     {"--size", OPTION_INT, "N", "texels of the pattern, even; default: 1536", 64, 8192},
     {"--field", OPTION_NUMBER, "DEG", "half field of the pattern at 400 nm; default: 4", 0.1, 20},
     {"--width", OPTION_NUMBER, "MM", "instead of --field: width of the aperture texture", 0.2, 100},
-    {"--wavelengths", OPTION_INT, "N", "of the chromatic sum; default: 32", 1, 256},
-    {"--temperature", OPTION_NUMBER, "K", "the light is a black body; default: equal energy", 1000,
-     40000},
-    {"--planes", OPTION_INT, "N", "depths of the vitreous body; default: one plane for all", 0, 16},
+    {"--wavelengths", OPTION_INT, "N", "number of wavelengths; default: 32", 1, 256},
+    {"--temperature", OPTION_NUMBER, "K",
+     "colour temperature of the light; default: equal-energy white", 1000, 40000},
+    {"--planes", OPTION_INT, "N", "depth layers of the vitreous body; default: one", 0, 16},
     {"--without", OPTION_TEXT, "PART", "leave out cornea, fibres, lens, vitreous or lids; repeats",
      0, 0},
-    {"--literal", OPTION_FLAG, NULL, "sum wavelengths as the thesis prints it", 0, 0},
-    {"--retina-distance", OPTION_FLAG, NULL, "defocus by the printed d = 24 mm: a blur", 0, 0},
-    {"--no-veil", OPTION_FLAG, NULL, "leave out the veil beyond the pattern", 0, 0},
-    {"--keep-light", OPTION_FLAG, NULL, "closing lids do not darken the picture", 0, 0},
-    {"--threshold", OPTION_NUMBER, "L", "billboard, hybrid: brighter pixels are sources", 0, 1e9},
+    {"--literal", OPTION_FLAG, NULL, "sum wavelengths by the formula as printed in the thesis", 0,
+     0},
+    {"--retina-distance", OPTION_FLAG, NULL,
+     "focus with the thesis' printed d = 24 mm, which blurs", 0, 0},
+    {"--no-veil", OPTION_FLAG, NULL, "leave out the faint veil of light beyond the pattern", 0, 0},
+    {"--keep-light", OPTION_FLAG, NULL, "keep the picture's brightness when the lids close", 0, 0},
+    {"--threshold", OPTION_NUMBER, "L",
+     "billboard, hybrid: pixels brighter than this are light sources", 0, 1e9},
     DEVELOP_OPTIONS,
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
@@ -212,7 +215,7 @@ static relume_status check(const struct args *args)
         return usage_error("-o: expected name.%%04d.png, a folder or .mp4 for --frames; found '%s'",
                            out);
     if (!args_has(args, "--frames") && (args_has(args, "--fps") || args_has(args, "--cycle")))
-        return usage_error("glare: expected --frames beside --fps and --cycle");
+        return usage_error("glare: --fps and --cycle need --frames N");
     if (out && !args_has(args, "--frames") && strchr(out, '%') && film_is(out))
         return usage_error("glare: expected --frames N for '%s'", out);
     const char *const psf = args_text(args, "--psf", NULL);
@@ -262,7 +265,7 @@ static relume_status run(const struct args *args)
 const struct command command_glare = {
     .name = "glare",
     .usage = "[IN] -o OUT [OPTION ...]",
-    .summary = "a picture as a living eye would see it",
+    .summary = "show a picture as a human eye sees it, with halos around bright lights",
     .example = "relume glare candle.exr -o seen.png --fov 20 --magnify 2",
     .min_inputs = 0,
     .max_inputs = 1,

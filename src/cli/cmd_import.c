@@ -21,7 +21,7 @@ static relume_status run(const struct args *args)
 const struct command command_import = {
     .name = "import",
     .usage = "IN -o FILE.exr [OPTION ...]",
-    .summary = "make a relume file from .ptm, .rti, .hsh or a relight web folder",
+    .summary = "turn a .ptm, .rti, .hsh or a relight web folder into a relume file",
     .example = "relume import coin.ptm -o coin.exr",
     .min_inputs = 1,
     .max_inputs = 1,

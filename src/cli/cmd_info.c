@@ -43,11 +43,30 @@ static void print_json(const struct relume_pack_info *i, const struct relume_cod
     printf("}\n");
 }
 
+// A share of white, as people say it.
+static const char *percent(char text[24], double share)
+{
+    if (share < 1e-4)
+        snprintf(text, 24, share > 0.0 ? "below 0.01 %%" : "0 %%");
+    else
+        snprintf(text, 24, "%.*f %%", share < 0.01 ? 2 : 1, 100.0 * share);
+    return text;
+}
+
+static void print_error(double model, double rounding)
+{
+    char a[24], b[24];
+    printf(
+        "error         %s of white from the model, %s from rounding (RMS over the photographs)\n",
+        percent(a, model), percent(b, rounding));
+}
+
 static void print_text(const struct relume_pack_info *i, const struct relume_coder_info *c,
                        const char *display, enum relume_kind kind)
 {
     if (kind != RELUME_KIND_RELUME)
-        printf("source        %s; below: what relume makes of it\n", relume_kind_name(kind));
+        printf("source        %s; the lines below describe it as relume reads it\n",
+               relume_kind_name(kind));
     printf("projection    %s%s\n", relume_projection_name(i->geometry.projection),
            i->geometry.disc ? ", with end discs" : "");
     if (i->slabs)
@@ -71,13 +90,12 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
         printf("codebooks     %d of %d vectors, %s\n", i->books, i->codes,
                i->shared ? "for all views" : "for each view");
     if (isfinite(i->report.fit_rms))
-        printf("error         %.5f RMS by the basis, %.5f by storing, over the captured lights\n",
-               i->report.fit_rms, i->report.store_rms);
-    printf("with          %s%s%s\n", i->has_depth ? "depth" : "",
+        print_error(i->report.fit_rms, i->report.store_rms);
+    printf("extras        %s%s%s\n", i->has_depth ? "depth" : "",
            i->has_depth && i->has_mask ? ", " : "",
            i->has_mask    ? "mask"
            : i->has_depth ? ""
-                          : "colour only");
+                          : "none");
     printf("file          %llu bytes, %.3f bits per pixel and view\n",
            (unsigned long long)i->file_bytes, bits_per_pixel(i));
 }
@@ -104,7 +122,8 @@ static relume_status run(const struct args *args)
 const struct command command_info = {
     .name = "info",
     .usage = "FILE [--json]",
-    .summary = "say what a file holds: a relume file, .ptm, .rti, web folder, capture, HDR picture",
+    .summary =
+        "show what a file holds: a relume file, .ptm, .rti, web folder, capture, HDR picture",
     .example = "relume info statue.exr --json",
     .min_inputs = 1,
     .max_inputs = 1,

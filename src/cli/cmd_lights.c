@@ -9,7 +9,7 @@ static const struct option options[] = {
     {"-n", OPTION_INT, "N", "number of directions; default 100", 1, 65536},
     {"--hemisphere", OPTION_FLAG, NULL, "only directions on the pole's side", 0, 0},
     {"--pole", OPTION_TEXT, "z|y", "the pole: z (planar, slab; default) or y (panoramas)", 0, 0},
-    {"--seed", OPTION_INT, "S", "of the random patterns; default 0", 0, 2147483647},
+    {"--seed", OPTION_INT, "S", "seed of the random patterns; default 0", 0, 2147483647},
     {"--json", OPTION_FLAG, NULL, "print one JSON object", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
@@ -70,7 +70,7 @@ static relume_status run(const struct args *args)
 const struct command command_lights = {
     .name = "lights",
     .usage = "[--pattern P] [-n N]",
-    .summary = "print a pattern of light directions and its spherical cap discrepancy",
+    .summary = "print a pattern of light directions and how evenly it covers the sphere",
     .example = "relume lights --pattern hammersley -n 100 --hemisphere",
     .min_inputs = 0,
     .max_inputs = 0,

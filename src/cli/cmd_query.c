@@ -9,7 +9,7 @@ static const struct option options[] = {
     {"--eye", OPTION_TEXT, "x,y,z", "where the ray starts", 0, 0},
     {"--direction", OPTION_TEXT, "x,y,z", "where it goes, into the scene", 0, 0},
     {"--rays", OPTION_TEXT, "FILE",
-     "many rays instead, one a line: eye and direction, six numbers; - reads them from stdin", 0,
+     "many rays instead, one per line: eye and direction, six numbers; - reads standard input", 0,
      0},
     LIGHT_OPTIONS,
     INTERPOLATE_OPTIONS,
@@ -138,7 +138,7 @@ static relume_status run(const struct args *args)
 const struct command command_query = {
     .name = "query",
     .usage = "FILE --eye x,y,z --direction x,y,z | --rays FILE [OPTION ...]",
-    .summary = "print the linear r g b that one ray sees, or many",
+    .summary = "print the linear r g b that a ray sees, or many rays",
     .example = "relume query teapot.exr --eye 0,0,3 --direction 0,0,-1 --light \"dir 1 1 1\"",
     .min_inputs = 1,
     .max_inputs = 1,

@@ -12,11 +12,12 @@ static const struct option options[] = {
      0},
     LIGHT_OPTIONS,
     {"--view", OPTION_INT, "N", "a captured view at its own size (panoramas: unfolded)", 0, 65535},
-    {"--eye", OPTION_TEXT, "x,y,z", "slab: the window as seen from there; default: the middle", 0,
-     0},
+    {"--eye", OPTION_TEXT, "x,y,z",
+     "slab: look at the window from this point; default: the middle of the cameras", 0, 0},
     {"--look-at", OPTION_TEXT, "x,y,z", "--eye: where it looks; default: the middle of the object",
      0, 0},
-    {"--up", OPTION_TEXT, "x,y,z", "--eye: what is up in the picture; default: 0,1,0", 0, 0},
+    {"--up", OPTION_TEXT, "x,y,z", "--eye: the direction that is up in the picture; default: 0,1,0",
+     0, 0},
     {"--fov", OPTION_NUMBER, "DEG",
      "--eye: horizontal field of view; default: the slabs' windows; --pass glare: of a planar file",
      0.01, 179},
@@ -24,13 +25,15 @@ static const struct option options[] = {
     {"--tilt", OPTION_NUMBER, "A", "panorama: degrees up", 0, 0},
     {"--zoom", OPTION_NUMBER, "F", "panorama: 1 shows 90 degrees; default: 1", 0.01, 1000},
     {"--projection", OPTION_TEXT, "P",
-     "panorama: perspective (default), stereographic, planet (looking down on it)", 0, 0},
+     "panorama: perspective (default), stereographic, planet (seen from above, as a small globe)",
+     0, 0},
     {"--size", OPTION_TEXT, "WxH", SIZE_HELP, 0, 0},
     {"--filter", OPTION_TEXT, "F",
-     "enlarged: linear (auto), cubic, nearest; reduced, all but nearest average", 0, 0},
+     "resampling: linear (auto), cubic or nearest to enlarge; all but nearest average to reduce", 0,
+     0},
     INTERPOLATE_OPTIONS,
     {"--aperture", OPTION_NUMBER, "A",
-     "slab: average the cameras within A/2 of the eye, of a free eye a lens as wide; default: 0", 0,
+     "slab: diameter of the lens, which blurs what is out of focus; default: 0 (all sharp)", 0,
      1e9},
     {"--focus", OPTION_NUMBER, "Z",
      "slab: the plane at z = Z is sharp; free camera: distance from the look-at point to the plane "
@@ -42,7 +45,9 @@ static const struct option options[] = {
      0, 0},
     GLARE_OPTIONS,
     {"--alpha", OPTION_FLAG, NULL,
-     "transparent where the capture's mask leaves out: .png and .exr of a captured view", 0, 0},
+     "make the background transparent where the capture has a mask: .png and .exr of a captured "
+     "view",
+     0, 0},
     {"--objects", OPTION_TEXT, "FILE",
      "objects covered with BTFs, in the scene (docs/objects.md); needs a file with depth", 0, 0},
     {"--samples", OPTION_INT, "N", "--objects: N x N rays a pixel; default 3", 1, 16},
@@ -147,7 +152,7 @@ static relume_status parse_pass(const struct args *args, struct relume_frame_par
         return unknown_name("--pass", name, names);
     const bool difference = params->pass == RELUME_PASS_DIFFERENCE;
     if (difference != args_has(args, "--capture"))
-        return usage_error("relight: expected --pass difference and --capture together");
+        return usage_error("relight: --pass difference and --capture work only together");
     return RELUME_OK;
 }
 

@@ -20,7 +20,7 @@ static const struct option options[] = {
     {"--codebook", OPTION_TEXT, "LIST", "code vectors, 0: planes; default: 0", 0, 0},
     BOOK_FORM_OPTIONS,
     {"--leave-out", OPTION_INT, "K", "lights left out at a time; default: 1", 1, 65535},
-    {"--test", OPTION_TEXT, "CAPTURE", "judge by the lights of another capture instead", 0, 0},
+    {"--test", OPTION_TEXT, "CAPTURE", "measure on the lights of another capture instead", 0, 0},
     {"--domain", OPTION_TEXT, "D", "auto, linear or display; default: as encode", 0, 0},
     {"--memory", OPTION_INT, "MB", "for samples; more than fit are thinned out; default: 1024", 1,
      1048576},
@@ -501,7 +501,8 @@ static relume_status measure_all(struct work *w, const relume_capture *test)
     }
     if (!status && s->measured < 1.0) {
         char text[128];
-        snprintf(text, sizeof text, "judged on %.0f %% of the rows; more --memory takes more",
+        snprintf(text, sizeof text,
+                 "measured on %.0f %% of the picture's rows; give more --memory to use more",
                  100.0 * s->measured);
         note(s->args, text);
     }
@@ -545,7 +546,7 @@ static relume_status sweep_captures(struct sweep *sweep, relume_capture *capture
     if (!status && !all_known(sweep))
         status = measure_all(&w, test);
     if (status == RELUME_ECANCEL && sweep->out)
-        note(sweep->args, "finished rows are kept; the same command goes on from there");
+        note(sweep->args, "finished rows are kept; run the same command again to continue");
     if (!status)
         status = finish(sweep, w.resume);
     sweep_resume_close(&w.resume);

@@ -3,10 +3,11 @@
 
 static const struct option options[] = {
     {"-o", OPTION_PICTURE, "OUT", "picture to write: .png, .jpg, .tif, ...", 0, 0},
-    {"--exposure", OPTION_TEXT, "EV", "multiply by 2^EV, or auto: a mid grey; default: auto", 0, 0},
+    {"--exposure", OPTION_TEXT, "EV",
+     "brighter by EV stops (times 2^EV), or auto: mid grey; default: auto", 0, 0},
     {"--tone", OPTION_TEXT, "T",
      "reinhard (default), filmic, gamma or linear (clip); .exr, .hdr and .pfm stay linear", 0, 0},
-    {"--white", OPTION_NUMBER, "L", "reinhard: the luminance that becomes white; default: 4", 1e-3,
+    {"--white", OPTION_NUMBER, "L", "reinhard: the luminance shown as white; default: 4", 1e-3,
      1e6},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
@@ -33,7 +34,7 @@ static relume_status run(const struct args *args)
 const struct command command_tonemap = {
     .name = "tonemap",
     .usage = "IN -o OUT [OPTION ...]",
-    .summary = "an HDR picture as one to look at: exposure and tone",
+    .summary = "turn an HDR picture into one for the screen: exposure and tone curve",
     .example = "relume tonemap church.hdr -o church.png --exposure -1",
     .min_inputs = 1,
     .max_inputs = 1,

@@ -6,7 +6,12 @@
 
 // Table rows for a command's options.
 #define DEVELOP_OPTIONS                                                                            \
-    {"--exposure", OPTION_TEXT, "EV", "multiply by 2^EV, or auto: a mid grey; default: 0", 0, 0},  \
+    {"--exposure",                                                                                 \
+     OPTION_TEXT,                                                                                  \
+     "EV",                                                                                         \
+     "brighter by EV stops (times 2^EV), or auto: mid grey; default: 0",                           \
+     0,                                                                                            \
+     0},                                                                                           \
         {"--tone",                                                                                 \
          OPTION_TEXT,                                                                              \
          "T",                                                                                      \
@@ -14,8 +19,8 @@
          0,                                                                                        \
          0},                                                                                       \
     {                                                                                              \
-        "--white", OPTION_NUMBER, "L", "reinhard: the luminance that becomes white; default: 4",   \
-            1e-3, 1e6                                                                              \
+        "--white", OPTION_NUMBER, "L", "reinhard: the luminance shown as white; default: 4", 1e-3, \
+            1e6                                                                                    \
     }
 
 struct developing {

@@ -137,7 +137,8 @@ static relume_status start_ffmpeg(struct film *f, const struct relume_image *ima
 {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC))
-        return fail(f, RELUME_ESYSTEM, "%s: no pipe to ffmpeg; %s", f->path, strerror(errno));
+        return fail(f, RELUME_ESYSTEM, "%s: cannot send pictures to ffmpeg; %s", f->path,
+                    strerror(errno));
     f->ffmpeg = fork();
     if (f->ffmpeg == 0)
         become_ffmpeg(f, image, ends[0]);
@@ -163,8 +164,8 @@ static relume_status end_ffmpeg(struct film *f)
         return RELUME_OK;
     if (WIFEXITED(state) && WEXITSTATUS(state) == 127)
         return fail(f, RELUME_ESYSTEM,
-                    "%s: ffmpeg is not installed; expected it for films, or a name like "
-                    "frame.%%04d.png",
+                    "%s: ffmpeg is not installed, which films need; install it, or save pictures "
+                    "with a name like frame.%%04d.png",
                     f->path);
     return fail(f, RELUME_ESYSTEM, "%s: ffmpeg could not write the film", f->path);
 }
@@ -177,7 +178,9 @@ static relume_status write_picture(struct film *f, const unsigned char *bytes, s
             continue;
         if (wrote < 0) {
             const relume_status status = end_ffmpeg(f);  // says why it went away
-            return status ? status : fail(f, RELUME_ESYSTEM, "%s: ffmpeg went away", f->path);
+            return status ? status
+                          : fail(f, RELUME_ESYSTEM,
+                                 "%s: ffmpeg stopped before the film was complete", f->path);
         }
         bytes += wrote;
         n -= (size_t)wrote;

@@ -18,7 +18,7 @@
         {"--save-rig", OPTION_OUTPUT, "FILE", "write all lights as a rig", 0, 0},                  \
     {                                                                                              \
         "--assume-depth", OPTION_NUMBER, "D",                                                      \
-            "near lights, file without depth: the surface is this far from the eye", 1e-6, 1e9     \
+            "near lights, file without depth: assume the surface this far from the eye", 1e-6, 1e9 \
     }
 #define INTERPOLATE_OPTIONS                                                                        \
     {"--interpolate",                                                                              \
@@ -36,8 +36,8 @@
     }
 
 #define SIZE_HELP                                                                                  \
-    "size of the picture: WxH, W (or Wx), xH; one alone keeps the proportions, both fit it "       \
-    "inside, with black beside it"
+    "size of the picture: WxH, W (or Wx) or xH; one alone keeps the proportions, both add black "  \
+    "borders if the proportions differ"
 
 // --size: of one side alone the other one is 0; both are 0 without it.
 relume_status parse_size(const struct args *args, int *width, int *height);

@@ -7,14 +7,12 @@
 
 // Table rows for a command's options.
 #define GLARE_OPTIONS                                                                              \
-    {"--subject", OPTION_TEXT, "FILE", "glare: a person's measures (JSON, docs/glare.md)", 0, 0},  \
+    {"--subject", OPTION_TEXT, "FILE", "glare: the viewer's eye (JSON, docs/glare.md)", 0, 0},     \
         {"--time", OPTION_NUMBER, "T", "glare: seconds since the eye opened; default: 1", 0, 1e6}, \
         {"--nits", OPTION_NUMBER,                                                                  \
-         "L",      "glare: cd/m^2 of the value 1, for the pupil; default: 100",                    \
+         "L",      "glare: cd/m^2 of the value 1, sets the pupil; default: 100",                   \
          0,        1e9},                                                                           \
-        {"--magnify", OPTION_NUMBER,                                                               \
-         "M",         "glare: enlarge the pattern against the picture; default: 1",                \
-         0.01,        1000},                                                                       \
+        {"--magnify", OPTION_NUMBER, "M", "glare: enlarge the halos; default: 1", 0.01, 1000},     \
         {"--mode", OPTION_TEXT, "M", "glare: fft (default), billboard or hybrid", 0, 0},           \
     {                                                                                              \
         "--border", OPTION_TEXT, "B", "glare: zero (default), clamp or periodic", 0, 0             \

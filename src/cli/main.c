@@ -44,11 +44,11 @@ const struct command *const commands[] = {
 static const struct option common[] = {
     {"--threads", OPTION_INT, "N", "worker threads; default: all cores", 0, 256},
     {"--max-memory", OPTION_TEXT, "SIZE",
-     "most memory of one picture, view or model: 4G; default: half of the machine's", 0, 0},
-    {"--max-pixels", OPTION_TEXT, "N", "most pixels of one picture: 200M; default: 1G", 0, 0},
+     "most memory for one picture, view or model, as 4G; default: half of the machine's", 0, 0},
+    {"--max-pixels", OPTION_TEXT, "N", "most pixels in one picture, as 200M; default: 1G", 0, 0},
     {"--any-format", OPTION_FLAG, NULL,
      "read pictures of every format that OpenImageIO knows, not only those for photographs", 0, 0},
-    {"-q", OPTION_FLAG, NULL, "no progress bar and no remarks", 0, 0},
+    {"-q", OPTION_FLAG, NULL, "no progress bar, no warnings", 0, 0},
     {"--help", OPTION_FLAG, NULL, "this text", 0, 0},
     {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
 };
@@ -406,7 +406,7 @@ static relume_status parse(struct args *args, int argc, char **argv)
             continue;
         }
         if (!equals && i + 1 >= argc)
-            return usage_error("%s: expected a value (%s); found the end of the line", o->name,
+            return usage_error("%s: expected a value (%s) after it; found none", o->name,
                                o->argument);
         g->text = equals ? equals + 1 : argv[++i];
         const relume_status status = check_value(g);

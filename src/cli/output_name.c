@@ -25,8 +25,8 @@ relume_status floats_name(const char *option, const char *path)
     if (!strcasecmp(ending, ".exr") || !strcasecmp(ending, ".pfm") ||
         (!*ending && relume_image_can_save(path)))
         return RELUME_OK;
-    return usage_error("%s: %s: values below 0 and above 1 need a float format; expected .exr or "
-                       ".pfm",
+    return usage_error("%s: %s: this picture has values below 0 or above 1; expected .exr or .pfm, "
+                       "which can hold them",
                        option, path);
 }
 

@@ -73,7 +73,8 @@ static relume_status read_line(struct list *list, char *line, int number, const 
                     "'%.60s'",
                     number, line);
     if (v[3] == 0.0 && v[4] == 0.0 && v[5] == 0.0)
-        return fail(log, path, "line %d: expected a direction that is not 0 0 0", number);
+        return fail(log, path, "line %d: the direction is 0 0 0; expected where the ray goes",
+                    number);
     if (list->count == MOST)
         return fail(log, path, "line %d: expected at most %d rays", number, MOST);
     return add(list, v) ? RELUME_OK : RELUME_ENOMEM;
@@ -97,7 +98,7 @@ relume_status rays_read(struct relume_ray **out, int *count, const char *path,
     if (!status && ferror(file))
         status = fail(log, path, "cannot be read; %s", strerror(errno));
     if (!status && !list.count)
-        status = fail(log, path, "expected a ray a line; found none");
+        status = fail(log, path, "holds no rays; expected six numbers per line");
     if (!stream)
         (void)fclose(file);
     free(line);

@@ -288,14 +288,15 @@ static void describe(const struct sweep *sweep, char *text, size_t size)
     int n = snprintf(text, size, "%d lights, %d x %d pixels; ", sweep->lights, sweep->width,
                      sweep->height);
     if (sweep->test)
-        n += snprintf(text + n, size - (size_t)n, "judged by %d others", sweep->judged);
+        n += snprintf(text + n, size - (size_t)n, "measured on %d others", sweep->judged);
     else
         n += snprintf(text + n, size - (size_t)n, "%d left out at a time", sweep->leave_out);
     if (one)
         n += snprintf(text + n, size - (size_t)n, "; %s%s coefficients", bits,
                       strcmp(bits, "half") ? "-bit" : "");
     if (sweep->measured < 1.0)
-        snprintf(text + n, size - (size_t)n, "; on %.0f %% of the rows", 100.0 * sweep->measured);
+        snprintf(text + n, size - (size_t)n, "; on %.0f %% of the picture's rows",
+                 100.0 * sweep->measured);
 }
 
 static relume_status save_plot(const struct sweep *sweep, const struct plot *plot,
@@ -322,7 +323,7 @@ static relume_status save_diagram(const struct sweep *sweep)
     find_differences(d);
     for (int i = 0; d->point && i < sweep->rows; i++)
         add_point(d, &sweep->row[i]);
-    snprintf(title, sizeof title, "Rate and distortion on unseen lights: %.100s",
+    snprintf(title, sizeof title, "File size and quality on lights left out: %.100s",
              short_path(sweep->capture));
     describe(sweep, subtitle, sizeof subtitle);
     const struct plot plot = {.title = title,

@@ -158,7 +158,7 @@ static bool read_rows(const sweep_resume *r, struct sweep *sweep)
             broken++;
     }
     if (broken)
-        warn(r, "some lines are broken; their rows are measured again");
+        warn(r, "some lines are damaged; those rows are measured again");
     return true;
 }
 
@@ -254,7 +254,8 @@ relume_status sweep_resume_open(sweep_resume **out, struct sweep *sweep,
     }
     sweep_resume_lock(r);
     if (!status && !read_rows(r, sweep)) {
-        warn(r, "not written by relume sweep; it is left alone and no finished rows are kept");
+        warn(r,
+             "not written by relume sweep; it is left as it is, and finished rows are not saved");
         fclose(r->file);
         r->file = NULL;
     }

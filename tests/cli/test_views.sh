@@ -80,9 +80,9 @@ printf '0 0 3 0 0 0\n' >nowhere.txt
 printf '0 0 3 0 0 nan\n' >nan.txt
 printf '# nothing\n' >empty.txt
 expect_fail 'a line of five numbers' 1 'short.txt: line 2: expected six numbers' - "$RELUME" query slab.exr --rays short.txt
-expect_fail 'no direction' 1 'line 1: expected a direction that is not 0 0 0' - "$RELUME" query slab.exr --rays nowhere.txt
+expect_fail 'no direction' 1 'line 1: the direction is 0 0 0; expected where the ray goes' - "$RELUME" query slab.exr --rays nowhere.txt
 expect_fail 'a direction that is no number' 1 'line 1: expected six numbers' - "$RELUME" query slab.exr --rays nan.txt
-expect_fail 'no rays' 1 'expected a ray a line; found none' - "$RELUME" query slab.exr --rays empty.txt
+expect_fail 'no rays' 1 'holds no rays; expected six numbers per line' - "$RELUME" query slab.exr --rays empty.txt
 expect_fail 'no file of rays' 1 'cannot be read' - "$RELUME" query slab.exr --rays missing.txt
 expect_fail 'a picture for rays' 1 'line 1: expected six numbers' - "$RELUME" query slab.exr --rays slab.exr
 expect_fail 'a ray and rays' 2 'or --rays FILE' - "$RELUME" query slab.exr --rays rays.txt --eye 0,0,3

@@ -87,4 +87,18 @@ mkdir rays && for i in 0 1 2 3; do cp b.png "rays/r$((i / 2))_c$((i % 2))_.png";
 expect_ok 'a slab of photographs elsewhere' - "$RELUME" capture rays --slab -o slab --names 'r{row}_c{column}_' -q
 expect_ok 'needs no trust' - "$RELUME" encode slab -o x.exr --basis table -q && rm -f x.exr
 
+# ---- errors in per cent of white, the figures of --json
+"$RELUME" encode few -o x.exr --basis hsh --coefficients 1 --bits 8 -q
+"$RELUME" info x.exr --json >info.json
+percents() { # the two shares as print_error puts them
+    sed 's/.*"fit_rms": \([^,]*\), "store_rms": \([^,]*\),.*/\1 \2/' info.json |
+        awk '{ printf "error         %.*f %% of white from the model, %.*f %% from rounding", $1 < 0.01 ? 2 : 1, 100 * $1, $2 < 0.01 ? 2 : 1, 100 * $2 }'
+}
+"$RELUME" info x.exr >info.txt
+check 'info: errors in per cent of white' grep -qF "$(percents)" info.txt
+"$RELUME" encode few -o x.exr --basis hsh --coefficients 1 --bits float --no-depth -q
+"$RELUME" info x.exr >info.txt
+check 'info: no error from floats' grep -qE 'white from the model, (0|below 0.01) % from rounding' info.txt
+check 'info: no extras' grep -q '^extras *none$' info.txt
+
 finish

@@ -98,7 +98,7 @@ FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 
-.PHONY: all lib cli viewer deps deps-web deps-stitch demo tour figures golden test check check-threads bench fuzz fuzzers headers layers format install \
+.PHONY: all lib cli viewer deps deps-web deps-stitch demo tour figures golden test check check-threads bench fuzz fuzzers replay headers layers format install \
         clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
@@ -238,7 +238,7 @@ $B/relume $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE) $(
 # `make test` is everything; `make check` is the part that one config runs.
 test: all
 	@tests/run.sh $(MAKE)
-check: all $(UNIT) $(GL) $(TOOLS) $(FAULTS)
+check: all $(UNIT) $(GL) $(TOOLS) $(FUZZ) $(FAULTS)
 	@tests/check.sh $B
 check-threads: $(filter $B/tests/threads/%,$(UNIT))
 	@ONLY_BINARIES=1 tests/check.sh $B
@@ -255,7 +255,7 @@ layers:
 
 format:
 	clang-format -i $(LIB_C) $(MODULE_CXX) src/math/lsq_eigen.cpp $(MESHES_C) $(STITCH_CXX) $(HELPER_C) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
-	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*.h viewer/*.h tests/*.h samples/*.c)
+	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*.h viewer/*.h tests/*.h tests/fuzz/*.h samples/*.c)
 
 bench: all $(BENCH)
 	@tests/bench/run.sh $B
@@ -263,6 +263,9 @@ bench: all $(BENCH)
 fuzz: $(FUZZ)
 	@for f in $(FUZZ); do $$f $(FUZZ_S) || exit 1; done
 fuzzers: $(FUZZ)
+# The seeds, and the inputs that once failed
+replay: $(FUZZ)
+	@for f in $(FUZZ); do $$f seeds $$(find tests/fuzz/corpus/$${f##*/} -type f 2>/dev/null) || exit 1; done
 
 demo: all
 	@scripts/demo.sh $B build/demo

@@ -9,6 +9,7 @@
 
 #include <relume/base.h>
 
+#include <string.h>
 #include <sys/types.h>
 
 enum helper_kind { HELPER_PICTURE, HELPER_MESH };
@@ -30,6 +31,14 @@ relume_status helper_tell(struct helper_job *job, const void *message, size_t si
 relume_status helper_hear(struct helper_job *job, void *answer, size_t size);
 // Ends the process. A zeroed or ended job is fine.
 void helper_end(struct helper_job *job);
+
+// A bool of an answer: what came may be any byte, where C knows 0 and 1 alone.
+static inline void helper_bool(bool *in_answer)
+{
+    uint8_t byte;
+    memcpy(&byte, in_answer, 1);
+    *in_answer = byte != 0;
+}
 
 // ---- between the library and the program
 

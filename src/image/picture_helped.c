@@ -163,6 +163,31 @@ static bool is_sound(const struct picture_info *i, const struct relume_limits *l
     return sound;
 }
 
+// 0, which is not noted, for what no camera has.
+static void make_likely(struct relume_notes *n)
+{
+    double *const numbers[] = {&n->time_s, &n->f_number, &n->iso, &n->focal_mm, &n->focal_35mm};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        if (!(*numbers[i] >= 1e-9 && *numbers[i] <= 1e9))
+            *numbers[i] = 0.0;
+    const int64_t most_s = (int64_t)1 << 40;
+    if (n->taken_s < -most_s || n->taken_s > most_s)
+        n->taken_s = 0;
+}
+
+static void make_whole(struct picture_answer *answer)
+{
+    struct picture_info *info = &answer->info;
+    struct relume_notes *notes = &answer->notes;
+    bool *const bools[] = {&info->bytes,  &info->floats,  &info->linear,  &notes->linear,
+                           &notes->bytes, &notes->floats, &notes->profile};
+    for (size_t i = 0; i < sizeof bools / sizeof *bools; i++)
+        helper_bool(bools[i]);
+    make_likely(notes);
+    info->other[sizeof info->other - 1] = '\0';
+    notes->camera[sizeof notes->camera - 1] = '\0';
+}
+
 static relume_status open_there(struct helped *h, int file, const char *path,
                                 const struct picture_kind *kind, uint64_t file_bytes,
                                 const struct relume_limits *limits)
@@ -176,8 +201,7 @@ static relume_status open_there(struct helped *h, int file, const char *path,
     const relume_status status = ask(h, &answer, &what, file);
     if (status)
         return status;
-    answer.info.other[sizeof answer.info.other - 1] = '\0';
-    answer.notes.camera[sizeof answer.notes.camera - 1] = '\0';
+    make_whole(&answer);
     h->reader.info = answer.info;
     h->notes = answer.notes;
     if (is_sound(&h->reader.info, limits))

@@ -60,8 +60,12 @@ static relume_status ask(struct helper_job *job, struct mesh_answer *answer,
     relume_status status = helper_tell(job, what, sizeof *what, file);
     if (!status)
         status = helper_hear(job, answer, sizeof *answer);
+    if (status)
+        return status;
     answer->text[sizeof answer->text - 1] = '\0';
-    return status;
+    helper_bool(&answer->has_uv);
+    helper_bool(&answer->made_normals);
+    return RELUME_OK;
 }
 
 // Gives what the model names until it is read, or is not to be read.

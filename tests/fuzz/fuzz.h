@@ -2,10 +2,13 @@
 //
 // `fuzz_X SECONDS [SEED]`: one input an iteration, written to a file whose name is printed, so that
 // the input of a crash is what lies there. Every eighth iteration an allocation fails as well.
+// `fuzz_X seeds FILE...` tries the seeds and the files as they are instead: `make replay` does so
+// with tests/fuzz/corpus, where inputs lie that once failed.
 //
 // With RELUME_LIBFUZZER (config=fuzzer) the same file is a target of libFuzzer instead: its main()
-// runs once and makes what inputs meet; inputs come from the engine, and allocations fail as often as
-// the last byte of an input says. RELUME_FUZZ_SEEDS names a folder to write the seeds and words to.
+// runs once and makes what inputs meet; inputs come from the engine, and allocations fail as often
+// as the last byte of an input says. RELUME_FUZZ_SEEDS names a folder to write the seeds and words
+// to.
 #ifndef FUZZ_H
 #define FUZZ_H
 
@@ -25,7 +28,7 @@ struct fuzz {
     char folder[64], path[96];
     uint64_t state;
     long iterations, accepted;
-    struct bytes seed[64];
+    struct bytes seed[256];
     int seeds;
     const char *const *words;  // NULL-terminated: text and names that mutations know
 };
@@ -59,6 +62,8 @@ static inline struct bytes fuzz_load(const char *path)
 
 static inline void fuzz_add(struct fuzz *f, struct bytes b)
 {
+    if (f->seeds == (int)(sizeof f->seed / sizeof *f->seed))
+        abort();
     f->seed[f->seeds++] = b;
 }
 
@@ -71,9 +76,9 @@ static inline void fuzz_store(const char *path, struct bytes b)
 
 static inline void fuzz_mutate_bytes(struct fuzz *f, struct bytes *b)
 {
-    static const uint32_t edges[] = {0,       1,          0x7f,       0x80,       0xff,   0x100,
-                                     0x7fff,  0x8000,     0xffff,     0x10000,    0x7fffffff,
-                                     0x80000000, 0xffffffff, 0x7f800000, 0x7fc00000, 0x40000000};
+    static const uint32_t edges[] = {
+        0,      1,       0x7f,       0x80,       0xff,       0x100,      0x7fff,     0x8000,
+        0xffff, 0x10000, 0x7fffffff, 0x80000000, 0xffffffff, 0x7f800000, 0x7fc00000, 0x40000000};
     // headers decide more than pixels
     const size_t reach = fuzz_random(f) % 3 ? (b->size < 3000 ? b->size : 3000) : b->size;
     const size_t at = fuzz_below(f, reach);
@@ -111,8 +116,9 @@ static inline void fuzz_mutate_word(struct fuzz *f, struct bytes *b)
         return;
     const size_t at = (size_t)(hit - b->data) + strlen(word);
     if (fuzz_random(f) % 4 == 0) {
-        const size_t n = strlen(other) < b->size - (at - strlen(word)) ? strlen(other)
-                                                                       : b->size - at + strlen(word);
+        const size_t n = strlen(other) < b->size - (at - strlen(word))
+                             ? strlen(other)
+                             : b->size - at + strlen(word);
         memcpy(b->data + at - strlen(word), other, n);
         return;
     }
@@ -156,10 +162,48 @@ static inline void fuzz_begin(struct fuzz *f, const char *name, int argc, char *
 
 #ifndef RELUME_LIBFUZZER
 
+static inline void fuzz_end(struct fuzz *f)
+{
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf '%s'", f->folder);
+    for (int i = 0; i < f->seeds; i++)
+        free(f->seed[i].data);
+    if (system(command))
+        abort();
+}
+
+// Each at first as it is, then while the last byte of it says which allocation fails.
+static inline int fuzz_replay(struct fuzz *f, int files, char **file,
+                              bool (*one)(struct fuzz *, struct bytes))
+{
+    for (int i = 0; i < files; i++)
+        fuzz_add(f, fuzz_load(file[i]));
+    for (int i = 0; i < f->seeds; i++) {
+        const struct bytes seed = f->seed[i];
+        const int late = seed.size ? seed.data[seed.size - 1] : 0;
+        for (int fail = 0; seed.size && fail < 2 && (!fail || late >= 224); fail++) {
+            struct bytes b = {malloc(seed.size + 8), seed.size};
+            if (!b.data)
+                abort();
+            memcpy(b.data, seed.data, seed.size);
+            mem_fail_after(fail ? late - 223 : 0);
+            f->accepted += one(f, b);
+            mem_fail_after(0);
+            f->iterations++;
+            free(b.data);
+        }
+    }
+    printf("%d seeds, %d files, %ld accepted\n", f->seeds - files, files, f->accepted);
+    fuzz_end(f);
+    return 0;
+}
+
 // `one` returns true when the input was accepted.
 static inline int fuzz_run(struct fuzz *f, int argc, char **argv,
                            bool (*one)(struct fuzz *, struct bytes))
 {
+    if (argc > 1 && !strcmp(argv[1], "seeds"))
+        return fuzz_replay(f, argc - 2, argv + 2, one);
     const double end = fuzz_now() + (argc > 1 ? atof(argv[1]) : 1.0);
     double slowest = 0.0;
     while (fuzz_now() < end) {
@@ -177,11 +221,8 @@ static inline int fuzz_run(struct fuzz *f, int argc, char **argv,
         }
     }
     printf("%ld inputs, %ld accepted, slowest %.2f s\n", f->iterations, f->accepted, slowest);
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf '%s'", f->folder);
-    for (int i = 0; i < f->seeds; i++)
-        free(f->seed[i].data);
-    return system(command) != 0 || f->iterations == 0;
+    fuzz_end(f);
+    return f->iterations == 0;
 }
 
 #else

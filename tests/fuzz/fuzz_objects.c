@@ -1,9 +1,6 @@
 // fuzz_objects.c - descriptions of objects and meshes (OBJ, PLY) made of noise; what is accepted is
 // rendered, where every value must be finite. Models that Assimp reads are its own affair.
-#include "fuzz.h"
-
-#include <math.h>
-#include <relume/object.h>
+#include "fuzz_look.h"
 
 static const char *const words[] = {"format",    "version",   "relume-objects",
                                     "objects",   "mesh",      "pose",
@@ -22,23 +19,6 @@ static const char *const words[] = {"format",    "version",   "relume-objects",
                                     ",",         "null",      NULL};
 
 static const char *const extensions[] = {"json", "obj", "ply"};
-
-static void look(const relume_objects *o)
-{
-    const struct relume_light light = {.direction = {0.3, 0.4, 0.8}, .rgb = {1, 1, 1}};
-    struct relume_window window;
-    struct relume_image image;
-    mem_fail_after(0);
-    if (!relume_objects_window(&window, o, (struct relume_vec3){0.7, 1.1, 2.9}, NULL, 6, 5))
-        return;
-    if (relume_image_create(&image, 6, 5, 3) ||
-        relume_objects_render(&image, o, &window, &light, 1, relume_render_params(.threads = 1)))
-        abort();
-    for (int i = 0; i < 6 * 5 * 3; i++)
-        if (!isfinite(image.data[i]))
-            abort();
-    relume_image_destroy(&image);
-}
 
 // A seed begins with the kind of its file.
 static bool one(struct fuzz *f, struct bytes b)
@@ -65,20 +45,6 @@ static void add(struct fuzz *f, size_t kind, const char *text)
     b.data[0] = (uint8_t)kind;
     memcpy(b.data + 1, text, b.size);
     fuzz_add(f, b);
-}
-
-static void make_material(struct fuzz *f)
-{
-    static const struct relume_vec3 d[4] = {
-        {0, 0, 1}, {0.8, 0, 0.6}, {-0.48, 0.64, 0.6}, {-0.48, -0.64, 0.6}};
-    const struct relume_btf_info info = {
-        .name = "made", .width = 2, .height = 2, .views = 4, .lights = 4, .view = d, .light = d};
-    char path[128];
-    relume_btf *btf;
-    snprintf(path, sizeof path, "%s/btf", f->folder);
-    if (relume_btf_create(&btf, &info, NULL) || relume_btf_save(btf, path, NULL))
-        abort();
-    relume_btf_destroy(&btf);
 }
 
 int main(int argc, char **argv)

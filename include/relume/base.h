@@ -69,8 +69,8 @@ struct relume_limits {
     bool any_format;      // pictures: also what is not on the list of formats (docs/reliability.md)
 };
 
-// "500M", "4G" or a plain number: k, M, G and T are powers of 1024. RELUME_EINVAL for anything else,
-// for nothing, and beyond 2^63.
+// "500M", "4G" or a plain number: k, M, G and T are powers of 1024. RELUME_EINVAL for anything
+// else, for nothing, and beyond 2^63.
 RELUME_RESULT relume_status relume_size_parse(uint64_t *out, const char *text);
 
 enum relume_cpu {
@@ -84,13 +84,13 @@ RELUME_API unsigned relume_cpu_features(void);
 // The number of cores that this process may use, at least 1.
 RELUME_API int relume_cpu_count(void);
 
-// One character of UTF-8: its number, and how many bytes it has; 0 at the end. A byte that begins no
-// whole character is one, of the number 0xFFFD.
+// One character of UTF-8: its number, and how many bytes it has; 0 at the end. A byte that begins
+// no whole character is one, of the number 0xFFFD.
 RELUME_API int relume_text_step(uint32_t *code, const char *text);
 // Whether a terminal only shows it: no control, no change of direction, nothing unseen.
 RELUME_API bool relume_text_harmless(uint32_t code);
-// Makes a text fit for a terminal, in place: each harmful character becomes "?". Returns it. Messages
-// of the library are so already.
+// Makes a text fit for a terminal, in place: each harmful character becomes "?". Returns it.
+// Messages of the library are so already.
 RELUME_API char *relume_printable(char *text);
 
 // The whole number of a value, cut towards zero, whatever the value: beyond 2^30 either way it
@@ -103,6 +103,11 @@ static inline int relume_whole(double value)
     const double above = value > -most ? value : -most;
     return (int)(above < most ? above : most);
 }
+
+// Remove the unfinished outputs of this process, for programs that are about to end while the
+// library is still at work: after it, calls that write do not return. Thread-safety: any thread,
+// once.
+RELUME_API void relume_files_abandon(void);
 
 // Write a whole file: it appears under its name complete or not at all; devices and pipes are
 // written directly. RELUME_EIO with a sentence, RELUME_EINVAL when it would replace an input,

@@ -4,9 +4,12 @@
 #include "base/memory.h"
 #include "base/tree.h"
 
+#include <relume/base.h>
+
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
@@ -20,8 +23,13 @@ enum { DIGITS = 12, TRIES = 100, NAME = 4096 };
 
 struct beside {
     char *dir, *path, *lock, *new, *old;
-    int fd;  // of the lock
+    int fd;        // of the lock
+    beside *next;  // of those that this process works in
 };
+
+// What a process must remove when it ends without waiting for its threads.
+static pthread_mutex_t open_lock = PTHREAD_MUTEX_INITIALIZER;
+static beside *open_ones;
 
 const char *beside_new(const beside *b)
 {
@@ -187,6 +195,34 @@ static int try_lock(beside *b, const char *name)
     return good ? 1 : gone || taken ? 0 : -1;
 }
 
+static void enter(beside *b)
+{
+    pthread_mutex_lock(&open_lock);
+    b->next = open_ones;
+    open_ones = b;
+    pthread_mutex_unlock(&open_lock);
+}
+
+static void leave(const beside *b)
+{
+    pthread_mutex_lock(&open_lock);
+    for (beside **at = &open_ones; *at; at = &(*at)->next)
+        if (*at == b) {
+            *at = b->next;
+            break;
+        }
+    pthread_mutex_unlock(&open_lock);
+}
+
+// Others may still write there: a folder that was not empty in the end is tried again.
+void relume_files_abandon(void)
+{
+    pthread_mutex_lock(&open_lock);
+    for (const beside *b = open_ones; b; b = b->next)
+        for (int i = 0; i < TRIES && !access(b->path, F_OK); i++)
+            remove_all(b);
+}
+
 beside *beside_open(const char *dir, const char *name)
 {
     beside_sweep(dir);
@@ -198,8 +234,10 @@ beside *beside_open(const char *dir, const char *name)
             return NULL;
         const bool made = !mkdir(b->path, 0700);
         const int locked = made ? try_lock(b, name) : errno == EEXIST ? 0 : -1;
-        if (locked > 0)
+        if (locked > 0) {
+            enter(b);
             return b;
+        }
         const int error = errno;
         if (made && locked < 0)
             remove_all(b);
@@ -215,6 +253,7 @@ beside *beside_open(const char *dir, const char *name)
 void beside_close(beside **b)
 {
     if (*b) {
+        leave(*b);
         remove_all(*b);
         drop(*b);
     }

@@ -8,12 +8,13 @@
 #include <limits.h>
 #include <malloc.h>
 #include <math.h>
+#include <pthread.h>
+#include <semaphore.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -78,23 +79,34 @@ static volatile sig_atomic_t interrupted;  // the signal that asked to stop, 0: 
 static bool bar_drawn;
 
 // Most phases ask every few milliseconds whether to stop, and clean up. A library's loop asks
-// nobody: who is still at work after this long ends without. Unfinished files have no name, and
-// what is left of folders the next run removes.
-static const struct itimerval PATIENCE = {.it_value = {.tv_usec = 800000}};
+// nobody: when work goes on for so long after that, a thread cleans up and ends the program.
+static const struct timespec PATIENCE = {.tv_nsec = 800000000};
+static sem_t asked_to_stop;
 
 static void on_interrupt(int signal_number)
 {
     interrupted = signal_number;
-    setitimer(ITIMER_REAL, &PATIENCE, NULL);
+    sem_post(&asked_to_stop);
 }
 
-static void on_late(int signal_number)
+// By the signal itself, so that shells and scripts see what ended the program.
+static int die_of(int signal_number)
+{
+    signal(signal_number, SIG_DFL);
+    raise(signal_number);
+    return 128 + signal_number;
+}
+
+static void *end_late(void *unused)
 {
     static const char line[] = "\nrelume: interrupted\n";
-    (void)signal_number;
+    while (sem_wait(&asked_to_stop))
+        ;
+    nanosleep(&PATIENCE, NULL);
+    relume_files_abandon();
     (void)!write(STDERR_FILENO, line + !bar_drawn, sizeof line - 1 - !bar_drawn);
-    signal(interrupted, SIG_DFL);
-    raise(interrupted);
+    die_of(interrupted);
+    return unused;
 }
 
 static void clear_bar(void)
@@ -458,14 +470,6 @@ static relume_status unknown_command(const char *given)
 
 // ---------------------------------------------------------------- main
 
-// By the signal itself, so that shells and scripts see what ended the program.
-static int die_of(int signal_number)
-{
-    signal(signal_number, SIG_DFL);
-    raise(signal_number);
-    return 128 + signal_number;
-}
-
 static int exit_code(relume_status status)
 {
     switch (status) {
@@ -589,7 +593,14 @@ static void listen_to_signals(void)
 {
     const struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = SA_RESETHAND};
     struct sigaction before;
-    signal(SIGALRM, on_late);
+    pthread_t watcher;
+    pthread_attr_t small;
+    sem_init(&asked_to_stop, 0, 0);
+    pthread_attr_init(&small);
+    pthread_attr_setstacksize(&small, 1 << 18);
+    if (!pthread_create(&watcher, &small, end_late, NULL))
+        pthread_detach(watcher);
+    pthread_attr_destroy(&small);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
     if (!sigaction(SIGHUP, NULL, &before) && before.sa_handler != SIG_IGN)

@@ -108,6 +108,13 @@ static bool try_axis(struct relume_zone *z, vec3 axis, const struct relume_vec3 
     return true;
 }
 
+// A gap narrower than this was captured. Few lights all around are farther apart than those of a
+// dome: as far as they would be if they were spread evenly, each with six others around it.
+static double least_gap(int n, bool hemispherical)
+{
+    return hemispherical ? MESH_WIDE : fmax(MESH_WIDE, sqrt(8.0 * M_PI / (sqrt(3.0) * n)));
+}
+
 void zone_find(struct relume_zone *zone, const struct relume_vec3 *lights, int n,
                const struct zone_params *p)
 {
@@ -117,7 +124,7 @@ void zone_find(struct relume_zone *zone, const struct relume_vec3 *lights, int n
     double gap;
     const vec3 lost = mesh_widest_gap(lights, n, &gap);
     *zone = (struct relume_zone){.everywhere = true};
-    if (n < LEAST_LIGHTS || gap < MESH_WIDE)
+    if (n < LEAST_LIGHTS || gap < least_gap(n, p->hemispherical))
         return;
     zone->everywhere =
         !(p->hemispherical && try_axis(zone, pole, lights, n, part)) &&

@@ -95,5 +95,5 @@ fine black 'warning: c: 576 of 576 pixels are black under every light' c --basis
 fine black-sh 'warning: c: 10 images are black' c --basis sh
 finite 'black stays black' black.exr "dir 0 0 1"
 check 'black is 0 0 0' grep -qx '0 0 0' rgb.txt
-fine saturated 'photos: [1-9][0-9]* of 576 pixels are saturated under some light' photos
+fine saturated 'photos: [1-9][0-9]* of 576 pixels are overexposed in at least one photograph' photos
 finish

@@ -9,6 +9,7 @@
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -165,6 +166,28 @@ void tree_list_free(struct tree_list *list)
         free(list->item[i].name);
     free(list->item);
     *list = (struct tree_list){0};
+}
+
+static bool ends_with(const char *name, const char *ending)
+{
+    const size_t n = strlen(name), m = strlen(ending);
+    return n >= m && !strcasecmp(name + n - m, ending);
+}
+
+char *tree_only(const char *folder, const char *ending)
+{
+    char *found = NULL;
+    int n = 0;
+    DIR *dir = opendir(folder);
+    for (const struct dirent *e; dir && (e = readdir(dir));)
+        if (ends_with(e->d_name, ending) && n++ == 0)
+            found = mem_format("%s/%s", folder, e->d_name);
+    if (dir)
+        closedir(dir);
+    if (n == 1)
+        return found;
+    free(found);
+    return NULL;
 }
 
 // ---------------------------------------------------------------- disk

@@ -34,6 +34,10 @@ struct tree_list {
 bool tree_list(struct tree_list *out, const char *path);
 void tree_list_free(struct tree_list *list);
 
+// The only entry of a folder whose name ends in `ending`, upper and lower case alike: a new string,
+// the folder's path before it. NULL when there is none, or more than one.
+char *tree_only(const char *folder, const char *ending);
+
 // To disk. False with errno.
 bool tree_sync(const char *path);
 // Remove a file, or a folder with all that is in it; links are removed, never followed.

@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/tree.h"
 #include "capture/near.h"
 #include "math/vec.h"
 
@@ -60,35 +61,41 @@ static bool has_extension(const char *path, const char *extension)
     return dot && !strcasecmp(dot, extension);
 }
 
+// The description in a folder: its capture.json, else its only .lp file.
+static relume_status find_description(char **out, const char *folder, const struct relume_log *log)
+{
+    char *path = *out = mem_format("%s/capture.json", folder);
+    if (!path)
+        return RELUME_ENOMEM;
+    if (!access(path, F_OK))
+        return RELUME_OK;
+    free(path);
+    *out = tree_only(folder, ".lp");
+    if (*out)
+        return RELUME_OK;
+    return log_fail(log, RELUME_EDATA,
+                    "%s: no capture.json and no single .lp file in this folder; give the .lp file, "
+                    "or make a capture of photographs first: relume capture %s -o DIR",
+                    folder, folder);
+}
+
 static relume_status read_description(relume_capture *c, const char *path,
                                       const struct relume_capture_params *p)
 {
     struct stat s;
-    char *inside = NULL;
     if (!stat(path, &s) && S_ISDIR(s.st_mode)) {
-        inside = mem_format("%s/capture.json", path);
-        if (!inside)
-            return RELUME_ENOMEM;
-        if (access(inside, F_OK)) {
-            free(inside);
-            return log_fail(p->log, RELUME_EDATA,
-                            "%s: no capture.json in this folder; expected one, or a .lp file",
-                            path);
-        }
-        path = inside;
-    }
-    c->path = mem_text(path);
-    relume_status status = RELUME_ENOMEM;
-    if (!c->path) {
-    } else if (has_extension(path, ".lp")) {
-        status = lp_read(&c->draft, path, p->limits, p->log);
-        if (!status)
-            status = lp_resolve(&c->draft, path, p);
+        const relume_status status = find_description(&c->path, path, p->log);
+        if (status)
+            return status;
     } else {
-        status = manifest_read(&c->draft, path, p);
+        c->path = mem_text(path);
     }
-    free(inside);
-    return status;
+    if (!c->path)
+        return RELUME_ENOMEM;
+    if (!has_extension(c->path, ".lp"))
+        return manifest_read(&c->draft, c->path, p);
+    const relume_status status = lp_read(&c->draft, c->path, p->limits, p->log);
+    return status ? status : lp_resolve(&c->draft, c->path, p);
 }
 
 // Keep only the lights for which `keep` holds, in every array that is indexed by light.

@@ -74,7 +74,7 @@ const struct relume_log *prefix_log(struct prefix_log *p, const struct relume_lo
 __attribute__((format(printf, 1, 2))) relume_status usage_error(const char *format, ...);
 // The same for inputs at fault: RELUME_EDATA.
 __attribute__((format(printf, 1, 2))) relume_status data_error(const char *format, ...);
-// RELUME_EINVAL and "unknown WHAT 'given'; did you mean ...; expected one of ...".
+// RELUME_EINVAL and "unknown WHAT 'given'; did you mean ...? Expected one of ...".
 relume_status unknown_name(const char *what, const char *given, const char *const *names);
 // `count` numbers separated by commas or blanks, nothing else.
 bool parse_numbers(const char *text, double *out, int count);

@@ -229,7 +229,7 @@ relume_status unknown_name(const char *what, const char *given, const char *cons
     for (size_t n = 0; *names && n < sizeof list; names++)
         n += (size_t)snprintf(list + n, sizeof list - n, " %s", *names);
     if (near)
-        return usage_error("unknown %s '%.200s'; did you mean '%s'?; expected one of:%s", what,
+        return usage_error("unknown %s '%.200s'; did you mean '%s'? Expected one of:%s", what,
                            given, near, list);
     return usage_error("unknown %s '%.200s'; expected one of:%s", what, given, list);
 }

@@ -5,9 +5,9 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/scratch.h"
+#include "base/tree.h"
 #include "exchange/still.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <relume/capture.h>
 #include <relume/photograph.h>
@@ -33,28 +33,11 @@ static bool holds(const char *folder, const char *name)
     return found;
 }
 
-// The only .lp file of a folder; NULL when there is none or more than one.
-static char *only_lp(const char *folder)
-{
-    char *found = NULL;
-    int n = 0;
-    DIR *dir = opendir(folder);
-    for (const struct dirent *e; dir && (e = readdir(dir));)
-        if (ends_with(e->d_name, ".lp") && n++ == 0)
-            found = mem_format("%s/%s", folder, e->d_name);
-    if (dir)
-        closedir(dir);
-    if (n == 1)
-        return found;
-    free(found);
-    return NULL;
-}
-
 static enum relume_kind kind_of_folder(const char *path)
 {
     if (holds(path, "info.json"))
         return RELUME_KIND_FOREIGN;
-    char *lp = holds(path, "capture.json") ? NULL : only_lp(path);
+    char *lp = holds(path, "capture.json") ? NULL : tree_only(path, ".lp");
     const bool capture = lp || holds(path, "capture.json");
     free(lp);
     return capture ? RELUME_KIND_CAPTURE : RELUME_KIND_UNKNOWN;
@@ -127,14 +110,8 @@ static relume_status encode(const char *path, const char *out, const struct relu
 {
     relume_capture *capture;
     relume_coder *coder = NULL;
-    char *lp = NULL;
-    struct stat s;
-    if (!stat(path, &s) && S_ISDIR(s.st_mode) && !holds(path, "capture.json"))
-        lp = only_lp(path);
     relume_status status = relume_capture_open(
-        &capture, lp ? lp : path,
-        relume_capture_params(.log = p->log, .allow_outside = p->allow_outside));
-    free(lp);
+        &capture, path, relume_capture_params(.log = p->log, .allow_outside = p->allow_outside));
     struct relume_decision decision = {0};
     if (!status)
         status =
@@ -174,10 +151,11 @@ static relume_status unknown(const char *path, const struct relume_open_params *
                         "%s: nothing that relume opens; expected a relume file (.exr), .ptm, .rti, "
                         ".hsh, a web folder, a capture (.lp, capture.json) or an HDR picture",
                         path);
-    return log_fail(p->log, RELUME_EDATA,
-                    "%s: a folder without capture.json, info.json and one .lp file; of photographs "
-                    "'relume capture %s -o DIR' makes a capture",
-                    path, path);
+    return log_fail(
+        p->log, RELUME_EDATA,
+        "%s: a folder without capture.json, info.json or a single .lp file; if it holds "
+        "photographs, make a capture of them first: relume capture %s -o DIR",
+        path, path);
 }
 
 static relume_status convert(enum relume_kind kind, const char *path, const char *out,

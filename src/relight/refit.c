@@ -374,9 +374,7 @@ relume_status relume_refit_create(relume_refit **out, const struct relume_codes 
         status = take_grid(refit, &w.params);
     if (!status)
         log_line(w.params.log, RELUME_NOTE,
-                 "codes of the display domain fitted again by pca %d in linear light; loss %.2g of "
-                 "white",
-                 relume_coder_info(refit->coder)->coefficients, refit->loss);
+                 "converted to linear light for the environment; error %.2g %%", 100 * refit->loss);
     free(index);
     if (status)
         relume_refit_destroy(&refit);

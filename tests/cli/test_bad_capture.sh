@@ -220,7 +220,7 @@ bad 'a picture as .lp' 'c/dirs.lp: ' c/dirs.lp
 bad 'no such .lp' 'nowhere.lp: cannot be opened' nowhere.lp
 bad 'no such capture' 'nowhere: ' nowhere
 mkdir empty
-bad 'folder without capture.json' 'empty: no capture.json' empty
+bad 'folder without capture.json' 'empty: no capture.json and no single .lp file in this folder; .*: relume capture empty -o DIR' empty
 
 # ---- capture.json
 json() { # name, pattern, sed program

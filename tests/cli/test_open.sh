@@ -15,6 +15,11 @@ relume export hsh.exr -o i.rti
 relume export pca.exr -o web
 relume export pca.exr -o zoom --to deepzoom
 
+# ---- a folder of photographs with one list is a capture for every command
+mkdir listed && cp dome/view00/*.png listed && sed 's|view00/||' dome/dirs.lp >listed/lights.LP
+expect_ok 'encode a folder with one .lp' 'reproduces your photographs' "$RELUME" encode listed -o listed.exr
+expect_ok 'eval with such a folder' - "$RELUME" eval listed.exr listed
+
 # ---- RTI of other formats: what import makes of them
 for file in i.ptm i.rti web web/info.json zoom; do
     relume import $file -o imported.exr
@@ -91,7 +96,7 @@ same 'the viewer shows a .ptm as its import' i.ptm.png imported.exr.png
 mkdir empty two && touch two/a.lp two/b.lp
 bad() { expect_fail "$1" 1 "$2" x.png "$RELUME" relight "$3" -o x.png; }
 bad 'one photograph' "light0000.png: one photograph under one light cannot be relit; expected the .lp file or the folder of all of them, or 'relume capture" dome/view00/light0000.png
-bad 'a folder of nothing' "empty: a folder without capture.json, info.json and one .lp file; of photographs 'relume capture" empty
+bad 'a folder of nothing' "empty: a folder without capture.json, info.json or a single .lp file; .*: relume capture empty -o DIR" empty
 bad 'a folder of two lists' 'two: a folder without' two
 echo words >words.txt
 bad 'a text' 'words.txt: nothing that relume opens; expected a relume file \(.exr\), .ptm' words.txt

@@ -33,7 +33,7 @@ relume query i.ptm --eye 0,0,4 --direction 0,0,-1 --light "$light" >got.txt
 "$RELUME" import i.ptm -o imported.exr -q
 relume query imported.exr --eye 0,0,4 --direction 0,0,-1 --light "$light" >want.txt
 same 'query i.ptm' want.txt got.txt
-expect_ok 'export of a .ptm' 'the same codes as in the file' "$RELUME" export i.ptm -o again.ptm
+expect_ok 'export of a .ptm' 'copied unchanged: nothing is lost' "$RELUME" export i.ptm -o again.ptm
 same 'its codes' i.ptm again.ptm
 
 # ---- captures, encoded by the defaults

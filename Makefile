@@ -211,7 +211,9 @@ GL_BENCH := $(addprefix $B/tests/bench/,bench_viewer bench_objects bench_seeing)
 $(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) $(TEST_LD) $(if $(filter fuzzer,$(config)),$(FUZZ_ENGINE)) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(Q)$(CC) $(MODE) $(TEST_LD) $(if $(filter fuzzer,$(config)),$(FUZZ_ENGINE)) -pthread $(call run_path,/../..) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LIBS)
+# The viewer without its window
+$B/tests/fuzz/fuzz_script: $(addprefix $B/obj/viewer/,script.o adjust.o say.o app.o keys.o lamps.o gizmo.o orbit.o gaze.o)
 $(TOOLS): $B/%: $B/obj/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)

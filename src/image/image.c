@@ -117,7 +117,7 @@ static void convert_bytes(const struct image_stream *s, const struct picture_inf
                 *out++ = s->table[c][in[info->rgb[c]]];
 }
 
-// False when a sample is NaN or infinite.
+// False when a sample is NaN or infinite, or becomes so: 1e30 is, as a code value.
 static bool convert_floats(const struct image_stream *s, const struct picture_info *info,
                            size_t pixels, float *out)
 {
@@ -125,9 +125,9 @@ static bool convert_floats(const struct image_stream *s, const struct picture_in
     float sum = 0.0f;  // 0 x finite is 0, 0 x anything else is NaN
     for (size_t x = 0; x < pixels; x++, in += info->channels)
         for (int c = 0; c < s->channels; c++) {
-            const float v = in[info->rgb[c]];
-            sum += 0.0f * v;
-            *out++ = recode(s, c, v);
+            const float v = in[info->rgb[c]], recoded = recode(s, c, v);
+            sum += 0.0f * v + 0.0f * recoded;
+            *out++ = recoded;
         }
     return sum == 0.0f;
 }

@@ -22,3 +22,4 @@ for folder in "$TOP"/tests/fuzz/corpus/*; do
     name=$(basename "$folder")
     check "corpus/$name is a target's" test -f "$TOP/tests/fuzz/$name.c"
 done
+finish

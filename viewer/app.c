@@ -86,11 +86,11 @@ static relume_status check_around(const struct relume_camera *camera, const stru
         return RELUME_OK;
     if (!relume_slabs_window(&window, file->around, eye, &camera->aim, file->width, file->height))
         return say(log, RELUME_EINVAL,
-                   "--eye: expected a place beside what it looks at; found %g,%g,%g", eye.x, eye.y,
-                   eye.z);
+                   "--eye: expected a point away from what it looks at; found %g,%g,%g", eye.x,
+                   eye.y, eye.z);
     if (!relume_lens_fits(&window, start->aperture, start->focused ? start->focus_z : 0.0))
         return say(log, RELUME_EINVAL,
-                   "--focus: expected less than %g before what the eye looks at; found %g",
+                   "--focus: expected less than %g in front of the look-at point; found %g",
                    relume_window_distance(&window), start->focus_z);
     return RELUME_OK;
 }

@@ -536,7 +536,7 @@ static const struct option options[] = {
     {"--projection", "P", "panorama: perspective, stereographic or planet", take_projection},
     {"--interpolate", "I", "slab: constant, linear or depth; default: depth if there is any",
      take_interpolation},
-    {"--aperture", "A", "slab: average the cameras within A/2 of the eye; free eye: a lens",
+    {"--aperture", "A", "slab: diameter of the lens, which blurs what is out of focus; default 0",
      take_aperture},
     {"--focus", "Z",
      "slab: the plane at z = Z is sharp; free camera: distance from the middle to it", take_focus},
@@ -558,29 +558,29 @@ static const struct option options[] = {
     {"--capture", "CAPTURE", "the photographs, for --pass difference", take_capture},
     {"--threads", "N", "threads that read files; default: all cores", take_threads},
     {"--max-memory", "SIZE",
-     "most memory of one picture, view or model; default: half of the machine's", take_max_memory},
+     "most memory for one picture, view or model; default: half of the machine's", take_max_memory},
     {"--max-pixels", "N", "most pixels in one picture, as 200M; default: 1G", take_max_pixels},
-    {"--any-format", NULL, "read pictures of every format that OpenImageIO knows", take_any_format},
-    {"--vram", "MB", "graphics memory for views; those not used for long leave; default: 1024",
-     take_vram},
+    {"--any-format", NULL, "read pictures of every format that OpenImageIO reads", take_any_format},
+    {"--vram", "MB",
+     "graphics memory for views; those not used for longest are dropped; default: 1024", take_vram},
     {"--relight", "BY",
-     "passes of OpenGL, the library, or auto: the library where OpenGL is software; default auto",
+     "where to compute: passes (the graphics card), library (the processor) or auto; default auto",
      take_relight},
-    {"--glare", NULL, "the frame as a living eye sees it", take_glare},
-    {"--subject", "FILE", "--glare: whose eye it is (JSON, docs/glare.md)", take_subject},
-    {"--glare-magnify", "X", "--glare: the pattern's size against the frame; default 1",
-     take_sight},
+    {"--glare", NULL, "show the picture as a human eye sees it, with halos around lights",
+     take_glare},
+    {"--subject", "FILE", "--glare: the viewer's eye (JSON, docs/glare.md)", take_subject},
+    {"--glare-magnify", "X", "--glare: enlarge the halos; default 1", take_sight},
     {"--nits", "N", "--glare: cd/m^2 of a pixel of value 1; default 100", take_sight},
-    {"--squint", "S", "--glare: how far the lids are held closed, 0 to 0.95", take_sight},
+    {"--squint", "S", "--glare: how far the lids are closed, 0 (open) to 0.95", take_sight},
     {"--glare-cycle", "S",
      "--glare: the library computes S seconds of the eye once and shows them in a loop; up to 10",
      take_sight},
     {"--glare-mode", "M", "--glare: auto, fft, billboard or hybrid; default auto", take_sight},
     {"--glare-size", "N",
      "--glare: texels of the pattern; default 1536 by passes, 512 by the library", take_glare_size},
-    {"--glare-by", "BY", "--glare: by passes of OpenGL 4.3, the library, or auto, as --relight",
+    {"--glare-by", "BY", "--glare: where to compute, as --relight; passes need OpenGL 4.3",
      take_glare_by},
-    {"--sources", NULL, "draw the lights that are in view, as small as they are", take_sources},
+    {"--sources", NULL, "draw the lights that are in view as small bright points", take_sources},
     {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
      take_offscreen},
     {"--script", "EVENTS", "play a text file of events without a window", take_script},
@@ -589,14 +589,13 @@ static const struct option options[] = {
     {"--record", "KIND", "record a light sweep, a turntable or --script without a window",
      take_record},
     {"-o", "OUT", "--record: a folder of PNG files, or FILE.mp4 (by ffmpeg)", take_output},
-    {"--frames", "N", "--record: pictures of the round; default 72", take_frames},
-    {"--no-config", NULL, "neither read nor write what the window remembers", take_no_config},
-    {"--window", NULL, "play --script in a window, which then stays", take_window},
-    {"--panel", NULL, "begin with the panel; offscreen: draw it as well", take_panel},
-    {"--keep-lights", NULL,
-     "begin with the lights of the last time, and keep them for files opened later",
+    {"--frames", "N", "--record: pictures in one full turn; default 72", take_frames},
+    {"--no-config", NULL, "do not read or save the window's settings", take_no_config},
+    {"--window", NULL, "play --script in a window, which then stays open", take_window},
+    {"--panel", NULL, "start with the panel open; offscreen: draw it as well", take_panel},
+    {"--keep-lights", NULL, "start with the last lights, and keep them when another file is opened",
      take_keep_lights},
-    {"--dock", "SIDE", "begin with the panel at the left or right, beside the picture, or over it",
+    {"--dock", "SIDE", "start with the panel at the left or right of the picture, or over it",
      take_dock},
     {"--ball", NULL, "offscreen: draw the ball that shows the light, as the window does",
      take_ball},
@@ -679,8 +678,8 @@ static relume_status take_option(struct options *o, int *i, int argc, char **arg
             return say(log, RELUME_EINVAL, "%s: takes no value; found '%s'", option->name,
                        equals + 1);
         if (option->argument && !equals && *i + 1 >= argc)
-            return say(log, RELUME_EINVAL, "%s: expected %s; found the end of the line",
-                       option->name, option->argument);
+            return say(log, RELUME_EINVAL, "%s: expected %s after it; found none", option->name,
+                       option->argument);
         const char *text = !option->argument ? NULL : equals ? equals + 1 : argv[++*i];
         if (text && !*text)
             return say(log, RELUME_EINVAL, "%s: expected %s; found an empty one", option->name,
@@ -726,7 +725,7 @@ static relume_status choose_objects(struct options *o, const struct relume_log *
     if (w->mesh && !w->materials)
         return say(log, RELUME_EINVAL, "--mesh: expected a material for it; see --material");
     if (!w->mesh && (w->materials || w->repeat != 0.0))
-        return say(log, RELUME_EINVAL, "expected --mesh beside --material and --repeat");
+        return say(log, RELUME_EINVAL, "--material and --repeat need --mesh");
     o->stage = !o->file && (w->mesh || w->description);
     return RELUME_OK;
 }
@@ -758,7 +757,7 @@ relume_status options_parse(struct options *o, int argc, char **argv, const stru
             return status;
     }
     if (relume_aim_given(&o->start.camera.aim) && o->start.camera.framing != RELUME_FRAME_EYE)
-        return say(log, RELUME_EINVAL, "expected --eye beside --look-at, --up and --fov");
+        return say(log, RELUME_EINVAL, "--look-at, --up and --fov need --eye");
     if (o->record != (o->output != NULL))
         return say(log, RELUME_EINVAL, "expected --record KIND and -o OUT together");
     if (o->record && o->kind == RECORD_SCRIPT && !o->script)

@@ -45,7 +45,8 @@ static bool range_rows(relume_pass_params *p, const panel_facts *facts)
 {
     bool automatic = !(p->top > p->low);
     bool changed = ImGui::Checkbox("range from the picture", &automatic);
-    panel_tip("from the darkest hundredth of the pixels to the brightest one, background left out");
+    panel_tip(
+        "covers the picture without its darkest and brightest 1 % and without the background");
     if (changed) {
         p->low = automatic ? 0 : facts->range[0];
         p->top = automatic ? 0 : facts->range[1];
@@ -61,7 +62,7 @@ static bool range_rows(relume_pass_params *p, const panel_facts *facts)
         p->top = ends[1];
         changed = true;
     }
-    panel_tip("linear luminance that is shown as dark blue, and as yellow");
+    panel_tip("linear luminance shown as dark blue, and as yellow");
     return changed;
 }
 
@@ -71,20 +72,21 @@ bool panel_enhancement(app *app, const panel_facts *facts)
     bool changed = false;
     switch (app->now.pass) {
     case RELUME_PASS_SPECULAR:
-        changed |= float_slider("highlight", &p->specular, 0.6f, 0.01f, 10, "%.2f",
-                                "how bright it is, in brightest parts of the picture");
+        changed |= float_slider(
+            "highlight", &p->specular, 0.6f, 0.01f, 10, "%.2f",
+            "how bright the highlight is, compared with the brightest parts of the picture");
         changed |= float_slider("exponent", &p->exponent, 40, 1, 1000, "%.0f",
-                                "how narrow it is: 1 matt, 1000 a mirror");
+                                "how narrow the highlight is: 1 matt, 1000 like a mirror");
         break;
     case RELUME_PASS_DIFFUSE_GAIN:
         changed |= float_slider("gain", &p->gain, RELUME_PASS_GAIN, 1, 20, "%.1f times",
-                                "of the shading's curvature; 1 changes nothing");
+                                "strengthens the shading of fine relief; 1 changes nothing");
         break;
     case RELUME_PASS_UNSHARP: {
         double radius = p->radius > 0 ? p->radius : 4;
         changed |= float_slider("gain", &p->gain, RELUME_PASS_GAIN, 1, 20, "%.1f times",
-                                "how much more of fine detail");
-        if (slider("radius", &radius, 1, 64, "%.0f pixels", "detail is finer than this",
+                                "strength of the sharpening");
+        if (slider("radius", &radius, 1, 64, "%.0f pixels", "sharpens detail finer than this",
                    ImGuiSliderFlags_Logarithmic)) {
             p->radius = (int)std::lround(radius);
             changed = true;
@@ -133,12 +135,13 @@ static bool lens_rows(app *app)
     const double least = plane - 4 * std::fabs(away), most = plane + 0.9 * std::fabs(away);
     bool changed = slider("aperture", &s->aperture, 0, extent > 0 ? extent : away, "%.3g",
                           "width of the lens, world units: 0 is sharp everywhere; also by A");
-    changed |= slider("focus", &s->focus_z, least, most, "%.3g",
-                      orbit_is(app) ? "how far before the middle it is sharp, world units"
-                                    : "the plane z that is sharp, world units; also by , and .");
+    changed |=
+        slider("focus", &s->focus_z, least, most, "%.3g",
+               orbit_is(app) ? "distance from the middle to the plane in focus, world units"
+                             : "height z of the plane in focus, world units; also by , and .");
     if (ImGui::Button(app->picks_focus ? "now click in the picture" : "focus by a click (F)"))
         (void)keys_press(app, 'f', false);
-    panel_tip("then click on what shall be sharp");
+    panel_tip("then click on what should be sharp");
     return changed;
 }
 

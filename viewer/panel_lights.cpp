@@ -29,7 +29,7 @@ static bool list_row(app_state *s, int i)
     ImGui::SameLine();
     changed |= ImGui::Checkbox("##solo", &s->lamp[i].solo);
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("solo: only lights so marked shine");
+        ImGui::SetTooltip("solo: only the lights marked here shine");
     ImGui::SameLine();
     ImGui::ColorButton("##colour", colour_of(s->light[i]), ImGuiColorEditFlags_NoTooltip);
     ImGui::SameLine();
@@ -212,7 +212,7 @@ static bool light_buttons(panel *panel, app *app)
     ImGui::SameLine();
     if (ImGui::Button("save rig"))
         app->wish = APP_WISH_SAVE_RIG;
-    panel_tip("save these lights as a file, for --rig");
+    panel_tip("save these lights as a rig file, which --rig reads");
     for (const lamp_preset *p = lamp_presets; p->name; p++) {
         if (p != lamp_presets)
             ImGui::SameLine();
@@ -226,7 +226,7 @@ static bool light_buttons(panel *panel, app *app)
     if (ImGui::InputTextWithHint("##spec", "spot 0 0 2 0 0 -1 20 rgb 1 .8 .6", panel->spec,
                                  sizeof panel->spec, ImGuiInputTextFlags_EnterReturnsTrue))
         wish_light(app, panel->spec);
-    panel_tip("a light in words (docs/lights.md), then Enter: it is added");
+    panel_tip("describe a light in words (docs/lights.md) and press Enter to add it");
     return changed;
 }
 

@@ -72,7 +72,7 @@ void panel_notes(const app *app, const panel_facts *facts, float scale)
     if (facts->recording)
         recording_note(app, facts);
     else if (app->picks_focus)
-        note("pick", "click on what shall be sharp - Esc: never mind", app, 0.02f, 1, scale);
+        note("pick", "click on what should be sharp - Esc: cancel", app, 0.02f, 1, scale);
     else if (!app->help && !app->asks && !app->browse && !app->file.empty)
         note("hint", hint_of(app), app, 0.02f, (float)app_note_alpha(app->hint_s), scale);
     if (toast)

@@ -123,7 +123,7 @@ bool panel_glare(app *app, const panel_facts *facts)
     ImGui::SameLine();
     changed |= ImGui::Checkbox("sources", &s->sources);
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("lights that are in view are drawn as small sources");
+        ImGui::SetTooltip("lights in view are drawn as small bright points");
     if (ImGui::SliderScalar("magnify", ImGuiDataType_Double, &magnify, &least[0], &most[0], "%.2f",
                             ImGuiSliderFlags_Logarithmic)) {
         s->magnify = magnify;
@@ -142,7 +142,7 @@ bool panel_glare(app *app, const panel_facts *facts)
         changed = true;
     }
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("computed once, then shown again and again: cheap");
+        ImGui::SetTooltip("computed once, then repeated: fast");
     changed |= choose_mode(s);
     changed |= parts_row(s);
     if (facts->eye)

@@ -148,7 +148,7 @@ static relume_status start_ffmpeg(struct record *r)
 {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC))
-        return cannot(r, "no pipe to ffmpeg");
+        return cannot(r, "cannot send pictures to ffmpeg");
     r->ffmpeg = fork();
     if (r->ffmpeg == 0)
         become_ffmpeg(r, ends[0]);
@@ -174,7 +174,8 @@ static relume_status end_ffmpeg(struct record *r)
         return RELUME_OK;
     if (WIFEXITED(state) && WEXITSTATUS(state) == 127)
         return say(r->log, RELUME_ESYSTEM,
-                   "%s: ffmpeg is not installed; expected it for films, or the name of a folder",
+                   "%s: ffmpeg is not installed, which films need; install it, or give the name of "
+                   "a folder",
                    r->path);
     return say(r->log, RELUME_ESYSTEM, "%s: ffmpeg could not write the film", r->path);
 }
@@ -246,7 +247,10 @@ relume_status record_add(struct record *r, const struct relume_image *image)
         r->height = image->height;
     }
     if (image->width != r->width || image->height != r->height)
-        return say(r->log, RELUME_EINVAL, "%s: the picture's size changed meanwhile", r->path);
+        return say(
+            r->log, RELUME_EINVAL,
+            "%s: the window's size changed while recording; record again without resizing it",
+            r->path);
     return r->film ? add_to_film(r, image) : add_to_folder(r, image);
 }
 

@@ -162,7 +162,7 @@ static relume_status need_surface(struct relighter *r, struct relit_view *v)
                           : RELUME_EINVAL;
     if (status == RELUME_EINVAL)
         return say(r->log, RELUME_EDATA,
-                   "a near light needs to know where the surface is; expected a file with depth");
+                   "a near light needs to know how far the surface is; use a file with depth");
     return status ? status : nearby_view_create(&v->near, &r->near, &codes, &surface);
 }
 

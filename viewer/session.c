@@ -75,8 +75,8 @@ static void warn_below_horizon(const struct session *s)
             (info->pole_y ? d.y : d.z) >= 0.0)
             continue;
         snprintf(text, sizeof text,
-                 "light %d lies below the horizon, where nothing was captured; the value at the "
-                 "horizon is shown",
+                 "light %d lies below the horizon, where nothing was photographed; light from the "
+                 "horizon is shown instead",
                  i + 1);
         s->log->message(s->log->user, RELUME_WARNING, text);
         return;
@@ -127,12 +127,11 @@ static relume_status check_depth(const relume_pack *pack, const struct app_state
 {
     if (objects && !has_surface(pack))
         return say(log, RELUME_EDATA,
-                   "objects need to know where the scene is; expected a file with depth");
+                   "objects need to know how far the scene is; open a file with depth");
     if (start->interpolation != RELUME_INTERPOLATE_DEPTH || relume_pack_info(pack)->has_depth)
         return RELUME_OK;
     return say(log, RELUME_EDATA,
-               "interpolation by depth needs to know where the surface is; expected a file with "
-               "depth");
+               "interpolation by depth needs a file with depth; use --interpolate linear");
 }
 
 relume_status session_compare(struct session *s, const char *capture)

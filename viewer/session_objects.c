@@ -50,8 +50,7 @@ relume_status session_open_objects(struct session *s, const char *path,
             relume_objects_of_mesh(&objects, s->wanted.mesh, &path, 1, s->wanted.repeat, &params);
     else
         return say(s->log, RELUME_EDATA,
-                   "%s: a material; expected 'relume-view %s --mesh FILE', or a description of "
-                   "objects",
+                   "%s: this is a material; use 'relume-view %s --mesh FILE' to see it on a mesh",
                    path, path);
     if (status)
         return status;

@@ -133,15 +133,15 @@ static relume_status wish_focus(struct session *s)
     const bool known =
         lamps_surface(&p, app, &s->renderer.backdrop, app->cursor[0], app->cursor[1]);
     if (!known && app->file.around) {
-        session_say(s, "nothing to focus on there");
+        session_say(s, "nothing to focus on there; click on the object");
         return RELUME_OK;
     }
     app->now.focus_z = known ? focus_at(s, p) : app->file.geometry.st_z;
     if (app->now.aperture <= 0)
         (void)keys_press(app, 'a', false);
     session_say(s,
-                known ? "in focus: %.3g; aperture %.3g (A: the next one)"
-                      : "no depth in this file: in focus is the plane z = %.3g; aperture %.3g",
+                known ? "in focus: %.3g; aperture %.3g (A: next aperture)"
+                      : "this file has no depth: the plane z = %.3g is in focus; aperture %.3g",
                 app->now.focus_z, app->now.aperture);
     return RELUME_OK;
 }

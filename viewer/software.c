@@ -67,7 +67,7 @@ static relume_status need_surface(struct software_view *v, const struct code_sou
         source->surface ? source->surface(&v->surface, source->user, v->view) : RELUME_EINVAL;
     if (status == RELUME_EINVAL)
         return say(log, RELUME_EDATA,
-                   "a near light needs to know where the surface is; expected a file with depth");
+                   "a near light needs to know how far the surface is; use a file with depth");
     return status;
 }
 

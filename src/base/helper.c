@@ -148,7 +148,7 @@ static relume_status find_out(struct helper_job *job)
     const int number = WIFSIGNALED(how) ? WTERMSIG(how) : 0;
     if (number == SIGXCPU || number == SIGKILL)
         snprintf(job->why, HELPER_WHY,
-                 "its reader came to no end; damaged, or made to keep machines busy");
+                 "reading it takes for ever; damaged, or made to keep machines busy");
     else
         snprintf(job->why, HELPER_WHY, "its reader crashed (%s); damaged, or made to do harm",
                  number ? strsignal(number) : "no answer");

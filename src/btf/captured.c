@@ -23,11 +23,15 @@ struct captured {
 static relume_status check(const struct captured *c, const char *path, const struct relume_log *log)
 {
     if (c->m->geometry.projection != RELUME_SLAB || c->m->slabs)
-        return log_fail(log, RELUME_EDATA,
-                        "%s: a BTF is made of the views of one slab; expected \"slab\"", path);
+        return log_fail(
+            log, RELUME_EDATA,
+            "%s: a BTF needs the views of one slab; expected a capture with projection \"slab\"",
+            path);
     if (c->m->positions)
         return log_fail(log, RELUME_EDATA,
-                        "%s: a BTF is made under distant lights; expected directions", path);
+                        "%s: a BTF needs distant lights; expected a capture with light directions, "
+                        "not positions",
+                        path);
     return RELUME_OK;
 }
 

@@ -161,7 +161,8 @@ relume_status relume_btf_judge(struct relume_btf_error *out, const relume_btf_fi
     relume_status status = prepare(&j, p.unseen);
     if (!status && !j.pairs)
         status = log_fail(p.log, RELUME_EINVAL,
-                          "%s: the model was fitted to all its directions; expected others",
+                          "%s: the model was fitted to all directions, so none are left to test it "
+                          "on; fit with --leave-out first",
                           btf_name(btf));
     if (!status)
         status = btf_for_texels(btf, p.threads, p.log, "comparing", &j, judge_texel);

@@ -77,7 +77,8 @@ relume_status relume_btf_fitted_save(const relume_btf_fitted *m, const char *pat
     const struct relume_log *log = params ? params->log : NULL;
     outdir *dir;
     if (m->table)
-        return log_fail(log, RELUME_EINVAL, "%s: measured values are no model to save", path);
+        return log_fail(log, RELUME_EINVAL,
+                        "%s: measured values cannot be saved as a model; fit one first", path);
     relume_status status = outdir_open(&dir, path, params && params->force, log);
     if (status)
         return status;

@@ -126,7 +126,7 @@ relume_status npy_open(struct npy_file *file, const char *path, const struct rel
     relume_status status = map_file(file, path, log);
     if (!status && !read_header(file, &offset))
         status = log_fail(log, RELUME_EDATA,
-                          "%s: not an array that is read here; expected NumPy format 1.0, rows "
+                          "%s: this kind of array cannot be read; expected NumPy format 1.0, rows "
                           "first, of half, float, uint8, uint16 or uint32",
                           path);
     if (!status && file->map_size - offset != npy_bytes(&file->npy))

@@ -244,8 +244,8 @@ static relume_status find_strays_of(const struct pictures *p, bool view)
         const struct angles a = view ? p->views[i] : p->lights[i];
         if (count * FEW < most)
             return log_fail(p->log, RELUME_EDATA,
-                            "%s/%s: wrong angles?; expected pictures of t%c%03g_p%c%03g for %d %s, "
-                            "as of others; found %d",
+                            "%s/%s: the angles seem wrong; expected pictures of t%c%03g_p%c%03g "
+                            "for %d %s, as of others; found %d",
                             p->path, first->name, view ? 'v' : 'l', a.theta_deg, view ? 'v' : 'l',
                             a.phi_deg, most, view ? "lights" : "views", count);
     }

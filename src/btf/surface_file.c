@@ -79,7 +79,8 @@ relume_status relume_btf_surface_save(const relume_btf_surface *surface, const c
     const struct npy matrix = {NPY_U16, 2, {(size_t)m->rows, (size_t)m->columns}};
     outdir *dir;
     if (surface->level[0].model->table)
-        return log_fail(log, RELUME_EINVAL, "%s: measured values are no model to save", path);
+        return log_fail(log, RELUME_EINVAL,
+                        "%s: measured values cannot be saved as a model; fit one first", path);
     relume_status status = outdir_open(&dir, path, params && params->force, log);
     if (status)
         return status;

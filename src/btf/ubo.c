@@ -368,7 +368,7 @@ static relume_status map_file(struct ubo *u)
     close(fd);
     if (map == MAP_FAILED)
         return log_fail(&u->log, RELUME_EDATA, "cannot be read; expected a BTF of Bonn; found %s",
-                        u->size ? "no way to map it" : "an empty file");
+                        u->size ? "it cannot be mapped into memory" : "an empty file");
     u->bytes = map;
     return RELUME_OK;
 }

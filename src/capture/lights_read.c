@@ -126,7 +126,8 @@ static relume_status read_lines(struct relume_light_list *out, FILE *file, const
         out->position[out->count++] = v;
     }
     if (stated > 0.0 && out->count && stated != out->count)
-        log_line(log, RELUME_WARNING, "%s: says %g lights; found %d, which are used", path, stated,
+        log_line(log, RELUME_WARNING,
+                 "%s: its first line promises %g lights; found %d, which are used", path, stated,
                  out->count);
     return out->count
                ? RELUME_OK

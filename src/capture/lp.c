@@ -173,7 +173,8 @@ static relume_status parse_lines(struct draft *d, char *text, const char *path,
         return log_fail(log, RELUME_EDATA, "%s: %d lights; expected at most %d", path, n,
                         limits_or_default(limits).max_lights);
     if (stated != n)
-        log_line(log, RELUME_WARNING, "%s: says %ld lights; found %d, which are used", path, stated,
+        log_line(log, RELUME_WARNING,
+                 "%s: its first line promises %ld lights; found %d, which are used", path, stated,
                  n);
     d->view[0].images = images;
     d->m = (struct relume_manifest){

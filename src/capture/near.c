@@ -31,11 +31,11 @@ void near_warn(const relume_capture *capture, const struct relume_log *log)
         without += p == RELUME_CUBE || !has_depth(capture, i);
     if (without && p == RELUME_SLAB)
         log_line(log, RELUME_WARNING,
-                 "%s: lights are near, but %d of %d views have no depth; their surfaces are taken "
-                 "to lie on the st plane",
+                 "%s: lights are near, but %d of %d views have no depth; their surfaces are "
+                 "treated as lying on the st plane",
                  capture->path, without, m->views);
     else if (without)
-        log_line(log, RELUME_WARNING, "%s: lights are near, but %s; they are taken as distant ones",
+        log_line(log, RELUME_WARNING, "%s: lights are near, but %s; they are treated as distant",
                  capture->path,
                  p == RELUME_CUBE ? "in a cube near lights are not supported"
                                   : "the panorama has no depth (--assume-depth)");

@@ -291,8 +291,8 @@ relume_status relume_photometric_fit(struct relume_photometric *out, const relum
         return RELUME_EINVAL;
     if (m->lights < 3 || !lambert_spans(m->directions, m->lights))
         return log_fail(f.params.log, RELUME_EDATA,
-                        "normals need three lights in different planes; the %d lights do not "
-                        "determine them",
+                        "normals cannot be computed; expected three lights or more that do not lie "
+                        "in one plane; found %d",
                         m->lights);
     f.view = view;
     f.params.threads = thread_count(f.params.threads);

@@ -117,7 +117,7 @@ static relume_status parse_camera(const struct args *args, struct relume_camera 
             "relight: expected one of --view, --eye, --pan/--tilt/--zoom/--projection");
     if (!args_has(args, "--eye") && (args_has(args, "--look-at") || args_has(args, "--up") ||
                                      (args_has(args, "--fov") && !wants_glare(args))))
-        return usage_error("relight: expected --eye beside --look-at, --up and --fov");
+        return usage_error("relight: --look-at, --up and --fov need --eye");
     if (args_has(args, "--view")) {
         camera->framing = RELUME_FRAME_VIEW;
         camera->view = args_int(args, "--view", 0);

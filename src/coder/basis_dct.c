@@ -24,7 +24,7 @@ static relume_status prepare(relume_coder *coder, const struct relume_log *log)
 
 const struct relume_basis relume_basis_dct = {
     .name = "dct",
-    .summary = "cosines on the stereographic disc, least squares on the captured lights",
+    .summary = "cosines on the stereographic disc, fitted to the photographs by least squares",
     .halves = true,
     .fit_count = disc_fit_count,
     .has_count = disc_has_count,

@@ -36,7 +36,7 @@ static void release(relume_coder *coder)
 
 const struct relume_basis relume_basis_table = {
     .name = "table",
-    .summary = "every captured light, interpolated on the sphere (the reference; large)",
+    .summary = "every photograph, interpolated between lights (the reference; large)",
     .interpolates = true,
     .fit_count = fit_count,
     .has_count = has_count,

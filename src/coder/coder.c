@@ -55,15 +55,15 @@ static relume_status choose_count(const struct relume_basis *basis, int lights,
     const int want = p->coefficients;
     if (want && !basis->has_count(want))
         return log_fail(p->log, RELUME_EINVAL,
-                        "basis %s has no form with %d coefficients; nearest: %d", basis->name, want,
-                        basis->fit_count(want, want));
+                        "basis %s cannot have %d coefficients; the nearest number is %d",
+                        basis->name, want, basis->fit_count(want, want));
     *count = basis->fit_count(want, lights);
     if (want > *count && p->force && !basis->interpolates) {
         if (!p->decode)
-            log_line(p->log, RELUME_WARNING,
-                     "%d lights do not determine %d coefficients of basis %s; smoothing decides "
-                     "the rest",
-                     lights, want, basis->name);
+            log_line(
+                p->log, RELUME_WARNING,
+                "%d lights are too few for %d coefficients of basis %s; smoothing guesses the rest",
+                lights, want, basis->name);
         *count = want;
     }
     if (want && *count < want && !basis->interpolates)
@@ -167,10 +167,12 @@ static relume_status warn_degenerate(const relume_coder *c, const struct relume_
     if (!lsq_eigenvalues(covariance, 3, values))
         return RELUME_ENOMEM;
     if (values[2] < flat * flat)
-        log_line(log, RELUME_WARNING, "all %d lights lie in one direction; others are guesses", n);
+        log_line(log, RELUME_WARNING,
+                 "all %d lights come from one direction; light from anywhere else is guessed", n);
     else if (values[0] < flat * flat)
         log_line(log, RELUME_WARNING,
-                 "all %d lights lie on one ring; directions off it are guesses", n);
+                 "all %d lamps stand on one ring or arc; light from other directions is guessed",
+                 n);
     return RELUME_OK;
 }
 
@@ -208,20 +210,21 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
     if (n < 1 || p.ridge < 0.0 || p.ridge > 1.0 || (p.no_ridge && p.ridge > 0.0))
         return RELUME_EINVAL;
     if (p.luminance && basis->learned)
-        return log_fail(p.log, RELUME_EINVAL, "basis %s has no luminance form", basis->name);
+        return log_fail(p.log, RELUME_EINVAL,
+                        "basis %s cannot be fitted to luminance only; leave out --colour luminance",
+                        basis->name);
     if (basis->interpolates && n > CODER_MAX_COEFFICIENTS)
         return log_fail(p.log, RELUME_EDATA, "basis %s takes at most %d lights; found %d",
                         basis->name, CODER_MAX_COEFFICIENTS, n);
     if (p.robust && (basis == &relume_basis_table || basis == &relume_basis_dct_resampled))
         return log_fail(p.log, RELUME_EINVAL,
-                        "basis %s fits nothing; expected a basis with a "
-                        "robust form",
+                        "basis %s has no robust fit; use another basis, or leave out --robust",
                         basis->name);
     if (basis->learned && p.decode && !p.transform)
         return log_fail(p.log, RELUME_EDATA, "basis %s without its functions", basis->name);
     if (basis->upper_only && !p.hemispherical)
         return log_fail(p.log, RELUME_EDATA,
-                        "basis %s knows one hemisphere of lights; found lights on both",
+                        "basis %s covers one hemisphere of lights; found lights on both sides",
                         basis->name);
     int count = 0;
     relume_status status = choose_count(basis, n, &p, &count);

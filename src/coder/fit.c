@@ -172,8 +172,9 @@ static relume_status finish(struct system *s, relume_coder *coder, const struct 
     const size_t n = (size_t)s->n, k = (size_t)s->k;
     if (!lsq_cholesky(s->h, s->k) || !lsq_invert_lower(s->h, s->k))
         return log_fail(log, RELUME_EDATA,
-                        "the light directions do not determine %d coefficients of basis %s", s->k,
-                        coder->info.basis->name);
+                        "the light directions are too few or too much alike for %d coefficients of "
+                        "basis %s; use fewer coefficients",
+                        s->k, coder->info.basis->name);
     coder->map = mem_array(k * n, sizeof *coder->map);
     coder->transform = mem_array(k * k, sizeof *coder->transform);
     if (!coder->map || !coder->transform)

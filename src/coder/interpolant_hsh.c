@@ -55,8 +55,9 @@ static relume_status prepare(void **data, const struct relume_vec3 *lights, int 
     for (int i = 0; i < n; i++)
         lowest = fmin(lowest, lights[i].z);
     if (lowest < -0.1)
-        return log_fail(log, RELUME_EDATA,
-                        "interpolant hsh knows one hemisphere of lights; found lights on both");
+        return log_fail(
+            log, RELUME_EDATA,
+            "interpolant hsh covers one hemisphere of lights; found lights on both sides");
     struct trend *t = *data = mem_zeroed(1, sizeof *t);
     if (!t)
         return RELUME_ENOMEM;

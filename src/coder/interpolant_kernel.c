@@ -139,7 +139,9 @@ static relume_status prepare(void **data, struct kernel kind, double least,
     if (!status)
         transpose(k->inverse, size);
     if (status == RELUME_EDATA)
-        (void)log_fail(log, status, "the %d light directions leave the interpolant open", n);
+        (void)log_fail(
+            log, status,
+            "the %d light directions are too few or too much alike to interpolate between", n);
     if (status) {
         release(k);
         *data = NULL;

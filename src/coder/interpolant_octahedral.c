@@ -41,8 +41,8 @@ static relume_status prepare(void **data, const struct relume_vec3 *lights, int 
     const struct grid grid = {n, wanted < 1024.0 ? (int)lround(wanted) : 0};
     if (grid.side < 2 || grid.side * grid.side != n || !holds(&grid, lights))
         return log_fail(log, RELUME_EDATA,
-                        "interpolant octahedral takes the nodes of its grid as lights; found %d "
-                        "others",
+                        "interpolant octahedral needs lights exactly on the nodes of its grid; "
+                        "found %d elsewhere",
                         n);
     *data = mem_copy(&grid, 1, sizeof grid);
     return *data ? RELUME_OK : RELUME_ENOMEM;

@@ -59,13 +59,14 @@ static relume_status check(const relume_pack *pack, const char *path,
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
     if (info->geometry.projection >= RELUME_CYLINDRICAL)
-        return log_fail(p->log, RELUME_EDATA,
-                        "%s: a panorama has no such format; expected a planar file or a slab",
-                        path);
+        return log_fail(
+            p->log, RELUME_EDATA,
+            "%s: panoramas cannot be exported to this format; expected a planar file or a slab",
+            path);
     if (info->slabs)
         return log_fail(p->log, RELUME_EDATA,
-                        "%s: slabs around an object have no such format; expected a planar file or "
-                        "one slab",
+                        "%s: slabs around an object cannot be exported to this format; expected a "
+                        "planar file or one slab",
                         path);
     if (p->view < 0 || p->view >= info->views)
         return log_fail(p->log, RELUME_EINVAL, "view %d; expected 0 to %d", p->view,

@@ -121,8 +121,8 @@ static relume_status encode_whole(struct maker *m, struct web_folder *w)
         m->step = fmin(m->step * pow(found / target, 1.3) * 1.002, MOST_STEP);
     }
     return log_fail(m->e->log, RELUME_EDATA,
-                    "%s: %g bytes a pixel cannot be reached; found at least %.3f", m->path, target,
-                    (double)w->bytes / pixels_of(&m->planes));
+                    "%s: %g bytes a pixel is too small; the smallest possible is %.3f", m->path,
+                    target, (double)w->bytes / pixels_of(&m->planes));
 }
 
 static relume_status measure_folder(const struct maker *m, const char *path,
@@ -170,7 +170,7 @@ static relume_status make_folder(struct maker *m, const char *path,
         aim += target - report->psnr_db + 0.01;
     }
     return log_fail(m->e->log, RELUME_EDATA,
-                    "%s: %g dB cannot be reached in this form; found at most %.2f dB", m->path,
+                    "%s: %g dB cannot be reached in this format; the best is %.2f dB", m->path,
                     target, report->psnr_db);
 }
 

@@ -39,10 +39,10 @@ static relume_status read_any(struct foreign *f, const char *path,
         return ptm_read(f, path, limits, p->log);
     if (ends_with(path, ".rti") || ends_with(path, ".hsh"))
         return rti_read(f, path, ends_with(path, ".hsh"), limits, p->log);
-    return log_fail(p->log, RELUME_EDATA,
-                    "%s: not a format to import; expected .ptm, .rti, .hsh or a folder with "
-                    "info.json",
-                    path);
+    return log_fail(
+        p->log, RELUME_EDATA,
+        "%s: this format cannot be imported; expected .ptm, .rti, .hsh or a folder with info.json",
+        path);
 }
 
 // ---------------------------------------------------------------- codes

@@ -51,10 +51,10 @@ static relume_status out_of_reach(const struct trial *t, const struct export *e,
     const struct relume_export_params *p = e->params;
     if (p->psnr_db > 0.0)
         return log_fail(e->log, RELUME_EDATA,
-                        "%s: %g dB cannot be reached in this form; found at most %.2f dB", path,
+                        "%s: %g dB cannot be reached in this format; the best is %.2f dB", path,
                         p->psnr_db, t->psnr_db);
     return log_fail(e->log, RELUME_EDATA,
-                    "%s: %g bytes a pixel cannot be reached; found at least %.3f", path,
+                    "%s: %g bytes a pixel is too small; the smallest possible is %.3f", path,
                     p->bytes_per_pixel, t->bytes_per_pixel);
 }
 
@@ -91,8 +91,8 @@ static void warn_of_width(const struct foreign *f, const struct export *e, const
 {
     if (f->width % 8)
         log_line(e->log, RELUME_WARNING,
-                 "%s: width %d is not a multiple of 8, as RTIViewer wants it for JPEG planes", path,
-                 f->width);
+                 "%s: width %d is not a multiple of 8; RTIViewer may show the JPEG planes wrongly",
+                 path, f->width);
 }
 
 bool legacy_wants_jpeg(const struct relume_export_params *p)
@@ -105,8 +105,7 @@ relume_status legacy_check_jpeg(const struct export *e, const char *path,
 {
     const struct relume_codes *codes = e->source->codes;
     if (format == RELUME_EXCHANGE_RTI)
-        return log_fail(e->log, RELUME_EINVAL,
-                        "quality: .rti has no JPEG form; expected ptm or lptm");
+        return log_fail(e->log, RELUME_EINVAL, "quality: .rti cannot hold JPEG; use ptm or lptm");
     if (codes->width > JPEG_MOST_SIDE || codes->height > JPEG_MOST_SIDE)
         return log_fail(e->log, RELUME_EDATA, "%s: %d x %d pixels; expected at most %d for JPEG",
                         path, codes->width, codes->height, JPEG_MOST_SIDE);

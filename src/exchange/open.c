@@ -148,7 +148,7 @@ static relume_status unknown(const char *path, const struct relume_open_params *
         return log_fail(p->log, RELUME_EDATA, "%s: no such file; expected a relume file", path);
     if (!S_ISDIR(s.st_mode))
         return log_fail(p->log, RELUME_EDATA,
-                        "%s: nothing that relume opens; expected a relume file (.exr), .ptm, .rti, "
+                        "%s: relume cannot open this; expected a relume file (.exr), .ptm, .rti, "
                         ".hsh, a web folder, a capture (.lp, capture.json) or an HDR picture",
                         path);
     return log_fail(

@@ -81,8 +81,10 @@ static relume_status read_profile(struct folder *w)
     if (!profile || !strcmp(profile, "sRGB"))
         return RELUME_OK;
     if (!strcmp(profile, "P3")) {
-        log_line(w->log, RELUME_WARNING,
-                 "%s: colours are of Display P3; their numbers are taken as sRGB", w->info);
+        log_line(
+            w->log, RELUME_WARNING,
+            "%s: colours are in Display P3; they are treated as sRGB, so saturated ones look paler",
+            w->info);
         return RELUME_OK;
     }
     w->f->linear = !strcmp(profile, "RGB");

@@ -65,8 +65,8 @@ relume_status frame_put(struct relume_image *image, const struct relume_place *p
                    channels * ((size_t)(place->top + y) * (size_t)out.width + (size_t)place->left),
                image->data + row * (size_t)y, row * sizeof *image->data);
     log_line(r->params.places ? NULL : r->params.log, RELUME_NOTE,
-             "the picture has other proportions than %d x %d: it is %d x %d, black beside it; a "
-             "width alone keeps them",
+             "the picture does not have the proportions %d x %d: it fills %d x %d, with black "
+             "borders; give the width alone to avoid them",
              frame[0], frame[1], image->width, image->height);
     relume_image_destroy(image);
     *image = out;

@@ -61,8 +61,8 @@ static relume_status find_surface(const struct renderer *r, int view, struct rel
                             depth.data ? &depth : NULL, r->info->width, r->info->height);
     if (status == RELUME_EINVAL)
         status = log_fail(r->params.log, RELUME_EDATA,
-                          "a near light (%s) needs to know where the surface is; expected a file "
-                          "with depth, or a depth to assume",
+                          "a near light (%s) needs to know how far the surface is; use a file with "
+                          "depth, or --assume-depth D",
                           relume_light_kind_name(find_near(r)->kind));
     relume_image_destroy(&depth);
     return status;
@@ -143,8 +143,8 @@ static relume_status find_places(const struct renderer *r, int view, struct relu
                                 depth.data ? &depth : NULL, r->info->width, r->info->height);
     if (status == RELUME_EINVAL)
         status = log_fail(r->params.log, RELUME_EDATA,
-                          "objects need to know where the scene is; expected a file with depth, or "
-                          "a depth to assume");
+                          "objects need to know how far the scene is; use a file with depth, or "
+                          "--assume-depth D");
     relume_image_destroy(&depth);
     return status;
 }

@@ -10,8 +10,8 @@ static relume_status check_focus(const struct renderer *r)
     if (v->focus / (g->uv_z - g->st_z) < 1.0)
         return RELUME_OK;
     return log_fail(r->params.log, RELUME_EINVAL,
-                    "the plane in focus lies on or behind the cameras; expected one between "
-                    "z = %g and the scene, found z = %g",
+                    "the plane in focus lies on or behind the cameras; expected it between z = %g "
+                    "and the scene; found z = %g",
                     g->uv_z, g->st_z + v->focus);
 }
 
@@ -19,8 +19,7 @@ relume_status renderer_check_depth(const struct renderer *r)
 {
     if (r->view.interpolation == RELUME_INTERPOLATE_DEPTH && !r->info->has_depth)
         return log_fail(r->params.log, RELUME_EDATA,
-                        "interpolation by depth needs to know where the surface is; expected a "
-                        "file with depth");
+                        "interpolation by depth needs a file with depth; use --interpolate linear");
     return RELUME_OK;
 }
 
@@ -58,8 +57,8 @@ static relume_status draw(const struct renderer *r, const struct relume_camera *
     struct relume_view_params params = r->view;
     if (relume_slab_needs(g->needed, slab, eye, &r->view) == 0)
         return log_fail(r->params.log, RELUME_EDATA,
-                        "the eye (%g, %g, %g) sees nothing of the slab; expected one whose rays "
-                        "pass the camera grid",
+                        "the eye (%g, %g, %g) sees nothing of the slab; move it so that it looks "
+                        "at the object through the camera grid",
                         eye.x, eye.y, eye.z);
     relume_status status = gathered_fill(g, r, renderer_takes_depth(r), only_slab, slab);
     params.disparity = g->disparity;

@@ -35,8 +35,8 @@ static relume_status gather(struct gathered *g, const struct renderer *r, const 
     relume_status status = gathered_create(g, r);
     if (!status && relume_slabs_needs(g->needed, slabs, window, width, &r->view) == 0)
         status = log_fail(r->params.log, RELUME_EDATA,
-                          "the eye (%g, %g, %g) sees nothing of the slabs; expected one whose rays "
-                          "pass a camera grid",
+                          "the eye (%g, %g, %g) sees nothing of the slabs; move it so that it "
+                          "looks at the object through a camera grid",
                           eye.x, eye.y, eye.z);
     return status ? status : gathered_fill(g, r, renderer_may_take_depth(r), member, &members);
 }
@@ -52,10 +52,11 @@ static relume_status choose_window(struct relume_window *window, const struct re
     }
     if (relume_slabs_window(window, slabs, eye, &camera->aim, width, height))
         return RELUME_OK;
-    return log_fail(r->params.log, RELUME_EINVAL,
-                    "the eye (%g, %g, %g) cannot look there; expected a place away from it, an up "
-                    "that is not the way there, and a field of view below 180 degrees",
-                    eye.x, eye.y, eye.z);
+    return log_fail(
+        r->params.log, RELUME_EINVAL,
+        "the eye (%g, %g, %g) cannot look there; expected a look-at point away from it, an up that "
+        "does not point along the view, and a field of view below 180 degrees",
+        eye.x, eye.y, eye.z);
 }
 
 static relume_status check_lens(const struct renderer *r, const struct relume_window *window)
@@ -65,8 +66,8 @@ static relume_status check_lens(const struct renderer *r, const struct relume_wi
     if (relume_lens_fits(window, v->aperture, v->focus))
         return RELUME_OK;
     return log_fail(r->params.log, RELUME_EINVAL,
-                    "the plane in focus lies on or behind the eye; expected less than %g before "
-                    "what it looks at, found %g",
+                    "the plane in focus lies on or behind the eye; expected less than %g in front "
+                    "of the look-at point; found %g",
                     away, v->focus);
 }
 

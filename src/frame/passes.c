@@ -66,7 +66,7 @@ static relume_status find_photograph(struct relume_image *out, const struct relu
     const struct relume_capture *capture = params->capture;
     if (!capture || n != 1 || lights[0].kind != RELUME_LIGHT_DIRECTIONAL)
         return log_fail(params->log, RELUME_EINVAL,
-                        "a difference needs a capture and one directional light");
+                        "the pass difference needs --capture and exactly one directional light");
     if (relume_capture_width(capture) != info->width ||
         relume_capture_height(capture) != info->height)
         return log_fail(params->log, RELUME_EDATA,

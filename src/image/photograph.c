@@ -153,7 +153,8 @@ relume_status relume_photograph_load(struct relume_image *out, struct relume_not
     const bool follow = notes->profile && !p.codes && p.transfer.curve == RELUME_CURVE_AUTO;
     if (!notes->profile && picture_profile(reader, &icc_size))
         log_line(p.log, RELUME_WARNING,
-                 "%s: its colour profile is not of curves and a matrix; taken for sRGB", path);
+                 "%s: its colour profile is of a kind that relume does not read; treated as sRGB",
+                 path);
     const struct relume_transfer from =
         p.codes || follow ? (struct relume_transfer){.curve = RELUME_CURVE_LINEAR} : p.transfer;
     if (status)

@@ -197,7 +197,7 @@ relume_status picture_need_colour(const picture_reader *reader, const char *path
     const struct picture_info *info = picture_info_of(reader);
     if (!info->other[0])
         return RELUME_OK;
-    return log_fail(log, RELUME_EDATA, "%s: has no colour but %s; expected channels R, G, B or Y",
+    return log_fail(log, RELUME_EDATA, "%s: has no colour channels, only %s; expected R, G, B or Y",
                     path, info->other);
 }
 

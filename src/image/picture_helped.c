@@ -206,7 +206,8 @@ static relume_status open_there(struct helped *h, int file, const char *path,
     h->notes = answer.notes;
     if (is_sound(&h->reader.info, limits))
         return fetch_profile(h, answer.profile_bytes);
-    snprintf(h->why, sizeof h->why, "its reader gives no sense; expected a picture");
+    snprintf(h->why, sizeof h->why,
+             "its reader gave an answer that makes no sense; the file is probably damaged");
     return RELUME_EDATA;
 }
 

@@ -94,17 +94,17 @@ static relume_status complete(struct mesh_file *file, const char *path,
     size_t fins;
     relume_status status = count_fins(&fins, &file->mesh);
     if (!status && fins)
-        log_line(log, RELUME_WARNING,
-                 "%s: %zu edges with more than two faces; expected a surface, tangents there are "
-                 "between all of them",
-                 path, fins);
+        log_line(
+            log, RELUME_WARNING,
+            "%s: %zu edges with more than two faces; shading may look wrong there; mend the mesh",
+            path, fins);
     if (!status && file->made_normals)
-        log_line(log, RELUME_WARNING, "%s: without normals everywhere; they were made smooth",
+        log_line(log, RELUME_WARNING, "%s: some normals are missing; smooth ones were computed",
                  path);
     if (status || file->has_uv)
         return status;
     log_line(log, RELUME_WARNING,
-             "%s: without texture coordinates; they were made by projection along the axes", path);
+             "%s: no texture coordinates; they were made by projection along the axes", path);
     return make_uv(file);
 }
 
@@ -232,9 +232,10 @@ relume_status objects_finish(relume_objects *o, const struct relume_objects_para
     if (status)
         return status;
     if (t.flat)
-        log_line(log, RELUME_WARNING,
-                 "%zu of %zu vertices have no direction of their texture; they have some tangent",
-                 t.flat, t.vertex_count);
+        log_line(
+            log, RELUME_WARNING,
+            "the texture has no direction at %zu of %zu vertices; materials may be turned there",
+            t.flat, t.vertex_count);
     const struct bounds b = mesh_bounds(&o->mesh);
     o->info.vertices = o->vertices, o->info.vertex_count = t.vertex_count;
     o->info.triangles = (const uint32_t(*)[3])o->triangles;

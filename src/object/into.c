@@ -194,7 +194,8 @@ relume_status relume_objects_frame(struct relume_image *out, const relume_object
     struct lighting lighting = {0};
     *out = (struct relume_image){0};
     if (light.pass != RELUME_PASS_COLOUR)
-        return log_fail(light.log, RELUME_EINVAL, "objects are seen in colour; expected no pass");
+        return log_fail(light.log, RELUME_EINVAL,
+                        "objects can be shown in colour only; leave out --pass");
     place.places = true;
     relume_status status = relume_frame(&places, pack, camera, NULL, 0, &place);
     struct relume_sight sight;

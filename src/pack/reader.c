@@ -58,8 +58,9 @@ static relume_status check_format(relume_pack *p)
         return reader_bad(p, "no version", "1");
     if (p->info.version > FORMAT_VERSION)
         return log_fail(p->log, RELUME_EDATA,
-                        "%s: version %d is newer than this program; expected at most %d", p->path,
-                        p->info.version, FORMAT_VERSION);
+                        "%s: version %d of the format is newer than this program, which reads up "
+                        "to %d; update relume",
+                        p->path, p->info.version, FORMAT_VERSION);
     return RELUME_OK;
 }
 

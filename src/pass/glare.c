@@ -131,7 +131,8 @@ static relume_status clean_frame(const float **out, relume_glare *glare,
     if (!bad)
         return RELUME_OK;
     log_line(log, RELUME_WARNING,
-             "%zu samples are not finite; NaN counts as black, Inf as the brightest sample", bad);
+             "%zu pixels are not numbers; NaN is treated as black, infinity as the brightest pixel",
+             bad);
     if (glare->clean_size != n) {
         free(glare->clean);
         glare->clean = mem_array(n, sizeof *glare->clean);

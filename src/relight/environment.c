@@ -48,11 +48,13 @@ static void say_oddities(const struct relume_image *map, size_t bad,
     const char *name = p->name ? p->name : "environment";
     if (bad)
         log_line(p->log, RELUME_WARNING,
-                 "%s: %zu samples are negative, not finite or above 1e9; taken as 0", name, bad);
+                 "%s: %zu pixels are negative, not finite or above 1e9; treated as black", name,
+                 bad);
     if (map->width != 2 * map->height)
-        log_line(p->log, RELUME_WARNING,
-                 "%s: %d x %d pixels; expected a map twice as wide as high, it is stretched", name,
-                 map->width, map->height);
+        log_line(
+            p->log, RELUME_WARNING,
+            "%s: %d x %d pixels; expected a map twice as wide as high; it is stretched to that",
+            name, map->width, map->height);
 }
 
 // Block averages of at most SHOWN_COLUMNS x SHOWN_ROWS pixels, in place of `map`.

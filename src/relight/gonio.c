@@ -157,7 +157,7 @@ static void clean(struct relume_image *atlas, const char *name, const struct rel
         }
     if (bad)
         log_line(log, RELUME_WARNING,
-                 "%s: values that are negative, not finite or above 1e9; taken as 0", name);
+                 "%s: some values are negative, not finite or above 1e9; treated as 0", name);
 }
 
 relume_status relume_gonio_create(relume_gonio **out, const struct relume_image *map,

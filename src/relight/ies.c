@@ -251,7 +251,8 @@ static relume_status check_end(struct reader *r)
     if (take(&quiet, &more, ""))
         return RELUME_OK;
     return log_fail(r->log, RELUME_EDATA,
-                    "%s: more numbers than the counts say; expected the end of the file", r->name);
+                    "%s: holds more numbers than its counts promise; expected the end of the file",
+                    r->name);
 }
 
 static relume_status read_all(struct reader *r, relume_ies *ies)

@@ -154,8 +154,8 @@ relume_status relume_normals_fit(struct relume_normals *out, const struct relume
     *out = (struct relume_normals){0};
     if (f.lights < 3 || !lambert_spans(f.direction, f.lights))
         return log_fail(f.params.log, RELUME_EDATA,
-                        "normals need three lights in different planes; the %d captured directions "
-                        "do not determine them",
+                        "normals cannot be computed; expected three lights or more that do not lie "
+                        "in one plane; found %d",
                         f.lights);
     f.params.threads = thread_count(f.params.threads);
     const size_t row_bytes = (size_t)codes->width * (size_t)f.lights * 3 * sizeof(float);

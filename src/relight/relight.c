@@ -399,11 +399,10 @@ static void warn_below_horizon(const struct relume_codes *codes, const struct re
     for (int i = 0; info->hemispherical && i < n; i++)
         if (lights[i].kind == RELUME_LIGHT_DIRECTIONAL &&
             pole_from_world(vec3_unit(lights[i].direction), info->pole_y).z < -1e-9) {
-            log_line(
-                log, RELUME_WARNING,
-                "light %d lies below the horizon, where nothing was captured; the value at the "
-                "horizon is shown",
-                i + 1);
+            log_line(log, RELUME_WARNING,
+                     "light %d lies below the horizon, where nothing was photographed; light from "
+                     "the horizon is shown instead",
+                     i + 1);
             return;
         }
 }
@@ -426,8 +425,8 @@ static void warn_beyond(const struct relume_codes *codes, const struct relume_li
     }
     if (most > little)
         log_line(log, RELUME_WARNING,
-                 "light %d comes from %.0f degrees outside the captured light directions; it is "
-                 "shown as from their edge, dimmed",
+                 "light %d lies %.0f degrees outside the directions that were photographed; it is "
+                 "shown from the nearest of them, dimmed",
                  which + 1, most);
 }
 
@@ -465,8 +464,8 @@ static relume_status check_lights(const struct relume_codes *codes,
         return status;
     return log_fail(
         p->log, RELUME_EINVAL,
-        "light %d: a near light (%s) needs to know where the surface is; expected depth", near + 1,
-        relume_light_kind_name(lights[near].kind));
+        "light %d: a near light (%s) needs to know how far the surface is; expected depth",
+        near + 1, relume_light_kind_name(lights[near].kind));
 }
 
 // ---------------------------------------------------------------- jobs

@@ -168,9 +168,9 @@ static relume_status read_there(struct mesh_file *out, struct helper_job *job, c
     strncpy(what.name, slash ? slash + 1 : path, sizeof what.name - 1);
     relume_status status = have_read(job, &answer, path, file, &what, log);
     if (status)
-        return log_fail(log, status, "%s: not read as a model; %s", path, job->why);
+        return log_fail(log, status, "%s: cannot be read as a 3D model; %s", path, job->why);
     if (answer.what != MESH_READ)
-        return log_fail(log, RELUME_EDATA, "%s: not read as a model; %s", path,
+        return log_fail(log, RELUME_EDATA, "%s: cannot be read as a 3D model; %s", path,
                         answer.text[0] ? answer.text
                                        : "it needs more memory than it may have (--max-memory)");
     const size_t bytes = model_bytes(&answer, limits.max_memory);

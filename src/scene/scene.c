@@ -34,8 +34,8 @@ relume_status relume_scene_create(relume_scene **out, const struct relume_scene_
     const struct relume_scene_params p = params ? *params : (struct relume_scene_params){0};
     *out = NULL;
     if (p.mesh && !kind->takes_mesh)
-        return log_fail(p.log, RELUME_EINVAL, "%s: the scene takes no mesh; expected bust",
-                        kind->name);
+        return log_fail(p.log, RELUME_EINVAL,
+                        "%s: this scene cannot take a --mesh; expected the scene bust", kind->name);
     relume_scene *scene = mem_zeroed(1, sizeof *scene);
     if (!scene)
         return RELUME_ENOMEM;

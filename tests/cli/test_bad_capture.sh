@@ -173,12 +173,12 @@ bad 'all names unknown, counts differ' "dirs.lp: image 'no/such/name0000.png' do
 lp <<E
 $(echo 12; body)
 E
-fine lp-count-big 'warning.*says 12 lights; found 10' c/dirs.lp $L
+fine lp-count-big 'warning.*promises 12 lights; found 10' c/dirs.lp $L
 same 'count too big: all listed lights' good-lp.exr lp-count-big.exr
 lp <<E
 $(echo 7; body)
 E
-fine lp-count-small 'warning.*says 7 lights; found 10' c/dirs.lp $L
+fine lp-count-small 'warning.*promises 7 lights; found 10' c/dirs.lp $L
 same 'count too small: all listed lights' good-lp.exr lp-count-small.exr
 fresh good c; sed 's/$/  	/' good/dirs.lp >c/dirs.lp
 fine lp-blank - c/dirs.lp $L
@@ -266,7 +266,7 @@ bad 'one light for nine coefficients' 'one: .*need at least 9 lights; found 1' o
 "$sphere" ring --size 8 --lights 12
 awk 'NR == 1 { print; next } { a = 0.5235988 * NR; print $1, cos(a), sin(a), 0.5 }' ring/dirs.lp >ring/ring.lp
 bad 'one ring only' 'ring.lp: .*determine only [0-9] of 9 coefficients' ring/ring.lp --basis sh --coefficients 9
-fine ring-table 'warning: ring/ring.lp: all 12 lights lie on one ring' ring/ring.lp --basis table
+fine ring-table 'warning: ring/ring.lp: all 12 lamps stand on one ring' ring/ring.lp --basis table
 awk 'NR == 1 { print; next } { print $1, 0.6, 0, 0.8 }' ring/dirs.lp >ring/same.lp
 bad 'twelve times one direction' 'same.lp: .*determine only 1 of 4' ring/same.lp --basis sh --coefficients 4
 fine same-table 'warning: ring/same.lp: all 12 lights lie in one direction' ring/same.lp --basis table

@@ -17,7 +17,7 @@ bad() { # name, pattern, input
     expect_fail "$1" 1 "$2" out.exr "$RELUME" import "$3" -o out.exr
 }
 bad 'nothing there' 'no such file' nothing.ptm
-bad 'another kind of file' 'not a format to import' dome/dirs.lp
+bad 'another kind of file' 'this format cannot be imported' dome/dirs.lp
 bad 'a folder without info.json' 'info.json: cannot be opened' dome
 size=$(wc -c <ptm.ptm)
 head -c $((size / 2)) ptm.ptm >cut.ptm
@@ -90,20 +90,20 @@ no() { # name, status, pattern, options: export of pca.exr
 }
 no 'unknown format' 2 "did you mean 'rti'" --to rto
 no 'unknown type' 2 "did you mean 'bilinear'" --type bilinaer
-no 'type of a file' 2 'only for --to relight' --to ptm --type rbf
-no 'a quality of .rti' 2 'no JPEG form' --to rti --quality 80
-no 'other terms of .ptm' 2 '.ptm has six' --to lptm --coefficients 3
-no 'a size of .rti' 2 'no JPEG form' --to rti --bytes-per-pixel 1
-no 'a size of .ptm out of reach' 1 'cannot be reached; found at least' --to ptm --bytes-per-pixel 0.001
-no 'a PSNR of .ptm out of reach' 1 'out: 99 dB cannot be reached.*found at most' --to lptm --psnr 99
+no 'type of a file' 2 'works only with --to relight' --to ptm --type rbf
+no 'a quality of .rti' 2 'rti cannot hold JPEG' --to rti --quality 80
+no 'other terms of .ptm' 2 '.ptm always has 6' --to lptm --coefficients 3
+no 'a size of .rti' 2 'rti cannot hold JPEG' --to rti --bytes-per-pixel 1
+no 'a size of .ptm out of reach' 1 'is too small; the smallest possible is' --to ptm --bytes-per-pixel 0.001
+no 'a PSNR of .ptm out of reach' 1 'out: 99 dB cannot be reached.*the best is' --to lptm --psnr 99
 no 'two targets' 2 'expected one of' --psnr 30 --quality 3
 no 'a view that is not there' 2 'view 3; expected 0 to 0' --view 3
-no 'mycc of a type without components' 2 'only for --type bilinear' --type hsh --colorspace mycc
+no 'mycc of a type without components' 2 'works only with --type bilinear' --type hsh --colorspace mycc
 no 'mycc of two planes' 2 'expected at least 3' --colorspace mycc --coefficients 2
 no 'terms that folders have not' 2 '16 coefficients; expected' --type hsh --coefficients 16
 no 'terms that ptm has not' 2 '5 coefficients; expected 3 or 6' --type ptm --coefficients 5
-no 'a PSNR out of reach' 1 'out: 99 dB cannot be reached.*found at most' --psnr 99
-no 'a size out of reach' 1 'cannot be reached; found at least' --bytes-per-pixel 0.001
+no 'a PSNR out of reach' 1 'out: 99 dB cannot be reached.*the best is' --psnr 99
+no 'a size out of reach' 1 'is too small; the smallest possible is' --bytes-per-pixel 0.001
 expect_fail '.ptm of JPEG planes on a full device' 3 '/dev/full' - "$RELUME" export ptm.exr --to ptm -o /dev/full --quality 80
 "$RELUME" export pca.exr -o full --quality 70 2>/dev/null
 expect_fail 'a folder that is not empty' 2 'full: already exists' - "$RELUME" export pca.exr -o full

@@ -25,7 +25,7 @@ for basis in 'ptm 6' 'hsh 9' 'sh 9' 'dct 10' 'dct-resampled 10'; do
     set -- $basis
     bad "$1: more coefficients than lights" \
         "few: $2 coefficients of basis $1 need at least $2 lights; found 5" few --basis $1 --coefficients $2
-    fine "forced-$1" "warning: few: 5 lights do not determine $2 coefficients of basis $1" few \
+    fine "forced-$1" "warning: few: 5 lights are too few for $2 coefficients of basis $1" few \
         --basis $1 --coefficients $2 --force
     finite "$1: forced and looked at from aside" "forced-$1.exr" "dir 1 -1 0.2"
     [ $1 = dct-resampled ] || # which fits nothing: it averages
@@ -35,9 +35,9 @@ bad 'pca: more components than samples' 'few: basis pca takes at most 15 coeffic
     few --basis pca --coefficients 16
 bad 'table: any number but that of the lights' 'few: basis table takes 5 coefficients for 5 lights; found 4' \
     few --basis table --coefficients 4
-expect_fail 'ptm has 3 or 6' 2 'no form with 4 coefficients; nearest: 3' out.exr \
+expect_fail 'ptm has 3 or 6' 2 'basis ptm cannot have 4 coefficients; the nearest number is 3' out.exr \
     "$RELUME" encode few -o out.exr --basis ptm --coefficients 4
-expect_fail 'no luminance of components' 2 'pca has no luminance form' out.exr \
+expect_fail 'no luminance of components' 2 'pca cannot be fitted to luminance only; leave out --colour' out.exr \
     "$RELUME" encode few -o out.exr --basis pca --colour luminance
 
 # ---- lights on one ring: exact, and as files with three decimals say it
@@ -49,21 +49,21 @@ ring %.2f rounded
 for ring in 'exact hsh 4' 'exact sh 4' 'exact dct 6' 'exact dct-resampled 6' 'exact pca 6' \
     'exact table 12' 'exact ptm 3' 'rounded sh 4' 'rounded pca 6'; do
     set -- $ring
-    fine "$1-$2" "warning: ring/$1.lp: all 12 lights lie on one ring; directions off it are guesses" \
+    fine "$1-$2" "warning: ring/$1.lp: all 12 lamps stand on one ring or arc; light from other directions is guessed" \
         ring/$1.lp --basis $2 --coefficients $3 --force
     finite "$2, $1: from the pole" "$1-$2.exr" "dir 0 0 1"
 done
 bad 'ptm on a ring' 'determine only 5 of 6 coefficients' ring/exact.lp --basis ptm --coefficients 6
 awk 'NR == 1 { print; next } { a = 0.24 * (NR - 7); print $1, sin(a), 0, cos(a) }' ring/dirs.lp >ring/arc.lp
-fine arc 'all 12 lights lie on one ring' ring/arc.lp --basis pca
+fine arc 'all 12 lamps stand on one ring' ring/arc.lp --basis pca
 
 # ---- bases of one hemisphere
 "$sphere" sky --size 16 --lights 20
 for basis in ptm hsh; do
-    bad "$basis for a whole sphere" "sky: basis $basis knows one hemisphere of lights; found lights on both" \
+    bad "$basis for a whole sphere" "sky: basis $basis covers one hemisphere of lights; found lights on both sides" \
         sky --basis $basis
 done
-bad 'hsh between lights of a whole sphere' 'interpolant hsh knows one hemisphere' sky --basis pca --interpolant hsh
+bad 'hsh between lights of a whole sphere' 'interpolant hsh covers one hemisphere' sky --basis pca --interpolant hsh
 
 # ---- NaN and infinity: named, counted, repaired on demand
 "$sphere" float --size 24 --lights 20 --hemisphere --mask

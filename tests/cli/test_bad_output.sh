@@ -111,7 +111,7 @@ k = b'relume.version\0int\0\4\0\0\0'
 i = b.index(k) + len(k)
 open('new.exr', 'wb').write(b[:i] + b'\x09' + b[i + 1:])
 E
-    info 'a newer version' 'new.exr: version 9 is newer than this program; expected at most 3' new.exr
+    info 'a newer version' 'new.exr: version 9 of the format is newer than this program, which reads up to 3; update relume' new.exr
 else
     skip 'a newer version' 'no python3'
 fi
@@ -131,7 +131,7 @@ usage 'unknown command' "did you mean 'relight'" relihgt
 usage 'unknown basis' "unknown basis 'shh'; did you mean 'sh'" 'encode good -o u.exr --basis shh'
 usage 'unknown option' "did you mean '--coefficients'" 'encode good -o u.exr --coeficients 9'
 usage 'unknown short option' "encode: unknown option '-z'" 'encode good -o u.exr -z'
-usage 'count that sh has not' 'nearest: 9' 'encode good -o u.exr --basis sh --coefficients 10'
+usage 'count that sh has not' 'the nearest number is 9' 'encode good -o u.exr --basis sh --coefficients 10'
 usage 'coefficients 0' 'from 1 to' 'encode good -o u.exr --coefficients 0'
 usage 'coefficients 300000' 'from 1 to' 'encode good -o u.exr --coefficients 300000'
 usage 'coefficients abc' 'whole number' 'encode good -o u.exr --coefficients abc'
@@ -143,7 +143,7 @@ usage 'transfer' 'gamma:G' 'encode good -o u.exr --transfer gamma:0'
 usage 'no output' 'expected -o' 'encode good'
 usage 'no input' 'found 0 inputs' 'encode -o u.exr'
 usage 'two inputs' 'found 2 inputs' 'encode good good -o u.exr'
-usage 'value missing' 'end of the line' 'encode good -o'
+usage 'value missing' 'after it; found none' 'encode good -o'
 usage 'threads -1' 'from 0 to 256' 'encode good -o u.exr --threads -1'
 usage 'threads nan' 'whole number' 'encode good -o u.exr --threads nan'
 

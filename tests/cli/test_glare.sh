@@ -99,7 +99,7 @@ bad 'odd size' 2 'expected an even number' --psf out.png --size 101
 bad 'field and width' 2 'expected one of --field, --width' --psf out.png --field 2 --width 9
 bad 'too large on the picture' 2 'at most 16384' in.exr -o out.png --fov 0.05 --magnify 900 $quick
 bad 'frames and one name' 2 'for --frames' in.exr -o out.png --frames 2
-bad 'fps alone' 2 'expected --frames' in.exr -o out.png --fps 30
+bad 'fps alone' 2 'need --frames' in.exr -o out.png --fps 30
 bad 'a number without frames' 2 'expected --frames N' in.exr -o 'out.%d.png'
 bad 'not a sphere' 1 'twice as wide as high' in.exr -o out.png --pan 10
 expect_fail 'a full disk' 3 'No space left' - "$RELUME" glare in.exr -o /dev/full $quick
@@ -119,5 +119,5 @@ differ 'lashes' squint.exr lashes.exr
 
 # ---- pixels that are no light
 "$mkimage" poke in.exr nan.exr 3 3 nan
-expect_ok 'NaN' 'warning: .*samples are not finite' "$RELUME" glare nan.exr -o nan.png $quick
+expect_ok 'NaN' 'warning: .*pixels are not numbers' "$RELUME" glare nan.exr -o nan.png $quick
 finish

@@ -119,7 +119,7 @@ above '--light adds to it' "$(diff a.exr b.exr)" 0.1
 relume encode slab -o slab.exr --basis sh --coefficients 4
 relume encode slab -o flat.exr --basis sh --coefficients 4 --no-depth
 relume relight slab.exr -o a.exr --light 'point 0.3 0.3 2'
-expect_fail 'near light, no depth' 1 'flat.exr: a near light \(spot\) needs to know where the surface is' x.exr \
+expect_fail 'near light, no depth' 1 'flat.exr: a near light \(spot\) needs to know how far the surface is; use a file with depth, or --assume-depth' x.exr \
     "$RELUME" relight flat.exr -o x.exr --light 'spot 0.3 0.3 2 0 0 -1 30'
 relume relight flat.exr -o b.exr --light 'point 0.3 0.3 2' --assume-depth 3
 relume relight flat.exr -o c.exr --light 'point 0.3 0.3 2' --assume-depth 2.5

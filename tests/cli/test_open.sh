@@ -99,14 +99,14 @@ bad 'one photograph' "light0000.png: one photograph under one light cannot be re
 bad 'a folder of nothing' "empty: a folder without capture.json, info.json or a single .lp file; .*: relume capture empty -o DIR" empty
 bad 'a folder of two lists' 'two: a folder without' two
 echo words >words.txt
-bad 'a text' 'words.txt: nothing that relume opens; expected a relume file \(.exr\), .ptm' words.txt
+bad 'a text' 'words.txt: relume cannot open this; expected a relume file \(.exr\), .ptm' words.txt
 cp words.txt false.ptm
 echo '{}' >other.json
 bad 'a .ptm that is none' 'false.ptm: not a polynomial' false.ptm
 bad 'nothing there' 'nothing.ptm: no such file' nothing.ptm
 head -c 200 i.ptm >cut.ptm
 bad 'a .ptm cut short' 'cut.ptm: ' cut.ptm
-bad 'a JSON of something else' 'other.json: nothing that relume opens' other.json
+bad 'a JSON of something else' 'other.json: relume cannot open this' other.json
 
 if [ "$(ls -A tmp)" ]; then not_ok 'no temporary file is left' "$(ls -A tmp)"; else ok 'no temporary file is left'; fi
 TMPDIR=$work/nowhere expect_fail 'no place for a temporary file' 3 'nowhere: no temporary file can be made' x.png \

@@ -86,7 +86,7 @@ expect_fail 'no rays' 1 'holds no rays; expected six numbers per line' - "$RELUM
 expect_fail 'no file of rays' 1 'cannot be read' - "$RELUME" query slab.exr --rays missing.txt
 expect_fail 'a picture for rays' 1 'line 1: expected six numbers' - "$RELUME" query slab.exr --rays slab.exr
 expect_fail 'a ray and rays' 2 'or --rays FILE' - "$RELUME" query slab.exr --rays rays.txt --eye 0,0,3
-expect_fail 'by depth without depth' 1 'expected a file with depth' - \
+expect_fail 'by depth without depth' 1 'interpolation by depth needs a file with depth' - \
     "$RELUME" query bare.exr --rays rays.txt --interpolate depth
 
 # ---- an eye nearer than the cameras: rays beside the grid go by depth, or to the nearest camera
@@ -112,7 +112,7 @@ done
 relume relight flat.exr -o full.exr
 relume relight flat.exr -o own.exr --size 64
 same 'its own size is as it is' own.exr full.exr
-expect_ok 'another shape is fitted in, and said' 'it is 32 x 32, black beside it' \
+expect_ok 'another shape is fitted in, and said' 'it fills 32 x 32, with black borders' \
     "$RELUME" relight flat.exr -o wide.exr --size 48x32
 is 'in a picture as large as asked for' "$(size_of wide.exr)" '48 32'
 relume relight flat.exr -o small.exr --size 32
@@ -164,11 +164,11 @@ relume relight pano.exr -o down.exr --projection stereographic --tilt -90 --zoom
 same 'a planet is a stereographic look down' planet.exr down.exr
 
 # ---- refusals
-expect_fail 'interpolation by depth without depth' 1 'expected a file with depth' x.png \
+expect_fail 'interpolation by depth without depth' 1 'interpolation by depth needs a file with depth' x.png \
     "$RELUME" relight bare.exr -o x.png --interpolate depth
 expect_fail 'unknown interpolation' 2 "did you mean 'linear'" x.png \
     "$RELUME" relight slab.exr -o x.png --interpolate liner
-expect_fail 'a focus behind the cameras' 2 'expected one between z = 3' x.png \
+expect_fail 'a focus behind the cameras' 2 'expected it between z = 3' x.png \
     "$RELUME" relight slab.exr -o x.png --focus 4
 expect_fail 'an aperture and an interpolation' 2 'expected one of' x.png \
     "$RELUME" relight slab.exr -o x.png --aperture 1 --interpolate depth

@@ -372,8 +372,9 @@ static void test_bad_pictures(void **state)
         CHECK_OK(relume_image_save(&other, more, NULL));
         relume_image_destroy(&other);
     }
-    expect_refusal(folder, "M_tl046_pl120_tv045_pv000.exr: wrong angles?; expected pictures of "
-                           "tl046_pl120 for 8 views, as of others; found 1");
+    expect_refusal(folder,
+                   "M_tl046_pl120_tv045_pv000.exr: the angles seem wrong; expected pictures of "
+                   "tl046_pl120 for 8 views, as of others; found 1");
     remove(path);
     for (int i = 0; i < 4; i++) {
         snprintf(path, sizeof path, "%s/M_tl000_pl000_tv050_pv%03d.exr", folder, 10 * i);
@@ -462,7 +463,7 @@ static void test_capture(void **state)
     m.geometry = relume_geometry_default(RELUME_PLANAR, W, H);
     m.views = 1;
     CHECK_OK(relume_manifest_write(&m, path, NULL));
-    expect_refusal(folder, "made of the views of one slab");
+    expect_refusal(folder, "needs the views of one slab");
     m.geometry = relume_geometry_default(RELUME_SLAB, W, H);
     m.views = 2;
     CHECK_OK(relume_manifest_write(&m, path, NULL));

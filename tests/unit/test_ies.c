@@ -103,7 +103,7 @@ static void test_refusals(void **state)
     refused(HEAD("2.5", "1") "0", "number of vertical angles");
     refused(HEAD("4096", "4096") "0 1 2", "the file is shorter");
     refused(HEAD("2", "1") "0 90\n0\n5", "found the end of the file");
-    refused(HEAD("2", "1") "0 90\n0\n5 4 3", "more numbers than the counts say");
+    refused(HEAD("2", "1") "0 90\n0\n5 4 3", "more numbers than its counts promise");
     refused(HEAD("2", "1") "0 1e30\n0\n5 4", "0 to 180");
     refused(HEAD("2", "1") "90 0\n0\n5 4", "ascending");
     refused(HEAD("1", "2") "0\n0 -90\n5 4", "0 to 360");

@@ -60,7 +60,7 @@ static void test_wrong_counts_are_warnings(void **state)
     struct test_log log;
     CHECK_OK(read_text(&d, "9\na 0 0 1\n", &log));
     assert_int_equal(d.m.lights, 1);
-    assert_non_null(strstr(log.text, "says 9 lights; found 1"));
+    assert_non_null(strstr(log.text, "promises 9 lights; found 1"));
     draft_free(&d);
     CHECK_OK(read_text(&d, "1\na 0 0 1\nb 0 1 0\n", &log));
     assert_int_equal(d.m.lights, 2);

@@ -706,7 +706,7 @@ static void test_refit(void **state)
         test_log_init(&log);
         teach(&t, bases[i], i == 1);
         CHECK_OK(relume_refit_create(&refit, &t.codes, relume_refit_params(.log = &log.log)));
-        assert_non_null(strstr(log.text, "loss"));
+        assert_non_null(strstr(log.text, "converted to linear light"));
         assert_true(relume_refit_loss(refit) < 5e-3);
         CHECK_OK(relume_relight(&out, &t.codes, lights, 2, relume_relight_params(.refit = refit)));
         CHECK_OK(relume_relight(&again, &t.codes, lights, 2, NULL));
@@ -785,7 +785,8 @@ static void test_refusals(void **state)
     assert_int_equal(
         relume_relight(&out, &s.codes, &area, 1, relume_relight_params(.log = &log.log)),
         RELUME_EINVAL);
-    assert_non_null(strstr(log.text, "(area) needs to know where the surface is; expected depth"));
+    assert_non_null(
+        strstr(log.text, "(area) needs to know how far the surface is; expected depth"));
     assert_null(out.data);
     relume_coder_destroy(&s.coder);
 }

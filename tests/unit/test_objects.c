@@ -536,7 +536,7 @@ static void gltf_is_read(void **state)
                                             relume_objects_params(.log = &hearing)),
                      RELUME_EDATA);
     assert_null(o);
-    assert_non_null(strstr(last, "cut.gltf: not read as a model"));
+    assert_non_null(strstr(last, "cut.gltf: cannot be read as a 3D model"));
 }
 
 // Assimp leaves such faces out and goes on.
@@ -555,7 +555,7 @@ static void gltf_of_vertices_that_are_not_there(void **state)
     assert_int_equal(relume_objects_of_mesh(&o, path_of("beyond.gltf"), &material, 1, 1,
                                             relume_objects_params(.log = &hearing)),
                      RELUME_EDATA);
-    assert_non_null(strstr(last, "beyond.gltf: not read as a model"));
+    assert_non_null(strstr(last, "beyond.gltf: cannot be read as a 3D model"));
     assert_non_null(strstr(last, "vertices that are not there"));
 }
 

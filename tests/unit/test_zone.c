@@ -203,7 +203,8 @@ static int told;
 static void hear(void *user, enum relume_level level, const char *text)
 {
     (void)user;
-    told += level == RELUME_WARNING && strstr(text, "outside the captured light directions");
+    told +=
+        level == RELUME_WARNING && strstr(text, "outside the directions that were photographed");
 }
 
 static void test_told(void **state)

@@ -269,5 +269,5 @@ bad 'one ring only' 'ring.lp: .*determine only [0-9] of 9 coefficients' ring/rin
 fine ring-table 'warning: ring/ring.lp: all 12 lamps stand on one ring' ring/ring.lp --basis table
 awk 'NR == 1 { print; next } { print $1, 0.6, 0, 0.8 }' ring/dirs.lp >ring/same.lp
 bad 'twelve times one direction' 'same.lp: .*determine only 1 of 4' ring/same.lp --basis sh --coefficients 4
-fine same-table 'warning: ring/same.lp: all 12 lights lie in one direction' ring/same.lp --basis table
+fine same-table 'warning: ring/same.lp: all 12 lights come from one direction' ring/same.lp --basis table
 finish

@@ -68,7 +68,7 @@ if diff -r wide wide1 >/dev/null; then ok 'tiles for any threads'; else not_ok '
 "$mkimage" poke sky.exr odd.exr 3 4 nan
 expect_ok 'an environment' - "$RELUME" btf render wide -o lit.exr --light 'env sky.exr 30' --light 'dir 0 0 1' -q
 "$RELUME" btf render wide -o odd-lit.exr --light 'env odd.exr' -q 2>err.txt
-if grep -q '3 samples are negative, not finite' err.txt; then ok 'NaN in an environment is told of'; else not_ok 'NaN in an environment is told of' "$(cat err.txt)"; fi
+if grep -q '3 pixels are negative, not finite' err.txt; then ok 'NaN in an environment is told of'; else not_ok 'NaN in an environment is told of' "$(cat err.txt)"; fi
 expect_fail 'no environment' 1 'nothing.hdr: no such file' x.exr "$RELUME" btf render wide -o x.exr --light 'env nothing.hdr'
 { printf '\223NUMPY\001\000v\000'; printf '%-117s\n' "{'descr': '<u2', 'fortran_order': False, 'shape': (1, 2), }"; printf '\001\000\100\000'; } >large.npy
 expect_ok 'a surface from a camera' - "$RELUME" btf render wide -o view.png --camera 0,-1.5,0.7 --picture 64x40 --light 'dir -1 0 1' --light 'spot 0 1 1 0 -1 -1 30' -q
@@ -132,7 +132,7 @@ done
 sed 's/"material"/"part":"lid","material"/' quad.json >bad.json
 head -c 100 paper/values.npy >broken.glb
 expect_fail 'a part without material' 1 "part 'all' has no material" x.exr "$RELUME" relight box.exr --objects bad.json -o x.exr
-expect_fail 'objects in a pass' 2 'expected no pass' x.exr "$RELUME" relight box.exr --objects quad.json --pass normals -o x.exr
+expect_fail 'objects in a pass' 2 'can be shown in colour only; leave out --pass' x.exr "$RELUME" relight box.exr --objects quad.json --pass normals -o x.exr
 expect_fail 'no such mesh' 1 'nothing.obj: cannot be opened' x.exr "$RELUME" btf render rfnl --mesh nothing.obj -o x.exr
 expect_fail 'no model at all' 1 'broken.glb: cannot be read as a 3D model' x.exr "$RELUME" btf render rfnl --mesh broken.glb -o x.exr
 

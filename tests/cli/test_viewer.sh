@@ -267,7 +267,7 @@ refuse 'unknown source of GL' 2 'auto, osmesa or egl; found .vulkan' "$VIEWER" t
 refuse 'unwritable picture' 3 'nowhere/x.png' "$VIEWER" teapot.exr --offscreen nowhere/x.png
 refuse 'a script with a mistake' 1 'bad.txt: line 2, column 9; expected size W H; found' \
     sh -c 'printf "key b\nsize 800\n" >bad.txt; "$VIEWER" teapot.exr --script bad.txt'
-refuse 'a near light without depth' 1 'need to know where the surface is' \
+refuse 'a near light without depth' 1 'need to know how far the surface is' \
     sh -c 'printf "add point 0 0 1\n" >near.txt; "$VIEWER" bare.exr --script near.txt'
 refuse 'a turntable of one view' 2 'turntable: expected a slab' \
     "$VIEWER" teapot.exr --view 0 --record turntable -o none.png

@@ -94,7 +94,7 @@ static void test_oddities(void **state)
     map.data[8] = INFINITY;
     e = create(&map);
     assert_int_equal(heard.lines, 1);
-    assert_non_null(strstr(heard.text, "map: 3 samples are negative, not finite"));
+    assert_non_null(strstr(heard.text, "map: 3 pixels are negative, not finite"));
     int n;
     const struct relume_environment_cell *cell = relume_environment_cells(&n, e);
     double sum = 0;

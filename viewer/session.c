@@ -60,7 +60,7 @@ static void set_name(struct session *s, const char *path)
 {
     const char *slash = strrchr(path, '/');
     snprintf(s->name, sizeof s->name, "%s", slash ? slash + 1 : path);
-    snprintf(s->folder, sizeof s->folder, "%.*s", slash > path ? (int)(slash - path) : 1,
+    snprintf(s->folder, sizeof s->folder, "%.*s", slash && slash > path ? (int)(slash - path) : 1,
              slash ? path : ".");
 }
 

@@ -59,6 +59,12 @@ struct relume_log {
     const struct relume_limits *limits;
 };
 
+// "PATH: WHAT; why" and the status for an input that cannot be opened or read, `error` being the
+// errno: RELUME_EDATA, but RELUME_ESYSTEM for too many open files, and RELUME_ENOMEM without a
+// sentence. `log` may be NULL.
+RELUME_RESULT relume_status relume_input_fail(const struct relume_log *log, const char *path,
+                                              const char *what, int error);
+
 // Upper bounds for what is read from files; zero in a field means its default.
 struct relume_limits {
     int max_side;         // pixels along one side; default 65536

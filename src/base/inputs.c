@@ -5,6 +5,7 @@
 #include "base/memory.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
 #include <string.h>
@@ -105,6 +106,17 @@ FILE *input_open(const char *path, const struct relume_log *log)
 {
     input_note(log, path);
     return fopen(path, "rbe");
+}
+
+relume_status relume_input_fail(const struct relume_log *log, const char *path, const char *what,
+                                int error)
+{
+    if (error == ENOMEM)
+        return RELUME_ENOMEM;
+    if (error == EMFILE || error == ENFILE)
+        return log_fail(log, RELUME_ESYSTEM,
+                        "%s: %s; too many files are open; raise the limit (ulimit -n)", path, what);
+    return log_fail(log, RELUME_EDATA, "%s: %s; %s", path, what, strerror(error));
 }
 
 static bool holds(relume_inputs *i, const struct stat *s)

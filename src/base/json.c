@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 
+#include <errno.h>
 #include <jansson.h>
 #include <math.h>
 #include <string.h>
@@ -12,12 +13,16 @@
 relume_status jvalue_load(jvalue **root, const char *path, const struct relume_log *log)
 {
     json_error_t error;
-    input_note(log, path);
-    *root = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
+    *root = NULL;
+    FILE *file = input_open(path, log);
+    if (!file)
+        return relume_input_fail(log, path, "cannot be opened", errno);
+    *root = json_loadf(file, JSON_REJECT_DUPLICATES, &error);
+    fclose(file);
     if (*root)
         return RELUME_OK;
-    if (error.line < 0)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, error.text);
+    if (json_error_code(&error) == json_error_out_of_memory)
+        return RELUME_ENOMEM;
     return log_fail(log, RELUME_EDATA, "%s: line %d, column %d; expected JSON, %s", path,
                     error.line, error.column, error.text);
 }

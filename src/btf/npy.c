@@ -108,7 +108,7 @@ static relume_status map_file(struct npy_file *f, const char *path, const struct
         const int error = errno;
         if (fd >= 0)
             close(fd);
-        return log_fail(log, RELUME_EDATA, "%s: cannot be read; %s", path, strerror(error));
+        return relume_input_fail(log, path, "cannot be read", error);
     }
     f->map_size = S_ISREG(info.st_mode) ? (size_t)info.st_size : 0;
     void *map = f->map_size ? mmap(NULL, f->map_size, PROT_READ, MAP_SHARED, fd, 0) : MAP_FAILED;

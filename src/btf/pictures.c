@@ -156,7 +156,7 @@ static relume_status list_folder(struct pictures *p, const char *inside)
         return RELUME_ENOMEM;
     DIR *dir = opendir(path);
     if (!dir)
-        status = log_fail(p->log, RELUME_EDATA, "%s: cannot be read; %s", path, strerror(errno));
+        status = relume_input_fail(p->log, path, "cannot be read", errno);
     free(path);
     const struct dirent *e;
     while (dir && !status && (e = readdir(dir)))

@@ -361,7 +361,8 @@ static relume_status map_file(struct ubo *u)
         const int error = errno;
         if (fd >= 0)
             close(fd);
-        return log_fail(&u->log, RELUME_EDATA, "cannot be read; %s", strerror(error));
+        return relume_input_fail(u->params ? u->params->log : NULL, u->path, "cannot be read",
+                                 error);
     }
     u->size = S_ISREG(info.st_mode) ? (size_t)info.st_size : 0;
     void *map = u->size ? mmap(NULL, u->size, PROT_READ, MAP_SHARED, fd, 0) : MAP_FAILED;

@@ -34,7 +34,7 @@ static relume_status look(enum kind *kind, const char *path, const struct relume
 {
     FILE *file = input_open(path, log);
     if (!file)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
+        return relume_input_fail(log, path, "cannot be opened", errno);
     char line[256];
     double v[3];
     const char *start = next_line(line, file);
@@ -139,7 +139,7 @@ static relume_status from_lines(struct relume_light_list *out, const char *path,
 {
     FILE *file = input_open(path, log);
     if (!file)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
+        return relume_input_fail(log, path, "cannot be opened", errno);
     const relume_status status = read_lines(out, file, path, log);
     fclose(file);
     return status;

@@ -86,7 +86,7 @@ static relume_status read_text(char **out, const char *path, const struct relume
     *out = NULL;
     FILE *file = input_open(path, log);
     if (!file)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
+        return relume_input_fail(log, path, "cannot be opened", errno);
     char *text = NULL;
     size_t size = 0;
     FILE *memory = open_memstream(&text, &size);
@@ -301,6 +301,12 @@ relume_status lp_resolve(struct draft *draft, const char *path,
     const char *folder = dirname(copy);
     struct dirent **files = NULL;
     const int found = scandir(folder, &files, is_image, by_name);
+    if (found < 0 && errno != ENOENT) {
+        const relume_status status =
+            relume_input_fail(params->log, folder, "cannot be listed", errno);
+        free(copy);
+        return status;
+    }
     const int file_count = found > 0 ? found : 0;
     const relume_status status = resolve(draft, path, folder, files, file_count, params);
     for (int i = 0; i < file_count; i++)

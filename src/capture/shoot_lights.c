@@ -91,7 +91,7 @@ static relume_status try_candidates(double *bad, const struct shoot *s,
         struct relume_image image;
         relume_status status = shoot_load_balls(&image, s, i * s->shots / trials);
         for (int b = 0; !status && b < n; b++) {
-            struct relume_ball_light light;
+            struct relume_ball_light light = {0};
             status = (matte ? relume_ball_matte : relume_ball_mirror)(&light, &ball[b], &s->camera,
                                                                       &image);
             const bool sees = !objection(&light, matte);

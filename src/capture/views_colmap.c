@@ -49,10 +49,7 @@ static relume_status text_open(struct text *t, const char *folder, const char *n
         return RELUME_ENOMEM;
     t->file = input_open(t->path, log);
     return t->file ? RELUME_OK
-                   : log_fail(log, RELUME_EDATA,
-                              "%s: cannot be opened; %s; expected COLMAP's text "
-                              "files",
-                              t->path, strerror(errno));
+                   : relume_input_fail(log, t->path, "COLMAP's text file cannot be opened", errno);
 }
 
 static void text_close(struct text *t)

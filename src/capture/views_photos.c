@@ -54,7 +54,7 @@ static relume_status list_folder(const char ***out, int *n, struct arena *arena,
     struct dirent **entries;
     const int found = scandir(folder, &entries, is_candidate, by_name);
     if (found < 0)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be listed; %s", folder, strerror(errno));
+        return relume_input_fail(log, folder, "cannot be listed", errno);
     *out = arena_array(arena, (size_t)found + 1, sizeof **out);
     *n = found;
     bool whole = *out != NULL;

@@ -194,7 +194,7 @@ static relume_status read_notes(struct relume_notes *notes, struct photo_list *l
             return status;
     }
     const char *times = args_text(args, "--times", NULL);
-    const relume_status status = times ? read_times(times, list, notes) : RELUME_OK;
+    const relume_status status = times ? read_times(times, list, notes, args_log(args)) : RELUME_OK;
     for (int i = 0; !status && i < list->count; i++)
         if (!(notes[i].time_s > 0.0) && notes[i].width > 0)
             return data_error("%s: no exposure time in its EXIF; expected --times FILE",

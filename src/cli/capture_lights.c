@@ -60,9 +60,9 @@ static relume_status gather(const struct args *args, struct job *job)
 {
     relume_status status = photo_list_make(&job->photos, args);
     for (int i = 0; !status && i < args_count(args, "--ball-photos"); i++)
-        status = photo_list_add(&job->balls, args_nth(args, "--ball-photos", i));
+        status = photo_list_add(&job->balls, args_nth(args, "--ball-photos", i), args_log(args));
     for (int i = 0; !status && i < args_count(args, "--flat"); i++)
-        status = photo_list_add(&job->flats, args_nth(args, "--flat", i));
+        status = photo_list_add(&job->flats, args_nth(args, "--flat", i), args_log(args));
     split_masks(&job->photos, &job->mask);
     split_masks(&job->balls, &job->ball_mask);
     put_in_order(&job->photos);

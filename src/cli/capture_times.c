@@ -1,5 +1,6 @@
 #include "capture_times.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -55,13 +56,13 @@ static relume_status parse_line(const char *path, struct times *t, char *text, i
     return RELUME_OK;
 }
 
-static relume_status load(const char *path, struct times *t)
+static relume_status load(const char *path, struct times *t, const struct relume_log *log)
 {
     char text[1024];
     relume_status status = RELUME_OK;
     FILE *f = fopen(path, "re");
     if (!f)
-        return data_error("%s: cannot be opened; expected exposure times", path);
+        return relume_input_fail(log, path, "exposure times cannot be opened", errno);
     for (int number = 1; !status && fgets(text, sizeof text, f); number++)
         status = parse_line(path, t, text, number);
     fclose(f);
@@ -96,12 +97,12 @@ static relume_status assign(const char *path, const struct times *t, const struc
 }
 
 relume_status read_times(const char *path, const struct photo_list *list,
-                         struct relume_notes *notes)
+                         struct relume_notes *notes, const struct relume_log *log)
 {
     struct times *t = calloc(1, sizeof *t);
     if (!t)
         return RELUME_ENOMEM;
-    relume_status status = load(path, t);
+    relume_status status = load(path, t, log);
     if (!status)
         status = assign(path, t, list, notes);
     free(t);

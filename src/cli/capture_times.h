@@ -8,6 +8,6 @@
 // every so many: brackets that follow each other), or "name seconds"; seconds as 0.5 or 1/2; #
 // begins a remark. Aperture and ISO are then taken as constant. RELUME_EDATA with a sentence.
 relume_status read_times(const char *path, const struct photo_list *list,
-                         struct relume_notes *notes);
+                         struct relume_notes *notes, const struct relume_log *log);
 
 #endif

@@ -46,12 +46,13 @@ static int only_pictures(const struct dirent *entry)
     return is_picture(entry->d_name);
 }
 
-static relume_status add_folder(struct photo_list *list, const char *folder)
+static relume_status add_folder(struct photo_list *list, const char *folder,
+                                const struct relume_log *log)
 {
     struct dirent **entry;
     const int n = scandir(folder, &entry, only_pictures, alphasort);
     if (n < 0)
-        return data_error("%s: cannot be read; %s", folder, strerror(errno));
+        return relume_input_fail(log, folder, "cannot be read", errno);
     relume_status status =
         n > 0 ? RELUME_OK : data_error("%s: no pictures in this folder; expected some", folder);
     for (int i = 0; i < n; i++) {
@@ -71,13 +72,14 @@ void photo_list_free(struct photo_list *list)
     *list = (struct photo_list){0};
 }
 
-relume_status photo_list_add(struct photo_list *list, const char *path)
+relume_status photo_list_add(struct photo_list *list, const char *path,
+                             const struct relume_log *log)
 {
     struct stat s;
     if (stat(path, &s))
         return data_error("%s: %s; expected a photograph, or a folder of them", path,
                           errno == ENOENT ? "no such file" : strerror(errno));
-    return S_ISDIR(s.st_mode) ? add_folder(list, path) : add(list, "", path);
+    return S_ISDIR(s.st_mode) ? add_folder(list, path, log) : add(list, "", path);
 }
 
 relume_status photo_list_make(struct photo_list *out, const struct args *args)
@@ -85,7 +87,7 @@ relume_status photo_list_make(struct photo_list *out, const struct args *args)
     relume_status status = RELUME_OK;
     *out = (struct photo_list){0};
     for (int i = 0; !status && i < args_inputs(args); i++)
-        status = photo_list_add(out, args_input(args, i));
+        status = photo_list_add(out, args_input(args, i), args_log(args));
     if (status)
         photo_list_free(out);
     return status;

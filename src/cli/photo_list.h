@@ -13,7 +13,8 @@ struct photo_list {
 // names. RELUME_EDATA with a sentence for a folder that cannot be read or holds none.
 relume_status photo_list_make(struct photo_list *out, const struct args *args);
 // One path more, likewise.
-relume_status photo_list_add(struct photo_list *list, const char *path);
+relume_status photo_list_add(struct photo_list *list, const char *path,
+                             const struct relume_log *log);
 void photo_list_free(struct photo_list *list);
 const char *base_name(const char *path);
 

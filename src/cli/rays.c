@@ -91,12 +91,12 @@ relume_status rays_read(struct relume_ray **out, int *count, const char *path,
     FILE *file = stream ? stdin : fopen(path, "re");
     *out = NULL;
     if (!file)
-        return fail(log, path, "cannot be read; %s", strerror(errno));
+        return relume_input_fail(log, stream ? "stdin" : path, "cannot be read", errno);
     errno = 0;
     for (int number = 1; !status && getline(&line, &room, file) >= 0; number++)
         status = read_line(&list, line, number, path, log);
     if (!status && ferror(file))
-        status = fail(log, path, "cannot be read; %s", strerror(errno));
+        status = relume_input_fail(log, stream ? "stdin" : path, "cannot be read", errno);
     if (!status && !list.count)
         status = fail(log, path, "holds no rays; expected six numbers per line");
     if (!stream)

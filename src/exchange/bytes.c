@@ -16,14 +16,14 @@ relume_status bytes_load(struct bytes *out, const char *path, const struct relum
     *out = (struct bytes){0};
     FILE *f = input_open(path, log);
     if (!f)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
+        return relume_input_fail(log, path, "cannot be opened", errno);
     relume_status status = RELUME_OK;
     if (fstat(fileno(f), &st) || !S_ISREG(st.st_mode))
         status = log_fail(log, RELUME_EDATA, "%s: not a file", path);
     else if (!(out->data = mem_array((size_t)st.st_size, 1)))
         status = RELUME_ENOMEM;
     else if (fread(out->data, 1, (size_t)st.st_size, f) != (size_t)st.st_size)
-        status = log_fail(log, RELUME_EDATA, "%s: cannot be read; %s", path, strerror(errno));
+        status = relume_input_fail(log, path, "cannot be read", errno);
     else
         out->size = (size_t)st.st_size;
     fclose(f);

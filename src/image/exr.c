@@ -7,6 +7,7 @@
 #include "base/outfile.h"
 #include "base/thread.h"
 
+#include <errno.h>
 #include <openexr.h>
 #include <pthread.h>
 #include <stdatomic.h>
@@ -383,10 +384,13 @@ relume_status exr_open_damaged(exr_file **out, const char *path, const struct re
     init.max_image_width = l.max_side;
     init.max_image_height = l.max_side;
     input_note(log, path);
+    errno = 0;
     const exr_result_t r = exr_start_read(&file->exr, path, &init);
     relume_status status;
     if (r == EXR_ERR_OUT_OF_MEMORY)
         status = RELUME_ENOMEM;
+    else if (r == EXR_ERR_FILE_ACCESS && errno)
+        status = relume_input_fail(log, path, "cannot be opened", errno);
     else if (r)
         status = log_fail(log, RELUME_EDATA, "%s: cannot be read as OpenEXR; %s", path,
                           exr_get_default_error_message(r));
@@ -562,9 +566,9 @@ static bool find_layout(struct layout *out, const exr_file *file, int part)
     return true;
 }
 
-// The block of number `item`; false: truncated or damaged.
-static bool decode(struct block *out, const struct layout *l, exr_decode_pipeline_t *pipeline,
-                   size_t item)
+// The block of number `item`. RELUME_EDATA: truncated or damaged; RELUME_ENOMEM.
+static relume_status decode(struct block *out, const struct layout *l,
+                            exr_decode_pipeline_t *pipeline, size_t item)
 {
     const exr_const_context_t exr = l->file->exr;
     exr_chunk_info_t chunk;
@@ -582,10 +586,10 @@ static bool decode(struct block *out, const struct layout *l, exr_decode_pipelin
     if (!e)
         e = exr_decoding_run(exr, l->part, pipeline);
     if (e)
-        return false;
+        return e == EXR_ERR_OUT_OF_MEMORY ? RELUME_ENOMEM : RELUME_EDATA;
     out->row = chunk.start_y - l->first_row;
     out->rows = chunk.height;
-    return true;
+    return RELUME_OK;
 }
 
 struct reading {
@@ -593,19 +597,20 @@ struct reading {
     void (*sink)(void *, int, int, const void *);
     void *context;
     exr_decode_pipeline_t *pipelines;  // one a worker
-    atomic_bool failed;
+    atomic_int status;                 // the last failure of any block
 };
 
 static void read_block(void *context, size_t item, int worker)
 {
     struct reading *r = context;
     struct block block = {0};
-    if (atomic_load(&r->failed))
+    if (atomic_load(&r->status))
         return;
-    if (decode(&block, &r->layout, &r->pipelines[worker], item))
-        r->sink(r->context, block.row, block.rows, block.samples);
+    const relume_status status = decode(&block, &r->layout, &r->pipelines[worker], item);
+    if (status)
+        atomic_store(&r->status, (int)status);
     else
-        atomic_store(&r->failed, true);
+        r->sink(r->context, block.row, block.rows, block.samples);
 }
 
 relume_status exr_read(const exr_file *file, int part, int threads,
@@ -624,24 +629,29 @@ relume_status exr_read(const exr_file *file, int part, int threads,
     for (int i = 0; i < threads; i++)
         exr_decoding_destroy(file->exr, &r.pipelines[i]);
     free(r.pipelines);
-    if (atomic_load(&r.failed))
+    const relume_status status = (relume_status)atomic_load(&r.status);
+    if (status == RELUME_EDATA)
         return log_fail(log, RELUME_EDATA,
                         "%s: truncated or damaged in part '%s'; expected %d rows", file->path,
                         exr_part_info(file, part).name, r.layout.height);
-    return RELUME_OK;
+    return status;
 }
 
 struct finding {
     struct layout layout;
     exr_decode_pipeline_t *pipelines;  // one a worker
     bool *damaged;                     // of each block
+    atomic_bool short_of_memory;
 };
 
 static void try_block(void *context, size_t item, int worker)
 {
     struct finding *f = context;
     struct block block = {0};
-    f->damaged[item] = !decode(&block, &f->layout, &f->pipelines[worker], item);
+    const relume_status status = decode(&block, &f->layout, &f->pipelines[worker], item);
+    f->damaged[item] = status == RELUME_EDATA;
+    if (status == RELUME_ENOMEM)
+        atomic_store(&f->short_of_memory, true);
 }
 
 static void report_runs(const struct finding *f, size_t blocks, void (*found)(void *, int, int),
@@ -675,7 +685,7 @@ relume_status exr_find_damage(const exr_file *file, int part, int threads,
     }
     for (int i = 0; f.pipelines && i < threads; i++)
         exr_decoding_destroy(file->exr, &f.pipelines[i]);
-    const bool done = f.pipelines && f.damaged;
+    const bool done = f.pipelines && f.damaged && !atomic_load(&f.short_of_memory);
     free(f.pipelines);
     free(f.damaged);
     return done ? RELUME_OK : RELUME_ENOMEM;
@@ -701,16 +711,18 @@ relume_status exr_blocks_open(exr_blocks **out, const exr_file *file, int part)
     return RELUME_OK;
 }
 
-const void *exr_blocks_row(exr_blocks *b, int row)
+relume_status exr_blocks_row(exr_blocks *b, int row, const void **samples)
 {
-    if (row < b->block.row || row >= b->block.row + b->block.rows) {
-        if (!decode(&b->block, &b->layout, &b->pipeline, (size_t)(row / b->layout.block_rows))) {
-            b->block.rows = 0;
-            return NULL;
-        }
+    relume_status status = RELUME_OK;
+    if (row < b->block.row || row >= b->block.row + b->block.rows)
+        status = decode(&b->block, &b->layout, &b->pipeline, (size_t)(row / b->layout.block_rows));
+    if (status) {
+        b->block.rows = 0;
+        return status;
     }
     const size_t bytes = (size_t)b->layout.channels * b->layout.row_bytes;
-    return (const uint8_t *)b->block.samples + (size_t)(row - b->block.row) * bytes;
+    *samples = (const uint8_t *)b->block.samples + (size_t)(row - b->block.row) * bytes;
+    return RELUME_OK;
 }
 
 void exr_blocks_close(exr_blocks **blocks)

@@ -87,8 +87,9 @@ relume_status exr_find_damage(const exr_file *file, int part, int threads,
 typedef struct exr_blocks exr_blocks;
 // `file` must outlive it. RELUME_ENOMEM.
 relume_status exr_blocks_open(exr_blocks **out, const exr_file *file, int part);
-// samples[channel][x] of a row, until the next call; NULL where the file is truncated or damaged.
-const void *exr_blocks_row(exr_blocks *blocks, int row);
+// samples[channel][x] of a row, until the next call. RELUME_EDATA where the file is truncated or
+// damaged, RELUME_ENOMEM.
+relume_status exr_blocks_row(exr_blocks *blocks, int row, const void **samples);
 void exr_blocks_close(exr_blocks **blocks);
 
 #endif

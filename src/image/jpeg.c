@@ -21,13 +21,15 @@ struct trap {
     struct jpeg_error_mgr manager;
     jmp_buf jump;
     char text[JMSG_LENGTH_MAX];
-    bool only_damage;  // only warnings of damage end here: cameras leave much that is odd
+    relume_status status;  // when something ended here
+    bool only_damage;      // only warnings of damage end here: cameras leave much that is odd
 };
 
 static void on_error(j_common_ptr info)
 {
     struct trap *trap = (struct trap *)info->err;
     trap->manager.format_message(info, trap->text);
+    trap->status = trap->manager.msg_code == JERR_OUT_OF_MEMORY ? RELUME_ENOMEM : RELUME_EDATA;
     longjmp(trap->jump, 1);
 }
 
@@ -83,7 +85,7 @@ static relume_status read_bytes(picture_reader *reader, int row, int rows, uint8
     const size_t width = (size_t)reader->info.width, step = width * (size_t)reader->info.channels;
     if (setjmp(p->trap.jump)) {
         snprintf(p->why, sizeof p->why, "truncated or damaged; %s", p->trap.text);
-        return RELUME_EDATA;
+        return p->trap.status;
     }
     if (row == 0)
         jpeg_start_decompress(&p->info);
@@ -174,9 +176,12 @@ relume_status jpeg_picture_open(picture_reader **out, const char *path,
     relume_status status = RELUME_OK;
     p->file = input_open(path, log);
     if (!p->file)
-        status = log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
+        status = relume_input_fail(log, path, "cannot be opened", errno);
     else if (!read_header(p))
-        status = log_fail(log, RELUME_EDATA, "%s: not a readable image; %s", path, p->trap.text);
+        status =
+            p->trap.status == RELUME_ENOMEM
+                ? RELUME_ENOMEM
+                : log_fail(log, RELUME_EDATA, "%s: not a readable image; %s", path, p->trap.text);
     else if (!limits_allow(limits, info->width, info->height))
         status = log_fail(log, RELUME_EDATA, "%s: size %d x %d; expected sizes within the limits",
                           path, info->width, info->height);
@@ -240,7 +245,7 @@ static bool read_all(struct reader *r, const void *bytes, size_t size)
 {
     r->info.err = trap_init(&r->trap);
     if (setjmp(r->trap.jump))
-        return refuse(r, r->trap.text);
+        return refuse(r, r->trap.status == RELUME_ENOMEM ? "" : r->trap.text);
     jpeg_create_decompress(&r->info);
     jpeg_mem_src(&r->info, bytes, (unsigned long)size);
     jpeg_read_header(&r->info, TRUE);
@@ -294,7 +299,7 @@ static relume_status load(uint8_t **out, size_t *size, const char *path,
     FILE *f = input_open(path, log);
     *out = NULL;
     if (!f)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
+        return relume_input_fail(log, path, "cannot be opened", errno);
     relume_status status = RELUME_OK;
     if (fstat(fileno(f), &st) || !S_ISREG(st.st_mode))
         status = log_fail(log, RELUME_EDATA, "%s: not a file; expected a JPEG file", path);

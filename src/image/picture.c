@@ -54,14 +54,14 @@ static relume_status look(struct source *s, const struct relume_log *log)
     if (s->file < 0 && errno == ENOENT)
         return log_fail(log, RELUME_EDATA, "%s: no such file; expected an image", s->path);
     if (s->file < 0 || fstat(s->file, &st))
-        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", s->path, strerror(errno));
+        return relume_input_fail(log, s->path, "cannot be opened", errno);
     if (!S_ISREG(st.st_mode) || st.st_size == 0)
         return log_fail(log, RELUME_EDATA, "%s: empty file or folder; expected an image", s->path);
     s->look.bytes = (uint64_t)st.st_size;
     const off_t foot = st.st_size > PICTURE_FOOT ? st.st_size - PICTURE_FOOT : 0;
     if (pread(s->file, s->look.head, PICTURE_HEAD, 0) < 0 ||
         pread(s->file, s->look.foot, PICTURE_FOOT, foot) < 0)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be read; %s", s->path, strerror(errno));
+        return relume_input_fail(log, s->path, "cannot be read", errno);
     s->kind = picture_kind_of(&s->look, s->path);
     return RELUME_OK;
 }
@@ -72,9 +72,9 @@ static relume_status open_inside(picture_reader **out, const struct source *s,
     if (!s->kind->inside)
         return RELUME_OK;
     if (!strcmp(s->kind->reader, "openexr"))
-        return exr_picture_open(out, s->path, limits);
+        return exr_picture_open(out, s->path, limits, log);
     if (!strcmp(s->kind->reader, "png"))
-        return png_picture_open(out, s->path, limits);
+        return png_picture_open(out, s->path, limits, log);
     return jpeg_picture_open(out, s->path, limits, log);
 }
 
@@ -155,7 +155,7 @@ static relume_status exif_notes(const picture_reader *of, struct relume_notes *o
     picture_reader *reader;
     struct stat st;
     if (fstat(fileno(of->exif), &st))
-        return log_fail(log, RELUME_EDATA, "%s: cannot be read; %s", of->path, strerror(errno));
+        return relume_input_fail(log, of->path, "cannot be read", errno);
     const relume_status status = helped_picture_open(&reader, fileno(of->exif), of->path, &jpeg,
                                                      (uint64_t)st.st_size, NULL, log);
     if (status)

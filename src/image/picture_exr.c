@@ -5,6 +5,7 @@
 #include "image/half.h"
 #include "image/picture_format.h"
 
+#include <errno.h>
 #include <string.h>
 
 struct exr_picture {
@@ -19,10 +20,11 @@ static relume_status read_floats(picture_reader *reader, int row, int rows, floa
     struct exr_picture *p = (struct exr_picture *)reader;
     const size_t n = (size_t)reader->info.channels, width = (size_t)reader->info.width;
     for (int y = row; y < row + rows; y++) {
-        const void *from = exr_blocks_row(p->blocks, y);
-        p->failed |= !from;
-        if (!from)
-            return RELUME_EDATA;
+        const void *from;
+        const relume_status status = exr_blocks_row(p->blocks, y, &from);
+        p->failed |= status == RELUME_EDATA;
+        if (status)
+            return status;
         for (size_t c = 0; c < n; c++)
             for (size_t x = 0; x < width; x++)
                 out[x * n + c] = p->half ? float_from_half(((const uint16_t *)from)[c * width + x])
@@ -75,12 +77,14 @@ static bool is_plain(struct picture_info *out, const exr_file *file)
 }
 
 relume_status exr_picture_open(picture_reader **out, const char *path,
-                               const struct relume_limits *limits)
+                               const struct relume_limits *limits, const struct relume_log *log)
 {
     exr_file *file;
     struct picture_info info;
     *out = NULL;
     relume_status status = exr_open(&file, path, limits, NULL);
+    if (status == RELUME_ESYSTEM)  // said to nobody: the module would be next to fail
+        return relume_input_fail(log, path, "cannot be opened", EMFILE);
     if (status)
         return status == RELUME_ENOMEM ? status : RELUME_OK;
     if (!is_plain(&info, file)) {

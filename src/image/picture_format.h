@@ -31,11 +31,11 @@ struct picture_reader {
 };
 
 // `*out` is NULL with RELUME_OK where the file is not of the plain kind: broken ones are not, and
-// what is wrong with them is for the module to say. RELUME_ENOMEM.
+// what is wrong with them is for the module to say. RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status exr_picture_open(picture_reader **out, const char *path,
-                               const struct relume_limits *limits);
+                               const struct relume_limits *limits, const struct relume_log *log);
 relume_status png_picture_open(picture_reader **out, const char *path,
-                               const struct relume_limits *limits);
+                               const struct relume_limits *limits, const struct relume_log *log);
 // JPEG files of all kinds. RELUME_EDATA with a sentence, RELUME_ENOMEM.
 relume_status jpeg_picture_open(picture_reader **out, const char *path,
                                 const struct relume_limits *limits, const struct relume_log *log);

@@ -1,9 +1,11 @@
 // png.c - the one file that knows libpng: pictures of 8-bit grey or colour, perhaps with alpha
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"
 #include "image/picture_format.h"
 
+#include <errno.h>
 #include <png.h>
 #include <setjmp.h>
 #include <stdio.h>
@@ -13,6 +15,7 @@
 struct trap {
     jmp_buf jump;
     char text[128];
+    bool short_of_memory;  // which libpng takes for damage here and there
 };
 
 static void on_error(png_structp png, png_const_charp text)
@@ -20,6 +23,20 @@ static void on_error(png_structp png, png_const_charp text)
     struct trap *trap = png_get_error_ptr(png);
     snprintf(trap->text, sizeof trap->text, "%s", text);
     longjmp(trap->jump, 1);
+}
+
+static png_voidp allocate(png_structp png, png_alloc_size_t size)
+{
+    struct trap *trap = png_get_mem_ptr(png);
+    void *memory = malloc(size);
+    trap->short_of_memory |= !memory;
+    return memory;
+}
+
+static void release(png_structp png, png_voidp memory)
+{
+    (void)png;
+    free(memory);
 }
 
 static void on_warning(png_structp png, png_const_charp text)
@@ -113,7 +130,7 @@ static relume_status read_bytes(picture_reader *reader, int row, int rows, uint8
     (void)row;
     if (setjmp(p->trap.jump)) {
         snprintf(p->why, sizeof p->why, "truncated or damaged; %s", p->trap.text);
-        return RELUME_EDATA;
+        return p->trap.short_of_memory ? RELUME_ENOMEM : RELUME_EDATA;
     }
     for (int y = 0; y < rows; y++)
         png_read_row(p->png, out + (size_t)y * width, NULL);
@@ -156,25 +173,30 @@ static bool read_header(struct png_picture *p)
 }
 
 relume_status png_picture_open(picture_reader **out, const char *path,
-                               const struct relume_limits *limits)
+                               const struct relume_limits *limits, const struct relume_log *log)
 {
     struct png_picture *p = mem_zeroed(1, sizeof *p);
     *out = NULL;
     if (!p)
         return RELUME_ENOMEM;
     relume_status status = RELUME_OK;
-    p->file = fopen(path, "rb");
+    p->file = input_open(path, log);
+    if (!p->file)
+        status = relume_input_fail(log, path, "cannot be opened", errno);
     const bool plain = p->file && is_plain(p->file);
     if (plain) {
-        p->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &p->trap, on_error, on_warning);
+        p->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &p->trap, on_error, on_warning,
+                                          &p->trap, allocate, release);
         p->info = p->png ? png_create_info_struct(p->png) : NULL;
         status = p->info ? RELUME_OK : RELUME_ENOMEM;
     }
     if (plain && !status && read_header(p) &&
         limits_allow(limits, p->reader.info.width, p->reader.info.height))
         *out = &p->reader;
-    else
+    else {
+        status = p->trap.short_of_memory ? RELUME_ENOMEM : status;
         close(&p->reader);
+    }
     return status;
 }
 
@@ -194,8 +216,10 @@ static void append(png_structp png, png_bytep bytes, size_t n)
     if (w->room - w->size < n) {
         const size_t room = 2 * (w->size + n);
         uint8_t *more = mem_resize(w->bytes, room, 1);
-        if (!more)
-            png_error(png, "");  // no memory
+        if (!more) {
+            w->trap.short_of_memory = true;
+            png_error(png, "");
+        }
         w->bytes = more;
         w->room = room;
     }
@@ -232,14 +256,15 @@ relume_status png_write(const char *path, int width, int height, int channels,
 {
     struct writer *w = mem_zeroed(1, sizeof *w);
     if (w)
-        w->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &w->trap, on_error, on_warning);
+        w->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, &w->trap, on_error, on_warning,
+                                           &w->trap, allocate, release);
     if (w && w->png)
         w->info = png_create_info_struct(w->png);
     relume_status status = w && w->info ? RELUME_OK : RELUME_ENOMEM;
     if (!status && !encode(w, width, height, channels, samples))
-        status = w->trap.text[0]
-                     ? log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path, w->trap.text)
-                     : RELUME_ENOMEM;
+        status = w->trap.short_of_memory
+                     ? RELUME_ENOMEM
+                     : log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path, w->trap.text);
     if (!status)
         status = outfile_save(path, w->bytes, w->size, log);
     if (w && w->png)

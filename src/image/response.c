@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/outfile.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -82,8 +83,7 @@ relume_status relume_response_load(struct relume_response *out, const char *path
     *out = (struct relume_response){0};
     FILE *f = input_open(path, log);
     if (!f)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; expected a response-curve file",
-                        path);
+        return relume_input_fail(log, path, "a response-curve file cannot be opened", errno);
     int i = -1;
     if (next_line(f, line, sizeof line) && sscanf(line, "relume-response %d", &found) == 1 &&
         found == version)

@@ -298,12 +298,12 @@ relume_status relume_ies_load(relume_ies **out, const char *path, const struct r
     *out = NULL;
     FILE *file = input_open(path, log);
     if (!file)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
+        return relume_input_fail(log, path, "cannot be opened", errno);
     char *text = mem_array(MOST_BYTES + 1, 1);
     const size_t size = text ? fread(text, 1, MOST_BYTES + 1, file) : 0;
     relume_status status = text ? RELUME_OK : RELUME_ENOMEM;
     if (ferror(file))
-        status = log_fail(log, RELUME_EDATA, "%s: cannot be read; %s", path, strerror(errno));
+        status = relume_input_fail(log, path, "cannot be read", errno);
     else if (size > MOST_BYTES)
         status = log_fail(log, RELUME_EDATA, "%s: too long; expected a photometric file", path);
     else if (!status)

@@ -23,7 +23,7 @@ static int open_regular(const char *path, uint64_t *bytes, const struct relume_l
     input_note(log, path);
     const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0 || fstat(file, &s)) {
-        (void)log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(errno));
+        (void)!relume_input_fail(log, path, "cannot be opened", errno);
         return -1;
     }
     if (S_ISREG(s.st_mode) && s.st_size <= MAX_BYTES) {

@@ -58,7 +58,7 @@ relume_status mesh_load_text(char **out, size_t *size, const char *path,
         const int error = errno;
         if (file)
             fclose(file);
-        return log_fail(log, RELUME_EDATA, "%s: cannot be opened; %s", path, strerror(error));
+        return relume_input_fail(log, path, "cannot be opened", error);
     }
     if (!S_ISREG(s.st_mode) || s.st_size > MAX_BYTES) {
         fclose(file);

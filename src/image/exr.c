@@ -166,10 +166,10 @@ static relume_status prepare_pipeline(struct writing *w, struct pipeline *p, int
     exr_encode_pipeline_t *pipeline = &p->exr;
     exr_chunk_info_t chunk;
     if (exr_write_scanline_chunk_info(w->exr, w->index, row, &chunk))
-        return RELUME_EIO;
+        return RELUME_ENOMEM;
     if (pipeline->channels) {
         if (exr_encoding_update(w->exr, w->index, &chunk, pipeline))
-            return RELUME_EIO;
+            return RELUME_ENOMEM;
     } else {
         static const uint8_t placeholder;  // the core wants pointers that our packing never reads
         if (exr_encoding_initialize(w->exr, w->index, &chunk, pipeline))
@@ -183,7 +183,7 @@ static relume_status prepare_pipeline(struct writing *w, struct pipeline *p, int
             c->user_line_stride = c->user_pixel_stride * w->part->width;
         }
         if (exr_encoding_choose_default_routines(w->exr, w->index, pipeline))
-            return RELUME_EIO;
+            return RELUME_ENOMEM;
         p->compress = pipeline->compress_fn;
         if (p->compress)
             pipeline->compress_fn = compress;
@@ -212,8 +212,10 @@ static void write_block(void *context, size_t item, int worker)
     relume_status status = prepare_pipeline(w, pipeline, row, &turn);
     if (!status)
         status = w->part->rows(w->part->context, row, rows, pipeline->exr.packed_buffer);
+    // samples are sound: what fails without the stream is memory, which zlib's callers name
+    // otherwise
     if (!status && exr_encoding_run(w->exr, w->index, &pipeline->exr))
-        status = w->io ? w->io : RELUME_EIO;
+        status = w->io ? w->io : RELUME_ENOMEM;
     end_turn(w, (int)item, status);
 }
 

@@ -122,7 +122,7 @@ RELUME_RESULT relume_status relume_file_save(const char *path, const void *bytes
                                              const struct relume_log *log);
 
 // What relume_file_save would refuse before it writes, for work that takes long: `path` is a file
-// that is read here. RELUME_EINVAL with a sentence.
+// that is read here (RELUME_EINVAL with a sentence), or its folder is not there (RELUME_EIO).
 RELUME_RESULT relume_status relume_file_check(const char *path, const struct relume_log *log);
 
 // Something that takes long to make, a folder or a file written by others (a film): made in a place

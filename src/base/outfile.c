@@ -307,9 +307,25 @@ relume_status outfile_save(const char *path, const void *bytes, size_t size,
     return status;
 }
 
+// A folder of the path is missing.
+static relume_status check_parent(const char *path, const struct relume_log *log)
+{
+    struct stat s;
+    char *parent = tree_parent(path);
+    relume_status status = parent ? RELUME_OK : RELUME_ENOMEM;
+    if (parent && stat(parent, &s) && errno == ENOENT)
+        status =
+            log_fail(log, RELUME_EIO, "%s: cannot be created; there is no folder %s: make it first",
+                     path, parent);
+    free(parent);
+    return status;
+}
+
 relume_status relume_file_check(const char *path, const struct relume_log *log)
 {
     struct stat s;
+    if (lstat(path, &s))
+        return check_parent(path, log);
     char *target = stat(path, &s) || !S_ISREG(s.st_mode) ? NULL : tree_resolve(path);
     const relume_status status = target ? input_refuse(target, path, log) : RELUME_OK;
     free(target);

@@ -10,11 +10,13 @@ relight="$RELUME relight good.exr -o"
 # ---- nowhere to write
 for o in nowhere/deep/o.exr good.exr/o.exr /proc/o.exr; do
     expect_fail "encode to $o" 3 "$o: .*(cannot be|no temporary)" "$o" $encode $o
-    expect_fail "relight to $o" 3 "$o: cannot be written" "$o" $relight $o
+    expect_fail "relight to $o" 3 "$o: cannot be (written|created)" "$o" $relight $o
 done
 mkdir folder
 expect_fail 'encode to a folder' 3 'folder: .*directory' - $encode folder
 expect_fail 'relight to a folder' 3 'folder.exr: .*directory' - sh -c "mkdir folder.exr; $relight folder.exr"
+expect_fail 'export to a folder in no folder' 3 'web/statue: cannot be created; there is no folder web: make it first' web \
+    "$RELUME" export good.exr -o web/statue
 expect_fail 'relight to hdr, no such folder' 3 'nowhere/o.hdr: ' nowhere/o.hdr $relight nowhere/o.hdr
 expect_fail 'relight to tif, no such folder' 3 'nowhere/o.tif: ' nowhere/o.tif $relight nowhere/o.tif
 expect_fail 'relight to an unknown kind' 2 '-o: o.xyz: no picture format for this ending' o.xyz $relight o.xyz

@@ -47,7 +47,7 @@ for kind in ptm lptm rti rti16; do
     "$RELUME" export $source --to ${kind%16} $terms -o $kind.$extension 2>note.txt || not_ok "export --to $kind" "$(cat note.txt)"
     relume import $kind.$extension -o $kind-back.exr
     above "$kind: the fit is what was promised" "$(psnr $source $kind-back.exr)" "$(awk -v p="$(promised)" 'BEGIN { print p - 4 }')"
-    expect_ok "$kind: exported again" 'the same codes as in the file' "$RELUME" export $kind-back.exr --to ${kind%16} $terms -o again.$extension
+    expect_ok "$kind: exported again" 'copied unchanged: nothing is lost' "$RELUME" export $kind-back.exr --to ${kind%16} $terms -o again.$extension
     same "$kind: import and export give the same bytes" $kind.$extension again.$extension
     decoded_alike "$kind: an independent decoder" $kind.$extension $kind-back.exr
     rm again.$extension

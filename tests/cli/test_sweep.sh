@@ -123,6 +123,6 @@ bad 'nothing left to learn from' 'leaving out 20 lights' --leave-out 20
 bad 'an unknown option' "unknown option '--bases'; did you mean '--basis'" --bases sh
 expect_fail 'no capture' 1 'nowhere: ' no.csv "$RELUME" sweep nowhere -o no
 expect_fail 'a second capture of another size' 1 '16 x 16' no.csv "$RELUME" sweep cap --test small -o no
-expect_fail 'nowhere to write' 3 'nowhere/o.resume: cannot be written' - $sweep $grid -o nowhere/o
+expect_fail 'nowhere to write' 3 'nowhere/o: cannot be created; there is no folder nowhere: make it first' - $sweep $grid -o nowhere/o
 if [ "$(ls tmp)" ]; then not_ok 'nothing is left in TMPDIR at the end' "$(ls tmp)"; else ok 'nothing is left in TMPDIR at the end'; fi
 finish

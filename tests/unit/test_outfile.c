@@ -172,6 +172,13 @@ static void test_inputs(void **state)
     assert_int_equal(outfile_open(&f, path, &log.log), RELUME_EINVAL);
     assert_int_equal(relume_file_check(hard, &log.log), RELUME_EINVAL);
     CHECK_OK(relume_file_check(folder, &log.log));
+    char nowhere[128];
+    snprintf(nowhere, sizeof nowhere, "%s/new", folder);
+    CHECK_OK(relume_file_check(nowhere, &log.log));
+    CHECK_OK(relume_file_check("new", &log.log));
+    snprintf(nowhere, sizeof nowhere, "%s/no/new", folder);
+    assert_int_equal(relume_file_check(nowhere, &log.log), RELUME_EIO);
+    assert_non_null(strstr(log.text, "/no: make it first"));
     expect_content(path, "photo");
     for (int i = 0; i < 1000; i++) {  // more than the table begins with
         char many[128];

@@ -92,13 +92,13 @@ int main(int argc, char **argv)
     struct fuzz f = {.words = words};
     fuzz_begin(&f, "fuzz_script", argc, argv);
     fuzz_add(&f, text("0# a comment\nsize 800 600\ndrag left 100 100 300 100 0.2\nframe a.png\n"
-                      "wheel 1\nwait 0.3\nclick 10 20\nset pan 30\nset tilt -9\n"));
+                      "wheel 1\nwait 0.3\nclick 10 20\nset zoom 2\nset gain 2\n"));
     fuzz_add(&f, text("1set gain 3.5\nset range 0.1 0.4\nset exposure -1\nset eye 0.5 0.25 2\n"
                       "set aperture 0.5\nset focus 0.3\nset zoom 2\npass unsharp\nshot a\n"));
     fuzz_add(&f,
              text("2light dir 0 1 1\nadd point 0 0 1 rgb 1 2 3\npress right 5 5\nmove 9 9\n"
                   "release right 9 9\nhold l\ndrag left 0 0 100 0\nlet l\nkey tab\nkey h\nquit\n"));
     fuzz_add(&f, text("3glare on\nglare squint 0.3\nwait 0.2\nglare pause\ndock left\nhint\n"
-                      "open a.exr\nrig a.json\ntype abc\nkey right\nkey escape\n"));
+                      "open a.exr\nrig a.json\ntype abc\nkey right\nkey esc\n"));
     return fuzz_run(&f, argc, argv, one);
 }

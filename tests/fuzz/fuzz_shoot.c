@@ -119,7 +119,7 @@ static bool try_times(const char *path, struct bytes b)
     const struct photo_list list = {2, photos};
     struct relume_notes notes[2] = {{.iso = 1.0}};
     fuzz_store(path, (struct bytes){b.data + 1, b.size - 1});
-    if (read_times(path, &list, notes))
+    if (read_times(path, &list, notes, NULL))
         return false;
     for (int i = 0; i < 2; i++)
         if (!(notes[i].time_s > 0.0) || isinf(notes[i].time_s))

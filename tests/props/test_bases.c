@@ -346,7 +346,7 @@ static void test_count_must_fit(void **state)
     assert_int_equal(relume_coder_create(&c, &relume_basis_sh, lights, LIGHTS,
                                          relume_coder_params(.log = &log.log, .coefficients = 10)),
                      RELUME_EINVAL);
-    assert_non_null(strstr(log.text, "nearest: 9"));
+    assert_non_null(strstr(log.text, "the nearest number is 9"));
 }
 
 int main(void)

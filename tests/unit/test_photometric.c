@@ -81,7 +81,7 @@ static void too_few_lights(void **state)
     assert_int_equal(
         relume_photometric_fit(&p, capture, 0, relume_photometric_params(.log = &log.log)),
         RELUME_EDATA);
-    assert_non_null(strstr(log.text, "different planes"));
+    assert_non_null(strstr(log.text, "in one plane; found"));
     assert_null(p.normal.data);
     bump_close(&capture, folder);
 }

@@ -127,9 +127,9 @@ static const struct picture_format *format_of(const char *path)
 {
     picture_reader *r;
     if (strstr(path, ".exr"))
-        CHECK_OK(exr_picture_open(&r, path, NULL));
+        CHECK_OK(exr_picture_open(&r, path, NULL, NULL));
     else
-        CHECK_OK(png_picture_open(&r, path, NULL));
+        CHECK_OK(png_picture_open(&r, path, NULL, NULL));
     const struct picture_format *format = r ? r->format : NULL;
     picture_close(&r);
     return format;
@@ -152,7 +152,7 @@ static void exr_that_is_not_plain(void **state)
     assert_non_null(format_of(path_of("a.exr")));
     const struct relume_limits small = {.max_side = 11};
     picture_reader *r;
-    CHECK_OK(exr_picture_open(&r, path_of("a.exr"), &small));
+    CHECK_OK(exr_picture_open(&r, path_of("a.exr"), &small, NULL));
     assert_null(r);
     shorten(path_of("a.exr"));
     assert_null(format_of(path_of("a.exr")));

@@ -39,7 +39,7 @@ no 'albedo' --albedo capture missing -o cap --albedo o.foo
 no 'a relit picture' --relight capture missing -o cap --encode c.exr --relight o.foo
 expect_fail 'numbered pictures' 2 'o%04d.foo: no picture format' - "$RELUME" glare missing.exr -o o%04d.foo --frames 2
 for option in --normals --height; do
-    expect_fail "$option as PNG" 2 "$option: n.png: values below 0 and above 1 need a float format" n.png \
+    expect_fail "$option as PNG" 2 "$option: n.png: this picture has values below 0 or above 1" n.png \
         "$RELUME" capture missing -o cap $option n.png
 done
 viewer_refuses() {
@@ -86,6 +86,6 @@ for ending in jpg exr png; do
     expect_fail "export to .$ending" 2 "-o: i.$ending: export writes no pictures" i.$ending "$RELUME" export missing.exr -o i.$ending
 done
 for ending in hsh dzi json zip; do
-    expect_fail "export to .$ending" 2 "-o: i.$ending: no export has this ending" i.$ending "$RELUME" export missing.exr -o i.$ending
+    expect_fail "export to .$ending" 2 "-o: i.$ending: export cannot write this ending" i.$ending "$RELUME" export missing.exr -o i.$ending
 done
 finish

@@ -75,7 +75,7 @@ expect_ok 'sweep' - "$RELUME" sweep ring --basis sh --coefficients 1 --leave-out
 expect_fail 'an eye without a view' 1 'sees nothing of the slabs' x.exr "$RELUME" relight ring.exr -o x.exr --eye 0,9,0.1 -q
 expect_fail 'a focus behind the eye' 2 'on or behind the eye; expected less than 3.16' y.exr "$RELUME" relight ring.exr -o y.exr --eye 1,0,3 --focus 4 -q
 expect_fail 'looking without an eye' 2 'need --eye' x.exr "$RELUME" relight ring.exr -o x.exr --look-at 0,0,0 -q
-expect_fail 'a ray beside all cameras' 1 'holds no such ray|sees nothing' - "$RELUME" query ring.exr --eye 9,0,0 --direction 0,0,1 -q
+expect_fail 'a ray beside all cameras' 1 'this ray is not in the file' - "$RELUME" query ring.exr --eye 9,0,0 --direction 0,0,1 -q
 expect_fail 'export' 1 'slabs around an object' x.ptm "$RELUME" export ring.exr --to ptm -o x.ptm -q
 synth one --views 2x1 --lights 1
 expect_fail 'a capture of one slab' 1 'slabs; expected 6' - "$RELUME" eval ring.exr one -q

@@ -65,16 +65,16 @@ expect_ok 'a larger grid' - $sweep $grid,16 -o out --json
 if [ "$(grep -o '"seconds": [^,]*' out1.json | while read -r s; do grep -cF "$s" out.txt; done | sort -u)" = 1 ]; then ok 'its known rows are reused'; else not_ok 'its known rows are reused' "$(cat out.txt)"; fi
 cp out.resume kept.resume
 sed '2s/0x1/0x2/' kept.resume >out.resume
-expect_ok 'a broken line' 'out.resume: some lines are broken' $sweep $grid -o out --json
+expect_ok 'a broken line' 'out.resume: some lines are damaged' $sweep $grid -o out --json
 no_times out.txt >a.json
 no_times out1.json >b.json
 same 'its row is measured again' a.json b.json
 head -c 700 kept.resume >out.resume
-expect_ok 'a line cut short' 'out.resume: some lines are broken' $sweep $grid -o out --json
+expect_ok 'a line cut short' 'out.resume: some lines are damaged' $sweep $grid -o out --json
 no_times out.txt >a.json
 same 'the rows are right' a.json b.json
 touch -d '2001-01-01' cap/view00/light0003.png
-expect_ok 'an image has changed' 'some lines are broken' $sweep $grid -o out --json
+expect_ok 'an image has changed' 'some lines are damaged' $sweep $grid -o out --json
 differ 'everything is measured again' out.txt out1.json
 echo 'my notes' >notes.resume
 cp notes.resume notes.copy

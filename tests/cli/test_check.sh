@@ -45,6 +45,6 @@ relume encode cap -o none.exr --basis ptm --compression none 2>/dev/null
 size=$(wc -c <none.exr)
 cp none.exr wrong.exr
 printf '\377\377\377\377' | dd of=wrong.exr bs=1 seek=$((size / 2)) conv=notrunc 2>/dev/null
-relume check wrong.exr >out.txt 2>err.txt; cp out.txt err.txt wrong.exr none.exr /tmp/poor
+relume check wrong.exr >out.txt 2>err.txt
 check "values that are no codes" grep -q "wrong.exr: .*expected" err.txt
 finish

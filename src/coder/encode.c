@@ -162,9 +162,10 @@ static relume_status measure_fit(struct encoding *e, int row)
 {
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
     const size_t size = (size_t)e->lights * width;
-    float *again = mem_array(4 * size, sizeof *again), *seen = again + size;
+    float *again = mem_array(4 * size, sizeof *again);
     if (!again)
         return RELUME_ENOMEM;
+    float *seen = again + size;
     for (size_t i = 0; i < (size_t)e->lights; i++)
         relume_table_planes(e->table, (int)i, (size_t)row * width, width, seen + i * width, size);
     for (int c = 0; c < 3; c++) {

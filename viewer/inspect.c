@@ -194,41 +194,6 @@ bool inspect_pick(int *view, int pixel[2], const struct app *app, const relume_s
 
 // ---------------------------------------------------------------- one pixel
 
-static float half_value(uint16_t bits)
-{
-    const int exponent = bits >> 10 & 31;
-    const int mantissa = bits & 1023;
-    const float size =
-        exponent ? ldexpf((float)(1024 + mantissa), exponent - 25) : ldexpf((float)mantissa, -24);
-    return bits & 0x8000 ? -size : size;
-}
-
-static float plane_value(const struct relume_codes *codes, int plane, size_t at)
-{
-    const void *codes_of = codes->plane[plane];
-    float code;
-    if (codes->storage == RELUME_STORE_8)
-        code = ((const uint8_t *)codes_of)[at];
-    else if (codes->storage == RELUME_STORE_FLOAT)
-        code = ((const float *)codes_of)[at];
-    else if (codes->storage == RELUME_STORE_HALF)
-        code = half_value(((const uint16_t *)codes_of)[at]);
-    else
-        code = ((const uint16_t *)codes_of)[at];
-    return code * codes->scale[plane] + codes->offset[plane];
-}
-
-static float stored_value(const struct relume_codes *codes, int plane, size_t at)
-{
-    float sum = 0;
-    if (!codes->books)
-        return plane_value(codes, plane, at);
-    for (int b = 0; b < codes->books; b++)
-        sum +=
-            codes->vectors[b][(size_t)codes->index[b][at] * (size_t)codes->planes + (size_t)plane];
-    return sum;
-}
-
 void inspect_coefficients(float *coefficient, float colour[3], const struct relume_codes *codes,
                           int x, int y)
 {
@@ -237,8 +202,11 @@ void inspect_coefficients(float *coefficient, float colour[3], const struct relu
     const int k = info->coefficients;
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < k; i++)
-            coefficient[c * k + i] = stored_value(codes, relume_coder_plane(info, i, c), at);
-        colour[c] = info->luminance ? stored_value(codes, k + c, at) : 1;
+            relume_codes_plane(codes, relume_coder_plane(info, i, c), at, 1,
+                               &coefficient[c * k + i]);
+        colour[c] = 1;
+        if (info->luminance)
+            relume_codes_plane(codes, k + c, at, 1, &colour[c]);
     }
 }
 

@@ -14,6 +14,10 @@
 extern "C" {
 #endif
 
+// No basis has more coefficients per channel than this: three times as many are the weights of a
+// direction, and at most the planes of a view.
+enum { RELUME_MOST_COEFFICIENTS = 4096 };
+
 // A basis prepared for one set of lights. Never changes. Thread-safety: safe.
 typedef struct relume_coder relume_coder;
 
@@ -341,6 +345,22 @@ struct relume_codes {
     const float *const *vectors;   // [books] -> [codes][planes]
     const int *book_codes;         // [books]
 };
+
+// The coefficients of the `n` pixels from `first` on, row by row, in one plane, whatever they are
+// stored as.
+RELUME_API void relume_codes_plane(const struct relume_codes *codes, int plane, size_t first,
+                                   size_t n, float *out);
+
+// Every `step`-th pixel from `first` on, `n` of them, as codes of one row of pixels. Planes, or
+// indices, are copied; the rest is borrowed from `codes`. Destroy also what RELUME_ENOMEM left.
+struct relume_codes_part {
+    struct relume_codes codes;
+    void *memory;
+};
+RELUME_RESULT relume_status relume_codes_pick(struct relume_codes_part *out,
+                                              const struct relume_codes *codes, size_t first,
+                                              size_t step, size_t n);
+RELUME_API void relume_codes_part_destroy(struct relume_codes_part *part);
 
 // Codes that are there already, of any positive scales, halves of powers of two, as what a file is
 // written from: the codes come back as they are. Not for floats. Of `params` log and scratch are

@@ -10,8 +10,6 @@
 
 #include <relume/coder.h>
 
-enum { CODER_MAX_COEFFICIENTS = 4096 };
-
 // The captured lights as a triangulated sphere (mesh.c).
 typedef struct mesh mesh;
 

@@ -11,7 +11,7 @@ enum { DEFAULT_COUNT = 27 };
 
 static bool has_count(int count)
 {
-    return count >= 1 && count <= CODER_MAX_COEFFICIENTS;
+    return count >= 1 && count <= RELUME_MOST_COEFFICIENTS;
 }
 
 static int fit_count(int want, int lights)

@@ -5,7 +5,7 @@
 
 static bool has_count(int count)
 {
-    return count >= 1 && count <= CODER_MAX_COEFFICIENTS;
+    return count >= 1 && count <= RELUME_MOST_COEFFICIENTS;
 }
 
 // One coefficient per light, neither more nor fewer.

@@ -1,5 +1,6 @@
 // book.c - one codebook as numbers in a file, and what they stand for
 #include "coder/books.h"
+#include "coder/codes.h"
 #include "coder/coefficients.h"
 
 #include "image/half.h"
@@ -23,12 +24,9 @@ int relume_book_dim(enum relume_book_kind kind, int first, int last)
 float book_number(const struct relume_book *b, int d, int code)
 {
     const size_t at = (size_t)d * (size_t)b->codes + (size_t)code;
-    const float v = b->storage == RELUME_STORE_8       ? (float)((const uint8_t *)b->numbers)[at]
-                    : b->storage == RELUME_STORE_FLOAT ? ((const float *)b->numbers)[at]
-                    : b->storage == RELUME_STORE_HALF
-                        ? float_from_half(((const uint16_t *)b->numbers)[at])
-                        : (float)((const uint16_t *)b->numbers)[at];
-    return v * b->scale[d] + b->offset[d];
+    float number;
+    codes_restore(&number, b->storage, b->numbers, at, 1, b->scale[d], b->offset[d]);
+    return number;
 }
 
 static void expand_vector(float *v, const struct relume_book *b, int code)

@@ -213,9 +213,9 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
         return log_fail(p.log, RELUME_EINVAL,
                         "basis %s cannot be fitted to luminance only; leave out --colour luminance",
                         basis->name);
-    if (basis->interpolates && n > CODER_MAX_COEFFICIENTS)
+    if (basis->interpolates && n > RELUME_MOST_COEFFICIENTS)
         return log_fail(p.log, RELUME_EDATA, "basis %s takes at most %d lights; found %d",
-                        basis->name, CODER_MAX_COEFFICIENTS, n);
+                        basis->name, RELUME_MOST_COEFFICIENTS, n);
     if (p.robust && (basis == &relume_basis_table || basis == &relume_basis_dct_resampled))
         return log_fail(p.log, RELUME_EINVAL,
                         "basis %s has no robust fit; use another basis, or leave out --robust",
@@ -304,7 +304,7 @@ static bool append_row(relume_coder *coder, size_t k, size_t samples)
 relume_status relume_coder_append_mean(relume_coder *coder)
 {
     const size_t k = (size_t)coder->info.coefficients, raw = (size_t)coder->info.functions;
-    if (!coder->mean || !coder->transform || coder->robust || k >= CODER_MAX_COEFFICIENTS)
+    if (!coder->mean || !coder->transform || coder->robust || k >= RELUME_MOST_COEFFICIENTS)
         return RELUME_OK;
     float *grown = mem_array(3 * (k + 1) * raw, sizeof *grown);
     if (!grown || !append_row(coder, k, 3 * raw)) {
@@ -367,7 +367,7 @@ void relume_coder_weights(const relume_coder *coder, struct relume_vec3 light, f
     const size_t size = (size_t)k * (size_t)raw;
     const vec3 d =
         clamp_to_captured(coder->info.hemispherical, pole_from_world(light, coder->info.pole_y));
-    double values[CODER_MAX_COEFFICIENTS];
+    double values[RELUME_MOST_COEFFICIENTS];
     coder->info.basis->evaluate(coder, d, values);
     const int channels = coder->info.basis->learned ? 3 : 1;
     for (int c = 0; c < channels; c++)

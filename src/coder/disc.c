@@ -44,7 +44,7 @@ double disc_cosine(struct disc_wave w, struct disc_point p)
 
 bool disc_has_count(int count)
 {
-    return count >= 1 && count <= CODER_MAX_COEFFICIENTS;
+    return count >= 1 && count <= RELUME_MOST_COEFFICIENTS;
 }
 
 // By itself half as many coefficients as lights, at most 28: seven zones.

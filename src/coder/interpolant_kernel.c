@@ -158,7 +158,7 @@ static void add_scaled(double *restrict to, const double *restrict from, double 
 static void evaluate(const void *data, struct relume_vec3 light, double *weights)
 {
     const struct kernel *k = data;
-    double row[CODER_MAX_COEFFICIENTS + MAX_TREND];
+    double row[RELUME_MOST_COEFFICIENTS + MAX_TREND];
     const int size = k->lights + k->trend;
     fill_row(k, light, row);
     memset(weights, 0, (size_t)k->lights * sizeof *weights);

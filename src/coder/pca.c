@@ -247,7 +247,7 @@ static relume_status find_components(struct solver *s)
             o->function[i * n + j] = sum;
         }
     for (size_t i = 0; i < 3 * (size_t)o->count; i++) {
-        double row[CODER_MAX_COEFFICIENTS];
+        double row[RELUME_MOST_COEFFICIENTS];
         memcpy(row, o->analysis + i * n, n * sizeof *row);
         for (size_t j = 0; j < n; j++) {
             double sum = 0.0;

@@ -3,7 +3,6 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
-#include "image/half.h"
 #include "math/lsq.h"
 #include "math/vec.h"
 
@@ -13,8 +12,6 @@
 
 // More numbers than these are replaced by pictures under so many directions.
 enum { MOST_NUMBERS = 1200, STAND_INS = 96 };
-
-enum { MOST_WEIGHTS = 3 * 4096 };
 
 static bool is_srgb(const struct relume_codes *codes)
 {
@@ -66,39 +63,6 @@ void source_close(struct source *s)
 
 // ---------------------------------------------------------------- coefficients
 
-// The same plane of the vectors that codebooks name.
-static void read_vectors(const struct relume_codes *codes, int plane, size_t first, size_t n,
-                         float *out)
-{
-    memset(out, 0, n * sizeof *out);
-    for (int b = 0; b < codes->books; b++) {
-        const uint16_t *index = codes->index[b] + first;
-        const float *vectors = codes->vectors[b] + plane;
-        for (size_t i = 0; i < n; i++)
-            out[i] += vectors[(size_t)index[i] * (size_t)codes->planes];
-    }
-}
-
-static void read_plane(const struct relume_codes *codes, int plane, size_t first, size_t n,
-                       float *out)
-{
-    if (codes->books) {
-        read_vectors(codes, plane, first, n, out);
-        return;
-    }
-    const float scale = codes->scale[plane], offset = codes->offset[plane];
-    const uint8_t *bytes = (const uint8_t *)codes->plane[plane] + first;
-    const uint16_t *words = (const uint16_t *)codes->plane[plane] + first;
-    const float *floats = (const float *)codes->plane[plane] + first;
-    for (size_t i = 0; i < n; i++) {
-        const float code = codes->storage == RELUME_STORE_8       ? (float)bytes[i]
-                           : codes->storage == RELUME_STORE_FLOAT ? floats[i]
-                           : codes->storage == RELUME_STORE_HALF  ? float_from_half(words[i])
-                                                                  : (float)words[i];
-        out[i] = code * scale + offset;
-    }
-}
-
 // Coefficients times colours: number 3 k + c.
 static relume_status read_products(const struct source *s, size_t first, size_t n, float *out)
 {
@@ -107,10 +71,10 @@ static relume_status read_products(const struct source *s, size_t first, size_t 
     if (!colour)
         return RELUME_ENOMEM;
     for (int c = 0; c < 3; c++)
-        read_plane(s->codes, k + c, first, n, colour + (size_t)c * n);
+        relume_codes_plane(s->codes, k + c, first, n, colour + (size_t)c * n);
     for (int i = 0; i < k; i++) {
         float *to = out + 3 * (size_t)i * n;
-        read_plane(s->codes, i, first, n, to);
+        relume_codes_plane(s->codes, i, first, n, to);
         for (size_t c = 3; c-- > 0;)
             for (size_t x = 0; x < n; x++)
                 to[c * n + x] = to[x] * colour[c * n + x];
@@ -121,39 +85,12 @@ static relume_status read_products(const struct source *s, size_t first, size_t 
 
 // ---------------------------------------------------------------- pictures
 
-// Pointers of a band of rows in place of those of the whole view.
-struct band {
-    struct relume_codes codes;
-    const void **plane;
-    const uint16_t **index;
-};
-
-static relume_status open_band(struct band *band, const struct source *s, int row, int rows)
-{
-    const struct relume_codes *whole = s->codes;
-    const size_t code = relume_storage_bytes(whole->storage);
-    const size_t first = (size_t)row * (size_t)s->width;
-    *band = (struct band){.codes = *whole};
-    band->plane = mem_array((size_t)whole->planes, sizeof *band->plane);
-    band->index = mem_array((size_t)whole->books, sizeof *band->index);
-    if (!band->plane || !band->index)
-        return RELUME_ENOMEM;
-    for (int p = 0; !whole->books && p < whole->planes; p++)
-        band->plane[p] = (const char *)whole->plane[p] + first * code;
-    for (int b = 0; b < whole->books; b++)
-        band->index[b] = whole->index[b] + first;
-    band->codes.height = rows;
-    band->codes.plane = whole->books ? NULL : band->plane;
-    band->codes.index = whole->books ? band->index : NULL;
-    return RELUME_OK;
-}
-
 static relume_status picture_rows(const struct source *s, int row, int rows, float *out)
 {
     const size_t n = (size_t)rows * (size_t)s->width;
     struct relume_image picture = {0};
-    struct band band;
-    relume_status status = open_band(&band, s, row, rows);
+    struct relume_codes_part band;
+    relume_status status = relume_codes_pick(&band, s->codes, (size_t)row * (size_t)s->width, 1, n);
     const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
     for (int i = 0; !status && i < s->lights; i++) {
         const struct relume_light light = {.direction = s->light[i], .rgb = {1.0f, 1.0f, 1.0f}};
@@ -168,8 +105,7 @@ static relume_status picture_rows(const struct source *s, int row, int rows, flo
         }
     }
     relume_image_destroy(&picture);
-    free(band.plane);
-    free(band.index);
+    relume_codes_part_destroy(&band);
     return status;
 }
 
@@ -181,13 +117,13 @@ relume_status source_rows(const struct source *s, int row, int rows, float *out)
     if (relume_coder_info(s->codes->coder)->luminance)
         return read_products(s, first, n, out);
     for (int p = 0; p < s->numbers; p++)
-        read_plane(s->codes, p, first, n, out + (size_t)p * n);
+        relume_codes_plane(s->codes, p, first, n, out + (size_t)p * n);
     return RELUME_OK;
 }
 
 void source_weights(const struct source *s, struct relume_vec3 light, double *weights)
 {
-    float w[MOST_WEIGHTS], constant[3];
+    float w[3 * RELUME_MOST_COEFFICIENTS], constant[3];
     const relume_coder *coder = s->between ? s->between : s->codes->coder;
     const struct relume_coder_info *info = relume_coder_info(coder);
     const int k = info->coefficients, p = s->numbers;

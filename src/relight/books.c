@@ -5,7 +5,7 @@
 #include <string.h>
 
 // A multiple of 3 and of every vector width: products of plane p gather in lane p % LANES.
-enum { LANES = 24, MOST_PLANES = 3 * 4096 };
+enum { LANES = 24 };
 
 static void dot(float lane[LANES], const float *vector, const float *weights, int planes)
 {
@@ -21,7 +21,7 @@ static void dot(float lane[LANES], const float *vector, const float *weights, in
 static void relight_separate(float *rgb, const float *vectors, int count, int k,
                              const float *weights, const float bias[3])
 {
-    float by_plane[MOST_PLANES], lane[LANES];
+    float by_plane[3 * RELUME_MOST_COEFFICIENTS], lane[LANES];
     for (int p = 0; p < 3 * k; p++)
         by_plane[p] = weights[p % 3 * k + p / 3];
     for (int v = 0; v < count; v++) {

@@ -7,13 +7,17 @@
 #include "relight/near.h"
 
 #include "base/memory.h"
-#include "image/half.h"
 #include "math/vec.h"
 #include "relight/grid.h"
 
 #include <string.h>
 
-enum { MOST_WEIGHTS = 3 * 4096, LANES = 64, LEAST_LANES = 4, ROOM = MOST_WEIGHTS * LEAST_LANES };
+enum {
+    MOST_WEIGHTS = 3 * RELUME_MOST_COEFFICIENTS,
+    LANES = 64,
+    LEAST_LANES = 4,
+    ROOM = MOST_WEIGHTS * LEAST_LANES
+};
 
 // ---------------------------------------------------------------- emitters
 
@@ -94,12 +98,10 @@ static bool arrives(vec3 *from, float rgb[3], const struct near *near, const str
 struct block {
     size_t first;
     int n, lanes;
-    bool read;  // vectors of codebooks are in `coefficient`
-    bool lit;   // something arrives at one of them
+    bool lit;  // something arrives at one of them
     float rgb[3][LANES];
     float constant[3][LANES];
-    float weight[ROOM];       // [3 or 1][coefficients][n]
-    float coefficient[ROOM];  // [planes][n]
+    float weight[ROOM];  // [3 or 1][coefficients][n]
 };
 
 static void put_lane(float *to, int lanes, const float *from, int n)
@@ -122,55 +124,6 @@ static bool point_of(vec3 *point, const struct near *near, size_t pixel)
 }
 
 // ---------------------------------------------------------------- coefficients
-
-static void read_vectors(struct block *b, const struct relume_codes *codes)
-{
-    const size_t planes = (size_t)codes->planes;
-    if (b->read)
-        return;
-    b->read = true;
-    memset(b->coefficient, 0, planes * (size_t)b->lanes * sizeof *b->coefficient);
-    for (int book = 0; book < codes->books; book++)
-        for (int i = 0; i < b->n; i++) {
-            const float *v =
-                codes->vectors[book] + (size_t)codes->index[book][b->first + (size_t)i] * planes;
-            for (size_t p = 0; p < planes; p++)
-                b->coefficient[p * (size_t)b->lanes + (size_t)i] += v[p];
-        }
-}
-
-static void scale(float *out, int n, float factor, float offset)
-{
-    for (int i = 0; i < n; i++)
-        out[i] = out[i] * factor + offset;
-}
-
-// The coefficients [n] of a plane: in `room`, or where they are already.
-static const float *read_plane(float room[LANES], struct block *b, const struct relume_codes *codes,
-                               int plane)
-{
-    if (codes->books) {
-        read_vectors(b, codes);
-        return b->coefficient + plane * b->lanes;
-    }
-    const void *from = codes->plane[plane];
-    const uint8_t *bytes = (const uint8_t *)from + b->first;
-    const uint16_t *words = (const uint16_t *)from + b->first;
-    if (codes->storage == RELUME_STORE_8)
-        for (int i = 0; i < b->n; i++)
-            room[i] = bytes[i];
-    else if (codes->storage == RELUME_STORE_HALF)
-        for (int i = 0; i < b->n; i++)
-            room[i] = float_from_half(words[i]);
-    else if (codes->storage == RELUME_STORE_FLOAT)
-        for (int i = 0; i < b->n; i++)
-            room[i] = ((const float *)from + b->first)[i];
-    else
-        for (int i = 0; i < b->n; i++)
-            room[i] = words[i];
-    scale(room, b->n, codes->scale[plane], codes->offset[plane]);
-    return room;
-}
 
 static void add_product(float *restrict sum, const float *restrict a, const float *restrict b,
                         int n)
@@ -200,23 +153,28 @@ static void decode(float value[3][LANES], const struct near *near, struct block 
     const struct relume_codes *codes = near->codes;
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     const int k = info->coefficients;
-    float room[LANES];
+    float plane[LANES];
     memcpy(value, b->constant, sizeof b->constant);
     for (int i = 0; i < k; i++) {
-        const float *shared = b->weight + i * b->lanes, *plane = NULL;
+        const float *shared = b->weight + i * b->lanes;
+        bool read = false;
         if (sets == 1 && all_zero(shared, b->n))
             continue;
         for (int c = 0; c < 3; c++) {
             const float *w = sets == 1 ? shared : shared + c * k * b->lanes;
             if (sets == 3 && all_zero(w, b->n))
                 continue;
-            if (!plane || !info->joint)
-                plane = read_plane(room, b, codes, relume_coder_plane(info, i, c));
+            if (!read || !info->joint)
+                relume_codes_plane(codes, relume_coder_plane(info, i, c), b->first, (size_t)b->n,
+                                   plane);
+            read = true;
             add_product(value[c], w, plane, b->n);
         }
     }
-    for (int c = 0; info->luminance && c < 3; c++)
-        multiply(value[c], read_plane(room, b, codes, k + c), b->n);
+    for (int c = 0; info->luminance && c < 3; c++) {
+        relume_codes_plane(codes, k + c, b->first, (size_t)b->n, plane);
+        multiply(value[c], plane, b->n);
+    }
 }
 
 // ---------------------------------------------------------------- lights
@@ -321,7 +279,6 @@ void near_add(const struct near *near, size_t first, size_t n, float *out)
     for (size_t done = 0; done < n; done += (size_t)b.n) {
         b.first = first + done;
         b.n = n - done < (size_t)b.lanes ? (int)(n - done) : b.lanes;
-        b.read = false;
         (fold ? add_folded : add_each)(near, &b, out + 3 * done);
     }
 }

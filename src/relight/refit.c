@@ -69,56 +69,6 @@ double relume_refit_loss(const relume_refit *refit)
     return refit->loss;
 }
 
-// ---------------------------------------------------------------- some pixels
-
-// Codes of the pixels first, first + step, ... as one row. Memory is the caller's to free.
-struct some {
-    struct relume_codes codes;
-    void *bytes;
-    const void **plane;
-    const uint16_t **index;
-};
-
-static void pick(void *to, const void *from, size_t size, size_t first, size_t step, size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        memcpy((char *)to + i * size, (const char *)from + (first + i * step) * size, size);
-}
-
-static void some_destroy(struct some *some)
-{
-    free(some->bytes);
-    free(some->plane);
-    free(some->index);
-    *some = (struct some){0};
-}
-
-static relume_status some_create(struct some *some, const struct relume_codes *from, size_t first,
-                                 size_t step, size_t n)
-{
-    const size_t size = from->books ? 2 : relume_storage_bytes(from->storage);
-    const size_t rows = (size_t)(from->books ? from->books : from->planes);
-    *some = (struct some){.codes = *from};
-    some->bytes = mem_array(rows * n, size);
-    some->plane = mem_array(rows, sizeof *some->plane);
-    some->index = mem_array(rows, sizeof *some->index);
-    if (!some->bytes || !some->plane || !some->index) {
-        some_destroy(some);
-        return RELUME_ENOMEM;
-    }
-    for (size_t r = 0; r < rows; r++) {
-        void *to = (char *)some->bytes + r * n * size;
-        pick(to, from->books ? (const void *)from->index[r] : from->plane[r], size, first, step, n);
-        some->plane[r] = to;
-        some->index[r] = to;
-    }
-    some->codes.width = (int)n;
-    some->codes.height = 1;
-    some->codes.plane = from->books ? NULL : some->plane;
-    some->codes.index = from->books ? some->index : NULL;
-    return RELUME_OK;
-}
-
 // ---------------------------------------------------------------- decoding
 
 static relume_status decode_light(const struct work *w, const struct relume_codes *codes, int light,
@@ -135,11 +85,11 @@ static relume_status decode_light(const struct work *w, const struct relume_code
 static relume_status decode(const struct work *w, const struct relume_codes *codes, size_t first,
                             size_t step, size_t n, float *out)
 {
-    struct some some;
-    relume_status status = some_create(&some, codes, first, step, n);
+    struct relume_codes_part part;
+    relume_status status = relume_codes_pick(&part, codes, first, step, n);
     for (int i = 0; !status && i < w->info->lights; i++)
-        status = decode_light(w, &some.codes, i, n, out + (size_t)i * n * 3);
-    some_destroy(&some);
+        status = decode_light(w, &part.codes, i, n, out + (size_t)i * n * 3);
+    relume_codes_part_destroy(&part);
     return status;
 }
 

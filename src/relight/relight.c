@@ -9,7 +9,6 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "image/curve.h"
-#include "image/half.h"
 #include "math/vec.h"
 #include "relight/books.h"
 #include "relight/bytes.h"
@@ -265,46 +264,24 @@ static void look_up_channel(const struct job *job, const struct pass *pass, size
     }
 }
 
-static double code_at(const struct relume_codes *codes, int plane, size_t pixel)
-{
-    if (codes->storage == RELUME_STORE_8)
-        return ((const uint8_t *)codes->plane[plane])[pixel];
-    if (codes->storage == RELUME_STORE_FLOAT)
-        return (double)((const float *)codes->plane[plane])[pixel];
-    const uint16_t word = ((const uint16_t *)codes->plane[plane])[pixel];
-    return codes->storage == RELUME_STORE_HALF ? (double)float_from_half(word) : (double)word;
-}
-
-static double coefficient_at(const struct relume_codes *codes, int plane, size_t pixel)
-{
-    if (!codes->books)
-        return code_at(codes, plane, pixel) * (double)codes->scale[plane] +
-               (double)codes->offset[plane];
-    double sum = 0.0;
-    for (int b = 0; b < codes->books; b++)
-        sum += (double)codes->vectors[b][(size_t)codes->index[b][pixel] * (size_t)codes->planes +
-                                         (size_t)plane];
-    return sum;
-}
-
-enum { MOST_WEIGHTS = 3 * 4096 };
-
 // What one pixel's coefficients say for a unit direction, in their own domain.
 static void decode_pixel(double value[3], const struct relume_codes *codes, size_t pixel,
                          vec3 direction)
 {
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
-    float weights[MOST_WEIGHTS], constant[3];
+    float weights[3 * RELUME_MOST_COEFFICIENTS], constant[3];
     relume_coder_weights(codes->coder, direction, weights, constant);
     for (int c = 0; c < 3; c++) {
         value[c] = (double)constant[c];
         for (int k = 0; k < info->coefficients; k++) {
-            const int p = relume_coder_plane(info, k, c);
-            value[c] +=
-                (double)weights[c * info->coefficients + k] * coefficient_at(codes, p, pixel);
+            float coefficient;
+            relume_codes_plane(codes, relume_coder_plane(info, k, c), pixel, 1, &coefficient);
+            value[c] += (double)weights[c * info->coefficients + k] * (double)coefficient;
         }
+        float colour = 1.0f;
         if (info->luminance)
-            value[c] *= coefficient_at(codes, info->coefficients + c, pixel);
+            relume_codes_plane(codes, info->coefficients + c, pixel, 1, &colour);
+        value[c] *= (double)colour;
     }
 }
 

@@ -4,7 +4,7 @@
 #include "capture_fixture.h"
 #include "coder/basis.h"
 
-enum { LIGHTS = 60, MOST_PLANES = 3 * 4096 };
+enum { LIGHTS = 60, MOST_PLANES = 3 * RELUME_MOST_COEFFICIENTS };
 
 static struct relume_vec3 lights[LIGHTS];
 static struct relume_vec3 dome[LIGHTS];  // the same above the horizon

@@ -6,9 +6,9 @@ set -eu
 cd "$(dirname "$0")/.."
 
 # folder: private folders it may include | public headers it may include (* = all)
-rules="base::base
+rules="base::base io
 math:base:base
-image:base math:base image photograph response
+image:base math:base io image photograph response
 capture:base math image:base image lights capture ball photometric shoot photograph response align views lightfield
 coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack

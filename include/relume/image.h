@@ -3,6 +3,7 @@
 #define RELUME_IMAGE_H
 
 #include <relume/base.h>
+#include <relume/io.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -52,6 +53,10 @@ struct relume_image_params {
     int channels;  // loading: 1 or 3, converted to; default 3. Alpha is dropped, grey is spread
     bool half;     // saving EXR: half instead of float samples
     int threads;   // saving EXR: worker threads; default: one
+    const struct relume_reader *reader;  // loading: read this in place of the file; `path` is only
+                                         // a name, or NULL
+    const struct relume_writer
+        *writer;  // saving: write here; `path` is a name that says the format
 };
 #define relume_image_params(...) (&(const struct relume_image_params){__VA_ARGS__})
 
@@ -60,8 +65,9 @@ RELUME_RESULT relume_status relume_image_load(struct relume_image *out, const ch
                                               const struct relume_image_params *params);
 // Write linear `image` in the format of the file name's extension: EXR, HDR, PFM linear, every
 // other sRGB-coded and clipped to [0, 1]; 8 bits (TIFF and PNG of 1 channel: 8 bits as well). A
-// device or pipe without an extension gets EXR. A fourth channel is alpha, in .png and .exr only. The file appears under its name whole or not at
-// all. Returns RELUME_EINVAL for an unknown extension, RELUME_EIO.
+// device or pipe without an extension gets EXR. A fourth channel is alpha, in .png and .exr only.
+// The file appears under its name whole or not at all. Returns RELUME_EINVAL for an unknown
+// extension, RELUME_EIO.
 RELUME_RESULT relume_status relume_image_save(const struct relume_image *image, const char *path,
                                               const struct relume_image_params *params);
 

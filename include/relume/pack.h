@@ -7,6 +7,7 @@
 #include <relume/codebook.h>
 #include <relume/coder.h>
 #include <relume/image.h>
+#include <relume/io.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -51,6 +52,10 @@ struct relume_pack_params {
     const struct relume_limits *limits;   // reading
     enum relume_compression compression;  // writing
     int threads;                          // default: all cores
+    const struct relume_reader *reader;   // reading: this in place of the file; the path is only a
+                                          // name then, or NULL. It is copied: what it reads from
+                                          // must outlive the pack
+    const struct relume_writer *writer;   // writing: likewise
 };
 #define relume_pack_params(...) (&(const struct relume_pack_params){__VA_ARGS__})
 
@@ -73,6 +78,8 @@ struct relume_pack_encode_params {
                                               // those of this struct
     bool share;                               // one set of codebooks for all views
     bool no_depth;                            // leave depth out: no near lights, no views by depth
+    const struct relume_writer *writer;       // write here in place of the file, as
+                                              // relume_pack_params; temporary data in $TMPDIR
 };
 #define relume_pack_encode_params(...) (&(const struct relume_pack_encode_params){__VA_ARGS__})
 RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,
@@ -84,7 +91,8 @@ RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,
 // Thread-safety: one thread at a time.
 typedef struct relume_pack relume_pack;
 
-// Everything in a file is checked before it is used. Returns RELUME_EDATA, RELUME_ENOMEM.
+// Everything in a file is checked before it is used. The pack keeps the log and its limits, which
+// must outlive it. Returns RELUME_EDATA, RELUME_ENOMEM; RELUME_EINVAL without path and reader.
 RELUME_RESULT relume_status relume_pack_open(relume_pack **out, const char *path,
                                              const struct relume_pack_params *params);
 RELUME_API void relume_pack_destroy(relume_pack **pack);
@@ -136,6 +144,7 @@ struct relume_pack_check_params {
     int threads;
     void (*found)(void *user, const char *part, int row, int rows);  // or NULL
     void *user;
+    const struct relume_reader *reader;  // as relume_pack_params
 };
 #define relume_pack_check_params(...) (&(const struct relume_pack_check_params){__VA_ARGS__})
 RELUME_RESULT relume_status relume_pack_check(const char *path,

@@ -18,6 +18,7 @@
 #include <relume/glare.h>
 #include <relume/heldout.h>
 #include <relume/image.h>
+#include <relume/io.h>
 #include <relume/light.h>
 #include <relume/lightfield.h>
 #include <relume/lights.h>

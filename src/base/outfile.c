@@ -1,6 +1,7 @@
 #include "base/outfile.h"
 
 #include "base/beside.h"
+#include "base/infile.h"
 #include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -19,6 +20,7 @@ enum kind {
     BESIDE,   // in `beside`
     INSIDE,   // under its own name, in a folder that is not finished
     DEVICE,   // gathered in a scratch file
+    GIVEN,    // no file: written by the caller's `writer`
 };
 
 struct outfile {
@@ -29,6 +31,7 @@ struct outfile {
     char *target;    // where that leads
     char *dir;       // the folder of `target`
     beside *beside;  // NULL: not yet
+    struct relume_writer writer;
     const struct relume_log *log;
 };
 
@@ -36,7 +39,7 @@ static relume_status fail(const outfile *f, const char *what)
 {
     if (errno == ENOMEM)
         return RELUME_ENOMEM;
-    return log_fail(f->log, RELUME_EIO, "%s: %s; %s", f->path, what, strerror(errno));
+    return log_fail(f->log, RELUME_EIO, "%s: %s; %s", f->path, what, strerror(errno ? errno : EIO));
 }
 
 // ---------------------------------------------------------------- devices
@@ -173,29 +176,38 @@ relume_status outfile_check(const char *target, const char *path, const struct r
     return input_refuse(target, path, log);
 }
 
-relume_status outfile_open(outfile **out, const char *path, const struct relume_log *log)
+static relume_status open_file(outfile *f, const char *path)
+{
+    f->target = tree_resolve(path);
+    if (!f->target)
+        return fail(f, "cannot be written");
+    f->dir = tree_parent(f->target);
+    if (!f->dir)
+        return RELUME_ENOMEM;
+    const int descriptor = descriptor_of(path);
+    if (descriptor >= 0 || is_device(path))
+        return open_device(f, descriptor);
+    if (beside_holds(f->target))
+        return open_inside(f);
+    const relume_status status = outfile_check(f->target, f->path, f->log);
+    return status ? status : open_new(f);
+}
+
+relume_status outfile_open(outfile **out, const char *path, const struct relume_writer *writer,
+                           const struct relume_log *log)
 {
     *out = NULL;
     outfile *f = mem_zeroed(1, sizeof *f);
     if (!f)
         return RELUME_ENOMEM;
-    *f = (outfile){.log = log, .fd = -1, .device = -1, .path = mem_text(path)};
+    *f = (outfile){.log = log, .fd = -1, .device = -1, .path = mem_text(infile_name(path))};
     relume_status status = f->path ? RELUME_OK : RELUME_ENOMEM;
-    if (!status) {
-        f->target = tree_resolve(path);
-        status = f->target ? RELUME_OK : fail(f, "cannot be written");
+    if (writer) {
+        f->kind = GIVEN;
+        f->writer = *writer;
+    } else if (!status) {
+        status = open_file(f, path);
     }
-    if (!status) {
-        f->dir = tree_parent(f->target);
-        status = f->dir ? RELUME_OK : RELUME_ENOMEM;
-    }
-    const int descriptor = descriptor_of(path);
-    if (!status && (descriptor >= 0 || is_device(path)))
-        status = open_device(f, descriptor);
-    else if (!status && beside_holds(f->target))
-        status = open_inside(f);
-    else if (!status && !(status = outfile_check(f->target, f->path, f->log)))
-        status = open_new(f);
     if (status)
         outfile_abort(&f);
     *out = f;
@@ -204,9 +216,11 @@ relume_status outfile_open(outfile **out, const char *path, const struct relume_
 
 relume_status outfile_write(outfile *f, const void *bytes, size_t size, off_t offset)
 {
-    if (scratch_write(f->fd, bytes, size, offset))
-        return RELUME_OK;
-    return fail(f, "writing failed");
+    errno = 0;
+    const bool good = f->kind == GIVEN
+                          ? f->writer.write(f->writer.user, bytes, size, (uint64_t)offset)
+                          : scratch_write(f->fd, bytes, size, offset);
+    return good ? RELUME_OK : fail(f, "writing failed");
 }
 
 // ---------------------------------------------------------------- the final name
@@ -264,11 +278,25 @@ static relume_status leave_inside(outfile *f)
     return RELUME_OK;
 }
 
+static bool finish_given(outfile *f, bool whole)
+{
+    bool (*const finish)(void *, bool) = f->writer.finish;
+    f->writer.finish = NULL;
+    errno = 0;
+    return !finish || finish(f->writer.user, whole);
+}
+
+static relume_status commit_given(outfile *f)
+{
+    return finish_given(f, true) ? RELUME_OK : fail(f, "writing failed");
+}
+
 relume_status outfile_commit(outfile **file)
 {
     outfile *f = *file;
     const relume_status status = f->kind == DEVICE   ? copy_to_device(f)
                                  : f->kind == INSIDE ? leave_inside(f)
+                                 : f->kind == GIVEN  ? commit_given(f)
                                                      : publish(f);
     outfile_abort(file);
     return status;
@@ -280,6 +308,7 @@ void outfile_abort(outfile **file)
     *file = NULL;
     if (!f)
         return;
+    (void)finish_given(f, false);
     if (f->fd >= 0) {
         close(f->fd);
         if (f->kind == INSIDE)
@@ -294,17 +323,23 @@ void outfile_abort(outfile **file)
     free(f);
 }
 
-relume_status outfile_save(const char *path, const void *bytes, size_t size,
-                           const struct relume_log *log)
+relume_status outfile_save_to(const char *path, const struct relume_writer *writer,
+                              const void *bytes, size_t size, const struct relume_log *log)
 {
     outfile *file;
-    relume_status status = outfile_open(&file, path, log);
+    relume_status status = outfile_open(&file, path, writer, log);
     if (!status)
         status = outfile_write(file, bytes, size, 0);
     if (!status)
         return outfile_commit(&file);
     outfile_abort(&file);
     return status;
+}
+
+relume_status outfile_save(const char *path, const void *bytes, size_t size,
+                           const struct relume_log *log)
+{
+    return outfile_save_to(path, NULL, bytes, size, log);
 }
 
 // A folder of the path is missing.

@@ -2,7 +2,7 @@
 #ifndef BASE_OUTFILE_H
 #define BASE_OUTFILE_H
 
-#include <relume/base.h>
+#include <relume/io.h>
 #include <sys/types.h>
 
 // A file being written: without a name as long as the file system allows, then beside its final one
@@ -12,7 +12,9 @@
 // file (a device or a pipe) the bytes are gathered in a scratch file and copied at the end.
 typedef struct outfile outfile;
 
-relume_status outfile_open(outfile **out, const char *path, const struct relume_log *log);
+// With `writer` (NULL: a file) the bytes go there, and `path` is only a name, or NULL.
+relume_status outfile_open(outfile **out, const char *path, const struct relume_writer *writer,
+                           const struct relume_log *log);
 // All of `bytes` at `offset`. RELUME_EIO; the log has heard why.
 relume_status outfile_write(outfile *file, const void *bytes, size_t size, off_t offset);
 // Flush to disk and give the file its final name. Frees `*file` in every case; on failure nothing
@@ -25,8 +27,10 @@ void outfile_abort(outfile **file);
 // written, RELUME_EINVAL when it is read. `path` is what the sentence calls it.
 relume_status outfile_check(const char *target, const char *path, const struct relume_log *log);
 
-// A whole file in one call.
+// A whole file in one call, or a whole output.
 relume_status outfile_save(const char *path, const void *bytes, size_t size,
                            const struct relume_log *log);
+relume_status outfile_save_to(const char *path, const struct relume_writer *writer,
+                              const void *bytes, size_t size, const struct relume_log *log);
 
 #endif

@@ -1,9 +1,9 @@
 #include "btf/npy.h"
 
 #include "base/inputs.h"
-#include "base/outfile.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/outfile.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -173,7 +173,7 @@ relume_status npy_save(const struct npy *npy, const void *data, const char *path
     char header[512];
     const size_t start = make_header(npy, header, sizeof header), bytes = npy_bytes(npy);
     outfile *out;
-    relume_status status = outfile_open(&out, path, log);
+    relume_status status = outfile_open(&out, path, NULL, log);
     if (status)
         return status;
     status = outfile_write(out, header, start, 0);

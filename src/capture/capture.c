@@ -164,7 +164,7 @@ static relume_status check_image(relume_capture *c, const char *path,
                                  const struct relume_capture_params *p)
 {
     picture_reader *reader;
-    relume_status status = picture_open(&reader, path, p->limits, p->log);
+    relume_status status = picture_open(&reader, path, NULL, p->limits, p->log);
     if (!status)
         status = picture_need_colour(reader, path, p->log);
     const struct picture_info info = status ? (struct picture_info){0} : *picture_info_of(reader);
@@ -265,7 +265,7 @@ relume_status capture_stream(struct image_stream *out, const relume_capture *cap
     static const float no_gain[3] = {1.0f, 1.0f, 1.0f};
     const char *path = m->view[view].images[light];
     picture_reader *reader;
-    const relume_status status = picture_open(&reader, path, &capture->limits, log);
+    const relume_status status = picture_open(&reader, path, NULL, &capture->limits, log);
     if (status)
         return status;
     const struct picture_info *info = picture_info_of(reader);

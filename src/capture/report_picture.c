@@ -87,7 +87,7 @@ static relume_status put_bytes(FILE *page, const char *dir, int width, int heigh
     char *path = mem_format("%s/thumbnail.jpg", dir);
     if (!path)
         return RELUME_ENOMEM;
-    relume_status status = picture_write_bytes(path, width, height, 3, bytes, log);
+    relume_status status = picture_write_bytes(path, NULL, width, height, 3, bytes, log);
     fprintf(page, "<img width=\"%d\" height=\"%d\" src=\"data:image/jpeg;base64,", width, height);
     if (!status)
         status = put_file(page, path, log);

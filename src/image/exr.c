@@ -1,7 +1,7 @@
 // exr.c - the one file that knows OpenEXR (its C core)
 #include "image/exr.h"
 
-#include "base/inputs.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"
@@ -13,7 +13,6 @@
 #include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "EXR samples are little endian");
 
@@ -238,12 +237,13 @@ static relume_status write_part(struct writing *w, const struct exr_part *part, 
     return w->status;
 }
 
-relume_status exr_write(const char *path, const struct exr_part *parts, int count, int threads,
+relume_status exr_write(const char *path, const struct relume_writer *writer,
+                        const struct exr_part *parts, int count, int threads,
                         const struct relume_log *log)
 {
     threads = thread_count(threads);
     struct writing w = {.lock = PTHREAD_MUTEX_INITIALIZER, .turn = PTHREAD_COND_INITIALIZER};
-    relume_status status = outfile_open(&w.file, path, log);
+    relume_status status = outfile_open(&w.file, path, writer, log);
     if (status)
         return status;
 
@@ -251,6 +251,7 @@ relume_status exr_write(const char *path, const struct exr_part *parts, int coun
     init.error_handler_fn = ignore_error;
     init.user_data = &w;
     init.write_fn = write_stream;
+    path = infile_name(path);
     exr_result_t r = exr_start_write(&w.exr, path, EXR_WRITE_FILE_DIRECTLY, &init);
     for (int i = 0; !r && i < count; i++)
         r = declare_part(w.exr, &parts[i], parts);
@@ -279,7 +280,29 @@ relume_status exr_write(const char *path, const struct exr_part *parts, int coun
 struct exr_file {
     exr_context_t exr;
     char *path;
+    struct infile in;
 };
+
+static int64_t read_stream(exr_const_context_t context, void *user, void *buffer, uint64_t size,
+                           uint64_t offset, exr_stream_error_func_ptr_t error)
+{
+    exr_file *file = user;
+    const ssize_t n = infile_read(&file->in, buffer, (size_t)size, offset);
+    if (n < 0)
+        (void)error(context, EXR_ERR_READ_IO, "cannot be read");
+    return n;
+}
+
+static int64_t stream_size(exr_const_context_t context, void *user)
+{
+    (void)context;
+    return (int64_t)((exr_file *)user)->in.size;
+}
+
+uint64_t exr_bytes(const exr_file *file)
+{
+    return file->in.size;
+}
 
 void exr_close(exr_file **file)
 {
@@ -287,6 +310,7 @@ void exr_close(exr_file **file)
         return;
     if ((*file)->exr)
         exr_finish(&(*file)->exr);
+    infile_close(&(*file)->in);
     free((*file)->path);
     free(*file);
     *file = NULL;
@@ -298,20 +322,17 @@ static relume_status check_bytes(const exr_file *file, const struct relume_limit
                                  const struct relume_log *log)
 {
     static const uint64_t ratio = 20000, always = 64 << 20;
-    const uint64_t most = limits_or_default(limits).max_memory;
-    struct stat s;
-    if (stat(file->path, &s))
-        return log_fail(log, RELUME_EDATA, "%s: vanished", file->path);
+    const uint64_t most = limits_or_default(limits).max_memory, size = exr_bytes(file);
     for (int i = 0; i < exr_part_count(file); i++) {
         const struct exr_part_info part = exr_part_info(file, i);
         const uint64_t planes = (uint64_t)part.channels;
         const uint64_t bytes = (uint64_t)part.width * (uint64_t)part.height * planes * 4;
-        if (bytes > always && bytes / ratio > (uint64_t)s.st_size)
+        if (bytes > always && bytes / ratio > size)
             return log_fail(log, RELUME_EDATA,
-                            "%s: part %d claims %d x %d pixels of %d channels in %lld bytes; "
+                            "%s: part %d claims %d x %d pixels of %d channels in %llu bytes; "
                             "damaged, or made to fill memory",
                             file->path, i, part.width, part.height, part.channels,
-                            (long long)s.st_size);
+                            (unsigned long long)size);
         if (bytes > most)
             return log_fail(log, RELUME_EDATA,
                             "%s: part %d of %d x %d pixels and %d channels takes %llu MB; expected "
@@ -353,17 +374,14 @@ static relume_status check_parts(const exr_file *file, const struct relume_limit
 // Parts are written one after the other, so a file cut anywhere lacks the last block of some part.
 static relume_status check_ends(const exr_file *file, const struct relume_log *log)
 {
-    struct stat s;
     const int count = exr_part_count(file);
-    if (stat(file->path, &s))
-        return log_fail(log, RELUME_EDATA, "%s: vanished", file->path);
+    const uint64_t size = exr_bytes(file);
     for (int i = 0; i < count; i++) {
         exr_attr_box2i_t box;
         exr_chunk_info_t last;
         if (exr_get_data_window(file->exr, i, &box) ||
             exr_read_scanline_chunk_info(file->exr, i, box.max.y, &last) ||
-            last.data_offset > (uint64_t)s.st_size ||
-            last.packed_size > (uint64_t)s.st_size - last.data_offset)
+            last.data_offset > size || last.packed_size > size - last.data_offset)
             return log_fail(log, RELUME_EDATA,
                             "%s: truncated or damaged in part %d; expected %d rows", file->path, i,
                             box.max.y - box.min.y + 1);
@@ -371,43 +389,49 @@ static relume_status check_ends(const exr_file *file, const struct relume_log *l
     return RELUME_OK;
 }
 
-relume_status exr_open_damaged(exr_file **out, const char *path, const struct relume_limits *limits,
-                               const struct relume_log *log)
+static relume_status start_read(exr_file *file, const struct relume_limits *limits,
+                                const struct relume_log *log)
 {
-    *out = NULL;
-    exr_file *file = mem_zeroed(1, sizeof *file);
-    if (!file || !(file->path = mem_text(path))) {
-        free(file);
-        return RELUME_ENOMEM;
-    }
     const struct relume_limits l = limits_or_default(limits);
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn = ignore_error;
     init.max_image_width = l.max_side;
     init.max_image_height = l.max_side;
-    input_note(log, path);
-    errno = 0;
-    const exr_result_t r = exr_start_read(&file->exr, path, &init);
-    relume_status status;
+    init.user_data = file;
+    init.read_fn = read_stream;
+    init.size_fn = stream_size;
+    const exr_result_t r = exr_start_read(&file->exr, file->path, &init);
     if (r == EXR_ERR_OUT_OF_MEMORY)
-        status = RELUME_ENOMEM;
-    else if (r == EXR_ERR_FILE_ACCESS && errno)
-        status = relume_input_fail(log, path, "cannot be opened", errno);
-    else if (r)
-        status = log_fail(log, RELUME_EDATA, "%s: cannot be read as OpenEXR; %s", path,
-                          exr_get_default_error_message(r));
-    else
-        status = check_parts(file, limits, log);
+        return RELUME_ENOMEM;
+    if (r)
+        return log_fail(log, RELUME_EDATA, "%s: cannot be read as OpenEXR; %s", file->path,
+                        exr_get_default_error_message(r));
+    return check_parts(file, limits, log);
+}
+
+relume_status exr_open_damaged(exr_file **out, const char *path, const struct relume_reader *from,
+                               const struct relume_limits *limits, const struct relume_log *log)
+{
+    *out = NULL;
+    exr_file *file = mem_zeroed(1, sizeof *file);
+    if (!file || !(file->path = mem_text(infile_name(path)))) {
+        free(file);
+        return RELUME_ENOMEM;
+    }
+    const relume_status status =
+        infile_open(&file->in, path, from, log)
+            ? start_read(file, limits, log)
+            : relume_input_fail(log, file->path, "cannot be opened", errno);
     if (status)
         exr_close(&file);
     *out = file;
     return status;
 }
 
-relume_status exr_open(exr_file **out, const char *path, const struct relume_limits *limits,
-                       const struct relume_log *log)
+relume_status exr_open(exr_file **out, const char *path, const struct relume_reader *from,
+                       const struct relume_limits *limits, const struct relume_log *log)
 {
-    relume_status status = exr_open_damaged(out, path, limits, log);
+    relume_status status = exr_open_damaged(out, path, from, limits, log);
     if (!status)
         status = check_ends(*out, log);
     if (status)

@@ -5,7 +5,7 @@
 #ifndef IMAGE_EXR_H
 #define IMAGE_EXR_H
 
-#include <relume/base.h>
+#include <relume/io.h>
 
 enum exr_sample { EXR_SAMPLE_UINT, EXR_SAMPLE_HALF, EXR_SAMPLE_FLOAT };  // as in the format
 enum exr_codec { EXR_CODEC_NONE, EXR_CODEC_RLE, EXR_CODEC_ZIP, EXR_CODEC_PIZ };
@@ -35,21 +35,24 @@ struct exr_part {
     void *context;
 };
 
-// Write all parts into `path`, whole or not at all. RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL or
-// what a `rows` function returned.
-relume_status exr_write(const char *path, const struct exr_part *parts, int count, int threads,
+// Write all parts into `path`, or `writer` (outfile.h), whole or not at all. RELUME_EIO,
+// RELUME_ENOMEM, RELUME_ECANCEL or what a `rows` function returned.
+relume_status exr_write(const char *path, const struct relume_writer *writer,
+                        const struct exr_part *parts, int count, int threads,
                         const struct relume_log *log);
 
 // An open file. Thread-safety: reading is safe.
 typedef struct exr_file exr_file;
 
-// RELUME_EDATA with a sentence when it is not a readable scanline EXR within the limits.
-relume_status exr_open(exr_file **out, const char *path, const struct relume_limits *limits,
-                       const struct relume_log *log);
+// The file `path`, or what `from` reads (infile.h). RELUME_EDATA with a sentence when it is not a
+// readable scanline EXR within the limits.
+relume_status exr_open(exr_file **out, const char *path, const struct relume_reader *from,
+                       const struct relume_limits *limits, const struct relume_log *log);
 // The same for those who look for damage: blocks may be missing.
-relume_status exr_open_damaged(exr_file **out, const char *path, const struct relume_limits *limits,
-                               const struct relume_log *log);
+relume_status exr_open_damaged(exr_file **out, const char *path, const struct relume_reader *from,
+                               const struct relume_limits *limits, const struct relume_log *log);
 void exr_close(exr_file **file);
+uint64_t exr_bytes(const exr_file *file);
 int exr_part_count(const exr_file *file);
 
 struct exr_part_info {

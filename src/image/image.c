@@ -1,5 +1,6 @@
 #include "image/image.h"
 
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/exr.h"
@@ -216,9 +217,12 @@ relume_status relume_image_load(struct relume_image *out, const char *path,
     const int channels = p.channels == 1 ? 1 : 3;
     static const float no_gain[3] = {1.0f, 1.0f, 1.0f};
     *out = (struct relume_image){0};
+    if (!path && !p.reader)
+        return RELUME_EINVAL;
+    path = infile_name(path);
 
     picture_reader *reader;
-    relume_status status = picture_open(&reader, path, p.limits, p.log);
+    relume_status status = picture_open(&reader, path, p.reader, p.limits, p.log);
     if (status)
         return status;
     if (channels == 3)
@@ -288,7 +292,7 @@ static relume_status save_exr(const struct relume_image *image, const char *path
     };
     struct relume_log quiet = p->log ? *p->log : (struct relume_log){0};
     quiet.progress = NULL;  // one image is not long work
-    return exr_write(path, &part, 1, p->threads > 1 ? p->threads : 1, &quiet);
+    return exr_write(path, p->writer, &part, 1, p->threads > 1 ? p->threads : 1, &quiet);
 }
 
 static relume_status save_bytes(const struct relume_image *image, const char *path,
@@ -304,8 +308,8 @@ static relume_status save_bytes(const struct relume_image *image, const char *pa
         const float v = alpha ? image->data[i] : relume_transfer_encode(srgb, image->data[i]);
         bytes[i] = (uint8_t)(v >= 1.0f ? 255 : v > 0.0f ? (int)(v * 255.0f + 0.5f) : 0);
     }
-    const relume_status status =
-        picture_write_bytes(path, image->width, image->height, image->channels, bytes, p->log);
+    const relume_status status = picture_write_bytes(path, p->writer, image->width, image->height,
+                                                     image->channels, bytes, p->log);
     free(bytes);
     return status;
 }
@@ -339,7 +343,7 @@ relume_status relume_image_save(const struct relume_image *image, const char *pa
 {
     const struct relume_image_params p = params ? *params : (struct relume_image_params){0};
     const bool alpha = image->channels == 4;
-    if (image->channels != 1 && image->channels != 3 && !alpha)
+    if (!path || (image->channels != 1 && image->channels != 3 && !alpha))
         return RELUME_EINVAL;
     if (alpha && !relume_image_saves_alpha(path))
         return log_fail(p.log, RELUME_EINVAL, "%s: no alpha in this format; expected .png or .exr",
@@ -352,7 +356,7 @@ relume_status relume_image_save(const struct relume_image *image, const char *pa
     if (picture_has_extension(path, ".exr") || is_device(path))
         return save_exr(image, path, &p);
     if (picture_writes_floats(path))
-        return picture_write_floats(path, image->width, image->height, image->channels, image->data,
-                                    p.log);
+        return picture_write_floats(path, p.writer, image->width, image->height, image->channels,
+                                    image->data, p.log);
     return save_bytes(image, path, &p);
 }

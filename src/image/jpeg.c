@@ -1,6 +1,7 @@
 // jpeg.c - the one file that knows libjpeg
 #include "image/jpeg.h"
 
+#include "base/infile.h"
 #include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -158,12 +159,13 @@ static bool read_header(struct jpeg_picture_reader *p)
                                           .channels = planes,
                                           .rgb = {0, last / 2, last},
                                           .bytes = true},
-                                 .exif = has_exif(i) ? p->file : NULL,
+                                 .exif = fileno(p->file) >= 0 && has_exif(i) ? p->file : NULL,
                                  .path = p->path};
     return true;
 }
 
 relume_status jpeg_picture_open(picture_reader **out, const char *path,
+                                const struct relume_reader *from,
                                 const struct relume_limits *limits, const struct relume_log *log)
 {
     struct jpeg_picture_reader *p = mem_zeroed(1, sizeof *p);
@@ -174,7 +176,7 @@ relume_status jpeg_picture_open(picture_reader **out, const char *path,
     }
     const struct picture_info *info = &p->reader.info;
     relume_status status = RELUME_OK;
-    p->file = input_open(path, log);
+    p->file = infile_stream(path, from, log);
     if (!p->file)
         status = relume_input_fail(log, path, "cannot be opened", errno);
     else if (!read_header(p))

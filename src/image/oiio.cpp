@@ -301,9 +301,9 @@ std::unique_ptr<ImageOutput> writer_for(const char *path)
 }
 
 // Through memory where the format can, so that a full disk is noticed by our own writes.
-relume_status write_in_memory(ImageOutput &output, const char *path, const ImageSpec &spec,
-                              TypeDesc type, const void *samples, picture_save *save,
-                              const relume_log *log)
+relume_status write_in_memory(ImageOutput &output, const char *path, const relume_writer *writer,
+                              const ImageSpec &spec, TypeDesc type, const void *samples,
+                              picture_save *save, const relume_log *log)
 {
     std::vector<unsigned char> bytes;
     Filesystem::IOVecOutput proxy(bytes);
@@ -311,13 +311,13 @@ relume_status write_in_memory(ImageOutput &output, const char *path, const Image
     if (!output.open(path, spec) || !output.write_image(type, samples) || !output.close())
         return log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path,
                         one_line(output.geterror()).c_str());
-    return save(path, bytes.data(), bytes.size(), log);
+    return save(path, writer, bytes.data(), bytes.size(), log);
 }
 
 // Elsewhere, since OpenImageIO writes names only.
-relume_status write_elsewhere(ImageOutput &output, const char *path, const ImageSpec &spec,
-                              TypeDesc type, const void *samples, picture_save *save,
-                              const relume_log *log)
+relume_status write_elsewhere(ImageOutput &output, const char *path, const relume_writer *writer,
+                              const ImageSpec &spec, TypeDesc type, const void *samples,
+                              picture_save *save, const relume_log *log)
 {
     relume_making *folder;
     const relume_status status =
@@ -341,11 +341,12 @@ relume_status write_elsewhere(ImageOutput &output, const char *path, const Image
     relume_making_abort(&folder);
     if (!good)
         return log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path, why.c_str());
-    return save(path, bytes.data(), bytes.size(), log);
+    return save(path, writer, bytes.data(), bytes.size(), log);
 }
 
-relume_status write_image(const char *path, int width, int height, int channels, TypeDesc type,
-                          const void *samples, picture_save *save, const relume_log *log)
+relume_status write_image(const char *path, const relume_writer *writer, int width, int height,
+                          int channels, TypeDesc type, const void *samples, picture_save *save,
+                          const relume_log *log)
 {
     try {
         auto output = writer_for(path);
@@ -360,8 +361,8 @@ relume_status write_image(const char *path, int width, int height, int channels,
         // OpenImageIO 2.4 writes unreadable TIFF files through a memory proxy.
         const bool in_memory =
             output->supports("ioproxy") && std::string(output->format_name()) != "tiff";
-        return in_memory ? write_in_memory(*output, path, spec, type, samples, save, log)
-                         : write_elsewhere(*output, path, spec, type, samples, save, log);
+        return in_memory ? write_in_memory(*output, path, writer, spec, type, samples, save, log)
+                         : write_elsewhere(*output, path, writer, spec, type, samples, save, log);
     } catch (const std::bad_alloc &) {
         return RELUME_ENOMEM;
     } catch (const std::exception &e) {
@@ -440,16 +441,18 @@ relume_status bridge_open(picture_reader **out, int file, const char *format_nam
     }
 }
 
-relume_status bridge_write_bytes(const char *path, int width, int height, int channels,
-                                 const uint8_t *samples, picture_save *save, const relume_log *log)
+relume_status bridge_write_bytes(const char *path, const relume_writer *writer, int width,
+                                 int height, int channels, const uint8_t *samples,
+                                 picture_save *save, const relume_log *log)
 {
-    return write_image(path, width, height, channels, TypeUInt8, samples, save, log);
+    return write_image(path, writer, width, height, channels, TypeUInt8, samples, save, log);
 }
 
-relume_status bridge_write_floats(const char *path, int width, int height, int channels,
-                                  const float *samples, picture_save *save, const relume_log *log)
+relume_status bridge_write_floats(const char *path, const relume_writer *writer, int width,
+                                  int height, int channels, const float *samples,
+                                  picture_save *save, const relume_log *log)
 {
-    return write_image(path, width, height, channels, TypeFloat, samples, save, log);
+    return write_image(path, writer, width, height, channels, TypeFloat, samples, save, log);
 }
 
 }  // namespace

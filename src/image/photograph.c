@@ -43,7 +43,7 @@ relume_status photograph_notes(struct relume_notes *out, const char *path,
 {
     picture_reader *reader;
     *out = (struct relume_notes){0};
-    relume_status status = picture_open(&reader, path, limits, log);
+    relume_status status = picture_open(&reader, path, NULL, limits, log);
     if (status)
         return status;
     status = notes_of(out, reader, NULL, log);
@@ -142,7 +142,7 @@ relume_status relume_photograph_load(struct relume_image *out, struct relume_not
     struct profile *profile = mem_array(1, sizeof *profile);
     if (!profile)
         return RELUME_ENOMEM;
-    relume_status status = picture_open(&reader, path, p.limits, p.log);
+    relume_status status = picture_open(&reader, path, NULL, p.limits, p.log);
     if (status) {
         free(profile);
         return status;

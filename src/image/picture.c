@@ -2,7 +2,7 @@
 // when the first file is written by it
 #include "image/picture.h"
 
-#include "base/inputs.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/module.h"
@@ -39,46 +39,45 @@ static relume_status need_bridge(const char *path, const struct relume_log *log)
 // ---------------------------------------------------------------- reading
 
 // An open file and what it is.
-struct source {
-    const char *path;
-    int file;
+struct opening {
+    const char *path;                  // also a name
+    const struct relume_reader *from;  // or NULL
+    struct infile in;
     struct picture_look look;
     const struct picture_kind *kind;
 };
 
-static relume_status look(struct source *s, const struct relume_log *log)
+static relume_status look(struct opening *s, const struct relume_log *log)
 {
-    struct stat st;
-    input_note(log, s->path);
-    s->file = open(s->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // pipes are not waited for
-    if (s->file < 0 && errno == ENOENT)
-        return log_fail(log, RELUME_EDATA, "%s: no such file; expected an image", s->path);
-    if (s->file < 0 || fstat(s->file, &st))
-        return relume_input_fail(log, s->path, "cannot be opened", errno);
-    if (!S_ISREG(st.st_mode) || st.st_size == 0)
+    if (!infile_open(&s->in, s->path, s->from, log))
+        return errno == ENOENT
+                   ? log_fail(log, RELUME_EDATA, "%s: no such file; expected an image", s->path)
+                   : relume_input_fail(log, s->path, "cannot be opened", errno);
+    const uint64_t size = s->in.size;
+    if (!s->in.regular || size == 0)
         return log_fail(log, RELUME_EDATA, "%s: empty file or folder; expected an image", s->path);
-    s->look.bytes = (uint64_t)st.st_size;
-    const off_t foot = st.st_size > PICTURE_FOOT ? st.st_size - PICTURE_FOOT : 0;
-    if (pread(s->file, s->look.head, PICTURE_HEAD, 0) < 0 ||
-        pread(s->file, s->look.foot, PICTURE_FOOT, foot) < 0)
+    s->look.bytes = size;
+    const uint64_t foot = size > PICTURE_FOOT ? size - PICTURE_FOOT : 0;
+    if (infile_read(&s->in, s->look.head, PICTURE_HEAD, 0) < 0 ||
+        infile_read(&s->in, s->look.foot, PICTURE_FOOT, foot) < 0)
         return relume_input_fail(log, s->path, "cannot be read", errno);
     s->kind = picture_kind_of(&s->look, s->path);
     return RELUME_OK;
 }
 
-static relume_status open_inside(picture_reader **out, const struct source *s,
+static relume_status open_inside(picture_reader **out, const struct opening *s,
                                  const struct relume_limits *limits, const struct relume_log *log)
 {
     if (!s->kind->inside)
         return RELUME_OK;
     if (!strcmp(s->kind->reader, "openexr"))
-        return exr_picture_open(out, s->path, limits, log);
+        return exr_picture_open(out, s->path, s->from, limits, log);
     if (!strcmp(s->kind->reader, "png"))
-        return png_picture_open(out, s->path, limits, log);
-    return jpeg_picture_open(out, s->path, limits, log);
+        return png_picture_open(out, s->path, s->from, limits, log);
+    return jpeg_picture_open(out, s->path, s->from, limits, log);
 }
 
-static relume_status open_helped(picture_reader **out, const struct source *s,
+static relume_status open_helped(picture_reader **out, struct opening *s,
                                  const struct relume_limits *limits, const struct relume_log *log)
 {
     static const char expected[] = "a photograph (JPEG, PNG, TIFF, EXR, HDR, RAW ...)";
@@ -86,11 +85,17 @@ static relume_status open_helped(picture_reader **out, const struct source *s,
     if (!k->listed && !(k->reader && limits && limits->any_format))
         return log_fail(log, RELUME_EDATA, "%s: not a readable image%s%s; expected %s; %s", s->path,
                         k->what ? " but " : "", k->what ? k->what : "", expected, k->advice);
-    return helped_picture_open(out, s->file, s->path, k, s->look.bytes, limits, log);
+    const int file = infile_descriptor(&s->in);
+    if (file < 0)
+        return relume_input_fail(log, s->path, "cannot be read", errno);
+    const relume_status status =
+        helped_picture_open(out, file, s->path, k, s->look.bytes, limits, log);
+    close(file);
+    return status;
 }
 
 // What a header claims, before anything is set aside for it.
-static relume_status check_size(const picture_reader *reader, const struct source *s,
+static relume_status check_size(const picture_reader *reader, const struct opening *s,
                                 const struct relume_limits *limits, const struct relume_log *log)
 {
     const struct picture_info *i = &reader->info;
@@ -113,10 +118,10 @@ static relume_status check_size(const picture_reader *reader, const struct sourc
     return RELUME_OK;
 }
 
-relume_status picture_open(picture_reader **out, const char *path,
+relume_status picture_open(picture_reader **out, const char *path, const struct relume_reader *from,
                            const struct relume_limits *limits, const struct relume_log *log)
 {
-    struct source s = {.path = path, .file = -1};
+    struct opening s = {.path = infile_name(path), .from = from};
     *out = NULL;
     limits = limits_of(limits, log);
     relume_status status = look(&s, log);
@@ -128,8 +133,7 @@ relume_status picture_open(picture_reader **out, const char *path,
         status = check_size(*out, &s, limits, log);
     if (status)
         picture_close(out);
-    if (s.file >= 0)
-        close(s.file);
+    infile_close(&s.in);
     return status;
 }
 
@@ -245,19 +249,22 @@ bool picture_writes_bytes(const char *path)
     return has_one_of(path, bytes);
 }
 
-relume_status picture_write_bytes(const char *path, int width, int height, int channels,
-                                  const uint8_t *samples, const struct relume_log *log)
+relume_status picture_write_bytes(const char *path, const struct relume_writer *writer, int width,
+                                  int height, int channels, const uint8_t *samples,
+                                  const struct relume_log *log)
 {
     if (picture_has_extension(path, ".png"))
-        return png_write(path, width, height, channels, samples, log);
+        return png_write(path, writer, width, height, channels, samples, log);
     const relume_status status = need_bridge(path, log);
     return status ? status
-                  : bridge->write_bytes(path, width, height, channels, samples, outfile_save, log);
+                  : bridge->write_bytes(path, writer, width, height, channels, samples,
+                                        outfile_save_to, log);
 }
 
 // Which OpenImageIO reads and does not write: rows from the bottom up, the sign says little endian.
-static relume_status write_pfm(const char *path, int width, int height, int channels,
-                               const float *samples, const struct relume_log *log)
+static relume_status write_pfm(const char *path, const struct relume_writer *writer, int width,
+                               int height, int channels, const float *samples,
+                               const struct relume_log *log)
 {
     enum { HEAD = 64 };
     const size_t row = (size_t)width * (size_t)channels;
@@ -270,17 +277,19 @@ static relume_status write_pfm(const char *path, int width, int height, int chan
     char *to = bytes + head;
     for (int y = height; y-- > 0; to += row * sizeof *samples)
         memcpy(to, samples + (size_t)y * row, row * sizeof *samples);
-    const relume_status status = outfile_save(path, bytes, (size_t)(to - bytes), log);
+    const relume_status status = outfile_save_to(path, writer, bytes, (size_t)(to - bytes), log);
     free(bytes);
     return status;
 }
 
-relume_status picture_write_floats(const char *path, int width, int height, int channels,
-                                   const float *samples, const struct relume_log *log)
+relume_status picture_write_floats(const char *path, const struct relume_writer *writer, int width,
+                                   int height, int channels, const float *samples,
+                                   const struct relume_log *log)
 {
     if (picture_has_extension(path, ".pfm"))
-        return write_pfm(path, width, height, channels, samples, log);
+        return write_pfm(path, writer, width, height, channels, samples, log);
     const relume_status status = need_bridge(path, log);
     return status ? status
-                  : bridge->write_floats(path, width, height, channels, samples, outfile_save, log);
+                  : bridge->write_floats(path, writer, width, height, channels, samples,
+                                         outfile_save_to, log);
 }

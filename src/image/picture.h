@@ -8,7 +8,7 @@
 #ifndef IMAGE_PICTURE_H
 #define IMAGE_PICTURE_H
 
-#include <relume/base.h>
+#include <relume/io.h>
 #include <relume/photograph.h>
 
 #ifdef __cplusplus
@@ -29,8 +29,9 @@ struct picture_info {
     char other[96];  // "", or the names of the channels, where none of them is colour
 };
 
-// RELUME_EDATA with a sentence that names the file.
-relume_status picture_open(picture_reader **out, const char *path,
+// The file `path`, or what `from` reads (base/infile.h). RELUME_EDATA with a sentence that names
+// the file.
+relume_status picture_open(picture_reader **out, const char *path, const struct relume_reader *from,
                            const struct relume_limits *limits, const struct relume_log *log);
 const struct picture_info *picture_info_of(const picture_reader *reader);
 // Code values of `rows` rows from `row` on, out[row][x][channel]: as they are from files of bytes;
@@ -38,8 +39,8 @@ const struct picture_info *picture_info_of(const picture_reader *reader);
 // each. No log: threads that read must not speak; picture_error tells.
 relume_status picture_read_floats(picture_reader *reader, int row, int rows, float *out);
 relume_status picture_read_bytes(picture_reader *reader, int row, int rows, uint8_t *out);
-// What the camera noted: all but the profile. RELUME_ESYSTEM without the helper, where it takes
-// that.
+// What the camera noted: all but the profile; EXIF of files only. RELUME_ESYSTEM without the
+// helper, where it takes that.
 relume_status picture_notes(const picture_reader *reader, struct relume_notes *out,
                             const struct relume_log *log);
 // The ICC profile, NULL when there is none; belongs to the reader.
@@ -54,16 +55,18 @@ void picture_find_colour(struct picture_info *info, const char *const *names);
 const char *picture_error(const picture_reader *reader);
 void picture_close(picture_reader **reader);
 
-// Write interleaved samples, whole or not at all: floats for formats that hold them, else bytes.
-// RELUME_EINVAL for an extension that nobody writes, RELUME_EIO.
+// Write interleaved samples to `path` or `writer`, whole or not at all: floats for formats that
+// hold them, else bytes. RELUME_EINVAL for an extension that nobody writes, RELUME_EIO.
 bool picture_writes_floats(const char *path);
 bool picture_writes_bytes(const char *path);
 // ".png", in any case.
 bool picture_has_extension(const char *path, const char *extension);
-relume_status picture_write_bytes(const char *path, int width, int height, int channels,
-                                  const uint8_t *samples, const struct relume_log *log);
-relume_status picture_write_floats(const char *path, int width, int height, int channels,
-                                   const float *samples, const struct relume_log *log);
+relume_status picture_write_bytes(const char *path, const struct relume_writer *writer, int width,
+                                  int height, int channels, const uint8_t *samples,
+                                  const struct relume_log *log);
+relume_status picture_write_floats(const char *path, const struct relume_writer *writer, int width,
+                                   int height, int channels, const float *samples,
+                                   const struct relume_log *log);
 
 #ifdef __cplusplus
 }

@@ -77,12 +77,13 @@ static bool is_plain(struct picture_info *out, const exr_file *file)
 }
 
 relume_status exr_picture_open(picture_reader **out, const char *path,
-                               const struct relume_limits *limits, const struct relume_log *log)
+                               const struct relume_reader *from, const struct relume_limits *limits,
+                               const struct relume_log *log)
 {
     exr_file *file;
     struct picture_info info;
     *out = NULL;
-    relume_status status = exr_open(&file, path, limits, NULL);
+    relume_status status = exr_open(&file, path, from, limits, NULL);
     if (status == RELUME_ESYSTEM)  // said to nobody: the module would be next to fail
         return relume_input_fail(log, path, "cannot be opened", EMFILE);
     if (status)

@@ -32,12 +32,16 @@ struct picture_reader {
 
 // `*out` is NULL with RELUME_OK where the file is not of the plain kind: broken ones are not, and
 // what is wrong with them is for the module to say. RELUME_ENOMEM, RELUME_ESYSTEM.
+// All of these read `from` in place of the file `path` where that is not NULL (base/infile.h).
 relume_status exr_picture_open(picture_reader **out, const char *path,
-                               const struct relume_limits *limits, const struct relume_log *log);
+                               const struct relume_reader *from, const struct relume_limits *limits,
+                               const struct relume_log *log);
 relume_status png_picture_open(picture_reader **out, const char *path,
-                               const struct relume_limits *limits, const struct relume_log *log);
+                               const struct relume_reader *from, const struct relume_limits *limits,
+                               const struct relume_log *log);
 // JPEG files of all kinds. RELUME_EDATA with a sentence, RELUME_ENOMEM.
 relume_status jpeg_picture_open(picture_reader **out, const char *path,
+                                const struct relume_reader *from,
                                 const struct relume_limits *limits, const struct relume_log *log);
 
 // Files of `kind`, by OpenImageIO in the helper; `file` is open for reading, `path` for sentences.
@@ -47,11 +51,11 @@ relume_status helped_picture_open(picture_reader **out, int file, const char *pa
                                   const struct relume_limits *limits, const struct relume_log *log);
 
 // RELUME_EIO, RELUME_ENOMEM.
-relume_status png_write(const char *path, int width, int height, int channels,
-                        const uint8_t *samples, const struct relume_log *log);
+relume_status png_write(const char *path, const struct relume_writer *writer, int width, int height,
+                        int channels, const uint8_t *samples, const struct relume_log *log);
 
-typedef relume_status picture_save(const char *path, const void *bytes, size_t size,
-                                   const struct relume_log *log);
+typedef relume_status picture_save(const char *path, const struct relume_writer *writer,
+                                   const void *bytes, size_t size, const struct relume_log *log);
 
 // What the module exports, as `relume_oiio_bridge`.
 struct oiio_bridge {
@@ -60,13 +64,13 @@ struct oiio_bridge {
     // for its extension. Sentences have no file name. Opens no other file.
     relume_status (*open)(picture_reader **out, int file, const char *format, const char *name,
                           const struct relume_limits *limits, const struct relume_log *log);
-    // `save` is the library's own outfile_save.
-    relume_status (*write_bytes)(const char *path, int width, int height, int channels,
-                                 const uint8_t *samples, picture_save *save,
-                                 const struct relume_log *log);
-    relume_status (*write_floats)(const char *path, int width, int height, int channels,
-                                  const float *samples, picture_save *save,
-                                  const struct relume_log *log);
+    // `save` is the library's own outfile_save_to, for `path` and `writer`.
+    relume_status (*write_bytes)(const char *path, const struct relume_writer *writer, int width,
+                                 int height, int channels, const uint8_t *samples,
+                                 picture_save *save, const struct relume_log *log);
+    relume_status (*write_floats)(const char *path, const struct relume_writer *writer, int width,
+                                  int height, int channels, const float *samples,
+                                  picture_save *save, const struct relume_log *log);
 };
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
 // png.c - the one file that knows libpng: pictures of 8-bit grey or colour, perhaps with alpha
-#include "base/inputs.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"
@@ -173,14 +173,15 @@ static bool read_header(struct png_picture *p)
 }
 
 relume_status png_picture_open(picture_reader **out, const char *path,
-                               const struct relume_limits *limits, const struct relume_log *log)
+                               const struct relume_reader *from, const struct relume_limits *limits,
+                               const struct relume_log *log)
 {
     struct png_picture *p = mem_zeroed(1, sizeof *p);
     *out = NULL;
     if (!p)
         return RELUME_ENOMEM;
     relume_status status = RELUME_OK;
-    p->file = input_open(path, log);
+    p->file = infile_stream(path, from, log);
     if (!p->file)
         status = relume_input_fail(log, path, "cannot be opened", errno);
     const bool plain = p->file && is_plain(p->file);
@@ -251,8 +252,8 @@ static bool encode(struct writer *w, int width, int height, int channels, const 
     return true;
 }
 
-relume_status png_write(const char *path, int width, int height, int channels,
-                        const uint8_t *samples, const struct relume_log *log)
+relume_status png_write(const char *path, const struct relume_writer *writer, int width, int height,
+                        int channels, const uint8_t *samples, const struct relume_log *log)
 {
     struct writer *w = mem_zeroed(1, sizeof *w);
     if (w)
@@ -266,7 +267,7 @@ relume_status png_write(const char *path, int width, int height, int channels,
                      ? RELUME_ENOMEM
                      : log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path, w->trap.text);
     if (!status)
-        status = outfile_save(path, w->bytes, w->size, log);
+        status = outfile_save_to(path, writer, w->bytes, w->size, log);
     if (w && w->png)
         png_destroy_write_struct(&w->png, &w->info);
     free(w ? w->bytes : NULL);

@@ -21,7 +21,7 @@ static void note(void *context, int row, int rows)
 static relume_status check_blocks(struct check *c, const char *path)
 {
     exr_file *file;
-    relume_status status = exr_open_damaged(&file, path, c->p->limits, c->p->log);
+    relume_status status = exr_open_damaged(&file, path, c->p->reader, c->p->limits, c->p->log);
     for (int i = 0; !status && i < exr_part_count(file); i++) {
         c->part = exr_part_info(file, i).name;
         status = exr_find_damage(file, i, c->p->threads, note, c, c->p->log);
@@ -50,8 +50,10 @@ static relume_status check_view(relume_pack *pack, int view)
 static relume_status check_values(const struct relume_pack_check_params *p, const char *path)
 {
     relume_pack *pack;
-    relume_status status = relume_pack_open(
-        &pack, path, relume_pack_params(.log = p->log, .limits = p->limits, .threads = p->threads));
+    relume_status status =
+        relume_pack_open(&pack, path,
+                         relume_pack_params(.log = p->log, .limits = p->limits,
+                                            .threads = p->threads, .reader = p->reader));
     for (int i = 0; !status && i < relume_pack_info(pack)->views; i++)
         status = check_view(pack, i);
     relume_pack_destroy(&pack);
@@ -62,6 +64,8 @@ relume_status relume_pack_check(const char *path, const struct relume_pack_check
 {
     const struct relume_pack_check_params none = {0};
     struct check c = {.p = params ? params : &none};
+    if (!path && !c.p->reader)
+        return RELUME_EINVAL;
     const relume_status status = check_blocks(&c, path);
     if (status)
         return status;

@@ -146,8 +146,10 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
         .storage = p.storage,
         .step = p.step,
         .threads = p.threads,
-        .scratch = path,
+        .scratch = p.writer ? NULL : path,
     };
+    if (!path && !p.writer)
+        return RELUME_EINVAL;
     const struct relume_manifest *manifest = relume_capture_manifest(capture);
     struct material m = {0};
     relume_status status = create(&m, manifest->views) ? RELUME_OK : RELUME_ENOMEM;
@@ -172,9 +174,9 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
         };
         if (report)
             *report = contents.report;
-        status = relume_pack_write(
-            &contents, path,
-            relume_pack_params(.log = p.log, .compression = p.compression, .threads = p.threads));
+        status = relume_pack_write(&contents, path,
+                                   relume_pack_params(.log = p.log, .compression = p.compression,
+                                                      .threads = p.threads, .writer = p.writer));
     }
     destroy(&m);
     return status;

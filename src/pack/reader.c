@@ -2,6 +2,7 @@
 #include <relume/pack.h>
 
 #include "base/arena.h"
+#include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/half.h"
@@ -349,23 +350,25 @@ relume_status relume_pack_open(relume_pack **out, const char *path,
 {
     const struct relume_pack_params params_ = params ? *params : (struct relume_pack_params){0};
     *out = NULL;
+    if (!path && !params_.reader)
+        return RELUME_EINVAL;
     relume_pack *p = mem_zeroed(1, sizeof *p);
     if (!p)
         return RELUME_ENOMEM;
     p->log = params_.log;
     p->threads = params_.threads;
     p->limits = limits_or_default(limits_of(params_.limits, params_.log));
-    p->path = mem_text(path);
+    p->path = mem_text(infile_name(path));
     relume_status status = p->path ? RELUME_OK : RELUME_ENOMEM;
     struct stat s;
-    if (!status && (stat(path, &s) || !S_ISREG(s.st_mode)))
+    if (!status && !params_.reader && (stat(path, &s) || !S_ISREG(s.st_mode)))
         status = log_fail(p->log, RELUME_EDATA, "%s: no such file; expected a relume file", path);
-    if (!status) {
-        p->info.file_bytes = (uint64_t)s.st_size;
-        status = exr_open(&p->file, path, &p->limits, p->log);
-    }
     if (!status)
+        status = exr_open(&p->file, path, params_.reader, &p->limits, p->log);
+    if (!status) {
+        p->info.file_bytes = exr_bytes(p->file);
         status = read_header(p);
+    }
     if (status)
         relume_pack_destroy(&p);
     *out = p;

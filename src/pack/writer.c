@@ -4,8 +4,8 @@
 #include "base/arena.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "image/exr.h"
 #include "image/curve.h"
+#include "image/exr.h"
 #include "image/half.h"
 #include "pack/format.h"
 
@@ -670,6 +670,8 @@ relume_status relume_pack_write(const struct relume_pack_contents *contents, con
     const struct relume_pack_params p = params ? *params : (struct relume_pack_params){0};
     struct builder b = {0};
     const size_t most_parts = 1 + (3 + RELUME_MOST_BOOKS) * (size_t)contents->views;
+    if (!path && !p.writer)
+        return RELUME_EINVAL;
     b.coder = relume_coder_info(contents->coder);
     b.parts = arena_array(&b.arena, most_parts, sizeof *b.parts);
     b.channels = channel_names(&b, b.coder);
@@ -683,7 +685,7 @@ relume_status relume_pack_write(const struct relume_pack_contents *contents, con
     for (int i = 0; good && i < contents->views; i++)
         good = add_view(&b, contents, i, codec);
     const relume_status status =
-        good ? exr_write(path, b.parts, b.count, p.threads, p.log) : RELUME_ENOMEM;
+        good ? exr_write(path, p.writer, b.parts, b.count, p.threads, p.log) : RELUME_ENOMEM;
     arena_free(&b.arena);
     return status;
 }

@@ -59,7 +59,7 @@ static void decode_one(void *context, size_t item, int worker)
     char path[256];
     picture_reader *reader;
     snprintf(path, sizeof path, "%s/photo%02zu.jpg", (const char *)context, item);
-    bench_check(picture_open(&reader, path, NULL, NULL));
+    bench_check(picture_open(&reader, path, NULL, NULL, NULL));
     const struct picture_info *info = picture_info_of(reader);
     uint8_t *pixels = malloc((size_t)info->width * (size_t)info->height * 3);
     bench_check(picture_read_bytes(reader, 0, info->height, pixels));

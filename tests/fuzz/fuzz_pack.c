@@ -104,9 +104,13 @@ static void use(relume_pack *pack)
 
 static bool one(struct fuzz *f, struct bytes b)
 {
-    fuzz_store(f->path, b);
+    const struct relume_reader reader = relume_memory_reader(b.data, b.size);
     relume_pack *pack;
-    if (relume_pack_open(&pack, f->path, relume_pack_params(.limits = &limits, .threads = 1)))
+#ifndef RELUME_LIBFUZZER  // which keeps what fails itself
+    fuzz_store(f->path, b);
+#endif
+    if (relume_pack_open(&pack, f->path,
+                         relume_pack_params(.limits = &limits, .threads = 1, .reader = &reader)))
         return false;
     use(pack);
     relume_pack_destroy(&pack);

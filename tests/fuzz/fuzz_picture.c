@@ -48,11 +48,11 @@ static bool one(struct fuzz *f, struct bytes b)
     if (f->iterations % 2)
         mend(b);
     fuzz_store(f->path, b);
-    if (!png_picture_open(&r, f->path, &limits, NULL) && r)
+    if (!png_picture_open(&r, f->path, NULL, &limits, NULL) && r)
         return read_all(r);
-    if (!jpeg_picture_open(&r, f->path, &limits, NULL))
+    if (!jpeg_picture_open(&r, f->path, NULL, &limits, NULL))
         return read_all(r);
-    return !exr_picture_open(&r, f->path, &limits, NULL) && r && read_all(r);
+    return !exr_picture_open(&r, f->path, NULL, &limits, NULL) && r && read_all(r);
 }
 
 static void add(struct fuzz *f, int channels, bool half, const char *name)

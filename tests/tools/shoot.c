@@ -37,7 +37,7 @@ static int photo(int argc, char **argv)
     for (size_t i = 0; codes && i < n; i++)
         codes[i] = (uint8_t)lroundf(255.0f * image.data[i]);
     const bool good =
-        codes && !picture_write_bytes(argv[2], image.width, image.height, 3, codes, NULL);
+        codes && !picture_write_bytes(argv[2], NULL, image.width, image.height, 3, codes, NULL);
     relume_image_destroy(&image);
     free(codes);
     return !good;

@@ -196,6 +196,45 @@ static relume_status read_pack(void)
     return status;
 }
 
+static relume_status pack_in_memory(void)
+{
+    struct relume_buffer buffer = {0};
+    const struct relume_writer writer = relume_buffer_writer(&buffer);
+    relume_pack *pack = NULL;
+    const struct relume_codes *codes;
+    relume_status status =
+        fixture_encode(part, NULL, &relume_basis_sh, 4,
+                       relume_pack_encode_params(.threads = 1, .writer = &writer));
+    assert_true((buffer.data != NULL) == (status == RELUME_OK));
+    const struct relume_reader reader = relume_memory_reader(buffer.data, buffer.size);
+    if (!status)
+        status = relume_pack_open(&pack, NULL, relume_pack_params(.threads = 1, .reader = &reader));
+    if (!status)
+        status = relume_pack_codes(&codes, pack, 0);
+    relume_pack_destroy(&pack);
+    relume_buffer_destroy(&buffer);
+    return status;
+}
+
+static relume_status images_in_memory(void)
+{
+    static const char *const names[] = {"a.png", "a.jpg"};
+    struct relume_image image, got = {0};
+    relume_status status = relume_image_create(&image, 6, 5, 3);
+    for (int i = 0; !status && i < 2; i++) {
+        struct relume_buffer buffer = {0};
+        const struct relume_writer writer = relume_buffer_writer(&buffer);
+        status = relume_image_save(&image, names[i], relume_image_params(.writer = &writer));
+        const struct relume_reader reader = relume_memory_reader(buffer.data, buffer.size);
+        if (!status)
+            status = relume_image_load(&got, NULL, relume_image_params(.reader = &reader));
+        relume_image_destroy(&got);
+        relume_buffer_destroy(&buffer);
+    }
+    relume_image_destroy(&image);
+    return status;
+}
+
 static relume_status compare_images(void)
 {
     struct relume_image a = {0};
@@ -279,6 +318,8 @@ SWEEP(encode_resampled, 60)
 SWEEP(prepare_interpolants, 30)
 SWEEP(read_components, 20)
 SWEEP(read_pack, 30)
+SWEEP(pack_in_memory, 80)
+SWEEP(images_in_memory, 10)
 SWEEP(compare_images, 5)
 SWEEP(save_png, 4)
 SWEEP(evaluate, 60)
@@ -348,7 +389,8 @@ int main(void)
         cmocka_unit_test(test_encode_chosen),    cmocka_unit_test(test_encode_luminance),
         cmocka_unit_test(test_encode_resampled), cmocka_unit_test(test_prepare_interpolants),
         cmocka_unit_test(test_read_components),  cmocka_unit_test(test_fit_normals),
-        cmocka_unit_test(test_find_ball),        cmocka_unit_test(test_nothing_is_left),
+        cmocka_unit_test(test_find_ball),        cmocka_unit_test(test_pack_in_memory),
+        cmocka_unit_test(test_images_in_memory), cmocka_unit_test(test_nothing_is_left),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -81,8 +81,8 @@ static void round_trip(enum exr_codec codec, enum exr_sample sample, int width, 
                                      .rows = source,
                                      .context = &b};
     exr_file *file;
-    CHECK_OK(exr_write(path, parts, 2, threads, NULL));
-    CHECK_OK(exr_open(&file, path, NULL, NULL));
+    CHECK_OK(exr_write(path, NULL, parts, 2, threads, NULL));
+    CHECK_OK(exr_open(&file, path, NULL, NULL, NULL));
     assert_int_equal(exr_part_count(file), 2);
     for (int i = 0; i < 2; i++) {
         const struct exr_part_info info = exr_part_info(file, i);
@@ -154,7 +154,7 @@ static void test_failing_source(void **state)
                                   .rows = refuse};
     unlink(path);
     for (int threads = 1; threads <= 4; threads += 3) {
-        assert_int_equal(exr_write(path, &part, 1, threads, NULL), RELUME_EDATA);
+        assert_int_equal(exr_write(path, NULL, &part, 1, threads, NULL), RELUME_EDATA);
         assert_int_not_equal(access(path, F_OK), 0);
     }
 }
@@ -173,17 +173,17 @@ static void test_every_cut_is_noticed(void **state)
         struct test_log log;
         test_log_init(&log);
         test_write(path, bytes, n);
-        assert_int_equal(exr_open(&file, path, NULL, &log.log), RELUME_EDATA);
+        assert_int_equal(exr_open(&file, path, NULL, NULL, &log.log), RELUME_EDATA);
         assert_null(file);
         assert_int_equal(log.lines, 1);
         assert_non_null(strstr(log.text, path));
     }
     test_write(path, bytes, size);
     exr_file *file;
-    CHECK_OK(exr_open(&file, path, NULL, NULL));
+    CHECK_OK(exr_open(&file, path, NULL, NULL, NULL));
     exr_close(&file);
     const struct relume_limits small = {.max_side = 39};
-    assert_int_equal(exr_open(&file, path, &small, NULL), RELUME_EDATA);
+    assert_int_equal(exr_open(&file, path, NULL, &small, NULL), RELUME_EDATA);
 }
 
 int main(void)

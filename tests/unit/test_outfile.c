@@ -53,7 +53,7 @@ static void test_whole_or_not_at_all(void **state)
 {
     (void)state;
     outfile *f;
-    CHECK_OK(outfile_open(&f, path, NULL));
+    CHECK_OK(outfile_open(&f, path, NULL, NULL));
     CHECK_OK(outfile_write(f, "world", 5, 6));
     CHECK_OK(outfile_write(f, "hello ", 6, 0));
     assert_int_not_equal(access(path, F_OK), 0);  // not yet
@@ -66,7 +66,7 @@ static void test_whole_or_not_at_all(void **state)
     assert_int_equal(stat(path, &s), 0);
     assert_int_equal(s.st_mode & 0777, 0666 & ~mask);
 
-    CHECK_OK(outfile_open(&f, path, NULL));
+    CHECK_OK(outfile_open(&f, path, NULL, NULL));
     CHECK_OK(outfile_write(f, "new", 3, 0));
     outfile_abort(&f);
     outfile_abort(&f);  // NULL is fine
@@ -83,7 +83,7 @@ static void test_refusals(void **state)
     outfile *f = (void *)1;
     struct test_log log;
     test_log_init(&log);
-    assert_int_equal(outfile_open(&f, folder, &log.log), RELUME_EIO);
+    assert_int_equal(outfile_open(&f, folder, NULL, &log.log), RELUME_EIO);
     assert_null(f);
     assert_non_null(strstr(log.text, folder));
     assert_int_equal(outfile_save("/nowhere/at/all", "x", 1, &log.log), RELUME_EIO);
@@ -164,12 +164,12 @@ static void test_inputs(void **state)
     snprintf(hard, sizeof hard, "%s/hard", folder);
     assert_int_equal(link(path, hard), 0);
     outfile *f;
-    CHECK_OK(outfile_open(&f, hard, &log.log));
+    CHECK_OK(outfile_open(&f, hard, NULL, &log.log));
     CHECK_OK(outfile_write(f, "x", 1, 0));
     fclose(input_open(path, &log.log));  // met after the output was opened
     assert_int_equal(outfile_commit(&f), RELUME_EINVAL);
     assert_non_null(strstr(log.text, "hard: is read here"));
-    assert_int_equal(outfile_open(&f, path, &log.log), RELUME_EINVAL);
+    assert_int_equal(outfile_open(&f, path, NULL, &log.log), RELUME_EINVAL);
     assert_int_equal(relume_file_check(hard, &log.log), RELUME_EINVAL);
     CHECK_OK(relume_file_check(folder, &log.log));
     char nowhere[128];

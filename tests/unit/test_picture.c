@@ -41,7 +41,7 @@ static void compare(const char *path)
 {
     static float ours[MOST * MOST * 4], theirs[MOST * MOST * 4];
     picture_reader *a, *b;
-    CHECK_OK(picture_open(&a, path, NULL, NULL));
+    CHECK_OK(picture_open(&a, path, NULL, NULL, NULL));
     CHECK_OK(bridge->open(&b, open(path, O_RDONLY), "", path, NULL, NULL));
     assert_ptr_not_equal(a->format, b->format);
     const struct picture_info i = a->info, j = b->info;
@@ -107,7 +107,7 @@ static void write_exr(const char *path, struct made m, int height, enum exr_code
                                   .attribute = attribute,
                                   .rows = rows,
                                   .context = &m};
-    CHECK_OK(exr_write(path, &part, 1, 1, NULL));
+    CHECK_OK(exr_write(path, NULL, &part, 1, 1, NULL));
 }
 
 static void exr_is_what_openimageio_sees(void **state)
@@ -127,9 +127,9 @@ static const struct picture_format *format_of(const char *path)
 {
     picture_reader *r;
     if (strstr(path, ".exr"))
-        CHECK_OK(exr_picture_open(&r, path, NULL, NULL));
+        CHECK_OK(exr_picture_open(&r, path, NULL, NULL, NULL));
     else
-        CHECK_OK(png_picture_open(&r, path, NULL, NULL));
+        CHECK_OK(png_picture_open(&r, path, NULL, NULL, NULL));
     const struct picture_format *format = r ? r->format : NULL;
     picture_close(&r);
     return format;
@@ -152,7 +152,7 @@ static void exr_that_is_not_plain(void **state)
     assert_non_null(format_of(path_of("a.exr")));
     const struct relume_limits small = {.max_side = 11};
     picture_reader *r;
-    CHECK_OK(exr_picture_open(&r, path_of("a.exr"), &small, NULL));
+    CHECK_OK(exr_picture_open(&r, path_of("a.exr"), NULL, &small, NULL));
     assert_null(r);
     shorten(path_of("a.exr"));
     assert_null(format_of(path_of("a.exr")));
@@ -170,8 +170,8 @@ static void pfm_comes_back(void **state)
     for (int i = 0; i < 60; i++)
         samples[i] = (float)i * 1.1f - 7.0f;
     for (int channels = 1; channels <= 3; channels += 2) {
-        CHECK_OK(picture_write_floats(path_of("a.pfm"), 5, 4, channels, samples, NULL));
-        CHECK_OK(picture_open(&r, path_of("a.pfm"), NULL, NULL));
+        CHECK_OK(picture_write_floats(path_of("a.pfm"), NULL, 5, 4, channels, samples, NULL));
+        CHECK_OK(picture_open(&r, path_of("a.pfm"), NULL, NULL, NULL));
         assert_true(r->info.width == 5 && r->info.height == 4 && r->info.channels == channels);
         CHECK_OK(picture_read_floats(r, 0, 4, back));
         assert_memory_equal(back, samples, 20 * (size_t)channels * sizeof *samples);
@@ -197,20 +197,20 @@ static void png_is_what_openimageio_sees(void **state)
     for (int k = 0; k < 16; k++) {
         const int width = widths[k % 4], height = widths[3 - k % 4], channels = k / 4 % 2 ? 3 : 1;
         if (k < 8)
-            CHECK_OK(png_write(path_of("a.png"), width, height, channels, samples, NULL));
+            CHECK_OK(png_write(path_of("a.png"), NULL, width, height, channels, samples, NULL));
         else
-            CHECK_OK(bridge->write_bytes(path_of("a.png"), width, height, channels, samples,
-                                         outfile_save, NULL));
+            CHECK_OK(bridge->write_bytes(path_of("a.png"), NULL, width, height, channels, samples,
+                                         outfile_save_to, NULL));
         compare(path_of("a.png"));
         picture_reader *r;
-        CHECK_OK(picture_open(&r, path_of("a.png"), NULL, NULL));
+        CHECK_OK(picture_open(&r, path_of("a.png"), NULL, NULL, NULL));
         read_all(r, back);
         picture_close(&r);
         assert_memory_equal(back, samples, (size_t)(width * height * channels));
     }
     for (int channels = 2; channels <= 4; channels += 2) {  // alpha
-        CHECK_OK(
-            bridge->write_bytes(path_of("a.png"), 9, 8, channels, samples, outfile_save, NULL));
+        CHECK_OK(bridge->write_bytes(path_of("a.png"), NULL, 9, 8, channels, samples,
+                                     outfile_save_to, NULL));
         compare(path_of("a.png"));
     }
 }
@@ -255,13 +255,13 @@ static void png_that_is_not_plain(void **state)
     uint8_t samples[6 * 5 * 3];
     fill(samples, sizeof samples);
     for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
-        CHECK_OK(png_write(path_of("a.png"), 6, 5, 3, samples, NULL));
+        CHECK_OK(png_write(path_of("a.png"), NULL, 6, 5, 3, samples, NULL));
         with_chunk(path_of("a.png"), chunks[i].type, chunks[i].data, chunks[i].size);
         assert_int_equal(format_of(path_of("a.png")) != NULL, chunks[i].plain);
         if (chunks[i].plain)
             compare(path_of("a.png"));
     }
-    CHECK_OK(png_write(path_of("a.png"), 6, 5, 3, samples, NULL));
+    CHECK_OK(png_write(path_of("a.png"), NULL, 6, 5, 3, samples, NULL));
     shorten(path_of("a.png"));
     assert_null(format_of(path_of("a.png")));
 }
@@ -336,7 +336,7 @@ static relume_status read_jpeg(const char *path)
     uint8_t row[MOST * 3];
     picture_reader *r;
     relume_status status = RELUME_OK;
-    CHECK_OK(picture_open(&r, path, NULL, NULL));
+    CHECK_OK(picture_open(&r, path, NULL, NULL, NULL));
     for (int y = 0; y < MOST && !status; y++)
         status = picture_read_bytes(r, y, 1, row);
     assert_int_equal(status != RELUME_OK, strstr(picture_error(r), "truncated or damaged") != NULL);
@@ -377,7 +377,7 @@ static void damaged_rows(void **state)
     size_t size;
     picture_reader *r;
     fill(samples, sizeof samples);
-    CHECK_OK(png_write(path_of("a.png"), MOST, MOST, 3, samples, NULL));
+    CHECK_OK(png_write(path_of("a.png"), NULL, MOST, MOST, 3, samples, NULL));
     write_exr(path_of("a.exr"), (struct made){MOST, 3, false}, MOST, EXR_CODEC_ZIP, NULL);
     write_jpeg(path_of("a.jpg"), MOST, MOST, (struct kind){.channels = 3}, samples);
     static const char *const names[] = {"a.png", "a.exr", "a.jpg"};
@@ -386,7 +386,7 @@ static void damaged_rows(void **state)
         memset(bytes + size / 2, 0xff, 40);
         test_write(path_of(names[k]), bytes, size);
         free(bytes);
-        CHECK_OK(picture_open(&r, path_of(names[k]), NULL, NULL));
+        CHECK_OK(picture_open(&r, path_of(names[k]), NULL, NULL, NULL));
         relume_status status = RELUME_OK;
         for (int y = 0; y < MOST && !status; y++)
             status = k == 1 ? picture_read_floats(r, y, 1, out)
@@ -397,7 +397,7 @@ static void damaged_rows(void **state)
     }
     struct test_log log;
     test_log_init(&log);
-    assert_int_equal(png_write("/dev/full", 6, 5, 3, samples, &log.log), RELUME_EIO);
+    assert_int_equal(png_write("/dev/full", NULL, 6, 5, 3, samples, &log.log), RELUME_EIO);
     assert_non_null(strstr(log.text, "/dev/full"));
 }
 

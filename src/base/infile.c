@@ -1,0 +1,230 @@
+#include "base/infile.h"
+
+#include "base/channel.h"
+#include "base/inputs.h"
+#include "base/memory.h"
+#include "base/scratch.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+const char *infile_name(const char *path)
+{
+    return path ? path : "memory";
+}
+
+static bool open_file(struct infile *s, const char *path, const struct relume_log *log)
+{
+    struct stat st;
+    input_note(log, path);
+    s->file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (s->file < 0 || fstat(s->file, &st))
+        return false;
+    s->regular = S_ISREG(st.st_mode);
+    s->size = (uint64_t)st.st_size;
+    return true;
+}
+
+bool infile_open(struct infile *out, const char *path, const struct relume_reader *from,
+                 const struct relume_log *log)
+{
+    *out = (struct infile){.file = -1};
+    pthread_mutex_init(&out->lock, NULL);
+    if (!from)
+        return open_file(out, path, log);
+    out->from = *from;
+    out->regular = true;
+    out->size = from->size;
+    return true;
+}
+
+void infile_close(struct infile *s)
+{
+    if (s->file >= 0)
+        close(s->file);
+    s->file = -1;
+    pthread_mutex_destroy(&s->lock);
+}
+
+static ssize_t read_file(int file, char *to, size_t size, uint64_t offset)
+{
+    size_t done = 0;
+    while (done < size) {
+        const ssize_t n = pread(file, to + done, size - done, (off_t)(offset + done));
+        if (n < 0 && errno != EINTR)
+            return -1;
+        if (n == 0)
+            break;
+        done += n > 0 ? (size_t)n : 0;
+    }
+    return (ssize_t)done;
+}
+
+ssize_t infile_read(struct infile *s, void *bytes, size_t size, uint64_t offset)
+{
+    if (!s->from.read)
+        return read_file(s->file, bytes, size, offset);
+    const uint64_t left = offset < s->size ? s->size - offset : 0;
+    const size_t n = size < left ? size : (size_t)left;
+    if (n == 0)
+        return 0;
+    pthread_mutex_lock(&s->lock);
+    errno = 0;
+    const bool good = s->from.read(s->from.user, bytes, n, offset);
+    const int error = errno ? errno : EIO;
+    pthread_mutex_unlock(&s->lock);
+    errno = error;
+    return good ? (ssize_t)n : -1;
+}
+
+// In blocks, so that what is not in memory need not be there twice.
+static bool copy(struct infile *s, int to)
+{
+    enum { BLOCK = 1 << 16 };
+    char block[BLOCK];
+    ssize_t n = 1;
+    bool good = true;
+    for (uint64_t at = 0; good && at < s->size; at += (uint64_t)n) {
+        n = infile_read(s, block, BLOCK, at);
+        good = n > 0 && scratch_write(to, block, (size_t)n, (off_t)at);
+    }
+    return good;
+}
+
+int infile_descriptor(struct infile *s)
+{
+    if (s->file >= 0)
+        return fcntl(s->file, F_DUPFD_CLOEXEC, 3);
+    const int memory = channel_memory((size_t)s->size);
+    if (memory >= 0 && !copy(s, memory)) {
+        const int error = errno;
+        close(memory);
+        errno = error;
+        return -1;
+    }
+    return memory;
+}
+
+// ---------------------------------------------------------------- streams
+
+struct stream {
+    struct infile in;
+    uint64_t at;
+};
+
+static ssize_t stream_read(void *cookie, char *bytes, size_t size)
+{
+    struct stream *s = cookie;
+    const ssize_t n = infile_read(&s->in, bytes, size, s->at);
+    s->at += n > 0 ? (uint64_t)n : 0;
+    return n;
+}
+
+static int stream_seek(void *cookie, off64_t *offset, int whence)
+{
+    struct stream *s = cookie;
+    const uint64_t from = whence == SEEK_SET ? 0 : whence == SEEK_CUR ? s->at : s->in.size;
+    const int64_t to = (int64_t)from + *offset;
+    if (to < 0) {
+        errno = EINVAL;
+        return -1;
+    }
+    s->at = (uint64_t)to;
+    *offset = to;
+    return 0;
+}
+
+static int stream_close(void *cookie)
+{
+    struct stream *s = cookie;
+    infile_close(&s->in);
+    free(s);
+    return 0;
+}
+
+FILE *infile_stream(const char *path, const struct relume_reader *from,
+                    const struct relume_log *log)
+{
+    static const cookie_io_functions_t functions = {stream_read, NULL, stream_seek, stream_close};
+    if (!from)
+        return input_open(path, log);
+    struct stream *s = mem_zeroed(1, sizeof *s);
+    FILE *f = NULL;
+    if (s && infile_open(&s->in, path, from, log))
+        f = fopencookie(s, "rb", functions);
+    if (!f) {
+        free(s);
+        errno = ENOMEM;
+    }
+    return f;
+}
+
+// ---------------------------------------------------------------- memory
+
+static bool read_memory(void *user, void *bytes, size_t size, uint64_t offset)
+{
+    memcpy(bytes, (const char *)user + offset, size);
+    return true;
+}
+
+struct relume_reader relume_memory_reader(const void *bytes, size_t size)
+{
+    return (struct relume_reader){read_memory, (void *)(size_t)bytes, size};
+}
+
+static bool grow(struct relume_buffer *b, size_t size)
+{
+    if (size <= b->room)
+        return true;
+    const size_t room = size > SIZE_MAX / 2 ? size : 2 * size;
+    unsigned char *data = mem_resize(b->data, room, 1);
+    if (!data) {
+        errno = ENOMEM;
+        return false;
+    }
+    b->data = data;
+    b->room = room;
+    return true;
+}
+
+static bool write_buffer(void *user, const void *bytes, size_t size, uint64_t offset)
+{
+    struct relume_buffer *b = user;
+    uint64_t end;
+    if (b->whole)
+        relume_buffer_destroy(b);
+    if (__builtin_add_overflow(offset, size, &end) || end > SIZE_MAX) {
+        errno = ENOMEM;
+        return false;
+    }
+    if (!grow(b, (size_t)end))
+        return false;
+    if (offset > b->size)
+        memset(b->data + b->size, 0, (size_t)offset - b->size);
+    memcpy(b->data + offset, bytes, size);
+    b->size = end > b->size ? (size_t)end : b->size;
+    return true;
+}
+
+static bool finish_buffer(void *user, bool whole)
+{
+    struct relume_buffer *b = user;
+    b->whole = whole;
+    if (!whole)
+        relume_buffer_destroy(b);
+    return true;
+}
+
+struct relume_writer relume_buffer_writer(struct relume_buffer *buffer)
+{
+    return (struct relume_writer){write_buffer, finish_buffer, buffer};
+}
+
+void relume_buffer_destroy(struct relume_buffer *buffer)
+{
+    free(buffer->data);
+    *buffer = (struct relume_buffer){0};
+}

@@ -1,0 +1,37 @@
+// infile.h - an input that is open: a file, or what the caller gives in place of one (relume/io.h)
+#ifndef BASE_INFILE_H
+#define BASE_INFILE_H
+
+#include <relume/io.h>
+
+#include <pthread.h>
+#include <stdio.h>
+#include <sys/types.h>
+
+struct infile {
+    struct relume_reader from;  // `read` is NULL: a file
+    int file;                   // or -1
+    bool regular;               // no folder, device or pipe
+    uint64_t size;
+    pthread_mutex_t lock;  // one call of `from.read` at a time
+};
+
+// What sentences call an input or output: its path, or what stands for one.
+const char *infile_name(const char *path);
+
+// The file `path`, noted in the log's inputs (pipes are not waited for), or `from`, where that is
+// not NULL. False with errno set; closing is fine in every case.
+bool infile_open(struct infile *out, const char *path, const struct relume_reader *from,
+                 const struct relume_log *log);
+// How many of `size` bytes there are from `offset` on, now in `bytes`; -1 with errno set.
+// Thread-safety: safe.
+ssize_t infile_read(struct infile *s, void *bytes, size_t size, uint64_t offset);
+// A descriptor of the bytes, to be closed: the file's, or that of a copy in memory; -1 with errno.
+int infile_descriptor(struct infile *s);
+void infile_close(struct infile *s);
+
+// The same opened as a stream, from its beginning; NULL with errno set.
+FILE *infile_stream(const char *path, const struct relume_reader *from,
+                    const struct relume_log *log);
+
+#endif

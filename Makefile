@@ -223,6 +223,22 @@ $(GL) $(GL_BENCH): $B/tests/%: $B/obj/tests/%.o $(filter-out %/main.o,$(VIEWER_O
 	$(call say,LD)
 	$(Q)$(CXX) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(GL_LIBS) $(CMOCKA)
 
+# The tool with a basis and a model of one file each, for tests/cli/test_growing.sh
+GROWN   := $B/tests/growing/relume
+GROWN_O := $(addprefix $B/obj/tests/growing/,basis_linear.o model_mean.o bases.o models.o)
+$B/obj/tests/growing/bases.c: src/coder/coder.c
+	@mkdir -p $(@D)
+	$(Q)sed 's/&relume_basis_table,/\&relume_basis_linear, &/; /^const struct relume_basis .const relume_bases/i extern const struct relume_basis relume_basis_linear;' $< > $@
+$B/obj/tests/growing/models.c: src/btf/model.c
+	@mkdir -p $(@D)
+	$(Q)sed 's/&model_lit,/\&model_mean, &/; /^const struct relume_btf_model .const relume_btf_models/i extern const struct relume_btf_model model_mean;' $< > $@
+$(addprefix $B/obj/tests/growing/,bases.o models.o): %.o: %.c | $(DEPS)
+	$(Q)$(CC) $(C11) -Iinclude -Isrc -c -o $@ $<
+$(GROWN): $(GROWN_O) $(CLI_O) $B/librelume.a
+	@mkdir -p $(@D)
+	$(call say,LD)
+	$(Q)$(CC) $(MODE) $(TEST_LD) -pthread $(call run_path,/../..) -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS)
+
 # Lets calls to the system fail (tests/tools/faults.sh)
 FAULTS := $B/tests/tools/faults.so
 $(FAULTS): tests/tools/preload/faults.c | $(DEPS)
@@ -240,7 +256,7 @@ $B/relume $B/relume-view $(UNIT) $(GL) $(BENCH) $(FUZZ) $(TOOLS): | $(MODULE) $(
 # `make test` is everything; `make check` is the part that one config runs.
 test: all
 	@tests/run.sh $(MAKE)
-check: all $(UNIT) $(GL) $(TOOLS) $(FUZZ) $(FAULTS)
+check: all $(UNIT) $(GL) $(TOOLS) $(FUZZ) $(FAULTS) $(GROWN)
 	@tests/check.sh $B
 # Does every test still compile? A minute where check takes five.
 compile-tests: $(patsubst %.c,$B/obj/%.o,$(UNIT_C) $(GL_C) $(TOOLS_C) $(FUZZ_C) $(BENCH_C))

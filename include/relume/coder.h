@@ -29,6 +29,7 @@ struct relume_basis {
     bool learned;         // joint functions of R, G, B, found from samples of the capture
     bool upper_only;      // its functions exist only on the pole's hemisphere
     bool halves;          // no function reaches across the horizon
+    bool fits;            // by least squares: robustly too, and to lamps near by
     // The largest number of coefficients <= `want` that the basis has and `lights` can determine;
     // 0 when there is none. `want` 0 asks for the basis's own choice.
     int (*fit_count)(int want, int lights);
@@ -52,16 +53,24 @@ extern RELUME_API const struct relume_basis *const relume_bases[];
 // NULL when there is none of that name.
 RELUME_API const struct relume_basis *relume_basis_find(const char *name);
 
+struct relume_coder_triangles;
+
 // How values between the captured lights follow from those at them: one weight per light.
 // Constant; a NULL-terminated list of all is relume_interpolants.
 struct relume_interpolant {
     const char *name;
     const char *summary;  // one line for help texts
+    bool extrapolates;    // weights may be negative: values leave the range of the captured ones
     // `lights` in the pole's frame; `parameter[4]` as in struct relume_coder_params.
     relume_status (*prepare)(void **data, const struct relume_vec3 *lights, int n,
                              const double *parameter, const struct relume_log *log);
     void (*evaluate)(const void *data, struct relume_vec3 light, double *weights);
     void (*release)(void *data);
+    // The N x N matrix B by which light i, predicted from all others, is missed by (B t)_i / B_ii
+    // (Dubrule 1983), t being the samples. NULL where there is none.
+    void (*predictor)(const void *data, double *b);
+    // Weights that are linear over triangles: these (relume_coder_triangles); else NULL.
+    struct relume_coder_triangles (*triangles)(const void *data);
 };
 extern RELUME_API const struct relume_interpolant *const relume_interpolants[];
 // NULL when there is none of that name.

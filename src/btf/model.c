@@ -88,7 +88,7 @@ static int least(size_t a, size_t b)
 static int most_components(const relume_btf_fitted *m)
 {
     const int most = m->model->most_components ? m->model->most_components : 256;
-    return least((size_t)most, m->model == &model_vpca ? (size_t)m->lights : m->texels);
+    return least((size_t)most, m->model->of_views ? (size_t)m->lights : m->texels);
 }
 
 static relume_status choose_counts(struct fitting *f, const struct relume_btf_fit_params *p)

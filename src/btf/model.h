@@ -64,6 +64,7 @@ struct relume_btf_model {
     int clusters, components, lobes;       // defaults; 0: the model has none
     int most_clusters;                     // 0: 65536
     int most_components;                   // 0: 256
+    bool of_views;                         // components are of each view's pictures, not of texels
     void (*layout)(relume_btf_fitted *m);  // adds the arrays, with model_add
     relume_status (*fit)(struct fitting *f);
     void (*eval)(const relume_btf_fitted *m, const struct model_at *at, float rgb[3]);

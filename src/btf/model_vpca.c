@@ -169,6 +169,7 @@ const struct relume_btf_model model_vpca = {
     .view_grid = true,
     .light_grid = true,
     .components = 4,
+    .of_views = true,
     .layout = layout,
     .fit = fit,
     .eval = eval,

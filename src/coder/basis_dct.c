@@ -26,6 +26,7 @@ const struct relume_basis relume_basis_dct = {
     .name = "dct",
     .summary = "cosines on the stereographic disc, fitted to the photographs by least squares",
     .halves = true,
+    .fits = true,
     .fit_count = disc_fit_count,
     .has_count = disc_has_count,
     .prepare = prepare,

@@ -29,6 +29,7 @@ const struct relume_basis relume_basis_hsh = {
     .summary = "hemispherical harmonics, 1 4 9 16 25 coefficients, hemisphere",
     .upper_only = true,
     .halves = true,
+    .fits = true,
     .fit_count = fit_count,
     .has_count = has_count,
     .prepare = harmonics_prepare,

@@ -71,6 +71,7 @@ const struct relume_basis relume_basis_pca = {
     .summary = "principal components of the capture, R, G, B together; any number of coefficients",
     .interpolates = true,
     .learned = true,
+    .fits = true,
     .fit_count = fit_count,
     .has_count = has_count,
     .prepare = prepare,

@@ -40,6 +40,7 @@ const struct relume_basis relume_basis_ptm = {
     .summary = "polynomial texture map: x^2 y^2 xy x y 1; 3 or 6 coefficients, hemisphere",
     .upper_only = true,
     .halves = true,
+    .fits = true,
     .fit_count = fit_count,
     .has_count = has_count,
     .prepare = prepare,

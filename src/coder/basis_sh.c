@@ -26,6 +26,7 @@ static void release(relume_coder *coder)
 const struct relume_basis relume_basis_sh = {
     .name = "sh",
     .summary = "spherical harmonics, 1 4 9 16 25 36 49 64 ... coefficients",
+    .fits = true,
     .fit_count = fit_count,
     .has_count = has_count,
     .prepare = harmonics_prepare,

@@ -63,7 +63,7 @@ static relume_status score(struct search *s, const double *parameter, double *me
     *mean = HUGE_VAL;
     if (status)
         return status == RELUME_ENOMEM ? status : RELUME_OK;
-    interpolant_predictor(&interpolant_chord, data, s->b);
+    interpolant_chord.predictor(data, s->b);
     interpolant_chord.release(data);
     predict_errors(s->error, s->b, s->gram, s->n);
     *mean = 0.0;

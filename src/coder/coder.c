@@ -111,26 +111,20 @@ static relume_status copy_functions(relume_coder *c, const struct relume_coder_p
     return RELUME_OK;
 }
 
-// What stays in the range of the captured values does not extrapolate.
-static bool stays_in_range(const struct relume_interpolant *i)
-{
-    return i == &interpolant_delaunay || i == &interpolant_natural || i == &interpolant_rbf ||
-           i == &interpolant_octahedral;
-}
-
 // Sums over many lights need weights that are nowhere negative (relume_coder_surround).
 static relume_status find_surround(relume_coder *c)
 {
-    if (!c->info.interpolant || stays_in_range(c->info.interpolant))
+    if (!c->info.interpolant || !c->info.interpolant->extrapolates)
         return RELUME_OK;
     return mesh_create(&c->around, c->frame, c->info.lights);
 }
 
 static void find_zone(relume_coder *c)
 {
+    const struct relume_interpolant *i = c->info.interpolant;
     const struct zone_params p = {.hemispherical = c->info.hemispherical,
                                   .pole_y = c->info.pole_y,
-                                  .part = stays_in_range(c->info.interpolant) ? 0.25 : 0.5};
+                                  .part = i && !i->extrapolates ? 0.25 : 0.5};
     zone_find(&c->zone, c->world, c->info.lights, &p);
 }
 
@@ -216,7 +210,7 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
     if (basis->interpolates && n > RELUME_MOST_COEFFICIENTS)
         return log_fail(p.log, RELUME_EDATA, "basis %s takes at most %d lights; found %d",
                         basis->name, RELUME_MOST_COEFFICIENTS, n);
-    if (p.robust && (basis == &relume_basis_table || basis == &relume_basis_dct_resampled))
+    if (p.robust && !basis->fits)
         return log_fail(p.log, RELUME_EINVAL,
                         "basis %s has no robust fit; use another basis, or leave out --robust",
                         basis->name);
@@ -339,11 +333,10 @@ void coder_interpolate(const relume_coder *coder, struct relume_vec3 light, doub
 
 bool relume_coder_triangles(struct relume_coder_triangles *out, const relume_coder *coder)
 {
-    *out = (struct relume_coder_triangles){.points = 0};
-    if (coder->info.interpolant != &interpolant_delaunay)
-        return false;
-    *out = interpolant_triangles(coder->interpolant);
-    return true;
+    const struct relume_interpolant *i = coder->info.interpolant;
+    const bool flat = i && i->triangles;
+    *out = flat ? i->triangles(coder->interpolant) : (struct relume_coder_triangles){.points = 0};
+    return flat;
 }
 
 bool relume_coder_surround(struct relume_coder_triangles *out, const relume_coder *coder)

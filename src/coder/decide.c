@@ -187,8 +187,9 @@ static relume_status judge_unseen(struct job *job)
     struct judging j = {.job = job, .left_out = mem_zeroed(lights, sizeof(double)), .predictor = b};
     const bool good = b && j.left_out;
     job->unseen = 0.0;
-    if (good && lights > 3 &&
-        interpolant_predictor(job->coder->info.interpolant, job->coder->interpolant, b)) {
+    const struct relume_interpolant *between = job->coder->info.interpolant;
+    if (good && lights > 3 && between->predictor) {
+        between->predictor(job->coder->interpolant, b);
         thread_for(job->encode.threads, lights, leave_out, &j);
         for (size_t i = 0; i < lights; i++)
             job->unseen += decibel(j.left_out[i]) / (double)lights;

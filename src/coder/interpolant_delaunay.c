@@ -36,7 +36,7 @@ static void evaluate(const void *data, struct relume_vec3 light, double *weights
         weights[b.light[i]] += b.weight[i];
 }
 
-struct relume_coder_triangles interpolant_triangles(const void *delaunay)
+static struct relume_coder_triangles triangles(const void *delaunay)
 {
     return mesh_triangles(((const struct delaunay *)delaunay)->mesh);
 }
@@ -54,4 +54,5 @@ const struct relume_interpolant interpolant_delaunay = {
     .prepare = prepare,
     .evaluate = evaluate,
     .release = release,
+    .triangles = triangles,
 };

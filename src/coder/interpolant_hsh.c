@@ -88,6 +88,7 @@ static void evaluate(const void *data, struct relume_vec3 light, double *weights
 const struct relume_interpolant interpolant_hsh = {
     .name = "hsh",
     .summary = "nine hemispherical harmonics by least squares; smooths noise",
+    .extrapolates = true,
     .prepare = prepare,
     .evaluate = evaluate,
     .release = release,

@@ -216,40 +216,42 @@ static relume_status prepare_chord(void **data, const struct relume_vec3 *lights
     return prepare(data, kind, 1e-5, lights, n, log);
 }
 
-bool interpolant_predictor(const struct relume_interpolant *interpolant, const void *data,
-                           double *b)
+static void predictor(const void *data, double *b)
 {
-    if (interpolant->evaluate != evaluate)
-        return false;
     const struct kernel *k = data;
     const size_t n = (size_t)k->lights, size = n + (size_t)k->trend;
     for (size_t i = 0; i < n; i++)
         for (size_t j = 0; j < n; j++)
             b[i * n + j] = k->inverse[j * size + i];
-    return true;
 }
 
 const struct relume_interpolant interpolant_chord = {
     .name = "chord",
     .summary =
         "kernel of a power of the chord between lights, with a trend; the best on most captures",
+    .extrapolates = true,
     .prepare = prepare_chord,
     .evaluate = evaluate,
     .release = release,
+    .predictor = predictor,
 };
 
 const struct relume_interpolant interpolant_angular = {
     .name = "angular",
     .summary = "kernel linear in the angle between lights, with a linear trend",
+    .extrapolates = true,
     .prepare = prepare_angular,
     .evaluate = evaluate,
     .release = release,
+    .predictor = predictor,
 };
 
 const struct relume_interpolant interpolant_tps = {
     .name = "tps",
     .summary = "thin plate spline on the chord between lights, with a linear trend",
+    .extrapolates = true,
     .prepare = prepare_thin_plate,
     .evaluate = evaluate,
     .release = release,
+    .predictor = predictor,
 };

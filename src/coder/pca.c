@@ -171,10 +171,12 @@ static relume_status expect_errors(struct solver *s, const vec3 *d)
     if (!status)
         status = samples_gram(gram, s->coder->samples, s->coder->threads);
     if (!status) {
+        const struct relume_interpolant *between = s->coder->info.interpolant;
         double alpha, beta;
-        if (interpolant_predictor(s->coder->info.interpolant, s->coder->interpolant, b))
+        if (between->predictor) {
+            between->predictor(s->coder->interpolant, b);
             predict_errors(error, b, gram, (int)n);
-        else
+        } else
             for (size_t i = 0; i < n; i++)
                 error[i] = 1e-6 + 1e-2 * gram[i * n + i];
         fit_errors(s, error, &alpha, &beta);

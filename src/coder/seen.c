@@ -32,8 +32,7 @@ struct seen {
 
 bool seen_suits(const relume_coder *coder)
 {
-    return !coder->robust && coder->info.basis != &relume_basis_table &&
-           coder->info.basis != &relume_basis_dct_resampled;
+    return !coder->robust && coder->info.basis->fits;
 }
 
 void seen_destroy(struct seen **seen)

@@ -82,7 +82,7 @@ BENCH_C  := $(wildcard tests/bench/*.c)
 FUZZ_C   := $(wildcard tests/fuzz/*.c)
 TOOLS_C  := $(wildcard tests/tools/*.c)
 # minimal.c is built against the installed library instead (tests/cli/test_install.sh)
-SAMPLES_C := samples/sphere.c samples/figures.c
+SAMPLES_C := samples/sphere.c samples/figures.c samples/mirrorball.c
 
 LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $B/obj/src/math/lsq_eigen.o $B/obj/src/math/lsq_eigen_avx2.o
 MODULE   := $B/librelume-oiio.so.$(MAJOR)
@@ -98,13 +98,14 @@ FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 
-.PHONY: all lib cli viewer deps deps-web deps-stitch demo tour figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers format install \
+.PHONY: all lib cli viewer samples deps deps-web deps-stitch demo tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers format install \
         clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
 lib: $B/librelume.a $B/librelume.so $(MODULE) $(MESHES) $(HELPER) $(STITCH)
 cli: $B/relume
 viewer: $(VIEWER)
+samples: $(SAMPLES_C:%.c=$B/%)
 
 # ---------------------------------------------------------------- set-up
 
@@ -297,6 +298,10 @@ tour: all
 # The frames that tests/cli/test_golden.sh compares with, to be looked at before they are committed
 golden: cli viewer
 	@RELUME=$(CURDIR)/$B/relume VIEWER=$(CURDIR)/$B/relume-view TOP=$(CURDIR) BUILD=$(CURDIR)/$B STORE=1 tests/cli/test_golden.sh
+
+# The pictures of docs/tutorials, by the commands that stand there
+tutorials: cli samples
+	@scripts/tutorials.sh pictures $B docs/pictures
 
 # The pictures of docs/figures.md
 figures: cli $B/samples/figures

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What docs/ promises exists: every option it names, every file it links to, every relume.* attribute
+# What docs/ promises exists: every option it names, every file and heading it links to, every relume.* attribute
 # that the code writes and no other.
 . "$(dirname "$0")/lib.sh"
 docs="$TOP/docs"
@@ -10,16 +10,25 @@ docs="$TOP/docs"
 } | grep -o -e '--[a-z-]*' | sort -u >known.txt
 # options of other programs that the texts use, and a mistake that they show
 printf '%s\n' --cflags --libs --static --info --version --lihgt >>known.txt
-for page in "$docs"/*.md; do
-    text=$(basename "$page")
+# anchors of a page: its headings as web pages of Git hosts name them, once each
+anchors() { grep '^#' "$1" | sed 's/^#* //' | tr 'A-Z' 'a-z' | sed 's/\[\([^]]*\)\]([^)]*)/\1/g; s/[^a-z0-9 _-]//g; s/ /-/g'; }
+for page in "$docs"/*.md "$docs"/*/*.md "$TOP/README.md"; do
+    text=${page#"$docs"/} folder=$(dirname "$page")
     unknown=$(grep -o -e '\(^\|[^a-z-]\)--[a-z][a-z-]*' "$page" | sed 's/^[^-]*//' | sort -u |
         grep -v -e '-$' | grep -vxF -f known.txt | tr '\n' ' ')
     if [ -z "$unknown" ]; then ok "$text names options that exist"; else
         not_ok "$text names options that exist" "unknown: $unknown"
     fi
-    for target in $(grep -o ']([^)#]*' "$page" | sed 's/^](//' | grep -v '^http' | sort -u); do
-        check "$text links to $target" test -e "$docs/$target"
+    broken=
+    for target in $(grep -o ']([^)]*' "$page" | sed 's/^](//' | grep -v '^http' | sort -u); do
+        file=$folder/${target%%#*}
+        [ "${target%%#*}" ] || file=$page
+        case $target in
+        *'#'*) [ -f "$file" ] && anchors "$file" | grep -qxF -e "${target#*#}" || broken="$broken $target" ;;
+        *) [ -e "$file" ] || broken="$broken $target" ;;
+        esac
     done
+    if [ -z "$broken" ]; then ok "$text links to what exists"; else not_ok "$text links to what exists" "broken:$broken"; fi
 done
 
 grep -o '"relume\.[a-z]*"' "$TOP/src/pack/format.h" | tr -d '"' | sort -u >written.txt

@@ -10,11 +10,14 @@ if [ -z "$browser" ]; then
     finish
     exit
 fi
-show() { # folder, pictures: what the page says, in dom.txt
-    "$TOP/tests/tools/web_page.sh" "$@" >page.html
+browse() { # page.html, as the browser leaves it, in dom.txt
     HOME=$work/home timeout 120 "$browser" --headless --no-sandbox --disable-gpu-sandbox --use-gl=angle \
         --use-angle=swiftshader --enable-unsafe-swiftshader --user-data-dir="$work/home/profile" \
         --virtual-time-budget=60000 --dump-dom "file://$work/page.html" >dom.txt 2>browser.txt
+}
+show() { # folder, pictures: what the page says, in dom.txt
+    "$TOP/tests/tools/web_page.sh" "$@" >page.html
+    browse
     grep -q '^end' dom.txt && return
     not_ok "the page relights $1" "$(grep -E '^(failed|light)' dom.txt; tail -n 3 browser.txt)"
 }
@@ -45,6 +48,28 @@ mkdir home
 "$RELUME" export dome.exr -o web --quality 90 2>note.txt || exit 1
 promised=$(sed -n 's/.*differs from the original by \([0-9.]*\) dB.*/\1/p' note.txt)
 compare web
+
+# ---- the page of the tutorial: it measures its own canvas, since nobody moves the pointer
+{
+    "$TOP/samples/webpage.sh" web
+    echo "<script>const got = new Uint8Array(4), timer = setInterval(() => {
+        gl.readPixels(32, 31, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, got);
+        if (!got[3]) return;
+        clearInterval(timer);
+        tell('middle ' + got.join(' '));
+    }, 200)</script>"
+} >page.html
+browse
+"$RELUME" import web -o back.exr -q
+"$RELUME" relight back.exr -o middle.png --light "dir -0.6 0.5 0.62450" -q
+# both sum the same codes in single precision: a code apart
+check 'webpage.sh shows relume relight of the same codes' awk -v a="$(sed -n 's/.*middle \([0-9 ]*\)<.*/\1/p' dom.txt)" \
+    -v b="$("$mkimage" read middle.png 32 32)" 'BEGIN { n = split(a, p, " "); split(b, q, " ")
+        for (c = 1; c <= 3; c++) {
+            d = p[c] - 255 * (1.055 * q[c] ^ (1 / 2.4) - 0.055)
+            if (d > 1.1 || d < -1.1 || p[c] < 20) bad = 1
+        }
+        exit bad || n != 4 }'
 
 # ---- DeepZoom: levels and tiles as OpenLIME counts them
 "$sphere" dome --size 520 --lights 12 --hemisphere --shade wrap --format png || exit 1

@@ -131,6 +131,35 @@ RELUME_RESULT relume_status relume_capture_open(relume_capture **out, const char
                                                 const struct relume_capture_params *params);
 RELUME_API void relume_capture_destroy(relume_capture **capture);
 
+// How the samples of pictures in memory are stored.
+enum relume_sample {
+    RELUME_SAMPLE_FLOAT = 0,  // float, linear unless the manifest says otherwise
+    RELUME_SAMPLE_8,          // uint8_t, 255 is white, sRGB unless the manifest says otherwise
+    RELUME_SAMPLE_16,         // uint16_t, 65535 is white, likewise
+};
+
+// The pictures of a capture in memory, row 0 at the top. Borrowed.
+struct relume_pictures {
+    enum relume_sample sample;
+    int width, height;
+    int channels;        // 1: grey; 3: red, green, blue; 4: and something that is not looked at
+    const void *data;    // [views][lights][height][width][channels]
+    const float *depth;  // [views][height][width] or NULL, as the files of a capture.json
+    const float *mask;   // likewise
+};
+
+// A capture of pictures in memory, which must stay as they are as long as it lives. `manifest` says
+// what a capture.json would and is copied: at least `lights` and `directions` (of any length but 0)
+// or `positions`. Its names of files are not looked at. `view` may be NULL and `views` 0: one view.
+// `geometry`: begin with relume_geometry_default; all zero is a planar picture. Of `params`,
+// skip_missing, allow_outside and keep_bytes do not count. Messages begin with "memory".
+// RELUME_EDATA as for relume_capture_open, RELUME_EINVAL for samples, sizes or channels that cannot
+// be, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_capture_create(relume_capture **out,
+                                                  const struct relume_manifest *manifest,
+                                                  const struct relume_pictures *pictures,
+                                                  const struct relume_capture_params *params);
+
 // The manifest as understood: defaults filled in, vectors normalised, paths made absolute or
 // relative to the working folder.
 RELUME_API const struct relume_manifest *relume_capture_manifest(const relume_capture *capture);

@@ -160,11 +160,34 @@ static relume_status count_missing(const relume_capture *c, const struct relume_
         missing == 1 ? "its light" : "their lights");
 }
 
-static relume_status check_image(relume_capture *c, const char *path,
+// All pictures of the array lie behind each other.
+static struct picture_array array_of(const relume_capture *c, int view, int light)
+{
+    const struct relume_pictures *a = &c->pictures;
+    const size_t bytes = a->sample == RELUME_SAMPLE_FLOAT ? 4
+                         : a->sample == RELUME_SAMPLE_8   ? 1
+                                                          : 2;
+    const size_t index = (size_t)view * (size_t)c->draft.m.lights + (size_t)light;
+    const size_t size = (size_t)a->width * (size_t)a->height * (size_t)a->channels * bytes;
+    return (struct picture_array){(const char *)a->data + index * size, bytes, a->width, a->height,
+                                  a->channels};
+}
+
+relume_status capture_picture(picture_reader **out, const relume_capture *c, int view, int light,
+                              const struct relume_limits *limits, const struct relume_log *log)
+{
+    if (!c->pictures.data)
+        return picture_open(out, c->draft.m.view[view].images[light], NULL, limits, log);
+    const struct picture_array array = array_of(c, view, light);
+    return array_picture_open(out, &array);
+}
+
+static relume_status check_image(relume_capture *c, int view, int light,
                                  const struct relume_capture_params *p)
 {
+    const char *path = c->draft.m.view[view].images[light];
     picture_reader *reader;
-    relume_status status = picture_open(&reader, path, NULL, p->limits, p->log);
+    relume_status status = capture_picture(&reader, c, view, light, p->limits, p->log);
     if (!status)
         status = picture_need_colour(reader, path, p->log);
     const struct picture_info info = status ? (struct picture_info){0} : *picture_info_of(reader);
@@ -198,7 +221,7 @@ static relume_status check_images(relume_capture *c, const struct relume_capture
     const struct relume_manifest *m = &c->draft.m;
     for (int v = 0; v < m->views; v++)
         for (int i = 0; i < m->lights; i++) {
-            const relume_status status = check_image(c, m->view[v].images[i], p);
+            const relume_status status = check_image(c, v, i, p);
             if (status)
                 return status;
             if (!log_progress(p->log, "checking", (v + (i + 1.0) / m->lights) / (double)m->views))
@@ -218,33 +241,17 @@ static relume_status check_discs(const relume_capture *c, const struct relume_lo
                     c->path, c->width, c->height, g->disc);
 }
 
-relume_status relume_capture_open(relume_capture **out, const char *path,
-                                  const struct relume_capture_params *params)
+static relume_status finish(relume_capture *c, const struct relume_capture_params *p)
 {
-    struct relume_capture_params p = params ? *params : (struct relume_capture_params){0};
-    *out = NULL;
-    relume_capture *c = mem_zeroed(1, sizeof *c);
-    if (!c)
-        return RELUME_ENOMEM;
-    c->repair = p.repair;
-    c->assume_depth = p.assume_depth;
-    p.limits = limits_of(p.limits, p.log);
-    c->limits = limits_or_default(p.limits);
-    relume_status status = read_description(c, path, &p);
+    if (p->transfer.curve != RELUME_CURVE_AUTO)
+        c->draft.m.transfer = p->transfer;
+    relume_status status = check_images(c, p);
     if (!status)
-        status = p.skip_missing ? skip_missing(c, p.log) : count_missing(c, p.log);
-    if (!status && p.transfer.curve != RELUME_CURVE_AUTO)
-        c->draft.m.transfer = p.transfer;
+        status = check_discs(c, p->log);
     if (!status)
-        status = check_images(c, &p);
-    if (!status)
-        status = check_discs(c, p.log);
-    if (!status)
-        status = kept_create(&c->kept, c->draft.m.views * c->draft.m.lights, p.keep_bytes);
-    if (status) {
-        relume_capture_destroy(&c);
+        status = kept_create(&c->kept, c->draft.m.views * c->draft.m.lights, p->keep_bytes);
+    if (status)
         return status;
-    }
     struct relume_geometry *g = &c->draft.m.geometry;
     if (g->projection == RELUME_PLANAR && !c->draft.has_window) {
         const struct relume_geometry d =
@@ -253,9 +260,39 @@ relume_status relume_capture_open(relume_capture **out, const char *path,
         memcpy(g->window_max, d.window_max, sizeof g->window_max);
     }
     c->draft.m.transfer = c->transfer;
-    near_warn(c, p.log);
-    *out = c;
+    near_warn(c, p->log);
     return RELUME_OK;
+}
+
+relume_status capture_finish(relume_capture **out, relume_capture *c,
+                             const struct relume_capture_params *p)
+{
+    c->repair = p->repair;
+    c->assume_depth = p->assume_depth;
+    c->limits = limits_or_default(p->limits);
+    const relume_status status = finish(c, p);
+    if (status)
+        relume_capture_destroy(&c);
+    *out = c;
+    return status;
+}
+
+relume_status relume_capture_open(relume_capture **out, const char *path,
+                                  const struct relume_capture_params *params)
+{
+    struct relume_capture_params p = params ? *params : (struct relume_capture_params){0};
+    *out = NULL;
+    relume_capture *c = mem_zeroed(1, sizeof *c);
+    if (!c)
+        return RELUME_ENOMEM;
+    p.limits = limits_of(p.limits, p.log);
+    relume_status status = read_description(c, path, &p);
+    if (!status)
+        status = p.skip_missing ? skip_missing(c, p.log) : count_missing(c, p.log);
+    if (!status)
+        return capture_finish(out, c, &p);
+    relume_capture_destroy(&c);
+    return status;
 }
 
 relume_status capture_stream(struct image_stream *out, const relume_capture *capture, int view,
@@ -265,7 +302,8 @@ relume_status capture_stream(struct image_stream *out, const relume_capture *cap
     static const float no_gain[3] = {1.0f, 1.0f, 1.0f};
     const char *path = m->view[view].images[light];
     picture_reader *reader;
-    const relume_status status = picture_open(&reader, path, NULL, &capture->limits, log);
+    const relume_status status =
+        capture_picture(&reader, capture, view, light, &capture->limits, log);
     if (status)
         return status;
     const struct picture_info *info = picture_info_of(reader);
@@ -329,12 +367,25 @@ relume_status relume_capture_image(struct relume_image *out, const relume_captur
     return status;
 }
 
-static relume_status load_plane(struct relume_image *out, const relume_capture *capture,
-                                const char *path, const struct relume_log *log)
+// A view's plane of an array of all of them.
+static relume_status copy_plane(struct relume_image *out, const relume_capture *c, int view,
+                                const float *planes)
+{
+    const size_t size = (size_t)c->width * (size_t)c->height;
+    const relume_status status = relume_image_create(out, c->width, c->height, 1);
+    if (!status)
+        memcpy(out->data, planes + (size_t)view * size, size * sizeof *planes);
+    return status;
+}
+
+static relume_status load_plane(struct relume_image *out, const relume_capture *capture, int view,
+                                const char *path, const float *planes, const struct relume_log *log)
 {
     *out = (struct relume_image){0};
     if (!path)
         return RELUME_OK;
+    if (planes)
+        return copy_plane(out, capture, view, planes);
     const struct relume_transfer as_stored = {.curve = RELUME_CURVE_LINEAR};
     const relume_status status = relume_image_load(
         out, path, relume_image_params(.log = log, .channels = 1, .transfer = as_stored));
@@ -350,7 +401,7 @@ relume_status relume_capture_depth(struct relume_image *out, const relume_captur
                                    int view, const struct relume_log *log)
 {
     const char *path = capture->draft.m.view[view].depth;
-    const relume_status status = load_plane(out, capture, path, log);
+    const relume_status status = load_plane(out, capture, view, path, capture->pictures.depth, log);
     if (status || !out->data)
         return status;
     const size_t n = (size_t)out->width * (size_t)out->height;
@@ -370,7 +421,8 @@ relume_status relume_capture_mask(struct relume_image *out, const relume_capture
 {
     const struct relume_geometry *g = &capture->draft.m.geometry;
     const int width = capture->width, height = capture->height;
-    relume_status status = load_plane(out, capture, capture->draft.m.view[view].mask, log);
+    relume_status status = load_plane(out, capture, view, capture->draft.m.view[view].mask,
+                                      capture->pictures.mask, log);
     if (status || !g->disc)
         return status;
     if (!out->data && !(status = relume_image_create(out, width, height, 1)))

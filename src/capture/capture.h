@@ -9,6 +9,7 @@
 struct relume_capture {
     struct draft draft;
     char *path;
+    struct relume_pictures pictures;  // `data` is NULL: files
     int width, height;
     int x, y;     // origin of the images' data windows
     bool floats;  // an image holds floating-point numbers
@@ -19,6 +20,16 @@ struct relume_capture {
     struct relume_transfer stated;    // for all images; AUTO: each file's own
     struct relume_transfer transfer;  // of the first image, never AUTO
 };
+
+// What opening a capture does after its manifest is known: its images are looked at, defaults
+// filled in. Frees `c` on failure.
+relume_status capture_finish(relume_capture **out, relume_capture *c,
+                             const struct relume_capture_params *p);
+
+// One image of the capture, wherever it is.
+relume_status capture_picture(picture_reader **out, const relume_capture *capture, int view,
+                              int light, const struct relume_limits *limits,
+                              const struct relume_log *log);
 
 // The rows of one image, light intensity divided out, coded by `to`; NaN and infinity are errors
 // unless the capture is to be repaired.

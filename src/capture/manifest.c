@@ -24,7 +24,7 @@ struct parser {
 
 static relume_status wrong(const struct parser *p, const char *where, const char *expected)
 {
-    return log_fail(p->log, RELUME_EDATA, "%s: %s; expected %s", p->path, where, expected);
+    return manifest_wrong(p->path, where, expected, p->log);
 }
 
 // An optional member: absent leaves `out` as it is.
@@ -85,7 +85,7 @@ static relume_status get_plane(const struct parser *p, const jvalue *object, con
 }
 
 static relume_status read_vectors(const struct parser *p, const jvalue *array, const char *what,
-                                  bool unit, struct relume_vec3 **out, int *count)
+                                  struct relume_vec3 **out, int *count)
 {
     char where[64];
     const size_t n = jvalue_count(array);
@@ -100,20 +100,10 @@ static relume_status read_vectors(const struct parser *p, const jvalue *array, c
         if (!jvalue_numbers(jvalue_item(array, i), xyz, 3))
             return wrong(p, where, "three finite numbers");
         v[i] = vec3_of(xyz[0], xyz[1], xyz[2]);
-        if (unit && !direction_normalise(&v[i]))
-            return wrong(p, where, "a direction; found a zero vector");
-        if (!(vec3_length(v[i]) > 0.0))
-            return wrong(p, where, "a place of a lamp; found 0, 0, 0, the middle of the scene");
     }
     *out = v;
     *count = (int)n;
     return RELUME_OK;
-}
-
-// Pixels are divided by it in single precision.
-static bool is_intensity(double v)
-{
-    return v >= 1e-30 && v <= 1e30;
 }
 
 static relume_status read_intensities(const struct parser *p, const jvalue *array, int lights)
@@ -126,10 +116,8 @@ static relume_status read_intensities(const struct parser *p, const jvalue *arra
         return RELUME_ENOMEM;
     for (int i = 0; i < lights; i++) {
         double rgb[3];
-        if (!jvalue_numbers(jvalue_item(array, (size_t)i), rgb, 3) || !is_intensity(rgb[0]) ||
-            !is_intensity(rgb[1]) || !is_intensity(rgb[2]))
-            return wrong(p, "lights.intensities",
-                         "three numbers from 1e-30 to 1e30 for every light");
+        if (!jvalue_numbers(jvalue_item(array, (size_t)i), rgb, 3))
+            return wrong(p, "lights.intensities", MANIFEST_INTENSITIES);
         for (int c = 0; c < 3; c++)
             d->intensities[i][c] = (float)rgb[c];
     }
@@ -160,12 +148,10 @@ static relume_status read_lights(const struct parser *p, const jvalue *lights)
     if (!directions && !positions)
         return wrong(p, "lights", "directions or positions");
     if (positions)
-        status = read_vectors(p, positions, "lights.positions", false, &d->positions, &n);
-    if (!status) {
+        status = read_vectors(p, positions, "lights.positions", &d->positions, &n);
+    if (!status && directions) {
         int m;
-        status = read_vectors(p, directions ? directions : positions,
-                              directions ? "lights.directions" : "lights.positions", true,
-                              &d->directions, &m);
+        status = read_vectors(p, directions, "lights.directions", &d->directions, &m);
         if (!status && positions && m != n)
             return wrong(p, "lights", "as many positions as directions");
         n = m;
@@ -175,7 +161,7 @@ static relume_status read_lights(const struct parser *p, const jvalue *lights)
     if (!status)
         status = read_falloff(p, jvalue_member(lights, "falloff"));
     d->m.lights = n;
-    return status;
+    return status ? status : draft_check_lights(d, p->path, p->log);
 }
 
 static relume_status read_planes(const struct parser *p, const jvalue *slab,
@@ -194,11 +180,7 @@ static relume_status read_planes(const struct parser *p, const jvalue *slab,
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < sizeof members / sizeof *members; i++)
         status = get_numbers(p, slab, members[i].key, members[i].out, members[i].count);
-    if (status)
-        return status;
-    if (!(g->st_min[0] < g->st_max[0] && g->st_min[1] < g->st_max[1]))
-        return wrong(p, "window", "min below max");
-    return g->uv_z == g->st_z ? wrong(p, "slab", "two different planes") : RELUME_OK;
+    return status;
 }
 
 static relume_status read_pose(const struct parser *p, const jvalue *slab, int index,
@@ -219,9 +201,7 @@ static relume_status read_pose(const struct parser *p, const jvalue *slab, int i
     pose->origin = vec3_of(v[3][0], v[3][1], v[3][2]);
     for (int i = 0; i < 3; i++)
         pose->axis[i] = vec3_of(v[i][0], v[i][1], v[i][2]);
-    return relume_pose_normalise(pose)
-               ? RELUME_OK
-               : wrong(p, where, "a rotation: unit vectors, perpendicular, right-handed");
+    return RELUME_OK;
 }
 
 static relume_status read_slabs(const struct parser *p, const jvalue *slabs)
@@ -242,8 +222,6 @@ static relume_status read_slabs(const struct parser *p, const jvalue *slabs)
             status = read_pose(p, slab, (int)i, &d->slab[i].pose);
     }
     d->m.slabs = (int)n;
-    d->m.slab = d->slab;
-    d->m.geometry = d->slab[0];
     return status;
 }
 
@@ -270,10 +248,6 @@ static relume_status read_discs(const struct parser *p, const jvalue *panorama)
         return RELUME_OK;
     if (!jvalue_integer(value, &side) || side < 0 || side > p->limits.max_side)
         return wrong(p, "panorama.discs", "the side of a disc's square in pixels, or 0");
-    if (side && g->projection != RELUME_CYLINDRICAL)
-        return wrong(p, "panorama.discs", "none but of a cylinder");
-    if (side && !(g->v_min < 0.0 && g->v_max > 0.0))
-        return wrong(p, "panorama.discs", "v_min below 0 and v_max above it");
     g->disc = (int)side;
     return RELUME_OK;
 }
@@ -316,14 +290,7 @@ static relume_status read_geometry(const struct parser *p, const jvalue *root)
         status =
             get_numbers(p, members[i].object, members[i].key, members[i].out, members[i].count);
     g->center = vec3_of(center[0], center[1], center[2]);
-    if (status)
-        return status;
-    for (int i = 0; i < 2; i++)
-        if (!(g->window_min[i] < g->window_max[i]))
-            return wrong(p, "window", "min below max");
-    if (!(g->v_min < g->v_max))
-        return wrong(p, "panorama", "v_min below v_max");
-    return read_discs(p, panorama);
+    return status ? status : read_discs(p, panorama);
 }
 
 // Which slab a view is of.
@@ -331,15 +298,11 @@ static relume_status read_member(const struct parser *p, const jvalue *object, i
 {
     const struct draft *d = p->d;
     long long slab;
-    char where[48];
-    char expected[32];
     if (!d->m.slabs)
         return RELUME_OK;
-    snprintf(where, sizeof where, "views[%d].slab", index);
-    snprintf(expected, sizeof expected, "0 to %d", d->m.slabs - 1);
-    if (!jvalue_integer(jvalue_member(object, "slab"), &slab) || slab < 0 || slab >= d->m.slabs)
-        return wrong(p, where, expected);
-    d->view[index].slab = (int)slab;
+    const bool known = jvalue_integer(jvalue_member(object, "slab"), &slab) && slab >= 0 &&
+                       slab < RELUME_MOST_SLABS;
+    d->view[index].slab = known ? (int)slab : -1;
     return RELUME_OK;
 }
 
@@ -374,21 +337,6 @@ static relume_status read_view(const struct parser *p, const jvalue *object, int
     return get_numbers(p, object, "uv", v->uv, 2);
 }
 
-static relume_status check_slabs_seen(const struct parser *p)
-{
-    const struct relume_manifest *m = &p->d->m;
-    bool seen[RELUME_MOST_SLABS] = {false};
-    char where[32];
-    for (int i = 0; i < m->views; i++)
-        seen[p->d->view[i].slab] = true;
-    for (int i = 0; i < m->slabs; i++) {
-        snprintf(where, sizeof where, "slabs[%d]", i);
-        if (!seen[i])
-            return wrong(p, where, "at least one view of every slab");
-    }
-    return RELUME_OK;
-}
-
 static relume_status read_views(const struct parser *p, const jvalue *views)
 {
     struct draft *d = p->d;
@@ -402,7 +350,7 @@ static relume_status read_views(const struct parser *p, const jvalue *views)
     relume_status status = RELUME_OK;
     for (size_t i = 0; !status && i < n; i++)
         status = read_view(p, jvalue_item(views, i), (int)i);
-    return status ? status : check_slabs_seen(p);
+    return status ? status : draft_check_views(d, p->path, p->log);
 }
 
 // A known curve, or the file of a response.
@@ -441,13 +389,12 @@ static relume_status read_root(const struct parser *p, const jvalue *root)
     if (!status)
         status = read_geometry(p, root);
     if (!status)
+        status = draft_check_geometry(d, p->path, p->log);
+    if (!status)
         status = read_lights(p, jvalue_member(root, "lights"));
     if (!status)
         status = read_views(p, jvalue_member(root, "views"));
-    d->m.directions = d->directions;
-    d->m.positions = d->positions;
-    d->m.intensities = (const float(*)[3])d->intensities;
-    d->m.view = d->view;
+    draft_publish(d);
     return status;
 }
 

@@ -33,6 +33,16 @@ struct picture_info {
 // the file.
 relume_status picture_open(picture_reader **out, const char *path, const struct relume_reader *from,
                            const struct relume_limits *limits, const struct relume_log *log);
+
+// Samples in memory, row 0 at the top, of 1, 2 or 4 bytes (floats); channels are grey, or red,
+// green and blue and one that is not looked at. Borrowed.
+struct picture_array {
+    const void *data;
+    size_t bytes;  // of a sample
+    int width, height, channels;
+};
+// The same for those. RELUME_ENOMEM.
+relume_status array_picture_open(picture_reader **out, const struct picture_array *array);
 const struct picture_info *picture_info_of(const picture_reader *reader);
 // Code values of `rows` rows from `row` on, out[row][x][channel]: as they are from files of bytes;
 // as floats from all others, integers map to [0, 1]. Rows must be asked for from the top on, once

@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/scratch.h"
+#include "coder/codes.h"
 #include "image/half.h"
 #include "image/unpack.h"
 
@@ -120,10 +121,9 @@ static float round_coarse(float value)
     return ldexpf(rintf(ldexpf(part, 8)), exponent - 8);
 }
 
-uint16_t coefficients_half(float value, float scale, bool coarse)
+static uint16_t coarse_half(float value)
 {
-    const float v = value / scale;
-    return half_from_float(coarse ? fminf(fmaxf(round_coarse(v), -65504.0f), 65504.0f) : v);
+    return half_from_float(fminf(fmaxf(round_coarse(value), -65504.0f), 65504.0f));
 }
 
 // What a plane's codes must span. A mask makes it hold 0.
@@ -197,25 +197,65 @@ static void rescale_halves(const uint16_t *from, size_t n, float factor, uint16_
             to[x] = half_from_float(float_from_half(from[x]) * factor);
 }
 
-void coefficients_quantise(const relume_coefficients *c, int plane, int row, const void *from,
-                           void *to)
+static struct range band_of(const relume_coefficients *c, int plane, int row)
 {
-    const struct range r = c->band[(row / BAND_ROWS) * c->info.planes + plane];
+    return c->band[(size_t)(row / BAND_ROWS) * (size_t)c->info.planes + (size_t)plane];
+}
+
+void coefficients_wait(const relume_coefficients *c, int plane, int row, const float *values,
+                       size_t n, void *to)
+{
+    const struct range r = band_of(c, plane, row);
+    const float scale = r.max > r.min ? 65535.0f / (r.max - r.min) : 0.0f;
+    const float over = coefficients_half_scale(r);
+    uint16_t *words = to;
+    if (c->info.storage == RELUME_STORE_FLOAT)
+        memcpy(to, values, n * sizeof *values);
+    else if (c->info.storage != RELUME_STORE_HALF)
+        for (size_t x = 0; x < n; x++) {
+            const float code = (values[x] - r.min) * scale + 0.5f;
+            words[x] = (uint16_t)(int)(code > 0.0f ? code : 0.0f);
+        }
+    else if (c->coarse)
+        for (size_t x = 0; x < n; x++)
+            words[x] = coarse_half(values[x] / over);
+    else
+        for (size_t x = 0; x < n; x++)
+            words[x] = half_from_float(values[x] / over);
+}
+
+void coefficients_quantise(const relume_coefficients *c, int plane, int row, const void *from,
+                           size_t n, void *to)
+{
+    const struct range r = band_of(c, plane, row);
     const float a = coefficients_band_step(r) / c->scale[plane];
     const float b = (r.min - c->offset[plane]) / c->scale[plane] + 0.5f;
     const uint16_t *waiting = from;
     uint16_t *words = to;
     const float top = (float)relume_storage_top(c->info.storage);
-    const size_t width = (size_t)c->info.width;
     if (c->info.storage == RELUME_STORE_FLOAT)
-        memcpy(to, from, width * sizeof(float));
+        memcpy(to, from, n * sizeof(float));
     else if (c->info.storage == RELUME_STORE_HALF)
-        rescale_halves(from, width, coefficients_half_scale(r) / c->scale[plane], to);
+        rescale_halves(from, n, coefficients_half_scale(r) / c->scale[plane], to);
     else if (c->info.storage == RELUME_STORE_8)
-        unpack_choose(0)->codes(from, width, a, b, to);
+        unpack_choose(0)->codes(from, n, a, b, to);
     else
-        for (size_t x = 0; x < width; x++)
+        for (size_t x = 0; x < n; x++)
             words[x] = (uint16_t)(int)clamp((float)waiting[x] * a + b, top);
+}
+
+void coefficients_restore(const relume_coefficients *c, int plane, int row, const float *values,
+                          size_t n, float *out)
+{
+    enum { RUN = 1024 };
+    float waiting[RUN], codes[RUN];  // of any kind
+    for (size_t at = 0, count; at < n; at += count) {
+        count = n - at < RUN ? n - at : RUN;
+        coefficients_wait(c, plane, row, values + at, count, waiting);
+        coefficients_quantise(c, plane, row, waiting, count, codes);
+        codes_restore(out + at, c->info.storage, codes, 0, count, c->scale[plane],
+                      c->offset[plane]);
+    }
 }
 
 static void values_of(const relume_coefficients *c, struct range r, const uint16_t *waiting,
@@ -259,7 +299,7 @@ relume_status relume_coefficients_read(const relume_coefficients *coefficients, 
     for (int y = row; good && y < row + rows; y++) {
         good = scratch_read(c->fd, packed, n * wait, coefficients_offset(c, y));
         for (size_t p = 0; good && p < planes; p++, to += width * bytes)
-            coefficients_quantise(c, (int)p, y, packed + p * width * wait, to);
+            coefficients_quantise(c, (int)p, y, packed + p * width * wait, width, to);
     }
     free(packed);
     return good ? RELUME_OK : RELUME_EIO;

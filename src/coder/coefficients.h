@@ -37,26 +37,24 @@ relume_status coefficients_create(relume_coefficients **out, const relume_coder 
                                   int height, const struct relume_encode_params *p);
 // Where the rows from `row` on lie in the scratch file.
 off_t coefficients_offset(const relume_coefficients *c, int row);
-// The value that a waiting number stands for is min + step * number.
+// What waits stands for values from the range's minimum on, so far apart.
 float coefficients_band_step(struct range r);
-// That number; `scale` is 65535 over the range, 0 for a range of no width or of an infinite one.
-static inline uint16_t coefficients_code(float value, struct range r, float scale)
-{
-    const float code = (value - r.min) * scale + 0.5f;
-    return (uint16_t)(int)(code > 0.0f ? code : 0.0f);
-}
 // The power of two, 1 or more, over which all of a range are halves.
 float coefficients_half_scale(struct range r);
-// A value as a half over such a scale; `coarse`: of 8 significant bits.
-uint16_t coefficients_half(float value, float scale, bool coarse);
 // Bytes of a number that waits.
 size_t coefficients_waiting(const relume_coefficients *c);
 // Fix scale and offset of every plane for the range that it has in the whole view.
 void coefficients_choose_steps(relume_coefficients *c, const struct range *total, bool masked,
                                enum relume_step step);
-// One row of one plane: waiting numbers -> codes as the storage has them.
-void coefficients_quantise(const relume_coefficients *c, int plane, int row, const void *from,
-                           void *to);
+// The quantiser, in two steps for `n` pixels of one plane in the band of `row`: values -> numbers
+// that wait, by the band's range; numbers that wait -> codes as the storage has them, by the steps.
+void coefficients_wait(const relume_coefficients *c, int plane, int row, const float *values,
+                       size_t n, void *to);
+void coefficients_quantise(const relume_coefficients *c, int plane, int row, const void *waiting,
+                           size_t n, void *to);
+// Both, and back: values as a reader of the file finds them.
+void coefficients_restore(const relume_coefficients *c, int plane, int row, const float *values,
+                          size_t n, float *out);
 
 // One row as it waits, unquantised: out[plane][x]; `waiting` has room for as many numbers.
 // RELUME_EIO.

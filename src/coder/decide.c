@@ -351,6 +351,7 @@ struct storing {
     struct captured captured;
     float *before, *after;  // [planes][pixels]
     struct range *range;    // [planes], of all samples
+    float *step;            // [2][planes]: scales and offsets
     float gain[5];          // exposures to be looked at
     int gains;
 };
@@ -370,23 +371,25 @@ static relume_status find_ranges(struct storing *s)
         for (size_t p = 0; !status && p < planes; p++)
             s->range[p] = range_join(s->range[p], range_of(values + p * RUN, n));
     }
+    for (size_t p = 0; !status && p < planes; p++)
+        s->range[p] = range_settle(s->range[p]);
     free(values);
     return status;
 }
 
+// The samples in place of a view: one band, whose ranges are those of all samples.
 static void quantise(const struct storing *s, enum relume_storage storage)
 {
-    const int top = relume_storage_top(storage);
-    const size_t n = s->job->some.pixels;
-    for (size_t p = 0; p < (size_t)s->coder->info.planes; p++) {
-        const struct range r = s->range[p];
-        const float over = coefficients_half_scale(r);
-        const float step = top ? fmaxf((r.max - r.min) / (float)(top - 1), TINY_RANGE) : 0.0f;
-        for (size_t i = p * n; i < (p + 1) * n; i++)
-            s->after[i] =
-                top ? r.min + rintf((s->before[i] - r.min) / step) * step
-                    : float_from_half(coefficients_half(s->before[i], over, false)) * over;
-    }
+    const size_t n = s->job->some.pixels, planes = (size_t)s->coder->info.planes;
+    relume_coefficients c = {
+        .info = {.coder = s->coder, .planes = (int)planes, .storage = storage},
+        .scale = s->step,
+        .offset = s->step + planes,
+        .band = s->range,
+    };
+    coefficients_choose_steps(&c, s->range, false, RELUME_STEP_PLANE);
+    for (size_t p = 0; p < planes; p++)
+        coefficients_restore(&c, (int)p, 0, s->before + p * n, n, s->after + p * n);
 }
 
 static void predict(const struct storing *s, int light, int channel, const float *planes,
@@ -500,7 +503,8 @@ static relume_status choose_storage(struct job *job, enum relume_storage *out)
     struct storing s = {.job = job, .coder = job->coder};
     s.after = mem_array(planes * n, sizeof *s.after);
     s.range = mem_array(planes, sizeof *s.range);
-    relume_status status = s.after ? find_ranges(&s) : RELUME_ENOMEM;
+    s.step = mem_array(2 * planes, sizeof *s.step);
+    relume_status status = s.after && s.step ? find_ranges(&s) : RELUME_ENOMEM;
     if (!status)
         status = find_planes(job, job->coder, &s.before);
     if (!status)
@@ -518,6 +522,7 @@ static relume_status choose_storage(struct job *job, enum relume_storage *out)
     free(s.before);
     free(s.after);
     free(s.range);
+    free(s.step);
     return status;
 }
 

@@ -9,6 +9,7 @@
 #include "base/thread.h"
 #include "coder/basis.h"
 #include "coder/census.h"
+#include "coder/codes.h"
 #include "coder/coefficients.h"
 #include "coder/seen.h"
 #include "image/encoder.h"
@@ -110,24 +111,13 @@ static void pack_plane(void *context, size_t plane, int worker)
     struct encoding *e = context;
     const size_t width = (size_t)e->width, pixels = (size_t)e->rows * width;
     const float *v = e->values + plane * pixels;
-    const enum relume_storage storage = e->out->info.storage;
     const struct range r = band_range(e, plane);
-    const float scale = r.max > r.min ? 65535.0f / (r.max - r.min) : 0.0f;
-    const float over = coefficients_half_scale(r);
     e->out->band[(size_t)(e->row / BAND_ROWS) * (size_t)e->planes + plane] = r;
     e->total[plane] = range_join(e->total[plane], r);
     for (int y = 0; y < e->rows; y++) {
         const size_t at = ((size_t)y * (size_t)e->planes + plane) * width;
-        uint16_t *to = (uint16_t *)e->packed[e->filling] + at;
-        const float *from = v + (size_t)y * width;
-        if (storage == RELUME_STORE_FLOAT)
-            memcpy((float *)e->packed[e->filling] + at, from, width * sizeof *from);
-        else if (storage == RELUME_STORE_HALF)
-            for (size_t x = 0; x < width; x++)
-                to[x] = coefficients_half(from[x], over, e->out->coarse);
-        else
-            for (size_t x = 0; x < width; x++)
-                to[x] = coefficients_code(from[x], r, scale);
+        coefficients_wait(e->out, (int)plane, e->row, v + (size_t)y * width, width,
+                          (char *)e->packed[e->filling] + at * coefficients_waiting(e->out));
     }
 }
 
@@ -330,20 +320,13 @@ static relume_status read_row(const relume_coefficients *c, int row, uint16_t *w
                               uint16_t *codes, float *before, float *after)
 {
     const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
-    if (!scratch_read(c->fd, waiting, planes * width * 2, coefficients_offset(c, row)))
-        return RELUME_EIO;
-    for (size_t p = 0; p < planes; p++) {
-        const struct range r = c->band[(size_t)(row / BAND_ROWS) * planes + p];
-        coefficients_quantise(c, (int)p, row, waiting + p * width, codes);
-        for (size_t x = 0; x < width; x++) {
-            const float code =
-                c->info.storage == RELUME_STORE_8 ? ((const uint8_t *)codes)[x] : codes[x];
-            before[p * width + x] =
-                r.min + coefficients_band_step(r) * (float)waiting[p * width + x];
-            after[p * width + x] = code * c->scale[p] + c->offset[p];
-        }
+    const relume_status status = coefficients_values(c, row, waiting, before);
+    for (size_t p = 0; !status && p < planes; p++) {
+        coefficients_quantise(c, (int)p, row, waiting + p * width, width, codes);
+        codes_restore(after + p * width, c->info.storage, codes, 0, width, c->scale[p],
+                      c->offset[p]);
     }
-    return RELUME_OK;
+    return status;
 }
 
 // What storing cost, over the captured lights, on the same rows.

@@ -10,7 +10,6 @@
 #include "coder/basis.h"
 #include "coder/coefficients.h"
 #include "image/encoder.h"
-#include "image/half.h"
 #include "image/ssim.h"
 
 #include <float.h>
@@ -26,6 +25,12 @@ struct sums {
     struct ssim_sum ssim;
 };
 
+// A view that is stored: its pixels begin at `first` in memory.
+struct kept {
+    relume_coefficients as;
+    size_t first;
+};
+
 struct fold {
     relume_heldout *h;
     relume_coder *coder;
@@ -35,8 +40,9 @@ struct fold {
     size_t planes;
     size_t room_planes, room_judged;  // that the arrays below have room for
     float *value;                     // [planes][pixels]
-    struct range *range;              // [chunks][planes]
+    struct range *band;               // [bands of all views][planes]
     float *scale, *offset;            // [views][planes]
+    struct kept *kept;                // [views]
     float *work;                      // [workers][work_size]
     size_t work_size;
     const struct relume_heldout_store *store;  // NULL: as they are
@@ -146,13 +152,22 @@ static relume_status make_coder(struct fold *f, const struct relume_basis *basis
 static void drop_room(struct fold *f)
 {
     free(f->value);
-    free(f->range);
+    free(f->band);
+    free(f->kept);
     free(f->scale);
     free(f->offset);
     free(f->work);
     free(f->luma);
     free(f->part);
     free(f->scratch);
+}
+
+static size_t count_bands(const relume_heldout *h)
+{
+    size_t bands = 0, first;
+    for (int v = 0; v < h->views; v++)
+        bands += (size_t)(heldout_rows(h, v, &first) + BAND_ROWS - 1) / BAND_ROWS;
+    return bands;
 }
 
 // Folds are about equally large: what one has used serves the next.
@@ -170,7 +185,8 @@ static relume_status make_room(struct fold *f)
     drop_room(f);
     f->work_size = predict > apply ? predict : apply;
     f->value = mem_array(planes, h->pixels * sizeof *f->value);
-    f->range = mem_array(chunks * planes, sizeof *f->range);
+    f->band = mem_array(count_bands(h) * planes, sizeof *f->band);
+    f->kept = mem_zeroed((size_t)h->views, sizeof *f->kept);
     f->scale = mem_array((size_t)h->views * planes, sizeof *f->scale);
     f->offset = mem_array((size_t)h->views * planes, sizeof *f->offset);
     f->work = mem_array(workers * f->work_size, sizeof *f->work);
@@ -179,8 +195,8 @@ static relume_status make_room(struct fold *f)
     f->scratch = mem_array(workers * ssim_scratch(h->width), sizeof *f->scratch);
     f->room_planes = planes;
     f->room_judged = judged;
-    return f->value && f->range && f->scale && f->offset && f->work && f->luma && f->part &&
-                   f->scratch
+    return f->value && f->band && f->kept && f->scale && f->offset && f->work && f->luma &&
+                   f->part && f->scratch
                ? RELUME_OK
                : RELUME_ENOMEM;
 }
@@ -198,55 +214,65 @@ static void find_coefficients(void *context, size_t item, int worker)
         float *v = f->value + p * h->pixels + c.first;
         for (size_t i = 0; h->mask && i < c.n; i++)
             v[i] = h->mask[c.first + i] > 0.5f ? v[i] : 0.0f;
-        f->range[item * f->planes + p] = range_settle(range_of(v, c.n));
     }
 }
 
+// The ranges of the bands of a view, and of all of it.
+static void find_ranges(struct fold *f, struct kept *k, struct range *total)
+{
+    const size_t width = (size_t)f->h->width;
+    for (size_t p = 0; p < f->planes; p++) {
+        const float *v = f->value + p * f->h->pixels + k->first;
+        total[p] = (struct range){FLT_MAX, -FLT_MAX};
+        for (int row = 0; row < k->as.info.height; row += BAND_ROWS) {
+            const int left = k->as.info.height - row;
+            const size_t rows = (size_t)(left < BAND_ROWS ? left : BAND_ROWS);
+            const struct range r = range_settle(range_of(v + (size_t)row * width, rows * width));
+            k->as.band[(size_t)(row / BAND_ROWS) * f->planes + p] = r;
+            total[p] = range_join(total[p], r);
+        }
+    }
+}
+
+// Views as an encoder would keep them.
 static relume_status choose_steps(struct fold *f)
 {
     const relume_heldout *h = f->h;
-    struct range *total = mem_array(f->planes, sizeof *total);
-    if (!total)
-        return RELUME_ENOMEM;
-    for (int view = 0; view < h->views; view++) {
-        relume_coefficients c = {
-            .info = {.coder = f->coder, .planes = (int)f->planes, .storage = f->store->storage},
+    const enum relume_storage storage = f->store->storage;
+    struct range *total = mem_array(f->planes, sizeof *total), *band = f->band;
+    for (int view = 0; total && view < h->views; view++) {
+        struct kept *k = &f->kept[view];
+        k->as = (relume_coefficients){
+            .info = {.coder = f->coder,
+                     .width = h->width,
+                     .height = heldout_rows(h, view, &k->first),
+                     .planes = (int)f->planes,
+                     .storage = storage == RELUME_STORE_LOG ? RELUME_STORE_HALF : storage},
             .scale = f->scale + (size_t)view * f->planes,
             .offset = f->offset + (size_t)view * f->planes,
+            .band = band,
+            .coarse = storage == RELUME_STORE_LOG,
         };
-        for (size_t p = 0; p < f->planes; p++)
-            total[p] = (struct range){FLT_MAX, -FLT_MAX};
-        for (int i = 0; i < h->chunks; i++)
-            for (size_t p = 0; h->chunk[i].view == view && p < f->planes; p++) {
-                const struct range r = f->range[(size_t)i * f->planes + p];
-                total[p].min = r.min < total[p].min ? r.min : total[p].min;
-                total[p].max = r.max > total[p].max ? r.max : total[p].max;
-            }
-        coefficients_choose_steps(&c, total, h->masked[view], f->store->step);
+        band += (size_t)((k->as.info.height + BAND_ROWS - 1) / BAND_ROWS) * f->planes;
+        find_ranges(f, k, total);
+        coefficients_choose_steps(&k->as, total, h->masked[view], f->store->step);
     }
     free(total);
-    return RELUME_OK;
+    return total ? RELUME_OK : RELUME_ENOMEM;
 }
 
 // Coefficients as a reader of the file finds them.
 static void store_and_restore(const struct fold *f, struct chunk c, float *to)
 {
-    const float top = (float)relume_storage_top(f->store->storage);
-    for (size_t p = 0; p < f->planes; p++) {
-        const float *from = f->value + p * f->h->pixels + c.first;
-        const float scale = f->scale[(size_t)c.view * f->planes + p];
-        const float offset = f->offset[(size_t)c.view * f->planes + p];
-        const float inverse = 1.0f / scale;
-        float *row = to + p * c.n;
-        for (size_t i = 0; top > 0.0f && i < c.n; i++) {
-            const float code = (from[i] - offset) * inverse + 0.5f;
-            row[i] = (float)(int)(code > 0.0f ? code < top ? code : top : 0.0f) * scale + offset;
-        }
-        const bool whole = f->store->storage == RELUME_STORE_FLOAT;
-        const bool coarse = f->store->storage == RELUME_STORE_LOG;
-        for (size_t i = 0; top == 0.0f && i < c.n; i++)
-            row[i] = whole ? from[i]
-                           : float_from_half(coefficients_half(from[i], scale, coarse)) * scale;
+    const struct kept *k = &f->kept[c.view];
+    const size_t width = (size_t)f->h->width, band = BAND_ROWS * width, from = c.first - k->first;
+    for (size_t at = 0, n; at < c.n; at += n) {
+        const size_t left = band - (from + at) % band;
+        const int row = (int)((from + at) / width);
+        n = left < c.n - at ? left : c.n - at;
+        for (size_t p = 0; p < f->planes; p++)
+            coefficients_restore(&k->as, (int)p, row, f->value + p * f->h->pixels + c.first + at, n,
+                                 to + p * c.n + at);
     }
 }
 

@@ -56,6 +56,10 @@ void fold_books_drop(struct fold_books *b);
 // The coefficients to[plane][pixel] that stand for `n` pixels from `first` on, of one view.
 void fold_books_restore(const struct fold_books *b, int view, size_t first, size_t n, float *to);
 
+// The rows of a view in memory, which follow each other from pixel `*first` on, whichever strips
+// they come from.
+int heldout_rows(const relume_heldout *h, int view, size_t *first);
+
 // Reads everything that relume_heldout_measure needs.
 relume_status heldout_load(relume_heldout *h);
 

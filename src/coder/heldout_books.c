@@ -3,7 +3,6 @@
 #include "base/scratch.h"
 #include "coder/coefficients.h"
 #include "coder/heldout.h"
-#include "image/half.h"
 
 #include <string.h>
 
@@ -21,8 +20,7 @@ void fold_books_drop(struct fold_books *b)
     *b = (struct fold_books){0};
 }
 
-// The rows of a view in memory follow each other, whichever strips they come from.
-static int rows_of(const relume_heldout *h, int view, size_t *first)
+int heldout_rows(const relume_heldout *h, int view, size_t *first)
 {
     int rows = 0;
     for (int i = h->strips - 1; i >= 0; i--)
@@ -37,26 +35,16 @@ static int rows_of(const relume_heldout *h, int view, size_t *first)
 static relume_status keep_band(relume_coefficients *c, int row, const float *value, size_t stride,
                                void *packed)
 {
-    uint16_t *words = packed;
-    float *floats = packed;
     const size_t width = (size_t)c->info.width, planes = (size_t)c->info.planes;
     const size_t rows =
         (size_t)(c->info.height - row < BAND_ROWS ? c->info.height - row : BAND_ROWS);
-    const enum relume_storage storage = c->info.storage;
+    const size_t size = width * coefficients_waiting(c);
     for (size_t p = 0; p < planes; p++) {
         const float *v = value + p * stride;
-        const struct range r = range_settle(range_of(v, rows * width));
-        const float scale = r.max > r.min ? 65535.0f / (r.max - r.min) : 0.0f;
-        const float over = coefficients_half_scale(r);
-        c->band[(size_t)(row / BAND_ROWS) * planes + p] = r;
-        for (size_t i = 0; i < rows * width; i++) {
-            const size_t at = (i / width * planes + p) * width + i % width;
-            if (storage == RELUME_STORE_FLOAT)
-                floats[at] = v[i];
-            else
-                words[at] = storage == RELUME_STORE_HALF ? coefficients_half(v[i], over, c->coarse)
-                                                         : coefficients_code(v[i], r, scale);
-        }
+        c->band[(size_t)(row / BAND_ROWS) * planes + p] = range_settle(range_of(v, rows * width));
+        for (size_t y = 0; y < rows; y++)
+            coefficients_wait(c, (int)p, row, v + y * width, width,
+                              (char *)packed + (y * planes + p) * size);
     }
     return scratch_write(c->fd, packed, rows * planes * width * coefficients_waiting(c),
                          coefficients_offset(c, row))
@@ -68,7 +56,7 @@ static relume_status keep_view(relume_coefficients **out, const relume_heldout *
                                const relume_coder *coder, int view, const float *value,
                                const struct relume_heldout_store *store, size_t *first)
 {
-    const int rows = rows_of(h, view, first);
+    const int rows = heldout_rows(h, view, first);
     const size_t width = (size_t)h->width, planes = (size_t)relume_coder_info(coder)->planes;
     void *packed = mem_array(planes * BAND_ROWS * width, sizeof(float));
     relume_status status = packed ? RELUME_OK : RELUME_ENOMEM;

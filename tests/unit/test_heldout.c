@@ -142,9 +142,11 @@ static void test_against_files(void **state)
         const struct relume_heldout_quality want = by_files(capture, c);
         print_message("%s %d: %.4f dB before storing, %.4f dB after\n", c->basis->name,
                       c->coefficients, before.psnr_db, after.psnr_db);
-        CHECK_NEAR(after.psnr_db, want.psnr_db, 0.01);
-        CHECK_NEAR(after.psnr_pooled_db, want.psnr_pooled_db, 0.01);
-        CHECK_NEAR(after.ssim, want.ssim, 1e-4);
+        // One quantiser: the same codes. What is left is the order of sums in single precision,
+        // 1e-7, by which one display value in thousands falls on the other side of a half.
+        CHECK_NEAR(after.psnr_db, want.psnr_db, 1e-4);
+        CHECK_NEAR(after.psnr_pooled_db, want.psnr_pooled_db, 3e-6);
+        CHECK_NEAR(after.ssim, want.ssim, 3e-8);
         assert_true(fabs(before.psnr_pooled_db - after.psnr_pooled_db) > 1e-7);  // it was stored
         relume_heldout_destroy(&h);
     }

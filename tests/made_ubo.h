@@ -1,5 +1,5 @@
 // made_ubo.h - writes .btf files of the University of Bonn from known numbers, in doubles and with
-// arithmetic of its own, so that the reader is not tested against itself (docs/btf.md)
+// arithmetic of its own, so that the reader is not tested against itself (docs/btf-bonn.md)
 #ifndef MADE_UBO_H
 #define MADE_UBO_H
 

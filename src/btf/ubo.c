@@ -1,6 +1,6 @@
 // ubo.c - .btf files of the University of Bonn's data base (UBO2014): what they hold, and where
 //
-// Bonn has published no description; docs/btf.md says what is known, from which programs, and what
+// Bonn has published no description; docs/btf-bonn.md says what is known, from which programs, and what
 // is assumed. Little endian throughout, nothing is aligned.
 #include "btf/ubo.h"
 

@@ -1,5 +1,5 @@
 // ubo_values.c - the values of a .btf file of the University of Bonn: the product of its factors,
-// colour by colour, and what undoes the decorrelation of its colours (docs/btf.md)
+// colour by colour, and what undoes the decorrelation of its colours (docs/btf-bonn.md)
 //
 // A tile is some pairs of directions by some texels: both factors of it are turned into floats, the
 // product is one call, and the texels of a pair lie together where they are stored. So the output

@@ -175,7 +175,7 @@ static relume_status make_folder(struct maker *m, const char *path,
 }
 
 // Finer than the lights by half again, for the grid lies across them; 15 does well for domes of
-// some fifty lights, where 9 to 13 lose detail and finer ones gain nothing (docs/compression.md).
+// some fifty lights, where 9 to 13 lose detail and finer ones gain nothing (docs/measurements/compression.md).
 static int default_resolution(int lights)
 {
     const int side = (int)(1.5 * sqrt(lights)) | 1;

@@ -1,5 +1,5 @@
 // How far environment light on models of materials is from brute force, every cell of the
-// environment being a light: the tables of docs/surfaces.md.
+// environment being a light: the tables of docs/measurements/surfaces.md.
 //
 //   bench_ambient SKY.hdr... -- MODEL...
 //

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The tables of docs/btf.md: every model on every built-in material, as Markdown.
+# The tables of docs/measurements/btf.md: every model on every built-in material, as Markdown.
 # Usage: btf_tables.sh BUILD FOLDER [SIZE [MATERIAL...]]
 # Samples and rows stay in FOLDER and are used again, so that it can be interrupted.
 set -eu

@@ -1,5 +1,5 @@
 #!/bin/sh
-# capture.sh BUILD [ROLL] - the times of docs/capture.md: three photographs of 12 megapixels, held by
+# capture.sh BUILD [ROLL] - the times of docs/measurements/capture.md: three photographs of 12 megapixels, held by
 # hand (one turned by ROLL degrees, default 2; from 3 on blocks are searched twice), aligned by
 # macroblocks and merged; twelve photographs of psmImages under one light each, from the
 # chrome ball to a relit picture. Seconds of wall clock and of the processor, three runs each.

@@ -1,6 +1,6 @@
 #!/bin/sh
 # contours.sh BUILD [SIDE] - what --dither takes of the contours of a smooth ball and what it costs
-# (docs/compression.md): ramp error and PSNR against the file without codebooks, mean of three lights,
+# (docs/measurements/compression.md): ramp error and PSNR against the file without codebooks, mean of three lights,
 # and bytes against the same codebook without dither.
 set -eu
 build=$(cd "$1" && pwd) side=${2:-256}

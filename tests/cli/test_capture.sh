@@ -143,7 +143,7 @@ below 'its middle, x' "$(number x | awk '{ d = $1 - 254; print d < 0 ? -d : d }'
 below 'its middle, y' "$(number y | awk '{ d = $1 - 148.5; print d < 0 ? -d : d }')" 2
 below 'its radius' "$(number radius | awk '{ d = $1 - 119.3; print d < 0 ? -d : d }')" 2
 tail -n +2 "$data/lights.txt" >lights.txt
-# that list is itself 3.8 degrees off what the set's gray ball shows (docs/capture.md)
+# that list is itself 3.8 degrees off what the set's gray ball shows (docs/measurements/capture.md)
 below 'directions as in the set' "$(angles buddha)" 4
 # ---- as many photographs of the ball as of the object; their own transfer
 fresh chrome more && cp chrome/chrome.0.png more/chrome.12.png

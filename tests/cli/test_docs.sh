@@ -31,6 +31,13 @@ for page in "$docs"/*.md "$docs"/*/*.md "$TOP/README.md"; do
     if [ -z "$broken" ]; then ok "$text links to what exists"; else not_ok "$text links to what exists" "broken:$broken"; fi
 done
 
+# Pages for users are short; measurements stand in docs/measurements, and these are records or for
+# programmers.
+for page in "$docs"/*.md "$docs"/reference/*.md "$docs"/tutorials/*.md "$TOP/README.md"; do
+    case $(basename "$page") in architecture.md | changes.md | format.md | reliability.md) continue ;; esac
+    below "$(basename "$page"): words of a page for users" "$(wc -w <"$page")" 1500
+done
+
 grep -o '"relume\.[a-z]*"' "$TOP/src/pack/format.h" | tr -d '"' | sort -u >written.txt
 grep -o '^| `relume\.[a-z]*`' "$docs/format.md" | tr -d '|` ' | sort -u >documented.txt
 same "format.md has every attribute and no other" written.txt documented.txt

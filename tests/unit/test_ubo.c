@@ -159,7 +159,7 @@ static void test_scalars(void **state)
     }
 }
 
-// By hand, after docs/btf.md: three views and lights, one texel, one component.
+// By hand, after docs/btf-bonn.md: three views and lights, one texel, one component.
 static void test_bytes(void **state)
 {
     (void)state;

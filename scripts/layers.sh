@@ -13,13 +13,13 @@ capture:base math image:base image lights capture ball photometric shoot photogr
 coder:base math image:base image capture codebook coder heldout
 pack:base image:base image capture codebook coder view pack
 exchange:base math image:base image photograph lights codebook coder capture pack relight exchange
-relight:base math image:base image coder light relight rig normals enhance
+relight:base math image:base image coder light relight rig normals enhance relighter
 view:base math image:base image light relight view slabs capture
 pass:base math image:base image tone eye psf glare
 btf:base math image:base image light lights capture btf surface ambient
-frame:base math:base image capture coder pack light relight view slabs frame sight evaluate normals enhance
+frame:base math image:base image capture coder pack light relight view slabs frame sight evaluate normals enhance renderer relighter rig
 scene:base math image:base image lights capture btf scene
-object:base math image scene:base image capture light relight view slabs pack frame sight btf ambient surface object
+object:base math image scene:base image capture light relight view slabs pack frame sight btf ambient surface object renderer
 helper:base image scene:base
 cli:cli:*
 viewer:viewer:*

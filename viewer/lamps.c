@@ -50,22 +50,6 @@ int lamps_near(const struct app_state *state)
     return n;
 }
 
-static bool same_vector(struct relume_vec3 a, struct relume_vec3 b)
-{
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
-bool lamps_same(const struct relume_light *a, const struct relume_light *b)
-{
-    return a->kind == b->kind && same_vector(a->direction, b->direction) &&
-           same_vector(a->position, b->position) && same_vector(a->u, b->u) &&
-           same_vector(a->v, b->v) && a->disc == b->disc && a->nofall == b->nofall &&
-           a->half_angle_deg == b->half_angle_deg && a->rotate_deg == b->rotate_deg &&
-           a->rgb[0] == b->rgb[0] && a->rgb[1] == b->rgb[1] && a->rgb[2] == b->rgb[2] &&
-           a->image == b->image && a->environment == b->environment && a->ies == b->ies &&
-           a->gonio == b->gonio;
-}
-
 // ---------------------------------------------------------------- list
 
 static bool make_room(struct app_state *state, int room)

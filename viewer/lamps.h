@@ -12,9 +12,6 @@ int lamps_shining(const struct app_state *state, struct relume_light *out);
 // How many near lights shine.
 int lamps_near(const struct app_state *state);
 
-// Whether two lights are one and the same in everything that shines.
-bool lamps_same(const struct relume_light *a, const struct relume_light *b);
-
 // `to`, which is released, becomes `from` with lists of its own. False when memory is short; then
 // `to` is as before.
 bool lamps_copy(struct app_state *to, const struct app_state *from);

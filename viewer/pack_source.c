@@ -1,6 +1,6 @@
 #include "pack_source.h"
 
-#include <relume/frame.h>
+#include <relume/renderer.h>
 
 #include <pthread.h>
 #include <stdlib.h>
@@ -81,9 +81,12 @@ static relume_status find_places(struct relume_image *out, void *user, int view)
 {
     struct pack_source *s = user;
     const struct relume_camera camera = {.framing = RELUME_FRAME_VIEW, .view = view};
+    relume_renderer *renderer;
     pthread_mutex_lock(&s->lock);
-    const relume_status status =
-        relume_frame(out, s->pack, &camera, NULL, 0, relume_frame_params(.places = true));
+    relume_status status = relume_renderer_create(&renderer, s->pack, NULL);
+    if (!status)
+        status = relume_renderer_places(out, renderer, &camera);
+    relume_renderer_destroy(&renderer);
     pthread_mutex_unlock(&s->lock);
     return status;
 }

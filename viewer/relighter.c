@@ -1,7 +1,6 @@
 #include "relighter.h"
 
 #include "books.h"
-#include "lamps.h"
 #include "relighter_parts.h"
 #include "say.h"
 
@@ -9,6 +8,17 @@
 #include <string.h>
 
 // ---------------------------------------------------------------- views
+
+// The library looks at codes for as long as it relights the view.
+static void stop_lending(struct relighter *r, struct relit_view *v)
+{
+    const int view = (int)(v - r->view);
+    if (v->lent && r->source.drop)
+        r->source.drop(r->source.user, view);
+    if (v->lent && r->library)
+        relume_relighter_drop(r->library, view);
+    relume_image_destroy(&v->surface);
+}
 
 static void release(struct relighter *r, struct relit_view *v)
 {
@@ -19,7 +29,7 @@ static void release(struct relighter *r, struct relit_view *v)
     free(v->array);
     free(v->scale);
     nearby_view_destroy(&v->near, r->gl);
-    software_view_destroy(&v->software, &r->source);
+    stop_lending(r, v);
     if (v->codes.books)
         books_forget(&v->codes);
     *v = (struct relit_view){0};
@@ -50,7 +60,7 @@ static relume_status keep(struct relighter *r, int view, const struct relume_cod
     r->bytes += bytes;
     relume_status status = target_create(&v->relit, r->gl, codes->width, codes->height, r->log);
     if (!status && r->by_library)
-        software_view_begin(&v->software, codes, view);
+        v->lent = codes;
     else if (!status)
         status = codes_upload(r, v, codes);
     if (status)
@@ -58,10 +68,9 @@ static relume_status keep(struct relighter *r, int view, const struct relume_cod
     return status;
 }
 
-// The library goes on looking at the codes that it relights.
 static void drop(struct relighter *r, int view)
 {
-    if (r->source.drop && !r->view[view].software.codes)
+    if (r->source.drop && !r->view[view].lent)
         r->source.drop(r->source.user, view);
 }
 
@@ -98,17 +107,52 @@ static relume_status take_loaded(struct relighter *r, int view)
 
 // ---------------------------------------------------------------- by the library
 
+static bool has_near(const struct relume_light *lights, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (relume_light_is_near(lights[i].kind))
+            return true;
+    return false;
+}
+
+static relume_status find_surface(struct relume_image *surface, const struct relighter *r, int view)
+{
+    const relume_status status =
+        r->source.surface ? r->source.surface(surface, r->source.user, view) : RELUME_EINVAL;
+    return status != RELUME_EINVAL
+               ? status
+               : say(r->log, RELUME_EDATA,
+                     "a near light needs to know how far the surface is; use a file with depth");
+}
+
+static size_t bytes_of_library(const struct relighter *r, const struct relit_view *v)
+{
+    const size_t pixels = (size_t)v->surface.width * (size_t)v->surface.height;
+    return relume_relighter_bytes(r->library, (int)(v - r->view)) + 3 * pixels * sizeof(float);
+}
+
 static relume_status relight_by_library(struct relighter *r, struct relit_view *v,
                                         const struct relume_light *lights, int n,
                                         const struct target *into)
 {
     const struct relume_image *image;
-    const relume_status status =
-        software_view_relight(&image, &v->software, &r->software, &r->source, lights, n, r->log);
+    const int view = (int)(v - r->view);
+    relume_status status =
+        r->library
+            ? RELUME_OK
+            : relume_relighter_create(&r->library, r->views,
+                                      relume_relighter_params(.groups = RELUME_RELIGHTER_GROUPS,
+                                                              .threads = r->threads));
+    if (!status && has_near(lights, n) && !v->surface.data)
+        status = find_surface(&v->surface, r, view);
+    if (!status)
+        status = relume_relighter_picture(
+            &image, r->library,
+            &(struct relume_relit){view, v->lent, &v->surface, lights, n, r->log});
     if (status)
         return status;
     target_write(into, r->gl, image);
-    const size_t kept = software_view_bytes(&v->software);
+    const size_t kept = bytes_of_library(r, v);
     r->bytes += kept - v->kept;
     v->bytes += kept - v->kept;
     v->kept = kept;
@@ -128,11 +172,8 @@ static relume_status add_near_by_library(struct relighter *r, struct relit_view 
     for (int i = 0; !status && i < r->lights; i++)
         if (relume_light_is_near(r->light[i].kind))
             near[n++] = r->light[i];
-    if (!status && !v->software.codes) {
-        status = r->source.codes(&codes, r->source.user, view);
-        if (!status)
-            software_view_begin(&v->software, codes, view);
-    }
+    if (!status && !v->lent && !(status = r->source.codes(&codes, r->source.user, view)))
+        v->lent = codes;
     if (!status)
         status = relight_by_library(r, v, near, n, &r->coded);
     free(near);
@@ -157,12 +198,7 @@ static relume_status need_surface(struct relighter *r, struct relit_view *v)
     const struct nearby_codes codes = nearby_codes_of(v);
     if (v->near.surface.data)
         return RELUME_OK;
-    const relume_status status =
-        r->source.surface ? r->source.surface(&surface, r->source.user, (int)(v - r->view))
-                          : RELUME_EINVAL;
-    if (status == RELUME_EINVAL)
-        return say(r->log, RELUME_EDATA,
-                   "a near light needs to know how far the surface is; use a file with depth");
+    const relume_status status = find_surface(&surface, r, (int)(v - r->view));
     return status ? status : nearby_view_create(&v->near, &r->near, &codes, &surface);
 }
 
@@ -235,7 +271,7 @@ void relighter_destroy(struct relighter *r)
     loader_destroy(&r->loader);
     for (int i = 0; r->view && i < r->views; i++)
         release(r, &r->view[i]);
-    software_destroy(&r->software);
+    relume_relighter_destroy(&r->library);
     twin_destroy(r);
     passes_destroy(r);
     nearby_destroy(&r->near);
@@ -249,7 +285,7 @@ static bool same_lights(const struct relighter *r, const struct relume_light *li
     if (!r->light || r->lights != n)
         return false;
     for (int i = 0; i < n; i++)
-        if (!lamps_same(&r->light[i], &lights[i]))
+        if (!relume_light_equal(&r->light[i], &lights[i]))
             return false;
     return true;
 }
@@ -287,8 +323,8 @@ void relighter_forget(struct relighter *r)
     nearby_forget(&r->near);
     free(r->light);
     r->light = NULL;
-    for (int i = 0; i < r->views; i++)
-        software_view_forget(&r->view[i].software);
+    if (r->library)
+        relume_relighter_forget(r->library);
     if (r->linear)
         relighter_forget(r->linear);
 }

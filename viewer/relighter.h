@@ -4,17 +4,17 @@
 // codes take two small passes for each light: the dot product, then decoding and adding in linear
 // light. Environments meet a linear twin of display-domain codes, made once (relume_refit). Near
 // lights are a pass each (nearby.h). Where OpenGL is software the library does all of it, several
-// times faster (software.h).
+// times faster (relume_relighter).
 #ifndef VIEWER_RELIGHTER_H
 #define VIEWER_RELIGHTER_H
 
 #include "loader.h"
 #include "nearby.h"
 #include "program.h"
-#include "software.h"
 #include "target.h"
 
 #include <relume/relight.h>
+#include <relume/relighter.h>
 
 struct relit_view {
     bool present;
@@ -22,14 +22,15 @@ struct relit_view {
                     // a layer for each codebook
     int arrays;
     int layers;          // of all arrays together
-    size_t bytes, kept;  // of all it has, and of that by `software`
+    size_t bytes, kept;  // of all it has, and of that by `library`
     uint64_t used;       // the frame that last asked for it
     bool fresh;          // `relit` shows the present lights
     struct target relit;
     struct relume_codes codes;  // planes and indices are gone; the rest is ours
     float *scale;
     struct nearby_view near;
-    struct software_view software;  // begun when the library relights it
+    const struct relume_codes *lent;  // by the source, where the library relights it; else NULL
+    struct relume_image surface;      // then; empty: not known yet
 };
 
 // The codes of the linear twin come from those of the file.
@@ -50,9 +51,10 @@ struct relighter {
     struct nearby near;
     bool by_library;  // not by passes: where OpenGL is software. May be set before the first
                       // view is asked for
-    struct software software;
-    relume_weight_grid *grid;  // of the coder, for environments; NULL: not made yet
-    struct relighter *linear;  // the linear twin, under the environments; NULL: not made yet
+    relume_relighter *library;  // NULL: not needed yet
+    int threads;                // of it; 0: all cores
+    relume_weight_grid *grid;   // of the coder, for environments; NULL: not made yet
+    struct relighter *linear;   // the linear twin, under the environments; NULL: not made yet
     struct linear_source linear_source;
     GLuint vertices;
     GLuint weights;       // texture [layers][3]

@@ -236,7 +236,7 @@ static relume_status make_renderer(struct session *s)
     if (s->around)
         renderer_use_slabs(&s->renderer, s->around, info->uv, info->slab_of);
     s->renderer.relighter.budget = s->vram_bytes;
-    s->renderer.relighter.software.threads = s->threads;
+    s->renderer.relighter.threads = s->threads;
     s->renderer.relighter.by_library =
         s->relight == SESSION_LIBRARY || (s->relight == SESSION_AUTO && s->gl.software);
     s->renderer.glare.subject = s->subject;

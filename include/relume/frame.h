@@ -59,18 +59,14 @@ struct relume_frame_params {
     // Where near lights meet views without depth: this far along every ray, world units; default:
     // planar views lie on z = 0, others are refused.
     double assume_depth;
-    // Of the file's coder (relume_weight_grid_create), for near lights and environments in many
-    // frames; default: made for the frame.
-    const relume_weight_grid *grid;
     enum relume_pass pass;  // of every view, before they become a frame
     const relume_capture
         *capture;  // PASS_DIFFERENCE: of the file; the nearest view and light count
     enum relume_interpolation interpolation;  // slab; default: by depth where the file has it
     double aperture, focus;     // slab; as relume_view_params, several: relume_lens_window
     enum relume_filter filter;  // as relume_view_params, and of views in another size
-    // Show where the surface is instead of light: world positions, background far along its ray,
-    // NaN where no view sees. Lights and pass are not looked at.
-    bool places;
+    uint64_t memory;  // bytes that a renderer keeps between frames; default: 1 GiB. One frame may
+                      // need more
 };
 #define relume_frame_params(...) (&(const struct relume_frame_params){__VA_ARGS__})
 

@@ -53,6 +53,10 @@ static inline bool relume_light_is_near(enum relume_light_kind kind)
     return kind >= RELUME_LIGHT_POINT;
 }
 
+// Whether two lights are the same in everything; what they point at is the same object, whose
+// content is not looked at.
+RELUME_API bool relume_light_equal(const struct relume_light *a, const struct relume_light *b);
+
 // RELUME_EINVAL with a sentence that begins with `name` unless every number is finite, directions
 // have a length, angles are in range and what the kind needs is there.
 RELUME_RESULT relume_status relume_light_check(const struct relume_light *light, const char *name,

@@ -18,7 +18,7 @@
 #include <relume/frame.h>
 #include <relume/image.h>
 #include <relume/light.h>
-#include <relume/pack.h>
+#include <relume/renderer.h>
 #include <relume/slabs.h>
 #include <relume/surface.h>
 
@@ -143,16 +143,15 @@ RELUME_RESULT relume_status relume_objects_render(struct relume_image *out,
                                                   const struct relume_light *lights, int n,
                                                   const struct relume_render_params *params);
 
-// The objects in a relit scene: the frame of relume_frame with them drawn into it where they stand
-// before what the file's depth says, under the same lights, and with their shadows on the scene:
-// each lamp is relit alone and reaches a point of the scene when no object lies between.
-// Scenes throw no shadows on objects. RELUME_EDATA (also: a file without depth), and as
-// relume_frame.
+// The objects in a relit scene: the frame of relume_renderer_frame with them drawn into it where
+// they stand before what the file's depth says, under the renderer's lights, and with their shadows
+// on the scene: each lamp is relit alone and reaches a point of the scene when no object lies
+// between. Scenes throw no shadows on objects. A pass shows the scene alone: leave it at colour.
+// `*out` is created. RELUME_EDATA (also: a file without depth), and as relume_renderer_frame.
 RELUME_RESULT relume_status relume_objects_frame(struct relume_image *out,
-                                                 const relume_objects *objects, relume_pack *pack,
+                                                 const relume_objects *objects,
+                                                 relume_renderer *renderer,
                                                  const struct relume_camera *camera,
-                                                 const struct relume_light *lights, int n,
-                                                 const struct relume_frame_params *frame,
                                                  const struct relume_render_params *params);
 
 #ifdef __cplusplus

@@ -29,6 +29,8 @@
 #include <relume/photometric.h>
 #include <relume/psf.h>
 #include <relume/relight.h>
+#include <relume/relighter.h>
+#include <relume/renderer.h>
 #include <relume/response.h>
 #include <relume/rig.h>
 #include <relume/scene.h>

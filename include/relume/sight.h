@@ -8,6 +8,7 @@
 #include <relume/image.h>
 #include <relume/light.h>
 #include <relume/pack.h>
+#include <relume/renderer.h>
 #include <relume/slabs.h>
 #include <relume/view.h>
 
@@ -76,14 +77,12 @@ RELUME_API int relume_sight_lamps(
 RELUME_API void relume_sources_draw(struct relume_image *frame, const struct relume_source *sources,
                                     int n);
 
-// Add to `frame`, as relume_frame made it of the same camera and parameters, the lamps in view. The
-// scene hides them where the file has depth. Returns how many sources were drawn in `*seen` (may be
-// NULL). RELUME_EINVAL, RELUME_EDATA, RELUME_ENOMEM.
+// Add to `frame`, as relume_renderer_frame made it of the same camera, the renderer's lamps in
+// view. The scene hides them where the file has depth. Returns how many sources were drawn in
+// `*seen` (may be NULL). RELUME_EINVAL, RELUME_EDATA, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_frame_lamps(struct relume_image *frame, int *seen,
-                                               relume_pack *pack,
-                                               const struct relume_camera *camera,
-                                               const struct relume_light *lights, int n,
-                                               const struct relume_frame_params *params);
+                                               relume_renderer *renderer,
+                                               const struct relume_camera *camera);
 
 #ifdef __cplusplus
 }

@@ -150,6 +150,8 @@ static relume_status parse_pass(const struct args *args, struct relume_frame_par
     names[RELUME_PASSES] = "glare";  // of the frame, not of its views
     if (!wants_glare(args) && relume_pass_parse(&params->pass, name))
         return unknown_name("--pass", name, names);
+    if (params->pass != RELUME_PASS_COLOUR && args_has(args, "--objects"))
+        return usage_error("objects can be shown in colour only; leave out --pass");
     const bool difference = params->pass == RELUME_PASS_DIFFERENCE;
     if (difference != args_has(args, "--capture"))
         return usage_error("relight: --pass difference and --capture work only together");
@@ -180,19 +182,17 @@ static void show_normals(struct relume_image *frame, const char *path)
     }
 }
 
-static relume_status make_frame(struct relume_image *frame, relume_pack *pack,
-                                const struct args *args, const struct relume_camera *camera,
-                                const struct relume_frame_params *params,
-                                const struct relume_light *lights, int count)
+static relume_status make_frame(struct relume_image *frame, relume_renderer *renderer,
+                                const struct args *args, const struct relume_camera *camera)
 {
     const char *path = args_text(args, "--objects", NULL);
     relume_objects *objects;
     if (!path)
-        return relume_frame(frame, pack, camera, lights, count, params);
+        return relume_renderer_frame(frame, renderer, camera);
     relume_status status = objects_open(&objects, path, args);
     if (!status)
         status = relume_objects_frame(
-            frame, objects, pack, camera, lights, count, params,
+            frame, objects, renderer, camera,
             relume_render_params(.log = args_log(args), .samples = args_int(args, "--samples", 3),
                                  .threads = args_threads(args)));
     relume_objects_destroy(&objects);
@@ -229,18 +229,16 @@ static double field_of_view(const struct relume_pack_info *info, const struct re
     return distance > 0.0 ? 2.0 * atan(0.5 * width / distance) * 180.0 / M_PI : 0.0;
 }
 
-static relume_status add_glare(struct relume_image *frame, relume_pack *pack,
-                               const struct args *args, const struct relume_camera *camera,
-                               const struct relume_frame_params *params,
-                               const struct relume_light *lights, int count)
+static relume_status add_glare(struct relume_image *frame, relume_renderer *renderer,
+                               const struct args *args, const struct relume_camera *camera)
 {
-    const struct relume_pack_info *info = relume_pack_info(pack);
+    const struct relume_pack_info *info = relume_pack_info(relume_renderer_pack(renderer));
     const double fov = args_number(args, "--fov", field_of_view(info, camera, frame));
     struct viewer_eye eye;
     struct relume_image seen = {0};
     if (info->geometry.projection > RELUME_SLAB && camera->framing != RELUME_FRAME_LOOK)
         return usage_error("--pass glare: expected --pan, --tilt or --zoom for a panorama");
-    relume_status status = relume_frame_lamps(frame, NULL, pack, camera, lights, count, params);
+    relume_status status = relume_frame_lamps(frame, NULL, renderer, camera);
     const double luminance = args_number(args, "--nits", 100.0) * relume_glare_luminance(frame);
     if (!status)
         status = open_viewer_eye(
@@ -291,6 +289,7 @@ static relume_status render(const struct args *args, const struct relume_camera 
                             const struct relume_light *lights, int count)
 {
     relume_pack *pack;
+    relume_renderer *renderer = NULL;
     relume_capture *capture = NULL;
     struct prefix_log about;
     struct relume_image frame = {0};
@@ -312,9 +311,13 @@ static relume_status render(const struct args *args, const struct relume_camera 
     status = open_capture(args, &capture);
     params.capture = capture;
     if (!status)
-        status = make_frame(&frame, pack, args, camera, &params, lights, count);
+        status = relume_renderer_create(&renderer, pack, &params);
+    if (!status)
+        status = relume_renderer_set_lights(renderer, lights, count);
+    if (!status)
+        status = make_frame(&frame, renderer, args, camera);
     if (!status && wants_glare(args))
-        status = add_glare(&frame, pack, args, camera, &params, lights, count);
+        status = add_glare(&frame, renderer, args, camera);
     if (!status && params.pass == RELUME_PASS_NORMALS)
         show_normals(&frame, output);
     else if (!status)
@@ -324,6 +327,7 @@ static relume_status render(const struct args *args, const struct relume_camera 
     if (!status)
         status = relume_image_save(&frame, output, relume_image_params(.log = args_log(args)));
     relume_image_destroy(&frame);
+    relume_renderer_destroy(&renderer);
     relume_capture_destroy(&capture);
     relume_pack_destroy(&pack);
     return status;

@@ -1,5 +1,5 @@
 #include <relume/evaluate.h>
-#include <relume/frame.h>
+#include <relume/renderer.h>
 
 #include "base/inputs.h"
 #include "base/log.h"
@@ -16,6 +16,13 @@ struct sums {
     size_t pixels, images, structured;
 };
 
+// Sentences about the file begin with its name.
+struct about {
+    struct relume_log log;
+    const struct relume_log *to;
+    const char *name;
+};
+
 struct evaluator {
     struct relume_evaluate_params params;
     relume_pack *pack;
@@ -23,20 +30,15 @@ struct evaluator {
     const struct relume_manifest *manifest;
     const struct relume_pack_info *info;
     struct relume_transfer display;
-    relume_weight_grid *grid;  // where lights are near
-    struct sums *light;        // [lights]
+    relume_renderer *renderer;
+    struct about about;
+    struct relume_image relit;
+    struct sums *light;  // [lights]
     struct sums total;
     // captured images are read ahead, as many at once as there are threads
     int view, first, ahead;
     struct relume_image *image;  // [ahead]
     relume_status *status;       // [ahead]
-};
-
-// Sentences about the file begin with its name.
-struct about {
-    struct relume_log log;
-    const struct relume_log *to;
-    const char *name;
 };
 
 static void say_about(void *user, enum relume_level level, const char *text)
@@ -187,16 +189,14 @@ static relume_status compare_light(struct evaluator *e, const struct relume_imag
         lamp.nofall = true;
         lamp.position = e->manifest->positions[light];
     }
-    struct about about = {.to = e->params.log, .name = e->params.file};
-    about.log = (struct relume_log){say_about, pass_progress, &about, inputs_of(e->params.log),
-                                    limits_of(NULL, e->params.log)};
-    struct relume_image relit;
+    const struct relume_target target = {
+        .data = e->relit.data, .width = e->relit.width, .height = e->relit.height};
     struct relume_difference difference;
-    relume_status status = relume_frame(
-        &relit, e->pack, camera, &lamp, 1,
-        relume_frame_params(.log = &about.log, .threads = e->params.threads, .grid = e->grid));
+    relume_status status = relume_renderer_set_lights(e->renderer, &lamp, 1);
     if (!status)
-        status = relume_image_compare(&difference, &relit, captured,
+        status = relume_renderer_draw(e->renderer, camera, &target);
+    if (!status)
+        status = relume_image_compare(&difference, &e->relit, captured,
                                       relume_compare_params(.mask = mask, .display = e->display,
                                                             .threads = e->params.threads,
                                                             .no_ssim = e->params.no_ssim,
@@ -205,7 +205,6 @@ static relume_status compare_light(struct evaluator *e, const struct relume_imag
         add(&e->light[light], &difference);
         add(&e->total, &difference);
     }
-    relume_image_destroy(&relit);
     return status;
 }
 
@@ -236,7 +235,7 @@ static relume_status evaluate_view(struct evaluator *e, int view)
     while (!status && e->first < e->manifest->lights)
         status = evaluate_some(e, &camera, &mask);
     if (camera.framing == RELUME_FRAME_VIEW)
-        relume_pack_drop(e->pack, camera.view);
+        relume_renderer_forget(e->renderer);
     relume_image_destroy(&mask);
     return status;
 }
@@ -297,12 +296,16 @@ static void collect(const struct evaluator *e, struct relume_evaluation *out)
     }
 }
 
-static relume_status make_grid(struct evaluator *e)
+static relume_status make_renderer(struct evaluator *e)
 {
-    if (!e->manifest->positions)
-        return RELUME_OK;
-    return relume_weight_grid_create(&e->grid, e->info->coder,
-                                     relume_weight_grid_params(.threads = e->params.threads));
+    e->about = (struct about){.to = e->params.log, .name = e->params.file};
+    e->about.log = (struct relume_log){say_about, pass_progress, &e->about,
+                                       inputs_of(e->params.log), limits_of(NULL, e->params.log)};
+    const relume_status status = relume_image_create(&e->relit, e->info->width, e->info->height, 3);
+    return status ? status
+                  : relume_renderer_create(
+                        &e->renderer, e->pack,
+                        relume_frame_params(.log = &e->about.log, .threads = e->params.threads));
 }
 
 static bool create(struct evaluator *e, struct relume_evaluation *out)
@@ -320,7 +323,8 @@ static bool create(struct evaluator *e, struct relume_evaluation *out)
 
 static void destroy(struct evaluator *e)
 {
-    relume_weight_grid_destroy(&e->grid);
+    relume_renderer_destroy(&e->renderer);
+    relume_image_destroy(&e->relit);
     free(e->light);
     free(e->image);
     free(e->status);
@@ -345,7 +349,7 @@ relume_status relume_evaluate(struct relume_evaluation *out, relume_pack *pack,
         return status;
     if (e.manifest->transfer.curve == RELUME_CURVE_GAMMA)
         e.display = e.manifest->transfer;
-    status = create(&e, out) ? make_grid(&e) : RELUME_ENOMEM;
+    status = create(&e, out) ? make_renderer(&e) : RELUME_ENOMEM;
     for (int view = 0; !status && view < e.manifest->views; view++)
         status = evaluate_view(&e, view);
     if (!status)

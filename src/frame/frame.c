@@ -1,235 +1,80 @@
+// frame.c - what a camera sees of the views: whole, scaled, looked at, from an eye
 #include "base/log.h"
-#include "frame/passes.h"
+#include "base/thread.h"
 #include "frame/renderer.h"
-#include "math/vec.h"
+#include "image/rgba8.h"
 
-static struct renderer renderer_of(relume_pack *pack, const struct relume_light *lights, int n,
-                                   const struct relume_frame_params *params, struct shared *shared)
-{
-    const struct relume_frame_params p = params ? *params : (struct relume_frame_params){0};
-    return (struct renderer){
-        .pack = pack,
-        .info = relume_pack_info(pack),
-        .lights = lights,
-        .light_count = n,
-        .params = p,
-        .shared = shared,
-        .view = {.threads = p.threads,
-                 .interpolation = p.interpolation,
-                 .aperture = p.aperture,
-                 .focus = p.focus,
-                 .filter = p.filter,
-                 .one = p.places,
-                 .nothing = p.places ? NAN : 0.0f},
-    };
-}
-
-static const struct relume_light *find_near(const struct renderer *r)
-{
-    for (int i = 0; i < r->light_count; i++)
-        if (relume_light_is_near(r->lights[i].kind))
-            return &r->lights[i];
-    return NULL;
-}
-
-static bool has_environment(const struct renderer *r)
-{
-    for (int i = 0; i < r->light_count; i++)
-        if (r->lights[i].kind == RELUME_LIGHT_ENVIRONMENT)
-            return true;
-    return false;
-}
-
-static relume_status assume_depth(const struct renderer *r, struct relume_image *depth)
-{
-    const size_t n = (size_t)r->info->width * (size_t)r->info->height;
-    const relume_status status = relume_image_create(depth, r->info->width, r->info->height, 1);
-    for (size_t i = 0; !status && i < n; i++)
-        depth->data[i] = (float)r->params.assume_depth;
-    return status;
-}
-
-static relume_status find_surface(const struct renderer *r, int view, struct relume_image *out)
-{
-    struct relume_image depth;
-    relume_status status = relume_pack_depth(&depth, r->pack, view);
-    if (!status && !depth.data && r->params.assume_depth > 0.0)
-        status = assume_depth(r, &depth);
-    if (status)
-        return status;
-    status = relume_surface(out, relume_pack_geometry(r->pack, view), r->info->uv[view],
-                            depth.data ? &depth : NULL, r->info->width, r->info->height);
-    if (status == RELUME_EINVAL)
-        status = log_fail(r->params.log, RELUME_EDATA,
-                          "a near light (%s) needs to know how far the surface is; use a file with "
-                          "depth, or --assume-depth D",
-                          relume_light_kind_name(find_near(r)->kind));
-    relume_image_destroy(&depth);
-    return status;
-}
-
-// All views of a file have one coder, and so have all their refits.
-static relume_status find_grid(const struct renderer *r, const struct relume_codes *codes,
-                               const relume_refit *refit, const relume_weight_grid **grid)
-{
-    const bool folded = codes->domain != RELUME_DOMAIN_DISPLAY && has_environment(r);
-    const bool refitted = refit && !find_near(r);
-    relume_status status = RELUME_OK;
-    *grid = refitted ? NULL : r->params.grid;
-    if (*grid || !(find_near(r) || folded || refitted))
-        return RELUME_OK;
-    if (!r->shared->grid)
-        status = relume_weight_grid_create(
-            &r->shared->grid, refitted ? relume_refit_codes(refit)->coder : codes->coder,
-            relume_weight_grid_params(.sums = !find_near(r), .threads = r->params.threads));
-    *grid = r->shared->grid;
-    return status;
-}
-
-// Of codes of the display domain under an environment: what the first view learned serves all.
-static relume_status find_refit(const struct renderer *r, const struct relume_codes *codes,
-                                relume_refit **refit)
-{
-    *refit = NULL;
-    if (codes->domain != RELUME_DOMAIN_DISPLAY || !has_environment(r))
-        return RELUME_OK;
-    return relume_refit_create(refit, codes,
-                               relume_refit_params(.log = r->shared->learned ? NULL : r->params.log,
-                                                   .like = r->shared->learned,
-                                                   .cpu_off = r->params.cpu_off,
-                                                   .threads = r->params.threads));
-}
-
-static void keep_refit(const struct renderer *r, relume_refit **refit)
-{
-    if (r->shared->learned || !*refit) {
-        relume_refit_destroy(refit);
-        return;
-    }
-    relume_refit_forget(*refit);
-    r->shared->learned = *refit;
-}
-
-static void shared_destroy(struct shared *shared)
-{
-    relume_weight_grid_destroy(&shared->grid);
-    relume_refit_destroy(&shared->learned);
-}
-
-// Background is a thousand times as far as the farthest surface, so that it is finite between
-// pixels.
-static void fill_background(struct relume_image *depth)
-{
-    const size_t n = (size_t)depth->width * (size_t)depth->height;
-    float farthest = 1.0f;
-    for (size_t i = 0; i < n; i++)
-        if (isfinite(depth->data[i]))
-            farthest = fmaxf(farthest, depth->data[i]);
-    for (size_t i = 0; i < n; i++)
-        if (!isfinite(depth->data[i]))
-            depth->data[i] = 1e3f * farthest;
-}
-
-static relume_status find_places(const struct renderer *r, int view, struct relume_image *out)
-{
-    struct relume_image depth;
-    relume_status status = relume_pack_depth(&depth, r->pack, view);
-    if (!status && depth.data)
-        fill_background(&depth);
-    else if (!status && r->params.assume_depth > 0.0)
-        status = assume_depth(r, &depth);
-    if (!status)
-        status = relume_surface(out, relume_pack_geometry(r->pack, view), r->info->uv[view],
-                                depth.data ? &depth : NULL, r->info->width, r->info->height);
-    if (status == RELUME_EINVAL)
-        status = log_fail(r->params.log, RELUME_EDATA,
-                          "objects need to know how far the scene is; use a file with depth, or "
-                          "--assume-depth D");
-    relume_image_destroy(&depth);
-    return status;
-}
-
-relume_status renderer_relight(const struct renderer *r, int view, struct relume_image *out)
-{
-    if (r->params.places)
-        return find_places(r, view, out);
-    const struct relume_codes *codes;
-    const relume_weight_grid *grid = NULL;
-    relume_refit *refit = NULL;
-    struct relume_image surface = {0};
-    relume_status status = relume_pack_codes(&codes, r->pack, view);
-    if (!status && find_near(r))
-        status = find_surface(r, view, &surface);
-    if (!status)
-        status = find_refit(r, codes, &refit);
-    if (!status)
-        status = find_grid(r, codes, refit, &grid);
-    if (!status)
-        status =
-            relume_relight(out, codes, r->lights, r->light_count,
-                           relume_relight_params(.log = r->params.log, .cpu_off = r->params.cpu_off,
-                                                 .threads = r->params.threads, .surface = &surface,
-                                                 .grid = grid, .refit = refit));
-    keep_refit(r, &refit);
-    if (!status)
-        status = passes_apply(out, r->pack, view, codes, r->lights, r->light_count, &r->params);
-    relume_image_destroy(&surface);
-    if (!status && !log_progress(r->params.log, "relighting", 1.0))
-        return RELUME_ECANCEL;
-    return status;
-}
-
-// ---------------------------------------------------------------- framings
+#include <string.h>
 
 // Positions have no mean: the nearest texel's.
-static relume_status scale_view(const struct renderer *r, const struct relume_camera *camera,
+static relume_status scale_view(const relume_renderer *r, const struct relume_camera *camera,
                                 const struct relume_image *view, struct relume_image *out)
 {
     const struct relume_geometry *g = &r->info->geometry;
     const bool round = g->projection == RELUME_CYLINDRICAL || g->projection == RELUME_SPHERICAL;
-    return relume_image_scale(
-        out, view, camera->width, camera->height,
-        relume_scale_params(.threads = r->params.threads,
-                            .filter = r->params.places ? RELUME_FILTER_NEAREST : r->params.filter,
-                            .wrap = round && !g->disc,
-                            .tiles = g->projection == RELUME_CUBE ? 6 : 1));
+    return relume_image_scale(out, view, camera->width, camera->height,
+                              relume_scale_params(.threads = r->params.threads,
+                                                  .filter = r->shown == SHOWN_PLACES
+                                                                ? RELUME_FILTER_NEAREST
+                                                                : r->params.filter,
+                                                  .wrap = round && !g->disc,
+                                                  .tiles = g->projection == RELUME_CUBE ? 6 : 1));
 }
 
-static relume_status render_view(const struct renderer *r, const struct relume_camera *camera,
+static relume_status check_view(const relume_renderer *r, const struct relume_camera *camera)
+{
+    if (camera->view >= 0 && camera->view < r->info->views)
+        return RELUME_OK;
+    return log_fail(r->params.log, RELUME_EINVAL, "view %d does not exist; expected 0 to %d",
+                    camera->view, r->info->views - 1);
+}
+
+static bool is_whole_view(const relume_renderer *r, const struct relume_camera *camera)
+{
+    const bool slab = r->info->geometry.projection == RELUME_SLAB;
+    const bool view =
+        camera->framing == RELUME_FRAME_VIEW || (camera->framing == RELUME_FRAME_DEFAULT && !slab);
+    return view && camera->width == r->info->width && camera->height == r->info->height;
+}
+
+static relume_status render_view(relume_renderer *r, const struct relume_camera *camera,
                                  struct relume_image *out)
 {
-    if (camera->view < 0 || camera->view >= r->info->views)
-        return log_fail(r->params.log, RELUME_EINVAL, "view %d does not exist; expected 0 to %d",
-                        camera->view, r->info->views - 1);
-    struct relume_image view = {0};
-    relume_status status = renderer_relight(r, camera->view, &view);
-    if (status || (camera->width == view.width && camera->height == view.height)) {
-        *out = view;
-        return status;
-    }
-    status = scale_view(r, camera, &view, out);
-    relume_image_destroy(&view);
-    return status;
+    if (check_view(r, camera))
+        return RELUME_EINVAL;
+    const struct relume_image *view = &r->image[r->shown][camera->view];
+    const bool whole = is_whole_view(r, camera);
+    if (whole && r->shown == SHOWN_LIGHT)
+        return renderer_relight(r, camera->view, out);
+    const relume_status status = renderer_need(r, camera->view);
+    if (status || !whole)
+        return status ? status : scale_view(r, camera, view, out);
+    const relume_status made = relume_image_create(out, view->width, view->height, 3);
+    if (!made)
+        memcpy(out->data, view->data,
+               3 * (size_t)view->width * (size_t)view->height * sizeof *out->data);
+    return made;
 }
 
-static relume_status render_look(const struct renderer *r, const struct relume_camera *camera,
+static relume_status render_look(relume_renderer *r, const struct relume_camera *camera,
                                  struct relume_image *out)
 {
     if (r->info->geometry.projection < RELUME_CYLINDRICAL)
         return log_fail(r->params.log, RELUME_EINVAL,
                         "pan, tilt and zoom need a panorama; this file is %s",
                         relume_projection_name(r->info->geometry.projection));
-    struct relume_image view = {0};
-    relume_status status = renderer_relight(r, camera->view, &view);
+    relume_status status = check_view(r, camera);
+    if (!status)
+        status = renderer_need(r, camera->view);
     if (!status)
         status = relume_image_create(out, camera->width, camera->height, 3);
-    if (!status)
-        status = relume_panorama_frame(out, &r->info->geometry, &view, camera->look, &r->view);
-    relume_image_destroy(&view);
-    return status;
+    return status
+               ? status
+               : relume_panorama_frame(out, &r->info->geometry, &r->image[r->shown][camera->view],
+                                       camera->look, &r->view);
 }
 
-static relume_status check_size(const struct renderer *r, const int frame[2])
+static relume_status check_size(const relume_renderer *r, const int frame[2])
 {
     if (frame[0] >= 1 && frame[1] >= 1 && (int64_t)frame[0] * frame[1] <= 1 << 30)
         return RELUME_OK;
@@ -238,7 +83,7 @@ static relume_status check_size(const struct renderer *r, const int frame[2])
                     frame[1]);
 }
 
-static relume_status render(const struct renderer *r, const struct relume_camera *camera,
+static relume_status render(relume_renderer *r, const struct relume_camera *camera,
                             struct relume_image *out)
 {
     switch (camera->framing) {
@@ -252,46 +97,171 @@ static relume_status render(const struct renderer *r, const struct relume_camera
     return RELUME_EINVAL;
 }
 
+// The picture alone, without what lies beside it; `place` says where it belongs in `frame`.
+static relume_status draw_picture(struct relume_image *out, struct relume_place *place,
+                                  int frame[2], relume_renderer *r,
+                                  const struct relume_camera *camera, enum shown shown)
+{
+    struct relume_camera within = *camera;
+    *out = (struct relume_image){0};
+    *place = relume_camera_place(frame, r->info, camera);
+    within.width = place->width;
+    within.height = place->height;
+    relume_status status = check_size(r, frame);
+    renderer_begin(r, shown);
+    if (!status)
+        status = render(r, &within, out);
+    if (status)
+        relume_image_destroy(out);
+    if (!status && shown == SHOWN_LIGHT && (place->width < frame[0] || place->height < frame[1]))
+        renderer_note(
+            r, NOTE_BORDERS,
+            "the picture does not have the proportions %d x %d: it fills %d x %d, with black "
+            "borders; give the width alone to avoid them",
+            frame[0], frame[1], place->width, place->height);
+    return status;
+}
+
+// ---------------------------------------------------------------- frames
+
+static relume_status draw_frame(struct relume_image *out, relume_renderer *r,
+                                const struct relume_camera *camera, enum shown shown)
+{
+    struct relume_place place;
+    struct relume_image picture;
+    int frame[2];
+    relume_status status = draw_picture(&picture, &place, frame, r, camera, shown);
+    *out = picture;
+    if (status || (place.width == frame[0] && place.height == frame[1]))
+        return status;
+    status = relume_image_create(out, frame[0], frame[1], 3);
+    const size_t row = 3 * (size_t)frame[0], samples = row * (size_t)frame[1];
+    for (size_t i = 0; !status && shown == SHOWN_PLACES && i < samples; i++)
+        out->data[i] = r->view.nothing;
+    for (int y = 0; !status && y < place.height; y++)
+        memcpy(out->data + row * (size_t)(place.top + y) + 3 * (size_t)place.left,
+               picture.data + 3 * (size_t)place.width * (size_t)y,
+               3 * (size_t)place.width * sizeof *out->data);
+    relume_image_destroy(&picture);
+    return status;
+}
+
+relume_status relume_renderer_frame(struct relume_image *out, relume_renderer *r,
+                                    const struct relume_camera *camera)
+{
+    return draw_frame(out, r, camera, SHOWN_LIGHT);
+}
+
+relume_status relume_renderer_places(struct relume_image *out, relume_renderer *r,
+                                     const struct relume_camera *camera)
+{
+    return draw_frame(out, r, camera, SHOWN_PLACES);
+}
+
 relume_status relume_frame(struct relume_image *out, relume_pack *pack,
                            const struct relume_camera *camera, const struct relume_light *lights,
                            int n, const struct relume_frame_params *params)
 {
-    struct shared shared = {0};
-    const struct renderer r = renderer_of(pack, lights, n, params, &shared);
-    struct relume_camera within = *camera;
-    int frame[2];
-    const struct relume_place place = relume_camera_place(frame, r.info, camera);
+    relume_renderer *r;
     *out = (struct relume_image){0};
-    within.width = place.width;
-    within.height = place.height;
-    relume_status status = check_size(&r, frame);
+    relume_status status = relume_renderer_create(&r, pack, params);
     if (!status)
-        status = render(&r, &within, out);
+        status = relume_renderer_set_lights(r, lights, n);
     if (!status)
-        status = frame_put(out, &place, frame, &r);
+        status = relume_renderer_frame(out, r, camera);
+    relume_renderer_destroy(&r);
+    return status;
+}
+
+// ---------------------------------------------------------------- targets
+
+static size_t pixel_bytes(enum relume_target_format format)
+{
+    return format == RELUME_TARGET_RGB    ? 3 * sizeof(float)
+           : format == RELUME_TARGET_RGBA ? 4 * sizeof(float)
+                                          : 4;
+}
+
+static ptrdiff_t stride_of(const struct relume_target *t)
+{
+    return t->stride ? t->stride : (ptrdiff_t)((size_t)t->width * pixel_bytes(t->format));
+}
+
+static bool is_packed(const struct relume_target *t)
+{
+    return stride_of(t) == (ptrdiff_t)((size_t)t->width * pixel_bytes(t->format));
+}
+
+// A whole view without a pass, from the codes into memory without gaps.
+static relume_status draw_straight(relume_renderer *r, const struct relume_camera *camera,
+                                   const struct relume_target *t)
+{
+    struct relume_relit relit;
+    struct relume_image image = {t->width, t->height, 3, t->data};
+    renderer_begin(r, SHOWN_LIGHT);
+    relume_status status = check_view(r, camera);
+    if (!status)
+        status = renderer_relit(&relit, r, camera->view);
     if (status)
-        relume_image_destroy(out);
-    shared_destroy(&shared);
+        return status;
+    status = t->format == RELUME_TARGET_RGB
+                 ? relume_relighter_relight(&image, r->relighter, &relit)
+                 : relume_relighter_rgba8(t->data, r->relighter, &relit, (double)t->exposure_ev);
+    r->said |= !status;
     return status;
 }
 
-// ---------------------------------------------------------------- rays
+struct putting {
+    const struct relume_target *target;
+    const struct relume_image *picture;
+    struct relume_place place;
+    struct byte_coder coder;
+};
 
-relume_status relume_query_rays(float (*rgb)[3], relume_pack *pack, const struct relume_ray *rays,
-                                int n, const struct relume_light *lights, int light_count,
-                                const struct relume_frame_params *params)
+static void put_row(void *context, size_t y, int worker)
 {
-    struct shared shared = {0};
-    const struct renderer r = renderer_of(pack, lights, light_count, params, &shared);
-    const relume_status status = query_rays(rgb, &r, rays, n);
-    shared_destroy(&shared);
-    return status;
+    (void)worker;
+    const struct putting *p = context;
+    const struct relume_target *t = p->target;
+    const size_t pixel = pixel_bytes(t->format), n = (size_t)p->place.width;
+    const ptrdiff_t in = (ptrdiff_t)y - p->place.top;
+    char *row = (char *)t->data + (ptrdiff_t)y * stride_of(t);
+    memset(row, 0, (size_t)t->width * pixel);
+    if (in < 0 || in >= p->place.height)
+        return;
+    const float *from = p->picture->data + 3 * n * (size_t)in;
+    void *to = row + pixel * (size_t)p->place.left;
+    float *rgba = to;
+    if (t->format == RELUME_TARGET_RGB)
+        memcpy(to, from, n * pixel);
+    if (t->format == RELUME_TARGET_RGBA8)
+        byte_code(to, from, n, &p->coder);
+    for (size_t x = 0; t->format == RELUME_TARGET_RGBA && x < n; x++) {
+        memcpy(rgba + 4 * x, from + 3 * x, 3 * sizeof *rgba);
+        rgba[4 * x + 3] = 1.0f;
+    }
 }
 
-relume_status relume_query(float rgb[3], relume_pack *pack, struct relume_vec3 eye,
-                           struct relume_vec3 direction, const struct relume_light *lights, int n,
-                           const struct relume_frame_params *params)
+relume_status relume_renderer_draw(relume_renderer *r, const struct relume_camera *camera,
+                                   const struct relume_target *target)
 {
-    const struct relume_ray ray = {eye, direction};
-    return relume_query_rays((float(*)[3])rgb, pack, &ray, 1, lights, n, params);
+    struct relume_camera sized = *camera;
+    struct relume_image picture;
+    struct putting putting = {.target = target, .picture = &picture};
+    int frame[2];
+    if (!target->data || target->width < 1 || target->height < 1)
+        return log_fail(r->params.log, RELUME_EINVAL, "the target has no memory or no size");
+    sized.width = target->width;
+    sized.height = target->height;
+    if (is_whole_view(r, &sized) && r->params.pass == RELUME_PASS_COLOUR && is_packed(target) &&
+        target->format != RELUME_TARGET_RGBA)
+        return draw_straight(r, &sized, target);
+    const relume_status status =
+        draw_picture(&picture, &putting.place, frame, r, &sized, SHOWN_LIGHT);
+    if (status)
+        return status;
+    byte_coder_init(&putting.coder, exp2f(target->exposure_ev));
+    thread_for(r->params.threads, (size_t)target->height, put_row, &putting);
+    relume_image_destroy(&picture);
+    return RELUME_OK;
 }

@@ -2,7 +2,7 @@
 #include <relume/sight.h>
 
 #include "base/memory.h"
-#include "math/vec.h"
+#include "frame/renderer.h"
 
 static const double far_away = 1e6;  // of directional lights, in widths of the picture
 enum { FACETS = 8 };                 // of an area light, along one side
@@ -118,25 +118,28 @@ static bool hidden(void *user, const double xy[2], vec3 point)
     return !isnan(surface.x) && relume_sight_hides(s->sight, surface, point);
 }
 
-relume_status relume_frame_lamps(struct relume_image *frame, int *seen, relume_pack *pack,
-                                 const struct relume_camera *camera,
-                                 const struct relume_light *lights, int n,
-                                 const struct relume_frame_params *params)
+relume_status relume_frame_lamps(struct relume_image *frame, int *seen, relume_renderer *renderer,
+                                 const struct relume_camera *camera)
 {
-    struct relume_frame_params where = params ? *params : (struct relume_frame_params){0};
+    relume_renderer *r = renderer;
+    const struct relume_frame_params params = r->params;
+    struct relume_frame_params sharp = params;
+    struct relume_camera sized = *camera;
     struct relume_sight sight;
     struct scene scene = {.sight = &sight};
     struct relume_source *sources = NULL;
-    where.places = true;
-    where.aperture = where.focus = 0.0;
-    where.pass = RELUME_PASS_COLOUR;
-    relume_status status = relume_frame_sight(&sight, pack, camera, frame->width, frame->height);
-    if (!status && relume_pack_info(pack)->has_depth)
-        status = relume_frame(&scene.places, pack, camera, NULL, 0, &where);
+    sharp.aperture = sharp.focus = 0.0;
+    sized.width = frame->width;
+    sized.height = frame->height;
+    relume_status status = relume_frame_sight(&sight, r->pack, camera, frame->width, frame->height);
+    r->params = sharp;
+    if (!status && r->info->has_depth)
+        status = relume_renderer_places(&scene.places, r, &sized);
+    r->params = params;
     if (!status && !(sources = mem_array(RELUME_SOURCES_MOST, sizeof *sources)))
         status = RELUME_ENOMEM;
     const int count = status ? 0
-                             : relume_sight_lamps(sources, &sight, lights, n,
+                             : relume_sight_lamps(sources, &sight, r->lights, r->light_count,
                                                   scene.places.data ? hidden : NULL, &scene);
     relume_sources_draw(frame, sources, count);
     if (seen)

@@ -5,40 +5,30 @@
 #include "base/memory.h"
 #include "frame/renderer.h"
 
-#include <relume/slabs.h>
-#include <string.h>
+#include <relume/sight.h>
 
 struct rays {
-    const struct renderer *r;
+    relume_renderer *r;
     bool by_depth;
-    struct relume_image *image;      // [views], of those that were needed
-    struct relume_image *disparity;  // [views]
-    double (*range)[2];              // [views], of disparities
-    bool *needed;                    // [views], by one ray
-    relume_slab *slab;               // a single slab, or ...
-    relume_slabs *slabs;             // ... several
-    const char *none;                // why the file does not hold a ray
+    double (*range)[2];  // [views], of disparities
+    const char *none;    // why the file does not hold a ray
 };
-
-// ---------------------------------------------------------------- views
 
 static relume_status need(struct rays *q, int view)
 {
-    struct renderer quiet = *q->r;
-    const relume_slab *slab = q->slab;
-    if (q->image[view].data)
-        return RELUME_OK;
-    for (int i = 0; i < q->r->info->views; i++)  // what there is to say of lights is said once
-        if (q->image[i].data)
-            quiet.params.log = NULL;
-    relume_status status = renderer_relight(&quiet, view, &q->image[view]);
-    if (q->slabs)
-        slab = relume_slabs_slab(q->slabs, q->r->info->slab_of[view]);
+    relume_renderer *r = q->r;
+    const bool known = r->kept[view].used == r->frame;
+    relume_status status = renderer_need(r, view);
     if (!status && q->by_depth)
-        status = renderer_disparity(&q->disparity[view], q->r, slab, view);
-    if (!status && q->by_depth)
-        (void)relume_slab_range(q->range[view], &q->disparity[view]);
+        status = renderer_need_disparity(r, view);
+    if (!status && q->by_depth && !known)
+        (void)relume_slab_range(q->range[view], &r->disparity[view]);
     return status;
+}
+
+static const struct relume_image *images(const struct rays *q)
+{
+    return q->r->image[SHOWN_LIGHT];
 }
 
 // ---------------------------------------------------------------- one ray
@@ -60,7 +50,7 @@ static relume_status planar(struct rays *q, const struct relume_ray *ray, float 
         return none(q, "it misses the window");
     const relume_status status = need(q, 0);
     if (!status)
-        ray_sample(rgb, &q->image[0], xy[0], xy[1]);
+        ray_sample(rgb, &images(q)[0], xy[0], xy[1]);
     return status;
 }
 
@@ -71,7 +61,7 @@ static relume_status panorama(struct rays *q, const struct relume_ray *ray, floa
     if (vec3_length(vec3_sub(ray->eye, g->center)) > 1e-6 * (1.0 + vec3_length(g->center)))
         return none(q, "a panorama has one eye, its centre");
     const relume_status status = need(q, 0);
-    if (!status && !relume_panorama_sample(rgb, g, &q->image[0], vec3_unit(ray->direction)))
+    if (!status && !relume_panorama_sample(rgb, g, &images(q)[0], vec3_unit(ray->direction)))
         return none(q, "it misses the panorama");
     return status;
 }
@@ -81,7 +71,7 @@ static relume_status blend(struct rays *q, const int *view, const double *weight
 {
     for (int i = 0; i < count; i++) {
         float value[3];
-        ray_sample(value, &q->image[view[i]], xy[0], xy[1]);
+        ray_sample(value, &images(q)[view[i]], xy[0], xy[1]);
         for (int c = 0; c < 3; c++)
             rgb[c] += (float)weight[i] * value[c];
     }
@@ -91,7 +81,7 @@ static relume_status blend(struct rays *q, const int *view, const double *weight
 static struct relume_view_params view_params(const struct rays *q)
 {
     struct relume_view_params params = q->r->view;
-    params.disparity = q->by_depth ? q->disparity : NULL;
+    params.disparity = q->by_depth ? q->r->disparity : NULL;
     params.range = q->by_depth ? (const double(*)[2])q->range : NULL;
     return params;
 }
@@ -111,15 +101,16 @@ static relume_status one_slab(struct rays *q, const struct relume_ray *ray, floa
         !ray_meets_plane(eye, direction, g->uv_z, uv) ||
         !ray_window_pixel(g->st_min, g->st_max, info->width, info->height, st, xy))
         return none(q, "it misses the window");
-    const int count = relume_slab_blend(view, weight, q->slab, uv, &q->r->view);
+    const int count = relume_slab_blend(view, weight, q->r->slab, uv, &q->r->view);
     if (count == 0)
         return none(q, "it misses the camera grid");
     for (int i = 0; !status && i < count; i++)
         status = need(q, view[i]);
     if (status)
         return status;
-    return count > 1 && q->by_depth ? relume_slab_value(rgb, q->slab, eye, st, q->image, &params)
-                                    : blend(q, view, weight, count, xy, rgb);
+    return count > 1 && q->by_depth
+               ? relume_slab_value(rgb, q->r->slab, eye, st, images(q), &params)
+               : blend(q, view, weight, count, xy, rgb);
 }
 
 static relume_status several_slabs(struct rays *q, const struct relume_ray *ray, float rgb[3])
@@ -127,14 +118,14 @@ static relume_status several_slabs(struct rays *q, const struct relume_ray *ray,
     const struct relume_window window = {.eye = ray->eye,
                                          .corner = vec3_add(ray->eye, ray->direction)};
     const struct relume_view_params params = view_params(q);
-    if (relume_slabs_needs(q->needed, q->slabs, &window, 1, &params) == 0)
+    if (relume_slabs_needs(q->r->needed, q->r->slabs, &window, 1, &params) == 0)
         return none(q, "it misses the camera grids or the windows");
     relume_status status = RELUME_OK;
     for (int i = 0; !status && i < q->r->info->views; i++)
-        if (q->needed[i])
+        if (q->r->needed[i])
             status = need(q, i);
     if (!status)
-        status = relume_slabs_value(rgb, q->slabs, ray->eye, ray->direction, q->image, &params);
+        status = relume_slabs_value(rgb, q->r->slabs, ray->eye, ray->direction, images(q), &params);
     return status == RELUME_EINVAL ? none(q, "it misses the camera grids or the windows") : status;
 }
 
@@ -147,7 +138,7 @@ static relume_status one_ray(struct rays *q, const struct relume_ray *ray, float
                         "direction: expected three numbers, not all 0");
     switch (q->r->info->geometry.projection) {
     case RELUME_PLANAR: return planar(q, ray, rgb);
-    case RELUME_SLAB: return q->slabs ? several_slabs(q, ray, rgb) : one_slab(q, ray, rgb);
+    case RELUME_SLAB: return q->r->slabs ? several_slabs(q, ray, rgb) : one_slab(q, ray, rgb);
     case RELUME_CYLINDRICAL:
     case RELUME_SPHERICAL:
     case RELUME_CUBE: break;
@@ -157,44 +148,22 @@ static relume_status one_ray(struct rays *q, const struct relume_ray *ray, float
 
 // ---------------------------------------------------------------- all rays
 
-static void end(struct rays *q)
+static relume_status begin(struct rays *q, relume_renderer *r)
 {
-    for (int i = 0; i < q->r->info->views; i++) {
-        if (q->image)
-            relume_image_destroy(&q->image[i]);
-        if (q->disparity)
-            relume_image_destroy(&q->disparity[i]);
-    }
-    free(q->image);
-    free(q->disparity);
-    free(q->range);
-    free(q->needed);
-    relume_slab_destroy(&q->slab);
-    relume_slabs_destroy(&q->slabs);
-}
-
-static relume_status begin(struct rays *q, const struct renderer *r)
-{
-    const size_t views = (size_t)r->info->views;
-    *q = (struct rays){.r = r, .by_depth = renderer_takes_depth(r)};
-    relume_status status = renderer_check_depth(r);
-    if (status)
+    const bool slab = r->info->geometry.projection == RELUME_SLAB;
+    renderer_begin(r, SHOWN_LIGHT);
+    *q = (struct rays){.r = r, .by_depth = slab && renderer_takes_depth(r)};
+    const relume_status status = renderer_check_depth(r);
+    if (status || !slab)
         return status;
-    q->image = mem_zeroed(views, sizeof *q->image);
-    q->disparity = mem_zeroed(views, sizeof *q->disparity);
-    q->range = mem_zeroed(views, sizeof *q->range);
-    q->needed = mem_zeroed(views, sizeof *q->needed);
-    if (!q->image || !q->disparity || !q->range || !q->needed)
-        return RELUME_ENOMEM;
-    if (r->info->geometry.projection != RELUME_SLAB) {
-        q->by_depth = false;
-        return RELUME_OK;
-    }
-    return r->info->slabs ? renderer_slabs(&q->slabs, r) : renderer_slab(&q->slab, r);
+    q->range = mem_zeroed((size_t)r->info->views, sizeof *q->range);
+    return !q->range        ? RELUME_ENOMEM
+           : r->info->slabs ? renderer_need_slabs(r)
+                            : renderer_need_slab(r);
 }
 
-relume_status query_rays(float (*rgb)[3], const struct renderer *r, const struct relume_ray *rays,
-                         int n)
+relume_status relume_renderer_rays(float (*rgb)[3], relume_renderer *r,
+                                   const struct relume_ray *rays, int n)
 {
     struct rays q;
     relume_status status = begin(&q, r);
@@ -208,6 +177,42 @@ relume_status query_rays(float (*rgb)[3], const struct renderer *r, const struct
         if (!status && i % 4096 == 4095 && !log_progress(r->params.log, "looking", (double)i / n))
             status = RELUME_ECANCEL;
     }
-    end(&q);
+    free(q.range);
     return status;
+}
+
+relume_status relume_renderer_pixel(float rgb[3], relume_renderer *r,
+                                    const struct relume_camera *camera, double x, double y)
+{
+    int frame[2];
+    struct relume_sight sight;
+    struct relume_ray ray;
+    (void)relume_camera_place(frame, r->info, camera);
+    const relume_status status = relume_frame_sight(&sight, r->pack, camera, frame[0], frame[1]);
+    if (status)
+        return status;
+    relume_sight_ray(&ray.eye, &ray.direction, &sight, x, y);
+    return relume_renderer_rays((float(*)[3])rgb, r, &ray, 1);
+}
+
+relume_status relume_query_rays(float (*rgb)[3], relume_pack *pack, const struct relume_ray *rays,
+                                int n, const struct relume_light *lights, int light_count,
+                                const struct relume_frame_params *params)
+{
+    relume_renderer *r;
+    relume_status status = relume_renderer_create(&r, pack, params);
+    if (!status)
+        status = relume_renderer_set_lights(r, lights, light_count);
+    if (!status)
+        status = relume_renderer_rays(rgb, r, rays, n);
+    relume_renderer_destroy(&r);
+    return status;
+}
+
+relume_status relume_query(float rgb[3], relume_pack *pack, struct relume_vec3 eye,
+                           struct relume_vec3 direction, const struct relume_light *lights, int n,
+                           const struct relume_frame_params *params)
+{
+    const struct relume_ray ray = {eye, direction};
+    return relume_query_rays((float(*)[3])rgb, pack, &ray, 1, lights, n, params);
 }

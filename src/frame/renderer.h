@@ -4,65 +4,81 @@
 
 #include "math/vec.h"
 
-#include <relume/frame.h>
+#include <relume/relighter.h>
+#include <relume/renderer.h>
 #include <relume/slabs.h>
 
-// What all views of a frame use; made when first needed.
-struct shared {
-    relume_weight_grid *grid;
-    relume_refit *learned;  // of the first view of the display domain under an environment
+// What is noted of a frame, once: the same words are not said of the next.
+enum note { NOTE_BESIDE, NOTE_BORDERS, NOTES };
+
+// What a frame shows of its views.
+enum shown { SHOWN_LIGHT, SHOWN_PLACES, SHOWN };
+
+// Of one view.
+struct kept {
+    uint64_t used;                // the frame that last needed it
+    uint64_t lit;                 // the lighting that its picture shows; 0: none
+    struct relume_image surface;  // for near lights; empty: not asked for
+    uint64_t code_bytes;          // that the pack holds for it
 };
 
-struct renderer {
+struct relume_renderer {
     relume_pack *pack;
     const struct relume_pack_info *info;
-    const struct relume_light *lights;
-    int light_count;
     struct relume_frame_params params;
-    struct relume_view_params view;
-    struct shared *shared;
+    struct relume_view_params view;  // of the present frame
+    struct relume_light *lights;
+    int light_count;
+    uint64_t lighting;  // counts: lights, or what else pictures depend on, have changed
+    uint64_t frame;     // counts
+    bool said;          // what there is to say of these lights
+    char note[NOTES][200];
+    enum shown shown;
+    relume_relighter *relighter;
+    struct kept *kept;                  // [views]
+    struct relume_image *image[SHOWN];  // [views]
+    struct relume_image *disparity;     // [views]
+    bool *needed;                       // [views]: by the present frame
+    relume_slab *slab;                  // of a single slab, ...
+    relume_slabs *slabs;                // ... of several; NULL: not needed yet
 };
 
-relume_status renderer_relight(const struct renderer *r, int view, struct relume_image *out);
+__attribute__((format(printf, 3, 4))) void renderer_note(relume_renderer *r, enum note note,
+                                                         const char *format, ...);
 
-// The views of a slab that a frame needs, relit, and their disparities where it takes depth.
-struct gathered {
-    bool *needed;                    // [views]
-    struct relume_image *images;     // [views]
-    struct relume_image *disparity;  // [views], or NULL
-    int views;
-};
-relume_status gathered_create(struct gathered *g, const struct renderer *r);
-void gathered_destroy(struct gathered *g);
-// Relight what is marked. `slab_of` gives the slab of a view.
-relume_status gathered_fill(struct gathered *g, const struct renderer *r, bool by_depth,
-                            const relume_slab *(*slab_of)(const void *slabs, int view),
-                            const void *slabs);
+// Begin a frame that shows light or places: trims what is kept.
+void renderer_begin(relume_renderer *r, enum shown shown);
+// The image of `view` as the frame shows it, in r->image[r->shown][view], ...
+relume_status renderer_need(relume_renderer *r, int view);
+// ... and its disparities.
+relume_status renderer_need_disparity(relume_renderer *r, int view);
+// Every view that r->needed marks, with disparities where `by_depth`.
+relume_status renderer_need_all(relume_renderer *r, bool by_depth);
+// The present lights in a view, into an image of the caller's (empty: it is created).
+relume_status renderer_relight(relume_renderer *r, int view, struct relume_image *out);
+// What relighting a view takes.
+relume_status renderer_relit(struct relume_relit *relit, relume_renderer *r, int view);
+
+// r->slab, or r->slabs.
+relume_status renderer_need_slab(relume_renderer *r);
+relume_status renderer_need_slabs(relume_renderer *r);
+
+// Refuses interpolation by depth where there is none.
+relume_status renderer_check_depth(const relume_renderer *r);
 // The file has depth, and no other interpolation was asked for: several slabs and free eyes go by
 // it.
-bool renderer_may_take_depth(const struct renderer *r);
+bool renderer_may_take_depth(const relume_renderer *r);
 // So does one slab, but for a lens.
-bool renderer_takes_depth(const struct renderer *r);
+bool renderer_takes_depth(const relume_renderer *r);
 
-// Of a slab, or of several.
-relume_status frame_eye(const struct renderer *r, const struct relume_camera *camera,
-                        struct relume_image *out);
-relume_status frame_around(const struct renderer *r, const struct relume_camera *camera,
+// A frame of camera->width x camera->height: `*out` is created.
+relume_status frame_render(relume_renderer *r, const struct relume_camera *camera,
                            struct relume_image *out);
-// The cameras of the file. RELUME_EDATA with a sentence, RELUME_ENOMEM.
-relume_status renderer_slab(relume_slab **slab, const struct renderer *r);
-relume_status renderer_slabs(relume_slabs **slabs, const struct renderer *r);
-// RELUME_EDATA when depth is asked for that the file does not have.
-relume_status renderer_check_depth(const struct renderer *r);
-relume_status renderer_disparity(struct relume_image *out, const struct renderer *r,
-                                 const relume_slab *slab, int view);
-// As relume_query_rays.
-relume_status query_rays(float (*rgb)[3], const struct renderer *r, const struct relume_ray *rays,
-                         int n);
-
-// Put the picture into its place of a frame, with black beside it.
-relume_status frame_put(struct relume_image *image, const struct relume_place *place,
-                        const int frame[2], const struct renderer *r);
+// Of a slab, or of several.
+relume_status frame_eye(relume_renderer *r, const struct relume_camera *camera,
+                        struct relume_image *out);
+relume_status frame_around(relume_renderer *r, const struct relume_camera *camera,
+                           struct relume_image *out);
 
 // ---------------------------------------------------------------- one ray
 // Bilinear in linear light with the border clamped; pixel centres are at +0.5.

@@ -1,6 +1,4 @@
 // into.c - objects in a relit scene
-#include "base/inputs.h"
-#include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
 #include "object/object.h"
@@ -91,16 +89,18 @@ static void add_row(void *context, size_t row, int worker)
     }
 }
 
-static relume_status add_light(struct shadows *s, relume_pack *pack,
+static relume_status add_light(struct shadows *s, relume_renderer *renderer,
                                const struct relume_camera *camera, const struct relume_light *light,
-                               const struct relume_frame_params *frame, int threads)
+                               int threads)
 {
-    struct relume_image lone;
+    struct relume_image lone = {0};
     struct relume_lamp *lamps;
     relume_status status = relume_objects_lamps(&lamps, &s->n, s->o, light, 1);
     if (status)
         return status;
-    status = relume_frame(&lone, pack, camera, light, 1, frame);
+    status = relume_renderer_set_lights(renderer, light, 1);
+    if (!status)
+        status = relume_renderer_frame(&lone, renderer, camera);
     s->lamps = lamps;
     s->lone = &lone;
     if (!status)
@@ -150,61 +150,42 @@ static relume_status layer(struct relume_image *out, const struct layered *l,
     return status ? status : objects_trace(out, layered_value, l, params);
 }
 
-// What is to be noted of a frame is so under the first light.
-static void say_no_note(void *user, enum relume_level level, const char *text)
-{
-    if (level != RELUME_NOTE)
-        log_line(user, level, "%s", text);
-}
-
-static bool pass_progress(void *user, const char *what, double done)
-{
-    return log_progress(user, what, done);
-}
-
+// Each light alone, in the shadow of the objects; the renderer has all of them again at the end.
 static relume_status light_scene(struct relume_image *scene, const struct relume_image *places,
-                                 const relume_objects *o, relume_pack *pack,
+                                 const relume_objects *o, relume_renderer *renderer,
                                  const struct relume_camera *camera,
                                  const struct relume_light *lights, int n,
-                                 const struct relume_frame_params *frame,
                                  const struct relume_render_params *params)
 {
     struct shadows s = {
         .o = o, .places = places, .sum = scene, .none = params && params->no_shadows};
-    const struct relume_log errors = {say_no_note, pass_progress, (void *)(uintptr_t)frame->log,
-                                      inputs_of(frame->log), limits_of(NULL, frame->log)};
-    struct relume_frame_params each = *frame;
     relume_status status = relume_image_create(scene, places->width, places->height, 3);
-    for (int i = 0; i < n && !status; i++) {
-        status = add_light(&s, pack, camera, &lights[i], &each, params ? params->threads : 0);
-        each.log = &errors;
-    }
-    return status;
+    for (int i = 0; i < n && !status; i++)
+        status = add_light(&s, renderer, camera, &lights[i], params ? params->threads : 0);
+    const relume_status restored = relume_renderer_set_lights(renderer, lights, n);
+    return status ? status : restored;
 }
 
 relume_status relume_objects_frame(struct relume_image *out, const relume_objects *objects,
-                                   relume_pack *pack, const struct relume_camera *camera,
-                                   const struct relume_light *lights, int n,
-                                   const struct relume_frame_params *frame,
+                                   relume_renderer *renderer, const struct relume_camera *camera,
                                    const struct relume_render_params *params)
 {
-    struct relume_frame_params light = frame ? *frame : (struct relume_frame_params){0};
-    struct relume_frame_params place = light;
-    struct relume_image places, scene = {0};
+    struct relume_image places = {0}, scene = {0};
     struct lighting lighting = {0};
-    *out = (struct relume_image){0};
-    if (light.pass != RELUME_PASS_COLOUR)
-        return log_fail(light.log, RELUME_EINVAL,
-                        "objects can be shown in colour only; leave out --pass");
-    place.places = true;
-    relume_status status = relume_frame(&places, pack, camera, NULL, 0, &place);
     struct relume_sight sight;
+    int n;
+    const struct relume_light *own = relume_renderer_lights(&n, renderer);
+    struct relume_light *lights = mem_copy(own, (size_t)n, sizeof *lights);
+    *out = (struct relume_image){0};
+    relume_status status =
+        lights ? relume_renderer_places(&places, renderer, camera) : RELUME_ENOMEM;
     if (!status)
-        status = relume_frame_sight(&sight, pack, camera, places.width, places.height);
+        status = relume_frame_sight(&sight, relume_renderer_pack(renderer), camera, places.width,
+                                    places.height);
     if (!status)
         status = lighting_create(&lighting, objects, lights, n, params);
     if (!status)
-        status = light_scene(&scene, &places, objects, pack, camera, lights, n, &light, params);
+        status = light_scene(&scene, &places, objects, renderer, camera, lights, n, params);
     const struct layered layers = {objects, &sight, &scene, &places, &lighting};
     if (!status)
         status = layer(out, &layers, params);
@@ -213,5 +194,6 @@ relume_status relume_objects_frame(struct relume_image *out, const relume_object
     relume_image_destroy(&scene);
     relume_image_destroy(&places);
     lighting_destroy(&lighting);
+    free(lights);
     return status;
 }

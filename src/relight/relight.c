@@ -11,7 +11,7 @@
 #include "image/curve.h"
 #include "math/vec.h"
 #include "relight/books.h"
-#include "relight/bytes.h"
+#include "image/rgba8.h"
 #include "relight/grid.h"
 #include "relight/kernels.h"
 #include "relight/near.h"

@@ -156,37 +156,6 @@ static void same_as_relight(void **state)
     }
 }
 
-// What rests is not relit: a mark in its picture stays.
-static void only_what_moves_is_relit(void **state)
-{
-    (void)state;
-    struct lender l = make_lender(1, RELUME_DOMAIN_LINEAR);
-    struct relume_light lights[3];
-    const struct target *target;
-    struct relume_image got, marked;
-    struct relighter r;
-    begin(&r, &fixture_gl, &l, 1);
-    r.by_library = true;
-    make_lights(lights, 3);
-    for (int moved = 0; moved < 3; moved++) {
-        expect_view(&r, &l, 0, lights, 3, BOUND, "at rest");
-        for (int i = 0; i < 3; i++)
-            if (i != moved)
-                r.view[0].software.group[i].image.data[0] += 1.0f;
-        assert_int_equal(target_read(&got, &r.view[0].relit, &fixture_gl), RELUME_OK);
-        lights[moved].rgb[1] += 1e-6f;
-        assert_int_equal(relighter_begin(&r, lights, 3), RELUME_OK);
-        assert_int_equal(relighter_view(&target, &r, 0), RELUME_OK);
-        assert_int_equal(target_read(&marked, target, &fixture_gl), RELUME_OK);
-        assert_true(fabsf(marked.data[0] - got.data[0] - 2.0f) < 1e-4f);
-        relume_image_destroy(&got);
-        relume_image_destroy(&marked);
-        relighter_forget(&r);
-    }
-    relighter_destroy(&r);
-    free_lender(&l);
-}
-
 // A view that leaves gives its codes back.
 static void codes_are_given_back(void **state)
 {
@@ -246,7 +215,6 @@ static void without_a_surface(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_as_relight),      cmocka_unit_test(only_what_moves_is_relit),
         cmocka_unit_test(codes_are_given_back), cmocka_unit_test(near_lights_on_many_planes),
         cmocka_unit_test(without_a_surface),
     };

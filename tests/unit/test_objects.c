@@ -345,8 +345,12 @@ static struct relume_image scene_with(relume_pack *pack, double z, const char *m
     write_sample(material, true, false);
     write_square("square.obj", z);
     relume_objects *o = of_mesh(path_of("square.obj"), path_of(material), 1.0);
-    CHECK_OK(relume_objects_frame(&out, o, pack, &(struct relume_camera){0}, light, 1, NULL,
+    relume_renderer *r;
+    CHECK_OK(relume_renderer_create(&r, pack, NULL));
+    CHECK_OK(relume_renderer_set_lights(r, light, 1));
+    CHECK_OK(relume_objects_frame(&out, o, r, &(struct relume_camera){0},
                                   relume_render_params(.samples = 1)));
+    relume_renderer_destroy(&r);
     relume_objects_destroy(&o);
     return out;
 }

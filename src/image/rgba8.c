@@ -1,4 +1,5 @@
-#include "relight/bytes.h"
+// rgba8.c - linear light to sRGB-coded bytes
+#include "image/rgba8.h"
 
 #include <relume/image.h>
 

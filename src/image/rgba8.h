@@ -1,6 +1,6 @@
-// bytes.h - linear light to sRGB-coded bytes, fast enough for every pixel of a frame
-#ifndef RELIGHT_BYTES_H
-#define RELIGHT_BYTES_H
+// rgba8.h - linear light to sRGB-coded bytes, fast enough for every pixel of a frame
+#ifndef IMAGE_RGBA8_H
+#define IMAGE_RGBA8_H
 
 #include <stddef.h>
 #include <stdint.h>

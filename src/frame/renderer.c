@@ -1,0 +1,423 @@
+// renderer.c - a file under lights: what frames share, and how long it is kept
+#include "frame/renderer.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "frame/passes.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static const uint64_t DEFAULT_MEMORY = (uint64_t)1 << 30;
+
+// ---------------------------------------------------------------- what is kept
+
+static uint64_t image_bytes(const struct relume_image *image)
+{
+    return image->data ? (uint64_t)image->width * (uint64_t)image->height *
+                             (uint64_t)image->channels * sizeof *image->data
+                       : 0;
+}
+
+static uint64_t codes_bytes(const struct relume_codes *codes)
+{
+    const size_t size = codes->books ? 2 : relume_storage_bytes(codes->storage);
+    return (uint64_t)codes->width * (uint64_t)codes->height * size *
+           (uint64_t)(codes->books ? codes->books : codes->planes);
+}
+
+static uint64_t view_bytes(const relume_renderer *r, int view)
+{
+    const struct kept *k = &r->kept[view];
+    uint64_t bytes = relume_relighter_bytes(r->relighter, view) + image_bytes(&k->surface) +
+                     image_bytes(&r->disparity[view]);
+    for (int i = 0; i < SHOWN; i++)
+        bytes += image_bytes(&r->image[i][view]);
+    return bytes + k->code_bytes;
+}
+
+uint64_t relume_renderer_bytes(const relume_renderer *r)
+{
+    uint64_t bytes = 0;
+    for (int i = 0; i < r->info->views; i++)
+        bytes += view_bytes(r, i);
+    return bytes;
+}
+
+// Positions, which the assumed depth changes.
+static void forget_places(relume_renderer *r, int view)
+{
+    relume_image_destroy(&r->kept[view].surface);
+    relume_image_destroy(&r->image[SHOWN_PLACES][view]);
+}
+
+static void forget(relume_renderer *r, int view)
+{
+    struct kept *k = &r->kept[view];
+    forget_places(r, view);
+    relume_image_destroy(&r->image[SHOWN_LIGHT][view]);
+    relume_image_destroy(&r->disparity[view]);
+    relume_relighter_drop(r->relighter, view);
+    if (k->code_bytes)
+        relume_pack_drop(r->pack, view);
+    *k = (struct kept){0};
+}
+
+void relume_renderer_forget(relume_renderer *r)
+{
+    for (int i = 0; i < r->info->views; i++)
+        forget(r, i);
+}
+
+// Leave out the oldest until the rest fits. What the last frame used stays for the next one.
+static void trim(relume_renderer *r)
+{
+    const uint64_t most = r->params.memory ? r->params.memory : DEFAULT_MEMORY;
+    uint64_t bytes = relume_renderer_bytes(r);
+    while (bytes > most) {
+        int oldest = -1;
+        for (int i = 0; i < r->info->views; i++)
+            if (r->kept[i].used && r->kept[i].used < r->frame &&
+                (oldest < 0 || r->kept[i].used < r->kept[oldest].used))
+                oldest = i;
+        if (oldest < 0)
+            return;
+        bytes -= view_bytes(r, oldest);
+        forget(r, oldest);
+    }
+}
+
+void renderer_begin(relume_renderer *r, enum shown shown)
+{
+    const struct relume_frame_params *p = &r->params;
+    trim(r);
+    r->frame++;
+    r->shown = shown;
+    r->view = (struct relume_view_params){.threads = p->threads,
+                                          .interpolation = p->interpolation,
+                                          .aperture = p->aperture,
+                                          .focus = p->focus,
+                                          .filter = p->filter,
+                                          .one = shown == SHOWN_PLACES,
+                                          .nothing = shown == SHOWN_PLACES ? NAN : 0.0f};
+    memset(r->needed, 0, (size_t)r->info->views * sizeof *r->needed);
+}
+
+void renderer_note(relume_renderer *r, enum note note, const char *format, ...)
+{
+    char text[sizeof *r->note];
+    va_list args;
+    va_start(args, format);
+    (void)vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    if (!strcmp(text, r->note[note]))
+        return;
+    memcpy(r->note[note], text, sizeof text);
+    log_line(r->params.log, RELUME_NOTE, "%s", text);
+}
+
+// ---------------------------------------------------------------- life
+
+static bool create_arrays(relume_renderer *r)
+{
+    const size_t views = (size_t)r->info->views;
+    r->kept = mem_zeroed(views, sizeof *r->kept);
+    r->disparity = mem_zeroed(views, sizeof *r->disparity);
+    r->needed = mem_zeroed(views, sizeof *r->needed);
+    for (int i = 0; i < SHOWN; i++)
+        r->image[i] = mem_zeroed(views, sizeof *r->image[i]);
+    return r->kept && r->disparity && r->needed && r->image[SHOWN_LIGHT] && r->image[SHOWN_PLACES];
+}
+
+relume_status relume_renderer_create(relume_renderer **out, relume_pack *pack,
+                                     const struct relume_frame_params *params)
+{
+    relume_renderer *r = *out = mem_zeroed(1, sizeof *r);
+    if (!r)
+        return RELUME_ENOMEM;
+    r->pack = pack;
+    r->info = relume_pack_info(pack);
+    r->params = params ? *params : (struct relume_frame_params){0};
+    r->lighting = 1;
+    relume_status status = create_arrays(r) ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)  // last: who is there has the arrays
+        status = relume_relighter_create(
+            &r->relighter, r->info->views,
+            relume_relighter_params(.cpu_off = r->params.cpu_off, .threads = r->params.threads));
+    if (status)
+        relume_renderer_destroy(out);
+    return status;
+}
+
+void relume_renderer_destroy(relume_renderer **renderer)
+{
+    relume_renderer *r = *renderer;
+    *renderer = NULL;
+    if (!r)
+        return;
+    for (int i = 0; r->relighter && i < r->info->views; i++) {
+        r->kept[i].code_bytes = 0;  // the pack keeps its codes for others
+        forget(r, i);
+    }
+    relume_relighter_destroy(&r->relighter);
+    relume_slab_destroy(&r->slab);
+    relume_slabs_destroy(&r->slabs);
+    for (int i = 0; i < SHOWN; i++)
+        free(r->image[i]);
+    free(r->kept);
+    free(r->disparity);
+    free(r->needed);
+    free(r->lights);
+    free(r);
+}
+
+relume_pack *relume_renderer_pack(const relume_renderer *r)
+{
+    return r->pack;
+}
+
+void relume_renderer_set(relume_renderer *r, const struct relume_frame_params *params)
+{
+    const struct relume_frame_params old = r->params;
+    r->params = params ? *params : (struct relume_frame_params){0};
+    r->params.log = old.log;
+    r->params.threads = old.threads;
+    r->params.cpu_off = old.cpu_off;
+    const bool moved = r->params.assume_depth != old.assume_depth;
+    for (int i = 0; moved && i < r->info->views; i++)
+        forget_places(r, i);
+    if (moved || r->params.pass != old.pass || r->params.capture != old.capture)
+        r->lighting++;
+}
+
+relume_status relume_renderer_set_lights(relume_renderer *r, const struct relume_light *lights,
+                                         int n)
+{
+    if (n < 0)
+        return RELUME_EINVAL;
+    struct relume_light *copy = mem_array((size_t)n, sizeof *copy);
+    if (!copy)
+        return RELUME_ENOMEM;
+    if (n)
+        memcpy(copy, lights, (size_t)n * sizeof *copy);
+    free(r->lights);
+    r->lights = copy;
+    r->light_count = n;
+    r->lighting++;
+    r->said = false;
+    return RELUME_OK;
+}
+
+const struct relume_light *relume_renderer_lights(int *n, const relume_renderer *r)
+{
+    *n = r->light_count;
+    return r->lights;
+}
+
+relume_status relume_renderer_set_rig(relume_renderer *r, relume_rig *rig)
+{
+    const struct relume_light *lights;
+    int n;
+    const relume_status status = relume_rig_lights(&lights, &n, rig);
+    return status ? status : relume_renderer_set_lights(r, lights, n);
+}
+
+// ---------------------------------------------------------------- cameras
+
+relume_status renderer_check_depth(const relume_renderer *r)
+{
+    if (r->view.interpolation == RELUME_INTERPOLATE_DEPTH && !r->info->has_depth)
+        return log_fail(r->params.log, RELUME_EDATA,
+                        "interpolation by depth needs a file with depth; use --interpolate linear");
+    return RELUME_OK;
+}
+
+bool renderer_may_take_depth(const relume_renderer *r)
+{
+    const struct relume_view_params *v = &r->view;
+    return r->info->has_depth && (v->interpolation == RELUME_INTERPOLATE_DEFAULT ||
+                                  v->interpolation == RELUME_INTERPOLATE_DEPTH);
+}
+
+bool renderer_takes_depth(const relume_renderer *r)
+{
+    return r->view.aperture == 0.0 && r->view.focus == 0.0 && renderer_may_take_depth(r);
+}
+
+static relume_status no_grid(const relume_renderer *r, relume_status status, const char *slab)
+{
+    return status == RELUME_EINVAL
+               ? log_fail(r->params.log, RELUME_EDATA, "the cameras of %s do not form a grid", slab)
+               : status;
+}
+
+relume_status renderer_need_slab(relume_renderer *r)
+{
+    return r->slab ? RELUME_OK
+                   : no_grid(r,
+                             relume_slab_create(&r->slab, &r->info->geometry, r->info->uv,
+                                                r->info->views),
+                             "the slab");
+}
+
+relume_status renderer_need_slabs(relume_renderer *r)
+{
+    const struct relume_pack_info *info = r->info;
+    return r->slabs
+               ? RELUME_OK
+               : no_grid(r,
+                         relume_slabs_create(&r->slabs, info->slabs ? info->slab : &info->geometry,
+                                             info->slabs ? info->slabs : 1, info->uv, info->slab_of,
+                                             info->views),
+                         "a slab");
+}
+
+// ---------------------------------------------------------------- where pixels lie
+
+static relume_status assume_depth(const relume_renderer *r, struct relume_image *depth)
+{
+    const size_t n = (size_t)r->info->width * (size_t)r->info->height;
+    const relume_status status = relume_image_create(depth, r->info->width, r->info->height, 1);
+    for (size_t i = 0; !status && i < n; i++)
+        depth->data[i] = (float)r->params.assume_depth;
+    return status;
+}
+
+// Background is a thousand times as far as the farthest surface, so that it is finite between
+// pixels.
+static void fill_background(struct relume_image *depth)
+{
+    const size_t n = (size_t)depth->width * (size_t)depth->height;
+    float farthest = 1.0f;
+    for (size_t i = 0; i < n; i++)
+        if (isfinite(depth->data[i]))
+            farthest = fmaxf(farthest, depth->data[i]);
+    for (size_t i = 0; i < n; i++)
+        if (!isfinite(depth->data[i]))
+            depth->data[i] = 1e3f * farthest;
+}
+
+// What `asks` says needs to know where the pixels lie.
+static relume_status find_positions(relume_renderer *r, int view, bool background,
+                                    struct relume_image *out, const char *asks)
+{
+    struct relume_image depth;
+    relume_status status = relume_pack_depth(&depth, r->pack, view);
+    if (!status && depth.data && background)
+        fill_background(&depth);
+    if (!status && !depth.data && r->params.assume_depth > 0.0)
+        status = assume_depth(r, &depth);
+    if (!status)
+        status = relume_surface(out, relume_pack_geometry(r->pack, view), r->info->uv[view],
+                                depth.data ? &depth : NULL, r->info->width, r->info->height);
+    if (status == RELUME_EINVAL)
+        status = log_fail(r->params.log, RELUME_EDATA,
+                          "%s; use a file with depth, or "
+                          "--assume-depth D",
+                          asks);
+    relume_image_destroy(&depth);
+    return status;
+}
+
+static relume_status need_places(relume_renderer *r, int view)
+{
+    struct relume_image *out = &r->image[SHOWN_PLACES][view];
+    return out->data
+               ? RELUME_OK
+               : find_positions(r, view, true, out, "objects need to know how far the scene is");
+}
+
+static relume_status need_surface(relume_renderer *r, int view)
+{
+    struct kept *k = &r->kept[view];
+    const struct relume_light *near = NULL;
+    for (int i = 0; i < r->light_count && !near; i++)
+        if (relume_light_is_near(r->lights[i].kind))
+            near = &r->lights[i];
+    if (!near || k->surface.data)
+        return RELUME_OK;
+    char asks[80];
+    (void)snprintf(asks, sizeof asks, "a near light (%s) needs to know how far the surface is",
+                   relume_light_kind_name(near->kind));
+    return find_positions(r, view, false, &k->surface, asks);
+}
+
+relume_status renderer_need_disparity(relume_renderer *r, int view)
+{
+    if (r->disparity[view].data)
+        return RELUME_OK;
+    const relume_slab *slab =
+        r->slabs ? relume_slabs_slab(r->slabs, r->info->slab_of ? r->info->slab_of[view] : 0)
+                 : r->slab;
+    struct relume_image depth = {0};
+    relume_status status = relume_pack_depth(&depth, r->pack, view);
+    if (!status)
+        status = relume_slab_disparity(&r->disparity[view], slab, r->info->uv[view], &depth);
+    if (status == RELUME_EINVAL)
+        status = log_fail(r->params.log, RELUME_EDATA,
+                          "view %d has no depth; expected depth in all views or in none", view);
+    relume_image_destroy(&depth);
+    return status;
+}
+
+// ---------------------------------------------------------------- light
+
+relume_status renderer_relit(struct relume_relit *relit, relume_renderer *r, int view)
+{
+    struct kept *k = &r->kept[view];
+    *relit = (struct relume_relit){.view = view,
+                                   .surface = &k->surface,
+                                   .lights = r->lights,
+                                   .count = r->light_count,
+                                   .log = r->said ? NULL : r->params.log};
+    k->used = r->frame;
+    const relume_status status = relume_pack_codes(&relit->codes, r->pack, view);
+    if (status)
+        return status;
+    k->code_bytes = codes_bytes(relit->codes);
+    return need_surface(r, view);
+}
+
+relume_status renderer_relight(relume_renderer *r, int view, struct relume_image *out)
+{
+    struct relume_relit relit;
+    struct relume_frame_params params = r->params;
+    relume_status status = renderer_relit(&relit, r, view);
+    if (!status)
+        status = relume_relighter_relight(out, r->relighter, &relit);
+    params.log = relit.log;
+    if (!status)
+        status = passes_apply(out, r->pack, view, relit.codes, r->lights, r->light_count, &params);
+    if (!status && !log_progress(r->params.log, "relighting", 1.0))
+        status = RELUME_ECANCEL;
+    r->said |= !status;
+    return status;
+}
+
+relume_status renderer_need(relume_renderer *r, int view)
+{
+    struct kept *k = &r->kept[view];
+    k->used = r->frame;
+    if (r->shown == SHOWN_PLACES)
+        return need_places(r, view);
+    if (k->lit == r->lighting)
+        return RELUME_OK;
+    const relume_status status = renderer_relight(r, view, &r->image[SHOWN_LIGHT][view]);
+    k->lit = status ? 0 : r->lighting;
+    return status;
+}
+
+relume_status renderer_need_all(relume_renderer *r, bool by_depth)
+{
+    relume_status status = RELUME_OK;
+    for (int v = 0; !status && v < r->info->views; v++) {
+        if (!r->needed[v])
+            continue;
+        status = renderer_need(r, v);
+        if (!status && by_depth)
+            status = renderer_need_disparity(r, v);
+    }
+    r->view.disparity = by_depth ? r->disparity : NULL;
+    return status;
+}

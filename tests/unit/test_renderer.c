@@ -1,0 +1,277 @@
+// A file drawn again and again: the frames of relume_frame, into any memory, and what is kept
+#include "test.h"
+
+#include "capture_fixture.h"
+
+enum { W = 31, H = 23, GAP = 24 };
+
+static char folder[64], slab_path[96];
+static relume_pack *slab;
+
+static const struct relume_light lights[] = {{.direction = {0.1, 0.2, 0.9}, .rgb = {1, 1, 1}},
+                                             {.direction = {0.8, 0.2, 0.3}, .rgb = {1, 2, 3}}};
+
+static const struct relume_camera cameras[] = {
+    {.framing = RELUME_FRAME_VIEW, .view = 1, .width = W, .height = H},
+    {.framing = RELUME_FRAME_VIEW, .view = 0, .width = 50, .height = 20},  // borders beside it
+    {.framing = RELUME_FRAME_EYE, .eye = {0.2, 0, 3.0}, .width = 40, .height = 30},
+    {.framing = RELUME_FRAME_EYE,
+     .eye = {0.2, 0, 3.0},
+     .aim = {.field_of_view_deg = 30.0},
+     .width = 20,
+     .height = 20},
+};
+enum { CAMERAS = sizeof cameras / sizeof *cameras };
+
+static int setup(void **state)
+{
+    (void)state;
+    test_folder(folder);
+    fixture_write(
+        &(struct fixture){.width = W, .height = H, .lights = 12, .views = 2, .depth = true},
+        folder);
+    snprintf(slab_path, sizeof slab_path, "%s/slab.exr", folder);
+    return fixture_encode(folder, slab_path, &relume_basis_sh, 9, NULL) ||
+           relume_pack_open(&slab, slab_path, NULL);
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    relume_pack_destroy(&slab);
+    test_folder_remove(folder);
+    return 0;
+}
+
+static relume_renderer *make_renderer(const struct relume_frame_params *params)
+{
+    relume_renderer *r;
+    CHECK_OK(relume_renderer_create(&r, slab, params));
+    CHECK_OK(relume_renderer_set_lights(r, lights, 2));
+    return r;
+}
+
+static struct relume_image frame_of(const struct relume_camera *camera,
+                                    const struct relume_frame_params *params)
+{
+    struct relume_image out;
+    CHECK_OK(relume_frame(&out, slab, camera, lights, 2, params));
+    return out;
+}
+
+static bool is_black(const float *rgb)
+{
+    return rgb[0] == 0.0f && rgb[1] == 0.0f && rgb[2] == 0.0f;
+}
+
+// A byte may round to the other side where the coder's pieces and the curve differ by 1e-5.
+static void check_pixel(const unsigned char *at, enum relume_target_format format,
+                        const float *want, double ev)
+{
+    const struct relume_transfer srgb = {.curve = RELUME_CURVE_SRGB};
+    float value[4];
+    if (format != RELUME_TARGET_RGBA8) {
+        memcpy(value, at, (format == RELUME_TARGET_RGBA ? 4 : 3) * sizeof *value);
+        assert_memory_equal(value, want, 3 * sizeof *value);
+        assert_true(format != RELUME_TARGET_RGBA || value[3] == 1.0f || is_black(want));
+        return;
+    }
+    for (int c = 0; c < 3; c++) {
+        const float clipped = fminf(fmaxf(want[c] * exp2f((float)ev), 0.0f), 1.0f);
+        CHECK_NEAR(at[c], 255.0 * (double)relume_transfer_encode(srgb, clipped), 0.51);
+    }
+    assert_true(at[3] == 255 || is_black(want));
+}
+
+static void any_memory_gets_the_frame(void **state)
+{
+    (void)state;
+    relume_renderer *r = make_renderer(NULL);
+    for (int k = 0; k < CAMERAS; k++) {
+        const struct relume_camera *c = &cameras[k];
+        struct relume_image want = frame_of(c, NULL);
+        for (int format = RELUME_TARGET_RGB; format <= RELUME_TARGET_RGBA8; format++)
+            for (int gap = 0; gap < 3; gap++) {
+                const size_t pixel = (const size_t[]){12, 16, 4}[format];
+                const size_t row = (size_t)c->width * pixel + (gap ? GAP : 0);
+                unsigned char *memory = malloc(row * (size_t)c->height);
+                memset(memory, 0xa5, row * (size_t)c->height);
+                const bool upwards = gap == 2;
+                struct relume_target t = {
+                    .data = upwards ? memory + row * (size_t)(c->height - 1) : memory,
+                    .format = (enum relume_target_format)format,
+                    .width = c->width,
+                    .height = c->height,
+                    .stride = gap ? upwards ? -(ptrdiff_t)row : (ptrdiff_t)row : 0,
+                    .exposure_ev = -1.0f,
+                };
+                CHECK_OK(relume_renderer_draw(r, c, &t));
+                for (int y = 0; y < c->height; y++) {
+                    const unsigned char *at =
+                        memory + row * (size_t)(upwards ? c->height - 1 - y : y);
+                    for (int x = 0; x < c->width; x++)
+                        check_pixel(at + pixel * (size_t)x, t.format,
+                                    want.data + 3 * ((size_t)y * (size_t)c->width + (size_t)x),
+                                    -1.0);
+                    for (int i = 0; gap && i < GAP; i++)  // what lies between rows is not ours
+                        assert_int_equal(at[pixel * (size_t)c->width + (size_t)i], 0xa5);
+                }
+                free(memory);
+            }
+        relume_image_destroy(&want);
+    }
+    struct relume_target none = {.width = 3, .height = 3};
+    assert_int_equal(relume_renderer_draw(r, &cameras[0], &none), RELUME_EINVAL);
+    relume_renderer_destroy(&r);
+}
+
+static void expect_frame(relume_renderer *r, const struct relume_camera *camera,
+                         const struct relume_image *want)
+{
+    struct relume_image got;
+    CHECK_OK(relume_renderer_frame(&got, r, camera));
+    assert_int_equal(got.width, want->width);
+    assert_int_equal(got.height, want->height);
+    assert_memory_equal(got.data, want->data,
+                        3 * (size_t)got.width * (size_t)got.height * sizeof *got.data);
+    relume_image_destroy(&got);
+}
+
+// Whatever was drawn before, a frame is that of relume_frame.
+static void what_is_kept_still_holds(void **state)
+{
+    (void)state;
+    static const struct relume_frame_params styles[] = {
+        {0},
+        {.interpolation = RELUME_INTERPOLATE_LINEAR},
+        {.aperture = 0.4, .interpolation = RELUME_INTERPOLATE_LINEAR},
+        {.pass = RELUME_PASS_LUMINANCE},
+        {.pass = RELUME_PASS_NORMALS},
+        {.filter = RELUME_FILTER_NEAREST},
+    };
+    enum { STYLES = sizeof styles / sizeof *styles };
+    static const uint64_t memory[] = {0, 1};
+    for (int m = 0; m < 2; m++) {
+        struct relume_frame_params p = {.memory = memory[m]};
+        relume_renderer *r = make_renderer(&p);
+        for (int round = 0; round < 2; round++)
+            for (int s = 0; s < STYLES; s++)
+                for (int k = 0; k < CAMERAS - 1; k++) {
+                    struct relume_image want = frame_of(&cameras[k], &styles[s]);
+                    p = styles[s];
+                    p.memory = memory[m];
+                    relume_renderer_set(r, &p);
+                    expect_frame(r, &cameras[k], &want);
+                    relume_image_destroy(&want);
+                }
+        relume_renderer_destroy(&r);
+    }
+}
+
+// A slide's picture is changed behind the renderer's back: what is kept goes on showing the old
+// one.
+static void lights_alone_relight(void **state)
+{
+    (void)state;
+    struct relume_image slide;
+    CHECK_OK(relume_image_create(&slide, 2, 2, 3));
+    for (int i = 0; i < 12; i++)
+        slide.data[i] = 1.0f;
+    const struct relume_light lamp = {.kind = RELUME_LIGHT_SLIDE,
+                                      .position = {0, 0, 4},
+                                      .direction = {0, 0, -1},
+                                      .half_angle_deg = 60,
+                                      .image = &slide,
+                                      .rgb = {1, 1, 1}};
+    relume_renderer *r = make_renderer(NULL);
+    struct relume_image bright, dark;
+    CHECK_OK(relume_renderer_set_lights(r, &lamp, 1));
+    CHECK_OK(relume_renderer_frame(&bright, r, &cameras[2]));
+    const uint64_t kept = relume_renderer_bytes(r);
+    assert_true(kept >= (uint64_t)2 * W * H * 3 * sizeof(float));
+    for (int i = 0; i < 12; i++)
+        slide.data[i] = 0.25f;
+    expect_frame(r, &cameras[2], &bright);
+    assert_int_equal(relume_renderer_bytes(r), kept);
+    CHECK_OK(relume_renderer_set_lights(r, &lamp, 1));
+    CHECK_OK(relume_frame(&dark, slab, &cameras[2], &lamp, 1, NULL));
+    expect_frame(r, &cameras[2], &dark);
+    assert_true(memcmp(bright.data, dark.data, 3 * sizeof *dark.data) != 0);
+    relume_renderer_forget(r);
+    assert_int_equal(relume_renderer_bytes(r), 0);
+    expect_frame(r, &cameras[2], &dark);
+    relume_image_destroy(&bright);
+    relume_image_destroy(&dark);
+    relume_image_destroy(&slide);
+    relume_renderer_destroy(&r);
+}
+
+static void memory_is_bounded(void **state)
+{
+    (void)state;
+    relume_renderer *r = make_renderer(relume_frame_params(.memory = 1));
+    uint64_t bytes[3];
+    for (int i = 0; i < 3; i++) {  // view 0, then twice view 1
+        const struct relume_camera half = {
+            .framing = RELUME_FRAME_VIEW, .view = i > 0, .width = 9};
+        struct relume_image out;
+        CHECK_OK(relume_renderer_frame(&out, r, &half));
+        relume_image_destroy(&out);
+        bytes[i] = relume_renderer_bytes(r);
+    }
+    assert_int_equal(bytes[1], 2 * bytes[0]);  // the last frame's views stay for one more
+    assert_int_equal(bytes[2], bytes[0]);
+    relume_renderer_destroy(&r);
+}
+
+// One pixel by itself is that of the frame: bit by bit where it is a texel, and to rounding where
+// four cameras are mixed in double precision along the ray and in single along the row.
+static void a_pixel_is_that_of_the_frame(void **state)
+{
+    (void)state;
+    relume_renderer *r = make_renderer(relume_frame_params(.filter = RELUME_FILTER_NEAREST));
+    for (int k = 0; k < CAMERAS; k += 2) {
+        struct relume_image frame;
+        CHECK_OK(relume_renderer_frame(&frame, r, &cameras[k]));
+        for (int i = 0; i < frame.width * frame.height; i += 7) {
+            float rgb[3];
+            CHECK_OK(relume_renderer_pixel(rgb, r, &cameras[k], i % frame.width + 0.5,
+                                           (double)(i / frame.width) + 0.5));
+            for (int c = 0; c < 3; c++)
+                CHECK_NEAR(rgb[c], frame.data[3 * i + c], 2e-5);
+        }
+        relume_image_destroy(&frame);
+    }
+    relume_renderer_destroy(&r);
+}
+
+static void places_are_where_depth_says(void **state)
+{
+    (void)state;
+    relume_renderer *r = make_renderer(NULL);
+    struct relume_image places, depth, surface;
+    const struct relume_pack_info *info = relume_pack_info(slab);
+    CHECK_OK(relume_renderer_places(&places, r, &cameras[0]));
+    CHECK_OK(relume_pack_depth(&depth, slab, 1));
+    CHECK_OK(relume_surface(&surface, relume_pack_geometry(slab, 1), info->uv[1], &depth, W, H));
+    for (int i = 0; i < 3 * W * H; i++)
+        if (isfinite(depth.data[i / 3]))
+            assert_true(places.data[i] == surface.data[i]);
+    relume_image_destroy(&places);
+    relume_image_destroy(&depth);
+    relume_image_destroy(&surface);
+    relume_renderer_destroy(&r);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_memory_gets_the_frame),
+        cmocka_unit_test(what_is_kept_still_holds),
+        cmocka_unit_test(lights_alone_relight),
+        cmocka_unit_test(memory_is_bounded),
+        cmocka_unit_test(a_pixel_is_that_of_the_frame),
+        cmocka_unit_test(places_are_where_depth_says),
+    };
+    return cmocka_run_group_tests(tests, setup, teardown);
+}

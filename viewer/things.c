@@ -103,7 +103,7 @@ static void upload_mesh(struct things *t, const struct relume_objects_info *info
         gl->EnableVertexAttribArray(i);
         gl->VertexAttribPointer(i, attribute[i].numbers, GL_FLOAT, GL_FALSE,
                                 sizeof(struct relume_object_vertex),
-                                (const char *)NULL + attribute[i].offset);
+                                (const void *)attribute[i].offset);
     }
 }
 
@@ -336,7 +336,7 @@ static void draw_surface(struct things *t, const struct sight *sight)
         const struct relume_object_part *part = &info->part[i];
         gl->Uniform1i(t->surface.at[SURFACE_PART], i);
         gl->DrawElements(GL_TRIANGLES, (GLsizei)(3 * part->count), GL_UNSIGNED_INT,
-                         (const char *)NULL + 3 * part->first * sizeof(uint32_t));
+                         (const void *)(3 * part->first * sizeof(uint32_t)));
     }
     gl->Disable(GL_DEPTH_TEST);
     gl->BindVertexArray((GLuint)before);

@@ -121,6 +121,7 @@ static relume_status round_of(struct local *p, double *error)
     memset(p->vector, 0, clusters * k * n * sizeof *p->vector);
     thread_for(p->f->threads, clusters, solve_cluster, p);
     members_free(&members);
+    p->members = NULL;
     if (p->failed)
         return RELUME_ENOMEM;
     thread_for(p->f->threads, (p->r->texels + CHUNK - 1) / CHUNK, choose_chunk, p);

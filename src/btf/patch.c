@@ -235,12 +235,13 @@ static bool try_best(struct search *s, struct canvas *c, size_t places)
         trial[n] = (struct trial){.patch = *s->patch};
         trial[n].patch.sx = s->list[n].sx, trial[n].patch.sy = s->list[n].sy;
     }
+    if (n == 0)
+        return !s->failed;  // no place would change something: all stays as it is
     s->trial = trial;
     thread_for(c->threads, n, run_trial, s);
     for (size_t i = 1; i < n; i++)
         best = trial[i].cost < trial[best].cost ? i : best;
-    // without a place that would change something, all stays as it is
-    const bool good = !s->failed && (n == 0 || apply(c, &trial[best]));
+    const bool good = !s->failed && apply(c, &trial[best]);
     for (size_t i = 0; i < n; i++)
         free(trial[i].side);
     return good;

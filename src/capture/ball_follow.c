@@ -35,13 +35,12 @@ static void search_radius(const struct follower *f, int i, double reach)
     const double a = 2.0 * M_PI * i / f->angles, cx = cos(a), cy = sin(a);
     int n = relume_whole(2.0 * reach / f->step) + 1;
     n = n > MOST_STEPS ? MOST_STEPS : n;
-    float change[MOST_STEPS];
+    float change[MOST_STEPS] = {0};
     double best = 0.0;
     int found = -1;
     for (int k = 0; k < n; k++) {
         const double off = (k - 0.5 * (n - 1)) * f->step, r = b->radius + off;
         const double in = r - f->step, out = r + f->step;
-        change[k] = 0.0f;
         if (is_inside(f->edges, b->x + out * cx, b->y + out * cy))
             change[k] = fabsf(ball_at(f->edges, b->x + out * cx, b->y + out * cy) -
                               ball_at(f->edges, b->x + in * cx, b->y + in * cy));

@@ -190,7 +190,9 @@ static relume_status check_image(relume_capture *c, int view, int light,
     relume_status status = capture_picture(&reader, c, view, light, p->limits, p->log);
     if (!status)
         status = picture_need_colour(reader, path, p->log);
-    const struct picture_info info = status ? (struct picture_info){0} : *picture_info_of(reader);
+    struct picture_info info = {0};
+    if (!status)
+        info = *picture_info_of(reader);
     picture_close(&reader);
     if (status)
         return status;

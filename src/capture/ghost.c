@@ -130,6 +130,7 @@ static relume_status judge(struct ghosts *g, int threads)
     thread_for(threads, (size_t)g->mask->height, sum_row, g);
     thread_for(threads, (size_t)g->mask->height, judge_row, g);
     relume_image_destroy(&alike);
+    g->like = NULL;
     return RELUME_OK;
 }
 

@@ -150,7 +150,7 @@ static relume_status read_lights(const struct parser *p, const jvalue *lights)
     if (positions)
         status = read_vectors(p, positions, "lights.positions", &d->positions, &n);
     if (!status && directions) {
-        int m;
+        int m = 0;
         status = read_vectors(p, directions, "lights.directions", &d->directions, &m);
         if (!status && positions && m != n)
             return wrong(p, "lights", "as many positions as directions");

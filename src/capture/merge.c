@@ -108,17 +108,18 @@ static float weight_of(const struct merge *m, const struct exposure *e, size_t p
 // No exposure resolves it: the least wrong of those that are not masked.
 static float unresolved(const struct merge *m, size_t pixel, int c)
 {
-    const struct exposure *best = NULL;
+    const struct exposure *best = &m->exposure[m->by_time[0]];
+    bool found = false;
     for (int k = 0; k < m->n; k++) {
         const struct exposure *e = &m->exposure[m->by_time[k]];
-        const bool masked = e->mask && !(e->mask[pixel] > 0.0f);
-        if (masked && best)
+        if (e->mask && !(e->mask[pixel] > 0.0f))
             continue;
         const bool bright = e->codes[3 * pixel + (size_t)c] > 0.5f;
-        if (!best || bright)
+        if (!found || bright)
             best = e;
-        if (!masked && !bright)
+        if (!bright)
             break;
+        found = true;
     }
     return expf(log_exposure(m, c, best->codes[3 * pixel + (size_t)c]) - best->log_time);
 }

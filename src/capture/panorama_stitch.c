@@ -259,6 +259,7 @@ static relume_status warp_light(struct stitching *s, struct relume_image *out, i
         if (!status)
             status = blend_add(out->data, &s->blend, i, fetch, s, s->job->common->threads);
         relume_image_destroy(&image);
+        s->image = NULL;
     }
     if (!status)
         blend_finish(out->data, &s->blend);

@@ -23,8 +23,10 @@ static int ascending(const void *a, const void *b)
 
 static double median(double *v, int n)
 {
+    if (n == 0)
+        return (double)NAN;
     qsort(v, (size_t)n, sizeof *v, ascending);
-    return n ? v[n / 2] : (double)NAN;
+    return v[n / 2];
 }
 
 // The median likeness of a photograph to some of the others.

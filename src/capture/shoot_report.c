@@ -253,8 +253,8 @@ relume_status shoot_report(const struct shoot *s, const char *dir)
 {
     char *text = NULL, *path = mem_format("%s/report.html", dir);
     size_t size = 0;
-    struct report r = {.s = s, .dir = dir, .f = open_memstream(&text, &size)};
-    if (!r.f || !path) {
+    struct report r = {.s = s, .dir = dir, .f = path ? open_memstream(&text, &size) : NULL};
+    if (!r.f) {
         free(path);
         return RELUME_ENOMEM;
     }

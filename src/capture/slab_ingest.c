@@ -316,16 +316,20 @@ static relume_status write_slab(struct slab *s, const char *dir, const outdir *f
     if (!status && shift)
         status = save_shifted(view, &s->width, &s->height, folder, &s->set, &grid,
                               s->p->focus_disparity, s->common);
+    if (status)
+        return status;
+    struct relume_transfer transfer = {.curve = RELUME_CURVE_LINEAR};
+    if (!shift)
+        transfer = s->common->transfer;
     const struct relume_manifest m = {
-        .transfer =
-            shift ? (struct relume_transfer){.curve = RELUME_CURVE_LINEAR} : s->common->transfer,
-        .geometry = status ? (struct relume_geometry){0} : geometry_of(s),
+        .transfer = transfer,
+        .geometry = geometry_of(s),
         .lights = s->set.lights,
         .directions = s->set.directions,
         .views = n,
         .view = view,
     };
-    return status ? status : save_manifest(folder, &m, s->common->log);
+    return save_manifest(folder, &m, s->common->log);
 }
 
 static relume_status check(const struct slab *s)

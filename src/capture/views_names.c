@@ -116,24 +116,27 @@ static int whole_numbers(long out[MOST_NUMBERS], const char *name)
     return n;
 }
 
-// Which of the names' numbers differ from camera to camera: up to two, in order.
+// Which of the names' numbers differ from camera to camera: up to two, in order. Numbers of many
+// digits are dates and the like.
 static relume_status varying_numbers(int which[2], int *count, const struct photo_set *set,
                                      const struct relume_log *log)
 {
     long first[MOST_NUMBERS], other[MOST_NUMBERS];
-    bool varies[MOST_NUMBERS] = {false};
+    bool varies[MOST_NUMBERS] = {false}, too_long[MOST_NUMBERS] = {false};
     const int n = whole_numbers(first, base_name(set->camera[0].name));
     for (int i = 1; i < set->count; i++) {
         if (whole_numbers(other, base_name(set->camera[i].name)) != n)
             return log_fail(log, RELUME_EDATA,
                             "%s: the name does not match; expected the pattern of %s, or --names",
                             set->camera[i].name, set->camera[0].name);
-        for (int k = 0; k < n; k++)
+        for (int k = 0; k < n; k++) {
             varies[k] |= other[k] != first[k];
+            too_long[k] |= other[k] < 0 || first[k] < 0;
+        }
     }
     *count = 0;
     for (int k = 0; k < n; k++)
-        if (varies[k] && (*count)++ < 2)
+        if (varies[k] && !too_long[k] && (*count)++ < 2)
             which[*count - 1] = k;
     if (*count == 1 || *count == 2)
         return RELUME_OK;

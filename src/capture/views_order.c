@@ -38,15 +38,12 @@ static const int few_planes = 6;
 // First, middle and last of n, without repetition.
 static int three_of(int out[3], int n)
 {
-    const int candidates[3] = {n / 2, 0, n - 1};
     int count = 0;
-    for (int i = 0; i < 3; i++) {
-        bool twice = false;
-        for (int k = 0; k < count; k++)
-            twice |= out[k] == candidates[i];
-        if (!twice)
-            out[count++] = candidates[i];
-    }
+    out[count++] = n / 2;
+    if (n > 1)
+        out[count++] = 0;
+    if (n > 2)
+        out[count++] = n - 1;
     return count;
 }
 

@@ -337,7 +337,7 @@ static relume_status run(const struct args *args)
 {
     struct relume_camera camera;
     struct relume_frame_params params = parse_frame(args);
-    struct developing developing;
+    struct developing developing = {0};
     relume_rig *rig = NULL;
     const struct relume_light *lights;
     int count;

@@ -76,6 +76,7 @@ static relume_status search(struct search *s, int codes, int dim, int threads, u
         status = RELUME_ENOMEM;
     free(s->scratch);
     nearest_destroy(&nearest);
+    s->nearest = NULL;
     return status;
 }
 

@@ -133,9 +133,11 @@ relume_status ptm_tree_grow(struct ptm_tree *out, const struct foreign *f, const
         out->reference[i] = out->turn[i] = -1;
     }
     for (int turn = 0; !status && turn < f->planes; turn++) {
-        int next = -1;
-        for (int i = 0; i < f->planes; i++)
-            if (out->turn[i] < 0 && (next < 0 || cost[i] < cost[next]))
+        int next = 0;
+        while (out->turn[next] >= 0)
+            next++;
+        for (int i = next + 1; i < f->planes; i++)
+            if (out->turn[i] < 0 && cost[i] < cost[next])
                 next = i;
         out->turn[next] = turn;
         offer(out, cost, &s, step, next);

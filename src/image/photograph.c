@@ -25,7 +25,7 @@ static relume_status notes_of(struct relume_notes *out, const picture_reader *re
 {
     size_t size;
     const void *icc = picture_profile(reader, &size);
-    struct profile own;
+    struct profile own = {0};
     const relume_status status = picture_notes(reader, out, log);
     profile = profile ? profile : &own;
     out->profile =
@@ -133,7 +133,7 @@ relume_status relume_photograph_load(struct relume_image *out, struct relume_not
 {
     const struct relume_photograph_params p =
         params ? *params : (struct relume_photograph_params){0};
-    struct relume_notes own;
+    struct relume_notes own = {0};
     picture_reader *reader;
     size_t icc_size;
     *out = (struct relume_image){0};
@@ -155,8 +155,9 @@ relume_status relume_photograph_load(struct relume_image *out, struct relume_not
         log_line(p.log, RELUME_WARNING,
                  "%s: its colour profile is of a kind that relume does not read; treated as sRGB",
                  path);
-    const struct relume_transfer from =
-        p.codes || follow ? (struct relume_transfer){.curve = RELUME_CURVE_LINEAR} : p.transfer;
+    struct relume_transfer from = {.curve = RELUME_CURVE_LINEAR};
+    if (!p.codes && !follow)
+        from = p.transfer;
     if (status)
         picture_close(&reader);
     else

@@ -107,6 +107,8 @@ static relume_status add_light(struct shadows *s, relume_renderer *renderer,
         thread_for(threads, (size_t)lone.height, add_row, s);
     relume_image_destroy(&lone);
     free(lamps);
+    s->lone = NULL;
+    s->lamps = NULL;
     return status;
 }
 

@@ -158,7 +158,7 @@ static relume_status check_type(struct reader *r)
 static relume_status take_header(struct reader *r, relume_ies *ies, double *factor)
 {
     int lamps;
-    double ballast;
+    double ballast = 1.0;
     relume_status status = take_count(r, &lamps, 0, 1000000, "number of lamps");
     if (!status)
         status = skip(r, 1, "lumens per lamp");
@@ -176,7 +176,7 @@ static relume_status take_header(struct reader *r, relume_ies *ies, double *fact
         status = take(r, &ballast, "ballast factor");
     if (!status)
         status = skip(r, 2, "ballast-lamp factor and watts");
-    *factor *= status ? 1.0 : ballast;
+    *factor *= ballast;
     if (!status && !(*factor > 0.0 && isfinite(*factor)))
         status = log_fail(r->log, RELUME_EDATA,
                           "%s: candela multiplier times ballast factor; expected more than 0, "

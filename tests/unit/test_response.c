@@ -120,6 +120,14 @@ static void test_merge_by_hand(void **state)
         CHECK_NEAR(out.data[0], ends[i].want, 0.02 * (double)ends[i].want);
         relume_image_destroy(&out);
     }
+    // what only a dark one could resolve, but for a ghost in the longest, is not the ghost's
+    const struct relume_image ghost[2] = {{0}, masks[0]};
+    codes[0].data[0] = 0.0f;
+    codes[1].data[0] = 1.0f;
+    CHECK_OK(
+        relume_merge(&out, NULL, codes, exposures, 2, &r, relume_merge_params(.masks = ghost)));
+    assert_true(out.data[0] < 0.01f);  // a masked code of 1 is 0.5
+    relume_image_destroy(&out);
     for (int i = 0; i < 2; i++) {
         relume_image_destroy(&codes[i]);
         relume_image_destroy(&masks[i]);

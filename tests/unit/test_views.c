@@ -73,6 +73,13 @@ static void name_archive(char name[64], int row, int column)
              -20.25 + 50.0 * column);
 }
 
+// The first date is shorter than nine digits, which no number of a grid is.
+static void name_dated(char name[64], int row, int column)
+{
+    const int i = row * GRID + column;
+    snprintf(name, 64, "view_%s_%02d_%02d.exr", i ? "20260101120000" : "7", row, column);
+}
+
 static void name_own(char name[64], int row, int column)
 {
     snprintf(name, 64, "shot7_x%d.y%d.exr", column, row);
@@ -129,6 +136,7 @@ static void test_names(void **state)
     } cases[] = {{name_rows, NULL},
                  {name_lytro, NULL},
                  {name_archive, NULL},
+                 {name_dated, NULL},
                  {name_own, "*x{column}.y{row}"},
                  {name_lytro, "input_Cam{n}"},
                  {name_archive, "out_*_{v}_{u}_"}};

@@ -98,7 +98,7 @@ FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 
-.PHONY: all lib cli viewer samples deps deps-web deps-stitch demo tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers format install \
+.PHONY: all lib cli viewer samples deps deps-web deps-stitch demo tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers lint format install \
         clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
@@ -273,6 +273,13 @@ $B/headers/%.ok: include/relume/%.h $(HEADERS) | $(DEPS)
 
 layers:
 	@scripts/layers.sh
+
+# What cppcheck finds is mended, or said to be none in scripts/lint.supp.
+LINTED := src viewer
+lint:
+	@mkdir -p $B/lint
+	@cppcheck -q -j2 --std=c11 --enable=warning,portability --suppressions-list=scripts/lint.supp --error-exitcode=1 \
+	    --cppcheck-build-dir=$B/lint -Iinclude -Isrc -Isrc/cli -Iviewer $(LINTED)
 
 format:
 	clang-format -i $(LIB_C) $(MODULE_CXX) src/math/lsq_eigen.cpp $(MESHES_C) $(STITCH_CXX) $(HELPER_C) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \

@@ -57,24 +57,22 @@ CLI_LIBS = $(call once,CLI_LIBS,pkg-config --libs cairo)
 GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa egl imgui)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 
-LIB_C    := $(wildcard src/base/*.c src/math/*.c src/image/*.c src/capture/*.c src/scene/*.c \
-            src/coder/*.c src/pack/*.c src/exchange/*.c src/relight/*.c src/view/*.c src/pass/*.c \
-            src/frame/*.c src/btf/*.c src/object/*.c)
-LIB_C    := $(filter-out src/scene/mesh_assimp.c,$(LIB_C))
+# Every folder of src is a room of the library, but for the tool and the helper.
+LIB_C    := $(filter-out src/cli/% src/helper/% src/mesh/mesh_assimp.c,$(wildcard src/*/*.c))
 LIB_C    := $(filter-out $(if $(filter kiss,$(FFT)),%/fft.c,%/fft_kiss.c),$(LIB_C))
 # The module that is loaded when the first image needs it (src/image/picture.h)
 MODULE_CXX := src/image/oiio.cpp
-# The module that is loaded when the first model needs it (src/scene/mesh_other.h)
-MESHES_C := src/scene/mesh_assimp.c
+# The module that is loaded when the first model needs it (src/mesh/mesh_other.h)
+MESHES_C := src/mesh/mesh_assimp.c
 # Built where OpenCV's stitching is (make deps-stitch); opened when photographs are to be stitched
 OPENCV   := $(firstword $(wildcard $(addsuffix /opencv4,/usr/include /usr/local/include)))
-STITCH_CXX := $(if $(wildcard $(OPENCV)/opencv2/stitching/detail/matchers.hpp),src/capture/stitch.cpp)
+STITCH_CXX := $(if $(wildcard $(OPENCV)/opencv2/stitching/detail/matchers.hpp),src/multiview/stitch.cpp)
 # The program in which foreign files are read (src/base/helper.h); it lies beside the modules
 HELPER_C := $(wildcard src/helper/*.c)
-CLI_C    := $(wildcard src/cli/*.c)
-VIEWER_C := $(wildcard viewer/*.c)
-VIEWER_CXX := $(wildcard viewer/*.cpp)
-SHADERS  := $(wildcard viewer/shaders/*.glsl)
+CLI_C    := $(wildcard src/cli/*.c src/cli/*/*.c)
+VIEWER_C := $(wildcard viewer/*/*.c)
+VIEWER_CXX := $(wildcard viewer/*/*.cpp)
+SHADERS  := $(wildcard viewer/shaders/*.glsl viewer/shaders/*/*.glsl)
 HEADERS  := $(wildcard include/relume/*.h)
 UNIT_C   := $(wildcard tests/unit/*.c tests/props/*.c tests/kernels/*.c tests/threads/*.c)
 GL_C     := $(wildcard tests/gl/*.c)
@@ -124,7 +122,7 @@ deps-stitch:
 
 $B/obj/src/image/exr.o: own_flags = $(EXR)
 $B/obj/src/image/oiio.o: own_flags = $(OIIO)
-$B/obj/src/capture/stitch.o: own_flags = -isystem $(OPENCV)
+$B/obj/src/multiview/stitch.o: own_flags = -isystem $(OPENCV)
 $B/obj/src/base/module.o: own_flags = -DRELUME_MAJOR=$(MAJOR)
 $B/obj/src/%_avx2.o: own_flags = -mavx2 -mfma -mf16c
 # One source, two objects: see its head. Without optimising Eigen is a hundred times slower, and its
@@ -136,10 +134,10 @@ $B/obj/src/%.o:               own_include = -Isrc
 $B/obj/src/cli/plot.o: own_flags = $(CAIRO)
 $B/obj/src/cli/%.o:           own_include = -Isrc/cli
 $B/obj/viewer/%.o:            own_include = -Iviewer
-$B/obj/viewer/context_glfw.o: own_flags = $(GLFW)
+$B/obj/viewer/window/context_glfw.o: own_flags = $(GLFW)
 $(VIEWER_CXX:%.cpp=$B/obj/%.o): own_flags = $(IMGUI) -Wno-shadow
 $B/obj/tests/tools/decode.o: own_flags = $(EXR)
-$B/obj/tests/%.o:             own_include = -Isrc -Itests -Iviewer
+$B/obj/tests/%.o:             own_include = -Isrc -Isrc/cli -Itests -Iviewer
 # Tests themselves are many and short: compiled fast, and linked by the faster linker where it is.
 $(UNIT_C:%.c=$B/obj/%.o) $(GL_C:%.c=$B/obj/%.o): own_mode = $(if $(filter release,$(config)),-O1)
 TEST_LD := $(if $(shell command -v ld.gold),-fuse-ld=gold)
@@ -162,7 +160,7 @@ $B/obj/src/math/lsq_eigen_avx2.o: src/math/lsq_eigen.cpp | $(DEPS)
 $B/obj/viewer/shaders.c: scripts/embed.sh $(SHADERS)
 	@mkdir -p $(@D)
 	$(call say,GEN)
-	$(Q)scripts/embed.sh $(SHADERS) > $@
+	$(Q)scripts/embed.sh viewer/shaders $(SHADERS) > $@
 $B/obj/viewer/shaders.o: $B/obj/viewer/shaders.c | $(DEPS)
 	$(call say,CC)
 	$(Q)$(CC) $(C11) -Iviewer -c -o $@ $<
@@ -214,7 +212,7 @@ $(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/libr
 	$(call say,LD)
 	$(Q)$(CC) $(MODE) $(TEST_LD) $(if $(filter fuzzer,$(config)),$(FUZZ_ENGINE)) -pthread $(call run_path,/../..) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LIBS)
 # The viewer without its window
-$B/tests/fuzz/fuzz_script: $(addprefix $B/obj/viewer/,script.o adjust.o say.o app.o keys.o lamps.o gizmo.o orbit.o gaze.o)
+$B/tests/fuzz/fuzz_script: $(filter $B/obj/viewer/app/% $B/obj/viewer/common/%,$(VIEWER_O))
 $(TOOLS): $B/%: $B/obj/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
@@ -230,7 +228,7 @@ GROWN_O := $(addprefix $B/obj/tests/growing/,basis_linear.o model_mean.o bases.o
 $B/obj/tests/growing/bases.c: src/coder/coder.c
 	@mkdir -p $(@D)
 	$(Q)sed 's/&relume_basis_table,/\&relume_basis_linear, &/; /^const struct relume_basis .const relume_bases/i extern const struct relume_basis relume_basis_linear;' $< > $@
-$B/obj/tests/growing/models.c: src/btf/model.c
+$B/obj/tests/growing/models.c: src/btf_model/model.c
 	@mkdir -p $(@D)
 	$(Q)sed 's/&model_lit,/\&model_mean, &/; /^const struct relume_btf_model .const relume_btf_models/i extern const struct relume_btf_model model_mean;' $< > $@
 $(addprefix $B/obj/tests/growing/,bases.o models.o): %.o: %.c | $(DEPS)
@@ -283,7 +281,7 @@ lint:
 
 format:
 	clang-format -i $(LIB_C) $(MODULE_CXX) src/math/lsq_eigen.cpp $(MESHES_C) $(STITCH_CXX) $(HELPER_C) $(CLI_C) $(VIEWER_C) $(VIEWER_CXX) $(HEADERS) $(UNIT_C) $(GL_C) \
-	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*.h viewer/*.h tests/*.h tests/fuzz/*.h samples/*.c)
+	    $(BENCH_C) $(FUZZ_C) $(TOOLS_C) $(wildcard src/*/*.h src/cli/*/*.h viewer/*/*.h tests/*.h tests/fuzz/*.h samples/*.c)
 
 bench: all $(BENCH)
 	@tests/bench/run.sh $B

@@ -1,11 +1,12 @@
 #!/bin/sh
-# Turn shader files into one C file: embed.sh FILE.glsl... > shaders.c
-# A line `#include "other.glsl"` is replaced by that file of the same folder, so that every text in
-# the program is complete. Strings are split by lines: a compiler promises only 4095 characters each.
+# Turn shader files into one C file: embed.sh FOLDER FILE.glsl... > shaders.c
+# A line `#include "room/other.glsl"` is replaced by that file below FOLDER, so that every text in
+# the program is complete; FOLDER/room/name.frag.glsl is "room_name.frag" to the program. Strings are
+# split by lines: a compiler promises only 4095 characters each.
 set -eu
 
 expand() {
-    awk -v folder="$(dirname "$1")" '
+    awk -v folder="$folder" '
         /^#include "/ {
             file = $0
             sub(/^#include "/, "", file)
@@ -19,11 +20,14 @@ expand() {
         { print }' "$1"
 }
 
-echo '#include "shaders.h"'
+folder=$1
+shift
+echo '#include "gl/shaders.h"'
 names=
 for file in "$@"; do
     case $file in *.frag.glsl | *.vert.glsl | *.comp.glsl) ;; *) continue ;; esac
-    name=$(basename "$file" .glsl)
+    name=${file#"$folder"/}
+    name=$(echo "${name%.glsl}" | tr / _)
     symbol=$(echo "$name" | tr -c 'A-Za-z0-9\n' '_')
     names="$names $name:$symbol"
     text=$(expand "$file")

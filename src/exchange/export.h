@@ -2,7 +2,7 @@
 #ifndef EXCHANGE_EXPORT_H
 #define EXCHANGE_EXPORT_H
 
-#include "exchange/source.h"
+#include "foreign/source.h"
 
 #include <relume/exchange.h>
 

@@ -4,9 +4,9 @@
 // worth of block rows; the last steps are on the whole picture, so that a size is never exceeded
 // and a PSNR, measured on what was written, is reached.
 #include "exchange/export.h"
-#include "exchange/measure.h"
 #include "exchange/tiles.h"
 #include "exchange/web.h"
+#include "foreign/measure.h"
 
 #include "base/log.h"
 #include "base/memory.h"

@@ -1,10 +1,10 @@
 // legacy.c - .ptm and .rti from a relume file: its own codes where they fit, else a fit
 #include "exchange/export.h"
 #include "exchange/legacy.h"
-#include "exchange/measure.h"
-#include "exchange/planes.h"
 #include "exchange/ptm.h"
 #include "exchange/rti.h"
+#include "foreign/measure.h"
+#include "foreign/planes.h"
 
 #include "base/log.h"
 #include "base/memory.h"

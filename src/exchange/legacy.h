@@ -3,7 +3,7 @@
 #define EXCHANGE_LEGACY_H
 
 #include "exchange/export.h"
-#include "exchange/foreign.h"
+#include "foreign/foreign.h"
 
 // A quality, a size or a PSNR is asked for.
 bool legacy_wants_jpeg(const struct relume_export_params *params);

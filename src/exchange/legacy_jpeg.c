@@ -4,8 +4,8 @@
 // of its logarithm that the qualities span.
 #include "exchange/export.h"
 #include "exchange/legacy.h"
-#include "exchange/measure.h"
 #include "exchange/ptm.h"
+#include "foreign/measure.h"
 
 #include "base/log.h"
 #include "base/outfile.h"

@@ -2,7 +2,7 @@
 #ifndef EXCHANGE_PTM_H
 #define EXCHANGE_PTM_H
 
-#include "exchange/foreign.h"
+#include "foreign/foreign.h"
 
 // PTM_FORMAT_RGB, LRGB, JPEG_RGB and JPEG_LRGB. RELUME_EDATA with a sentence.
 relume_status ptm_read(struct foreign *out, const char *path, const struct relume_limits *limits,

@@ -3,7 +3,7 @@
 #define EXCHANGE_PTM_PARTS_H
 
 #include "exchange/bytes.h"
-#include "exchange/foreign.h"
+#include "foreign/foreign.h"
 
 #include <stdio.h>
 

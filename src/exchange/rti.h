@@ -2,7 +2,7 @@
 #ifndef EXCHANGE_RTI_H
 #define EXCHANGE_RTI_H
 
-#include "exchange/foreign.h"
+#include "foreign/foreign.h"
 
 // RELUME_EDATA with a sentence. `old`: the header's numbers are (min, max), not (scale, min).
 relume_status rti_read(struct foreign *out, const char *path, bool old,

@@ -2,8 +2,8 @@
 #ifndef EXCHANGE_WEB_H
 #define EXCHANGE_WEB_H
 
-#include "exchange/planes.h"
 #include "exchange/sheet.h"
+#include "foreign/planes.h"
 
 // `path` is the folder or its info.json. ptm, hsh, sh, rbf and bilinear in rgb, lrgb, ycc, mrgb and
 // mycc, as far as the pairs exist. RELUME_EDATA with a sentence that names the file at fault.

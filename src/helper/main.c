@@ -7,7 +7,7 @@
 #include "base/helper.h"
 #include "base/module.h"
 #include "image/picture_serve.h"
-#include "scene/mesh_serve.h"
+#include "mesh/mesh_serve.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,9 +1,9 @@
 // build.c - mesh files become one list of triangles in the world
 #include "base/log.h"
 #include "base/memory.h"
+#include "mesh/mesh_read.h"
+#include "mesh/tangents.h"
 #include "object/object.h"
-#include "object/tangents.h"
-#include "scene/mesh_read.h"
 
 #include <string.h>
 

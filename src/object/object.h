@@ -2,7 +2,7 @@
 #ifndef OBJECT_OBJECT_H
 #define OBJECT_OBJECT_H
 
-#include "scene/trace.h"
+#include "mesh/trace.h"
 
 #include <relume/object.h>
 

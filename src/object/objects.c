@@ -2,8 +2,8 @@
 #include "base/json.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "mesh/mesh_read.h"
 #include "object/object.h"
-#include "scene/mesh_read.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -2,8 +2,8 @@
 #ifndef SCENE_SCENE_H
 #define SCENE_SCENE_H
 
+#include "mesh/trace.h"
 #include "scene/build.h"
-#include "scene/trace.h"
 
 struct relume_scene {
     const struct relume_scene_kind *kind;

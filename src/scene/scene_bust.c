@@ -1,6 +1,6 @@
 // scene_bust.c - a bust before the dark: a model from a file, or a marble head of our own
 #include "base/log.h"
-#include "scene/mesh_read.h"
+#include "mesh/mesh_read.h"
 #include "scene/scene.h"
 
 static const double REACH = 0.93;  // of the window's half width

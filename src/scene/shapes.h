@@ -2,7 +2,7 @@
 #ifndef SCENE_SHAPES_H
 #define SCENE_SHAPES_H
 
-#include "scene/mesh.h"
+#include "mesh/mesh.h"
 
 // A parallelogram from `corner` along `u` and `v`, facing u x v; texture (u, v) from 0 to 1.
 void shape_quad(struct mesh *out, vec3 corner, vec3 u, vec3 v);

@@ -7,7 +7,7 @@
 #ifndef SCENE_WALK_H
 #define SCENE_WALK_H
 
-#include "scene/camera.h"
+#include "geometry/camera.h"
 #include "scene/scene.h"
 
 struct place {

@@ -3,8 +3,8 @@
 // its shadow map, and what a pixel and lamp cost at least (nearest texel; between texels four times
 // the model's part). bench_objects [WIDTH HEIGHT [osmesa|egl]]
 #include "bench.h"
-#include "context_offscreen.h"
-#include "things.h"
+#include "draw/things.h"
+#include "window/context_offscreen.h"
 
 enum { TEXELS = 16, FRAMES = 9 };
 static char folder[64];

@@ -3,8 +3,8 @@
 // [SIZE]]; default 1280x720 with a pattern of 512 in software, 1920x1080 with 1536 on a card
 #include "bench.h"
 
-#include "context_offscreen.h"
-#include "gl_glare.h"
+#include "glare/gl_glare.h"
+#include "window/context_offscreen.h"
 
 enum { RUNS = 5 };
 

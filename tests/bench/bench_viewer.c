@@ -4,10 +4,10 @@
 //        bench_viewer open FILE: a relume file, from the name to the first picture
 #include "bench.h"
 
-#include "context_offscreen.h"
-#include "draw.h"
-#include "relighter.h"
-#include "session.h"
+#include "draw/draw.h"
+#include "relit/relighter.h"
+#include "session/session.h"
+#include "window/context_offscreen.h"
 
 enum { CODES = 4096, RUNS = 9, LIGHTS = 1000, MOST_PLANES = 75 };
 

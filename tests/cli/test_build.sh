@@ -49,6 +49,9 @@ done
 
 # ---------------------------------------------------------------- layers
 check "layers hold" "$TOP/scripts/layers.sh"
+"$TOP/scripts/layers.sh" --table >table.txt
+sed -n '/^| folder | private/,/^$/p' "$TOP/docs/architecture.md" | sed '/^$/d' >documented.txt
+same "docs/architecture.md has the table of scripts/layers.sh" table.txt documented.txt
 mkdir tree
 (cd "$TOP" && tar cf - --exclude=__pycache__ src include viewer scripts samples tests Makefile) |
     (cd tree && tar xf -)
@@ -68,16 +71,17 @@ plant() {
     cp before "tree/$2"
 }
 plant "a private header of a neighbour" src/math/sh.c '#include "image/image.h"' image/image.h
-plant "a private header of a stranger" src/cli/cmd_info.c '#include "pack/format.h"' pack/format.h
-plant "a private header in the viewer" viewer/app.c '#include "base/log.h"' base/log.h
+plant "a private header of a stranger" src/cli/commands/cmd_info.c '#include "pack/format.h"' pack/format.h
+plant "a private header in the viewer" viewer/app/app.c '#include "base/log.h"' base/log.h
+plant "a header of a room above" viewer/gl/gl.c '#include "draw/draw.h"' draw/draw.h
 plant "a private header in a sample" samples/minimal.c '#include "base/log.h"' base/log.h
 plant "a public header from above" src/coder/fit.c '#include <relume/pack.h>' '<relume/pack.h>'
 plant "an external library out of place" src/pack/reader.c '#include <openexr.h>' '<openexr'
 plant "linear algebra out of place" src/coder/encode.c '#include <Eigen/Dense>' '<Eigen'
 plant "intrinsics out of place" src/relight/relight.c '#include <immintrin.h>' '<immintrin'
-cp tree/src/cli/cmd_info.c before
-echo 'void f(void) { fopen("x", "w"); }' >>tree/src/cli/cmd_info.c
-check "a file that opens files itself" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "itself; expected base/inputs.h.*src/cli/cmd_info.c" layers.txt'
-cp before tree/src/cli/cmd_info.c
+cp tree/src/cli/commands/cmd_info.c before
+echo 'void f(void) { fopen("x", "w"); }' >>tree/src/cli/commands/cmd_info.c
+check "a file that opens files itself" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "itself; expected base/inputs.h.*src/cli/commands/cmd_info.c" layers.txt'
+cp before tree/src/cli/commands/cmd_info.c
 check "layers hold again" tree/scripts/layers.sh
 finish

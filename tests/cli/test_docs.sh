@@ -9,7 +9,7 @@ docs="$TOP/docs"
     for c in $("$RELUME" --help | sed -n 's/^  \([a-z]*\) .*/\1/p'); do "$RELUME" "$c" --help; done
 } | grep -o -e '--[a-z-]*' | sort -u >known.txt
 # options of other programs that the texts use, and a mistake that they show
-printf '%s\n' --cflags --libs --static --info --version --lihgt >>known.txt
+printf '%s\n' --cflags --libs --static --info --version --lihgt --table >>known.txt
 # anchors of a page: its headings as web pages of Git hosts name them, once each
 anchors() { grep '^#' "$1" | sed 's/^#* //' | tr 'A-Z' 'a-z' | sed 's/\[\([^]]*\)\]([^)]*)/\1/g; s/[^a-z0-9 _-]//g; s/ /-/g'; }
 for page in "$docs"/*.md "$docs"/*/*.md "$TOP/README.md"; do
@@ -42,7 +42,7 @@ grep -o '"relume\.[a-z]*"' "$TOP/src/pack/format.h" | tr -d '"' | sort -u >writt
 grep -o '^| `relume\.[a-z]*`' "$docs/format.md" | tr -d '|` ' | sort -u >documented.txt
 same "format.md has every attribute and no other" written.txt documented.txt
 
-folders=$(sed -n '/^## Layout/,/^## Who/p' "$docs/architecture.md" | sed -n 's|^  \([a-z]*\)/ .*|\1|p' | sort)
-check "architecture.md has every folder of src" \
-    test "$folders" = "$(cd "$TOP/src" && ls -d -- */ | tr -d / | sort)"
+folders=$(sed -n '/^## Layout/,/^## Who/p' "$docs/architecture.md" | sed -n 's|^  \([a-z_/]*\)/ .*|\1|p' | sort)
+check "architecture.md has every folder of src and viewer" \
+    test "$folders" = "$(cd "$TOP" && find src viewer -mindepth 1 -type d ! -path 'viewer/shaders/*' | cut -d/ -f2- | sort)"
 finish

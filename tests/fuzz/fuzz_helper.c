@@ -4,8 +4,8 @@
 
 #include "base/channel.h"
 #include "image/picture_serve.h"
-#include "scene/mesh.h"
-#include "scene/mesh_serve.h"
+#include "mesh/mesh.h"
+#include "mesh/mesh_serve.h"
 
 #include <relume/photograph.h>
 #include <sys/mman.h>

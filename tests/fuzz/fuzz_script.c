@@ -1,9 +1,9 @@
 // fuzz_script.c - scripts of the viewer made of noise, played to its state machine; no OpenGL
 #include "fuzz.h"
 
-#include "gaze.h"
-#include "lamps.h"
-#include "script.h"
+#include "app/gaze.h"
+#include "app/lamps.h"
+#include "app/script.h"
 
 static const char *const words[] = {
     "press", "release", "move", "drag",  "scroll", "key",       "left",  "right", "light",

@@ -2,10 +2,10 @@
 // COLMAP's poses, exposure times, names that tell a camera's place, and photographs with EXIF
 #include "fuzz.h"
 
-#include "capture/views.h"
-#include "capture/views_colmap.h"
-#include "cli/capture_times.c"
+#include "cli/commands/capture_times.c"
 #include "made_exif.h"
+#include "multiview/views.h"
+#include "multiview/views_colmap.h"
 
 #include <relume/lights.h>
 #include <relume/photograph.h>

@@ -2,9 +2,9 @@
 #ifndef TESTS_GL_FIXTURE_H
 #define TESTS_GL_FIXTURE_H
 
-#include "context.h"
+#include "draw/renderer.h"
 #include "owned.h"
-#include "renderer.h"
+#include "window/context.h"
 
 #include <relume/relume.h>
 

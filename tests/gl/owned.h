@@ -2,7 +2,7 @@
 #ifndef TESTS_GL_OWNED_H
 #define TESTS_GL_OWNED_H
 
-#include "app.h"
+#include "app/app.h"
 
 #define OWNED_APP __attribute__((cleanup(app_release))) struct app
 

@@ -1,14 +1,14 @@
 // The viewer's state machine, options and scripts; no OpenGL
-#include "app.h"
-#include "context.h"
-#include "gizmo.h"
-#include "keys.h"
-#include "lamps.h"
-#include "lamps_seen.h"
+#include "app/app.h"
+#include "app/gizmo.h"
+#include "app/keys.h"
+#include "app/lamps.h"
+#include "app/script.h"
+#include "common/say.h"
+#include "draw/lamps_seen.h"
 #include "owned.h"
-#include "say.h"
-#include "options.h"
-#include "script.h"
+#include "session/options.h"
+#include "window/context.h"
 
 #include <relume/tone.h>
 

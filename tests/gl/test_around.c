@@ -1,10 +1,10 @@
 // Several slabs in the viewer: frames against the library's, and the eye on its way around
 #include "fixture.h"
 
-#include "gizmo.h"
-#include "inspect.h"
-#include "orbit.h"
-#include "record.h"
+#include "app/gizmo.h"
+#include "app/orbit.h"
+#include "session/inspect.h"
+#include "session/record.h"
 
 enum { SLABS = 4, COLUMNS = 3, ROWS = 2, GRID = COLUMNS * ROWS, VIEWS = SLABS * GRID };
 enum { W = 40, H = 30 };

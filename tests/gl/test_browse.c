@@ -1,7 +1,7 @@
 // Folders to choose a file from, and the window that does it
-#include "browse.h"
 #include "owned.h"
-#include "panel.h"
+#include "panel/browse.h"
+#include "panel/panel.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -2,12 +2,12 @@
 // frame
 #include "fixture.h"
 
-#include "gl_glare.h"
-#include "glare.h"
-#include "glare_view.h"
-#include "lamps.h"
-#include "lamps_seen.h"
-#include "gaze.h"
+#include "app/gaze.h"
+#include "app/lamps.h"
+#include "draw/lamps_seen.h"
+#include "glare/gl_glare.h"
+#include "glare/glare.h"
+#include "glare/glare_view.h"
 
 static struct relume_eye *made_eye(double seconds)
 {

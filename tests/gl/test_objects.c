@@ -1,7 +1,7 @@
 // Objects covered with measured materials: OpenGL against the ray traced reference, for every
 // model under every kind of light, and shadows.
+#include "draw/things.h"
 #include "fixture.h"
-#include "things.h"
 
 #include <unistd.h>
 

@@ -2,10 +2,10 @@
 // against the library
 #include "fixture.h"
 
-#include "draw_panel.h"
-#include "enhancer.h"
-#include "inspect.h"
-#include "lamps.h"
+#include "app/lamps.h"
+#include "panel/draw_panel.h"
+#include "relit/enhancer.h"
+#include "session/inspect.h"
 
 static struct app make_app(void)
 {

@@ -1,7 +1,7 @@
 // test_nearest.c - the search kernels of every instruction set against double precision
 #include "test.h"
 
-#include "coder/kernels.h"
+#include "codebook/kernels.h"
 
 enum { MOST_DIM = 40, MOST_TILES = 9 };
 

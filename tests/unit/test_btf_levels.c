@@ -1,7 +1,7 @@
 // Levels of detail of BTFs and of their models: means of values, fitted again.
 #include "made_btf.h"
 
-#include "btf/model.h"
+#include "btf_model/model.h"
 #include "image/half.h"
 
 enum { WIDTH = 7, HEIGHT = 4 };

@@ -3,9 +3,9 @@
 #include "made_btf.h"
 
 #include "base/memory.h"
-#include "btf/scalar.h"
-#include "btf/lobes.h"
-#include "btf/reduce.h"
+#include "btf_model/lobes.h"
+#include "btf_model/reduce.h"
+#include "btf_model/scalar.h"
 #include "image/half.h"
 
 #include <relume/scene.h>

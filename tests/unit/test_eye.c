@@ -1,4 +1,4 @@
-#include "pass/eye.h"
+#include "post/eye.h"
 #include "test.h"
 
 // Eq. 8.2 as printed and as measured, from the table in the notes to the thesis, computed apart.

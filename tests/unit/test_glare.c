@@ -1,5 +1,5 @@
 #include "base/memory.h"
-#include "pass/glare.h"
+#include "post/glare.h"
 #include "test.h"
 
 // One pattern for all: small, of a default eye.

@@ -1,5 +1,5 @@
 // Meshes: the readers on good and broken files, the solids, the teapot.
-#include "scene/mesh_read.h"
+#include "mesh/mesh_read.h"
 #include "scene/shapes.h"
 
 #include <setjmp.h>

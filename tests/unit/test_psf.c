@@ -1,5 +1,5 @@
-#include "pass/aperture.h"
-#include "pass/psf.h"
+#include "post/aperture.h"
+#include "post/psf.h"
 #include "test.h"
 
 static const double nm575 = 575e-6;  // mm

@@ -1,8 +1,8 @@
 // Large surfaces: cuts against all cuts, tiles, lookups through maps, files, pictures.
 #include "made_btf.h"
 
-#include "btf/cut.h"
-#include "btf/surface.h"
+#include "surface/cut.h"
+#include "surface/surface.h"
 
 // ---------------------------------------------------------------- samples
 

@@ -1,0 +1,106 @@
+// acquire.h - a capture being made of photographs
+#ifndef ACQUIRE_ACQUIRE_H
+#define ACQUIRE_ACQUIRE_H
+
+#include "base/outdir.h"
+#include "math/vec.h"
+
+#include <relume/photograph.h>
+#include <relume/shoot.h>
+
+// One photograph and, where balls have photographs of their own, that of the ball under its light.
+struct shot {
+    const char *path, *ball_path;  // borrowed
+    int number;                    // among those that were given
+    char name[32];                 // of the image in the folder
+    struct relume_notes notes;
+    struct relume_image small;  // three channels, linear, at most SHOT_SMALL pixels a side
+    float saturated, black, likeness;
+    double sigma_deg;
+    struct relume_ball_light light;  // of the first ball
+    vec3 direction, position;
+    float intensity[3];
+    double position_sigma;
+};
+enum { SHOT_SMALL = 168 };
+
+// Warnings that many photographs may share.
+enum shoot_alike {
+    ALIKE_SATURATED,
+    ALIKE_BLACK,
+    ALIKE_SCENE,
+    ALIKE_UNALIGNED,
+    ALIKE_RIM,
+    ALIKE_TWO,
+    ALIKE_MISFIT,
+    ALIKE_KINDS
+};
+enum { SHOOT_FEW = 3 };  // said one by one
+struct alike {
+    int count, first[SHOOT_FEW], worst;  // indices of warnings
+    double how_bad;                      // the worst one
+};
+
+struct shoot {
+    struct relume_shoot_params p;
+    struct relume_shoot *out;
+    outdir *dir;
+    int shots;
+    struct shot *shot;
+    int width, height;          // of the photographs
+    struct relume_image first;  // that others are aligned to; empty unless params.align
+    struct relume_image gain;   // that evens out the light, of one flat field; empty: none yet
+    struct relume_image grey;   // sum of what photographs show in params.white
+    bool has_intensities;
+    // of the photographs in which the balls stand
+    struct relume_ball_camera camera;
+    struct relume_image mean, peak;
+    struct relume_image change;  // how light differs between photographs: RMS of its logarithm
+    int summed;
+    struct alike alike[ALIKE_KINDS];
+};
+
+// Log a warning and keep it for the report. RELUME_ENOMEM.
+__attribute__((format(printf, 2, 3))) relume_status shoot_warn(struct shoot *s, const char *format,
+                                                               ...);
+// The same for one of a kind, kept for the report; what was kept is said by shoot_say_alike, of
+// more than a few only the worst and their number.
+__attribute__((format(printf, 4, 5))) relume_status shoot_warn_alike(struct shoot *s,
+                                                                     enum shoot_alike kind,
+                                                                     double how_bad,
+                                                                     const char *format, ...);
+void shoot_say_alike(struct shoot *s);
+// Photograph `i` is of no use: leave it out with a warning where that is allowed, else fail.
+__attribute__((format(printf, 3, 4))) relume_status shoot_drop(struct shoot *s, int i,
+                                                               const char *format, ...);
+const char *shoot_base_name(const char *path);
+
+// Read all photographs into the folder; RELUME_EDATA.
+relume_status shoot_read(struct shoot *s);
+relume_status shoot_check_size(const struct shoot *s, const struct relume_image *image,
+                               const char *path, int width, int height);
+// Multiply a photograph by what its flat field says. RELUME_EDATA.
+relume_status shoot_flatten(struct shoot *s, const struct shot *shot, struct relume_image *image);
+// Remember the grey region of a photograph; make its mean the colour of all lights.
+relume_status shoot_add_grey(struct shoot *s, const struct relume_image *image);
+relume_status shoot_whiten(struct shoot *s);
+// What can be told wrong of the pictures themselves: other scenes, clipping, blackness.
+relume_status shoot_check_pictures(struct shoot *s);
+// The photograph that shows the balls under a shot's light, linear.
+relume_status shoot_load_balls(struct relume_image *out, const struct shoot *s, int i);
+// Mirror balls found as the horizon of the table they stand on: find their outlines.
+relume_status shoot_seek_tables(struct shoot *s);
+// Directions, positions, intensities and their errors, from balls or from a file.
+relume_status shoot_find_lights(struct shoot *s);
+// The same from a folder: the text files of COLMAP, with cameras that are tied to the lamp.
+bool shoot_has_poses(const char *path);
+relume_status shoot_lights_from_poses(struct shoot *s);
+// Uneven coverage, coplanar lights.
+relume_status shoot_check_lights(struct shoot *s);
+
+// lights.svg and report.html into the folder `dir`.
+relume_status shoot_report(const struct shoot *s, const char *dir);
+// The lights on the sphere, as SVG, to be freed; NULL when memory is short.
+char *shoot_light_sphere(const struct relume_shoot *out);
+
+#endif

@@ -1,0 +1,182 @@
+// acquire_check.c - what can be told wrong before anybody looks at the result
+#include "acquire/acquire.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "math/lsq.h"
+
+#include <relume/align.h>
+#include <stdio.h>
+
+enum { PAIRS = 5, GRID = 1500 };
+static const double LIKE = 0.35, UNLIKE = 0.5;  // likeness: of one scene; share of the others'
+static const float SATURATED = 0.02f, DARK = 0.999f;
+static const double FLAT = 0.004;   // least eigenvalue of the directions' mean square
+static const double LOWEST = 0.26;  // sine of the elevation from which light is wanted: 15 degrees
+static const double WIDE_GAP = 40.0;  // degrees
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *v, int n)
+{
+    if (n == 0)
+        return (double)NAN;
+    qsort(v, (size_t)n, sizeof *v, ascending);
+    return v[n / 2];
+}
+
+// The median likeness of a photograph to some of the others.
+static float likeness(const struct shoot *s, int i)
+{
+    double found[PAIRS];
+    int n = 0;
+    const int step = s->shots > PAIRS ? (s->shots - 1) / PAIRS : 1;
+    for (int k = 1; k < s->shots && n < PAIRS; k += step) {
+        const double like = relume_likeness(&s->shot[i].small, &s->shot[(i + k) % s->shots].small);
+        if (isfinite(like))
+            found[n++] = like;
+    }
+    return (float)median(found, n);
+}
+
+static relume_status check_scene(struct shoot *s)
+{
+    double *all = mem_array((size_t)s->shots, sizeof *all);
+    if (!all)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < s->shots; i++)
+        all[i] = (double)(s->shot[i].likeness = likeness(s, i));
+    const double usual = median(all, s->shots);
+    free(all);
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && usual > LIKE && i < s->shots;) {
+        const double like = (double)s->shot[i].likeness;
+        if (like >= UNLIKE * usual) {
+            i++;
+            continue;
+        }
+        if (s->p.skip_bad) {
+            status = shoot_drop(s, i, "shows another scene: similarity %.2f, the others have %.2f",
+                                like, usual);
+            continue;
+        }
+        status = shoot_warn_alike(s, ALIKE_SCENE, -like,
+                                  "%s: seems to show another scene: similarity %.2f, the others "
+                                  "have %.2f",
+                                  s->shot[i].path, like, usual);
+        i++;
+    }
+    return status;
+}
+
+relume_status shoot_check_pictures(struct shoot *s)
+{
+    relume_status status = check_scene(s);
+    int full = 0;
+    for (int i = 0; !status && i < s->shots; i++) {
+        const struct shot *shot = &s->shot[i];
+        full += shot->saturated > 0.9f;
+        if (shot->saturated > SATURATED)
+            status = shoot_warn_alike(s, ALIKE_SATURATED, (double)shot->saturated,
+                                      "%s: %.1f %% of the pixels are overexposed", shot->path,
+                                      100.0 * (double)shot->saturated);
+        else if (shot->black > DARK)
+            status = shoot_warn_alike(s, ALIKE_BLACK, 0.0, "%s: black", shot->path);
+    }
+    if (!status && full == s->shots)
+        status = log_fail(s->p.log, RELUME_EDATA,
+                          "all %d photographs are overexposed; expected shorter exposures", full);
+    return status;
+}
+
+// ---------------------------------------------------------------- lights
+
+static vec3 grid_direction(int i)
+{
+    const double z = LOWEST + (1.0 - LOWEST) * (i + 0.5) / GRID, r = sqrt(1.0 - z * z);
+    const double phi = i * (M_PI * (3.0 - sqrt(5.0)));
+    return vec3_of(r * cos(phi), r * sin(phi), z);
+}
+
+// The direction farthest from all lights and from the `n` already proposed.
+static double find_gap(const struct relume_shoot *out, const vec3 *proposed, int n, vec3 *gap)
+{
+    double widest = 0.0;
+    for (int k = 0; k < GRID; k++) {
+        const vec3 d = grid_direction(k);
+        double nearest = M_PI;
+        for (int i = 0; i < out->lights; i++)
+            nearest = fmin(nearest, vec3_angle(d, out->direction[i]));
+        for (int i = 0; i < n; i++)
+            nearest = fmin(nearest, vec3_angle(d, proposed[i]));
+        if (nearest > widest) {
+            widest = nearest;
+            *gap = d;
+        }
+    }
+    return widest * 180.0 / M_PI;
+}
+
+static double azimuth(vec3 d)
+{
+    const double a = atan2(d.y, d.x) * 180.0 / M_PI;
+    return a < 0.0 ? a + 360.0 : a;
+}
+
+// "lower left, 16 degrees above the table (230 degrees counter-clockwise from the right)"
+static size_t put_place(char *out, size_t room, const char *before, vec3 d)
+{
+    static const char *const sides[] = {"right", "upper right", "top",    "upper left",
+                                        "left",  "lower left",  "bottom", "lower right"};
+    const double a = azimuth(d);
+    const int n =
+        snprintf(out, room,
+                 "%s%s, %.0f degrees above the table (%.0f degrees counter-clockwise from "
+                 "the right)",
+                 before, sides[(int)floor(a / 45.0 + 0.5) % 8], asin(d.z) * 180.0 / M_PI, a);
+    return n < 0 ? 0 : (size_t)n < room ? (size_t)n : room - 1;
+}
+
+static relume_status check_coverage(struct shoot *s)
+{
+    enum { SAID = 4 };
+    struct relume_shoot *out = s->out;
+    char places[512] = "";
+    size_t at = 0;
+    int n = 0;
+    out->gap_deg = find_gap(out, NULL, 0, &out->gap);
+    while (n < RELUME_SHOOT_WANTED && find_gap(out, out->wanted, n, &out->wanted[n]) > WIDE_GAP)
+        n++;
+    out->wanted_count = n;
+    for (int i = 0; i < n && i < SAID; i++)
+        at += put_place(places + at, sizeof places - at, i ? "; " : "", out->wanted[i]);
+    if (!n)
+        return RELUME_OK;
+    return shoot_warn(s, "uneven light: the widest gap is %.0f degrees; add lamps: %s%s",
+                      out->gap_deg, places, n > SAID ? "; and more, see report.html" : "");
+}
+
+relume_status shoot_check_lights(struct shoot *s)
+{
+    const struct relume_shoot *out = s->out;
+    double m[9] = {0.0}, values[3];
+    for (int i = 0; i < out->lights; i++) {
+        const vec3 d = out->direction[i];
+        const double v[3] = {d.x, d.y, d.z};
+        for (int j = 0; j < 9; j++)
+            m[j] += v[j / 3] * v[j % 3] / out->lights;
+    }
+    if (!lsq_eigenvalues(m, 3, values))
+        return RELUME_ENOMEM;
+    relume_status status = RELUME_OK;
+    if (values[0] < FLAT)
+        status = shoot_warn(s,
+                            "the light directions lie nearly in one plane (%.1f degrees off it): "
+                            "normals cannot be computed",
+                            asin(sqrt(fmax(values[0], 0.0))) * 180.0 / M_PI);
+    return status ? status : check_coverage(s);
+}

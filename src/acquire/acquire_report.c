@@ -1,0 +1,285 @@
+// acquire_report.c - report.html: what was made, how good it is, and what to do better
+#include "acquire/acquire.h"
+
+#include "acquire/report_picture.h"
+#include "base/memory.h"
+#include "base/outfile.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { THUMB = 168, PLATE = 420 };
+
+struct report {
+    const struct shoot *s;
+    const char *dir;
+    FILE *f;
+    relume_status status;
+};
+
+static const char style[] =
+    "body{font:14px/1.5 sans-serif;max-width:1100px;margin:2em auto;padding:0 1em;color:#222}"
+    "h1{font-size:22px}h2{font-size:17px;margin-top:1.8em}"
+    "img,svg{display:block;max-width:100%;height:auto}figure{margin:0;max-width:100%}"
+    "figcaption{font-size:12px;color:#555;max-width:420px}"
+    ".row{display:flex;flex-wrap:wrap;gap:16px}.over{position:relative}"
+    ".over svg{position:absolute;left:0;top:0;width:100%}"
+    ".wide{overflow-x:auto}table{border-collapse:collapse}"
+    "td,th{padding:2px 10px;text-align:right}.wide td,.wide "
+    "th{white-space:nowrap}th{border-bottom:1px solid #999}"
+    "td:first-child,th:first-child{text-align:left}"
+    ".warn{background:#fff3d6;border-left:4px solid #e0a000;padding:4px 10px;margin:4px 0;"
+    "overflow-wrap:anywhere}.good{color:#060}.off td,.off figcaption{color:#b00}"
+    ".sun{position:absolute;right:3px;top:3px;width:34px!important;left:auto!important}"
+    "@media print{body{margin:0}}";
+
+static void put_text(FILE *f, const char *text)
+{
+    for (; *text; text++)
+        if (*text == '<')
+            fputs("&lt;", f);
+        else if (*text == '&')
+            fputs("&amp;", f);
+        else if (*text == '"')
+            fputs("&quot;", f);
+        else
+            fputc(*text, f);
+}
+
+static void put_picture(struct report *r, const struct relume_image *image, int side, float gain,
+                        enum report_look look)
+{
+    const relume_status status = report_picture(r->f, r->dir, image, side, gain, look, r->s->p.log);
+    r->status = r->status ? r->status : status;
+}
+
+// ---------------------------------------------------------------- parts
+
+static void put_warnings(struct report *r)
+{
+    const struct relume_shoot *out = r->s->out;
+    fputs("<h2>Warnings</h2>\n", r->f);
+    if (!out->warnings)
+        fputs("<p class=\"good\">none</p>\n", r->f);
+    for (int i = 0; i < out->warnings; i++) {
+        fputs("<div class=\"warn\">", r->f);
+        put_text(r->f, out->warning[i]);
+        fputs("</div>\n", r->f);
+    }
+}
+
+static double mean_sigma(const struct relume_shoot *out)
+{
+    double sum = 0.0;
+    for (int i = 0; i < out->lights; i++)
+        sum += out->photo[i].sigma_deg / out->lights;
+    return sum;
+}
+
+static void put_summary(struct report *r)
+{
+    const struct relume_shoot *out = r->s->out;
+    FILE *f = r->f;
+    fprintf(f, "<table><tr><td>pictures</td><td>%d of %d x %d pixels</td></tr>\n", out->lights,
+            out->width, out->height);
+    fprintf(f, "<tr><td>lights</td><td>%s</td></tr>\n", out->position ? "near" : "distant");
+    if (mean_sigma(out) > 0.0)
+        fprintf(f, "<tr><td>estimated error of directions</td><td>%.2f&#176; (mean)</td></tr>\n",
+                mean_sigma(out));
+    if (out->position_error > 0.0)
+        fprintf(f,
+                "<tr><td>estimated error of positions</td><td>%.1f %% of distance (mean)</td></tr>"
+                "\n",
+                100.0 * out->position_error);
+    fprintf(f, "<tr><td>widest gap between lights</td><td>%.0f&#176;</td></tr>\n", out->gap_deg);
+    if (out->photometric.normal.data)
+        fprintf(f,
+                "<tr><td>brightness error, if the surface were matte</td><td>%.1f %% (median)</td>"
+                "</tr>\n",
+                100.0 * out->photometric.residual);
+    fputs("</table>\n", f);
+}
+
+// The mean photograph of the balls with their outlines and all highlights.
+static void put_balls(struct report *r)
+{
+    const struct relume_shoot *out = r->s->out;
+    const struct relume_image *mean = &r->s->mean;
+    if (!out->balls || !mean->data)
+        return;
+    const int most = mean->width > mean->height ? mean->width : mean->height;
+    const double scale = most > PLATE ? (double)PLATE / most : 1.0;
+    fputs("<figure><div class=\"over\">", r->f);
+    put_picture(r, mean, PLATE, 2.0f * report_gain(mean), LOOK_LIGHT);
+    fprintf(r->f, "<svg viewBox=\"0 0 %.0f %.0f\" fill=\"none\">", mean->width * scale,
+            mean->height * scale);
+    for (int b = 0; b < out->balls; b++)
+        fprintf(r->f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\" stroke=\"#3f3\"/>",
+                out->ball[b].x * scale, out->ball[b].y * scale, out->ball[b].radius * scale);
+    for (int i = 0; i < out->lights; i++)
+        fprintf(r->f, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"2\" stroke=\"#f33\"/>",
+                out->photo[i].light.x * scale, out->photo[i].light.y * scale);
+    fprintf(r->f,
+            "</svg></div><figcaption>ball at %.1f, %.1f, radius %.1f; %.0f %% of its outline "
+            "seen</figcaption></figure>\n",
+            out->ball[0].x, out->ball[0].y, out->ball[0].radius, 100.0 * out->ball[0].coverage);
+}
+
+static void put_sphere(struct report *r)
+{
+    char *svg = shoot_light_sphere(r->s->out);
+    if (!svg) {
+        r->status = RELUME_ENOMEM;
+        return;
+    }
+    fputs("<figure>", r->f);
+    fputs(svg, r->f);
+    fputs("<figcaption>the lights as seen from the camera; pale discs: twice the estimated error; "
+          "red: the widest gap, and where lights should be added</figcaption></figure>\n",
+          r->f);
+    free(svg);
+}
+
+static void put_surface(struct report *r)
+{
+    const struct relume_photometric *p = &r->s->out->photometric;
+    if (!p->normal.data)
+        return;
+    fputs("<h2>Surface</h2>\n<div class=\"row\"><figure>", r->f);
+    put_picture(r, &p->normal, 320, 1.0f, LOOK_NORMAL);
+    fputs("<figcaption>normals</figcaption></figure><figure>", r->f);
+    put_picture(r, &p->albedo, 320, report_gain(&p->albedo), LOOK_LIGHT);
+    fputs("<figcaption>albedo</figcaption></figure><figure>", r->f);
+    put_picture(r, &p->error, 320, 10.0f, LOOK_LIGHT);
+    fputs("<figcaption>difference from a matte surface (white: 10 % of its "
+          "brightness)</figcaption></figure>"
+          "</div>\n",
+          r->f);
+}
+
+static double miss_of(const struct relume_shoot *out, int i)
+{
+    return out->photometric.light_residual ? out->photometric.light_residual[i] : 0.0;
+}
+
+static double most_missed(const struct relume_shoot *out)
+{
+    double most = 0.0;
+    for (int i = 0; i < out->lights; i++)
+        most = fmax(most, miss_of(out, i));
+    return most;
+}
+
+// The share of 100 % as a bar behind the number.
+static void put_bar(FILE *f, double value, double most)
+{
+    fprintf(f, "<td style=\"background:linear-gradient(to left,#cde %.0f%%,#fff 0)\">%.1f %%</td>",
+            most > 0.0 ? 100.0 * value / most : 0.0, 100.0 * value);
+}
+
+static void put_row(FILE *f, const struct relume_shoot *out, int i, double most)
+{
+    const struct relume_shoot_photo *p = &out->photo[i];
+    const vec3 d = out->position ? out->position[i] : out->direction[i];
+    fprintf(f, "<tr%s><td>%d ", p->outlier ? " class=\"off\"" : "", i);
+    put_text(f, shoot_base_name(p->path));
+    fprintf(f, "</td><td>%.3f</td><td>%.3f</td><td>%.3f</td>", d.x, d.y, d.z);
+    fprintf(f, p->sigma_deg > 0.0 ? "<td>%.2f&#176;</td>" : "<td></td>", p->sigma_deg);
+    fprintf(f, p->light.spread_deg > 0.0 ? "<td>%.1f&#176;</td>" : "<td></td>",
+            p->light.spread_deg);
+    put_bar(f, miss_of(out, i), most);
+    fprintf(f, "<td>%.2f %%</td></tr>\n", 100.0 * (double)p->saturated);
+}
+
+static void put_table(struct report *r)
+{
+    const struct relume_shoot *out = r->s->out;
+    const double most = most_missed(out);
+    fputs("<h2>Lights</h2>\n<div class=\"wide\"><table><tr><th>photograph</th><th>x</th><th>y</th>"
+          "<th>z</th><th>error</th><th>lamp's width</th><th>brightness "
+          "error</th><th>overexposed</th></tr>\n",
+          r->f);
+    for (int i = 0; i < out->lights; i++)
+        put_row(r->f, out, i, most);
+    fputs("</table></div>\n", r->f);
+}
+
+// Where the light of a photograph stood, for the corner of its thumbnail.
+static void put_sun(FILE *f, vec3 d)
+{
+    fprintf(f,
+            "<svg class=\"sun\" viewBox=\"-10 -10 20 20\"><circle r=\"9\" fill=\"#222\" "
+            "stroke=\"#aaa\"/><circle cx=\"%.1f\" cy=\"%.1f\" r=\"2.6\" fill=\"#fd4\"/></svg>",
+            8.0 * d.x, -8.0 * d.y);
+}
+
+// All of one gain: which photograph is darker shows.
+static float common_gain(const struct shoot *s)
+{
+    float least = INFINITY;
+    for (int i = 0; i < s->shots; i++)
+        least = fminf(least, report_gain(&s->shot[i].small));
+    return fmaxf(0.6f * least, 1.0f);  // mostly a small thing before black
+}
+
+static void put_thumbnails(struct report *r)
+{
+    const struct shoot *s = r->s;
+    const float gain = common_gain(s);
+    fputs("<h2>Photographs and their lights</h2>\n<div class=\"row\">", r->f);
+    for (int i = 0; i < s->shots && !r->status; i++) {
+        fprintf(r->f, "<figure%s><div class=\"over\">",
+                s->out->photo[i].outlier ? " class=\"off\"" : "");
+        put_picture(r, &s->shot[i].small, THUMB, gain, LOOK_LIGHT);
+        put_sun(r->f, s->out->direction[i]);
+        fprintf(r->f, "</div><figcaption>%d ", i);
+        put_text(r->f, shoot_base_name(s->shot[i].path));
+        fputs("</figcaption></figure>\n", r->f);
+    }
+    fputs("</div>\n", r->f);
+}
+
+static relume_status write_sphere(const struct shoot *s, const char *dir)
+{
+    char *svg = shoot_light_sphere(s->out), *path = mem_format("%s/lights.svg", dir);
+    const relume_status status =
+        svg && path ? outfile_save(path, svg, strlen(svg), s->p.log) : RELUME_ENOMEM;
+    free(svg);
+    free(path);
+    return status;
+}
+
+relume_status shoot_report(const struct shoot *s, const char *dir)
+{
+    char *text = NULL, *path = mem_format("%s/report.html", dir);
+    size_t size = 0;
+    struct report r = {.s = s, .dir = dir, .f = path ? open_memstream(&text, &size) : NULL};
+    if (!r.f) {
+        free(path);
+        return RELUME_ENOMEM;
+    }
+    fprintf(r.f,
+            "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta "
+            "name=\"viewport\" content=\"width=device-width\"><title>capture"
+            "</title><style>%s</style></head><body>\n<h1>Capture of %d photographs</h1>\n",
+            style, s->shots);
+    put_summary(&r);
+    put_warnings(&r);
+    fputs("<h2>Where the lights stood</h2>\n<div class=\"row\">", r.f);
+    put_sphere(&r);
+    put_balls(&r);
+    fputs("</div>\n", r.f);
+    put_surface(&r);
+    put_table(&r);
+    put_thumbnails(&r);
+    fputs("</body></html>\n", r.f);
+    if (fclose(r.f) && !r.status)
+        r.status = RELUME_ENOMEM;
+    if (!r.status)
+        r.status = outfile_save(path, text, size, s->p.log);
+    if (!r.status)
+        r.status = write_sphere(s, dir);
+    free(text);
+    free(path);
+    return r.status;
+}

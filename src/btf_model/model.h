@@ -1,0 +1,136 @@
+// model.h - what a model of a BTF is: some arrays, a way to fill them, a way to read a value back
+//
+// A model says which arrays it keeps, of which types and sizes; fitting fills them; what is read
+// back, saved and counted is these arrays and nothing else. So the bytes of the tables are the
+// bytes of the files.
+#ifndef BTF_MODEL_MODEL_H
+#define BTF_MODEL_MODEL_H
+
+#include "btf/btf.h"
+#include "image/half.h"
+
+#include <math.h>
+
+enum { MODEL_ARRAYS = 6, MODEL_LOBES = 4 };
+
+struct model_array {
+    const char *name;
+    struct npy npy;
+    bool each;     // one entry a texel: shape[0] is their number or [1] with `by_view`
+    size_t below;  // integers: all are below this
+    void *data;
+    struct npy_file file;  // or empty: `data` is malloc'd
+};
+
+struct relume_btf_fitted {
+    const struct relume_btf_model *model;
+    int width, height, views, lights;
+    size_t texels;
+    int clusters, components, lobes;  // 0: the model has none
+    int texel_bytes, pair_bytes;      // of a row of bits, where the model has such
+    bool without_cosine;
+    vec3 *view, *light;
+    relume_dome *view_dome, *light_dome;
+    struct model_array array[MODEL_ARRAYS];
+    int arrays;
+    void *prepared;           // what the model's `prepare` made of them, or NULL
+    relume_btf_fitted *half;  // the next level of detail, or NULL
+    const relume_btf *table;  // the measured values, where they are the model
+};
+
+// One value that is asked for. Models that are gridded over views (lights) get measured ones only.
+struct model_at {
+    size_t texel;
+    int view, light;  // of the fitted directions, where the model is gridded
+    vec3 v, l;
+};
+
+// What fitting works with.
+struct fitting {
+    const relume_btf *btf;
+    relume_btf_fitted *out;
+    const struct relume_log *log;
+    uint64_t seed;
+    int threads;
+    double ratio;  // asked for; 0: the model's choice
+};
+
+struct relume_btf_ambient;
+
+struct relume_btf_model {
+    const char *name;
+    const char *summary;
+    bool view_grid, light_grid;            // known at measured views (lights) only
+    int clusters, components, lobes;       // defaults; 0: the model has none
+    int most_clusters;                     // 0: 65536
+    int most_components;                   // 0: 256
+    bool of_views;                         // components are of each view's pictures, not of texels
+    void (*layout)(relume_btf_fitted *m);  // adds the arrays, with model_add
+    relume_status (*fit)(struct fitting *f);
+    void (*eval)(const relume_btf_fitted *m, const struct model_at *at, float rgb[3]);
+    // Whatever makes reading faster, into m->prepared, to be freed with free(); NULL: nothing does.
+    relume_status (*prepare)(relume_btf_fitted *m);
+    struct relume_btf_cost (*cost)(const relume_btf_fitted *m);
+    // Whether arrays that are fine by themselves fit together; NULL: they do.
+    bool (*is_sound)(const relume_btf_fitted *m);
+    bool lobes_times_cosine;  // where values include n.l
+    // Under an environment (btf_model/ambient.h); NULL: the sum over the measured lights.
+    void (*lit)(const relume_btf_fitted *m, const struct model_at *at,
+                const struct relume_btf_ambient *ambient, float rgb[3]);
+};
+
+extern const struct relume_btf_model model_lit, model_bump, model_laf, model_slaf, model_rfp,
+    model_rfnl, model_rfnlc, model_cmf, model_vpca, model_lpca, model_fmf, model_qmf, model_table;
+
+// An array of up to five sizes; unused ones are 0.
+void model_add(relume_btf_fitted *m, const char *name, enum npy_kind kind, bool each, size_t below,
+               const size_t shape[NPY_DIMS]);
+// Zeroed arrays as the layout says, in place of what there is. RELUME_ENOMEM.
+relume_status model_make_arrays(relume_btf_fitted *m);
+#define MODEL_SHAPE(...) ((const size_t[NPY_DIMS]){__VA_ARGS__})
+
+static inline uint16_t *model_halfs(const relume_btf_fitted *m, int array)
+{
+    return m->array[array].data;
+}
+
+// What a model stores must stay finite, also where values are as large as halfs can be.
+static inline uint16_t model_half(double x)
+{
+    return half_from_float((float)fmin(fmax(x, -65504.0), 65504.0));
+}
+
+static inline float *model_floats(const relume_btf_fitted *m, int array)
+{
+    return m->array[array].data;
+}
+
+// Write the files of a model and of its levels of detail into an existing folder.
+relume_status model_save_into(const relume_btf_fitted *m, const char *folder,
+                              const struct relume_log *log);
+
+// Value of the fitted model between its directions.
+struct model_blend {
+    struct relume_dome_blend view, light;
+    vec3 v, l;
+};
+void model_blend(const relume_btf_fitted *m, size_t texel, const struct model_blend *at,
+                 float rgb[3]);
+// Light number `i` alone. What is summed over lights has n.l in its weights: model_blend.l is then
+// the pole.
+static inline struct relume_dome_blend model_measured_light(const relume_btf_fitted *m, int i)
+{
+    return (struct relume_dome_blend){.count = 1,
+                                      .index = {i},
+                                      .weight = {1.0},
+                                      .direction = m->light[i],
+                                      .rim = 1.0,
+                                      .length = 1.0};
+}
+
+static inline size_t model_pairs(const relume_btf_fitted *m)
+{
+    return (size_t)m->views * (size_t)m->lights;
+}
+
+#endif

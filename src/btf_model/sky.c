@@ -1,0 +1,101 @@
+// sky.c - a model under an environment, for any orientation
+//
+// The exact weights of the measured lights (ambient.c) are integrals of the radiance against the
+// pyramids of interpolation. A pyramid is all but round, and wherever the surface turns, it stays
+// the same in the frame of the sample: so it is exchanged, once, for the cosine lobe that has its
+// integral and its first moment, and the radiance under a lobe is in the prefiltered maps.
+#include "btf_model/ambient.h"
+
+#include "base/memory.h"
+
+static const double SHARPEST = 128.0;  // of the maps
+
+// A lobe max(0, cos)^e has the mean cosine (e + 1) / (e + 2).
+static double exponent_of(double mean_cosine)
+{
+    const double e = (2.0 * mean_cosine - 1.0) / fmax(1.0 - mean_cosine, 1e-9);
+    return fmin(fmax(e, 1.0), SHARPEST);
+}
+
+static void add_direction(struct relume_btf_sky *s, vec3 d, double solid_angle)
+{
+    const struct relume_dome_blend b = relume_dome_at(s->model->light_dome, d);
+    const double arrives = (s->model->without_cosine ? d.z : b.rim / b.length) * solid_angle / M_PI;
+    for (int i = 0; i < b.count; i++) {
+        struct relume_btf_cone *cone = &s->cone[b.index[i]];
+        cone->weight += arrives * b.weight[i];
+        cone->axis = vec3_add(cone->axis, vec3_scale(d, arrives * b.weight[i]));
+    }
+}
+
+static void fill_cones(struct relume_btf_sky *s)
+{
+    enum { ROWS = 48, COLUMNS = 128 };
+    for (int i = 0; i < ROWS * COLUMNS; i++) {
+        const double z = (i / COLUMNS + 0.5) / ROWS, r = sqrt(1.0 - z * z);
+        const double phi = (i % COLUMNS + 0.5) / COLUMNS * 2.0 * M_PI;
+        add_direction(s, vec3_of(r * cos(phi), r * sin(phi), z), 2.0 * M_PI / (ROWS * COLUMNS));
+    }
+    for (int i = 0; i < s->model->lights; i++) {
+        struct relume_btf_cone *cone = &s->cone[i];
+        const double length = vec3_length(cone->axis);
+        const bool met = length > 0.0;  // all are but what is far below the grid
+        cone->exponent = met ? exponent_of(length / cone->weight) : 1.0;
+        cone->axis = met ? vec3_scale(cone->axis, 1.0 / length) : s->model->light[i];
+    }
+}
+
+relume_status relume_btf_sky_create(relume_btf_sky **out, const relume_btf_fitted *model,
+                                    const relume_prefilter *prefilter)
+{
+    relume_btf_sky *s = mem_zeroed(1, sizeof *s);
+    *out = s;
+    if (!s)
+        return RELUME_ENOMEM;
+    s->model = model;
+    s->prefilter = prefilter;
+    s->cone = mem_zeroed((size_t)model->lights, sizeof *s->cone);
+    if (s->cone)
+        fill_cones(s);
+    else
+        relume_btf_sky_destroy(out);
+    return *out ? RELUME_OK : RELUME_ENOMEM;
+}
+
+void relume_btf_sky_destroy(relume_btf_sky **sky)
+{
+    if (*sky)
+        free((*sky)->cone);
+    free(*sky);
+    *sky = NULL;
+}
+
+const struct relume_btf_cone *relume_btf_sky_cones(const relume_btf_sky *sky)
+{
+    return sky->cone;
+}
+
+void relume_btf_sky_weight(float rgb[3], const relume_btf_sky *sky,
+                           const struct relume_btf_frame *f, int i)
+{
+    const struct relume_btf_cone *cone = &sky->cone[i];
+    const vec3 axis =
+        vec3_add(vec3_scale(f->right, cone->axis.x),
+                 vec3_add(vec3_scale(f->up, cone->axis.y), vec3_scale(f->normal, cone->axis.z)));
+    relume_prefilter_specular(rgb, sky->prefilter, axis, cone->exponent);
+    for (int c = 0; c < 3; c++)
+        rgb[c] *= (float)cone->weight;
+}
+
+struct relume_btf_ambient sky_ambient(const relume_btf_sky *sky,
+                                      const struct relume_btf_frame *frame)
+{
+    const relume_btf_fitted *m = sky->model;
+    struct relume_btf_ambient a = {.model = m, .prefilter = sky->prefilter, .frame = *frame};
+    // the mean under a lobe of exponent 1 is the integral of n.l E / pi
+    relume_prefilter_specular(a.even[1], sky->prefilter, frame->normal, 1.0);
+    relume_prefilter_diffuse(a.even[0], sky->prefilter, frame->normal);
+    for (int c = 0; c < 3 && m->without_cosine; c++)
+        a.even[0][c] = a.even[1][c];
+    return a;
+}

@@ -1,0 +1,100 @@
+#include "commands/btf_inputs.h"
+
+#include <stdlib.h>
+#include <sys/stat.h>
+
+static bool exists(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0;
+}
+
+bool btf_is_model(const char *path)
+{
+    char file[4096];
+    return snprintf(file, sizeof file, "%s/model.json", path) < (int)sizeof file && exists(file);
+}
+
+bool btf_is_surface(const char *path)
+{
+    char file[4096];
+    return snprintf(file, sizeof file, "%s/surface.json", path) < (int)sizeof file && exists(file);
+}
+
+static relume_status synth_material(relume_btf **out, const struct relume_btf_material *material,
+                                    const struct args *args)
+{
+    const char *name = args_text(args, "--directions", "bonn");
+    const struct relume_btf_set *set = relume_btf_set_find(name);
+    const char *const names[] = {"bonn", "dome", "coarse", NULL};
+    if (!set)
+        return unknown_name("set of directions", name, names);
+    struct relume_vec3 *d = malloc((size_t)set->count * sizeof *d);
+    if (!d)
+        return RELUME_ENOMEM;
+    relume_btf_set_directions(set, d);
+    const relume_status status = relume_btf_synth(
+        out, material,
+        relume_btf_synth_params(.log = args_log(args), .size = args_int(args, "--size", 64),
+                                .view = d, .views = set->count, .light = d, .lights = set->count,
+                                .seed = (uint64_t)args_int(args, "--seed", 0),
+                                .threads = args_threads(args)));
+    free(d);
+    return status;
+}
+
+static relume_status parse_crop(int out[4], const struct args *args)
+{
+    const char *text = args_text(args, "--crop", NULL), *at = text;
+    for (int i = 0; text && i < 4; i++) {
+        char *end;
+        const long n = strtol(at, &end, 10);
+        if (end == at || *end != (i < 3 ? ',' : '\0') || n < (i > 1) || n > 65536)
+            return usage_error("--crop: expected x,y,w,h in texels; found '%s'", text);
+        out[i] = (int)n;
+        at = end + 1;
+    }
+    return RELUME_OK;
+}
+
+static relume_status open_btf(relume_btf **out, const char *name, bool outline,
+                              const struct args *args)
+{
+    const struct relume_btf_material *material = relume_btf_material_find(name);
+    struct relume_btf_params params = {.log = args_log(args),
+                                       .threads = args_threads(args),
+                                       .fill = args_has(args, "--fill"),
+                                       .outline = outline};
+    *out = NULL;
+    if (material && !exists(name))
+        return args_has(args, "--crop")
+                   ? usage_error("--crop: expected a .btf file; found '%s'", name)
+                   : synth_material(out, material, args);
+    const relume_status status = parse_crop(params.crop, args);
+    return status ? status : relume_btf_open(out, name, &params);
+}
+
+relume_status btf_open(relume_btf **out, const char *name, const struct args *args)
+{
+    return open_btf(out, name, false, args);
+}
+
+relume_status btf_open_outline(relume_btf **out, const char *name, const struct args *args)
+{
+    return open_btf(out, name, true, args);
+}
+
+relume_status btf_open_sample(struct btf_sample *out, const char *name, const struct args *args)
+{
+    *out = (struct btf_sample){.btf = NULL};
+    if (btf_is_model(name))
+        return relume_btf_fitted_open(&out->model, name, relume_btf_params(.log = args_log(args)));
+    const relume_status status = btf_open(&out->btf, name, args);
+    return status ? status : relume_btf_as_model(&out->model, out->btf, args_log(args));
+}
+
+void btf_close_sample(struct btf_sample *sample)
+{
+    relume_btf_fitted_destroy(&sample->model);
+    relume_btf_destroy(&sample->btf);
+}

@@ -1,0 +1,48 @@
+// btf_inputs.h - what `relume btf` is given: BTFs, models, names of materials
+#ifndef CLI_BTF_INPUTS_H
+#define CLI_BTF_INPUTS_H
+
+#include "cli.h"
+
+// Whether the folder holds a fitted model.
+bool btf_is_model(const char *path);
+
+// A folder or file, or a built-in material when there is none of that name.
+relume_status btf_open(relume_btf **out, const char *name, const struct args *args);
+// ... of which only relume_btf_info is asked.
+relume_status btf_open_outline(relume_btf **out, const char *name, const struct args *args);
+
+// Whether the folder holds a surface.
+bool btf_is_surface(const char *path);
+
+// A BTF or a model: what takes models takes both.
+struct btf_sample {
+    relume_btf *btf;  // NULL where a model was given
+    relume_btf_fitted *model;
+};
+relume_status btf_open_sample(struct btf_sample *out, const char *name, const struct args *args);
+void btf_close_sample(struct btf_sample *sample);
+
+// The model of --model, --clusters, ... fitted to the BTF, with `levels` where --levels is not
+// given.
+relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, int levels,
+                      const struct args *args);
+
+// "WxH" of an option; what is not given stays. RELUME_EINVAL with a sentence.
+relume_status btf_pair(int out[2], const struct args *args, const char *option, int most);
+
+// What a surface is; `seams` may be NULL.
+void btf_say_surface(const struct relume_btf_surface_info *info,
+                     const struct relume_btf_seams *seams, bool json);
+
+// The tasks that have files of their own.
+relume_status btf_render(const struct args *args);
+relume_status btf_tile(const struct args *args);
+
+// Whether `btf render` is asked for objects: --mesh, or a description in JSON.
+bool btf_is_objects(const struct args *args);
+// These, ray traced.
+relume_status btf_render_objects(const struct args *args);
+relume_status objects_open(relume_objects **out, const char *path, const struct args *args);
+
+#endif

@@ -1,0 +1,105 @@
+// btf_tile.c - relume btf tile: a large surface from a sample
+#include "commands/btf_inputs.h"
+
+// The model that the surface keeps: the one given, or one fitted to the BTF.
+static relume_status choose_model(relume_btf_fitted **own, const relume_btf_fitted **model,
+                                  const struct btf_sample *sample, const struct args *args)
+{
+    *own = NULL;
+    *model = sample->model;
+    if (!sample->btf)
+        return RELUME_OK;
+    const relume_status status = btf_fit(own, sample->btf, -1, args);
+    *model = *own;
+    return status;
+}
+
+static relume_status make_map(relume_btf_map **out, const relume_btf_fitted *sample,
+                              const struct args *args)
+{
+    const struct relume_btf_fitted_info info = relume_btf_fitted_info(sample);
+    const char *map = args_text(args, "--map", NULL);
+    int matrix[2] = {16, 16};
+    const relume_status status = btf_pair(matrix, args, "--matrix", 4096);
+    if (status)
+        return status;
+    if (map)
+        return relume_btf_map_open(out, map, info.width, info.height,
+                                   relume_btf_params(.log = args_log(args)));
+    return relume_btf_map_tiles(
+        out, sample,
+        relume_btf_tiles_params(.log = args_log(args), .tiles = args_int(args, "--tiles", 10),
+                                .side = args_int(args, "--tile", 0), .columns = matrix[0],
+                                .rows = matrix[1], .seed = (uint64_t)args_int(args, "--seed", 0),
+                                .threads = args_threads(args)));
+}
+
+void btf_say_surface(const struct relume_btf_surface_info *i, const struct relume_btf_seams *s,
+                     bool json)
+{
+    const char *model = relume_btf_model_name(relume_btf_fitted_info(i->model).model);
+    const double whole = (double)i->width * i->height;
+    if (json)
+        printf("{\"width\": %d, \"height\": %d, \"tiles\": %d, \"tile_width\": %d, "
+               "\"tile_height\": %d, \"columns\": %d, \"rows\": %d, \"model\": \"%s\", "
+               "\"levels\": %d, \"bytes\": %llu",
+               i->width, i->height, i->map->tiles, i->map->width, i->map->height, i->map->columns,
+               i->map->rows, model, i->levels, (unsigned long long)i->bytes);
+    else
+        printf("surface  %d x %d texels\ntiles    %d of %d x %d, laid out %d x %d\nmodel    %s, %d "
+               "levels of detail\nbytes    %llu, %.4f a texel of the surface\n",
+               i->width, i->height, i->map->tiles, i->map->width, i->map->height, i->map->columns,
+               i->map->rows, model, i->levels, (unsigned long long)i->bytes,
+               (double)i->bytes / whole);
+    if (s && json)
+        printf(", \"step_inside\": %.6f, \"step_across\": %.6f, \"step_unrelated\": %.6f, "
+               "\"seam_share\": %.6f",
+               s->inside, s->across, s->unrelated, s->share);
+    else if (s && s->inside > 0.0)
+        printf("seams    %.1f %% of neighbouring texels; jumps across seams are %.2f times those "
+               "inside the sample (random neighbours: %.2f)\n",
+               100.0 * s->share, s->across / s->inside, s->unrelated / s->inside);
+    if (json)
+        puts("}");
+}
+
+static relume_status save(const relume_btf_fitted *model, const relume_btf_map *map,
+                          const struct relume_btf_seams *seams, const struct args *args)
+{
+    relume_btf_surface *surface;
+    relume_status status = relume_btf_surface_create(&surface, model, map, args_log(args));
+    if (!status)
+        status = relume_btf_surface_save(
+            surface, args_text(args, "-o", NULL),
+            relume_btf_params(.log = args_log(args), .force = args_has(args, "--force")));
+    if (!status) {
+        const struct relume_btf_surface_info info = relume_btf_surface_info(surface);
+        btf_say_surface(&info, seams, args_has(args, "--json"));
+    }
+    relume_btf_surface_destroy(&surface);
+    return status;
+}
+
+relume_status btf_tile(const struct args *args)
+{
+    struct btf_sample sample;
+    struct relume_btf_seams seams;
+    const relume_btf_fitted *model = NULL;
+    relume_btf_fitted *own = NULL;
+    relume_btf_map *map = NULL;
+    if (!args_has(args, "-o"))
+        return usage_error("btf tile: expected -o DIR");
+    relume_status status = btf_open_sample(&sample, args_input(args, 1), args);
+    if (!status)
+        status = make_map(&map, sample.model, args);
+    if (!status)
+        status = relume_btf_map_seams(&seams, map, sample.model, args_log(args));
+    if (!status)
+        status = choose_model(&own, &model, &sample, args);
+    if (!status)
+        status = save(model, map, &seams, args);
+    relume_btf_fitted_destroy(&own);
+    relume_btf_map_destroy(&map);
+    btf_close_sample(&sample);
+    return status;
+}

@@ -1,0 +1,26 @@
+// planes.h - the planes of a plan as numbers for every pixel, in scratch space on disk
+#ifndef FOREIGN_PLANES_H
+#define FOREIGN_PLANES_H
+
+#include "foreign/plan.h"
+
+struct planes {
+    int width, height, count;
+    float *data;                // [count][height][width]
+    double *minimum, *maximum;  // [count]
+};
+
+// Temporary data goes beside `near`. RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
+relume_status planes_make(struct planes *out, const struct plan *plan, const struct source *s,
+                          const char *near, int threads);
+// Every `every`-th row of blocks of `p`, for quick trials.
+relume_status planes_sample(struct planes *out, const struct planes *p, int every, const char *near,
+                            const struct relume_log *log);
+void planes_free(struct planes *p);
+
+static inline const float *planes_at(const struct planes *p, int plane)
+{
+    return p->data + (size_t)plane * (size_t)p->width * (size_t)p->height;
+}
+
+#endif

@@ -1,0 +1,34 @@
+// source.h - a view of a relume file as numbers that its sRGB-coded picture depends on linearly
+//
+//     picture_c(l) = constant_c(l) + sum_p weights_{c,p}(l) x_p
+// with x_p the coefficients where they live in sRGB codes; where they do not, x are the coded
+// pictures themselves under a set of directions, with an interpolation between them.
+#ifndef FOREIGN_SOURCE_H
+#define FOREIGN_SOURCE_H
+
+#include <relume/coder.h>
+
+struct source {
+    const struct relume_codes *codes;
+    int width, height;
+    int numbers;  // P
+    int lights;   // directions that the file was made from, or that stand in for them
+    struct relume_vec3 *light;
+    relume_coder *between;  // interpolation between pictures; NULL: x are coefficients
+    const struct relume_log *log;
+};
+
+relume_status source_open(struct source *s, const struct relume_codes *codes,
+                          const struct relume_log *log);
+void source_close(struct source *s);
+
+// x of `rows` rows from `row` on, out[P][rows][width]. Safe to call from several threads.
+relume_status source_rows(const struct source *s, int row, int rows, float *out);
+// weights[3][P + 1] at a unit direction; the last of each channel is its constant.
+void source_weights(const struct source *s, struct relume_vec3 light, double *weights);
+
+// Mean and covariance of x over the picture, [P] and [P][P]; large pictures are sampled evenly.
+relume_status source_statistics(const struct source *s, int threads, double *mean,
+                                double *covariance);
+
+#endif

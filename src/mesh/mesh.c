@@ -1,0 +1,128 @@
+#include "mesh/mesh.h"
+
+#include "base/memory.h"
+
+#include <string.h>
+
+void mesh_free(struct mesh *mesh)
+{
+    free(mesh->vertices);
+    free(mesh->triangles);
+    *mesh = (struct mesh){0};
+}
+
+// `array` with room for one more element of `size` bytes, or NULL with the old one untouched.
+static void *grown(void *array, size_t *room, size_t count, size_t size)
+{
+    if (count < *room)
+        return array;
+    const size_t more = *room ? 2 * *room : 256;
+    void *bigger = mem_array(more, size);
+    if (!bigger)
+        return NULL;
+    if (count)
+        memcpy(bigger, array, count * size);
+    free(array);
+    *room = more;
+    return bigger;
+}
+
+static void put(float out[3], vec3 v)
+{
+    out[0] = (float)v.x;
+    out[1] = (float)v.y;
+    out[2] = (float)v.z;
+}
+
+uint32_t mesh_vertex(struct mesh *mesh, vec3 position, vec3 normal, vec3 texture)
+{
+    struct vertex *v =
+        mesh->failed || mesh->vertex_count >= UINT32_MAX
+            ? NULL
+            : grown(mesh->vertices, &mesh->vertex_room, mesh->vertex_count, sizeof *v);
+    if (!v) {
+        mesh->failed = true;
+        return 0;
+    }
+    mesh->vertices = v;
+    v += mesh->vertex_count;
+    put(v->position, position);
+    put(v->normal, normal);
+    put(v->texture, texture);
+    return (uint32_t)mesh->vertex_count++;
+}
+
+void mesh_triangle(struct mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t material)
+{
+    struct triangle *t =
+        mesh->failed || mesh->triangle_count >= UINT32_MAX
+            ? NULL
+            : grown(mesh->triangles, &mesh->triangle_room, mesh->triangle_count, sizeof *t);
+    if (!t) {
+        mesh->failed = true;
+        return;
+    }
+    mesh->triangles = t;
+    t[mesh->triangle_count++] = (struct triangle){{a, b, c}, material};
+}
+
+void mesh_append(struct mesh *mesh, const struct mesh *part, const struct frame *frame,
+                 uint32_t material, vec3 shift)
+{
+    const uint32_t first = (uint32_t)mesh->vertex_count;
+    mesh->failed |= part->failed;
+    for (size_t i = 0; i < part->vertex_count; i++) {
+        const struct vertex *v = &part->vertices[i];
+        const vec3 texture = vec3_of(v->texture[0], v->texture[1], v->texture[2]);
+        mesh_vertex(mesh, frame_point(frame, vertex_position(v)),
+                    frame_normal(frame, vertex_normal(v)), vec3_add(texture, shift));
+    }
+    for (size_t i = 0; i < part->triangle_count; i++) {
+        const uint32_t *v = part->triangles[i].vertex;
+        mesh_triangle(mesh, first + v[0], first + v[1], first + v[2], material);
+    }
+}
+
+static void add_corner(struct vertex *at, vec3 normal, vec3 left, vec3 right)
+{
+    const double l = vec3_length(left), r = vec3_length(right);
+    if (l <= 0.0 || r <= 0.0)
+        return;
+    const double angle = vec3_angle(vec3_scale(left, 1.0 / l), vec3_scale(right, 1.0 / r));
+    put(at->normal, vec3_add(vertex_normal(at), vec3_scale(normal, angle)));
+}
+
+void mesh_smooth(struct mesh *mesh)
+{
+    for (size_t i = 0; i < mesh->vertex_count; i++)
+        put(mesh->vertices[i].normal, vec3_of(0, 0, 0));
+    for (size_t i = 0; i < mesh->triangle_count; i++) {
+        struct vertex *v[3];
+        vec3 p[3];
+        for (int k = 0; k < 3; k++) {
+            v[k] = &mesh->vertices[mesh->triangles[i].vertex[k]];
+            p[k] = vertex_position(v[k]);
+        }
+        const vec3 across = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]));
+        if (vec3_length(across) <= 0.0)
+            continue;
+        for (int k = 0; k < 3; k++)
+            add_corner(v[k], vec3_unit(across), vec3_sub(p[(k + 1) % 3], p[k]),
+                       vec3_sub(p[(k + 2) % 3], p[k]));
+    }
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        const vec3 n = vertex_normal(&mesh->vertices[i]);
+        put(mesh->vertices[i].normal, vec3_length(n) > 0.0 ? vec3_unit(n) : vec3_of(0, 0, 1));
+    }
+}
+
+struct bounds mesh_bounds(const struct mesh *mesh)
+{
+    struct bounds b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        const vec3 p = vertex_position(&mesh->vertices[i]);
+        b.min = vec3_of(fmin(b.min.x, p.x), fmin(b.min.y, p.y), fmin(b.min.z, p.z));
+        b.max = vec3_of(fmax(b.max.x, p.x), fmax(b.max.y, p.y), fmax(b.max.z, p.z));
+    }
+    return b;
+}

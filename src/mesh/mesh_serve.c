@@ -1,0 +1,114 @@
+// mesh_serve.c - in the helper: one model, read by Assimp for the process that sent it. Files
+// beside the model - buffers of glTF, materials - are asked for by name.
+#include "mesh/mesh_serve.h"
+
+#include "base/channel.h"
+#include "base/memory.h"
+#include "base/sandbox.h"
+#include "mesh/mesh_other.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+struct serving {
+    int channel, file;
+    struct mesh_ask ask;
+    struct mesh_file model;
+};
+
+// The model's own file, or one beside it; -1: there is none.
+static int open_for_assimp(void *context, const char *name)
+{
+    struct serving *s = context;
+    struct mesh_answer need = {.what = MESH_NEEDS};
+    struct mesh_ask reply;
+    int file;
+    if (!strcmp(name, s->ask.name))
+        return dup(s->file);
+    if (strlen(name) >= sizeof need.text)
+        return -1;
+    snprintf(need.text, sizeof need.text, "%s", name);
+    if (!channel_send(s->channel, &need, sizeof need, -1) ||
+        !channel_receive(s->channel, &reply, sizeof reply, &file))
+        _exit(0);
+    return file;
+}
+
+static size_t names_bytes(const struct mesh_file *m)
+{
+    size_t bytes = 0;
+    for (int i = 0; i < m->parts; i++)
+        bytes += strlen(m->part[i]) + 1;
+    return bytes;
+}
+
+static struct mesh_answer answer_of(const struct mesh_file *m)
+{
+    return (struct mesh_answer){.what = MESH_READ,
+                                .has_uv = m->has_uv,
+                                .made_normals = m->made_normals,
+                                .vertices = m->mesh.vertex_count,
+                                .triangles = m->mesh.triangle_count,
+                                .parts = (uint64_t)m->parts,
+                                .names_bytes = names_bytes(m)};
+}
+
+// Assimp holds texts many times their size, and a vertex as two hundred bytes.
+static void enter_sandbox(const struct mesh_ask *ask)
+{
+    static const uint64_t always = 512 << 20;
+    enum { TIMES = 256, SECONDS = 20, BYTES_A_SECOND = 1 << 19 };
+    const uint64_t fit = always + TIMES * ask->file_bytes;
+    sandbox_memory(fit < ask->max_memory ? fit : ask->max_memory);
+    sandbox_time(SECONDS + (unsigned)(ask->file_bytes / BYTES_A_SECOND));
+    sandbox_close();
+}
+
+static bool read_model(struct serving *s, const struct assimp_bridge *bridge)
+{
+    struct mesh_answer answer = {.what = MESH_FAILED};
+    const struct mesh_source source = {s->ask.name, open_for_assimp, s};
+    enter_sandbox(&s->ask);
+    if (bridge->read(&s->model, &source, answer.text))
+        answer = answer_of(&s->model);
+    return channel_send(s->channel, &answer, sizeof answer, -1);
+}
+
+static char *put(char *to, const void *from, size_t size)
+{
+    if (size)
+        memcpy(to, from, size);
+    return to + size;
+}
+
+static bool hand_over(struct serving *s, int memory)
+{
+    const struct mesh_file *m = &s->model;
+    const struct mesh_answer answer = answer_of(m);
+    const size_t vertices = m->mesh.vertex_count * sizeof *m->mesh.vertices;
+    const size_t triangles = m->mesh.triangle_count * sizeof *m->mesh.triangles;
+    const size_t all = vertices + triangles + names_bytes(m);
+    char *const map = channel_map(memory, all);
+    if (!map)
+        return false;
+    char *to = put(put(map, m->mesh.vertices, vertices), m->mesh.triangles, triangles);
+    for (int i = 0; i < m->parts; i++)
+        to = put(to, m->part[i], strlen(m->part[i]) + 1);
+    munmap(map, all);
+    return channel_send(s->channel, &answer, sizeof answer, -1);
+}
+
+void mesh_serve(int channel, const void *bridge)
+{
+    struct mesh_ask take;
+    int memory;
+    struct serving *s = mem_zeroed(1, sizeof *s);
+    if (!s)
+        return;
+    s->channel = channel;
+    if (channel_receive(channel, &s->ask, sizeof s->ask, &s->file) && read_model(s, bridge) &&
+        channel_receive(channel, &take, sizeof take, &memory))
+        (void)hand_over(s, memory);
+}

@@ -1,0 +1,30 @@
+// mesh_serve.h - models read in a process of their own: what it is asked, and what it answers
+#ifndef MESH_MESH_SERVE_H
+#define MESH_MESH_SERVE_H
+
+#include "base/helper.h"
+
+// Messages to the process.
+enum mesh_ask_what {
+    MESH_OPEN,    // with the file: MESH_NEEDS, MESH_READ or MESH_FAILED answers
+    MESH_BESIDE,  // with the file that was needed, or without: the same
+    MESH_TAKE,    // with memory for what was read, which is put there: MESH_READ answers
+};
+struct mesh_ask {
+    int what;
+    uint64_t file_bytes, max_memory;  // MESH_OPEN
+    char name[256];                   // of the file, without its folder
+};
+enum mesh_answer_what { MESH_NEEDS, MESH_READ, MESH_FAILED };
+struct mesh_answer {
+    int what;
+    bool has_uv, made_normals;
+    // MESH_READ. In memory these follow each other: vertices, triangles, the names, each with a 0.
+    uint64_t vertices, triangles, parts, names_bytes;
+    char text[1024];  // the file that is needed, or why it failed; "": memory
+};
+
+// What the process does until its channel is closed; `bridge` is the module's.
+void mesh_serve(int channel, const void *bridge);
+
+#endif

@@ -1,0 +1,20 @@
+// tangents.h - a tangent frame for every vertex, in the manner of MikkTSpace (Mikkelsen 2008):
+// tangents of triangles, projected onto the normal and weighted by angle, are shared by corners of
+// equal place, normal, texture coordinates and handedness; mirrored sides never share
+#ifndef MESH_TANGENTS_H
+#define MESH_TANGENTS_H
+
+#include "mesh/mesh.h"
+
+#include <relume/object.h>
+
+struct tangents {
+    struct relume_object_vertex *vertices;
+    size_t vertex_count;
+    uint32_t (*triangles)[3];  // as many as the mesh has, in its order
+    size_t flat;               // vertices whose texture has no direction; they have some tangent
+};
+// RELUME_ENOMEM. What is in `out` is to be freed.
+relume_status tangents_make(struct tangents *out, const struct mesh *mesh);
+
+#endif

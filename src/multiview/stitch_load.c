@@ -1,0 +1,28 @@
+// stitch_load.c - opens the module that knows OpenCV when photographs are to be stitched
+#include "base/log.h"
+#include "base/module.h"
+#include "multiview/stitch.h"
+
+#include <pthread.h>
+
+static const struct stitch_bridge *bridge;
+static char why_not[MODULE_WHY];
+
+static void load(void)
+{
+    bridge = module_open("stitch", why_not);
+}
+
+relume_status stitch_find(struct stitch_pose *poses, int *stray, char *why,
+                          const struct stitch_picture *pictures, int n,
+                          const struct relume_log *log)
+{
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, load);
+    if (bridge)
+        return bridge->find(poses, stray, why, pictures, n);
+    return log_fail(log, RELUME_EIO,
+                    "stitching: the module for it cannot be loaded; expected a build with OpenCV "
+                    "('make deps-stitch', then 'make'); %s",
+                    why_not);
+}

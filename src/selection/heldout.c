@@ -1,0 +1,659 @@
+// heldout.c - cross-validation over lights: N / k folds, each one coder and its k unseen lights
+//
+// Coefficients of a fold are computed once for all pixels in memory; predictions of the lights left
+// out follow chunk by chunk, as they are and as they come back from each way of storing them.
+#include "selection/heldout.h"
+
+#include "base/log.h"
+#include "base/memory.h"
+#include "base/thread.h"
+#include "coder/basis.h"
+#include "coder/coefficients.h"
+#include "image/encoder.h"
+#include "image/ssim.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { SSIM_ROWS = 64 };
+
+// What is summed over one image: coded and unrounded squared error, structure.
+struct sums {
+    double coded, shown;
+    size_t samples;
+    struct ssim_sum ssim;
+};
+
+// A view that is stored: its pixels begin at `first` in memory.
+struct kept {
+    relume_coefficients as;
+    size_t first;
+};
+
+struct fold {
+    relume_heldout *h;
+    relume_coder *coder;
+    struct captured unseen;
+    float *share;         // [judged]: of light from outside the captured zone
+    int learned, judged;  // lights; the judged ones lie in the places behind the learned ones
+    size_t planes;
+    size_t room_planes, room_judged;  // that the arrays below have room for
+    float *value;                     // [planes][pixels]
+    struct range *band;               // [bands of all views][planes]
+    float *scale, *offset;            // [views][planes]
+    struct kept *kept;                // [views]
+    float *work;                      // [workers][work_size]
+    size_t work_size;
+    const struct relume_heldout_store *store;  // NULL: as they are
+    struct fold_books books;
+    struct encoder *display;
+    float *luma;        // [judged][pixels], predicted
+    struct sums *part;  // [chunks][judged]
+    double *scratch;    // [workers][ssim_scratch]
+};
+
+// ---------------------------------------------------------------- lights change places
+
+static void swap_places(relume_heldout *h, int a, int b)
+{
+    const size_t n = 3 * h->pixels;
+    float *x = h->samples + (size_t)a * n, *y = h->samples + (size_t)b * n;
+    const int light = h->light_at[a];
+    h->light_at[a] = h->light_at[b];
+    h->light_at[b] = light;
+    for (size_t i = 0; i < n; i++) {
+        const float v = x[i];
+        x[i] = y[i];
+        y[i] = v;
+    }
+}
+
+static void bring(relume_heldout *h, int place, int light)
+{
+    int at = place;
+    while (h->light_at[at] != light)
+        at++;
+    if (at != place)
+        swap_places(h, place, at);
+}
+
+// Samples of the lights to learn from must lie side by side, in the order of the capture; those of
+// the lights `fold`, `fold` + folds, ... follow. From fold to fold few lights change places.
+// Returns how many are left out.
+static int leave_out(relume_heldout *h, int fold)
+{
+    const int folds = h->info.folds;
+    int place = 0;
+    if (h->params.test)
+        return h->all - h->lights;
+    for (int i = 0; i < h->lights; i++)
+        if (i % folds != fold)
+            bring(h, place++, i);
+    for (int i = fold; i < h->lights; i += folds)
+        bring(h, place++, i);
+    return (h->lights - fold + folds - 1) / folds;
+}
+
+// ---------------------------------------------------------------- one coder
+
+// Samples for a learned basis, without the lights left out, in the order of their places.
+static relume_status samples_of_fold(struct relume_samples *out, const struct fold *f)
+{
+    const struct relume_samples *all = &f->h->learning;
+    const size_t row = 3 * all->pixels;
+    *out = (struct relume_samples){.lights = f->learned, .pixels = all->pixels};
+    out->data = mem_array((size_t)f->learned * row, sizeof *out->data);
+    if (!out->data)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < f->learned; i++)
+        memcpy(out->data + (size_t)i * row, all->data + (size_t)f->h->light_at[i] * row,
+               row * sizeof *out->data);
+    return RELUME_OK;
+}
+
+// The functions at the lights left out, as relighting takes them: from the zone that was captured.
+static relume_status find_unseen(struct fold *f, struct relume_vec3 *direction)
+{
+    f->share = mem_array((size_t)f->judged, sizeof *f->share);
+    for (int i = 0; f->share && i < f->judged; i++) {
+        struct relume_vec3 from;
+        f->share[i] = (float)relume_coder_captured(&from, f->coder, direction[i]);
+        direction[i] = from;
+    }
+    return f->share ? captured_create(&f->unseen, f->coder, direction, f->judged) : RELUME_ENOMEM;
+}
+
+static relume_status make_coder(struct fold *f, const struct relume_basis *basis,
+                                const struct relume_coder_params *coder)
+{
+    relume_heldout *h = f->h;
+    struct relume_samples samples = {0};
+    struct relume_vec3 *directions = mem_array((size_t)h->all, sizeof *directions);
+    relume_status status = directions ? RELUME_OK : RELUME_ENOMEM;
+    if (!status && (basis->learned || coder->choose))
+        status = samples_of_fold(&samples, f);
+    if (!status) {
+        struct relume_coder_params p = *coder;
+        for (int i = 0; i < h->all; i++)
+            directions[i] = h->directions[h->light_at[i]];
+        p.hemispherical = h->hemispherical;
+        p.pole_y = h->pole_y;
+        p.samples = samples.data ? &samples : NULL;
+        status = relume_coder_create(&f->coder, basis, directions, f->learned, &p);
+    }
+    if (!status)
+        status = find_unseen(f, directions + f->learned);
+    relume_samples_destroy(&samples);
+    free(directions);
+    return status;
+}
+
+static void drop_room(struct fold *f)
+{
+    free(f->value);
+    free(f->band);
+    free(f->kept);
+    free(f->scale);
+    free(f->offset);
+    free(f->work);
+    free(f->luma);
+    free(f->part);
+    free(f->scratch);
+}
+
+static size_t count_bands(const relume_heldout *h)
+{
+    size_t bands = 0, first;
+    for (int v = 0; v < h->views; v++)
+        bands += (size_t)(heldout_rows(h, v, &first) + BAND_ROWS - 1) / BAND_ROWS;
+    return bands;
+}
+
+// Folds are about equally large: what one has used serves the next.
+static relume_status make_room(struct fold *f)
+{
+    const relume_heldout *h = f->h;
+    const size_t workers = (size_t)thread_count(h->params.threads), chunks = (size_t)h->chunks;
+    f->planes = (size_t)relume_coder_info(f->coder)->planes;
+    if (f->planes <= f->room_planes && (size_t)f->judged <= f->room_judged)
+        return RELUME_OK;
+    const size_t planes = f->planes > f->room_planes ? f->planes : f->room_planes;
+    const size_t judged = (size_t)f->judged > f->room_judged ? (size_t)f->judged : f->room_judged;
+    const size_t predict = (planes + judged) * CODER_CHUNK;
+    const size_t apply = 3 * (size_t)h->all * CODER_CHUNK;
+    drop_room(f);
+    f->work_size = predict > apply ? predict : apply;
+    f->value = mem_array(planes, h->pixels * sizeof *f->value);
+    f->band = mem_array(count_bands(h) * planes, sizeof *f->band);
+    f->kept = mem_zeroed((size_t)h->views, sizeof *f->kept);
+    f->scale = mem_array((size_t)h->views * planes, sizeof *f->scale);
+    f->offset = mem_array((size_t)h->views * planes, sizeof *f->offset);
+    f->work = mem_array(workers * f->work_size, sizeof *f->work);
+    f->luma = mem_array(judged, h->pixels * sizeof *f->luma);
+    f->part = mem_array(chunks * judged, sizeof *f->part);
+    f->scratch = mem_array(workers * ssim_scratch(h->width), sizeof *f->scratch);
+    f->room_planes = planes;
+    f->room_judged = judged;
+    return f->value && f->band && f->kept && f->scale && f->offset && f->work && f->luma &&
+                   f->part && f->scratch
+               ? RELUME_OK
+               : RELUME_ENOMEM;
+}
+
+// ---------------------------------------------------------------- coefficients and their codes
+
+static void find_coefficients(void *context, size_t item, int worker)
+{
+    struct fold *f = context;
+    const relume_heldout *h = f->h;
+    const struct chunk c = h->chunk[item];
+    coder_apply(f->coder, h->samples + 3 * c.first, 3 * h->pixels, c.n, f->value + c.first,
+                h->pixels, f->work + (size_t)worker * f->work_size);
+    for (size_t p = 0; p < f->planes; p++) {
+        float *v = f->value + p * h->pixels + c.first;
+        for (size_t i = 0; h->mask && i < c.n; i++)
+            v[i] = h->mask[c.first + i] > 0.5f ? v[i] : 0.0f;
+    }
+}
+
+// The ranges of the bands of a view, and of all of it.
+static void find_ranges(struct fold *f, struct kept *k, struct range *total)
+{
+    const size_t width = (size_t)f->h->width;
+    for (size_t p = 0; p < f->planes; p++) {
+        const float *v = f->value + p * f->h->pixels + k->first;
+        total[p] = (struct range){FLT_MAX, -FLT_MAX};
+        for (int row = 0; row < k->as.info.height; row += BAND_ROWS) {
+            const int left = k->as.info.height - row;
+            const size_t rows = (size_t)(left < BAND_ROWS ? left : BAND_ROWS);
+            const struct range r = range_settle(range_of(v + (size_t)row * width, rows * width));
+            k->as.band[(size_t)(row / BAND_ROWS) * f->planes + p] = r;
+            total[p] = range_join(total[p], r);
+        }
+    }
+}
+
+// Views as an encoder would keep them.
+static relume_status choose_steps(struct fold *f)
+{
+    const relume_heldout *h = f->h;
+    const enum relume_storage storage = f->store->storage;
+    struct range *total = mem_array(f->planes, sizeof *total), *band = f->band;
+    for (int view = 0; total && view < h->views; view++) {
+        struct kept *k = &f->kept[view];
+        k->as = (relume_coefficients){
+            .info = {.coder = f->coder,
+                     .width = h->width,
+                     .height = heldout_rows(h, view, &k->first),
+                     .planes = (int)f->planes,
+                     .storage = storage == RELUME_STORE_LOG ? RELUME_STORE_HALF : storage},
+            .scale = f->scale + (size_t)view * f->planes,
+            .offset = f->offset + (size_t)view * f->planes,
+            .band = band,
+            .coarse = storage == RELUME_STORE_LOG,
+        };
+        band += (size_t)((k->as.info.height + BAND_ROWS - 1) / BAND_ROWS) * f->planes;
+        find_ranges(f, k, total);
+        coefficients_choose_steps(&k->as, total, h->masked[view], f->store->step);
+    }
+    free(total);
+    return total ? RELUME_OK : RELUME_ENOMEM;
+}
+
+// Coefficients as a reader of the file finds them.
+static void store_and_restore(const struct fold *f, struct chunk c, float *to)
+{
+    const struct kept *k = &f->kept[c.view];
+    const size_t width = (size_t)f->h->width, band = BAND_ROWS * width, from = c.first - k->first;
+    for (size_t at = 0, n; at < c.n; at += n) {
+        const size_t left = band - (from + at) % band;
+        const int row = (int)((from + at) / width);
+        n = left < c.n - at ? left : c.n - at;
+        for (size_t p = 0; p < f->planes; p++)
+            coefficients_restore(&k->as, (int)p, row, f->value + p * f->h->pixels + c.first + at, n,
+                                 to + p * c.n + at);
+    }
+}
+
+// ---------------------------------------------------------------- predictions
+
+static void dim_row(const relume_heldout *h, float *row, size_t n, float share)
+{
+    for (size_t i = 0; share < 1.0f && i < n; i++)
+        row[i] = h->linear ? share * row[i]
+                           : relume_transfer_encode(
+                                 h->display, share * relume_transfer_decode(h->display, row[i]));
+}
+
+static void compare_row(const struct fold *f, struct chunk c, int place, int channel, float *row,
+                        struct sums *s)
+{
+    const relume_heldout *h = f->h;
+    const size_t light = (size_t)h->light_at[place];
+    const uint8_t *code = h->codes + (light * h->pixels + c.first) * 3 + channel;
+    const float *sample = h->samples + ((size_t)place * h->pixels + c.first) * 3 + channel;
+    const float *mask = h->mask ? h->mask + c.first : NULL;
+    float shown[CODER_CHUNK];
+    for (size_t i = 0; i < c.n; i++)
+        shown[i] = sample[3 * i];
+    if (h->linear) {
+        encoder_apply(f->display, row, row, (int)c.n);
+        encoder_apply(f->display, shown, shown, (int)c.n);
+    }
+    double coded = 0.0, unrounded = 0.0;
+    for (size_t i = 0; i < c.n; i++) {
+        const bool inside = !mask || mask[i] > 0.5f;
+        row[i] = inside ? encoder_clip(row[i]) : 0.0f;
+        const int d = encoder_code(row[i]) - code[3 * i];
+        const double e = (double)row[i] - (double)encoder_clip(shown[i]);
+        coded += inside ? (double)(d * d) : 0.0;
+        unrounded += inside ? e * e : 0.0;
+        s->samples += inside;
+    }
+    s->coded += coded;
+    s->shown += unrounded;
+}
+
+static void judge_chunk(void *context, size_t item, int worker)
+{
+    static const float luma[3] = {0.299f, 0.587f, 0.114f};
+    struct fold *f = context;
+    const relume_heldout *h = f->h;
+    const struct chunk c = h->chunk[item];
+    float *work = f->work + (size_t)worker * f->work_size;
+    float *predicted = work + f->planes * c.n;
+    const float *planes = f->value + c.first;
+    size_t stride = h->pixels;
+    if (f->store) {
+        if (f->store->books)
+            fold_books_restore(&f->books, c.view, c.first, c.n, work);
+        else
+            store_and_restore(f, c, work);
+        planes = work;
+        stride = c.n;
+    }
+    struct sums *part = f->part + item * (size_t)f->judged;
+    memset(part, 0, (size_t)f->judged * sizeof *part);
+    for (int channel = 0; channel < 3; channel++) {
+        captured_predict(&f->unseen, f->coder, channel, planes, stride, c.n, predicted);
+        for (int i = 0; i < f->judged; i++) {
+            float *row = predicted + (size_t)i * c.n;
+            float *grey = f->luma + (size_t)i * h->pixels + c.first;
+            dim_row(h, row, c.n, f->share[i]);
+            compare_row(f, c, f->learned + i, channel, row, &part[i]);
+            for (size_t x = 0; x < c.n; x++)
+                grey[x] = (channel ? grey[x] : 0.0f) + luma[channel] * row[x];
+        }
+    }
+}
+
+// ---------------------------------------------------------------- structure
+
+struct structure {
+    const struct fold *f;
+    int parts;             // of SSIM_ROWS rows, in every strip
+    struct ssim_sum *sum;  // [judged][strips][parts]
+};
+
+static void compare_structure(void *context, size_t item, int worker)
+{
+    struct structure *t = context;
+    const struct fold *f = t->f;
+    const relume_heldout *h = f->h;
+    const int part = (int)(item % (size_t)t->parts);
+    const size_t rest = item / (size_t)t->parts;
+    const struct strip *s = &h->strip[rest % (size_t)h->strips];
+    const size_t judged = rest / (size_t)h->strips;
+    const size_t light = (size_t)h->light_at[(size_t)f->learned + judged];
+    t->sum[item] =
+        ssim_rows(f->luma + judged * h->pixels + s->first, h->luma + light * h->pixels + s->first,
+                  h->mask ? h->mask + s->first : NULL, h->width, s->rows, part * SSIM_ROWS,
+                  (part + 1) * SSIM_ROWS, f->scratch + (size_t)worker * ssim_scratch(h->width));
+}
+
+static relume_status add_structure(const struct fold *f, struct sums *image)
+{
+    const relume_heldout *h = f->h;
+    struct structure t = {.f = f, .parts = (h->height + SSIM_ROWS - 1) / SSIM_ROWS};
+    const size_t items = (size_t)f->judged * (size_t)h->strips * (size_t)t.parts;
+    t.sum = mem_array(items, sizeof *t.sum);
+    if (!t.sum)
+        return RELUME_ENOMEM;
+    thread_for(h->params.threads, items, compare_structure, &t);
+    for (size_t i = 0; i < items; i++) {
+        const size_t strip = i / (size_t)t.parts % (size_t)h->strips;
+        const size_t judged = i / (size_t)t.parts / (size_t)h->strips;
+        struct sums *s = &image[(size_t)h->strip[strip].view * (size_t)f->judged + judged];
+        s->ssim.sum += t.sum[i].sum;
+        s->ssim.windows += t.sum[i].windows;
+    }
+    free(t.sum);
+    return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- the whole
+
+// Sums over all images of all folds, for one way of storing.
+struct total {
+    double psnr, shown, ssim;
+    size_t images, samples, structured;
+};
+
+static double decibel(double mse)
+{
+    return mse > 1e-20 ? fmin(-10.0 * log10(mse), 200.0) : 200.0;
+}
+
+static void add_image(struct total *t, const struct sums *s)
+{
+    if (s->samples == 0)
+        return;
+    t->psnr += decibel(s->coded / (255.0 * 255.0) / (double)s->samples);
+    t->shown += s->shown;
+    t->samples += s->samples;
+    t->images++;
+    if (s->ssim.windows) {
+        t->ssim += s->ssim.sum / (double)s->ssim.windows;
+        t->structured++;
+    }
+}
+
+static relume_status judge(struct fold *f, struct total *total)
+{
+    const relume_heldout *h = f->h;
+    const size_t judged = (size_t)f->judged, images = (size_t)h->views * judged;
+    struct sums *image = mem_zeroed(images, sizeof *image);
+    if (!image)
+        return RELUME_ENOMEM;
+    relume_status status = RELUME_OK;
+    if (f->store && f->store->books)
+        status = fold_books_make(&f->books, h, f->coder, f->value, f->store);
+    else if (f->store)
+        status = choose_steps(f);
+    if (!status) {
+        thread_for(h->params.threads, (size_t)h->chunks, judge_chunk, f);
+        for (size_t i = 0; i < (size_t)h->chunks * judged; i++) {
+            struct sums *s = &image[(size_t)h->chunk[i / judged].view * judged + i % judged];
+            s->coded += f->part[i].coded;
+            s->shown += f->part[i].shown;
+            s->samples += f->part[i].samples;
+        }
+        status = add_structure(f, image);
+    }
+    for (size_t i = 0; !status && i < images; i++)
+        add_image(total, &image[i]);
+    fold_books_drop(&f->books);
+    free(image);
+    return status;
+}
+
+struct request {
+    const struct relume_basis *basis;
+    struct relume_coder_params coder;
+    const struct relume_heldout_store *store;
+    int stores;
+    struct total *total;  // [1 + stores]
+    struct encoder *display;
+};
+
+static relume_status measure_fold(struct fold *f, int number, const struct request *r)
+{
+    relume_heldout *h = f->h;
+    f->judged = leave_out(h, number);
+    f->learned = h->all - f->judged;
+    relume_status status = make_coder(f, r->basis, &r->coder);
+    if (!status)
+        status = make_room(f);
+    if (!status)
+        thread_for(h->params.threads, (size_t)h->chunks, find_coefficients, f);
+    for (int i = -1; !status && i < r->stores; i++) {
+        f->store = i < 0 ? NULL : &r->store[i];
+        status = judge(f, &r->total[i + 1]);
+    }
+    relume_coder_destroy(&f->coder);
+    captured_destroy(&f->unseen);
+    free(f->share);
+    f->share = NULL;
+    return status;
+}
+
+static relume_status measure_folds(relume_heldout *h, const struct request *r)
+{
+    struct fold f = {.h = h, .display = r->display};
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < h->info.folds; i++) {
+        status = measure_fold(&f, i, r);
+        if (!status && !log_progress(r->coder.log, "judging", (i + 1.0) / h->info.folds))
+            status = RELUME_ECANCEL;
+    }
+    drop_room(&f);
+    return status;
+}
+
+static relume_status read_learning(relume_heldout *h)
+{
+    if (h->learning.data)
+        return RELUME_OK;
+    return relume_samples_read(&h->learning, h->capture, 0,
+                               relume_encode_params(.log = h->params.log, .domain = h->info.domain,
+                                                    .threads = h->params.threads));
+}
+
+static struct relume_heldout_quality quality_of(const struct total *t)
+{
+    const double none = (double)NAN;
+    return (struct relume_heldout_quality){
+        .psnr_db = t->images ? t->psnr / (double)t->images : none,
+        .psnr_pooled_db = t->samples ? decibel(t->shown / (double)t->samples) : none,
+        .ssim = t->structured ? t->ssim / (double)t->structured : none,
+    };
+}
+
+static struct relume_heldout_store *copy_stores(const struct relume_heldout_store *store, int n)
+{
+    struct relume_heldout_store *s = mem_array((size_t)n, sizeof *s);
+    for (int i = 0; s && i < n; i++) {
+        s[i] = store[i];
+        if (s[i].storage == RELUME_STORE_DEFAULT)
+            s[i].storage = RELUME_STORE_8;
+    }
+    return s;
+}
+
+relume_status relume_heldout_measure(relume_heldout *heldout, const struct relume_basis *basis,
+                                     const struct relume_coder_params *coder,
+                                     const struct relume_heldout_store *store, int n,
+                                     struct relume_heldout_quality *before,
+                                     struct relume_heldout_quality *after)
+{
+    struct request r = {.basis = basis, .stores = n};
+    if (coder)
+        r.coder = *coder;
+    struct relume_heldout_store *stores = copy_stores(store, n);
+    r.store = stores;
+    r.total = mem_zeroed((size_t)n + 1, sizeof *r.total);
+    r.display = mem_array(1, sizeof *r.display);
+    relume_status status = stores && r.total && r.display ? RELUME_OK : RELUME_ENOMEM;
+    if (!status && (basis->learned || r.coder.choose))
+        status = read_learning(heldout);
+    if (!status) {
+        encoder_init(r.display, heldout->display);
+        status = measure_folds(heldout, &r);
+    }
+    if (!status)
+        *before = quality_of(&r.total[0]);
+    for (int i = 0; !status && i < n; i++)
+        after[i] = quality_of(&r.total[i + 1]);
+    free(stores);
+    free(r.total);
+    free(r.display);
+    return status;
+}
+
+// ---------------------------------------------------------------- opening
+
+void relume_heldout_destroy(relume_heldout **heldout)
+{
+    relume_heldout *h = *heldout;
+    *heldout = NULL;
+    if (!h)
+        return;
+    relume_samples_destroy(&h->learning);
+    free(h->directions);
+    free(h->light_at);
+    free(h->samples);
+    free(h->codes);
+    free(h->luma);
+    free(h->mask);
+    free(h->masked);
+    free(h->strip);
+    free(h->chunk);
+    free(h);
+}
+
+static relume_status check_test(const relume_heldout *h)
+{
+    const relume_capture *t = h->params.test;
+    const struct relume_manifest *ours = relume_capture_manifest(h->capture);
+    const struct relume_manifest *theirs = relume_capture_manifest(t);
+    if (relume_capture_width(t) != h->width || relume_capture_height(t) != h->height)
+        return log_fail(h->params.log, RELUME_EDATA,
+                        "the second capture has %d x %d pixels; expected %d x %d as the first",
+                        relume_capture_width(t), relume_capture_height(t), h->width, h->height);
+    if (theirs->views != h->views || theirs->geometry.projection != ours->geometry.projection)
+        return log_fail(h->params.log, RELUME_EDATA,
+                        "the second capture has %d %s views; expected %d %s ones as the first",
+                        theirs->views, relume_projection_name(theirs->geometry.projection),
+                        h->views, relume_projection_name(ours->geometry.projection));
+    return RELUME_OK;
+}
+
+static relume_status describe(relume_heldout *h)
+{
+    const struct relume_manifest *m = relume_capture_manifest(h->capture);
+    const int k = h->params.leave_out > 0 ? h->params.leave_out : 1;
+    const struct relume_manifest *t = NULL;
+    h->lights = m->lights;
+    h->width = relume_capture_width(h->capture);
+    h->height = relume_capture_height(h->capture);
+    h->views = m->views;
+    h->hemispherical = relume_capture_hemispherical(h->capture);
+    h->pole_y = relume_capture_pole_y(h->capture);
+    h->display = relume_encode_display(h->capture);
+    h->info.domain = relume_encode_domain(h->capture, h->params.domain);
+    h->linear = h->info.domain == RELUME_DOMAIN_LINEAR;
+    h->info.lights = m->lights;
+    h->info.all_pixels = (size_t)h->views * (size_t)h->width * (size_t)h->height;
+    if (h->params.test) {
+        const relume_status status = check_test(h);
+        if (status)
+            return status;
+        t = relume_capture_manifest(h->params.test);
+        h->info.folds = 1;
+        h->info.fewest = m->lights;
+        h->info.judged = t->lights;
+    } else {
+        if (k >= m->lights)
+            return log_fail(
+                h->params.log, RELUME_EINVAL,
+                "leaving out %d lights leaves none; expected fewer than the %d photographed", k,
+                m->lights);
+        h->info.folds = (m->lights + k - 1) / k;
+        h->info.fewest = m->lights - (m->lights + h->info.folds - 1) / h->info.folds;
+        h->info.judged = m->lights;
+    }
+    h->all = m->lights + (t ? t->lights : 0);
+    h->directions = mem_array((size_t)h->all, sizeof *h->directions);
+    h->light_at = mem_array((size_t)h->all, sizeof *h->light_at);
+    if (!h->directions || !h->light_at)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < h->all; i++) {
+        h->directions[i] = i < m->lights ? m->directions[i] : t->directions[i - m->lights];
+        h->light_at[i] = i;
+    }
+    return RELUME_OK;
+}
+
+relume_status relume_heldout_open(relume_heldout **out, const relume_capture *capture,
+                                  const struct relume_heldout_params *params)
+{
+    *out = NULL;
+    relume_heldout *h = mem_zeroed(1, sizeof *h);
+    if (!h)
+        return RELUME_ENOMEM;
+    h->params = params ? *params : (struct relume_heldout_params){0};
+    h->capture = capture;
+    relume_status status = describe(h);
+    if (!status)
+        status = heldout_load(h);
+    if (status)
+        relume_heldout_destroy(&h);
+    *out = h;
+    return status;
+}
+
+struct relume_heldout_info relume_heldout_info(const relume_heldout *heldout)
+{
+    return heldout->info;
+}

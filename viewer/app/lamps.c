@@ -1,0 +1,268 @@
+#include "app/lamps.h"
+
+#include "common/vec.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+static bool any_solo(const struct app_state *state)
+{
+    for (int i = 0; i < state->lights; i++)
+        if (state->lamp[i].solo)
+            return true;
+    return false;
+}
+
+static double factor_of(const struct app_lamp *lamp, bool solo)
+{
+    return lamp->off || (solo && !lamp->solo) ? 0.0 : exp2(lamp->stops);
+}
+
+double lamps_factor(const struct app_state *state, int light)
+{
+    return factor_of(&state->lamp[light], any_solo(state));
+}
+
+int lamps_shining(const struct app_state *state, struct relume_light *out)
+{
+    const bool solo = any_solo(state);
+    int n = 0;
+    for (int i = 0; i < state->lights; i++) {
+        const double factor = factor_of(&state->lamp[i], solo);
+        if (factor == 0.0)
+            continue;
+        out[n] = state->light[i];
+        for (int c = 0; c < 3; c++)
+            out[n].rgb[c] *= (float)factor;
+        n++;
+    }
+    return n;
+}
+
+int lamps_near(const struct app_state *state)
+{
+    const bool solo = any_solo(state);
+    int n = 0;
+    for (int i = 0; i < state->lights; i++)
+        n += factor_of(&state->lamp[i], solo) != 0.0 && relume_light_is_near(state->light[i].kind);
+    return n;
+}
+
+// ---------------------------------------------------------------- list
+
+static bool make_room(struct app_state *state, int room)
+{
+    struct relume_light *light = realloc(state->light, (size_t)room * sizeof *light);
+    if (light)
+        state->light = light;
+    struct app_lamp *lamp = light ? realloc(state->lamp, (size_t)room * sizeof *lamp) : NULL;
+    if (!lamp)
+        return false;
+    state->lamp = lamp;
+    state->room = room;
+    return true;
+}
+
+bool lamps_copy(struct app_state *to, const struct app_state *from)
+{
+    struct app_state made = *from;
+    made.light = NULL;
+    made.lamp = NULL;
+    if (!make_room(&made, from->lights ? from->lights : 1)) {
+        lamps_release(&made);
+        return false;
+    }
+    for (int i = 0; i < from->lights; i++) {
+        made.light[i] = from->light[i];
+        made.lamp[i] = from->lamp[i];
+    }
+    lamps_release(to);
+    *to = made;
+    return true;
+}
+
+void lamps_release(struct app_state *state)
+{
+    free(state->light);
+    free(state->lamp);
+    state->light = NULL;
+    state->lamp = NULL;
+    state->lights = state->room = 0;
+}
+
+bool lamps_add(struct app_state *state, const struct relume_light *light, int entry)
+{
+    const struct relume_light copy = *light;  // it may stand in the list that moves
+    if (state->lights == APP_LIGHTS ||
+        (state->lights == state->room && !make_room(state, 2 * state->room + 8)))
+        return false;
+    state->selected = state->lights++;
+    state->light[state->selected] = copy;
+    state->lamp[state->selected] = (struct app_lamp){.entry = entry};
+    return true;
+}
+
+bool lamps_remove(struct app_state *state, int light)
+{
+    if (state->lights < 2)
+        return false;
+    const size_t behind = (size_t)(state->lights - 1 - light);
+    memmove(&state->light[light], &state->light[light + 1], behind * sizeof *state->light);
+    memmove(&state->lamp[light], &state->lamp[light + 1], behind * sizeof *state->lamp);
+    state->lights--;
+    if (state->selected >= state->lights || state->selected > light)
+        state->selected--;
+    return true;
+}
+
+void lamps_drop_near(struct app_state *state)
+{
+    for (int i = state->lights - 1; i >= 0; i--)
+        if (relume_light_is_near(state->light[i].kind) && !lamps_remove(state, i)) {
+            state->light[0] = (struct relume_light){.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
+            state->lamp[0] = (struct app_lamp){.entry = -1};
+        }
+}
+
+// ---------------------------------------------------------------- directions
+
+struct relume_vec3 lamps_direction(const struct relume_light *light, struct relume_vec3 middle)
+{
+    const double turn = light->rotate_deg * PI / 180;
+    struct relume_vec3 d = light->direction;
+    if (light->kind == RELUME_LIGHT_ENVIRONMENT)
+        d = (struct relume_vec3){sin(turn), 0, -cos(turn)};
+    else if (relume_light_is_near(light->kind))
+        d = vec_sub(light->position, middle);
+    const double n = vec_length(d);
+    return n > 0 ? (struct relume_vec3){d.x / n, d.y / n, d.z / n} : (struct relume_vec3){0, 0, 1};
+}
+
+// Turns `v` as the shortest way takes unit `from` to unit `to`.
+static struct relume_vec3 turned(struct relume_vec3 v, struct relume_vec3 from,
+                                 struct relume_vec3 to)
+{
+    const struct relume_vec3 axis = vec_cross(from, to);
+    const double c = vec_dot(from, to);
+    if (c < -1 + 1e-9)
+        return (struct relume_vec3){-v.x, -v.y, -v.z};
+    const double k = vec_dot(axis, v) / (1 + c);
+    const struct relume_vec3 side = vec_cross(axis, v);
+    return (struct relume_vec3){c * v.x + side.x + k * axis.x, c * v.y + side.y + k * axis.y,
+                                c * v.z + side.z + k * axis.z};
+}
+
+static void aim_near(struct relume_light *l, struct relume_vec3 direction,
+                     struct relume_vec3 middle)
+{
+    const struct relume_vec3 was = lamps_direction(l, middle);
+    const double far = vec_length(vec_sub(l->position, middle));
+    l->position = (struct relume_vec3){
+        middle.x + far * direction.x,
+        middle.y + far * direction.y,
+        middle.z + far * direction.z,
+    };
+    l->direction = turned(l->direction, was, direction);
+    l->u = turned(l->u, was, direction);
+    l->v = turned(l->v, was, direction);
+}
+
+void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,
+               struct relume_vec3 middle)
+{
+    struct relume_light *l = &state->light[light];
+    if (l->kind == RELUME_LIGHT_DIRECTIONAL)
+        l->direction = direction;
+    else if (l->kind == RELUME_LIGHT_ENVIRONMENT)
+        l->rotate_deg = atan2(direction.x, -direction.z) * 180 / PI;
+    else
+        aim_near(l, direction, middle);
+}
+
+void lamps_change_kind(struct app_state *state, int light, enum relume_light_kind kind,
+                       struct relume_vec3 middle, double far)
+{
+    struct relume_light *l = &state->light[light];
+    const struct relume_vec3 d = lamps_direction(l, middle);
+    const struct relume_vec3 pole =
+        fabs(d.y) < 0.9 ? (struct relume_vec3){0, 1, 0} : (struct relume_vec3){0, 0, 1};
+    const struct relume_vec3 side = vec_cross(d, pole);
+    const struct relume_vec3 right = vec_scale(side, 1 / vec_length(side));
+    struct relume_light made = {.kind = kind, .direction = d, .half_angle_deg = 25};
+    if (relume_light_is_near(kind)) {
+        made.position =
+            (struct relume_vec3){middle.x + far * d.x, middle.y + far * d.y, middle.z + far * d.z};
+        made.direction = vec_scale(d, -1);
+        made.nofall = true;  // as bright as it was
+        made.u = vec_scale(right, 0.25 * far);
+        made.v = vec_cross(made.u, d);  // u x v is -d
+    }
+    memcpy(made.rgb, l->rgb, sizeof made.rgb);
+    made.nofall &= kind != RELUME_LIGHT_AREA;
+    *l = made;
+    state->lamp[light].entry = -1;
+}
+
+// ---------------------------------------------------------------- kinds
+
+static const struct {
+    const char *words;
+    unsigned fields;
+} kinds[] = {
+    [RELUME_LIGHT_DIRECTIONAL] = {"directional", LAMP_CHANGE},
+    [RELUME_LIGHT_ENVIRONMENT] = {"environment", LAMP_TURN},
+    [RELUME_LIGHT_POINT] = {"point", LAMP_PLACE | LAMP_CHANGE},
+    [RELUME_LIGHT_SPOT] = {"spot", LAMP_PLACE | LAMP_AXIS | LAMP_ANGLE | LAMP_CHANGE},
+    [RELUME_LIGHT_SLIDE] = {"slide", LAMP_PLACE | LAMP_AXIS | LAMP_ANGLE},
+    [RELUME_LIGHT_AREA] = {"area", LAMP_PLACE | LAMP_EDGES | LAMP_CHANGE},
+    [RELUME_LIGHT_IES] = {"ies", LAMP_PLACE | LAMP_AXIS},
+    [RELUME_LIGHT_GONIO] = {"gonio", LAMP_PLACE | LAMP_AXIS},
+};
+
+const char *lamps_kind_words(enum relume_light_kind kind)
+{
+    return kinds[kind].words;
+}
+
+unsigned lamps_fields(enum relume_light_kind kind)
+{
+    return kinds[kind].fields;
+}
+
+// ---------------------------------------------------------------- arrangements
+
+const struct lamp_preset lamp_presets[] = {
+    {"raking", "one light from the left, 12 degrees above the picture", 1, {180}, {12}},
+    {"double raking",
+     "two lights from the left and from above, 12 degrees",
+     2,
+     {180, 90},
+     {12, 12}},
+    {"dome",
+     "eight lights all around, 45 degrees",
+     8,
+     {0, 45, 90, 135, 180, 225, 270, 315},
+     {45, 45, 45, 45, 45, 45, 45, 45}},
+    {NULL, NULL, 0, {0}, {0}},
+};
+
+void lamps_arrange(struct app_state *state, const struct lamp_preset *preset, bool pole_y)
+{
+    state->lights = 0;
+    for (int i = 0; i < preset->lights; i++) {
+        const double a = preset->azimuth[i] * PI / 180;
+        const double e = preset->elevation[i] * PI / 180;
+        const double x = cos(e) * cos(a);
+        const double y = cos(e) * sin(a);
+        const double z = sin(e);
+        const float value = preset->lights > 2 ? 2.0f / (float)preset->lights : 1.0f;
+        const struct relume_light light = {
+            .direction = pole_y ? (struct relume_vec3){x, z, -y} : (struct relume_vec3){x, y, z},
+            .rgb = {value, value, value},
+        };
+        lamps_add(state, &light, -1);
+    }
+    state->selected = 0;
+}

@@ -1,0 +1,65 @@
+// btf_upload.h - a measured material on the GPU: the arrays of its model and the directions around
+// any direction, as buffer textures
+#ifndef VIEWER_BTF_UPLOAD_H
+#define VIEWER_BTF_UPLOAD_H
+
+#include "gl/program.h"
+#include "relit/shine.h"
+
+#include <relume/object.h>
+
+enum { BTF_ARRAYS = 5, BTF_DOMES = 4, BTF_BUFFERS = BTF_ARRAYS + BTF_DOMES + 1, BTF_LEVELS = 17 };
+
+// How a model is drawn.
+struct btf_twin {
+    const char *model;  // NULL ends the list
+    const char *shader;
+    int numbers[BTF_ARRAYS];  // of a texel of each array: 1, 3 or 4; 0: there is none
+    bool lobes;  // which an environment is looked up for, rather than summed over the lights
+};
+extern const struct btf_twin btf_twins[];
+// NULL when a model cannot be drawn.
+const struct btf_twin *btf_twin_find(const char *model);
+
+// Texture units of its programs.
+enum {
+    BTF_UNIT_DOMES = BTF_ARRAYS,
+    BTF_UNIT_MAP = BTF_UNIT_DOMES + BTF_DOMES,
+    BTF_UNIT_PLACE,
+    BTF_UNIT_NORMAL,
+    BTF_UNIT_TANGENT,
+    BTF_UNIT_FOOTPRINT,
+    BTF_UNIT_SHADOW,
+    BTF_UNIT_PICTURE,
+    BTF_UNIT_SKY = BTF_UNIT_SHADOW,  // of programs that know no lamp
+    BTF_UNIT_TABLE = BTF_UNIT_PICTURE,
+};
+
+// A level of detail; those after the first have no domes of their own.
+struct btf_level {
+    GLuint texture[BTF_BUFFERS], buffer[BTF_BUFFERS];
+    int width, height, area, counts[4], map[4];  // as btf.glsl
+};
+struct btf_material {
+    const struct btf_twin *twin;
+    struct btf_level level[BTF_LEVELS];
+    int levels;
+    GLuint table, table_buffer;  // what an environment needs (btf_need_table), or 0
+    bool without_cosine;
+    double rim;    // relume_btf_fitted_info
+    size_t bytes;  // of graphics memory
+};
+// RELUME_ESYSTEM with a sentence when it does not fit or cannot be drawn, RELUME_ENOMEM.
+relume_status btf_upload(struct btf_material *out, const struct gl *gl,
+                         const struct relume_object_material *material,
+                         const struct relume_log *log);
+void btf_release(struct btf_material *material, const struct gl *gl);
+// The textures of a level for the program in use.
+void btf_use(const struct btf_material *material, const struct gl *gl, int level);
+// For models of lobes the parts of lobes, for others what each light stands for, as sky.glsl.
+// RELUME_ENOMEM, RELUME_ESYSTEM.
+relume_status btf_need_table(struct btf_material *material, const struct gl *gl,
+                             const struct relume_object_material *from,
+                             const relume_prefilter *prefilter, const struct relume_log *log);
+
+#endif

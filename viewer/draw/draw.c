@@ -1,0 +1,10 @@
+#include "draw/draw.h"
+
+void draw_rectangle(const struct gl *gl, const struct program *program, const struct place *place,
+                    struct app_rectangle rectangle)
+{
+    gl->Uniform4f(program->at[DRAW_RECTANGLE], (float)rectangle.left, (float)rectangle.top,
+                  (float)rectangle.right, (float)rectangle.bottom);
+    gl->Uniform2f(program->at[DRAW_SIZE], (float)place->width, (float)place->height);
+    gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}

@@ -1,0 +1,120 @@
+// draw.h - one function for each thing that can be drawn; each is a program and can be called alone
+//
+// All draw linear light into the target in use (present: onto the screen).
+#ifndef VIEWER_DRAW_H
+#define VIEWER_DRAW_H
+
+#include "app/app.h"
+#include "app/gizmo.h"
+#include "draw/lamps_seen.h"
+#include "gl/program.h"
+#include "gl/target.h"
+
+#include <relume/slabs.h>
+#include <relume/view.h>
+
+// Where and how bright; pixels from the frame's top left corner.
+struct place {
+    int width, height;             // of the frame
+    struct app_rectangle picture;  // the whole picture, which may reach beyond the frame
+    float exposure;                // factor
+};
+
+// The first two uniforms of every program.
+enum { DRAW_RECTANGLE, DRAW_SIZE, DRAW_OWN };
+// Draw with the program in use, only within `rectangle`.
+void draw_rectangle(const struct gl *gl, const struct program *program, const struct place *place,
+                    struct app_rectangle rectangle);
+
+// A view as it was captured.
+relume_status draw_picture_create(struct program *program, const struct gl *gl,
+                                  const struct relume_log *log);
+void draw_picture(const struct program *program, const struct gl *gl, const struct place *place,
+                  const struct target *view);
+
+// A slab from an eye.
+struct slab_seen {
+    const relume_slab *slab;
+    const struct relume_geometry *geometry;
+    struct relume_vec3 eye;
+    const struct target *const *views;  // relit, by view number; NULL where they have no weight
+};
+// The quadralinear basis, or the nearest camera.
+relume_status draw_slab_create(struct program *program, const struct gl *gl,
+                               const struct relume_log *log);
+void draw_slab(const struct program *program, const struct gl *gl, const struct place *place,
+               const struct slab_seen *seen, bool nearest);
+// Each camera where it sees the surface: `disparity` are textures by view number, of the views that
+// are there, `range` the least and the greatest value in any of them.
+relume_status draw_slab_depth_create(struct program *program, const struct gl *gl,
+                                     const struct relume_log *log);
+void draw_slab_depth(const struct program *program, const struct gl *gl, const struct place *place,
+                     const struct slab_seen *seen, const GLuint *disparity, const double range[2]);
+// Make four views between which a cell lies, and their disparities if there are any, samplers 0 to
+// 3 and 4 to 7. Views of weight 0 were not relit: another one of the cell stands in. False when
+// none was.
+bool draw_use_cell(const struct gl *gl, const struct target *const *views, const GLuint *disparity,
+                   const int cell[4]);
+
+// Several slabs through a window of the world, which the place's picture shows.
+struct slabs_seen {
+    const relume_slabs *slabs;
+    const struct relume_window *window;
+    const struct target *const *views;  // relit, by view number; NULL where they have no weight
+    const GLuint *disparity;            // by depth: textures by view number, else NULL ...
+    const double (*range)[2];           // ... and the least and the greatest value of each
+};
+// Both add weighted values and their weights (alpha) to a black target, which draw_mean then
+// divides.
+relume_status draw_slabs_create(struct program *program, const struct gl *gl,
+                                const struct relume_log *log);
+void draw_slabs(const struct program *program, const struct gl *gl, const struct place *place,
+                const struct slabs_seen *seen, bool nearest);
+relume_status draw_slabs_depth_create(struct program *program, const struct gl *gl,
+                                      const struct relume_log *log);
+void draw_slabs_depth(const struct program *program, const struct gl *gl, const struct place *place,
+                      const struct slabs_seen *seen);
+
+// Through an aperture: adds weighted values and their weights (alpha) to a black target, which
+// draw_mean then divides. `aperture` and `focus` as relume_view_params.
+relume_status draw_slab_lens_create(struct program *program, const struct gl *gl,
+                                    const struct relume_log *log);
+void draw_slab_lens(const struct program *program, const struct gl *gl, const struct place *place,
+                    const struct slab_seen *seen, double aperture, double focus);
+relume_status draw_mean_create(struct program *program, const struct gl *gl,
+                               const struct relume_log *log);
+void draw_mean(const struct program *program, const struct gl *gl, const struct place *place,
+               const struct target *sum);
+
+// A perspective look into a panorama.
+relume_status draw_panorama_create(struct program *program, const struct gl *gl,
+                                   const struct relume_geometry *geometry,
+                                   const struct relume_log *log);
+void draw_panorama(const struct program *program, const struct gl *gl, const struct place *place,
+                   const struct relume_geometry *geometry, struct relume_look look,
+                   const struct target *view);
+
+// The ball of gizmo_ball, lit from `light` (as the viewer sees it).
+relume_status draw_ball_create(struct program *program, const struct gl *gl,
+                               const struct relume_log *log);
+void draw_ball(const struct program *program, const struct gl *gl, const struct place *place,
+               struct gizmo_circle ball, struct relume_vec3 light, const float rgb[3]);
+
+// Lights that are in view, added to the frame.
+relume_status draw_source_create(struct program *program, const struct gl *gl,
+                                 const struct relume_log *log);
+void draw_sources(const struct program *program, const struct gl *gl, const struct place *place,
+                  const struct relume_source *sources, int n);
+
+// Where a frame lies in a window: so many pixels from its left edge.
+struct window_place {
+    int left, width, height;
+};
+// A linear frame onto a framebuffer whose first row is the lowest (0: the screen), through
+// relume_tones[tone], coded as sRGB; `white` > 0.
+relume_status draw_present_create(struct program *program, const struct gl *gl,
+                                  const struct relume_log *log);
+void draw_present(const struct program *program, const struct gl *gl, const struct target *frame,
+                  const struct window_place *window, int tone, double white, GLuint framebuffer);
+
+#endif

@@ -1,0 +1,38 @@
+#include "draw/draw.h"
+
+#define PI 3.14159265358979323846
+
+enum { VIEW = DRAW_OWN, ELEVATION, LOOK, STEREOGRAPHIC, LOOK_SIZE, EXPOSURE, DISC, COUNT };
+static const char *const uniforms[] = {
+    "rectangle",     "frame_size", "view",     "elevation", "look",
+    "stereographic", "look_size",  "exposure", "disc",
+};
+
+relume_status draw_panorama_create(struct program *program, const struct gl *gl,
+                                   const struct relume_geometry *geometry,
+                                   const struct relume_log *log)
+{
+    const char *name = geometry->projection == RELUME_CUBE        ? "panorama_cube.frag"
+                       : geometry->projection == RELUME_SPHERICAL ? "panorama_sphere.frag"
+                       : geometry->disc                           ? "panorama_discs.frag"
+                                                                  : "panorama_cylinder.frag";
+    return program_create(program, gl, name, uniforms, COUNT, log);
+}
+
+void draw_panorama(const struct program *program, const struct gl *gl, const struct place *place,
+                   const struct relume_geometry *geometry, struct relume_look look,
+                   const struct target *view)
+{
+    const GLint *at = program->at;
+    texture_use(gl, 0, GL_TEXTURE_2D, view->texture);
+    gl->UseProgram(program->id);
+    gl->Uniform1i(at[VIEW], 0);
+    gl->Uniform2f(at[ELEVATION], (float)geometry->v_min, (float)geometry->v_max);
+    gl->Uniform3f(at[LOOK], (float)(look.pan_deg * PI / 180), (float)(look.tilt_deg * PI / 180),
+                  (float)(1.0 / look.zoom));
+    gl->Uniform1i(at[STEREOGRAPHIC], look.stereographic);
+    gl->Uniform2f(at[LOOK_SIZE], (float)place->width, (float)place->height);
+    gl->Uniform1f(at[EXPOSURE], place->exposure);
+    gl->Uniform1i(at[DISC], geometry->disc);
+    draw_rectangle(gl, program, place, (struct app_rectangle){0, 0, place->width, place->height});
+}

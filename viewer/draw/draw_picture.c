@@ -1,0 +1,23 @@
+#include "draw/draw.h"
+
+enum { VIEW = DRAW_OWN, PICTURE, EXPOSURE, COUNT };
+static const char *const uniforms[] = {"rectangle", "frame_size", "view", "picture", "exposure"};
+
+relume_status draw_picture_create(struct program *program, const struct gl *gl,
+                                  const struct relume_log *log)
+{
+    return program_create(program, gl, "picture.frag", uniforms, COUNT, log);
+}
+
+void draw_picture(const struct program *program, const struct gl *gl, const struct place *place,
+                  const struct target *view)
+{
+    const struct app_rectangle *p = &place->picture;
+    texture_use(gl, 0, GL_TEXTURE_2D, view->texture);
+    gl->UseProgram(program->id);
+    gl->Uniform1i(program->at[VIEW], 0);
+    gl->Uniform4f(program->at[PICTURE], (float)p->left, (float)p->top, (float)p->right,
+                  (float)p->bottom);
+    gl->Uniform1f(program->at[EXPOSURE], place->exposure);
+    draw_rectangle(gl, program, place, *p);
+}

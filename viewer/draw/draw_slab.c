@@ -1,0 +1,187 @@
+// draw_slab.c - each cell between four cameras is a rectangle of the frame (Wong 1998, 8.1, Fig
+// 8-13)
+//
+// u depends on s alone and v on t alone, so the part of the window that looks through one cell of
+// the uv plane is a rectangle; a cell needs only its own four views, however large the slab is.
+#include "draw/draw.h"
+
+#include <math.h>
+
+enum {
+    VIEW_00 = DRAW_OWN,
+    VIEW_10,
+    VIEW_01,
+    VIEW_11,
+    PICTURE,
+    ST,
+    CELL,
+    EYE,
+    EXPOSURE,
+    COMMON,
+    NEAREST = COMMON,
+    LINEAR_COUNT,
+    DISPARITY_00 = COMMON,
+    RANGE = DISPARITY_00 + 4,
+    DEPTH_COUNT,
+};
+#define COMMON_UNIFORMS                                                                            \
+    "rectangle", "frame_size", "view00", "view10", "view01", "view11", "picture", "st", "cell",    \
+        "eye", "exposure"
+static const char *const linear_uniforms[] = {COMMON_UNIFORMS, "nearest"};
+static const char *const depth_uniforms[] = {
+    COMMON_UNIFORMS, "disparity00", "disparity10", "disparity01", "disparity11", "range",
+};
+
+relume_status draw_slab_create(struct program *program, const struct gl *gl,
+                               const struct relume_log *log)
+{
+    return program_create(program, gl, "slab.frag", linear_uniforms, LINEAR_COUNT, log);
+}
+
+relume_status draw_slab_depth_create(struct program *program, const struct gl *gl,
+                                     const struct relume_log *log)
+{
+    return program_create(program, gl, "slab_depth.frag", depth_uniforms, DEPTH_COUNT, log);
+}
+
+// Along one axis: the cameras on both sides of a cell and the part of the window seen through it.
+struct strip {
+    int low, high;    // lines of the grid
+    double from, to;  // of the window, st units, from < to
+};
+
+static bool clip(struct strip *strip, double from, double to, const double window[2])
+{
+    strip->from = fmax(fmin(from, to), window[0]);
+    strip->to = fmin(fmax(from, to), window[1]);
+    return strip->from < strip->to;
+}
+
+// The strip of cell `i` of `n` lines, as seen from `eye` with the uv plane `reach` on the way to
+// st. Cells at the border go on beyond it, as frames of the library do.
+static bool find_strip(struct strip *strip, const double *lines, int n, int i, double eye,
+                       double reach, const double window[2])
+{
+    const int high = n > 1 ? i + 1 : i;
+    const bool last = high == n - 1;
+    const double low_u = i == 0 ? -(double)INFINITY : lines[i];
+    const double high_u = last ? (double)INFINITY : lines[high];
+    *strip = (struct strip){.low = i, .high = high};
+    if (reach != 0.0)
+        return clip(strip, eye + (low_u - eye) / reach, eye + (high_u - eye) / reach, window);
+    // An eye on the uv plane sees the whole window through one point of it.
+    return eye >= low_u && eye < high_u && clip(strip, window[0], window[1], window);
+}
+
+bool draw_use_cell(const struct gl *gl, const struct target *const *views, const GLuint *disparity,
+                   const int cell[4])
+{
+    int any = -1;
+    for (int i = 0; i < 4; i++)
+        any = views[cell[i]] ? cell[i] : any;
+    for (int i = 0; any >= 0 && i < 4; i++) {
+        const int shown = views[cell[i]] ? cell[i] : any;
+        texture_use(gl, i, GL_TEXTURE_2D, views[shown]->texture);
+        if (disparity)
+            texture_use(gl, 4 + i, GL_TEXTURE_2D, disparity[shown]);
+    }
+    return any >= 0;
+}
+
+struct cells {
+    const struct program *program;
+    const struct gl *gl;
+    const struct place *place;
+    const struct slab_seen *seen;
+    struct relume_slab_grid grid;
+    const GLuint *disparity;  // [views], or NULL
+};
+
+static struct app_rectangle pixels_of(const struct cells *c, const struct strip *across,
+                                      const struct strip *down)
+{
+    const struct app_rectangle *p = &c->place->picture;
+    const struct relume_geometry *g = c->seen->geometry;
+    const double per_s = (p->right - p->left) / (g->st_max[0] - g->st_min[0]);
+    const double per_t = (p->bottom - p->top) / (g->st_max[1] - g->st_min[1]);
+    return (struct app_rectangle){
+        .left = p->left + (across->from - g->st_min[0]) * per_s,
+        .top = p->top + (g->st_max[1] - down->to) * per_t,
+        .right = p->left + (across->to - g->st_min[0]) * per_s,
+        .bottom = p->top + (g->st_max[1] - down->from) * per_t,
+    };
+}
+
+static void draw_cell(const struct cells *c, const struct strip *across, const struct strip *down)
+{
+    const struct relume_slab_grid *grid = &c->grid;
+    const int *low = &grid->view[(size_t)down->low * (size_t)grid->columns];
+    const int *high = &grid->view[(size_t)down->high * (size_t)grid->columns];
+    const int view[4] = {low[across->low], low[across->high], high[across->low],
+                         high[across->high]};
+    (void)draw_use_cell(c->gl, c->seen->views, c->disparity, view);
+    c->gl->Uniform4f(c->program->at[CELL], (float)grid->u[across->low], (float)grid->v[down->low],
+                     (float)grid->u[across->high], (float)grid->v[down->high]);
+    draw_rectangle(c->gl, c->program, c->place, pixels_of(c, across, down));
+}
+
+static void set_uniforms(const struct cells *c, double reach)
+{
+    const struct gl *gl = c->gl;
+    const struct relume_geometry *g = c->seen->geometry;
+    const struct relume_vec3 *eye = &c->seen->eye;
+    const struct app_rectangle *p = &c->place->picture;
+    const GLint *at = c->program->at;
+    gl->UseProgram(c->program->id);
+    for (int i = 0; i < 4; i++)
+        gl->Uniform1i(at[VIEW_00 + i], i);
+    gl->Uniform4f(at[PICTURE], (float)p->left, (float)p->top, (float)p->right, (float)p->bottom);
+    gl->Uniform4f(at[ST], (float)g->st_min[0], (float)g->st_min[1], (float)g->st_max[0],
+                  (float)g->st_max[1]);
+    gl->Uniform3f(at[EYE], (float)eye->x, (float)eye->y, (float)reach);
+    gl->Uniform1f(at[EXPOSURE], c->place->exposure);
+}
+
+static double reach_of(const struct slab_seen *seen)
+{
+    const struct relume_geometry *g = seen->geometry;
+    return (g->uv_z - seen->eye.z) / (g->st_z - seen->eye.z);
+}
+
+static void draw_cells(const struct cells *c)
+{
+    const struct relume_geometry *g = c->seen->geometry;
+    const struct relume_slab_grid *grid = &c->grid;
+    const double reach = reach_of(c->seen);
+    const double s[2] = {g->st_min[0], g->st_max[0]};
+    const double t[2] = {g->st_min[1], g->st_max[1]};
+    struct strip across, down;
+    for (int j = 0; j == 0 || j < grid->rows - 1; j++) {
+        if (!find_strip(&down, grid->v, grid->rows, j, c->seen->eye.y, reach, t))
+            continue;
+        for (int i = 0; i == 0 || i < grid->columns - 1; i++)
+            if (find_strip(&across, grid->u, grid->columns, i, c->seen->eye.x, reach, s))
+                draw_cell(c, &across, &down);
+    }
+}
+
+void draw_slab(const struct program *program, const struct gl *gl, const struct place *place,
+               const struct slab_seen *seen, bool nearest)
+{
+    const struct cells cells = {program, gl, place, seen, relume_slab_grid(seen->slab), NULL};
+    set_uniforms(&cells, reach_of(seen));
+    gl->Uniform1i(program->at[NEAREST], nearest);
+    draw_cells(&cells);
+}
+
+void draw_slab_depth(const struct program *program, const struct gl *gl, const struct place *place,
+                     const struct slab_seen *seen, const GLuint *disparity, const double range[2])
+{
+    const struct cells cells = {program, gl, place, seen, relume_slab_grid(seen->slab), disparity};
+    const double nearest = fmin(range[1], relume_slab_eye_disparity(seen->slab, seen->eye));
+    set_uniforms(&cells, reach_of(seen));
+    for (int i = 0; i < 4; i++)
+        gl->Uniform1i(program->at[DISPARITY_00 + i], 4 + i);
+    gl->Uniform2f(program->at[RANGE], (float)range[0], (float)nearest);
+    draw_cells(&cells);
+}

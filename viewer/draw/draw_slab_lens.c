@@ -1,0 +1,75 @@
+// draw_slab_lens.c - a slab through an aperture: cameras are added one by one, then divided
+#include "draw/draw.h"
+
+enum { VIEW = DRAW_OWN, PICTURE, ST, EYE, PLACE, STEPS, GRID, LENS, COUNT };
+static const char *const uniforms[] = {
+    "rectangle", "frame_size", "view", "picture", "st", "eye", "place", "steps", "grid", "lens",
+};
+enum { SUM = DRAW_OWN, EXPOSURE, MEAN_COUNT };
+static const char *const mean_uniforms[] = {"rectangle", "frame_size", "sum", "exposure"};
+
+relume_status draw_slab_lens_create(struct program *program, const struct gl *gl,
+                                    const struct relume_log *log)
+{
+    return program_create(program, gl, "slab_lens.frag", uniforms, COUNT, log);
+}
+
+relume_status draw_mean_create(struct program *program, const struct gl *gl,
+                               const struct relume_log *log)
+{
+    return program_create(program, gl, "mean.frag", mean_uniforms, MEAN_COUNT, log);
+}
+
+static void set_uniforms(const struct program *program, const struct gl *gl,
+                         const struct place *place, const struct slab_seen *seen, double aperture,
+                         double focus)
+{
+    const struct relume_geometry *g = seen->geometry;
+    const struct relume_slab_grid grid = relume_slab_grid(seen->slab);
+    const struct app_rectangle *p = &place->picture;
+    const double reach = (g->uv_z - seen->eye.z) / (g->st_z - seen->eye.z);
+    const double disparity = relume_slab_plane_disparity(seen->slab, g->st_z + focus);
+    const GLint *at = program->at;
+    gl->UseProgram(program->id);
+    gl->Uniform1i(at[VIEW], 0);
+    gl->Uniform4f(at[PICTURE], (float)p->left, (float)p->top, (float)p->right, (float)p->bottom);
+    gl->Uniform4f(at[ST], (float)g->st_min[0], (float)g->st_min[1], (float)g->st_max[0],
+                  (float)g->st_max[1]);
+    gl->Uniform3f(at[EYE], (float)seen->eye.x, (float)seen->eye.y, (float)reach);
+    gl->Uniform4f(at[GRID], (float)grid.u[0], (float)grid.v[0], (float)grid.u[grid.columns - 1],
+                  (float)grid.v[grid.rows - 1]);
+    gl->Uniform2f(at[LENS], (float)(0.5 * aperture), (float)disparity);
+}
+
+void draw_slab_lens(const struct program *program, const struct gl *gl, const struct place *place,
+                    const struct slab_seen *seen, double aperture, double focus)
+{
+    const struct relume_slab_grid grid = relume_slab_grid(seen->slab);
+    const GLint *at = program->at;
+    set_uniforms(program, gl, place, seen, aperture, focus);
+    gl->Enable(GL_BLEND);
+    gl->BlendFunc(GL_ONE, GL_ONE);
+    for (int row = 0; row < grid.rows; row++)
+        for (int column = 0; column < grid.columns; column++) {
+            const int view = grid.view[(size_t)row * (size_t)grid.columns + (size_t)column];
+            const struct relume_slab_lens lens = relume_slab_lens(seen->slab, column, row);
+            if (!seen->views[view])
+                continue;
+            texture_use(gl, 0, GL_TEXTURE_2D, seen->views[view]->texture);
+            gl->Uniform2f(at[PLACE], (float)lens.place[0], (float)lens.place[1]);
+            gl->Uniform4f(at[STEPS], (float)lens.step[0][0], (float)lens.step[0][1],
+                          (float)lens.step[1][0], (float)lens.step[1][1]);
+            draw_rectangle(gl, program, place, place->picture);
+        }
+    gl->Disable(GL_BLEND);
+}
+
+void draw_mean(const struct program *program, const struct gl *gl, const struct place *place,
+               const struct target *sum)
+{
+    texture_use(gl, 0, GL_TEXTURE_2D, sum->texture);
+    gl->UseProgram(program->id);
+    gl->Uniform1i(program->at[SUM], 0);
+    gl->Uniform1f(program->at[EXPOSURE], place->exposure);
+    draw_rectangle(gl, program, place, (struct app_rectangle){0, 0, place->width, place->height});
+}

@@ -1,0 +1,29 @@
+#include "draw/draw.h"
+
+#include <math.h>
+
+enum { MIDDLE = DRAW_OWN, VALUE, COUNT };
+static const char *const uniforms[] = {"rectangle", "frame_size", "middle", "value"};
+
+relume_status draw_source_create(struct program *program, const struct gl *gl,
+                                 const struct relume_log *log)
+{
+    return program_create(program, gl, "source.frag", uniforms, COUNT, log);
+}
+
+void draw_sources(const struct program *program, const struct gl *gl, const struct place *place,
+                  const struct relume_source *sources, int n)
+{
+    gl->UseProgram(program->id);
+    gl->Enable(GL_BLEND);
+    gl->BlendFunc(GL_ONE, GL_ONE);
+    for (int i = 0; i < n; i++) {
+        const struct relume_source *s = &sources[i];
+        const double left = floor(s->x - 0.5), top = floor(s->y - 0.5);
+        const float e = place->exposure;
+        gl->Uniform2f(program->at[MIDDLE], (float)s->x, (float)s->y);
+        gl->Uniform3f(program->at[VALUE], e * s->rgb[0], e * s->rgb[1], e * s->rgb[2]);
+        draw_rectangle(gl, program, place, (struct app_rectangle){left, top, left + 2, top + 2});
+    }
+    gl->Disable(GL_BLEND);
+}

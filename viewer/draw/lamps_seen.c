@@ -1,0 +1,162 @@
+#include "draw/lamps_seen.h"
+
+#include "app/orbit.h"
+#include "common/vec.h"
+
+void lamp_scene_forget(struct lamp_scene *s)
+{
+    relume_image_destroy(&s->surface);
+    s->known = false;
+}
+
+// ---------------------------------------------------------------- the frame
+
+static int nearest_view(const struct app *app, const struct lamp_scene *s)
+{
+    int best = app->now.camera.framing == RELUME_FRAME_VIEW ? app->now.camera.view : 0;
+    const struct relume_vec3 eye = app->now.camera.eye;
+    double least = INFINITY;
+    for (int i = 0; app->now.camera.framing == RELUME_FRAME_EYE && i < s->views; i++) {
+        const double far = hypot(s->uv[i][0] - eye.x, s->uv[i][1] - eye.y);
+        if (far < least) {
+            least = far;
+            best = i;
+        }
+    }
+    return best;
+}
+
+// Of a captured picture; a slab's as it looks from `eye`.
+static struct relume_sight sight_of_picture(const struct app_file *file, struct relume_vec3 eye)
+{
+    const struct relume_geometry *g = &file->geometry;
+    struct relume_sight s = {.width = file->width, .height = file->height, .geometry = *g};
+    if (g->projection == RELUME_SLAB) {
+        s.window = relume_slab_window(g, eye);
+    } else if (g->projection == RELUME_PLANAR) {
+        s.window = relume_planar_window(g);
+        s.kind = g->perspective ? RELUME_SIGHT_WINDOW : RELUME_SIGHT_PARALLEL;
+    } else {
+        s.kind = RELUME_SIGHT_UNFOLDED;
+    }
+    return s;
+}
+
+static struct relume_vec3 camera_of(const struct app *app, const struct lamp_scene *s, int view)
+{
+    const bool slab = s && app->file.geometry.projection == RELUME_SLAB;
+    return slab ? (struct relume_vec3){s->uv[view][0], s->uv[view][1], app->file.geometry.uv_z}
+                : (struct relume_vec3){0};
+}
+
+// False where the eye sees nothing.
+static bool sight_of(struct relume_sight *out, const struct app *app, const struct lamp_scene *s)
+{
+    const struct relume_camera *camera = &app->now.camera;
+    const struct app_rectangle r = app_picture(app);
+    const bool free = camera->framing == RELUME_FRAME_EYE;
+    *out = sight_of_picture(&app->file, free ? camera->eye : camera_of(app, s, camera->view));
+    if (app->file.around && !(orbit_is(app) && app_window(app, &out->window)))
+        return false;
+    if (camera->framing == RELUME_FRAME_LOOK)
+        out->kind = RELUME_SIGHT_LOOK;
+    out->look = camera->look;
+    out->width = app->width;
+    out->height = app->height;
+    out->left = r.left;
+    out->top = r.top;
+    out->wide = r.right - r.left;
+    out->high = r.bottom - r.top;
+    return true;
+}
+
+// ---------------------------------------------------------------- what hides it
+
+// The view that best knows what lies on the way to `p`, and the place in [0, 1] where it shows it.
+static bool find_view(int *view, double at[2], const struct app *app, const struct lamp_scene *s,
+                      struct relume_vec3 eye, struct relume_vec3 p)
+{
+    const struct app_file *f = &app->file;
+    if (orbit_is(app))
+        return relume_slabs_nearest(view, at, f->around, eye, vec_sub(p, eye));
+    *view = nearest_view(app, s);
+    const struct relume_sight picture = sight_of_picture(f, camera_of(app, s, *view));
+    if (!relume_sight_place(at, &picture, p))
+        return false;
+    at[0] /= f->width;
+    at[1] /= f->height;
+    return true;
+}
+
+static bool need_surface(struct lamp_scene *s, int view)
+{
+    if (s->known && s->view == view)
+        return s->surface.data != NULL;
+    lamp_scene_forget(s);
+    s->known = true;
+    s->view = view;
+    return s->source.surface && !s->source.surface(&s->surface, s->source.user, view);
+}
+
+struct looking {
+    const struct app *app;
+    struct lamp_scene *scene;
+    struct relume_sight sight;
+};
+
+// What the view shows where it sees the point `p`; false where that is not known.
+static bool surface_near(struct relume_vec3 *out, const struct looking *l, struct relume_vec3 p)
+{
+    const struct relume_image *image = &l->scene->surface;
+    double at[2];
+    int view;
+    if (!find_view(&view, at, l->app, l->scene, relume_sight_eye(&l->sight), p) ||
+        !need_surface(l->scene, view))
+        return false;
+    const double x = floor(at[0] * image->width), y = floor(at[1] * image->height);
+    if (!(x >= 0 && y >= 0 && x < image->width && y < image->height))
+        return false;
+    const float *q = image->data + 3 * ((size_t)y * (size_t)image->width + (size_t)x);
+    *out = (struct relume_vec3){(double)q[0], (double)q[1], (double)q[2]};
+    return isfinite(out->x) && isfinite(out->y) && isfinite(out->z);
+}
+
+static bool hidden(void *user, const double xy[2], struct relume_vec3 p)
+{
+    const struct looking *l = user;
+    struct relume_vec3 surface;
+    (void)xy;
+    return surface_near(&surface, l, p) && relume_sight_hides(&l->sight, surface, p);
+}
+
+int lamps_seen(struct relume_source *out, const struct app *app, const struct relume_light *lights,
+               int n, struct lamp_scene *scene)
+{
+    struct looking l = {.app = app, .scene = scene};
+    if (!sight_of(&l.sight, app, scene))
+        return 0;
+    return relume_sight_lamps(out, &l.sight, lights, n, scene ? hidden : NULL, &l);
+}
+
+// A view beside the eye sees another place of the surface; its depth is a better guess, and so on.
+bool lamps_surface(struct relume_vec3 *out, const struct app *app, struct lamp_scene *scene,
+                   double x, double y)
+{
+    enum { ROUNDS = 8 };
+    struct looking l = {.app = app, .scene = scene};
+    struct relume_vec3 from, ray;
+    if (!sight_of(&l.sight, app, scene))
+        return false;
+    relume_sight_ray(&from, &ray, &l.sight, x, y);
+    double t = vec_dot(vec_sub(app_middle(app), from), ray);
+    for (int i = 0; i < ROUNDS; i++) {
+        const struct relume_vec3 p = {from.x + t * ray.x, from.y + t * ray.y, from.z + t * ray.z};
+        if (!surface_near(out, &l, p))
+            return false;
+        t = vec_dot(vec_sub(*out, from), ray);
+        if (!(t > 0))
+            return false;
+    }
+    *out = (struct relume_vec3){from.x + t * ray.x, from.y + t * ray.y, from.z + t * ray.z};
+    return true;
+}

@@ -1,0 +1,521 @@
+#include "draw/renderer.h"
+
+#include "app/lamps.h"
+#include "common/say.h"
+#include "draw/renderer_parts.h"
+
+#include <relume/tone.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// ---------------------------------------------------------------- making
+
+static relume_status create_programs(struct renderer *r)
+{
+    const struct {
+        struct program *program;
+        relume_status (*create)(struct program *, const struct gl *, const struct relume_log *);
+    } list[] = {
+        {&r->picture, draw_picture_create},
+        {&r->slab, draw_slab_create},
+        {&r->slab_depth, draw_slab_depth_create},
+        {&r->slab_lens, draw_slab_lens_create},
+        {&r->slabs, draw_slabs_create},
+        {&r->slabs_depth, draw_slabs_depth_create},
+        {&r->mean, draw_mean_create},
+
+        {&r->ball, draw_ball_create},
+        {&r->source, draw_source_create},
+        {&r->present, draw_present_create},
+    };
+    relume_status status = RELUME_OK;
+    for (size_t i = 0; !status && i < sizeof list / sizeof *list; i++)
+        status = list[i].create(list[i].program, r->gl, r->log);
+    if (!status && r->geometry.projection >= RELUME_CYLINDRICAL)
+        status = draw_panorama_create(&r->panorama, r->gl, &r->geometry, r->log);
+    return status;
+}
+
+relume_status renderer_create(struct renderer *r, const struct gl *gl,
+                              const struct code_source *source,
+                              const struct relume_geometry *geometry, const double (*uv)[2],
+                              int views, const struct relume_log *log)
+{
+    *r = (struct renderer){.gl = gl, .log = log, .geometry = *geometry, .views = views};
+    glare_begin(&r->glare, gl, log);
+    gl->GenVertexArrays(1, &r->vertices);
+    r->uv = calloc((size_t)views, sizeof *r->uv);
+    if (r->uv && uv)
+        memcpy(r->uv, uv, (size_t)views * sizeof *r->uv);
+    r->needed = calloc((size_t)views, sizeof *r->needed);
+    r->relit = calloc((size_t)views, sizeof *r->relit);
+    r->backdrop =
+        (struct lamp_scene){.source = *source, .uv = (const double(*)[2])r->uv, .views = views};
+    relume_status status = r->uv && r->needed && r->relit ? RELUME_OK : RELUME_ENOMEM;
+    if (!status)
+        status = relighter_create(&r->relighter, gl, source, views, log);
+    if (!status)
+        status = enhancer_create(&r->enhancer, gl, source, geometry, uv, views, log);
+    if (!status)
+        status = create_programs(r);
+    if (!status && geometry->projection == RELUME_SLAB && uv) {
+        status = relume_slab_create(&r->grid, geometry, uv, views);
+        if (status == RELUME_EINVAL)
+            status = say(log, RELUME_EDATA, "the slab's cameras do not stand on a grid");
+    }
+    if (status)
+        renderer_destroy(r);
+    return status;
+}
+
+void renderer_use_slabs(struct renderer *r, const relume_slabs *slabs, const double (*uv)[2],
+                        const int *slab_of)
+{
+    r->around = slabs;
+    r->slab_of = slab_of;
+    memcpy(r->uv, uv, (size_t)r->views * sizeof *r->uv);
+    enhancer_use_slabs(&r->enhancer, slabs, (const double(*)[2])r->uv, slab_of);
+}
+
+relume_status renderer_use_depth(struct renderer *r, const struct depth_source *source)
+{
+    const relume_slab *slab[RELUME_MOST_SLABS] = {r->grid};
+    int slabs = r->grid != NULL;
+    for (; r->around && slabs < relume_slabs_count(r->around); slabs++)
+        slab[slabs] = relume_slabs_slab(r->around, slabs);
+    return slabs ? depths_create(&r->depths, r->gl, slab, slabs, source) : RELUME_OK;
+}
+
+void renderer_use_capture(struct renderer *r, const relume_capture *capture)
+{
+    r->enhancer.capture = capture;
+}
+
+void renderer_destroy(struct renderer *r)
+{
+    if (!r->gl)
+        return;
+    struct program *const programs[] = {&r->picture, &r->slab,        &r->slab_depth, &r->slab_lens,
+                                        &r->slabs,   &r->slabs_depth, &r->mean,       &r->panorama,
+                                        &r->ball,    &r->source,      &r->present};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
+        program_destroy(programs[i], r->gl);
+    relighter_destroy(&r->relighter);
+    enhancer_destroy(&r->enhancer);
+    glare_end(&r->glare);
+    lamp_scene_forget(&r->backdrop);
+    target_destroy(&r->frame, r->gl);
+    target_destroy(&r->small, r->gl);
+    target_destroy(&r->sum, r->gl);
+    target_destroy(&r->pinholes, r->gl);
+    renderer_objects_destroy(r);
+    if (r->depths.views)
+        depths_destroy(&r->depths);
+    r->gl->DeleteVertexArrays(1, &r->vertices);
+    relume_slab_destroy(&r->grid);
+    free(r->uv);
+    free(r->needed);
+    free(r->relit);
+    free(r->light);
+    *r = (struct renderer){0};
+}
+
+// ---------------------------------------------------------------- framings
+
+relume_status renderer_prepare(struct target *target, const struct renderer *r, int width,
+                               int height)
+{
+    if (target->width == width && target->height == height)
+        return RELUME_OK;
+    target_destroy(target, r->gl);
+    return target_create(target, r->gl, width, height, r->log);
+}
+
+static void mark_view(struct renderer *r, const struct app *app)
+{
+    r->needed[app->now.camera.view] = true;
+}
+
+// Of the pinholes of a lens, while something moves.
+enum { MOVING_SHARE = 8 };
+
+static double focus_of(const struct app *app)
+{
+    return app->now.focus_z - (app->file.around ? 0 : app->file.geometry.st_z);
+}
+
+static int picture_width(const struct app *app)
+{
+    const struct app_rectangle p = app_picture(app);
+    return (int)lround(p.right - p.left);
+}
+
+static struct relume_view_params view_params(const struct app *app)
+{
+    return (struct relume_view_params){
+        .interpolation = app->now.interpolation,
+        .aperture = app->now.aperture,
+        .focus = focus_of(app),
+    };
+}
+
+static void mark_around(struct renderer *r, const struct app *app)
+{
+    const struct relume_view_params params = view_params(app);
+    struct relume_window window;
+    if (app_window(app, &window))
+        (void)relume_slabs_needs(r->needed, r->around, &window, picture_width(app), &params);
+}
+
+static void mark_eye(struct renderer *r, const struct app *app)
+{
+    const struct relume_view_params params = view_params(app);
+    if (r->around) {
+        mark_around(r, app);
+        return;
+    }
+    (void)relume_slab_needs(r->needed, r->grid, app->now.camera.eye, &params);
+}
+
+static void mark_look(struct renderer *r, const struct app *app)
+{
+    (void)app;
+    r->needed[0] = true;
+}
+
+static relume_status draw_framed_view(struct renderer *r, const struct app *app,
+                                      const struct place *place)
+{
+    draw_picture(&r->picture, r->gl, place, r->relit[app->now.camera.view]);
+    return RELUME_OK;
+}
+
+static bool takes_lens(const struct app *app)
+{
+    return app->now.aperture != 0.0 || focus_of(app) != 0.0;
+}
+
+// An eye at a slab's camera sees its view alone, whatever the depth.
+static bool takes_depth(const struct renderer *r, const struct app *app)
+{
+    const enum relume_interpolation i = app->now.interpolation;
+    int views = 0;
+    for (int k = 0; k < r->views; k++)
+        views += r->needed[k];
+    return r->depths.views && (r->around || (views > 1 && !takes_lens(app))) &&
+           (i == RELUME_INTERPOLATE_DEFAULT || i == RELUME_INTERPOLATE_DEPTH);
+}
+
+static relume_status draw_lens(struct renderer *r, const struct app *app, const struct place *place,
+                               const struct slab_seen *seen)
+{
+    relume_status status = renderer_prepare(&r->sum, r, place->width, place->height);
+    if (status)
+        return status;
+    target_begin(&r->sum, r->gl);
+    draw_slab_lens(&r->slab_lens, r->gl, place, seen, app->now.aperture, focus_of(app));
+    target_resume(&r->frame, r->gl);
+    draw_mean(&r->mean, r->gl, place, &r->sum);
+    return RELUME_OK;
+}
+
+// The mean of all slabs through one window, added to what `onto` holds.
+static void add_around(struct renderer *r, const struct app *app, const struct place *place,
+                       const struct target *onto, const struct relume_window *window, bool by_depth)
+{
+    const struct slabs_seen seen = {
+        .slabs = r->around,
+        .window = window,
+        .views = r->relit,
+        .disparity = by_depth ? r->depths.texture : NULL,
+        .range = (const double(*)[2])r->depths.range,
+    };
+    target_begin(&r->sum, r->gl);
+    if (by_depth)
+        draw_slabs_depth(&r->slabs_depth, r->gl, place, &seen);
+    else
+        draw_slabs(&r->slabs, r->gl, place, &seen,
+                   app->now.interpolation == RELUME_INTERPOLATE_CONSTANT);
+    target_resume(onto, r->gl);
+    r->gl->Enable(GL_BLEND);
+    draw_mean(&r->mean, r->gl, place, &r->sum);
+    r->gl->Disable(GL_BLEND);
+}
+
+// Twin of relume_slabs_frame: the mean over the pinholes that show anything.
+static relume_status draw_around_lens(struct renderer *r, const struct app *app,
+                                      const struct place *place, const struct relume_window *window,
+                                      bool by_depth)
+{
+    const double aperture = app->now.aperture, focus = focus_of(app);
+    const int width = picture_width(app);
+    struct place plain = *place;
+    const relume_status status = renderer_prepare(&r->pinholes, r, place->width, place->height);
+    if (status || !relume_lens_fits(window, aperture, focus))
+        return status;
+    plain.exposure = 1;
+    target_begin(&r->pinholes, r->gl);
+    const int all = relume_lens_points(window, aperture, focus, width);
+    const int n = app_moves(app) ? (all + MOVING_SHARE - 1) / MOVING_SHARE : all;
+    for (int i = 0; i < n; i++) {
+        const struct relume_window from = relume_lens_window(window, aperture, focus, i, n);
+        add_around(r, app, &plain, &r->pinholes, &from, by_depth);
+    }
+    target_resume(&r->frame, r->gl);
+    draw_mean(&r->mean, r->gl, place, &r->pinholes);
+    return RELUME_OK;
+}
+
+static relume_status draw_around(struct renderer *r, const struct app *app,
+                                 const struct place *place)
+{
+    struct relume_window window;
+    double range[2];
+    relume_status status = renderer_prepare(&r->sum, r, place->width, place->height);
+    const bool by_depth = takes_depth(r, app);
+    if (!status && by_depth)
+        status = depths_use(&r->depths, r->needed, range);
+    if (status || !app_window(app, &window))
+        return status;
+    if (takes_lens(app))
+        return draw_around_lens(r, app, place, &window, by_depth);
+    add_around(r, app, place, &r->frame, &window, by_depth);
+    return RELUME_OK;
+}
+
+static relume_status draw_framed_eye(struct renderer *r, const struct app *app,
+                                     const struct place *place)
+{
+    const struct slab_seen seen = {r->grid, &r->geometry, app->now.camera.eye, r->relit};
+    bool any = false;
+    for (int i = 0; i < r->views; i++)
+        any |= r->needed[i];
+    if (!any)
+        return RELUME_OK;
+    if (r->around)
+        return draw_around(r, app, place);
+    if (takes_lens(app))
+        return draw_lens(r, app, place, &seen);
+    if (!takes_depth(r, app)) {
+        draw_slab(&r->slab, r->gl, place, &seen,
+                  app->now.interpolation == RELUME_INTERPOLATE_CONSTANT);
+        return RELUME_OK;
+    }
+    double range[2];
+    const relume_status status = depths_use(&r->depths, r->needed, range);
+    if (!status)
+        draw_slab_depth(&r->slab_depth, r->gl, place, &seen, r->depths.texture, range);
+    return status;
+}
+
+static relume_status draw_framed_look(struct renderer *r, const struct app *app,
+                                      const struct place *place)
+{
+    draw_panorama(&r->panorama, r->gl, place, &r->geometry, app->now.camera.look, r->relit[0]);
+    return RELUME_OK;
+}
+
+// Which views a framing needs, and how it is drawn from them.
+static const struct framing {
+    void (*mark)(struct renderer *r, const struct app *app);
+    relume_status (*draw)(struct renderer *r, const struct app *app, const struct place *place);
+} framings[] = {
+    [RELUME_FRAME_VIEW] = {mark_view, draw_framed_view},
+    [RELUME_FRAME_EYE] = {mark_eye, draw_framed_eye},
+    [RELUME_FRAME_LOOK] = {mark_look, draw_framed_look},
+};
+
+// ---------------------------------------------------------------- frame
+
+// How far apart the cameras of two views stand, squared.
+static double apart(const struct renderer *r, int a, int b)
+{
+    const double du = r->uv[a][0] - r->uv[b][0], dv = r->uv[a][1] - r->uv[b][1];
+    return du * du + dv * dv;
+}
+
+static bool of_one_slab(const struct renderer *r, int a, int b)
+{
+    return !r->slab_of || r->slab_of[a] == r->slab_of[b];
+}
+
+// The view on the GPU that stands nearest to a missing one of the same slab, or -1.
+static int nearest_present(const struct renderer *r, int missing)
+{
+    int nearest = -1;
+    for (int i = 0; i < r->views; i++)
+        if (relighter_has(&r->relighter, i) && of_one_slab(r, i, missing) &&
+            (nearest < 0 || apart(r, i, missing) < apart(r, nearest, missing)))
+            nearest = i;
+    return nearest;
+}
+
+// Of several slabs those that are not there yet say nothing while others do.
+static relume_status stand_in(struct renderer *r)
+{
+    relume_status status = RELUME_OK;
+    bool any = false;
+    for (int i = 0; r->slab_of && i < r->views; i++)
+        any |= r->relit[i] != NULL;
+    for (int i = 0; !status && i < r->views; i++) {
+        if (!r->needed[i] || r->relit[i])
+            continue;
+        const int nearest = nearest_present(r, i);
+        if (nearest < 0 && any)
+            continue;
+        status = nearest < 0 ? relighter_wait(&r->relit[i], &r->relighter, i)
+                             : relighter_view(&r->relit[i], &r->relighter, nearest);
+    }
+    return status;
+}
+
+static relume_status need_lights(struct renderer *r, int n)
+{
+    if (n <= r->room)
+        return RELUME_OK;
+    struct relume_light *light = realloc(r->light, (size_t)n * sizeof *light);
+    if (!light)
+        return RELUME_ENOMEM;
+    r->light = light;
+    r->room = n;
+    return RELUME_OK;
+}
+
+relume_status renderer_relight_views(struct renderer *r, const struct app *app,
+                                     const struct relume_light *lights, int count)
+{
+    r->enhancer.params = app->now.enhance;
+    relume_status status = relighter_begin(&r->relighter, lights, count);
+    relume_status (*const look_up)(const struct target **, struct relighter *, int) =
+        app->now.pass == RELUME_PASS_COLOUR ? relighter_view : relighter_wait;  // no stand-ins
+    for (int i = 0; !status && i < r->views; i++) {
+        r->relit[i] = NULL;
+        if (r->needed[i])
+            status = look_up(&r->relit[i], &r->relighter, i);
+        if (!status && r->needed[i] && app->now.pass != RELUME_PASS_COLOUR)
+            status = enhancer_view(&r->relit[i], &r->enhancer, i, r->relit[i], app->now.pass,
+                                   lights, count);
+    }
+    return status ? status : stand_in(r);
+}
+
+relume_status renderer_frame(struct renderer *r, const struct app *app, const struct place *place)
+{
+    r->gl->BindVertexArray(r->vertices);
+    target_begin(&r->frame, r->gl);
+    return framings[app->now.camera.framing].draw(r, app, place);
+}
+
+// The lights that shine, and what the frame needs.
+static relume_status prepare(struct renderer *r, const struct app *app)
+{
+    relume_status status = renderer_prepare(&r->frame, r, app->width, app->height);
+    memset(r->needed, 0, (size_t)r->views * sizeof *r->needed);
+    if (!r->stage && !r->empty)
+        framings[app->now.camera.framing].mark(r, app);
+    if (!status)
+        status = need_lights(r, app->now.lights);
+    r->lights = status ? 0 : lamps_shining(&app->now, r->light);
+    return status;
+}
+
+// Normals and the like are for looking up, not at.
+static relume_status see(struct renderer *r, const struct app *app, double exposure)
+{
+    r->shown = &r->frame;
+    if (!app->now.gaze.on || app->now.pass != RELUME_PASS_COLOUR)
+        return RELUME_OK;
+    const relume_status status = glare_see(&r->glare, &r->frame, app, exposure);
+    r->shown = &r->glare.seen;
+    return status;
+}
+
+static relume_status draw_lights_in_view(struct renderer *r, const struct app *app,
+                                         const struct place *place)
+{
+    if (!app->now.gaze.sources || app->now.pass != RELUME_PASS_COLOUR)
+        return RELUME_OK;
+    struct relume_source *sources = malloc(RELUME_SOURCES_MOST * sizeof *sources);
+    if (!sources)
+        return RELUME_ENOMEM;
+    const int n = lamps_seen(sources, app, r->light, r->lights, &r->backdrop);
+    draw_sources(&r->source, r->gl, place, sources, n);
+    free(sources);
+    return RELUME_OK;
+}
+
+relume_status renderer_draw(struct renderer *r, const struct app *app)
+{
+    const struct place place = {
+        .width = app->width,
+        .height = app->height,
+        .picture = app_picture(app),
+        .exposure = (float)exp2(app_exposure_ev(app)),
+    };
+    relume_status status = prepare(r, app);
+    if (!status && r->empty)
+        target_begin(&r->frame, r->gl);
+    else if (!status && r->things.gl)
+        status = renderer_draw_objects(r, app, &place, r->light, r->lights);
+    else if (!status)
+        status = renderer_relight_views(r, app, r->light, r->lights);
+    if (!status && !r->things.gl && !r->empty)
+        status = renderer_frame(r, app, &place);
+    if (!status)
+        status = draw_lights_in_view(r, app, &place);
+    if (!status)
+        status = see(r, app, (double)place.exposure);
+    if (status)
+        return status;
+    target_resume(r->shown, r->gl);
+    r->gl->BindVertexArray(r->vertices);
+    if (app->now.ball)
+        draw_ball(&r->ball, r->gl, &place, gizmo_ball(app), app_seen_light(app, app->now.selected),
+                  app->now.light[app->now.selected].rgb);
+    return gl_check(r->gl, "drawing", r->log);
+}
+
+relume_status renderer_stream(struct renderer *r)
+{
+    return relighter_stream(&r->relighter);
+}
+
+bool renderer_is_pending(const struct renderer *r)
+{
+    return r->relighter.pending;
+}
+
+relume_status renderer_read(struct relume_image *out, const struct renderer *r)
+{
+    return target_read(out, r->shown, r->gl);
+}
+
+relume_status renderer_meter(double *ev, struct renderer *r)
+{
+    enum { SIDE = 128 };
+    const int width = r->frame.width < SIDE ? r->frame.width : SIDE;
+    const int height = r->frame.height < SIDE ? r->frame.height : SIDE;
+    const struct place place = {width, height, {0, 0, width, height}, 1};
+    struct relume_image image;
+    *ev = 0;
+    relume_status status = renderer_prepare(&r->small, r, width, height);
+    if (status)
+        return status;
+    r->gl->BindVertexArray(r->vertices);
+    target_begin(&r->small, r->gl);
+    draw_picture(&r->picture, r->gl, &place, &r->frame);
+    status = target_read(&image, &r->small, r->gl);
+    if (!status)
+        *ev = relume_tone_meter(&image);
+    relume_image_destroy(&image);
+    return status;
+}
+
+void renderer_present(const struct renderer *r, const struct app *app, GLuint framebuffer)
+{
+    r->gl->BindVertexArray(r->vertices);
+    const struct window_place window = {app->beside[0], app_window_width(app), app->height};
+    draw_present(&r->present, r->gl, r->shown, &window, app->now.tone, app->now.white, framebuffer);
+}

@@ -1,0 +1,262 @@
+// renderer_objects.c - frames with objects in them: the scene under each light alone, kept off
+// where an object stands between, then the objects where they stand before it. Twin:
+// relume_objects_frame.
+#include "common/vec.h"
+#include "draw/renderer_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <time.h>
+
+relume_status renderer_use_objects(struct renderer *r, relume_objects *objects,
+                                   const struct depth_source *places)
+{
+    r->stage = !places;
+    if (places)
+        r->place_source = *places;
+    r->place = calloc((size_t)r->views, sizeof *r->place);
+    return r->place ? things_create(&r->things, r->gl, objects, r->log) : RELUME_ENOMEM;
+}
+
+void renderer_objects_destroy(struct renderer *r)
+{
+    for (int i = 0; r->place && i < r->views; i++)
+        target_destroy(&r->place[i], r->gl);
+    free(r->place);
+    target_destroy(&r->scene, r->gl);
+    target_destroy(&r->lit, r->gl);
+    things_destroy(&r->things);
+}
+
+// ---------------------------------------------------------------- where the eye is
+
+static struct relume_window planar_window(const struct relume_geometry *g)
+{
+    return (struct relume_window){
+        .eye = {0, 0, g->camera_z},
+        .corner = {g->window_min[0], g->window_max[1], 0},
+        .right = {g->window_max[0] - g->window_min[0], 0, 0},
+        .down = {0, g->window_min[1] - g->window_max[1], 0},
+    };
+}
+
+// A window at distance 1 along the middle of a perspective look.
+static struct relume_window look_window(const struct app *app)
+{
+    const struct relume_look look = app->now.camera.look;
+    const int w = app->width, h = app->height;
+    const struct relume_vec3 ahead = relume_look_ray(look, w, h, 0.5 * w, 0.5 * h);
+    struct relume_vec3 corner[3];
+    for (int i = 0; i < 3; i++) {
+        corner[i] = relume_look_ray(look, w, h, i == 1 ? w : 0, i == 2 ? h : 0);
+        corner[i] = vec_scale(corner[i], 1.0 / vec_dot(corner[i], ahead));
+    }
+    const struct relume_vec3 eye = app->file.geometry.center;
+    return (struct relume_window){
+        .eye = eye,
+        .corner = {eye.x + corner[0].x, eye.y + corner[0].y, eye.z + corner[0].z},
+        .right = vec_sub(corner[1], corner[0]),
+        .down = vec_sub(corner[2], corner[0]),
+    };
+}
+
+static struct relume_window slab_view_window(const struct renderer *r, int view)
+{
+    const struct relume_geometry *g =
+        r->around ? relume_slabs_geometry(r->around, r->slab_of ? r->slab_of[view] : 0)
+                  : &r->geometry;
+    const struct relume_vec3 camera = {r->uv[view][0], r->uv[view][1], g->uv_z};
+    return relume_slab_window(g, relume_pose_world(&g->pose, camera));
+}
+
+// The window of the frame; false for frames that are not flat: unfolded panoramas, little planets.
+static bool find_window(struct relume_window *w, const struct renderer *r, const struct app *app)
+{
+    const struct relume_camera *camera = &app->now.camera;
+    if (camera->framing == RELUME_FRAME_LOOK) {
+        *w = look_window(app);
+        return !camera->look.stereographic;
+    }
+    if (camera->framing == RELUME_FRAME_EYE && r->around)
+        return app_window(app, w);
+    if (camera->framing == RELUME_FRAME_EYE)
+        *w = relume_slab_window(&r->geometry, camera->eye);
+    else if (r->geometry.projection == RELUME_SLAB)
+        *w = slab_view_window(r, camera->view);
+    else
+        *w = planar_window(&r->geometry);
+    return r->geometry.projection <= RELUME_SLAB;
+}
+
+static bool find_sight(struct sight *out, const struct renderer *r, const struct app *app,
+                       const struct place *place)
+{
+    const struct relume_objects_info *info = relume_objects_info(r->things.objects);
+    const struct relume_geometry *g = &r->geometry;
+    struct relume_window window;
+    if (g->projection == RELUME_PLANAR && !g->perspective) {
+        sight_of_plane(out, g->window_min, g->window_max, place->picture, place->width,
+                       place->height, info->min, info->max);
+        return true;
+    }
+    return find_window(&window, r, app) &&
+           sight_of_window(out, &window, place->picture, place->width, place->height, info->min,
+                           info->max);
+}
+
+// ---------------------------------------------------------------- the scene
+
+static void swap(struct target *a, struct target *b)
+{
+    const struct target was = *a;
+    *a = *b;
+    *b = was;
+}
+
+// Where the views that the frame needs see the scene, as if that were their light.
+static relume_status use_places(struct renderer *r)
+{
+    relume_status status = RELUME_OK;
+    for (int i = 0; i < r->views && !status; i++) {
+        struct relume_image places;
+        r->relit[i] = NULL;
+        if (!r->needed[i])
+            continue;
+        r->relit[i] = &r->place[i];
+        if (r->place[i].texture)
+            continue;
+        status = r->place_source.depth(&places, r->place_source.user, i);
+        if (!status)
+            status = target_create(&r->place[i], r->gl, places.width, places.height, r->log);
+        if (!status)
+            target_write(&r->place[i], r->gl, &places);
+        relume_image_destroy(&places);
+    }
+    return status;
+}
+
+static relume_status find_scene(struct renderer *r, const struct app *app, struct place place)
+{
+    relume_status status = use_places(r);
+    place.exposure = 1.0f;
+    if (!status)
+        status = renderer_frame(r, app, &place);
+    swap(&r->frame, &r->scene);
+    return status;
+}
+
+// r->frame becomes the sum of all lights where they reach.
+static relume_status light_scene(struct renderer *r, const struct app *app,
+                                 const struct place *place, const struct relume_light *lights,
+                                 int count)
+{
+    relume_status status = RELUME_OK;
+    target_begin(&r->lit, r->gl);
+    for (int i = 0; i < count && !status; i++) {
+        status = renderer_relight_views(r, app, &lights[i], 1);
+        if (!status)
+            status = renderer_frame(r, app, place);
+        if (!status)
+            status = things_light(&r->things, &lights[i], 1);
+        target_resume(&r->lit, r->gl);
+        for (int k = 0; k < r->things.lamps && !status; k++)
+            things_cast(&r->things, place, k, r->scene.texture, &r->frame);
+    }
+    swap(&r->frame, &r->lit);
+    return status;
+}
+
+static relume_status draw_scene(struct renderer *r, const struct app *app,
+                                const struct place *place, const struct relume_light *lights,
+                                int count, bool seen)
+{
+    if (r->stage) {
+        target_begin(&r->frame, r->gl);
+        return RELUME_OK;
+    }
+    relume_status status = renderer_prepare(&r->scene, r, place->width, place->height);
+    if (!status)
+        status = renderer_prepare(&r->lit, r, place->width, place->height);
+    if (!seen || app->now.pass != RELUME_PASS_COLOUR) {
+        if (!status)
+            status = renderer_relight_views(r, app, lights, count);
+        return status ? status : renderer_frame(r, app, place);
+    }
+    if (!status)
+        status = find_scene(r, app, *place);
+    return status ? status : light_scene(r, app, place, lights, count);
+}
+
+// ---------------------------------------------------------------- the objects
+
+static double now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
+}
+
+// Objects in their materials, or all in one; `ms` is what it took where the panel shows it.
+static relume_status shade(struct renderer *r, const struct app *app, const struct sight *sight,
+                           int only, double *ms)
+{
+    if (app->panel)
+        r->gl->Finish();
+    const double start = now_ms();
+    const relume_status status = things_shade(&r->things, sight, app->width, app->height, only);
+    if (app->panel)
+        r->gl->Finish();
+    *ms = now_ms() - start;
+    return status;
+}
+
+// The right half in the other material, and a line between.
+static void draw_split(const struct renderer *r, const struct place *place, GLuint scene)
+{
+    const struct gl *gl = r->gl;
+    const int middle = place->width / 2;
+    gl->Enable(GL_SCISSOR_TEST);
+    gl->Scissor(middle, 0, place->width - middle, place->height);
+    things_over(&r->things, place, scene, false);
+    gl->Scissor(middle - 1, 0, 2, place->height);
+    gl->ClearColor(0.5f, 0.5f, 0.5f, 1.0f);
+    gl->Clear(GL_COLOR_BUFFER_BIT);
+    gl->Disable(GL_SCISSOR_TEST);
+}
+
+static relume_status draw_things(struct renderer *r, const struct app *app,
+                                 const struct place *place, const struct sight *sight)
+{
+    const GLuint scene = r->stage ? 0 : r->scene.texture;
+    const bool both = app->now.split != APP_SPLIT_NONE;
+    relume_status status = RELUME_OK;
+    if (both)
+        status = shade(r, app, sight, app->now.other, &r->things_ms[1]);
+    things_swap(&r->things);
+    if (!status)
+        status = shade(r, app, sight, -1, &r->things_ms[0]);
+    if (status)
+        return status;
+    r->gl->BindVertexArray(r->vertices);
+    target_resume(&r->frame, r->gl);
+    things_over(&r->things, place, scene, app->now.split == APP_SPLIT_DIFFERENCE);
+    if (app->now.split == APP_SPLIT_SIDES) {
+        things_swap(&r->things);
+        draw_split(r, place, scene);
+    }
+    return RELUME_OK;
+}
+
+relume_status renderer_draw_objects(struct renderer *r, const struct app *app,
+                                    const struct place *place, const struct relume_light *lights,
+                                    int count)
+{
+    struct sight sight;
+    const bool seen = find_sight(&sight, r, app, place);
+    r->gl->BindVertexArray(r->vertices);
+    relume_status status = draw_scene(r, app, place, lights, count, seen);
+    if (status || !seen || app->now.pass != RELUME_PASS_COLOUR)
+        return status;
+    status = things_light(&r->things, lights, count);
+    return status ? status : draw_things(r, app, place, &sight);
+}

@@ -1,0 +1,600 @@
+#include "common/say.h"
+#include "common/vec.h"
+#include "draw/things_parts.h"
+
+#include <stddef.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const btf_uniforms[] = {
+    "rectangle",
+    "frame_size",
+    "array0",
+    "array1",
+    "array2",
+    "array3",
+    "array4",
+    "view_cells",
+    "view_triangles",
+    "light_cells",
+    "light_triangles",
+    "place",
+    "normal_s",
+    "tangent_t",
+    "footprint",
+    "picture",
+    "part",
+    "eye",
+    "texels",
+    "finest",
+    "level",
+    "levels",
+    "bilinear",
+    "without_cosine",
+    "counts",
+    "area",
+    "map",
+    "map_texels",
+    "sky",
+    "sky_turn",
+    "sky_rgb",
+    "sky_table",
+    "some_lights",
+    SHINE_NAMES,
+    SHADOW_NAMES,
+};
+enum { SURFACE_CLIP, SURFACE_PART, SURFACE_COUNT };
+static const char *const surface_uniforms[] = {"clip", "part"};
+enum {
+    OVER_PLACE = DRAW_OWN,
+    OVER_SHADED,
+    OVER_OTHER,
+    DIFFERENCE,
+    OVER_SCENE,
+    IN_SCENE,
+    GRID,
+    OVER_EYE,
+    EXPOSURE,
+    OVER_COUNT
+};
+static const char *const over_uniforms[] = {"rectangle", "frame_size", "place",   "shaded",
+                                            "other",     "difference", "scene",   "in_scene",
+                                            "grid",      "eye",        "exposure"};
+enum {
+    CAST_SCENE = DRAW_OWN,
+    CAST_LONE,
+    CAST_LAMPS,
+    CAST_OF,
+    CAST_LAMP,
+    CAST_SHADOW,
+    CAST_COUNT = CAST_SHADOW + SHADOW_UNIFORMS
+};
+static const char *const cast_uniforms[] = {"rectangle", "frame_size", "scene", "lone",
+                                            "lamps",     "count",      "lamp",  SHADOW_NAMES};
+
+// Where OpenGL is software, a smaller map and no finer grid.
+enum { SHADOW_SIDE = 2048, SHADOW_SIDE_SOFTWARE = 1024, FINER = 2 };
+
+// ---------------------------------------------------------------- making
+
+static void upload_mesh(struct things *t, const struct relume_objects_info *info)
+{
+    const struct gl *gl = t->gl;
+    static const struct {
+        GLint numbers;
+        size_t offset;
+    } attribute[] = {{3, offsetof(struct relume_object_vertex, position)},
+                     {3, offsetof(struct relume_object_vertex, normal)},
+                     {4, offsetof(struct relume_object_vertex, tangent)},
+                     {2, offsetof(struct relume_object_vertex, texture)}};
+    gl->GenVertexArrays(1, &t->array);
+    gl->BindVertexArray(t->array);
+    gl->GenBuffers(1, &t->vertices);
+    gl->BindBuffer(GL_ARRAY_BUFFER, t->vertices);
+    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(info->vertex_count * sizeof *info->vertices),
+                   info->vertices, GL_STATIC_DRAW);
+    gl->GenBuffers(1, &t->indices);
+    gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, t->indices);
+    gl->BufferData(GL_ELEMENT_ARRAY_BUFFER,
+                   (GLsizeiptr)(info->triangle_count * sizeof *info->triangles), info->triangles,
+                   GL_STATIC_DRAW);
+    for (GLuint i = 0; i < 4; i++) {
+        gl->EnableVertexAttribArray(i);
+        gl->VertexAttribPointer(i, attribute[i].numbers, GL_FLOAT, GL_FALSE,
+                                sizeof(struct relume_object_vertex),
+                                (const void *)attribute[i].offset);
+    }
+}
+
+static relume_status create_programs(struct things *t)
+{
+    const struct gl *gl = t->gl;
+    relume_status status =
+        program_create_with(&t->surface, gl, "btf_surface.vert", "btf_surface.frag",
+                            surface_uniforms, SURFACE_COUNT, t->log);
+    if (!status)
+        status = program_create_with(&t->depth, gl, "btf_surface.vert", "btf_depth.frag",
+                                     surface_uniforms, SURFACE_COUNT, t->log);
+    if (!status)
+        status = program_create(&t->over, gl, "btf_over.frag", over_uniforms, OVER_COUNT, t->log);
+    if (!status)
+        status = program_create(&t->cast, gl, "btf_cast.frag", cast_uniforms, CAST_COUNT, t->log);
+    return status ? status : things_create_sky(t);
+}
+
+relume_status things_create(struct things *t, const struct gl *gl, relume_objects *objects,
+                            const struct relume_log *log)
+{
+    const struct relume_objects_info *info = relume_objects_info(objects);
+    *t = (struct things){.gl = gl,
+                         .log = log,
+                         .objects = objects,
+                         .shine = {.gl = gl, .log = log},
+                         .maps = {.gl = gl, .log = log},
+                         .grid = gl->software ? 1 : FINER};
+    const struct relume_vec3 extent = vec_sub(info->max, info->min);
+    t->radius = 0.5 * vec_length(extent);
+    t->middle = vec_sub(info->max, vec_scale(extent, 0.5));
+    t->material = calloc((size_t)info->materials, sizeof *t->material);
+    relume_status status = t->material ? create_programs(t) : RELUME_ENOMEM;
+    if (!status)
+        status = shadow_map_create(&t->shadow, gl,
+                                   gl->software ? SHADOW_SIDE_SOFTWARE : SHADOW_SIDE, log);
+    if (!status) {
+        upload_mesh(t, info);
+        status = gl_check(gl, "uploading objects", log);
+    }
+    if (status)
+        things_destroy(t);
+    return status;
+}
+
+// The first four are what the surface is drawn into.
+enum { SURFACES = 4, TARGETS = 9 };
+static void find_targets(struct target *out[TARGETS], struct things *t)
+{
+    struct target *const all[TARGETS] = {&t->place,     &t->normal, &t->tangent,
+                                         &t->footprint, &t->shaded, &t->other,
+                                         &t->shown,     &t->sent,   &t->arrived};
+    memcpy(out, all, sizeof all);
+}
+
+static void destroy_targets(struct things *t)
+{
+    struct target *target[TARGETS];
+    find_targets(target, t);
+    for (int i = 0; i < TARGETS; i++)
+        target_destroy(target[i], t->gl);
+    t->gl->DeleteFramebuffers(1, &t->surface_buffer);
+    t->gl->DeleteFramebuffers(1, &t->share_buffer);
+    t->gl->DeleteTextures(1, &t->depth_texture);
+    t->surface_buffer = t->share_buffer = t->depth_texture = 0;
+}
+
+void things_destroy(struct things *t)
+{
+    if (!t->gl)
+        return;
+    const int materials = t->material ? relume_objects_info(t->objects)->materials : 0;
+    for (int i = 0; i < materials; i++)
+        btf_release(&t->material[i], t->gl);
+    for (int i = 0; i < t->programs; i++)
+        program_destroy(&t->program[i].program, t->gl);
+    struct program *const programs[] = {&t->surface, &t->depth, &t->over,
+                                        &t->cast,    &t->share, &t->sky};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
+        program_destroy(programs[i], t->gl);
+    destroy_targets(t);
+    shadow_map_destroy(&t->shadow);
+    shine_forget(&t->shine);
+    sky_maps_forget(&t->maps);
+    t->gl->DeleteVertexArrays(1, &t->array);
+    t->gl->DeleteBuffers(1, &t->vertices);
+    t->gl->DeleteBuffers(1, &t->indices);
+    free(t->program);
+    free(t->material);
+    free(t->lamp);
+    free(t->light);
+    *t = (struct things){0};
+}
+
+size_t things_bytes(const struct things *t, int material)
+{
+    return t->material[material].bytes;
+}
+
+// ---------------------------------------------------------------- what is needed
+
+// A framebuffer that draws into `n` targets at once.
+static relume_status join_targets(GLuint *out, struct things *t, struct target *const *target,
+                                  int n)
+{
+    const struct gl *gl = t->gl;
+    GLenum buffers[SURFACES];
+    gl->GenFramebuffers(1, out);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, *out);
+    for (int i = 0; i < n; i++) {
+        buffers[i] = GL_COLOR_ATTACHMENT0 + (GLenum)i;
+        gl->FramebufferTexture2D(GL_FRAMEBUFFER, buffers[i], GL_TEXTURE_2D, target[i]->texture, 0);
+    }
+    gl->DrawBuffers(n, buffers);
+    if (n == SURFACES)
+        gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D,
+                                 t->depth_texture, 0);
+    if (gl->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE)
+        return gl_check(gl, "objects", t->log);
+    return say(t->log, RELUME_ESYSTEM, "OpenGL: cannot draw the surface of objects");
+}
+
+static relume_status need_targets(struct things *t, int width, int height)
+{
+    const struct gl *gl = t->gl;
+    struct target *target[TARGETS];
+    relume_status status = RELUME_OK;
+    width *= t->grid, height *= t->grid;
+    if (t->place.width == width && t->place.height == height)
+        return RELUME_OK;
+    destroy_targets(t);
+    find_targets(target, t);
+    for (int i = 0; !status && i < TARGETS; i++)
+        status = target_create(target[i], gl, width, height, t->log);
+    if (status)
+        return status;
+    gl->GenTextures(1, &t->depth_texture);
+    texture_use(gl, 0, GL_TEXTURE_2D, t->depth_texture);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT32F, width, height, 0, GL_DEPTH_COMPONENT,
+                   GL_FLOAT, NULL);
+    texture_settings(gl, GL_TEXTURE_2D);
+    status = join_targets(&t->surface_buffer, t, target, SURFACES);
+    if (!status)
+        status = join_targets(&t->share_buffer, t, target + TARGETS - 2, 2);
+    if (status)
+        destroy_targets(t);
+    return status;
+}
+
+// The program of a model, compiled when it is first shown.
+static relume_status need_program(const struct program **out, struct things *t,
+                                  const struct btf_twin *twin, bool sky)
+{
+    for (int i = 0; i < t->programs; i++)
+        if (t->program[i].twin == twin && t->program[i].sky == sky) {
+            *out = &t->program[i].program;
+            return RELUME_OK;
+        }
+    struct things_program *more =
+        realloc(t->program, ((size_t)t->programs + 1) * sizeof *t->program);
+    if (!more)
+        return RELUME_ENOMEM;
+    t->program = more;
+    more[t->programs] = (struct things_program){.twin = twin, .sky = sky};
+    *out = &more[t->programs].program;
+    return program_create_variant(&more[t->programs++].program, t->gl, twin->shader,
+                                  sky ? "#define SKY\n" : NULL, btf_uniforms, BTF_COUNT, t->log);
+}
+
+static relume_status need_material(struct things *t, int i)
+{
+    if (t->material[i].twin)
+        return RELUME_OK;
+    return btf_upload(&t->material[i], t->gl, &relume_objects_info(t->objects)->material[i],
+                      t->log);
+}
+
+relume_status things_light(struct things *t, const struct relume_light *lights, int n)
+{
+    struct relume_light *light = realloc(t->light, ((size_t)n + 1) * sizeof *light);
+    if (!light)
+        return RELUME_ENOMEM;
+    memcpy(light, lights, (size_t)n * sizeof *light);
+    t->light = light;
+    t->lights = n;
+    free(t->lamp);
+    return relume_objects_lamps(&t->lamp, &t->lamps, t->objects, lights, n);
+}
+
+// ---------------------------------------------------------------- passes
+
+static void draw_all(void *context, const float clip[16])
+{
+    const struct things *t = context;
+    t->gl->UniformMatrix4fv(t->depth.at[SURFACE_CLIP], 1, GL_FALSE, clip);
+    t->gl->DrawElements(GL_TRIANGLES,
+                        (GLsizei)(3 * relume_objects_info(t->objects)->triangle_count),
+                        GL_UNSIGNED_INT, NULL);
+}
+
+void things_draw_shadow(struct things *t, int lamp)
+{
+    GLint before = 0;
+    t->shadow.layers = 0;
+    if (t->no_shadows)
+        return;
+    t->gl->GetIntegerv(GL_VERTEX_ARRAY_BINDING, &before);
+    t->gl->BindVertexArray(t->array);
+    t->gl->UseProgram(t->depth.id);
+    shadow_map_fill(&t->shadow, &t->lamp[lamp], t->middle, t->radius, draw_all, t);
+    t->gl->BindVertexArray((GLuint)before);
+}
+
+static void draw_surface(struct things *t, const struct sight *sight)
+{
+    const struct gl *gl = t->gl;
+    const struct relume_objects_info *info = relume_objects_info(t->objects);
+    GLint before = 0;
+    gl->GetIntegerv(GL_VERTEX_ARRAY_BINDING, &before);
+    gl->BindVertexArray(t->array);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, t->surface_buffer);
+    gl->Viewport(0, 0, t->place.width, t->place.height);
+    gl->ClearColor(0, 0, 0, 0);
+    gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    gl->Enable(GL_DEPTH_TEST);
+    gl->UseProgram(t->surface.id);
+    gl->UniformMatrix4fv(t->surface.at[SURFACE_CLIP], 1, GL_FALSE, sight->clip);
+    for (int i = 0; i < info->parts; i++) {
+        const struct relume_object_part *part = &info->part[i];
+        gl->Uniform1i(t->surface.at[SURFACE_PART], i);
+        gl->DrawElements(GL_TRIANGLES, (GLsizei)(3 * part->count), GL_UNSIGNED_INT,
+                         (const void *)(3 * part->first * sizeof(uint32_t)));
+    }
+    gl->Disable(GL_DEPTH_TEST);
+    gl->BindVertexArray((GLuint)before);
+}
+
+static void set_uniforms(const struct things *t, const struct program *program, int part,
+                         const struct btf_material *m)
+{
+    const struct gl *gl = t->gl;
+    const GLint *at = program->at;
+    for (int i = 0; i < BTF_ARRAYS; i++)
+        gl->Uniform1i(at[ARRAYS + i], i);
+    for (int i = 0; i < BTF_DOMES; i++)
+        gl->Uniform1i(at[DOMES + i], BTF_UNIT_DOMES + i);
+    gl->Uniform1i(at[PLACE], BTF_UNIT_PLACE);
+    gl->Uniform1i(at[NORMAL], BTF_UNIT_NORMAL);
+    gl->Uniform1i(at[TANGENT], BTF_UNIT_TANGENT);
+    gl->Uniform1i(at[FOOTPRINT], BTF_UNIT_FOOTPRINT);
+    gl->Uniform1i(at[MAP_TEXELS], BTF_UNIT_MAP);
+    texture_use(gl, BTF_UNIT_PLACE, GL_TEXTURE_2D, t->place.texture);
+    texture_use(gl, BTF_UNIT_NORMAL, GL_TEXTURE_2D, t->normal.texture);
+    texture_use(gl, BTF_UNIT_TANGENT, GL_TEXTURE_2D, t->tangent.texture);
+    texture_use(gl, BTF_UNIT_FOOTPRINT, GL_TEXTURE_2D, t->footprint.texture);
+    gl->Uniform1i(at[PART], part);
+    gl->Uniform4f(at[EYE], t->sight.eye[0], t->sight.eye[1], t->sight.eye[2], t->sight.eye[3]);
+    gl->Uniform2i(at[FINEST], m->level->width, m->level->height);
+    gl->Uniform1i(at[LEVELS], m->levels);
+    gl->Uniform1i(at[BILINEAR], relume_objects_info(t->objects)->part[part].bilinear);
+    gl->Uniform1i(at[WITHOUT_COSINE], m->without_cosine);
+}
+
+// Lights that one pass sums over: llvmpipe ends all loops of a pixel, without a word, after 65535
+// rounds. A model goes through its components, at most once for each of three views, for four
+// texels at each of up to eight places.
+static int lights_at_once(const struct btf_level *l)
+{
+    enum { MOST_ROUNDS = 60000, PLACES = 4 * 8, DOME_ROUNDS = 16 };
+    const int rounds = PLACES * (DOME_ROUNDS + 3 * l->counts[2]);
+    return rounds < MOST_ROUNDS ? MOST_ROUNDS / rounds : 1;
+}
+
+static void draw_level(const struct things *t, const struct program *program,
+                       const struct place *place, const struct btf_level *l, bool sums)
+{
+    const int lights = l->counts[1], step = sums ? lights_at_once(l) : lights;
+    for (int from = 0; from < lights; from += step) {
+        const int end = from + step < lights ? from + step : lights;
+        t->gl->Uniform2i(program->at[SOME_LIGHTS], from, end);
+        things_draw_whole(t->gl, program, place);
+    }
+}
+
+// Each level of detail adds its part; `sums`: over the measured lights.
+static void draw_levels(const struct things *t, const struct program *program,
+                        const struct target *target, const struct btf_material *m, bool sums)
+{
+    const struct gl *gl = t->gl;
+    const GLint *at = program->at;
+    const struct place place = {.width = target->width, .height = target->height};
+    for (int i = 0; i < m->levels; i++) {
+        const struct btf_level *l = &m->level[i];
+        gl->Uniform1i(at[LEVEL], i);
+        gl->Uniform2i(at[TEXELS], l->width, l->height);
+        gl->Uniform1i(at[AREA], l->area);
+        gl->Uniform4i(at[MAP], l->map[0], l->map[1], l->map[2], l->map[3]);
+        gl->Uniform4i(at[COUNTS], l->counts[0], l->counts[1], l->counts[2], l->counts[3]);
+        btf_use(m, gl, i);
+        draw_level(t, program, &place, l, sums);
+    }
+}
+
+// A lamp as a light: a facet is an area light's piece, its normal the axis.
+static struct relume_light light_of(const struct relume_lamp *lamp)
+{
+    struct relume_light light = lamp->light;
+    if (!lamp->is_facet)
+        return light;
+    light = (struct relume_light){.kind = RELUME_LIGHT_AREA, .position = lamp->facet.position};
+    memcpy(light.rgb, lamp->facet.rgb, sizeof light.rgb);
+    return light;
+}
+
+static relume_status use_material(const struct program **out, struct things *t, int part,
+                                  int material, bool sky)
+{
+    relume_status status = need_material(t, material);
+    if (!status)
+        status = need_program(out, t, t->material[material].twin, sky);
+    if (status)
+        return status;
+    t->gl->UseProgram((*out)->id);
+    set_uniforms(t, *out, part, &t->material[material]);
+    return RELUME_OK;
+}
+
+static relume_status shade_part(struct things *t, int part, int material, int lamp)
+{
+    const struct program *program;
+    const struct gl *gl = t->gl;
+    relume_status status = use_material(&program, t, part, material, false);
+    if (status)
+        return status;
+    const struct relume_light light = light_of(&t->lamp[lamp]);
+    gl->Uniform1i(program->at[PICTURE], BTF_UNIT_PICTURE);
+    status = shine_set(&t->shine, program->at + LIGHT, BTF_UNIT_PICTURE, &light);
+    if (t->lamp[lamp].is_facet) {
+        const struct relume_vec3 n = t->lamp[lamp].facet.normal;
+        gl->Uniform3f(program->at[LIGHT + SHINE_AXIS], (float)n.x, (float)n.y, (float)n.z);
+    }
+    shadow_map_use(t->shadow.layers ? &t->shadow : NULL, gl, program->at + SHADOW, BTF_UNIT_SHADOW);
+    if (!status)
+        draw_levels(t, program, &t->shaded, &t->material[material], false);
+    return status;
+}
+
+relume_status things_shade_sky(struct things *t, int part, int material,
+                               const struct relume_light *light)
+{
+    const struct sky_map *map;
+    const struct program *program;
+    const struct gl *gl = t->gl;
+    relume_status status = need_material(t, material);
+    struct btf_material *m = &t->material[material];
+    if (!status)
+        status = sky_maps_find(&map, &t->maps, light, m->rim);
+    if (!status)
+        status = btf_need_table(m, gl, &relume_objects_info(t->objects)->material[material],
+                                map->prefilter, t->log);
+    if (!status)
+        status = use_material(&program, t, part, material, true);
+    if (status)
+        return status;
+    const GLint *at = program->at;
+    gl->Uniform1i(at[SKY], BTF_UNIT_SKY);
+    texture_use(gl, BTF_UNIT_SKY, GL_TEXTURE_2D, map->texture);
+    gl->Uniform1i(at[SKY_TABLE], BTF_UNIT_TABLE);
+    texture_use(gl, BTF_UNIT_TABLE, GL_TEXTURE_BUFFER, m->table);
+    gl->Uniform1f(at[SKY_TURN], (float)(-light->rotate_deg * (3.14159265358979 / 180.0)));
+    gl->Uniform3f(at[SKY_RGB], light->rgb[0], light->rgb[1], light->rgb[2]);
+    draw_levels(t, program, &t->shown, m, !m->twin->lobes);
+    return RELUME_OK;
+}
+
+static relume_status add_lamp(struct things *t, int lamp, int only)
+{
+    const struct gl *gl = t->gl;
+    const struct relume_objects_info *info = relume_objects_info(t->objects);
+    relume_status status = RELUME_OK;
+    things_draw_shadow(t, lamp);
+    target_resume(&t->shaded, gl);
+    gl->Enable(GL_BLEND);
+    gl->BlendFunc(GL_ONE, GL_ONE);
+    for (int i = 0; i < info->parts && !status; i++)
+        status = shade_part(t, i, only >= 0 ? only : info->part[i].material, lamp);
+    gl->Disable(GL_BLEND);
+    return status;
+}
+
+relume_status things_shade(struct things *t, const struct sight *sight, int width, int height,
+                           int only)
+{
+    const struct gl *gl = t->gl;
+    relume_status status = need_targets(t, width, height);
+    if (status)
+        return status;
+    t->sight = *sight;
+    draw_surface(t, sight);
+    target_begin(&t->shaded, gl);
+    for (int i = 0; i < t->lamps && !status; i++)
+        if (!t->lamp[i].is_sky)
+            status = add_lamp(t, i, only);
+    for (int i = 0; i < t->lights && !status; i++)
+        if (t->light[i].kind == RELUME_LIGHT_ENVIRONMENT)
+            status = things_add_sky(t, i, only);
+    return status ? status : gl_check(gl, "drawing objects", t->log);
+}
+
+void things_draw_whole(const struct gl *gl, const struct program *program,
+                       const struct place *place)
+{
+    draw_rectangle(gl, program, place, (struct app_rectangle){0, 0, place->width, place->height});
+}
+
+void things_swap(struct things *t)
+{
+    const struct target shaded = t->shaded;
+    t->shaded = t->other;
+    t->other = shaded;
+}
+
+void things_over(const struct things *t, const struct place *place, GLuint scene, bool difference)
+{
+    const struct gl *gl = t->gl;
+    const GLint *at = t->over.at;
+    gl->UseProgram(t->over.id);
+    texture_use(gl, 0, GL_TEXTURE_2D, t->place.texture);
+    texture_use(gl, 1, GL_TEXTURE_2D, t->shaded.texture);
+    texture_use(gl, 2, GL_TEXTURE_2D, scene);
+    texture_use(gl, 3, GL_TEXTURE_2D, t->other.texture);
+    gl->Uniform1i(at[OVER_OTHER], 3);
+    gl->Uniform1i(at[DIFFERENCE], difference);
+    gl->Uniform1i(at[OVER_PLACE], 0);
+    gl->Uniform1i(at[OVER_SHADED], 1);
+    gl->Uniform1i(at[OVER_SCENE], 2);
+    gl->Uniform1i(at[IN_SCENE], scene != 0);
+    gl->Uniform1i(at[GRID], t->grid);
+    gl->Uniform4f(at[OVER_EYE], t->sight.eye[0], t->sight.eye[1], t->sight.eye[2], t->sight.eye[3]);
+    gl->Uniform1f(at[EXPOSURE], place->exposure);
+    gl->Enable(GL_BLEND);
+    gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    things_draw_whole(gl, &t->over, place);
+    gl->Disable(GL_BLEND);
+}
+
+// A lamp of several: its direction times its value and 0, or its place and its value.
+static void put_lamp(float to[4], const struct relume_lamp *lamp)
+{
+    const float *rgb = lamp->is_facet ? lamp->facet.rgb : lamp->light.rgb;
+    const struct relume_vec3 at = lamp->is_facet ? lamp->facet.position : lamp->light.direction;
+    const float value = rgb[0] + rgb[1] + rgb[2], scale = lamp->is_facet ? 1.0f : value;
+    to[0] = scale * (float)at.x;
+    to[1] = scale * (float)at.y;
+    to[2] = scale * (float)at.z;
+    to[3] = lamp->is_facet ? value : 0.0f;
+}
+
+// A single lamp counts whole.
+static void use_lamps(const struct things *t, int lamp)
+{
+    float at[RELUME_LAMPS_MOST][4];
+    const int n = t->lamps > 1 ? t->lamps : 0;
+    for (int i = 0; i < n; i++)
+        put_lamp(at[i], &t->lamp[i]);
+    t->gl->Uniform1i(t->cast.at[CAST_OF], n);
+    t->gl->Uniform1i(t->cast.at[CAST_LAMP], lamp);
+    if (n)
+        t->gl->Uniform4fv(t->cast.at[CAST_LAMPS], n, at[0]);
+}
+
+void things_cast(struct things *t, const struct place *place, int lamp, GLuint scene,
+                 const struct target *lone)
+{
+    const struct gl *gl = t->gl;
+    GLint before = 0, viewport[4];
+    gl->GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);
+    gl->GetIntegerv(GL_VIEWPORT, viewport);
+    things_draw_shadow(t, lamp);
+    gl->BindFramebuffer(GL_FRAMEBUFFER, (GLuint)before);
+    gl->Viewport(viewport[0], viewport[1], viewport[2], viewport[3]);
+    gl->UseProgram(t->cast.id);
+    texture_use(gl, 0, GL_TEXTURE_2D, scene);
+    texture_use(gl, 1, GL_TEXTURE_2D, lone->texture);
+    gl->Uniform1i(t->cast.at[CAST_SCENE], 0);
+    gl->Uniform1i(t->cast.at[CAST_LONE], 1);
+    use_lamps(t, lamp);
+    shadow_map_use(t->shadow.layers ? &t->shadow : NULL, gl, t->cast.at + CAST_SHADOW, 2);
+    gl->Enable(GL_BLEND);
+    gl->BlendFunc(GL_ONE, GL_ONE);
+    things_draw_whole(gl, &t->cast, place);
+    gl->Disable(GL_BLEND);
+}

@@ -1,0 +1,62 @@
+// panel_parts.h - what the files of the panel share; only they know Dear ImGui
+#ifndef VIEWER_PANEL_PARTS_H
+#define VIEWER_PANEL_PARTS_H
+
+#include "panel/panel.h"
+
+extern "C" {
+#include "app/gizmo.h"
+#include "app/keys.h"
+#include "app/lamps.h"
+}
+
+#include <imgui.h>
+
+#include <string>
+#include <vector>
+
+struct panel {
+    ImGuiContext *context;
+    float scale;
+    std::vector<app_event> queue;
+    bool held;         // a press belongs to the panel
+    bool held_by_app;  // or to the app
+    bool histogram;    // is open
+    bool maps;         // the list of environment maps is open
+    bool browsing;     // a file is being chosen
+    bool changed;      // the picture, by what the user did in this frame
+    char spec[APP_SPEC];
+    char environment[APP_SPEC];
+    std::vector<panel_run> runs;
+    char path[APP_SPEC];  // of a file to open
+    std::string browsed;  // the folder that it is in
+    int listed;           // the light that the list has scrolled to
+};
+
+// Sections of the panel: what they return is whether the picture changed.
+bool panel_lights(panel *panel, app *app, const panel_facts *facts);
+bool panel_picture(app *app, const panel_facts *facts);
+bool panel_enhancement(app *app, const panel_facts *facts);
+bool panel_camera(app *app);
+// What the last item is for, while the pointer is on it.
+void panel_tip(const char *text);
+bool panel_glare(app *app, const panel_facts *facts);
+bool panel_objects(app *app, const panel_facts *facts);
+void panel_histogram(const panel_facts *facts, float scale);
+void panel_file(app *app, const panel_facts *facts);
+
+// What is drawn over the picture.
+void panel_help(const app *app, float scale);
+void panel_notes(const app *app, const panel_facts *facts, float scale);
+void panel_question(app *app, float scale);
+void panel_start(app *app, float scale);
+void panel_browse(panel *panel, app *app, const browser *b);
+// The middle of the frame, in pixels of the window: across, down.
+ImVec2 panel_frame_point(const app *app, float across, float down);
+void panel_handles(const app *app, float scale);
+void panel_inspector(const app *app, const panel_facts *facts, float scale);
+
+// The colour of a light's mark on discs of directions.
+ImU32 panel_mark_colour(const relume_light &light, bool behind);
+
+#endif

@@ -1,0 +1,278 @@
+// passes.c - distant lights on the GPU: dot products of planes, look-ups of codebooks
+#include "common/vec.h"
+#include "relit/books.h"
+#include "relit/relighter_parts.h"
+#include "relit/weights.h"
+
+#include <stdlib.h>
+
+enum dot_uniform {
+    DOT_RECTANGLE,
+    DOT_SIZE,
+    DOT_CODES,
+    DOT_WEIGHTS,
+    DOT_FIRST,
+    DOT_LAYERS,
+    DOT_CONSTANT,
+    DOT_COLOURED,
+    DOT_COLOUR,
+    DOT_COUNT
+};
+static const char *const dot_uniforms[] = {
+    "rectangle", "frame_size", "codes",    "weights",         "first_layer",
+    "layers",    "constant",   "coloured", "colour_constant",
+};
+enum lookup_uniform {
+    LOOKUP_RECTANGLE,
+    LOOKUP_SIZE,
+    LOOKUP_INDICES,
+    LOOKUP_TABLE,
+    LOOKUP_BOOKS,
+    LOOKUP_COUNT
+};
+static const char *const lookup_uniforms[] = {
+    "rectangle", "frame_size", "indices", "table", "books",
+};
+enum develop_uniform {
+    DEVELOP_RECTANGLE,
+    DEVELOP_SIZE,
+    DEVELOP_CODED,
+    DEVELOP_CURVE,
+    DEVELOP_GAMMA,
+    DEVELOP_LIGHT,
+    DEVELOP_GUARD,
+    DEVELOP_COUNT
+};
+static const char *const develop_uniforms[] = {
+    "rectangle", "frame_size", "coded", "display.curve", "display.gamma", "light", "guard",
+};
+
+// ---------------------------------------------------------------- making
+
+relume_status passes_create(struct relighter *r)
+{
+    relume_status status =
+        program_create(&r->dot, r->gl, "relight.frag", dot_uniforms, DOT_COUNT, r->log);
+    if (!status)
+        status = program_create(&r->develop, r->gl, "develop.frag", develop_uniforms, DEVELOP_COUNT,
+                                r->log);
+    if (!status)
+        status =
+            program_create(&r->lookup, r->gl, "lookup.frag", lookup_uniforms, LOOKUP_COUNT, r->log);
+    r->gl->GenVertexArrays(1, &r->vertices);
+    r->gl->GenTextures(1, &r->table);
+    r->gl->GenTextures(1, &r->weights);
+    return status;
+}
+
+void passes_destroy(struct relighter *r)
+{
+    target_destroy(&r->coded, r->gl);
+    program_destroy(&r->dot, r->gl);
+    program_destroy(&r->develop, r->gl);
+    program_destroy(&r->lookup, r->gl);
+    relume_weight_grid_destroy(&r->grid);
+    r->gl->DeleteTextures(1, &r->table);
+    r->gl->DeleteTextures(1, &r->weights);
+    r->gl->DeleteVertexArrays(1, &r->vertices);
+}
+
+// ---------------------------------------------------------------- passes
+
+void passes_begin(const struct relighter *r)
+{
+    r->gl->BindVertexArray(r->vertices);
+    r->gl->Enable(GL_BLEND);
+    r->gl->BlendFunc(GL_ONE, GL_ONE);
+}
+
+static void draw_all(const struct gl *gl, const struct program *p, const struct target *into)
+{
+    gl->Uniform4f(p->at[DOT_RECTANGLE], 0, 0, (float)into->width, (float)into->height);
+    gl->Uniform2f(p->at[DOT_SIZE], (float)into->width, (float)into->height);
+    gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+static relume_status need_grid(struct relighter *r, const relume_coder *coder)
+{
+    return r->grid ? RELUME_OK
+                   : relume_weight_grid_create(&r->grid, coder,
+                                               relume_weight_grid_params(.sums = true));
+}
+
+// The dot product of all planes, added to what `into` holds.
+static void pass_dot(const struct relighter *r, const struct relit_view *v, const struct weights *w,
+                     const struct target *into)
+{
+    const struct gl *gl = r->gl;
+    texture_use(gl, 1, GL_TEXTURE_2D, r->weights);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, CHANNELS, v->layers, 0, GL_RGBA, GL_FLOAT,
+                   w->plane);
+    texture_settings(gl, GL_TEXTURE_2D);
+    gl->UseProgram(r->dot.id);
+    gl->Uniform1i(r->dot.at[DOT_CODES], 0);
+    gl->Uniform1i(r->dot.at[DOT_WEIGHTS], 1);
+    for (int i = 0; i < v->arrays; i++) {
+        const int first = i * gl->max_layers;
+        const int left = v->layers - first;
+        const float with = i == 0 ? 1.0f : 0.0f;
+        texture_use(gl, 0, GL_TEXTURE_2D_ARRAY, v->array[i]);
+        gl->Uniform1i(r->dot.at[DOT_FIRST], first);
+        gl->Uniform1i(r->dot.at[DOT_LAYERS], left < gl->max_layers ? left : gl->max_layers);
+        gl->Uniform3f(r->dot.at[DOT_CONSTANT], with * w->constant[0], with * w->constant[1],
+                      with * w->constant[2]);
+        gl->Uniform1i(r->dot.at[DOT_COLOURED], relume_coder_info(v->codes.coder)->luminance);
+        gl->Uniform3f(r->dot.at[DOT_COLOUR], w->colour[0], w->colour[1], w->colour[2]);
+        draw_all(gl, &r->dot, into);
+    }
+}
+
+// The look-up of all codebooks under `n` lights, added to what `into` holds.
+static relume_status pass_lookup(const struct relighter *r, const struct relit_view *v,
+                                 const struct relume_light *lights, int n,
+                                 const struct target *into)
+{
+    const struct gl *gl = r->gl;
+    texture_use(gl, 1, GL_TEXTURE_2D_ARRAY, r->table);
+    const relume_status status = books_relight(gl, &v->codes, lights, n, r->grid);
+    if (status)
+        return status;
+    texture_use(gl, 0, GL_TEXTURE_2D_ARRAY, v->array[0]);
+    gl->UseProgram(r->lookup.id);
+    gl->Uniform1i(r->lookup.at[LOOKUP_INDICES], 0);
+    gl->Uniform1i(r->lookup.at[LOOKUP_TABLE], 1);
+    gl->Uniform1i(r->lookup.at[LOOKUP_BOOKS], v->codes.books);
+    draw_all(gl, &r->lookup, into);
+    return RELUME_OK;
+}
+
+// `coded` decoded by `display`, times the light, added to what the target in use holds.
+static void develop(const struct relighter *r, const struct relit_view *v,
+                    const struct target *coded, struct relume_transfer display, const float rgb[3],
+                    bool guard)
+{
+    const struct gl *gl = r->gl;
+    texture_use(gl, 0, GL_TEXTURE_2D, coded->texture);
+    gl->UseProgram(r->develop.id);
+    gl->Uniform1i(r->develop.at[DEVELOP_CODED], 0);
+    gl->Uniform1i(r->develop.at[DEVELOP_CURVE], (GLint)display.curve);
+    gl->Uniform1f(r->develop.at[DEVELOP_GAMMA], display.gamma);
+    gl->Uniform3f(r->develop.at[DEVELOP_LIGHT], rgb[0], rgb[1], rgb[2]);
+    gl->Uniform1i(r->develop.at[DEVELOP_GUARD], guard);
+    draw_all(gl, &r->develop, &v->relit);
+}
+
+void passes_develop(const struct relighter *r, const struct relit_view *v,
+                    const struct target *coded, struct relume_transfer display, const float rgb[3])
+{
+    develop(r, v, coded, display, rgb, false);
+}
+
+// What environments are part of is gathered in r->coded, then added without what is below 0.
+static void add_guarded(struct relighter *r, struct relit_view *v)
+{
+    static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
+    static const float one[3] = {1, 1, 1};
+    target_resume(&v->relit, r->gl);
+    develop(r, v, &r->coded, linear, one, true);
+}
+
+relume_status passes_scratch(struct relighter *r, const struct relit_view *v)
+{
+    if (r->coded.width == v->relit.width && r->coded.height == v->relit.height)
+        return RELUME_OK;
+    target_destroy(&r->coded, r->gl);
+    return target_create(&r->coded, r->gl, v->relit.width, v->relit.height, r->log);
+}
+
+static relume_status add_linear(struct relighter *r, struct relit_view *v, struct weights *w)
+{
+    const double unit = code_format_of(&v->codes)->unit;
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < r->lights; i++) {
+        const struct relume_light *l = &r->light[i];
+        if (l->kind == RELUME_LIGHT_DIRECTIONAL)
+            weights_add(w, &v->codes, unit, l->direction, l->rgb);
+        else if (l->kind == RELUME_LIGHT_ENVIRONMENT && !(status = need_grid(r, v->codes.coder)))
+            weights_add_environment(w, &v->codes, unit, r->grid, l);
+    }
+    const bool guard = relighter_has_kind(r, relighter_is_environment);
+    if (!status && guard)
+        status = passes_scratch(r, v);
+    if (status || !relighter_has_kind(r, relighter_is_distant))
+        return status;
+    if (guard)
+        target_begin(&r->coded, r->gl);
+    pass_dot(r, v, w, guard ? &r->coded : &v->relit);
+    if (guard)
+        add_guarded(r, v);
+    return RELUME_OK;
+}
+
+static relume_status add_displayed(struct relighter *r, struct relit_view *v, struct weights *w)
+{
+    static const float one[3] = {1, 1, 1};
+    relume_status status = passes_scratch(r, v);
+    for (int i = 0; !status && i < r->lights; i++) {
+        if (r->light[i].kind != RELUME_LIGHT_DIRECTIONAL)
+            continue;
+        struct relume_vec3 from;
+        const float share =
+            (float)relume_coder_captured(&from, v->codes.coder, vec_unit(r->light[i].direction));
+        float rgb[3];
+        for (int c = 0; c < 3; c++)
+            rgb[c] = share * r->light[i].rgb[c];
+        target_begin(&r->coded, r->gl);
+        if (v->codes.books) {
+            status = pass_lookup(r, v, &r->light[i], 1, &r->coded);
+        } else {
+            weights_clear(w);
+            weights_add(w, &v->codes, code_format_of(&v->codes)->unit, from, one);
+            pass_dot(r, v, w, &r->coded);
+        }
+        target_resume(&v->relit, r->gl);
+        passes_develop(r, v, &r->coded, v->codes.display, rgb);
+    }
+    return status;
+}
+
+// The distant lights at once: sums in linear light, or one codebook that is linear when relit;
+// that of the display domain leaves environments to its linear twin.
+static relume_status add_books(struct relighter *r, struct relit_view *v)
+{
+    const bool display = v->codes.domain == RELUME_DOMAIN_DISPLAY;
+    struct relume_light *distant = malloc((size_t)r->lights * sizeof *distant + 1);
+    relume_status status = distant ? RELUME_OK : RELUME_ENOMEM;
+    int n = 0;
+    for (int i = 0; !status && i < r->lights; i++)
+        if (r->light[i].kind == RELUME_LIGHT_DIRECTIONAL ||
+            (!display && relighter_is_environment(r->light[i].kind)))
+            distant[n++] = r->light[i];
+    const bool guard = !display && relighter_has_kind(r, relighter_is_environment);
+    if (!status && guard)
+        status = need_grid(r, v->codes.coder);
+    if (!status && guard)
+        status = passes_scratch(r, v);
+    if (!status && guard)
+        target_begin(&r->coded, r->gl);
+    if (!status)
+        status = pass_lookup(r, v, distant, n, guard ? &r->coded : &v->relit);
+    if (!status && guard)
+        add_guarded(r, v);
+    free(distant);
+    return status;
+}
+
+relume_status passes_distant(struct relighter *r, struct relit_view *v)
+{
+    const bool display = v->codes.domain == RELUME_DOMAIN_DISPLAY;
+    if (v->codes.books && (!display || v->codes.books == 1))
+        return add_books(r, v);
+    struct weights w;
+    relume_status status = weights_create(&w, v->codes.coder, v->codes.planes);
+    if (status)
+        return status;
+    status = (display ? add_displayed : add_linear)(r, v, &w);
+    weights_destroy(&w);
+    return status;
+}

@@ -1,0 +1,374 @@
+#include "relit/relighter.h"
+
+#include "common/say.h"
+#include "relit/books.h"
+#include "relit/relighter_parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+// ---------------------------------------------------------------- views
+
+// The library looks at codes for as long as it relights the view.
+static void stop_lending(struct relighter *r, struct relit_view *v)
+{
+    const int view = (int)(v - r->view);
+    if (v->lent && r->source.drop)
+        r->source.drop(r->source.user, view);
+    if (v->lent && r->library)
+        relume_relighter_drop(r->library, view);
+    relume_image_destroy(&v->surface);
+}
+
+static void release(struct relighter *r, struct relit_view *v)
+{
+    if (v->array)
+        r->gl->DeleteTextures(v->arrays, v->array);
+    target_destroy(&v->relit, r->gl);
+    r->bytes -= v->bytes;
+    free(v->array);
+    free(v->scale);
+    nearby_view_destroy(&v->near, r->gl);
+    stop_lending(r, v);
+    if (v->codes.books)
+        books_forget(&v->codes);
+    *v = (struct relit_view){0};
+}
+
+// Views that this frame does not use leave, the longest unused first, until `bytes` more fit.
+static void make_room(struct relighter *r, size_t bytes)
+{
+    while (r->bytes + bytes > r->budget) {
+        struct relit_view *oldest = NULL;
+        for (struct relit_view *v = r->view; v < r->view + r->views; v++)
+            if (v->present && v->used < r->frame && (!oldest || v->used < oldest->used))
+                oldest = v;
+        if (!oldest)
+            return;
+        release(r, oldest);
+    }
+}
+
+static relume_status keep(struct relighter *r, int view, const struct relume_codes *codes)
+{
+    struct relit_view *v = &r->view[view];
+    const size_t pixels = (size_t)codes->width * (size_t)codes->height;
+    const size_t bytes = pixels * 4 * sizeof(float) + codes_bytes(codes);
+    make_room(r, bytes);
+    v->present = true;
+    v->bytes = bytes;
+    r->bytes += bytes;
+    relume_status status = target_create(&v->relit, r->gl, codes->width, codes->height, r->log);
+    if (!status && r->by_library)
+        v->lent = codes;
+    else if (!status)
+        status = codes_upload(r, v, codes);
+    if (status)
+        release(r, v);
+    return status;
+}
+
+static void drop(struct relighter *r, int view)
+{
+    if (r->source.drop && !r->view[view].lent)
+        r->source.drop(r->source.user, view);
+}
+
+static relume_status load(struct relighter *r, int view)
+{
+    const struct relume_codes *codes;
+    relume_status status = r->source.codes(&codes, r->source.user, view);
+    if (status)
+        return status;
+    status = keep(r, view, codes);
+    drop(r, view);
+    return status;
+}
+
+// What the loader has read, up to `view`; -1: as much as is there.
+static relume_status take_loaded(struct relighter *r, int view)
+{
+    struct loaded loaded;
+    relume_status status = RELUME_OK;
+    while (!status && (view < 0 || !r->view[view].present) &&
+           loader_take(&loaded, r->loader, view >= 0)) {
+        status = loaded.status;
+        if (status)
+            break;
+        if (!r->view[loaded.view].present) {
+            status = keep(r, loaded.view, loaded.codes);
+            drop(r, loaded.view);
+        } else if (r->source.drop) {
+            r->source.drop(r->source.user, loaded.view);
+        }
+    }
+    return status;
+}
+
+// ---------------------------------------------------------------- by the library
+
+static bool has_near(const struct relume_light *lights, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (relume_light_is_near(lights[i].kind))
+            return true;
+    return false;
+}
+
+static relume_status find_surface(struct relume_image *surface, const struct relighter *r, int view)
+{
+    const relume_status status =
+        r->source.surface ? r->source.surface(surface, r->source.user, view) : RELUME_EINVAL;
+    return status != RELUME_EINVAL
+               ? status
+               : say(r->log, RELUME_EDATA,
+                     "a near light needs to know how far the surface is; use a file with depth");
+}
+
+static size_t bytes_of_library(const struct relighter *r, const struct relit_view *v)
+{
+    const size_t pixels = (size_t)v->surface.width * (size_t)v->surface.height;
+    return relume_relighter_bytes(r->library, (int)(v - r->view)) + 3 * pixels * sizeof(float);
+}
+
+static relume_status relight_by_library(struct relighter *r, struct relit_view *v,
+                                        const struct relume_light *lights, int n,
+                                        const struct target *into)
+{
+    const struct relume_image *image;
+    const int view = (int)(v - r->view);
+    relume_status status =
+        r->library
+            ? RELUME_OK
+            : relume_relighter_create(&r->library, r->views,
+                                      relume_relighter_params(.groups = RELUME_RELIGHTER_GROUPS,
+                                                              .threads = r->threads));
+    if (!status && has_near(lights, n) && !v->surface.data)
+        status = find_surface(&v->surface, r, view);
+    if (!status)
+        status = relume_relighter_picture(
+            &image, r->library,
+            &(struct relume_relit){view, v->lent, &v->surface, lights, n, r->log});
+    if (status)
+        return status;
+    target_write(into, r->gl, image);
+    const size_t kept = bytes_of_library(r, v);
+    r->bytes += kept - v->kept;
+    v->bytes += kept - v->kept;
+    v->kept = kept;
+    return RELUME_OK;
+}
+
+// Near lights on planes that take several array textures, which the shader does not read.
+static relume_status add_near_by_library(struct relighter *r, struct relit_view *v)
+{
+    static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
+    static const float one[3] = {1.0f, 1.0f, 1.0f};
+    const int view = (int)(v - r->view);
+    const struct relume_codes *codes;
+    struct relume_light *near = malloc((size_t)r->lights * sizeof *near);
+    relume_status status = near ? passes_scratch(r, v) : RELUME_ENOMEM;
+    int n = 0;
+    for (int i = 0; !status && i < r->lights; i++)
+        if (relume_light_is_near(r->light[i].kind))
+            near[n++] = r->light[i];
+    if (!status && !v->lent && !(status = r->source.codes(&codes, r->source.user, view)))
+        v->lent = codes;
+    if (!status)
+        status = relight_by_library(r, v, near, n, &r->coded);
+    free(near);
+    if (status)
+        return status;
+    target_resume(&v->relit, r->gl);
+    passes_develop(r, v, &r->coded, linear, one);
+    return RELUME_OK;
+}
+
+// ---------------------------------------------------------------- near lights
+
+static struct nearby_codes nearby_codes_of(const struct relit_view *v)
+{
+    return (struct nearby_codes){&v->codes, v->array[0], v->layers,
+                                 code_format_of(&v->codes)->unit};
+}
+
+static relume_status need_surface(struct relighter *r, struct relit_view *v)
+{
+    struct relume_image surface = {0};
+    const struct nearby_codes codes = nearby_codes_of(v);
+    if (v->near.surface.data)
+        return RELUME_OK;
+    const relume_status status = find_surface(&surface, r, (int)(v - r->view));
+    return status ? status : nearby_view_create(&v->near, &r->near, &codes, &surface);
+}
+
+static relume_status add_near(struct relighter *r, struct relit_view *v)
+{
+    if (v->arrays > 1)
+        return add_near_by_library(r, v);
+    const struct nearby_codes codes = nearby_codes_of(v);
+    relume_status status = need_surface(r, v);
+    target_resume(&v->relit, r->gl);
+    for (int i = 0; !status && i < r->lights; i++)
+        if (relume_light_is_near(r->light[i].kind))
+            status = nearby_draw(&r->near, &v->near, &codes, &r->light[i]);
+    return status;
+}
+
+bool relighter_has_kind(const struct relighter *r, bool (*is)(enum relume_light_kind))
+{
+    for (int i = 0; i < r->lights; i++)
+        if (is(r->light[i].kind))
+            return true;
+    return false;
+}
+
+static relume_status relight_by_passes(struct relighter *r, struct relit_view *v)
+{
+    target_begin(&v->relit, r->gl);
+    passes_begin(r);
+    relume_status status = passes_distant(r, v);
+    if (!status && v->codes.domain == RELUME_DOMAIN_DISPLAY &&
+        relighter_has_kind(r, relighter_is_environment))
+        status = twin_relight(r, v);
+    if (!status && relighter_has_kind(r, relume_light_is_near))
+        status = add_near(r, v);
+    r->gl->Disable(GL_BLEND);
+    return status;
+}
+
+static relume_status relight(struct relighter *r, struct relit_view *v)
+{
+    relume_status status = r->by_library ? relight_by_library(r, v, r->light, r->lights, &v->relit)
+                                         : relight_by_passes(r, v);
+    if (!status)
+        status = gl_check(r->gl, "relighting", r->log);
+    v->fresh = !status;
+    return status;
+}
+
+// ---------------------------------------------------------------- interface
+
+relume_status relighter_create(struct relighter *r, const struct gl *gl,
+                               const struct code_source *source, int views,
+                               const struct relume_log *log)
+{
+    *r = (struct relighter){
+        .gl = gl, .log = log, .source = *source, .views = views, .budget = (size_t)1 << 30};
+    r->view = calloc((size_t)views, sizeof *r->view);
+    relume_status status = r->view ? passes_create(r) : RELUME_ENOMEM;
+    if (!status)
+        status = nearby_create(&r->near, gl, log);
+    if (status)
+        relighter_destroy(r);
+    return status;
+}
+
+void relighter_destroy(struct relighter *r)
+{
+    if (!r->gl)
+        return;
+    loader_destroy(&r->loader);
+    for (int i = 0; r->view && i < r->views; i++)
+        release(r, &r->view[i]);
+    relume_relighter_destroy(&r->library);
+    twin_destroy(r);
+    passes_destroy(r);
+    nearby_destroy(&r->near);
+    free(r->view);
+    free(r->light);
+    *r = (struct relighter){0};
+}
+
+static bool same_lights(const struct relighter *r, const struct relume_light *lights, int n)
+{
+    if (!r->light || r->lights != n)
+        return false;
+    for (int i = 0; i < n; i++)
+        if (!relume_light_equal(&r->light[i], &lights[i]))
+            return false;
+    return true;
+}
+
+static relume_status begin_frame(struct relighter *r)
+{
+    r->frame++;
+    r->pending = false;
+    if (!r->loader)
+        return RELUME_OK;
+    loader_clear(r->loader);
+    return take_loaded(r, -1);
+}
+
+relume_status relighter_begin(struct relighter *r, const struct relume_light *lights, int n)
+{
+    const relume_status status = begin_frame(r);
+    if (status || same_lights(r, lights, n))
+        return status;
+    const size_t bytes = (size_t)n * sizeof *lights;
+    struct relume_light *copy = malloc(bytes ? bytes : 1);
+    if (!copy)
+        return RELUME_ENOMEM;
+    memcpy(copy, lights, bytes);
+    free(r->light);
+    r->light = copy;
+    r->lights = n;
+    for (int i = 0; i < r->views; i++)
+        r->view[i].fresh = false;
+    return RELUME_OK;
+}
+
+void relighter_forget(struct relighter *r)
+{
+    nearby_forget(&r->near);
+    free(r->light);
+    r->light = NULL;
+    if (r->library)
+        relume_relighter_forget(r->library);
+    if (r->linear)
+        relighter_forget(r->linear);
+}
+
+static relume_status show(const struct target **out, struct relighter *r, struct relit_view *v)
+{
+    v->used = r->frame;
+    const relume_status status = v->fresh ? RELUME_OK : relight(r, v);
+    if (!status)
+        *out = &v->relit;
+    return status;
+}
+
+relume_status relighter_view(const struct target **out, struct relighter *r, int view)
+{
+    struct relit_view *v = &r->view[view];
+    relume_status status = RELUME_OK;
+    *out = NULL;
+    if (!v->present && r->loader) {
+        loader_ask(r->loader, view);
+        r->pending = true;
+        return RELUME_OK;
+    }
+    if (!v->present)
+        status = load(r, view);
+    return status ? status : show(out, r, v);
+}
+
+relume_status relighter_wait(const struct target **out, struct relighter *r, int view)
+{
+    *out = NULL;
+    if (!r->loader || r->view[view].present)
+        return relighter_view(out, r, view);
+    loader_ask(r->loader, view);
+    const relume_status status = take_loaded(r, view);
+    return status ? status : show(out, r, &r->view[view]);
+}
+
+bool relighter_has(const struct relighter *r, int view)
+{
+    return r->view[view].present;
+}
+
+relume_status relighter_stream(struct relighter *r)
+{
+    return loader_create(&r->loader, &r->source, r->views);
+}

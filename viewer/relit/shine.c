@@ -1,0 +1,127 @@
+#include "relit/shine.h"
+
+#include "common/say.h"
+#include "common/vec.h"
+#include "gl/target.h"
+
+#include <stdlib.h>
+
+struct shine_picture {
+    const void *key;
+    GLuint texture;
+    struct shine_picture *next;
+};
+
+void shine_forget(struct shine *s)
+{
+    while (s->picture) {
+        struct shine_picture *p = s->picture;
+        s->picture = p->next;
+        s->gl->DeleteTextures(1, &p->texture);
+        free(p);
+    }
+}
+
+void shine_upload(const struct gl *gl, int unit, GLuint texture, GLint internal, GLenum format,
+                  int width, int height, const float *values)
+{
+    texture_use(gl, unit, GL_TEXTURE_2D, texture);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, internal, width, height, 0, format, GL_FLOAT, values);
+    texture_settings(gl, GL_TEXTURE_2D);
+}
+
+// Every half degree; the file's own angles are rarely finer.
+static relume_status upload_lamp(const struct gl *gl, int unit, GLuint texture,
+                                 const relume_ies *ies)
+{
+    enum { ACROSS = 721, DOWN = 361 };
+    float *texels = malloc((size_t)ACROSS * DOWN * sizeof *texels);
+    if (!texels)
+        return RELUME_ENOMEM;
+    for (int y = 0; y < DOWN; y++)
+        for (int x = 0; x < ACROSS; x++)
+            texels[y * ACROSS + x] = (float)relume_ies_value(ies, 0.5 * y, 0.5 * x);
+    shine_upload(gl, unit, texture, GL_R32F, GL_RED, ACROSS, DOWN, texels);
+    free(texels);
+    return RELUME_OK;
+}
+
+static relume_status upload_slide(const struct shine *s, int unit, GLuint texture,
+                                  const struct relume_image *image)
+{
+    const int most = s->gl->max_texture;
+    if (image->width > most || image->height > most)
+        return say(s->log, RELUME_ESYSTEM,
+                   "a light's picture of %d x %d: OpenGL takes at most %d x %d "
+                   "here",
+                   image->width, image->height, most, most);
+    shine_upload(s->gl, unit, texture, GL_RGB32F, GL_RGB, image->width, image->height, image->data);
+    return RELUME_OK;
+}
+
+static const void *key_of(const struct relume_light *light)
+{
+    switch (light->kind) {
+    case RELUME_LIGHT_SLIDE: return light->image;
+    case RELUME_LIGHT_IES: return light->ies;
+    case RELUME_LIGHT_GONIO: return light->gonio;
+    default: return NULL;
+    }
+}
+
+static relume_status upload_light(const struct shine *s, int unit, GLuint texture,
+                                  const struct relume_light *light)
+{
+    if (light->kind == RELUME_LIGHT_IES)
+        return upload_lamp(s->gl, unit, texture, light->ies);
+    return upload_slide(s, unit, texture,
+                        light->kind == RELUME_LIGHT_SLIDE ? light->image
+                                                          : relume_gonio_map(light->gonio));
+}
+
+static relume_status use_picture(struct shine *s, int unit, const struct relume_light *light)
+{
+    const void *key = key_of(light);
+    struct shine_picture *p = s->picture;
+    while (p && p->key != key)
+        p = p->next;
+    relume_status status = RELUME_OK;
+    if (!p) {
+        p = calloc(1, sizeof *p);
+        if (!p)
+            return RELUME_ENOMEM;
+        s->gl->GenTextures(1, &p->texture);
+        status = upload_light(s, unit, p->texture, light);
+        p->next = s->picture;
+        s->picture = p;
+        p->key = status ? NULL : key;
+    }
+    texture_use(s->gl, unit, GL_TEXTURE_2D, p->texture);
+    return status;
+}
+
+static void set_vec3(const struct gl *gl, GLint at, struct relume_vec3 v)
+{
+    gl->Uniform3f(at, (float)v.x, (float)v.y, (float)v.z);
+}
+
+relume_status shine_set(struct shine *s, const GLint *at, int unit, const struct relume_light *l)
+{
+    const struct gl *gl = s->gl;
+    const relume_status status = key_of(l) ? use_picture(s, unit, l) : RELUME_OK;
+    gl->Uniform1i(at[SHINE_KIND], (GLint)l->kind);
+    gl->Uniform3f(at[SHINE_RGB], l->rgb[0], l->rgb[1], l->rgb[2]);
+    gl->Uniform1i(at[SHINE_NOFALL], l->nofall);
+    set_vec3(gl, at[SHINE_POSITION], l->position);
+    gl->Uniform1f(at[SHINE_HALF_ANGLE], (float)(l->half_angle_deg * (3.14159265358979 / 180.0)));
+    if (l->kind != RELUME_LIGHT_POINT && l->kind != RELUME_LIGHT_AREA &&
+        l->kind != RELUME_LIGHT_ENVIRONMENT) {
+        struct relume_vec3 right, up;
+        relume_light_frame(&right, &up, l->direction);
+        set_vec3(gl, at[SHINE_AXIS], vec_unit(l->direction));
+        set_vec3(gl, at[SHINE_RIGHT], right);
+        set_vec3(gl, at[SHINE_UP], up);
+    }
+    return status;
+}

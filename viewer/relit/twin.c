@@ -1,0 +1,80 @@
+// twin.c - environments on codes of the display domain: a relighter of linear codes, made once from
+// them
+#include "relit/relighter_parts.h"
+
+#include <stdlib.h>
+
+static relume_status linear_codes(const struct relume_codes **out, void *user, int view)
+{
+    struct linear_source *s = user;
+    const struct relume_codes *codes;
+    relume_refit **refit = s->first ? &s->refit : &s->first;
+    relume_status status = s->source.codes(&codes, s->source.user, view);
+    if (!status)
+        status =
+            relume_refit_create(refit, codes, relume_refit_params(.log = s->log, .like = s->first));
+    if (!status)
+        *out = relume_refit_codes(*refit);
+    return status;
+}
+
+static void linear_drop(void *user, int view)
+{
+    struct linear_source *s = user;
+    if (s->refit)
+        relume_refit_destroy(&s->refit);
+    else
+        relume_refit_forget(s->first);
+    if (s->source.drop)
+        s->source.drop(s->source.user, view);
+}
+
+static relume_status need_linear(struct relighter *r)
+{
+    if (r->linear)
+        return RELUME_OK;
+    r->linear = malloc(sizeof *r->linear);
+    if (!r->linear)
+        return RELUME_ENOMEM;
+    r->linear_source = (struct linear_source){.source = r->source, .log = r->log};
+    const struct code_source source = {linear_codes, linear_drop, &r->linear_source, NULL};
+    const relume_status status = relighter_create(r->linear, r->gl, &source, r->views, r->log);
+    if (status) {
+        free(r->linear);
+        r->linear = NULL;
+    }
+    return status;
+}
+
+// The linear twin under the environments alone.
+relume_status twin_relight(struct relighter *r, struct relit_view *v)
+{
+    static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
+    static const float one[3] = {1.0f, 1.0f, 1.0f};
+    const struct target *twin;
+    struct relume_light *environments = malloc((size_t)r->lights * sizeof *environments);
+    int n = 0;
+    relume_status status = environments ? need_linear(r) : RELUME_ENOMEM;
+    for (int i = 0; !status && i < r->lights; i++)
+        if (relighter_is_environment(r->light[i].kind))
+            environments[n++] = r->light[i];
+    if (!status)
+        status = relighter_begin(r->linear, environments, n);
+    if (!status)
+        status = relighter_view(&twin, r->linear, (int)(v - r->view));
+    free(environments);
+    if (status)
+        return status;
+    passes_begin(r);
+    target_resume(&v->relit, r->gl);
+    passes_develop(r, v, twin, linear, one);
+    return RELUME_OK;
+}
+
+void twin_destroy(struct relighter *r)
+{
+    if (r->linear)
+        relighter_destroy(r->linear);
+    free(r->linear);
+    relume_refit_destroy(&r->linear_source.first);
+}

@@ -1,0 +1,51 @@
+// options.h - the command line of relume-view
+#ifndef VIEWER_OPTIONS_H
+#define VIEWER_OPTIONS_H
+
+#include "app/app.h"
+#include "session/record.h"
+#include "session/session.h"
+
+#include <relume/rig.h>
+
+struct options {
+    bool help;         // was asked for, and nothing else is known
+    const char *file;  // NULL: `stage`, or a window without a file
+    bool stage;        // there are objects alone
+    struct session_objects objects;
+    const char *offscreen;  // picture to write without a window, or NULL
+    const char *script;     // events to play, or NULL
+    const char *capture;    // to compare with, or NULL
+    bool record;            // a recording of `kind` into `output`, `frames` long
+    enum record_kind kind;
+    const char *output;
+    int frames;
+    bool no_config;
+    bool window;  // play them in a window
+    bool panel;   // begin with the panel
+    bool keep_lights;
+    bool docked;  // --dock was given
+    enum app_dock dock;
+    struct app_state start;
+    relume_rig *rig;  // of --rig and --light, NULL without either
+    bool sized;       // --size was given
+    const char *gl;   // what offscreen frames are drawn by: a name that context_offscreen knows
+    int threads;      // that read files; 0: all cores
+    struct relume_limits limits;
+    double vram_mb;   // graphics memory for views
+    enum session_relight relight, glare;
+    int glare_size;
+    struct relume_subject subject;
+};
+
+// RELUME_EINVAL with a sentence in `log`: unknown options, wrong values, no FILE. RELUME_EDATA,
+// RELUME_ENOMEM: a file that a light needs. In every case options_release comes after it.
+relume_status options_parse(struct options *options, int argc, char **argv,
+                            const struct relume_log *log);
+void options_release(struct options *options);
+void options_help(void);
+
+// "x,y,z": `count` numbers separated by commas or blanks and nothing else.
+bool options_numbers(const char *text, double *out, int count);
+
+#endif

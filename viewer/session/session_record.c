@@ -1,0 +1,101 @@
+// session_record.c - a recording, picture by picture: every drawn frame is one of it
+#include "session/session.h"
+
+#include "app/lamps.h"
+
+#include <stdio.h>
+
+bool session_records(const struct session *s)
+{
+    return s->recording.record != NULL;
+}
+
+relume_status session_record_begin(struct session *s, enum record_kind kind, const char *path,
+                                   int frames)
+{
+    struct recording *r = &s->recording;
+    struct recording made = {.kind = kind, .frames = frames};
+    if (!lamps_copy(&made.before, &s->app.now))
+        return RELUME_ENOMEM;
+    const relume_status status = record_open(&made.record, path, s->log);
+    if (status) {
+        lamps_release(&made.before);
+        return status;
+    }
+    snprintf(made.path, sizeof made.path, "%s", path);
+    *r = made;
+    s->app.now.ball = false;
+    s->app.recording = true;
+    return RELUME_OK;
+}
+
+static void put_back(struct session *s)
+{
+    lamps_release(&s->app.now);
+    s->app.now = s->recording.before;
+    s->app.recording = false;
+    s->recording = (struct recording){.record = NULL};
+}
+
+// What was recorded so far becomes the recording; none is left when that is nothing.
+static relume_status finish(struct session *s)
+{
+    struct recording *r = &s->recording;
+    relume_status status = RELUME_OK;
+    if (r->frame > 0)
+        status = record_commit(&r->record);
+    else
+        record_abort(&r->record);
+    if (r->frame && !status)
+        session_say(s, "recorded %.200s, %d pictures", r->path, r->frame);
+    else
+        session_say(s, "%.200s was not recorded", r->path);
+    put_back(s);
+    return status;
+}
+
+void session_record_stop(struct session *s)
+{
+    if (session_records(s))
+        (void)finish(s);
+}
+
+static relume_status fail(struct session *s, relume_status status)
+{
+    struct recording *r = &s->recording;
+    record_abort(&r->record);
+    session_say(s, "%.200s was not recorded", r->path);
+    put_back(s);
+    return status;
+}
+
+relume_status session_record_step(struct session *s)
+{
+    struct recording *r = &s->recording;
+    struct relume_image image = {0};
+    if (r->frame != r->posed)
+        app_live(&s->app, 1.0 / RECORD_RATE);
+    r->posed = r->frame;
+    relume_status status = record_pose(&s->app, r->kind, (double)r->frame / r->frames, s->log);
+    if (!status)
+        status = renderer_draw(&s->renderer, &s->app);
+    if (!status && renderer_is_pending(&s->renderer))
+        return RELUME_OK;  // the same picture again, when all of it is there
+    if (!status)
+        status = session_read(&image, s, false);
+    if (!status)
+        status = record_add(r->record, &image);
+    relume_image_destroy(&image);
+    if (status)
+        return fail(s, status);
+    r->frame++;
+    return r->frame == r->frames ? finish(s) : RELUME_OK;
+}
+
+relume_status session_record(struct session *s, enum record_kind kind, const char *path, int frames)
+{
+    relume_status status = session_record_begin(s, kind, path, frames);
+    while (!status && session_records(s))
+        status = session_record_step(s);
+    return status;
+}

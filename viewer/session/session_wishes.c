@@ -1,0 +1,170 @@
+// session_wishes.c - what keys and the panel ask for and the app cannot do
+#include "session/session.h"
+
+#include "app/keys.h"
+#include "common/vec.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+// "NAME-0001.png" with the first number that is free.
+static void free_name(char *path, size_t size, const struct session *s, const char *extension)
+{
+    const char *dot = strrchr(s->name, '.');
+    const int stem = dot ? (int)(dot - s->name) : (int)strlen(s->name);
+    for (int i = 1; i < 10000; i++) {
+        snprintf(path, size, "%.*s-%04d%s", stem, s->name, i, extension);
+        if (access(path, F_OK))
+            return;
+    }
+}
+
+static void say_saved(struct session *s, const char *path, relume_status status)
+{
+    if (status)
+        session_say(s, "%.200s could not be saved", path);
+    else
+        session_say(s, "saved %.200s", path);
+}
+
+static relume_status wish_picture(struct session *s, const char *extension)
+{
+    char path[SESSION_TEXT + 16];
+    free_name(path, sizeof path, s, extension);
+    const bool ball = s->app.now.ball;
+    s->app.now.ball = false;
+    const relume_status status = session_frame(s, path);
+    s->app.now.ball = ball;
+    say_saved(s, path, status);
+    return RELUME_OK;
+}
+
+static relume_status wish_png(struct session *s)
+{
+    return wish_picture(s, ".png");
+}
+
+static relume_status wish_exr(struct session *s)
+{
+    return wish_picture(s, ".exr");
+}
+
+static relume_status wish_recording(struct session *s, enum record_kind kind, const char *ending)
+{
+    char path[SESSION_TEXT + 16];
+    free_name(path, sizeof path, s, ending);
+    if (session_record_begin(s, kind, path, RECORD_FRAMES))
+        session_say(s, "%.200s could not be recorded", path);
+    return RELUME_OK;
+}
+
+static relume_status wish_sweep(struct session *s)
+{
+    return wish_recording(s, RECORD_SWEEP, "-sweep");
+}
+
+static relume_status wish_turntable(struct session *s)
+{
+    return wish_recording(s, RECORD_TURNTABLE, "-turntable");
+}
+
+static relume_status wish_save_rig(struct session *s)
+{
+    char path[SESSION_TEXT + 16];
+    free_name(path, sizeof path, s, ".json");
+    const relume_status status = session_save_rig(s, path);
+    say_saved(s, path, status);
+    return RELUME_OK;
+}
+
+static relume_status wish_add_light(struct session *s)
+{
+    const bool added = !session_light(s, s->app.spec, false);
+    session_say(s, added ? "light added: %.200s" : "not a light: %.200s", s->app.spec);
+    return RELUME_OK;
+}
+
+static relume_status wish_map(struct session *s)
+{
+    const bool shown = !session_map(s, s->app.spec);
+    session_say(s, shown ? "environment: %.200s" : "not an environment map: %.200s", s->app.spec);
+    return RELUME_OK;
+}
+
+static relume_status wish_full_screen(struct session *s)
+{
+    if (!s->backend->full_screen)
+        return RELUME_OK;
+    s->full_screen = !s->full_screen;
+    s->backend->full_screen(s->context, s->full_screen);
+    return RELUME_OK;
+}
+
+static relume_status wish_folder(struct session *s)
+{
+    return session_browse(s, s->app.spec);
+}
+
+static relume_status wish_open(struct session *s)
+{
+    char path[APP_SPEC];
+    snprintf(path, sizeof path, "%s", s->app.spec);
+    return session_drop(s, path);
+}
+
+// Through the middle of an eye that goes around, planes in focus are told by how far before what it
+// looks at they are.
+static double focus_at(const struct session *s, struct relume_vec3 p)
+{
+    struct relume_window w;
+    if (!s->app.file.around || !app_window(&s->app, &w))
+        return p.z;
+    const struct relume_vec3 normal = vec_unit(vec_cross(w.right, w.down));
+    return relume_window_distance(&w) - fabs(vec_dot(vec_sub(p, w.eye), normal));
+}
+
+// With a pinhole everything is sharp: it is opened.
+static relume_status wish_focus(struct session *s)
+{
+    struct app *app = &s->app;
+    struct relume_vec3 p;
+    const bool known =
+        lamps_surface(&p, app, &s->renderer.backdrop, app->cursor[0], app->cursor[1]);
+    if (!known && app->file.around) {
+        session_say(s, "nothing to focus on there; click on the object");
+        return RELUME_OK;
+    }
+    app->now.focus_z = known ? focus_at(s, p) : app->file.geometry.st_z;
+    if (app->now.aperture <= 0)
+        (void)keys_press(app, 'a', false);
+    session_say(s,
+                known ? "in focus: %.3g; aperture %.3g (A: next aperture)"
+                      : "this file has no depth: the plane z = %.3g is in focus; aperture %.3g",
+                app->now.focus_z, app->now.aperture);
+    return RELUME_OK;
+}
+
+// What was wished for is done once; what fails is said in the panel and in the log.
+relume_status session_grant_wish(struct session *s)
+{
+    static relume_status (*const grants[])(struct session *) = {
+        [APP_WISH_PNG] = wish_png,
+        [APP_WISH_EXR] = wish_exr,
+        [APP_WISH_SAVE_RIG] = wish_save_rig,
+        [APP_WISH_SWEEP] = wish_sweep,
+        [APP_WISH_TURNTABLE] = wish_turntable,
+        [APP_WISH_ADD_LIGHT] = wish_add_light,
+        [APP_WISH_MAP] = wish_map,
+        [APP_WISH_FULL_SCREEN] = wish_full_screen,
+        [APP_WISH_FOLDER] = wish_folder,
+        [APP_WISH_OPEN] = wish_open,
+        [APP_WISH_FOCUS] = wish_focus,
+    };
+    const enum app_wish wish = s->app.wish;
+    s->app.wish = APP_WISH_NONE;
+    if ((size_t)wish >= sizeof grants / sizeof *grants || !grants[wish])
+        return RELUME_OK;
+    return grants[wish](s);
+}

@@ -127,7 +127,7 @@ $B/obj/src/base/module.o: own_flags = -DRELUME_MAJOR=$(MAJOR)
 $B/obj/src/%_avx2.o: own_flags = -mavx2 -mfma -mf16c
 # One source, two objects: see its head. Without optimising Eigen is a hundred times slower, and its
 # debug symbols are ten times the rest of the library.
-eigen_flags = -isystem $(patsubst -I%,%,$(EIGEN)) -O2 -g0 -DEigen=eigen_$1 -DLSQ_KERNELS=lsq_kernels_$1
+eigen_flags = -isystem $(patsubst -I%,%,$(EIGEN)) -O2 -g0 -DEIGEN_STACK_ALLOCATION_LIMIT=16384 -DEigen=eigen_$1 -DLSQ_KERNELS=lsq_kernels_$1
 $B/obj/src/math/lsq_eigen.o: own_flags = $(call eigen_flags,plain)
 $B/obj/src/math/lsq_eigen_avx2.o: own_flags = $(call eigen_flags,avx2) -mavx2 -mfma
 $B/obj/src/%.o:               own_include = -Isrc

@@ -5,6 +5,25 @@
 
 enum { MAX_THREADS = 256 };
 
+// Our own code needs less than 128 kB (tests/threads/test_stack.c); the rest is for libraries, and
+// for sanitizers, whose frames are several times as large.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+enum { STACK = 8 << 20 };
+#else
+enum { STACK = 1 << 20 };
+#endif
+
+static bool start(pthread_t *id, void *(*body)(void *), void *context)
+{
+    pthread_attr_t attributes;
+    if (pthread_attr_init(&attributes))
+        return false;
+    const bool good = !pthread_attr_setstacksize(&attributes, STACK) &&
+                      !pthread_create(id, &attributes, body, context);
+    pthread_attr_destroy(&attributes);
+    return good;
+}
+
 struct loop {
     atomic_size_t next;
     size_t items;
@@ -52,7 +71,7 @@ void thread_for(int threads, size_t items, void (*body)(void *, size_t, int), vo
     int started = 1;
     while (started < count) {
         workers[started] = (struct worker){&loop, started};
-        if (pthread_create(&ids[started], NULL, run, &workers[started]))
+        if (!start(&ids[started], run, &workers[started]))
             break;
         started++;
     }
@@ -73,7 +92,7 @@ void thread_start(struct thread_task *task, void (*body)(void *context), void *c
 {
     task->body = body;
     task->context = context;
-    task->running = !pthread_create(&task->id, NULL, run_task, task);
+    task->running = start(&task->id, run_task, task);
     if (!task->running)
         body(context);
 }

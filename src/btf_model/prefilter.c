@@ -48,8 +48,6 @@ static int gather(struct relume_environment_cell *cell, const struct relume_ligh
     int kept = 0;
     int n;
     const struct relume_environment_cell *from = relume_environment_cells(&n, light->environment);
-    vec3 middle[CELL_COLUMNS * CELL_ROWS];
-    memset(middle, 0, sizeof middle);
     for (int i = 0; i < n; i++) {
         double at[2];
         const vec3 d = from[i].direction;
@@ -57,14 +55,14 @@ static int gather(struct relume_environment_cell *cell, const struct relume_ligh
         const int x = (int)(at[0] * CELL_COLUMNS) % CELL_COLUMNS;
         const int y = at[1] < 1.0 ? (int)(at[1] * CELL_ROWS) : CELL_ROWS - 1;
         const int to = y * CELL_COLUMNS + x;
-        middle[to] = vec3_add(middle[to], vec3_scale(d, luminance(from[i].rgb)));
+        cell[to].direction = vec3_add(cell[to].direction, vec3_scale(d, luminance(from[i].rgb)));
         for (int c = 0; c < 3; c++)
             cell[to].rgb[c] += light->rgb[c] * from[i].rgb[c];
     }
     for (int i = 0; i < CELL_COLUMNS * CELL_ROWS; i++)
-        if (vec3_length(middle[i]) > 0.0) {
+        if (vec3_length(cell[i].direction) > 0.0) {
             struct relume_environment_cell one = cell[i];
-            one.direction = relume_environment_turn(vec3_unit(middle[i]), light->rotate_deg);
+            one.direction = relume_environment_turn(vec3_unit(one.direction), light->rotate_deg);
             cell[kept++] = one;
         }
     return kept;

@@ -65,15 +65,19 @@ static relume_status prepare(void **data, const struct relume_vec3 *lights, int 
 static void evaluate(const void *data, struct relume_vec3 light, double *weights)
 {
     const struct cells *c = data;
-    double sum = 0.0, gain[POINTS];
+    enum { RUN = 256 };  // gains are found side by side
+    double sum = 0.0, gain[RUN];
     memset(weights, 0, (size_t)c->lights * sizeof *weights);
-    for (int i = 0; i < POINTS; i++)
-        gain[i] = c->x[i] * light.x + c->y[i] * light.y + c->z[i] * light.z - c->nearest[i];
-    for (int i = 0; i < POINTS; i++)
-        if (gain[i] > 0.0) {
-            weights[c->owner[i]] += gain[i];
-            sum += gain[i];
-        }
+    for (int first = 0; first < POINTS; first += RUN) {
+        const double *x = c->x + first, *y = c->y + first, *z = c->z + first;
+        for (int i = 0; i < RUN; i++)
+            gain[i] = x[i] * light.x + y[i] * light.y + z[i] * light.z - c->nearest[first + i];
+        for (int i = 0; i < RUN; i++)
+            if (gain[i] > 0.0) {
+                weights[c->owner[first + i]] += gain[i];
+                sum += gain[i];
+            }
+    }
     if (sum < 1e-9) {  // on a light
         weights[nearest_light(c, light)] = 1.0;
         return;

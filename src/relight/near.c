@@ -12,12 +12,8 @@
 
 #include <string.h>
 
-enum {
-    MOST_WEIGHTS = 3 * RELUME_MOST_COEFFICIENTS,
-    LANES = 64,
-    LEAST_LANES = 4,
-    ROOM = MOST_WEIGHTS * LEAST_LANES
-};
+// Lanes are fewer where there are many coefficients, so that weights stay in the cache.
+enum { LANES = 64, LEAST_LANES = 4, MOST_FLOATS = 3 * RELUME_MOST_COEFFICIENTS * LEAST_LANES };
 
 // ---------------------------------------------------------------- emitters
 
@@ -101,7 +97,8 @@ struct block {
     bool lit;  // something arrives at one of them
     float rgb[3][LANES];
     float constant[3][LANES];
-    float weight[ROOM];  // [3 or 1][coefficients][n]
+    float *weight;  // [3 or 1][coefficients][n]
+    float *one;     // [3][coefficients] and three constants: of one pixel
 };
 
 static void put_lane(float *to, int lanes, const float *from, int n)
@@ -184,7 +181,7 @@ static void weigh_one(const struct near *near, struct block *b, const struct emi
 {
     const struct relume_weight_grid_info *grid = relume_weight_grid_info(near->grid);
     const int used = grid->sets * grid->coefficients;
-    float at[MOST_WEIGHTS + 3], rgb[3];
+    float *at = b->one, rgb[3];
     vec3 point, towards;
     b->lit = false;
     memset(b->constant, 0, sizeof b->constant);
@@ -242,7 +239,7 @@ static bool weigh_all(float *weights, float constant[3], const struct near *near
 static void add_folded(const struct near *near, struct block *b, float *out)
 {
     const int used = 3 * relume_coder_info(near->codes->coder)->coefficients;
-    float value[3][LANES], weights[MOST_WEIGHTS], constant[3];
+    float value[3][LANES], *weights = b->one, constant[3];
     vec3 point;
     b->lit = false;
     memset(b->constant, 0, sizeof b->constant);
@@ -265,17 +262,27 @@ static void add_folded(const struct near *near, struct block *b, float *out)
             out[3 * i + c] += value[c][i];
 }
 
-static int lanes_for(const struct relume_codes *codes)
+static size_t weights_of(const struct near *near)
 {
-    const int k = relume_coder_info(codes->coder)->coefficients;
-    const int most = 3 * k > codes->planes ? 3 * k : codes->planes;
-    return ROOM / most < LANES ? ROOM / most : LANES;
+    return 3 * (size_t)relume_coder_info(near->codes->coder)->coefficients;
 }
 
-void near_add(const struct near *near, size_t first, size_t n, float *out)
+static size_t lanes_for(const struct near *near)
 {
-    struct block b = {.lanes = lanes_for(near->codes)};
+    const size_t lanes = MOST_FLOATS / weights_of(near);
+    return lanes < LANES ? lanes : LANES;
+}
+
+size_t near_room(const struct near *near)
+{
+    return near->count ? (lanes_for(near) + 1) * weights_of(near) + 3 : 0;
+}
+
+void near_add(const struct near *near, size_t first, size_t n, float *out, float *room)
+{
+    struct block b = {.lanes = (int)lanes_for(near), .weight = room};
     const bool fold = !near->display && near->count > 1;
+    b.one = room + (size_t)b.lanes * weights_of(near);
     for (size_t done = 0; done < n; done += (size_t)b.n) {
         b.first = first + done;
         b.n = n - done < (size_t)b.lanes ? (int)(n - done) : b.lanes;

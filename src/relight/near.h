@@ -25,7 +25,9 @@ struct near {
 relume_status near_create(struct near *near, const struct relume_light *lights, int n);
 void near_destroy(struct near *near);
 
-// Add what they give to the `n` pixels from `first` on: out[n][3], linear.
-void near_add(const struct near *near, size_t first, size_t n, float *out);
+// Add what they give to the `n` pixels from `first` on: out[n][3], linear. `room` has near_room
+// floats.
+size_t near_room(const struct near *near);
+void near_add(const struct near *near, size_t first, size_t n, float *out, float *room);
 
 #endif

@@ -31,6 +31,16 @@ struct pass {
     float **book;  // [books] -> [codes][3]: with codebooks, what their vectors add
 };
 
+// What a worker writes on the way.
+struct room {
+    float sum[3][CHUNK];       // by channel, so that the kernels write in a row
+    float shown[CHUNK];        // one light, before it is made linear
+    float part[CHUNK];         // a group of planes, or a colour
+    float distant[3 * CHUNK];  // environments of the display domain
+    float rgb[3 * CHUNK];      // what becomes 8 bits
+    float near[];              // near_room
+};
+
 struct job {
     const struct relume_codes *codes;
     const struct kernels *kernels;
@@ -47,6 +57,8 @@ struct job {
     const relume_weight_grid *grid;  // borrowed, or made
     relume_weight_grid *made;
     struct near near;
+    char *room;  // [workers] of room_size
+    size_t room_size;
     // Display domain: environments are relit from linear codes of their own.
     struct job *distant;
     relume_refit *refit;
@@ -213,9 +225,9 @@ static void dot_group(const struct job *job, float *out, size_t n, float bias,
 }
 
 // out *= the pixels' colour
-static void multiply_colour(const struct job *job, int plane, size_t offset, size_t n, float *out)
+static void multiply_colour(const struct job *job, int plane, size_t offset, size_t n, float *out,
+                            float *colour)
 {
-    float colour[CHUNK];
     const void *from = (const char *)job->codes->plane[plane] + offset;
     dot_group(job, colour, n, job->codes->offset[plane], &from, &job->codes->scale[plane], 1);
     for (size_t i = 0; i < n; i++)
@@ -223,14 +235,14 @@ static void multiply_colour(const struct job *job, int plane, size_t offset, siz
 }
 
 static void dot_planes(const struct job *job, const struct pass *pass, int channel, size_t first,
-                       size_t n, float *out)
+                       size_t n, float *out, float *part)
 {
     const struct relume_codes *codes = job->codes;
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     const size_t offset = first * relume_storage_bytes(codes->storage);
     const float *w = pass->weights + channel * info->coefficients;
     const void *planes[GROUP];
-    float weights[GROUP], part[CHUNK];
+    float weights[GROUP];
     int count = 0;
     bool begun = false;
     for (int k = 0; k < info->coefficients || !begun; k++) {
@@ -250,7 +262,7 @@ static void dot_planes(const struct job *job, const struct pass *pass, int chann
         count = 0;
     }
     if (info->luminance)
-        multiply_colour(job, info->coefficients + channel, offset, n, out);
+        multiply_colour(job, info->coefficients + channel, offset, n, out, part);
 }
 
 static void look_up_channel(const struct job *job, const struct pass *pass, size_t channel,
@@ -286,22 +298,23 @@ static void decode_pixel(double value[3], const struct relume_codes *codes, size
 }
 
 static void dot_channel(const struct job *job, const struct pass *pass, int channel, size_t first,
-                        size_t n, float *out)
+                        size_t n, float *out, float *part)
 {
     if (job->codes->books)
         look_up_channel(job, pass, (size_t)channel, first, n, out);
     else
-        dot_planes(job, pass, channel, first, n, out);
+        dot_planes(job, pass, channel, first, n, out, part);
 }
 
 // Display domain: every light is decoded and made linear before it is added.
-static void sum_displayed(const struct job *job, int channel, size_t first, size_t n, float *sum)
+static void sum_displayed(const struct job *job, int channel, size_t first, size_t n,
+                          struct room *room)
 {
-    float codes[CHUNK];
+    float *sum = room->sum[channel], *codes = room->shown;
     memset(sum, 0, n * sizeof *sum);
     for (int p = 0; p < job->count; p++) {
         const struct pass *pass = &job->passes[p];
-        dot_channel(job, pass, channel, first, n, codes);
+        dot_channel(job, pass, channel, first, n, codes, room->part);
         for (size_t i = 0; i < n; i++)
             sum[i] += pass->rgb[channel] * curve_decode(&job->curve, codes[i]);
     }
@@ -313,60 +326,66 @@ static size_t chunk_size(const struct job *job, size_t first)
     return pixels - first < CHUNK ? pixels - first : CHUNK;
 }
 
-static void relight_distant(const struct job *job, size_t first, size_t n, float *out)
+static void interleave(float *rgb, const struct room *room, size_t n)
 {
-    float sum[CHUNK], rgb[3 * CHUNK];
-    for (int c = 0; c < 3; c++) {
-        dot_channel(job, &job->passes[0], c, first, n, sum);
-        for (size_t i = 0; i < n; i++)
-            rgb[3 * i + (size_t)c] = sum[i];
-    }
-    keep_above_zero(rgb, n);
+    for (size_t i = 0; i < n; i++)
+        for (size_t c = 0; c < 3; c++)
+            rgb[3 * i + c] = room->sum[c][i];
+}
+
+static void relight_distant(const struct job *job, size_t first, size_t n, float *out,
+                            struct room *room)
+{
+    for (int c = 0; c < 3; c++)
+        dot_channel(job, &job->passes[0], c, first, n, room->sum[c], room->part);
+    interleave(room->distant, room, n);
+    keep_above_zero(room->distant, n);
     for (size_t i = 0; i < 3 * n; i++)
-        out[i] += rgb[i];
+        out[i] += room->distant[i];
 }
 
 // out[n][3]: linear values of the pixels from `first` on.
-static void relight_pixels(const struct job *job, size_t first, size_t n, float *out)
+static void relight_pixels(const struct job *job, size_t first, size_t n, float *out,
+                           struct room *room)
 {
-    float sum[3][CHUNK];  // by channel, so that the kernels write in a row
     for (int c = 0; c < 3; c++) {
         if (job->linear)
-            dot_channel(job, &job->passes[0], c, first, n, sum[c]);
+            dot_channel(job, &job->passes[0], c, first, n, room->sum[c], room->part);
         else
-            sum_displayed(job, c, first, n, sum[c]);
+            sum_displayed(job, c, first, n, room);
     }
-    for (size_t i = 0; i < n; i++)
-        for (size_t c = 0; c < 3; c++)
-            out[3 * i + c] = sum[c][i];
+    interleave(out, room, n);
     if (job->guard)
         keep_above_zero(out, n);
     if (job->near.count)
-        near_add(&job->near, first, n, out);
+        near_add(&job->near, first, n, out, room->near);
     if (job->distant)
-        relight_distant(job->distant, first, n, out);
+        relight_distant(job->distant, first, n, out, room);
+}
+
+static struct room *room_of(const struct job *job, int worker)
+{
+    return (struct room *)(void *)(job->room + (size_t)worker * job->room_size);
 }
 
 static void relight_chunk(void *context, size_t item, int worker)
 {
-    (void)worker;
     const struct job *job = context;
     const size_t first = item * CHUNK;
-    relight_pixels(job, first, chunk_size(job, first), job->out + first * 3);
+    relight_pixels(job, first, chunk_size(job, first), job->out + first * 3, room_of(job, worker));
 }
 
 static void relight_chunk_rgba8(void *context, size_t item, int worker)
 {
-    (void)worker;
     const struct job *job = context;
     const size_t first = item * CHUNK, n = chunk_size(job, first);
-    float rgb[3 * CHUNK];
+    struct room *room = room_of(job, worker);
     if (job->words) {
         job->kernels->look_up(job->out_rgba8 + first, n, job->codes->index[0] + first, job->words);
         return;
     }
-    relight_pixels(job, first, n, rgb);
-    byte_code(job->out_rgba8 + first, rgb, n, job->coder);
+    relight_pixels(job, first, n, room->rgb, room);
+    byte_code(job->out_rgba8 + first, room->rgb, n, job->coder);
 }
 
 static void warn_below_horizon(const struct relume_codes *codes, const struct relume_light *lights,
@@ -525,6 +544,7 @@ static void end_job(struct job *job)
     relume_refit_destroy(&job->refit);
     free(job->coder);
     free(job->words);
+    free(job->room);
 }
 
 // What the vectors of a single codebook have of the environments joins their table.
@@ -574,10 +594,16 @@ static relume_status begin_all(struct job *job, const struct relume_codes *codes
     return status ? status : begin_distant(job, lights, n, p);
 }
 
-static void run_job(struct job *job, int threads, void (*chunk)(void *, size_t, int))
+static relume_status run_job(struct job *job, int threads, void (*chunk)(void *, size_t, int))
 {
     const size_t pixels = (size_t)job->codes->width * (size_t)job->codes->height;
-    thread_for(threads, (pixels + CHUNK - 1) / CHUNK, chunk, job);
+    const size_t chunks = (pixels + CHUNK - 1) / CHUNK, most = (size_t)thread_count(threads);
+    job->room_size = sizeof(struct room) + near_room(&job->near) * sizeof(float);
+    job->room = mem_array(most < chunks ? most : chunks, job->room_size);
+    if (!job->room)
+        return RELUME_ENOMEM;
+    thread_for(threads, chunks, chunk, job);
+    return RELUME_OK;
 }
 
 // As begin_all, for what is shown: lights are checked, those without reflectance warned about.
@@ -614,7 +640,7 @@ relume_status relume_relight(struct relume_image *out, const struct relume_codes
         status = open_output(out, codes);
     job.out = out->data;
     if (!status)
-        run_job(&job, p.threads, relight_chunk);
+        status = run_job(&job, p.threads, relight_chunk);
     end_job(&job);
     return status;
 }
@@ -646,7 +672,7 @@ relume_status relume_relight_rgba8(uint8_t *out, const struct relume_codes *code
             status = code_vectors(&job);
     }
     if (!status)
-        run_job(&job, p.threads, relight_chunk_rgba8);
+        status = run_job(&job, p.threads, relight_chunk_rgba8);
     end_job(&job);
     return status;
 }

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Who may use whom (docs/architecture.md): every quoted include of a folder must name a folder it
-# may use, public headers of working folders only where allowed, and external libraries one file each.
+# may use, public headers of working folders only where allowed, and external libraries one file
+# each; no file may need itself by way of others.
 # One awk over all includes: tests/cli/test_build.sh runs it ten times.
 # layers.sh --table prints the rules as docs/architecture.md shows them.
 set -eu
@@ -149,4 +150,23 @@ grep -rE '^#include [<"]' src viewer tests samples --include='*.c' --include='*.
             if (name ~ "^" pattern[i] && !has(place[i], file))
                 complain(file " includes <" pattern[i] "...>; belongs to " place[i])
     }
-    END { exit bad }' && echo "layers: fine"
+    END { exit bad }'
+
+# Files need each other in one direction only: x.c and x.h are one node, tsort finds the loops.
+loops=$(grep -rE '^#include "' src viewer --include='*.c' --include='*.h' --include='*.cpp' |
+    awk -F '[:"]' '
+    {
+        split($1, part, "/")
+        root = part[1] == "viewer" ? "viewer/" : part[2] == "cli" ? "src/cli/" : "src/"
+        from = $1
+        to = root $3
+        sub(/[.][a-z]*$/, "", from)
+        sub(/[.][a-z]*$/, "", to)
+        if (from != to)
+            print from, to
+    }' | tsort 2>&1 >/dev/null | sed 's/^tsort: //' | tr '\n' ' ')
+[ -z "$loops" ] || {
+    echo "layers: files that include each other, x.c and x.h taken as one: $loops" >&2
+    exit 1
+}
+echo "layers: fine"

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "image/exr.h"
 #include "image/half.h"
+#include "image/picture_kind.h"
 
 #include <math.h>
 #include <relume/response.h>

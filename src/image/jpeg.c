@@ -5,6 +5,7 @@
 #include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "image/picture.h"
 #include "image/picture_format.h"
 
 #include <errno.h>

@@ -1,5 +1,6 @@
 // oiio.cpp - the one file that knows OpenImageIO: a module, opened by the helper for reading and by
 // picture.c for writing
+#include "image/picture.h"
 #include "image/picture_format.h"
 
 extern "C" {

@@ -219,12 +219,6 @@ void picture_close(picture_reader **reader)
 
 // ---------------------------------------------------------------- writing
 
-bool picture_has_extension(const char *path, const char *extension)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && strcasecmp(dot, extension) == 0;
-}
-
 static bool has_one_of(const char *path, const char *const *extensions)
 {
     while (*extensions && !picture_has_extension(path, *extensions))

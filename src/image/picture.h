@@ -8,26 +8,14 @@
 #ifndef IMAGE_PICTURE_H
 #define IMAGE_PICTURE_H
 
+#include "image/picture_info.h"
+
 #include <relume/io.h>
 #include <relume/photograph.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-// An open picture file. Thread-safety: one thread at a time.
-typedef struct picture_reader picture_reader;
-
-struct picture_info {
-    int width, height;
-    int x, y;        // where the data window begins
-    int channels;    // as read_* delivers them
-    int rgb[3];      // which channel is red, green, blue; all equal for grey
-    bool bytes;      // 8-bit integers: picture_read_bytes works
-    bool floats;     // floating point: values do not end at 1
-    bool linear;     // float samples, or an integer file that says it is linear
-    char other[96];  // "", or the names of the channels, where none of them is colour
-};
 
 // The file `path`, or what `from` reads (base/infile.h). RELUME_EDATA with a sentence that names
 // the file.
@@ -69,8 +57,6 @@ void picture_close(picture_reader **reader);
 // hold them, else bytes. RELUME_EINVAL for an extension that nobody writes, RELUME_EIO.
 bool picture_writes_floats(const char *path);
 bool picture_writes_bytes(const char *path);
-// ".png", in any case.
-bool picture_has_extension(const char *path, const char *extension);
 relume_status picture_write_bytes(const char *path, const struct relume_writer *writer, int width,
                                   int height, int channels, const uint8_t *samples,
                                   const struct relume_log *log);

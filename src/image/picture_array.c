@@ -1,5 +1,6 @@
 // picture_array.c - samples in memory, read as a picture file is
 #include "base/memory.h"
+#include "image/picture.h"
 #include "image/picture_format.h"
 
 #include <string.h>

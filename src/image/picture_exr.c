@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "image/exr.h"
 #include "image/half.h"
+#include "image/picture.h"
 #include "image/picture_format.h"
 
 #include <errno.h>

@@ -2,9 +2,11 @@
 #ifndef IMAGE_PICTURE_FORMAT_H
 #define IMAGE_PICTURE_FORMAT_H
 
-#include "image/picture.h"
+#include "image/picture_info.h"
 #include "image/picture_kind.h"
 
+#include <relume/io.h>
+#include <relume/photograph.h>
 #include <stdio.h>
 
 #ifdef __cplusplus

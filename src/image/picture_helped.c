@@ -3,6 +3,7 @@
 #include "base/channel.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "image/picture.h"
 #include "image/picture_format.h"
 #include "image/picture_serve.h"
 

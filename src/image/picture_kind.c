@@ -1,8 +1,7 @@
 #include "image/picture_kind.h"
 
-#include "image/picture.h"
-
 #include <string.h>
+#include <strings.h>
 
 // Each format is told by bytes at a place; a second place where one is not enough.
 struct magic {
@@ -151,6 +150,12 @@ static const struct picture_kind bmp = LISTED("a BMP image", "bmp", 512);
 static const struct picture_kind tga = LISTED("a TGA image", "targa", 256);
 static const struct picture_kind unknown = {
     NULL, "", false, false, 1024, "--any-format tries all that OpenImageIO knows"};
+
+bool picture_has_extension(const char *path, const char *extension)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && strcasecmp(dot, extension) == 0;
+}
 
 static bool has(const struct picture_look *l, size_t at, size_t size, const char *bytes)
 {

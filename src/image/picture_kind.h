@@ -23,6 +23,9 @@ struct picture_kind {
     const char *advice;  // for those that are not listed
 };
 
+// Whether a name ends in ".png", in any case.
+bool picture_has_extension(const char *path, const char *extension);
+
 // Never NULL; `path` counts where first bytes say too little: TGA, and RAW that looks like TIFF.
 const struct picture_kind *picture_kind_of(const struct picture_look *look, const char *path);
 

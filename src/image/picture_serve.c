@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/sandbox.h"
+#include "image/picture.h"
 #include "image/picture_format.h"
 
 #include <stdio.h>

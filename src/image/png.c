@@ -3,6 +3,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outfile.h"
+#include "image/picture.h"
 #include "image/picture_format.h"
 
 #include <errno.h>

@@ -1,5 +1,5 @@
 // mesh_assimp.c - the one file that knows Assimp; a module of its own, in the helper (mesh_other.h)
-#include "mesh/mesh_other.h"
+#include "mesh/mesh_bridge.h"
 
 #include <assimp/cfileio.h>
 #include <assimp/cimport.h>

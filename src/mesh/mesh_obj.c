@@ -3,7 +3,7 @@
 #include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
-#include "mesh/mesh_read.h"
+#include "mesh/mesh_file.h"
 
 #include <errno.h>
 #include <stdio.h>

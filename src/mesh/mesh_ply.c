@@ -5,7 +5,7 @@
 // read past.
 #include "base/log.h"
 #include "base/memory.h"
-#include "mesh/mesh_read.h"
+#include "mesh/mesh_file.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "base/channel.h"
 #include "base/memory.h"
 #include "base/sandbox.h"
-#include "mesh/mesh_other.h"
+#include "mesh/mesh_bridge.h"
 
 #include <stdio.h>
 #include <string.h>

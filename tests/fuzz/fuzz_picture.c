@@ -3,6 +3,7 @@
 #include "fuzz.h"
 #include "png_crc.h"
 
+#include "image/picture.h"
 #include "image/picture_format.h"
 
 static const struct relume_limits limits = {.max_side = 256, .max_pixels = 1 << 14};

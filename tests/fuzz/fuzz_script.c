@@ -1,4 +1,6 @@
 // fuzz_script.c - scripts of the viewer made of noise, played to its state machine; no OpenGL
+#include "app/app.h"
+#include "app/events.h"
 #include "fuzz.h"
 
 #include "app/gaze.h"

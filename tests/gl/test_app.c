@@ -1,5 +1,6 @@
 // The viewer's state machine, options and scripts; no OpenGL
 #include "app/app.h"
+#include "app/events.h"
 #include "app/gizmo.h"
 #include "app/keys.h"
 #include "app/lamps.h"

@@ -1,4 +1,5 @@
 // Several slabs in the viewer: frames against the library's, and the eye on its way around
+#include "app/events.h"
 #include "fixture.h"
 
 #include "app/gizmo.h"

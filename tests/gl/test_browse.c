@@ -1,4 +1,5 @@
 // Folders to choose a file from, and the window that does it
+#include "app/events.h"
 #include "owned.h"
 #include "panel/browse.h"
 #include "panel/panel.h"

@@ -1,5 +1,6 @@
 // Glare: the compute passes against the library, the eye's time, and what is kept from frame to
 // frame
+#include "app/events.h"
 #include "fixture.h"
 
 #include "app/gaze.h"

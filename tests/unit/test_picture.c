@@ -6,6 +6,7 @@
 #include "base/outfile.h"
 #include "image/exr.h"
 #include "image/half.h"
+#include "image/picture.h"
 #include "image/picture_format.h"
 
 #include <fcntl.h>

@@ -2,7 +2,7 @@
 #ifndef VIEWER_ADJUST_H
 #define VIEWER_ADJUST_H
 
-#include "app/app.h"
+#include "app/state.h"
 
 // Set what `words` say, as in "gain 3" or "range 0.01 0.2". False: `*expected` says what it should
 // have been.

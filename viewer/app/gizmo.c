@@ -1,5 +1,6 @@
 #include "app/gizmo.h"
 
+#include "app/aim.h"
 #include "app/lamps.h"
 #include "app/orbit.h"
 #include "common/vec.h"

@@ -2,7 +2,7 @@
 #ifndef VIEWER_GIZMO_H
 #define VIEWER_GIZMO_H
 
-#include "app/app.h"
+#include "app/state.h"
 
 struct gizmo {
     double x, y;  // pixels of the frame

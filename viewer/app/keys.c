@@ -1,5 +1,6 @@
 #include "app/keys.h"
 
+#include "app/app.h"
 #include "app/lamps.h"
 
 #include <relume/tone.h>

@@ -2,7 +2,7 @@
 #ifndef VIEWER_KEYS_H
 #define VIEWER_KEYS_H
 
-#include "app/app.h"
+#include "app/state.h"
 
 struct key_binding {
     int key;

@@ -2,7 +2,7 @@
 #ifndef VIEWER_LAMPS_H
 #define VIEWER_LAMPS_H
 
-#include "app/app.h"
+#include "app/state.h"
 
 // The factor of a light's value; 0 for one that does not shine (it is off, or another is solo).
 double lamps_factor(const struct app_state *state, int light);

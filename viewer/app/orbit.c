@@ -1,5 +1,7 @@
 #include "app/orbit.h"
 
+#include "common/vec.h"
+
 #include <math.h>
 
 #define PI 3.14159265358979323846
@@ -30,11 +32,6 @@ static struct relume_vec3 cross(struct relume_vec3 a, struct relume_vec3 b)
 static double length(struct relume_vec3 a)
 {
     return sqrt(dot(a, a));
-}
-
-static double clamp(double x, double low, double high)
-{
-    return x < low ? low : x > high ? high : x;
 }
 
 bool orbit_is(const struct app *app)

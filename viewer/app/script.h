@@ -2,7 +2,7 @@
 #ifndef VIEWER_SCRIPT_H
 #define VIEWER_SCRIPT_H
 
-#include "app/app.h"
+#include "app/state.h"
 
 // Who acts on what a script says. `user` is handed to every function; statuses other than RELUME_OK
 // end the script.

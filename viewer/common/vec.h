@@ -6,6 +6,11 @@
 
 #include <math.h>
 
+static inline double clamp(double x, double low, double high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
 static inline double vec_dot(struct relume_vec3 a, struct relume_vec3 b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;

@@ -2,49 +2,7 @@
 #ifndef VIEWER_RENDERER_H
 #define VIEWER_RENDERER_H
 
-#include "app/app.h"
-#include "draw/draw.h"
-#include "draw/things.h"
-#include "glare/glare.h"
-#include "relit/depths.h"
-#include "relit/enhancer.h"
-#include "relit/relighter.h"
-
-struct renderer {
-    const struct gl *gl;
-    const struct relume_log *log;
-    struct relighter relighter;
-    struct enhancer enhancer;
-    struct glare glare;
-    struct program picture, slab, slab_depth, slab_lens, slabs, slabs_depth, mean, panorama, ball,
-        source, present;
-    GLuint vertices;
-    struct target frame;
-    const struct target *shown;  // `frame`, or what an eye sees of it; NULL: nothing drawn yet
-    struct target small;         // of the frame, to meter
-    struct target sum;       // of an aperture's cameras, of several slabs; made when first needed
-    struct target pinholes;  // of a lens before several slabs, their sum; likewise
-    relume_slab *grid;       // NULL: not a slab, or several
-    const relume_slabs *around;  // several; else NULL
-    const int *slab_of;          // of several: [views]
-    struct depths depths;        // empty: not a slab, or without depth
-    struct relume_geometry geometry;
-    int views;
-    double (*uv)[2];              // [views]
-    bool *needed;                 // [views]
-    const struct target **relit;  // [views]; NULL where not needed
-    struct relume_light *light;   // that shine; room for `room`
-    int lights, room;
-    struct things things;  // objects; empty: none
-    bool stage;            // there is nothing but objects
-    bool empty;            // there is nothing at all
-    // Of a scene with objects: where it is, what one light shows of it, and of each view what its
-    // pixels see; made when first needed.
-    struct depth_source place_source;
-    struct target scene, lit, *place;
-    double things_ms[2];         // what the objects took in the last frame, and in another material
-    struct lamp_scene backdrop;  // that hides lights
-};
+#include "draw/renderer_state.h"
 
 // `uv` [views] places the cameras of a slab; NULL: there is none, or renderer_use_slabs tells.
 // RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EDATA.

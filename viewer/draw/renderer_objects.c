@@ -2,6 +2,7 @@
 // where an object stands between, then the objects where they stand before it. Twin:
 // relume_objects_frame.
 #include "common/vec.h"
+#include "draw/renderer.h"
 #include "draw/renderer_parts.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #ifndef VIEWER_RENDERER_PARTS_H
 #define VIEWER_RENDERER_PARTS_H
 
-#include "draw/renderer.h"
+#include "draw/renderer_state.h"
 
 // A target of that size, made anew where it had another.
 relume_status renderer_prepare(struct target *target, const struct renderer *r, int width,

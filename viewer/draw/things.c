@@ -1,3 +1,5 @@
+#include "draw/things.h"
+
 #include "common/say.h"
 #include "common/vec.h"
 #include "draw/things_parts.h"

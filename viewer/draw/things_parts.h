@@ -2,7 +2,7 @@
 #ifndef VIEWER_THINGS_PARTS_H
 #define VIEWER_THINGS_PARTS_H
 
-#include "draw/things.h"
+#include "draw/things_state.h"
 
 // Uniforms of the programs of models.
 enum {

@@ -1,4 +1,6 @@
 // panel.cpp - Dear ImGui: made, told of events, turned into triangles
+#include "panel/panel.h"
+
 #include "panel/panel_parts.h"
 
 #include <imgui_internal.h>

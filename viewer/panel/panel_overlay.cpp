@@ -1,6 +1,10 @@
 // panel_overlay.cpp - what is drawn over the picture: notes, keys, handles of lights, the inspector
 #include "panel/panel_parts.h"
 
+extern "C" {
+#include "app/events.h"
+}
+
 #include <cstdio>
 
 static const ImGuiWindowFlags fixed =

@@ -2,7 +2,7 @@
 #ifndef VIEWER_PANEL_PARTS_H
 #define VIEWER_PANEL_PARTS_H
 
-#include "panel/panel.h"
+#include "panel/panel_facts.h"
 
 extern "C" {
 #include "app/gizmo.h"

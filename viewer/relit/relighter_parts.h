@@ -2,7 +2,7 @@
 #ifndef VIEWER_RELIGHTER_PARTS_H
 #define VIEWER_RELIGHTER_PARTS_H
 
-#include "relit/relighter.h"
+#include "relit/relighter_state.h"
 
 // How GL stores the codes of each kind; `unit` turns its normalised values back into codes.
 struct code_format {

@@ -1,5 +1,6 @@
 // twin.c - environments on codes of the display domain: a relighter of linear codes, made once from
 // them
+#include "relit/relighter.h"
 #include "relit/relighter_parts.h"
 
 #include <stdlib.h>

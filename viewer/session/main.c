@@ -1,4 +1,5 @@
 // main.c - relume-view: a file in a window, or in pictures written without one
+#include "app/events.h"
 #include "app/script.h"
 #include "common/say.h"
 #include "session/options.h"

@@ -3,6 +3,7 @@
 #include "app/lamps.h"
 #include "app/orbit.h"
 #include "common/say.h"
+#include "common/vec.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -43,11 +44,6 @@ relume_status record_parse(enum record_kind *out, const char *name)
 }
 
 // ---------------------------------------------------------------- poses
-
-static double clamp(double x, double low, double high)
-{
-    return x < low ? low : x > high ? high : x;
-}
 
 static void pose_sweep(struct app *app, double part)
 {

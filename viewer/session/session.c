@@ -1,5 +1,6 @@
 #include "session/session.h"
 
+#include "app/events.h"
 #include "app/lamps.h"
 #include "common/say.h"
 

@@ -1,4 +1,5 @@
 // session_record.c - a recording, picture by picture: every drawn frame is one of it
+#include "app/events.h"
 #include "session/session.h"
 
 #include "app/lamps.h"

@@ -1,0 +1,60 @@
+#include "app/aim.h"
+
+#include "app/lamps.h"
+#include "app/orbit.h"
+#include "common/vec.h"
+
+#define PI 3.14159265358979323846
+
+struct app_axes app_frame_axes(const struct app *app)
+{
+    if (orbit_is(app))
+        return orbit_axes(app);
+    if (app->now.camera.framing != RELUME_FRAME_LOOK)
+        return (struct app_axes){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    const double pan = app->now.camera.look.pan_deg * PI / 180;
+    const double tilt = app->now.camera.look.tilt_deg * PI / 180;
+    return (struct app_axes){
+        .right = {cos(pan), 0, sin(pan)},
+        .up = {-sin(tilt) * sin(pan), cos(tilt), sin(tilt) * cos(pan)},
+        .back = {-cos(tilt) * sin(pan), -sin(tilt), cos(tilt) * cos(pan)},
+    };
+}
+
+struct relume_vec3 app_seen_light(const struct app *app, int light)
+{
+    const struct app_axes a = app_frame_axes(app);
+    const struct relume_vec3 d = lamps_direction(&app->now.light[light], app_middle(app));
+    return (struct relume_vec3){vec_dot(d, a.right), vec_dot(d, a.up), vec_dot(d, a.back)};
+}
+
+void app_aim_light(struct app *app, int light, struct relume_vec3 seen)
+{
+    const struct app_axes a = app_frame_axes(app);
+    const struct relume_vec3 world = {
+        seen.x * a.right.x + seen.y * a.up.x + seen.z * a.back.x,
+        seen.x * a.right.y + seen.y * a.up.y + seen.z * a.back.y,
+        seen.x * a.right.z + seen.y * a.up.z + seen.z * a.back.z,
+    };
+    lamps_aim(&app->now, light, world, app_middle(app));
+}
+
+void app_point_light(struct app *app, int light, double x, double y)
+{
+    const double r = fmax(hypot(x, y), 1);
+    const double side = app_seen_light(app, light).z < 0 ? -1 : 1;
+    const double z = sqrt(fmax(1 - (x * x + y * y) / (r * r), 0));
+    app_aim_light(app, light, (struct relume_vec3){x / r, y / r, side * z});
+}
+
+void app_turn_light(struct app *app, double yaw_deg, double pitch_deg)
+{
+    const struct relume_vec3 seen = app_seen_light(app, app->now.selected);
+    const double yaw = yaw_deg * PI / 180;
+    const double pitch = pitch_deg * PI / 180;
+    const double y = seen.y * cos(pitch) - seen.z * sin(pitch);
+    const double ahead = seen.y * sin(pitch) + seen.z * cos(pitch);
+    const double x = seen.x * cos(yaw) + ahead * sin(yaw);
+    const double z = ahead * cos(yaw) - seen.x * sin(yaw);
+    app_aim_light(app, app->now.selected, (struct relume_vec3){x, y, z});
+}

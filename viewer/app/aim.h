@@ -1,0 +1,18 @@
+// aim.h - where lights come from, as the viewer sees it
+#ifndef VIEWER_AIM_H
+#define VIEWER_AIM_H
+
+#include "app/place.h"
+
+struct app_axes app_frame_axes(const struct app *app);
+
+// The direction of `light` as the viewer sees it: x right, y up, z towards the viewer.
+struct relume_vec3 app_seen_light(const struct app *app, int light);
+// Let it come from there (unit). Near lights move on a sphere about app_middle.
+void app_aim_light(struct app *app, int light, struct relume_vec3 seen);
+// Let it come from (x, y) of a unit ball seen from the front, on the half that it came from.
+void app_point_light(struct app *app, int light, double x, double y);
+// Turn the selected light about the frame's up (> 0: to the right) and right (> 0: down).
+void app_turn_light(struct app *app, double yaw_deg, double pitch_deg);
+
+#endif

@@ -1,0 +1,44 @@
+// things_state.h - what objects keep on the GPU
+#ifndef VIEWER_THINGS_STATE_H
+#define VIEWER_THINGS_STATE_H
+
+#include "draw/btf_upload.h"
+#include "draw/draw.h"
+#include "draw/shadow_map.h"
+#include "draw/sight.h"
+#include "draw/sky_maps.h"
+
+struct things_program {
+    struct program program;
+    const struct btf_twin *twin;
+    bool sky;  // for environments
+};
+
+struct things {
+    const struct gl *gl;
+    const struct relume_log *log;
+    relume_objects *objects;  // borrowed
+    GLuint array, vertices, indices;
+    struct program surface, depth, over, cast, share, sky;
+    struct things_program *program;  // [programs]: of the models in use
+    int programs;
+    struct btf_material *material;  // [materials]; without a twin until it is shown
+    struct shine shine;
+    struct sky_maps maps;
+    struct shadow_map shadow;
+    // Of the frame, `grid` times finer; `other` is in another material, to compare with.
+    struct target place, normal, tangent, footprint, shaded, other;
+    struct target shown, sent, arrived;  // of an environment
+    GLuint surface_buffer, depth_texture, share_buffer;
+    int grid;
+    bool no_shadows;
+    struct relume_lamp *lamp;  // of the present frame, and its lights
+    int lamps;
+    struct relume_light *light;
+    int lights;
+    struct sight sight;
+    struct relume_vec3 middle;
+    double radius;
+};
+
+#endif

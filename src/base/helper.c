@@ -1,21 +1,29 @@
 #include "base/helper.h"
 
 #include "base/channel.h"
+#include "base/inputs.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "base/module.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <poll.h>
 #include <pthread.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
-// The program, once it is started. It ends by itself when nobody asks for long.
+// The program, once it is started; these are under the lock. It ends by itself when nobody asks for
+// long.
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static int control = -1;
 static pid_t program;
@@ -59,35 +67,46 @@ static int spawn(const char *path, int end)
     return error;
 }
 
-static bool start_program(char why[HELPER_WHY])
+static bool start_program(struct helper_reply *reply)
 {
     int ends[2];
     char path[PATH_MAX];
     if (!module_program("relume-helper", path)) {
-        snprintf(why, HELPER_WHY, "relume-helper is not beside the library");
+        snprintf(reply->why, HELPER_WHY, "relume-helper is not beside the library");
         return false;
     }
-    int error = channel_pair(ends) ? 0 : errno;
-    if (!error) {
-        error = spawn(path, ends[1]);
+    reply->error = channel_pair(ends) ? 0 : errno;
+    if (!reply->error) {
+        reply->error = spawn(path, ends[1]);
         close(ends[1]);
-        if (error)
+        if (reply->error)
             close(ends[0]);
     }
-    if (error)
-        snprintf(why, HELPER_WHY, "relume-helper cannot be started; %s", strerror(error));
+    if (reply->error)
+        snprintf(reply->why, HELPER_WHY, "relume-helper cannot be started; %s",
+                 strerror(reply->error));
     else
         control = ends[0];
-    return !error;
+    return !reply->error;
 }
 
-static void drop_program(void)
+static bool addresses_are_limited(void)
+{
+    struct rlimit l;
+    return !getrlimit(RLIMIT_AS, &l) && l.rlim_cur != RLIM_INFINITY;
+}
+
+// Where addresses are limited (ulimit -v), the program or what it loads does not fit, and the
+// linker and libraries end it in their own ways.
+static void drop_program(struct helper_reply *reply)
 {
     close(control);
     control = -1;
     kill(program, SIGKILL);
     while (waitpid(program, NULL, 0) < 0 && errno == EINTR)
         ;
+    snprintf(reply->why, sizeof reply->why, "relume-helper has ended");
+    reply->error = addresses_are_limited() ? ENOMEM : 0;
 }
 
 // Asks the program, which is started where there is none, or where it has ended in the meantime.
@@ -95,15 +114,15 @@ static bool ask(struct helper_reply *reply, const struct helper_order *order, in
 {
     *reply = (struct helper_reply){0};
     for (int attempt = 0; attempt < 2; attempt++) {
-        if (control < 0 && !start_program(reply->why))
+        if (control < 0 && !start_program(reply))
             return false;
         if (channel_send(control, order, sizeof *order, end) &&
             channel_receive(control, reply, sizeof *reply, NULL))
-            return true;
-        drop_program();
-        snprintf(reply->why, sizeof reply->why, "relume-helper has ended");
+            break;
+        drop_program(reply);
     }
-    return false;
+    reply->why[HELPER_WHY - 1] = '\0';
+    return control >= 0;
 }
 
 static bool ask_in_turn(struct helper_reply *reply, const struct helper_order *order, int end)
@@ -111,67 +130,195 @@ static bool ask_in_turn(struct helper_reply *reply, const struct helper_order *o
     pthread_mutex_lock(&lock);
     const bool good = ask(reply, order, end);
     pthread_mutex_unlock(&lock);
-    reply->why[HELPER_WHY - 1] = '\0';
     return good;
 }
 
-relume_status helper_start(struct helper_job *job, enum helper_kind kind)
+// ---------------------------------------------------------------- processes
+
+struct helper_process {
+    struct helper_process *next;
+    enum helper_kind kind;
+    int jobs;              // these are the table's, under its lock
+    struct timespec idle;  // since when it has none
+    int channel;
+    pid_t id;
+    pthread_mutex_t lock;  // one message at a time; what follows is under it
+    atomic_bool ended;
+    char *blamed, how[HELPER_WHY];  // at which file, and how
+};
+
+static pthread_mutex_t table_lock = PTHREAD_MUTEX_INITIALIZER;
+static struct helper_process *table;
+
+static struct helper_process *new_process(enum helper_kind kind, struct helper_reply *reply)
 {
     const struct helper_order order = {.version = RELUME_VERSION, .kind = kind};
-    struct helper_reply reply;
-    int ends[2];
-    *job = (struct helper_job){.channel = -1};
-    if (!channel_pair(ends)) {
-        snprintf(job->why, HELPER_WHY, "no channel to relume-helper; %s", strerror(errno));
-        return RELUME_ESYSTEM;
-    }
-    const bool good = ask_in_turn(&reply, &order, ends[1]) && reply.process > 0;
-    close(ends[1]);
+    struct helper_process *p = mem_zeroed(1, sizeof *p);
+    int ends[2] = {-1, -1};
+    *reply = (struct helper_reply){.error = p ? 0 : ENOMEM};
+    if (p && !channel_pair(ends))
+        reply->error = errno;
+    const bool good = !reply->error && ask_in_turn(reply, &order, ends[1]) && reply->process > 0;
+    if (ends[1] >= 0)
+        close(ends[1]);
     if (!good) {
-        close(ends[0]);
-        snprintf(job->why, HELPER_WHY, "%s", reply.why);
-        return RELUME_ESYSTEM;
+        if (ends[0] >= 0)
+            close(ends[0]);
+        free(p);
+        return NULL;
     }
-    job->channel = ends[0];
-    job->process = reply.process;
-    return RELUME_OK;
+    p->kind = kind;
+    p->channel = ends[0];
+    p->id = reply->process;
+    pthread_mutex_init(&p->lock, NULL);
+    return p;
 }
 
-// Its channel is closed, so it ends, or has.
-static relume_status find_out(struct helper_job *job)
+static void free_process(struct helper_process *p)
 {
-    const struct helper_order order = {.version = RELUME_VERSION, .ended = job->process};
+    close(p->channel);
+    pthread_mutex_destroy(&p->lock);
+    free(p->blamed);
+    free(p);
+}
+
+// One that will not wait much longer for work, or does not any more.
+static bool is_stale(const struct helper_process *p)
+{
+    struct timespec now;
+    struct pollfd end = {.fd = p->channel, .events = POLLIN};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return p->jobs == 0 &&
+           (now.tv_sec - p->idle.tv_sec >= HELPER_IDLE_S / 2 || poll(&end, 1, 0) != 0);
+}
+
+static void drop_stale(void)
+{
+    for (struct helper_process **at = &table, *p; (p = *at);)
+        if (is_stale(p)) {
+            *at = p->next;
+            free_process(p);
+        } else {
+            at = &p->next;
+        }
+}
+
+// The living one with the fewest jobs; NULL where another one may be made.
+static struct helper_process *least_busy(enum helper_kind kind)
+{
+    enum { MOST = 16 };
+    const int cpus = relume_cpu_count(), most = cpus < MOST ? cpus : MOST;
+    struct helper_process *least = NULL;
+    int count = 0;
+    for (struct helper_process *p = table; p; p = p->next)
+        if (p->kind == kind && !atomic_load(&p->ended)) {
+            count++;
+            if (!least || p->jobs < least->jobs)
+                least = p;
+        }
+    return least && (least->jobs == 0 || count >= most) ? least : NULL;
+}
+
+static struct helper_process *process_for(enum helper_kind kind, struct helper_reply *reply)
+{
+    pthread_mutex_lock(&table_lock);
+    drop_stale();
+    struct helper_process *p = kind == HELPER_PICTURE ? least_busy(kind) : NULL;
+    if (!p && (p = new_process(kind, reply))) {
+        p->next = table;
+        table = p;
+    }
+    if (p)
+        p->jobs++;
+    pthread_mutex_unlock(&table_lock);
+    return p;
+}
+
+// ---------------------------------------------------------------- jobs
+
+relume_status helper_start(struct helper_job *job, enum helper_kind kind, const char *path,
+                           const struct relume_log *log)
+{
+    static const char *const what[] = {
+        [HELPER_PICTURE] = "image formats", [HELPER_MESH] = "models"};
     struct helper_reply reply;
-    close(job->channel);
-    job->channel = -1;
+    *job = (struct helper_job){.path = mem_text(path)};
+    if (job->path && (job->process = process_for(kind, &reply)))
+        return RELUME_OK;
+    const int error = job->path ? reply.error : ENOMEM;
+    free(job->path);
+    job->path = NULL;
+    if (error == ENOMEM || error == EMFILE || error == ENFILE)
+        return relume_input_fail(log, path, "cannot be read", error);
+    return log_fail(log, RELUME_ESYSTEM, "%s: the module for %s cannot be loaded; %s", path,
+                    what[kind], reply.why);
+}
+
+// It has closed its channel, so it ends, or has.
+static void find_out(struct helper_process *p, const char *path)
+{
+    const struct helper_order order = {.version = RELUME_VERSION, .ended = p->id};
+    struct helper_reply reply;
+    shutdown(p->channel, SHUT_RDWR);
+    atomic_store(&p->ended, true);
+    p->blamed = mem_text(path);
     const int how = ask_in_turn(&reply, &order, -1) ? reply.how : 0;
     const int number = WIFSIGNALED(how) ? WTERMSIG(how) : 0;
-    if (number == SIGXCPU || number == SIGKILL)
-        snprintf(job->why, HELPER_WHY,
+    if (number == SIGXCPU)
+        snprintf(p->how, HELPER_WHY,
                  "reading it takes for ever; damaged, or made to keep machines busy");
+    else if (number == SIGKILL)
+        snprintf(p->how, HELPER_WHY, "its reader was killed; the machine may be short of memory");
     else
-        snprintf(job->why, HELPER_WHY, "its reader crashed (%s); damaged, or made to do harm",
+        snprintf(p->how, HELPER_WHY, "its reader crashed (%s); damaged, or made to do harm",
                  number ? strsignal(number) : "no answer");
+}
+
+static relume_status ask_process(struct helper_process *p, struct helper_job *job,
+                                 const void *message, size_t size, int file, void *answer,
+                                 size_t answer_size)
+{
+    const bool lost = atomic_load(&p->ended);
+    if (!lost && channel_send(p->channel, message, size, file) &&
+        channel_receive(p->channel, answer, answer_size, NULL))
+        return RELUME_OK;
+    if (!lost)
+        find_out(p, job->path);
+    if (!lost || (p->blamed && !strcmp(p->blamed, job->path)))
+        snprintf(job->why, HELPER_WHY, "%s", p->how);
+    else
+        snprintf(job->why, HELPER_WHY, "was read beside %.200s: %.150s",
+                 p->blamed ? p->blamed : "another", p->how);
     return RELUME_EDATA;
 }
 
-relume_status helper_tell(struct helper_job *job, const void *message, size_t size, int file)
+relume_status helper_ask(struct helper_job *job, const void *message, size_t size, int file,
+                         void *answer, size_t answer_size)
 {
-    if (job->channel < 0)
+    struct helper_process *p = job->process;
+    if (!p)
         return RELUME_EDATA;
-    return channel_send(job->channel, message, size, file) ? RELUME_OK : find_out(job);
+    pthread_mutex_lock(&p->lock);
+    const relume_status status = ask_process(p, job, message, size, file, answer, answer_size);
+    pthread_mutex_unlock(&p->lock);
+    return status;
 }
 
-relume_status helper_hear(struct helper_job *job, void *answer, size_t size)
-{
-    if (job->channel < 0)
-        return RELUME_EDATA;
-    return channel_receive(job->channel, answer, size, NULL) ? RELUME_OK : find_out(job);
-}
-
+// A model's process, and one that has ended, serve nobody any more.
 void helper_end(struct helper_job *job)
 {
-    if (job->process && job->channel >= 0)
-        close(job->channel);
-    *job = (struct helper_job){.channel = -1};
+    struct helper_process *p = job->process, **at = &table;
+    pthread_mutex_lock(&table_lock);
+    if (p && --p->jobs == 0) {
+        clock_gettime(CLOCK_MONOTONIC, &p->idle);
+        while (*at != p)
+            at = &(*at)->next;
+        if (p->kind != HELPER_PICTURE || atomic_load(&p->ended)) {
+            *at = p->next;
+            free_process(p);
+        }
+    }
+    pthread_mutex_unlock(&table_lock);
+    free(job->path);
+    *job = (struct helper_job){0};
 }

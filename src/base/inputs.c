@@ -3,8 +3,8 @@
 #include "base/beside.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/tree.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -128,26 +128,28 @@ static bool holds(relume_inputs *i, const struct stat *s)
     return found;
 }
 
+static char *path_if_read(relume_inputs *inputs, char *path)
+{
+    struct stat s;
+    if (path && !lstat(path, &s) && holds(inputs, &s))
+        return path;
+    free(path);
+    return NULL;
+}
+
 // The first thing in or below `path` that is read, as a new string; NULL when there is none. Links
 // are not followed: removing them takes nothing away.
 static char *find_read(relume_inputs *inputs, const char *path)
 {
     struct stat s;
-    if (lstat(path, &s))
-        return NULL;
-    if (holds(inputs, &s))
-        return mem_text(path);
-    DIR *dir = S_ISDIR(s.st_mode) ? opendir(path) : NULL;
-    char *found = NULL;
-    for (struct dirent *e; dir && !found && (e = readdir(dir));) {
-        if (!strcmp(e->d_name, ".") || !strcmp(e->d_name, ".."))
-            continue;
-        char *inner = mem_format("%s/%s", path, e->d_name);
-        found = inner ? find_read(inputs, inner) : mem_text(path);
-        free(inner);
-    }
-    if (dir)
-        closedir(dir);
+    struct tree_list all = {0};
+    char *found = path_if_read(inputs, mem_text(path));
+    if (!found && !lstat(path, &s) && S_ISDIR(s.st_mode))
+        (void)!tree_list(&all, path);  // what may not be listed cannot be removed
+    for (size_t i = 0; !found && i < all.count; i++)
+        if (all.item[i].name)
+            found = path_if_read(inputs, mem_format("%s/%s", path, all.item[i].name));
+    tree_list_free(&all);
     return found;
 }
 

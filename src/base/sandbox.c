@@ -181,6 +181,10 @@ static void filter_calls(void)
 
 void sandbox_close(void)
 {
+    static bool closed;
+    if (closed)
+        return;
+    closed = true;
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0))
         return;
     hide_files();
@@ -189,17 +193,19 @@ void sandbox_close(void)
 
 // ---------------------------------------------------------------- resources
 
-static void limit(int which, uint64_t most)
+// False where there is less.
+static bool limit(int which, uint64_t most)
 {
     struct rlimit l;
     if (getrlimit((__rlimit_resource_t)which, &l))
-        return;
+        return true;
     l.rlim_cur = l.rlim_max == RLIM_INFINITY || most < l.rlim_max ? most : l.rlim_max;
     (void)!setrlimit((__rlimit_resource_t)which, &l);
+    return l.rlim_cur == most;
 }
 
 // Sanitizers take terabytes of addresses, and none of memory.
-void sandbox_memory(uint64_t bytes)
+bool sandbox_memory(uint64_t bytes)
 {
 #if !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
     static uint64_t start;
@@ -212,15 +218,28 @@ void sandbox_memory(uint64_t bytes)
             fclose(f);
         start = (uint64_t)pages * (uint64_t)sysconf(_SC_PAGESIZE);
     }
-    limit(RLIMIT_AS, start + bytes);
+    return limit(RLIMIT_AS, start + bytes);
 #else
     (void)bytes;
+    return true;
 #endif
 }
 
-void sandbox_time(unsigned seconds)
+double sandbox_time_used(void)
 {
     struct rusage used;
     getrusage(RUSAGE_SELF, &used);
-    limit(RLIMIT_CPU, (uint64_t)used.ru_utime.tv_sec + (uint64_t)used.ru_stime.tv_sec + seconds);
+    return (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+           1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+}
+
+// At the softer limit comes a signal that tells what happened, at the hard one merely the end.
+void sandbox_time(double seconds)
+{
+    struct rlimit l;
+    uint64_t most = 1 + (uint64_t)(sandbox_time_used() + seconds);
+    if (!getrlimit(RLIMIT_CPU, &l) && l.rlim_max != RLIM_INFINITY && most >= l.rlim_max &&
+        l.rlim_max > 1)
+        most = l.rlim_max - 1;
+    (void)limit(RLIMIT_CPU, most);
 }

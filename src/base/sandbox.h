@@ -2,6 +2,7 @@
 #ifndef BASE_SANDBOX_H
 #define BASE_SANDBOX_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 // From here on the process may compute, and read and write what is open already: nothing is opened,
@@ -9,9 +10,12 @@
 // has that; without them the process is merely one of its own).
 void sandbox_close(void);
 
-// Memory beyond what is in use now, and time on a processor beyond what is used up; both may be set
-// again, up or down.
-void sandbox_memory(uint64_t bytes);
-void sandbox_time(unsigned seconds);
+// Memory beyond what was in use at the first call, and time on a processor beyond what is used up;
+// both may be set again, up or down. sandbox_memory is false where the process was started with
+// less (ulimit -v).
+bool sandbox_memory(uint64_t bytes);
+void sandbox_time(double seconds);
+// Time on processors so far.
+double sandbox_time_used(void);
 
 #endif

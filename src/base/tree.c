@@ -105,8 +105,6 @@ static struct tree_entry *more(struct tree_list *list)
     return &list->item[list->count++];
 }
 
-static bool list_into(struct tree_list *out, const char *root, const char *within);
-
 // `within` is "" or ends in a slash.
 static bool list_entry(struct tree_list *out, const char *root, const char *within,
                        const char *name)
@@ -123,13 +121,10 @@ static bool list_entry(struct tree_list *out, const char *root, const char *with
         return false;
     e->is_folder = S_ISDIR(s.st_mode);
     e->size = S_ISREG(s.st_mode) || S_ISLNK(s.st_mode) ? (int64_t)s.st_size : -1;
-    char *inner = e->is_folder ? mem_format("%s/", e->name) : NULL;
-    const bool listed = !e->is_folder || (inner && list_into(out, root, inner));
-    free(inner);
-    return listed;
+    return true;
 }
 
-static bool list_into(struct tree_list *out, const char *root, const char *within)
+static bool list_folder(struct tree_list *out, const char *root, const char *within)
 {
     char *path = mem_format("%s/%s", root, within);
     DIR *dir = path ? opendir(path) : NULL;
@@ -145,6 +140,19 @@ static bool list_into(struct tree_list *out, const char *root, const char *withi
     return good;
 }
 
+// Folders found are listed when their own folder is closed: one descriptor at any depth.
+static bool list_all(struct tree_list *out, const char *root)
+{
+    bool good = list_folder(out, root, "");
+    for (size_t i = 0; good && i < out->count; i++)
+        if (out->item[i].is_folder) {
+            char *inner = mem_format("%s/", out->item[i].name);
+            good = inner && list_folder(out, root, inner);
+            free(inner);
+        }
+    return good;
+}
+
 static int by_name(const void *a, const void *b)
 {
     return strcmp(((const struct tree_entry *)a)->name, ((const struct tree_entry *)b)->name);
@@ -153,7 +161,7 @@ static int by_name(const void *a, const void *b)
 bool tree_list(struct tree_list *out, const char *path)
 {
     *out = (struct tree_list){0};
-    if (!list_into(out, path, ""))
+    if (!list_all(out, path))
         return false;
     if (out->count)
         qsort(out->item, out->count, sizeof *out->item, by_name);
@@ -212,5 +220,5 @@ static int remove_entry(const char *path, const struct stat *s, int type, struct
 
 void tree_remove(const char *path)
 {
-    nftw(path, remove_entry, 16, FTW_DEPTH | FTW_PHYS | FTW_MOUNT);
+    nftw(path, remove_entry, 1, FTW_DEPTH | FTW_PHYS | FTW_MOUNT);  // one descriptor
 }

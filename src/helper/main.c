@@ -1,8 +1,7 @@
 // main.c - relume-helper: the program in which foreign files are read (base/helper.h)
 //
-// It loads a reader's module when the first file of its kind comes, and forks a process for every
-// file: that starts in milliseconds, and nothing of one file is left for the next. It ends with the
-// process that started it, or when nobody asked for a while.
+// It loads a reader's module when the first file of its kind comes, and forks the processes that
+// read. It ends with the process that started it, or when nobody asked for a while.
 #include "base/channel.h"
 #include "base/helper.h"
 #include "base/module.h"
@@ -20,8 +19,6 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-enum { IDLE_MS = 60000, PROCESS_CHANNEL = 4 };
 
 static const struct {
     const char *module;
@@ -56,7 +53,7 @@ static int how_ended(pid_t process)
     return waitpid(process, &how, 0) == process ? how : 0;
 }
 
-// The process of one file. It has nothing of the others: no channel to the program that starts
+// A process that reads. It has nothing of the others: no channel to the program that starts
 // processes, and no core file, which would be large and has somebody's picture in it.
 static _Noreturn void serve(int kind, int channel, const void *bridge)
 {
@@ -69,6 +66,18 @@ static _Noreturn void serve(int kind, int channel, const void *bridge)
     _exit(0);
 }
 
+// The linker's sentence ends in the system's, and in nothing where addresses are short.
+static int lacks(const char *why)
+{
+    static const char short_of_addresses[] = "failed to map segment from shared object";
+    static const int errors[] = {ENOMEM, EMFILE, ENFILE};
+    const char *map = strstr(why, short_of_addresses);
+    for (size_t i = 0; i < sizeof errors / sizeof *errors; i++)
+        if (strstr(why, strerror(errors[i])))
+            return errors[i];
+    return map && !map[sizeof short_of_addresses - 1] ? ENOMEM : 0;
+}
+
 static void start_process(struct helper_reply *reply, int kind, int channel)
 {
     static const void *bridges[KINDS];
@@ -76,12 +85,15 @@ static void start_process(struct helper_reply *reply, int kind, int channel)
         return;
     if (!bridges[kind])
         bridges[kind] = module_open(kinds[kind].module, reply->why);
-    if (!bridges[kind])
+    if (!bridges[kind]) {
+        reply->error = lacks(reply->why);
         return;
+    }
     const pid_t process = fork();
     if (process == 0)
         serve(kind, channel, bridges[kind]);
     reply->process = process > 0 ? process : 0;
+    reply->error = process < 0 ? errno : 0;
     if (process < 0)
         snprintf(reply->why, sizeof reply->why, "no process; %s", strerror(errno));
 }
@@ -127,7 +139,7 @@ int main(void)
     settle();
     struct pollfd asked = {.fd = HELPER_CHANNEL, .events = POLLIN};
     for (;;) {
-        const int waited = poll(&asked, 1, IDLE_MS);
+        const int waited = poll(&asked, 1, HELPER_IDLE_S * 1000);
         const bool busy = reap();
         if (waited == 0 && !busy)
             _exit(0);

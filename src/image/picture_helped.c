@@ -1,5 +1,5 @@
-// picture_helped.c - pictures of other formats, read by OpenImageIO in a process of their own. What
-// comes back is believed as little as the file.
+// picture_helped.c - pictures of other formats, read by OpenImageIO in other processes. What comes
+// back is believed as little as the file.
 #include "base/channel.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -15,6 +15,8 @@
 struct helped {
     picture_reader reader;  // first
     struct helper_job job;
+    int place;          // there; -1: it is not open
+    bool limit_is_set;  // of memory
     struct relume_notes notes;
     void *profile;
     size_t profile_bytes;
@@ -25,27 +27,27 @@ struct helped {
 
 enum { MOST_BAND_ROWS = 16, MOST_BAND_BYTES = 4 << 20 };
 
-static relume_status ask(struct helped *h, struct picture_answer *answer,
-                         const struct picture_ask *ask, int file)
+static relume_status ask(struct helped *h, struct picture_answer *answer, struct picture_ask what,
+                         int file)
 {
-    relume_status status = helper_tell(&h->job, ask, sizeof *ask, file);
-    if (!status)
-        status = helper_hear(&h->job, answer, sizeof *answer);
+    what.place = h->place;
+    const relume_status status =
+        helper_ask(&h->job, &what, sizeof what, file, answer, sizeof *answer);
     if (status) {
         snprintf(h->why, sizeof h->why, "%s", h->job.why);
         return status;
     }
     answer->why[HELPER_WHY - 1] = '\0';
-    snprintf(h->why, sizeof h->why, "%s", answer->why);
-    if (answer->status == RELUME_ENOMEM)
-        snprintf(h->why, sizeof h->why,
-                 "its reader needs more memory than it may have (--max-memory)");
+    const char *why = answer->why;
+    if (answer->status == RELUME_ENOMEM &&
+        !(why = helper_short_of(answer->memory, h->limit_is_set)))
+        return RELUME_ENOMEM;
+    snprintf(h->why, sizeof h->why, "%s", why);
     return answer->status ? RELUME_EDATA : RELUME_OK;
 }
 
 // Memory of both processes, which the other one is told of.
-static void *share(struct helped *h, size_t bytes, const struct picture_ask *what,
-                   relume_status *status)
+static void *share(struct helped *h, size_t bytes, struct picture_ask what, relume_status *status)
 {
     struct picture_answer answer;
     const int memory = channel_memory(bytes);
@@ -67,7 +69,7 @@ static relume_status fetch_profile(struct helped *h, uint64_t bytes)
     relume_status status;
     if (bytes == 0 || bytes > MOST)
         return RELUME_OK;
-    void *map = share(h, (size_t)bytes, &what, &status);
+    void *map = share(h, (size_t)bytes, what, &status);
     if (!map)
         return status;
     h->profile = mem_copy(map, (size_t)bytes, 1);
@@ -90,7 +92,7 @@ static relume_status make_band(struct helped *h)
                                                                     : MOST_BAND_ROWS};
     relume_status status;
     h->band_bytes = (size_t)what.rows * row;
-    h->band = share(h, h->band_bytes, &what, &status);
+    h->band = share(h, h->band_bytes, what, &status);
     return status;
 }
 
@@ -104,7 +106,7 @@ static relume_status read_rows(struct helped *h, int what, int row, int rows, ui
         return RELUME_EINVAL;
     while (!status && rows > 0) {
         const int n = rows < most ? rows : most;
-        status = ask(h, &answer, &(struct picture_ask){.what = what, .row = row, .rows = n}, -1);
+        status = ask(h, &answer, (struct picture_ask){.what = what, .row = row, .rows = n}, -1);
         if (!status)
             memcpy(out, h->band, (size_t)n * bytes);
         out += (size_t)n * bytes;
@@ -144,6 +146,9 @@ static const char *error(const picture_reader *reader)
 static void close_helped(picture_reader *reader)
 {
     struct helped *h = (struct helped *)reader;
+    struct picture_answer answer;
+    if (h->place >= 0)
+        (void)!ask(h, &answer, (struct picture_ask){.what = PICTURE_CLOSE}, -1);
     helper_end(&h->job);
     if (h->band)
         munmap(h->band, h->band_bytes);
@@ -199,9 +204,10 @@ static relume_status open_there(struct helped *h, int file, const char *path,
         .what = PICTURE_OPEN, .limits = limits_or_default(limits), .file_bytes = file_bytes};
     snprintf(what.format, sizeof what.format, "%s", kind->reader);
     snprintf(what.name, sizeof what.name, "%s", slash ? slash + 1 : path);
-    const relume_status status = ask(h, &answer, &what, file);
+    const relume_status status = ask(h, &answer, what, file);
     if (status)
         return status;
+    h->place = answer.place;
     make_whole(&answer);
     h->reader.info = answer.info;
     h->notes = answer.notes;
@@ -221,12 +227,11 @@ relume_status helped_picture_open(picture_reader **out, int file, const char *pa
     if (!h)
         return RELUME_ENOMEM;
     h->reader.format = &format;
-    relume_status status = helper_start(&h->job, HELPER_PICTURE);
-    if (status)
-        (void)log_fail(log, status, "%s: the module for image formats cannot be loaded; %s", path,
-                       h->job.why);
-    else if ((status = open_there(h, file, path, kind, file_bytes, limits)) &&
-             status != RELUME_ENOMEM)
+    h->place = -1;
+    h->limit_is_set = limits && limits->max_memory;
+    relume_status status = helper_start(&h->job, HELPER_PICTURE, path, log);
+    if (!status && (status = open_there(h, file, path, kind, file_bytes, limits)) &&
+        status != RELUME_ENOMEM)
         (void)log_fail(log, status, "%s: %s", path, h->why);
     if (status)
         close_helped(&h->reader);

@@ -1,4 +1,4 @@
-// picture_serve.c - in the helper: one file, read by OpenImageIO for the process that sent it
+// picture_serve.c - in the helper: files, read by OpenImageIO for the process that sent them
 #include "image/picture_serve.h"
 
 #include "base/channel.h"
@@ -8,20 +8,31 @@
 #include "image/picture.h"
 #include "image/picture_format.h"
 
+#include <errno.h>
+#include <poll.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
-struct serving {
-    int channel;
-    const struct oiio_bridge *bridge;
-    picture_reader *reader;
-    struct picture_ask ask;
-    struct picture_answer answer;
-    int file;  // what came with the message, or -1
+// An open picture.
+struct place {
+    picture_reader *reader;  // NULL: free
     void *band;
     size_t band_bytes;
+    uint64_t memory;  // what it may take
+    bool limited;     // to less than its kind should
+    double seconds;   // what is left of its time
+};
+
+struct serving {
+    const struct oiio_bridge *bridge;
+    struct picture_ask ask;
+    struct picture_answer answer;
+    int file;  // what came with the message, until somebody takes it over; or -1
+    struct place *places;
+    int count;
+    bool machine_has_less;
 };
 
 size_t picture_row_bytes(const struct picture_info *info, bool floats)
@@ -45,34 +56,74 @@ static uint64_t least(uint64_t a, uint64_t b)
     return a < b ? a : b;
 }
 
-static void open_file(struct serving *s)
+// What `p` may take, beside what the others may.
+static void allow(struct serving *s, struct place *p, uint64_t memory, double seconds)
+{
+    const uint64_t most = s->ask.limits.max_memory;
+    uint64_t all = 0;
+    p->memory = least(memory, most);
+    p->limited = most < memory;
+    p->seconds = seconds;
+    for (int i = 0; i < s->count; i++)
+        all += s->places[i].memory;
+    s->machine_has_less = !sandbox_memory(all);
+    sandbox_time(seconds);
+}
+
+static struct place *free_place(struct serving *s)
+{
+    for (int i = 0; i < s->count; i++)
+        if (!s->places[i].reader)
+            return &s->places[i];
+    const int more = s->count ? 2 * s->count : 8;
+    struct place *places = mem_resize(s->places, (size_t)more, sizeof *places);
+    if (!places)
+        return NULL;
+    memset(places + s->count, 0, (size_t)(more - s->count) * sizeof *places);
+    struct place *first = places + s->count;
+    s->places = places;
+    s->count = more;
+    return first;
+}
+
+static void close_picture(struct place *p)
+{
+    if (p->reader)
+        p->reader->format->close(p->reader);
+    if (p->band)
+        munmap(p->band, p->band_bytes);
+    *p = (struct place){0};
+}
+
+static void open_file(struct serving *s, struct place *p)
 {
     const struct picture_ask *ask = &s->ask;
     const struct relume_log log = {.message = hear_why, .user = &s->answer};
-    const uint64_t most = ask->limits.max_memory;
     enum { FIRST_SECONDS = 10, BYTES_A_SECOND = 4 << 20, SAMPLES_A_SECOND = 1000000 };
-    sandbox_memory(least(most, HEADER_MEMORY + 64 * ask->file_bytes));
-    sandbox_time(FIRST_SECONDS + (unsigned)(ask->file_bytes / BYTES_A_SECOND));
+    const uint64_t first = HEADER_MEMORY + 64 * ask->file_bytes;
+    allow(s, p, first, FIRST_SECONDS + (double)ask->file_bytes / BYTES_A_SECOND);
     sandbox_close();
     s->answer.status =
-        s->bridge->open(&s->reader, s->file, ask->format, ask->name, &ask->limits, &log);
+        s->bridge->open(&p->reader, s->file, ask->format, ask->name, &ask->limits, &log);
+    s->file = -1;
     if (s->answer.status)
         return;
-    s->answer.info = s->reader->info;
-    s->reader->format->notes(s->reader, &s->answer.notes);
+    s->answer.place = (int)(p - s->places);
+    s->answer.info = p->reader->info;
+    p->reader->format->notes(p->reader, &s->answer.notes);
     size_t profile;
-    (void)s->reader->format->profile(s->reader, &profile);
+    (void)p->reader->format->profile(p->reader, &profile);
     s->answer.profile_bytes = profile;
     const uint64_t samples =
-        (uint64_t)s->reader->info.height * picture_row_bytes(&s->reader->info, false);
-    sandbox_memory(least(most, HEADER_MEMORY + 64 * ask->file_bytes + 24 * samples));
-    sandbox_time(2 * FIRST_SECONDS + (unsigned)least(samples / SAMPLES_A_SECOND, 100000));
+        (uint64_t)p->reader->info.height * picture_row_bytes(&p->reader->info, false);
+    allow(s, p, first + 24 * samples,
+          2 * FIRST_SECONDS + (double)least(samples / SAMPLES_A_SECOND, 100000));
 }
 
-static void hand_profile(struct serving *s)
+static void hand_profile(struct serving *s, struct place *p)
 {
     size_t size;
-    const void *profile = s->reader->format->profile(s->reader, &size);
+    const void *profile = p->reader->format->profile(p->reader, &size);
     void *to = profile ? channel_map(s->file, size) : NULL;
     if (to) {
         memcpy(to, profile, size);
@@ -81,41 +132,83 @@ static void hand_profile(struct serving *s)
     s->answer.status = to ? RELUME_OK : RELUME_EDATA;
 }
 
-static void take_band(struct serving *s)
+static void take_band(struct serving *s, struct place *p)
 {
-    s->band_bytes =
-        (size_t)s->ask.rows * picture_row_bytes(&s->reader->info, !s->reader->info.bytes);
-    s->band = channel_map(s->file, s->band_bytes);
-    s->answer.status = s->band ? RELUME_OK : RELUME_ENOMEM;
+    const size_t bytes =
+        (size_t)s->ask.rows * picture_row_bytes(&p->reader->info, !p->reader->info.bytes);
+    void *band = p->band ? NULL : channel_map(s->file, bytes);
+    s->answer.status = band ? RELUME_OK : RELUME_ENOMEM;
+    if (band) {
+        p->band = band;
+        p->band_bytes = bytes;
+    }
 }
 
-static void read_rows(struct serving *s, bool floats)
+static void read_rows(struct serving *s, struct place *p, bool floats)
 {
-    const struct picture_format *format = s->reader->format;
+    const struct picture_format *format = p->reader->format;
     const int row = s->ask.row, rows = s->ask.rows;
-    const size_t bytes = (size_t)rows * picture_row_bytes(&s->reader->info, floats);
-    if (!s->band || row < 0 || rows < 1 || rows > s->reader->info.height - row ||
-        bytes > s->band_bytes)
+    const size_t bytes = (size_t)rows * picture_row_bytes(&p->reader->info, floats);
+    if (!p->band || row < 0 || rows < 1 || rows > p->reader->info.height - row ||
+        bytes > p->band_bytes)
         s->answer.status = RELUME_EINVAL;
     else
-        s->answer.status = floats ? format->read_floats(s->reader, row, rows, s->band)
-                                  : format->read_bytes(s->reader, row, rows, s->band);
-    snprintf(s->answer.why, sizeof s->answer.why, "%s", format->error(s->reader));
+        s->answer.status = floats ? format->read_floats(p->reader, row, rows, p->band)
+                                  : format->read_bytes(p->reader, row, rows, p->band);
+    snprintf(s->answer.why, sizeof s->answer.why, "%s", format->error(p->reader));
 }
 
-static void obey(struct serving *s)
+static void obey(struct serving *s, struct place *p)
+{
+    s->answer.status = RELUME_OK;
+    sandbox_time(p->seconds);
+    switch (s->ask.what) {
+    case PICTURE_OPEN: open_file(s, p); break;
+    case PICTURE_PROFILE: hand_profile(s, p); break;
+    case PICTURE_BAND: take_band(s, p); break;
+    case PICTURE_READ_BYTES: read_rows(s, p, false); break;
+    case PICTURE_READ_FLOATS: read_rows(s, p, true); break;
+    case PICTURE_CLOSE: close_picture(p); break;
+    }
+}
+
+static void answer(struct serving *s)
 {
     const bool open = s->ask.what == PICTURE_OPEN;
+    const int place = s->ask.place;
     s->answer = (struct picture_answer){.status = RELUME_EINVAL};
-    if (open == !!s->reader)
+    struct place *p = open                             ? free_place(s)
+                      : place >= 0 && place < s->count ? &s->places[place]
+                                                       : NULL;
+    if (!p || (!open && !p->reader))
         return;
-    switch (s->ask.what) {
-    case PICTURE_OPEN: open_file(s); break;
-    case PICTURE_PROFILE: hand_profile(s); break;
-    case PICTURE_BAND: take_band(s); break;
-    case PICTURE_READ_BYTES: read_rows(s, false); break;
-    case PICTURE_READ_FLOATS: read_rows(s, true); break;
-    }
+    const double start = sandbox_time_used();
+    obey(s, p);
+    p->seconds -= sandbox_time_used() - start;
+    s->answer.memory = s->machine_has_less ? HELPER_SHORT_MACHINE
+                       : p->limited        ? HELPER_SHORT_LIMIT
+                                           : HELPER_SHORT_FILE;
+    if (!p->reader)
+        close_picture(p);  // it may take nothing any more
+}
+
+static bool is_idle(const struct serving *s)
+{
+    for (int i = 0; i < s->count; i++)
+        if (s->places[i].reader)
+            return false;
+    return true;
+}
+
+// False when nobody asks for long; what is open is asked for some day.
+static bool wait_for_work(const struct serving *s, int channel)
+{
+    struct pollfd asked = {.fd = channel, .events = POLLIN};
+    int waited;
+    do
+        waited = poll(&asked, 1, is_idle(s) ? HELPER_IDLE_S * 1000 : -1);
+    while (waited < 0 && errno == EINTR);
+    return waited > 0;
 }
 
 void picture_serve(int channel, const void *bridge)
@@ -123,12 +216,11 @@ void picture_serve(int channel, const void *bridge)
     struct serving *s = mem_zeroed(1, sizeof *s);
     if (!s)
         return;
-    s->channel = channel;
     s->bridge = bridge;
-    while (channel_receive(channel, &s->ask, sizeof s->ask, &s->file)) {
-        obey(s);
-        // the picture's own file stays open for its reader
-        if (s->file >= 0 && s->ask.what != PICTURE_OPEN)
+    while (wait_for_work(s, channel) &&
+           channel_receive(channel, &s->ask, sizeof s->ask, &s->file)) {
+        answer(s);
+        if (s->file >= 0)
             close(s->file);
         if (!channel_send(channel, &s->answer, sizeof s->answer, -1))
             return;

@@ -1,20 +1,21 @@
-// picture_serve.h - pictures read in a process of their own: what it is asked, and what it answers
+// picture_serve.h - pictures read in other processes: what one is asked, and what it answers
 #ifndef IMAGE_PICTURE_SERVE_H
 #define IMAGE_PICTURE_SERVE_H
 
 #include "base/helper.h"
 #include "image/picture.h"
 
-// Messages to the process. An answer follows PICTURE_OPEN and the READs.
+// Messages to the process, which may have many pictures open; each is answered.
 enum picture_ask_what {
-    PICTURE_OPEN,        // with the file
+    PICTURE_OPEN,        // with the file; the answer's `place` is what the others name
     PICTURE_PROFILE,     // with memory for the profile, which is put there
     PICTURE_BAND,        // with memory for `rows` rows
     PICTURE_READ_BYTES,  // rows `row` to row + rows - 1 into the band
     PICTURE_READ_FLOATS,
+    PICTURE_CLOSE,
 };
 struct picture_ask {
-    int what;
+    int what, place;
     int row, rows;
     struct relume_limits limits;  // PICTURE_OPEN
     uint64_t file_bytes;
@@ -22,7 +23,8 @@ struct picture_ask {
     char name[256];   // of the file, for its extension
 };
 struct picture_answer {
-    int status;  // relume_status
+    int status;         // relume_status
+    int memory, place;  // RELUME_ENOMEM: enum helper_short; PICTURE_OPEN
     char why[HELPER_WHY];
     struct picture_info info;  // PICTURE_OPEN
     struct relume_notes notes;

@@ -57,9 +57,7 @@ static int open_beside(const char *path, const char *name, const struct relume_l
 static relume_status ask(struct helper_job *job, struct mesh_answer *answer,
                          const struct mesh_ask *what, int file)
 {
-    relume_status status = helper_tell(job, what, sizeof *what, file);
-    if (!status)
-        status = helper_hear(job, answer, sizeof *answer);
+    const relume_status status = helper_ask(job, what, sizeof *what, file, answer, sizeof *answer);
     if (status)
         return status;
     answer->text[sizeof answer->text - 1] = '\0';
@@ -160,7 +158,7 @@ static relume_status fetch(struct mesh_file *out, struct helper_job *job,
 static relume_status read_there(struct mesh_file *out, struct helper_job *job, const char *path,
                                 int file, uint64_t file_bytes, const struct relume_log *log)
 {
-    const struct relume_limits limits = limits_or_default(log ? log->limits : NULL);
+    const struct relume_limits *given = limits_of(NULL, log), limits = limits_or_default(given);
     const char *slash = strrchr(path, '/');
     struct mesh_answer answer;
     struct mesh_ask what = {
@@ -169,10 +167,13 @@ static relume_status read_there(struct mesh_file *out, struct helper_job *job, c
     relume_status status = have_read(job, &answer, path, file, &what, log);
     if (status)
         return log_fail(log, status, "%s: cannot be read as a 3D model; %s", path, job->why);
-    if (answer.what != MESH_READ)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be read as a 3D model; %s", path,
-                        answer.text[0] ? answer.text
-                                       : "it needs more memory than it may have (--max-memory)");
+    if (answer.what != MESH_READ) {
+        const char *why = answer.text[0]
+                              ? answer.text
+                              : helper_short_of(answer.memory, given && given->max_memory);
+        return why ? log_fail(log, RELUME_EDATA, "%s: cannot be read as a 3D model; %s", path, why)
+                   : RELUME_ENOMEM;
+    }
     const size_t bytes = model_bytes(&answer, limits.max_memory);
     status = !answer.triangles ? RELUME_OK : bytes ? fetch(out, job, &answer, bytes) : RELUME_EDATA;
     if (status == RELUME_EDATA)
@@ -192,11 +193,8 @@ relume_status mesh_read_other(struct mesh_file *out, const char *path, const str
     const int file = open_regular(path, &bytes, log);
     if (file < 0)
         return RELUME_EDATA;
-    relume_status status = helper_start(&job, HELPER_MESH);
-    if (status)
-        (void)log_fail(log, status, "%s: the module for models cannot be loaded; %s", path,
-                       job.why);
-    else
+    relume_status status = helper_start(&job, HELPER_MESH, path, log);
+    if (!status)
         status = read_there(out, &job, path, file, bytes, log);
     helper_end(&job);
     close(file);

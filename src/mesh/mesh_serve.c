@@ -56,21 +56,23 @@ static struct mesh_answer answer_of(const struct mesh_file *m)
 }
 
 // Assimp holds texts many times their size, and a vertex as two hundred bytes.
-static void enter_sandbox(const struct mesh_ask *ask)
+static enum helper_short enter_sandbox(const struct mesh_ask *ask)
 {
     static const uint64_t always = 512 << 20;
     enum { TIMES = 256, SECONDS = 20, BYTES_A_SECOND = 1 << 19 };
     const uint64_t fit = always + TIMES * ask->file_bytes;
-    sandbox_memory(fit < ask->max_memory ? fit : ask->max_memory);
+    const bool limited = ask->max_memory < fit;
+    const bool fits = sandbox_memory(limited ? ask->max_memory : fit);
     sandbox_time(SECONDS + (unsigned)(ask->file_bytes / BYTES_A_SECOND));
     sandbox_close();
+    return !fits ? HELPER_SHORT_MACHINE : limited ? HELPER_SHORT_LIMIT : HELPER_SHORT_FILE;
 }
 
 static bool read_model(struct serving *s, const struct assimp_bridge *bridge)
 {
     struct mesh_answer answer = {.what = MESH_FAILED};
     const struct mesh_source source = {s->ask.name, open_for_assimp, s};
-    enter_sandbox(&s->ask);
+    answer.memory = (int)enter_sandbox(&s->ask);
     if (bridge->read(&s->model, &source, answer.text))
         answer = answer_of(&s->model);
     return channel_send(s->channel, &answer, sizeof answer, -1);

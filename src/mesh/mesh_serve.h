@@ -19,9 +19,10 @@ enum mesh_answer_what { MESH_NEEDS, MESH_READ, MESH_FAILED };
 struct mesh_answer {
     int what;
     bool has_uv, made_normals;
+    int memory;  // MESH_FAILED without a text: enum helper_short
     // MESH_READ. In memory these follow each other: vertices, triangles, the names, each with a 0.
     uint64_t vertices, triangles, parts, names_bytes;
-    char text[1024];  // the file that is needed, or why it failed; "": memory
+    char text[1024];  // the file that is needed, or why it failed
 };
 
 // What the process does until its channel is closed; `bridge` is the module's.

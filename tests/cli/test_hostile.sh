@@ -123,6 +123,48 @@ for _ in 1 2 3 4 5 6 7 8 9 10; do
 done
 check "helpers end with the tool" test "$(helpers_of_mark)" = 0
 
+# ---------------------------------------------------------------- readers that misbehave
+# A module in place of OpenImageIO does what the file's name says. Files share a process with those
+# that are open beside them, and blame goes to the right one. Time: ulimit -t bounds what the helper
+# allows itself, which would be ten seconds.
+mkdir odd odd/lib && cp good.tif odd/good.tif
+for name in loop rows crash memory; do cp good.tif odd/$name.tif; done
+if why=$(${CC:-gcc} -std=c11 -shared -fPIC -I"$TOP/include" -I"$TOP/src" -o odd/lib/librelume-oiio.so.0 \
+    "$TOP/tests/tools/preload/odd_reader.c" 2>&1); then
+    odd() { # status, pattern, command...
+        status=$1 pattern=$2
+        shift 2
+        expect_fail "odd reader: $pattern" "$status" "$pattern" out.bad \
+            env LD_LIBRARY_PATH="$PWD/odd/lib" timeout -k 1 20 "$@"
+    }
+    expect_ok "the odd reader reads" - env LD_LIBRARY_PATH="$PWD/odd/lib" \
+        "$RELUME" compare odd/good.tif odd/good.tif
+    odd 1 'odd/crash.tif: its reader crashed' "$RELUME" compare odd/good.tif odd/crash.tif
+    # more lights than processes: the one that crashes shares its process with others
+    { echo 6; for light in good crash good good good good; do
+        n=$((n + 1)); cp odd/$light.tif "odd/$light-$n.tif"
+        echo "$light-$n.tif .$((n % 10)) 0 .8"
+    done; } >odd/crash.lp
+    odd 1 'crash-8.tif.*: its reader crashed' "$RELUME" encode odd/crash.lp -o out.exr --basis ptm
+    case $BUILD in
+    *asan* | *tsan*) skip 'readers that take memory and time' 'sanitizers take their own' ;;
+    *)
+        odd 1 'odd/loop.tif: reading it takes for ever' \
+            sh -c "ulimit -t 2; exec \"\$@\"" sh "$RELUME" compare odd/good.tif odd/loop.tif
+        odd 1 'odd/rows.tif: .*reading it takes for ever' \
+            sh -c "ulimit -t 2; exec \"\$@\"" sh "$RELUME" compare odd/good.tif odd/rows.tif
+        odd 1 'odd/memory.tif: its reader needs more memory than a file of its size should' \
+            "$RELUME" compare odd/memory.tif odd/good.tif
+        odd 1 'odd/memory.tif: its reader needs more memory than it may have .--max-memory' \
+            "$RELUME" compare odd/memory.tif odd/good.tif --max-memory 64M
+        odd 3 'out of memory' \
+            sh -c "ulimit -v 300000; exec \"\$@\"" sh "$RELUME" compare odd/memory.tif odd/good.tif
+        ;;
+    esac
+else
+    not_ok 'the odd reader' "$why"
+fi
+
 # ---------------------------------------------------------------- work that asks nobody
 # A helper that never answers stands for any loop of a library: SIGTERM must do, without SIGKILL.
 mkdir stuck && cp "$RELUME" stuck/

@@ -24,40 +24,37 @@ static size_t take(void *out, size_t size)
 
 // ---------------------------------------------------------------- in place of base/helper.c
 
-relume_status helper_start(struct helper_job *job, enum helper_kind kind)
+relume_status helper_start(struct helper_job *job, enum helper_kind kind, const char *path,
+                           const struct relume_log *log)
 {
-    (void)kind;
-    *job = (struct helper_job){.channel = -1};
+    (void)kind, (void)path, (void)log;
+    *job = (struct helper_job){0};
     return RELUME_OK;
 }
 
 // Files are not looked at; memory is filled.
-relume_status helper_tell(struct helper_job *job, const void *message, size_t size, int file)
+relume_status helper_ask(struct helper_job *job, const void *message, size_t size, int file,
+                         void *answer, size_t answer_size)
 {
     const off_t bytes = file < 0 ? 0 : lseek(file, 0, SEEK_END);
     void *map = bytes > 0 ? channel_map(file, (size_t)bytes) : NULL;
-    (void)job, (void)message, (void)size;
+    (void)message, (void)size;
     if (map) {
         take(map, (size_t)bytes);
         munmap(map, (size_t)bytes);
     }
-    return RELUME_OK;
-}
-
-relume_status helper_hear(struct helper_job *job, void *answer, size_t size)
-{
     if (!said.size) {
         snprintf(job->why, sizeof job->why, "no answer");
         return RELUME_EDATA;
     }
-    memset(answer, 0, size);
-    take(answer, size);
+    memset(answer, 0, answer_size);
+    take(answer, answer_size);
     return RELUME_OK;
 }
 
 void helper_end(struct helper_job *job)
 {
-    *job = (struct helper_job){.channel = -1};
+    *job = (struct helper_job){0};
 }
 
 // ---------------------------------------------------------------- what reads its answers

@@ -49,8 +49,8 @@ static void put_text(FILE *f, const char *text)
 static void put_picture(struct report *r, const struct relume_image *image, int side, float gain,
                         enum report_look look)
 {
-    const relume_status status = report_picture(r->f, r->dir, image, side, gain, look, r->s->p.log);
-    r->status = r->status ? r->status : status;
+    if (!r->status)
+        r->status = report_picture(r->f, r->dir, image, side, gain, look, r->s->p.log);
 }
 
 // ---------------------------------------------------------------- parts

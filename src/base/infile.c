@@ -8,6 +8,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -16,15 +17,118 @@ const char *infile_name(const char *path)
     return path ? path : "memory";
 }
 
+// ---------------------------------------------------------------- descriptors of files
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static struct infile *newest, *oldest;
+static int open_files;
+
+static void link_newest(struct infile *s)
+{
+    s->older = newest;
+    s->newer = NULL;
+    *(newest ? &newest->newer : &oldest) = s;
+    newest = s;
+    open_files++;
+}
+
+static void unlink_one(struct infile *s)
+{
+    *(s->newer ? &s->newer->older : &newest) = s->older;
+    *(s->older ? &s->older->newer : &oldest) = s->newer;
+    open_files--;
+}
+
+static void close_one(struct infile *s)
+{
+    unlink_one(s);
+    close(s->file);
+    s->file = -1;
+}
+
+// False where all are being read.
+static bool close_oldest(void)
+{
+    struct infile *s = oldest;
+    while (s && s->users)
+        s = s->newer;
+    if (s)
+        close_one(s);
+    return s;
+}
+
+// Some are left for outputs, libraries and the helper.
+static int most_open(void)
+{
+    enum { OTHERS = 64, MOST = 1 << 20 };
+    struct rlimit l;
+    if (getrlimit(RLIMIT_NOFILE, &l) || l.rlim_cur > MOST)
+        return MOST;
+    return l.rlim_cur > 2 * OTHERS ? (int)l.rlim_cur - OTHERS : (int)l.rlim_cur / 2;
+}
+
+static bool open_now(struct infile *s)
+{
+    while (open_files >= most_open() && close_oldest())
+        ;
+    do
+        s->file = open(s->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    while (s->file < 0 && (errno == EMFILE || errno == ENFILE) && close_oldest());
+    if (s->file >= 0)
+        link_newest(s);
+    return s->file >= 0;
+}
+
+// Not another file that has its name by now.
+static bool open_again(struct infile *s)
+{
+    struct stat st;
+    if (!open_now(s))
+        return false;
+    if (!fstat(s->file, &st) && st.st_dev == s->device && st.st_ino == s->number)
+        return true;
+    close_one(s);
+    errno = ESTALE;
+    return false;
+}
+
+// A descriptor that stays until it is let go; -1 with errno.
+static int hold(struct infile *s)
+{
+    pthread_mutex_lock(&lock);
+    if (s->file >= 0 && s != newest) {
+        unlink_one(s);
+        link_newest(s);
+    }
+    const bool good = s->file >= 0 || open_again(s);
+    s->users += good;
+    pthread_mutex_unlock(&lock);
+    return good ? s->file : -1;
+}
+
+static void let_go(struct infile *s)
+{
+    pthread_mutex_lock(&lock);
+    s->users--;
+    pthread_mutex_unlock(&lock);
+}
+
 static bool open_file(struct infile *s, const char *path, const struct relume_log *log)
 {
     struct stat st;
     input_note(log, path);
-    s->file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (s->file < 0 || fstat(s->file, &st))
+    s->path = mem_text(path);
+    pthread_mutex_lock(&lock);
+    const bool good = s->path && open_now(s) && !fstat(s->file, &st);
+    pthread_mutex_unlock(&lock);
+    if (!s->path)
+        errno = ENOMEM;
+    if (!good)
         return false;
     s->regular = S_ISREG(st.st_mode);
     s->size = (uint64_t)st.st_size;
+    s->device = st.st_dev;
+    s->number = st.st_ino;
     return true;
 }
 
@@ -43,11 +147,16 @@ bool infile_open(struct infile *out, const char *path, const struct relume_reade
 
 void infile_close(struct infile *s)
 {
+    pthread_mutex_lock(&lock);
     if (s->file >= 0)
-        close(s->file);
-    s->file = -1;
+        close_one(s);
+    pthread_mutex_unlock(&lock);
     pthread_mutex_destroy(&s->lock);
+    free(s->path);
+    s->path = NULL;
 }
+
+// ---------------------------------------------------------------- reading
 
 static ssize_t read_file(int file, char *to, size_t size, uint64_t offset)
 {
@@ -65,8 +174,13 @@ static ssize_t read_file(int file, char *to, size_t size, uint64_t offset)
 
 ssize_t infile_read(struct infile *s, void *bytes, size_t size, uint64_t offset)
 {
-    if (!s->from.read)
-        return read_file(s->file, bytes, size, offset);
+    if (!s->from.read) {
+        const int file = hold(s);
+        const ssize_t n = file < 0 ? -1 : read_file(file, bytes, size, offset);
+        if (file >= 0)
+            let_go(s);
+        return n;
+    }
     const uint64_t left = offset < s->size ? s->size - offset : 0;
     const size_t n = size < left ? size : (size_t)left;
     if (n == 0)
@@ -96,8 +210,12 @@ static bool copy(struct infile *s, int to)
 
 int infile_descriptor(struct infile *s)
 {
-    if (s->file >= 0)
-        return fcntl(s->file, F_DUPFD_CLOEXEC, 3);
+    if (!s->from.read) {
+        const int file = hold(s), twin = file < 0 ? -1 : fcntl(file, F_DUPFD_CLOEXEC, 3);
+        if (file >= 0)
+            let_go(s);
+        return twin;
+    }
     const int memory = channel_memory((size_t)s->size);
     if (memory >= 0 && !copy(s, memory)) {
         const int error = errno;
@@ -149,15 +267,16 @@ FILE *infile_stream(const char *path, const struct relume_reader *from,
                     const struct relume_log *log)
 {
     static const cookie_io_functions_t functions = {stream_read, NULL, stream_seek, stream_close};
-    if (!from)
-        return input_open(path, log);
     struct stream *s = mem_zeroed(1, sizeof *s);
     FILE *f = NULL;
+    errno = ENOMEM;
     if (s && infile_open(&s->in, path, from, log))
         f = fopencookie(s, "rb", functions);
-    if (!f) {
+    if (s && !f) {
+        const int error = errno;
+        infile_close(&s->in);
         free(s);
-        errno = ENOMEM;
+        errno = error;
     }
     return f;
 }

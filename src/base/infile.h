@@ -8,12 +8,20 @@
 #include <stdio.h>
 #include <sys/types.h>
 
+// Files share descriptors: where there are more files than a process may have open, that which
+// nobody has read for longest is closed, and opened again by its name when it is read.
 struct infile {
     struct relume_reader from;  // `read` is NULL: a file
-    int file;                   // or -1
     bool regular;               // no folder, device or pipe
     uint64_t size;
     pthread_mutex_t lock;  // one call of `from.read` at a time
+    // a file; under the lock of all
+    char *path;
+    int file;  // -1: closed for others' sake
+    int users;
+    dev_t device;
+    ino_t number;
+    struct infile *newer, *older;  // among those that have a descriptor, by their last use
 };
 
 // What sentences call an input or output: its path, or what stands for one.

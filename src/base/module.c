@@ -2,6 +2,7 @@
 #include "base/module.h"
 
 #include <dlfcn.h>
+#include <errno.h>
 #include <link.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +12,19 @@
 #define TEXT(x)  #x
 #define QUOTE(x) TEXT(x)
 
-const void *module_open(const char *name, char why[MODULE_WHY])
+// The linker's sentence ends in the system's, and in nothing where addresses are short.
+static int shortage(const char *why)
+{
+    static const char no_addresses[] = "failed to map segment from shared object";
+    static const int errors[] = {ENOMEM, EMFILE, ENFILE};
+    const char *map = strstr(why, no_addresses);
+    for (size_t i = 0; i < sizeof errors / sizeof *errors; i++)
+        if (strstr(why, strerror(errors[i])))
+            return errors[i];
+    return map && !map[sizeof no_addresses - 1] ? ENOMEM : 0;
+}
+
+const void *module_open(const char *name, char why[MODULE_WHY], int *lacks)
 {
     char file[64], symbol[64];
     snprintf(file, sizeof file, "librelume-%s.so." QUOTE(RELUME_MAJOR), name);
@@ -20,6 +33,7 @@ const void *module_open(const char *name, char why[MODULE_WHY])
     const void *bridge = module ? dlsym(module, symbol) : NULL;
     if (!bridge) {
         snprintf(why, MODULE_WHY, "%s", dlerror());
+        *lacks = shortage(why);
         return NULL;
     }
     const char *version;

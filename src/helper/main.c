@@ -66,29 +66,15 @@ static _Noreturn void serve(int kind, int channel, const void *bridge)
     _exit(0);
 }
 
-// The linker's sentence ends in the system's, and in nothing where addresses are short.
-static int lacks(const char *why)
-{
-    static const char short_of_addresses[] = "failed to map segment from shared object";
-    static const int errors[] = {ENOMEM, EMFILE, ENFILE};
-    const char *map = strstr(why, short_of_addresses);
-    for (size_t i = 0; i < sizeof errors / sizeof *errors; i++)
-        if (strstr(why, strerror(errors[i])))
-            return errors[i];
-    return map && !map[sizeof short_of_addresses - 1] ? ENOMEM : 0;
-}
-
 static void start_process(struct helper_reply *reply, int kind, int channel)
 {
     static const void *bridges[KINDS];
     if (kind < 0 || kind >= KINDS || channel < 0)
         return;
     if (!bridges[kind])
-        bridges[kind] = module_open(kinds[kind].module, reply->why);
-    if (!bridges[kind]) {
-        reply->error = lacks(reply->why);
+        bridges[kind] = module_open(kinds[kind].module, reply->why, &reply->error);
+    if (!bridges[kind])
         return;
-    }
     const pid_t process = fork();
     if (process == 0)
         serve(kind, channel, bridges[kind]);

@@ -20,10 +20,11 @@
 
 static const struct oiio_bridge *bridge;
 static char why_not[MODULE_WHY];
+static int lacks;
 
 static void load(void)
 {
-    bridge = module_open("oiio", why_not);
+    bridge = module_open("oiio", why_not, &lacks);
 }
 
 static relume_status need_bridge(const char *path, const struct relume_log *log)
@@ -32,6 +33,8 @@ static relume_status need_bridge(const char *path, const struct relume_log *log)
     pthread_once(&once, load);
     if (bridge)
         return RELUME_OK;
+    if (lacks)
+        return relume_input_fail(log, path, "cannot be written", lacks);
     return log_fail(log, RELUME_EIO, "%s: the module for image formats cannot be loaded; %s", path,
                     why_not);
 }

@@ -1,4 +1,5 @@
 // stitch_load.c - opens the module that knows OpenCV when photographs are to be stitched
+#include "base/inputs.h"
 #include "base/log.h"
 #include "base/module.h"
 #include "multiview/stitch.h"
@@ -7,10 +8,11 @@
 
 static const struct stitch_bridge *bridge;
 static char why_not[MODULE_WHY];
+static int lacks;
 
 static void load(void)
 {
-    bridge = module_open("stitch", why_not);
+    bridge = module_open("stitch", why_not, &lacks);
 }
 
 relume_status stitch_find(struct stitch_pose *poses, int *stray, char *why,
@@ -21,6 +23,8 @@ relume_status stitch_find(struct stitch_pose *poses, int *stray, char *why,
     pthread_once(&once, load);
     if (bridge)
         return bridge->find(poses, stray, why, pictures, n);
+    if (lacks)
+        return relume_input_fail(log, "stitching", "its module cannot be loaded", lacks);
     return log_fail(log, RELUME_EIO,
                     "stitching: the module for it cannot be loaded; expected a build with OpenCV "
                     "('make deps-stitch', then 'make'); %s",

@@ -141,11 +141,16 @@ if why=$(${CC:-gcc} -std=c11 -shared -fPIC -I"$TOP/include" -I"$TOP/src" -o odd/
         "$RELUME" compare odd/good.tif odd/good.tif
     odd 1 'odd/crash.tif: its reader crashed' "$RELUME" compare odd/good.tif odd/crash.tif
     # more lights than processes: the one that crashes shares its process with others
-    { echo 6; for light in good crash good good good good; do
-        n=$((n + 1)); cp odd/$light.tif "odd/$light-$n.tif"
-        echo "$light-$n.tif .$((n % 10)) 0 .8"
-    done; } >odd/crash.lp
-    odd 1 'crash-8.tif.*: its reader crashed' "$RELUME" encode odd/crash.lp -o out.exr --basis ptm
+    n=0
+    {
+        echo 6
+        for light in good crash good good good good; do
+            n=$((n + 1))
+            cp odd/$light.tif "odd/$light-$n.tif"
+            echo "$light-$n.tif $(echo '0 0 1:.5 0 .9:0 .5 .9:-.5 0 .9:0 -.5 .9:.4 .4 .8' | cut -d : -f $n)"
+        done
+    } >odd/crash.lp
+    odd 1 'crash-2.tif.*: its reader crashed' "$RELUME" encode odd/crash.lp -o out.exr --basis ptm
     case $BUILD in
     *asan* | *tsan*) skip 'readers that take memory and time' 'sanitizers take their own' ;;
     *)

@@ -50,6 +50,16 @@ for limit in '-n 4' '-n 5' '-n 6' '-n 7' '-n 9' '-v 70000' '-v 82000' '-v 100000
     poor "$limit" capture shots/view00/light*.jpg --lights shots/dirs.lp -o out
 done
 
+# More lights than descriptors: the same file.
+for format in jpg exr; do
+    "$sphere" many --size 16 --lights 49 --format $format || exit 1
+    "$RELUME" encode many -o many.exr --basis sh --coefficients 4 -q || not_ok 'encode failed'
+    expect_ok "49 lights, 16 descriptors, $format" - sh -c "ulimit -n 16; exec \"$RELUME\" encode many \
+        -o few.exr --basis sh --coefficients 4 -q"
+    check "the same bytes, $format" cmp many.exr few.exr
+    rm -rf many few.exr
+done
+
 # what had status 1
 for input in shots/dirs.lp cap; do
     expect_fail "no file can be opened for $input" 3 'too many files are open' out.exr \

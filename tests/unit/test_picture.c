@@ -405,7 +405,8 @@ static void damaged_rows(void **state)
 int main(void)
 {
     char why[MODULE_WHY];
-    bridge = module_open("oiio", why);
+    int lacks;
+    bridge = module_open("oiio", why, &lacks);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exr_is_what_openimageio_sees),
         cmocka_unit_test(exr_that_is_not_plain),

@@ -96,7 +96,7 @@ FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 
-.PHONY: all lib cli viewer samples deps deps-web deps-stitch demo tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers lint format install \
+.PHONY: all lib cli viewer samples deps deps-web deps-stitch demo tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers metrics lint format install \
         clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
@@ -271,6 +271,10 @@ $B/headers/%.ok: include/relume/%.h $(HEADERS) | $(DEPS)
 
 layers:
 	@scripts/layers.sh
+
+# The sources in numbers
+metrics:
+	@scripts/metrics.sh
 
 # What cppcheck finds is mended, or said to be none in scripts/lint.supp.
 LINTED := src viewer

@@ -12,13 +12,14 @@ rules="base::base io
 math:base:base
 geometry:base math:base capture
 image:base math:base io image photograph response
+compare:base math image:base image
 capture:base math image:base image lights capture response
 hdr:base math image:base image photograph response align
 multiview:base math image capture:base image capture photograph views lightfield
 acquire:base math image capture multiview:base image lights capture ball photometric shoot photograph align
 coder:base math image:base image capture coder
 codebook:base math image coder:base coder codebook
-selection:base math image coder:base image capture coder codebook heldout
+selection:base math image coder compare:base image capture coder codebook heldout
 pack:base image:base image capture codebook coder view pack
 foreign:base math image:base image lights coder relight
 exchange:base math image foreign:base image photograph lights codebook coder capture pack relight exchange

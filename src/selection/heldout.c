@@ -9,8 +9,8 @@
 #include "base/thread.h"
 #include "coder/basis.h"
 #include "coder/coefficients.h"
+#include "compare/ssim.h"
 #include "image/encoder.h"
-#include "image/ssim.h"
 
 #include <float.h>
 #include <math.h>

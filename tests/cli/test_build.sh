@@ -87,5 +87,21 @@ cp tree/src/cli/commands/cmd_info.c before
 echo 'void f(void) { fopen("x", "w"); }' >>tree/src/cli/commands/cmd_info.c
 check "a file that opens files itself" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "itself; expected base/inputs.h.*src/cli/commands/cmd_info.c" layers.txt'
 cp before tree/src/cli/commands/cmd_info.c
+"$TOP/scripts/metrics.sh" >metrics.txt
+check "no folder has more than 45 files" awk '$1 == "largest_folder" && $2 <= 45 { found = 1 } END { exit !found }' metrics.txt
+cat >>tree/src/math/sh.c <<'END'
+static int small(int a)
+{
+    return a;
+}
+int planted(void);
+int planted(void)
+{
+    return small(1);
+}
+END
+check "a small function called once is counted" sh -c 'tree/scripts/metrics.sh --small | grep -qx "src/math/sh.c: small"'
+sed -i 's/return small(1);/return small(1) + small(2);/' tree/src/math/sh.c
+check "one called twice is not" sh -c '! tree/scripts/metrics.sh --small | grep -qx "src/math/sh.c: small"'
 check "layers hold again" tree/scripts/layers.sh
 finish

@@ -1,6 +1,6 @@
 #include "test.h"
 
-#include "image/ciede2000.h"
+#include "compare/ciede2000.h"
 
 // Sharma, Wu, Dalal 2005, table 1: the pairs that separate right programs from wrong ones.
 static const double pairs[34][7] = {

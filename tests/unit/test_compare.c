@@ -1,6 +1,6 @@
 #include "test.h"
 
-#include "image/ciede2000.h"
+#include "compare/ciede2000.h"
 #include "image/encoder.h"
 
 static struct relume_image noise(int width, int height, uint32_t seed)

@@ -1,4 +1,4 @@
-#include "image/ciede2000.h"
+#include "compare/ciede2000.h"
 
 #include "image/power.h"
 

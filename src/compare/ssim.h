@@ -1,6 +1,6 @@
 // ssim.h - structural similarity of two grey planes (Wang, Bovik, Sheikh, Simoncelli 2004)
-#ifndef IMAGE_SSIM_H
-#define IMAGE_SSIM_H
+#ifndef COMPARE_SSIM_H
+#define COMPARE_SSIM_H
 
 #include <stddef.h>
 

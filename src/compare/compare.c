@@ -4,9 +4,9 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
-#include "image/ciede2000.h"
+#include "compare/ciede2000.h"
 #include "image/encoder.h"
-#include "image/ssim.h"
+#include "compare/ssim.h"
 
 #include <math.h>
 #include <string.h>

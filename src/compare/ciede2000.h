@@ -1,6 +1,6 @@
 // ciede2000.h - perceived colour difference (Sharma, Wu, Dalal 2005, kL = kC = kH = 1)
-#ifndef IMAGE_CIEDE2000_H
-#define IMAGE_CIEDE2000_H
+#ifndef COMPARE_CIEDE2000_H
+#define COMPARE_CIEDE2000_H
 
 // Between two colours in CIE L*a*b*, as the paper writes it.
 double ciede2000(const double lab1[3], const double lab2[3]);

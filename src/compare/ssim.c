@@ -6,7 +6,7 @@
 //     2 cov   = (vs - vd) / 2        va + vb     = (vs + vd) / 2
 // Each row of the planes is filtered along x once and kept in a ring of 11; rows of the ring are
 // then filtered along y. The window is symmetric, so that equal weights share a product.
-#include "image/ssim.h"
+#include "compare/ssim.h"
 
 #include <math.h>
 

@@ -28,12 +28,14 @@ asan     := -O1 -g1 -fsanitize=address,undefined,float-cast-overflow -fno-saniti
 tsan     := -O0 -g1 -fsanitize=thread
 # clang's libFuzzer with its sanitizers: make config=fuzzer fuzzers
 fuzzer   := -O1 -g1 -fsanitize=fuzzer-no-link,address,undefined,float-cast-overflow \
-            -fno-sanitize=function,vptr -fno-sanitize-recover=all -DRELUME_LIBFUZZER
+            -fno-sanitize-recover=all -DRELUME_LIBFUZZER
 FUZZ_ENGINE ?= -fsanitize=fuzzer
 ifeq ($(config),fuzzer)
 CC       := clang
 CXX      := clang++
 endif
+# clang's checks of C++ (function, vptr) want its C++ runtime in the program
+LINK     := $(if $(filter fuzzer,$(config)),$(CXX),$(CC))
 MODE     := $($(config))
 ifeq ($(MODE),)
 $(error config=$(config): expected release, debug, asan, tsan or fuzzer)
@@ -193,7 +195,7 @@ $(STITCH): $(STITCH_CXX:%.cpp=$B/obj/%.o)
 	$(Q)$(CXX) $(MODE) -shared $(HARD_LD) -o $@ $^ $(LDFLAGS) -Wl,--as-needed -lopencv_stitching -lopencv_features2d -lopencv_calib3d -lopencv_imgproc -lopencv_core
 $(HELPER): $(HELPER_C:%.c=$B/obj/%.o) $B/librelume.a | $(MODULE) $(MESHES)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) -pthread $(call run_path) $(HARD_LD) -o $@ $(filter %.o %.a,$^) $(LDFLAGS) -Wl,--gc-sections -Wl,--as-needed -lm -ldl
+	$(Q)$(LINK) $(MODE) -pthread $(call run_path) $(HARD_LD) -o $@ $(filter %.o %.a,$^) $(LDFLAGS) -Wl,--gc-sections -Wl,--as-needed -lm -ldl
 $B/relume: $(CLI_O) $B/librelume.a
 	$(call say,LD)
 	$(Q)$(CC) $(MODE) -pthread $(call run_path,:$$ORIGIN/../lib) $(HARD_LD) -o $@ $^ $(LDFLAGS) $(LIBS) $(CLI_LIBS)
@@ -210,7 +212,9 @@ GL_BENCH := $(addprefix $B/tests/bench/,bench_viewer bench_objects bench_seeing)
 $(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)
-	$(Q)$(CC) $(MODE) $(TEST_LD) $(if $(filter fuzzer,$(config)),$(FUZZ_ENGINE)) -pthread $(call run_path,/../..) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LIBS)
+	$(Q)$(LINK) $(MODE) $(TEST_LD) $(if $(filter fuzzer,$(config)),$(FUZZ_ENGINE)) -pthread $(call run_path,/../..) -o $@ $(filter %.o,$^) $(filter %.a,$^) $(LDFLAGS) $(LIBS) $(if $(@:%/fuzz_command=),,$(CLI_LIBS))
+# The tool without its main
+$B/tests/fuzz/fuzz_command: $(filter-out %/main.o,$(CLI_O))
 # The viewer without its window
 $B/tests/fuzz/fuzz_script: $(filter $B/obj/viewer/app/% $B/obj/viewer/common/%,$(VIEWER_O))
 $(TOOLS): $B/%: $B/obj/%.o $B/librelume.a

@@ -48,7 +48,7 @@ bool channel_receive(int end, void *message, size_t size, int *file)
     struct msghdr whole = {.msg_iov = &part,
                            .msg_iovlen = 1,
                            .msg_control = file ? &control : NULL,
-                           .msg_controllen = file ? sizeof control.room : 0};
+                           .msg_controllen = file ? CMSG_LEN(sizeof *file) : 0};  // one
     if (file)
         *file = -1;
     ssize_t came;

@@ -1,5 +1,6 @@
 // fuzz_helper.c - a helper that a hostile file has taken over: its answers, and what it puts into
 // shared memory, are noise. Pictures and models that are accepted must be sound all the same.
+#define FUZZ_HELPER
 #include "fuzz_look.h"
 
 #include "base/channel.h"

@@ -46,7 +46,7 @@ static bool read_all(picture_reader *r)
 static bool one(struct fuzz *f, struct bytes b)
 {
     picture_reader *r;
-    if (f->iterations % 2)
+    if (b.size % 2)
         mend(b);
     fuzz_store(f->path, b);
     if (!png_picture_open(&r, f->path, NULL, &limits, NULL) && r)

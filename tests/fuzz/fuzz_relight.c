@@ -145,11 +145,14 @@ int main(int argc, char **argv)
 {
     struct fuzz f = {0};
     fuzz_begin(&f, "fuzz_relight", argc, argv);
-    for (int s = 0; s < 6; s++) {
+    while (f.seeds < 6) {
         struct bytes b = {malloc(8000), 8000};
         for (size_t i = 0; i < b.size; i++)
             b.data[i] = (uint8_t)fuzz_random(&f);
-        fuzz_add(&f, b);
+        if (one(&f, b))
+            fuzz_add(&f, b);
+        else
+            free(b.data);
     }
     return fuzz_run(&f, argc, argv, one);
 }

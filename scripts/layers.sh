@@ -153,6 +153,13 @@ grep -rE '^#include [<"]' src viewer tests samples --include='*.c' --include='*.
     }
     END { exit bad }'
 
+# What draws is told what to show by a frame_request, and does not see the state that events change.
+drawn=$(grep -rlE 'struct app\b[^_]' viewer/gl viewer/relit viewer/glare viewer/draw || true)
+[ -z "$drawn" ] || {
+    echo "layers: uses struct app; expected struct frame_request:" $drawn >&2
+    exit 1
+}
+
 # Files need each other in one direction only: x.c and x.h are one node, tsort finds the loops.
 loops=$(grep -rE '^#include "' src viewer --include='*.c' --include='*.h' --include='*.cpp' |
     awk -F '[:"]' '

@@ -5,8 +5,8 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "compare/ciede2000.h"
-#include "image/encoder.h"
 #include "compare/ssim.h"
+#include "image/encoder.h"
 
 #include <math.h>
 #include <string.h>

@@ -79,6 +79,10 @@ plant "a public header from above" src/coder/fit.c '#include <relume/pack.h>' '<
 plant "an external library out of place" src/pack/reader.c '#include <openexr.h>' '<openexr'
 plant "linear algebra out of place" src/coder/encode.c '#include <Eigen/Dense>' '<Eigen'
 plant "intrinsics out of place" src/relight/relight.c '#include <immintrin.h>' '<immintrin'
+cp tree/viewer/draw/draw.c before
+echo 'void f(const struct app *app);' >>tree/viewer/draw/draw.c
+check "a drawer that takes the app" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "expected struct frame_request: viewer/draw/draw.c" layers.txt'
+cp before tree/viewer/draw/draw.c
 cp tree/src/btf/npy.h before
 echo '#include "btf/btf.h"' >>tree/src/btf/npy.h
 check "files that include each other" sh -c '! tree/scripts/layers.sh 2>layers.txt && grep -q "include each other.*src/btf/npy" layers.txt'

@@ -1,6 +1,7 @@
 // The viewer's state machine, options and scripts; no OpenGL
 #include "app/app.h"
 #include "app/events.h"
+#include "app/frame_request.h"
 #include "app/gizmo.h"
 #include "app/keys.h"
 #include "app/lamps.h"
@@ -916,11 +917,13 @@ static void a_click_finds_the_surface(void **state)
     struct lamp_scene scene = {
         .source = {.user = uv, .surface = leaning_plane}, .uv = (const double(*)[2])uv, .views = 9};
     static const double eyes[][2] = {{0, 0}, {0.4, -0.2}, {-0.7, 0.45}};
+    struct frame_request q = {0};
     for (int i = 0; i < 3; i++) {
         const struct relume_vec3 eye = {eyes[i][0], eyes[i][1], 3};
         struct relume_vec3 p;
         app.now.camera.eye = eye;
-        assert_true(lamps_surface(&p, &app, &scene, 300, 50));  // s = 0.5, t = 0.5
+        assert_int_equal(frame_request_make(&q, &app), RELUME_OK);
+        assert_true(lamps_surface(&p, &q, &scene, 300, 50));  // s = 0.5, t = 0.5
         // a pixel of a view is 0.005 wide, and the plane leans by a tenth of that
         assert_float_equal(p.z, 0.2 + 0.1 * p.x, 2e-3);
         const double k = (3 - p.z) / 3;
@@ -930,7 +933,8 @@ static void a_click_finds_the_surface(void **state)
     lamp_scene_forget(&scene);
     scene.source.surface = NULL;
     struct relume_vec3 p;
-    assert_false(lamps_surface(&p, &app, &scene, 300, 50));
+    assert_false(lamps_surface(&p, &q, &scene, 300, 50));
+    frame_request_free(&q);
     lamp_scene_forget(&scene);
 }
 

@@ -1,6 +1,7 @@
 // Several slabs in the viewer: frames against the library's, and the eye on its way around
 #include "app/events.h"
 #include "fixture.h"
+#include "request.h"
 
 #include "app/gizmo.h"
 #include "app/orbit.h"
@@ -138,7 +139,7 @@ static double share_off(struct around *t, const struct relume_view_params *param
     assert_true(app_window(&t->app, &window));
     assert_int_equal(relume_image_create(&want, t->app.width, t->app.height, 3), RELUME_OK);
     assert_int_equal(relume_slabs_frame(&want, t->slabs, &window, t->views, params), RELUME_OK);
-    assert_int_equal(renderer_draw(&t->renderer, &t->app), RELUME_OK);
+    assert_int_equal(draw_app(&t->renderer, &t->app), RELUME_OK);
     assert_int_equal(renderer_read(&got, &t->renderer), RELUME_OK);
     for (int i = 0; i < 3 * want.width * want.height; i++)
         off += !(fabs((double)got.data[i] - (double)want.data[i]) < 1e-3);
@@ -237,7 +238,7 @@ static void only_needed_views_are_relit(void **state)
     struct around *t = calloc(1, sizeof *t);
     open_around(t);
     t->file.asked = 0;
-    assert_int_equal(renderer_draw(&t->renderer, &t->app), RELUME_OK);
+    assert_int_equal(draw_app(&t->renderer, &t->app), RELUME_OK);
     for (int i = 0; i < VIEWS; i++)
         assert_true(!t->renderer.relit[i] || t->slab_of[i] == 0);
     assert_true(t->file.asked > 0 && t->file.asked <= GRID);

@@ -1,5 +1,6 @@
 // Frames drawn by OpenGL against the library's: picture, slab, panoramas
 #include "fixture.h"
+#include "request.h"
 
 static const struct relume_light lights[] = {
     {.direction = {0.2, 0.3, 0.8}, .rgb = {1, 0.9f, 0.8f}},
@@ -29,7 +30,7 @@ static double compare_frame(struct renderer *r, const struct app *app,
                             const struct relume_image *want)
 {
     struct relume_image got;
-    assert_int_equal(renderer_draw(r, app), RELUME_OK);
+    assert_int_equal(draw_app(r, app), RELUME_OK);
     assert_int_equal(renderer_read(&got, r), RELUME_OK);
     const double difference = fixture_difference(&got, want);
     relume_image_destroy(&got);
@@ -245,7 +246,7 @@ static void slab_frames_by_depth_are_the_library_s(void **state)
         const struct relume_camera camera = {
             .framing = RELUME_FRAME_EYE, .eye = eyes[i], .width = 68, .height = 51};
         OWNED_APP app = make_app(&t.about, &camera);
-        assert_int_equal(renderer_draw(&t.renderer, &app), RELUME_OK);
+        assert_int_equal(draw_app(&t.renderer, &app), RELUME_OK);
         assert_int_equal(renderer_read(&got, &t.renderer), RELUME_OK);
         compare_most(text, &got, &want);
         relume_image_destroy(&got);
@@ -344,10 +345,10 @@ static void only_views_that_matter_are_relit(void **state)
     t.file.asked = 0;
     const struct relume_camera camera = {.framing = RELUME_FRAME_EYE, .eye = {1, 0.5, 3}};
     OWNED_APP app = make_app(&t.about, &camera);
-    assert_int_equal(renderer_draw(&t.renderer, &app), RELUME_OK);
+    assert_int_equal(draw_app(&t.renderer, &app), RELUME_OK);
     assert_int_equal(t.file.asked, 1);
     app.now.camera.eye = (struct relume_vec3){0.5, 0.4, 3};
-    assert_int_equal(renderer_draw(&t.renderer, &app), RELUME_OK);
+    assert_int_equal(draw_app(&t.renderer, &app), RELUME_OK);
     assert_int_equal(t.file.asked, 4);
     // An eye that sees nothing gives a black frame, not an error.
     app.now.camera.eye = (struct relume_vec3){9, 9, 3};
@@ -425,7 +426,7 @@ static void compare_panorama(const struct relume_geometry *g, int width, int hei
             continue;
         }
         struct relume_image got;
-        assert_int_equal(renderer_draw(&r, &app), RELUME_OK);
+        assert_int_equal(draw_app(&r, &app), RELUME_OK);
         assert_int_equal(renderer_read(&got, &r), RELUME_OK);
         compare_most(text, &got, &want);
         relume_image_destroy(&got);
@@ -476,7 +477,7 @@ static void the_ball_is_bright_where_the_light_comes_from(void **state)
     app.now.lights = 1;
     app.now.light[0] = (struct relume_light){.direction = {-1, 1, 0.5}, .rgb = {1, 1, 1}};
     struct relume_image got;
-    assert_int_equal(renderer_draw(&r, &app), RELUME_OK);
+    assert_int_equal(draw_app(&r, &app), RELUME_OK);
     assert_int_equal(renderer_read(&got, &r), RELUME_OK);
     // radius 0.09 x 200 = 18, middle 1.4 radii from the corner; look half a radius from the middle
     const int middle = (int)(200 - 1.4 * 18);
@@ -570,7 +571,7 @@ static void the_meter_sees_a_small_frame(void **state)
     double ev[2];
     for (int i = 0; i < 2; i++) {
         app.now.exposure_ev = 3 * i;
-        assert_int_equal(renderer_draw(&r, &app), RELUME_OK);
+        assert_int_equal(draw_app(&r, &app), RELUME_OK);
         assert_int_equal(renderer_meter(&ev[i], &r), RELUME_OK);
     }
     assert_true(fabs(ev[0] - ev[1] - 3) < 0.1);

@@ -1,6 +1,8 @@
 // Glare: the compute passes against the library, the eye's time, and what is kept from frame to
 // frame
 #include "app/events.h"
+#include "app/fov.h"
+#include "app/frame_request.h"
 #include "fixture.h"
 
 #include "app/gaze.h"
@@ -351,7 +353,11 @@ static void close_stage(struct stage *s)
 static struct relume_image look(struct stage *s)
 {
     struct relume_image image;
-    assert_int_equal(glare_see(&s->glare, &s->frame, &s->app, 1), RELUME_OK);
+    struct frame_request q = {0};
+    assert_int_equal(frame_request_make(&q, &s->app), RELUME_OK);
+    q.exposure = 1;
+    assert_int_equal(glare_see(&s->glare, &s->frame, &q), RELUME_OK);
+    frame_request_free(&q);
     assert_int_equal(target_read(&image, &s->glare.seen, &fixture_gl), RELUME_OK);
     return image;
 }
@@ -475,14 +481,17 @@ static void fields_of_view_follow_the_camera(void **state)
     struct app app;
     assert_int_equal(relume_psf_geometry(&pattern, NULL), RELUME_OK);
     assert_int_equal(app_start(&app, &file, &start, true, NULL), RELUME_OK);
-    assert_float_equal(glare_fov_deg(&app), 90, 1e-9);
+    assert_float_equal(app_fov_deg(&app), 90, 1e-9);
     app.now.camera.look.zoom = 2;
-    assert_float_equal(glare_fov_deg(&app), 2 * atan(0.5) * 180 / acos(-1), 1e-9);
+    assert_float_equal(app_fov_deg(&app), 2 * atan(0.5) * 180 / acos(-1), 1e-9);
     app.now.camera.look.zoom = 1e9;
-    assert_float_equal(glare_fov_deg(&app), 0.01, 1e-9);
+    assert_float_equal(app_fov_deg(&app), 0.01, 1e-9);
     app.now.camera.look.zoom = 57;
     app.now.gaze.magnify = 1000;
-    const struct relume_glare_params p = glare_view(&app, &pattern);
+    struct frame_request q = {0};
+    assert_int_equal(frame_request_make(&q, &app), RELUME_OK);
+    const struct relume_glare_params p = glare_view(&q, &pattern);
+    frame_request_free(&q);
     assert_true(p.no_veil &&
                 p.magnify * pattern.radius <= 51 * relume_glare_pixel(p.fov_deg, app.width));
     app_release(&app);
@@ -524,7 +533,10 @@ static void lamps_in_view_send_what_they_send(void **state)
     struct relume_source *seen = malloc(RELUME_SOURCES_MOST * sizeof *seen);
     struct app app;
     assert_int_equal(app_start(&app, &file, &start, true, NULL), RELUME_OK);
-    assert_int_equal(lamps_seen(seen, &app, lights, 3, NULL), 2);
+    struct frame_request q = {0};
+    assert_int_equal(frame_request_make(&q, &app), RELUME_OK);
+    assert_int_equal(lamps_seen(seen, &q, lights, 3, NULL), 2);
+    frame_request_free(&q);
     assert_float_equal(seen[0].x, 50, 1e-9);
     assert_float_equal(seen[0].y, 25, 1e-9);
     assert_float_equal((double)seen[0].rgb[0], acos(-1) / 4 * 2500, 0.01);  // (1 / 50)^2 sr

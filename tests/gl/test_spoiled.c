@@ -1,5 +1,6 @@
 // An OpenGL that fails: one line says what, the status is the machine's, and nothing is left behind
 #include "fixture.h"
+#include "request.h"
 
 static char said[1024];
 static int lines;
@@ -69,10 +70,10 @@ static relume_status draw_with(const struct gl *gl)
     assert_int_equal(app_start(&app, &file, &start, false, &keep), RELUME_OK);
     relume_status status = renderer_create(&r, gl, &source, &geometry, NULL, 1, &keep);
     if (!status)
-        status = renderer_draw(&r, &app);
+        status = draw_app(&r, &app);
     if (!status && meanwhile) {
         meanwhile();
-        status = renderer_draw(&r, &app);
+        status = draw_app(&r, &app);
     }
     renderer_destroy(&r);
     fixture_free(&f);

@@ -4,8 +4,8 @@
 #ifndef VIEWER_DRAW_H
 #define VIEWER_DRAW_H
 
-#include "app/app.h"
 #include "app/gizmo.h"
+#include "app/place.h"
 #include "draw/lamps_seen.h"
 #include "gl/program.h"
 #include "gl/target.h"

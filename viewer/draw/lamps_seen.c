@@ -1,6 +1,5 @@
 #include "draw/lamps_seen.h"
 
-#include "app/orbit.h"
 #include "common/vec.h"
 
 void lamp_scene_forget(struct lamp_scene *s)
@@ -11,12 +10,12 @@ void lamp_scene_forget(struct lamp_scene *s)
 
 // ---------------------------------------------------------------- the frame
 
-static int nearest_view(const struct app *app, const struct lamp_scene *s)
+static int nearest_view(const struct frame_request *q, const struct lamp_scene *s)
 {
-    int best = app->now.camera.framing == RELUME_FRAME_VIEW ? app->now.camera.view : 0;
-    const struct relume_vec3 eye = app->now.camera.eye;
+    int best = q->camera.framing == RELUME_FRAME_VIEW ? q->camera.view : 0;
+    const struct relume_vec3 eye = q->camera.eye;
     double least = INFINITY;
-    for (int i = 0; app->now.camera.framing == RELUME_FRAME_EYE && i < s->views; i++) {
+    for (int i = 0; q->camera.framing == RELUME_FRAME_EYE && i < s->views; i++) {
         const double far = hypot(s->uv[i][0] - eye.x, s->uv[i][1] - eye.y);
         if (far < least) {
             least = far;
@@ -42,27 +41,31 @@ static struct relume_sight sight_of_picture(const struct app_file *file, struct 
     return s;
 }
 
-static struct relume_vec3 camera_of(const struct app *app, const struct lamp_scene *s, int view)
+static struct relume_vec3 camera_of(const struct frame_request *q, const struct lamp_scene *s,
+                                    int view)
 {
-    const bool slab = s && app->file.geometry.projection == RELUME_SLAB;
-    return slab ? (struct relume_vec3){s->uv[view][0], s->uv[view][1], app->file.geometry.uv_z}
+    const bool slab = s && q->file->geometry.projection == RELUME_SLAB;
+    return slab ? (struct relume_vec3){s->uv[view][0], s->uv[view][1], q->file->geometry.uv_z}
                 : (struct relume_vec3){0};
 }
 
 // False where the eye sees nothing.
-static bool sight_of(struct relume_sight *out, const struct app *app, const struct lamp_scene *s)
+static bool sight_of(struct relume_sight *out, const struct frame_request *q,
+                     const struct lamp_scene *s)
 {
-    const struct relume_camera *camera = &app->now.camera;
-    const struct app_rectangle r = app_picture(app);
+    const struct relume_camera *camera = &q->camera;
+    const struct app_rectangle r = q->picture;
     const bool free = camera->framing == RELUME_FRAME_EYE;
-    *out = sight_of_picture(&app->file, free ? camera->eye : camera_of(app, s, camera->view));
-    if (app->file.around && !(orbit_is(app) && app_window(app, &out->window)))
+    *out = sight_of_picture(q->file, free ? camera->eye : camera_of(q, s, camera->view));
+    if (q->file->around && !q->has_window)
         return false;
+    if (q->has_window)
+        out->window = q->window;
     if (camera->framing == RELUME_FRAME_LOOK)
         out->kind = RELUME_SIGHT_LOOK;
     out->look = camera->look;
-    out->width = app->width;
-    out->height = app->height;
+    out->width = q->width;
+    out->height = q->height;
     out->left = r.left;
     out->top = r.top;
     out->wide = r.right - r.left;
@@ -73,14 +76,14 @@ static bool sight_of(struct relume_sight *out, const struct app *app, const stru
 // ---------------------------------------------------------------- what hides it
 
 // The view that best knows what lies on the way to `p`, and the place in [0, 1] where it shows it.
-static bool find_view(int *view, double at[2], const struct app *app, const struct lamp_scene *s,
-                      struct relume_vec3 eye, struct relume_vec3 p)
+static bool find_view(int *view, double at[2], const struct frame_request *q,
+                      const struct lamp_scene *s, struct relume_vec3 eye, struct relume_vec3 p)
 {
-    const struct app_file *f = &app->file;
-    if (orbit_is(app))
+    const struct app_file *f = q->file;
+    if (q->has_window)
         return relume_slabs_nearest(view, at, f->around, eye, vec_sub(p, eye));
-    *view = nearest_view(app, s);
-    const struct relume_sight picture = sight_of_picture(f, camera_of(app, s, *view));
+    *view = nearest_view(q, s);
+    const struct relume_sight picture = sight_of_picture(f, camera_of(q, s, *view));
     if (!relume_sight_place(at, &picture, p))
         return false;
     at[0] /= f->width;
@@ -99,7 +102,7 @@ static bool need_surface(struct lamp_scene *s, int view)
 }
 
 struct looking {
-    const struct app *app;
+    const struct frame_request *request;
     struct lamp_scene *scene;
     struct relume_sight sight;
 };
@@ -110,7 +113,7 @@ static bool surface_near(struct relume_vec3 *out, const struct looking *l, struc
     const struct relume_image *image = &l->scene->surface;
     double at[2];
     int view;
-    if (!find_view(&view, at, l->app, l->scene, relume_sight_eye(&l->sight), p) ||
+    if (!find_view(&view, at, l->request, l->scene, relume_sight_eye(&l->sight), p) ||
         !need_surface(l->scene, view))
         return false;
     const double x = floor(at[0] * image->width), y = floor(at[1] * image->height);
@@ -129,26 +132,26 @@ static bool hidden(void *user, const double xy[2], struct relume_vec3 p)
     return surface_near(&surface, l, p) && relume_sight_hides(&l->sight, surface, p);
 }
 
-int lamps_seen(struct relume_source *out, const struct app *app, const struct relume_light *lights,
-               int n, struct lamp_scene *scene)
+int lamps_seen(struct relume_source *out, const struct frame_request *q,
+               const struct relume_light *lights, int n, struct lamp_scene *scene)
 {
-    struct looking l = {.app = app, .scene = scene};
-    if (!sight_of(&l.sight, app, scene))
+    struct looking l = {.request = q, .scene = scene};
+    if (!sight_of(&l.sight, q, scene))
         return 0;
     return relume_sight_lamps(out, &l.sight, lights, n, scene ? hidden : NULL, &l);
 }
 
 // A view beside the eye sees another place of the surface; its depth is a better guess, and so on.
-bool lamps_surface(struct relume_vec3 *out, const struct app *app, struct lamp_scene *scene,
+bool lamps_surface(struct relume_vec3 *out, const struct frame_request *q, struct lamp_scene *scene,
                    double x, double y)
 {
     enum { ROUNDS = 8 };
-    struct looking l = {.app = app, .scene = scene};
+    struct looking l = {.request = q, .scene = scene};
     struct relume_vec3 from, ray;
-    if (!sight_of(&l.sight, app, scene))
+    if (!sight_of(&l.sight, q, scene))
         return false;
     relume_sight_ray(&from, &ray, &l.sight, x, y);
-    double t = vec_dot(vec_sub(app_middle(app), from), ray);
+    double t = vec_dot(vec_sub(q->middle, from), ray);
     for (int i = 0; i < ROUNDS; i++) {
         const struct relume_vec3 p = {from.x + t * ray.x, from.y + t * ray.y, from.z + t * ray.z};
         if (!surface_near(out, &l, p))

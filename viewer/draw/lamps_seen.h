@@ -1,10 +1,10 @@
-// lamps_seen.h - the lights that are in view of the app's frame (sight.h)
+// lamps_seen.h - the lights that are in view of a frame (sight.h)
 //
 // The surface hides what lies behind it, as the nearest view knows it.
 #ifndef VIEWER_LAMPS_SEEN_H
 #define VIEWER_LAMPS_SEEN_H
 
-#include "app/app.h"
+#include "app/frame_request.h"
 #include "relit/loader.h"
 
 #include <relume/sight.h>
@@ -21,12 +21,12 @@ struct lamp_scene {
 void lamp_scene_forget(struct lamp_scene *scene);
 
 // As relume_sight_lamps. Without `scene` nothing is hidden.
-int lamps_seen(struct relume_source *out, const struct app *app, const struct relume_light *lights,
-               int n, struct lamp_scene *scene);
+int lamps_seen(struct relume_source *out, const struct frame_request *request,
+               const struct relume_light *lights, int n, struct lamp_scene *scene);
 
 // The surface that the frame shows at (x, y), as the nearest view knows it; false where nothing is
 // known.
-bool lamps_surface(struct relume_vec3 *out, const struct app *app, struct lamp_scene *scene,
-                   double x, double y);
+bool lamps_surface(struct relume_vec3 *out, const struct frame_request *request,
+                   struct lamp_scene *scene, double x, double y);
 
 #endif

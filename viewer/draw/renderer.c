@@ -1,6 +1,5 @@
 #include "draw/renderer.h"
 
-#include "app/lamps.h"
 #include "common/say.h"
 #include "draw/renderer_parts.h"
 
@@ -118,7 +117,6 @@ void renderer_destroy(struct renderer *r)
     free(r->uv);
     free(r->needed);
     free(r->relit);
-    free(r->light);
     *r = (struct renderer){0};
 }
 
@@ -133,96 +131,78 @@ relume_status renderer_prepare(struct target *target, const struct renderer *r, 
     return target_create(target, r->gl, width, height, r->log);
 }
 
-static void mark_view(struct renderer *r, const struct app *app)
+static void mark_view(struct renderer *r, const struct frame_request *q)
 {
-    r->needed[app->now.camera.view] = true;
+    r->needed[q->camera.view] = true;
 }
 
 // Of the pinholes of a lens, while something moves.
 enum { MOVING_SHARE = 8 };
 
-static double focus_of(const struct app *app)
+static int picture_width(const struct frame_request *q)
 {
-    return app->now.focus_z - (app->file.around ? 0 : app->file.geometry.st_z);
+    return (int)lround(q->picture.right - q->picture.left);
 }
 
-static int picture_width(const struct app *app)
+static void mark_around(struct renderer *r, const struct frame_request *q)
 {
-    const struct app_rectangle p = app_picture(app);
-    return (int)lround(p.right - p.left);
+    if (q->has_window)
+        (void)relume_slabs_needs(r->needed, r->around, &q->window, picture_width(q), &q->view);
 }
 
-static struct relume_view_params view_params(const struct app *app)
+static void mark_eye(struct renderer *r, const struct frame_request *q)
 {
-    return (struct relume_view_params){
-        .interpolation = app->now.interpolation,
-        .aperture = app->now.aperture,
-        .focus = focus_of(app),
-    };
-}
-
-static void mark_around(struct renderer *r, const struct app *app)
-{
-    const struct relume_view_params params = view_params(app);
-    struct relume_window window;
-    if (app_window(app, &window))
-        (void)relume_slabs_needs(r->needed, r->around, &window, picture_width(app), &params);
-}
-
-static void mark_eye(struct renderer *r, const struct app *app)
-{
-    const struct relume_view_params params = view_params(app);
     if (r->around) {
-        mark_around(r, app);
+        mark_around(r, q);
         return;
     }
-    (void)relume_slab_needs(r->needed, r->grid, app->now.camera.eye, &params);
+    (void)relume_slab_needs(r->needed, r->grid, q->camera.eye, &q->view);
 }
 
-static void mark_look(struct renderer *r, const struct app *app)
+static void mark_look(struct renderer *r, const struct frame_request *q)
 {
-    (void)app;
+    (void)q;
     r->needed[0] = true;
 }
 
-static relume_status draw_framed_view(struct renderer *r, const struct app *app,
+static relume_status draw_framed_view(struct renderer *r, const struct frame_request *q,
                                       const struct place *place)
 {
-    draw_picture(&r->picture, r->gl, place, r->relit[app->now.camera.view]);
+    draw_picture(&r->picture, r->gl, place, r->relit[q->camera.view]);
     return RELUME_OK;
 }
 
-static bool takes_lens(const struct app *app)
+static bool takes_lens(const struct frame_request *q)
 {
-    return app->now.aperture != 0.0 || focus_of(app) != 0.0;
+    return q->view.aperture != 0.0 || q->view.focus != 0.0;
 }
 
 // An eye at a slab's camera sees its view alone, whatever the depth.
-static bool takes_depth(const struct renderer *r, const struct app *app)
+static bool takes_depth(const struct renderer *r, const struct frame_request *q)
 {
-    const enum relume_interpolation i = app->now.interpolation;
+    const enum relume_interpolation i = q->view.interpolation;
     int views = 0;
     for (int k = 0; k < r->views; k++)
         views += r->needed[k];
-    return r->depths.views && (r->around || (views > 1 && !takes_lens(app))) &&
+    return r->depths.views && (r->around || (views > 1 && !takes_lens(q))) &&
            (i == RELUME_INTERPOLATE_DEFAULT || i == RELUME_INTERPOLATE_DEPTH);
 }
 
-static relume_status draw_lens(struct renderer *r, const struct app *app, const struct place *place,
-                               const struct slab_seen *seen)
+static relume_status draw_lens(struct renderer *r, const struct frame_request *q,
+                               const struct place *place, const struct slab_seen *seen)
 {
     relume_status status = renderer_prepare(&r->sum, r, place->width, place->height);
     if (status)
         return status;
     target_begin(&r->sum, r->gl);
-    draw_slab_lens(&r->slab_lens, r->gl, place, seen, app->now.aperture, focus_of(app));
+    draw_slab_lens(&r->slab_lens, r->gl, place, seen, q->view.aperture, q->view.focus);
     target_resume(&r->frame, r->gl);
     draw_mean(&r->mean, r->gl, place, &r->sum);
     return RELUME_OK;
 }
 
 // The mean of all slabs through one window, added to what `onto` holds.
-static void add_around(struct renderer *r, const struct app *app, const struct place *place,
+static void add_around(struct renderer *r, const struct frame_request *q, const struct place *place,
                        const struct target *onto, const struct relume_window *window, bool by_depth)
 {
     const struct slabs_seen seen = {
@@ -237,7 +217,7 @@ static void add_around(struct renderer *r, const struct app *app, const struct p
         draw_slabs_depth(&r->slabs_depth, r->gl, place, &seen);
     else
         draw_slabs(&r->slabs, r->gl, place, &seen,
-                   app->now.interpolation == RELUME_INTERPOLATE_CONSTANT);
+                   q->view.interpolation == RELUME_INTERPOLATE_CONSTANT);
     target_resume(onto, r->gl);
     r->gl->Enable(GL_BLEND);
     draw_mean(&r->mean, r->gl, place, &r->sum);
@@ -245,12 +225,12 @@ static void add_around(struct renderer *r, const struct app *app, const struct p
 }
 
 // Twin of relume_slabs_frame: the mean over the pinholes that show anything.
-static relume_status draw_around_lens(struct renderer *r, const struct app *app,
+static relume_status draw_around_lens(struct renderer *r, const struct frame_request *q,
                                       const struct place *place, const struct relume_window *window,
                                       bool by_depth)
 {
-    const double aperture = app->now.aperture, focus = focus_of(app);
-    const int width = picture_width(app);
+    const double aperture = q->view.aperture, focus = q->view.focus;
+    const int width = picture_width(q);
     struct place plain = *place;
     const relume_status status = renderer_prepare(&r->pinholes, r, place->width, place->height);
     if (status || !relume_lens_fits(window, aperture, focus))
@@ -258,49 +238,48 @@ static relume_status draw_around_lens(struct renderer *r, const struct app *app,
     plain.exposure = 1;
     target_begin(&r->pinholes, r->gl);
     const int all = relume_lens_points(window, aperture, focus, width);
-    const int n = app_moves(app) ? (all + MOVING_SHARE - 1) / MOVING_SHARE : all;
+    const int n = q->moves ? (all + MOVING_SHARE - 1) / MOVING_SHARE : all;
     for (int i = 0; i < n; i++) {
         const struct relume_window from = relume_lens_window(window, aperture, focus, i, n);
-        add_around(r, app, &plain, &r->pinholes, &from, by_depth);
+        add_around(r, q, &plain, &r->pinholes, &from, by_depth);
     }
     target_resume(&r->frame, r->gl);
     draw_mean(&r->mean, r->gl, place, &r->pinholes);
     return RELUME_OK;
 }
 
-static relume_status draw_around(struct renderer *r, const struct app *app,
+static relume_status draw_around(struct renderer *r, const struct frame_request *q,
                                  const struct place *place)
 {
-    struct relume_window window;
     double range[2];
     relume_status status = renderer_prepare(&r->sum, r, place->width, place->height);
-    const bool by_depth = takes_depth(r, app);
+    const bool by_depth = takes_depth(r, q);
     if (!status && by_depth)
         status = depths_use(&r->depths, r->needed, range);
-    if (status || !app_window(app, &window))
+    if (status || !q->has_window)
         return status;
-    if (takes_lens(app))
-        return draw_around_lens(r, app, place, &window, by_depth);
-    add_around(r, app, place, &r->frame, &window, by_depth);
+    if (takes_lens(q))
+        return draw_around_lens(r, q, place, &q->window, by_depth);
+    add_around(r, q, place, &r->frame, &q->window, by_depth);
     return RELUME_OK;
 }
 
-static relume_status draw_framed_eye(struct renderer *r, const struct app *app,
+static relume_status draw_framed_eye(struct renderer *r, const struct frame_request *q,
                                      const struct place *place)
 {
-    const struct slab_seen seen = {r->grid, &r->geometry, app->now.camera.eye, r->relit};
+    const struct slab_seen seen = {r->grid, &r->geometry, q->camera.eye, r->relit};
     bool any = false;
     for (int i = 0; i < r->views; i++)
         any |= r->needed[i];
     if (!any)
         return RELUME_OK;
     if (r->around)
-        return draw_around(r, app, place);
-    if (takes_lens(app))
-        return draw_lens(r, app, place, &seen);
-    if (!takes_depth(r, app)) {
+        return draw_around(r, q, place);
+    if (takes_lens(q))
+        return draw_lens(r, q, place, &seen);
+    if (!takes_depth(r, q)) {
         draw_slab(&r->slab, r->gl, place, &seen,
-                  app->now.interpolation == RELUME_INTERPOLATE_CONSTANT);
+                  q->view.interpolation == RELUME_INTERPOLATE_CONSTANT);
         return RELUME_OK;
     }
     double range[2];
@@ -310,17 +289,18 @@ static relume_status draw_framed_eye(struct renderer *r, const struct app *app,
     return status;
 }
 
-static relume_status draw_framed_look(struct renderer *r, const struct app *app,
+static relume_status draw_framed_look(struct renderer *r, const struct frame_request *q,
                                       const struct place *place)
 {
-    draw_panorama(&r->panorama, r->gl, place, &r->geometry, app->now.camera.look, r->relit[0]);
+    draw_panorama(&r->panorama, r->gl, place, &r->geometry, q->camera.look, r->relit[0]);
     return RELUME_OK;
 }
 
 // Which views a framing needs, and how it is drawn from them.
 static const struct framing {
-    void (*mark)(struct renderer *r, const struct app *app);
-    relume_status (*draw)(struct renderer *r, const struct app *app, const struct place *place);
+    void (*mark)(struct renderer *r, const struct frame_request *q);
+    relume_status (*draw)(struct renderer *r, const struct frame_request *q,
+                          const struct place *place);
 } framings[] = {
     [RELUME_FRAME_VIEW] = {mark_view, draw_framed_view},
     [RELUME_FRAME_EYE] = {mark_eye, draw_framed_eye},
@@ -371,109 +351,94 @@ static relume_status stand_in(struct renderer *r)
     return status;
 }
 
-static relume_status need_lights(struct renderer *r, int n)
-{
-    if (n <= r->room)
-        return RELUME_OK;
-    struct relume_light *light = realloc(r->light, (size_t)n * sizeof *light);
-    if (!light)
-        return RELUME_ENOMEM;
-    r->light = light;
-    r->room = n;
-    return RELUME_OK;
-}
-
-relume_status renderer_relight_views(struct renderer *r, const struct app *app,
+relume_status renderer_relight_views(struct renderer *r, const struct frame_request *q,
                                      const struct relume_light *lights, int count)
 {
-    r->enhancer.params = app->now.enhance;
+    r->enhancer.params = q->enhance;
     relume_status status = relighter_begin(&r->relighter, lights, count);
     relume_status (*const look_up)(const struct target **, struct relighter *, int) =
-        app->now.pass == RELUME_PASS_COLOUR ? relighter_view : relighter_wait;  // no stand-ins
+        q->pass == RELUME_PASS_COLOUR ? relighter_view : relighter_wait;  // no stand-ins
     for (int i = 0; !status && i < r->views; i++) {
         r->relit[i] = NULL;
         if (r->needed[i])
             status = look_up(&r->relit[i], &r->relighter, i);
-        if (!status && r->needed[i] && app->now.pass != RELUME_PASS_COLOUR)
-            status = enhancer_view(&r->relit[i], &r->enhancer, i, r->relit[i], app->now.pass,
-                                   lights, count);
+        if (!status && r->needed[i] && q->pass != RELUME_PASS_COLOUR)
+            status =
+                enhancer_view(&r->relit[i], &r->enhancer, i, r->relit[i], q->pass, lights, count);
     }
     return status ? status : stand_in(r);
 }
 
-relume_status renderer_frame(struct renderer *r, const struct app *app, const struct place *place)
+relume_status renderer_frame(struct renderer *r, const struct frame_request *q,
+                             const struct place *place)
 {
     r->gl->BindVertexArray(r->vertices);
     target_begin(&r->frame, r->gl);
-    return framings[app->now.camera.framing].draw(r, app, place);
+    return framings[q->camera.framing].draw(r, q, place);
 }
 
-// The lights that shine, and what the frame needs.
-static relume_status prepare(struct renderer *r, const struct app *app)
+// The views that the frame needs.
+static relume_status prepare(struct renderer *r, const struct frame_request *q)
 {
-    relume_status status = renderer_prepare(&r->frame, r, app->width, app->height);
+    relume_status status = renderer_prepare(&r->frame, r, q->width, q->height);
     memset(r->needed, 0, (size_t)r->views * sizeof *r->needed);
     if (!r->stage && !r->empty)
-        framings[app->now.camera.framing].mark(r, app);
-    if (!status)
-        status = need_lights(r, app->now.lights);
-    r->lights = status ? 0 : lamps_shining(&app->now, r->light);
+        framings[q->camera.framing].mark(r, q);
     return status;
 }
 
 // Normals and the like are for looking up, not at.
-static relume_status see(struct renderer *r, const struct app *app, double exposure)
+static relume_status see(struct renderer *r, const struct frame_request *q)
 {
     r->shown = &r->frame;
-    if (!app->now.gaze.on || app->now.pass != RELUME_PASS_COLOUR)
+    if (!q->gaze.on || q->pass != RELUME_PASS_COLOUR)
         return RELUME_OK;
-    const relume_status status = glare_see(&r->glare, &r->frame, app, exposure);
+    const relume_status status = glare_see(&r->glare, &r->frame, q);
     r->shown = &r->glare.seen;
     return status;
 }
 
-static relume_status draw_lights_in_view(struct renderer *r, const struct app *app,
+static relume_status draw_lights_in_view(struct renderer *r, const struct frame_request *q,
                                          const struct place *place)
 {
-    if (!app->now.gaze.sources || app->now.pass != RELUME_PASS_COLOUR)
+    if (!q->gaze.sources || q->pass != RELUME_PASS_COLOUR)
         return RELUME_OK;
     struct relume_source *sources = malloc(RELUME_SOURCES_MOST * sizeof *sources);
     if (!sources)
         return RELUME_ENOMEM;
-    const int n = lamps_seen(sources, app, r->light, r->lights, &r->backdrop);
+    const int n = lamps_seen(sources, q, q->light, q->lights, &r->backdrop);
     draw_sources(&r->source, r->gl, place, sources, n);
     free(sources);
     return RELUME_OK;
 }
 
-relume_status renderer_draw(struct renderer *r, const struct app *app)
+relume_status renderer_draw(struct renderer *r, const struct frame_request *q)
 {
     const struct place place = {
-        .width = app->width,
-        .height = app->height,
-        .picture = app_picture(app),
-        .exposure = (float)exp2(app_exposure_ev(app)),
+        .width = q->width,
+        .height = q->height,
+        .picture = q->picture,
+        .exposure = q->exposure,
     };
-    relume_status status = prepare(r, app);
+    relume_status status = prepare(r, q);
     if (!status && r->empty)
         target_begin(&r->frame, r->gl);
     else if (!status && r->things.gl)
-        status = renderer_draw_objects(r, app, &place, r->light, r->lights);
+        status = renderer_draw_objects(r, q, &place, q->light, q->lights);
     else if (!status)
-        status = renderer_relight_views(r, app, r->light, r->lights);
+        status = renderer_relight_views(r, q, q->light, q->lights);
     if (!status && !r->things.gl && !r->empty)
-        status = renderer_frame(r, app, &place);
+        status = renderer_frame(r, q, &place);
     if (!status)
-        status = draw_lights_in_view(r, app, &place);
+        status = draw_lights_in_view(r, q, &place);
     if (!status)
-        status = see(r, app, (double)place.exposure);
+        status = see(r, q);
     if (status)
         return status;
     target_resume(r->shown, r->gl);
     r->gl->BindVertexArray(r->vertices);
-    if (app->now.ball)
-        draw_ball(&r->ball, r->gl, &place, gizmo_ball(app), app_seen_light(app, app->now.selected),
-                  app->now.light[app->now.selected].rgb);
+    if (q->ball)
+        draw_ball(&r->ball, r->gl, &place, q->ball_place, q->ball_light, q->ball_rgb);
     return gl_check(r->gl, "drawing", r->log);
 }
 
@@ -513,9 +478,9 @@ relume_status renderer_meter(double *ev, struct renderer *r)
     return status;
 }
 
-void renderer_present(const struct renderer *r, const struct app *app, GLuint framebuffer)
+void renderer_present(const struct renderer *r, const struct window_place *window, int tone,
+                      double white, GLuint framebuffer)
 {
     r->gl->BindVertexArray(r->vertices);
-    const struct window_place window = {app->beside[0], app_window_width(app), app->height};
-    draw_present(&r->present, r->gl, r->shown, &window, app->now.tone, app->now.white, framebuffer);
+    draw_present(&r->present, r->gl, r->shown, window, tone, white, framebuffer);
 }

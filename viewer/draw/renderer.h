@@ -28,18 +28,19 @@ void renderer_use_capture(struct renderer *renderer, const relume_capture *captu
 relume_status renderer_use_objects(struct renderer *renderer, relume_objects *objects,
                                    const struct depth_source *places);
 
-// Draw the frame that `app` describes, linear, into renderer->frame. After renderer_stream, views
+// Draw that frame, linear, into renderer->frame. After renderer_stream, views
 // that are still being read are stood in for by their nearest neighbours, and renderer_is_pending
 // tells that another frame would be better.
 relume_status renderer_stream(struct renderer *renderer);
 bool renderer_is_pending(const struct renderer *renderer);
-relume_status renderer_draw(struct renderer *renderer, const struct app *app);
+relume_status renderer_draw(struct renderer *renderer, const struct frame_request *request);
 // The last frame as an image, linear; the caller destroys it.
 relume_status renderer_read(struct relume_image *out, const struct renderer *renderer);
 // What relume_tone_meter says of the last frame, seen through a small copy of it.
 relume_status renderer_meter(double *ev, struct renderer *renderer);
-// The last frame by the app's tone onto a framebuffer of its size, coded for the screen (0: the
+// The last frame by relume_tones[tone] onto a framebuffer of its size, coded for the screen (0: the
 // screen).
-void renderer_present(const struct renderer *renderer, const struct app *app, GLuint framebuffer);
+void renderer_present(const struct renderer *renderer, const struct window_place *window, int tone,
+                      double white, GLuint framebuffer);
 
 #endif

@@ -42,17 +42,17 @@ static struct relume_window planar_window(const struct relume_geometry *g)
 }
 
 // A window at distance 1 along the middle of a perspective look.
-static struct relume_window look_window(const struct app *app)
+static struct relume_window look_window(const struct frame_request *q)
 {
-    const struct relume_look look = app->now.camera.look;
-    const int w = app->width, h = app->height;
+    const struct relume_look look = q->camera.look;
+    const int w = q->width, h = q->height;
     const struct relume_vec3 ahead = relume_look_ray(look, w, h, 0.5 * w, 0.5 * h);
     struct relume_vec3 corner[3];
     for (int i = 0; i < 3; i++) {
         corner[i] = relume_look_ray(look, w, h, i == 1 ? w : 0, i == 2 ? h : 0);
         corner[i] = vec_scale(corner[i], 1.0 / vec_dot(corner[i], ahead));
     }
-    const struct relume_vec3 eye = app->file.geometry.center;
+    const struct relume_vec3 eye = q->file->geometry.center;
     return (struct relume_window){
         .eye = eye,
         .corner = {eye.x + corner[0].x, eye.y + corner[0].y, eye.z + corner[0].z},
@@ -71,15 +71,18 @@ static struct relume_window slab_view_window(const struct renderer *r, int view)
 }
 
 // The window of the frame; false for frames that are not flat: unfolded panoramas, little planets.
-static bool find_window(struct relume_window *w, const struct renderer *r, const struct app *app)
+static bool find_window(struct relume_window *w, const struct renderer *r,
+                        const struct frame_request *q)
 {
-    const struct relume_camera *camera = &app->now.camera;
+    const struct relume_camera *camera = &q->camera;
     if (camera->framing == RELUME_FRAME_LOOK) {
-        *w = look_window(app);
+        *w = look_window(q);
         return !camera->look.stereographic;
     }
-    if (camera->framing == RELUME_FRAME_EYE && r->around)
-        return app_window(app, w);
+    if (camera->framing == RELUME_FRAME_EYE && r->around) {
+        *w = q->window;
+        return q->has_window;
+    }
     if (camera->framing == RELUME_FRAME_EYE)
         *w = relume_slab_window(&r->geometry, camera->eye);
     else if (r->geometry.projection == RELUME_SLAB)
@@ -89,7 +92,7 @@ static bool find_window(struct relume_window *w, const struct renderer *r, const
     return r->geometry.projection <= RELUME_SLAB;
 }
 
-static bool find_sight(struct sight *out, const struct renderer *r, const struct app *app,
+static bool find_sight(struct sight *out, const struct renderer *r, const struct frame_request *q,
                        const struct place *place)
 {
     const struct relume_objects_info *info = relume_objects_info(r->things.objects);
@@ -100,9 +103,8 @@ static bool find_sight(struct sight *out, const struct renderer *r, const struct
                        place->height, info->min, info->max);
         return true;
     }
-    return find_window(&window, r, app) &&
-           sight_of_window(out, &window, place->picture, place->width, place->height, info->min,
-                           info->max);
+    return find_window(&window, r, q) && sight_of_window(out, &window, place->picture, place->width,
+                                                         place->height, info->min, info->max);
 }
 
 // ---------------------------------------------------------------- the scene
@@ -136,27 +138,28 @@ static relume_status use_places(struct renderer *r)
     return status;
 }
 
-static relume_status find_scene(struct renderer *r, const struct app *app, struct place place)
+static relume_status find_scene(struct renderer *r, const struct frame_request *q,
+                                struct place place)
 {
     relume_status status = use_places(r);
     place.exposure = 1.0f;
     if (!status)
-        status = renderer_frame(r, app, &place);
+        status = renderer_frame(r, q, &place);
     swap(&r->frame, &r->scene);
     return status;
 }
 
 // r->frame becomes the sum of all lights where they reach.
-static relume_status light_scene(struct renderer *r, const struct app *app,
+static relume_status light_scene(struct renderer *r, const struct frame_request *q,
                                  const struct place *place, const struct relume_light *lights,
                                  int count)
 {
     relume_status status = RELUME_OK;
     target_begin(&r->lit, r->gl);
     for (int i = 0; i < count && !status; i++) {
-        status = renderer_relight_views(r, app, &lights[i], 1);
+        status = renderer_relight_views(r, q, &lights[i], 1);
         if (!status)
-            status = renderer_frame(r, app, place);
+            status = renderer_frame(r, q, place);
         if (!status)
             status = things_light(&r->things, &lights[i], 1);
         target_resume(&r->lit, r->gl);
@@ -167,7 +170,7 @@ static relume_status light_scene(struct renderer *r, const struct app *app,
     return status;
 }
 
-static relume_status draw_scene(struct renderer *r, const struct app *app,
+static relume_status draw_scene(struct renderer *r, const struct frame_request *q,
                                 const struct place *place, const struct relume_light *lights,
                                 int count, bool seen)
 {
@@ -178,14 +181,14 @@ static relume_status draw_scene(struct renderer *r, const struct app *app,
     relume_status status = renderer_prepare(&r->scene, r, place->width, place->height);
     if (!status)
         status = renderer_prepare(&r->lit, r, place->width, place->height);
-    if (!seen || app->now.pass != RELUME_PASS_COLOUR) {
+    if (!seen || q->pass != RELUME_PASS_COLOUR) {
         if (!status)
-            status = renderer_relight_views(r, app, lights, count);
-        return status ? status : renderer_frame(r, app, place);
+            status = renderer_relight_views(r, q, lights, count);
+        return status ? status : renderer_frame(r, q, place);
     }
     if (!status)
-        status = find_scene(r, app, *place);
-    return status ? status : light_scene(r, app, place, lights, count);
+        status = find_scene(r, q, *place);
+    return status ? status : light_scene(r, q, place, lights, count);
 }
 
 // ---------------------------------------------------------------- the objects
@@ -198,14 +201,14 @@ static double now_ms(void)
 }
 
 // Objects in their materials, or all in one; `ms` is what it took where the panel shows it.
-static relume_status shade(struct renderer *r, const struct app *app, const struct sight *sight,
-                           int only, double *ms)
+static relume_status shade(struct renderer *r, const struct frame_request *q,
+                           const struct sight *sight, int only, double *ms)
 {
-    if (app->panel)
+    if (q->timed)
         r->gl->Finish();
     const double start = now_ms();
-    const relume_status status = things_shade(&r->things, sight, app->width, app->height, only);
-    if (app->panel)
+    const relume_status status = things_shade(&r->things, sight, q->width, q->height, only);
+    if (q->timed)
         r->gl->Finish();
     *ms = now_ms() - start;
     return status;
@@ -225,39 +228,39 @@ static void draw_split(const struct renderer *r, const struct place *place, GLui
     gl->Disable(GL_SCISSOR_TEST);
 }
 
-static relume_status draw_things(struct renderer *r, const struct app *app,
+static relume_status draw_things(struct renderer *r, const struct frame_request *q,
                                  const struct place *place, const struct sight *sight)
 {
     const GLuint scene = r->stage ? 0 : r->scene.texture;
-    const bool both = app->now.split != APP_SPLIT_NONE;
+    const bool both = q->split != APP_SPLIT_NONE;
     relume_status status = RELUME_OK;
     if (both)
-        status = shade(r, app, sight, app->now.other, &r->things_ms[1]);
+        status = shade(r, q, sight, q->other, &r->things_ms[1]);
     things_swap(&r->things);
     if (!status)
-        status = shade(r, app, sight, -1, &r->things_ms[0]);
+        status = shade(r, q, sight, -1, &r->things_ms[0]);
     if (status)
         return status;
     r->gl->BindVertexArray(r->vertices);
     target_resume(&r->frame, r->gl);
-    things_over(&r->things, place, scene, app->now.split == APP_SPLIT_DIFFERENCE);
-    if (app->now.split == APP_SPLIT_SIDES) {
+    things_over(&r->things, place, scene, q->split == APP_SPLIT_DIFFERENCE);
+    if (q->split == APP_SPLIT_SIDES) {
         things_swap(&r->things);
         draw_split(r, place, scene);
     }
     return RELUME_OK;
 }
 
-relume_status renderer_draw_objects(struct renderer *r, const struct app *app,
+relume_status renderer_draw_objects(struct renderer *r, const struct frame_request *q,
                                     const struct place *place, const struct relume_light *lights,
                                     int count)
 {
     struct sight sight;
-    const bool seen = find_sight(&sight, r, app, place);
+    const bool seen = find_sight(&sight, r, q, place);
     r->gl->BindVertexArray(r->vertices);
-    relume_status status = draw_scene(r, app, place, lights, count, seen);
-    if (status || !seen || app->now.pass != RELUME_PASS_COLOUR)
+    relume_status status = draw_scene(r, q, place, lights, count, seen);
+    if (status || !seen || q->pass != RELUME_PASS_COLOUR)
         return status;
     status = things_light(&r->things, lights, count);
-    return status ? status : draw_things(r, app, place, &sight);
+    return status ? status : draw_things(r, q, place, &sight);
 }

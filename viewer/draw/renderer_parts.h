@@ -8,13 +8,14 @@
 relume_status renderer_prepare(struct target *target, const struct renderer *r, int width,
                                int height);
 // The views that are needed, relit.
-relume_status renderer_relight_views(struct renderer *r, const struct app *app,
+relume_status renderer_relight_views(struct renderer *r, const struct frame_request *request,
                                      const struct relume_light *lights, int count);
 // r->relit as the framing shows them, into r->frame.
-relume_status renderer_frame(struct renderer *r, const struct app *app, const struct place *place);
+relume_status renderer_frame(struct renderer *r, const struct frame_request *request,
+                             const struct place *place);
 
 // The frame with objects, into r->frame.
-relume_status renderer_draw_objects(struct renderer *r, const struct app *app,
+relume_status renderer_draw_objects(struct renderer *r, const struct frame_request *request,
                                     const struct place *place, const struct relume_light *lights,
                                     int count);
 void renderer_objects_destroy(struct renderer *r);

@@ -2,7 +2,7 @@
 #ifndef VIEWER_RENDERER_STATE_H
 #define VIEWER_RENDERER_STATE_H
 
-#include "app/app.h"
+#include "app/frame_request.h"
 #include "draw/draw.h"
 #include "draw/things.h"
 #include "glare/glare.h"
@@ -33,11 +33,9 @@ struct renderer {
     double (*uv)[2];              // [views]
     bool *needed;                 // [views]
     const struct target **relit;  // [views]; NULL where not needed
-    struct relume_light *light;   // that shine; room for `room`
-    int lights, room;
-    struct things things;  // objects; empty: none
-    bool stage;            // there is nothing but objects
-    bool empty;            // there is nothing at all
+    struct things things;         // objects; empty: none
+    bool stage;                   // there is nothing but objects
+    bool empty;                   // there is nothing at all
     // Of a scene with objects: where it is, what one light shows of it, and of each view what its
     // pixels see; made when first needed.
     struct depth_source place_source;

@@ -2,7 +2,7 @@
 #ifndef VIEWER_SIGHT_H
 #define VIEWER_SIGHT_H
 
-#include "app/app.h"
+#include "app/place.h"
 
 struct sight {
     float clip[16];  // columns first; rows of the frame run down

@@ -114,16 +114,17 @@ static double squint_of(const struct glare *g, const struct gaze *gaze)
 }
 
 // Live on; `*moved`: it is not as it was.
-static relume_status live(struct glare *g, const struct app *app, double luminance, bool *moved)
+static relume_status live(struct glare *g, const struct frame_request *q, double luminance,
+                          bool *moved)
 {
-    const double squint = squint_of(g, &app->now.gaze);
+    const double squint = squint_of(g, &q->gaze);
     relume_status status = RELUME_OK;
-    *moved = !g->eye || app->eye_s > g->eye_s;
+    *moved = !g->eye || q->eye_s > g->eye_s;
     if (!g->eye)
         status = relume_eye_create(&g->eye, g->subject, luminance);
     else if (*moved)
-        status = relume_eye_advance(g->eye, app->eye_s - g->eye_s, luminance);
-    g->eye_s = app->eye_s;
+        status = relume_eye_advance(g->eye, q->eye_s - g->eye_s, luminance);
+    g->eye_s = q->eye_s;
     if (status || relume_eye_subject(g->eye)->lids.squint == squint)
         return status;
     relume_eye_squint(g->eye, squint);
@@ -150,29 +151,29 @@ static relume_status begin_loop(struct glare *g, const struct gaze *gaze, double
     return status;
 }
 
-static relume_status go_around(struct glare *g, const struct app *app, double luminance)
+static relume_status go_around(struct glare *g, const struct frame_request *q, double luminance)
 {
-    const struct gaze *gaze = &app->now.gaze;
+    const struct gaze *gaze = &q->gaze;
     relume_status status = RELUME_OK;
     if (!g->loop.cycle || g->loop.seconds != gaze->cycle_s || g->loop.squint != squint_of(g, gaze))
         status = begin_loop(g, gaze, luminance);
-    else if (g->fresh && app->eye_s == g->eye_s)
+    else if (g->fresh && q->eye_s == g->eye_s)
         return RELUME_OK;
     g->fresh = false;
-    g->eye_s = app->eye_s;
-    return status ? status : relume_psf_cycle_show(g->library.psf, g->loop.cycle, app->eye_s);
+    g->eye_s = q->eye_s;
+    return status ? status : relume_psf_cycle_show(g->library.psf, g->loop.cycle, q->eye_s);
 }
 
-static relume_status live_and_update(struct glare *g, const struct app *app, double luminance,
-                                     double exposure)
+static relume_status live_and_update(struct glare *g, const struct frame_request *q,
+                                     double luminance)
 {
-    const double nits = luminance / exposure * gaze_nits(&app->now.gaze);
+    const double nits = luminance / (double)q->exposure * gaze_nits(&q->gaze);
     const double seen = nits >= 0 ? fmin(nits, most_nits) : 0;
     bool moved;
-    if (app->now.gaze.cycle_s > 0)
-        return go_around(g, app, seen);
+    if (q->gaze.cycle_s > 0)
+        return go_around(g, q, seen);
     forget_loop(g);
-    relume_status status = live(g, app, seen, &moved);
+    relume_status status = live(g, q, seen, &moved);
     if (status || (!moved && g->fresh))
         return status;
     g->fresh = false;
@@ -256,16 +257,16 @@ static relume_status apply(struct glare *g, const struct relume_glare_params *vi
 }
 
 static relume_status see_by_library(struct glare *g, const struct target *frame,
-                                    const struct app *app, double exposure)
+                                    const struct frame_request *q)
 {
     bool same = false;
     relume_status status = take_frame(g, frame, &same);
     if (!status)
-        status = live_and_update(g, app, relume_glare_luminance(&g->library.frame), exposure);
+        status = live_and_update(g, q, relume_glare_luminance(&g->library.frame));
     if (status)
         return status;
-    struct relume_glare_params view = glare_view(app, relume_psf_shape(g->library.psf));
-    view.mode = mode_of(&app->now.gaze, frame);
+    struct relume_glare_params view = glare_view(q, relume_psf_shape(g->library.psf));
+    view.mode = mode_of(&q->gaze, frame);
     if (g->fresh && same && same_view(&view, &g->view))
         return RELUME_OK;
     g->view = view;
@@ -275,36 +276,34 @@ static relume_status see_by_library(struct glare *g, const struct target *frame,
 // ---------------------------------------------------------------- by passes
 
 static relume_status see_by_passes(struct glare *g, const struct target *frame,
-                                   const struct app *app, double exposure, bool *fits)
+                                   const struct frame_request *q, bool *fits)
 {
     struct gl_glare_facts facts;
     *fits = true;
     relume_status status = gl_glare_watch(&facts, &g->card, g->gl, frame, g->log);
     if (!status)
-        status = live_and_update(g, app, facts.luminance, exposure);
+        status = live_and_update(g, q, facts.luminance);
     if (status)
         return status;
-    const struct relume_glare_params view = glare_view(app, &g->card.psf.shape);
+    const struct relume_glare_params view = glare_view(q, &g->card.psf.shape);
     if (g->fresh && facts.same && same_view(&view, &g->view))
         return RELUME_OK;
     g->view = view;
     return gl_glare_apply(&g->card, g->gl, &g->seen, frame, &facts, g->eye, &view, fits, g->log);
 }
 
-relume_status glare_see(struct glare *g, const struct target *frame, const struct app *app,
-                        double exposure)
+relume_status glare_see(struct glare *g, const struct target *frame, const struct frame_request *q)
 {
-    const bool passes = wants_passes(g, &app->now.gaze);
+    const bool passes = wants_passes(g, &q->gaze);
     bool fits = true;
     relume_status status = need_seen(g, frame->width, frame->height);
     if (!status)
-        status = prepare(g, &app->now.gaze, passes);
+        status = prepare(g, &q->gaze, passes);
     if (!status)
-        status = passes ? see_by_passes(g, frame, app, exposure, &fits)
-                        : see_by_library(g, frame, app, exposure);
+        status = passes ? see_by_passes(g, frame, q, &fits) : see_by_library(g, frame, q);
     g->fresh = !status;
     if (status || fits)
         return status;
     leave_it_to_library(g, "the graphics card has no room for the frame");
-    return glare_see(g, frame, app, exposure);
+    return glare_see(g, frame, q);
 }

@@ -6,7 +6,7 @@
 #ifndef VIEWER_GLARE_H
 #define VIEWER_GLARE_H
 
-#include "app/app.h"
+#include "app/frame_request.h"
 #include "glare/gl_glare.h"
 
 // What the library works with.
@@ -48,10 +48,10 @@ struct glare {
 void glare_begin(struct glare *glare, const struct gl *gl, const struct relume_log *log);
 void glare_end(struct glare *glare);
 
-// `frame`, linear, times `exposure` what the scene sends, as the app's eye sees it now: into
-// glare->seen. The eye lives on to app->eye_s, or its loop goes on, which takes as long as its
-// patterns when it begins. RELUME_ESYSTEM, RELUME_ENOMEM.
-relume_status glare_see(struct glare *glare, const struct target *frame, const struct app *app,
-                        double exposure);
+// `frame`, linear, times the request's exposure what the scene sends, as the request's eye sees it
+// now: into glare->seen. The eye lives on to request->eye_s, or its loop goes on, which takes as
+// long as its patterns when it begins. RELUME_ESYSTEM, RELUME_ENOMEM.
+relume_status glare_see(struct glare *glare, const struct target *frame,
+                        const struct frame_request *request);
 
 #endif

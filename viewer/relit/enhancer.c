@@ -1,6 +1,5 @@
 #include "relit/enhancer.h"
 
-#include "app/app.h"
 #include "common/say.h"
 #include "common/vec.h"
 

@@ -379,7 +379,14 @@ void session_close(struct session *s)
         s->backend->close(s->context);
     relume_capture_destroy(&s->capture);
     relume_rig_destroy(&s->rig);
+    frame_request_free(&s->request);
     app_release(&s->app);
+}
+
+relume_status session_render(struct session *s)
+{
+    const relume_status status = frame_request_make(&s->request, &s->app);
+    return status ? status : renderer_draw(&s->renderer, &s->request);
 }
 
 // The first frame is drawn once more, with the exposure that it asks for.
@@ -391,7 +398,7 @@ static relume_status meter(struct session *s)
     if (status)
         return status;
     app_meter(&s->app, ev);
-    return app_exposure_ev(&s->app) == before ? RELUME_OK : renderer_draw(&s->renderer, &s->app);
+    return app_exposure_ev(&s->app) == before ? RELUME_OK : session_render(s);
 }
 
 // Whether an event is for those that hear of it when nothing is recorded.
@@ -428,7 +435,7 @@ relume_status session_draw(struct session *s)
         status = session_build_panel(s, false);  // with what is said of it
     const bool recorded = !status && session_records(s) && !session_record_step(s);
     if (!status && !recorded)
-        status = renderer_draw(&s->renderer, &s->app);
+        status = session_render(s);
     if (!status && !recorded && s->app.now.auto_exposure)
         status = meter(s);
     return status ? status : session_add_histogram(s);
@@ -447,7 +454,8 @@ bool session_pass(struct session *s, double seconds)
 
 void session_present(struct session *s, GLuint framebuffer)
 {
-    renderer_present(&s->renderer, &s->app, framebuffer);
+    const struct window_place window = {s->app.beside[0], app_window_width(&s->app), s->app.height};
+    renderer_present(&s->renderer, &window, s->app.now.tone, s->app.now.white, framebuffer);
     if (panel_shown(&s->app))
         draw_panel(&s->drawing, &s->gl, s->panel, app_window_width(&s->app), s->app.height);
 }

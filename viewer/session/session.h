@@ -52,6 +52,7 @@ struct session {
     relume_rig *rig;                // owns what lights point at; the app's list says what shines
     struct app app;
     struct renderer renderer;
+    struct frame_request request;  // of the frame drawn last
     struct panel *panel;
     struct panel_drawing drawing;
     struct maps maps;            // to choose from, while the panel does
@@ -127,6 +128,8 @@ bool session_send(struct session *s, const struct app_event *event);
 // Draw the frame, linear, with the panel as its events have changed the app, and do what was
 // wished.
 relume_status session_draw(struct session *s);
+// Only the picture, without what session_draw does besides.
+relume_status session_render(struct session *session);
 // The frame and the panel onto a framebuffer of its size (0: the screen).
 void session_present(struct session *s, GLuint framebuffer);
 // Do what the app wishes for, once. What fails is said in the panel and the log, and is no error.

@@ -79,7 +79,7 @@ relume_status session_record_step(struct session *s)
     r->posed = r->frame;
     relume_status status = record_pose(&s->app, r->kind, (double)r->frame / r->frames, s->log);
     if (!status)
-        status = renderer_draw(&s->renderer, &s->app);
+        status = session_render(s);
     if (!status && renderer_is_pending(&s->renderer))
         return RELUME_OK;  // the same picture again, when all of it is there
     if (!status)

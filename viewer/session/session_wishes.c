@@ -130,8 +130,11 @@ static relume_status wish_focus(struct session *s)
 {
     struct app *app = &s->app;
     struct relume_vec3 p;
+    const relume_status status = frame_request_make(&s->request, app);
+    if (status)
+        return status;
     const bool known =
-        lamps_surface(&p, app, &s->renderer.backdrop, app->cursor[0], app->cursor[1]);
+        lamps_surface(&p, &s->request, &s->renderer.backdrop, app->cursor[0], app->cursor[1]);
     if (!known && app->file.around) {
         session_say(s, "nothing to focus on there; click on the object");
         return RELUME_OK;

@@ -119,6 +119,8 @@ deps-web:
 	@scripts/deps.sh web
 deps-stitch:
 	@scripts/deps.sh stitch
+deps-docs:
+	@scripts/deps.sh docs
 
 # ---------------------------------------------------------------- compiling
 
@@ -319,6 +321,14 @@ tutorials: cli samples
 # The pictures of docs/figures.md
 figures: cli $B/samples/figures
 	@scripts/figures.sh $B build/figures docs/pictures
+
+# The reference of the library, build/docs/api/index.html; a public declaration without a comment is
+# an error. Not part of make, since it needs Doxygen (make deps-docs).
+.PHONY: docs deps-docs
+docs:
+	@mkdir -p build/docs
+	@doxygen scripts/Doxyfile
+	@echo '  build/docs/api/index.html'
 
 # ---------------------------------------------------------------- installing
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Make sure the packages that relume is built from are there; on Debian and Ubuntu install what is
-# missing. Usage: deps.sh [web | stitch]   (web: the browser for the tests of exported pages; stitch:
-# OpenCV, for panoramas out of photographs)
+# missing. Usage: deps.sh [web | stitch | docs]   (web: the browser for the tests of exported pages;
+# stitch: OpenCV, for panoramas out of photographs; docs: Doxygen, for the reference of the library)
 set -eu
 
 packages="gcc g++ make pkg-config libc6-dev libopenexr-dev libopenimageio-dev libembree-dev
@@ -10,6 +10,7 @@ libassimp-dev libcmocka-dev libcairo2-dev libglfw3-dev libosmesa6-dev
 libegl-dev libegl-mesa0 libimgui-dev libstb-dev xvfb xdotool"
 [ "${1:-}" = web ] && packages="chromium"
 [ "${1:-}" = stitch ] && packages="libopencv-stitching-dev"
+[ "${1:-}" = docs ] && packages="doxygen"
 
 missing=
 for p in $packages; do

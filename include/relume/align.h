@@ -28,7 +28,7 @@ struct relume_displacements {
     int width, height;  // of the images
     int columns, rows;  // of the nodes
     double step;        // pixels between nodes; node (0, 0) lies at `origin`, pixels
-    double origin[2];
+    double origin[2];   // pixels of the anchor
     float (*d)[2];  // [rows][columns], pixels, from malloc: pixel p of the anchor is p + d there
 };
 // Hierarchical macroblocks (exposure brackets held by hand): normalised correlation of sharpened
@@ -66,6 +66,7 @@ RELUME_RESULT relume_status relume_warp_displacements(struct relume_image *out,
                                                       const struct relume_image *image,
                                                       const struct relume_displacements *d,
                                                       const struct relume_align_params *params);
+// The same through a homography. RELUME_EINVAL for wrong sizes, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_warp_homography(struct relume_image *out,
                                                    struct relume_image *valid,
                                                    const struct relume_image *image,

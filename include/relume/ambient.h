@@ -54,11 +54,13 @@ struct relume_prefilter_info {
     // lobe is that at the rim of the same azimuth.
     const float *part;
 };
+// The arrays as they are; they hold as long as the prefilter.
 RELUME_API struct relume_prefilter_info relume_prefilter_info(const relume_prefilter *prefilter);
 
 // The maps in a unit direction of the world, `exponent` > 0.
 RELUME_API void relume_prefilter_diffuse(float rgb[3], const relume_prefilter *prefilter,
                                          struct relume_vec3 normal);
+// The mean under a lobe about a unit direction, `exponent` > 0.
 RELUME_API void relume_prefilter_specular(float rgb[3], const relume_prefilter *prefilter,
                                           struct relume_vec3 axis, double exponent);
 // What a lobe height * max(0, axis.l)^exponent shows on a surface facing `normal`. `cosine`: values
@@ -77,7 +79,7 @@ typedef struct relume_btf_ambient relume_btf_ambient;
 // Axes of the sample's frame in the world: unit vectors, orthogonal. Left-handed frames (mirrored
 // texture coordinates) are fine.
 struct relume_btf_frame {
-    struct relume_vec3 right, up, normal;
+    struct relume_vec3 right, up, normal;  // along the sample's rows, up in its picture, off it
 };
 
 struct relume_btf_ambient_params {

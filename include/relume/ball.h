@@ -58,6 +58,7 @@ RELUME_RESULT relume_status relume_ball_candidates(struct relume_ball *out, int 
                                                    const struct relume_ball_camera *camera,
                                                    const struct relume_ball_params *params);
 
+// What of a ball was seen. Constant names by relume_ball_sight_text.
 enum relume_ball_sight {
     RELUME_BALL_SEEN = 0,
     RELUME_BALL_DARK,  // no highlight: no light reaches the ball, or the photograph is black
@@ -68,8 +69,9 @@ enum relume_ball_sight {
 // A few words for people, never NULL.
 RELUME_API const char *relume_ball_sight_text(enum relume_ball_sight sight);
 
+// Where the light of a ball comes from. Plain data.
 struct relume_ball_light {
-    enum relume_ball_sight sight;
+    enum relume_ball_sight sight;  // what was seen; a direction is only there for some of them
     struct relume_vec3 direction;  // unit, world; zero when DARK or FULL
     struct relume_vec3 origin;     // the point of the ball where it was read, in units of the
                                    // ball's radius from its middle

@@ -10,12 +10,15 @@
 extern "C" {
 #endif
 
+// The version of these headers: major.minor.patch.
 #define RELUME_VERSION "0.1.0"
 
+// An exported declaration.
 #define RELUME_API __attribute__((visibility("default")))
 // An exported function whose status must be looked at.
 #define RELUME_RESULT RELUME_API __attribute__((warn_unused_result))
 
+// How a call ended. On failure outputs are NULL or empty and the log has the sentence.
 typedef enum relume_status {
     RELUME_OK = 0,
     RELUME_EINVAL,   // an argument or option is unknown or out of range
@@ -30,6 +33,7 @@ typedef enum relume_status {
 RELUME_API const char *relume_status_text(relume_status status);
 
 struct relume_limits;
+// How much a sentence of the log matters.
 enum relume_level { RELUME_ERROR, RELUME_WARNING, RELUME_NOTE };
 
 // The name in a NULL-terminated list that somebody most likely meant who typed `given`; NULL when
@@ -41,6 +45,7 @@ RELUME_API const char *relume_name_nearest(const char *given, const char *const 
 // matter, and no output replaces one of them. Thread-safety: all functions may be called from any
 // thread.
 typedef struct relume_inputs relume_inputs;
+// An empty list, which the caller destroys. RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_inputs_create(relume_inputs **out);
 RELUME_API void relume_inputs_destroy(relume_inputs **inputs);
 // Note a file or a folder before it is opened; what does not exist is passed over.
@@ -79,6 +84,7 @@ struct relume_limits {
 // else, for nothing, and beyond 2^63.
 RELUME_RESULT relume_status relume_size_parse(uint64_t *out, const char *text);
 
+// Features of the processor that kernels are chosen by: bits.
 enum relume_cpu {
     RELUME_CPU_AVX2 = 1 << 0,  // AVX2, FMA and F16C together
 };
@@ -129,6 +135,7 @@ RELUME_RESULT relume_status relume_file_check(const char *path, const struct rel
 // of its own beside its name, and given the name when it is whole. What a stopped run leaves there
 // is removed by the next one that writes beside it.
 typedef struct relume_making relume_making;
+// What is made: one file, or a folder of files.
 enum relume_made { RELUME_MADE_FILE, RELUME_MADE_FOLDER };
 // `path` NULL: a folder for temporary files in $TMPDIR or /tmp, never committed. A folder that is
 // there and not empty is RELUME_EINVAL, and with `force` unless relume made it, all that is in it,
@@ -140,6 +147,7 @@ RELUME_RESULT relume_status relume_making_open(relume_making **out, const char *
 RELUME_API const char *relume_making_path(const relume_making *making);
 // Ends `*making` in every case; on failure what was there before is there still.
 RELUME_RESULT relume_status relume_making_commit(relume_making **making);
+// Leaves nothing behind; `*making` becomes NULL, and may have been NULL.
 RELUME_API void relume_making_abort(relume_making **making);
 
 // World axes: right-handed, x right, y up, z towards the viewer.

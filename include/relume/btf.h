@@ -24,11 +24,13 @@ struct relume_btf_set {
     const char *summary;  // one line for help texts
     int count;            // directions
     int rings;
+    // Directions at one height above the plane, evenly around.
     struct relume_btf_ring {
-        double theta_deg, first_phi_deg;
-        int count;  // at phi = first_phi_deg + 360 i / count
-    } ring[10];
+        double theta_deg, first_phi_deg;  // from the pole; of the first of them
+        int count;                        // at phi = first_phi_deg + 360 i / count
+    } ring[10];                           // [rings]
 };
+// All sets; NULL ends the list.
 extern RELUME_API const struct relume_btf_set *const relume_btf_sets[];
 // NULL when there is none of that name.
 RELUME_API const struct relume_btf_set *relume_btf_set_find(const char *name);
@@ -46,8 +48,8 @@ RELUME_API void relume_dome_destroy(relume_dome **dome);
 
 // Which directions stand for one, and how much each: barycentric weights, all > 0, sum 1.
 struct relume_dome_blend {
-    int count;  // 1 to 3
-    int index[3];
+    int count;     // 1 to 3
+    int index[3];  // numbers of directions
     double weight[3];
     // The direction that they stand for: the one asked for, or, below the lowest directions, the
     // one of its azimuth on their rim.
@@ -57,6 +59,7 @@ struct relume_dome_blend {
     // out of interpolation so much too small.
     double length;
 };
+// The three around a unit direction.
 RELUME_API struct relume_dome_blend relume_dome_at(const relume_dome *dome, struct relume_vec3 d);
 // The triangles of directions that cover the sphere, `*n` of them, for clients that look directions
 // up themselves: corner n is the nadir, which stands for no direction. They belong to the dome.
@@ -68,11 +71,12 @@ RELUME_API const int (*relume_dome_triangles(const relume_dome *dome, int *n))[3
 // Thread-safety: safe while nobody stores.
 typedef struct relume_btf relume_btf;
 
+// What a BTF is. Pointers belong to it. Thread-safety: plain data.
 struct relume_btf_info {
     const char *name;   // of the material
     int width, height;  // texels
     int views, lights;
-    const struct relume_vec3 *view, *light;
+    const struct relume_vec3 *view, *light;  // [views], [lights]: unit, in the frame of the sample
     // Whether values hold the factor n.l, as photographs do. Evaluation never multiplies twice.
     bool without_cosine;
     // Ground truth of synthetic samples, or empty: height over the plane in widths of the sample
@@ -145,9 +149,13 @@ RELUME_API void relume_btf_sample(const relume_btf *btf, double x, double y, boo
 
 // A way to compress a BTF. Constant; a NULL-terminated list of all is relume_btf_models.
 struct relume_btf_model;
+// All models; NULL ends the list.
 extern RELUME_API const struct relume_btf_model *const relume_btf_models[];
+// NULL when there is none of that name.
 RELUME_API const struct relume_btf_model *relume_btf_model_find(const char *name);
+// As people write it; constant.
 RELUME_API const char *relume_btf_model_name(const struct relume_btf_model *model);
+// One line for help texts; constant.
 RELUME_API const char *relume_btf_model_summary(const struct relume_btf_model *model);
 
 struct relume_btf_fit_params {  // zero in a field means its default
@@ -179,12 +187,14 @@ RELUME_RESULT relume_status relume_btf_fit(relume_btf_fitted **out, const relume
 RELUME_RESULT relume_status relume_btf_fitted_save(const relume_btf_fitted *fitted,
                                                    const char *path,
                                                    const struct relume_btf_params *params);
+// The folder again; the caller destroys `*out`. RELUME_EDATA with a sentence, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_fitted_open(relume_btf_fitted **out, const char *path,
                                                    const struct relume_btf_params *params);
 RELUME_API void relume_btf_fitted_destroy(relume_btf_fitted **fitted);
 
+// What a fitted model is. Pointers belong to it.
 struct relume_btf_fitted_info {
-    const struct relume_btf_model *model;
+    const struct relume_btf_model *model;  // the kind of model
     int width, height, views, lights;
     int clusters, components, lobes;  // 0: the model has none
     uint64_t bytes;                   // of its arrays
@@ -193,6 +203,7 @@ struct relume_btf_fitted_info {
     uint64_t bytes_levels;            // of the arrays of all levels
     double rim;  // mean cosine of the lowest measured lights, below which values fall to 0
 };
+// A copy; what it points to belongs to the model.
 RELUME_API struct relume_btf_fitted_info relume_btf_fitted_info(const relume_btf_fitted *fitted);
 
 // What a graphics processor has to do for a pixel between the measured directions (2003 paper,
@@ -203,6 +214,7 @@ struct relume_btf_cost {
     int ops, fetches;              // once
     int light_ops, light_fetches;  // and for each light
 };
+// The cost of one evaluation.
 RELUME_API struct relume_btf_cost relume_btf_fitted_cost(const relume_btf_fitted *fitted);
 
 // The measured values as a model that is exact, for what takes models. Nothing is copied: the BTF
@@ -227,18 +239,21 @@ RELUME_API void relume_btf_fitted_sample(const relume_btf_fitted *fitted, double
 // (docs/btf.md). Pointers belong to the model.
 struct relume_btf_array {
     const char *name;
+    // The type of its numbers.
     enum { RELUME_BTF_U8, RELUME_BTF_U16, RELUME_BTF_HALF, RELUME_BTF_FLOAT, RELUME_BTF_U32 } kind;
     int dims;
-    size_t shape[5];
-    const void *data;
+    size_t shape[5];   // [dims], the last runs fastest
+    const void *data;  // that many numbers
 };
 // Array number `i`; false when there are fewer.
 RELUME_API bool relume_btf_fitted_array(struct relume_btf_array *out,
                                         const relume_btf_fitted *fitted, int i);
+// The directions that a model was fitted to; they belong to it.
 struct relume_btf_directions {
     const struct relume_vec3 *view, *light;  // as many as relume_btf_fitted_info says
     bool without_cosine;                     // as relume_btf_info
 };
+// A copy; what it points to belongs to the model.
 RELUME_API struct relume_btf_directions relume_btf_fitted_directions(
     const relume_btf_fitted *fitted);
 

@@ -9,6 +9,7 @@
 extern "C" {
 #endif
 
+// How the views of a capture lie in the world.
 enum relume_projection {
     RELUME_PLANAR = 0,
     RELUME_SLAB,
@@ -24,8 +25,8 @@ RELUME_RESULT relume_status relume_projection_parse(enum relume_projection *out,
 // A right-handed frame in the world: (x, y, z) of it lies at origin + x axis[0] + y axis[1] +
 // z axis[2]. All zero is the world itself.
 struct relume_pose {
-    struct relume_vec3 origin;
-    struct relume_vec3 axis[3];
+    struct relume_vec3 origin;   // of the frame, world
+    struct relume_vec3 axis[3];  // its x, y and z axis, unit, world
 };
 // Make the axes unit and perpendicular, all zero the world's; false when they are not those of a
 // rotation within 1e-3, or not finite.
@@ -33,10 +34,13 @@ RELUME_API bool relume_pose_normalise(struct relume_pose *pose);
 // Points of the frame in the world, and the inverse. Directions turn alone.
 RELUME_API struct relume_vec3 relume_pose_world(const struct relume_pose *pose,
                                                 struct relume_vec3 local);
+// A point of the world in the frame.
 RELUME_API struct relume_vec3 relume_pose_local(const struct relume_pose *pose,
                                                 struct relume_vec3 world);
+// A direction of the frame in the world.
 RELUME_API struct relume_vec3 relume_pose_turn(const struct relume_pose *pose,
                                                struct relume_vec3 local);
+// A direction of the world in the frame.
 RELUME_API struct relume_vec3 relume_pose_turn_back(const struct relume_pose *pose,
                                                     struct relume_vec3 world);
 
@@ -76,6 +80,7 @@ RELUME_API bool relume_geometry_fits(const struct relume_geometry *geometry, int
 RELUME_API bool relume_geometry_shows(const struct relume_geometry *geometry, int width, int height,
                                       int column, int row);
 
+// One view: its place and its files.
 struct relume_manifest_view {
     double uv[2];         // slab: where the camera stands on the uv plane
     int slab;             // which of several slabs
@@ -140,7 +145,7 @@ enum relume_sample {
 
 // The pictures of a capture in memory, row 0 at the top. Borrowed.
 struct relume_pictures {
-    enum relume_sample sample;
+    enum relume_sample sample;  // type of the numbers
     int width, height;
     int channels;        // 1: grey; 3: red, green, blue; 4: and something that is not looked at
     const void *data;    // [views][lights][height][width][channels]
@@ -163,7 +168,9 @@ RELUME_RESULT relume_status relume_capture_create(relume_capture **out,
 // The manifest as understood: defaults filled in, vectors normalised, paths made absolute or
 // relative to the working folder.
 RELUME_API const struct relume_manifest *relume_capture_manifest(const relume_capture *capture);
+// Pixels of every image.
 RELUME_API int relume_capture_width(const relume_capture *capture);
+// Pixels of every image; a cylinder with its discs has more rows than the cylinder.
 RELUME_API int relume_capture_height(const relume_capture *capture);
 // The pole is y (panoramas, several slabs), not z (planar, one slab).
 RELUME_API bool relume_capture_pole_y(const relume_capture *capture);
@@ -184,6 +191,7 @@ RELUME_RESULT relume_status relume_capture_image(struct relume_image *out,
 RELUME_RESULT relume_status relume_capture_depth(struct relume_image *out,
                                                  const relume_capture *capture, int view,
                                                  const struct relume_log *log);
+// The mask likewise: above 0.5 where the object is. RELUME_EDATA, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_capture_mask(struct relume_image *out,
                                                 const relume_capture *capture, int view,
                                                 const struct relume_log *log);
@@ -221,6 +229,7 @@ RELUME_API void relume_table_directions(const relume_table *table, double x, dou
 // The next `rows` rows, at most RELUME_TABLE_ROWS, kept inside the table, 8-bit photographs as they
 // are: relume_table_planes then gives what relume_table_read would.
 enum { RELUME_TABLE_ROWS = 16 };
+// RELUME_EDATA when an image is broken, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_table_fetch(relume_table *table, int rows);
 // `count` pixels from `first` on of the rows fetched last, under one light:
 // out[channel * stride + pixel]. Thread-safety: any number of threads between fetches.

@@ -13,6 +13,7 @@ extern "C" {
 // Code vectors of one length. Never changes after training. Thread-safety: safe.
 typedef struct relume_codebook relume_codebook;
 
+// Where training begins.
 enum relume_codebook_start {
     RELUME_START_RANDOM =
         0,               // different vectors of the data, drawn by the seed (Wong 1998, Fig 9-10)
@@ -21,16 +22,16 @@ enum relume_codebook_start {
 
 struct relume_codebook_params {  // zero in a field means its default
     const struct relume_log *log;
-    enum relume_codebook_start start;
-    const float *initial;  // [codes][dim]: start from these vectors instead; finite
-    uint64_t seed;         // equal seeds give equal books, whatever the CPU and the thread count
-    int codes;             // code vectors, [1, 65536]; default 256
-    int max_rounds;        // stop after this many Lloyd rounds; default 64
-    double min_gain;       // stop when a round gains less than this part of the squared error,
-                           // [0, 1); default 1e-4, negative: only when no vector changes its code
-    size_t sample;         // learn from this many vectors, drawn by the seed; default: from all
-    int threads;           // default: all cores
-    unsigned cpu_off;      // RELUME_CPU_* features not to use; the result is the same
+    enum relume_codebook_start start;  // where training begins
+    const float *initial;              // [codes][dim]: start from these vectors instead; finite
+    uint64_t seed;     // equal seeds give equal books, whatever the CPU and the thread count
+    int codes;         // code vectors, [1, 65536]; default 256
+    int max_rounds;    // stop after this many Lloyd rounds; default 64
+    double min_gain;   // stop when a round gains less than this part of the squared error,
+                       // [0, 1); default 1e-4, negative: only when no vector changes its code
+    size_t sample;     // learn from this many vectors, drawn by the seed; default: from all
+    int threads;       // default: all cores
+    unsigned cpu_off;  // RELUME_CPU_* features not to use; the result is the same
 };
 #define relume_codebook_params(...) (&(const struct relume_codebook_params){__VA_ARGS__})
 
@@ -53,6 +54,7 @@ struct relume_codebook_info {
                            // codes moved to their means
     int moved;             // codes without vectors that were moved, over all rounds
 };
+// It belongs to the book.
 RELUME_API const struct relume_codebook_info *relume_codebook_info(const relume_codebook *book);
 
 struct relume_codebook_assign_params {
@@ -78,6 +80,7 @@ relume_codebook_assign(const relume_codebook *book, const float *vectors, size_t
 
 enum { RELUME_MOST_BOOKS = 8 };
 
+// What the vectors of a book are.
 enum relume_book_kind {
     RELUME_BOOK_PLANES = 0,  // number d of a vector belongs to plane first + d
     RELUME_BOOK_LUMA,        // number d: Y of R, G, B in planes first + 3 d ..., each Y / sqrt 3
@@ -102,6 +105,7 @@ RELUME_API int relume_book_dim(enum relume_book_kind kind, int first, int last);
 // vectors[codes][planes]: the vectors as they are added up, 0 in planes that the book leaves alone.
 RELUME_API void relume_book_expand(float *vectors, const struct relume_book *book, int planes);
 
+// How coefficients are shared out among books.
 enum relume_book_split {
     RELUME_SPLIT_NONE = 0,  // all planes in one book
     RELUME_SPLIT_LUMA,      // a book for luminance, one for chrominance; not for joint bases
@@ -110,10 +114,10 @@ enum relume_book_split {
 
 struct relume_books_params {  // zero in a field means its default
     const struct relume_log *log;
-    int codes;   // of each book; default 256
-    int stages;  // books one after another for the same planes, [1, 8]; default 1
-    enum relume_book_split split;
-    int groups;                        // of RELUME_SPLIT_PRODUCT; default 2
+    int codes;                     // of each book; default 256
+    int stages;                    // books one after another for the same planes, [1, 8]; default 1
+    enum relume_book_split split;  // how coefficients are shared out; default: not at all
+    int groups;                    // of RELUME_SPLIT_PRODUCT; default 2
     enum relume_codebook_start start;  // as for relume_codebook_train
     uint64_t seed;
     int max_rounds;  // default 24
@@ -144,6 +148,7 @@ struct relume_books_info {
     const float *const *vectors;     // [books] -> [codes][planes], as expanded
     const int *codes;                // [books]
 };
+// It belongs to the books.
 RELUME_API const struct relume_books_info *relume_books_info(const relume_books *books);
 
 // The nearest vectors for every pixel of a view: index[books] -> [height][width], one book after

@@ -40,15 +40,17 @@ struct relume_basis {
     // The raw functions at a unit direction in the pole's frame (pole = third axis): K values, or
     // one per light where the basis interpolates.
     void (*evaluate)(const relume_coder *coder, struct relume_vec3 light, double *values);
-    void (*release)(relume_coder *coder);
+    void (*release)(relume_coder *coder);  // free the private data
 };
-extern RELUME_API const struct relume_basis relume_basis_table;
-extern RELUME_API const struct relume_basis relume_basis_ptm;
-extern RELUME_API const struct relume_basis relume_basis_hsh;
-extern RELUME_API const struct relume_basis relume_basis_sh;
-extern RELUME_API const struct relume_basis relume_basis_dct;
+extern RELUME_API const struct relume_basis relume_basis_table;  // the captured pictures themselves
+extern RELUME_API const struct relume_basis relume_basis_ptm;    // polynomial texture maps
+extern RELUME_API const struct relume_basis relume_basis_hsh;    // hemispherical harmonics
+extern RELUME_API const struct relume_basis relume_basis_sh;     // spherical harmonics
+extern RELUME_API const struct relume_basis relume_basis_dct;  // cosines on the stereographic disc
+// The same as dct, the thesis's way.
 extern RELUME_API const struct relume_basis relume_basis_dct_resampled;
-extern RELUME_API const struct relume_basis relume_basis_pca;
+extern RELUME_API const struct relume_basis relume_basis_pca;  // principal components
+// All bases; NULL ends the list.
 extern RELUME_API const struct relume_basis *const relume_bases[];
 // NULL when there is none of that name.
 RELUME_API const struct relume_basis *relume_basis_find(const char *name);
@@ -64,14 +66,16 @@ struct relume_interpolant {
     // `lights` in the pole's frame; `parameter[4]` as in struct relume_coder_params.
     relume_status (*prepare)(void **data, const struct relume_vec3 *lights, int n,
                              const double *parameter, const struct relume_log *log);
+    // The weights of the lights for a unit direction in the pole's frame.
     void (*evaluate)(const void *data, struct relume_vec3 light, double *weights);
-    void (*release)(void *data);
+    void (*release)(void *data);  // free the private data
     // The N x N matrix B by which light i, predicted from all others, is missed by (B t)_i / B_ii
     // (Dubrule 1983), t being the samples. NULL where there is none.
     void (*predictor)(const void *data, double *b);
     // Weights that are linear over triangles: these (relume_coder_triangles); else NULL.
     struct relume_coder_triangles (*triangles)(const void *data);
 };
+// All interpolants; NULL ends the list.
 extern RELUME_API const struct relume_interpolant *const relume_interpolants[];
 // NULL when there is none of that name.
 RELUME_API const struct relume_interpolant *relume_interpolant_find(const char *name);
@@ -123,6 +127,7 @@ RELUME_API void relume_coder_destroy(relume_coder **coder);
 // middle, the axis, a direction at the azimuth atan2(d.up, d.right) is inside while it is no
 // farther from the axis than border[azimuth STEPS / 2 pi], linear between these and periodic.
 enum { RELUME_ZONE_STEPS = 256 };
+// A zone; relume_zone_clamp asks it. Plain data.
 struct relume_zone {
     bool everywhere;                     // there is no such gap; the rest is not set
     struct relume_vec3 right, up, axis;  // unit vectors of the world, right-handed
@@ -147,23 +152,24 @@ RELUME_API double relume_coder_captured(struct relume_vec3 *from, const relume_c
 
 // What a coder is made of; pointers belong to the coder.
 struct relume_coder_info {
-    const struct relume_basis *basis;
-    int coefficients;  // K
-    bool joint;        // one set of K planes for R, G, B together (learned bases, luminance)
-    bool luminance;    // planes K, K + 1, K + 2 are the pixel's colour, which multiplies the sum
-    int planes;        // 3 K; joint K; luminance K + 3
-    int functions;     // raw functions of the basis: K, or the lights where it interpolates
+    const struct relume_basis *basis;  // constant
+    int coefficients;                  // K
+    bool joint;      // one set of K planes for R, G, B together (learned bases, luminance)
+    bool luminance;  // planes K, K + 1, K + 2 are the pixel's colour, which multiplies the sum
+    int planes;      // 3 K; joint K; luminance K + 3
+    int functions;   // raw functions of the basis: K, or the lights where it interpolates
     bool hemispherical, pole_y;
-    double ridge;
+    double ridge;  // as it was applied
     int lights;
     const struct relume_vec3 *directions;  // [lights], world
     const float *transform;                // [K][functions], learned [3][K][functions], or NULL
     const float *mean;                     // learned: [3][functions], or NULL
     const struct relume_interpolant *interpolant;  // or NULL
-    double parameter[4];
+    double parameter[4];                           // of the interpolant, as applied
     double predicted_rms;  // after `choose`: how lights left out are predicted, geometric mean over
                            // lights, 1 = white; else 0
 };
+// It belongs to the coder.
 RELUME_API const struct relume_coder_info *relume_coder_info(const relume_coder *coder);
 
 // The mean becomes the last of the functions, one more than before: its coefficient, a plane behind
@@ -283,12 +289,14 @@ RELUME_RESULT relume_status relume_coder_learn(relume_coder **out, const struct 
 // storage that adds nothing visible; one light is kept as `table`. What the params fix -
 // coefficients, domain, storage - stays. Errors of relume_coder_learn.
 #define RELUME_USUAL_DB 38.0
+// What relume_coder_decide chose. Plain data.
 struct relume_decision {
     enum relume_domain domain;
     enum relume_storage storage;
     double psnr_db;    // captured lights, before storing, mean over lights of at most 60
     double unseen_db;  // lights left out, likewise; 0: not known
 };
+// The choice for that quality, in dB; the caller destroys `*out`. `decision` may be NULL.
 RELUME_RESULT relume_status relume_coder_decide(relume_coder **out,
                                                 struct relume_decision *decision,
                                                 const relume_capture *capture, double quality_db,
@@ -321,15 +329,18 @@ struct relume_encode_report {
     double typical;    // captured sample above 0: squared mean of the roots; 0 from a file
     struct relume_encode_census census;  // zeros where it is read from a file
 };
+// A copy.
 RELUME_API struct relume_encode_report relume_coefficients_report(
     const relume_coefficients *coefficients);
 
+// What coefficients are; pointers belong to them.
 struct relume_coefficients_info {
     const relume_coder *coder;
     int width, height, planes;
     enum relume_storage storage;
     const float *scale, *offset;  // [planes]: coefficient = code * scale + offset
 };
+// It belongs to the coefficients.
 RELUME_API const struct relume_coefficients_info *relume_coefficients_info(
     const relume_coefficients *coefficients);
 
@@ -364,8 +375,9 @@ RELUME_API void relume_codes_plane(const struct relume_codes *codes, int plane, 
 // indices, are copied; the rest is borrowed from `codes`. Destroy also what RELUME_ENOMEM left.
 struct relume_codes_part {
     struct relume_codes codes;
-    void *memory;
+    void *memory;  // owned: what is copied
 };
+// Picks them. RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_codes_pick(struct relume_codes_part *out,
                                               const struct relume_codes *codes, size_t first,
                                               size_t step, size_t n);

@@ -12,6 +12,7 @@
 extern "C" {
 #endif
 
+// What a frame shows of a surface.
 enum relume_pass {
     RELUME_PASS_COLOUR = 0,
     RELUME_PASS_NORMALS,       // the unit vectors themselves, -1 to 1
@@ -33,6 +34,7 @@ RELUME_API bool relume_pass_needs_normals(enum relume_pass pass);
 // Whether the pass is scaled to the picture.
 RELUME_API bool relume_pass_needs_range(enum relume_pass pass);
 
+// The default of `gain`.
 #define RELUME_PASS_GAIN 2.0f
 
 // What a pass scales to the picture, luminances.

@@ -16,6 +16,7 @@ struct relume_evaluation_light {
     double rms;      // linear, all views pooled
     double psnr_db;  // mean over views
 };
+// How far a file is from a capture. The caller destroys it.
 struct relume_evaluation {
     int views, lights;                      // of the capture
     int width, height;                      // of each view

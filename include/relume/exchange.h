@@ -32,7 +32,9 @@ enum relume_kind {
     RELUME_KIND_PICTURE,     // a picture or photograph
     RELUME_KIND_UNKNOWN,     // nothing there, or a folder of something else
 };
+// By its first bytes and its name, without reading more.
 RELUME_API enum relume_kind relume_kind_of(const char *path);
+// For sentences; constant.
 RELUME_API const char *relume_kind_name(enum relume_kind kind);
 
 struct relume_open_params {
@@ -52,6 +54,7 @@ struct relume_open_params {
 RELUME_RESULT relume_status relume_open(relume_pack **out, const char *path,
                                         const struct relume_open_params *params);
 
+// Formats of other programs.
 enum relume_exchange {
     RELUME_EXCHANGE_RELIGHT = 0,  // info.json and plane JPEGs, for OpenLIME and relight
     RELUME_EXCHANGE_PTM,          // .ptm, PTM_FORMAT_RGB; with a quality, size or PSNR JPEG_RGB

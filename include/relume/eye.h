@@ -34,7 +34,7 @@ struct relume_subject {
                               // printed
         double hippus;        // gain of the noise of Eq. 8.1, [0, 1]
         double adaptation_s;  // time constant of the field luminance, [0.01, 60]
-    } pupil;
+    } pupil;                  // how it follows and trembles
     struct relume_particles cornea;  // static
     struct {
         struct relume_particles particles;
@@ -42,21 +42,21 @@ struct relume_subject {
         double thickness_mm;  // [1, 8]
         double nucleus;       // the particles' part of the radius, (0, 1]
         double travel_mm;     // amplitude of the ciliary muscle, [0, 0.5]
-    } lens;
+    } lens;                   // its particles, its size and its movement
     struct {
         int spokes;       // as the thesis draws them, of one thickness; [0, 20000]
         double halo_deg;  // else spaced for a halo of this radius at 575 nm; 0: `spokes`; [0, 10]
         double inner_mm, outer_mm;  // of the cortex, [0, 6]
         double width_mm;            // of one fibre's edge, [0.0005, 0.2]
         double opacity;             // [0, 1]
-    } fibres;
+    } fibres;                       // of the lens: what makes the halo
     struct {
         struct relume_particles particles;
         double radius_mm;       // of the body, [5, 15]
         double damping;         // 1/s, [0.1, 100]
         double saccades_per_s;  // [0, 20]
         double kick;            // rad/s that a saccade leaves, [0, 10]
-    } vitreous;
+    } vitreous;                 // its particles and their movement
     struct {
         int lashes;               // of both lids together, [0, 1000]
         double lash_width_mm;     // at the root, [0.001, 0.5]
@@ -67,14 +67,15 @@ struct relume_subject {
         // drawn ones: what is darker than half is a lash. The lower lid's are the same upside down
         // and 0.45 times as long. Empty: none.
         char lash_image[RELUME_SUBJECT_PATH];
-    } lids;
+    } lids;  // lashes, blinks, squinting
     struct {
         double defocus_dpt;  // residual defocus, the distance d of E in Eq. 8.3 as 1/d; [-5, 5]
         double age;          // years, [1, 120]: of the veil beyond the computed field
         double pigment;      // of the iris: 0 black, 0.5 brown, 1.0 green, 1.2 blue; [0, 1.2]
-    } optics;
+    } optics;                // focus, age, pigment
 };
 
+// A healthy adult.
 RELUME_API struct relume_subject relume_subject_default(void);
 // A JSON file of such fields (docs/glare.md) over the defaults; a picture is looked for from the
 // file's folder. RELUME_EDATA with a sentence that
@@ -84,6 +85,7 @@ RELUME_RESULT relume_status relume_subject_load(struct relume_subject *out, cons
 
 // ------------------------------------------------------------------ aperture
 
+// Parts of the eye: bits.
 enum relume_eye_part {
     RELUME_EYE_CORNEA = 1 << 0,
     RELUME_EYE_FIBRES = 1 << 1,
@@ -93,6 +95,7 @@ enum relume_eye_part {
     RELUME_EYE_ALL = (1 << 5) - 1,
 };
 
+// A round particle of the aperture.
 struct relume_eye_disc {
     float x, y, radius;  // mm
     float opacity;       // the amplitude behind it is multiplied by 1 - opacity
@@ -102,11 +105,12 @@ struct relume_eye_disc {
 struct relume_eye_stroke {
     float x[2], y[2];  // mm
     float width[2];    // mm
-    float opacity;
+    float opacity;     // the amplitude behind it is multiplied by 1 - opacity
 };
 // The discs and strokes of one part, [first, first + count).
 struct relume_eye_range {
-    int first, count;
+    int first;  // index
+    int count;  // how many
 };
 // What stands in the way at one moment. The transmittance of a point is the product over all that
 // cover it: the pupil (1 inside), every disc and stroke (1 - opacity inside), the lids (0 beyond).
@@ -129,14 +133,14 @@ typedef struct relume_eye relume_eye;
 
 // As it is now; plain numbers for panels and plots.
 struct relume_eye_state {
-    double time_s;
-    double luminance;        // the field luminance that the pupil has adapted to, cd/m^2
-    double mean_pupil_mm;    // p of Eq. 8.2
-    double pupil_mm;         // h of Eq. 8.1, in [1.5, 9]
-    double muscle_mm;        // displacement of the lens's equator, inwards < 0
-    double vitreous_rad[3];  // yaw, pitch, torsion
-    double vitreous_rad_s[3];
-    double openness;  // of the lids, 0 closed, 1 open
+    double time_s;             // since the eye was created
+    double luminance;          // the field luminance that the pupil has adapted to, cd/m^2
+    double mean_pupil_mm;      // p of Eq. 8.2
+    double pupil_mm;           // h of Eq. 8.1, in [1.5, 9]
+    double muscle_mm;          // displacement of the lens's equator, inwards < 0
+    double vitreous_rad[3];    // yaw, pitch, torsion
+    double vitreous_rad_s[3];  // its angular velocity
+    double openness;           // of the lids, 0 closed, 1 open
 };
 
 // An eye at time 0, adapted to `luminance` cd/m^2. `subject` NULL: the default. RELUME_EINVAL for a
@@ -155,7 +159,9 @@ RELUME_RESULT relume_status relume_eye_advance(relume_eye *eye, double dt_s, dou
 // nearest.
 RELUME_API void relume_eye_squint(relume_eye *eye, double squint);
 
+// It belongs to the eye.
 RELUME_API const struct relume_subject *relume_eye_subject(const relume_eye *eye);
+// It belongs to the eye and changes with it.
 RELUME_API const struct relume_eye_state *relume_eye_state(const relume_eye *eye);
 // Valid until the eye advances or ends.
 RELUME_API const struct relume_aperture *relume_eye_aperture(const relume_eye *eye);

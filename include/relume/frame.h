@@ -15,6 +15,7 @@
 extern "C" {
 #endif
 
+// Which picture of a file a camera makes.
 enum relume_framing {
     RELUME_FRAME_DEFAULT = 0,  // slab: EYE at the middle of the uv grid; else VIEW 0
     RELUME_FRAME_VIEW,         // a captured view at its own size (panoramas: unfolded)
@@ -22,14 +23,15 @@ enum relume_framing {
     RELUME_FRAME_LOOK,         // panorama: a perspective frame
 };
 
+// From where and how a file is looked at. All zero: the default of its projection. Plain data.
 struct relume_camera {
-    enum relume_framing framing;
-    int view;
+    enum relume_framing framing;  // which picture it is
+    int view;                     // VIEW: its number
     struct relume_vec3 eye;
     struct relume_aim
         aim;      // EYE, several slabs: where it looks. Of one slab: all zero is the window
     int through;  // EYE, several slabs: 1 + the slab whose st window it looks through
-    struct relume_look look;
+    struct relume_look look;  // LOOK
     // Default: the view's own size, LOOK 1024 x 512; of one of them the other, by proportion.
     int width, height;
 };
@@ -86,6 +88,7 @@ RELUME_RESULT relume_status relume_query(float rgb[3], relume_pack *pack, struct
                                          const struct relume_light *lights, int n,
                                          const struct relume_frame_params *params);
 
+// From where and where to; `direction` has any length but 0.
 struct relume_ray {
     struct relume_vec3 eye, direction;  // of any length, into the scene
 };

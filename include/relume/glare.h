@@ -10,20 +10,25 @@
 extern "C" {
 #endif
 
+// How the pattern comes onto the frame.
 enum relume_glare_mode {
     RELUME_GLARE_FFT = 0,    // every pixel is a source
     RELUME_GLARE_BILLBOARD,  // bright spots only, each one picture of the pattern at its centroid
     RELUME_GLARE_HYBRID,     // the brightest pixels by the pattern, the rest by a coarse veil
 };
+// What is around the frame.
 enum relume_glare_border {
     RELUME_GLARE_ZERO = 0,  // black around the frame: some light leaves it
     RELUME_GLARE_CLAMP,     // the border's pixels go on
     RELUME_GLARE_PERIODIC,  // the frame repeats
 };
+// RELUME_EINVAL when `name` is none of relume_glare_mode_names.
 RELUME_RESULT relume_status relume_glare_mode_parse(enum relume_glare_mode *out, const char *name);
+// RELUME_EINVAL when `name` is none of relume_glare_border_names.
 RELUME_RESULT relume_status relume_glare_border_parse(enum relume_glare_border *out,
                                                       const char *name);
 RELUME_API const char *const *relume_glare_mode_names(void);  // by number, then NULL
+// All names; NULL ends the list.
 RELUME_API const char *const *relume_glare_border_names(void);
 
 struct relume_glare_params {
@@ -31,8 +36,8 @@ struct relume_glare_params {
     int threads;     // default: all cores
     double fov_deg;  // horizontal field of view of the frame, perspective, [0.01, 170]; default 45
     double magnify;  // of the pattern against the frame, [0.01, 1000]; default 1
-    enum relume_glare_mode mode;
-    enum relume_glare_border border;
+    enum relume_glare_mode mode;      // default: FFT
+    enum relume_glare_border border;  // default: ZERO
     // BILLBOARD, HYBRID: pixels of at least this luminance are sources; default: chosen so that
     // there are at most `sources`.
     double threshold;
@@ -57,18 +62,21 @@ RELUME_RESULT relume_status relume_glare_kernel(struct relume_image *out, const 
 // (1 - share) + light * a pixel's solid angle, and all of it divided by its sum.
 #define RELUME_VEIL_DEG 12.5
 enum { RELUME_VEIL_STEPS = 2048 };
+// Light that is scattered farther than the pattern reaches, by angle. Plain data.
 struct relume_veil {
     double step;                         // radians from number to number
     float light[RELUME_VEIL_STEPS + 2];  // per steradian at that angle, linear between; the last
                                          // two are 0
     double share;                        // of all light; 0: the pattern reaches as far itself
 };
+// The veil around that pattern: age in years, pigment of the iris as in struct relume_subject.
 RELUME_API void relume_veil(struct relume_veil *out, const struct relume_psf_geometry *pattern,
                             double age, double pigment);
 
 // Work on frames of one size keeps what does not change: plans, and the spectrum of a frame that
 // rests. Thread-safety: one thread at a time.
 typedef struct relume_glare relume_glare;
+// Empty; the caller destroys it. RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_glare_create(relume_glare **out);
 RELUME_API void relume_glare_destroy(relume_glare **glare);
 // `frame`, three channels, as an eye with the pattern `psf` sees it; `out` is created with the same

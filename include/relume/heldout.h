@@ -37,6 +37,7 @@ RELUME_RESULT relume_status relume_heldout_open(relume_heldout **out, const relu
                                                 const struct relume_heldout_params *params);
 RELUME_API void relume_heldout_destroy(relume_heldout **heldout);
 
+// What is measured on. Plain data.
 struct relume_heldout_info {
     int lights;  // that may be learned from
     int folds;   // fold f leaves out the lights f, f + folds, f + 2 folds, ...
@@ -45,6 +46,7 @@ struct relume_heldout_info {
     enum relume_domain domain;
     size_t pixels, all_pixels;  // in memory and in the capture, of all views
 };
+// A copy.
 RELUME_API struct relume_heldout_info relume_heldout_info(const relume_heldout *heldout);
 
 // How coefficients are stored.

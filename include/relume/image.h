@@ -31,8 +31,9 @@ enum relume_curve {
     RELUME_CURVE_RESPONSE,  // a camera's, measured (relume/response.h)
 };
 struct relume_response;
+// What code values mean. All zero: as the file says. Plain data; `response` is borrowed.
 struct relume_transfer {
-    enum relume_curve curve;
+    enum relume_curve curve;                 // which curve
     float gamma;                             // only for RELUME_CURVE_GAMMA, (0.1, 10]
     const struct relume_response *response;  // only for RELUME_CURVE_RESPONSE, borrowed
 };
@@ -44,6 +45,7 @@ RELUME_API void relume_transfer_text(struct relume_transfer transfer, char *text
 // Code value -> linear light and back. AUTO behaves as SRGB. Of a response the green curve counts,
 // for pictures each channel's own.
 RELUME_API float relume_transfer_decode(struct relume_transfer transfer, float code);
+// The code of a linear value; the inverse of relume_transfer_decode.
 RELUME_API float relume_transfer_encode(struct relume_transfer transfer, float linear);
 
 struct relume_image_params {

@@ -50,8 +50,8 @@ RELUME_API struct relume_reader relume_memory_reader(const void *bytes, size_t s
 // Bytes that a writer has received; begin with all zero. Thread-safety: plain data.
 struct relume_buffer {
     unsigned char *data;  // [size], from malloc, or NULL
-    size_t size, room;
-    bool whole;  // an output is all there; the next one replaces it
+    size_t size, room;    // bytes that are written; bytes that there is memory for
+    bool whole;           // an output is all there; the next one replaces it
 };
 // A writer into `buffer`, one output at a time; where writing fails the buffer is empty.
 RELUME_API struct relume_writer relume_buffer_writer(struct relume_buffer *buffer);

@@ -9,6 +9,7 @@
 extern "C" {
 #endif
 
+// Kinds of light; in a SPEC by the names of relume_light_kind_name.
 enum relume_light_kind {
     RELUME_LIGHT_DIRECTIONAL = 0,
     RELUME_LIGHT_ENVIRONMENT,  // distant as well: all directions at once
@@ -173,8 +174,9 @@ RELUME_API const struct relume_image *relume_environment_map(const relume_enviro
 // most 256 x 128 cells with exact solid angles; black ones are left out.
 struct relume_environment_cell {
     struct relume_vec3 direction;
-    float rgb[3];
+    float rgb[3];  // radiance times solid angle / pi, linear
 };
+// All of them, `*n`; they belong to the environment.
 RELUME_API const struct relume_environment_cell *relume_environment_cells(
     int *n, const relume_environment *environment);
 

@@ -17,6 +17,7 @@ struct relume_pattern {
     // Patterns that need the sphere itself (spacing) are told whether it is `hemisphere`.
     relume_status (*fill)(double (*out)[2], int n, uint64_t seed, bool hemisphere);
 };
+// All patterns; NULL ends the list.
 extern RELUME_API const struct relume_pattern *const relume_patterns[];
 // NULL when there is none of that name.
 RELUME_API const struct relume_pattern *relume_pattern_find(const char *name);

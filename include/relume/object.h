@@ -53,6 +53,7 @@ RELUME_RESULT relume_status relume_objects_of_mesh(relume_objects **out, const c
                                                    const struct relume_objects_params *params);
 RELUME_API void relume_objects_destroy(relume_objects **objects);
 
+// A corner of triangles.
 struct relume_object_vertex {
     float position[3], normal[3];  // world; unit
     float tangent[4];  // unit, along growing s; the fourth is the handedness h: the other tangent,
@@ -60,17 +61,19 @@ struct relume_object_vertex {
     float texture[2];  // (s, t) in repeats of the sample, t down from the upper edge
 };
 
+// One material of the objects; pointers belong to them.
 struct relume_object_material {
-    const char *name;       // of its folder
-    const char *model;      // "measured", or what relume_btf_model_name says
-    const relume_btf *btf;  // one of the two
-    const relume_btf_fitted *fitted;
+    const char *name;                   // of its folder
+    const char *model;                  // "measured", or what relume_btf_model_name says
+    const relume_btf *btf;              // one of the two
+    const relume_btf_fitted *fitted;    // or NULL
     const relume_btf_surface *surface;  // of either, with all levels of detail
     bool mapped;                        // the surface has a map; else it is the sample
     int width, height;                  // texels of one repeat
-    uint64_t bytes;
+    uint64_t bytes;                     // of its arrays
 };
 
+// Triangles of one mesh that show one material.
 struct relume_object_part {
     const char *name;     // in its mesh
     int material;         // that it is shown in
@@ -84,12 +87,13 @@ struct relume_objects_info {
     size_t vertex_count;
     const uint32_t (*triangles)[3];  // counter-clockwise as seen from where the normals point
     size_t triangle_count;
-    const struct relume_object_part *part;
+    const struct relume_object_part *part;  // [parts]
     int parts;
-    const struct relume_object_material *material;
+    const struct relume_object_material *material;  // [materials]
     int materials;
     struct relume_vec3 min, max;  // of the vertices
 };
+// It belongs to the objects.
 RELUME_API const struct relume_objects_info *relume_objects_info(const relume_objects *objects);
 
 // Show a part in another of the materials. RELUME_EINVAL when there is no such part or material.
@@ -99,7 +103,7 @@ RELUME_RESULT relume_status relume_objects_choose(relume_objects *objects, int p
 
 // A light as drawing takes it: from one direction at each point.
 struct relume_lamp {
-    bool is_facet;
+    bool is_facet;              // of an area light: `facet`, not `light`, is what it sends
     bool is_sky;                // of an environment: where it arrives, not what it shows
     int number;                 // of the light that it is of
     struct relume_light light;  // never area or environment

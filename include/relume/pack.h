@@ -13,6 +13,7 @@
 extern "C" {
 #endif
 
+// How EXR packs the codes, always without loss.
 enum relume_compression {
     RELUME_COMPRESS_DEFAULT = 0,  // PIZ
     RELUME_COMPRESS_NONE,
@@ -36,6 +37,7 @@ struct relume_pack_view {
     const relume_books *books;
     const uint16_t *const *index;  // [books] -> [height][width], as relume_books_assign
 };
+// What is written. Everything is borrowed while relume_pack_write runs.
 struct relume_pack_contents {
     const relume_coder *coder;
     enum relume_domain domain;
@@ -82,6 +84,7 @@ struct relume_pack_encode_params {
                                               // relume_pack_params; temporary data in $TMPDIR
 };
 #define relume_pack_encode_params(...) (&(const struct relume_pack_encode_params){__VA_ARGS__})
+// The whole way from a capture to a file. RELUME_EDATA, RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,
                                                const relume_coder *coder, const char *path,
                                                struct relume_encode_report *report,
@@ -97,11 +100,12 @@ RELUME_RESULT relume_status relume_pack_open(relume_pack **out, const char *path
                                              const struct relume_pack_params *params);
 RELUME_API void relume_pack_destroy(relume_pack **pack);
 
+// What a file holds; pointers belong to the pack.
 struct relume_pack_info {
-    int version;
+    int version;  // of the format
     const relume_coder *coder;
     enum relume_domain domain;
-    struct relume_transfer display;
+    struct relume_transfer display;  // the curve of DOMAIN_DISPLAY
     enum relume_storage storage;
     const char *compression;  // of the coefficients: "piz", ...
     struct relume_geometry geometry;
@@ -119,6 +123,7 @@ struct relume_pack_info {
     struct relume_encode_report report;  // NaN where the file does not say
     uint64_t file_bytes;
 };
+// It belongs to the pack.
 RELUME_API const struct relume_pack_info *relume_pack_info(const relume_pack *pack);
 
 // Where the pixels of a view lie: `geometry`, or its slab.
@@ -132,6 +137,7 @@ RELUME_API void relume_pack_drop(relume_pack *pack, int view);
 // Depth or mask of a view, one channel; empty when it has none. The caller destroys it.
 RELUME_RESULT relume_status relume_pack_depth(struct relume_image *out, relume_pack *pack,
                                               int view);
+// Likewise: one channel, above 0.5 where the object is.
 RELUME_RESULT relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view);
 
 // Read all of a file and call `found` for each run of rows of a part that is missing or cannot be
@@ -147,6 +153,7 @@ struct relume_pack_check_params {
     const struct relume_reader *reader;  // as relume_pack_params
 };
 #define relume_pack_check_params(...) (&(const struct relume_pack_check_params){__VA_ARGS__})
+// RELUME_EDATA when anything is damaged, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_pack_check(const char *path,
                                               const struct relume_pack_check_params *params);
 

@@ -66,6 +66,7 @@ RELUME_RESULT relume_status relume_photograph_load(struct relume_image *out,
 RELUME_RESULT relume_status relume_white_measure(float gain[3], const struct relume_image *image,
                                                  int x, int y, int width, int height,
                                                  const struct relume_log *log);
+// pixel = gain pixel, for each channel.
 RELUME_API void relume_white_apply(struct relume_image *image, const float gain[3]);
 // pixel = m pixel, m row by row: notes.to_srgb for what was merged from code values.
 RELUME_API void relume_primaries_apply(struct relume_image *image, const float m[9]);
@@ -74,13 +75,14 @@ RELUME_API void relume_primaries_apply(struct relume_image *image, const float m
 // 1 + k[0] r^2 + k[1] r^4 + k[2] r^6, one for all channels.
 struct relume_falloff {
     double center[2];  // pixels
-    double k[3];
+    double k[3];       // the coefficients
 };
 // Least squares on the luminance of a photograph of an evenly lit surface. RELUME_EDATA when it is
 // black or the fit falls below 0.05 inside the picture, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_falloff_fit(struct relume_falloff *out,
                                                const struct relume_image *flat,
                                                const struct relume_log *log);
+// Divide a linear image by the polynomial.
 RELUME_API void relume_falloff_divide(struct relume_image *image,
                                       const struct relume_falloff *falloff);
 // The same per pixel: divide by the flat field, smoothed over 1/64 of the width against its noise

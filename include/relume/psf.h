@@ -39,17 +39,19 @@ struct relume_psf_params {
 // sRGB and the factor (575 / lambda)^2 that gives every wavelength the same energy; each channel's
 // sum is such that the whole pattern of an unbounded field would sum to 1.
 struct relume_psf_tap {
-    float scale;  // 575 nm / lambda
-    float rgb[3];
+    float scale;   // 575 nm / lambda
+    float rgb[3];  // what it adds, linear
 };
 // Between two neighbours the pattern is smeared by `fine` more scales first, evenly weighted, so
 // that needles are lines and not beads: F_575(x) := sum_j F_575(fine[j] x) fine[j]^2 / fines.
 enum { RELUME_PSF_MOST_TAPS = 256, RELUME_PSF_MOST_FINE = 8 };
+// The wavelengths of a pattern and what each adds. Plain data.
 struct relume_psf_spectrum {
     int taps, fines;
-    struct relume_psf_tap tap[RELUME_PSF_MOST_TAPS];
-    float fine[RELUME_PSF_MOST_FINE];
+    struct relume_psf_tap tap[RELUME_PSF_MOST_TAPS];  // [taps]
+    float fine[RELUME_PSF_MOST_FINE];                 // [fines]
 };
+// The spectrum of these parameters. RELUME_EINVAL.
 RELUME_RESULT relume_status relume_psf_spectrum(struct relume_psf_spectrum *out,
                                                 const struct relume_psf_params *params);
 
@@ -64,6 +66,7 @@ struct relume_psf_geometry {
     double fade;           // angle where it begins to fade
     double defocus_phase;  // phase of E at 1 mm from the axis for 1 dioptre, radians per mm^2
 };
+// The geometry of these parameters. RELUME_EINVAL.
 RELUME_RESULT relume_status relume_psf_geometry(struct relume_psf_geometry *out,
                                                 const struct relume_psf_params *params);
 
@@ -78,8 +81,9 @@ RELUME_API void relume_psf_destroy(relume_psf **psf);
 RELUME_RESULT relume_status relume_psf_update(relume_psf *psf, const relume_eye *eye);
 // How long the last update's stages took, seconds (Table 8.2).
 struct relume_psf_times {
-    double aperture_s, diffraction_s, chromatic_s;
+    double aperture_s, diffraction_s, chromatic_s;  // of drawing, transforming, summing wavelengths
 };
+// Of the last pattern.
 RELUME_API struct relume_psf_times relume_psf_times(const relume_psf *psf);
 
 // The share of light that the lids let through, [0, 1].
@@ -91,6 +95,7 @@ RELUME_RESULT relume_status relume_psf_image(struct relume_image *out, const rel
 RELUME_RESULT relume_status relume_psf_aperture(struct relume_image *out, const relume_psf *psf);
 // The pattern at 575 nm, one channel, size x size with angle 0 at (size / 2, size / 2), sum 1.
 RELUME_RESULT relume_status relume_psf_monochrome(struct relume_image *out, const relume_psf *psf);
+// It belongs to the pattern.
 RELUME_API const struct relume_psf_geometry *relume_psf_shape(const relume_psf *psf);
 
 // Patterns of a while, computed once and shown in a loop: playback costs a copy instead of a

@@ -63,9 +63,10 @@ struct relume_weight_grid_info {
     const int *tile;    // [rows - 1][columns - 1]: the tile of a cell, or -1
     const int (*child)[4];  // [tiles]: those of a tile's own cells, row by row, or -1
     int triangles;          // 0: a grid as above. Else nodes are the columns of a single row, ...
-    const struct relume_weight_triangle *triangle;
+    const struct relume_weight_triangle *triangle;  // [triangles]
     const int *start;  // ... found by walking from this triangle over edges behind which w < 0
 };
+// It belongs to the grid.
 RELUME_API const struct relume_weight_grid_info *relume_weight_grid_info(
     const relume_weight_grid *grid);
 

@@ -39,7 +39,7 @@ RELUME_API void relume_relighter_destroy(relume_relighter **relighter);
 // One view of the file under lights. Everything is borrowed for the call; `codes` of one view are
 // the same in every call until relume_relighter_drop.
 struct relume_relit {
-    int view;
+    int view;  // its number
     const struct relume_codes *codes;
     const struct relume_image *surface;  // as relume_relight_params; NULL: no near lights
     const struct relume_light *lights;

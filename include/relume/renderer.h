@@ -27,6 +27,7 @@ typedef struct relume_renderer relume_renderer;
 RELUME_RESULT relume_status relume_renderer_create(relume_renderer **out, relume_pack *pack,
                                                    const struct relume_frame_params *params);
 RELUME_API void relume_renderer_destroy(relume_renderer **renderer);
+// The pack that it draws, borrowed.
 RELUME_API relume_pack *relume_renderer_pack(const relume_renderer *renderer);
 
 // How frames are made from now on. What still holds is kept: another lens relights nothing.
@@ -54,9 +55,10 @@ enum relume_target_format {
     RELUME_TARGET_RGBA8,    // four bytes: times 2^exposure_ev, clipped to [0, 1], sRGB-coded; alpha
                             // 255 and 0
 };
+// Where a frame is drawn to. The caller owns it all.
 struct relume_target {
-    void *data;  // aligned to 4 bytes, as `stride` is
-    enum relume_target_format format;
+    void *data;                        // aligned to 4 bytes, as `stride` is
+    enum relume_target_format format;  // of the pixels
     int width, height;
     ptrdiff_t stride;   // default: rows without a gap
     float exposure_ev;  // RGBA8

@@ -18,7 +18,7 @@ enum { RELUME_CODES = 256 };
 // Code value -> exposure (radiance x time), per channel, never falling. Entry i belongs to code
 // i / 255; between them it is linear. Thread-safety: plain data.
 struct relume_response {
-    float exposure[3][RELUME_CODES];
+    float exposure[3][RELUME_CODES];  // [channel][code]: the exposure of a code
 };
 
 // `code` in [0, 1]; others are clamped.
@@ -35,6 +35,7 @@ RELUME_API void relume_response_of(struct relume_response *out, struct relume_tr
 // RELUME_EIO.
 RELUME_RESULT relume_status relume_response_load(struct relume_response *out, const char *path,
                                                  const struct relume_log *log);
+// Write it as relume_response_load reads it. RELUME_EIO, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_response_save(const struct relume_response *response,
                                                  const char *path, const struct relume_log *log);
 
@@ -58,6 +59,7 @@ RELUME_RESULT relume_status relume_response_recover(struct relume_response *out,
                                                     const double *exposures, int n,
                                                     const struct relume_recover_params *params);
 
+// How much a code counts in a merge.
 enum relume_merge_weights {
     RELUME_MERGE_SPLINE = 0,  // two parabolas that leave 0 and 1 with slope 0; in the longest
                               // exposure 1 below half, in the shortest 1 above half
@@ -66,6 +68,7 @@ enum relume_merge_weights {
 };
 // "spline", "hat", "gaussian"; NULL when out of range.
 RELUME_API const char *relume_merge_weights_name(enum relume_merge_weights weights);
+// RELUME_EINVAL when `name` is none of these.
 RELUME_RESULT relume_status relume_merge_weights_parse(enum relume_merge_weights *out,
                                                        const char *name);
 // The weight of a code in an exposure that is the longest, the shortest, or neither.
@@ -85,7 +88,7 @@ struct relume_exposure_report {
 
 struct relume_merge_params {
     const struct relume_log *log;
-    enum relume_merge_weights weights;
+    enum relume_merge_weights weights;  // default: SPLINE
     const struct relume_image
         *masks;   // [n], one channel: the weight is multiplied by it (0: a ghost or
                   // outside of a warped picture; empty image: 1), or NULL

@@ -28,16 +28,17 @@ typedef struct relume_rig relume_rig;
 
 // One light; pointers belong to the rig and hold until it changes.
 struct relume_rig_entry {
-    const char *name;  // for people; never NULL
-    const char *spec;  // as relume_rig_add understands it, without rgb
-    const char *file;  // of slide, env, ies, gonio, as it was opened; else NULL
-    bool on, solo;
+    const char *name;           // for people; never NULL
+    const char *spec;           // as relume_rig_add understands it, without rgb
+    const char *file;           // of slide, env, ies, gonio, as it was opened; else NULL
+    bool on, solo;              // whether it is lit; when one is solo, only those are lit
     double intensity;           // factor of rgb, >= 0
     struct relume_light light;  // rgb as written, without intensity
 };
 
 enum { RELUME_RIG_MOST = 65536 };  // lights
 
+// An empty rig, which the caller destroys. RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_rig_create(relume_rig **out);
 RELUME_API void relume_rig_destroy(relume_rig **rig);
 
@@ -48,6 +49,7 @@ RELUME_RESULT relume_status relume_rig_add(relume_rig *rig, const char *spec, co
                                            const struct relume_log *log);
 // RELUME_EINVAL when there is no such entry.
 RELUME_RESULT relume_status relume_rig_remove(relume_rig *rig, int index);
+// How many lights it has.
 RELUME_API int relume_rig_count(const relume_rig *rig);
 // NULL when there is no such entry.
 RELUME_API const struct relume_rig_entry *relume_rig_entry(const relume_rig *rig, int index);

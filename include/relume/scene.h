@@ -20,6 +20,7 @@ struct relume_scene_kind {
     bool takes_mesh;                    // --mesh replaces its own model
     relume_status (*build)(struct relume_scene_builder *builder);  // adds meshes and materials
 };
+// All scenes; NULL ends the list.
 extern RELUME_API const struct relume_scene_kind *const relume_scenes[];
 // NULL when there is none of that name.
 RELUME_API const struct relume_scene_kind *relume_scene_find(const char *name);
@@ -90,10 +91,13 @@ RELUME_RESULT relume_status relume_scene_capture(const relume_scene *scene, cons
 // A built-in material: a periodic relief with colours and gloss. Constant; a NULL-terminated list
 // of all is relume_btf_materials.
 struct relume_btf_material;
+// All built-in materials; NULL ends the list.
 extern RELUME_API const struct relume_btf_material *const relume_btf_materials[];
 // NULL when there is none of that name.
 RELUME_API const struct relume_btf_material *relume_btf_material_find(const char *name);
+// As people write it; constant.
 RELUME_API const char *relume_btf_material_name(const struct relume_btf_material *material);
+// One line for help texts; constant.
 RELUME_API const char *relume_btf_material_summary(const struct relume_btf_material *material);
 
 struct relume_btf_synth_params {

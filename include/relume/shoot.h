@@ -50,13 +50,14 @@ struct relume_shoot_params {
     // fitted to them, else pixel by pixel.
     const char *const *flats;  // [flat_count]
     int flat_count;
-    bool radial;
+    bool radial;   // `flats` as a polynomial
     int white[4];  // x, y, width, height of a region that is grey, which tells the lamps' colour;
                    // width 0: none
 };
 
+// One photograph that was used.
 struct relume_shoot_photo {
-    char *path;
+    char *path;                      // as it was given
     float saturated, black;          // shares of the pixels
     float likeness;                  // median to others, relume_likeness; NaN: not measured
     struct relume_ball_light light;  // as the first ball tells it

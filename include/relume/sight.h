@@ -16,6 +16,7 @@
 extern "C" {
 #endif
 
+// How a frame is seen.
 enum relume_sight_kind {
     RELUME_SIGHT_WINDOW = 0,  // perspective, through `window`
     RELUME_SIGHT_PARALLEL,    // along right x down of `window`
@@ -74,6 +75,7 @@ enum { RELUME_SOURCES_MOST = 8192 };
 RELUME_API int relume_sight_lamps(
     struct relume_source *out, const struct relume_sight *sight, const struct relume_light *lights,
     int n, bool (*hides)(void *user, const double xy[2], struct relume_vec3 point), void *user);
+// Add `n` sources to a linear frame of three channels.
 RELUME_API void relume_sources_draw(struct relume_image *frame, const struct relume_source *sources,
                                     int n);
 

@@ -26,7 +26,9 @@ RELUME_RESULT relume_status relume_slabs_create(relume_slabs **out,
                                                 int views);
 RELUME_API void relume_slabs_destroy(relume_slabs **slabs);
 
+// How many slabs there are.
 RELUME_API int relume_slabs_count(const relume_slabs *slabs);
+// Slab i in the world; it belongs to `slabs`.
 RELUME_API const struct relume_geometry *relume_slabs_geometry(const relume_slabs *slabs, int i);
 // In its own frame, and with the view numbers of all: what takes `views`, `needed` or disparities
 // by view number takes those of the file. It belongs to `slabs`.
@@ -40,6 +42,7 @@ RELUME_API struct relume_vec3 relume_slabs_eye(const relume_slabs *slabs, int i)
 // A perspective picture in the world: the eye, and the window that it looks through. Its place
 // (x, y), both in [0, 1], rows from the top, is corner + x right + y down.
 struct relume_window {
+    // World: the eye, the upper left corner, the upper and the left edge.
     struct relume_vec3 eye, corner, right, down;
 };
 

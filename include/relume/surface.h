@@ -25,11 +25,11 @@ typedef struct relume_btf_map relume_btf_map;
 
 // Tiles and the matrix that lays them out; an index map is one tile and a matrix of 1 x 1.
 struct relume_btf_map_info {
-    int sample_width, sample_height;
-    int tiles, width, height;  // texels of a tile
-    const uint32_t *texel;     // [tiles][height][width]: y * sample_width + x of the sample
-    int columns, rows;         // of the matrix
-    const uint16_t *matrix;    // [rows][columns]: a tile
+    int sample_width, sample_height;  // texels of the sample
+    int tiles, width, height;         // texels of a tile
+    const uint32_t *texel;            // [tiles][height][width]: y * sample_width + x of the sample
+    int columns, rows;                // of the matrix
+    const uint16_t *matrix;           // [rows][columns]: a tile
 };
 
 // Copies what `info` points to. RELUME_EDATA for texels and tiles that are not there and for sizes
@@ -96,35 +96,39 @@ RELUME_RESULT relume_status relume_btf_surface_create(relume_btf_surface **out,
 RELUME_RESULT relume_status relume_btf_surface_save(const relume_btf_surface *surface,
                                                     const char *path,
                                                     const struct relume_btf_params *params);
+// The folder again; the caller destroys `*out`. RELUME_EDATA with a sentence, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_surface_open(relume_btf_surface **out, const char *path,
                                                     const struct relume_btf_params *params);
 RELUME_API void relume_btf_surface_destroy(relume_btf_surface **surface);
 
+// What a surface is; pointers belong to it.
 struct relume_btf_surface_info {
-    int width, height;               // texels
-    int levels;                      // of detail, at least 1
-    const relume_btf_fitted *model;  // belongs to the surface, as the map
-    const struct relume_btf_map_info *map;
-    uint64_t bytes;  // of the arrays of all levels of the model and the map
+    int width, height;                      // texels
+    int levels;                             // of detail, at least 1
+    const relume_btf_fitted *model;         // belongs to the surface, as the map
+    const struct relume_btf_map_info *map;  // of the finest level
+    uint64_t bytes;                         // of the arrays of all levels of the model and the map
 };
+// A copy; what it points to belongs to the surface.
 RELUME_API struct relume_btf_surface_info relume_btf_surface_info(
     const relume_btf_surface *surface);
 // The model and the map of a level of detail, for clients that look texels up themselves.
 struct relume_btf_surface_level {
-    const relume_btf_fitted *model;
-    const struct relume_btf_map_info *map;
+    const relume_btf_fitted *model;         // of the level
+    const struct relume_btf_map_info *map;  // of the level
 };
+// Level 0 is the finest. What it points to belongs to the surface.
 RELUME_API struct relume_btf_surface_level relume_btf_surface_level(
     const relume_btf_surface *surface, int level);
 
 // From where a point is looked at and lit: unit vectors in the frame of the surface.
 struct relume_btf_ray {
-    struct relume_vec3 view, light;
+    struct relume_vec3 view, light;  // towards the eye, towards the light
     // An environment in place of the light, or NULL: in the one orientation of an ambient, or in
     // that of `frame`.
     const relume_btf_ambient *ambient;
-    const relume_btf_sky *sky;
-    struct relume_btf_frame frame;
+    const relume_btf_sky *sky;      // an environment in place of `light`, or NULL
+    struct relume_btf_frame frame;  // with `sky`: of the surface in the world
 };
 
 // The value at (x, y) texels, as relume_btf_evaluate: the four texels around the point are fetched
@@ -137,7 +141,8 @@ RELUME_API void relume_btf_surface_evaluate(const relume_btf_surface *surface, d
 // Where a pixel meets the surface: its centre, and the way to the centres of the pixels to the
 // right and below, texels.
 struct relume_btf_footprint {
-    double x, y, right[2], down[2];
+    double x, y;               // the centre
+    double right[2], down[2];  // to the next pixels
 };
 // The mean over a pixel: at most 8 lookups along the longer way, on the level that the rest asks
 // for.
@@ -153,8 +158,8 @@ struct relume_btf_camera {
     // Rectified, as samples are photographed: one texel or more a pixel, seen from the direction
     // `eye`. Else a perspective view from the point `eye`, z > 0, towards the point `at`.
     bool perspective;
-    struct relume_vec3 eye, at;
-    double fov_deg;  // across the picture, (0, 180)
+    struct relume_vec3 eye, at;  // in the frame of the surface
+    double fov_deg;              // across the picture, (0, 180)
 };
 
 struct relume_btf_draw_params {

@@ -33,6 +33,7 @@ struct relume_tone_params {
     double exposure_ev;              // multiply by 2^EV first
     double white;                    // default: RELUME_TONE_WHITE
 };
+// The default of `white`.
 #define RELUME_TONE_WHITE       4.0
 #define relume_tone_params(...) (&(const struct relume_tone_params){__VA_ARGS__})
 

@@ -66,6 +66,7 @@ struct relume_slab_grid {
     const int *view;      // [rows][columns]: which view stands there
     int views;            // arrays by view number are so long
 };
+// A copy; what it points to belongs to the slab.
 RELUME_API struct relume_slab_grid relume_slab_grid(const relume_slab *slab);
 
 // The middle of the uv grid, on the uv plane.
@@ -92,6 +93,7 @@ RELUME_API int relume_slab_blend(int view[4], double weight[4], const relume_sla
 // surface, whose colour such a texel may have some of. `depth` is one channel of distances along
 // the rays of the camera at `uv`. RELUME_EINVAL, RELUME_ENOMEM.
 #define RELUME_SLAB_BACKGROUND (-1.0f)
+// The disparities of one view. RELUME_EINVAL, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_slab_disparity(struct relume_image *out, const relume_slab *slab,
                                                   const double uv[2],
                                                   const struct relume_image *depth);
@@ -100,6 +102,7 @@ RELUME_API bool relume_slab_range(double range[2], const struct relume_image *di
 // The disparity of the plane at height z; that which is nearest to an eye, infinite for one on or
 // beyond the uv plane. What rises above it lies behind the eye.
 RELUME_API double relume_slab_plane_disparity(const relume_slab *slab, double z);
+// The disparity that is nearest to an eye, infinite for one on or beyond the uv plane.
 RELUME_API double relume_slab_eye_disparity(const relume_slab *slab, struct relume_vec3 eye);
 
 // What a camera weighs in a frame through an aperture of `radius` around the point `uv` of the uv
@@ -108,7 +111,9 @@ struct relume_slab_lens {
     double place[2];    // u, v of the camera
     double step[2][2];  // u, v: to the next line of the grid below and above
 };
+// Of the camera in that column and row of the grid.
 RELUME_API struct relume_slab_lens relume_slab_lens(const relume_slab *slab, int column, int row);
+// 0 outside the aperture.
 RELUME_API double relume_slab_lens_weight(const struct relume_slab_lens *camera, const double uv[2],
                                           double radius);
 

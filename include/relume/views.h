@@ -84,6 +84,7 @@ RELUME_RESULT relume_status relume_posed_ingest(const char *dir, const char *mod
                                                 const struct relume_ingest_params *params);
 
 // ------------------------------------------------------------------ panorama
+// How photographs around one point come.
 enum relume_panorama_source {
     RELUME_PANORAMA_SPHERE = 0,  // one picture, longitude and latitude
     RELUME_PANORAMA_CYLINDER,    // one picture

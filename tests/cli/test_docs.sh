@@ -31,6 +31,14 @@ for page in "$docs"/*.md "$docs"/*/*.md "$TOP/README.md"; do
     if [ -z "$broken" ]; then ok "$text links to what exists"; else not_ok "$text links to what exists" "broken:$broken"; fi
 done
 
+# ... and every option that the help lists is explained.
+grep -ohE -e '--[a-z][a-z-]*' "$docs"/*.md "$docs"/*/*.md | sort -u >explained.txt
+untold=$({
+    "$VIEWER" --help
+    for c in $("$RELUME" --help | sed -n 's/^  \([a-z]*\) .*/\1/p'); do "$RELUME" "$c" --help; done
+} | sed -n 's/^  \(--[a-z-]*\) .*/\1/p' | sort -u | grep -vxF -f explained.txt | tr '\n' ' ')
+if [ -z "$untold" ]; then ok 'docs explain every option'; else not_ok 'docs explain every option' "none of: $untold"; fi
+
 # Pages for users are short; measurements stand in docs/measurements, and these are records or for
 # programmers.
 for page in "$docs"/*.md "$docs"/reference/*.md "$docs"/tutorials/*.md "$TOP/README.md"; do

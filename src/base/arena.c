@@ -1,3 +1,4 @@
+// arena.c - many small allocations that live and die together
 #include "base/arena.h"
 
 #include "base/memory.h"

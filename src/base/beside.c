@@ -1,3 +1,4 @@
+// beside.c - a folder of ours next to an output, where it is made until it is whole
 #include "base/beside.h"
 
 #include "base/inventory.h"

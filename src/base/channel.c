@@ -1,3 +1,4 @@
+// channel.c - messages of a fixed size between two processes, each with at most one open file
 #include "base/channel.h"
 
 #include <errno.h>

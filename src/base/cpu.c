@@ -1,3 +1,4 @@
+// cpu.c - what the processor can do, asked once
 #include <relume/base.h>
 
 #include <stdlib.h>

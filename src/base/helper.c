@@ -1,3 +1,4 @@
+// helper.c - work on files that may be made to do harm: in processes of their own
 #include "base/helper.h"
 
 #include "base/channel.h"

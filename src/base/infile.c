@@ -1,3 +1,4 @@
+// infile.c - an input that is open: a file, or what the caller gives in place of one (relume/io.h)
 #include "base/infile.h"
 
 #include "base/channel.h"

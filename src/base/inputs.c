@@ -1,3 +1,4 @@
+// inputs.c - files that are read: opened here, noted, and kept from being replaced
 #include "base/inputs.h"
 
 #include "base/beside.h"

@@ -1,3 +1,4 @@
+// inventory.c - what relume made in a folder
 #include "base/inventory.h"
 
 #include "base/log.h"

@@ -1,3 +1,4 @@
+// log.c - sentences for people on their way to the callbacks of the caller
 #include "base/log.h"
 
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+// memory.c - allocation with checked sizes, and the limits of sizes read from files
 #include "base/memory.h"
 
 #include <errno.h>

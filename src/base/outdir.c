@@ -1,3 +1,4 @@
+// outdir.c - folders, and files that others write, that appear whole or not at all
 #include "base/outdir.h"
 
 #include "base/beside.h"

@@ -1,3 +1,4 @@
+// outfile.c - files that appear whole or not at all
 #include "base/outfile.h"
 
 #include "base/beside.h"

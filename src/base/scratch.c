@@ -1,3 +1,4 @@
+// scratch.c - temporary data on disk, in files without a name
 #include "base/scratch.h"
 
 #include "base/memory.h"

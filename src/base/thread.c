@@ -1,3 +1,4 @@
+// thread.c - loops over independent items on several cores
 #include "base/thread.h"
 
 #include <sched.h>

@@ -1,3 +1,4 @@
+// tree.c - folders as wholes: walked, renamed, flushed, removed
 #include "base/tree.h"
 
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+// btf.c - the inside of a relume_btf, and what its readers and its models share
 #include "btf/btf.h"
 
 #include "base/scratch.h"

@@ -1,3 +1,4 @@
+// npy.c - arrays in NumPy's file format (NEP 1, version 1.0), mapped into memory
 #include "btf/npy.h"
 
 #include "base/inputs.h"

@@ -1,3 +1,4 @@
+// fields.c - fits and evaluates reflectance fields with non-linear lobes (thesis, Eq. 3.1)
 #include "btf_model/fields.h"
 
 #include "base/memory.h"

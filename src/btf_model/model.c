@@ -1,3 +1,4 @@
+// model.c - what a model of a BTF is: some arrays, a way to fill them, a way to read a value back
 #include "btf_model/model.h"
 
 #include "base/log.h"

@@ -1,3 +1,4 @@
+// scalar.c - numbers as one of a few levels, and such numbers of unlike widths in rows of bits
 #include "btf_model/scalar.h"
 
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+// kept.c - decoded images that stay in memory for tables to come, within a budget
 #include "capture/kept.h"
 
 #include "base/memory.h"

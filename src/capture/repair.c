@@ -1,3 +1,4 @@
+// repair.c - pixels that hold NaN or infinity
 #include "capture/repair.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+// book_options.c - the options of commands that make codebooks
 #include "book_options.h"
 
 #include <string.h>

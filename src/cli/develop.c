@@ -1,3 +1,4 @@
+// develop.c - how a linear frame becomes a picture to look at: exposure and tone
 #include "develop.h"
 
 #include <math.h>

@@ -1,3 +1,5 @@
+// fill.c - a folder for several pictures: one that is not there appears whole or not at all, one
+// that is there gets its pictures one by one
 #include "fill.h"
 
 #include <sys/stat.h>

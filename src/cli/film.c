@@ -1,3 +1,4 @@
+// film.c - pictures one after the other: numbered files, a folder or a film
 #include "film.h"
 
 #include "cli.h"

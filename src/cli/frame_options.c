@@ -1,3 +1,4 @@
+// frame_options.c - what `relight` and `query` share: lights, depth, kernels
 #include "frame_options.h"
 
 #include <ctype.h>

@@ -1,3 +1,5 @@
+// glare_options.c - what `glare` and `relight --pass glare` share: an eye, its pattern, a frame
+// seen
 #include "glare_options.h"
 
 static relume_status parse_names(struct relume_glare_params *p, const struct args *args)

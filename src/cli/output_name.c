@@ -1,3 +1,4 @@
+// output_name.c - the ending of an output's name says its format: asked before any work is done
 #include "output_name.h"
 
 #include <string.h>

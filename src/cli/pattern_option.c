@@ -1,3 +1,4 @@
+// pattern_option.c - the --pattern option of synth and lights
 #include "pattern_option.h"
 
 relume_status args_pattern(const struct relume_pattern **out, const struct args *args)

@@ -1,3 +1,4 @@
+// photo_list.c - the photographs that a command line names: files, and folders of them
 #include "photo_list.h"
 
 #include <dirent.h>

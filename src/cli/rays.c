@@ -1,3 +1,4 @@
+// rays.c - a list of rays
 #include "rays.h"
 
 #include "cli.h"

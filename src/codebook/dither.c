@@ -1,3 +1,4 @@
+// dither.c - contours of a codebook, broken into a pattern within a budget of bytes
 #include "codebook/dither.h"
 
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+// census.c - pixels and images that carry no information: black, or clipped
 #include "coder/census.h"
 
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+// coder.c - a basis prepared for the lights of one capture: made, asked for weights, destroyed
 #include "coder/basis.h"
 
 #include "base/log.h"

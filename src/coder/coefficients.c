@@ -1,3 +1,4 @@
+// coefficients.c - coefficient planes that wait in a scratch file until their ranges are known
 #include "coder/coefficients.h"
 
 #include "base/log.h"

@@ -1,3 +1,4 @@
+// design.c - a coder's fit as a system for one pixel, whose rows may be weighed or stand elsewhere
 #include "coder/design.h"
 
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+// disc.c - cosines on the stereographic discs of the sphere (Wong 1998, 9.1.2)
 #include "coder/disc.h"
 
 #include <string.h>

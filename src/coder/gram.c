@@ -1,3 +1,4 @@
+// gram.c - Gram matrices of many rows, summed on several cores
 #include "coder/gram.h"
 
 #include "base/memory.h"

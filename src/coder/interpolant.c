@@ -1,3 +1,4 @@
+// interpolant.c - the interpolants behind relume_interpolants
 #include "coder/interpolant.h"
 
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+// seen.c - near lights: every pixel is fitted at the directions from which it was lit
 #include "coder/seen.h"
 
 #include "base/memory.h"

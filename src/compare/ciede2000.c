@@ -1,3 +1,4 @@
+// ciede2000.c - perceived colour difference (Sharma, Wu, Dalal 2005, kL = kC = kH = 1)
 #include "compare/ciede2000.h"
 
 #include "image/power.h"

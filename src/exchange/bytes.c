@@ -1,3 +1,4 @@
+// bytes.c - a file in memory, read from the front: text lines, then binary
 #include "exchange/bytes.h"
 
 #include "base/inputs.h"

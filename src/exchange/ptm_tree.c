@@ -1,3 +1,4 @@
+// ptm_tree.c - which plane of a JPEG-coded .ptm is predicted from which
 #include "exchange/ptm_tree.h"
 
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+// sheet.c - up to three planes as one JPEG, quantised by steps in the planes' own units
 #include "exchange/sheet.h"
 
 #include "base/memory.h"

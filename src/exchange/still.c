@@ -1,3 +1,4 @@
+// still.c - a picture of linear light becomes a relume file that shows it under any light
 #include "exchange/still.h"
 
 #include "base/log.h"

@@ -1,3 +1,4 @@
+// tiles.c - plane JPEGs cut into DeepZoom pyramids, as OpenLIME's layout "deepzoom" reads them
 #include "exchange/tiles.h"
 
 #include "base/log.h"

@@ -1,3 +1,4 @@
+// foreign.c - a picture of another format: planes of 8-bit codes, and what they mean
 #include "foreign/foreign.h"
 
 #include "base/log.h"

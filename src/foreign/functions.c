@@ -1,3 +1,4 @@
+// functions.c - the functions of the light that other formats are written in
 #include "foreign/functions.h"
 
 #include "math/vec.h"

@@ -1,3 +1,4 @@
+// measure.c - how far an exported picture is from the file that it was made from
 #include "foreign/measure.h"
 
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+// planes.c - the planes of a plan as numbers for every pixel, in scratch space on disk
 #include "foreign/planes.h"
 
 #include "base/log.h"

@@ -1,3 +1,4 @@
+// principal.c - principal components of numbers x whose errors count by a metric
 #include "foreign/principal.h"
 
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+// source.c - a view of a relume file as numbers that its sRGB-coded picture depends on linearly
 #include "foreign/source.h"
 
 #include "base/log.h"

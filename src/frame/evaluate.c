@@ -1,3 +1,4 @@
+// evaluate.c - a file relit with every light of a capture and compared with every image
 #include <relume/evaluate.h>
 #include <relume/renderer.h>
 

@@ -1,3 +1,4 @@
+// passes.c - what a frame's passes need of the file: normals, views towards the eye, photographs
 #include "frame/passes.h"
 
 #include "base/log.h"

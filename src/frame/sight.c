@@ -1,3 +1,4 @@
+// sight.c - the ray of a pixel and the pixel of a point, for every kind of frame
 #include <relume/sight.h>
 
 #include "math/vec.h"

@@ -1,3 +1,4 @@
+// camera.c - the viewing rays of every projection that a capture knows (conventions: capture.h)
 #include "geometry/camera.h"
 
 static double mix(double a, double b, double t)

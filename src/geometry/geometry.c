@@ -1,3 +1,4 @@
+// geometry.c - projections and poses: names, defaults, what fits, from the world and back
 #include "math/vec.h"
 
 #include <relume/capture.h>

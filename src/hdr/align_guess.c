@@ -1,3 +1,4 @@
+// align_guess.c - how two exposures of one scene lie on each other, about
 #include "hdr/align_guess.h"
 
 #include "hdr/pyramid.h"

@@ -1,3 +1,4 @@
+// blocks.c - the nodes of hierarchical macroblocks, level by level
 #include "hdr/blocks.h"
 
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+// correlate.c - how well a block of one picture fits another at a shift
 #include "hdr/correlate.h"
 
 #include "base/thread.h"

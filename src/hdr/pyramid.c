@@ -1,3 +1,4 @@
+// pyramid.c - pictures halved again and again, for coarse-to-fine alignment
 #include "hdr/pyramid.h"
 
 #include "base/memory.h"

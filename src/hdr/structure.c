@@ -1,3 +1,4 @@
+// structure.c - what stays of a picture when exposure and light change: its edges
 #include "hdr/structure.h"
 
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+// tones.c - one exposure made to look like another
 #include "hdr/tones.h"
 
 #include "base/memory.h"

@@ -1,3 +1,4 @@
+// image.c - images made and destroyed, and code values as linear light, whole and as streams
 #include "image/image.h"
 
 #include "base/infile.h"

@@ -1,3 +1,4 @@
+// picture_kind.c - what a file is by its first bytes, and which pictures are read at all
 #include "image/picture_kind.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+// fft2d.c - two-dimensional transforms on the library's own threads, made of lines (fft.h)
 #include "math/fft2d.h"
 
 #include "base/memory.h"

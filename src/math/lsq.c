@@ -1,3 +1,4 @@
+// lsq.c - small dense linear algebra, by Eigen (lsq_eigen.cpp)
 #include "math/lsq.h"
 
 #include "base/memory.h"

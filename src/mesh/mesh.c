@@ -1,3 +1,4 @@
+// mesh.c - triangles with normals and texture coordinates, grown piece by piece
 #include "mesh/mesh.h"
 
 #include "base/memory.h"

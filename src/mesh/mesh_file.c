@@ -1,3 +1,4 @@
+// mesh_file.c - what is read from the file of a model, and what its readers share
 #include "mesh/mesh_file.h"
 
 #include "base/inputs.h"

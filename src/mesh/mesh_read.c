@@ -1,3 +1,4 @@
+// mesh_read.c - models from files: Wavefront OBJ and PLY, others by Assimp
 #include "mesh/mesh_read.h"
 
 #include "base/log.h"

@@ -1,3 +1,4 @@
+// tangents.c - a tangent frame for every vertex, in the manner of MikkTSpace (Mikkelsen 2008)
 #include "mesh/tangents.h"
 
 #include "base/memory.h"

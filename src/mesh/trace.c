@@ -1,3 +1,4 @@
+// trace.c - rays against triangles; the only door to Embree
 #include "mesh/trace.h"
 
 #include "base/log.h"

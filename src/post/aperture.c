@@ -1,3 +1,4 @@
+// aperture.c - an eye's aperture as a picture of transmittance
 #include "post/aperture.h"
 
 #include "base/memory.h"

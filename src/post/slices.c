@@ -1,3 +1,4 @@
+// slices.c - the wave on its way through the vitreous body, from one depth to the next
 #include "post/slices.h"
 
 #include "base/memory.h"

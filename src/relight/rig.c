@@ -1,3 +1,4 @@
+// rig.c - named sets of lights: made, changed, and kept alive with what they point at
 #include <relume/rig.h>
 
 #include "base/log.h"

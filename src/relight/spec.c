@@ -1,3 +1,4 @@
+// spec.c - a light in words
 #include "relight/spec.h"
 
 #include "base/log.h"

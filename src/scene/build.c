@@ -1,3 +1,4 @@
+// build.c - what a scene file uses to put its things on the stage
 #include "scene/build.h"
 
 #include <assert.h>

@@ -1,3 +1,4 @@
+// material.c - how a surface answers light: Lambert, a glossy microfacet coat, a mirror
 #include "scene/material.h"
 
 static const float PI_F = 3.14159265358979f;

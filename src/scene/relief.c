@@ -1,3 +1,4 @@
+// relief.c - surfaces of materials: height and colour over a periodic unit square
 #include "scene/relief.h"
 
 #include "math/random.h"

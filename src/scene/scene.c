@@ -1,3 +1,4 @@
+// scene.c - the inside of a relume_scene
 #include "scene/scene.h"
 
 #include "base/log.h"

@@ -1,3 +1,4 @@
+// shapes.c - simple solids as meshes, in their own coordinates; texture place = position
 #include "scene/shapes.h"
 
 static vec3 corner_of(vec3 min, vec3 max, int corner)

@@ -1,3 +1,4 @@
+// walk.c - from the eye into the scene: the places whose light a pixel gathers
 #include "scene/walk.h"
 
 #include "base/memory.h"

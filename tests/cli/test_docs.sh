@@ -50,6 +50,18 @@ grep -o '"relume\.[a-z]*"' "$TOP/src/pack/format.h" | tr -d '"' | sort -u >writt
 grep -o '^| `relume\.[a-z]*`' "$docs/format.md" | tr -d '|` ' | sort -u >documented.txt
 same "format.md has every attribute and no other" written.txt documented.txt
 
+# A stranger who opens a file reads first what it is: "// name.c - ..." in the program, a sentence in
+# tests.
+untitled=$(cd "$TOP" && find src viewer samples -name '*.c' -o -name '*.cpp' | while read -r f; do
+    case $(head -n 1 "$f") in "// $(basename "$f") - "?*) ;; *) echo "$f" ;; esac
+done)
+untitled="$untitled$(cd "$TOP" && find tests -name '*.c' | while read -r f; do
+    case $(head -n 1 "$f") in '// '?*) ;; *) echo "$f" ;; esac
+done)"
+if [ -z "$untitled" ]; then ok 'every .c opens with what it is'; else
+    not_ok 'every .c opens with what it is' "$(echo $untitled)"
+fi
+
 folders=$(sed -n '/^## Layout/,/^## Who/p' "$docs/architecture.md" | sed -n 's|^  \([a-z_/]*\)/ .*|\1|p' | sort)
 check "architecture.md has every folder of src and viewer" \
     test "$folders" = "$(cd "$TOP" && find src viewer -mindepth 1 -type d ! -path 'viewer/shaders/*' | cut -d/ -f2- | sort)"

@@ -1,3 +1,5 @@
+// test_ciede2000.c - tests of src/compare/ciede2000.h: perceived colour difference (Sharma, Wu,
+// Dalal 2005, kL = kC = kH = 1)
 #include "test.h"
 
 #include "compare/ciede2000.h"

@@ -1,3 +1,4 @@
+// test_compare.c - error measures against their definitions
 #include "test.h"
 
 #include "compare/ciede2000.h"

@@ -1,3 +1,5 @@
+// test_disc.c - tests of src/coder/disc.h: cosines on the stereographic discs of the sphere (Wong
+// 1998, 9.1.2)
 #include "test.h"
 
 #include "coder/disc.h"

@@ -1,3 +1,5 @@
+// test_evaluate.c - tests of include/relume/evaluate.h: how well a file shows a capture: relit with
+// every light, compared with every image
 #include "test.h"
 
 #include "capture_fixture.h"

@@ -1,3 +1,5 @@
+// test_exr.c - tests of src/image/exr.h: multi-part scanline OpenEXR files: the container under
+// relume files and EXR images
 #include "test.h"
 
 #include "base/thread.h"

@@ -1,3 +1,5 @@
+// test_fft.c - tests of src/math/fft.h: Fourier and cosine transforms; the folder's door to FFTW
+// (`make FFT=kiss`: to kissfft)
 #include "math/fft2d.h"
 #include "test.h"
 

@@ -1,3 +1,5 @@
+// test_glare.c - tests of include/relume/glare.h: the frame as a living eye would see it: convolved
+// with the eye's pattern (psf.h)
 #include "base/memory.h"
 #include "post/glare.h"
 #include "test.h"

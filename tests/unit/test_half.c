@@ -1,3 +1,5 @@
+// test_half.c - tests of src/image/half.h: IEEE 754 binary16, rounding to nearest even; plain
+// integer code that compilers vectorise
 #include "test.h"
 
 #include "image/half.h"

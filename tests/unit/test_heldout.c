@@ -1,3 +1,5 @@
+// test_heldout.c - tests of include/relume/heldout.h: coders judged by lights that they have not
+// seen
 #include "test.h"
 
 #include "capture_fixture.h"

@@ -1,3 +1,4 @@
+// test_hsh.c - tests of src/math/hsh.h: hemispherical harmonics (Gautron et al. 2004)
 #include "test.h"
 
 #include "math/hsh.h"

@@ -1,3 +1,4 @@
+// test_lsq.c - tests of src/math/lsq.h: small dense linear algebra, by Eigen (lsq_eigen.cpp)
 #include "test.h"
 
 #include "math/lsq.h"

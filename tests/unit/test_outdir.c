@@ -1,3 +1,5 @@
+// test_outdir.c - tests of src/base/outdir.h: folders, and files that others write, that appear
+// whole or not at all
 #include "test.h"
 
 #include "base/beside.h"

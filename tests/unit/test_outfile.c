@@ -1,3 +1,4 @@
+// test_outfile.c - tests of src/base/outfile.h: files that appear whole or not at all
 #include "test.h"
 
 #include "base/inputs.h"

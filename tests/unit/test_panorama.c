@@ -1,3 +1,4 @@
+// test_panorama.c - tests of src/multiview/panorama.h: the sources of panoramas
 #include "math/vec.h"
 
 #include <relume/view.h>

@@ -1,3 +1,5 @@
+// test_psf.c - tests of include/relume/psf.h: what one point source leaves on the retina of an eye
+// (Ritschel 2009, 8.3, 8.4)
 #include "post/aperture.h"
 #include "post/psf.h"
 #include "test.h"

@@ -1,3 +1,4 @@
+// test_repair.c - tests of src/capture/repair.h: pixels that hold NaN or infinity
 #include "test.h"
 
 #include "capture/repair.h"

@@ -1,3 +1,4 @@
+// test_sh.c - tests of src/math/sh.h: real spherical harmonics (Wong 1998, appendix A)
 #include "test.h"
 
 #include "math/sh.h"

@@ -1,3 +1,4 @@
+// test_slab.c - one slab: rays, blends and frames against closed forms
 #include <relume/view.h>
 
 #include <math.h>

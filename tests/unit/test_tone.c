@@ -1,3 +1,5 @@
+// test_tone.c - tests of include/relume/tone.h: linear light becomes what a screen can show:
+// exposure, then a tone operator
 #include "test.h"
 
 #include <relume/tone.h>

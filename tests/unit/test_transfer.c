@@ -1,3 +1,4 @@
+// test_transfer.c - transfer curves against their formulas
 #include "test.h"
 
 static const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};

@@ -1,3 +1,4 @@
+// adjust.c - numbers that sliders change, by name: `set NAME VALUE` of scripts
 #include "app/adjust.h"
 
 #include <math.h>

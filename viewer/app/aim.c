@@ -1,3 +1,4 @@
+// aim.c - where lights come from, as the viewer sees it
 #include "app/aim.h"
 
 #include "app/lamps.h"

@@ -1,3 +1,4 @@
+// app.c - the state of the viewer: how it begins, ends, and answers
 #include "app/app.h"
 
 #include "app/lamps.h"

@@ -1,3 +1,4 @@
+// gaze.c - what can be chosen of the eye that looks at the frame (glare), in numbers and in words
 #include "app/gaze.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+// gizmo.c - handles of the lights in the picture: where they are, and what dragging them does
 #include "app/gizmo.h"
 
 #include "app/aim.h"

@@ -1,3 +1,4 @@
+// keys.c - what every key does: one table, for the app and for the list of keys that it shows
 #include "app/keys.h"
 
 #include "app/app.h"

@@ -1,3 +1,4 @@
+// lamps.c - the list of lights: what shines, add and remove, arrangements
 #include "app/lamps.h"
 
 #include "common/vec.h"

@@ -1,3 +1,4 @@
+// orbit.c - the eye on its way around an object that several slabs show
 #include "app/orbit.h"
 
 #include "common/vec.h"

@@ -1,3 +1,4 @@
+// place.c - where what the file shows lies in the frame
 #include "app/place.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+// script.c - a text file of events, played as if a user made them
 #include "app/script.h"
 
 #include "app/adjust.h"

@@ -1,3 +1,4 @@
+// say.c - sentences for people; the library's own helper is private to it
 #include "common/say.h"
 
 #include <stdarg.h>

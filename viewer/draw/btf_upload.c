@@ -1,3 +1,5 @@
+// btf_upload.c - a measured material on the GPU: the arrays of its model and the directions around
+// any direction, as buffer textures
 #include "draw/btf_upload.h"
 
 #include "common/say.h"

@@ -1,3 +1,4 @@
+// draw.c - one function for each thing that can be drawn; each is a program and can be called alone
 #include "draw/draw.h"
 
 void draw_rectangle(const struct gl *gl, const struct program *program, const struct place *place,

@@ -1,3 +1,4 @@
+// draw_ball.c - draws the ball that shows where the light comes from
 #include "draw/draw.h"
 
 #include <math.h>

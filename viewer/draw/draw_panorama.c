@@ -1,3 +1,4 @@
+// draw_panorama.c - draws a look into a panorama
 #include "draw/draw.h"
 
 #define PI 3.14159265358979323846

@@ -1,3 +1,4 @@
+// draw_picture.c - draws one relit view, moved and zoomed
 #include "draw/draw.h"
 
 enum { VIEW = DRAW_OWN, PICTURE, EXPOSURE, COUNT };

@@ -1,3 +1,4 @@
+// draw_present.c - draws the frame on the screen: exposure, tone and the sRGB curve
 #include "draw/draw.h"
 
 enum { FRAME = DRAW_OWN, TONE, WHITE, LEFT, COUNT };

@@ -1,3 +1,4 @@
+// draw_source.c - draws the lights that are in view as small bright points
 #include "draw/draw.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+// lamps_seen.c - the lights that are in view of the app's frame (sight.h)
 #include "draw/lamps_seen.h"
 
 #include "common/vec.h"

@@ -1,3 +1,4 @@
+// renderer.c - what the app says becomes a frame: relit views, then the drawing of the framing
 #include "draw/renderer.h"
 
 #include "common/say.h"

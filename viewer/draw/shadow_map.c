@@ -1,3 +1,4 @@
+// shadow_map.c - what a lamp sees of the objects: depths, for shadow.glsl
 #include "draw/shadow_map.h"
 
 #include "common/say.h"

@@ -1,3 +1,4 @@
+// sight.c - where objects stand in the frame: a matrix for OpenGL, and the eye
 #include "draw/sight.h"
 
 #include "common/vec.h"

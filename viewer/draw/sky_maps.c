@@ -1,3 +1,5 @@
+// sky_maps.c - prefiltered environments as textures, kept by environment: turning or dimming one
+// changes none
 #include "draw/sky_maps.h"
 
 #include "gl/target.h"

@@ -1,3 +1,4 @@
+// things.c - objects covered with measured materials, on the GPU
 #include "draw/things.h"
 
 #include "common/say.h"

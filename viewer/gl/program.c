@@ -1,3 +1,4 @@
+// program.c - shaders from the tree, linked, with their uniforms found once by name
 #include "gl/program.h"
 
 #include "common/say.h"

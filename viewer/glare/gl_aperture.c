@@ -1,3 +1,5 @@
+// gl_aperture.c - the aperture of an eye as a texture of transmittance, drawn with blending that
+// multiplies
 #include "glare/gl_aperture.h"
 
 #include "common/say.h"

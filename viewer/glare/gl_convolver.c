@@ -1,3 +1,4 @@
+// gl_convolver.c - a frame convolved with an eye's pattern by compute passes
 #include "glare/gl_convolver.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+// gl_fft.c - Fourier transforms of lines in a buffer, by compute passes
 #include "glare/gl_fft.h"
 
 #include <math.h>

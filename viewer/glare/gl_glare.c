@@ -1,3 +1,4 @@
+// gl_glare.c - a frame as an eye sees it, by compute passes of OpenGL 4.3
 #include "glare/gl_glare.h"
 
 #include <math.h>

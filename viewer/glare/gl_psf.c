@@ -1,3 +1,4 @@
+// gl_psf.c - the pattern of one point source by compute passes: what relume_psf_update does
 #include "glare/gl_psf.h"
 
 #include "gl/target.h"

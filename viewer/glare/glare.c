@@ -1,3 +1,4 @@
+// glare.c - the frame as a living eye sees it: the eye in time, its pattern, the picture
 #include "glare/glare.h"
 
 #include "glare/glare_view.h"

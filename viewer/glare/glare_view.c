@@ -1,3 +1,4 @@
+// glare_view.c - how large a pixel of the frame is to the eye, and what of the pattern fits it
 #include "glare/glare_view.h"
 
 #include <math.h>

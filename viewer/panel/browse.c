@@ -1,3 +1,4 @@
+// browse.c - a folder to choose a file from
 #include "panel/browse.h"
 
 #include <relume/exchange.h>

@@ -1,3 +1,4 @@
+// draw_panel.c - the panel's triangles onto the screen, by the viewer's own OpenGL
 #include "panel/draw_panel.h"
 
 #include "gl/target.h"

@@ -1,3 +1,4 @@
+// books.c - codebooks on the GPU: indices stay, the vectors are relit for every light
 #include "relit/books.h"
 
 #include "gl/target.h"

@@ -1,3 +1,4 @@
+// depths.c - disparities of a slab's views on the GPU, uploaded when first needed
 #include "relit/depths.h"
 
 #include "gl/target.h"

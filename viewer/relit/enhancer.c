@@ -1,3 +1,4 @@
+// enhancer.c - passes over relit views: normals are fitted once for each view that is looked at
 #include "relit/enhancer.h"
 
 #include "common/say.h"

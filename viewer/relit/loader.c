@@ -1,3 +1,4 @@
+// loader.c - codes of views, read by a thread of its own while frames are drawn
 #include "relit/loader.h"
 
 #include <pthread.h>

@@ -1,3 +1,5 @@
+// nearby.c - lights that stand near, on the GPU: each is a pass that evaluates the basis at every
+// pixel's own direction
 #include "relit/nearby.h"
 
 #include "common/say.h"

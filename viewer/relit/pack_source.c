@@ -1,3 +1,4 @@
+// pack_source.c - a relume file that several threads read views from, one at a time
 #include "relit/pack_source.h"
 
 #include <relume/renderer.h>

@@ -1,3 +1,4 @@
+// relighter.c - views of a file on the GPU: codes are uploaded once, relit when the lights change
 #include "relit/relighter.h"
 
 #include "common/say.h"

@@ -1,3 +1,4 @@
+// shine.c - a light as uniforms of light.glsl, and the pictures that some lights need as textures
 #include "relit/shine.h"
 
 #include "common/say.h"

@@ -1,3 +1,4 @@
+// weights.c - lights folded into one number for each plane and channel (Wong 1998, Eq. 7.6)
 #include "relit/weights.h"
 
 #include "common/vec.h"

@@ -1,3 +1,4 @@
+// inspect.c - the reflectance function of the pixel under the cursor, as a disc of directions
 #include "session/inspect.h"
 
 #include "app/orbit.h"

@@ -1,3 +1,4 @@
+// maps.c - environment maps that lie in one folder, for the panel to choose from
 #include "session/maps.h"
 
 #include <dirent.h>

@@ -1,3 +1,4 @@
+// options.c - the command line of relume-view
 #include "session/options.h"
 
 #include "app/keys.h"

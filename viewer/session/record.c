@@ -1,3 +1,4 @@
+// record.c - moving pictures: what moves in them, and the folder or film that they become
 #include "session/record.h"
 
 #include "app/lamps.h"

@@ -1,3 +1,4 @@
+// session.c - an open file, what is drawn of it, and the panel over it
 #include "session/session.h"
 
 #include "app/events.h"

@@ -1,3 +1,4 @@
+// settings.c - what the window remembers between two runs: its size, the panel, the lights
 #include "session/settings.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+// context_offscreen.c - what contexts without a window have in common, and which of them to take
 #include "window/context_offscreen.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+// bracket.c - the photographs of one radiance map on their way through `relume capture --hdr`
 #include "commands/bracket.h"
 
 #include "photo_list.h"

@@ -1,3 +1,4 @@
+// btf_inputs.c - what `relume btf` is given: BTFs, models, names of materials
 #include "commands/btf_inputs.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+// btf_report.c - the rows of `relume btf compare` and `eval`
 #include "commands/btf_report.h"
 
 #include <math.h>

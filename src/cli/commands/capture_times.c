@@ -1,3 +1,4 @@
+// capture_times.c - exposure times from a file
 #include "commands/capture_times.h"
 
 #include <errno.h>

@@ -1,3 +1,4 @@
+// cmd_check.c - relume check: reads all of a file and says what is damaged
 #include "cli.h"
 
 static const struct option options[] = {

@@ -1,3 +1,4 @@
+// cmd_compare.c - relume compare: how different two pictures are
 #include "cli.h"
 
 #include <math.h>

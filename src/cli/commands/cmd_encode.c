@@ -1,3 +1,4 @@
+// cmd_encode.c - relume encode: a capture into a relume file
 #include "book_options.h"
 #include "cli.h"
 

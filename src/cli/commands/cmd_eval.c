@@ -1,3 +1,4 @@
+// cmd_eval.c - relume eval: a file against every image of a capture
 #include "cli.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+// cmd_export.c - relume export: a relume file for other programs
 #include "cli.h"
 #include "output_name.h"
 

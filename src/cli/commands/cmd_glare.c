@@ -1,3 +1,4 @@
+// cmd_glare.c - relume glare: a picture as a human eye sees it
 #include "cli.h"
 #include "commands/glare_pattern.h"
 #include "develop.h"

@@ -1,3 +1,4 @@
+// cmd_import.c - relume import: files of other programs into a relume file
 #include "cli.h"
 
 static const struct option options[] = {

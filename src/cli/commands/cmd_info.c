@@ -1,3 +1,4 @@
+// cmd_info.c - relume info: what a file holds
 #include "cli.h"
 
 #include <math.h>

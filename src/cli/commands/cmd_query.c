@@ -1,3 +1,4 @@
+// cmd_query.c - relume query: the colour of one ray, or of many
 #include "cli.h"
 #include "frame_options.h"
 #include "rays.h"

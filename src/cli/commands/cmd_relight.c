@@ -1,3 +1,4 @@
+// cmd_relight.c - relume relight: a file under any lights, as a picture
 #include "cli.h"
 #include "commands/btf_inputs.h"
 #include "develop.h"

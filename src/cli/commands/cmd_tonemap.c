@@ -1,3 +1,4 @@
+// cmd_tonemap.c - relume tonemap: an HDR picture for a screen
 #include "cli.h"
 #include "develop.h"
 

@@ -1,3 +1,4 @@
+// glare_pattern.c - an eye's pattern as pictures and diagrams (`relume glare --psf`)
 #include "commands/glare_pattern.h"
 
 #include "fill.h"

@@ -36,6 +36,11 @@ struct relume_view_params {
     // st plane in focus.
     double aperture, focus;
     float nothing;  // what pixels of a frame hold that no view sees; default: black
+    // Called before texels of a view are read, for images that are made where they are looked at:
+    // columns x and x + 1, rows y and y + 1, each clamped to the view. For single rays, along which
+    // one thread looks. Default: all texels are there.
+    void (*need)(void *user, int view, int x, int y);
+    void *user;
 };
 #define relume_view_params(...) (&(const struct relume_view_params){__VA_ARGS__})
 
@@ -167,10 +172,12 @@ RELUME_API bool relume_panorama_pixel(double xy[2], const struct relume_geometry
                                       int width, int height, struct relume_vec3 direction);
 
 // Bilinear value in a direction, continuous over the wrap, the poles and the cube's edges; black
-// and false where there is nothing.
+// and false where there is nothing. Of `params`, which may be NULL, `need` is looked at, for view
+// 0.
 RELUME_API bool relume_panorama_sample(float rgb[3], const struct relume_geometry *geometry,
                                        const struct relume_image *image,
-                                       struct relume_vec3 direction);
+                                       struct relume_vec3 direction,
+                                       const struct relume_view_params *params);
 
 // A frame; a pixel that covers several texels is the mean of rays through all of it. `out` has the
 // wanted size already. RELUME_EINVAL when `image` is no panorama

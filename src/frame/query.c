@@ -1,14 +1,19 @@
 // query.c - single rays: the plenoptic-illumination function (Wong 1998, 6.4)
 //
-// A view is relit when the first ray needs it and kept for the others of the call.
+// Of a few rays only the texels that they meet are relit; of many, whole views. Either is kept for
+// the rays that follow.
 #include "base/log.h"
 #include "base/memory.h"
 #include "frame/renderer.h"
 
 #include <relume/sight.h>
 
+// Relighting two texels costs about as much as a thousand of many.
+enum { FEW = 64 };
+
 struct rays {
     relume_renderer *r;
+    bool few;
     bool by_depth;
     double (*range)[2];  // [views], of disparities
     const char *none;    // why the file does not hold a ray
@@ -18,12 +23,22 @@ static relume_status need(struct rays *q, int view)
 {
     relume_renderer *r = q->r;
     const bool known = r->kept[view].used == r->frame;
-    relume_status status = renderer_need(r, view);
+    relume_status status = (q->few ? renderer_need_partly : renderer_need)(r, view);
     if (!status && q->by_depth)
         status = renderer_need_disparity(r, view);
     if (!status && q->by_depth && !known)
         (void)relume_slab_range(q->range[view], &r->disparity[view]);
     return status;
+}
+
+// Of an image that may be there partly.
+static void sample(const struct rays *q, int view, const double xy[2], float rgb[3])
+{
+    const struct relume_image *image = &q->r->image[SHOWN_LIGHT][view];
+    if (q->r->view.need)
+        renderer_texels(q->r, view, relume_whole(floor(xy[0] - 0.5)),
+                        relume_whole(floor(xy[1] - 0.5)));
+    ray_sample(rgb, image, xy[0], xy[1]);
 }
 
 static const struct relume_image *images(const struct rays *q)
@@ -50,7 +65,7 @@ static relume_status planar(struct rays *q, const struct relume_ray *ray, float 
         return none(q, "it misses the window");
     const relume_status status = need(q, 0);
     if (!status)
-        ray_sample(rgb, &images(q)[0], xy[0], xy[1]);
+        sample(q, 0, xy, rgb);
     return status;
 }
 
@@ -61,7 +76,8 @@ static relume_status panorama(struct rays *q, const struct relume_ray *ray, floa
     if (vec3_length(vec3_sub(ray->eye, g->center)) > 1e-6 * (1.0 + vec3_length(g->center)))
         return none(q, "a panorama has one eye, its centre");
     const relume_status status = need(q, 0);
-    if (!status && !relume_panorama_sample(rgb, g, &images(q)[0], vec3_unit(ray->direction)))
+    if (!status &&
+        !relume_panorama_sample(rgb, g, &images(q)[0], vec3_unit(ray->direction), &q->r->view))
         return none(q, "it misses the panorama");
     return status;
 }
@@ -71,7 +87,7 @@ static relume_status blend(struct rays *q, const int *view, const double *weight
 {
     for (int i = 0; i < count; i++) {
         float value[3];
-        ray_sample(value, &images(q)[view[i]], xy[0], xy[1]);
+        sample(q, view[i], xy, value);
         for (int c = 0; c < 3; c++)
             rgb[c] += (float)weight[i] * value[c];
     }
@@ -148,11 +164,16 @@ static relume_status one_ray(struct rays *q, const struct relume_ray *ray, float
 
 // ---------------------------------------------------------------- all rays
 
-static relume_status begin(struct rays *q, relume_renderer *r)
+static relume_status begin(struct rays *q, relume_renderer *r, int n)
 {
     const bool slab = r->info->geometry.projection == RELUME_SLAB;
     renderer_begin(r, SHOWN_LIGHT);
-    *q = (struct rays){.r = r, .by_depth = slab && renderer_takes_depth(r)};
+    *q = (struct rays){.r = r, .few = n <= FEW, .by_depth = slab && renderer_takes_depth(r)};
+    r->texels = RELUME_OK;
+    if (q->few) {
+        r->view.need = renderer_texels;
+        r->view.user = r;
+    }
     const relume_status status = renderer_check_depth(r);
     if (status || !slab)
         return status;
@@ -166,9 +187,11 @@ relume_status relume_renderer_rays(float (*rgb)[3], relume_renderer *r,
                                    const struct relume_ray *rays, int n)
 {
     struct rays q;
-    relume_status status = begin(&q, r);
+    relume_status status = begin(&q, r, n);
     for (int i = 0; !status && i < n; i++) {
         status = one_ray(&q, &rays[i], rgb[i]);
+        if (!status)
+            status = r->texels;
         if (!status && q.none && n == 1)
             status =
                 log_fail(r->params.log, RELUME_EDATA, "this ray is not in the file; %s", q.none);

@@ -34,6 +34,8 @@ static uint64_t view_bytes(const relume_renderer *r, int view)
                      image_bytes(&r->disparity[view]);
     for (int i = 0; i < SHOWN; i++)
         bytes += image_bytes(&r->image[i][view]);
+    if (k->texel)
+        bytes += (uint64_t)r->info->width * (uint64_t)r->info->height;
     return bytes + k->code_bytes;
 }
 
@@ -59,6 +61,7 @@ static void forget(relume_renderer *r, int view)
     relume_image_destroy(&r->image[SHOWN_LIGHT][view]);
     relume_image_destroy(&r->disparity[view]);
     relume_relighter_drop(r->relighter, view);
+    free(k->texel);
     if (k->code_bytes)
         relume_pack_drop(r->pack, view);
     *k = (struct kept){0};
@@ -406,6 +409,75 @@ relume_status renderer_need(relume_renderer *r, int view)
     const relume_status status = renderer_relight(r, view, &r->image[SHOWN_LIGHT][view]);
     k->lit = status ? 0 : r->lighting;
     return status;
+}
+
+// Passes look around a texel, refits at all of them.
+static bool goes_by_texels(const relume_renderer *r)
+{
+    bool environment = false;
+    for (int i = 0; i < r->light_count; i++)
+        environment |= r->lights[i].kind == RELUME_LIGHT_ENVIRONMENT;
+    return r->params.pass == RELUME_PASS_COLOUR &&
+           !(environment && r->info->domain == RELUME_DOMAIN_DISPLAY);
+}
+
+relume_status renderer_need_partly(relume_renderer *r, int view)
+{
+    struct kept *k = &r->kept[view];
+    const size_t texels = (size_t)r->info->width * (size_t)r->info->height;
+    struct relume_image *image = &r->image[SHOWN_LIGHT][view];
+    if (!goes_by_texels(r))
+        return renderer_need(r, view);
+    k->used = r->frame;
+    if (k->lit == r->lighting || k->partly == r->lighting)
+        return RELUME_OK;
+    free(k->texel);
+    k->lit = k->partly = 0;
+    k->texel = mem_zeroed(texels, sizeof *k->texel);
+    relume_status status = k->texel ? RELUME_OK : RELUME_ENOMEM;
+    if (!status && !image->data)
+        status = relume_image_create(image, r->info->width, r->info->height, 3);
+    k->partly = status ? 0 : r->lighting;
+    return status;
+}
+
+static relume_status relight_run(relume_renderer *r, int view, size_t first, size_t n)
+{
+    struct relume_relit relit;
+    struct relume_codes_part part = {.memory = NULL};
+    float *to = r->image[SHOWN_LIGHT][view].data + 3 * first;
+    struct relume_image run = {(int)n, 1, 3, to}, surface = {(int)n, 1, 3, NULL};
+    relume_status status = renderer_relit(&relit, r, view);
+    if (!status)
+        status = relume_codes_pick(&part, relit.codes, first, 1, n);
+    if (!status && relit.surface->data) {
+        surface.data = relit.surface->data + 3 * first;
+        relit.surface = &surface;
+    }
+    relit.codes = &part.codes;
+    if (!status)
+        status = relume_relighter_relight(&run, r->relighter, &relit);
+    relume_codes_part_destroy(&part);
+    r->said |= !status;
+    for (size_t i = 0; !status && i < n; i++)
+        r->kept[view].texel[first + i] = true;
+    return status;
+}
+
+void renderer_texels(void *renderer, int view, int x, int y)
+{
+    relume_renderer *r = renderer;
+    const struct kept *k = &r->kept[view];
+    const int width = r->info->width, height = r->info->height;
+    const int left = x < 0 ? 0 : x < width ? x : width - 1;
+    const int right = x + 1 < 0 ? 0 : x + 1 < width ? x + 1 : width - 1;
+    for (int j = 0; k->lit != r->lighting && !r->texels && j < 2; j++) {
+        const int row = y + j < 0 ? 0 : y + j < height ? y + j : height - 1;
+        const size_t first = (size_t)row * (size_t)width + (size_t)left;
+        const size_t n = (size_t)(right - left + 1);
+        if (!k->texel[first] || !k->texel[first + n - 1])
+            r->texels = relight_run(r, view, first, n);
+    }
 }
 
 relume_status renderer_need_all(relume_renderer *r, bool by_depth)

@@ -18,6 +18,8 @@ enum shown { SHOWN_LIGHT, SHOWN_PLACES, SHOWN };
 struct kept {
     uint64_t used;                // the frame that last needed it
     uint64_t lit;                 // the lighting that its picture shows; 0: none
+    uint64_t partly;              // the lighting that it shows at some texels; 0: none
+    bool *texel;                  // [texels]: which
     struct relume_image surface;  // for near lights; empty: not asked for
     uint64_t code_bytes;          // that the pack holds for it
 };
@@ -39,6 +41,7 @@ struct relume_renderer {
     struct relume_image *image[SHOWN];  // [views]
     struct relume_image *disparity;     // [views]
     bool *needed;                       // [views]: by the present frame
+    relume_status texels;               // of renderer_texels
     relume_slab *slab;                  // of a single slab, ...
     relume_slabs *slabs;                // ... of several; NULL: not needed yet
 };
@@ -50,6 +53,10 @@ __attribute__((format(printf, 3, 4))) void renderer_note(relume_renderer *r, enu
 void renderer_begin(relume_renderer *r, enum shown shown);
 // The image of `view` as the frame shows it, in r->image[r->shown][view], ...
 relume_status renderer_need(relume_renderer *r, int view);
+// The same for few rays: the image is there, its texels are found when renderer_texels asks for
+// them, with errors in r->texels.
+relume_status renderer_need_partly(relume_renderer *r, int view);
+void renderer_texels(void *renderer, int view, int x, int y);  // relume_view_params.need
 // ... and its disparities.
 relume_status renderer_need_disparity(relume_renderer *r, int view);
 // Every view that r->needed marks, with disparities where `by_depth`.

@@ -44,6 +44,8 @@ struct layout {
 
 void panorama_fetch(float rgb[3], const struct panorama *p, int x, int y)
 {
+    if (p->params && p->params->need)
+        p->params->need(p->params->user, 0, x, y);
     const float *from = p->data + 3 * ((size_t)y * (size_t)p->width + (size_t)x);
     memcpy(rgb, from, 3 * sizeof *rgb);
 }
@@ -411,10 +413,11 @@ static const struct layout *usable_layout(const struct relume_geometry *geometry
 }
 
 bool relume_panorama_sample(float rgb[3], const struct relume_geometry *geometry,
-                            const struct relume_image *image, struct relume_vec3 direction)
+                            const struct relume_image *image, struct relume_vec3 direction,
+                            const struct relume_view_params *params)
 {
-    const struct panorama p = {geometry, image->width, image->height, image->data,
-                               RELUME_FILTER_LINEAR};
+    const struct panorama p = {geometry,    image->width,         image->height,
+                               image->data, RELUME_FILTER_LINEAR, params};
     const struct layout *layout = usable_layout(geometry, image);
     if (layout)
         return sample(rgb, &p, layout, direction);

@@ -11,6 +11,7 @@ struct panorama {
     int width, height;
     const float *data;          // three channels; NULL when only the geometry is asked for
     enum relume_filter filter;  // of a frame; discs are bilinear
+    const struct relume_view_params *params;  // of a single ray, or NULL
 };
 
 // Rows of a cylinder, which its discs lie below.

@@ -104,6 +104,12 @@ static inline double slab_t(const struct slab_frame *f, double y)
     return g->st_max[1] - y / f->out->height * (g->st_max[1] - g->st_min[1]);
 }
 
+static inline void slab_need(const struct slab_frame *f, int view, int x, int y)
+{
+    if (f->params.need)
+        f->params.need(f->params.user, view, x, y);
+}
+
 // The ray of a pixel: where it meets the uv plane, and the place in a view (texels, centres at
 // +0.5) that shows its point on the st plane. Rays that miss the grid ask the cameras around `at`,
 // its place nearest to `uv`.

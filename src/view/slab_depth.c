@@ -24,6 +24,7 @@ static const double guessed = 1e-3;
 
 // One of the cameras around a ray.
 struct camera {
+    int view;
     const float *rgb;        // [height][width][3]
     const float *disparity;  // [height][width]
     double weight;
@@ -94,6 +95,7 @@ static void gather(double sum[5], const struct around *a, const struct camera *c
         return;
     const int left = relume_whole(floor(at[0] - 0.5));
     const int top = relume_whole(floor(at[1] - 0.5));
+    slab_need(a->frame, c->view, left, top);
     for (int j = 0; j < 2; j++)
         for (int i = 0; i < 2; i++) {
             const size_t texel = texel_index(a, left + i, top + j);
@@ -191,6 +193,7 @@ static void find_cameras(struct around *a, const struct slab_frame *f, const str
             struct camera *c = &a->camera[a->count++];
             const int view = f->slab->view[(size_t)down.index[j] * (size_t)f->slab->columns +
                                            (size_t)across.index[i]];
+            c->view = view;
             c->rgb = f->views[view].data;
             c->disparity = f->params.disparity[view].data;
             c->weight = across.weight[i] * down.weight[j];

@@ -357,7 +357,7 @@ static void texel_centres_are_exact(void **state)
                 continue;
             assert_true(relume_panorama_sample(
                 rgb, &p->geometry, &image,
-                relume_panorama_ray(&p->geometry, p->width, p->height, x + 0.5, y + 0.5)));
+                relume_panorama_ray(&p->geometry, p->width, p->height, x + 0.5, y + 0.5), NULL));
             for (int c = 0; c < 3; c++)
                 assert_float_equal(rgb[c], image.data[3 * (y * p->width + x) + c], 1e-6);
         }
@@ -371,7 +371,7 @@ static void sample_black_outside(void **state)
     const struct panorama *p = &panoramas[0];
     struct relume_image image = random_image(p);
     float rgb[3] = {1, 1, 1};
-    assert_false(relume_panorama_sample(rgb, &p->geometry, &image, unit(0, 3, -1)));
+    assert_false(relume_panorama_sample(rgb, &p->geometry, &image, unit(0, 3, -1), NULL));
     assert_true(rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0);
     relume_image_destroy(&image);
 }
@@ -384,8 +384,8 @@ static void assert_continuous(const struct panorama *p, const struct relume_imag
 {
     float at_a[3], at_b[3];
     assert_true(distance(a, b) < 1e-8);
-    assert_true(relume_panorama_sample(at_a, &p->geometry, image, a));
-    assert_true(relume_panorama_sample(at_b, &p->geometry, image, b));
+    assert_true(relume_panorama_sample(at_a, &p->geometry, image, a, NULL));
+    assert_true(relume_panorama_sample(at_b, &p->geometry, image, b, NULL));
     for (int c = 0; c < 3; c++)
         assert_float_equal(at_a[c], at_b[c], 2e-6);
 }

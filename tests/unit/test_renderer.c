@@ -2,6 +2,7 @@
 #include "test.h"
 
 #include "capture_fixture.h"
+#include "frame/renderer.h"
 
 enum { W = 31, H = 23, GAP = 24 };
 
@@ -212,8 +213,7 @@ static void memory_is_bounded(void **state)
     relume_renderer *r = make_renderer(relume_frame_params(.memory = 1));
     uint64_t bytes[3];
     for (int i = 0; i < 3; i++) {  // view 0, then twice view 1
-        const struct relume_camera half = {
-            .framing = RELUME_FRAME_VIEW, .view = i > 0, .width = 9};
+        const struct relume_camera half = {.framing = RELUME_FRAME_VIEW, .view = i > 0, .width = 9};
         struct relume_image out;
         CHECK_OK(relume_renderer_frame(&out, r, &half));
         relume_image_destroy(&out);
@@ -263,6 +263,96 @@ static void places_are_where_depth_says(void **state)
     relume_renderer_destroy(&r);
 }
 
+// ---------------------------------------------------------------- few rays
+
+enum { RAYS = 200 };  // more than are few
+
+static size_t found_texels(const relume_renderer *r)
+{
+    size_t n = 0;
+    for (int v = 0; v < r->info->views; v++)
+        for (int i = 0; r->kept[v].texel && i < r->info->width * r->info->height; i++)
+            n += r->kept[v].texel[i];
+    return n;
+}
+
+// One at a time: the values of many together, and no more than `most` texels a ray.
+static void check_rays(relume_pack *pack, const struct relume_ray *rays,
+                       const struct relume_light *lamps, int n,
+                       const struct relume_frame_params *params, size_t most)
+{
+    relume_renderer *all, *one;
+    float want[RAYS][3];
+    int seen = 0;
+    CHECK_OK(relume_renderer_create(&all, pack, params));
+    CHECK_OK(relume_renderer_create(&one, pack, params));
+    CHECK_OK(relume_renderer_set_lights(all, lamps, n));
+    CHECK_OK(relume_renderer_rays(want, all, rays, RAYS));
+    assert_int_equal(found_texels(all), 0);
+    for (int i = 0; i < RAYS; i++) {
+        float got[3];
+        if (isnan(want[i][0]))
+            continue;
+        CHECK_OK(relume_renderer_set_lights(one, lamps, n));  // forgets what was found
+        CHECK_OK(relume_renderer_rays(&got, one, &rays[i], 1));
+        assert_in_range(found_texels(one), 1, most);
+        // the last pixels of a kernel's row are rounded once more: 2^-24 a term
+        for (int c = 0; c < 3; c++)
+            CHECK_NEAR((double)got[c], (double)want[i][c], 1e-6 * (1.0 + fabs((double)want[i][c])));
+        seen++;
+    }
+    assert_true(seen > RAYS / 20);
+    relume_renderer_destroy(&all);
+    relume_renderer_destroy(&one);
+}
+
+static void check_file(const struct fixture *f, const char *name,
+                       const struct relume_pack_encode_params *how)
+{
+    static const struct relume_light near[] = {
+        {.direction = {0.1, 0.2, 0.9}, .rgb = {1, 1, 1}},
+        {.kind = RELUME_LIGHT_POINT, .position = {0.4, 0.4, 2.5}, .rgb = {3, 2, 1}},
+        {.kind = RELUME_LIGHT_POINT, .position = {-0.4, 0.4, 2.5}, .rgb = {1, 1, 1}},
+    };
+    char path[128];
+    relume_pack *pack;
+    struct relume_ray rays[RAYS];
+    uint32_t state = 7;
+    fixture_write(f, folder);
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    CHECK_OK(fixture_encode(folder, path, &relume_basis_sh, 9, how));
+    CHECK_OK(relume_pack_open(&pack, path, NULL));
+    // through the cameras, which stand at v = 0, and the window
+    const struct relume_geometry g = *relume_pack_geometry(pack, 0);
+    const bool is_slab = g.projection == RELUME_SLAB;
+    const double from = is_slab ? g.uv_z : 4.0, to = is_slab ? g.st_z : 0.0;
+    for (int i = 0; i < RAYS; i++) {
+        const double u = f->slabs ? test_uniform(&state) : 2.0 * test_uniform(&state);
+        const double s = 1.8 * test_uniform(&state) - 0.9, t = 1.2 * test_uniform(&state) - 0.6;
+        const struct relume_vec3 way = {s - u, t, to - from};
+        rays[i] = (struct relume_ray){{u - 0.1 * way.x, -0.1 * way.y, from - 0.1 * way.z}, way};
+    }
+    for (int by = RELUME_INTERPOLATE_DEFAULT; by <= RELUME_INTERPOLATE_LINEAR; by++)
+        check_rays(pack, rays, near, f->depth ? 3 : 1,
+                   relume_frame_params(.interpolation = (enum relume_interpolation)by), 64);
+    relume_pack_destroy(&pack);
+}
+
+static void one_ray_finds_its_texels(void **state)
+{
+    (void)state;
+    const struct relume_books_params books = {.codes = 16};
+    const struct fixture planar = {.width = W, .height = H, .lights = 12, .views = 1};
+    const struct fixture deep = {.width = W, .height = H, .lights = 12, .views = 3, .depth = true};
+    const struct fixture around = {
+        .width = W, .height = H, .lights = 12, .views = 8, .slabs = 4, .depth = true};
+    check_file(&planar, "planar.exr", NULL);
+    check_file(&deep, "deep.exr", relume_pack_encode_params(.domain = RELUME_DOMAIN_LINEAR));
+    check_file(&deep, "shown.exr", relume_pack_encode_params(.domain = RELUME_DOMAIN_DISPLAY));
+    check_file(&deep, "books.exr", relume_pack_encode_params(.books = &books));
+    check_file(&around, "around.exr", NULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -272,6 +362,7 @@ int main(void)
         cmocka_unit_test(memory_is_bounded),
         cmocka_unit_test(a_pixel_is_that_of_the_frame),
         cmocka_unit_test(places_are_where_depth_says),
+        cmocka_unit_test(one_ray_finds_its_texels),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -202,7 +202,8 @@ static struct relume_image panorama_reference(const struct relume_geometry *g,
             float rgb[3];
             const double x = i % width + (k % RAYS + 0.5) / RAYS;
             const double y = i / width + (k / RAYS + 0.5) / RAYS;
-            (void)relume_panorama_sample(rgb, g, image, relume_look_ray(look, width, height, x, y));
+            (void)relume_panorama_sample(rgb, g, image, relume_look_ray(look, width, height, x, y),
+                                         NULL);
             for (int c = 0; c < 3; c++)
                 out.data[3 * i + c] += rgb[c] / (RAYS * RAYS);
         }

@@ -98,7 +98,7 @@ FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
 VIEWER   := $(if $(VIEWER_C),$B/relume-view)
 
-.PHONY: all lib cli viewer samples deps deps-web deps-stitch demo tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers metrics lint format install \
+.PHONY: all lib cli viewer samples deps deps-web deps-stitch deps-python demo tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers metrics lint format install \
         clean
 .DELETE_ON_ERROR:
 all: lib cli viewer
@@ -121,6 +121,8 @@ deps-stitch:
 	@scripts/deps.sh stitch
 deps-docs:
 	@scripts/deps.sh docs
+deps-python:
+	@scripts/deps.sh python
 
 # ---------------------------------------------------------------- compiling
 

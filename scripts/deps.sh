@@ -1,7 +1,8 @@
 #!/bin/sh
 # Make sure the packages that relume is built from are there; on Debian and Ubuntu install what is
-# missing. Usage: deps.sh [web | stitch | docs]   (web: the browser for the tests of exported pages;
-# stitch: OpenCV, for panoramas out of photographs; docs: Doxygen, for the reference of the library)
+# missing. Usage: deps.sh [web | stitch | docs | python]   (web: the browser for the tests of exported
+# pages; stitch: OpenCV, for panoramas out of photographs; docs: Doxygen, for the reference of the
+# library; python: what the Python module needs)
 set -eu
 
 packages="gcc g++ make pkg-config libc6-dev libopenexr-dev libopenimageio-dev libembree-dev
@@ -11,6 +12,7 @@ libegl-dev libegl-mesa0 libimgui-dev libstb-dev xvfb xdotool"
 [ "${1:-}" = web ] && packages="chromium"
 [ "${1:-}" = stitch ] && packages="libopencv-stitching-dev"
 [ "${1:-}" = docs ] && packages="doxygen"
+[ "${1:-}" = python ] && packages="python3-numpy python3-setuptools python3-wheel python3-venv"
 
 missing=
 for p in $packages; do

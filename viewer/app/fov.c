@@ -1,3 +1,4 @@
+// fov.c - how wide the frame is to who looks at it
 #include "app/fov.h"
 
 #include "app/orbit.h"

@@ -1,3 +1,4 @@
+// frame_request.c - what a frame shall show: all that drawing needs to know of the app's state
 #include "app/frame_request.h"
 
 #include "app/app.h"

@@ -305,7 +305,7 @@ fuzzers: $(FUZZ)
 replay: $(FUZZ)
 	@for f in $(FUZZ); do $$f seeds $$(find tests/fuzz/corpus/$${f##*/} -type f 2>/dev/null) || exit 1; done
 
-demo: all
+demo: all $B/samples/figures
 	@scripts/demo.sh $B build/demo
 
 # A film of everything the viewer does: build/tour/film.mp4, or a folder of pictures without ffmpeg

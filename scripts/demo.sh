@@ -1,7 +1,7 @@
 #!/bin/sh
 # `make demo`: the main job from end to end, in pictures. demo.sh BUILD_FOLDER OUT_FOLDER
 set -eu
-relume=$1/relume view=$1/relume-view out=$2
+relume=$1/relume view=$1/relume-view row="$1/samples/figures row" out=$2
 rm -rf "$out"
 mkdir -p "$out"
 
@@ -11,6 +11,25 @@ picture() { # what, file, command...
     "$@" -o "$file"
     echo "  $file  $what"
 }
+
+echo "A marble head: 200 lights, one file"
+"$relume" synth bust -o "$out/bust" --lights 200 --hemisphere --size 528 --samples 4
+"$relume" encode "$out/bust" -o "$out/bust.exr"
+bust() { # what, name, options...
+    what=$1 name=$2
+    shift 2
+    picture "$what" "$out/bust-$name.png" "$relume" relight "$out/bust.exr" "$@"
+}
+bust "light from the left" left --light "dir -1 0.35 0.45 rgb 1.5 1.45 1.35"
+bust "light from above" above --light "dir 0.25 1 0.7 rgb 1.25 1.25 1.2"
+bust "a blue and an orange lamp" two --light "dir -1 0.3 0.5 rgb 0.25 0.5 1.5" \
+    --light "dir 1 0.4 0.35 rgb 1.7 0.75 0.25"
+bust "fire light and the sky" fire --light "dir 0.9 -0.5 0.5 rgb 1.4 1.1 0.7" \
+    --light "dir -0.6 0.8 0.1 rgb 0.3 0.4 0.6"
+bust "the directions of its surface" normals --pass normals
+$row "$out/bust.jpg" crop=138,6,252,516 "$out/bust-left.png" "$out/bust-above.png" "$out/bust-two.png" \
+    "$out/bust-fire.png" "$out/bust-normals.png"
+echo "  $out/bust.jpg  all five in a row (docs/pictures/bust.jpg)"
 
 echo "A glossy teapot: 49 eyes, 100 lights, one file"
 "$relume" synth teapot -o "$out/teapot" --views 7x7 --lights 100 --size 288 --samples 4

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/outdir.h"
 #include "base/outfile.h"
+#include "math/sort.h"
 
 #include <ctype.h>
 #include <stdarg.h>
@@ -243,12 +244,6 @@ static double mean_miss(const struct relume_photometric *p)
     return sum;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Photographs that miss far more than most: damaged in a way that no reader sees, taken when
 // something had moved, or under a lamp that is not as it is said to be.
 static relume_status name_outliers(struct shoot *s)
@@ -257,7 +252,7 @@ static relume_status name_outliers(struct shoot *s)
     double *sorted = mem_copy(p->light_residual, (size_t)p->lights, sizeof *sorted);
     if (!sorted)
         return RELUME_ENOMEM;
-    qsort(sorted, (size_t)p->lights, sizeof *sorted, ascending);
+    sort_doubles(sorted, (size_t)p->lights);
     const double usual = sorted[p->lights / 2];
     relume_status status = RELUME_OK;
     for (int i = 0; i < p->lights && !status; i++) {

@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/lsq.h"
+#include "math/sort.h"
 
 #include <relume/align.h>
 #include <stdio.h>
@@ -15,17 +16,11 @@ static const double FLAT = 0.004;   // least eigenvalue of the directions' mean 
 static const double LOWEST = 0.26;  // sine of the elevation from which light is wanted: 15 degrees
 static const double WIDE_GAP = 40.0;  // degrees
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median(double *v, int n)
 {
     if (n == 0)
         return (double)NAN;
-    qsort(v, (size_t)n, sizeof *v, ascending);
+    sort_doubles(v, (size_t)n);
     return v[n / 2];
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "math/sort.h"
 #include "multiview/views_colmap.h"
 
 #include <string.h>
@@ -35,12 +36,6 @@ static vec3 seen_from(const struct posed_camera *c, vec3 point)
                    vec3_dot(vec3_of(r[6], r[7], r[8]), d));
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Median over the points in its picture; 0: there are none.
 static relume_status find_distance(double *out, const struct posed_model *model,
                                    const struct posed_camera *camera)
@@ -56,7 +51,7 @@ static relume_status find_distance(double *out, const struct posed_model *model,
             xy[1] < camera->height)
             z[n++] = p.z;
     }
-    qsort(z, n, sizeof *z, ascending);
+    sort_doubles(z, n);
     *out = n ? z[n / 2] : 0.0;
     free(z);
     return RELUME_OK;

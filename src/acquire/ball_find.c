@@ -7,6 +7,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "math/sort.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -33,12 +34,6 @@ static void destroy_pyramid(struct pyramid *p)
         relume_image_destroy(&p->level[i]);
 }
 
-static int by_value(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 // The value below which `part` of some thousand samples lie; NaN when memory is short.
 static float quantile(const float *v, size_t n, double part)
 {
@@ -48,7 +43,7 @@ static float quantile(const float *v, size_t n, double part)
         return NAN;
     for (size_t i = 0; i < count; i++)
         some[i] = v[i * step];
-    qsort(some, count, sizeof *some, by_value);
+    sort_floats(some, count);
     const float found = some[(size_t)(part * (double)(count - 1))];
     free(some);
     return found;

@@ -5,6 +5,7 @@
 #include "acquire/ball.h"
 
 #include "base/memory.h"
+#include "math/sort.h"
 
 #include <string.h>
 
@@ -65,12 +66,6 @@ static void search_radius(const struct follower *f, int i, double reach)
     f->change[i] = change[found];
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 // The median change between neighbours on circles well inside and outside of the outline.
 static float background(const struct follower *f)
 {
@@ -81,7 +76,7 @@ static float background(const struct follower *f)
         f->scratch[i] = fabsf(ball_at(f->edges, x + f->step * cos(a), y + f->step * sin(a)) -
                               ball_at(f->edges, x - f->step * cos(a), y - f->step * sin(a)));
     }
-    qsort(f->scratch, (size_t)f->angles, sizeof *f->scratch, ascending);
+    sort_floats(f->scratch, (size_t)f->angles);
     return f->scratch[f->angles / 2];
 }
 

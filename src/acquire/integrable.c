@@ -13,6 +13,7 @@
 
 #include "base/memory.h"
 #include "math/lsq.h"
+#include "math/sort.h"
 
 #include <string.h>
 
@@ -116,18 +117,12 @@ static double curl_at(const struct curls *s, const double v[6], size_t i)
     return sum;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Cauchy weights; returns the spread of the curls, by their median.
 static double weigh(struct curls *s, const double v[6])
 {
     for (size_t i = 0; i < s->n; i++)
         s->sorted[i] = s->weight[i] = fabs(curl_at(s, v, i));
-    qsort(s->sorted, s->n, sizeof *s->sorted, ascending);
+    sort_doubles(s->sorted, s->n);
     const double spread = 1.4826 * s->sorted[s->n / 2] + 1e-9;
     for (size_t i = 0; i < s->n; i++)
         s->weight[i] = 1.0 / (1.0 + pow(s->weight[i] / (TUNING * spread), 2.0));

@@ -6,6 +6,8 @@
 #include "base/thread.h"
 #include "capture/near.h"
 #include "math/lambert.h"
+#include "math/luminance.h"
+#include "math/sort.h"
 
 static const size_t band_bytes = (size_t)64 << 20;  // of samples
 static const float clipped = 0.995f;                // of the largest value
@@ -44,11 +46,6 @@ static const float *sample_of(const struct fit *f, int light, size_t pixel)
     return f->samples + (size_t)light * f->stride + 3 * pixel;
 }
 
-static float luminance(const float *rgb)
-{
-    return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
-}
-
 static void aim(const struct fit *f, const struct pixel *p)
 {
     const int width = f->width;
@@ -79,7 +76,7 @@ static int gather(const struct fit *f, const struct pixel *p)
         for (int i = 0; i < f->lights; i++)
             if (keep || f->params.plain || !is_clipped(f, p, i))
                 p->sample[n++] =
-                    (struct lambert_sample){luminance(sample_of(f, i, p->at)), 1.0f, i};
+                    (struct lambert_sample){luminance_709f(sample_of(f, i, p->at)), 1.0f, i};
     }
     return n;
 }
@@ -124,7 +121,7 @@ static void judge_lights(const struct fit *f, const struct pixel *p, vec3 g)
         const double expected = vec3_dot(g, p->direction[i]);
         if (expected > LAMBERT_GRAZING * albedo && !is_clipped(f, p, i))
             f->miss[judge * (size_t)f->lights + (size_t)i] =
-                (float)(fabs((double)luminance(sample_of(f, i, p->at)) - expected) / albedo);
+                (float)(fabs((double)luminance_709f(sample_of(f, i, p->at)) - expected) / albedo);
     }
 }
 
@@ -185,15 +182,9 @@ static relume_status fit_bands(struct fit *f)
 
 // ---------------------------------------------------------------- how well it went
 
-static int ascending(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 static double median(float *v, size_t n)
 {
-    qsort(v, n, sizeof *v, ascending);
+    sort_floats(v, n);
     return n ? (double)v[n / 2] : 0.0;
 }
 

@@ -14,6 +14,8 @@
 #include "base/thread.h"
 #include "math/lambert.h"
 #include "math/lsq.h"
+#include "math/luminance.h"
+#include "math/sort.h"
 
 #include <string.h>
 
@@ -49,11 +51,6 @@ struct refiner {
     struct lambert_sample *scratch;  // [workers][lights]
 };
 
-static float luminance(const float *rgb)
-{
-    return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
-}
-
 static bool is_useful(const float *value, int lights)
 {
     int lit = 0;
@@ -69,7 +66,7 @@ static int take(struct refiner *r, const float *band, size_t stride, size_t at, 
         const float *p = band + (size_t)i * stride + 3 * at;
         const bool clips = p[0] >= CLIPPED * white[i][0] || p[1] >= CLIPPED * white[i][1] ||
                            p[2] >= CLIPPED * white[i][2];
-        to[i] = clips ? NAN : luminance(p);
+        to[i] = clips ? NAN : luminance_709f(p);
     }
     return r->pixels < PIXELS && is_useful(to, r->lights) ? (int)r->pixels++ : -1;
 }
@@ -292,12 +289,6 @@ static bool fix_mean(struct refiner *r)
     return isfinite(mean) && mean > 0.0;
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // ---------------------------------------------------------------- whether to believe it
 
 static double degrees_between(vec3 a, vec3 b)
@@ -318,7 +309,7 @@ static double disagreement(const struct refiner *r, vec3 axis, double *sorted)
             sorted[n++] = vec3_dot(vec3_unit(r->g[k]), axis);
     if (!n)
         return INFINITY;
-    qsort(sorted, n, sizeof *sorted, ascending);
+    sort_doubles(sorted, n);
     const struct half one = {axis, sorted[n / 2]}, other = {back, -sorted[n / 2]};
     for (int i = 0; i < r->lights; i++) {
         vec3 a = r->light[i], b = a;
@@ -370,7 +361,7 @@ static relume_status find_residual(double *residual, struct refiner *r)
                 miss[n++] = fabs(v - expected) / size;
         }
     if (n)
-        qsort(miss, n, sizeof *miss, ascending);
+        sort_doubles(miss, n);
     *residual = n ? miss[n / 2] : (double)NAN;
     const relume_status status = miss ? RELUME_OK : RELUME_ENOMEM;
     free(miss);

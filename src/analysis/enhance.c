@@ -9,6 +9,7 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/luminance.h"
 #include "math/vec.h"
 
 #include <string.h>
@@ -61,11 +62,6 @@ static vec3 vector_at(const struct relume_image *image, size_t at)
 {
     const float *v = image->data + at;
     return vec3_of((double)v[0], (double)v[1], (double)v[2]);
-}
-
-static double luminance(const float rgb[3])
-{
-    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
 }
 
 static bool shines(const struct relume_light *light)
@@ -132,7 +128,7 @@ static void show_unsharp(const struct enhance *e, size_t at, float rgb[3])
 static void show_luminance(const struct enhance *e, size_t at, float rgb[3])
 {
     (void)e, (void)at;
-    rgb[0] = rgb[1] = rgb[2] = (float)luminance(rgb);
+    rgb[0] = rgb[1] = rgb[2] = (float)luminance_709(rgb);
 }
 
 // Dark blue, violet, red, orange, yellow: lightness rises all the way.
@@ -144,7 +140,7 @@ static void show_false_colour(const struct enhance *e, size_t at, float rgb[3])
     };
     (void)at;
     const double low = (double)e->range.low, high = (double)e->range.high;
-    const double place = 4.0 * (luminance(rgb) - low) / (high - low);
+    const double place = 4.0 * (luminance_709(rgb) - low) / (high - low);
     const double x = fmin(fmax(place, 0.0), 4.0);
     const int step = x < 3.0 ? (int)x : 3;
     const float part = (float)(x - step);

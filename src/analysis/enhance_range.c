@@ -2,6 +2,8 @@
 // seen as well as plaster: percentiles of a grid of pixels
 #include <relume/enhance.h>
 
+#include "math/luminance.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,11 +13,6 @@ enum { SIDE = 128 };
 static const double black_share = 0.05;  // of the picture that diffuse gain may turn black
 static const double low_share = 0.01, high_share = 0.99;
 static const float least = 1e-4f;  // of the brightest: what is darker is background
-
-static float luminance(const float rgb[3])
-{
-    return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
-}
 
 int relume_pass_step(int width, int height)
 {
@@ -52,12 +49,12 @@ struct grid {
 static void brightest(struct grid *g, const float *rgb, const float *albedo)
 {
     (void)albedo;
-    g->floor = fmaxf(g->floor, least * luminance(rgb));
+    g->floor = fmaxf(g->floor, least * luminance_709f(rgb));
 }
 
 static void keep_luminance(struct grid *g, const float *rgb, const float *albedo)
 {
-    const float y = luminance(rgb);
+    const float y = luminance_709f(rgb);
     (void)albedo;
     if (y > g->floor)
         g->value[g->n++] = y;
@@ -67,12 +64,12 @@ static float most_of(const struct grid *g, const float *albedo)
 {
     const float most[3] = {g->light[0] * albedo[0], g->light[1] * albedo[1],
                            g->light[2] * albedo[2]};
-    return luminance(most);
+    return luminance_709f(most);
 }
 
 static void keep_ratio(struct grid *g, const float *rgb, const float *albedo)
 {
-    const float y = luminance(rgb), most = most_of(g, albedo);
+    const float y = luminance_709f(rgb), most = most_of(g, albedo);
     if (y > g->floor && most > g->floor)
         g->value[g->n++] = y / most;
 }
@@ -108,7 +105,7 @@ static float find_scale(struct grid *g, float gain, float pivot, float high)
     for (int y = 0; y < g->image->height; y += g->step)
         for (int x = 0; x < g->image->width; x += g->step) {
             const size_t at = 3 * ((size_t)y * (size_t)g->image->width + (size_t)x);
-            const float f = luminance(g->image->data + at);
+            const float f = luminance_709f(g->image->data + at);
             const float m = pivot * most_of(g, g->albedo->data + at);
             if (f > g->floor)
                 g->value[n++] = fmaxf(m + gain * (f - m), 0.0f);

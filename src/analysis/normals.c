@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "math/lambert.h"
+#include "math/luminance.h"
 
 #include <string.h>
 
@@ -57,8 +58,7 @@ static void fit_pixel(const struct fit *f, struct lambert_sample *s, size_t pixe
     vec3 g;
     for (int i = 0; i < n; i++) {
         const float *rgb = sample_of(f, i, pixel);
-        s[i] = (struct lambert_sample){0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2], 1.0f,
-                                       i};
+        s[i] = (struct lambert_sample){luminance_709f(rgb), 1.0f, i};
     }
     s = lambert_fit(&g, f->direction, s, &n, f->params.plain);
     if (!s)

@@ -5,6 +5,7 @@
 #include "btf_model/ambient.h"
 #include "image/half.h"
 #include "math/lsq.h"
+#include "math/luminance.h"
 
 #include <string.h>
 
@@ -151,11 +152,6 @@ static double fit_view(const struct fields *s, struct lobe *lobe, const struct f
     return error;
 }
 
-static double luminance(const float *rgb)
-{
-    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
-}
-
 // What every view shows at least, on average: where rho_d starts.
 static double pedestal(const float *values, int views, int lights)
 {
@@ -163,7 +159,7 @@ static double pedestal(const float *values, int views, int lights)
     for (int v = 0; v < views; v++) {
         double least = INFINITY;
         for (int l = 0; l < lights; l++)
-            least = fmin(least, luminance(values + 3 * (v * lights + l)));
+            least = fmin(least, luminance_709(values + 3 * (v * lights + l)));
         sum += least;
     }
     return sum / views;
@@ -226,7 +222,7 @@ static double take_view(const struct fields *s, int v, double floor_value, const
 {
     double top = 0.0;
     for (int l = 0; l < s->m->lights; l++) {
-        w->y[l] = (luminance(values + 3 * (v * s->m->lights + l)) - floor_value) / w->unit;
+        w->y[l] = (luminance_709(values + 3 * (v * s->m->lights + l)) - floor_value) / w->unit;
         top = fmax(top, w->y[l]);
     }
     return top;
@@ -284,7 +280,7 @@ static void fit_entry(const struct fields *s, const struct stored *to, const str
     const double floor_value = pedestal(values, views, lights);
     w->top = 0.0;
     for (int i = 0; i < views * lights; i++)
-        w->top = fmax(w->top, luminance(values + 3 * i));
+        w->top = fmax(w->top, luminance_709(values + 3 * i));
     w->unit = w->top > BRIGHTEST                 ? w->top / BRIGHTEST
               : w->top > 0.0 && w->top < DARKEST ? w->top / DARKEST
                                                  : 1.0;

@@ -10,6 +10,7 @@
 #include "btf_model/lobes.h"
 #include "image/half.h"
 #include "math/lsq.h"
+#include "math/luminance.h"
 
 #include <string.h>
 
@@ -56,11 +57,6 @@ struct texel {
     double unit;                 // lobes are fitted to values over this
     double albedo[3][UNKNOWNS];  // of each colour: rho_d, rho_j
 };
-
-static double luminance(const float *rgb)
-{
-    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
-}
 
 static int by_size(const void *a, const void *b)
 {
@@ -119,7 +115,7 @@ static void fit_lobes(const struct work *w, size_t texel, const float *values, s
     struct lobe lobe[MODEL_LOBES];
     double top = 0.0;
     for (size_t i = 0; i < w->fitted_count; i++) {
-        s->y[i] = luminance(values + 3 * i * w->stride);
+        s->y[i] = luminance_709(values + 3 * i * w->stride);
         top = fmax(top, s->y[i]);
     }
     s->unit = fmax(top / BRIGHTEST, 1.0);

@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/luminance.h"
 
 #include <string.h>
 
@@ -36,11 +37,6 @@ static void place_of(vec3 d, double out[2])
     out[1] = acos(fmin(fmax(d.y, -1.0), 1.0)) / M_PI;
 }
 
-static double luminance(const float rgb[3])
-{
-    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
-}
-
 // Neighbouring cells become one, from where their energy comes; which do does not depend on the
 // rotation.
 static int gather(struct relume_environment_cell *cell, const struct relume_light *light)
@@ -55,7 +51,8 @@ static int gather(struct relume_environment_cell *cell, const struct relume_ligh
         const int x = (int)(at[0] * CELL_COLUMNS) % CELL_COLUMNS;
         const int y = at[1] < 1.0 ? (int)(at[1] * CELL_ROWS) : CELL_ROWS - 1;
         const int to = y * CELL_COLUMNS + x;
-        cell[to].direction = vec3_add(cell[to].direction, vec3_scale(d, luminance(from[i].rgb)));
+        cell[to].direction =
+            vec3_add(cell[to].direction, vec3_scale(d, luminance_709(from[i].rgb)));
         for (int c = 0; c < 3; c++)
             cell[to].rgb[c] += light->rgb[c] * from[i].rgb[c];
     }

@@ -2,6 +2,7 @@
 #include "btf_model/scalar.h"
 
 #include "base/memory.h"
+#include "math/sort.h"
 
 #include <math.h>
 
@@ -30,12 +31,6 @@ struct sorted {
     double mean, deviation, reach;  // reach: greatest distance from the mean
 };
 
-static int by_value(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return x < y ? -1 : x > y;
-}
-
 static bool sort(struct sorted *s, const float *values, size_t count, size_t stride)
 {
     const size_t every = (count + SAMPLES - 1) / SAMPLES;
@@ -47,7 +42,7 @@ static bool sort(struct sorted *s, const float *values, size_t count, size_t str
         return false;
     for (size_t i = 0; i < s->count; i++)
         s->value[i] = values[i * every * stride];
-    qsort(s->value, s->count, sizeof *s->value, by_value);
+    sort_floats(s->value, s->count);
     for (size_t i = 0; i < s->count; i++) {
         s->sum[i + 1] = s->sum[i] + (double)s->value[i];
         s->squares[i + 1] = s->squares[i] + (double)s->value[i] * (double)s->value[i];

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "coder/design.h"
 #include "math/lsq.h"
+#include "math/sort.h"
 
 #include <string.h>
 
@@ -34,12 +35,6 @@ size_t robust_work(const struct robust *r)
 {
     const size_t k = (size_t)r->design.k, n = (size_t)r->design.lights;
     return k * k + 3 * k + 3 * n + n + n;
-}
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
 }
 
 // One pixel: `sets` vectors of samples over the rows become `sets` vectors of coefficients.
@@ -74,7 +69,7 @@ static void weigh(const struct design *r, const struct pixel *p)
             }
         p->weight[i] = p->sorted[i] = sqrt(sum / (p->sets * per_light));
     }
-    qsort(p->sorted, (size_t)r->lights, sizeof *p->sorted, ascending);
+    sort_doubles(p->sorted, (size_t)r->lights);
     const double spread = fmax(2.385 * 1.4826 * p->sorted[r->lights / 2], LEAST_SPREAD);
     for (int i = 0; i < r->lights; i++)
         p->weight[i] = 1.0 / (1.0 + p->weight[i] * p->weight[i] / (spread * spread));

@@ -7,6 +7,7 @@
 #include "compare/ciede2000.h"
 #include "compare/ssim.h"
 #include "image/encoder.h"
+#include "math/luminance.h"
 
 #include <math.h>
 #include <string.h>
@@ -78,7 +79,7 @@ static void keep_luma(const struct job *j, const struct block *b, size_t first)
     for (int i = 0; i < 2; i++)
         for (int x = 0; x < b->n; x++) {
             const float *v = b->display[i] + 3 * x;
-            j->luma[i][first + (size_t)x] = 0.299f * v[0] + 0.587f * v[1] + 0.114f * v[2];
+            j->luma[i][first + (size_t)x] = luma_601f(v);
         }
 }
 

@@ -6,6 +6,7 @@
 #include "base/outfile.h"
 #include "base/thread.h"
 #include "image/trellis.h"
+#include "math/sort.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -148,12 +149,6 @@ static double levels_of(double square)
     return 255.0 * sqrt(square / (3.0 * 64.0));
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Flat blocks of nothing, as around a masked object, would hide the others in a share of all.
 static double seen_in_block(const struct web_folder *w, size_t b)
 {
@@ -179,7 +174,7 @@ relume_status web_visible_error(const struct web_folder *w, double *levels)
         seen[n] = seen_in_block(w, b);
         n += seen[n] > 0.0;
     }
-    qsort(seen, n, sizeof *seen, ascending);
+    sort_doubles(seen, n);
     if (n)
         *levels = seen[(size_t)(SEEN_OF_BLOCKS * (double)(n - 1))];
     free(seen);

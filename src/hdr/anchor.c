@@ -1,6 +1,8 @@
 // anchor.c - the exposure that shows most
 #include <relume/align.h>
 
+#include "math/luminance.h"
+
 #include <math.h>
 
 enum { MOST = 1 << 20 };  // pixels that are counted
@@ -13,7 +15,7 @@ static double entropy(const struct relume_image *image)
     double bits = 0.0;
     for (size_t i = 0; i < pixels; i += step) {
         const float *p = image->data + 3 * i;
-        const float luma = 0.299f * p[0] + 0.587f * p[1] + 0.114f * p[2];
+        const float luma = luma_601f(p);
         count[luma >= 1.0f ? 255 : luma > 0.0f ? (int)(luma * 255.0f + 0.5f) : 0]++;
     }
     for (int z = 0; z < 256; z++)

@@ -4,15 +4,11 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/lsq.h"
+#include "math/luminance.h"
 
 #include <math.h>
 
 static const double least = 0.05;  // of the centre: below, dividing is guessing
-
-static double luminance(const float *rgb)
-{
-    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
-}
 
 // r^2 of a pixel centre, 1 in the corners.
 static double radius2(const double center[2], int width, int height, int x, int y)
@@ -39,7 +35,7 @@ relume_status relume_falloff_fit(struct relume_falloff *out, const struct relume
             const double q = radius2(out->center, flat->width, flat->height, x, y);
             const double row[4] = {1.0, q, q * q, q * q * q};
             for (int i = 0; i < 4; i++) {
-                b[i] += row[i] * luminance(p);
+                b[i] += row[i] * luminance_709(p);
                 for (int j = 0; j <= i; j++)
                     gram[4 * i + j] += row[i] * row[j];
             }

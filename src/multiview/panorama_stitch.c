@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "math/lsq.h"
+#include "math/luminance.h"
 #include "math/vec.h"
 #include "multiview/blend.h"
 #include "multiview/stitch.h"
@@ -16,7 +17,6 @@
 #include <string.h>
 
 enum { MOST_WIDTH = 16384 };
-static const double pi = 3.14159265358979323846;
 // How strongly gains are pulled towards 1.
 static const double gain_pull = 1e-3;
 
@@ -42,9 +42,7 @@ static relume_status mean_picture(uint8_t *grey, const struct panorama_job *job,
         struct relume_image image;
         status = panorama_load(&image, job, camera, k);
         for (size_t i = 0; !status && i < n; i++)
-            sum[i] += (0.2126f * image.data[3 * i] + 0.7152f * image.data[3 * i + 1] +
-                       0.0722f * image.data[3 * i + 2]) /
-                      (float)job->set.lights;
+            sum[i] += luminance_709f(image.data + 3 * i) / (float)job->set.lights;
         relume_image_destroy(&image);
     }
     for (size_t i = 0; !status && i < n; i++)
@@ -178,7 +176,7 @@ static relume_status find_gains(struct stitching *s)
     memset(s->gain, 0, n * sizeof *s->gain);
     for (int i = 0; i < DIRECTIONS; i++) {
         const double y = 1.0 - (2.0 * i + 1.0) / DIRECTIONS, r = sqrt(1.0 - y * y);
-        const double phi = i * pi * (3.0 - sqrt(5.0));
+        const double phi = i * M_PI * (3.0 - sqrt(5.0));
         add_direction(matrix, s->gain, s, vec3_of(r * sin(phi), y, -r * cos(phi)));
     }
     for (size_t i = 0; i < n; i++)
@@ -200,7 +198,7 @@ static vec3 direction(const struct stitching *s, int x, double elevation)
 
 static double elevation_of(const struct stitching *s, int y)
 {
-    return (0.5 - (y + 0.5) / s->blend.height) * pi;
+    return (0.5 - (y + 0.5) / s->blend.height) * M_PI;
 }
 
 static void find_owners(void *context, size_t item, int worker)
@@ -271,7 +269,7 @@ static relume_status warp_light(struct stitching *s, struct relume_image *out, i
 static int default_bands(const struct stitching *s)
 {
     const double side = fmin(s->job->set.width, s->job->set.height) / s->pose[0].focal;
-    const double pixels = side * s->blend.width / (2.0 * pi);
+    const double pixels = side * s->blend.width / (2.0 * M_PI);
     return 1 + (int)fmin(fmax(log2(pixels / 16.0), 0.0), BLEND_BANDS - 1);
 }
 
@@ -286,7 +284,7 @@ static relume_status share_out(struct stitching *s)
     if (!b->owner || !s->azimuth)
         return RELUME_ENOMEM;
     for (size_t x = 0; x < width; x++) {
-        const double phi = (((double)x + 0.5) / (double)width * 2.0 - 1.0) * pi;
+        const double phi = (((double)x + 0.5) / (double)width * 2.0 - 1.0) * M_PI;
         s->azimuth[2 * x] = sin(phi);
         s->azimuth[2 * x + 1] = cos(phi);
     }
@@ -303,7 +301,7 @@ static void say_coverage(const struct stitching *s)
     log_line(s->job->common->log, RELUME_NOTE,
              "%d photographs of %.1f degrees cover %.0f %% of the sphere's picture, blended in %d "
              "bands; the rest is black",
-             s->n, 360.0 / pi * atan(0.5 * s->job->set.width / s->pose[0].focal),
+             s->n, 360.0 / M_PI * atan(0.5 * s->job->set.width / s->pose[0].focal),
              100.0 * (double)covered / (double)n, s->blend.bands);
 }
 
@@ -335,7 +333,7 @@ static relume_status warp_lights(struct stitching *s)
 static void choose_size(struct stitching *s)
 {
     struct panorama_job *job = s->job;
-    const int fitting = (int)fmin(2.0 * pi * s->pose[0].focal, MOST_WIDTH);
+    const int fitting = (int)fmin(2.0 * M_PI * s->pose[0].focal, MOST_WIDTH);
     job->height = (job->p->width ? job->p->width : fitting) / 2;
     job->height = job->height < 1 ? 1 : job->height;
     job->width = 2 * job->height;

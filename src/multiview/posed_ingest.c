@@ -9,6 +9,7 @@
 #include "base/outdir.h"
 #include "base/thread.h"
 #include "math/lsq.h"
+#include "math/sort.h"
 #include "math/vec.h"
 #include "multiview/views_colmap.h"
 
@@ -63,12 +64,6 @@ static relume_status choose_axes(struct posed *s)
     return RELUME_OK;
 }
 
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Median distance of the model's points along the mean direction; 0: none.
 static double distance_of_points(const struct posed *s, vec3 middle)
 {
@@ -79,7 +74,7 @@ static double distance_of_points(const struct posed *s, vec3 middle)
     }
     for (size_t i = 0; i < s->model.points; i++)
         away[i] = vec3_dot(vec3_sub(middle, s->model.point[i]), s->axis[2]);
-    qsort(away, s->model.points, sizeof *away, by_value);
+    sort_doubles(away, s->model.points);
     const double median = away[s->model.points / 2];
     free(away);
     return median;

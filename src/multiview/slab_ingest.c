@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/outdir.h"
+#include "math/sort.h"
 #include "multiview/views_shift.h"
 
 #include <math.h>
@@ -35,12 +36,6 @@ static double or_default(double value, double otherwise)
 
 // ---------------------------------------------------------------- rows and columns
 
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Positions alone: equal ones are a row or a column.
 static relume_status rank_positions(struct slab *s, bool of_u)
 {
@@ -50,7 +45,7 @@ static relume_status rank_positions(struct slab *s, bool of_u)
         return RELUME_ENOMEM;
     for (size_t i = 0; i < n; i++)
         sorted[i] = of_u ? s->place[i].u : -s->place[i].v;
-    qsort(sorted, n, sizeof *sorted, by_value);
+    sort_doubles(sorted, n);
     const double near = 1e-6 * (sorted[n - 1] - sorted[0]);
     for (size_t i = 0; i < n; i++) {
         const double at = of_u ? s->place[i].u : -s->place[i].v;

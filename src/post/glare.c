@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "math/luminance.h"
 
 #include <math.h>
 #include <string.h>
@@ -74,8 +75,7 @@ double relume_glare_luminance(const struct relume_image *frame)
     double sum = 0.0;
     for (size_t i = 0; i < pixels; i++) {
         const float *const rgb = frame->data + 3 * i;
-        const double y =
-            0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
+        const double y = luminance_709(rgb);
         if (isfinite(y) && y > 0.0)
             sum += y;
     }

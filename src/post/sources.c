@@ -3,14 +3,10 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/luminance.h"
 
 #include <math.h>
 #include <string.h>
-
-static float luminance(const float *rgb)
-{
-    return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];  // BT.709
-}
 
 // ---------------------------------------------------------------- threshold
 
@@ -28,7 +24,7 @@ double sources_threshold(const float *in, size_t pixels, int most)
 {
     size_t bin[BINS] = {0}, above = 0;
     for (size_t i = 0; i < pixels; i++) {
-        const float y = luminance(in + 3 * i);
+        const float y = luminance_709f(in + 3 * i);
         if (y > 0.0f)
             bin[bits_of(y) >> SHIFT]++;
     }
@@ -73,14 +69,14 @@ static bool add_source(struct sources *s, int *room, struct source source)
 
 static bool shines(const struct finding *f, int x, int y)
 {
-    return luminance(f->rest + 3 * ((size_t)y * (size_t)f->width + (size_t)x)) > f->threshold;
+    return luminance_709f(f->rest + 3 * ((size_t)y * (size_t)f->width + (size_t)x)) > f->threshold;
 }
 
 // The light of a pixel beyond the threshold, taken out of it; none when it is darker.
 static bool take_pixel(struct finding *f, int x, int y, struct source *out)
 {
     float *const rgb = f->rest + 3 * ((size_t)y * (size_t)f->width + (size_t)x);
-    const float l = luminance(rgb), share = l > f->threshold ? 1.0f - f->threshold / l : 0.0f;
+    const float l = luminance_709f(rgb), share = l > f->threshold ? 1.0f - f->threshold / l : 0.0f;
     *out = (struct source){(float)x + 0.5f, (float)y + 0.5f, {0}};
     for (int c = 0; c < 3 && share > 0.0f; c++) {
         out->rgb[c] = share * rgb[c];
@@ -114,7 +110,7 @@ static bool grow_spot(struct finding *f, struct spot *spot, int x, int y)
     struct source one;
     if (!take_pixel(f, x, y, &one))
         return true;
-    const double w = (double)luminance(one.rgb);
+    const double w = (double)luminance_709f(one.rgb);
     spot->x += w * (double)one.x;
     spot->y += w * (double)one.y;
     spot->weight += w;

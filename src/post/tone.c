@@ -1,13 +1,10 @@
 // tone.c - tone operators: constant tables of curves from linear light to [0, 1]
 #include <relume/tone.h>
 
+#include "math/luminance.h"
+
 #include <math.h>
 #include <string.h>
-
-static float luminance(const float rgb[3])
-{
-    return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];  // BT.709
-}
 
 // NaN becomes 0.
 static float clip(float x)
@@ -27,7 +24,7 @@ static void tone_linear(float out[3], const float rgb[3], float white)
 // Reinhard, Stark, Shirley, Ferwerda 2002, Eq. 4; colours keep their hue until a channel clips.
 static void tone_reinhard(float out[3], const float rgb[3], float white)
 {
-    const float l = fmaxf(luminance(rgb), 0.0f);
+    const float l = fmaxf(luminance_709f(rgb), 0.0f);
     const float scale = (1.0f + l / (white * white)) / (1.0f + l);
     for (int c = 0; c < 3; c++)
         out[c] = clip(rgb[c] * scale);
@@ -106,7 +103,7 @@ static size_t count_bins(size_t bin[BINS], const struct relume_image *image)
     const size_t pixels = (size_t)image->width * (size_t)image->height;
     size_t count = 0;
     for (size_t i = 0; i < pixels; i++) {
-        const float l = luminance(image->data + 3 * i);
+        const float l = luminance_709f(image->data + 3 * i);
         const double place = ((double)log2f(l) + RANGE_EV) * PER_EV;
         if (!(l > 0.0f) || !(place >= 0.0 && place < BINS))
             continue;

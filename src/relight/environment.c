@@ -5,6 +5,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "math/luminance.h"
 #include "math/random.h"
 #include "math/vec.h"
 #include "relight/grid.h"
@@ -97,11 +98,6 @@ struct gathered {
     vec3 centre;    // sum of direction x luminance x dw
 };
 
-static double luminance(const float rgb[3])
-{
-    return 0.2126 * (double)rgb[0] + 0.7152 * (double)rgb[1] + 0.0722 * (double)rgb[2];
-}
-
 // The pixels of small maps are cut into pieces, so that a cell is never wider than 3 degrees.
 static int pieces(int pixels, int cells)
 {
@@ -116,7 +112,7 @@ static void gather_row(struct gathered *cells, int columns, const struct relume_
     for (int i = 0; i < map->width * cut; i++) {
         const float *e = map->data + 3 * ((size_t)row * (size_t)map->width + (size_t)(i / cut));
         struct gathered *g = &cells[(int64_t)i * columns / ((int64_t)map->width * cut)];
-        const double energy = luminance(e) * solid;
+        const double energy = luminance_709(e) * solid;
         for (int c = 0; c < 3; c++)
             g->rgb[c] += (double)e[c] * solid;
         g->centre =
@@ -269,7 +265,7 @@ static void draw(struct relume_light *out, int n, const struct relume_light *lig
         while (at < e->count - 1 && sum[at] <= want)
             at++;
         const struct relume_environment_cell *cell = &e->cell[at];
-        const double factor = total / (n * luminance(cell->rgb));
+        const double factor = total / (n * luminance_709(cell->rgb));
         out[i] = (struct relume_light){
             .direction = relume_environment_turn(cell->direction, light->rotate_deg)};
         for (int c = 0; c < 3; c++)
@@ -305,7 +301,7 @@ relume_status relume_environment_sample(struct relume_light *out, int n,
     if (!sum)
         return RELUME_ENOMEM;
     for (int i = 0; i < e->count; i++)
-        sum[i] = luminance(e->cell[i].rgb) + (i ? sum[i - 1] : 0.0);
+        sum[i] = luminance_709(e->cell[i].rgb) + (i ? sum[i - 1] : 0.0);
     draw(out, n, environment, sum, seed);
     match_totals(out, n, environment);
     free(sum);

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "base/thread.h"
 #include "image/curve.h"
+#include "math/luminance.h"
 #include "math/vec.h"
 #include "relight/books.h"
 #include "image/rgba8.h"
@@ -188,7 +189,7 @@ static void keep_above_zero(float *rgb, size_t n)
 {
     for (size_t i = 0; i < n; i++, rgb += 3) {
         const float least = fminf(rgb[0], fminf(rgb[1], rgb[2]));
-        const float grey = 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
+        const float grey = luminance_709f(rgb);
         if (!(least < 0.0f))
             continue;
         for (int c = 0; c < 3; c++)

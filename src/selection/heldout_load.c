@@ -4,6 +4,7 @@
 #include "base/thread.h"
 #include "coder/basis.h"
 #include "image/encoder.h"
+#include "math/luminance.h"
 #include "selection/heldout.h"
 
 #include <string.h>
@@ -188,7 +189,7 @@ static void round_light(void *context, size_t light, int worker)
             code[i] = (uint8_t)encoder_code(v[i]);
         }
         for (size_t i = 0; i < n; i++)
-            luma[i] = 0.299f * v[3 * i] + 0.587f * v[3 * i + 1] + 0.114f * v[3 * i + 2];
+            luma[i] = luma_601f(v + 3 * i);
     }
 }
 

@@ -14,8 +14,6 @@
 
 #include <string.h>
 
-#define PI 3.14159265358979323846
-
 // The face of a cube: looking along `ahead`, with `right` = ahead x up.
 struct face {
     vec3 ahead, right, up;
@@ -116,14 +114,14 @@ static int wrap_index(int i, int n)
 
 static vec3 azimuth_ray(const struct panorama *p, double x, double across, double up)
 {
-    const double phi = x / p->width * 2.0 * PI - PI;
+    const double phi = x / p->width * 2.0 * M_PI - M_PI;
     return vec3_of(across * sin(phi), up, -across * cos(phi));
 }
 
 // In [0, W): azimuth 180 is column 0.
 static double azimuth_column(const struct panorama *p, vec3 d)
 {
-    const double x = (atan2(d.x, -d.z) + PI) / (2.0 * PI) * p->width;
+    const double x = (atan2(d.x, -d.z) + M_PI) / (2.0 * M_PI) * p->width;
     return x < p->width ? x : 0.0;
 }
 
@@ -172,21 +170,21 @@ static double cylinder_texels(const struct panorama *p, vec3 d, vec3 step)
         return disc_texels(p, d, step);
     const double turn = (d.x * step.z - d.z * step.x) / square;
     const double rise = step.y / across - h * (d.x * step.x + d.z * step.z) / square;
-    return hypot(turn * p->width / (2.0 * PI), rise * panorama_rows(p) / (g->v_max - g->v_min));
+    return hypot(turn * p->width / (2.0 * M_PI), rise * panorama_rows(p) / (g->v_max - g->v_min));
 }
 
 // ---------------------------------------------------------------- sphere
 
 static vec3 sphere_ray(const struct panorama *p, double x, double y)
 {
-    const double elevation = 0.5 * PI - y / p->height * PI;
+    const double elevation = 0.5 * M_PI - y / p->height * M_PI;
     return azimuth_ray(p, x, cos(elevation), sin(elevation));
 }
 
 static bool sphere_pixel(double xy[2], const struct panorama *p, vec3 d)
 {
     xy[0] = azimuth_column(p, d);
-    xy[1] = (0.5 - atan2(d.y, hypot(d.x, d.z)) / PI) * p->height;
+    xy[1] = (0.5 - atan2(d.y, hypot(d.x, d.z)) / M_PI) * p->height;
     return true;
 }
 
@@ -210,7 +208,7 @@ static void sphere_texel(float rgb[3], const struct panorama *p, int face, int x
 static double sphere_texels(const struct panorama *p, vec3 d, vec3 step)
 {
     const double angle = vec3_length(vec3_cross(d, step)) / vec3_dot(d, d);
-    return angle * fmax(p->width / (2.0 * PI), p->height / PI);
+    return angle * fmax(p->width / (2.0 * M_PI), p->height / M_PI);
 }
 
 // ---------------------------------------------------------------- cube
@@ -326,7 +324,7 @@ struct gaze {
 
 static struct gaze gaze_of(struct relume_look look, int width, int height)
 {
-    const double tilt = look.tilt_deg * PI / 180.0, pan = look.pan_deg * PI / 180.0;
+    const double tilt = look.tilt_deg * M_PI / 180.0, pan = look.pan_deg * M_PI / 180.0;
     return (struct gaze){
         .right = {cos(pan), 0.0, sin(pan)},
         .up = {-sin(tilt) * sin(pan), cos(tilt), sin(tilt) * cos(pan)},

@@ -7,8 +7,6 @@
 // direction: so pictures are continuous, and what lies beside the discs is never read.
 #include "view/panorama.h"
 
-#define PI 3.14159265358979323846
-
 static double height_of(const struct panorama *p, bool lower)
 {
     return lower ? p->geometry->v_min : p->geometry->v_max;
@@ -63,7 +61,7 @@ static void cylinder_value(float rgb[3], const struct panorama *p, panorama_texe
 {
     const struct relume_geometry *g = p->geometry;
     const double h = d.y / hypot(d.x, d.z);
-    const double x = (atan2(d.x, -d.z) + PI) / (2.0 * PI) * p->width;
+    const double x = (atan2(d.x, -d.z) + M_PI) / (2.0 * M_PI) * p->width;
     const double y = (g->v_max - h) / (g->v_max - g->v_min) * panorama_rows(p);
     panorama_bilinear(rgb, p, cylinder, 0, x - 0.5, y - 0.5);
 }
@@ -100,7 +98,7 @@ static void disc_value(float rgb[3], const struct panorama *p, panorama_texel *c
 static void rim_sample(float rgb[3], const struct panorama *p, panorama_texel *cylinder, double x,
                        bool lower, double part)
 {
-    const double phi = x / p->width * 2.0 * PI - PI;
+    const double phi = x / p->width * 2.0 * M_PI - M_PI;
     const int row = lower ? panorama_rows(p) - 1 : 0;
     double xy[2];
     float rim[3];

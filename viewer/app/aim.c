@@ -5,16 +5,14 @@
 #include "app/orbit.h"
 #include "common/vec.h"
 
-#define PI 3.14159265358979323846
-
 struct app_axes app_frame_axes(const struct app *app)
 {
     if (orbit_is(app))
         return orbit_axes(app);
     if (app->now.camera.framing != RELUME_FRAME_LOOK)
         return (struct app_axes){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    const double pan = app->now.camera.look.pan_deg * PI / 180;
-    const double tilt = app->now.camera.look.tilt_deg * PI / 180;
+    const double pan = app->now.camera.look.pan_deg * M_PI / 180;
+    const double tilt = app->now.camera.look.tilt_deg * M_PI / 180;
     return (struct app_axes){
         .right = {cos(pan), 0, sin(pan)},
         .up = {-sin(tilt) * sin(pan), cos(tilt), sin(tilt) * cos(pan)},
@@ -51,8 +49,8 @@ void app_point_light(struct app *app, int light, double x, double y)
 void app_turn_light(struct app *app, double yaw_deg, double pitch_deg)
 {
     const struct relume_vec3 seen = app_seen_light(app, app->now.selected);
-    const double yaw = yaw_deg * PI / 180;
-    const double pitch = pitch_deg * PI / 180;
+    const double yaw = yaw_deg * M_PI / 180;
+    const double pitch = pitch_deg * M_PI / 180;
     const double y = seen.y * cos(pitch) - seen.z * sin(pitch);
     const double ahead = seen.y * sin(pitch) + seen.z * cos(pitch);
     const double x = seen.x * cos(yaw) + ahead * sin(yaw);

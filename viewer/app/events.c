@@ -7,8 +7,6 @@
 #include "app/orbit.h"
 #include "common/vec.h"
 
-#define PI 3.14159265358979323846
-
 static const double wheel_factor = 1.1;  // of the zoom, per step
 static const double zoom_least = 0.1;
 static const double zoom_most = 64.0;
@@ -73,7 +71,7 @@ static double degrees_per_pixel(const struct app *app)
     if (orbit_is(app))
         return orbit_degrees_per_pixel(app);
     const struct relume_look *look = &app->now.camera.look;
-    const double field = (look->stereographic ? 4 : 2) * atan(1 / look->zoom) * 180 / PI;
+    const double field = (look->stereographic ? 4 : 2) * atan(1 / look->zoom) * 180 / M_PI;
     return field / app->width;
 }
 
@@ -98,8 +96,8 @@ static void look_error(double error[2], const struct app *app, double x, double 
 {
     const struct relume_vec3 got =
         relume_look_ray(app->now.camera.look, app->width, app->height, x, y);
-    error[0] = remainder(atan2(got.x, -got.z) - atan2(want.x, -want.z), 2 * PI) * 180 / PI;
-    error[1] = (asin(clamp(got.y, -1, 1)) - asin(clamp(want.y, -1, 1))) * 180 / PI;
+    error[0] = remainder(atan2(got.x, -got.z) - atan2(want.x, -want.z), 2 * M_PI) * 180 / M_PI;
+    error[1] = (asin(clamp(got.y, -1, 1)) - asin(clamp(want.y, -1, 1))) * 180 / M_PI;
 }
 
 // The direction under (x, y) stays there; near the poles, where pan and tilt cannot hold it or

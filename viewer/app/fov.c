@@ -6,8 +6,6 @@
 
 #include <math.h>
 
-#define PI 3.14159265358979323846
-
 // Half the frame's width, at distance 1, of a picture whose whole width is `picture` at distance 1.
 static double half_frame(const struct app *app, double picture)
 {
@@ -46,12 +44,12 @@ static double tangent_of_view(const struct app *app)
     if (g->projection == RELUME_CUBE)  // six faces of 90 degrees side by side
         return half_frame(app, 12);
     if (g->projection == RELUME_CYLINDRICAL || g->projection == RELUME_SPHERICAL)
-        return half_frame(app, 2 * PI);
+        return half_frame(app, 2 * M_PI);
     if (g->projection == RELUME_SLAB)
         return half_frame(app, fabs((g->st_max[0] - g->st_min[0]) / (g->uv_z - g->st_z)));
     if (g->perspective)
         return half_frame(app, fabs((g->window_max[0] - g->window_min[0]) / g->camera_z));
-    return half_frame(app, 2 * tan(0.5 * APP_SCREEN_DEG * PI / 180));
+    return half_frame(app, 2 * tan(0.5 * APP_SCREEN_DEG * M_PI / 180));
 }
 
 double app_fov_deg(const struct app *app)
@@ -62,6 +60,6 @@ double app_fov_deg(const struct app *app)
         [RELUME_FRAME_LOOK] = tangent_of_look,
     };
     const double half = tangents[app->now.camera.framing](app);
-    const double deg = isfinite(half) && half > 0 ? 2 * atan(half) * 180 / PI : APP_SCREEN_DEG;
+    const double deg = isfinite(half) && half > 0 ? 2 * atan(half) * 180 / M_PI : APP_SCREEN_DEG;
     return fmin(fmax(deg, 0.01), 170);
 }

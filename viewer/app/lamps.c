@@ -6,8 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-
 static bool any_solo(const struct app_state *state)
 {
     for (int i = 0; i < state->lights; i++)
@@ -131,7 +129,7 @@ void lamps_drop_near(struct app_state *state)
 
 struct relume_vec3 lamps_direction(const struct relume_light *light, struct relume_vec3 middle)
 {
-    const double turn = light->rotate_deg * PI / 180;
+    const double turn = light->rotate_deg * M_PI / 180;
     struct relume_vec3 d = light->direction;
     if (light->kind == RELUME_LIGHT_ENVIRONMENT)
         d = (struct relume_vec3){sin(turn), 0, -cos(turn)};
@@ -177,7 +175,7 @@ void lamps_aim(struct app_state *state, int light, struct relume_vec3 direction,
     if (l->kind == RELUME_LIGHT_DIRECTIONAL)
         l->direction = direction;
     else if (l->kind == RELUME_LIGHT_ENVIRONMENT)
-        l->rotate_deg = atan2(direction.x, -direction.z) * 180 / PI;
+        l->rotate_deg = atan2(direction.x, -direction.z) * 180 / M_PI;
     else
         aim_near(l, direction, middle);
 }
@@ -253,8 +251,8 @@ void lamps_arrange(struct app_state *state, const struct lamp_preset *preset, bo
 {
     state->lights = 0;
     for (int i = 0; i < preset->lights; i++) {
-        const double a = preset->azimuth[i] * PI / 180;
-        const double e = preset->elevation[i] * PI / 180;
+        const double a = preset->azimuth[i] * M_PI / 180;
+        const double e = preset->elevation[i] * M_PI / 180;
         const double x = cos(e) * cos(a);
         const double y = cos(e) * sin(a);
         const double z = sin(e);

@@ -5,8 +5,6 @@
 
 #include <math.h>
 
-#define PI 3.14159265358979323846
-
 static const double highest_deg = 89;  // above and below the object
 
 static struct relume_vec3 minus(struct relume_vec3 a, struct relume_vec3 b)
@@ -102,10 +100,10 @@ static bool find_covered(double *elevation, const struct app *app, double azimut
 void orbit_turn(struct app *app, double right_deg, double up_deg)
 {
     const struct relume_vec3 d = eye_from_middle(app);
-    const double most = highest_deg * PI / 180;
+    const double most = highest_deg * M_PI / 180;
     const double away = length(d);
-    const double azimuth = atan2(d.x, d.z) + right_deg * PI / 180;
-    double elevation = clamp(elevation_of(d) + up_deg * PI / 180, -most, most);
+    const double azimuth = atan2(d.x, d.z) + right_deg * M_PI / 180;
+    double elevation = clamp(elevation_of(d) + up_deg * M_PI / 180, -most, most);
     const bool leaves =
         is_covered(app, d) && !is_covered(app, from_middle(azimuth, elevation, away));
     if (!leaves || find_covered(&elevation, app, azimuth, away))

@@ -1,7 +1,7 @@
 // draw_panorama.c - draws a look into a panorama
 #include "draw/draw.h"
 
-#define PI 3.14159265358979323846
+#include <math.h>
 
 enum { VIEW = DRAW_OWN, ELEVATION, LOOK, STEREOGRAPHIC, LOOK_SIZE, EXPOSURE, DISC, COUNT };
 static const char *const uniforms[] = {
@@ -29,7 +29,7 @@ void draw_panorama(const struct program *program, const struct gl *gl, const str
     gl->UseProgram(program->id);
     gl->Uniform1i(at[VIEW], 0);
     gl->Uniform2f(at[ELEVATION], (float)geometry->v_min, (float)geometry->v_max);
-    gl->Uniform3f(at[LOOK], (float)(look.pan_deg * PI / 180), (float)(look.tilt_deg * PI / 180),
+    gl->Uniform3f(at[LOOK], (float)(look.pan_deg * M_PI / 180), (float)(look.tilt_deg * M_PI / 180),
                   (float)(1.0 / look.zoom));
     gl->Uniform1i(at[STEREOGRAPHIC], look.stereographic);
     gl->Uniform2f(at[LOOK_SIZE], (float)place->width, (float)place->height);

@@ -477,7 +477,7 @@ relume_status things_shade_sky(struct things *t, int part, int material,
     texture_use(gl, BTF_UNIT_SKY, GL_TEXTURE_2D, map->texture);
     gl->Uniform1i(at[SKY_TABLE], BTF_UNIT_TABLE);
     texture_use(gl, BTF_UNIT_TABLE, GL_TEXTURE_BUFFER, m->table);
-    gl->Uniform1f(at[SKY_TURN], (float)(-light->rotate_deg * (3.14159265358979 / 180.0)));
+    gl->Uniform1f(at[SKY_TURN], (float)(-light->rotate_deg * (M_PI / 180.0)));
     gl->Uniform3f(at[SKY_RGB], light->rgb[0], light->rgb[1], light->rgb[2]);
     draw_levels(t, program, &t->shown, m, !m->twin->lobes);
     return RELUME_OK;

@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-#define PI 3.14159265358979323846
-
 enum { EXACT_REACH = 2048 };
 
 // ---------------------------------------------------------------- sizes
@@ -25,7 +23,7 @@ static struct gl_convolver plan(const struct gl *gl, const struct relume_psf_geo
 {
     struct gl_convolver c = {.width = width, .height = height};
     c.reach = reach_of(shape, view, shape->radius);
-    const int all = view->veiled ? reach_of(shape, view, RELUME_VEIL_DEG * PI / 180) : c.reach;
+    const int all = view->veiled ? reach_of(shape, view, RELUME_VEIL_DEG * M_PI / 180) : c.reach;
     c.most[0] = least(all, width - 1);
     c.most[1] = least(all, height - 1);
     c.size[0] = gl_fft_length(gl, width + c.most[0]);
@@ -44,7 +42,7 @@ bool gl_convolver_fits(const struct gl_convolver *c, const struct relume_psf_geo
                        const struct gl_convolver_view *view, int width, int height)
 {
     const int reach = reach_of(shape, view, shape->radius);
-    const int all = view->veiled ? reach_of(shape, view, RELUME_VEIL_DEG * PI / 180) : reach;
+    const int all = view->veiled ? reach_of(shape, view, RELUME_VEIL_DEG * M_PI / 180) : reach;
     return c->spectrum && c->width == width && c->height == height && c->reach == reach &&
            c->most[0] == least(all, width - 1) && c->most[1] == least(all, height - 1);
 }
@@ -201,7 +199,7 @@ static double veil_sum(const struct relume_veil *veil, double pixel)
     const int reach = (int)fmin(ceil(RELUME_VEIL_STEPS / steps), 1e6);
     double sum = 0;
     for (int i = 1; reach > EXACT_REACH && i < RELUME_VEIL_STEPS; i++)
-        sum += 2 * PI * i * (double)veil->light[i] / (steps * steps);
+        sum += 2 * M_PI * i * (double)veil->light[i] / (steps * steps);
     for (int y = 0; reach <= EXACT_REACH && y <= reach; y++)
         for (int x = y; x <= reach; x++) {
             const int times = x == 0 ? 1 : y == 0 || y == x ? 4 : 8;

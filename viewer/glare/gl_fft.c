@@ -5,8 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define PI 3.14159265358979323846
-
 enum { LEAST = 64, MOST_THREADS = 256 };
 enum { FIRST, STRIDE, WAY, UNIFORMS };
 static const char *const uniforms[] = {"first", "stride", "way"};
@@ -44,8 +42,8 @@ static relume_status make_turns(GLuint *out, const struct gl *gl, int length)
     if (!turn)
         return RELUME_ENOMEM;
     for (int k = 0; k < length; k++) {
-        turn[2 * k] = (float)cos(2 * PI * k / length);
-        turn[2 * k + 1] = (float)-sin(2 * PI * k / length);
+        turn[2 * k] = (float)cos(2 * M_PI * k / length);
+        turn[2 * k + 1] = (float)-sin(2 * M_PI * k / length);
     }
     gl->GenBuffers(1, out);
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *out);

@@ -6,8 +6,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define PI 3.14159265358979323846
-
 static const double widest_mm = 9;       // of a pupil
 static const double least_light = 1e-3;  // of the pupil; lids that leave less are shut
 
@@ -73,7 +71,7 @@ static relume_status make_texel(struct gl_psf *psf, const struct gl *gl)
     const int n = psf->shape.size;
     float *factor = malloc((size_t)n * sizeof *factor);
     for (int i = 0; factor && i < n; i++) {
-        const double x = PI * (i <= n / 2 ? i : i - n) / n, s = i ? sin(x) / x : 1;
+        const double x = M_PI * (i <= n / 2 ? i : i - n) / n, s = i ? sin(x) / x : 1;
         factor[i] = (float)(1 / (s * s));
     }
     if (factor)

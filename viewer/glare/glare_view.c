@@ -3,8 +3,6 @@
 
 #include <math.h>
 
-#define PI 3.14159265358979323846
-
 struct relume_glare_params glare_view(const struct frame_request *q,
                                       const struct relume_psf_geometry *pattern)
 {
@@ -14,7 +12,7 @@ struct relume_glare_params glare_view(const struct frame_request *q,
     };
     const double pixel = relume_glare_pixel(p.fov_deg, q->width);
     const double most = fmax(fmax(q->width, q->height), 64) * pixel;
-    p.no_veil = RELUME_VEIL_DEG * PI / 180 * p.magnify > most;
+    p.no_veil = RELUME_VEIL_DEG * M_PI / 180 * p.magnify > most;
     p.magnify = fmax(fmin(p.magnify, 0.5 * most / pattern->radius), 0.01);
     return p;
 }

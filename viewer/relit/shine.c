@@ -115,7 +115,7 @@ relume_status shine_set(struct shine *s, const GLint *at, int unit, const struct
     gl->Uniform3f(at[SHINE_RGB], l->rgb[0], l->rgb[1], l->rgb[2]);
     gl->Uniform1i(at[SHINE_NOFALL], l->nofall);
     set_vec3(gl, at[SHINE_POSITION], l->position);
-    gl->Uniform1f(at[SHINE_HALF_ANGLE], (float)(l->half_angle_deg * (3.14159265358979 / 180.0)));
+    gl->Uniform1f(at[SHINE_HALF_ANGLE], (float)(l->half_angle_deg * (M_PI / 180.0)));
     if (l->kind != RELUME_LIGHT_POINT && l->kind != RELUME_LIGHT_AREA &&
         l->kind != RELUME_LIGHT_ENVIRONMENT) {
         struct relume_vec3 right, up;

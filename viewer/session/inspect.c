@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-
 static const double most_bytes = 512e6;  // of photographs in memory
 
 // ---------------------------------------------------------------- directions of the disc

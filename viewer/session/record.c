@@ -15,8 +15,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define PI 3.14159265358979323846
-
 enum { PATH = 4096 };
 static const double lowest_deg = 20;  // of a light that sweeps
 static const double highest_deg = 60;
@@ -52,9 +50,9 @@ static void pose_sweep(struct app *app, double part)
     const int light = app->now.selected;
     const struct relume_vec3 from =
         lamps_direction(&app->start.light[light < app->start.lights ? light : 0], app_middle(app));
-    const double height = asin(clamp(pole_y ? from.y : from.z, -1, 1)) * 180 / PI;
-    const double elevation = clamp(height, lowest_deg, highest_deg) * PI / 180;
-    const double azimuth = 2 * PI * part;
+    const double height = asin(clamp(pole_y ? from.y : from.z, -1, 1)) * 180 / M_PI;
+    const double elevation = clamp(height, lowest_deg, highest_deg) * M_PI / 180;
+    const double azimuth = 2 * M_PI * part;
     const double x = cos(elevation) * cos(azimuth);
     const double y = cos(elevation) * sin(azimuth);
     const double z = sin(elevation);
@@ -68,7 +66,7 @@ static void pose_eye(struct app *app, double part)
 {
     const struct app_file *f = &app->file;
     struct relume_vec3 *eye = &app->now.camera.eye;
-    const double angle = 2 * PI * part;
+    const double angle = 2 * M_PI * part;
     eye->x = 0.5 * (f->uv_min[0] + f->uv_max[0]) + 0.5 * (f->uv_max[0] - f->uv_min[0]) * cos(angle);
     eye->y = 0.5 * (f->uv_min[1] + f->uv_max[1]) + 0.5 * (f->uv_max[1] - f->uv_min[1]) * sin(angle);
 }

@@ -35,7 +35,7 @@ static uint64_t view_bytes(const relume_renderer *r, int view)
     for (int i = 0; i < SHOWN; i++)
         bytes += image_bytes(&r->image[i][view]);
     if (k->texel)
-        bytes += (uint64_t)r->info->width * (uint64_t)r->info->height;
+        bytes += sizeof *k->texel * (uint64_t)r->info->width * (uint64_t)r->info->height;
     return bytes + k->code_bytes;
 }
 
@@ -431,9 +431,9 @@ relume_status renderer_need_partly(relume_renderer *r, int view)
     k->used = r->frame;
     if (k->lit == r->lighting || k->partly == r->lighting)
         return RELUME_OK;
-    free(k->texel);
     k->lit = k->partly = 0;
-    k->texel = mem_zeroed(texels, sizeof *k->texel);
+    if (!k->texel)
+        k->texel = mem_zeroed(texels, sizeof *k->texel);
     relume_status status = k->texel ? RELUME_OK : RELUME_ENOMEM;
     if (!status && !image->data)
         status = relume_image_create(image, r->info->width, r->info->height, 3);
@@ -460,7 +460,7 @@ static relume_status relight_run(relume_renderer *r, int view, size_t first, siz
     relume_codes_part_destroy(&part);
     r->said |= !status;
     for (size_t i = 0; !status && i < n; i++)
-        r->kept[view].texel[first + i] = true;
+        r->kept[view].texel[first + i] = (uint32_t)r->lighting;
     return status;
 }
 
@@ -475,7 +475,8 @@ void renderer_texels(void *renderer, int view, int x, int y)
         const int row = y + j < 0 ? 0 : y + j < height ? y + j : height - 1;
         const size_t first = (size_t)row * (size_t)width + (size_t)left;
         const size_t n = (size_t)(right - left + 1);
-        if (!k->texel[first] || !k->texel[first + n - 1])
+        const uint32_t now = (uint32_t)r->lighting;
+        if (k->texel[first] != now || k->texel[first + n - 1] != now)
             r->texels = relight_run(r, view, first, n);
     }
 }

@@ -19,7 +19,7 @@ struct kept {
     uint64_t used;                // the frame that last needed it
     uint64_t lit;                 // the lighting that its picture shows; 0: none
     uint64_t partly;              // the lighting that it shows at some texels; 0: none
-    bool *texel;                  // [texels]: which
+    uint32_t *texel;              // [texels]: the lighting that each shows
     struct relume_image surface;  // for near lights; empty: not asked for
     uint64_t code_bytes;          // that the pack holds for it
 };

@@ -272,7 +272,7 @@ static size_t found_texels(const relume_renderer *r)
     size_t n = 0;
     for (int v = 0; v < r->info->views; v++)
         for (int i = 0; r->kept[v].texel && i < r->info->width * r->info->height; i++)
-            n += r->kept[v].texel[i];
+            n += r->kept[v].texel[i] == r->lighting;
     return n;
 }
 

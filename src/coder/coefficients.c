@@ -306,24 +306,32 @@ relume_status relume_coefficients_read(const relume_coefficients *coefficients, 
     return good ? RELUME_OK : RELUME_EIO;
 }
 
-// Codes wait as numbers whose bands have the codes' own step: quantising gives them back.
+// Codes wait as numbers whose bands have the codes' own step: quantising gives them back. Floats
+// wait as they are.
+static struct range band_of_codes(const struct relume_codes *codes, int plane)
+{
+    const float scale = codes->scale[plane], offset = codes->offset[plane];
+    return relume_storage_top(codes->storage)
+               ? (struct range){offset, (float)((double)offset + 65535.0 * (double)scale)}
+               : (struct range){0.0f, 65504.0f * scale};
+}
+
 static relume_status keep_row(relume_coefficients *c, const struct relume_codes *codes, int row,
-                              uint16_t *room)
+                              void *room)
 {
     const size_t width = (size_t)codes->width, first = (size_t)row * width;
+    const size_t bytes = relume_storage_bytes(codes->storage), wait = coefficients_waiting(c);
     for (int p = 0; p < codes->planes; p++) {
-        const uint8_t *bytes = (const uint8_t *)codes->plane[p] + first;
-        const uint16_t *words = (const uint16_t *)codes->plane[p] + first;
-        uint16_t *to = room + (size_t)p * width;
-        for (size_t x = 0; x < width; x++)
-            to[x] = codes->storage == RELUME_STORE_8 ? bytes[x] : words[x];
-        c->band[row / BAND_ROWS * codes->planes + p] =
-            relume_storage_top(codes->storage)
-                ? (struct range){codes->offset[p], (float)((double)codes->offset[p] +
-                                                           65535.0 * (double)codes->scale[p])}
-                : (struct range){0.0f, 65504.0f * codes->scale[p]};
+        const char *from = (const char *)codes->plane[p] + first * bytes;
+        char *to = (char *)room + (size_t)p * width * wait;
+        if (bytes == wait)
+            memcpy(to, from, width * wait);
+        else
+            for (size_t x = 0; x < width; x++)
+                ((uint16_t *)(void *)to)[x] = (uint8_t)from[x];
+        c->band[row / BAND_ROWS * codes->planes + p] = band_of_codes(codes, p);
     }
-    return scratch_write(c->fd, room, width * (size_t)codes->planes * sizeof *room,
+    return scratch_write(c->fd, room, width * (size_t)codes->planes * wait,
                          coefficients_offset(c, row))
                ? RELUME_OK
                : RELUME_EIO;
@@ -334,9 +342,7 @@ relume_status relume_coefficients_keep(relume_coefficients **out, const struct r
 {
     struct relume_encode_params p = params ? *params : (struct relume_encode_params){0};
     p.storage = codes->storage;
-    if (codes->storage == RELUME_STORE_FLOAT)
-        return RELUME_EINVAL;
-    uint16_t *room = mem_array((size_t)codes->width * (size_t)codes->planes, sizeof *room);
+    void *room = mem_array((size_t)codes->width * (size_t)codes->planes, sizeof(float));
     relume_status status = coefficients_create(out, codes->coder, codes->width, codes->height, &p);
     if (!status && !room)
         status = RELUME_ENOMEM;

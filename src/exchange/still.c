@@ -10,18 +10,27 @@
 
 #define MOST_HALF 65504.0f
 
-// Planes of halves: all that a relume file can hold of values that do not end at 1.
-static size_t fill(uint16_t *planes, const struct relume_image *image)
+// Halves keep the 11 leading bits of what is not brighter than they can hold.
+static enum relume_storage storage_of(const struct relume_image *image)
+{
+    const size_t values = 3 * (size_t)image->width * (size_t)image->height;
+    for (size_t i = 0; i < values; i++)
+        if (fabsf(image->data[i]) > MOST_HALF)
+            return RELUME_STORE_FLOAT;
+    return RELUME_STORE_HALF;
+}
+
+static void fill(void *planes, enum relume_storage storage, const struct relume_image *image)
 {
     const size_t pixels = (size_t)image->width * (size_t)image->height;
-    size_t cut = 0;
     for (size_t i = 0; i < pixels; i++)
         for (size_t c = 0; c < 3; c++) {
             const float v = image->data[3 * i + c];
-            cut += fabsf(v) > MOST_HALF;
-            planes[c * pixels + i] = half_from_float(fminf(fmaxf(v, -MOST_HALF), MOST_HALF));
+            if (storage == RELUME_STORE_HALF)
+                ((uint16_t *)planes)[c * pixels + i] = half_from_float(v);
+            else
+                ((float *)planes)[c * pixels + i] = v;
         }
-    return cut;
 }
 
 static relume_status write(const struct relume_codes *codes, bool sphere, const char *out,
@@ -49,7 +58,7 @@ static relume_status write(const struct relume_codes *codes, bool sphere, const 
     return status;
 }
 
-static relume_status encode(const struct relume_image *image, const char *path, const char *out,
+static relume_status encode(const struct relume_image *image, const char *out,
                             const struct relume_open_params *p)
 {
     static const float one[3] = {1.0f, 1.0f, 1.0f}, zero[3] = {0.0f, 0.0f, 0.0f};
@@ -57,21 +66,22 @@ static relume_status encode(const struct relume_image *image, const char *path, 
         p->sphere ? (struct relume_vec3){0.0, 1.0, 0.0} : (struct relume_vec3){0.0, 0.0, 1.0};
     const size_t pixels = (size_t)image->width * (size_t)image->height;
     relume_coder *coder = NULL;
-    uint16_t *planes = mem_array(3 * pixels, sizeof *planes);
-    relume_status status = planes ? RELUME_OK : RELUME_ENOMEM;
-    if (!status && fill(planes, image))
-        log_line(p->log, RELUME_WARNING,
-                 "%s: brighter than half floats can hold; shown no brighter than 65504", path);
-    if (!status)
-        status = relume_coder_create(&coder, &relume_basis_table, &light, 1,
-                                     relume_coder_params(.log = p->log, .pole_y = p->sphere));
-    const void *plane[3] = {planes, planes + pixels, planes + 2 * pixels};
+    const enum relume_storage storage = storage_of(image);
+    const size_t bytes = pixels * relume_storage_bytes(storage);
+    char *planes = mem_array(3, bytes);
+    if (!planes)
+        return RELUME_ENOMEM;
+    fill(planes, storage, image);
+    relume_status status =
+        relume_coder_create(&coder, &relume_basis_table, &light, 1,
+                            relume_coder_params(.log = p->log, .pole_y = p->sphere));
+    const void *plane[3] = {planes, planes + bytes, planes + 2 * bytes};
     const struct relume_codes codes = {
         .coder = coder,
         .width = image->width,
         .height = image->height,
         .planes = 3,
-        .storage = RELUME_STORE_HALF,
+        .storage = storage,
         .plane = plane,
         .scale = one,
         .offset = zero,
@@ -95,7 +105,7 @@ relume_status still_write(const char *path, const char *out,
                      "%s: %d x %d pixels; a picture of all directions is twice as wide as high",
                      path, image.width, image.height);
     if (!status)
-        status = encode(&image, path, out, params);
+        status = encode(&image, out, params);
     relume_image_destroy(&image);
     return status;
 }

@@ -92,7 +92,7 @@ static struct relume_encode_report mean_report(const struct material *m)
         add_census(&sum.census, &r.census);
     }
     sum.fit_rms = sqrt(sum.fit_rms);
-    sum.store_rms = sqrt(sum.store_rms);
+    sum.store_rms = sum.steps_rms = sqrt(sum.store_rms);
     return sum;
 }
 
@@ -114,10 +114,22 @@ static relume_status assign_view(struct material *m, int i, int set,
     return status;
 }
 
+// A reader points masked pixels to one more vector, of nothing (read_mask.c), and indices have 16
+// bits: one vector less is learnt.
+static int most_codes(const struct material *m)
+{
+    for (int i = 0; i < m->views; i++)
+        if (m->mask[i].data)
+            return 65535;
+    return 65536;
+}
+
 static relume_status make_books(struct material *m, const struct relume_pack_encode_params *p,
                                 double *store_rms)
 {
     struct relume_books_params books = *p->books;
+    if (books.codes == 65536)
+        books.codes = most_codes(m);
     relume_status status = RELUME_OK;
     double square = 0.0;
     books.threads = p->threads;

@@ -46,6 +46,14 @@ encode light
 check 'one light: its picture' [ "$(told basis) $(told bits)" = 'table half' ]
 above 'beyond 65504, without loss' "$(psnr e.exr light)" 80
 
+# One lamp pixel, a thousand times brighter than the rest: codebooks had even steps of 8 bits.
+"$sphere" lamp --size 32 --lights 1 --hemisphere
+"$mkimage" poke lamp/view00/light0000.exr lit.exr 16 16 1000 && mv lit.exr lamp/view00/light0000.exr
+encode lamp --codebook 512
+check 'a codebook of such a picture: half floats' [ "$(told bits)" = half ]
+encode ball --codebook 64
+check 'of a usual one: 8 bits' [ "$(told bits)" = 8 ]
+
 # A photograph for the screen: 8 bits.
 "$sphere" photo --size 32 --lights 1 --hemisphere --format png
 encode photo

@@ -54,6 +54,10 @@ for file in $lit plain.hdr; do
     expect_ok "relight $file" - "$RELUME" relight $file -o got.exr --light "$light"
     below "$file is itself under any light" "$("$mkimage" maxdiff got.exr $file)" 0.016 # halves up to 32
 done
+relume tonemap $lit -o bright.hdr --exposure 20
+relume relight bright.hdr -o got.exr # cut at 65504 before
+"$mkimage" gain got.exr back.exr 9.5367431640625e-7
+below 'a million times brighter is itself too' "$("$mkimage" maxdiff back.exr plain.hdr)" 1e-6
 relume info plain.exr >info.txt
 check 'info of a picture' grep -q '^source        picture' info.txt
 expect_fail 'a picture that is no sphere' 1 "plain.exr: 32 x 32 pixels; a picture of all directions is twice as wide as high" x.png \

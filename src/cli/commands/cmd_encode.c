@@ -172,18 +172,18 @@ static void say_result(const struct args *args, const relume_capture *capture,
 
 // Codes are even steps up to the brightest value: a lamp in the picture of HDR radiance leaves the
 // rest few of them.
-static bool is_coarse(const struct relume_encode_report *report, const struct request *r)
+static bool is_coarse(const struct relume_encode_report *report)
 {
     static const double COARSE = 0.05;  // photographs of 8 bits lose a hundredth of this
-    const double lost = report->typical > 0.0 ? report->store_rms / report->typical : 0.0;
-    return lost >= COARSE && report->store_rms >= report->fit_rms && !r->pack.books;
+    const double lost = report->typical > 0.0 ? report->steps_rms / report->typical : 0.0;
+    return lost >= COARSE && report->steps_rms >= report->fit_rms;
 }
 
 static void say_coarse(const struct args *args, const struct relume_encode_report *report,
                        const struct request *r)
 {
     char text[384];
-    if (!args_has(args, "--bits") || !is_coarse(report, r))
+    if (!args_has(args, "--bits") || !is_coarse(report))
         return;
     snprintf(text, sizeof text,
              "%s: very bright highlights: %s will ruin the picture; use --bits half",
@@ -251,7 +251,7 @@ static relume_status write_file(const struct args *args, const relume_capture *c
 {
     const char *path = args_text(args, "-o", NULL);
     relume_status status = relume_pack_encode(capture, coder, path, report, &r->pack);
-    if (status || args_has(args, "--bits") || !is_coarse(report, r))
+    if (status || args_has(args, "--bits") || !is_coarse(report))
         return status;
     r->pack.storage = RELUME_STORE_HALF;
     return relume_pack_encode(capture, coder, path, report, &r->pack);

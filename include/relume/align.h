@@ -34,7 +34,7 @@ struct relume_displacements {
 // Hierarchical macroblocks (exposure brackets held by hand): normalised correlation of sharpened
 // pictures, searched from one block of the whole picture down to blocks of 16 pixels; survives
 // rolls up to about 14 degrees, moving things and parallax. A roll that a homography of small
-// pictures tells is undone first. Blocks above 64 pixels are compared on a pyramid of the picture.
+// pictures shows is undone first. Blocks above 64 pixels are compared on a pyramid of the picture.
 // RELUME_EINVAL for wrong sizes, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_align_blocks(struct relume_displacements *out,
                                                 const struct relume_image *anchor,

@@ -1,7 +1,7 @@
-// ball.h - where the light stands, told by a ball in the photograph
+// ball.h - where the light stands, found by a ball in the photograph
 //
 // A mirror ball shows the lamp as one bright spot; the ray of the camera reflected there points to
-// the lamp. A matte white ball is shaded by n.L (Lambert), so that the shading tells direction and
+// the lamp. A matte white ball is shaded by n.L (Lambert), so that the shading gives direction and
 // intensity. Positions in pictures are pixels from the top left corner, pixel centres at +0.5.
 #ifndef RELUME_BALL_H
 #define RELUME_BALL_H
@@ -63,7 +63,7 @@ enum relume_ball_sight {
     RELUME_BALL_SEEN = 0,
     RELUME_BALL_DARK,  // no highlight: no light reaches the ball, or the photograph is black
     RELUME_BALL_FULL,  // bright all over: overexposed, or no mirror
-    RELUME_BALL_RIM,   // the highlight lies at the outline, where directions are not to be told
+    RELUME_BALL_RIM,   // the highlight lies at the outline, where directions cannot be measured
     RELUME_BALL_TWO,   // a second highlight of similar size; the larger one is taken
 };
 // A few words for people, never NULL.
@@ -76,7 +76,7 @@ struct relume_ball_light {
     struct relume_vec3 origin;     // the point of the ball where it was read, in units of the
                                    // ball's radius from its middle
     double x, y;                   // the highlight, pixels
-    double sigma_deg;              // standard error of the direction, as far as the picture tells:
+    double sigma_deg;              // standard error of the direction, as far as the picture shows:
                                    // of the outline and the spot; matte: of the fit
     double spread_deg;             // mirror: how wide the lamp looks, RMS
     float intensity[3];            // matte: value of a white surface facing the light; else 0

@@ -46,12 +46,12 @@ RELUME_RESULT relume_status relume_dome_create(relume_dome **out,
                                                const struct relume_log *log);
 RELUME_API void relume_dome_destroy(relume_dome **dome);
 
-// Which directions stand for one, and how much each: barycentric weights, all > 0, sum 1.
+// Which directions replace one, and how much each counts: barycentric weights, all > 0, sum 1.
 struct relume_dome_blend {
     int count;     // 1 to 3
     int index[3];  // numbers of directions
     double weight[3];
-    // The direction that they stand for: the one asked for, or, below the lowest directions, the
+    // The direction that they replace: the one asked for, or, below the lowest directions, the
     // one of its azimuth on their rim.
     struct relume_vec3 direction;
     double rim;  // z asked for over z of `direction`: below 1 only below the rim, never below 0
@@ -62,7 +62,7 @@ struct relume_dome_blend {
 // The three around a unit direction.
 RELUME_API struct relume_dome_blend relume_dome_at(const relume_dome *dome, struct relume_vec3 d);
 // The triangles of directions that cover the sphere, `*n` of them, for clients that look directions
-// up themselves: corner n is the nadir, which stands for no direction. They belong to the dome.
+// up themselves: corner n is the nadir, which is no measured direction. They belong to the dome.
 RELUME_API const int (*relume_dome_triangles(const relume_dome *dome, int *n))[3];
 
 // ---------------------------------------------------------------- the measured values

@@ -136,7 +136,7 @@ struct relume_zone {
     double inside;                       // the cosine of the least of them
 };
 
-// What stands for light from a unit direction: `*inside` is the direction itself, or that on the
+// What replaces light from a unit direction: `*inside` is the direction itself, or that on the
 // border at its azimuth. Returns the share of it, in linear light: 1 inside; beyond, the cosine of
 // the light (and 0.05) over that at the border, or of how far beyond it lies where scenes face all
 // sides.
@@ -284,7 +284,7 @@ RELUME_RESULT relume_status relume_coder_learn(relume_coder **out, const struct 
                                                const struct relume_encode_params *encode);
 
 // What the capture itself asks for: `pca` and an interpolant as in `coder` (default: chosen), with
-// as many coefficients and in the domain in which samples of the captured lights are met to
+// as many coefficients and in the domain in which samples of the captured lights are reproduced at
 // `quality_db` (PSNR of display values as `relume eval` measures it; default 38), and the least
 // storage that adds nothing visible; one light is kept as `table`. What the params fix -
 // coefficients, domain, storage - stays. Errors of relume_coder_learn.

@@ -99,7 +99,7 @@ struct relume_scale_params {
     int threads;  // default: all cores
     enum relume_filter filter;
     bool wrap;  // the left border goes on at the right one
-    int tiles;  // so many pictures side by side do not mix at their borders; default 1
+    int tiles;  // that many pictures side by side do not mix at their borders; default 1
 };
 #define relume_scale_params(...) (&(const struct relume_scale_params){__VA_ARGS__})
 

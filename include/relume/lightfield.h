@@ -24,7 +24,7 @@ struct relume_slab_depth_params {
 
 // How the estimate compares with the depth that the capture had. Zero when it had none.
 struct relume_slab_depth_report {
-    int views, planes, lights;  // lights: so many were looked at
+    int views, planes, lights;  // lights: how many were used
     int width, height;          // at which views were searched
     double range[2];            // distances along z from the cameras' plane that were searched
     double plane_step;          // disparity (view.h) between planes

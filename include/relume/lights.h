@@ -14,7 +14,7 @@ struct relume_pattern {
     const char *summary;  // one line for help texts
     // Fill `out[n]` with points (phi / 2 pi, t) of the unit square, where t in [0, 1) is the
     // normalised height along the pole: equal areas of the square are equal areas of the sphere.
-    // Patterns that need the sphere itself (spacing) are told whether it is `hemisphere`.
+    // Patterns that need the sphere itself (spacing) learn by `hemisphere` which part.
     relume_status (*fill)(double (*out)[2], int n, uint64_t seed, bool hemisphere);
 };
 // All patterns; NULL ends the list.
@@ -44,11 +44,11 @@ RELUME_RESULT relume_status relume_lights_discrepancy(double *out, const struct 
                                                       int n,
                                                       const struct relume_lights_params *params);
 
-// Lights that a file tells. Thread-safety: plain data.
+// Lights that a file gives. Thread-safety: plain data.
 struct relume_light_list {
     int count;
     struct relume_vec3 *direction;  // [count], unit, in the order of the file
-    struct relume_vec3 *position;   // [count], world units, or NULL: only directions are told
+    struct relume_vec3 *position;   // [count], world units, or NULL: only directions are given
     float (*intensity)[3];          // [count], or NULL: all 1
 };
 
@@ -56,7 +56,7 @@ struct relume_light_list {
 // the middle of the picture become world units by its imageWidth, which is 2 world units wide; an
 // LED that is multiplied by its ledAdjust has the intensity 1 / ledAdjust), a .lp file, or lines
 // `[name] x y z` ('#' starts a comment, a lone count may come first). With `positions` the vectors
-// of lines and .lp files are positions in world units, and a file that tells none is an error.
+// of lines and .lp files are positions in world units, and a file that gives none is an error.
 // Images that a file names need not exist. The caller destroys `out`, which is empty on failure.
 // RELUME_EDATA, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_lights_load(struct relume_light_list *out, const char *path,

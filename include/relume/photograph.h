@@ -52,7 +52,7 @@ struct relume_photograph_params {
 
 // Read a photograph (JPEG, PNG, TIFF, EXR, HDR, camera RAW where the installed OpenImageIO reads
 // it), three channels, turned upright, linear with sRGB primaries: an embedded matrix ICC profile
-// is followed (ICC.1:2010 with Bradford adaptation), others are named in a warning and taken for
+// is followed (ICC.1:2010 with Bradford adaptation), others are named in a warning and treated as
 // sRGB. `notes` may be NULL. RELUME_EDATA (also for NaN and infinity), RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_photograph_load(struct relume_image *out,
                                                    struct relume_notes *notes, const char *path,

@@ -49,9 +49,9 @@ struct relume_height_params {
 #define relume_height_params(...) (&(const struct relume_height_params){__VA_ARGS__})
 
 // Height over the image plane, world units, mean 0 over the known pixels, towards the viewer:
-// least squares of the slopes that the normals tell (screened Poisson, Bhat et al. 2008; Frankot
-// and Chellappa 1988) solved by cosine transforms, seen orthographically. Unknown pixels (zero
-// normals) bridge smoothly; slopes end at 80 degrees. One channel; the caller destroys it.
+// least squares of the slopes that follow from the normals (screened Poisson, Bhat et al. 2008;
+// Frankot and Chellappa 1988) solved by cosine transforms, seen orthographically. Unknown pixels
+// (zero normals) bridge smoothly; slopes end at 80 degrees. One channel; the caller destroys it.
 // RELUME_EINVAL, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_height_integrate(struct relume_image *out,
                                                     const struct relume_image *normal,

@@ -16,7 +16,7 @@ extern "C" {
 // environments ask for thousands of directions a pixel. Rows go by the angle from the pole, columns
 // by azimuth, so that no crease of the map cuts a cell. A full sphere has two rows at the horizon,
 // for bases that jump there. Interpolants have cusps at the lights: there cells are divided until
-// values in [0, 1] are met to 1/255, whatever they are. What is linear over triangles of lights
+// values in [0, 1] agree to 1/255, whatever they are. What is linear over triangles of lights
 // (`delaunay`) has creases everywhere and no grid: its nodes are the lights, between which it is
 // exact. Never changes. Thread-safety: safe.
 typedef struct relume_weight_grid relume_weight_grid;
@@ -24,7 +24,7 @@ typedef struct relume_weight_grid relume_weight_grid;
 struct relume_weight_grid_params {
     int steps;  // a grid, with so many columns in 90 degrees, [2, 1024]; default: triangles where
                 // the basis has them, else 96, fewer where that takes more than 256 MB. Then
-                // reflectance of smooth bases is met to 1e-3 of white
+                // reflectance of smooth bases agrees to 1e-3 of white
     bool sums;  // for environments alone: where the basis interpolates, only the triangles between
                 // lights that relume_environment_weights goes by, at no cost
     int threads;  // default: all cores
@@ -107,7 +107,7 @@ RELUME_API void relume_environment_weights(float *weights, float constant[3],
 typedef struct relume_refit relume_refit;
 
 struct relume_refit_params {
-    const struct relume_log *log;  // hears the loss as a note
+    const struct relume_log *log;  // gets the loss as a note
     int coefficients;              // default: twice those of the codes, at most 3 x lights
     const relume_refit *like;      // take over what this one learned from another view of the same
                                    // file; it must outlive the new one

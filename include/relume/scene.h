@@ -103,7 +103,7 @@ RELUME_API const char *relume_btf_material_summary(const struct relume_btf_mater
 struct relume_btf_synth_params {
     const struct relume_log *log;
     int size;    // texels a side, [1, 1024]; default 64
-    int extent;  // [1, 16]; default 1: so many times as many stones, threads, ... along a side
+    int extent;  // [1, 16]; default 1: this many times as many stones, threads, ... along a side
     const struct relume_vec3 *view;  // with `views`; default: the 81 of the Bonn laboratory
     int views;
     const struct relume_vec3 *light;  // with `lights`; default: the same
@@ -119,7 +119,7 @@ struct relume_btf_synth_params {
 // Measure one period of the relief under every light from every view: parallel light, orthographic
 // views, rectified to the plane of the relief's mean height (whatever lies off it is shifted by
 // parallax, as in photographs), and resampled to texels by a tent of one texel's reach: the sample
-// is taken for periodic. Values include n.l. The relief's height and normals come along.
+// is treated as periodic. Values include n.l. The relief's height and normals come along.
 // Same seed, same bytes for any number of threads.
 // Returns RELUME_EINVAL, RELUME_ENOMEM, RELUME_ESYSTEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_btf_synth(relume_btf **out,

@@ -51,7 +51,7 @@ struct relume_shoot_params {
     const char *const *flats;  // [flat_count]
     int flat_count;
     bool radial;   // `flats` as a polynomial
-    int white[4];  // x, y, width, height of a region that is grey, which tells the lamps' colour;
+    int white[4];  // x, y, width, height of a region that is grey, which gives the lamps' colour;
                    // width 0: none
 };
 
@@ -60,7 +60,7 @@ struct relume_shoot_photo {
     char *path;                      // as it was given
     float saturated, black;          // shares of the pixels
     float likeness;                  // median to others, relume_likeness; NaN: not measured
-    struct relume_ball_light light;  // as the first ball tells it
+    struct relume_ball_light light;  // by the first ball
     double sigma_deg;                // estimated error of the direction, degrees; 0: not known
     bool outlier;                    // contradicts its light and the others
 };
@@ -109,10 +109,10 @@ struct relume_refine_params {
 // left out; the linear map that the images leave open (it contains the bas-relief ambiguity,
 // Belhumeur, Kriegman, Yuille 1999) is the one that brings the lights nearest to those given.
 // direction[lights] are replaced; intensity[lights] gets relative brightness, mean 1; *residual the
-// median miss / albedo before and after. Where the surface does not tell lights better than they
-// are (it faces one way, or gloss passes for light: halves of it disagree), they stay, intensities
-// are 1, both residuals are equal and curl is 0, with a warning. RELUME_EDATA where the lights do
-// not span space or there are fewer than 6, RELUME_ENOMEM.
+// median miss / albedo before and after. Where the surface does not determine lights better than
+// they are (it faces one way, or gloss passes for light: halves of it disagree), they stay,
+// intensities are 1, both residuals are equal and curl is 0, with a warning. RELUME_EDATA where the
+// lights do not span space or there are fewer than 6, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_lights_refine(struct relume_vec3 *direction, double *intensity,
                                                  double residual[2], const relume_capture *capture,
                                                  const struct relume_refine_params *params);

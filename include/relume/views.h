@@ -26,7 +26,7 @@ struct relume_ingest_params {
 
 // ------------------------------------------------------------------ light slab
 struct relume_slab_ingest_params {
-    // Where a file's name tells its place, as in "cam_{row}_{column}" with {row}, {column}, or {n}
+    // Where a file's name gives its place, as in "cam_{row}_{column}" with {row}, {column}, or {n}
     // (row by row), or {u}, {v}, and * for anything; default: found (relume_slab_ingest).
     const char *names;
     double baseline;         // world units from the leftmost to the rightmost camera; default 1
@@ -52,8 +52,8 @@ struct relume_slab_ingest_params {
 // other way: the first is checked, and the log told; the second, a world turned inside out (what
 // is near, below, to the left of a camera moves up and right where it should hide what is behind),
 // shows by what hides what, which is looked at and mentioned, no more.
-// Whether rows are as far apart as columns no photograph tells; the log hears that it is assumed.
-// The scale of depth follows from baseline and distance, which no photograph tells.
+// No photograph shows whether rows are as far apart as columns; the log says that it is assumed.
+// The scale of depth follows from baseline and distance, which no photograph shows.
 // RELUME_EINVAL (params), RELUME_EDATA (names that do not match, a camera missing, two for one
 // place, sizes that differ), RELUME_EIO, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_slab_ingest(const char *dir, const char *const *photos, int n,
@@ -103,7 +103,7 @@ struct relume_panorama_params {
 };
 #define relume_panorama_params(...) (&(const struct relume_panorama_params){__VA_ARGS__})
 
-// Make the folder `dir` with a panorama's capture.json. A cube's six cameras are told apart by
+// Make the folder `dir` with a panorama's capture.json. A cube's six cameras are recognised by
 // their names (px nx py ny pz nz, posx ..., right left top bottom back front up down); where no
 // name says so they come in the order +x -x +y -y +z -z. Each face as conventions.md states it.
 // Stitched photographs turn about one point; poses, seams and gains are found in the mean over

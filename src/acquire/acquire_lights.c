@@ -355,11 +355,11 @@ static relume_status warn_below(struct shoot *s)
     if (!below || s->p.matte)
         return RELUME_OK;
     const struct relume_ball *b = &s->out->ball[0];
-    return shoot_warn(
-        s,
-        "ball at %.0f,%.0f with radius %.0f: by it, %d of the lights stand behind it; is "
-        "that its outline, or a circle that it reflects (--ball x,y,r)?",
-        b->x, b->y, b->radius, below);
+    return shoot_warn(s,
+                      "ball at %.0f,%.0f with radius %.0f: this outline puts %d of the lights "
+                      "behind it; is it the "
+                      "outline of the ball, or a circle that the ball reflects (--ball x,y,r)?",
+                      b->x, b->y, b->radius, below);
 }
 
 // What a ball that was searched for must show: in nearly every photograph one small highlight,

@@ -72,9 +72,10 @@ static relume_status tell_apart(const struct shoot *s, const struct posed_model 
             *object = c;
     }
     if (!*object)
-        return log_fail(s->p.log, RELUME_EDATA,
-                        "%s: poses none of the photographs; expected '%s' or another one of them",
-                        s->p.lights, shoot_base_name(s->p.photographs[0]));
+        return log_fail(
+            s->p.log, RELUME_EDATA,
+            "%s: has a pose for none of the photographs; expected '%s' or another of them",
+            s->p.lights, shoot_base_name(s->p.photographs[0]));
     if (lamps == s->p.photograph_count)
         return RELUME_OK;
     return log_fail(s->p.log, RELUME_EDATA,

@@ -73,7 +73,7 @@ static bool start_program(struct helper_reply *reply)
     int ends[2];
     char path[PATH_MAX];
     if (!module_program("relume-helper", path)) {
-        snprintf(reply->why, HELPER_WHY, "relume-helper is not beside the library");
+        snprintf(reply->why, HELPER_WHY, "relume-helper is missing beside the library");
         return false;
     }
     reply->error = channel_pair(ends) ? 0 : errno;
@@ -267,7 +267,7 @@ static void find_out(struct helper_process *p, const char *path)
     const int number = WIFSIGNALED(how) ? WTERMSIG(how) : 0;
     if (number == SIGXCPU)
         snprintf(p->how, HELPER_WHY,
-                 "reading it takes for ever; damaged, or made to keep machines busy");
+                 "reading it takes too long; it is damaged, or made to keep machines busy");
     else if (number == SIGKILL)
         snprintf(p->how, HELPER_WHY, "its reader was killed; the machine may be short of memory");
     else

@@ -177,7 +177,8 @@ relume_status inventory_check(const char *folder, const char *output, const stru
     struct stat s;
     if (!lstat(folder, &s) && !S_ISDIR(s.st_mode))
         return log_fail(log, RELUME_EINVAL,
-                        "%s: is a file; a folder replaces none, choose another name", output);
+                        "%s: is a file, which a folder cannot replace; choose another name",
+                        output);
     relume_status status = RELUME_OK;
     if (!read_inventory(&made, folder) && errno == ENOMEM)
         status = RELUME_ENOMEM;

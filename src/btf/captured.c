@@ -76,7 +76,7 @@ static relume_status start(relume_btf **out, const struct captured *c, const cha
     };
     const int behind = c->m->lights - c->lights;
     if (behind)
-        log_line(log, RELUME_WARNING, "%s: %d of %d lights stand behind the sample; left out", path,
+        log_line(log, RELUME_WARNING, "%s: %d of %d lights are behind the sample; left out", path,
                  behind, c->m->lights);
     const relume_status status = btf_start(out, &info, path, log);
     return status ? status : btf_make_room(*out, params);

@@ -127,7 +127,8 @@ static relume_status check_slabs(const struct evaluator *e)
     for (int i = 0; i < m->slabs; i++)
         if (!same_slab(&m->slab[i], &e->info->slab[i]))
             return log_fail(e->params.log, RELUME_EDATA,
-                            "%s: slab %d lies elsewhere; expected it as in the file",
+                            "%s: slab %d is at another place than in the file; expected the same "
+                            "planes and pose",
                             e->params.capture, i);
     return RELUME_OK;
 }

@@ -220,7 +220,7 @@ static bool read_value(struct ply *p, enum type type, double *out)
 
 static relume_status truncated(const struct ply *p)
 {
-    return bad(p, "ends too early or holds something that is no number; expected what its header "
+    return bad(p, "ends too early or has something that is not a number; expected what its header "
                   "declares");
 }
 

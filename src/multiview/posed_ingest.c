@@ -116,7 +116,7 @@ static relume_status choose_world(struct posed *s)
         distance = distance_of_axes(s, middle);
     if (!(distance > 0.0))
         return log_fail(s->common->log, RELUME_EDATA,
-                        "%s: how far things are does not show (no points3D.txt, parallel "
+                        "%s: the distance of the scene is unknown (no points3D.txt, parallel "
                         "cameras); expected --distance in units of the model",
                         s->photos);
     s->scale = height_of_eyes / distance;

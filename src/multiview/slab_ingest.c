@@ -118,7 +118,7 @@ static relume_status place_cameras(struct slab *s, const int *rows, const int *c
                              index_of(columns, s->place[i].column)];
         if (*at >= 0)
             return log_fail(log, RELUME_EDATA,
-                            "%s: stands at row %d, column %d; expected one camera there, found %s",
+                            "%s: is at row %d, column %d; expected one camera there; found %s",
                             s->set.camera[i].name, s->place[i].row, s->place[i].column,
                             s->set.camera[*at].name);
         *at = i;
@@ -243,8 +243,8 @@ static void say_square(const struct slab *s)
     if (s->place[0].has_uv || s->p->baseline_v > 0.0 || s->rows < 2 || s->columns < 2)
         return;
     log_line(s->common->log, RELUME_NOTE,
-             "rows of cameras are taken to be as far apart as columns, %g from the first to the "
-             "last; if they are not, --baseline-v says how far",
+             "assuming that rows of cameras are as far apart as columns, %g from the first to the "
+             "last; if not, give --baseline-v",
              s->v[0] > s->v[s->rows - 1] ? s->v[0] - s->v[s->rows - 1]
                                          : s->v[s->rows - 1] - s->v[0]);
 }

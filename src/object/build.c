@@ -232,10 +232,9 @@ relume_status objects_finish(relume_objects *o, const struct relume_objects_para
     if (status)
         return status;
     if (t.flat)
-        log_line(
-            log, RELUME_WARNING,
-            "the texture has no direction at %zu of %zu vertices; materials may be turned there",
-            t.flat, t.vertex_count);
+        log_line(log, RELUME_WARNING,
+                 "%zu of %zu vertices have no texture direction; materials may be turned there",
+                 t.flat, t.vertex_count);
     const struct bounds b = mesh_bounds(&o->mesh);
     o->info.vertices = o->vertices, o->info.vertex_count = t.vertex_count;
     o->info.triangles = (const uint32_t(*)[3])o->triangles;

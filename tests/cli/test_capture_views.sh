@@ -23,7 +23,7 @@ as_true 'rows and columns' out
 relume capture rows --slab -o wide --baseline 2 --distance 6 --window 4 --st-z 1
 check 'world units' grep -q '"uv_plane_z": 7, "st_plane_z": 1, "st_min": \[-2, -2\]' wide/capture.json
 check 'and the baseline' grep -q '"uv": \[-1, 1\]' wide/capture.json
-expect_ok 'that rows are as far apart as columns is said' 'from the first to the last; if they are not, --baseline-v' \
+expect_ok 'that rows are as far apart as columns is said' 'from the first to the last; if not, give --baseline-v' \
     "$RELUME" capture rows --slab -o square
 relume capture rows --slab -o high --baseline 2 --baseline-v 0.5
 check 'rows nearer to each other than columns' grep -q '"uv": \[-1, 0.25\]' high/capture.json

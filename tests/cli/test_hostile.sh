@@ -154,9 +154,9 @@ if why=$(${CC:-gcc} -std=c11 -shared -fPIC -I"$TOP/include" -I"$TOP/src" -o odd/
     case $BUILD in
     *asan* | *tsan*) skip 'readers that take memory and time' 'sanitizers take their own' ;;
     *)
-        odd 1 'odd/loop.tif: reading it takes for ever' \
+        odd 1 'odd/loop.tif: reading it takes too long' \
             sh -c "ulimit -t 2; exec \"\$@\"" sh "$RELUME" compare odd/good.tif odd/loop.tif
-        odd 1 'odd/rows.tif: .*reading it takes for ever' \
+        odd 1 'odd/rows.tif: .*reading it takes too long' \
             sh -c "ulimit -t 2; exec \"\$@\"" sh "$RELUME" compare odd/good.tif odd/rows.tif
         odd 1 'odd/memory.tif: its reader needs more memory than a file of its size should' \
             "$RELUME" compare odd/memory.tif odd/good.tif

@@ -77,7 +77,7 @@ printf 'P6 2 2 255 abcdefabcdef' >small.ppm
 check "the installed tool finds its helper" "$prefix/bin/relume" compare small.ppm small.ppm
 mkdir alone && cp "$RELUME" alone/
 check "a tool without its module shows relume files" alone/relume relight box.exr -o alone.png
-expect_fail "a tool without its helper says so" 3 'relume-helper is not beside the library' - \
+expect_fail "a tool without its helper says so" 3 'relume-helper is missing beside the library' - \
     alone/relume compare small.ppm small.ppm
 expect_fail "a tool without its module says so" 3 'module for image formats cannot be loaded' none.jpg \
     alone/relume relight box.exr -o none.jpg

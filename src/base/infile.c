@@ -264,7 +264,7 @@ static int stream_close(void *cookie)
     return 0;
 }
 
-FILE *infile_stream(const char *path, const struct relume_reader *from,
+FILE *infile_stream(struct infile **in, const char *path, const struct relume_reader *from,
                     const struct relume_log *log)
 {
     static const cookie_io_functions_t functions = {stream_read, NULL, stream_seek, stream_close};
@@ -279,6 +279,8 @@ FILE *infile_stream(const char *path, const struct relume_reader *from,
         free(s);
         errno = error;
     }
+    if (f && in)
+        *in = &s->in;
     return f;
 }
 

@@ -38,8 +38,9 @@ ssize_t infile_read(struct infile *s, void *bytes, size_t size, uint64_t offset)
 int infile_descriptor(struct infile *s);
 void infile_close(struct infile *s);
 
-// The same opened as a stream, from its beginning; NULL with errno set.
-FILE *infile_stream(const char *path, const struct relume_reader *from,
+// The same opened as a stream, from its beginning; NULL with errno set. `*in` (or NULL) is what the
+// stream reads: it belongs to the stream, which has no descriptor of its own.
+FILE *infile_stream(struct infile **in, const char *path, const struct relume_reader *from,
                     const struct relume_log *log);
 
 #endif

@@ -66,6 +66,7 @@ struct jpeg_picture_reader {
     struct jpeg_decompress_struct info;
     struct trap trap;
     FILE *file;
+    struct infile *in;  // what it reads; belongs to it
     char *path;
     JOCTET *profile;
     unsigned profile_size;
@@ -160,7 +161,7 @@ static bool read_header(struct jpeg_picture_reader *p)
                                           .channels = planes,
                                           .rgb = {0, last / 2, last},
                                           .bytes = true},
-                                 .exif = fileno(p->file) >= 0 && has_exif(i) ? p->file : NULL,
+                                 .exif = !p->in->from.read && has_exif(i) ? p->in : NULL,
                                  .path = p->path};
     return true;
 }
@@ -177,7 +178,7 @@ relume_status jpeg_picture_open(picture_reader **out, const char *path,
     }
     const struct picture_info *info = &p->reader.info;
     relume_status status = RELUME_OK;
-    p->file = infile_stream(path, from, log);
+    p->file = infile_stream(&p->in, path, from, log);
     if (!p->file)
         status = relume_input_fail(log, path, "cannot be opened", errno);
     else if (!read_header(p))

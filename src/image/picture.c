@@ -15,7 +15,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 static const struct oiio_bridge *bridge;
@@ -160,11 +159,12 @@ static relume_status exif_notes(const picture_reader *of, struct relume_notes *o
 {
     static const struct picture_kind jpeg = {.what = "JPEG", .reader = "jpeg", .listed = true};
     picture_reader *reader;
-    struct stat st;
-    if (fstat(fileno(of->exif), &st))
+    const int file = infile_descriptor(of->exif);
+    if (file < 0)
         return relume_input_fail(log, of->path, "cannot be read", errno);
-    const relume_status status = helped_picture_open(&reader, fileno(of->exif), of->path, &jpeg,
-                                                     (uint64_t)st.st_size, NULL, log);
+    const relume_status status =
+        helped_picture_open(&reader, file, of->path, &jpeg, of->exif->size, NULL, log);
+    close(file);
     if (status)
         return status;
     reader->format->notes(reader, out);

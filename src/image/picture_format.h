@@ -13,6 +13,8 @@
 extern "C" {
 #endif
 
+struct infile;
+
 // The functions of picture.h for one kind of files; only those that can be called.
 struct picture_format {
     relume_status (*read_floats)(picture_reader *reader, int row, int rows, float *out);
@@ -28,7 +30,7 @@ struct picture_format {
 struct picture_reader {
     const struct picture_format *format;
     struct picture_info info;
-    FILE *exif;  // NULL, or the file `path`, for its notes: only the module knows EXIF
+    struct infile *exif;  // NULL, or the file `path`, for its notes: only the module knows EXIF
     const char *path;
 };
 

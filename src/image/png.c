@@ -182,7 +182,7 @@ relume_status png_picture_open(picture_reader **out, const char *path,
     if (!p)
         return RELUME_ENOMEM;
     relume_status status = RELUME_OK;
-    p->file = infile_stream(path, from, log);
+    p->file = infile_stream(NULL, path, from, log);
     if (!p->file)
         status = relume_input_fail(log, path, "cannot be opened", errno);
     const bool plain = p->file && is_plain(p->file);

@@ -8,6 +8,7 @@
 #include <relume/enhance.h>
 
 #include "base/memory.h"
+#include "base/names.h"
 #include "base/thread.h"
 #include "math/luminance.h"
 #include "math/vec.h"
@@ -37,12 +38,9 @@ const char *relume_pass_name(enum relume_pass pass)
 
 relume_status relume_pass_parse(enum relume_pass *out, const char *name)
 {
-    for (int i = 0; i < RELUME_PASSES; i++)
-        if (!strcmp(names[i], name)) {
-            *out = (enum relume_pass)i;
-            return RELUME_OK;
-        }
-    return RELUME_EINVAL;
+    const int i = name_find(name, names, RELUME_PASSES);
+    *out = (enum relume_pass)(i < 0 ? 0 : i);
+    return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 
 bool relume_pass_needs_normals(enum relume_pass pass)

@@ -1,5 +1,6 @@
-// names.c - what somebody meant who mistyped: the smallest edit distance (Levenshtein 1966)
-#include <relume/base.h>
+// names.c - names looked up; what somebody meant who mistyped: the smallest edit distance
+// (Levenshtein 1966)
+#include "base/names.h"
 
 #include <string.h>
 
@@ -37,4 +38,12 @@ const char *relume_name_nearest(const char *given, const char *const *names)
         }
     }
     return best;
+}
+
+int name_find(const char *name, const char *const *names, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (names[i] && !strcmp(names[i], name))
+            return (int)i;
+    return -1;
 }

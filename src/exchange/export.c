@@ -6,34 +6,23 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/names.h"
 #include "math/vec.h"
-
-static relume_status find(const char *const *names, const char *name, int *index)
-{
-    for (int i = 0; names[i]; i++)
-        if (!strcmp(names[i], name)) {
-            *index = i;
-            return RELUME_OK;
-        }
-    return RELUME_EINVAL;
-}
 
 relume_status relume_exchange_parse(enum relume_exchange *out, const char *name)
 {
-    static const char *const names[] = {"relight", "ptm", "lptm", "rti", "deepzoom", NULL};
-    int index = 0;
-    const relume_status status = find(names, name, &index);
-    *out = (enum relume_exchange)index;
-    return status;
+    static const char *const names[] = {"relight", "ptm", "lptm", "rti", "deepzoom"};
+    const int i = name_find(name, names, sizeof names / sizeof *names);
+    *out = (enum relume_exchange)(i < 0 ? 0 : i);
+    return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 
 relume_status relume_web_type_parse(enum relume_web_type *out, const char *name)
 {
-    static const char *const names[] = {"bilinear", "rbf", "ptm", "lptm", "hsh", "sh", NULL};
-    int index = 0;
-    const relume_status status = find(names, name, &index);
-    *out = (enum relume_web_type)index;
-    return status;
+    static const char *const names[] = {"bilinear", "rbf", "ptm", "lptm", "hsh", "sh"};
+    const int i = name_find(name, names, sizeof names / sizeof *names);
+    *out = (enum relume_web_type)(i < 0 ? 0 : i);
+    return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 
 double export_step_of_quality(int quality)

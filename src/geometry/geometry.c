@@ -1,4 +1,5 @@
 // geometry.c - projections and poses: names, defaults, what fits, from the world and back
+#include "base/names.h"
 #include "math/vec.h"
 
 #include <relume/capture.h>
@@ -17,12 +18,9 @@ const char *relume_projection_name(enum relume_projection projection)
 
 relume_status relume_projection_parse(enum relume_projection *out, const char *name)
 {
-    for (int i = 0; i < PROJECTIONS; i++)
-        if (!strcmp(name, names[i])) {
-            *out = (enum relume_projection)i;
-            return RELUME_OK;
-        }
-    return RELUME_EINVAL;
+    const int i = name_find(name, names, PROJECTIONS);
+    *out = (enum relume_projection)(i < 0 ? 0 : i);
+    return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 
 struct relume_geometry relume_geometry_default(enum relume_projection projection, int width,

@@ -6,6 +6,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/names.h"
 #include "base/thread.h"
 #include "hdr/agreement.h"
 
@@ -26,13 +27,9 @@ const char *relume_merge_weights_name(enum relume_merge_weights weights)
 
 relume_status relume_merge_weights_parse(enum relume_merge_weights *out, const char *name)
 {
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (!strcmp(name, names[i])) {
-            *out = (enum relume_merge_weights)i;
-            return RELUME_OK;
-        }
-    *out = RELUME_MERGE_SPLINE;
-    return RELUME_EINVAL;
+    const int i = name_find(name, names, sizeof names / sizeof *names);
+    *out = (enum relume_merge_weights)(i < 0 ? 0 : i);
+    return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 
 static float spline(float x)

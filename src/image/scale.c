@@ -5,6 +5,7 @@
 #include <relume/image.h>
 
 #include "base/memory.h"
+#include "base/names.h"
 #include "base/thread.h"
 #include "image/footprint.h"
 
@@ -12,19 +13,13 @@
 
 relume_status relume_filter_parse(enum relume_filter *out, const char *name)
 {
-    static const struct {
-        const char *name;
-        enum relume_filter value;
-    } table[] = {{"auto", RELUME_FILTER_DEFAULT},
-                 {"nearest", RELUME_FILTER_NEAREST},
-                 {"linear", RELUME_FILTER_LINEAR},
-                 {"cubic", RELUME_FILTER_CUBIC}};
-    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
-        if (!strcmp(name, table[i].name)) {
-            *out = table[i].value;
-            return RELUME_OK;
-        }
-    return RELUME_EINVAL;
+    static const char *const names[] = {[RELUME_FILTER_DEFAULT] = "auto",
+                                        [RELUME_FILTER_NEAREST] = "nearest",
+                                        [RELUME_FILTER_LINEAR] = "linear",
+                                        [RELUME_FILTER_CUBIC] = "cubic"};
+    const int i = name_find(name, names, sizeof names / sizeof *names);
+    *out = (enum relume_filter)(i < 0 ? 0 : i);
+    return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 
 // Pixels of one axis as sums of texels.

@@ -4,6 +4,7 @@
 #include "base/arena.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/names.h"
 #include "image/curve.h"
 #include "image/exr.h"
 #include "image/half.h"
@@ -16,19 +17,13 @@ enum { MOST_ATTRIBUTES = 24, MOST_WEIGHTS = 3 * 4096, HALF_CODES = 1024 };
 
 relume_status relume_compression_parse(enum relume_compression *out, const char *name)
 {
-    static const struct {
-        const char *name;
-        enum relume_compression value;
-    } table[] = {{"none", RELUME_COMPRESS_NONE},
-                 {"rle", RELUME_COMPRESS_RLE},
-                 {"zip", RELUME_COMPRESS_ZIP},
-                 {"piz", RELUME_COMPRESS_PIZ}};
-    for (size_t i = 0; i < sizeof table / sizeof *table; i++)
-        if (!strcmp(name, table[i].name)) {
-            *out = table[i].value;
-            return RELUME_OK;
-        }
-    return RELUME_EINVAL;
+    static const char *const names[] = {[RELUME_COMPRESS_NONE] = "none",
+                                        [RELUME_COMPRESS_RLE] = "rle",
+                                        [RELUME_COMPRESS_ZIP] = "zip",
+                                        [RELUME_COMPRESS_PIZ] = "piz"};
+    const int i = name_find(name, names, sizeof names / sizeof *names);
+    *out = (enum relume_compression)(i < 0 ? 0 : i);
+    return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 
 static enum exr_codec codec_of(enum relume_compression compression)

@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/names.h"
 #include "math/luminance.h"
 
 #include <math.h>
@@ -14,25 +15,22 @@ enum { DEFAULT_SOURCES = 256 };
 static const char *const mode_names[] = {"fft", "billboard", "hybrid", NULL};
 static const char *const border_names[] = {"zero", "clamp", "periodic", NULL};
 
-static int find_name(const char *const *names, const char *name)
-{
-    for (int i = 0; names[i]; i++)
-        if (!strcmp(names[i], name))
-            return i;
-    return -1;
-}
+enum {
+    MODES = sizeof mode_names / sizeof *mode_names,
+    BORDERS = sizeof border_names / sizeof *border_names,
+};
 
 relume_status relume_glare_mode_parse(enum relume_glare_mode *out, const char *name)
 {
-    const int i = find_name(mode_names, name);
-    *out = i < 0 ? RELUME_GLARE_FFT : (enum relume_glare_mode)i;
+    const int i = name_find(name, mode_names, MODES);
+    *out = (enum relume_glare_mode)(i < 0 ? 0 : i);
     return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 
 relume_status relume_glare_border_parse(enum relume_glare_border *out, const char *name)
 {
-    const int i = find_name(border_names, name);
-    *out = i < 0 ? RELUME_GLARE_ZERO : (enum relume_glare_border)i;
+    const int i = name_find(name, border_names, BORDERS);
+    *out = (enum relume_glare_border)(i < 0 ? 0 : i);
     return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 

@@ -2,6 +2,7 @@
 #include "base/arena.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/names.h"
 #include "base/outdir.h"
 #include "base/thread.h"
 #include "scene/render.h"
@@ -412,13 +413,13 @@ static relume_status write_folder(struct synth *s, const char *path)
 
 relume_status relume_ring_parse(enum relume_ring *out, const char *name)
 {
-    static const char *const names[] = {"4", "6", "8", "cube"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (!strcmp(name, names[i])) {
-            *out = (enum relume_ring)(i + 1);
-            return RELUME_OK;
-        }
-    return RELUME_EINVAL;
+    static const char *const names[] = {[RELUME_RING_4] = "4",
+                                        [RELUME_RING_6] = "6",
+                                        [RELUME_RING_8] = "8",
+                                        [RELUME_RING_CUBE] = "cube"};
+    const int i = name_find(name, names, sizeof names / sizeof *names);
+    *out = (enum relume_ring)(i < 0 ? 0 : i);
+    return i < 0 ? RELUME_EINVAL : RELUME_OK;
 }
 
 relume_status relume_scene_capture(const relume_scene *scene, const char *dir,

@@ -37,7 +37,7 @@ def vectors(values, what: str) -> np.ndarray:
     return array
 
 
-def transfer(text: str | None):
+def transfer_of(text: str | None):
     """"linear", "srgb", "gamma:2.2"; None is what the type of the samples implies."""
     out = structs["relume_transfer"]()
     if text is not None and lib.relume_transfer_parse(ctypes.byref(out), text.encode()):
@@ -66,11 +66,11 @@ class Buffer:
         lib.relume_buffer_destroy(ctypes.byref(self._buffer))
 
 
-def load_image(source: Source, channels: int = 3, transfer_: str | None = None) -> np.ndarray:
+def load_image(source: Source, channels: int = 3, transfer: str | None = None) -> np.ndarray:
     """A picture as linear light: float32 [y, x, 3], or [y, x] of one channel."""
     log, out = Log(), structs["relume_image"]()
     params = structs["relume_image_params"](log=log.address, channels=channels,
-                                            transfer=transfer(transfer_))
+                                            transfer=transfer_of(transfer))
     path = None
     if isinstance(source, bytes):
         reader = memory(source)

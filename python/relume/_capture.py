@@ -9,7 +9,7 @@ import os
 import numpy as np
 
 from ._abi import CONSTANTS, structs
-from ._arrays import Buffer, copy_from, take_image, transfer, vectors
+from ._arrays import Buffer, copy_from, take_image, transfer_of, vectors
 from ._library import Handle, Log, Progress, UsageError, lib
 
 _SAMPLES = {np.dtype(np.float32): "RELUME_SAMPLE_FLOAT", np.dtype(np.uint8): "RELUME_SAMPLE_8",
@@ -78,9 +78,9 @@ class Capture(Handle):
     """
 
     def __init__(self, pictures=None, directions=None, *, positions=None, intensities=None,
-                 transfer_: str | None = None, depth=None, mask=None, repair: bool = False):
+                 transfer: str | None = None, depth=None, mask=None, repair: bool = False):
         """`pictures`: [light, y, x, 3] or [light, y, x], float (linear), uint8 or uint16 (sRGB);
-        `transfer_` ("linear", "srgb", "gamma:2.2") says otherwise. `directions`: [light, 3] from
+        `transfer` ("linear", "srgb", "gamma:2.2") says otherwise. `directions`: [light, 3] from
         the scene towards the lights, any length; or `positions` of near lights, world units (the
         picture is 2 wide, z = 0). `intensities`: [light, 3], by which pictures are divided. `depth`
         and `mask`: [y, x]. Float arrays that are contiguous float32 are not copied and must not
@@ -91,7 +91,7 @@ class Capture(Handle):
         if pictures is None:
             return
         log = Log()
-        manifest = self._manifest_of(directions, positions, intensities, transfer_)
+        manifest = self._manifest_of(directions, positions, intensities, transfer)
         array = self._pictures_of(pictures, depth, mask)
         if np.shape(pictures)[0] != manifest.lights:
             raise UsageError(f"{np.shape(pictures)[0]} pictures and {manifest.lights} lights; "
@@ -101,13 +101,14 @@ class Capture(Handle):
                                             ctypes.byref(params)))
 
     @classmethod
-    def open(cls, path: str | os.PathLike, *, transfer_: str | None = None,
+    def open(cls, path: str | os.PathLike, *, transfer: str | None = None,
              skip_missing: bool = False, repair: bool = False,
              progress: Progress | None = None) -> "Capture":
         """A capture.json, a folder with one, or a .lp file."""
         self, log = cls(), Log(progress)
         params = structs["relume_capture_params"](
-            log=log.address, transfer=transfer(transfer_), skip_missing=skip_missing, repair=repair)
+            log=log.address, transfer=transfer_of(transfer), skip_missing=skip_missing,
+            repair=repair)
         log.check(lib.relume_capture_open(self.out, os.fsencode(path), ctypes.byref(params)))
         return self
 
@@ -115,10 +116,10 @@ class Capture(Handle):
         self._kept.append(array)
         return array.ctypes.data
 
-    def _manifest_of(self, directions, positions, intensities, transfer_):
+    def _manifest_of(self, directions, positions, intensities, transfer):
         if directions is None and positions is None:
             raise UsageError("no lights; expected directions or positions")
-        manifest = structs["relume_manifest"](transfer=transfer(transfer_))
+        manifest = structs["relume_manifest"](transfer=transfer_of(transfer))
         for field, values in ("directions", directions), ("positions", positions):
             if values is not None:
                 array = vectors(values, field)
@@ -255,8 +256,8 @@ class Capture(Handle):
 
 
 def encode(pictures, directions, path: str | os.PathLike | None = None, *,
-           transfer_: str | None = None, **options) -> bytes | None:
+           transfer: str | None = None, **options) -> bytes | None:
     """Pictures [light, y, x, 3] and directions [light, 3] become a relume file, under `path` or as
     bytes. Options: those of `Capture.encode`."""
-    with Capture(pictures, directions, transfer_=transfer_) as capture:
+    with Capture(pictures, directions, transfer=transfer) as capture:
         return capture.encode(path, **options)[0]

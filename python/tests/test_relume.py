@@ -148,7 +148,7 @@ class Captures(Fixture):
             with relume.Capture(pictures, directions) as capture:
                 np.testing.assert_allclose(capture.image(1), want[1], atol=1e-6)
                 np.testing.assert_allclose(capture.directions[1], (0.6, 0, 0.8))
-        with relume.Capture(codes[..., 0], directions, transfer_="linear") as capture:
+        with relume.Capture(codes[..., 0], directions, transfer="linear") as capture:
             np.testing.assert_allclose(capture.image(0)[..., 2], srgb[0, ..., 0], atol=1e-6)
             with self.assertRaises(IndexError):
                 capture.image(2)

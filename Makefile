@@ -270,11 +270,19 @@ compile-tests: $(patsubst %.c,$B/obj/%.o,$(UNIT_C) $(GL_C) $(TOOLS_C) $(FUZZ_C) 
 check-threads: $(filter $B/tests/threads/%,$(UNIT))
 	@ONLY_BINARIES=1 tests/check.sh $B
 
-headers: $(HEADERS:include/relume/%.h=$B/headers/%.ok)
+headers: $(HEADERS:include/relume/%.h=$B/headers/%.ok) $(if $(shell command -v python3),$B/headers/python.ok)
 $B/headers/%.ok: include/relume/%.h $(HEADERS) | $(DEPS)
 	@mkdir -p $(@D)
 	$(CC) -std=c11 $(WARNINGS) -Werror -Iinclude -fsyntax-only -x c $<
 	$(CXX) -std=c++17 -Wall -Wextra -Wpedantic -Werror -Iinclude -fsyntax-only -x c++ $<
+	@touch $@
+# What the Python module knows of the headers (python/relume/_abi.py) is what they say.
+$B/headers/python.ok: python/relume/_abi.py $(HEADERS) | $(DEPS)
+	@mkdir -p $(@D)
+	python3 $< > $(@D)/python.c
+	$(CC) -std=c11 -Wall -Werror -Iinclude -o $(@D)/python $(@D)/python.c
+	python3 $< layout > $(@D)/python.txt
+	$(@D)/python | diff $(@D)/python.txt -
 	@touch $@
 
 layers:

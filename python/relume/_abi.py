@@ -66,7 +66,7 @@ struct relume_pack_encode_params { void *log; int domain; int storage; int step;
     int threads; void *books; bool share; bool no_depth; void *writer; };
 struct relume_encode_census { size_t pixels; size_t black; size_t clipped; size_t always_clipped;
     size_t repaired; int black_images; };
-struct relume_encode_report { double fit_rms; double store_rms; double psnr_db; double typical;
+struct relume_encode_report { double fit_rms; double store_rms; double steps_rms; double psnr_db; double typical;
     struct relume_encode_census census; };
 struct relume_pack_info { int version; void *coder; int domain; struct relume_transfer display;
     int storage; char *compression; struct relume_geometry geometry; int slabs; void *slab;

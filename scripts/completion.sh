@@ -7,8 +7,8 @@ relume=$1 viewer=$2
 # values when the text begins with a list of words.
 options() {
     awk '/^options:/ { inside = 1; next }
-    inside && NF == 0 { exit }
-    inside {
+    NF == 0 { inside = 0 }
+    inside && /^  / && !seen[$1]++ {
         text = $0
         sub(/^ +[^ ]+/, "", text)
         argument = $2
@@ -40,6 +40,13 @@ cases() {
 }
 names() { awk '{ printf "%s%s", (NR > 1 ? " " : ""), $1 }'; }
 
+# What follows the name of a command and, where it has tasks, their names.
+tasks() { "$relume" "$1" --help | sed -n '/^tasks;/,/^$/s/^  \([a-z]*\) .*/\1/p'; }
+helps() {
+    "$relume" "$1" --help
+    for t in $(tasks "$1"); do "$relume" "$1" "$t" --help; done
+}
+
 commands=$("$relume" --help | sed -n 's/^  \([a-z]*\) .*/\1/p' | tr '\n' ' ')
 scenes=$("$relume" synth --help | sed -n 's/^render a built-in scene (\([^)]*\)).*/\1/p' | tr -d ,)
 
@@ -53,12 +60,16 @@ echo "        COMPREPLY=(\$(compgen -W \"$commands--help --version\" -- \"\$word
 echo "        return"
 echo "    fi"
 echo "    case \$command:\$last in"
-for c in $commands; do "$relume" "$c" --help | options | cases "$c:"; done
+for c in $commands; do helps "$c" | options | cases "$c:"; done
+for c in $commands; do
+    words=$(tasks "$c" | tr '\n' ' ')
+    [ -z "$words" ] || echo "        $c:$c) COMPREPLY=(\$(compgen -W \"$words\" -- \"\$word\")); return ;;"
+done
 echo "        synth:synth) COMPREPLY=(\$(compgen -W \"$scenes\" -- \"\$word\")); return ;;"
 echo "    esac"
 echo "    case \$command in"
 for c in $commands; do
-    echo "        $c) words=\"$("$relume" "$c" --help | options | names)\" ;;"
+    echo "        $c) words=\"$(helps "$c" | options | names)\" ;;"
 done
 echo "    esac"
 echo "    case \$word in"

@@ -51,6 +51,9 @@ install -d "$man"
 "$here/scripts/man.sh" "$build/relume-view" >"$man/relume-view.1"
 for command in $("$build/relume" --help | sed -n 's/^  \([a-z]*\) .*/\1/p'); do
     "$here/scripts/man.sh" "$build/relume" "$command" >"$man/relume-$command.1"
+    for task in $("$build/relume" "$command" --help | sed -n '/^tasks;/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
+        "$here/scripts/man.sh" "$build/relume" "$command $task" >"$man/relume-$command-$task.1"
+    done
 done
 completions=$dest/share/bash-completion/completions
 install -d "$completions"

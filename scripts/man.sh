@@ -8,7 +8,7 @@ command=${2:-}
 here=$(cd "$(dirname "$0")" && pwd)
 date=$(date -u -r "$here/../include/relume/base.h" +%Y-%m-%d)
 version=$(sed -n 's/^#define RELUME_VERSION "\(.*\)"/\1/p' "$here/../include/relume/base.h")
-name=$(basename "$program")${command:+-$command}
+name=$(basename "$program")$(echo "${command:+-$command}" | tr " " -)
 tool=$(basename "$program")
 
 "$program" $command --help | awk -v name="$name" -v tool="$tool" -v version="$version" \
@@ -40,6 +40,12 @@ function literal(first, last,    i) {
 function trimmed(s) { sub(/^ +/, "", s); return s }
 # "  --size N    what it is": the name is followed by at least two blanks, or stands alone.
 function item(s,    left, cut) {
+    if (s ~ /^ [^ ]/) {  # a group of options
+        sub(/:$/, "", s)
+        s = trimmed(s)
+        print ".SS " quoted(toupper(substr(s, 1, 1)) substr(s, 2))
+        return
+    }
     s = trimmed(s)
     cut = match(s, /  +/)
     left = cut ? substr(s, 1, cut - 1) : s

@@ -32,23 +32,26 @@ static relume_status parse_start(const char *text, enum relume_codebook_start *o
     return unknown_name("--codebook-start", text, names);
 }
 
-relume_status parse_books(const struct args *args, struct relume_books_params *out, bool *wanted)
+relume_status parse_books(const struct args *args, const struct book_options *b, bool wanted,
+                          struct relume_books_params *out)
 {
-    static const char *const need[] = {"--share",  "--stages", "--split", "--codebook-start",
-                                       "--dither", "--seed",   NULL};
-    *wanted = args_has(args, "--codebook");
+    const struct {
+        const void *member;
+        const char *name;
+    } need[] = {{&b->share, "--share"},          {&b->stages, "--stages"}, {&b->split, "--split"},
+                {&b->start, "--codebook-start"}, {&b->dither, "--dither"}, {&b->seed, "--seed"}};
     *out = (struct relume_books_params){
-        .codes = args_int(args, "--codebook", 0),
-        .stages = args_int(args, "--stages", 1),
-        .seed = (uint64_t)args_int(args, "--seed", 0),
-        .dither = (float)args_number(args, "--dither", 0.0),
+        .codes = b->codes,
+        .stages = b->stages ? b->stages : 1,
+        .seed = (uint64_t)b->seed,
+        .dither = (float)b->dither,
     };
-    for (int i = 0; need[i] && !*wanted; i++)
-        if (args_has(args, need[i]))
-            return usage_error("%s: expected together with --codebook N", need[i]);
-    relume_status status = parse_split(args_text(args, "--split", "none"), out);
+    for (size_t i = 0; i < sizeof need / sizeof *need && !wanted; i++)
+        if (args_given(args, need[i].member))
+            return usage_error("%s: expected together with --codebook N", need[i].name);
+    relume_status status = parse_split(b->split ? b->split : "none", out);
     if (!status)
-        status = parse_start(args_text(args, "--codebook-start", "split"), &out->start);
+        status = parse_start(b->start ? b->start : "split", &out->start);
     const int parts = out->split == RELUME_SPLIT_LUMA      ? 2
                       : out->split == RELUME_SPLIT_PRODUCT ? out->groups
                                                            : 1;

@@ -3,6 +3,7 @@
 #define CLI_H
 
 #include <relume/relume.h>
+#include <stddef.h>
 #include <stdio.h>
 
 // OPTION_OUTPUT and those behind it are text that names what is written; any other text, and any
@@ -13,6 +14,7 @@ enum option_kind {
     OPTION_INT,
     OPTION_NUMBER,
     OPTION_TEXT,
+    OPTION_TEXTS,  // may be repeated
     OPTION_OUTPUT,
     OPTION_PICTURE,  // a picture of any format
     OPTION_FLOATS,   // a picture of values that are no light
@@ -22,45 +24,71 @@ enum option_kind {
 struct option {
     const char *name;  // "--size" or "-o"
     enum option_kind kind;
+    size_t offset;         // of the member of the command's struct that holds its value
+    const char *group;     // where help lists it
     const char *argument;  // how help calls the value: "N"
     const char *help;
     double min, max;  // range of numbers; both 0: any
 };
 
+// Rows of a table. OPTIONS is the struct that they fill; its first member is `struct args args`.
+// clang-format off
+#define OPTION_AT(type, member) \
+    _Generic(((OPTIONS *)NULL)->member, type: offsetof(OPTIONS, member))
+#define FLAG(name, member, group, help) \
+    {name, OPTION_FLAG, OPTION_AT(bool, member), group, NULL, help, 0, 0}
+#define INT(name, member, group, argument, help, min, max) \
+    {name, OPTION_INT, OPTION_AT(int, member), group, argument, help, min, max}
+#define NUMBER(name, member, group, argument, help, min, max) \
+    {name, OPTION_NUMBER, OPTION_AT(double, member), group, argument, help, min, max}
+#define TEXTS(name, member, group, argument, help) \
+    {name, OPTION_TEXTS, OPTION_AT(struct texts, member), group, argument, help, 0, 0}
+#define TEXT(name, member, group, argument, help) \
+    TEXT_AS(OPTION_TEXT, name, member, group, argument, help)
+#define TEXT_AS(kind, name, member, group, argument, help) \
+    {name, kind, OPTION_AT(const char *, member), group, argument, help, 0, 0}
+// clang-format on
+
+// Of an option that may be repeated.
+struct texts {
+    int count;
+    const char *const *text;
+};
+
 // Of every command that reads captures.
 #define ALLOW_OUTSIDE_OPTION                                                                       \
-    {                                                                                              \
-        "--allow-outside", OPTION_FLAG, NULL,                                                      \
-            "files that the capture names may lie outside its folder", 0, 0                        \
-    }
+    FLAG("--allow-outside", allow_outside, "input",                                                \
+         "files that the capture names may lie outside its folder")
 
-struct args;
+// What every command gets; the options of its own follow in its struct.
+struct args {
+    const struct relume_log *log;  // messages and progress to stderr
+    int threads;                   // 0: all
+    int inputs;
+    const char *const *input;
+    bool quiet, help, any_format;
+    const char *max_memory, *max_pixels;
+    const struct parsed *parsed;
+};
 
 // One command, one cmd_*.c file, one entry in commands[] (main.c). Help is made from it.
 struct command {
-    const char *name;
+    const char *name;     // of a task of a command two words: "btf fit"
     const char *usage;    // what follows the name: "CAPTURE -o FILE.exr"
     const char *summary;  // one line
     const char *example;  // complete command line
     int min_inputs, max_inputs;
-    const struct option *options;  // ends with a NULL name; common options are added
+    const struct option *options;        // common options are added
+    const char *groups;            // help shows these groups only; NULL: all
+    size_t size;                         // of the struct that they fill
+    const void *defaults;                // such a struct; NULL: zeros
+    const struct command *const *tasks;  // instead of all that: what its next word names
     relume_status (*run)(const struct args *args);
 };
 extern const struct command *const commands[];
 
-// Parsed options; the name must be in the command's table or among the common ones.
-bool args_has(const struct args *args, const char *name);
-int args_int(const struct args *args, const char *name, int otherwise);
-double args_number(const struct args *args, const char *name, double otherwise);
-const char *args_text(const struct args *args, const char *name, const char *otherwise);
-int args_count(const struct args *args, const char *name);  // how often a text option was given
-const char *args_nth(const struct args *args, const char *name, int n);
-int args_inputs(const struct args *args);
-const char *args_input(const struct args *args, int n);
-
-int args_threads(const struct args *args);                   // --threads, 0: all
-const struct relume_log *args_log(const struct args *args);  // messages and progress to stderr
-
+// Whether the option was given that fills `member` of the struct of `args`.
+bool args_given(const struct args *args, const void *member);
 // A log that says which file its sentences are about: "PREFIX: ...".
 struct prefix_log {
     struct relume_log log;

@@ -4,16 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-relume_status parse_developing(const struct args *args, struct developing *d)
+relume_status parse_developing(const struct develop_options *options, struct developing *d)
 {
-    return parse_developing_from(args, "0", relume_tone_linear.name, d);
-}
-
-relume_status parse_developing_from(const struct args *args, const char *default_exposure,
-                                    const char *default_tone, struct developing *d)
-{
-    const char *exposure = args_text(args, "--exposure", default_exposure);
-    const char *tone = args_text(args, "--tone", default_tone);
+    const char *exposure = options->exposure ? options->exposure : "0";
+    const char *tone = options->tone ? options->tone : relume_tone_linear.name;
     const char *names[16] = {NULL};
     *d = (struct developing){.automatic = !strcmp(exposure, "auto")};
     if (!d->automatic && (!parse_numbers(exposure, &d->tone.exposure_ev, 1) ||
@@ -22,7 +16,7 @@ relume_status parse_developing_from(const struct args *args, const char *default
                            exposure);
     for (int i = 0; relume_tones[i]; i++)
         names[i] = relume_tones[i]->name;
-    d->tone.white = args_number(args, "--white", 0.0);
+    d->tone.white = options->white;
     d->tone.tone = relume_tone_find(tone);
     return d->tone.tone ? RELUME_OK : unknown_name("--tone", tone, names);
 }

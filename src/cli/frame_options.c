@@ -4,32 +4,23 @@
 #include <ctype.h>
 #include <stdlib.h>
 
-static relume_status open_rig(const struct args *args, relume_rig **rig)
+static relume_status make_rig(const struct light_options *o, relume_rig **rig,
+                              const struct relume_log *log)
 {
-    const char *path = args_text(args, "--rig", NULL);
-    return path ? relume_rig_load(rig, path, args_log(args)) : relume_rig_create(rig);
-}
-
-static relume_status add_lights(const struct args *args, relume_rig *rig)
-{
-    const int given = args_count(args, "--light");
-    relume_status status = RELUME_OK;
-    for (int i = 0; !status && i < given; i++)
-        status = relume_rig_add(rig, args_nth(args, "--light", i), NULL, args_log(args));
-    if (!status && !given && !args_has(args, "--rig"))
-        status = relume_rig_add(rig, "dir 0 0 1", NULL, args_log(args));
+    relume_status status = o->rig ? relume_rig_load(rig, o->rig, log) : relume_rig_create(rig);
+    for (int i = 0; !status && i < o->light.count; i++)
+        status = relume_rig_add(*rig, o->light.text[i], NULL, log);
+    if (!status && !o->light.count && !o->rig)
+        status = relume_rig_add(*rig, "dir 0 0 1", NULL, log);
     return status;
 }
 
-relume_status parse_lights(const struct args *args, relume_rig **rig,
+relume_status parse_lights(const struct args *args, const struct light_options *o, relume_rig **rig,
                            const struct relume_light **lights, int *count)
 {
-    const char *save = args_text(args, "--save-rig", NULL);
-    relume_status status = open_rig(args, rig);
-    if (!status)
-        status = add_lights(args, *rig);
-    if (!status && save)
-        status = relume_rig_save(*rig, save, args_log(args));
+    relume_status status = make_rig(o, rig, args->log);
+    if (!status && o->save_rig)
+        status = relume_rig_save(*rig, o->save_rig, args->log);
     if (!status)
         status = relume_rig_lights(lights, count, *rig);
     if (status)
@@ -46,9 +37,9 @@ static int64_t take_side(const char **text)
     return side;
 }
 
-relume_status parse_size(const struct args *args, int *width, int *height)
+relume_status parse_size(const char *text, int *width, int *height)
 {
-    const char *const text = args_text(args, "--size", NULL), *rest = text;
+    const char *rest = text;
     if (!text)
         return RELUME_OK;
     const int64_t w = take_side(&rest);
@@ -64,24 +55,25 @@ relume_status parse_size(const struct args *args, int *width, int *height)
     return RELUME_OK;
 }
 
-relume_status parse_interpolation(const struct args *args, struct relume_frame_params *params)
+relume_status parse_interpolation(const struct interpolate_options *o,
+                                  struct relume_frame_params *params)
 {
     static const char *const names[] = {"constant", "linear", "depth", NULL};
-    const char *name = args_text(args, "--interpolate", NULL);
-    if (name && args_has(args, "--nearest"))
+    if (o->name && o->nearest)
         return usage_error("expected one of --interpolate and --nearest");
-    if (args_has(args, "--nearest"))
+    if (o->nearest)
         params->interpolation = RELUME_INTERPOLATE_CONSTANT;
-    return name && relume_interpolation_parse(&params->interpolation, name)
-               ? unknown_name("--interpolate", name, names)
+    return o->name && relume_interpolation_parse(&params->interpolation, o->name)
+               ? unknown_name("--interpolate", o->name, names)
                : RELUME_OK;
 }
 
-struct relume_frame_params parse_frame(const struct args *args)
+struct relume_frame_params parse_frame(const struct args *args, const struct light_options *o,
+                                       int cpu_mask)
 {
     return (struct relume_frame_params){
-        .cpu_off = args_has(args, "--cpu-mask") ? ~(unsigned)args_int(args, "--cpu-mask", 0) : 0u,
-        .threads = args_threads(args),
-        .assume_depth = args_number(args, "--assume-depth", 0.0),
+        .cpu_off = ~(unsigned)cpu_mask,
+        .threads = args->threads,
+        .assume_depth = o->assume_depth,
     };
 }

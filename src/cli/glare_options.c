@@ -2,10 +2,10 @@
 // seen
 #include "glare_options.h"
 
-static relume_status parse_names(struct relume_glare_params *p, const struct args *args)
+static relume_status parse_names(struct relume_glare_params *p, const struct eye_options *o)
 {
-    const char *const mode = args_text(args, "--mode", relume_glare_mode_names()[0]);
-    const char *const border = args_text(args, "--border", relume_glare_border_names()[0]);
+    const char *const mode = o->mode ? o->mode : relume_glare_mode_names()[0];
+    const char *const border = o->border ? o->border : relume_glare_border_names()[0];
     if (relume_glare_mode_parse(&p->mode, mode))
         return unknown_name("--mode", mode, relume_glare_mode_names());
     if (relume_glare_border_parse(&p->border, border))
@@ -13,24 +13,22 @@ static relume_status parse_names(struct relume_glare_params *p, const struct arg
     return RELUME_OK;
 }
 
-relume_status open_viewer_eye(struct viewer_eye *out, const struct args *args, double luminance,
+relume_status open_viewer_eye(struct viewer_eye *out, const struct args *args,
+                              const struct eye_options *o, double luminance,
                               const struct relume_psf_params *psf)
 {
-    const char *const path = args_text(args, "--subject", NULL);
     struct relume_subject subject = relume_subject_default();
     *out = (struct viewer_eye){
         .luminance = luminance,
-        .params = {.log = args_log(args),
-                   .threads = args_threads(args),
-                   .magnify = args_number(args, "--magnify", 0.0)},
+        .params = {.log = args->log, .threads = args->threads, .magnify = o->magnify},
     };
-    relume_status status = parse_names(&out->params, args);
-    if (!status && path)
-        status = relume_subject_load(&subject, path, args_log(args));
+    relume_status status = parse_names(&out->params, o);
+    if (!status && o->subject)
+        status = relume_subject_load(&subject, o->subject, args->log);
     if (!status)
         status = relume_eye_create(&out->eye, &subject, luminance);
     if (!status)
-        status = relume_eye_advance(out->eye, args_number(args, "--time", 1.0), luminance);
+        status = relume_eye_advance(out->eye, o->time, luminance);
     if (!status)
         status = relume_psf_create(&out->psf, psf);
     if (!status)

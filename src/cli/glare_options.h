@@ -5,17 +5,26 @@
 
 #include "cli.h"
 
-// Table rows for a command's options.
+struct eye_options {
+    const char *subject, *mode, *border;
+    double time, nits, magnify;
+};
+// Table rows for a command's options; `glare` in its struct, from GLARE_DEFAULTS.
 #define GLARE_OPTIONS                                                                              \
-    {"--subject", OPTION_TEXT, "FILE", "glare: the viewer's eye (JSON, docs/glare.md)", 0, 0},     \
-        {"--time", OPTION_NUMBER, "T", "glare: seconds since the eye opened; default: 1", 0, 1e6}, \
-        {"--nits", OPTION_NUMBER,                                                                  \
-         "L",      "glare: cd/m^2 of the value 1, sets the pupil; default: 100",                   \
-         0,        1e9},                                                                           \
-        {"--magnify", OPTION_NUMBER, "M", "glare: enlarge the halos; default: 1", 0.01, 1000},     \
-        {"--mode", OPTION_TEXT, "M", "glare: fft (default), billboard or hybrid", 0, 0},           \
+    TEXT("--subject", glare.subject, "glare", "FILE",                                              \
+         "glare: the viewer's eye (JSON, docs/glare.md)"),                                         \
+        NUMBER("--time", glare.time, "glare", "T",                                                 \
+               "glare: seconds since the eye opened; default: 1", 0, 1e6),                         \
+        NUMBER("--nits", glare.nits, "glare", "L",                                                 \
+               "glare: cd/m^2 of the value 1, sets the pupil; default: 100", 0, 1e9),              \
+        NUMBER("--magnify", glare.magnify, "glare", "M", "glare: enlarge the halos; default: 1",   \
+               0.01, 1000),                                                                        \
+        TEXT("--mode", glare.mode, "glare", "M", "glare: fft (default), billboard or hybrid"),     \
+        TEXT("--border", glare.border, "glare", "B", "glare: zero (default), clamp or periodic")
+
+#define GLARE_DEFAULTS                                                                             \
     {                                                                                              \
-        "--border", OPTION_TEXT, "B", "glare: zero (default), clamp or periodic", 0, 0             \
+        .time = 1.0, .nits = 100.0                                                                 \
     }
 
 // An eye that looks at a picture, ready to see it.
@@ -27,7 +36,8 @@ struct viewer_eye {
     double luminance;  // of what it looks at, cd/m^2
 };
 // From a command's options; `field_deg` and `size` of the pattern.
-relume_status open_viewer_eye(struct viewer_eye *out, const struct args *args, double luminance,
+relume_status open_viewer_eye(struct viewer_eye *out, const struct args *args,
+                              const struct eye_options *options, double luminance,
                               const struct relume_psf_params *psf);
 void close_viewer_eye(struct viewer_eye *e);
 // `frame` becomes what the eye sees now; `same`: the frame has not changed since.

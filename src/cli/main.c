@@ -2,7 +2,6 @@
 #include "cli.h"
 #include "output_name.h"
 
-#include <assert.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -18,40 +17,31 @@
 #include <time.h>
 #include <unistd.h>
 
-extern const struct command command_synth, command_lights, command_encode, command_info,
-    command_relight, command_query, command_eval, command_compare, command_sweep, command_import,
-    command_export, command_capture, command_btf, command_glare, command_tonemap, command_check;
+extern const struct command command_synth, command_lights, command_hdr, command_lightfield,
+    command_panorama, command_encode, command_info, command_relight, command_query, command_eval,
+    command_compare, command_sweep, command_import, command_export, command_capture, command_btf,
+    command_glare, command_tonemap, command_check;
 
 const struct command *const commands[] = {
-    &command_synth,
-    &command_capture,
-    &command_lights,
-    &command_encode,
-    &command_info,
-    &command_check,
-    &command_relight,
-    &command_query,
-    &command_eval,
-    &command_compare,
-    &command_sweep,
-    &command_import,
-    &command_export,
-    &command_btf,
-    &command_glare,
-    &command_tonemap,
-    NULL,
+    &command_synth,  &command_capture, &command_hdr,     &command_lightfield, &command_panorama,
+    &command_lights, &command_encode,  &command_info,    &command_check,      &command_relight,
+    &command_query,  &command_eval,    &command_compare, &command_sweep,      &command_import,
+    &command_export, &command_btf,     &command_glare,   &command_tonemap,    NULL,
 };
 
+#define OPTIONS struct args
 static const struct option common[] = {
-    {"--threads", OPTION_INT, "N", "worker threads; default: all cores", 0, 256},
-    {"--max-memory", OPTION_TEXT, "SIZE",
-     "most memory for one picture, view or model, as 4G; default: half of the machine's", 0, 0},
-    {"--max-pixels", OPTION_TEXT, "N", "most pixels in one picture, as 200M; default: 1G", 0, 0},
-    {"--any-format", OPTION_FLAG, NULL,
-     "read pictures of every format that OpenImageIO knows, not only those for photographs", 0, 0},
-    {"-q", OPTION_FLAG, NULL, "no progress bar, no warnings", 0, 0},
-    {"--help", OPTION_FLAG, NULL, "this text", 0, 0},
-    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+    INT("--threads", threads, "of every command", "N", "worker threads; default: all cores", 0,
+        256),
+    TEXT("--max-memory", max_memory, "of every command", "SIZE",
+         "most memory for one picture, view or model, as 4G; default: half of the machine's"),
+    TEXT("--max-pixels", max_pixels, "of every command", "N",
+         "most pixels in one picture, as 200M; default: 1G"),
+    FLAG("--any-format", any_format, "of every command",
+         "read pictures of every format that OpenImageIO knows, not only those for photographs"),
+    FLAG("-q", quiet, "of every command", "no progress bar, no warnings"),
+    FLAG("--help", help, "of every command", "this text"),
+    {0},
 };
 
 enum { MAX_ARGS = 4096 };
@@ -62,14 +52,16 @@ struct given {
     double number;
 };
 
-struct args {
+// A command line; its values go into the struct of the command's options.
+struct parsed {
     const struct command *command;
-    int given_count, input_count;
+    struct args *args;
+    int given_count, input_count, listed;
     struct given given[MAX_ARGS];
     const char *inputs[MAX_ARGS];
+    const char *list[MAX_ARGS];  // of options that may be repeated
     struct relume_log log;
     struct relume_limits limits;  // of log
-    bool quiet;
 };
 
 // ---------------------------------------------------------------- messages and progress
@@ -126,8 +118,8 @@ static void print_line(const char *prefix, const char *text)
 
 static void on_message(void *user, enum relume_level level, const char *text)
 {
-    const struct args *args = user;
-    if (level != RELUME_NOTE || !args->quiet)
+    const struct parsed *p = user;
+    if (level != RELUME_NOTE || !p->args->quiet)
         print_line(level == RELUME_WARNING ? "warning: " : "", text);
 }
 
@@ -189,8 +181,8 @@ static void draw_bar(const char *what, double done)
 
 static bool on_progress(void *user, const char *what, double done)
 {
-    const struct args *args = user;
-    if (!args->quiet && isatty(STDERR_FILENO))
+    const struct parsed *p = user;
+    if (!p->args->quiet && isatty(STDERR_FILENO))
         draw_bar(what, done);
     return !interrupted;
 }
@@ -234,12 +226,38 @@ relume_status unknown_name(const char *what, const char *given, const char *cons
     return usage_error("unknown %s '%.200s'; expected one of:%s", what, given, list);
 }
 
+// ---------------------------------------------------------------- options
+
+static const struct option *find_option(const struct command *command, const char *name)
+{
+    for (const struct option *o = command->options; o && o->name; o++)
+        if (!strcmp(o->name, name))
+            return o;
+    for (const struct option *o = common; o->name; o++)
+        if (!strcmp(o->name, name))
+            return o;
+    return NULL;
+}
+
+// What `capture` did until it became four commands.
+static const struct {
+    const char *option;
+    const struct command *to;
+} moved[] = {{"--hdr", &command_hdr},
+             {"--slab", &command_lightfield},
+             {"--colmap", &command_lightfield},
+             {"--depth-from-views", &command_lightfield},
+             {"--panorama", &command_panorama}};
+
 static relume_status unknown_option(const struct command *command, const char *given)
 {
     const char *names[64];
     int n = 0;
-    for (const struct option *o = command->options; o->name && n < 56; o++)
+    for (const struct option *o = command->options; o && o->name && n < 56; o++)
         names[n++] = o->name;
+    for (size_t i = 0; command == &command_capture && i < sizeof moved / sizeof *moved; i++)
+        if (find_option(moved[i].to, given))
+            return usage_error("capture: %s is an option of 'relume %s'", given, moved[i].to->name);
     for (const struct option *o = common; o->name; o++)
         names[n++] = o->name;
     names[n] = NULL;
@@ -251,85 +269,13 @@ static relume_status unknown_option(const struct command *command, const char *g
                        command->name);
 }
 
-// ---------------------------------------------------------------- options
-
-static const struct option *find_option(const struct command *command, const char *name)
+bool args_given(const struct args *args, const void *member)
 {
-    for (const struct option *o = command->options; o->name; o++)
-        if (!strcmp(o->name, name))
-            return o;
-    for (const struct option *o = common; o->name; o++)
-        if (!strcmp(o->name, name))
-            return o;
-    return NULL;
-}
-
-static const struct given *find_given(const struct args *args, const char *name)
-{
-    assert(find_option(args->command, name));
-    for (int i = args->given_count - 1; i >= 0; i--)
-        if (!strcmp(args->given[i].option->name, name))
-            return &args->given[i];
-    return NULL;
-}
-
-bool args_has(const struct args *args, const char *name)
-{
-    return find_given(args, name) != NULL;
-}
-
-int args_int(const struct args *args, const char *name, int otherwise)
-{
-    const struct given *g = find_given(args, name);
-    return g ? (int)g->number : otherwise;
-}
-
-double args_number(const struct args *args, const char *name, double otherwise)
-{
-    const struct given *g = find_given(args, name);
-    return g ? g->number : otherwise;
-}
-
-const char *args_text(const struct args *args, const char *name, const char *otherwise)
-{
-    const struct given *g = find_given(args, name);
-    return g ? g->text : otherwise;
-}
-
-int args_count(const struct args *args, const char *name)
-{
-    int n = 0;
-    for (int i = 0; i < args->given_count; i++)
-        n += !strcmp(args->given[i].option->name, name);
-    return n;
-}
-
-const char *args_nth(const struct args *args, const char *name, int n)
-{
-    for (int i = 0; i < args->given_count; i++)
-        if (!strcmp(args->given[i].option->name, name) && n-- == 0)
-            return args->given[i].text;
-    return NULL;
-}
-
-int args_inputs(const struct args *args)
-{
-    return args->input_count;
-}
-
-const char *args_input(const struct args *args, int n)
-{
-    return args->inputs[n];
-}
-
-int args_threads(const struct args *args)
-{
-    return args_int(args, "--threads", 0);
-}
-
-const struct relume_log *args_log(const struct args *args)
-{
-    return &args->log;
+    const size_t offset = (size_t)((const char *)member - (const char *)args);
+    for (int i = 0; i < args->parsed->given_count; i++)
+        if (args->parsed->given[i].option->offset == offset)
+            return true;
+    return false;
 }
 
 bool parse_numbers(const char *text, double *out, int count)
@@ -361,6 +307,7 @@ static relume_status check_value(struct given *g)
         return usage_error("%s: expected a value (%s); found an empty one", o->name, o->argument);
     switch (o->kind) {
     case OPTION_TEXT:
+    case OPTION_TEXTS:
     case OPTION_OUTPUT: return RELUME_OK;
     case OPTION_PICTURE: return picture_name(o->name, g->text);
     case OPTION_FLOATS: return floats_name(o->name, g->text);
@@ -387,30 +334,30 @@ static bool is_option(const char *text)
     return text[0] == '-' && text[1] && !(text[1] >= '0' && text[1] <= '9') && text[1] != '.';
 }
 
-static relume_status parse(struct args *args, int argc, char **argv)
+static relume_status parse(struct parsed *p, int argc, char **argv)
 {
     bool only_inputs = false;
     for (int i = 0; i < argc; i++) {
-        if (args->given_count == MAX_ARGS || args->input_count == MAX_ARGS)
+        if (p->given_count == MAX_ARGS || p->input_count == MAX_ARGS)
             return usage_error("too many arguments");
         if (!only_inputs && !strcmp(argv[i], "--")) {
             only_inputs = true;
             continue;
         }
         if (!*argv[i])
-            return usage_error("%s: expected '%s'; found an empty name", args->command->name,
-                               args->command->usage);
+            return usage_error("%s: expected '%s'; found an empty name", p->command->name,
+                               p->command->usage);
         if (only_inputs || !is_option(argv[i])) {
-            args->inputs[args->input_count++] = argv[i];
+            p->inputs[p->input_count++] = argv[i];
             continue;
         }
         char name[64];
         const char *equals = strncmp(argv[i], "--", 2) ? NULL : strchr(argv[i], '=');
         snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - argv[i]) : 63, argv[i]);
-        const struct option *o = find_option(args->command, name);
+        const struct option *o = find_option(p->command, name);
         if (!o)
-            return unknown_option(args->command, name);
-        struct given *g = &args->given[args->given_count++];
+            return unknown_option(p->command, name);
+        struct given *g = &p->given[p->given_count++];
         g->option = o;
         if (o->kind == OPTION_FLAG) {
             if (equals)
@@ -428,15 +375,77 @@ static relume_status parse(struct args *args, int argc, char **argv)
     return RELUME_OK;
 }
 
+// Every occurrence of an option that may be repeated, in order.
+static struct texts gather(struct parsed *p, const struct option *option)
+{
+    const struct texts all = {.text = p->list + p->listed};
+    for (int i = 0; i < p->given_count; i++)
+        if (p->given[i].option == option)
+            p->list[p->listed++] = p->given[i].text;
+    return (struct texts){(int)(p->list + p->listed - all.text), all.text};
+}
+
+static void fill(struct parsed *p, const struct given *g)
+{
+    void *member = (char *)p->args + g->option->offset;
+    switch (g->option->kind) {
+    case OPTION_FLAG: *(bool *)member = true; break;
+    case OPTION_INT: *(int *)member = (int)g->number; break;
+    case OPTION_NUMBER: *(double *)member = g->number; break;
+    case OPTION_TEXTS:
+        if (!((struct texts *)member)->count)
+            *(struct texts *)member = gather(p, g->option);
+        break;
+    default: *(const char **)member = g->text;
+    }
+}
+
+static relume_status fill_options(struct parsed *p, int argc, char **argv)
+{
+    p->args = calloc(1, p->command->size ? p->command->size : sizeof *p->args);
+    if (!p->args)
+        return RELUME_ENOMEM;
+    if (p->command->defaults)
+        memcpy(p->args, p->command->defaults, p->command->size);
+    const relume_status status = parse(p, argc, argv);
+    for (int i = 0; !status && i < p->given_count; i++)
+        fill(p, &p->given[i]);
+    p->args->log = &p->log;
+    p->args->parsed = p;
+    p->args->inputs = p->input_count;
+    p->args->input = p->inputs;
+    return status;
+}
+
 // ---------------------------------------------------------------- help
 
-static void print_options(const struct option *options)
+static const char *last_word(const char *name)
 {
-    for (const struct option *o = options; o->name; o++) {
+    const char *blank = strrchr(name, ' ');
+    return blank ? blank + 1 : name;
+}
+
+// Those of one group, of which `first` is the first.
+static void print_group(const struct option *first)
+{
+    printf(" %s:\n", first->group);
+    for (const struct option *o = first; o->name; o++) {
         char left[64];
+        if (strcmp(o->group, first->group) != 0 || !o->help)  // without help: an old spelling
+            continue;
         snprintf(left, sizeof left, "%s%s%s", o->name, o->argument ? " " : "",
                  o->argument ? o->argument : "");
         printf("  %-28s %s\n", left, o->help);
+    }
+}
+
+static void print_options(const struct option *options, const char *groups)
+{
+    for (const struct option *o = options, *before = options; o && o->name; o++, before = options) {
+        while (before < o && strcmp(before->group, o->group) != 0)
+            before++;
+        if (before == o && (!groups || strstr(groups, o->group)))
+            print_group(o);
     }
 }
 
@@ -444,8 +453,12 @@ static void print_help(const struct command *command)
 {
     printf("usage: relume %s %s\n\n%s\n\noptions:\n", command->name, command->usage,
            command->summary);
-    print_options(command->options);
-    print_options(common);
+    print_options(command->options, command->groups);
+    print_options(common, NULL);
+    if (command->tasks)
+        printf("\ntasks; 'relume %s TASK --help' explains one:\n", command->name);
+    for (const struct command *const *t = command->tasks; t && *t; t++)
+        printf("  %-10s %s\n", last_word((*t)->name), (*t)->summary);
     printf("\nexample:\n  %s\n", command->example);
 }
 
@@ -458,14 +471,24 @@ static void print_overview(void)
     printf("\n'relume COMMAND --help' explains a command and gives an example.\n");
 }
 
-static relume_status unknown_command(const char *given)
+// The command of that name; NULL: there is none.
+static const struct command *find_command(const struct command *const *list, const char *name)
+{
+    for (; *list; list++)
+        if (!strcmp(last_word((*list)->name), name))
+            return *list;
+    return NULL;
+}
+
+static relume_status unknown_command(const char *what, const struct command *const *list,
+                                     const char *given)
 {
     const char *names[32];
     int n = 0;
-    for (const struct command *const *c = commands; *c; c++)
-        names[n++] = (*c)->name;
+    for (; *list; list++)
+        names[n++] = last_word((*list)->name);
     names[n] = NULL;
-    return unknown_name("command", given, names);
+    return unknown_name(what, given, names);
 }
 
 // ---------------------------------------------------------------- main
@@ -488,54 +511,93 @@ static int exit_code(relume_status status)
 
 // What the command line names and is there is read, except what it says is written. Files that
 // these name in turn are noted as they are opened.
-static relume_status note_inputs(struct args *args)
+static relume_status note_inputs(struct parsed *p)
 {
-    relume_status status = relume_inputs_create(&args->log.inputs);
-    for (int i = 0; !status && i < args->input_count; i++)
-        relume_inputs_add(args->log.inputs, args->inputs[i]);
-    for (int i = 0; !status && i < args->given_count; i++)
-        if (args->given[i].option->kind == OPTION_TEXT)
-            relume_inputs_add(args->log.inputs, args->given[i].text);
-    for (int i = 0; !status && i < args->given_count; i++)
-        if (args->given[i].option->kind >= OPTION_OUTPUT)
-            status = relume_file_check(args->given[i].text, &args->log);
+    relume_status status = relume_inputs_create(&p->log.inputs);
+    for (int i = 0; !status && i < p->input_count; i++)
+        relume_inputs_add(p->log.inputs, p->inputs[i]);
+    for (int i = 0; !status && i < p->given_count; i++) {
+        const enum option_kind kind = p->given[i].option->kind;
+        if (kind == OPTION_TEXT || kind == OPTION_TEXTS)
+            relume_inputs_add(p->log.inputs, p->given[i].text);
+    }
+    for (int i = 0; !status && i < p->given_count; i++)
+        if (p->given[i].option->kind >= OPTION_OUTPUT)
+            status = relume_file_check(p->given[i].text, &p->log);
     return status;
 }
 
-static relume_status take_size(uint64_t *out, const struct args *args, const char *name)
+static relume_status take_size(uint64_t *out, const char *text, const char *name)
 {
-    const char *text = args_text(args, name, NULL);
     if (!text || !relume_size_parse(out, text))
         return RELUME_OK;
     return usage_error("%s: expected a size like 500M or 4G; found '%s'", name, text);
 }
 
-static relume_status take_limits(struct args *args)
+static relume_status take_limits(struct parsed *p)
 {
-    struct relume_limits *l = &args->limits;
-    l->any_format = args_has(args, "--any-format");
-    const relume_status status = take_size(&l->max_memory, args, "--max-memory");
-    return status ? status : take_size(&l->max_pixels, args, "--max-pixels");
+    struct relume_limits *l = &p->limits;
+    l->any_format = p->args->any_format;
+    const relume_status status = take_size(&l->max_memory, p->args->max_memory, "--max-memory");
+    return status ? status : take_size(&l->max_pixels, p->args->max_pixels, "--max-pixels");
 }
 
-static relume_status run_command(struct args *args, int argc, char **argv)
+// An option that capture no longer has by itself; NULL: none.
+static const char *moved_option(const struct command **to, int argc, char **argv)
 {
-    const struct command *c = args->command;
-    relume_status status = parse(args, argc, argv);
+    for (size_t m = 0; m < sizeof moved / sizeof *moved; m++)
+        for (int i = 0; i < argc && strcmp(argv[i], "--"); i++)
+            if (is_option(argv[i]) && !strncmp(argv[i], moved[m].option, strcspn(argv[i], "=")) &&
+                strlen(moved[m].option) == strcspn(argv[i], "=")) {
+                *to = moved[m].to;
+                return moved[m].option;
+            }
+    return NULL;
+}
+
+// The task of a command is its first word that names one; options may stand before it.
+static relume_status choose_task(struct parsed *p, int *argc, char **argv)
+{
+    const struct command *const *tasks = p->command->tasks;
+    int i = 0;
+    while (i < *argc && argv[i][0] == '-')
+        i++;
+    if (i == *argc)
+        return RELUME_OK;
+    const struct command *task = find_command(tasks, argv[i]);
+    if (!task)
+        return unknown_command("task", tasks, argv[i]);
+    p->command = task;
+    memmove(argv + i, argv + i + 1, (size_t)(--*argc - i) * sizeof *argv);
+    return RELUME_OK;
+}
+
+static relume_status run_command(struct parsed *p, int argc, char **argv)
+{
+    const char *old = NULL;
+    relume_status status = RELUME_OK;
+    if (p->command == &command_capture)
+        old = moved_option(&p->command, argc, argv);
+    else if (p->command->tasks)
+        status = choose_task(p, &argc, argv);
+    const struct command *c = p->command;
     if (!status)
-        status = take_limits(args);
+        status = fill_options(p, argc, argv);
+    if (!status)
+        status = take_limits(p);
     if (status)
         return status;
-    if (args_has(args, "--help")) {
+    if (p->args->help) {
         print_help(c);
         return RELUME_OK;
     }
-    args->quiet = args_has(args, "-q");
-    if (args->input_count < c->min_inputs || args->input_count > c->max_inputs)
+    if (old && !p->args->quiet)
+        (void)usage_error("'relume capture %s' is now 'relume %s'", old, c->name);
+    if (p->input_count < c->min_inputs || p->input_count > c->max_inputs)
         return usage_error("%s: expected 'relume %s %s'; found %d input%s", c->name, c->name,
-                           c->usage, args->input_count, args->input_count == 1 ? "" : "s");
-    status = note_inputs(args);
-    return status ? status : c->run(args);
+                           c->usage, p->input_count, p->input_count == 1 ? "" : "s");
+    status = note_inputs(p);
+    return status ? status : c->run(p->args);
 }
 
 static bool flush_stdout(void)
@@ -625,20 +687,19 @@ int main(int argc, char **argv)
         printf("relume %s\n", RELUME_VERSION);
         return 0;
     }
-    struct args *args = calloc(1, sizeof *args);
-    if (!args)
+    struct parsed *p = calloc(1, sizeof *p);
+    if (!p)
         return exit_code(RELUME_ENOMEM);
-    args->log = (struct relume_log){
-        .message = on_message, .progress = on_progress, .user = args, .limits = &args->limits};
-    for (const struct command *const *c = commands; *c; c++)
-        if (!strcmp((*c)->name, argv[1]))
-            args->command = *c;
-    relume_status status =
-        args->command ? run_command(args, argc - 2, argv + 2) : unknown_command(argv[1]);
+    p->log = (struct relume_log){
+        .message = on_message, .progress = on_progress, .user = p, .limits = &p->limits};
+    p->command = find_command(commands, argv[1]);
+    relume_status status = p->command ? run_command(p, argc - 2, argv + 2)
+                                      : unknown_command("command", commands, argv[1]);
     clear_bar();
     if (!flush_stdout() && !status)
         status = RELUME_EIO;
-    relume_inputs_destroy(&args->log.inputs);
-    free(args);
+    relume_inputs_destroy(&p->log.inputs);
+    free(p->args);
+    free(p);
     return exit_code(status);
 }

@@ -1,9 +1,9 @@
 // pattern_option.c - the --pattern option of synth and lights
 #include "pattern_option.h"
 
-relume_status args_pattern(const struct relume_pattern **out, const struct args *args)
+relume_status choose_pattern(const struct relume_pattern **out, const char *name)
 {
-    const char *name = args_text(args, "--pattern", "hammersley");
+    name = name ? name : "hammersley";
     const char *names[16];
     int n = 0;
     for (const struct relume_pattern *const *p = relume_patterns; *p && n < 15; p++)

@@ -4,13 +4,12 @@
 
 #include "cli.h"
 
+// A table row for a command's option.
 #define PATTERN_OPTION                                                                             \
-    {                                                                                              \
-        "--pattern", OPTION_TEXT, "P",                                                             \
-            "hammersley (default), grid, random, jittered, poisson, spiral", 0, 0                  \
-    }
+    TEXT("--pattern", pattern, "lights", "P",                                                      \
+         "hammersley (default), grid, random, jittered, poisson, spiral")
 
-// The pattern asked for, or the default; RELUME_EINVAL and a sentence for an unknown one.
-relume_status args_pattern(const struct relume_pattern **out, const struct args *args);
+// The pattern asked for, "hammersley" for NULL; RELUME_EINVAL and a sentence for an unknown one.
+relume_status choose_pattern(const struct relume_pattern **out, const char *name);
 
 #endif

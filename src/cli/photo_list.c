@@ -87,8 +87,8 @@ relume_status photo_list_make(struct photo_list *out, const struct args *args)
 {
     relume_status status = RELUME_OK;
     *out = (struct photo_list){0};
-    for (int i = 0; !status && i < args_inputs(args); i++)
-        status = photo_list_add(out, args_input(args, i), args_log(args));
+    for (int i = 0; !status && i < args->inputs; i++)
+        status = photo_list_add(out, args->input[i], args->log);
     if (status)
         photo_list_free(out);
     return status;

@@ -22,7 +22,7 @@ shoot="$build/tests/tools/shoot"
 "$shoot" photo b.jpg 4000 3000 4 1 12 -7 0.5
 "$shoot" photo c.jpg 4000 3000 0.25 "-$roll" -9 14 0.5
 printf '1\n4\n0.25\n' >times.txt
-timed '3 x 12 megapixels' "$build/relume" capture --hdr a.jpg b.jpg c.jpg --times times.txt --align blocks -o out.exr
+timed '3 x 12 megapixels' "$build/relume" hdr a.jpg b.jpg c.jpg --times times.txt --align blocks -o out.exr
 if [ -d "$data/chrome" ]; then
     mkdir chrome
     cp "$data"/chrome/chrome.[0-9]*.png chrome/

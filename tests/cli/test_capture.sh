@@ -110,7 +110,7 @@ head -n 6 lights.txt >>swapped.txt
 expect_ok 'another order' 'do not fit the lights: .* wrong order' "$RELUME" capture photos --lights swapped.txt -o out
 rm -rf out
 expect_fail 'positions of one ball' 2 'two balls' out "$RELUME" capture photos --ball 48,48,21 --near -o out
-expect_fail 'an option of brackets' 2 'works only with --hdr' out "$RELUME" capture photos --ghosts -o out
+expect_fail 'an option of brackets' 2 "ghosts is an option of 'relume hdr'" out "$RELUME" capture photos --ghosts -o out
 expect_fail 'a folder that is there' 2 'known' - "$RELUME" capture photos --lights lights.txt -o known
 # a line of numbers for each light, the broken one's too
 expect_ok 'a broken one is left out' 'left out' "$RELUME" capture mixed --lights lights.txt -o out --skip-bad

@@ -1,5 +1,5 @@
 #!/bin/sh
-# relume capture --hdr: brackets of a made camera whose radiance is known, the memorial church, and
+# relume hdr: brackets of a made camera whose radiance is known, the memorial church, and
 # what is refused.
 . "$(dirname "$0")/lib.sh"
 shoot="$BUILD/tests/tools/shoot"
@@ -11,35 +11,35 @@ printf '1\n4 # the longest\n1/4\n' >times.txt
 "$shoot" photo a.png 160 120 1 0 0 0 0.5
 "$shoot" photo b.png 160 120 4 0 0 0 0.5
 "$shoot" photo c.png 160 120 0.25 0 0 0 0.5
-expect_ok 'three exposures' - "$RELUME" capture --hdr a.png b.png c.png --times times.txt -o out.exr --save-response curve.txt
+expect_ok 'three exposures' - "$RELUME" hdr a.png b.png c.png --times times.txt -o out.exr --save-response curve.txt
 below 'radiance within 2 %' "$("$shoot" logrms out.exr truth.exr 0)" 0.02
 check 'a table is printed' grep -q '^b.png .* 4 ' out.txt
 check 'the curve is monotone' awk 'NR > 2 { if ($2 < r || $3 < g || $4 < b) exit 1; r = $2; g = $3; b = $4 }' curve.txt
-expect_ok 'by the curve that was found' - "$RELUME" capture --hdr a.png b.png c.png --times times.txt -o again.exr --response curve.txt
+expect_ok 'by the curve that was found' - "$RELUME" hdr a.png b.png c.png --times times.txt -o again.exr --response curve.txt
 same 'the same bytes' out.exr again.exr
-expect_ok 'on three threads' - "$RELUME" capture --hdr a.png b.png c.png --times times.txt -o again.exr --align blocks --ghosts --threads 3
-expect_ok 'on one' - "$RELUME" capture --hdr a.png b.png c.png --times times.txt -o one.exr --align blocks --ghosts --threads 1
+expect_ok 'on three threads' - "$RELUME" hdr a.png b.png c.png --times times.txt -o again.exr --align blocks --ghosts --threads 3
+expect_ok 'on one' - "$RELUME" hdr a.png b.png c.png --times times.txt -o one.exr --align blocks --ghosts --threads 1
 same 'equal bytes for any threads' again.exr one.exr
-expect_ok 'a grey region' - "$RELUME" capture --hdr a.png b.png c.png --times times.txt -o out.exr --white 10,10,20,20
+expect_ok 'a grey region' - "$RELUME" hdr a.png b.png c.png --times times.txt -o out.exr --white 10,10,20,20
 mkdir shots && cp a.png b.png c.png shots && cp a.png shots/d.png && cp b.png shots/e.png && cp c.png shots/f.png
-expect_ok 'two brackets of a folder' - "$RELUME" capture --hdr shots --times times.txt -o made --json
+expect_ok 'two brackets of a folder' - "$RELUME" hdr shots --times times.txt -o made --json
 same 'one picture each' made/a.exr made/d.exr
 check 'both are reported' test "$(number output out.txt | wc -l)" -eq 2
 # numbers of float files do not end at 1: nothing is saturated, and the merge goes on above 1
 for gain in 5 10 20; do "$mkimage" gain truth.exr g$gain.exr $gain; done
 printf '1\n2\n4\n' >gains.txt
-expect_ok 'three exposures as floats' - "$RELUME" capture --hdr g5.exr g10.exr g20.exr --times gains.txt -o floats.exr --json
+expect_ok 'three exposures as floats' - "$RELUME" hdr g5.exr g10.exr g20.exr --times gains.txt -o floats.exr --json
 below 'the radiance of the shortest' "$("$mkimage" maxdiff floats.exr g5.exr)" 1e-4 # of up to 100: rounding
 check 'no float is saturated' test "$(number saturated out.txt | sort -u)" = 0
 printf 'c.png 0.25\nb.png 4s\na.png 1\n' >names.txt
-expect_ok 'times by name' - "$RELUME" capture --hdr a.png b.png c.png --times names.txt -o again.exr --response curve.txt
-expect_ok 'in any order' - "$RELUME" capture --hdr c.png a.png b.png --times names.txt -o one.exr --response curve.txt
+expect_ok 'times by name' - "$RELUME" hdr a.png b.png c.png --times names.txt -o again.exr --response curve.txt
+expect_ok 'in any order' - "$RELUME" capture --hdr c.png a.png b.png -q --times names.txt -o one.exr --response curve.txt
 below 'the same picture' "$("$mkimage" maxdiff again.exr one.exr)" 1e-5 # sums in another order
 
 for t in 1e300 1e-300 1e10; do
     printf '1\n%s\n1/4\n' $t >far.txt
     expect_fail "a time of $t s" 1 'far.txt: line 2; expected an exposure time from' out2.exr \
-        "$RELUME" capture --hdr a.png b.png c.png --times far.txt --response curve.txt -o out2.exr
+        "$RELUME" hdr a.png b.png c.png --times far.txt --response curve.txt -o out2.exr
 done
 
 # ---- held by hand, and something moves
@@ -47,14 +47,14 @@ done
 "$shoot" photo c1.png 240 180 0.25 -3 -8 7 0.5 170 70 22
 "$shoot" photo a1.png 240 180 1 4 9 -6 0.5 90 80 22
 "$shoot" truth truth1.exr 240 180
-expect_ok 'blocks' - "$RELUME" capture --hdr a1.png b1.png c1.png --times times.txt -o out.exr --align blocks --ghosts --json
+expect_ok 'blocks' - "$RELUME" hdr a1.png b1.png c1.png --times times.txt -o out.exr --align blocks --ghosts --json
 above 'ghosts are found' "$(number ghosts out.txt | sed -n 1p)" 0.02
 check 'but not in the anchor' grep -q 'b1.png.*"ghosts": 0}' out.txt
 "$shoot" photo a2.png 240 180 1 4 9 -6 0.5
 "$shoot" photo b2.png 240 180 4 0 0 0 0.5
 "$shoot" photo c2.png 240 180 0.25 -3 -8 7 0.5
 for mode in blocks homography; do
-    expect_ok "$mode, nothing moves" - "$RELUME" capture --hdr a2.png b2.png c2.png --times times.txt -o out.exr --align $mode
+    expect_ok "$mode, nothing moves" - "$RELUME" hdr a2.png b2.png c2.png --times times.txt -o out.exr --align $mode
     below "radiance after $mode" "$("$shoot" logrms out.exr truth1.exr 30)" 0.06 # and interpolation
 done
 
@@ -75,12 +75,12 @@ fails() { # name, status, pattern, arguments...
     name=$1 want=$2 pattern=$3
     shift 3
     rm -f out.exr
-    expect_fail "$name" "$want" "$pattern" out.exr "$RELUME" capture --hdr "$@" -o out.exr
+    expect_fail "$name" "$want" "$pattern" out.exr "$RELUME" hdr "$@" -o out.exr
 }
 fails 'no EXIF' 1 'a.png: no exposure time in its EXIF; expected --times' a.png b.png c.png
 printf '1\n4\n0.42\n' >lies.txt
 expect_ok 'a time that lies by less' 'a.png: its exposure time is given as 1 s; its brightness fits .*; other times are wrong as well' \
-    "$RELUME" capture --hdr a.png b.png c.png --times lies.txt -o lies.exr
+    "$RELUME" hdr a.png b.png c.png --times lies.txt -o lies.exr
 printf '1\n1\n1\n' >ones.txt
 fails 'one exposure only' 1 'a.png: all 3 exposures .* two different' a.png b.png c.png --times ones.txt
 printf '4\n1\n1/16\n' >wrong.txt
@@ -94,17 +94,17 @@ printf '1\n2\n' >two.txt
 fails 'all saturated' 1 'white.png: .*saturated' white.png whiter.png --times two.txt
 fails 'all saturated, as it is said of more' 1 'white.png: saturated, as are the other 2' white.png whiter.png white.png --times ones.txt
 printf '1\n4\n1/4\n900\n' >five.txt
-expect_ok 'one of them white all over' - "$RELUME" capture --hdr a.png b.png c.png white.png --times five.txt -o out.exr
+expect_ok 'one of them white all over' - "$RELUME" hdr a.png b.png c.png white.png --times five.txt -o out.exr
 below 'and of no harm' "$("$shoot" logrms out.exr truth.exr 0)" 0.02
 "$shoot" photo other.png 160 120 1 0 9000 700 0.5
 printf '1\n4\n1/4\n1/2\n' >four.txt
 fails 'another scene' 1 'other.png: shows another scene' a.png b.png c.png other.png --times four.txt
-expect_ok 'it can be left out' 'warning: other.png: shows another scene .*left out' "$RELUME" capture --hdr a.png b.png c.png other.png --times four.txt -o out.exr --skip-bad
+expect_ok 'it can be left out' 'warning: other.png: shows another scene .*left out' "$RELUME" hdr a.png b.png c.png other.png --times four.txt -o out.exr --skip-bad
 below 'and the others are merged' "$("$shoot" logrms out.exr truth.exr 0)" 0.02
 head -c 9000 a.png >torn.png
 fails 'a torn file' 1 'torn.png: ' a.png b.png torn.png c.png --times four.txt
 printf 'a.png 1\nb.png 4\ntorn.png 1/2\nc.png 1/4\n' >torn.txt
-expect_ok 'left out as well' 'warning: torn.png: ' "$RELUME" capture --hdr a.png b.png torn.png c.png --times torn.txt -o again.exr --skip-bad --response curve.txt
+expect_ok 'left out as well' 'warning: torn.png: ' "$RELUME" hdr a.png b.png torn.png c.png --times torn.txt -o again.exr --skip-bad --response curve.txt
 fails 'without alignment it is another scene' 1 '[abc]2.png: shows another scene .* or the camera moved' a2.png b2.png c2.png --times times.txt
 fails 'other sizes' 1 'b1.png: 240 x 180 pixels; expected 160 x 120' a.png b1.png c.png --times times.txt
 head -c 5000 /dev/zero >photo.nef
@@ -120,7 +120,7 @@ fails 'a flat field of another size' 1 'a1.png: .*expected 160 x 120' a.png b.pn
 # ---- the memorial church (Debevec, Malik 1997)
 memorial=${RELUME_DATA:-$TOP/../shared/data}/hdr-memorial-brackets
 if [ -e "$memorial/memorial.hdr" ]; then
-    expect_ok 'memorial church' - "$RELUME" capture --hdr "$memorial"/memorial00*.png --times "$memorial/shutter_times.txt" -o church.exr --save-response film.txt --json
+    expect_ok 'memorial church' - "$RELUME" hdr "$memorial"/memorial00*.png --times "$memorial/shutter_times.txt" -o church.exr --save-response film.txt --json
     # the scans have a border of 40 pixels in blue and black
     below 'log RMS against the reference' "$("$shoot" logrms church.exr "$memorial/memorial.hdr" 40)" 0.10
     check 'its curve is monotone' awk 'NR > 2 { if ($2 < r || $3 < g || $4 < b) exit 1; r = $2; g = $3; b = $4 }' film.txt

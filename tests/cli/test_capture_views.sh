@@ -18,14 +18,14 @@ as_true() { # name, capture
 # ---- a grid of cameras
 mkdir rows
 for n in 0 1 2 3 4 5 6 7 8; do cp slab/view0$n/light0000.exr rows/view_0$((n / 3))_0$((n % 3)).exr; done
-relume capture rows --slab --lights slab/capture.json -o out
+relume lightfield rows --lights slab/capture.json -o out
 as_true 'rows and columns' out
-relume capture rows --slab -o wide --baseline 2 --distance 6 --window 4 --st-z 1
+relume lightfield rows -o wide --baseline 2 --distance 6 --window 4 --st-z 1
 check 'world units' grep -q '"uv_plane_z": 7, "st_plane_z": 1, "st_min": \[-2, -2\]' wide/capture.json
 check 'and the baseline' grep -q '"uv": \[-1, 1\]' wide/capture.json
 expect_ok 'that rows are as far apart as columns is said' 'from the first to the last; if not, give --baseline-v' \
-    "$RELUME" capture rows --slab -o square
-relume capture rows --slab -o high --baseline 2 --baseline-v 0.5
+    "$RELUME" lightfield rows -o square
+relume lightfield rows -o high --baseline 2 --baseline-v 0.5
 check 'rows nearer to each other than columns' grep -q '"uv": \[-1, 0.25\]' high/capture.json
 relume capture rows --slab -o moved --focus-disparity 2 --force
 below 'a focus disparity crops' "$(relume encode moved -o m.exr --no-depth && "$RELUME" info m.exr --json |
@@ -34,15 +34,22 @@ below 'a focus disparity crops' "$(relume encode moved -o m.exr --no-depth && "$
 # ---- bad grids (names: tests/unit/test_views.c)
 relume relight slab.exr -o rows/view_02_02.exr --size 40x40
 expect_fail 'another size' 1 'view_02_02.exr: 40 x 40 pixels; expected 48 x 48' bad \
-    "$RELUME" capture rows --slab -o bad
+    "$RELUME" lightfield rows -o bad
 rm rows/view_02_02.exr
-expect_fail 'a missing camera is named' 1 'row 2, column 2' bad "$RELUME" capture rows --slab -o bad
+expect_fail 'a missing camera is named' 1 'row 2, column 2' bad "$RELUME" lightfield rows -o bad
 cp slab/view08/light0000.exr rows/view_02_02.exr
+
+# ---- the spellings before these commands, for one version
+expect_ok 'an old spelling says the new one' "'relume capture --slab' is now 'relume lightfield'" \
+    "$RELUME" capture rows --slab --lights slab/capture.json -o old
+same 'and does the same' old/capture.json out/capture.json
+check '-q silences the hint' test -z "$("$RELUME" capture rows --slab -o quiet -q 2>&1)"
+"$RELUME" hdr --help | grep -q -e '--hdr' && not_ok 'help shows new spellings only' || ok 'help shows new spellings only'
 
 # ---- depth from views
 relume synth teapot -o many --views 3x3 --lights 3 --hemisphere --size 48 --samples 4 || exit 1
 for n in 1 3; do
-    relume capture many --depth-from-views -o depth$n --threads $n --json >d$n.json
+    relume lightfield many --depth-from-views -o depth$n --threads $n --json >d$n.json
 done
 # 1 to 2 % were seen; the teapot's relief is a quarter of its distance
 below 'depth is near the truth' "$(field median_relative d1.json)" 0.03
@@ -59,7 +66,7 @@ above 'a camera left out is met 4 dB better' "$(psnr with.png.exr truth/view00/l
     "$(psnr without.png.exr truth/view00/light0000.exr | awk '{ print $1 + 4 }')"
 relume synth teapot -o flat --projection planar --lights 1 --size 16 --samples 1
 expect_fail 'depth needs a slab' 2 'expected a slab of two views' bad \
-    "$RELUME" capture flat --depth-from-views -o bad
+    "$RELUME" lightfield flat --depth-from-views -o bad
 
 # ---- poses: the slab's own cameras as COLMAP would write them
 mkdir model
@@ -73,13 +80,13 @@ for r in 0 1 2; do
         echo >>model/images.txt
     done
 done >model/cameras.txt
-relume capture rows --colmap model --distance 3 --views 3x3 -o posed --lights slab/capture.json
+relume lightfield rows --colmap model --distance 3 --views 3x3 -o posed --lights slab/capture.json
 as_true 'from poses: a view at a photograph is that photograph' posed
 expect_fail 'parallel cameras without points ask for the distance' 1 'expected --distance' bad \
-    "$RELUME" capture rows --colmap model -o bad
+    "$RELUME" lightfield rows --colmap model -o bad
 sed 's/PINHOLE 48/FISHEYE 48/' model/cameras.txt >c && cp -r model fish && mv c fish/cameras.txt
 expect_fail 'a camera model that is not supported' 1 'camera model FISHEYE' bad \
-    "$RELUME" capture rows --colmap fish --distance 3 -o bad
+    "$RELUME" lightfield rows --colmap fish --distance 3 -o bad
 
 # ---- panoramas
 relume synth attic -o attic --lights 1 --size 48 --samples 4 --projection cube || exit 1
@@ -93,28 +100,28 @@ look top 0 90
 look bottom 0 -90
 look back 180 0
 look front 0 0
-relume capture faces --panorama cube -o cube
+relume panorama faces --layout cube -o cube
 above 'six faces' "$(psnr cube/light0000.exr unfolded.exr)" 60
 mkdir card
 for f in right:posx left:negx top:posy bottom:negy front:posz back:negz; do
     cp faces/${f%:*}.exr card/${f#*:}.exr
 done
 expect_ok 'the z of graphics cards shows at the edges' 'posz.exr is the face -z' \
-    "$RELUME" capture card --panorama cube -o card_cube
+    "$RELUME" panorama card --layout cube -o card_cube
 same 'and is turned round' card_cube/light0000.exr cube/light0000.exr
 rm card/posy.exr
-expect_fail 'five faces' 1 'expected six faces' bad "$RELUME" capture card --panorama cube -o bad
-expect_fail 'not square' 1 'expected square faces' bad "$RELUME" capture unfolded.exr unfolded.exr \
-    unfolded.exr unfolded.exr unfolded.exr unfolded.exr --panorama cube -o bad
+expect_fail 'five faces' 1 'expected six faces' bad "$RELUME" panorama card --layout cube -o bad
+expect_fail 'not square' 1 'expected square faces' bad "$RELUME" panorama unfolded.exr unfolded.exr \
+    unfolded.exr unfolded.exr unfolded.exr unfolded.exr --layout cube -o bad
 relume synth attic -o sphere --lights 1 --size 32 --samples 1 --projection spherical || exit 1
 cp sphere/view00/light0000.exr s.exr
-relume capture s.exr --panorama sphere --depth sphere/view00/depth.exr -o taken
+relume panorama s.exr --depth sphere/view00/depth.exr -o taken
 same 'a sphere as it is, with depth' taken/depth.exr sphere/view00/depth.exr
 relume capture s.exr --panorama cylinder -o cylinder
 check 'a cylinder of square pixels' grep -q '"v_min": -1.57079633, "v_max": 1.57079633' cylinder/capture.json
 relume relight attic.exr -o grey.png
 expect_fail 'grey depth asks for its range' 2 'expected the distances of white and black' bad \
-    "$RELUME" capture s.exr --panorama sphere --depth grey.png -o bad
+    "$RELUME" panorama s.exr --depth grey.png -o bad
 
 # ---- stitching
 if [ ! -e "$BUILD/librelume-stitch.so.0" ]; then
@@ -122,13 +129,13 @@ if [ ! -e "$BUILD/librelume-stitch.so.0" ]; then
 elif [ ! -e "$data/hdri-polyhaven-1k/forest.hdr" ]; then
     skip 'stitched photographs' 'no data'
 else
-    relume capture "$data/hdri-polyhaven-1k/forest.hdr" --panorama sphere -o forest
+    relume panorama "$data/hdri-polyhaven-1k/forest.hdr" -o forest
     relume encode forest -o forest.exr --basis table --bits half
     for p in 0 35 70; do
         relume relight forest.exr -o shot$p.exr --pan $p --zoom 1.2 --size 320x240
     done
-    expect_ok 'photographs are stitched' 'cover' "$RELUME" capture shot0.exr shot35.exr shot70.exr \
-        --panorama stitch -o stitched --width 1024
+    expect_ok 'photographs are stitched' 'cover' "$RELUME" panorama shot0.exr shot35.exr shot70.exr \
+        -o stitched --width 1024
     # 2 atan(1 / 1.2) = 79.6 degrees; half a degree is four pixels
     below 'their field of view is found' "$(sed -n 's/.*photographs of \([0-9.]*\) degrees.*/\1/p' err.txt |
         awk '{ d = $1 - 79.6; print d < 0 ? -d : d }')" 0.5
@@ -140,6 +147,6 @@ else
     above 'and meet the truth' "$(psnr look_stitched.png look_forest.png)" 18
     relume relight forest.exr -o away.exr --pan 200 --zoom 1.2 --size 320x240
     expect_fail 'a photograph that overlaps none' 1 'away.exr: overlaps none' bad \
-        "$RELUME" capture shot0.exr shot35.exr shot70.exr away.exr --panorama stitch -o bad
+        "$RELUME" panorama shot0.exr shot35.exr shot70.exr away.exr -o bad
 fi
 finish

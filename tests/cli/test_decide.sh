@@ -62,7 +62,7 @@ check 'a photograph: 8 bits' [ "$(told basis) $(told bits) $(told domain)" = 'ta
 # Real maps, at several exposures: peaks of thousands, and shadows.
 for map in hdri-polyhaven-1k/studio.hdr exr-openexr-images/StageEnvLatLong.exr; do
     if [ ! -f "$data/$map" ]; then skip "$map" 'no shared data'; continue; fi
-    "$RELUME" capture "$data/$map" --panorama sphere -o map --force -q 2>/dev/null
+    "$RELUME" panorama "$data/$map" -o map --force -q 2>/dev/null
     "$mkimage" gain "$data/$map" truth.exr 1
     "$RELUME" encode map -o e.exr -q
     "$RELUME" relight e.exr -o e.relit.exr -q

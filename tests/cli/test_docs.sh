@@ -7,9 +7,10 @@ docs="$TOP/docs"
 {
     "$VIEWER" --help
     for c in $("$RELUME" --help | sed -n 's/^  \([a-z]*\) .*/\1/p'); do "$RELUME" "$c" --help; done
+    for t in $("$RELUME" btf --help | sed -n '/^tasks;/,/^$/s/^  \([a-z]*\) .*/\1/p'); do "$RELUME" btf "$t" --help; done
 } | grep -o -e '--[a-z-]*' | sort -u >known.txt
-# options of other programs that the texts use, and a mistake that they show
-printf '%s\n' --cflags --libs --static --info --version --lihgt --table >>known.txt
+# options of other programs that the texts use, a mistake that they show, and old spellings
+printf '%s\n' --cflags --libs --static --info --version --lihgt --table --hdr --slab --panorama >>known.txt
 # anchors of a page: its headings as web pages of Git hosts name them, once each
 anchors() { grep '^#' "$1" | sed 's/^#* //' | tr 'A-Z' 'a-z' | sed 's/\[\([^]]*\)\]([^)]*)/\1/g; s/[^a-z0-9 _-]//g; s/ /-/g'; }
 for page in "$docs"/*.md "$docs"/*/*.md "$TOP/README.md"; do

@@ -34,7 +34,7 @@ no "an eye's pattern" --psf glare --psf o.foo
 no 'compare' -o compare missing.exr missing.exr -o o.foo
 no 'btf render' -o btf render missing -o o.foo
 no 'btf render of objects' -o btf render missing.json -o o.foo
-no 'an exposure merged' -o capture --hdr missing.png -o o.foo
+no 'an exposure merged' -o hdr missing.png -o o.foo
 no 'albedo' --albedo capture missing -o cap --albedo o.foo
 no 'a relit picture' --relight capture missing -o cap --encode c.exr --relight o.foo
 expect_fail 'numbered pictures' 2 'o%04d.foo: no picture format' - "$RELUME" glare missing.exr -o o%04d.foo --frames 2

@@ -103,11 +103,16 @@ has_sections() { # page
     done
 }
 has_example() { "$@" --help | sed -n '/^example:/,$p' | grep -q "^  relume"; }
-for page in relume relume-view $(for c in $commands; do echo "relume-$c"; done); do
+tasks=$("$RELUME" btf --help | sed -n '/^tasks;/,/^$/s/^  \([a-z]*\) .*/\1/p')
+[ "$(echo "$tasks" | wc -w)" -eq 6 ] || not_ok "btf lists its tasks" "$tasks"
+for page in relume relume-view $(for c in $commands; do echo "relume-$c"; done) $(for t in $tasks; do echo "relume-btf-$t"; done); do
     check "$page.1 has every section" has_sections "$man/$page.1"
 done
 for c in $commands; do
     check "$c --help has an example" has_example "$RELUME" "$c"
+done
+for t in $tasks; do
+    check "btf $t --help has an example" has_example "$RELUME" btf "$t"
 done
 check "relume-view --help has an example" has_example "$VIEWER"
 for option in $("$RELUME" encode --help | sed -n 's/^  \(--[a-z-]*\).*/\1/p'); do
@@ -133,8 +138,10 @@ offers() { # expected, words...
 }
 if command -v bash >/dev/null; then
     check "completion of commands" offers "encode eval export" relume e
-    check "completion of options" offers "--coefficients --colour --compression --codebook --codebook-start" relume encode --co
+    check "completion of options" offers "--compression --coefficients --colour --codebook --codebook-start" relume encode --co
     check "completion of values" offers "8 10 12 16 half log float" relume encode --bits ""
+    check "completion of tasks" offers "render" relume btf re
+    check "completion of a task's options" offers "--tiles --tile" relume btf tile --ti
     check "completion of scenes" offers "teapot" relume synth te
     check "completion of the viewer" offers "--offscreen" relume-view --off
 else

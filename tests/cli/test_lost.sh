@@ -86,7 +86,7 @@ else
     skip 'films' 'no ffmpeg'
 fi
 refused 'frames into a folder of the user' 'album: already exists' "$RELUME" glare $lamp -o album --frames 1
-refused 'merged brackets onto a photograph' 'light0000.exr: .*read' "$RELUME" capture --hdr cap/view00/light000[01].exr -o cap/view00/light0000.exr
+refused 'merged brackets onto a photograph' 'light0000.exr: .*read' "$RELUME" hdr cap/view00/light000[01].exr -o cap/view00/light0000.exr
 if [ -x "$VIEWER" ]; then
     refused 'the viewer onto its file' 'file.exr: .*read' sh -c "exec \"$VIEWER\" file.exr --offscreen file.exr --size 32x32 2>&1 >&2 | sed 's/^relume-view/relume/' >&2; exit 2"
 fi

@@ -29,15 +29,15 @@ tame 'a text in capture.json' "$RELUME" encode capture.json -o x.exr
 "$shoot" photo "$red.png" 80 60 1 0 0 0 0.5
 "$shoot" photo b.png 80 60 4 0 0 0 0.5
 printf '1\n4\n' >times.txt
-tame 'a table of photographs' "$RELUME" capture --hdr "$red.png" b.png --times times.txt -o made.exr
-"$RELUME" capture --hdr "$red.png" b.png --times times.txt -o made.exr --json >out.txt
+tame 'a table of photographs' "$RELUME" hdr "$red.png" b.png --times times.txt -o made.exr
+"$RELUME" hdr "$red.png" b.png --times times.txt -o made.exr --json >out.txt
 check 'JSON escapes it' grep -qF '"a\u001b[31m\u009bb\u202ec.png"' out.txt
 check 'made of a hostile name' test -s made.exr
 
 # ---- an empty name is wrong usage
 for command in 'synth box' 'capture b.png' 'encode list.lp' 'relight made.exr' 'sweep list.lp' 'import b.png' \
     'export made.exr --to ptm' 'glare made.exr' 'btf fit paper' 'btf render paper' 'synth --btf paper' \
-    'capture --hdr b.png' 'btf tile paper' 'btf crop paper'; do
+    'hdr b.png' 'btf tile paper'; do
     expect_fail "$command -o ''" 2 'found an empty' - "$RELUME" $command -o ''
 done
 expect_fail 'an empty input' 2 'info: expected .*found an empty name' - "$RELUME" info ''
@@ -46,9 +46,9 @@ check 'the viewer: an empty output is wrong usage' sh -c "$VIEWER made.exr --off
 # ---- names as long as the disk allows
 for n in 239 251; do
     long=$(printf "%0${n}d" 0)
-    expect_ok "a picture's name of $((n + 4)) bytes" - "$RELUME" capture --hdr "$red.png" b.png --times times.txt -o "$long.exr"
+    expect_ok "a picture's name of $((n + 4)) bytes" - "$RELUME" hdr "$red.png" b.png --times times.txt -o "$long.exr"
     cp b.png "$long.png"
-    expect_ok "a photograph's of $((n + 4))" - "$RELUME" capture --hdr "$red.png" "$long.png" --times times.txt -o merged.exr
+    expect_ok "a photograph's of $((n + 4))" - "$RELUME" hdr "$red.png" "$long.png" --times times.txt -o merged.exr
     expect_ok "a folder's of $((n + 4))" - "$RELUME" synth box --size 8 --lights 2 -o "${long}0000"
     expect_ok "a relume file's of $((n + 4))" - "$RELUME" encode "${long}0000" -o "$long.exr" --basis table
 done
@@ -84,7 +84,7 @@ rm c/view00/light0002.png
 refused 'a missing image, .lp' '1 of 6 images is missing; --skip-missing continues without it' c/dirs.lp
 refused 'a missing image' '1 of 6 images is missing; --skip-missing continues without' c
 mkdir rays && for i in 0 1 2 3; do cp b.png "rays/r$((i / 2))_c$((i % 2))_.png"; done
-expect_ok 'a slab of photographs elsewhere' - "$RELUME" capture rays --slab -o slab --names 'r{row}_c{column}_' -q
+expect_ok 'a slab of photographs elsewhere' - "$RELUME" lightfield rays -o slab --names 'r{row}_c{column}_' -q
 expect_ok 'needs no trust' - "$RELUME" encode slab -o x.exr --basis table -q && rm -f x.exr
 
 # ---- errors in per cent of white, the figures of --json

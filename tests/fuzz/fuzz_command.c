@@ -92,7 +92,7 @@ static void restore(void)
 
 // ---------------------------------------------------------------- one line
 
-static struct args args;
+static struct parsed parsed;
 
 static void stop(int signal_number)
 {
@@ -105,22 +105,21 @@ static relume_status run(int count, char **line, bool patiently)
     static const struct itimerval never = {{0, 0}, {0, 0}};
     const struct itimerval once = {{0, 0}, patiently ? never.it_value : PATIENT};
     FILE *const out = stdout;
-    args.command = NULL;
-    args.given_count = args.input_count = 0;
-    args.log = (struct relume_log){
-        .message = on_message, .progress = on_progress, .user = &args, .limits = &args.limits};
-    args.limits = (struct relume_limits){.max_memory = 64 << 20, .max_pixels = 1 << 16};
+    parsed.given_count = parsed.input_count = parsed.listed = 0;
+    parsed.log = (struct relume_log){
+        .message = on_message, .progress = on_progress, .user = &parsed, .limits = &parsed.limits};
+    parsed.limits = (struct relume_limits){.max_memory = 64 << 20, .max_pixels = 1 << 16};
     interrupted = 0;
-    for (const struct command *const *c = commands; *c; c++)
-        if (!strcmp((*c)->name, line[0]))
-            args.command = *c;
+    parsed.command = find_command(commands, line[0]);
     stdout = people;
     setitimer(ITIMER_PROF, &once, NULL);
-    const relume_status status =
-        args.command ? run_command(&args, count - 1, line + 1) : unknown_command(line[0]);
+    const relume_status status = parsed.command ? run_command(&parsed, count - 1, line + 1)
+                                                : unknown_command("command", commands, line[0]);
     setitimer(ITIMER_PROF, &never, NULL);
     stdout = out;
-    relume_inputs_destroy(&args.log.inputs);
+    relume_inputs_destroy(&parsed.log.inputs);
+    free(parsed.args);
+    parsed.args = NULL;
     return status;
 }
 
@@ -155,7 +154,7 @@ static bool one(struct fuzz *f, struct bytes b)
         abort();
     // a sweep keeps the rows that it has
     const bool changes = seen.made || seen.changed || seen.found != kept_count;
-    if (seen.unfinished || (status && changes && args.command != &command_sweep))
+    if (seen.unfinished || (status && changes && parsed.command != &command_sweep))
         abort();
     if (changes)
         restore();

@@ -1,4 +1,4 @@
-// bracket.c - the photographs of one radiance map on their way through `relume capture --hdr`
+// bracket.c - the photographs of one radiance map on their way through `relume hdr`
 #include "commands/bracket.h"
 
 #include "photo_list.h"
@@ -19,11 +19,11 @@ static void say_softly(void *user, enum relume_level level, const char *text)
     log->message(log->user, level == RELUME_ERROR ? RELUME_WARNING : level, text);
 }
 
-static struct relume_log softly(const struct args *args)
+static struct relume_log softly(const struct hdr_options *o)
 {
-    struct relume_log soft = *args_log(args);
+    struct relume_log soft = *o->args.log;
     soft.message = say_softly;
-    soft.user = (void *)args_log(args);
+    soft.user = (void *)o->args.log;
     return soft;
 }
 
@@ -64,11 +64,11 @@ static relume_status check_size(const struct bracket *b, int i, const struct rel
     return RELUME_EDATA;
 }
 
-relume_status bracket_load(struct bracket *b, const struct args *args)
+relume_status bracket_load(struct bracket *b, const struct hdr_options *o)
 {
-    const bool skip = args_has(args, "--skip-bad");
-    const struct relume_log soft = softly(args);
-    const struct relume_log *log = skip ? &soft : args_log(args);
+    const bool skip = o->skip_bad;
+    const struct relume_log soft = softly(o);
+    const struct relume_log *log = skip ? &soft : o->args.log;
     for (int i = 0; i < b->n;) {
         const struct relume_notes noted = b->notes[i];
         relume_status status =
@@ -148,10 +148,10 @@ static relume_status align_one(struct bracket *b, int i, enum align_mode mode,
     return status;
 }
 
-relume_status bracket_align(struct bracket *b, enum align_mode mode, const struct args *args)
+relume_status bracket_align(struct bracket *b, enum align_mode mode, const struct hdr_options *o)
 {
-    const bool skip = args_has(args, "--skip-bad");
-    const struct relume_log soft = softly(args), *log = skip ? &soft : args_log(args);
+    const bool skip = o->skip_bad;
+    const struct relume_log soft = softly(o), *log = skip ? &soft : o->args.log;
     b->anchor = relume_align_anchor(b->codes, b->n);
     b->aligned = mode != ALIGN_NONE;
     for (int i = 0; b->aligned && i < b->n; i++) {
@@ -161,12 +161,12 @@ relume_status bracket_align(struct bracket *b, enum align_mode mode, const struc
         const relume_status status =
             align_one(b, i, mode,
                       relume_align_params(.log = prefix_log(&about, log, b->path[i]),
-                                          .threads = args_threads(args)));
+                                          .threads = o->args.threads));
         if (status == RELUME_EDATA && skip)
             bracket_drop(b, i--);
         else if (status)
             return status;
-        if (!log->progress(args_log(args)->user, "aligning", (i + 1.0) / b->n))
+        if (!log->progress(o->args.log->user, "aligning", (i + 1.0) / b->n))
             return RELUME_ECANCEL;
     }
     return RELUME_OK;
@@ -182,15 +182,15 @@ static bool all_linear(const struct bracket *b)
     return true;
 }
 
-static relume_status find_response(struct bracket *b, const struct args *args)
+static relume_status find_response(struct bracket *b, const struct hdr_options *o)
 {
-    const char *file = args_text(args, "--response", NULL);
-    const char *transfer = args_text(args, "--transfer", NULL);
+    const char *file = o->response;
+    const char *transfer = o->transfer;
     struct relume_transfer known = {.curve = RELUME_CURVE_LINEAR};
     struct prefix_log log;
     if (file) {
         b->response_source = file;
-        return relume_response_load(&b->response, file, args_log(args));
+        return relume_response_load(&b->response, file, o->args.log);
     }
     if (transfer && relume_transfer_parse(&known, transfer))
         return usage_error("--transfer: expected linear, srgb or gamma:NUMBER; found '%s'",
@@ -203,8 +203,7 @@ static relume_status find_response(struct bracket *b, const struct args *args)
     b->response_source = "recovered";
     return relume_response_recover(
         &b->response, b->codes, b->exposure, b->n,
-        relume_recover_params(.log = prefix_log(&log, args_log(args), b->path[0]),
-                              .masks = b->masks));
+        relume_recover_params(.log = prefix_log(&log, o->args.log, b->path[0]), .masks = b->masks));
 }
 
 // The last code that says nothing in any channel, as a part of full scale.
@@ -228,12 +227,12 @@ static void combine(struct relume_image *mask, const struct relume_image *ghosts
     *part = 1.0 - good / (double)pixels;
 }
 
-static relume_status leave_out_ghosts(struct bracket *b, double black, const struct args *args)
+static relume_status leave_out_ghosts(struct bracket *b, double black, const struct hdr_options *o)
 {
     struct relume_image ghosts[MAX_BRACKET];
     relume_status status = relume_ghost_masks(
         ghosts, b->codes, b->exposure, b->n, b->anchor,
-        relume_ghost_params(.log = args_log(args), .threads = args_threads(args), .black = black));
+        relume_ghost_params(.log = o->args.log, .threads = o->args.threads, .black = black));
     for (int i = 0; !status && i < b->n; i++) {
         if (b->masks[i].data) {
             combine(&b->masks[i], &ghosts[i], &b->ghosts[i]);
@@ -247,20 +246,20 @@ static relume_status leave_out_ghosts(struct bracket *b, double black, const str
 }
 
 // A response that was recovered may show a black level: below it nothing can be told apart.
-static relume_status find_response_and_ghosts(struct bracket *b, const struct args *args)
+static relume_status find_response_and_ghosts(struct bracket *b, const struct hdr_options *o)
 {
     const double dark = 0.05;
-    const bool ghosts = args_has(args, "--ghosts");
-    relume_status status = find_response(b, args);
+    const bool ghosts = o->ghosts;
+    relume_status status = find_response(b, o);
     if (status || !ghosts)
         return status;
-    status = leave_out_ghosts(b, dark + black_level(&b->response), args);
-    return status || strcmp(b->response_source, "recovered") != 0 ? status : find_response(b, args);
+    status = leave_out_ghosts(b, dark + black_level(&b->response), o);
+    return status || strcmp(b->response_source, "recovered") != 0 ? status : find_response(b, o);
 }
 
 // The worst alone: where the curve is not known, an error of one time goes over into the curve and
 // from there to the others' times, in part.
-static void report_bias(const struct bracket *b, const struct args *args)
+static void report_bias(const struct bracket *b, const struct hdr_options *o)
 {
     char text[1024];
     int worst = 0, wrong = 0;
@@ -280,7 +279,7 @@ static void report_bias(const struct bracket *b, const struct args *args)
              "%s: its exposure time is given as %.4g s; its brightness fits %.4g s%s",
              b->path[worst], time_s, time_s * exp2(b->report[worst].bias_ev),
              wrong > 1 ? "; other times are wrong as well, by less" : "");
-    args_log(args)->message(args_log(args)->user, RELUME_WARNING, text);
+    o->args.log->message(o->args.log->user, RELUME_WARNING, text);
 }
 
 // Numbers of a float file do not end at 1: nothing is saturated there, and above 1, where the merge
@@ -305,23 +304,22 @@ static void continue_floats(struct bracket *b)
 }
 
 relume_status bracket_merge(struct bracket *b, enum relume_merge_weights weights,
-                            const struct args *args)
+                            const struct hdr_options *o)
 {
     struct prefix_log log;
-    const char *save = args_text(args, "--save-response", NULL);
-    relume_status status = find_response_and_ghosts(b, args);
+    const char *save = o->save_response;
+    relume_status status = find_response_and_ghosts(b, o);
     if (!status && save)
-        status = relume_response_save(&b->response, save, args_log(args));
+        status = relume_response_save(&b->response, save, o->args.log);
     if (!status)
-        status =
-            relume_merge(&b->out, b->report, b->codes, b->exposure, b->n, &b->response,
-                         relume_merge_params(.log = prefix_log(&log, args_log(args), b->path[0]),
-                                             .weights = weights, .masks = b->masks,
-                                             .threads = args_threads(args)));
+        status = relume_merge(&b->out, b->report, b->codes, b->exposure, b->n, &b->response,
+                              relume_merge_params(.log = prefix_log(&log, o->args.log, b->path[0]),
+                                                  .weights = weights, .masks = b->masks,
+                                                  .threads = o->args.threads));
     if (status)
         return status;
     continue_floats(b);
-    report_bias(b, args);
+    report_bias(b, o);
     if (b->notes[b->anchor].profile)
         relume_primaries_apply(&b->out, b->notes[b->anchor].to_srgb);
     return RELUME_OK;

@@ -1,10 +1,18 @@
-// bracket.h - the photographs of one radiance map on their way through `relume capture --hdr`
+// bracket.h - the photographs of one radiance map on their way through `relume hdr`
 #ifndef CLI_BRACKET_H
 #define CLI_BRACKET_H
 
 #include "cli.h"
 
 enum { MAX_BRACKET = 64 };
+
+// What `relume hdr` is asked.
+struct hdr_options {
+    struct args args;
+    const char *output, *transfer, *times, *response, *save_response, *weights, *align, *white,
+        *flat;
+    bool old, json, skip_bad, ghosts, radial;
+};
 
 struct bracket {
     int n, anchor;
@@ -25,12 +33,12 @@ enum align_mode { ALIGN_NONE, ALIGN_BLOCKS, ALIGN_HOMOGRAPHY };
 
 // Reads the photographs that `path`, `notes` and `n` name. With `skip_bad` those that cannot be
 // read or are of another size are left out with a warning.
-relume_status bracket_load(struct bracket *b, const struct args *args);
+relume_status bracket_load(struct bracket *b, const struct hdr_options *o);
 // One scene, and longer exposures are brighter.
-relume_status bracket_check(struct bracket *b, const struct args *args);
-relume_status bracket_align(struct bracket *b, enum align_mode mode, const struct args *args);
+relume_status bracket_check(struct bracket *b, const struct hdr_options *o);
+relume_status bracket_align(struct bracket *b, enum align_mode mode, const struct hdr_options *o);
 relume_status bracket_merge(struct bracket *b, enum relume_merge_weights weights,
-                            const struct args *args);
+                            const struct hdr_options *o);
 // Leave photograph i out; RELUME_EDATA with a sentence when none remains.
 void bracket_drop(struct bracket *b, int i);
 relume_status bracket_remains(const struct bracket *b);

@@ -61,7 +61,7 @@ static relume_status check_exposure(const struct bracket *b, bool *blank)
 // Exposures next to each other show the same edges; so do the next but one. Where one of them is
 // blank there are none to compare.
 static relume_status check_scene(struct bracket *b, const int *order, const bool *blank,
-                                 const struct args *args)
+                                 const struct hdr_options *o)
 {
     struct relume_image thumb[MAX_BRACKET] = {{0}};
     double likeness[MAX_BRACKET];
@@ -88,7 +88,7 @@ static relume_status check_scene(struct bracket *b, const int *order, const bool
         return status;
     const char *path = b->path[order[foreign]];
     const bool all_hang_on_it = b->aligned && order[foreign] == b->anchor;
-    if (!args_has(args, "--skip-bad") || all_hang_on_it)
+    if (!o->skip_bad || all_hang_on_it)
         return data_error(
             "%s: shows another scene than the other exposures, or the camera moved (similarity "
             "%.2f; expected %.2f or more); leave it out, or try --align or --skip-bad",
@@ -97,7 +97,7 @@ static relume_status check_scene(struct bracket *b, const int *order, const bool
     snprintf(text, sizeof text,
              "%s: shows another scene than the other exposures (similarity %.2f); left out", path,
              likeness[foreign]);
-    args_log(args)->message(args_log(args)->user, RELUME_WARNING, text);
+    o->args.log->message(o->args.log->user, RELUME_WARNING, text);
     bracket_drop(b, order[foreign]);
     if (!b->aligned)
         b->anchor = relume_align_anchor(b->codes, b->n);
@@ -129,7 +129,7 @@ static void sort_by_exposure(const struct bracket *b, int *order)
     }
 }
 
-relume_status bracket_check(struct bracket *b, const struct args *args)
+relume_status bracket_check(struct bracket *b, const struct hdr_options *o)
 {
     int order[MAX_BRACKET];
     bool blank[MAX_BRACKET];
@@ -137,7 +137,7 @@ relume_status bracket_check(struct bracket *b, const struct args *args)
     const int before = b->n;
     relume_status status = check_exposure(b, blank);
     if (!status)
-        status = check_scene(b, order, blank, args);
+        status = check_scene(b, order, blank, o);
     if (!status && b->n < before)
         sort_by_exposure(b, order);
     return status ? status : check_order(b, order);

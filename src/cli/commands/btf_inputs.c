@@ -23,9 +23,9 @@ bool btf_is_surface(const char *path)
 }
 
 static relume_status synth_material(relume_btf **out, const struct relume_btf_material *material,
-                                    const struct args *args)
+                                    const struct btf_options *o)
 {
-    const char *name = args_text(args, "--directions", "bonn");
+    const char *name = o->directions;
     const struct relume_btf_set *set = relume_btf_set_find(name);
     const char *const names[] = {"bonn", "dome", "coarse", NULL};
     if (!set)
@@ -36,17 +36,16 @@ static relume_status synth_material(relume_btf **out, const struct relume_btf_ma
     relume_btf_set_directions(set, d);
     const relume_status status = relume_btf_synth(
         out, material,
-        relume_btf_synth_params(.log = args_log(args), .size = args_int(args, "--size", 64),
-                                .view = d, .views = set->count, .light = d, .lights = set->count,
-                                .seed = (uint64_t)args_int(args, "--seed", 0),
-                                .threads = args_threads(args)));
+        relume_btf_synth_params(.log = o->args.log, .size = o->size, .view = d, .views = set->count,
+                                .light = d, .lights = set->count, .seed = (uint64_t)o->seed,
+                                .threads = o->args.threads));
     free(d);
     return status;
 }
 
-static relume_status parse_crop(int out[4], const struct args *args)
+static relume_status parse_crop(int out[4], const struct btf_options *o)
 {
-    const char *text = args_text(args, "--crop", NULL), *at = text;
+    const char *text = o->crop, *at = text;
     for (int i = 0; text && i < 4; i++) {
         char *end;
         const long n = strtol(at, &end, 10);
@@ -59,39 +58,36 @@ static relume_status parse_crop(int out[4], const struct args *args)
 }
 
 static relume_status open_btf(relume_btf **out, const char *name, bool outline,
-                              const struct args *args)
+                              const struct btf_options *o)
 {
     const struct relume_btf_material *material = relume_btf_material_find(name);
-    struct relume_btf_params params = {.log = args_log(args),
-                                       .threads = args_threads(args),
-                                       .fill = args_has(args, "--fill"),
-                                       .outline = outline};
+    struct relume_btf_params params = {
+        .log = o->args.log, .threads = o->args.threads, .fill = o->fill, .outline = outline};
     *out = NULL;
     if (material && !exists(name))
-        return args_has(args, "--crop")
-                   ? usage_error("--crop: expected a .btf file; found '%s'", name)
-                   : synth_material(out, material, args);
-    const relume_status status = parse_crop(params.crop, args);
+        return o->crop ? usage_error("--crop: expected a .btf file; found '%s'", name)
+                       : synth_material(out, material, o);
+    const relume_status status = parse_crop(params.crop, o);
     return status ? status : relume_btf_open(out, name, &params);
 }
 
-relume_status btf_open(relume_btf **out, const char *name, const struct args *args)
+relume_status btf_open(relume_btf **out, const char *name, const struct btf_options *o)
 {
-    return open_btf(out, name, false, args);
+    return open_btf(out, name, false, o);
 }
 
-relume_status btf_open_outline(relume_btf **out, const char *name, const struct args *args)
+relume_status btf_open_outline(relume_btf **out, const char *name, const struct btf_options *o)
 {
-    return open_btf(out, name, true, args);
+    return open_btf(out, name, true, o);
 }
 
-relume_status btf_open_sample(struct btf_sample *out, const char *name, const struct args *args)
+relume_status btf_open_sample(struct btf_sample *out, const char *name, const struct btf_options *o)
 {
     *out = (struct btf_sample){.btf = NULL};
     if (btf_is_model(name))
-        return relume_btf_fitted_open(&out->model, name, relume_btf_params(.log = args_log(args)));
-    const relume_status status = btf_open(&out->btf, name, args);
-    return status ? status : relume_btf_as_model(&out->model, out->btf, args_log(args));
+        return relume_btf_fitted_open(&out->model, name, relume_btf_params(.log = o->args.log));
+    const relume_status status = btf_open(&out->btf, name, o);
+    return status ? status : relume_btf_as_model(&out->model, out->btf, o->args.log);
 }
 
 void btf_close_sample(struct btf_sample *sample)

@@ -2,15 +2,26 @@
 #ifndef CLI_BTF_INPUTS_H
 #define CLI_BTF_INPUTS_H
 
-#include "cli.h"
+#include "frame_options.h"
+
+struct btf_options {
+    struct args args;
+    const char *output, *model, *models, *eye, *camera, *look_at, *up, *picture, *mesh, *matrix,
+        *map, *directions, *crop;
+    int clusters, components, ratio, lobes, levels, leave_out, pictures, samples, tiles, tile, size,
+        seed;
+    bool unseen, no_shadows, fill, force, json;
+    double fov, repeat;
+    struct light_options lighting;
+};
 
 // Whether the folder holds a fitted model.
 bool btf_is_model(const char *path);
 
 // A folder or file, or a built-in material when there is none of that name.
-relume_status btf_open(relume_btf **out, const char *name, const struct args *args);
+relume_status btf_open(relume_btf **out, const char *name, const struct btf_options *o);
 // ... of which only relume_btf_info is asked.
-relume_status btf_open_outline(relume_btf **out, const char *name, const struct args *args);
+relume_status btf_open_outline(relume_btf **out, const char *name, const struct btf_options *o);
 
 // Whether the folder holds a surface.
 bool btf_is_surface(const char *path);
@@ -20,16 +31,17 @@ struct btf_sample {
     relume_btf *btf;  // NULL where a model was given
     relume_btf_fitted *model;
 };
-relume_status btf_open_sample(struct btf_sample *out, const char *name, const struct args *args);
+relume_status btf_open_sample(struct btf_sample *out, const char *name,
+                              const struct btf_options *o);
 void btf_close_sample(struct btf_sample *sample);
 
 // The model of --model, --clusters, ... fitted to the BTF, with `levels` where --levels is not
 // given.
 relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, int levels,
-                      const struct args *args);
+                      const struct btf_options *o);
 
 // "WxH" of an option; what is not given stays. RELUME_EINVAL with a sentence.
-relume_status btf_pair(int out[2], const struct args *args, const char *option, int most);
+relume_status btf_pair(int out[2], const char *option, const char *text, int most);
 
 // What a surface is; `seams` may be NULL.
 void btf_say_surface(const struct relume_btf_surface_info *info,
@@ -40,9 +52,9 @@ relume_status btf_render(const struct args *args);
 relume_status btf_tile(const struct args *args);
 
 // Whether `btf render` is asked for objects: --mesh, or a description in JSON.
-bool btf_is_objects(const struct args *args);
+bool btf_is_objects(const struct btf_options *o);
 // These, ray traced.
-relume_status btf_render_objects(const struct args *args);
+relume_status btf_render_objects(const struct btf_options *o);
 relume_status objects_open(relume_objects **out, const char *path, const struct args *args);
 
 #endif

@@ -3,35 +3,34 @@
 
 // The model that the surface keeps: the one given, or one fitted to the BTF.
 static relume_status choose_model(relume_btf_fitted **own, const relume_btf_fitted **model,
-                                  const struct btf_sample *sample, const struct args *args)
+                                  const struct btf_sample *sample, const struct btf_options *o)
 {
     *own = NULL;
     *model = sample->model;
     if (!sample->btf)
         return RELUME_OK;
-    const relume_status status = btf_fit(own, sample->btf, -1, args);
+    const relume_status status = btf_fit(own, sample->btf, -1, o);
     *model = *own;
     return status;
 }
 
 static relume_status make_map(relume_btf_map **out, const relume_btf_fitted *sample,
-                              const struct args *args)
+                              const struct btf_options *o)
 {
     const struct relume_btf_fitted_info info = relume_btf_fitted_info(sample);
-    const char *map = args_text(args, "--map", NULL);
+    const char *map = o->map;
     int matrix[2] = {16, 16};
-    const relume_status status = btf_pair(matrix, args, "--matrix", 4096);
+    const relume_status status = btf_pair(matrix, "--matrix", o->matrix, 4096);
     if (status)
         return status;
     if (map)
         return relume_btf_map_open(out, map, info.width, info.height,
-                                   relume_btf_params(.log = args_log(args)));
+                                   relume_btf_params(.log = o->args.log));
     return relume_btf_map_tiles(
         out, sample,
-        relume_btf_tiles_params(.log = args_log(args), .tiles = args_int(args, "--tiles", 10),
-                                .side = args_int(args, "--tile", 0), .columns = matrix[0],
-                                .rows = matrix[1], .seed = (uint64_t)args_int(args, "--seed", 0),
-                                .threads = args_threads(args)));
+        relume_btf_tiles_params(.log = o->args.log, .tiles = o->tiles, .side = o->tile,
+                                .columns = matrix[0], .rows = matrix[1], .seed = (uint64_t)o->seed,
+                                .threads = o->args.threads));
 }
 
 void btf_say_surface(const struct relume_btf_surface_info *i, const struct relume_btf_seams *s,
@@ -64,17 +63,16 @@ void btf_say_surface(const struct relume_btf_surface_info *i, const struct relum
 }
 
 static relume_status save(const relume_btf_fitted *model, const relume_btf_map *map,
-                          const struct relume_btf_seams *seams, const struct args *args)
+                          const struct relume_btf_seams *seams, const struct btf_options *o)
 {
     relume_btf_surface *surface;
-    relume_status status = relume_btf_surface_create(&surface, model, map, args_log(args));
+    relume_status status = relume_btf_surface_create(&surface, model, map, o->args.log);
     if (!status)
-        status = relume_btf_surface_save(
-            surface, args_text(args, "-o", NULL),
-            relume_btf_params(.log = args_log(args), .force = args_has(args, "--force")));
+        status = relume_btf_surface_save(surface, o->output,
+                                         relume_btf_params(.log = o->args.log, .force = o->force));
     if (!status) {
         const struct relume_btf_surface_info info = relume_btf_surface_info(surface);
-        btf_say_surface(&info, seams, args_has(args, "--json"));
+        btf_say_surface(&info, seams, o->json);
     }
     relume_btf_surface_destroy(&surface);
     return status;
@@ -82,22 +80,23 @@ static relume_status save(const relume_btf_fitted *model, const relume_btf_map *
 
 relume_status btf_tile(const struct args *args)
 {
+    const struct btf_options *o = (const void *)args;
     struct btf_sample sample;
     struct relume_btf_seams seams;
     const relume_btf_fitted *model = NULL;
     relume_btf_fitted *own = NULL;
     relume_btf_map *map = NULL;
-    if (!args_has(args, "-o"))
+    if (!o->output)
         return usage_error("btf tile: expected -o DIR");
-    relume_status status = btf_open_sample(&sample, args_input(args, 1), args);
+    relume_status status = btf_open_sample(&sample, o->args.input[0], o);
     if (!status)
-        status = make_map(&map, sample.model, args);
+        status = make_map(&map, sample.model, o);
     if (!status)
-        status = relume_btf_map_seams(&seams, map, sample.model, args_log(args));
+        status = relume_btf_map_seams(&seams, map, sample.model, o->args.log);
     if (!status)
-        status = choose_model(&own, &model, &sample, args);
+        status = choose_model(&own, &model, &sample, o);
     if (!status)
-        status = save(model, map, &seams, args);
+        status = save(model, map, &seams, o);
     relume_btf_fitted_destroy(&own);
     relume_btf_map_destroy(&map);
     btf_close_sample(&sample);

@@ -1,48 +1,27 @@
-// capture_views.h - relume capture of many viewpoints: slabs, panoramas, depth from views
+// capture_views.h - what lightfield and panorama share
 #ifndef CLI_CAPTURE_VIEWS_H
 #define CLI_CAPTURE_VIEWS_H
 
 #include "cli.h"
 
-// Whether an option asks for it.
-bool capture_views_asked(const struct args *args);
-relume_status capture_views(const struct args *args);
-
+struct views_options {
+    const char *output, *transfer, *lights, *depth_range;
+    bool force;
+};
+// Table rows for a command's options; `views` in its struct.
 // clang-format off
-#define CAPTURE_VIEWS_OPTIONS \
-    {"--slab", OPTION_FLAG, NULL, "photographs of a grid of cameras: a light slab", 0, 0}, \
-    {"--names", OPTION_TEXT, "PATTERN", \
-     "--slab: places in the names, with {row}, {column}, {n}, {u}, {v}, *; default: found", 0, 0}, \
-    {"--fill", OPTION_FLAG, NULL, "--slab: a missing camera is filled by the nearest", 0, 0}, \
-    {"--turn", OPTION_FLAG, NULL, "--slab: columns run to the left and rows upwards", 0, 0}, \
-    {"--keep-order", OPTION_FLAG, NULL, \
-     "--slab: keep the order of the names even if the photographs suggest another", 0, 0}, \
-    {"--baseline", OPTION_NUMBER, "W", \
-     "--slab: world units from the first to the last column of cameras; default 1", 1e-6, 1e6}, \
-    {"--baseline-v", OPTION_NUMBER, "H", \
-     "--slab: world units from the first to the last row; default: by positions in the names, " \
-     "else rows are as far apart as columns", 1e-6, 1e6}, \
-    {"--distance", OPTION_NUMBER, "D", \
-     "--slab: world units from the cameras to the st plane, default 3; --colmap: units of " \
-     "the model", 1e-6, 1e6}, \
-    {"--st-z", OPTION_NUMBER, "Z", "--slab: height of the st plane; default 0", -1e6, 1e6}, \
-    {"--window", OPTION_NUMBER, "W", "--slab: width of the st window; default 2", 1e-6, 1e6}, \
-    {"--focus-disparity", OPTION_NUMBER, "PX", \
-     "--slab: pixels by which a point on the st (focus) plane moves from one camera to the next; default 0", -4096, 4096}, \
-    {"--colmap", OPTION_TEXT, "DIR", \
-     "poses of the photographs (cameras.txt, images.txt): resampled to a slab", 0, 0}, \
-    {"--views", OPTION_TEXT, "GxG", "--colmap: grid of cameras to make; default 5x5", 0, 0}, \
-    {"--width", OPTION_INT, "N", "--colmap: width of a view; panorama stitch: of the sphere", 1, \
-     65536}, \
-    {"--bands", OPTION_INT, "N", \
-     "panorama stitch: bands of blending, 1 to 10; 1: hard seams; default: by the photographs' size", \
-     1, 10}, \
-    {"--depth-from-views", OPTION_FLAG, NULL, "estimate the depth of a slab's views", 0, 0}, \
-    {"--depth-range", OPTION_TEXT, "A,B", \
-     "--depth-from-views: nearest and farthest distance from the camera plane; --depth: distance of white and of black", 0, 0}, \
-    {"--panorama", OPTION_TEXT, "P", \
-     "cube (six faces), sphere, cylinder, or stitch (overlapping photographs)", 0, 0}, \
-    {"--depth", OPTION_TEXT, "FILE", "--panorama: a picture of its depth", 0, 0}
+#define VIEWS_OPTIONS \
+    TEXT_AS(OPTION_OUTPUT, "-o", views.output, "output", "DIR", "the capture folder to make"), \
+    FLAG("--force", views.force, "output", "replace a folder that relume made"), \
+    TEXT("--transfer", views.transfer, "input", "T", "linear, srgb or gamma:G; default: by file"), \
+    TEXT("--lights", views.lights, "lights", "FILE", \
+         "the lights are known: a .lp, .dome or capture.json file, or lines x y z")
 // clang-format on
+
+// The lights belong to `*lights`, which is to be freed. RELUME_EINVAL with a sentence.
+relume_status ingest_params(struct relume_ingest_params *out, struct relume_vec3 **lights,
+                            const struct args *args, const struct views_options *options);
+// "A,B" of --depth-range; what is not given stays.
+relume_status parse_depth_range(double range[2], const struct views_options *options);
 
 #endif

@@ -6,66 +6,75 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define OPTIONS struct btf_options
+
 static const struct option options[] = {
-    {"-o", OPTION_OUTPUT, "DIR", "fit, tile: the folder to make; render: the picture", 0, 0},
-    {"--model", OPTION_TEXT, "NAME", "fit, tile: rfp, rfnl, rfnlc, vpca, lpca, ...; default rfnlc",
-     0, 0},
-    {"--models", OPTION_TEXT, "A,B,...", "compare: only these models; default: all", 0, 0},
-    {"--clusters", OPTION_INT, "N", "lpca: default 32; cmf: 512; rfnlc: 1024", 1, 65536},
-    {"--components", OPTION_INT, "N", "vpca: default 4; lpca: 8; fmf: 100; qmf: at most, 512", 1,
-     1024},
-    {"--ratio", OPTION_INT, "R", "qmf: compress the measured values N times; default 200", 1,
-     1000000},
-    {"--lobes", OPTION_INT, "N", "rfnl, rfnlc, laf, slaf: default 2", 1, 4},
-    {"--levels", OPTION_INT, "N",
-     "fit, tile: levels of detail, each half as wide; -1: all; default: fit 1, tile all", -1, 17},
-    {"--leave-out", OPTION_INT, "K",
-     "compare: also fit without every K-th view and light and measure the error on those; fit: "
-     "leave them out",
-     2, 64},
-    {"--unseen", OPTION_FLAG, NULL, "eval: only views and lights that were left out of the fit", 0,
-     0},
-    {"--pictures", OPTION_INT, "N",
-     "compare, eval: pictures compared by CIEDE2000 and SSIM; default 25", 0, 65536},
-    {"--eye", OPTION_TEXT, "x,y,z",
-     "render: the direction towards the eye; default 0,0,1; for objects: where the eye is", 0, 0},
-    {"--camera", OPTION_TEXT, "x,y,z",
-     "render a surface in perspective, from this point; its width is -1 to 1", 0, 0},
-    {"--look-at", OPTION_TEXT, "x,y,z",
-     "render: the point looked at; default: the objects' middle, with --camera 0,0,0", 0, 0},
-    {"--up", OPTION_TEXT, "x,y,z", "render objects: up in the picture; default 0,1,0", 0, 0},
-    {"--fov", OPTION_NUMBER, "DEG",
-     "render: horizontal field of view; default: shows all objects, with --camera 40", 0.01, 179},
-    {"--picture", OPTION_TEXT, "WxH",
-     "render: size in pixels; default: one pixel per texel, objects 512x512, with --camera 640x400",
-     0, 0},
-    {"--light", OPTION_TEXT, "SPEC",
-     "render: dir, env, point, spot, ... (docs/lights.md), area on objects only; may be repeated",
-     0, 0},
-    {"--rig", OPTION_TEXT, "FILE", "render objects: lights of a rig, before --light", 0, 0},
-    {"--save-rig", OPTION_OUTPUT, "FILE", "render objects: write all lights as a rig", 0, 0},
-    {"--mesh", OPTION_TEXT, "FILE", "render: an object of it: .obj, .ply, .gltf, .glb, ...", 0, 0},
-    {"--repeat", OPTION_NUMBER, "N",
-     "--mesh: repeat the material N times across its texture; default 1", 0.001, 10000},
-    {"--samples", OPTION_INT, "N", "render objects: N x N rays a pixel; default 3", 1, 16},
-    {"--no-shadows", OPTION_FLAG, NULL, "render objects: without shadows", 0, 0},
-    {"--tiles", OPTION_INT, "N", "tile: how many; default 10", 1, 256},
-    {"--tile", OPTION_INT, "TEXELS", "tile: a side, a multiple of 8; default half the sample", 16,
-     4096},
-    {"--matrix", OPTION_TEXT, "WxH", "tile: how they are laid out; default 16x16", 0, 0},
-    {"--map", OPTION_TEXT, "FILE", "tile: use this index map (.npy or picture) instead of tiles", 0,
-     0},
-    {"--size", OPTION_INT, "N", "of a built-in material, texels; default 64", 1, 1024},
-    {"--directions", OPTION_TEXT, "SET", "of a built-in material: bonn (default), dome, coarse", 0,
-     0},
-    {"--fill", OPTION_FLAG, NULL, "interpolate pictures that are missing in a folder", 0, 0},
-    {"--crop", OPTION_TEXT, "x,y,w,h",
-     "of a .btf file: read only these texels, counted from the upper left", 0, 0},
-    {"--seed", OPTION_INT, "S",
-     "seed of the random choices in materials, clusters and tiles; default 0", 0, 2147483647},
-    {"--force", OPTION_FLAG, NULL, "fit, tile: replace a folder that relume made", 0, 0},
-    {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
-    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+    TEXT_AS(OPTION_OUTPUT, "-o", output, "output", "DIR",
+            "fit, tile: the folder to make; render: the picture"),
+    TEXT("--model", model, "model", "NAME",
+         "fit, tile: rfp, rfnl, rfnlc, vpca, lpca, ...; default rfnlc"),
+    TEXT("--models", models, "measurements", "A,B,...", "compare: only these models; default: all"),
+    INT("--clusters", clusters, "model", "N", "lpca: default 32; cmf: 512; rfnlc: 1024", 1, 65536),
+    INT("--components", components, "model", "N",
+        "vpca: default 4; lpca: 8; fmf: 100; qmf: at most, 512", 1, 1024),
+    INT("--ratio", ratio, "model", "R", "qmf: compress the measured values N times; default 200", 1,
+        1000000),
+    INT("--lobes", lobes, "model", "N", "rfnl, rfnlc, laf, slaf: default 2", 1, 4),
+    INT("--levels", levels, "levels of detail", "N",
+        "fit, tile: levels of detail, each half as wide; -1: all; default: fit 1, tile all", -1,
+        17),
+    INT("--leave-out", leave_out, "model", "K",
+        "compare: also fit without every K-th view and light and measure the error on those; fit: "
+        "leave them out",
+        2, 64),
+    FLAG("--unseen", unseen, "measurements",
+         "eval: only views and lights that were left out of the fit"),
+    INT("--pictures", pictures, "measurements", "N",
+        "compare, eval: pictures compared by CIEDE2000 and SSIM; default 25", 0, 65536),
+    TEXT("--eye", eye, "camera", "x,y,z",
+         "render: the direction towards the eye; default 0,0,1; for objects: where the eye is"),
+    TEXT("--camera", camera, "camera", "x,y,z",
+         "render a surface in perspective, from this point; its width is -1 to 1"),
+    TEXT("--look-at", look_at, "camera", "x,y,z",
+         "render: the point looked at; default: the objects' middle, with --camera 0,0,0"),
+    TEXT("--up", up, "camera", "x,y,z", "render objects: up in the picture; default 0,1,0"),
+    NUMBER("--fov", fov, "camera", "DEG",
+           "render: horizontal field of view; default: shows all objects, with --camera 40", 0.01,
+           179),
+    TEXT("--picture", picture, "picture", "WxH",
+         "render: size in pixels; default: one pixel per texel, objects 512x512, with --camera "
+         "640x400"),
+    TEXTS("--light", lighting.light, "lights", "SPEC",
+          "render: dir, env, point, spot, ... (docs/lights.md), area on objects only; may be "
+          "repeated"),
+    TEXT("--rig", lighting.rig, "lights", "FILE",
+         "render objects: lights of a rig, before --light"),
+    TEXT_AS(OPTION_OUTPUT, "--save-rig", lighting.save_rig, "lights", "FILE",
+            "render objects: write all lights as a rig"),
+    TEXT("--mesh", mesh, "objects", "FILE",
+         "render: an object of it: .obj, .ply, .gltf, .glb, ..."),
+    NUMBER("--repeat", repeat, "objects", "N",
+           "--mesh: repeat the material N times across its texture; default 1", 0.001, 10000),
+    INT("--samples", samples, "objects", "N", "render objects: N x N rays a pixel; default 3", 1,
+        16),
+    FLAG("--no-shadows", no_shadows, "objects", "render objects: without shadows"),
+    INT("--tiles", tiles, "tiles", "N", "tile: how many; default 10", 1, 256),
+    INT("--tile", tile, "tiles", "TEXELS", "tile: a side, a multiple of 8; default half the sample",
+        16, 4096),
+    TEXT("--matrix", matrix, "tiles", "WxH", "tile: how they are laid out; default 16x16"),
+    TEXT("--map", map, "tiles", "FILE",
+         "tile: use this index map (.npy or picture) instead of tiles"),
+    INT("--size", size, "material", "N", "of a built-in material, texels; default 64", 1, 1024),
+    TEXT("--directions", directions, "material", "SET",
+         "of a built-in material: bonn (default), dome, coarse"),
+    FLAG("--fill", fill, "material", "interpolate pictures that are missing in a folder"),
+    TEXT("--crop", crop, "material", "x,y,w,h",
+         "of a .btf file: read only these texels, counted from the upper left"),
+    INT("--seed", seed, "material", "S",
+        "seed of the random choices in materials, clusters and tiles; default 0", 0, 2147483647),
+    FLAG("--force", force, "output", "fit, tile: replace a folder that relume made"),
+    FLAG("--json", json, "report", "one JSON object"),
+    {0},
 };
 
 // ---------------------------------------------------------------- names
@@ -85,9 +94,9 @@ enum { MOST_MODELS = 32 };
 
 // Those of --models, or all; NULL-terminated.
 static relume_status choose_models(const struct relume_btf_model *out[MOST_MODELS],
-                                   const struct args *args)
+                                   const struct btf_options *o)
 {
-    const char *list = args_text(args, "--models", NULL);
+    const char *list = o->models;
     int n = 0;
     for (int i = 0; !list && relume_btf_models[i]; i++)
         out[n++] = relume_btf_models[i];
@@ -104,16 +113,16 @@ static relume_status choose_models(const struct relume_btf_model *out[MOST_MODEL
     return n ? RELUME_OK : usage_error("--models: expected names of models; found none");
 }
 
-static struct relume_btf_fit_params fit_params(const struct args *args)
+static struct relume_btf_fit_params fit_params(const struct btf_options *o)
 {
     return (struct relume_btf_fit_params){
-        .log = args_log(args),
-        .clusters = args_int(args, "--clusters", 0),
-        .components = args_int(args, "--components", 0),
-        .lobes = args_int(args, "--lobes", 0),
-        .seed = (uint64_t)args_int(args, "--seed", 0),
-        .threads = args_threads(args),
-        .ratio = args_int(args, "--ratio", 0),
+        .log = o->args.log,
+        .clusters = o->clusters,
+        .components = o->components,
+        .lobes = o->lobes,
+        .seed = (uint64_t)o->seed,
+        .threads = o->args.threads,
+        .ratio = o->ratio,
     };
 }
 
@@ -129,10 +138,11 @@ static int thin(int *kept, int n, int k)
     return count;
 }
 
-static relume_status make_part(relume_btf **out, const relume_btf *whole, const struct args *args)
+static relume_status make_part(relume_btf **out, const relume_btf *whole,
+                               const struct btf_options *o)
 {
     const struct relume_btf_info *info = relume_btf_info(whole);
-    const int k = args_int(args, "--leave-out", 0);
+    const int k = o->leave_out;
     *out = NULL;
     if (!k)
         return RELUME_OK;
@@ -141,7 +151,7 @@ static relume_status make_part(relume_btf **out, const relume_btf *whole, const 
     relume_status status = RELUME_ENOMEM;
     if (views && lights) {
         const int v = thin(views, info->views, k), l = thin(lights, info->lights, k);
-        status = relume_btf_part(out, whole, views, v, lights, l, args_log(args));
+        status = relume_btf_part(out, whole, views, v, lights, l, o->args.log);
     }
     free(views);
     free(lights);
@@ -150,27 +160,26 @@ static relume_status make_part(relume_btf **out, const relume_btf *whole, const 
 
 static relume_status judge_left_out(struct relume_btf_error *out, const relume_btf *part,
                                     const relume_btf *whole, const struct relume_btf_model *model,
-                                    const struct args *args)
+                                    const struct btf_options *o)
 {
-    const struct relume_btf_fit_params p = fit_params(args);
+    const struct relume_btf_fit_params p = fit_params(o);
     relume_btf_fitted *fitted;
     relume_status status = relume_btf_fit(&fitted, part, model, &p);
     if (!status)
         status = relume_btf_judge(out, fitted, whole,
-                                  relume_btf_judge_params(.log = args_log(args), .unseen = true,
-                                                          .threads = args_threads(args)));
+                                  relume_btf_judge_params(.log = o->args.log, .unseen = true,
+                                                          .threads = o->args.threads));
     relume_btf_fitted_destroy(&fitted);
     return status;
 }
 
 static relume_status judge(struct btf_row *row, const relume_btf_fitted *fitted,
-                           const relume_btf *btf, const struct args *args)
+                           const relume_btf *btf, const struct btf_options *o)
 {
-    const relume_status status = relume_btf_judge(
-        &row->error, fitted, btf,
-        relume_btf_judge_params(.log = args_log(args), .threads = args_threads(args),
-                                .unseen = args_has(args, "--unseen"),
-                                .pictures = args_int(args, "--pictures", 25)));
+    const relume_status status =
+        relume_btf_judge(&row->error, fitted, btf,
+                         relume_btf_judge_params(.log = o->args.log, .threads = o->args.threads,
+                                                 .unseen = o->unseen, .pictures = o->pictures));
     if (status)
         return status;
     row->info = relume_btf_fitted_info(fitted);
@@ -182,9 +191,9 @@ static relume_status judge(struct btf_row *row, const relume_btf_fitted *fitted,
 // `before` is what stands before its row in JSON.
 static relume_status compare_one(const relume_btf *btf, const relume_btf *part,
                                  const struct relume_btf_model *model, const char *before,
-                                 const struct args *args)
+                                 const struct btf_options *o)
 {
-    const struct relume_btf_fit_params p = fit_params(args);
+    const struct relume_btf_fit_params p = fit_params(o);
     struct btf_row row = {.held_out = NULL};
     struct relume_btf_error held_out;
     relume_btf_fitted *fitted;
@@ -192,15 +201,15 @@ static relume_status compare_one(const relume_btf *btf, const relume_btf *part,
     relume_status status = relume_btf_fit(&fitted, btf, model, &p);
     row.fit_s = btf_now_s() - start;
     if (!status)
-        status = judge(&row, fitted, btf, args);
+        status = judge(&row, fitted, btf, o);
     if (!status && part) {
-        status = judge_left_out(&held_out, part, btf, model, args);
+        status = judge_left_out(&held_out, part, btf, model, o);
         row.held_out = &held_out;
     }
     if (!status) {
-        if (args_has(args, "--json"))
+        if (o->json)
             fputs(before, stdout);
-        (args_has(args, "--json") ? btf_print_json : btf_print)(&row);
+        (o->json ? btf_print_json : btf_print)(&row);
         fflush(stdout);
     }
     relume_btf_fitted_destroy(&fitted);
@@ -209,18 +218,19 @@ static relume_status compare_one(const relume_btf *btf, const relume_btf *part,
 
 static relume_status compare(const struct args *args)
 {
-    const bool json = args_has(args, "--json");
+    const struct btf_options *o = (const void *)args;
+    const bool json = o->json;
     const struct relume_btf_model *models[MOST_MODELS];
     relume_btf *btf = NULL, *part = NULL;
-    relume_status status = choose_models(models, args);
+    relume_status status = choose_models(models, o);
     if (!status)
-        status = btf_open(&btf, args_input(args, 1), args);
+        status = btf_open(&btf, o->args.input[0], o);
     if (!status)
-        status = make_part(&part, btf, args);
+        status = make_part(&part, btf, o);
     if (!status && !json)
         btf_heading(part != NULL);
     for (int i = 0; !status && models[i]; i++)
-        status = compare_one(btf, part, models[i], i ? ",\n" : "{\"models\":[", args);
+        status = compare_one(btf, part, models[i], i ? ",\n" : "{\"models\":[", o);
     if (!status && json)
         puts("]}");
     relume_btf_destroy(&part);
@@ -231,31 +241,31 @@ static relume_status compare(const struct args *args)
 // ---------------------------------------------------------------- fit, eval
 
 relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, int levels,
-                      const struct args *args)
+                      const struct btf_options *o)
 {
-    struct relume_btf_fit_params p = fit_params(args);
-    p.levels = args_int(args, "--levels", levels);
+    struct relume_btf_fit_params p = fit_params(o);
+    p.levels = (args_given(&o->args, &o->levels) ? o->levels : levels);
     const struct relume_btf_model *model;
     *out = NULL;
-    const relume_status status = find_model(&model, args_text(args, "--model", "rfnlc"));
+    const relume_status status = find_model(&model, o->model);
     return status ? status : relume_btf_fit(out, btf, model, &p);
 }
 
 static relume_status fit(const struct args *args)
 {
+    const struct btf_options *o = (const void *)args;
     relume_btf *btf = NULL, *part = NULL;
     relume_btf_fitted *fitted = NULL;
-    if (!args_has(args, "-o"))
+    if (!o->output)
         return usage_error("btf fit: expected -o DIR");
-    relume_status status = btf_open(&btf, args_input(args, 1), args);
+    relume_status status = btf_open(&btf, o->args.input[0], o);
     if (!status)
-        status = make_part(&part, btf, args);
+        status = make_part(&part, btf, o);
     if (!status)
-        status = btf_fit(&fitted, part ? part : btf, 1, args);
+        status = btf_fit(&fitted, part ? part : btf, 1, o);
     if (!status)
-        status = relume_btf_fitted_save(
-            fitted, args_text(args, "-o", NULL),
-            relume_btf_params(.log = args_log(args), .force = args_has(args, "--force")));
+        status = relume_btf_fitted_save(fitted, o->output,
+                                        relume_btf_params(.log = o->args.log, .force = o->force));
     relume_btf_fitted_destroy(&fitted);
     relume_btf_destroy(&part);
     relume_btf_destroy(&btf);
@@ -264,18 +274,19 @@ static relume_status fit(const struct args *args)
 
 static relume_status eval(const struct args *args)
 {
+    const struct btf_options *o = (const void *)args;
     relume_btf *btf = NULL;
     relume_btf_fitted *fitted = NULL;
     struct btf_row row = {.fit_s = (double)NAN};
-    if (args_inputs(args) != 3)
+    if (o->args.inputs != 2)
         return usage_error("btf eval: expected a model and a BTF");
-    relume_status status = relume_btf_fitted_open(&fitted, args_input(args, 1),
-                                                  relume_btf_params(.log = args_log(args)));
+    relume_status status =
+        relume_btf_fitted_open(&fitted, o->args.input[0], relume_btf_params(.log = o->args.log));
     if (!status)
-        status = btf_open(&btf, args_input(args, 2), args);
+        status = btf_open(&btf, o->args.input[1], o);
     if (!status)
-        status = judge(&row, fitted, btf, args);
-    if (!status && args_has(args, "--json")) {
+        status = judge(&row, fitted, btf, o);
+    if (!status && o->json) {
         btf_print_json(&row);
         puts("");
     } else if (!status) {
@@ -290,16 +301,16 @@ static relume_status eval(const struct args *args)
 
 // ---------------------------------------------------------------- info
 
-static relume_status model_info(const struct args *args)
+static relume_status model_info(const struct btf_options *o)
 {
     relume_btf_fitted *fitted;
-    const relume_status status = relume_btf_fitted_open(&fitted, args_input(args, 1),
-                                                        relume_btf_params(.log = args_log(args)));
+    const relume_status status =
+        relume_btf_fitted_open(&fitted, o->args.input[0], relume_btf_params(.log = o->args.log));
     if (status)
         return status;
     const struct relume_btf_fitted_info i = relume_btf_fitted_info(fitted);
     const uint64_t raw = relume_btf_bytes(i.width, i.height, i.views, i.lights);
-    if (args_has(args, "--json"))
+    if (o->json)
         printf(
             "{\"model\": \"%s\", \"width\": %d, \"height\": %d, \"views\": %d, \"lights\": %d, "
             "\"clusters\": %d, \"components\": %d, \"lobes\": %d, \"bytes\": %llu, "
@@ -318,32 +329,33 @@ static relume_status model_info(const struct args *args)
     return RELUME_OK;
 }
 
-static relume_status surface_info(const struct args *args)
+static relume_status surface_info(const struct btf_options *o)
 {
     relume_btf_surface *surface;
-    const relume_status status = relume_btf_surface_open(&surface, args_input(args, 1),
-                                                         relume_btf_params(.log = args_log(args)));
+    const relume_status status =
+        relume_btf_surface_open(&surface, o->args.input[0], relume_btf_params(.log = o->args.log));
     if (status)
         return status;
     const struct relume_btf_surface_info i = relume_btf_surface_info(surface);
-    btf_say_surface(&i, NULL, args_has(args, "--json"));
+    btf_say_surface(&i, NULL, o->json);
     relume_btf_surface_destroy(&surface);
     return RELUME_OK;
 }
 
 static relume_status info(const struct args *args)
 {
+    const struct btf_options *o = (const void *)args;
     relume_btf *btf;
-    if (btf_is_surface(args_input(args, 1)))
-        return surface_info(args);
-    if (btf_is_model(args_input(args, 1)))
-        return model_info(args);
-    const relume_status status = btf_open_outline(&btf, args_input(args, 1), args);
+    if (btf_is_surface(o->args.input[0]))
+        return surface_info(o);
+    if (btf_is_model(o->args.input[0]))
+        return model_info(o);
+    const relume_status status = btf_open_outline(&btf, o->args.input[0], o);
     if (status)
         return status;
     const struct relume_btf_info *i = relume_btf_info(btf);
     const uint64_t raw = relume_btf_bytes(i->width, i->height, i->views, i->lights);
-    if (args_has(args, "--json"))
+    if (o->json)
         printf("{\"width\": %d, \"height\": %d, \"views\": %d, \"lights\": %d, "
                "\"includes_cosine\": %s, \"raw_bytes\": %llu}\n",
                i->width, i->height, i->views, i->lights, i->without_cosine ? "false" : "true",
@@ -359,35 +371,57 @@ static relume_status info(const struct args *args)
 
 // ---------------------------------------------------------------- the command
 
-static const struct verb {
-    const char *name;
-    relume_status (*run)(const struct args *args);
-} verbs[] = {{"fit", fit},   {"eval", eval},         {"compare", compare},
-             {"info", info}, {"render", btf_render}, {"tile", btf_tile}};
-enum { VERBS = sizeof verbs / sizeof *verbs };
+static const struct btf_options defaults = {.model = "rfnlc",
+                                            .pictures = 25,
+                                            .samples = 3,
+                                            .repeat = 1.0,
+                                            .tiles = 10,
+                                            .size = 64,
+                                            .directions = "bonn"};
 
-static relume_status run(const struct args *args)
-{
-    const char *names[VERBS + 1] = {NULL};
-    for (int i = 0; i < VERBS; i++)
-        names[i] = verbs[i].name;
-    for (int i = 0; i < VERBS; i++)
-        if (!strcmp(verbs[i].name, args_input(args, 0))) {
-            if (args_inputs(args) > 2 && verbs[i].run != eval)
-                return usage_error("btf %s: expected one BTF; found '%s' as well", verbs[i].name,
-                                   args_input(args, 2));
-            return verbs[i].run(args);
-        }
-    return unknown_name("task", args_input(args, 0), names);
-}
+// Options of the other tasks are taken and change nothing; help shows `what` these groups are.
+#define TASK(task, function, asks, does, shows, count, what)                                       \
+    static const struct command task_##task = {                                                    \
+        .name = "btf " #task,                                                                      \
+        .usage = asks,                                                                             \
+        .summary = does,                                                                           \
+        .example = shows,                                                                          \
+        .min_inputs = count,                                                                       \
+        .max_inputs = count,                                                                       \
+        .options = options,                                                                        \
+        .groups = what,                                                                            \
+        .size = sizeof(OPTIONS),                                                                   \
+        .defaults = &defaults,                                                                     \
+        .run = function,                                                                           \
+    }
+TASK(fit, fit, "BTF|MATERIAL -o DIR [OPTION ...]", "fit a model to a measured or built-in material",
+     "relume btf fit corduroy --model rfnlc -o corduroy_model", 1,
+     "output; model; levels of detail; material;");
+TASK(eval, eval, "MODEL BTF|MATERIAL [OPTION ...]",
+     "measure how well a model reproduces a material",
+     "relume btf eval corduroy_model corduroy --json", 2, "measurements; material; report;");
+TASK(compare, compare, "BTF|MATERIAL [OPTION ...]",
+     "fit every model to a material and compare their errors and sizes",
+     "relume btf compare corduroy --size 32 --models rfnl,lpca --json", 1,
+     "measurements; model; material; report;");
+TASK(info, info, "BTF|MODEL|SURFACE [OPTION ...]", "show what a BTF, a model or a surface holds",
+     "relume btf info corduroy_model", 1, "material; report;");
+TASK(render, btf_render, "BTF|MODEL|SURFACE|OBJECTS.json -o OUT [OPTION ...]",
+     "render a material, a surface or objects under any light",
+     "relume btf render corduroy_model -o corduroy.png --light \"dir 1 0 1\"", 1,
+     "output; camera; picture; lights; objects; material;");
+TASK(tile, btf_tile, "BTF|MODEL|MATERIAL -o DIR [OPTION ...]", "make a large surface from a sample",
+     "relume btf tile corduroy_model -o corduroy_surface", 1,
+     "output; model; levels of detail; tiles; material; report;");
+
+static const struct command *const tasks[] = {&task_fit,    &task_eval, &task_compare, &task_info,
+                                              &task_render, &task_tile, NULL};
 
 const struct command command_btf = {
     .name = "btf",
-    .usage = "fit|eval|compare|info|render|tile BTF|MATERIAL|MODEL|SURFACE|OBJECTS.json [BTF]",
+    .usage = "fit|eval|compare|info|render|tile ...",
     .summary = "measured materials: fit models to a BTF, compare and render them",
     .example = "relume btf compare corduroy --size 32 --models rfnl,lpca --json",
-    .min_inputs = 2,
-    .max_inputs = 3,
-    .options = options,
-    .run = run,
+    .min_inputs = 1,
+    .tasks = tasks,
 };

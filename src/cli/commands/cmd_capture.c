@@ -1,85 +1,443 @@
-// cmd_capture.c - relume capture: from photographs to linear images with known lights
-#include "commands/capture_hdr.h"
-#include "commands/capture_lights.h"
-#include "commands/capture_views.h"
+// cmd_capture.c - relume capture PHOTO ... -o DIR: a light sequence becomes a capture
 #include "frame_options.h"
+#include "photo_list.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct capture_options {
+    struct args args;
+    const char *output, *transfer, *mask, *ball_transfer, *ball_mask, *lights, *white, *align,
+        *normals, *albedo, *height, *encode, *relight;
+    bool force, json, skip_bad, matte, near, refine_lights, refine_brightness, integrable, radial;
+    struct texts ball, ball_photos, flat;
+    int balls;
+    double ball_z, fov, focal;
+    struct light_options lighting;
+    int cpu_mask;
+};
+#define OPTIONS struct capture_options
 
 static const struct option options[] = {
-    {"-o", OPTION_OUTPUT, "DIR", "the capture folder to make; with --hdr the picture OUT.exr", 0,
-     0},
-    // where the lights are
-    {"--ball", OPTION_TEXT, "x,y,r",
-     "outline of a mirror ball, pixels from the top left; may be repeated; default: found", 0, 0},
-    {"--ball-photos", OPTION_TEXT, "PATH",
-     "the ball was photographed separately: a folder, or a file (then repeated)", 0, 0},
-    {"--ball-transfer", OPTION_TEXT, "T",
-     "--ball-photos: linear, srgb or gamma:G; default: as --transfer, else by file", 0, 0},
-    {"--balls", OPTION_INT, "N", "how many balls are to be found; default 1", 1, 16},
-    {"--ball-mask", OPTION_TEXT, "FILE", "a mask: white where the ball is", 0, 0},
-    {"--matte", OPTION_FLAG, NULL, "the ball is matte white, not a mirror", 0, 0},
-    {"--lights", OPTION_TEXT, "FILE",
-     "the lights are known: a .lp, .dome or capture.json file, lines x y z, or COLMAP poses of a "
-     "camera on the lamp",
-     0, 0},
-    {"--near", OPTION_FLAG, NULL,
-     "lights stand near: positions from two balls or more, or those of --lights", 0, 0},
-    {"--ball-z", OPTION_NUMBER, "Z",
-     "height of the balls' middle over the plane z = 0, world units; default 0", -1000, 1000},
-    {"--fov", OPTION_NUMBER, "DEG", "horizontal field of view; default: orthographic", 0.1, 170},
-    {"--focal", OPTION_NUMBER, "MM", "the same as a focal length for 36 mm wide film", 5, 5000},
-    {"--refine-lights", OPTION_FLAG, NULL,
-     "improve directions and intensities from the photographs themselves", 0, 0},
-    {"--refine-brightness", OPTION_FLAG, NULL,
-     "estimate each lamp's brightness from the photographs; directions stay", 0, 0},
-    {"--integrable", OPTION_FLAG, NULL, "--refine-lights: keep the surface physically continuous",
-     0, 0},
-    {"--white", OPTION_TEXT, "x,y,w,h", "a region that is grey: the lamps' colour is divided out",
-     0, 0},
-    {"--flat", OPTION_TEXT, "PATH",
-     "photograph of an even surface, divided out; one, or one under each light", 0, 0},
-    {"--radial", OPTION_FLAG, NULL, "--flat: as a polynomial of the distance from the middle", 0,
-     0},
-    // what is made
-    {"--mask", OPTION_TEXT, "FILE", "a mask: white where the object is", 0, 0},
-    {"--normals", OPTION_FLOATS, "FILE.exr", "write surface normals", 0, 0},
-    {"--albedo", OPTION_PICTURE, "FILE.exr", "write the surface's colour (albedo)", 0, 0},
-    {"--height", OPTION_FLOATS, "FILE.exr", "write the surface's height, world units", 0, 0},
-    {"--encode", OPTION_RELUME, "FILE.exr", "encode the capture as well", 0, 0},
-    {"--relight", OPTION_PICTURE, "PICTURE", "and relight that by --light", 0, 0},
+    TEXT_AS(OPTION_OUTPUT, "-o", output, "output", "DIR", "the capture folder to make"),
+    FLAG("--force", force, "output", "replace a folder that relume made"),
+    FLAG("--json", json, "output", "print one JSON object"),
+    TEXT("--transfer", transfer, "input", "T", "linear, srgb or gamma:G; default: by file"),
+    TEXT("--mask", mask, "input", "FILE", "a mask: white where the object is"),
+    FLAG("--skip-bad", skip_bad, "input", "leave out photographs that cannot be read or used"),
+    TEXTS("--ball", ball, "finding the lights", "x,y,r",
+          "outline of a mirror ball, pixels from the top left; may be repeated; default: found"),
+    INT("--balls", balls, "finding the lights", "N", "how many balls are to be found; default 1", 1,
+        16),
+    TEXTS("--ball-photos", ball_photos, "finding the lights", "PATH",
+          "the ball was photographed separately: a folder, or a file (then repeated)"),
+    TEXT("--ball-transfer", ball_transfer, "finding the lights", "T",
+         "--ball-photos: linear, srgb or gamma:G; default: as --transfer, else by file"),
+    TEXT("--ball-mask", ball_mask, "finding the lights", "FILE", "a mask: white where the ball is"),
+    FLAG("--matte", matte, "finding the lights", "the ball is matte white, not a mirror"),
+    TEXT("--lights", lights, "finding the lights", "FILE",
+         "the lights are known: a .lp, .dome or capture.json file, lines x y z, or COLMAP poses of "
+         "a camera on the lamp"),
+    FLAG("--near", near, "finding the lights",
+         "lights stand near: positions from two balls or more, or those of --lights"),
+    NUMBER("--ball-z", ball_z, "finding the lights", "Z",
+           "height of the balls' middle over the plane z = 0, world units; default 0", -1000, 1000),
+    NUMBER("--fov", fov, "finding the lights", "DEG",
+           "horizontal field of view; default: orthographic", 0.1, 170),
+    NUMBER("--focal", focal, "finding the lights", "MM",
+           "the same as a focal length for 36 mm wide film", 5, 5000),
+    FLAG("--refine-lights", refine_lights, "finding the lights",
+         "improve directions and intensities from the photographs themselves"),
+    FLAG("--refine-brightness", refine_brightness, "finding the lights",
+         "estimate each lamp's brightness from the photographs; directions stay"),
+    FLAG("--integrable", integrable, "finding the lights",
+         "--refine-lights: keep the surface physically continuous"),
+    TEXT("--white", white, "corrections", "x,y,w,h",
+         "a region that is grey: the lamps' colour is divided out"),
+    TEXTS("--flat", flat, "corrections", "PATH",
+          "photograph of an even surface, divided out; one, or one under each light"),
+    FLAG("--radial", radial, "corrections",
+         "--flat: as a polynomial of the distance from the middle"),
+    TEXT("--align", align, "corrections", "A", "none, blocks or homography; default: none"),
+    TEXT_AS(OPTION_FLOATS, "--normals", normals, "surface", "FILE.exr", "write surface normals"),
+    TEXT_AS(OPTION_PICTURE, "--albedo", albedo, "surface", "FILE.exr",
+            "write the surface's colour (albedo)"),
+    TEXT_AS(OPTION_FLOATS, "--height", height, "surface", "FILE.exr",
+            "write the surface's height, world units"),
+    TEXT_AS(OPTION_RELUME, "--encode", encode, "surface", "FILE.exr", "encode the capture as well"),
+    TEXT_AS(OPTION_PICTURE, "--relight", relight, "surface", "PICTURE",
+            "and relight that by --light"),
     LIGHT_OPTIONS,
     CPU_OPTION,
-    {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; default: by file", 0, 0},
-    {"--force", OPTION_FLAG, NULL, "replace a folder that relume made", 0, 0},
-    // brackets
-    {"--hdr", OPTION_FLAG, NULL, "the photographs are exposures of one picture: merge them", 0, 0},
-    {"--times", OPTION_TEXT, "FILE", "--hdr: exposure times, lines 'name seconds'", 0, 0},
-    {"--response", OPTION_TEXT, "FILE", "--hdr: use this response curve of the camera", 0, 0},
-    {"--save-response", OPTION_OUTPUT, "FILE", "--hdr: write the response that was found", 0, 0},
-    {"--weights", OPTION_TEXT, "W", "--hdr: spline (default), hat or gaussian", 0, 0},
-    {"--align", OPTION_TEXT, "A", "none, blocks or homography; default: none", 0, 0},
-    {"--ghosts", OPTION_FLAG, NULL, "--hdr: leave out what moved between exposures", 0, 0},
-    // many viewpoints
-    CAPTURE_VIEWS_OPTIONS,
-    // all
-    {"--skip-bad", OPTION_FLAG, NULL, "leave out photographs that cannot be read or used", 0, 0},
-    {"--json", OPTION_FLAG, NULL, "print one JSON object", 0, 0},
-    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+    {0},
 };
+
+struct job {
+    struct photo_list photos, balls, flats;
+    char *mask, *ball_mask;  // found among them, or NULL
+    double (*outline)[3];
+    struct relume_shoot_params p;
+    struct relume_shoot shoot;
+};
+
+static void free_job(struct job *job)
+{
+    photo_list_free(&job->photos);
+    photo_list_free(&job->balls);
+    photo_list_free(&job->flats);
+    free(job->mask);
+    free(job->ball_mask);
+    free(job->outline);
+    relume_shoot_destroy(&job->shoot);
+}
+
+// ---------------------------------------------------------------- photographs
+
+// A picture whose name says so is no photograph but the mask of the others; the last one counts.
+static void split_masks(struct photo_list *list, char **mask)
+{
+    int n = 0;
+    for (int i = 0; i < list->count; i++) {
+        if (!strstr(base_name(list->path[i]), "mask")) {
+            list->path[n++] = list->path[i];
+            continue;
+        }
+        free(*mask);
+        *mask = list->path[i];
+    }
+    list->count = n;
+}
+
+static int by_number(const void *a, const void *b)
+{
+    return strverscmp(*(char *const *)a, *(char *const *)b);
+}
+
+// img2 comes before img10, whatever the shell says.
+static void put_in_order(struct photo_list *list)
+{
+    if (list->count)
+        qsort(list->path, (size_t)list->count, sizeof *list->path, by_number);
+}
+
+static relume_status gather(const struct capture_options *o, struct job *job)
+{
+    relume_status status = photo_list_make(&job->photos, &o->args);
+    for (int i = 0; !status && i < o->ball_photos.count; i++)
+        status = photo_list_add(&job->balls, o->ball_photos.text[i], o->args.log);
+    for (int i = 0; !status && i < o->flat.count; i++)
+        status = photo_list_add(&job->flats, o->flat.text[i], o->args.log);
+    split_masks(&job->photos, &job->mask);
+    split_masks(&job->balls, &job->ball_mask);
+    put_in_order(&job->photos);
+    put_in_order(&job->balls);
+    put_in_order(&job->flats);
+    return status;
+}
+
+// ---------------------------------------------------------------- options
+
+static relume_status read_outlines(const struct capture_options *o, struct job *job)
+{
+    const int n = o->ball.count;
+    if (!n)
+        return RELUME_OK;
+    job->outline = malloc((size_t)n * sizeof *job->outline);
+    if (!job->outline)
+        return RELUME_ENOMEM;
+    for (int i = 0; i < n; i++)
+        if (!parse_numbers(o->ball.text[i], job->outline[i], 3))
+            return usage_error("--ball: expected x,y,r in pixels; found '%s'", o->ball.text[i]);
+    job->p.ball = (const double(*)[3])job->outline;
+    job->p.balls = n;
+    return RELUME_OK;
+}
+
+static relume_status read_white(const struct capture_options *o, struct job *job)
+{
+    const char *text = o->white;
+    double region[4];
+    if (!text)
+        return RELUME_OK;
+    if (!parse_numbers(text, region, 4) || !(region[2] >= 1.0 && region[3] >= 1.0))
+        return usage_error("--white: expected x,y,width,height; found '%s'", text);
+    for (int i = 0; i < 4; i++)
+        job->p.white[i] = region[i] > -1e6 && region[i] < 1e6 ? (int)region[i] : -1;
+    return RELUME_OK;
+}
+
+static relume_status read_align(const struct capture_options *o, struct job *job)
+{
+    static const char *const names[] = {"none", "homography", NULL};
+    const char *align = o->align;
+    job->p.align = !strcmp(align, "homography");
+    return job->p.align || !strcmp(align, "none") ? RELUME_OK
+                                                  : unknown_name("--align", align, names);
+}
+
+static double field_of_view(const struct capture_options *o)
+{
+    if (args_given(&o->args, &o->focal))
+        return 2.0 * atan(18.0 / o->focal) * 180.0 / M_PI;
+    return o->fov;
+}
+
+static relume_status check_options(const struct capture_options *o)
+{
+    if (!o->output)
+        return usage_error("capture: expected -o DIR");
+    if (args_given(&o->args, &o->fov) && args_given(&o->args, &o->focal))
+        return usage_error("capture: expected one of --fov and --focal");
+    if (o->refine_brightness && o->refine_lights)
+        return usage_error("capture: expected one of --refine-lights, which refines brightness as "
+                           "well, and --refine-brightness");
+    if (o->ball_transfer && !o->ball_photos.count)
+        return usage_error("capture: --ball-transfer needs --ball-photos; for the photographs "
+                           "themselves use --transfer");
+    if (o->integrable && !o->refine_lights)
+        return usage_error("capture: --integrable needs --refine-lights");
+    if (o->radial && !o->flat.count)
+        return usage_error("capture: --radial needs --flat FILE");
+    if (o->relight && !o->encode)
+        return usage_error("capture: --relight needs --encode FILE.exr");
+    return RELUME_OK;
+}
+
+static relume_status read_options(const struct capture_options *o, struct job *job)
+{
+    const char *transfer = o->transfer;
+    const char *of_balls = o->ball_transfer;
+    job->p = (struct relume_shoot_params){
+        .log = o->args.log,
+        .mask = (o->mask ? o->mask : job->mask),
+        .ball_mask = (o->ball_mask ? o->ball_mask : job->ball_mask),
+        .photographs = (const char *const *)job->photos.path,
+        .photograph_count = job->photos.count,
+        .ball_photographs = (const char *const *)job->balls.path,
+        .ball_photograph_count = job->balls.count,
+        .balls = o->balls,
+        .matte = o->matte,
+        .fov_deg = field_of_view(o),
+        .ball_z = o->ball_z,
+        .lights = o->lights,
+        .flats = (const char *const *)job->flats.path,
+        .flat_count = job->flats.count,
+        .radial = o->radial,
+        .near = o->near,
+        .refine = o->refine_lights || o->refine_brightness,
+        .brightness = o->refine_brightness,
+        .integrable = o->integrable,
+        .skip_bad = o->skip_bad,
+        .force = o->force,
+        .threads = o->args.threads,
+    };
+    if (transfer && relume_transfer_parse(&job->p.transfer, transfer))
+        return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", transfer);
+    if (of_balls && relume_transfer_parse(&job->p.ball_transfer, of_balls))
+        return usage_error("--ball-transfer: expected linear, srgb or gamma:G; found '%s'",
+                           of_balls);
+    relume_status status = read_outlines(o, job);
+    if (!status)
+        status = read_white(o, job);
+    return status ? status : read_align(o, job);
+}
+
+// ---------------------------------------------------------------- by-products
+
+static relume_status save(const struct capture_options *o, const char *path,
+                          const struct relume_image *image)
+{
+    if (!path)
+        return RELUME_OK;
+    if (!image->data)
+        return data_error("%s: normals cannot be computed; expected three lights or more that do "
+                          "not lie in one plane",
+                          path);
+    return relume_image_save(image, path, relume_image_params(.log = o->args.log));
+}
+
+static relume_status save_height(const struct capture_options *o, const struct relume_shoot *shoot)
+{
+    struct relume_image height = {0};
+    relume_status status = RELUME_OK;
+    if (o->height && shoot->photometric.normal.data)
+        status = relume_height_integrate(&height, &shoot->photometric.normal,
+                                         relume_height_params(.pixel = 2.0 / shoot->width));
+    if (!status)
+        status = save(o, o->height, &height);
+    relume_image_destroy(&height);
+    return status;
+}
+
+// ---------------------------------------------------------------- the file
+
+static relume_status encode(const struct capture_options *o, const struct job *job,
+                            const char *path)
+{
+    relume_capture *capture;
+    relume_coder *coder = NULL;
+    struct relume_notes notes;
+    relume_status status =
+        relume_capture_open(&capture, o->output, relume_capture_params(.log = o->args.log));
+    if (!status)
+        status = relume_notes_read(&notes, job->shoot.photo[0].path, o->args.log);
+    if (status)
+        goto done;
+    const enum relume_domain domain = notes.floats ? RELUME_DOMAIN_LINEAR : RELUME_DOMAIN_DISPLAY;
+    status = relume_coder_learn(
+        &coder, &relume_basis_pca, capture, relume_coder_params(.log = o->args.log, .choose = true),
+        relume_encode_params(.log = o->args.log, .domain = domain, .threads = o->args.threads));
+    if (!status)
+        status = relume_pack_encode(capture, coder, path, NULL,
+                                    relume_pack_encode_params(.log = o->args.log, .domain = domain,
+                                                              .compression = RELUME_COMPRESS_PIZ,
+                                                              .threads = o->args.threads));
+done:
+    relume_coder_destroy(&coder);
+    relume_capture_destroy(&capture);
+    return status;
+}
+
+// What lies outside the file's mask is not known.
+static relume_status blacken(struct relume_image *frame, relume_pack *pack)
+{
+    struct relume_image mask;
+    const relume_status status = relume_pack_mask(&mask, pack, 0);
+    const size_t pixels = (size_t)frame->width * (size_t)frame->height;
+    for (size_t i = 0; !status && mask.data && i < 3 * pixels; i++)
+        frame->data[i] *= mask.data[i / 3] > 0.5f ? 1.0f : 0.0f;
+    relume_image_destroy(&mask);
+    return status;
+}
+
+static relume_status relight(const struct capture_options *o, const char *file)
+{
+    relume_pack *pack;
+    relume_rig *rig = NULL;
+    const struct relume_light *lights;
+    struct relume_image frame = {0};
+    int n;
+    struct relume_frame_params params = parse_frame(&o->args, &o->lighting, o->cpu_mask);
+    params.log = o->args.log;
+    relume_status status = relume_pack_open(
+        &pack, file, relume_pack_params(.log = o->args.log, .threads = o->args.threads));
+    if (status)
+        return status;
+    status = parse_lights(&o->args, &o->lighting, &rig, &lights, &n);
+    if (!status)
+        status = relume_frame(&frame, pack, &(struct relume_camera){0}, lights, n, &params);
+    if (!status)
+        status = blacken(&frame, pack);
+    if (!status)
+        status = relume_image_save(&frame, o->relight, relume_image_params(.log = o->args.log));
+    relume_image_destroy(&frame);
+    relume_rig_destroy(&rig);
+    relume_pack_destroy(&pack);
+    return status;
+}
+
+// ---------------------------------------------------------------- what to say
+
+static void put_vector(const char *key, struct relume_vec3 v)
+{
+    printf(",\"%s\":[%.9g,%.9g,%.9g]", key, v.x, v.y, v.z);
+}
+
+static void print_json(const struct relume_shoot *s)
+{
+    printf("{\"lights\":%d,\"width\":%d,\"height\":%d,\"balls\":[", s->lights, s->width, s->height);
+    for (int b = 0; b < s->balls; b++)
+        printf("%s{\"x\":%.9g,\"y\":%.9g,\"radius\":%.9g,\"coverage\":%.4g}", b ? "," : "",
+               s->ball[b].x, s->ball[b].y, s->ball[b].radius, s->ball[b].coverage);
+    printf("],\"gap_deg\":%.6g,\"residual\":", s->gap_deg);
+    json_number(stdout, s->photometric.normal.data ? s->photometric.residual : (double)NAN);
+    printf(",\"position_error\":%.6g,\"photographs\":[", s->position_error);
+    for (int i = 0; i < s->lights; i++) {
+        printf("%s{\"file\":", i ? "," : "");
+        json_text(stdout, s->photo[i].path);
+        put_vector("direction", s->direction[i]);
+        if (s->position)
+            put_vector("position", s->position[i]);
+        if (s->intensity)
+            printf(",\"intensity\":[%.9g,%.9g,%.9g]", (double)s->intensity[i][0],
+                   (double)s->intensity[i][1], (double)s->intensity[i][2]);
+        printf(",\"error_deg\":%.6g,\"saturated\":%.6g}", s->photo[i].sigma_deg,
+               (double)s->photo[i].saturated);
+    }
+    printf("],\"warnings\":[");
+    for (int i = 0; i < s->warnings; i++) {
+        fputs(i ? "," : "", stdout);
+        json_text(stdout, s->warning[i]);
+    }
+    puts("]}");
+}
+
+static void say(const struct capture_options *o, const struct relume_shoot *s)
+{
+    const struct relume_log *log = o->args.log;
+    double sigma = 0.0;
+    char text[512];
+    for (int i = 0; i < s->lights; i++)
+        sigma += s->photo[i].sigma_deg / s->lights;
+    size_t at = (size_t)snprintf(text, sizeof text, "%s: %d lights", o->output, s->lights);
+    if (sigma > 0.0)
+        at += (size_t)snprintf(text + at, sizeof text - at, ", directions to about %.2f degrees",
+                               sigma);
+    if (s->position_error > 0.0)
+        at += (size_t)snprintf(text + at, sizeof text - at, ", positions to about %.1f %%",
+                               100.0 * s->position_error);
+    snprintf(text + at, sizeof text - at, "; see report.html there");
+    log->message(log->user, RELUME_NOTE, text);
+}
+
+static relume_status make(const struct capture_options *o, struct job *job)
+{
+    const char *file = o->encode;
+    relume_status status = relume_shoot_make(&job->shoot, o->output, &job->p);
+    if (status)
+        return status;
+    status = save(o, o->normals, &job->shoot.photometric.normal);
+    if (!status)
+        status = save(o, o->albedo, &job->shoot.photometric.albedo);
+    if (!status)
+        status = save_height(o, &job->shoot);
+    if (!status && file)
+        status = encode(o, job, file);
+    if (!status && o->relight)
+        status = relight(o, file);
+    if (!status && o->json)
+        print_json(&job->shoot);
+    else if (!status)
+        say(o, &job->shoot);
+    return status;
+}
 
 static relume_status run(const struct args *args)
 {
-    if (capture_views_asked(args))
-        return capture_views(args);
-    return args_has(args, "--hdr") ? capture_hdr(args) : capture_lights(args);
+    const struct capture_options *o = (const void *)args;
+    struct job job = {0};
+    relume_status status = check_options(o);
+    if (!status)
+        status = gather(o, &job);
+    if (!status)
+        status = read_options(o, &job);
+    if (!status)
+        status = make(o, &job);
+    free_job(&job);
+    return status;
 }
 
 const struct command command_capture = {
     .name = "capture",
-    .usage = "PHOTO... -o DIR|OUT.exr [OPTION ...]",
-    .summary = "turn photographs into a capture and find their lights; or merge exposures (--hdr)",
+    .usage = "PHOTO... -o DIR [OPTION ...]",
+    .summary = "turn photographs under one light each into a capture, and find their lights",
     .example = "relume capture statue/*.jpg --ball-photos ball -o statue_capture",
     .min_inputs = 1,
     .max_inputs = 4096,
     .options = options,
+    .size = sizeof(struct capture_options),
+    .defaults =
+        &(const struct capture_options){.balls = 1, .align = "none", .cpu_mask = ALL_KERNELS},
     .run = run,
 };

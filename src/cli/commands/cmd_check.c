@@ -1,9 +1,15 @@
 // cmd_check.c - relume check: reads all of a file and says what is damaged
 #include "cli.h"
 
+struct check_options {
+    struct args args;
+    bool json;
+};
+#define OPTIONS struct check_options
+
 static const struct option options[] = {
-    {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
-    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+    FLAG("--json", json, "output", "one JSON object"),
+    {0},
 };
 
 struct findings {
@@ -27,9 +33,9 @@ static void print_damage(void *user, const char *part, int row, int rows)
     f->count++;
 }
 
-static relume_status check_file(const struct args *args, const char *path)
+static relume_status check_file(const struct check_options *o, const char *path)
 {
-    struct findings f = {.path = path, .json = args_has(args, "--json")};
+    struct findings f = {.path = path, .json = o->json};
     struct shown name;
     if (f.json) {
         printf("{\"file\": ");
@@ -37,7 +43,7 @@ static relume_status check_file(const struct args *args, const char *path)
         printf(", \"damaged\": [");
     }
     const relume_status status = relume_pack_check(
-        path, relume_pack_check_params(.log = args_log(args), .threads = args_threads(args),
+        path, relume_pack_check_params(.log = o->args.log, .threads = o->args.threads,
                                        .found = print_damage, .user = &f));
     if (f.json)
         printf("], \"whole\": %s}", status ? "false" : "true");
@@ -51,14 +57,15 @@ static relume_status check_file(const struct args *args, const char *path)
 // All files are looked at; the worst status is the command's.
 static relume_status run(const struct args *args)
 {
-    const bool json = args_has(args, "--json");
+    const struct check_options *o = (const void *)args;
+    const bool json = o->json;
     relume_status worst = RELUME_OK;
     if (json)
         printf("{\"files\": [");
-    for (int i = 0; i < args_inputs(args) && worst != RELUME_ECANCEL; i++) {
+    for (int i = 0; i < o->args.inputs && worst != RELUME_ECANCEL; i++) {
         if (json && i)
             printf(", ");
-        const relume_status status = check_file(args, args_input(args, i));
+        const relume_status status = check_file(o, o->args.input[i]);
         worst = status && worst != RELUME_ENOMEM ? status : worst;
     }
     if (json)
@@ -74,5 +81,6 @@ const struct command command_check = {
     .min_inputs = 1,
     .max_inputs = 4096,
     .options = options,
+    .size = sizeof(struct check_options),
     .run = run,
 };

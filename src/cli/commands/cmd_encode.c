@@ -5,49 +5,60 @@
 #include <string.h>
 #include <sys/stat.h>
 
+struct encode_options {
+    struct args args;
+    const char *output, *basis, *interpolant, *colour, *bits, *step, *domain, *compression,
+        *transfer;
+    int coefficients;
+    double quality, ridge, assume_depth;
+    bool robust, force, no_depth, skip_missing, repair;
+    struct book_options books;
+    bool allow_outside;
+};
+#define OPTIONS struct encode_options
+
 static const struct option options[] = {
-    {"-o", OPTION_RELUME, "FILE.exr", "the relume file to write", 0, 0},
-    {"--basis", OPTION_TEXT, "NAME", "auto, pca, table, sh, hsh, ptm, dct, dct-resampled", 0, 0},
-    {"--coefficients", OPTION_INT, "K",
-     "coefficients per colour channel (pca: for all three); default: auto: as --quality asks, at "
-     "least 27; "
-     "others: by the basis",
-     1, 4096},
-    {"--quality", OPTION_NUMBER, "DB",
-     "auto: as few coefficients as reproduce the photographs at this PSNR; default: 38, at most "
-     "128 of them",
-     10, 60},
-    {"--interpolant", OPTION_TEXT, "NAME",
-     "pca, table: auto, chord, angular, tps, rbf, natural, hsh, delaunay", 0, 0},
-    {"--colour", OPTION_TEXT, "C",
-     "rgb, or luminance: one set of coefficients and a colour per pixel; default: rgb", 0, 0},
-    {"--bits", OPTION_TEXT, "B",
-     "8, 10, 12, 16, half, log (half, coarser and smaller) or float; default: auto: the least that "
-     "adds nothing "
-     "visible; others: 8, half for high dynamic range",
-     0, 0},
-    {"--step", OPTION_TEXT, "S", "plane: each its own range; common: one step; default: plane", 0,
-     0},
-    {"--robust", OPTION_FLAG, NULL,
-     "shadows, highlights and stray values weigh less in the fit; slower", 0, 0},
-    {"--force", OPTION_FLAG, NULL, "allow more coefficients than the lights determine", 0, 0},
-    {"--domain", OPTION_TEXT, "D",
-     "auto, linear or display; default: auto, by the capture's transfer, and by error where the "
-     "basis is auto",
-     0, 0},
-    {"--compression", OPTION_TEXT, "C", "none, rle, zip or piz (all lossless); default: piz", 0, 0},
-    {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
-    {"--ridge", OPTION_NUMBER, "R", "smoothing of the fit, 0 (none) to 1; default: 1e-6", 0, 1},
+    TEXT_AS(OPTION_RELUME, "-o", output, "output", "FILE.exr", "the relume file to write"),
+    TEXT("--basis", basis, "model", "NAME", "auto, pca, table, sh, hsh, ptm, dct, dct-resampled"),
+    INT("--coefficients", coefficients, "model", "K",
+        "coefficients per colour channel (pca: for all three); default: auto: as --quality asks, "
+        "at least 27; others: by the basis",
+        1, 4096),
+    NUMBER("--quality", quality, "model", "DB",
+           "auto: as few coefficients as reproduce the photographs at this PSNR; default: 38, at "
+           "most 128 of them",
+           10, 60),
+    TEXT("--interpolant", interpolant, "model", "NAME",
+         "pca, table: auto, chord, angular, tps, rbf, natural, hsh, delaunay"),
+    TEXT("--colour", colour, "model", "C",
+         "rgb, or luminance: one set of coefficients and a colour per pixel; default: rgb"),
+    TEXT("--bits", bits, "model", "B",
+         "8, 10, 12, 16, half, log (half, coarser and smaller) or float; default: auto: the least "
+         "that adds nothing visible; others: 8, half for high dynamic range"),
+    TEXT("--step", step, "model", "S",
+         "plane: each its own range; common: one step; default: plane"),
+    FLAG("--robust", robust, "model",
+         "shadows, highlights and stray values weigh less in the fit; slower"),
+    FLAG("--force", force, "output", "allow more coefficients than the lights determine"),
+    TEXT("--domain", domain, "model", "D",
+         "auto, linear or display; default: auto, by the capture's transfer, and by error where "
+         "the basis is auto"),
+    TEXT("--compression", compression, "output", "C",
+         "none, rle, zip or piz (all lossless); default: piz"),
+    TEXT("--transfer", transfer, "input", "T", "linear, srgb or gamma:G; overrides the capture's"),
+    NUMBER("--ridge", ridge, "model", "R", "smoothing of the fit, 0 (none) to 1; default: 1e-6", 0,
+           1),
     BOOK_OPTIONS,
-    {"--no-depth", OPTION_FLAG, NULL,
-     "leave depth out: smaller file, but no near lights and no views corrected by depth", 0, 0},
-    {"--assume-depth", OPTION_NUMBER, "D",
-     "near lights, capture without depth: assume the surface this far from the eye", 1e-6, 1e9},
-    {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
+    FLAG("--no-depth", no_depth, "model",
+         "leave depth out: smaller file, but no near lights and no views corrected by depth"),
+    NUMBER("--assume-depth", assume_depth, "lights", "D",
+           "near lights, capture without depth: assume the surface this far from the eye", 1e-6,
+           1e9),
+    FLAG("--skip-missing", skip_missing, "input", "leave out lights whose image does not exist"),
     ALLOW_OUTSIDE_OPTION,
-    {"--repair", OPTION_FLAG, NULL,
-     "replace pixels that are NaN or infinite by those under the nearest lights", 0, 0},
-    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+    FLAG("--repair", repair, "input",
+         "replace pixels that are NaN or infinite by those under the nearest lights"),
+    {0},
 };
 
 static relume_status parse_basis(const char *name, const struct relume_basis **out)
@@ -79,10 +90,9 @@ static relume_status parse_bits(const char *text, enum relume_storage *out)
 }
 
 // One of a NULL-terminated list of names; *out is its place.
-static relume_status parse_choice(const struct args *args, const char *option,
-                                  const char *const *names, int *out)
+static relume_status parse_choice(const char *option, const char *text, const char *const *names,
+                                  int *out)
 {
-    const char *text = args_text(args, option, names[0]);
     for (*out = 0; names[*out]; ++*out)
         if (!strcmp(text, names[*out]))
             return RELUME_OK;
@@ -148,12 +158,12 @@ static void bytes_words(char text[48], const relume_capture *capture, const char
         snprintf(text, 48, ", %.1f bytes a pixel", (double)file.st_size / pixels);
 }
 
-static void say_result(const struct args *args, const relume_capture *capture,
+static void say_result(const struct encode_options *o, const relume_capture *capture,
                        const relume_coder *coder, const struct relume_encode_report *report,
                        const struct request *r)
 {
     const struct relume_coder_info *info = relume_coder_info(coder);
-    const char *path = args_text(args, "-o", NULL);
+    const char *path = o->output;
     char text[512], bytes[48], unseen[64] = "", more[96] = "";
     const bool one = info->lights == 1, short_of = r->decide && r->quality > report->psnr_db + 0.5;
     bytes_words(bytes, capture, path);
@@ -167,7 +177,7 @@ static void say_result(const struct args *args, const relume_capture *capture,
              path, one ? "" : "s", report->psnr_db, info->coefficients,
              info->coefficients == 1 ? "" : "s", info->joint ? "" : " a colour",
              storage_words(r->pack.storage), bytes, unseen, more);
-    args_log(args)->message(args_log(args)->user, RELUME_NOTE, text);
+    o->args.log->message(o->args.log->user, RELUME_NOTE, text);
 }
 
 // Codes are even steps up to the brightest value: a lamp in the picture of HDR radiance leaves the
@@ -179,38 +189,38 @@ static bool is_coarse(const struct relume_encode_report *report)
     return lost >= COARSE && report->steps_rms >= report->fit_rms;
 }
 
-static void say_coarse(const struct args *args, const struct relume_encode_report *report,
+static void say_coarse(const struct encode_options *o, const struct relume_encode_report *report,
                        const struct request *r)
 {
     char text[384];
-    if (!args_has(args, "--bits") || !is_coarse(report))
+    if (!o->bits || !is_coarse(report))
         return;
     snprintf(text, sizeof text,
-             "%s: very bright highlights: %s will ruin the picture; use --bits half",
-             args_text(args, "-o", ""), storage_words(r->pack.storage));
-    args_log(args)->message(args_log(args)->user, RELUME_WARNING, text);
+             "%s: very bright highlights: %s will ruin the picture; use --bits half", o->output,
+             storage_words(r->pack.storage));
+    o->args.log->message(o->args.log->user, RELUME_WARNING, text);
 }
 
 // What in the capture says little: black and clipped pixels, black images.
-static void say_census(const struct args *args, const struct relume_encode_census *c,
+static void say_census(const struct encode_options *o, const struct relume_encode_census *c,
                        bool hemispherical)
 {
-    const struct relume_log *log = args_log(args);
+    const struct relume_log *log = o->args.log;
     char text[256];
     if (c->black) {
         snprintf(text, sizeof text, "%s: %zu of %zu pixels are black under every light",
-                 args_input(args, 0), c->black, c->pixels);
+                 o->args.input[0], c->black, c->pixels);
         log->message(log->user, c->black == c->pixels ? RELUME_WARNING : RELUME_NOTE, text);
     }
     if (c->clipped) {
         snprintf(text, sizeof text,
                  "%s: %zu of %zu pixels are overexposed in at least one photograph, %zu in all",
-                 args_input(args, 0), c->clipped, c->pixels, c->always_clipped);
+                 o->args.input[0], c->clipped, c->pixels, c->always_clipped);
         log->message(log->user, c->always_clipped == c->pixels ? RELUME_WARNING : RELUME_NOTE,
                      text);
     }
     if (c->black_images && hemispherical) {
-        snprintf(text, sizeof text, "%s: %d image%s black", args_input(args, 0), c->black_images,
+        snprintf(text, sizeof text, "%s: %d image%s black", o->args.input[0], c->black_images,
                  c->black_images > 1 ? "s are" : " is");
         log->message(log->user, RELUME_WARNING, text);
     }
@@ -245,34 +255,33 @@ static relume_status learn(relume_coder **coder, const relume_capture *capture, 
 }
 
 // Where nobody asked for even steps and they turn out too coarse, as halves.
-static relume_status write_file(const struct args *args, const relume_capture *capture,
+static relume_status write_file(const struct encode_options *o, const relume_capture *capture,
                                 const relume_coder *coder, struct request *r,
                                 struct relume_encode_report *report)
 {
-    const char *path = args_text(args, "-o", NULL);
+    const char *path = o->output;
     relume_status status = relume_pack_encode(capture, coder, path, report, &r->pack);
-    if (status || args_has(args, "--bits") || !is_coarse(report))
+    if (status || o->bits || !is_coarse(report))
         return status;
     r->pack.storage = RELUME_STORE_HALF;
     return relume_pack_encode(capture, coder, path, report, &r->pack);
 }
 
-static relume_status encode(const struct args *args, struct request *r)
+static relume_status encode(const struct encode_options *o, struct request *r)
 {
     relume_capture *capture;
     relume_coder *coder = NULL;
     struct prefix_log about;
     const size_t keep = r->basis->learned || r->coder.choose ? KEEP_BYTES : 0;
     relume_status status = relume_capture_open(
-        &capture, args_input(args, 0),
-        relume_capture_params(.log = args_log(args), .transfer = r->transfer,
-                              .skip_missing = args_has(args, "--skip-missing"),
-                              .allow_outside = args_has(args, "--allow-outside"),
-                              .assume_depth = args_number(args, "--assume-depth", 0.0),
-                              .repair = args_has(args, "--repair"), .keep_bytes = keep));
+        &capture, o->args.input[0],
+        relume_capture_params(.log = o->args.log, .transfer = r->transfer,
+                              .skip_missing = o->skip_missing, .allow_outside = o->allow_outside,
+                              .assume_depth = o->assume_depth, .repair = o->repair,
+                              .keep_bytes = keep));
     if (status)
         return status;
-    r->coder.log = prefix_log(&about, args_log(args), args_input(args, 0));
+    r->coder.log = prefix_log(&about, o->args.log, o->args.input[0]);
     r->books.log = r->coder.log;
     if (ignores_positions(relume_capture_manifest(capture)))
         about.log.message(about.log.user, RELUME_WARNING,
@@ -280,61 +289,59 @@ static relume_status encode(const struct args *args, struct request *r)
     status = learn(&coder, capture, r);
     struct relume_encode_report report;
     if (!status)
-        status = write_file(args, capture, coder, r, &report);
+        status = write_file(o, capture, coder, r, &report);
     if (!status) {
-        say_census(args, &report.census, relume_capture_hemispherical(capture));
-        say_result(args, capture, coder, &report, r);
-        say_coarse(args, &report, r);
+        say_census(o, &report.census, relume_capture_hemispherical(capture));
+        say_result(o, capture, coder, &report, r);
+        say_coarse(o, &report, r);
     }
     relume_coder_destroy(&coder);
     relume_capture_destroy(&capture);
     return status;
 }
 
-static relume_status parse(const struct args *args, struct request *r)
+static relume_status parse(const struct encode_options *o, struct request *r)
 {
     static const char *const steps[] = {"plane", "common", NULL};
     static const char *const colours[] = {"rgb", "luminance", NULL};
     int step = 0, colour = 0;
     *r = (struct request){
-        .coder = {.coefficients = args_int(args, "--coefficients", 0),
-                  .ridge = args_number(args, "--ridge", 0.0),
-                  .no_ridge = args_number(args, "--ridge", 1.0) == 0.0,
-                  .robust = args_has(args, "--robust"),
-                  .force = args_has(args, "--force")},
-        .pack = {.log = args_log(args), .threads = args_threads(args)},
+        .coder = {.coefficients = o->coefficients,
+                  .ridge = o->ridge,
+                  .no_ridge = args_given(&o->args, &o->ridge) && o->ridge == 0.0,
+                  .robust = o->robust,
+                  .force = o->force},
+        .pack = {.log = o->args.log, .threads = o->args.threads},
     };
-    if (!args_has(args, "-o"))
+    if (!o->output)
         return usage_error("encode: expected -o FILE.exr");
-    const char *basis = args_text(args, "--basis", "auto");
+    const char *basis = o->basis;
     relume_status status = parse_basis(basis, &r->basis);
     if (!status)
         status = parse_interpolant(
-            args_text(args, "--interpolant", strcmp(basis, "auto") ? NULL : "auto"), &r->coder);
+            o->interpolant || strcmp(o->basis, "auto") ? o->interpolant : "auto", &r->coder);
     if (!status)
-        status = args_has(args, "--bits")
-                     ? parse_bits(args_text(args, "--bits", "8"), &r->pack.storage)
-                     : RELUME_OK;
+        status = o->bits ? parse_bits(o->bits, &r->pack.storage) : RELUME_OK;
     if (!status)
-        status = parse_choice(args, "--step", steps, &step);
+        status = parse_choice("--step", o->step, steps, &step);
     if (!status)
-        status = parse_choice(args, "--colour", colours, &colour);
+        status = parse_choice("--colour", o->colour, colours, &colour);
     if (!status)
-        status = parse_domain(args_text(args, "--domain", "auto"), &r->pack.domain);
+        status = parse_domain(o->domain, &r->pack.domain);
     if (!status)
-        status = parse_compression(args_text(args, "--compression", "piz"), &r->pack.compression);
+        status = parse_compression(o->compression, &r->pack.compression);
     if (!status)
-        status = parse_transfer(args_text(args, "--transfer", NULL), &r->transfer);
-    bool books = false;
+        status = parse_transfer(o->transfer, &r->transfer);
+    const bool books = o->books.codes > 0;
     if (!status)
-        status = parse_books(args, &r->books, &books);
+        status = parse_books(&o->args, &o->books, books, &r->books);
     r->pack.books = books ? &r->books : NULL;
-    r->pack.no_depth = args_has(args, "--no-depth");
-    r->pack.share = args_has(args, "--share");
+    r->pack.no_depth = o->no_depth;
+    r->pack.share = o->books.share;
     r->pack.step = step ? RELUME_STEP_COMMON : RELUME_STEP_PLANE;
     r->coder.luminance = colour;
     r->decide = !strcmp(basis, "auto") && !books && !r->coder.robust && !colour;
-    r->quality = args_number(args, "--quality", 0.0);
+    r->quality = o->quality;
     if (!status && r->quality > 0.0 && (!r->decide || r->coder.coefficients))
         return usage_error("--quality chooses the coefficients of basis auto; expected without "
                            "--basis, --coefficients, --codebook and --robust");
@@ -343,9 +350,10 @@ static relume_status parse(const struct args *args, struct request *r)
 
 static relume_status run(const struct args *args)
 {
+    const struct encode_options *o = (const void *)args;
     struct request r;
-    const relume_status status = parse(args, &r);
-    return status ? status : encode(args, &r);
+    const relume_status status = parse(o, &r);
+    return status ? status : encode(o, &r);
 }
 
 const struct command command_encode = {
@@ -356,5 +364,11 @@ const struct command command_encode = {
     .min_inputs = 1,
     .max_inputs = 1,
     .options = options,
+    .size = sizeof(struct encode_options),
+    .defaults = &(const struct encode_options){.basis = "auto",
+                                               .step = "plane",
+                                               .colour = "rgb",
+                                               .domain = "auto",
+                                               .compression = "piz"},
     .run = run,
 };

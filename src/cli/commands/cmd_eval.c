@@ -3,14 +3,24 @@
 
 #include <math.h>
 
+struct eval_options {
+    struct args args;
+    const char *transfer;
+    double assume_depth;
+    bool skip_missing, json;
+    bool allow_outside;
+};
+#define OPTIONS struct eval_options
+
 static const struct option options[] = {
-    {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
-    {"--assume-depth", OPTION_NUMBER, "D",
-     "near lights, capture without depth: assume the surface this far from the eye", 1e-6, 1e9},
-    {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
+    TEXT("--transfer", transfer, "input", "T", "linear, srgb or gamma:G; overrides the capture's"),
+    NUMBER("--assume-depth", assume_depth, "lights", "D",
+           "near lights, capture without depth: assume the surface this far from the eye", 1e-6,
+           1e9),
+    FLAG("--skip-missing", skip_missing, "input", "leave out lights whose image does not exist"),
     ALLOW_OUTSIDE_OPTION,
-    {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
-    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+    FLAG("--json", json, "output", "one JSON object"),
+    {0},
 };
 
 // Bytes as they are, measures as far as they are known.
@@ -69,30 +79,30 @@ static void print_text(const struct relume_evaluation *e)
 
 static relume_status run(const struct args *args)
 {
+    const struct eval_options *o = (const void *)args;
     struct relume_transfer transfer = {.curve = RELUME_CURVE_AUTO};
-    const char *text = args_text(args, "--transfer", NULL);
+    const char *text = o->transfer;
     if (text && relume_transfer_parse(&transfer, text))
         return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", text);
     relume_pack *pack = NULL;
     relume_capture *capture = NULL;
     struct relume_evaluation evaluation = {0};
     relume_status status =
-        relume_pack_open(&pack, args_input(args, 0),
-                         relume_pack_params(.log = args_log(args), .threads = args_threads(args)));
+        relume_pack_open(&pack, o->args.input[0],
+                         relume_pack_params(.log = o->args.log, .threads = o->args.threads));
     if (!status)
-        status = relume_capture_open(
-            &capture, args_input(args, 1),
-            relume_capture_params(.log = args_log(args), .transfer = transfer,
-                                  .skip_missing = args_has(args, "--skip-missing"),
-                                  .allow_outside = args_has(args, "--allow-outside"),
-                                  .assume_depth = args_number(args, "--assume-depth", 0.0)));
+        status = relume_capture_open(&capture, o->args.input[1],
+                                     relume_capture_params(.log = o->args.log, .transfer = transfer,
+                                                           .skip_missing = o->skip_missing,
+                                                           .allow_outside = o->allow_outside,
+                                                           .assume_depth = o->assume_depth));
     if (!status)
         status = relume_evaluate(
             &evaluation, pack, capture,
-            relume_evaluate_params(.log = args_log(args), .file = args_input(args, 0),
-                                   .capture = args_input(args, 1), .threads = args_threads(args)));
+            relume_evaluate_params(.log = o->args.log, .file = o->args.input[0],
+                                   .capture = o->args.input[1], .threads = o->args.threads));
     if (!status)
-        (args_has(args, "--json") ? print_json : print_text)(&evaluation);
+        (o->json ? print_json : print_text)(&evaluation);
     relume_evaluation_destroy(&evaluation);
     relume_capture_destroy(&capture);
     relume_pack_destroy(&pack);
@@ -107,5 +117,6 @@ const struct command command_eval = {
     .min_inputs = 2,
     .max_inputs = 2,
     .options = options,
+    .size = sizeof(struct eval_options),
     .run = run,
 };

@@ -1,22 +1,30 @@
 // cmd_import.c - relume import: files of other programs into a relume file
 #include "cli.h"
 
+struct import_options {
+    struct args args;
+    const char *output, *compression;
+};
+#define OPTIONS struct import_options
+
 static const struct option options[] = {
-    {"-o", OPTION_RELUME, "FILE.exr", "the relume file to write", 0, 0},
-    {"--compression", OPTION_TEXT, "C", "none, rle, zip or piz (all lossless); default: piz", 0, 0},
-    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+    TEXT_AS(OPTION_RELUME, "-o", output, "output", "FILE.exr", "the relume file to write"),
+    TEXT("--compression", compression, "output", "C",
+         "none, rle, zip or piz (all lossless); default: piz"),
+    {0},
 };
 
 static relume_status run(const struct args *args)
 {
+    const struct import_options *o = (const void *)args;
     static const char *const names[] = {"none", "rle", "zip", "piz", NULL};
-    struct relume_import_params p = {.log = args_log(args), .threads = args_threads(args)};
-    const char *compression = args_text(args, "--compression", "piz");
-    if (!args_has(args, "-o"))
+    struct relume_import_params p = {.log = o->args.log, .threads = o->args.threads};
+    const char *compression = o->compression;
+    if (!o->output)
         return usage_error("import: expected -o FILE.exr");
     if (relume_compression_parse(&p.compression, compression))
         return unknown_name("--compression", compression, names);
-    return relume_import(args_input(args, 0), args_text(args, "-o", NULL), &p);
+    return relume_import(o->args.input[0], o->output, &p);
 }
 
 const struct command command_import = {
@@ -27,5 +35,7 @@ const struct command command_import = {
     .min_inputs = 1,
     .max_inputs = 1,
     .options = options,
+    .size = sizeof(struct import_options),
+    .defaults = &(const struct import_options){.compression = "piz"},
     .run = run,
 };

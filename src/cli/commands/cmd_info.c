@@ -3,10 +3,17 @@
 
 #include <math.h>
 
+struct info_options {
+    struct args args;
+    bool json;
+    bool allow_outside;
+};
+#define OPTIONS struct info_options
+
 static const struct option options[] = {
-    {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
+    FLAG("--json", json, "output", "one JSON object"),
     ALLOW_OUTSIDE_OPTION,
-    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+    {0},
 };
 
 static double bits_per_pixel(const struct relume_pack_info *i)
@@ -103,19 +110,18 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
 
 static relume_status run(const struct args *args)
 {
-    const char *path = args_input(args, 0);
+    const struct info_options *o = (const void *)args;
+    const char *path = o->args.input[0];
     relume_pack *pack;
-    const relume_status status =
-        relume_open(&pack, path,
-                    relume_open_params(.log = args_log(args),
-                                       .allow_outside = args_has(args, "--allow-outside")));
+    const relume_status status = relume_open(
+        &pack, path, relume_open_params(.log = o->args.log, .allow_outside = o->allow_outside));
     if (status)
         return status;
     const struct relume_pack_info *info = relume_pack_info(pack);
     char display[32];
     relume_transfer_text(info->display, display, sizeof display);
-    (args_has(args, "--json") ? print_json : print_text)(info, relume_coder_info(info->coder),
-                                                         display, relume_kind_of(path));
+    (o->json ? print_json : print_text)(info, relume_coder_info(info->coder), display,
+                                        relume_kind_of(path));
     relume_pack_destroy(&pack);
     return RELUME_OK;
 }
@@ -129,5 +135,6 @@ const struct command command_info = {
     .min_inputs = 1,
     .max_inputs = 1,
     .options = options,
+    .size = sizeof(struct info_options),
     .run = run,
 };

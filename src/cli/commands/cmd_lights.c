@@ -4,14 +4,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+struct lights_options {
+    struct args args;
+    int count, seed;
+    bool hemisphere, json;
+    const char *pole;
+    const char *pattern;
+};
+#define OPTIONS struct lights_options
+
 static const struct option options[] = {
     PATTERN_OPTION,
-    {"-n", OPTION_INT, "N", "number of directions; default 100", 1, 65536},
-    {"--hemisphere", OPTION_FLAG, NULL, "only directions on the pole's side", 0, 0},
-    {"--pole", OPTION_TEXT, "z|y", "the pole: z (planar, slab; default) or y (panoramas)", 0, 0},
-    {"--seed", OPTION_INT, "S", "seed of the random patterns; default 0", 0, 2147483647},
-    {"--json", OPTION_FLAG, NULL, "print one JSON object", 0, 0},
-    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+    INT("-n", count, "lights", "N", "number of directions; default 100", 1, 65536),
+    FLAG("--hemisphere", hemisphere, "lights", "only directions on the pole's side"),
+    TEXT("--pole", pole, "lights", "z|y", "the pole: z (planar, slab; default) or y (panoramas)"),
+    INT("--seed", seed, "lights", "S", "seed of the random patterns; default 0", 0, 2147483647),
+    FLAG("--json", json, "output", "print one JSON object"),
+    {0},
 };
 
 static relume_status choose_pole(bool *pole_y, const char *name)
@@ -42,24 +51,25 @@ static void print_lines(const struct relume_vec3 *v, int n, double discrepancy)
 
 static relume_status run(const struct args *args)
 {
+    const struct lights_options *o = (const void *)args;
     const struct relume_pattern *pattern;
     struct relume_lights_params params = {
-        .log = args_log(args),
-        .seed = (uint64_t)args_int(args, "--seed", 0),
-        .hemisphere = args_has(args, "--hemisphere"),
+        .log = o->args.log,
+        .seed = (uint64_t)o->seed,
+        .hemisphere = o->hemisphere,
     };
-    relume_status status = args_pattern(&pattern, args);
+    relume_status status = choose_pattern(&pattern, o->pattern);
     if (!status)
-        status = choose_pole(&params.pole_y, args_text(args, "--pole", "z"));
+        status = choose_pole(&params.pole_y, o->pole);
     if (status)
         return status;
-    const int n = args_int(args, "-n", 100);
+    const int n = o->count;
     struct relume_vec3 *v = malloc((size_t)n * sizeof *v);
     double discrepancy = 0.0;
     status = v ? relume_lights_make(v, n, pattern, &params) : RELUME_ENOMEM;
     if (!status)
         status = relume_lights_discrepancy(&discrepancy, v, n, &params);
-    if (!status && args_has(args, "--json"))
+    if (!status && o->json)
         print_json(pattern, params.hemisphere, v, n, discrepancy);
     else if (!status)
         print_lines(v, n, discrepancy);
@@ -75,5 +85,7 @@ const struct command command_lights = {
     .min_inputs = 0,
     .max_inputs = 0,
     .options = options,
+    .size = sizeof(struct lights_options),
+    .defaults = &(const struct lights_options){.pole = "z", .count = 100},
     .run = run,
 };

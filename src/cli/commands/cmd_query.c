@@ -6,18 +6,28 @@
 #include <math.h>
 #include <stdlib.h>
 
+struct query_options {
+    struct args args;
+    const char *eye, *direction, *rays;
+    bool json;
+    struct light_options lighting;
+    struct interpolate_options interpolation;
+    int cpu_mask;
+    bool allow_outside;
+};
+#define OPTIONS struct query_options
+
 static const struct option options[] = {
-    {"--eye", OPTION_TEXT, "x,y,z", "where the ray starts", 0, 0},
-    {"--direction", OPTION_TEXT, "x,y,z", "where it goes, into the scene", 0, 0},
-    {"--rays", OPTION_TEXT, "FILE",
-     "many rays instead, one per line: eye and direction, six numbers; - reads standard input", 0,
-     0},
+    TEXT("--eye", eye, "camera", "x,y,z", "where the ray starts"),
+    TEXT("--direction", direction, "camera", "x,y,z", "where it goes, into the scene"),
+    TEXT("--rays", rays, "camera", "FILE",
+         "many rays instead, one per line: eye and direction, six numbers; - reads standard input"),
     LIGHT_OPTIONS,
     INTERPOLATE_OPTIONS,
     CPU_OPTION,
-    {"--json", OPTION_FLAG, NULL, "one JSON object", 0, 0},
+    FLAG("--json", json, "output", "one JSON object"),
     ALLOW_OUTSIDE_OPTION,
-    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+    {0},
 };
 
 static void print_json(const float rgb[3])
@@ -42,10 +52,10 @@ static void print_line(const float rgb[3])
 }
 
 // A list where a list was asked for.
-static void print(const struct args *args, const float (*rgb)[3], int n)
+static void print(const struct query_options *o, const float (*rgb)[3], int n)
 {
-    const bool list = args_has(args, "--rays");
-    if (!args_has(args, "--json")) {
+    const bool list = o->rays;
+    if (!o->json) {
         for (int i = 0; i < n; i++)
             print_line(rgb[i]);
         return;
@@ -58,7 +68,7 @@ static void print(const struct args *args, const float (*rgb)[3], int n)
     fputs(list ? "]}\n" : "}\n", stdout);
 }
 
-static void count_none(const struct args *args, const float (*rgb)[3], int n)
+static void count_none(const struct query_options *o, const float (*rgb)[3], int n)
 {
     char text[200];
     int none = 0;
@@ -68,47 +78,47 @@ static void count_none(const struct args *args, const float (*rgb)[3], int n)
         return;
     snprintf(text, sizeof text,
              "%d of %d rays are not in the file (they miss its window or its cameras): %s", none, n,
-             args_has(args, "--json") ? "null" : "none");
-    args_log(args)->message(args_log(args)->user, RELUME_WARNING, text);
+             o->json ? "null" : "none");
+    o->args.log->message(o->args.log->user, RELUME_WARNING, text);
 }
 
-static relume_status query(const struct args *args, const struct relume_ray *rays, int n,
+static relume_status query(const struct query_options *o, const struct relume_ray *rays, int n,
                            const struct relume_light *lights, int count)
 {
     relume_pack *pack;
     struct prefix_log about;
-    struct relume_frame_params params = parse_frame(args);
-    relume_status status = parse_interpolation(args, &params);
+    struct relume_frame_params params = parse_frame(&o->args, &o->lighting, o->cpu_mask);
+    relume_status status = parse_interpolation(&o->interpolation, &params);
     if (status)
         return status;
     float(*rgb)[3] = malloc((size_t)(n ? n : 1) * sizeof *rgb);
     if (!rgb)
         return RELUME_ENOMEM;
-    status = relume_open(&pack, args_input(args, 0),
-                         relume_open_params(.log = args_log(args), .threads = args_threads(args),
-                                            .allow_outside = args_has(args, "--allow-outside")));
-    params.log = prefix_log(&about, args_log(args), args_input(args, 0));
+    status = relume_open(&pack, o->args.input[0],
+                         relume_open_params(.log = o->args.log, .threads = o->args.threads,
+                                            .allow_outside = o->allow_outside));
+    params.log = prefix_log(&about, o->args.log, o->args.input[0]);
     if (!status)
         status = relume_query_rays(rgb, pack, rays, n, lights, count, &params);
     if (!status)
-        print(args, (const float(*)[3])rgb, n);
+        print(o, (const float(*)[3])rgb, n);
     if (!status && n > 1)
-        count_none(args, (const float(*)[3])rgb, n);
+        count_none(o, (const float(*)[3])rgb, n);
     relume_pack_destroy(&pack);
     free(rgb);
     return status;
 }
 
-static relume_status take_rays(const struct args *args, struct relume_ray **rays, int *n)
+static relume_status take_rays(const struct query_options *o, struct relume_ray **rays, int *n)
 {
-    const char *path = args_text(args, "--rays", NULL);
+    const char *path = o->rays;
     struct relume_ray ray = {0};
     *rays = NULL;
     if (path)
-        return rays_read(rays, n, path, args_log(args));
-    relume_status status = args_vec3(&ray.eye, "--eye", args_text(args, "--eye", ""));
+        return rays_read(rays, n, path, o->args.log);
+    relume_status status = args_vec3(&ray.eye, "--eye", o->eye);
     if (!status)
-        status = args_vec3(&ray.direction, "--direction", args_text(args, "--direction", ""));
+        status = args_vec3(&ray.direction, "--direction", o->direction);
     if (!status && !(*rays = malloc(sizeof **rays)))
         status = RELUME_ENOMEM;
     if (!status)
@@ -119,18 +129,19 @@ static relume_status take_rays(const struct args *args, struct relume_ray **rays
 
 static relume_status run(const struct args *args)
 {
+    const struct query_options *o = (const void *)args;
     relume_rig *rig = NULL;
     struct relume_ray *rays;
     const struct relume_light *lights;
     int count, n;
-    const bool one = args_has(args, "--eye") || args_has(args, "--direction");
-    if (args_has(args, "--rays") ? one : !args_has(args, "--eye") || !args_has(args, "--direction"))
+    const bool one = o->eye || o->direction;
+    if (o->rays ? one : !o->eye || !o->direction)
         return usage_error("query: expected --eye x,y,z and --direction x,y,z, or --rays FILE");
-    relume_status status = take_rays(args, &rays, &n);
+    relume_status status = take_rays(o, &rays, &n);
     if (!status)
-        status = parse_lights(args, &rig, &lights, &count);
+        status = parse_lights(args, &o->lighting, &rig, &lights, &count);
     if (!status)
-        status = query(args, rays, n, lights, count);
+        status = query(o, rays, n, lights, count);
     relume_rig_destroy(&rig);
     free(rays);
     return status;
@@ -144,5 +155,7 @@ const struct command command_query = {
     .min_inputs = 1,
     .max_inputs = 1,
     .options = options,
+    .size = sizeof(struct query_options),
+    .defaults = &(const struct query_options){.cpu_mask = ALL_KERNELS},
     .run = run,
 };

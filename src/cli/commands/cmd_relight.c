@@ -8,73 +8,90 @@
 #include <math.h>
 #include <string.h>
 
+struct relight_options {
+    struct args args;
+    const char *output, *eye, *look_at, *up, *projection, *size, *filter, *pass, *objects, *capture;
+    int view, samples;
+    double fov, pan, tilt, zoom, aperture, focus;
+    bool alpha;
+    struct light_options lighting;
+    struct interpolate_options interpolation;
+    struct develop_options develop;
+    struct eye_options glare;
+    bool allow_outside;
+    int cpu_mask;
+};
+#define OPTIONS struct relight_options
+
 static const struct option options[] = {
-    {"-o", OPTION_PICTURE, "OUT", "picture to write: .exr (linear), .png, .jpg, .tif, .hdr, ...", 0,
-     0},
+    TEXT_AS(OPTION_PICTURE, "-o", output, "output", "OUT",
+            "picture to write: .exr (linear), .png, .jpg, .tif, .hdr, ..."),
     LIGHT_OPTIONS,
-    {"--view", OPTION_INT, "N", "a captured view at its own size (panoramas: unfolded)", 0, 65535},
-    {"--eye", OPTION_TEXT, "x,y,z",
-     "slab: look at the window from this point; default: the middle of the cameras", 0, 0},
-    {"--look-at", OPTION_TEXT, "x,y,z", "--eye: where it looks; default: the middle of the object",
-     0, 0},
-    {"--up", OPTION_TEXT, "x,y,z", "--eye: the direction that is up in the picture; default: 0,1,0",
-     0, 0},
-    {"--fov", OPTION_NUMBER, "DEG",
-     "--eye: horizontal field of view; default: the slabs' windows; --pass glare: of a planar file",
-     0.01, 179},
-    {"--pan", OPTION_NUMBER, "A", "panorama: degrees to the right", 0, 0},
-    {"--tilt", OPTION_NUMBER, "A", "panorama: degrees up", 0, 0},
-    {"--zoom", OPTION_NUMBER, "F", "panorama: 1 shows 90 degrees; default: 1", 0.01, 1000},
-    {"--projection", OPTION_TEXT, "P",
-     "panorama: perspective (default), stereographic, planet (seen from above, as a small globe)",
-     0, 0},
-    {"--size", OPTION_TEXT, "WxH", SIZE_HELP, 0, 0},
-    {"--filter", OPTION_TEXT, "F",
-     "resampling: linear (auto), cubic or nearest to enlarge; all but nearest average to reduce", 0,
-     0},
+    INT("--view", view, "camera", "N", "a captured view at its own size (panoramas: unfolded)", 0,
+        65535),
+    TEXT("--eye", eye, "camera", "x,y,z",
+         "slab: look at the window from this point; default: the middle of the cameras"),
+    TEXT("--look-at", look_at, "camera", "x,y,z",
+         "--eye: where it looks; default: the middle of the object"),
+    TEXT("--up", up, "camera", "x,y,z",
+         "--eye: the direction that is up in the picture; default: 0,1,0"),
+    NUMBER("--fov", fov, "camera", "DEG",
+           "--eye: horizontal field of view; default: the slabs' windows; --pass glare: of a "
+           "planar file",
+           0.01, 179),
+    NUMBER("--pan", pan, "camera", "A", "panorama: degrees to the right", 0, 0),
+    NUMBER("--tilt", tilt, "camera", "A", "panorama: degrees up", 0, 0),
+    NUMBER("--zoom", zoom, "camera", "F", "panorama: 1 shows 90 degrees; default: 1", 0.01, 1000),
+    TEXT("--projection", projection, "camera", "P",
+         "panorama: perspective (default), stereographic, planet (seen from above, as a small "
+         "globe)"),
+    TEXT("--size", size, "picture", "WxH", SIZE_HELP),
+    TEXT("--filter", filter, "picture", "F",
+         "resampling: linear (auto), cubic or nearest to enlarge; all but nearest average to "
+         "reduce"),
     INTERPOLATE_OPTIONS,
-    {"--aperture", OPTION_NUMBER, "A",
-     "slab: diameter of the lens, which blurs what is out of focus; default: 0 (all sharp)", 0,
-     1e9},
-    {"--focus", OPTION_NUMBER, "Z",
-     "slab: the plane at z = Z is sharp; free camera: distance from the look-at point to the plane "
-     "in focus; default: the st plane, the look-at point",
-     0, 0},
+    NUMBER("--aperture", aperture, "camera", "A",
+           "slab: diameter of the lens, which blurs what is out of focus; default: 0 (all sharp)",
+           0, 1e9),
+    NUMBER("--focus", focus, "camera", "Z",
+           "slab: the plane at z = Z is sharp; free camera: distance from the look-at point to the "
+           "plane in focus; default: the st plane, the look-at point",
+           0, 0),
     DEVELOP_OPTIONS,
-    {"--pass", OPTION_TEXT, "NAME",
-     "colour, normals, specular, diffuse-gain, unsharp, luminance, false-colour, difference, glare",
-     0, 0},
+    TEXT("--pass", pass, "picture", "NAME",
+         "colour, normals, specular, diffuse-gain, unsharp, luminance, false-colour, difference, "
+         "glare"),
     GLARE_OPTIONS,
-    {"--alpha", OPTION_FLAG, NULL,
-     "make the background transparent where the capture has a mask: .png and .exr of a captured "
-     "view",
-     0, 0},
-    {"--objects", OPTION_TEXT, "FILE",
-     "objects covered with BTFs, in the scene (docs/objects.md); needs a file with depth", 0, 0},
-    {"--samples", OPTION_INT, "N", "--objects: N x N rays a pixel; default 3", 1, 16},
-    {"--capture", OPTION_TEXT, "CAPTURE", "--pass difference: the photographs", 0, 0},
+    FLAG("--alpha", alpha, "picture",
+         "make the background transparent where the capture has a mask: .png and .exr of a "
+         "captured view"),
+    TEXT("--objects", objects, "objects", "FILE",
+         "objects covered with BTFs, in the scene (docs/objects.md); needs a file with depth"),
+    INT("--samples", samples, "objects", "N", "--objects: N x N rays a pixel; default 3", 1, 16),
+    TEXT("--capture", capture, "picture", "CAPTURE", "--pass difference: the photographs"),
     ALLOW_OUTSIDE_OPTION,
     CPU_OPTION,
-    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+    {0},
 };
 
-static bool wants_glare(const struct args *args)
+static bool wants_glare(const struct relight_options *o)
 {
-    return !strcmp(args_text(args, "--pass", ""), "glare");
+    return !strcmp(o->pass, "glare");
 }
 
-static relume_status parse_filter(const struct args *args, struct relume_frame_params *params)
+static relume_status parse_filter(const struct relight_options *o,
+                                  struct relume_frame_params *params)
 {
     static const char *const names[] = {"auto", "nearest", "linear", "cubic", NULL};
-    const char *name = args_text(args, "--filter", names[0]);
+    const char *name = o->filter;
     return relume_filter_parse(&params->filter, name) ? unknown_name("--filter", name, names)
                                                       : RELUME_OK;
 }
 
-static relume_status parse_look(const struct args *args, struct relume_look *look)
+static relume_status parse_look(const struct relight_options *o, struct relume_look *look)
 {
     static const char *const names[] = {"perspective", "stereographic", "planet", NULL};
-    const char *name = args_text(args, "--projection", names[0]);
+    const char *name = o->projection ? o->projection : names[0];
     int which = 0;
     while (names[which] && strcmp(names[which], name))
         which++;
@@ -82,90 +99,87 @@ static relume_status parse_look(const struct args *args, struct relume_look *loo
         return unknown_name("--projection", name, names);
     const bool planet = which == 2;
     look->stereographic = which > 0;
-    look->pan_deg = args_number(args, "--pan", 0.0);
-    look->tilt_deg = args_number(args, "--tilt", planet ? -90.0 : 0.0);
-    look->zoom = args_number(args, "--zoom", planet ? 0.5 : 1.0);
+    look->pan_deg = o->pan;
+    look->tilt_deg = planet && !args_given(&o->args, &o->tilt) ? -90.0 : o->tilt;
+    look->zoom = o->zoom > 0.0 ? o->zoom : planet ? 0.5 : 1.0;
     return RELUME_OK;
 }
 
-static relume_status parse_vector(const struct args *args, const char *name,
-                                  struct relume_vec3 *out)
+static relume_status parse_vector(const char *name, const char *text, struct relume_vec3 *out)
 {
-    return args_has(args, name) ? args_vec3(out, name, args_text(args, name, NULL)) : RELUME_OK;
+    return text ? args_vec3(out, name, text) : RELUME_OK;
 }
 
-static relume_status parse_eye(const struct args *args, struct relume_camera *camera)
+static relume_status parse_eye(const struct relight_options *o, struct relume_camera *camera)
 {
     camera->framing = RELUME_FRAME_EYE;
-    camera->aim.aimed = args_has(args, "--look-at");
-    camera->aim.field_of_view_deg = args_number(args, "--fov", 0.0);
-    relume_status status = parse_vector(args, "--eye", &camera->eye);
+    camera->aim.aimed = o->look_at;
+    camera->aim.field_of_view_deg = o->fov;
+    relume_status status = parse_vector("--eye", o->eye, &camera->eye);
     if (!status)
-        status = parse_vector(args, "--look-at", &camera->aim.at);
+        status = parse_vector("--look-at", o->look_at, &camera->aim.at);
     if (!status)
-        status = parse_vector(args, "--up", &camera->aim.up);
+        status = parse_vector("--up", o->up, &camera->aim.up);
     return status;
 }
 
-static relume_status parse_camera(const struct args *args, struct relume_camera *camera)
+static relume_status parse_camera(const struct relight_options *o, struct relume_camera *camera)
 {
-    const bool look = args_has(args, "--pan") || args_has(args, "--tilt") ||
-                      args_has(args, "--zoom") || args_has(args, "--projection");
+    const bool look = args_given(&o->args, &o->pan) || args_given(&o->args, &o->tilt) ||
+                      args_given(&o->args, &o->zoom) || o->projection;
     relume_status status = RELUME_OK;
     *camera = (struct relume_camera){0};
-    if (args_has(args, "--view") + args_has(args, "--eye") + look > 1)
+    if (args_given(&o->args, &o->view) + (o->eye != NULL) + look > 1)
         return usage_error(
             "relight: expected one of --view, --eye, --pan/--tilt/--zoom/--projection");
-    if (!args_has(args, "--eye") && (args_has(args, "--look-at") || args_has(args, "--up") ||
-                                     (args_has(args, "--fov") && !wants_glare(args))))
+    if (!o->eye && (o->look_at || o->up || (args_given(&o->args, &o->fov) && !wants_glare(o))))
         return usage_error("relight: --look-at, --up and --fov need --eye");
-    if (args_has(args, "--view")) {
+    if (args_given(&o->args, &o->view)) {
         camera->framing = RELUME_FRAME_VIEW;
-        camera->view = args_int(args, "--view", 0);
-    } else if (args_has(args, "--eye")) {
-        status = parse_eye(args, camera);
+        camera->view = o->view;
+    } else if (o->eye) {
+        status = parse_eye(o, camera);
     } else if (look) {
         camera->framing = RELUME_FRAME_LOOK;
-        status = parse_look(args, &camera->look);
+        status = parse_look(o, &camera->look);
     }
-    return status ? status : parse_size(args, &camera->width, &camera->height);
+    return status ? status : parse_size(o->size, &camera->width, &camera->height);
 }
 
-static relume_status parse_slab(const struct args *args, struct relume_frame_params *params)
+static relume_status parse_slab(const struct relight_options *o, struct relume_frame_params *params)
 {
-    const bool nearest = args_has(args, "--nearest");
-    const bool named = args_has(args, "--interpolate");
-    const bool lens = args_has(args, "--aperture") || args_has(args, "--focus");
+    const bool nearest = o->interpolation.nearest;
+    const bool named = o->interpolation.name != NULL;
+    const bool lens = args_given(&o->args, &o->aperture) || args_given(&o->args, &o->focus);
     if (nearest + named + lens > 1)
         return usage_error("relight: expected one of --interpolate, --nearest, --aperture/--focus");
-    params->aperture = args_number(args, "--aperture", 0.0);
-    return parse_interpolation(args, params);
+    params->aperture = o->aperture;
+    return parse_interpolation(&o->interpolation, params);
 }
 
-static relume_status parse_pass(const struct args *args, struct relume_frame_params *params)
+static relume_status parse_pass(const struct relight_options *o, struct relume_frame_params *params)
 {
-    const char *name = args_text(args, "--pass", relume_pass_name(RELUME_PASS_COLOUR));
+    const char *name = o->pass;
     const char *names[RELUME_PASSES + 2] = {NULL};
     for (int i = 0; i < RELUME_PASSES; i++)
         names[i] = relume_pass_name((enum relume_pass)i);
     names[RELUME_PASSES] = "glare";  // of the frame, not of its views
-    if (!wants_glare(args) && relume_pass_parse(&params->pass, name))
+    if (!wants_glare(o) && relume_pass_parse(&params->pass, name))
         return unknown_name("--pass", name, names);
-    if (params->pass != RELUME_PASS_COLOUR && args_has(args, "--objects"))
+    if (params->pass != RELUME_PASS_COLOUR && o->objects)
         return usage_error("objects can be shown in colour only; leave out --pass");
     const bool difference = params->pass == RELUME_PASS_DIFFERENCE;
-    if (difference != args_has(args, "--capture"))
+    if (difference != (o->capture != NULL))
         return usage_error("relight: --pass difference and --capture work only together");
     return RELUME_OK;
 }
 
-static relume_status open_capture(const struct args *args, relume_capture **capture)
+static relume_status open_capture(const struct relight_options *o, relume_capture **capture)
 {
-    const char *path = args_text(args, "--capture", NULL);
+    const char *path = o->capture;
     return path ? relume_capture_open(
                       capture, path,
-                      relume_capture_params(.log = args_log(args),
-                                            .allow_outside = args_has(args, "--allow-outside")))
+                      relume_capture_params(.log = o->args.log, .allow_outside = o->allow_outside))
                 : RELUME_OK;
 }
 
@@ -184,18 +198,18 @@ static void show_normals(struct relume_image *frame, const char *path)
 }
 
 static relume_status make_frame(struct relume_image *frame, relume_renderer *renderer,
-                                const struct args *args, const struct relume_camera *camera)
+                                const struct relight_options *o, const struct relume_camera *camera)
 {
-    const char *path = args_text(args, "--objects", NULL);
+    const char *path = o->objects;
     relume_objects *objects;
     if (!path)
         return relume_renderer_frame(frame, renderer, camera);
-    relume_status status = objects_open(&objects, path, args);
+    relume_status status = objects_open(&objects, path, &o->args);
     if (!status)
-        status = relume_objects_frame(
-            frame, objects, renderer, camera,
-            relume_render_params(.log = args_log(args), .samples = args_int(args, "--samples", 3),
-                                 .threads = args_threads(args)));
+        status =
+            relume_objects_frame(frame, objects, renderer, camera,
+                                 relume_render_params(.log = o->args.log, .samples = o->samples,
+                                                      .threads = o->args.threads));
     relume_objects_destroy(&objects);
     return status;
 }
@@ -231,21 +245,21 @@ static double field_of_view(const struct relume_pack_info *info, const struct re
 }
 
 static relume_status add_glare(struct relume_image *frame, relume_renderer *renderer,
-                               const struct args *args, const struct relume_camera *camera)
+                               const struct relight_options *o, const struct relume_camera *camera)
 {
     const struct relume_pack_info *info = relume_pack_info(relume_renderer_pack(renderer));
-    const double fov = args_number(args, "--fov", field_of_view(info, camera, frame));
+    const double fov = o->fov > 0.0 ? o->fov : field_of_view(info, camera, frame);
     struct viewer_eye eye;
     struct relume_image seen = {0};
     if (info->geometry.projection > RELUME_SLAB && camera->framing != RELUME_FRAME_LOOK)
         return usage_error("--pass glare: expected --pan, --tilt or --zoom for a panorama");
     relume_status status = relume_frame_lamps(frame, NULL, renderer, camera);
-    const double luminance = args_number(args, "--nits", 100.0) * relume_glare_luminance(frame);
+    const double luminance = o->glare.nits * relume_glare_luminance(frame);
     if (!status)
-        status = open_viewer_eye(
-            &eye, args, luminance,
-            relume_psf_params(.log = args_log(args), .threads = args_threads(args),
-                              .size = GLARE_SIZE, .half_field_deg = GLARE_FIELD_DEG));
+        status = open_viewer_eye(&eye, &o->args, &o->glare, luminance,
+                                 relume_psf_params(.log = o->args.log, .threads = o->args.threads,
+                                                   .size = GLARE_SIZE,
+                                                   .half_field_deg = GLARE_FIELD_DEG));
     if (status)
         return status;
     eye.params.fov_deg = fov;
@@ -285,7 +299,7 @@ static relume_status add_alpha(struct relume_image *frame, relume_pack *pack,
     return RELUME_OK;
 }
 
-static relume_status render(const struct args *args, const struct relume_camera *camera,
+static relume_status render(const struct relight_options *o, const struct relume_camera *camera,
                             struct relume_frame_params params, struct developing developing,
                             const struct relume_light *lights, int count)
 {
@@ -294,39 +308,39 @@ static relume_status render(const struct args *args, const struct relume_camera 
     relume_capture *capture = NULL;
     struct prefix_log about;
     struct relume_image frame = {0};
-    const char *output = args_text(args, "-o", NULL);
+    const char *output = o->output;
     relume_status status =
-        relume_open(&pack, args_input(args, 0),
-                    relume_open_params(.log = args_log(args), .threads = args_threads(args),
-                                       .allow_outside = args_has(args, "--allow-outside"),
+        relume_open(&pack, o->args.input[0],
+                    relume_open_params(.log = o->args.log, .threads = o->args.threads,
+                                       .allow_outside = o->allow_outside,
                                        .sphere = camera->framing == RELUME_FRAME_LOOK));
     if (status)
         return status;
     const struct relume_pack_info *info = relume_pack_info(pack);
     const bool free_eye = info->slabs || relume_aim_given(&camera->aim);
     const double plane_z = free_eye ? 0.0 : info->geometry.st_z;
-    params.log = prefix_log(&about, args_log(args), args_input(args, 0));
-    params.focus = args_number(args, "--focus", plane_z) - plane_z;
-    if (!free_eye && (args_has(args, "--aperture") || args_has(args, "--focus")))
+    params.log = prefix_log(&about, o->args.log, o->args.input[0]);
+    params.focus = args_given(&o->args, &o->focus) ? o->focus - plane_z : 0.0;
+    if (!free_eye && (args_given(&o->args, &o->aperture) || args_given(&o->args, &o->focus)))
         params.interpolation = RELUME_INTERPOLATE_LINEAR;
-    status = open_capture(args, &capture);
+    status = open_capture(o, &capture);
     params.capture = capture;
     if (!status)
         status = relume_renderer_create(&renderer, pack, &params);
     if (!status)
         status = relume_renderer_set_lights(renderer, lights, count);
     if (!status)
-        status = make_frame(&frame, renderer, args, camera);
-    if (!status && wants_glare(args))
-        status = add_glare(&frame, renderer, args, camera);
+        status = make_frame(&frame, renderer, o, camera);
+    if (!status && wants_glare(o))
+        status = add_glare(&frame, renderer, o, camera);
     if (!status && params.pass == RELUME_PASS_NORMALS)
         show_normals(&frame, output);
     else if (!status)
         status = develop(&frame, developing, output);
-    if (!status && args_has(args, "--alpha"))
+    if (!status && o->alpha)
         status = add_alpha(&frame, pack, camera);
     if (!status)
-        status = relume_image_save(&frame, output, relume_image_params(.log = args_log(args)));
+        status = relume_image_save(&frame, output, relume_image_params(.log = o->args.log));
     relume_image_destroy(&frame);
     relume_renderer_destroy(&renderer);
     relume_capture_destroy(&capture);
@@ -336,30 +350,31 @@ static relume_status render(const struct args *args, const struct relume_camera 
 
 static relume_status run(const struct args *args)
 {
+    const struct relight_options *o = (const void *)args;
     struct relume_camera camera;
-    struct relume_frame_params params = parse_frame(args);
+    struct relume_frame_params params = parse_frame(args, &o->lighting, o->cpu_mask);
     struct developing developing = {0};
     relume_rig *rig = NULL;
     const struct relume_light *lights;
     int count;
-    if (!args_has(args, "-o"))
+    if (!o->output)
         return usage_error("relight: expected -o OUT");
-    if (args_has(args, "--alpha") && !relume_image_saves_alpha(args_text(args, "-o", NULL)))
+    if (o->alpha && !relume_image_saves_alpha(o->output))
         return usage_error("--alpha: expected an output that ends in .png or .exr; found '%s'",
-                           args_text(args, "-o", NULL));
-    relume_status status = parse_camera(args, &camera);
+                           o->output);
+    relume_status status = parse_camera(o, &camera);
     if (!status)
-        status = parse_slab(args, &params);
+        status = parse_slab(o, &params);
     if (!status)
-        status = parse_filter(args, &params);
+        status = parse_filter(o, &params);
     if (!status)
-        status = parse_pass(args, &params);
+        status = parse_pass(o, &params);
     if (!status)
-        status = parse_developing(args, &developing);
+        status = parse_developing(&o->develop, &developing);
     if (!status)
-        status = parse_lights(args, &rig, &lights, &count);
+        status = parse_lights(args, &o->lighting, &rig, &lights, &count);
     if (!status)
-        status = render(args, &camera, params, developing, lights, count);
+        status = render(o, &camera, params, developing, lights, count);
     relume_rig_destroy(&rig);
     return status;
 }
@@ -372,5 +387,11 @@ const struct command command_relight = {
     .min_inputs = 1,
     .max_inputs = 1,
     .options = options,
+    .size = sizeof(struct relight_options),
+    .defaults = &(const struct relight_options){.filter = "auto",
+                                                .pass = "colour",
+                                                .samples = 3,
+                                                .cpu_mask = ALL_KERNELS,
+                                                .glare = GLARE_DEFAULTS},
     .run = run,
 };

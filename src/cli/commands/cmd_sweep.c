@@ -8,28 +8,41 @@
 #include <time.h>
 #include <unistd.h>
 
+struct sweep_options {
+    struct args args;
+    const char *output, *basis, *coefficients, *interpolant, *colour, *bits, *step, *codebook,
+        *test, *domain, *transfer;
+    int leave_out, memory;
+    bool skip_missing, json, csv;
+    struct book_options books;
+    bool allow_outside;
+};
+#define OPTIONS struct sweep_options
+
 static const struct option options[] = {
-    {"-o", OPTION_OUTPUT, "OUT", "write OUT.csv, OUT.json, OUT.svg, OUT.png; keep OUT.resume", 0,
-     0},
-    {"--basis", OPTION_TEXT, "LIST", "bases, separated by commas; default: all", 0, 0},
-    {"--coefficients", OPTION_TEXT, "LIST", "sizes; default: those natural to each basis", 0, 0},
-    {"--interpolant", OPTION_TEXT, "LIST", "of pca and table, also auto; default: their own", 0, 0},
-    {"--colour", OPTION_TEXT, "LIST", "rgb, luminance; default: rgb", 0, 0},
-    {"--bits", OPTION_TEXT, "LIST", "8, 10, 12, 16, half; default: 8", 0, 0},
-    {"--step", OPTION_TEXT, "LIST", "plane, common; default: plane", 0, 0},
-    {"--codebook", OPTION_TEXT, "LIST", "code vectors, 0: planes; default: 0", 0, 0},
+    TEXT_AS(OPTION_OUTPUT, "-o", output, "output", "OUT",
+            "write OUT.csv, OUT.json, OUT.svg, OUT.png; keep OUT.resume"),
+    TEXT("--basis", basis, "model", "LIST", "bases, separated by commas; default: all"),
+    TEXT("--coefficients", coefficients, "model", "LIST",
+         "sizes; default: those natural to each basis"),
+    TEXT("--interpolant", interpolant, "model", "LIST",
+         "of pca and table, also auto; default: their own"),
+    TEXT("--colour", colour, "model", "LIST", "rgb, luminance; default: rgb"),
+    TEXT("--bits", bits, "model", "LIST", "8, 10, 12, 16, half; default: 8"),
+    TEXT("--step", step, "model", "LIST", "plane, common; default: plane"),
+    TEXT("--codebook", codebook, "model", "LIST", "code vectors, 0: planes; default: 0"),
     BOOK_FORM_OPTIONS,
-    {"--leave-out", OPTION_INT, "K", "lights left out at a time; default: 1", 1, 65535},
-    {"--test", OPTION_TEXT, "CAPTURE", "measure on the lights of another capture instead", 0, 0},
-    {"--domain", OPTION_TEXT, "D", "auto, linear or display; default: as encode", 0, 0},
-    {"--memory", OPTION_INT, "MB", "for samples; more than fit are thinned out; default: 1024", 1,
-     1048576},
-    {"--transfer", OPTION_TEXT, "T", "linear, srgb or gamma:G; overrides the capture's", 0, 0},
-    {"--skip-missing", OPTION_FLAG, NULL, "leave out lights whose image does not exist", 0, 0},
+    INT("--leave-out", leave_out, "model", "K", "lights left out at a time; default: 1", 1, 65535),
+    TEXT("--test", test, "model", "CAPTURE", "measure on the lights of another capture instead"),
+    TEXT("--domain", domain, "model", "D", "auto, linear or display; default: as encode"),
+    INT("--memory", memory, "machine", "MB",
+        "for samples; more than fit are thinned out; default: 1024", 1, 1048576),
+    TEXT("--transfer", transfer, "input", "T", "linear, srgb or gamma:G; overrides the capture's"),
+    FLAG("--skip-missing", skip_missing, "input", "leave out lights whose image does not exist"),
     ALLOW_OUTSIDE_OPTION,
-    {"--json", OPTION_FLAG, NULL, "print one JSON object", 0, 0},
-    {"--csv", OPTION_FLAG, NULL, "print comma-separated values", 0, 0},
-    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+    FLAG("--json", json, "output", "print one JSON object"),
+    FLAG("--csv", csv, "output", "print comma-separated values"),
+    {0},
 };
 
 enum { MOST = 64, MOST_ROWS = 4096, MOST_COEFFICIENTS = 4096 };
@@ -140,11 +153,11 @@ static relume_status accept_step(struct grid *grid, int i, const char *word)
                : unknown_name("--step", word, names);
 }
 
-static relume_status parse_grid(const struct args *args, struct grid *g)
+static relume_status parse_grid(const struct sweep_options *o, struct grid *g)
 {
-    const char *bases = args_text(args, "--basis", NULL);
-    const char *sizes = args_text(args, "--coefficients", NULL);
-    const char *interpolants = args_text(args, "--interpolant", NULL);
+    const char *bases = o->basis;
+    const char *sizes = o->coefficients;
+    const char *interpolants = o->interpolant;
     *g = (struct grid){0};
     relume_status status = RELUME_OK;
     if (bases)
@@ -158,21 +171,17 @@ static relume_status parse_grid(const struct args *args, struct grid *g)
     if (!status && interpolants)
         status = parse_list("--interpolant", interpolants, &g->interpolants, g, accept_interpolant);
     if (!status)
-        status = parse_list("--colour", args_text(args, "--colour", "rgb"), &g->colours, g,
-                            accept_colour);
+        status = parse_list("--colour", o->colour, &g->colours, g, accept_colour);
     if (!status)
-        status =
-            parse_list("--bits", args_text(args, "--bits", "8"), &g->storages, g, accept_storage);
+        status = parse_list("--bits", o->bits, &g->storages, g, accept_storage);
     if (!status)
-        status =
-            parse_list("--step", args_text(args, "--step", "plane"), &g->steps, g, accept_step);
+        status = parse_list("--step", o->step, &g->steps, g, accept_step);
     if (!status)
-        status = parse_list("--codebook", args_text(args, "--codebook", "0"), &g->books_count, g,
+        status = parse_list("--codebook", o->codebook ? o->codebook : "0", &g->books_count, g,
                             accept_codes);
-    bool wanted;
     if (!status)
-        status = parse_books(args, &g->books, &wanted);
-    g->share = args_has(args, "--share");
+        status = parse_books(&o->args, &o->books, o->codebook != NULL, &g->books);
+    g->share = o->books.share;
     return status;
 }
 
@@ -363,17 +372,16 @@ static relume_status encode_row(struct work *w, struct sweep_row *row, const str
     relume_coder *coder = NULL;
     relume_pack *pack = NULL;
     const double start = seconds_now();
-    relume_status status =
-        relume_coder_learn(&coder, row->basis, w->capture, &params,
-                           relume_encode_params(.log = log, .domain = w->sweep->domain,
-                                                .threads = args_threads(args)));
+    relume_status status = relume_coder_learn(
+        &coder, row->basis, w->capture, &params,
+        relume_encode_params(.log = log, .domain = w->sweep->domain, .threads = args->threads));
     if (!status)
         status = relume_pack_encode(
             w->capture, coder, path, NULL,
             relume_pack_encode_params(.log = log, .domain = w->sweep->domain,
                                       .storage = row->store.storage, .step = row->store.step,
                                       .books = row->books.codes ? &row->books : NULL,
-                                      .share = row->store.share, .threads = args_threads(args)));
+                                      .share = row->store.share, .threads = args->threads));
     row->seconds = seconds_now() - start;
     if (!status)
         status = relume_pack_open(&pack, path, relume_pack_params(.log = log));
@@ -464,7 +472,7 @@ static relume_status measure_group(struct work *w, int first, int end)
     for (int i = first; i < end; i++)
         if (!w->sweep->row[i].known)
             rows[n++] = &w->sweep->row[i];
-    listen_to(&l, args_log(w->sweep->args), first / all, (end - first) / all);
+    listen_to(&l, w->sweep->args->log, first / all, (end - first) / all);
     const relume_status status = n ? measure_rows(w, rows, n, &l) : RELUME_OK;
     if (status && *l.said)
         l.to->message(l.to->user, RELUME_ERROR, l.said);
@@ -475,7 +483,7 @@ static relume_status measure_group(struct work *w, int first, int end)
 
 static void note(const struct args *args, const char *text)
 {
-    args_log(args)->message(args_log(args)->user, RELUME_NOTE, text);
+    args->log->message(args->log->user, RELUME_NOTE, text);
 }
 
 static bool all_known(const struct sweep *sweep)
@@ -491,13 +499,13 @@ static relume_status measure_all(struct work *w, const relume_capture *test)
     struct sweep *s = w->sweep;
     relume_status status = relume_heldout_open(
         &w->heldout, w->capture,
-        relume_heldout_params(.log = args_log(s->args), .test = test, .leave_out = s->leave_out,
-                              .domain = s->domain, .threads = args_threads(s->args),
-                              .memory = (uint64_t)args_int(s->args, "--memory", 1024) << 20));
+        relume_heldout_params(.log = s->args->log, .test = test, .leave_out = s->leave_out,
+                              .domain = s->domain, .threads = s->args->threads,
+                              .memory = (uint64_t)s->options->memory << 20));
     if (!status) {
         const struct relume_heldout_info info = relume_heldout_info(w->heldout);
         s->measured = (double)info.pixels / (double)info.all_pixels;
-        status = relume_making_open(&w->folder, NULL, RELUME_MADE_FOLDER, false, args_log(s->args));
+        status = relume_making_open(&w->folder, NULL, RELUME_MADE_FOLDER, false, s->args->log);
     }
     if (!status && s->measured < 1.0) {
         char text[128];
@@ -525,9 +533,9 @@ static relume_status finish(struct sweep *sweep, sweep_resume *resume)
     sweep_resume_unlock(resume);
     if (status)
         return status;
-    if (args_has(sweep->args, "--json"))
+    if (sweep->options->json)
         sweep_print_json(sweep, stdout);
-    else if (args_has(sweep->args, "--csv"))
+    else if (sweep->options->csv)
         sweep_print_csv(sweep, stdout);
     else
         sweep_print_text(sweep, stdout);
@@ -539,7 +547,7 @@ static relume_status sweep_captures(struct sweep *sweep, relume_capture *capture
 {
     const relume_capture *both[] = {capture, test, NULL};
     struct work w = {.sweep = sweep, .capture = capture};
-    const uint64_t memory = (uint64_t)args_int(sweep->args, "--memory", 1024) << 20;
+    const uint64_t memory = (uint64_t)sweep->options->memory << 20;
     relume_status status = sweep->out ? sweep_check(sweep) : RELUME_OK;
     if (!status)
         status = sweep_resume_open(&w.resume, sweep, both, memory);
@@ -553,17 +561,17 @@ static relume_status sweep_captures(struct sweep *sweep, relume_capture *capture
     return status;
 }
 
-static relume_status open_capture(const struct args *args, const char *path, relume_capture **out)
+static relume_status open_capture(const struct sweep_options *o, const char *path,
+                                  relume_capture **out)
 {
     struct relume_transfer transfer = {.curve = RELUME_CURVE_AUTO};
-    const char *text = args_text(args, "--transfer", NULL);
+    const char *text = o->transfer;
     if (text && relume_transfer_parse(&transfer, text))
         return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", text);
-    return relume_capture_open(
-        out, path,
-        relume_capture_params(.log = args_log(args), .transfer = transfer,
-                              .skip_missing = args_has(args, "--skip-missing"),
-                              .allow_outside = args_has(args, "--allow-outside")));
+    return relume_capture_open(out, path,
+                               relume_capture_params(.log = o->args.log, .transfer = transfer,
+                                                     .skip_missing = o->skip_missing,
+                                                     .allow_outside = o->allow_outside));
 }
 
 static relume_status parse_domain(const char *text, enum relume_domain *out)
@@ -577,34 +585,36 @@ static relume_status parse_domain(const char *text, enum relume_domain *out)
     return unknown_name("--domain", text, names);
 }
 
-static relume_status check_options(const struct args *args)
+static relume_status check_options(const struct sweep_options *o)
 {
-    if (args_has(args, "--test") && args_has(args, "--leave-out"))
+    if (o->test && args_given(&o->args, &o->leave_out))
         return usage_error("sweep: expected --leave-out or --test; found both");
-    if (args_has(args, "--json") && args_has(args, "--csv"))
+    if (o->json && o->csv)
         return usage_error("sweep: expected --json or --csv; found both");
     return RELUME_OK;
 }
 
 static relume_status run(const struct args *args)
 {
+    const struct sweep_options *o = (const void *)args;
     struct grid *grid = calloc(1, sizeof *grid);
     relume_capture *capture = NULL, *test = NULL;
     struct sweep sweep = {.args = args,
-                          .capture = args_input(args, 0),
-                          .test = args_text(args, "--test", NULL),
-                          .out = args_text(args, "-o", NULL),
-                          .leave_out = args_int(args, "--leave-out", 1),
+                          .options = o,
+                          .capture = args->input[0],
+                          .test = o->test,
+                          .out = o->output,
+                          .leave_out = o->leave_out,
                           .measured = 1.0};
-    relume_status status = grid ? check_options(args) : RELUME_ENOMEM;
+    relume_status status = grid ? check_options(o) : RELUME_ENOMEM;
     if (!status)
-        status = parse_grid(args, grid);
+        status = parse_grid(o, grid);
     if (!status)
-        status = parse_domain(args_text(args, "--domain", "auto"), &sweep.domain);
+        status = parse_domain(o->domain, &sweep.domain);
     if (!status)
-        status = open_capture(args, sweep.capture, &capture);
+        status = open_capture(o, sweep.capture, &capture);
     if (!status && sweep.test)
-        status = open_capture(args, sweep.test, &test);
+        status = open_capture(o, sweep.test, &test);
     if (!status) {
         const struct relume_manifest *m = relume_capture_manifest(capture);
         sweep.domain = relume_encode_domain(capture, sweep.domain);
@@ -632,5 +642,12 @@ const struct command command_sweep = {
     .min_inputs = 1,
     .max_inputs = 1,
     .options = options,
+    .size = sizeof(struct sweep_options),
+    .defaults = &(const struct sweep_options){.colour = "rgb",
+                                              .bits = "8",
+                                              .step = "plane",
+                                              .leave_out = 1,
+                                              .domain = "auto",
+                                              .memory = 1024},
     .run = run,
 };

@@ -3,41 +3,52 @@
 
 #include <stdlib.h>
 
+struct synth_options {
+    struct args args;
+    const char *output, *views, *slabs, *lights_from, *projection, *mesh, *btf, *directions;
+    int size, lights, samples, bounces, seed, extent;
+    double spread;
+    bool hemisphere, discs, force;
+    struct texts eye;
+    const char *pattern;
+};
+#define OPTIONS struct synth_options
+
 static const struct option options[] = {
-    {"-o", OPTION_OUTPUT, "DIR", "the capture folder to make", 0, 0},
-    {"--size", OPTION_INT, "N",
-     "width (planar, slab, cube face) or height (panoramas); default 256", 1, 65536},
-    {"--views", OPTION_TEXT, "GxG", "slab: grid of cameras; default 5x5", 0, 0},
-    {"--spread", OPTION_NUMBER, "S",
-     "slab: cameras reach from -S to S; default 0.5, with --slabs wide enough to overlap", 0.001,
-     1000},
-    {"--slabs", OPTION_TEXT, "N",
-     "slab: number of slabs: 4, 6 or 8 around the object, or cube: 4 and one from above; default: "
-     "one",
-     0, 0},
-    {"--lights", OPTION_INT, "N", "number of light directions; default 100", 1, 65536},
+    TEXT_AS(OPTION_OUTPUT, "-o", output, "output", "DIR", "the capture folder to make"),
+    INT("--size", size, "scene", "N",
+        "width (planar, slab, cube face) or height (panoramas); default 256", 1, 65536),
+    TEXT("--views", views, "camera", "GxG", "slab: grid of cameras; default 5x5"),
+    NUMBER("--spread", spread, "camera", "S",
+           "slab: cameras reach from -S to S; default 0.5, with --slabs wide enough to overlap",
+           0.001, 1000),
+    TEXT("--slabs", slabs, "camera", "N",
+         "slab: number of slabs: 4, 6 or 8 around the object, or cube: 4 and one from above; "
+         "default: one"),
+    INT("--lights", lights, "lights", "N", "number of light directions; default 100", 1, 65536),
     PATTERN_OPTION,
-    {"--hemisphere", OPTION_FLAG, NULL,
-     "lights on the viewer's (panoramas, --slabs: upper) side only", 0, 0},
-    {"--lights-from", OPTION_TEXT, "FILE",
-     "directions of a capture.json, a .lp file or lines x y z", 0, 0},
-    {"--projection", OPTION_TEXT, "P",
-     "planar, slab, cylindrical, spherical, cube; default: the scene's own", 0, 0},
-    {"--discs", OPTION_FLAG, NULL,
-     "cylindrical: add the end discs, so that it sees up and down as well", 0, 0},
-    {"--eye", OPTION_TEXT, "x,y,z", "where the eye is; may be repeated for a slab", 0, 0},
-    {"--samples", OPTION_INT, "N", "camera rays per pixel; default 16", 1, 65536},
-    {"--bounces", OPTION_INT, "N", "bounces of indirect light; default 0", 0, 64},
-    {"--mesh", OPTION_TEXT, "FILE", "bust: an OBJ or PLY model", 0, 0},
-    {"--seed", OPTION_INT, "S", "of random patterns and sampling; default 0", 0, 2147483647},
-    {"--btf", OPTION_TEXT, "MATERIAL",
-     "render a built-in material as a BTF; --size in texels, default 64", 0, 0},
-    {"--extent", OPTION_INT, "N", "material: N times as many stones, threads, ... along a side", 1,
-     16},
-    {"--directions", OPTION_TEXT, "SET",
-     "BTF: of views and lights: bonn (default), dome, coarse, or a file of directions", 0, 0},
-    {"--force", OPTION_FLAG, NULL, "replace a folder that relume made", 0, 0},
-    {NULL, OPTION_FLAG, NULL, NULL, 0, 0},
+    FLAG("--hemisphere", hemisphere, "lights",
+         "lights on the viewer's (panoramas, --slabs: upper) side only"),
+    TEXT("--lights-from", lights_from, "lights", "FILE",
+         "directions of a capture.json, a .lp file or lines x y z"),
+    TEXT("--projection", projection, "camera", "P",
+         "planar, slab, cylindrical, spherical, cube; default: the scene's own"),
+    FLAG("--discs", discs, "camera",
+         "cylindrical: add the end discs, so that it sees up and down as well"),
+    TEXTS("--eye", eye, "camera", "x,y,z", "where the eye is; may be repeated for a slab"),
+    INT("--samples", samples, "rendering", "N", "camera rays per pixel; default 16", 1, 65536),
+    INT("--bounces", bounces, "rendering", "N", "bounces of indirect light; default 0", 0, 64),
+    TEXT("--mesh", mesh, "scene", "FILE", "bust: an OBJ or PLY model"),
+    INT("--seed", seed, "rendering", "S", "of random patterns and sampling; default 0", 0,
+        2147483647),
+    TEXT("--btf", btf, "material", "MATERIAL",
+         "render a built-in material as a BTF; --size in texels, default 64"),
+    INT("--extent", extent, "material", "N",
+        "material: N times as many stones, threads, ... along a side", 1, 16),
+    TEXT("--directions", directions, "material", "SET",
+         "BTF: of views and lights: bonn (default), dome, coarse, or a file of directions"),
+    FLAG("--force", force, "output", "replace a folder that relume made"),
+    {0},
 };
 
 static relume_status choose_scene(const struct relume_scene_kind **out, const char *name)
@@ -87,17 +98,18 @@ static relume_status choose_ring(struct relume_synth_params *p, const char *name
     return unknown_name("--slabs", name, names);
 }
 
-static relume_status choose_eyes(struct relume_vec3 **eyes, int *count, const struct args *args)
+static relume_status choose_eyes(struct relume_vec3 **eyes, int *count,
+                                 const struct synth_options *o)
 {
     relume_status status = RELUME_OK;
-    *count = args_count(args, "--eye");
+    *count = o->eye.count;
     if (!*count)
         return RELUME_OK;
     *eyes = malloc((size_t)*count * sizeof **eyes);
     if (!*eyes)
         return RELUME_ENOMEM;
     for (int i = 0; i < *count && !status; i++)
-        status = args_vec3(&(*eyes)[i], "--eye", args_nth(args, "--eye", i));
+        status = args_vec3(&(*eyes)[i], "--eye", o->eye.text[i]);
     return status;
 }
 
@@ -107,23 +119,22 @@ static bool is_panorama(enum relume_projection projection)
 }
 
 static relume_status make_lights(struct relume_vec3 **out, int *n, bool pole_y,
-                                 const struct args *args)
+                                 const struct synth_options *o)
 {
-    const char *file = args_text(args, "--lights-from", NULL);
+    const char *file = o->lights_from;
     if (file)
-        return relume_lights_read(out, n, file, args_log(args));
+        return relume_lights_read(out, n, file, o->args.log);
     const struct relume_pattern *pattern;
-    const relume_status status = args_pattern(&pattern, args);
+    const relume_status status = choose_pattern(&pattern, o->pattern);
     if (status)
         return status;
-    *n = args_int(args, "--lights", 100);
+    *n = o->lights;
     *out = malloc((size_t)*n * sizeof **out);
     if (!*out)
         return RELUME_ENOMEM;
-    return relume_lights_make(
-        *out, *n, pattern,
-        relume_lights_params(.log = args_log(args), .seed = (uint64_t)args_int(args, "--seed", 0),
-                             .hemisphere = args_has(args, "--hemisphere"), .pole_y = pole_y));
+    return relume_lights_make(*out, *n, pattern,
+                              relume_lights_params(.log = o->args.log, .seed = (uint64_t)o->seed,
+                                                   .hemisphere = o->hemisphere, .pole_y = pole_y));
 }
 
 // ---------------------------------------------------------------- materials
@@ -141,23 +152,24 @@ static relume_status choose_material(const struct relume_btf_material **out, con
 
 // Directions of a file that a material can be measured from: the file is at fault, not the usage.
 static relume_status read_directions(struct relume_vec3 **out, int *n, const char *file,
-                                     const struct args *args)
+                                     const struct synth_options *o)
 {
     struct prefix_log about;
     relume_dome *dome = NULL;
-    relume_status status = relume_lights_read(out, n, file, args_log(args));
+    relume_status status = relume_lights_read(out, n, file, o->args.log);
     if (!status)
-        status = relume_dome_create(&dome, *out, *n, prefix_log(&about, args_log(args), file));
+        status = relume_dome_create(&dome, *out, *n, prefix_log(&about, o->args.log, file));
     relume_dome_destroy(&dome);
     return status;
 }
 
-static relume_status choose_directions(struct relume_vec3 **out, int *n, const struct args *args)
+static relume_status choose_directions(struct relume_vec3 **out, int *n,
+                                       const struct synth_options *o)
 {
-    const char *name = args_text(args, "--directions", "bonn");
+    const char *name = o->directions;
     const struct relume_btf_set *set = relume_btf_set_find(name);
     if (!set)
-        return read_directions(out, n, name, args);
+        return read_directions(out, n, name, o);
     *n = set->count;
     *out = malloc((size_t)*n * sizeof **out);
     if (!*out)
@@ -166,32 +178,28 @@ static relume_status choose_directions(struct relume_vec3 **out, int *n, const s
     return RELUME_OK;
 }
 
-static relume_status synth_btf(const struct args *args)
+static relume_status synth_btf(const struct synth_options *o)
 {
     const struct relume_btf_material *material;
     struct relume_vec3 *directions = NULL;
     relume_btf *btf = NULL;
     int n = 0;
-    relume_status status = choose_material(&material, args_text(args, "--btf", NULL));
+    relume_status status = choose_material(&material, o->btf);
     if (!status)
-        status = choose_directions(&directions, &n, args);
+        status = choose_directions(&directions, &n, o);
     if (!status)
         status = relume_btf_synth(
             &btf, material,
-            relume_btf_synth_params(.log = args_log(args), .size = args_int(args, "--size", 0),
-                                    .extent = args_int(args, "--extent", 0), .view = directions,
-                                    .views = n, .light = directions, .lights = n,
-                                    .samples = args_int(args, "--samples", 0),
-                                    .bounces = args_has(args, "--bounces") &&
-                                                       !args_int(args, "--bounces", 0)
+            relume_btf_synth_params(.log = o->args.log, .size = o->size, .extent = o->extent,
+                                    .view = directions, .views = n, .light = directions,
+                                    .lights = n, .samples = o->samples,
+                                    .bounces = args_given(&o->args, &o->bounces) && !o->bounces
                                                    ? -1
-                                                   : args_int(args, "--bounces", 0),
-                                    .seed = (uint64_t)args_int(args, "--seed", 0),
-                                    .threads = args_threads(args)));
+                                                   : o->bounces,
+                                    .seed = (uint64_t)o->seed, .threads = o->args.threads));
     if (!status)
-        status = relume_btf_save(
-            btf, args_text(args, "-o", NULL),
-            relume_btf_params(.log = args_log(args), .force = args_has(args, "--force")));
+        status = relume_btf_save(btf, o->output,
+                                 relume_btf_params(.log = o->args.log, .force = o->force));
     relume_btf_destroy(&btf);
     free(directions);
     return status;
@@ -200,57 +208,58 @@ static relume_status synth_btf(const struct args *args)
 // ---------------------------------------------------------------- scenes
 
 static relume_status capture(const struct relume_scene_kind *kind,
-                             const struct relume_synth_params *params, const struct args *args)
+                             const struct relume_synth_params *params,
+                             const struct synth_options *o)
 {
     relume_scene *scene;
-    relume_status status = relume_scene_create(
-        &scene, kind,
-        relume_scene_params(.log = args_log(args), .mesh = args_text(args, "--mesh", NULL)));
+    relume_status status =
+        relume_scene_create(&scene, kind, relume_scene_params(.log = o->args.log, .mesh = o->mesh));
     if (!status)
-        status = relume_scene_capture(scene, args_text(args, "-o", NULL), params);
+        status = relume_scene_capture(scene, o->output, params);
     relume_scene_destroy(&scene);
     return status;
 }
 
 static relume_status run(const struct args *args)
 {
+    const struct synth_options *o = (const void *)args;
     const struct relume_scene_kind *kind;
     struct relume_vec3 *lights = NULL, *eyes = NULL;
     struct relume_synth_params p = {
-        .log = args_log(args),
-        .size = args_int(args, "--size", 0),
-        .samples = args_int(args, "--samples", 0),
-        .bounces = args_int(args, "--bounces", 0),
-        .spread = args_number(args, "--spread", 0.0),
-        .seed = (uint64_t)args_int(args, "--seed", 0),
-        .threads = args_threads(args),
-        .discs = args_has(args, "--discs"),
-        .force = args_has(args, "--force"),
+        .log = o->args.log,
+        .size = o->size,
+        .samples = o->samples,
+        .bounces = o->bounces,
+        .spread = o->spread,
+        .seed = (uint64_t)o->seed,
+        .threads = o->args.threads,
+        .discs = o->discs,
+        .force = o->force,
     };
-    if (!args_has(args, "-o"))
+    if (!o->output)
         return usage_error("synth: expected -o DIR");
-    if (args_has(args, "--btf"))
-        return args_inputs(args) ? usage_error("synth: expected a scene or --btf; found both")
-                                 : synth_btf(args);
-    if (!args_inputs(args))
+    if (o->btf)
+        return o->args.inputs ? usage_error("synth: expected a scene or --btf; found both")
+                              : synth_btf(o);
+    if (!o->args.inputs)
         return usage_error("synth: expected a scene, or --btf MATERIAL");
-    relume_status status = choose_scene(&kind, args_input(args, 0));
+    relume_status status = choose_scene(&kind, o->args.input[0]);
     if (!status)
-        status = choose_projection(&p, args_text(args, "--projection", NULL));
+        status = choose_projection(&p, o->projection);
     if (!status)
-        status = choose_views(&p, kind->projection, args_text(args, "--views", NULL));
+        status = choose_views(&p, kind->projection, o->views);
     if (!status)
-        status = choose_ring(&p, args_text(args, "--slabs", NULL));
+        status = choose_ring(&p, o->slabs);
     if (!status)
-        status = choose_eyes(&eyes, &p.eye_count, args);
+        status = choose_eyes(&eyes, &p.eye_count, o);
     if (!status)
         status = make_lights(
             &lights, &p.light_count,
-            p.ring || is_panorama(p.projection_set ? p.projection : kind->projection), args);
+            p.ring || is_panorama(p.projection_set ? p.projection : kind->projection), o);
     p.lights = lights;
     p.eyes = eyes;
     if (!status)
-        status = capture(kind, &p, args);
+        status = capture(kind, &p, o);
     free(lights);
     free(eyes);
     return status;
@@ -264,5 +273,7 @@ const struct command command_synth = {
     .min_inputs = 0,
     .max_inputs = 1,
     .options = options,
+    .size = sizeof(struct synth_options),
+    .defaults = &(const struct synth_options){.lights = 100, .directions = "bonn"},
     .run = run,
 };

@@ -191,7 +191,7 @@ static relume_status save_observer(const struct viewer_eye *e, const char *folde
 
 relume_status save_pattern(struct viewer_eye *e, const struct args *args, const char *path)
 {
-    const struct relume_log *const log = args_log(args);
+    const struct relume_log *const log = args->log;
     const char *const base = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
     char name[4200];
     relume_status status = relume_psf_update(e->psf, e->eye);

@@ -25,8 +25,11 @@ struct sweep_row {
     bool on_hull;
 };
 
+struct sweep_options;
+
 struct sweep {
     const struct args *args;
+    const struct sweep_options *options;
     const char *capture, *test;  // paths; `test` may be NULL
     const char *out;             // stem of the outputs, or NULL
     int leave_out;

@@ -307,7 +307,7 @@ static relume_status save_plot(const struct sweep *sweep, const struct plot *plo
     relume_status status = plot_draw(plot, format, &bytes, &size);
     snprintf(path, sizeof path, "%s%s", sweep->out, extension);
     if (!status)
-        status = relume_file_save(path, bytes, size, args_log(sweep->args));
+        status = relume_file_save(path, bytes, size, sweep->args->log);
     free(bytes);
     return status;
 }
@@ -357,7 +357,7 @@ static relume_status save_table(const struct sweep *sweep, const char *extension
     relume_status status = fclose(memory) ? RELUME_ENOMEM : RELUME_OK;
     snprintf(path, sizeof path, "%s%s", sweep->out, extension);
     if (!status)
-        status = relume_file_save(path, bytes, size, args_log(sweep->args));
+        status = relume_file_save(path, bytes, size, sweep->args->log);
     free(bytes);
     return status;
 }
@@ -377,7 +377,7 @@ relume_status sweep_check(const struct sweep *sweep)
     char path[4096];
     for (size_t i = 0; !status && i < sizeof extensions / sizeof *extensions; i++) {
         snprintf(path, sizeof path, "%s%s", sweep->out, extensions[i]);
-        status = relume_file_check(path, args_log(sweep->args));
+        status = relume_file_check(path, sweep->args->log);
     }
     return status;
 }

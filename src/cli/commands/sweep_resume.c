@@ -138,7 +138,7 @@ static void warn(const sweep_resume *r, const char *what)
 {
     char text[1024];
     snprintf(text, sizeof text, "%s: %s", r->path, what);
-    args_log(r->sweep->args)->message(args_log(r->sweep->args)->user, RELUME_WARNING, text);
+    r->sweep->args->log->message(r->sweep->args->log->user, RELUME_WARNING, text);
 }
 
 // False when another program wrote the file.
@@ -168,7 +168,7 @@ static relume_status cannot_write(const sweep_resume *r)
 {
     char text[1024];
     snprintf(text, sizeof text, "%s: cannot be written; %s", r->path, strerror(errno));
-    args_log(r->sweep->args)->message(args_log(r->sweep->args)->user, RELUME_ERROR, text);
+    r->sweep->args->log->message(r->sweep->args->log->user, RELUME_ERROR, text);
     return RELUME_EIO;
 }
 
@@ -247,7 +247,7 @@ relume_status sweep_resume_open(sweep_resume **out, struct sweep *sweep,
     r->key = hash_number(r->key, sweep->test ? -1 : sweep->leave_out);
     r->key = hash_number(r->key, sweep->domain);
     r->key = hash_number(r->key, (int64_t)memory);
-    relume_status status = relume_file_check(r->path, args_log(sweep->args));
+    relume_status status = relume_file_check(r->path, sweep->args->log);
     if (!status) {
         r->file = fopen(r->path, "a+e");
         status = r->file ? RELUME_OK : cannot_write(r);

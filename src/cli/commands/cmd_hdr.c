@@ -1,6 +1,4 @@
-// capture_hdr.c - relume capture --hdr: exposures of one picture become one radiance map
-#include "commands/capture_hdr.h"
-
+// cmd_hdr.c - relume hdr: exposures of one picture become one radiance map
 #include "commands/bracket.h"
 #include "commands/capture_times.h"
 #include "fill.h"
@@ -9,6 +7,31 @@
 
 #include <stdlib.h>
 #include <string.h>
+
+#define OPTIONS struct hdr_options
+
+static const struct option options[] = {
+    TEXT_AS(OPTION_OUTPUT, "-o", output, "output", "OUT",
+            "the picture to write; for several brackets the folder of their pictures"),
+    FLAG("--json", json, "output", "print one JSON object"),
+    TEXT("--transfer", transfer, "input", "T", "linear, srgb or gamma:G; default: by file"),
+    FLAG("--skip-bad", skip_bad, "input", "leave out photographs that cannot be read or used"),
+    TEXT("--times", times, "exposures", "FILE", "exposure times, lines 'name seconds'"),
+    TEXT("--response", response, "exposures", "FILE", "use this response curve of the camera"),
+    TEXT_AS(OPTION_OUTPUT, "--save-response", save_response, "exposures", "FILE",
+            "write the response that was found"),
+    TEXT("--weights", weights, "exposures", "W", "spline (default), hat or gaussian"),
+    TEXT("--align", align, "exposures", "A", "none, blocks or homography; default: none"),
+    FLAG("--ghosts", ghosts, "exposures", "leave out what moved between exposures"),
+    TEXT("--white", white, "corrections", "x,y,w,h",
+         "a region that is grey: the lamps' colour is divided out"),
+    TEXT("--flat", flat, "corrections", "PATH",
+         "photograph of an even surface, divided out; one, or one under each light"),
+    FLAG("--radial", radial, "corrections",
+         "--flat: as a polynomial of the distance from the middle"),
+    FLAG("--hdr", old, "input", NULL),  // of relume capture
+    {0},
+};
 
 struct choices {
     enum relume_merge_weights weights;
@@ -20,19 +43,19 @@ struct choices {
 
 // ---------------------------------------------------------------- options
 
-static relume_status parse_choices(struct choices *out, const struct args *args)
+static relume_status parse_choices(struct choices *out, const struct hdr_options *o)
 {
     static const char *const modes[] = {"none", "blocks", "homography", NULL};
     const char *names[8] = {NULL};
-    const char *weights = args_text(args, "--weights", "spline");
-    const char *align = args_text(args, "--align", modes[0]);
-    const char *output = args_text(args, "-o", NULL);
-    const char *white = args_text(args, "--white", NULL);
+    const char *weights = o->weights;
+    const char *align = o->align;
+    const char *output = o->output;
+    const char *white = o->white;
     double region[4];
     int mode = 0;
     *out = (struct choices){0};
     if (!output)
-        return usage_error("capture: expected -o OUT.exr, or a folder for several brackets");
+        return usage_error("hdr: expected -o OUT.exr, or a folder for several brackets");
     out->is_file = strchr(base_name(output), '.') || relume_image_saves_linear(output);
     if (out->is_file && picture_name("-o", output))
         return RELUME_EINVAL;
@@ -114,65 +137,66 @@ static void print_table(FILE *out, const struct bracket *b, const char *output)
 
 // ---------------------------------------------------------------- one bracket
 
-static relume_status divide_flat(struct bracket *b, const char *flat, const struct args *args)
+static relume_status divide_flat(struct bracket *b, const char *flat, const struct hdr_options *o)
 {
     struct relume_image image;
     struct prefix_log log;
     relume_status status = relume_photograph_load(
-        &image, NULL, flat, relume_photograph_params(.log = args_log(args), .codes = true));
+        &image, NULL, flat, relume_photograph_params(.log = o->args.log, .codes = true));
     if (status)
         return status;
     const size_t samples = 3 * (size_t)image.width * (size_t)image.height;
     for (size_t i = 0; i < samples; i++)
         image.data[i] = relume_response_decode(&b->response, (int)(i % 3), image.data[i]);
-    if (args_has(args, "--radial")) {
+    if (o->radial) {
         struct relume_falloff falloff;
-        status = relume_falloff_fit(&falloff, &image, prefix_log(&log, args_log(args), flat));
+        status = relume_falloff_fit(&falloff, &image, prefix_log(&log, o->args.log, flat));
         if (!status)
             relume_falloff_divide(&b->out, &falloff);
     } else {
-        status = relume_flat_divide(&b->out, &image, prefix_log(&log, args_log(args), flat));
+        status = relume_flat_divide(&b->out, &image, prefix_log(&log, o->args.log, flat));
     }
     relume_image_destroy(&image);
     return status == RELUME_EINVAL ? RELUME_EDATA : status;
 }
 
-static relume_status whiten(struct bracket *b, const struct choices *c, const struct args *args)
+static relume_status whiten(struct bracket *b, const struct choices *c, const struct hdr_options *o)
 {
     float gain[3];
     struct prefix_log log;
     const relume_status status =
         relume_white_measure(gain, &b->out, c->white[0], c->white[1], c->white[2], c->white[3],
-                             prefix_log(&log, args_log(args), "--white"));
+                             prefix_log(&log, o->args.log, "--white"));
     if (!status)
         relume_white_apply(&b->out, gain);
     return status;
 }
 
 static relume_status run_bracket(struct bracket *b, const struct choices *c, const char *output,
-                                 const char *to, int index, FILE *report, const struct args *args)
+                                 const char *to, int index, FILE *report,
+                                 const struct hdr_options *o)
 {
-    const char *flat = args_text(args, "--flat", NULL);
-    relume_status status = bracket_load(b, args);
+    const char *flat = o->flat;
+    relume_status status = bracket_load(b, o);
     if (!status)
-        status = bracket_align(b, c->align, args);
+        status = bracket_align(b, c->align, o);
     if (!status)
-        status = bracket_check(b, args);
+        status = bracket_check(b, o);
     if (!status)
-        status = bracket_merge(b, c->weights, args);
+        status = bracket_merge(b, c->weights, o);
     if (!status && flat)
-        status = divide_flat(b, flat, args);
+        status = divide_flat(b, flat, o);
     if (!status && c->has_white)
-        status = whiten(b, c, args);
+        status = whiten(b, c, o);
     if (!status)
         status = relume_image_save(
             &b->out, to,
-            relume_image_params(.log = args_log(args), .threads = args_threads(args) > 0
-                                                                      ? args_threads(args)
-                                                                      : relume_cpu_count()));
+            relume_image_params(.log = o->args.log, .threads = o->args.threads > 0
+                                                                   ? o->args.threads
+                                                                   : relume_cpu_count()));
     if (status)
         return status;
-    if (args_has(args, "--json"))
+    if (o->json)
         print_json(report, b, output, index);
     else
         print_table(report, b, output);
@@ -182,19 +206,18 @@ static relume_status run_bracket(struct bracket *b, const struct choices *c, con
 // ---------------------------------------------------------------- all of them
 
 static relume_status read_notes(struct relume_notes *notes, struct photo_list *list,
-                                const struct args *args)
+                                const struct hdr_options *o)
 {
-    const struct relume_log silent = {.inputs = args_log(args)->inputs,
-                                      .limits = args_log(args)->limits};
-    const bool skip = args_has(args, "--skip-bad");
+    const struct relume_log silent = {.inputs = o->args.log->inputs, .limits = o->args.log->limits};
+    const bool skip = o->skip_bad;
     for (int i = 0; i < list->count; i++) {
         const relume_status status =
-            relume_notes_read(&notes[i], list->path[i], skip ? &silent : args_log(args));
+            relume_notes_read(&notes[i], list->path[i], skip ? &silent : o->args.log);
         if (status && !(skip && status == RELUME_EDATA))
             return status;
     }
-    const char *times = args_text(args, "--times", NULL);
-    const relume_status status = times ? read_times(times, list, notes, args_log(args)) : RELUME_OK;
+    const char *times = o->times;
+    const relume_status status = times ? read_times(times, list, notes, o->args.log) : RELUME_OK;
     for (int i = 0; !status && i < list->count; i++)
         if (!(notes[i].time_s > 0.0) && notes[i].width > 0)
             return data_error("%s: no exposure time in its EXIF; expected --times FILE",
@@ -229,19 +252,19 @@ static void output_name(char *out, size_t size, const struct choices *c, const s
 
 static relume_status run_group(const struct choices *c, const struct photo_list *list,
                                const struct relume_notes *notes, const int *group, int which,
-                               const char *to, FILE *report, const struct args *args)
+                               const char *to, FILE *report, const struct hdr_options *o)
 {
     char output[4096], written[4096];
     struct bracket *b = calloc(1, sizeof *b);
     if (!b)
         return RELUME_ENOMEM;
     const int n = photos_of(b, list, notes, group, which);
-    output_name(output, sizeof output, c, b, args_text(args, "-o", NULL));
+    output_name(output, sizeof output, c, b, o->output);
     output_name(written, sizeof written, c, b, to);
     const relume_status status =
         n > MAX_BRACKET ? data_error("%s: %d photographs in one bracket; expected at most %d",
                                      list->path[0], n, MAX_BRACKET)
-                        : run_bracket(b, c, output, written, which, report, args);
+                        : run_bracket(b, c, output, written, which, report, o);
     bracket_free(b);
     free(b);
     return status;
@@ -249,39 +272,40 @@ static relume_status run_group(const struct choices *c, const struct photo_list 
 
 static relume_status run_groups(const struct choices *c, struct photo_list *list,
                                 struct relume_notes *notes, int *group, FILE *report,
-                                const struct args *args)
+                                const struct hdr_options *o)
 {
-    const bool json = args_has(args, "--json");
+    const bool json = o->json;
     int groups = 1;
-    struct fill folder = {.path = args_text(args, "-o", NULL)};
-    relume_status status = read_notes(notes, list, args);
+    struct fill folder = {.path = o->output};
+    relume_status status = read_notes(notes, list, o);
     if (!status && !c->is_file) {
         groups = relume_notes_group(group, notes, list->count, 0.0);
-        status = groups > 0 ? fill_open(&folder, folder.path, args_log(args)) : RELUME_ENOMEM;
+        status = groups > 0 ? fill_open(&folder, folder.path, o->args.log) : RELUME_ENOMEM;
     }
     fputs(json ? "{\"brackets\": [" : "", report);
     for (int i = 0; !status && i < groups; i++)
-        status = run_group(c, list, notes, group, i, folder.path, report, args);
+        status = run_group(c, list, notes, group, i, folder.path, report, o);
     fputs(json ? "]}\n" : "", report);
     return fill_end(&folder, status);
 }
 
 // The report is printed when all went well.
-relume_status capture_hdr(const struct args *args)
+static relume_status run(const struct args *args)
 {
+    const struct hdr_options *o = (const void *)args;
     struct choices choices;
     struct photo_list list;
     char *text = NULL;
     size_t size = 0;
-    relume_status status = parse_choices(&choices, args);
+    relume_status status = parse_choices(&choices, o);
     if (!status)
-        status = photo_list_make(&list, args);
+        status = photo_list_make(&list, &o->args);
     if (status)
         return status;
     struct relume_notes *notes = calloc((size_t)list.count, sizeof *notes);
     int *group = calloc((size_t)list.count, sizeof *group);
     FILE *report = open_memstream(&text, &size);
-    status = notes && group && report ? run_groups(&choices, &list, notes, group, report, args)
+    status = notes && group && report ? run_groups(&choices, &list, notes, group, report, o)
                                       : RELUME_ENOMEM;
     if (report && fclose(report) && !status)
         status = RELUME_ENOMEM;
@@ -293,3 +317,16 @@ relume_status capture_hdr(const struct args *args)
     photo_list_free(&list);
     return status;
 }
+
+const struct command command_hdr = {
+    .name = "hdr",
+    .usage = "PHOTO... -o OUT.exr|DIR [OPTION ...]",
+    .summary = "merge exposures of one picture into an HDR picture",
+    .example = "relume hdr church/*.jpg --align blocks -o church.exr",
+    .min_inputs = 1,
+    .max_inputs = 4096,
+    .options = options,
+    .size = sizeof(struct hdr_options),
+    .defaults = &(const struct hdr_options){.weights = "spline", .align = "none"},
+    .run = run,
+};

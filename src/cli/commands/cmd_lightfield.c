@@ -1,0 +1,161 @@
+// cmd_lightfield.c - relume lightfield: grids and sets of cameras become a light slab, with depth
+#include "commands/capture_views.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct lightfield_options {
+    struct args args;
+    struct views_options views;
+    const char *names, *colmap, *grid;
+    bool slab, json, fill, turn, keep_order, depth_from_views;
+    double baseline, baseline_v, distance, st_z, window, focus_disparity;
+    int width;
+};
+#define OPTIONS struct lightfield_options
+
+static const struct option options[] = {
+    VIEWS_OPTIONS,
+    FLAG("--json", json, "output", "print one JSON object"),
+    TEXT("--names", names, "grid of cameras", "PATTERN",
+         "places in the names, with {row}, {column}, {n}, {u}, {v}, *; default: found"),
+    FLAG("--fill", fill, "grid of cameras", "a missing camera is filled by the nearest"),
+    FLAG("--turn", turn, "grid of cameras", "columns run to the left and rows upwards"),
+    FLAG("--keep-order", keep_order, "grid of cameras",
+         "keep the order of the names even if the photographs suggest another"),
+    NUMBER("--baseline", baseline, "grid of cameras", "W",
+           "world units from the first to the last column of cameras; default 1", 1e-6, 1e6),
+    NUMBER("--baseline-v", baseline_v, "grid of cameras", "H",
+           "world units from the first to the last row; default: by positions in the names, else "
+           "rows are as far apart as columns",
+           1e-6, 1e6),
+    NUMBER("--distance", distance, "grid of cameras", "D",
+           "world units from the cameras to the st plane, default 3; --colmap: units of the model",
+           1e-6, 1e6),
+    NUMBER("--st-z", st_z, "grid of cameras", "Z", "height of the st plane; default 0", -1e6, 1e6),
+    NUMBER("--window", window, "grid of cameras", "W", "width of the st window; default 2", 1e-6,
+           1e6),
+    NUMBER("--focus-disparity", focus_disparity, "grid of cameras", "PX",
+           "pixels by which a point on the st (focus) plane moves from one camera to the next; "
+           "default 0",
+           -4096, 4096),
+    TEXT("--colmap", colmap, "cameras with known poses", "DIR",
+         "poses of the photographs (cameras.txt, images.txt): resampled to a slab"),
+    TEXT("--views", grid, "cameras with known poses", "GxG",
+         "--colmap: grid of cameras to make; default 5x5"),
+    INT("--width", width, "cameras with known poses", "N", "--colmap: width of a view", 1, 65536),
+    FLAG("--depth-from-views", depth_from_views, "depth",
+         "estimate the depth of a light field's views; its capture is the input"),
+    TEXT("--depth-range", views.depth_range, "depth", "A,B",
+         "nearest and farthest distance from the camera plane"),
+    FLAG("--slab", slab, "input", NULL),  // of relume capture
+    {0},
+};
+
+static relume_status slab(const struct lightfield_options *o, const struct relume_ingest_params *p)
+{
+    return relume_slab_ingest(
+        o->views.output, o->args.input, o->args.inputs,
+        relume_slab_ingest_params(.names = o->names, .baseline = o->baseline,
+                                  .baseline_v = o->baseline_v, .distance = o->distance,
+                                  .st_z = o->st_z, .window = o->window,
+                                  .focus_disparity = o->focus_disparity, .fill = o->fill,
+                                  .turn = o->turn, .keep_order = o->keep_order),
+        p);
+}
+
+static relume_status posed(const struct lightfield_options *o, const char *photos,
+                           const struct relume_ingest_params *p)
+{
+    struct relume_posed_params posed = {
+        .width = o->width,
+        .distance = o->distance,
+    };
+    char rest;
+    const char *grid = o->grid;
+    if (grid && sscanf(grid, "%4dx%4d%c", &posed.grid[0], &posed.grid[1], &rest) != 2)
+        return usage_error("--views: expected a grid like 5x5; found '%s'", grid);
+    if (o->args.inputs != 1)
+        return usage_error("--colmap: expected the folder of the photographs; found %d inputs",
+                           o->args.inputs);
+    return relume_posed_ingest(o->views.output, o->colmap, photos, &posed, p);
+}
+
+static void print_depth(const struct relume_slab_depth_report *r, bool json)
+{
+    const bool known = r->compared > 0;
+    if (!json) {
+        printf("views     %d, searched at %d x %d under %d light%s\n", r->views, r->width,
+               r->height, r->lights, r->lights == 1 ? "" : "s");
+        printf("planes    %d, distances %.4g to %.4g\n", r->planes, r->range[0], r->range[1]);
+        printf("trusted   %.1f %% of pixels agree with the neighbouring views\n",
+               100.0 * r->trusted);
+        if (known)
+            printf(
+                "error     %.2f %% of the known depth (median), %.1f %% off by more than a plane\n",
+                100.0 * r->median_relative, 100.0 * r->bad);
+        return;
+    }
+    printf("{\"views\":%d,\"lights\":%d,\"width\":%d,\"height\":%d,\"planes\":%d,\"range\":[%.9g,"
+           "%.9g],\"plane_step\":%.9g,\"trusted\":%.9g,\"compared\":%zu,\"median_relative\":",
+           r->views, r->lights, r->width, r->height, r->planes, r->range[0], r->range[1],
+           r->plane_step, r->trusted, r->compared);
+    json_number(stdout, known ? r->median_relative : (double)NAN);
+    printf(",\"bad\":");
+    json_number(stdout, known ? r->bad : (double)NAN);
+    printf("}\n");
+}
+
+static relume_status depth_of(const struct lightfield_options *o)
+{
+    relume_capture *c;
+    struct relume_slab_depth_report report;
+    struct relume_slab_depth_params p = {
+        .log = o->args.log,
+        .force = o->views.force,
+        .threads = o->args.threads,
+    };
+    if (o->args.inputs != 1)
+        return usage_error("--depth-from-views: expected one capture; found %d", o->args.inputs);
+    relume_status status = parse_depth_range(p.range, &o->views);
+    if (status)
+        return status;
+    status = relume_capture_open(&c, o->args.input[0], relume_capture_params(.log = p.log));
+    if (!status)
+        status = relume_slab_depth(&report, c, o->views.output, &p);
+    if (!status && (o->json || !o->args.quiet))
+        print_depth(&report, o->json);
+    relume_capture_destroy(&c);
+    return status;
+}
+
+static relume_status run(const struct args *args)
+{
+    const struct lightfield_options *o = (const void *)args;
+    struct relume_vec3 *lights = NULL;
+    struct relume_ingest_params p;
+    if (!o->views.output)
+        return usage_error("lightfield: expected -o DIR");
+    if ((o->colmap != NULL) + o->depth_from_views + o->slab > 1)
+        return usage_error("lightfield: expected one of --colmap and --depth-from-views; compute "
+                           "depth in a second run");
+    if (o->depth_from_views)
+        return depth_of(o);
+    relume_status status = ingest_params(&p, &lights, args, &o->views);
+    if (!status)
+        status = o->colmap ? posed(o, o->args.input[0], &p) : slab(o, &p);
+    free(lights);
+    return status;
+}
+
+const struct command command_lightfield = {
+    .name = "lightfield",
+    .usage = "PHOTO...|FOLDER|CAPTURE -o DIR [OPTION ...]",
+    .summary = "turn photographs of many cameras into a light field, and estimate its depth",
+    .example = "relume lightfield chess/view_*.jpg -o chess_slab",
+    .min_inputs = 1,
+    .max_inputs = 4096,
+    .options = options,
+    .size = sizeof(struct lightfield_options),
+    .run = run,
+};

@@ -16,12 +16,14 @@ extern "C" {
 RELUME_API int relume_align_anchor(const struct relume_image *images, int n);
 
 struct relume_align_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int threads;          // default: all cores
     int block;            // side of the smallest macroblock, a power of two; default 16
     double max_roll_deg;  // homography: rolls that are tried at the start; default 12
 };
-#define relume_align_params(...) (&(const struct relume_align_params){__VA_ARGS__})
+#define relume_align_params(...)                                                                   \
+    (&(const struct relume_align_params){RELUME_SIZED(relume_align_params), __VA_ARGS__})
 
 // Where the pixels of the anchor lie in another image.
 struct relume_displacements {
@@ -79,12 +81,14 @@ RELUME_RESULT relume_status relume_warp_homography(struct relume_image *out,
 RELUME_API double relume_likeness(const struct relume_image *a, const struct relume_image *b);
 
 struct relume_ghost_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int threads;          // default: all cores
     double threshold;     // least correlation of 11 x 11 pixels; default 0.985
     double black, white;  // codes beyond resolve nothing; default 0.05, 0.95
 };
-#define relume_ghost_params(...) (&(const struct relume_ghost_params){__VA_ARGS__})
+#define relume_ghost_params(...)                                                                   \
+    (&(const struct relume_ghost_params){RELUME_SIZED(relume_ghost_params), __VA_ARGS__})
 
 // masks[i], one channel: 0 where image i of an aligned bracket disagrees with its reference,
 // else 1. The reference of a pixel is the anchor, or where that is black or saturated the next

@@ -22,6 +22,7 @@ enum {
 };
 
 struct relume_prefilter_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int height;  // of the maps, pixels; they are twice as wide; default 48, [4, 512]
     // The cosine of the lowest measured lights, below which values fall to 0 at the horizon
@@ -29,7 +30,8 @@ struct relume_prefilter_params {
     double rim;
     int threads;  // default: all cores
 };
-#define relume_prefilter_params(...) (&(const struct relume_prefilter_params){__VA_ARGS__})
+#define relume_prefilter_params(...)                                                               \
+    (&(const struct relume_prefilter_params){RELUME_SIZED(relume_prefilter_params), __VA_ARGS__})
 
 // `light` is an environment; its colour and rotation are taken over. RELUME_EINVAL, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_prefilter_create(relume_prefilter **out,
@@ -83,13 +85,16 @@ struct relume_btf_frame {
 };
 
 struct relume_btf_ambient_params {
+    size_t struct_size;  // filled by the macro (base.h)
     // Prefiltered maps of this orientation, for models of lobes: exact at the horizon, where those
     // of the environment know only the mean of a lobe. They take 0.1 s or so of one core: for flat
     // surfaces.
     bool own_maps;
     int threads;  // default: all cores
 };
-#define relume_btf_ambient_params(...) (&(const struct relume_btf_ambient_params){__VA_ARGS__})
+#define relume_btf_ambient_params(...)                                                             \
+    (&(const struct relume_btf_ambient_params){RELUME_SIZED(relume_btf_ambient_params),            \
+                                               __VA_ARGS__})
 
 // Some 2000 directions are interpolated: a few milliseconds. Both objects must outlive it.
 // RELUME_ENOMEM.

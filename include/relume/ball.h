@@ -29,6 +29,7 @@ struct relume_ball {
 };
 
 struct relume_ball_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const struct relume_image *mask;  // one channel, above 0.5 where the ball is; or NULL
     const struct relume_image *peak;  // the brightest value each pixel ever has, one channel; or
@@ -36,7 +37,8 @@ struct relume_ball_params {
     double smallest, largest;         // radius as share of the image's shorter side; default 0.015
                                       // and 0.6
 };
-#define relume_ball_params(...) (&(const struct relume_ball_params){__VA_ARGS__})
+#define relume_ball_params(...)                                                                    \
+    (&(const struct relume_ball_params){RELUME_SIZED(relume_ball_params), __VA_ARGS__})
 
 // The ball with this outline.
 RELUME_API struct relume_ball relume_ball_outlined(double x, double y, double radius,

@@ -29,6 +29,10 @@ typedef enum relume_status {
     RELUME_ECANCEL,  // the progress callback asked to stop
 } relume_status;
 
+// Params structs begin with their size, which the macro of the same name fills: a library that
+// knows more fields than its caller takes the default for them. A size of 0 stands for all fields.
+#define RELUME_SIZED(type) .struct_size = sizeof(struct type)
+
 // A fixed English text for `status`, never NULL.
 RELUME_API const char *relume_status_text(relume_status status);
 

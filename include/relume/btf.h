@@ -85,6 +85,7 @@ struct relume_btf_info {
 };
 
 struct relume_btf_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const struct relume_limits *limits;
     const char *scratch;  // the folder of temporary data; default $TMPDIR or /tmp
@@ -96,7 +97,8 @@ struct relume_btf_params {
     bool outline;
     int threads;
 };
-#define relume_btf_params(...) (&(const struct relume_btf_params){__VA_ARGS__})
+#define relume_btf_params(...)                                                                     \
+    (&(const struct relume_btf_params){RELUME_SIZED(relume_btf_params), __VA_ARGS__})
 
 // Values all zero, to be stored; copies what `info` points to. RELUME_EINVAL, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_create(relume_btf **out, const struct relume_btf_info *info,
@@ -159,6 +161,7 @@ RELUME_API const char *relume_btf_model_name(const struct relume_btf_model *mode
 RELUME_API const char *relume_btf_model_summary(const struct relume_btf_model *model);
 
 struct relume_btf_fit_params {  // zero in a field means its default
+    size_t struct_size;         // filled by the macro (base.h)
     const struct relume_log *log;
     int clusters;    // lpca 32, cmf 512, rfnlc 1024; at most one a texel, [1, 65536] (lpca: 256)
     int components;  // vpca 4, lpca 8, fmf 100; [1, 256]; qmf: at most, 512; [1, 1024]
@@ -172,7 +175,8 @@ struct relume_btf_fit_params {  // zero in a field means its default
     // [1, 1e6]
     double ratio;
 };
-#define relume_btf_fit_params(...) (&(const struct relume_btf_fit_params){__VA_ARGS__})
+#define relume_btf_fit_params(...)                                                                 \
+    (&(const struct relume_btf_fit_params){RELUME_SIZED(relume_btf_fit_params), __VA_ARGS__})
 
 // A fitted model. Never changes. Thread-safety: safe.
 typedef struct relume_btf_fitted relume_btf_fitted;
@@ -269,12 +273,14 @@ struct relume_btf_error {
     size_t pairs;  // of directions compared
 };
 struct relume_btf_judge_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     bool unseen;   // only pairs with a direction that the model was not fitted to
     int pictures;  // pairs whose pictures are compared by eye (delta_e, ssim); default 0
     int threads;
 };
-#define relume_btf_judge_params(...) (&(const struct relume_btf_judge_params){__VA_ARGS__})
+#define relume_btf_judge_params(...)                                                               \
+    (&(const struct relume_btf_judge_params){RELUME_SIZED(relume_btf_judge_params), __VA_ARGS__})
 // RELUME_EINVAL when texels differ or no pair is left, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_btf_judge(struct relume_btf_error *out,
                                              const relume_btf_fitted *fitted, const relume_btf *btf,

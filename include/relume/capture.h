@@ -113,6 +113,7 @@ RELUME_RESULT relume_status relume_manifest_write(const struct relume_manifest *
 typedef struct relume_capture relume_capture;
 
 struct relume_capture_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const struct relume_limits *limits;
     struct relume_transfer transfer;  // overrides the manifest's; default: the manifest's
@@ -128,7 +129,8 @@ struct relume_capture_params {
     size_t keep_bytes;  // images of 8 bits that a table has read stay decoded in memory up to this
                         // many bytes, so that later tables of the view are cheap; default: none
 };
-#define relume_capture_params(...) (&(const struct relume_capture_params){__VA_ARGS__})
+#define relume_capture_params(...)                                                                 \
+    (&(const struct relume_capture_params){RELUME_SIZED(relume_capture_params), __VA_ARGS__})
 
 // Open capture.json, a folder that holds one, or a .lp file; every image's header is checked: it
 // exists, can be read and has the common size. Returns RELUME_EDATA, RELUME_ENOMEM.
@@ -201,12 +203,14 @@ RELUME_RESULT relume_status relume_capture_mask(struct relume_image *out,
 typedef struct relume_table relume_table;
 
 struct relume_table_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     struct relume_transfer display;  // values are coded by this curve; default: linear light
     int threads;                     // default: all cores
     bool as_seen;  // near lights: values as each pixel sees them, only fall-off is divided out
 };
-#define relume_table_params(...) (&(const struct relume_table_params){__VA_ARGS__})
+#define relume_table_params(...)                                                                   \
+    (&(const struct relume_table_params){RELUME_SIZED(relume_table_params), __VA_ARGS__})
 
 // `capture` must outlive the table. Returns RELUME_EDATA, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_table_open(relume_table **out, const relume_capture *capture,

@@ -21,6 +21,7 @@ enum relume_codebook_start {
 };
 
 struct relume_codebook_params {  // zero in a field means its default
+    size_t struct_size;          // filled by the macro (base.h)
     const struct relume_log *log;
     enum relume_codebook_start start;  // where training begins
     const float *initial;              // [codes][dim]: start from these vectors instead; finite
@@ -33,7 +34,8 @@ struct relume_codebook_params {  // zero in a field means its default
     int threads;       // default: all cores
     unsigned cpu_off;  // RELUME_CPU_* features not to use; the result is the same
 };
-#define relume_codebook_params(...) (&(const struct relume_codebook_params){__VA_ARGS__})
+#define relume_codebook_params(...)                                                                \
+    (&(const struct relume_codebook_params){RELUME_SIZED(relume_codebook_params), __VA_ARGS__})
 
 // Train on `n` packed vectors of `dim` floats, read only until return; `params` may be NULL. Rounds
 // assign every vector to its nearest code and replace every code by the mean of its cell. A code
@@ -58,12 +60,14 @@ struct relume_codebook_info {
 RELUME_API const struct relume_codebook_info *relume_codebook_info(const relume_codebook *book);
 
 struct relume_codebook_assign_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int threads;       // default: all cores
     unsigned cpu_off;  // as above
 };
 #define relume_codebook_assign_params(...)                                                         \
-    (&(const struct relume_codebook_assign_params){__VA_ARGS__})
+    (&(const struct relume_codebook_assign_params){RELUME_SIZED(relume_codebook_assign_params),    \
+                                                   __VA_ARGS__})
 
 // index[i] = the code nearest to vector i: the lowest of those whose squared distance, summed in
 // double precision from the first component to the last, is smallest. Exact, whatever the CPU.
@@ -113,6 +117,7 @@ enum relume_book_split {
 };
 
 struct relume_books_params {  // zero in a field means its default
+    size_t struct_size;       // filled by the macro (base.h)
     const struct relume_log *log;
     int codes;                     // of each book; default 256
     int stages;                    // books one after another for the same planes, [1, 8]; default 1
@@ -127,7 +132,8 @@ struct relume_books_params {  // zero in a field means its default
                    // default 0: none
     int threads;
 };
-#define relume_books_params(...) (&(const struct relume_books_params){__VA_ARGS__})
+#define relume_books_params(...)                                                                   \
+    (&(const struct relume_books_params){RELUME_SIZED(relume_books_params), __VA_ARGS__})
 
 // Books that belong together. Never changes. Thread-safety: safe.
 typedef struct relume_books relume_books;

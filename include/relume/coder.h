@@ -89,6 +89,7 @@ struct relume_samples {
 };
 
 struct relume_coder_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int coefficients;    // K; default: the basis's choice for this number of lights
     bool hemispherical;  // the lights cover only the pole's hemisphere
@@ -111,7 +112,8 @@ struct relume_coder_params {
                              // [3][K][raw] for learned bases. Default: the identity
     const float *mean;       // decoding, learned bases: [3][raw]. Default: zero
 };
-#define relume_coder_params(...) (&(const struct relume_coder_params){__VA_ARGS__})
+#define relume_coder_params(...)                                                                   \
+    (&(const struct relume_coder_params){RELUME_SIZED(relume_coder_params), __VA_ARGS__})
 
 // Prepare `basis` for `n` unit directions `lights`. Returns RELUME_EINVAL when the basis has no
 // such K, RELUME_EDATA when the lights cannot determine it (too few, or degenerate), RELUME_ENOMEM.
@@ -252,6 +254,7 @@ enum relume_step { RELUME_STEP_DEFAULT = 0, RELUME_STEP_PLANE, RELUME_STEP_COMMO
 typedef struct relume_coefficients relume_coefficients;
 
 struct relume_encode_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     enum relume_domain domain;    // default: display for captures that are not linear, else linear
     enum relume_storage storage;  // default 8 bits
@@ -259,7 +262,8 @@ struct relume_encode_params {
     int threads;                  // default: all cores
     const char *scratch;          // temporary data goes beside this path; default: $TMPDIR
 };
-#define relume_encode_params(...) (&(const struct relume_encode_params){__VA_ARGS__})
+#define relume_encode_params(...)                                                                  \
+    (&(const struct relume_encode_params){RELUME_SIZED(relume_encode_params), __VA_ARGS__})
 
 // The domain that DOMAIN_AUTO means for `capture`.
 RELUME_API enum relume_domain relume_encode_domain(const relume_capture *capture,

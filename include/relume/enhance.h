@@ -46,6 +46,7 @@ struct relume_pass_range {
 };
 
 struct relume_pass_params {
+    size_t struct_size;  // filled by the macro (base.h)
     float gain;      // diffuse gain: of the shading's curvature; unsharp: of the detail; default 2
     float specular;  // the highlight where it is brightest, in `high`s of the picture; default 0.6
     float exponent;  // of the highlight; default 40
@@ -59,7 +60,8 @@ struct relume_pass_params {
     const struct relume_image *towards;
     const struct relume_image *reference;  // difference: a linear picture of the same size
 };
-#define relume_pass_params(...) (&(const struct relume_pass_params){__VA_ARGS__})
+#define relume_pass_params(...)                                                                    \
+    (&(const struct relume_pass_params){RELUME_SIZED(relume_pass_params), __VA_ARGS__})
 
 // Replace `image`, a view relit by `lights`, by what `pass` shows of it; linear, three channels.
 // `normals` may be NULL where the pass needs none. Only directional lights are enhanced; what

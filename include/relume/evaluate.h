@@ -32,12 +32,14 @@ struct relume_evaluation {
 RELUME_API void relume_evaluation_destroy(struct relume_evaluation *evaluation);
 
 struct relume_evaluate_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const char *file, *capture;  // how sentences call the two; default: "the file", "the capture"
     int threads;                 // default: all cores
     bool no_ssim, no_delta_e;    // leave these out (NaN), they take most of the time
 };
-#define relume_evaluate_params(...) (&(const struct relume_evaluate_params){__VA_ARGS__})
+#define relume_evaluate_params(...)                                                                \
+    (&(const struct relume_evaluate_params){RELUME_SIZED(relume_evaluate_params), __VA_ARGS__})
 
 // Slab views are matched by slab and place on the uv plane, or rendered at that eye through that
 // slab's window where the file has none there; near lights of the capture are evaluated as point

@@ -11,12 +11,14 @@ extern "C" {
 #endif
 
 struct relume_import_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const struct relume_limits *limits;
     enum relume_compression compression;
     int threads;  // default: all cores
 };
-#define relume_import_params(...) (&(const struct relume_import_params){__VA_ARGS__})
+#define relume_import_params(...)                                                                  \
+    (&(const struct relume_import_params){RELUME_SIZED(relume_import_params), __VA_ARGS__})
 
 // Turn `path` (.ptm, .rti, .hsh, a relight folder or its info.json) into the relume file `out` that
 // relights as the format says. Codes stay as they are, but for those in YCC, which become 16-bit
@@ -38,13 +40,15 @@ RELUME_API enum relume_kind relume_kind_of(const char *path);
 RELUME_API const char *relume_kind_name(enum relume_kind kind);
 
 struct relume_open_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const struct relume_limits *limits;
     bool allow_outside;  // of captures, as relume_capture_params
     bool sphere;         // a picture shows all directions, twice as wide as high: a panorama
     int threads;         // default: all cores
 };
-#define relume_open_params(...) (&(const struct relume_open_params){__VA_ARGS__})
+#define relume_open_params(...)                                                                    \
+    (&(const struct relume_open_params){RELUME_SIZED(relume_open_params), __VA_ARGS__})
 
 // Open anything that can be shown as a relume file: relume files themselves; what relume_import
 // reads; captures, encoded by the defaults; a picture of linear light (floats), which looks the
@@ -79,6 +83,7 @@ RELUME_RESULT relume_status relume_web_type_parse(enum relume_web_type *out, con
 
 // Zero in a field means its default. Of bytes_per_pixel, psnr_db and quality at most one is given.
 struct relume_export_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int view;                   // of a slab
     enum relume_web_type type;  // RELIGHT, DEEPZOOM
@@ -96,7 +101,8 @@ struct relume_export_params {
     bool force;              // replace an existing folder that is not empty
     int threads;             // default: all cores
 };
-#define relume_export_params(...) (&(const struct relume_export_params){__VA_ARGS__})
+#define relume_export_params(...)                                                                  \
+    (&(const struct relume_export_params){RELUME_SIZED(relume_export_params), __VA_ARGS__})
 
 // What an export became; measured by reading it back, under at most 16 of the file's lights.
 struct relume_export_report {

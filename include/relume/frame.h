@@ -55,6 +55,7 @@ RELUME_API struct relume_place relume_camera_place(int frame[2],
                                                    const struct relume_camera *camera);
 
 struct relume_frame_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     unsigned cpu_off;  // as relume_relight_params
     int threads;       // default: all cores
@@ -70,7 +71,8 @@ struct relume_frame_params {
     uint64_t memory;  // bytes that a renderer keeps between frames; default: 1 GiB. One frame may
                       // need more
 };
-#define relume_frame_params(...) (&(const struct relume_frame_params){__VA_ARGS__})
+#define relume_frame_params(...)                                                                   \
+    (&(const struct relume_frame_params){RELUME_SIZED(relume_frame_params), __VA_ARGS__})
 
 // Create `*out`, linear, three channels; relume_camera_place says where in it the picture is and a
 // note in the log that there is something beside it. Only the views that the frame touches are read

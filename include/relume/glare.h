@@ -32,6 +32,7 @@ RELUME_API const char *const *relume_glare_mode_names(void);  // by number, then
 RELUME_API const char *const *relume_glare_border_names(void);
 
 struct relume_glare_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int threads;     // default: all cores
     double fov_deg;  // horizontal field of view of the frame, perspective, [0.01, 170]; default 45
@@ -45,7 +46,8 @@ struct relume_glare_params {
     bool no_veil;     // leave out the analytic veil beyond the pattern
     bool keep_light;  // closing lids do not darken the frame
 };
-#define relume_glare_params(...) (&(const struct relume_glare_params){__VA_ARGS__})
+#define relume_glare_params(...)                                                                   \
+    (&(const struct relume_glare_params){RELUME_SIZED(relume_glare_params), __VA_ARGS__})
 
 // The angle of one pixel in the middle of a frame of that width.
 RELUME_API double relume_glare_pixel(double fov_deg, int width);

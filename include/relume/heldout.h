@@ -19,6 +19,7 @@ extern "C" {
 typedef struct relume_heldout relume_heldout;
 
 struct relume_heldout_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const relume_capture *test;  // judge by these lights, none left out; same size, views and
                                  // projection; or NULL
@@ -28,7 +29,8 @@ struct relume_heldout_params {
                                  // represented by bands of rows, spread evenly
     int threads;                 // default: all cores
 };
-#define relume_heldout_params(...) (&(const struct relume_heldout_params){__VA_ARGS__})
+#define relume_heldout_params(...)                                                                 \
+    (&(const struct relume_heldout_params){RELUME_SIZED(relume_heldout_params), __VA_ARGS__})
 
 // `capture` and `test` must outlive the object. Returns RELUME_EINVAL (leave_out leaves fewer than
 // one light), RELUME_EDATA (an image is broken, `test` does not fit), RELUME_ENOMEM,

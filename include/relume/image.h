@@ -49,6 +49,7 @@ RELUME_API float relume_transfer_decode(struct relume_transfer transfer, float c
 RELUME_API float relume_transfer_encode(struct relume_transfer transfer, float linear);
 
 struct relume_image_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     struct relume_transfer transfer;  // loading: overrides what the file's type implies
     const struct relume_limits *limits;
@@ -60,7 +61,8 @@ struct relume_image_params {
     const struct relume_writer
         *writer;  // saving: write here; `path` is a name that says the format
 };
-#define relume_image_params(...) (&(const struct relume_image_params){__VA_ARGS__})
+#define relume_image_params(...)                                                                   \
+    (&(const struct relume_image_params){RELUME_SIZED(relume_image_params), __VA_ARGS__})
 
 // Read `path` (any format OpenImageIO knows) as linear light. Returns RELUME_EDATA, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_image_load(struct relume_image *out, const char *path,
@@ -96,12 +98,14 @@ enum relume_filter {
 RELUME_RESULT relume_status relume_filter_parse(enum relume_filter *out, const char *name);
 
 struct relume_scale_params {
-    int threads;  // default: all cores
+    size_t struct_size;  // filled by the macro (base.h)
+    int threads;         // default: all cores
     enum relume_filter filter;
     bool wrap;  // the left border goes on at the right one
     int tiles;  // that many pictures side by side do not mix at their borders; default 1
 };
-#define relume_scale_params(...) (&(const struct relume_scale_params){__VA_ARGS__})
+#define relume_scale_params(...)                                                                   \
+    (&(const struct relume_scale_params){RELUME_SIZED(relume_scale_params), __VA_ARGS__})
 
 // Create `*out`: the whole of `image` in another size. The same size gives the same values.
 // RELUME_EINVAL, RELUME_ENOMEM.
@@ -122,12 +126,14 @@ struct relume_difference {
     size_t pixels;   // pixels compared
 };
 struct relume_compare_params {
+    size_t struct_size;               // filled by the macro (base.h)
     const struct relume_image *mask;  // one channel, compare where > 0.5; NULL: everywhere
     struct relume_transfer display;   // default sRGB
     int threads;                      // default: all cores
     bool no_ssim, no_delta_e;         // leave these out (NaN), they take most of the time
 };
-#define relume_compare_params(...) (&(const struct relume_compare_params){__VA_ARGS__})
+#define relume_compare_params(...)                                                                 \
+    (&(const struct relume_compare_params){RELUME_SIZED(relume_compare_params), __VA_ARGS__})
 
 // Both images must have 3 channels and equal sizes, else RELUME_EINVAL. RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_image_compare(struct relume_difference *out,

@@ -123,10 +123,12 @@ RELUME_API double relume_ies_candela(const relume_ies *ies);
 
 // ------------------------------------------------------------------ gonio
 struct relume_gonio_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const char *name;  // how sentences call the map; default: "distribution"
 };
-#define relume_gonio_params(...) (&(const struct relume_gonio_params){__VA_ARGS__})
+#define relume_gonio_params(...)                                                                   \
+    (&(const struct relume_gonio_params){RELUME_SIZED(relume_gonio_params), __VA_ARGS__})
 
 // A goniometric distribution of `map`, three channels, 1 being the light's own value. Six square
 // faces side by side (+x -x +y -y +z -z, laid out as the cube of a panorama) or, twice as wide as
@@ -150,10 +152,13 @@ RELUME_API const struct relume_image *relume_gonio_map(const relume_gonio *gonio
 
 // ------------------------------------------------------------------ environment
 struct relume_environment_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const char *name;  // how sentences call the map; default: "environment"
 };
-#define relume_environment_params(...) (&(const struct relume_environment_params){__VA_ARGS__})
+#define relume_environment_params(...)                                                             \
+    (&(const struct relume_environment_params){RELUME_SIZED(relume_environment_params),            \
+                                               __VA_ARGS__})
 
 // Prepare a lat-long map (linear, three channels; spherical layout as seen from the scene: the
 // middle column is -z, +x to its right, row 0 is up). NaN, infinite and negative values become 0

@@ -10,6 +10,7 @@ extern "C" {
 #endif
 
 struct relume_slab_depth_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     double range[2];  // distances along z from the cameras' plane, nearest and farthest, world
                       // units; default: found in the middle view
@@ -20,7 +21,8 @@ struct relume_slab_depth_params {
     bool force;       // replace an existing folder
     int threads;      // default: all cores
 };
-#define relume_slab_depth_params(...) (&(const struct relume_slab_depth_params){__VA_ARGS__})
+#define relume_slab_depth_params(...)                                                              \
+    (&(const struct relume_slab_depth_params){RELUME_SIZED(relume_slab_depth_params), __VA_ARGS__})
 
 // How the estimate compares with the depth that the capture had. Zero when it had none.
 struct relume_slab_depth_report {

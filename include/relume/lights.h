@@ -23,12 +23,14 @@ extern RELUME_API const struct relume_pattern *const relume_patterns[];
 RELUME_API const struct relume_pattern *relume_pattern_find(const char *name);
 
 struct relume_lights_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     uint64_t seed;    // equal seeds give equal directions
     bool hemisphere;  // only directions on the pole's side
     bool pole_y;      // the pole is +y (panoramas); default +z
 };
-#define relume_lights_params(...) (&(const struct relume_lights_params){__VA_ARGS__})
+#define relume_lights_params(...)                                                                  \
+    (&(const struct relume_lights_params){RELUME_SIZED(relume_lights_params), __VA_ARGS__})
 
 // Fill `out[n]` with unit directions. RELUME_EINVAL when n < 1, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_lights_make(struct relume_vec3 *out, int n,

@@ -21,12 +21,14 @@ struct relume_normals {
 };
 
 struct relume_normals_params {
+    size_t struct_size;            // filled by the macro (base.h)
     const struct relume_log *log;  // progress
     unsigned cpu_off;              // as relume_relight_params
     int threads;                   // default: all cores
     bool plain;                    // least squares of all samples: no trimming, no weights
 };
-#define relume_normals_params(...) (&(const struct relume_normals_params){__VA_ARGS__})
+#define relume_normals_params(...)                                                                 \
+    (&(const struct relume_normals_params){RELUME_SIZED(relume_normals_params), __VA_ARGS__})
 
 // Fit every pixel of `codes`; the caller destroys `out`, which is empty on failure. RELUME_EDATA
 // when the captured directions do not span space, RELUME_ENOMEM, RELUME_ECANCEL.

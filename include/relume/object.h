@@ -32,12 +32,14 @@ extern "C" {
 typedef struct relume_objects relume_objects;
 
 struct relume_objects_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const struct relume_limits *limits;
     const char *scratch;  // as relume_btf_params
     int threads;          // default: all cores
 };
-#define relume_objects_params(...) (&(const struct relume_objects_params){__VA_ARGS__})
+#define relume_objects_params(...)                                                                 \
+    (&(const struct relume_objects_params){RELUME_SIZED(relume_objects_params), __VA_ARGS__})
 
 // Read a description (docs/objects.md). Meshes are OBJ, PLY or what Assimp reads, such as glTF;
 // materials are folders of BTFs, of fitted models or of surfaces. What a mesh lacks is made, with a
@@ -125,12 +127,14 @@ RELUME_API bool relume_lamp_at(struct relume_vec3 *towards, float rgb[3], double
 // ---------------------------------------------------------------- pictures
 
 struct relume_render_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int samples;      // rays along each side of a pixel, [1, 16]; default 1, through its middle
     bool no_shadows;  // all lamps reach all points
     int threads;      // default: all cores
 };
-#define relume_render_params(...) (&(const struct relume_render_params){__VA_ARGS__})
+#define relume_render_params(...)                                                                  \
+    (&(const struct relume_render_params){RELUME_SIZED(relume_render_params), __VA_ARGS__})
 
 // The window through which `eye` sees all of the objects (its aim: all zero is their middle, +y up
 // and the least square view that holds them). False as relume_slabs_window.

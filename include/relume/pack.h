@@ -50,6 +50,7 @@ struct relume_pack_contents {
     struct relume_encode_report report;   // over all views; NaN: not known
 };
 struct relume_pack_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const struct relume_limits *limits;   // reading
     enum relume_compression compression;  // writing
@@ -59,7 +60,8 @@ struct relume_pack_params {
                                           // must outlive the pack
     const struct relume_writer *writer;   // writing: likewise
 };
-#define relume_pack_params(...) (&(const struct relume_pack_params){__VA_ARGS__})
+#define relume_pack_params(...)                                                                    \
+    (&(const struct relume_pack_params){RELUME_SIZED(relume_pack_params), __VA_ARGS__})
 
 // Write `path` whole or not at all; the first part is a preview of the middle view, relit from the
 // front, for ordinary EXR viewers. Returns RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
@@ -70,6 +72,7 @@ RELUME_RESULT relume_status relume_pack_write(const struct relume_pack_contents 
 // Encode every view of `capture` by `coder` and write the file `path`: relume_encode and
 // relume_pack_write in one call, temporary data beside `path`'s folder. `report` may be NULL.
 struct relume_pack_encode_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     enum relume_domain domain;
     enum relume_storage storage;
@@ -83,7 +86,9 @@ struct relume_pack_encode_params {
     const struct relume_writer *writer;       // write here in place of the file, as
                                               // relume_pack_params; temporary data in $TMPDIR
 };
-#define relume_pack_encode_params(...) (&(const struct relume_pack_encode_params){__VA_ARGS__})
+#define relume_pack_encode_params(...)                                                             \
+    (&(const struct relume_pack_encode_params){RELUME_SIZED(relume_pack_encode_params),            \
+                                               __VA_ARGS__})
 // The whole way from a capture to a file. RELUME_EDATA, RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,
                                                const relume_coder *coder, const char *path,
@@ -145,6 +150,7 @@ RELUME_RESULT relume_status relume_pack_mask(struct relume_image *out, relume_pa
 // when it is not, with a sentence where it is more than those rows: a header, a value out of range.
 // What PIZ and no compression decode in spite of damage to single bits is not noticed.
 struct relume_pack_check_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const struct relume_limits *limits;
     int threads;
@@ -152,7 +158,8 @@ struct relume_pack_check_params {
     void *user;
     const struct relume_reader *reader;  // as relume_pack_params
 };
-#define relume_pack_check_params(...) (&(const struct relume_pack_check_params){__VA_ARGS__})
+#define relume_pack_check_params(...)                                                              \
+    (&(const struct relume_pack_check_params){RELUME_SIZED(relume_pack_check_params), __VA_ARGS__})
 // RELUME_EDATA when anything is damaged, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_pack_check(const char *path,
                                               const struct relume_pack_check_params *params);

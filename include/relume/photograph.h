@@ -41,6 +41,7 @@ RELUME_API int relume_notes_group(int *group, const struct relume_notes *notes, 
                                   double pause_s);
 
 struct relume_photograph_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const struct relume_limits *limits;
     struct relume_transfer transfer;  // overrides what the file says of itself
@@ -48,7 +49,8 @@ struct relume_photograph_params {
                  // but neither linearised nor brought to other primaries
     bool not_turned;  // leave the orientation alone
 };
-#define relume_photograph_params(...) (&(const struct relume_photograph_params){__VA_ARGS__})
+#define relume_photograph_params(...)                                                              \
+    (&(const struct relume_photograph_params){RELUME_SIZED(relume_photograph_params), __VA_ARGS__})
 
 // Read a photograph (JPEG, PNG, TIFF, EXR, HDR, camera RAW where the installed OpenImageIO reads
 // it), three channels, turned upright, linear with sRGB primaries: an embedded matrix ICC profile

@@ -27,11 +27,14 @@ struct relume_photometric {
 };
 
 struct relume_photometric_params {
+    size_t struct_size;            // filled by the macro (base.h)
     const struct relume_log *log;  // progress
     int threads;                   // default: all cores
     bool plain;                    // least squares of all samples: no trimming, no weights
 };
-#define relume_photometric_params(...) (&(const struct relume_photometric_params){__VA_ARGS__})
+#define relume_photometric_params(...)                                                             \
+    (&(const struct relume_photometric_params){RELUME_SIZED(relume_photometric_params),            \
+                                               __VA_ARGS__})
 
 // Fit every pixel of one view that its mask shows; the caller destroys `out`, which is empty on
 // failure. RELUME_EDATA when the lights do not span space, RELUME_ENOMEM, RELUME_ECANCEL.
@@ -41,12 +44,14 @@ RELUME_RESULT relume_status relume_photometric_fit(struct relume_photometric *ou
 RELUME_API void relume_photometric_destroy(struct relume_photometric *photometric);
 
 struct relume_height_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     double pixel;   // width of a pixel, world units; default 1
     double screen;  // how strongly the height is held at 0, per pixel^2; default 1e-6: what slopes
                     // say decides up to some thousand pixels
 };
-#define relume_height_params(...) (&(const struct relume_height_params){__VA_ARGS__})
+#define relume_height_params(...)                                                                  \
+    (&(const struct relume_height_params){RELUME_SIZED(relume_height_params), __VA_ARGS__})
 
 // Height over the image plane, world units, mean 0 over the known pixels, towards the viewer:
 // least squares of the slopes that follow from the normals (screened Poisson, Bhat et al. 2008;

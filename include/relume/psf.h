@@ -16,6 +16,7 @@ extern "C" {
 // The transform of an aperture texture of `size` x `size` texels and `width_mm` across: texel
 // k of the pattern, counted from its middle, lies at the angle k lambda / width_mm.
 struct relume_psf_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     unsigned cpu_off;  // RELUME_CPU_* features not to use
     int threads;       // default: all cores
@@ -32,7 +33,8 @@ struct relume_psf_params {
     unsigned parts_off;    // RELUME_EYE_* parts not to draw
     bool retina_distance;  // E of Eq. 8.3 with the printed d = 24 mm: a blur, for comparison
 };
-#define relume_psf_params(...) (&(const struct relume_psf_params){__VA_ARGS__})
+#define relume_psf_params(...)                                                                     \
+    (&(const struct relume_psf_params){RELUME_SIZED(relume_psf_params), __VA_ARGS__})
 
 // One wavelength of the chromatic sum: F_s(x) = sum_i rgb_i F_575(scale_i x), x measured from the
 // middle. The weights hold spectrum, colour matching functions (CIE 1931), the matrix to linear
@@ -103,13 +105,15 @@ RELUME_API const struct relume_psf_geometry *relume_psf_shape(const relume_psf *
 // Patterns wait as halfs: 6 field^2 bytes each. Thread-safety: never changes; safe.
 typedef struct relume_psf_cycle relume_psf_cycle;
 struct relume_psf_cycle_params {  // zero in a field means its default
+    size_t struct_size;           // filled by the macro (base.h)
     const struct relume_log *log;
     double seconds;    // how long the loop is; default 4
     double fps;        // patterns a second; default 30; at most 3600 in all
     double fade_s;     // of its beginning, at most all of it; default a quarter
     double luminance;  // that the eye adapts to meanwhile, cd/m^2; default: what it has adapted to
 };
-#define relume_psf_cycle_params(...) (&(const struct relume_psf_cycle_params){__VA_ARGS__})
+#define relume_psf_cycle_params(...)                                                               \
+    (&(const struct relume_psf_cycle_params){RELUME_SIZED(relume_psf_cycle_params), __VA_ARGS__})
 
 // `eye` lives on for the loop and its fade, and `psf` shows it meanwhile. RELUME_EINVAL with a
 // sentence, RELUME_ENOMEM, RELUME_ECANCEL.

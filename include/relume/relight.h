@@ -22,6 +22,7 @@ extern "C" {
 typedef struct relume_weight_grid relume_weight_grid;
 
 struct relume_weight_grid_params {
+    size_t struct_size;  // filled by the macro (base.h)
     int steps;  // a grid, with so many columns in 90 degrees, [2, 1024]; default: triangles where
                 // the basis has them, else 96, fewer where that takes more than 256 MB. Then
                 // reflectance of smooth bases agrees to 1e-3 of white
@@ -29,7 +30,9 @@ struct relume_weight_grid_params {
                 // lights that relume_environment_weights goes by, at no cost
     int threads;  // default: all cores
 };
-#define relume_weight_grid_params(...) (&(const struct relume_weight_grid_params){__VA_ARGS__})
+#define relume_weight_grid_params(...)                                                             \
+    (&(const struct relume_weight_grid_params){RELUME_SIZED(relume_weight_grid_params),            \
+                                               __VA_ARGS__})
 
 // RELUME_EINVAL (steps), RELUME_ENOMEM. `coder` must live as long as the grid.
 RELUME_RESULT relume_status
@@ -107,6 +110,7 @@ RELUME_API void relume_environment_weights(float *weights, float constant[3],
 typedef struct relume_refit relume_refit;
 
 struct relume_refit_params {
+    size_t struct_size;            // filled by the macro (base.h)
     const struct relume_log *log;  // gets the loss as a note
     int coefficients;              // default: twice those of the codes, at most 3 x lights
     const relume_refit *like;      // take over what this one learned from another view of the same
@@ -114,7 +118,8 @@ struct relume_refit_params {
     unsigned cpu_off;              // as relume_relight_params
     int threads;                   // default: all cores
 };
-#define relume_refit_params(...) (&(const struct relume_refit_params){__VA_ARGS__})
+#define relume_refit_params(...)                                                                   \
+    (&(const struct relume_refit_params){RELUME_SIZED(relume_refit_params), __VA_ARGS__})
 
 // RELUME_ENOMEM; what relume_coder_create says.
 RELUME_RESULT relume_status relume_refit_create(relume_refit **out,
@@ -130,6 +135,7 @@ RELUME_API double relume_refit_loss(const relume_refit *refit);
 
 // ------------------------------------------------------------------ relighting
 struct relume_relight_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     unsigned cpu_off;  // RELUME_CPU_* features not to use; ~0u runs the plain C reference
     int threads;       // default: all cores
@@ -142,7 +148,8 @@ struct relume_relight_params {
                                      // for the call
     float exposure_ev;               // relume_relight_rgba8: multiply by 2^EV before coding
 };
-#define relume_relight_params(...) (&(const struct relume_relight_params){__VA_ARGS__})
+#define relume_relight_params(...)                                                                 \
+    (&(const struct relume_relight_params){RELUME_SIZED(relume_relight_params), __VA_ARGS__})
 
 // The value of every pixel under the sum of `n` lights, linear, three channels; values below zero
 // (ringing of the basis) are kept. Linear-domain codes fold all lights into one weight vector;

@@ -22,6 +22,7 @@ typedef struct relume_relighter relume_relighter;
 enum { RELUME_RELIGHTER_GROUPS = 17 };  // at most
 
 struct relume_relighter_params {
+    size_t struct_size;  // filled by the macro (base.h)
     int groups;  // pictures kept of each view, [1, RELUME_RELIGHTER_GROUPS]; default 1, of all
                  // lights. With more of them the first is of the distant lights that cost one pass
                  // together, the others are each of one light, near or decoded on its own, as far
@@ -29,7 +30,8 @@ struct relume_relighter_params {
     unsigned cpu_off;  // as relume_relight_params
     int threads;       // default: all cores
 };
-#define relume_relighter_params(...) (&(const struct relume_relighter_params){__VA_ARGS__})
+#define relume_relighter_params(...)                                                               \
+    (&(const struct relume_relighter_params){RELUME_SIZED(relume_relighter_params), __VA_ARGS__})
 
 // For views 0 to views - 1 of one file. RELUME_EINVAL, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_relighter_create(relume_relighter **out, int views,

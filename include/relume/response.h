@@ -40,6 +40,7 @@ RELUME_RESULT relume_status relume_response_save(const struct relume_response *r
                                                  const char *path, const struct relume_log *log);
 
 struct relume_recover_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int samples;        // places that are looked at; default 400
     double smoothness;  // weight of the second differences; default 20
@@ -47,7 +48,8 @@ struct relume_recover_params {
     // at; empty image: all are; or NULL
     const struct relume_image *masks;
 };
-#define relume_recover_params(...) (&(const struct relume_recover_params){__VA_ARGS__})
+#define relume_recover_params(...)                                                                 \
+    (&(const struct relume_recover_params){RELUME_SIZED(relume_recover_params), __VA_ARGS__})
 
 // The response from a bracket (Debevec, Malik 1997, Eq. 3: least squares of
 // g(z_ij) - ln E_i - ln t_j with a smooth g), made monotone by pooling. Samples lie where the
@@ -87,6 +89,7 @@ struct relume_exposure_report {
 };
 
 struct relume_merge_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     enum relume_merge_weights weights;  // default: SPLINE
     const struct relume_image
@@ -94,7 +97,8 @@ struct relume_merge_params {
                   // outside of a warped picture; empty image: 1), or NULL
     int threads;  // default: all cores
 };
-#define relume_merge_params(...) (&(const struct relume_merge_params){__VA_ARGS__})
+#define relume_merge_params(...)                                                                   \
+    (&(const struct relume_merge_params){RELUME_SIZED(relume_merge_params), __VA_ARGS__})
 
 // The rule of the ends is left where a longer exposure is darker or a shorter one brighter than
 // half of full scale and than that end: there something else happened. Radiance in units of the

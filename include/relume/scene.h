@@ -29,10 +29,12 @@ RELUME_API const struct relume_scene_kind *relume_scene_find(const char *name);
 typedef struct relume_scene relume_scene;
 
 struct relume_scene_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const char *mesh;  // OBJ or PLY for scenes that take one (`bust`); NULL: the procedural default
 };
-#define relume_scene_params(...) (&(const struct relume_scene_params){__VA_ARGS__})
+#define relume_scene_params(...)                                                                   \
+    (&(const struct relume_scene_params){RELUME_SIZED(relume_scene_params), __VA_ARGS__})
 
 // Returns RELUME_EDATA for a mesh that cannot be used, RELUME_EINVAL for a mesh where none is
 // taken, RELUME_ENOMEM.
@@ -54,6 +56,7 @@ enum relume_ring {
 RELUME_RESULT relume_status relume_ring_parse(enum relume_ring *out, const char *name);
 
 struct relume_synth_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     enum relume_projection projection;  // used only when `projection_set`
     bool projection_set;                // default: the scene's own projection
@@ -77,7 +80,8 @@ struct relume_synth_params {
     int threads;  // default: all cores
     bool force;   // replace an existing folder
 };
-#define relume_synth_params(...) (&(const struct relume_synth_params){__VA_ARGS__})
+#define relume_synth_params(...)                                                                   \
+    (&(const struct relume_synth_params){RELUME_SIZED(relume_synth_params), __VA_ARGS__})
 
 // Render every view under every light into the new folder `dir`: half-float EXR images, depth,
 // capture.json. The folder appears whole or not at all. Same seed, same bytes for any number of
@@ -101,6 +105,7 @@ RELUME_API const char *relume_btf_material_name(const struct relume_btf_material
 RELUME_API const char *relume_btf_material_summary(const struct relume_btf_material *material);
 
 struct relume_btf_synth_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int size;    // texels a side, [1, 1024]; default 64
     int extent;  // [1, 16]; default 1: this many times as many stones, threads, ... along a side
@@ -114,7 +119,8 @@ struct relume_btf_synth_params {
     int threads;    // default: all cores
     const char *scratch;  // as in relume_btf_params
 };
-#define relume_btf_synth_params(...) (&(const struct relume_btf_synth_params){__VA_ARGS__})
+#define relume_btf_synth_params(...)                                                               \
+    (&(const struct relume_btf_synth_params){RELUME_SIZED(relume_btf_synth_params), __VA_ARGS__})
 
 // Measure one period of the relief under every light from every view: parallel light, orthographic
 // views, rectified to the plane of the relief's mean height (whatever lies off it is shifted by

@@ -94,6 +94,7 @@ RELUME_RESULT relume_status relume_shoot_make(struct relume_shoot *out, const ch
 RELUME_API void relume_shoot_destroy(struct relume_shoot *shoot);
 
 struct relume_refine_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int threads;
     bool brightness;  // of the lights alone; their directions stay
@@ -104,6 +105,8 @@ struct relume_refine_params {
     double *curl;  // [2], or NULL: RMS of the curl before and after, relative to the surface's
                    // curvature
 };
+#define relume_refine_params(...)                                                                  \
+    (&(const struct relume_refine_params){RELUME_SIZED(relume_refine_params), __VA_ARGS__})
 // Better directions and intensities from the images of a planar capture with distant lights:
 // surface vectors and lights in turn minimise what Lambert's law misses, shadows and highlights
 // left out; the linear map that the images leave open (it contains the bas-relief ambiguity,

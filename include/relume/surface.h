@@ -49,6 +49,7 @@ RELUME_API void relume_btf_map_destroy(relume_btf_map **map);
 RELUME_API const struct relume_btf_map_info *relume_btf_map_info(const relume_btf_map *map);
 
 struct relume_btf_tiles_params {  // zero in a field means its default
+    size_t struct_size;           // filled by the macro (base.h)
     const struct relume_log *log;
     int tiles;          // default 10; [1, 256]
     int side;           // of a tile, texels; default: the sample's; a multiple of 8 in [16, 4096]
@@ -56,7 +57,8 @@ struct relume_btf_tiles_params {  // zero in a field means its default
     uint64_t seed;      // equal seeds give equal maps, whatever the thread count
     int threads;        // default: all cores
 };
-#define relume_btf_tiles_params(...) (&(const struct relume_btf_tiles_params){__VA_ARGS__})
+#define relume_btf_tiles_params(...)                                                               \
+    (&(const struct relume_btf_tiles_params){RELUME_SIZED(relume_btf_tiles_params), __VA_ARGS__})
 
 // Tiles from patches of a sample of at least 16 x 16 texels, joined along minimum cuts. All tiles
 // have the border of one that repeats, so that they fit in any order; the matrix has no equal
@@ -163,10 +165,12 @@ struct relume_btf_camera {
 };
 
 struct relume_btf_draw_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int threads;
 };
-#define relume_btf_draw_params(...) (&(const struct relume_btf_draw_params){__VA_ARGS__})
+#define relume_btf_draw_params(...)                                                                \
+    (&(const struct relume_btf_draw_params){RELUME_SIZED(relume_btf_draw_params), __VA_ARGS__})
 
 // Fill `image` (three channels, of any size) with the surface under all `lights`; area lights are
 // not drawn; the map of an environment has +z before the surface. RELUME_EINVAL with a sentence,

@@ -29,13 +29,15 @@ extern RELUME_API const struct relume_tone *const relume_tones[];
 RELUME_API const struct relume_tone *relume_tone_find(const char *name);
 
 struct relume_tone_params {
+    size_t struct_size;              // filled by the macro (base.h)
     const struct relume_tone *tone;  // default: linear
     double exposure_ev;              // multiply by 2^EV first
     double white;                    // default: RELUME_TONE_WHITE
 };
 // The default of `white`.
-#define RELUME_TONE_WHITE       4.0
-#define relume_tone_params(...) (&(const struct relume_tone_params){__VA_ARGS__})
+#define RELUME_TONE_WHITE 4.0
+#define relume_tone_params(...)                                                                    \
+    (&(const struct relume_tone_params){RELUME_SIZED(relume_tone_params), __VA_ARGS__})
 
 // Apply to every pixel of `image`, three channels, in place. RELUME_EINVAL.
 RELUME_RESULT relume_status relume_tone_apply(struct relume_image *image,

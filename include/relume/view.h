@@ -23,6 +23,7 @@ RELUME_RESULT relume_status relume_interpolation_parse(enum relume_interpolation
 
 // All but the first three is of slabs.
 struct relume_view_params {
+    size_t struct_size;         // filled by the macro (base.h)
     int threads;                // default: all cores
     enum relume_filter filter;  // panoramas; slabs: NEAREST is as `one`, all else linear
     bool one;                   // one ray a pixel, for what has no mean, as positions
@@ -42,7 +43,8 @@ struct relume_view_params {
     void (*need)(void *user, int view, int x, int y);
     void *user;
 };
-#define relume_view_params(...) (&(const struct relume_view_params){__VA_ARGS__})
+#define relume_view_params(...)                                                                    \
+    (&(const struct relume_view_params){RELUME_SIZED(relume_view_params), __VA_ARGS__})
 
 // Where the pixels of a view lie: create `*out` with three channels, the world position that each
 // pixel centre sees, not finite where `depth` is infinite. `uv` is the camera's place in a slab;

@@ -14,6 +14,7 @@ extern "C" {
 #endif
 
 struct relume_ingest_params {
+    size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     const struct relume_limits *limits;
     struct relume_transfer transfer;   // of the photographs; default: by file
@@ -22,10 +23,12 @@ struct relume_ingest_params {
     bool force;   // replace an existing folder
     int threads;  // default: all cores
 };
-#define relume_ingest_params(...) (&(const struct relume_ingest_params){__VA_ARGS__})
+#define relume_ingest_params(...)                                                                  \
+    (&(const struct relume_ingest_params){RELUME_SIZED(relume_ingest_params), __VA_ARGS__})
 
 // ------------------------------------------------------------------ light slab
 struct relume_slab_ingest_params {
+    size_t struct_size;  // filled by the macro (base.h)
     // Where a file's name gives its place, as in "cam_{row}_{column}" with {row}, {column}, or {n}
     // (row by row), or {u}, {v}, and * for anything; default: found (relume_slab_ingest).
     const char *names;
@@ -42,7 +45,9 @@ struct relume_slab_ingest_params {
     bool keep_order;         // believe the names; default: where the photographs say that one of
                              // the two runs the other way, rows are turned round
 };
-#define relume_slab_ingest_params(...) (&(const struct relume_slab_ingest_params){__VA_ARGS__})
+#define relume_slab_ingest_params(...)                                                             \
+    (&(const struct relume_slab_ingest_params){RELUME_SIZED(relume_slab_ingest_params),            \
+                                               __VA_ARGS__})
 
 // Make the folder `dir` with a capture.json of the `n` cameras whose photographs are named. Their
 // places are read from the names: out_RR_CC_V_U (Stanford archive: row, column and position), any
@@ -61,13 +66,15 @@ RELUME_RESULT relume_status relume_slab_ingest(const char *dir, const char *cons
                                                const struct relume_ingest_params *params);
 
 struct relume_posed_params {
-    int grid[2];      // cameras across and down; default 5 x 5
-    int width;        // pixels of a view; default: that of the photographs, at most 1024
+    size_t struct_size;  // filled by the macro (base.h)
+    int grid[2];         // cameras across and down; default 5 x 5
+    int width;           // pixels of a view; default: that of the photographs, at most 1024
     double distance;  // from the cameras to the st plane, units of the model; default: the median
                       // of its points, or of where the cameras look at
     int neighbours;   // photographs that a ray is blended from, 1 to 8; default 4
 };
-#define relume_posed_params(...) (&(const struct relume_posed_params){__VA_ARGS__})
+#define relume_posed_params(...)                                                                   \
+    (&(const struct relume_posed_params){RELUME_SIZED(relume_posed_params), __VA_ARGS__})
 
 // A slab of photographs whose poses COLMAP found: `model` holds cameras.txt and images.txt (and
 // points3D.txt), `photos` the photographs under the names written there. The uv plane goes through
@@ -93,6 +100,7 @@ enum relume_panorama_source {
 };
 
 struct relume_panorama_params {
+    size_t struct_size;     // filled by the macro (base.h)
     double v_min, v_max;    // cylinder: tangents of the lowest and highest elevation; default:
                             // square pixels, the horizon in the middle
     const char *depth;      // sphere, cylinder: a picture of depth: an EXR of distances, else grey
@@ -101,7 +109,8 @@ struct relume_panorama_params {
     int bands;              // stitch: of blending, [1, 10], each twice as coarse as the one before;
                             // 1: hard seams; default: up to a sixteenth of a photograph
 };
-#define relume_panorama_params(...) (&(const struct relume_panorama_params){__VA_ARGS__})
+#define relume_panorama_params(...)                                                                \
+    (&(const struct relume_panorama_params){RELUME_SIZED(relume_panorama_params), __VA_ARGS__})
 
 // Make the folder `dir` with a panorama's capture.json. A cube's six cameras are recognised by
 // their names (px nx py ny pz nz, posx ..., right left top bottom back front up down); where no

@@ -35,7 +35,7 @@ struct relume_writer { void *write; void *finish; void *user; };
 struct relume_buffer { void *data; size_t size, room; bool whole; };
 struct relume_image { int width, height; int channels; void *data; };
 struct relume_transfer { int curve; float gamma; void *response; };
-struct relume_image_params { void *log; struct relume_transfer transfer; void *limits;
+struct relume_image_params { size_t struct_size; void *log; struct relume_transfer transfer; void *limits;
     int channels; bool half; int threads; void *reader; void *writer; };
 struct relume_pose { struct relume_vec3 origin; struct relume_vec3 axis[3]; };
 struct relume_geometry { int projection; double window_min[2], window_max[2]; bool perspective;
@@ -47,22 +47,22 @@ struct relume_manifest { struct relume_transfer transfer; struct relume_geometry
     void *intensities; int views; void *view; };
 struct relume_pictures { int sample; int width, height; int channels; void *data; void *depth;
     void *mask; };
-struct relume_capture_params { void *log; void *limits; struct relume_transfer transfer;
+struct relume_capture_params { size_t struct_size; void *log; void *limits; struct relume_transfer transfer;
     bool skip_missing; bool allow_outside; bool repair; double assume_depth; size_t keep_bytes; };
-struct relume_lights_params { void *log; uint64_t seed; bool hemisphere; bool pole_y; };
-struct relume_coder_params { void *log; int coefficients; bool hemispherical; bool pole_y;
+struct relume_lights_params { size_t struct_size; void *log; uint64_t seed; bool hemisphere; bool pole_y; };
+struct relume_coder_params { size_t struct_size; void *log; int coefficients; bool hemispherical; bool pole_y;
     double ridge; bool no_ridge; bool luminance; bool robust; bool force; void *interpolant;
     bool choose; double parameter[4]; void *samples; int threads; bool decode; void *transform;
     void *mean; };
 struct relume_coder_info { void *basis; int coefficients; bool joint; bool luminance; int planes;
     int functions; bool hemispherical, pole_y; double ridge; int lights; void *directions;
     void *transform; void *mean; void *interpolant; double parameter[4]; double predicted_rms; };
-struct relume_encode_params { void *log; int domain; int storage; int step; int threads;
+struct relume_encode_params { size_t struct_size; void *log; int domain; int storage; int step; int threads;
     void *scratch; };
 struct relume_decision { int domain; int storage; double psnr_db; double unseen_db; };
-struct relume_pack_params { void *log; void *limits; int compression; int threads; void *reader;
+struct relume_pack_params { size_t struct_size; void *log; void *limits; int compression; int threads; void *reader;
     void *writer; };
-struct relume_pack_encode_params { void *log; int domain; int storage; int step; int compression;
+struct relume_pack_encode_params { size_t struct_size; void *log; int domain; int storage; int step; int compression;
     int threads; void *books; bool share; bool no_depth; void *writer; };
 struct relume_encode_census { size_t pixels; size_t black; size_t clipped; size_t always_clipped;
     size_t repaired; int black_images; };
@@ -81,19 +81,19 @@ struct relume_aim { bool aimed; struct relume_vec3 at; struct relume_vec3 up;
 struct relume_look { double pan_deg, tilt_deg, zoom; bool stereographic; };
 struct relume_camera { int framing; int view; struct relume_vec3 eye; struct relume_aim aim;
     int through; struct relume_look look; int width, height; };
-struct relume_open_params { void *log; void *limits; bool allow_outside; bool sphere;
+struct relume_open_params { size_t struct_size; void *log; void *limits; bool allow_outside; bool sphere;
     int threads; };
-struct relume_evaluate_params { void *log; char *file; char *capture; int threads;
+struct relume_evaluate_params { size_t struct_size; void *log; char *file; char *capture; int threads;
     bool no_ssim, no_delta_e; };
 struct relume_evaluation_light { double rms; double psnr_db; };
 struct relume_evaluation { int views, lights; int width, height; size_t images; double rms;
     double psnr_db; double psnr_pooled_db; double ssim, delta_e;
     double file_bytes, raw_bytes, ratio; double bits_per_pixel; void *light; };
-struct relume_heldout_params { void *log; void *test; int leave_out; int domain; uint64_t memory;
+struct relume_heldout_params { size_t struct_size; void *log; void *test; int leave_out; int domain; uint64_t memory;
     int threads; };
 struct relume_heldout_store { int storage; int step; void *books; bool share; };
 struct relume_heldout_quality { double psnr_db; double psnr_pooled_db; double ssim; };
-struct relume_frame_params { void *log; unsigned cpu_off; int threads; double assume_depth;
+struct relume_frame_params { size_t struct_size; void *log; unsigned cpu_off; int threads; double assume_depth;
     int pass; void *capture; int interpolation; double aperture, focus; int filter;
     uint64_t memory; };
 struct relume_place { int left, top, width, height; };
@@ -180,12 +180,19 @@ def _field(kind: str, name: str):
     return name, of * int(count.rstrip("]")) if count else of
 
 
+class _Params(ctypes.Structure):
+    """Parameters, by name; like the macros of the headers it fills the size that they begin with."""
+
+    def __init__(self, **fields):
+        super().__init__(struct_size=ctypes.sizeof(self), **fields)
+
+
 def _struct(name: str, body: str):
     fields = []
     for line in filter(None, (part.strip() for part in body.split(";"))):
         kind, first = re.match(r"((?:struct )?\w+)\s*(.*)", line, re.S).groups()
         fields += [_field(kind, part.strip()) for part in first.split(",")]
-    return type(name, (ctypes.Structure,), {"_fields_": fields})
+    return type(name, (_Params if fields[0][0] == "struct_size" else ctypes.Structure,), {"_fields_": fields})
 
 
 structs: dict[str, type[ctypes.Structure]] = {}

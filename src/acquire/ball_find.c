@@ -5,6 +5,7 @@
 // are followed at the level where they measure some 40 pixels, and the very best at full size.
 #include "acquire/ball.h"
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/sort.h"
@@ -367,7 +368,7 @@ relume_status relume_ball_candidates(struct relume_ball *out, int most, int *fou
                                      const struct relume_ball_camera *camera,
                                      const struct relume_ball_params *params)
 {
-    const struct relume_ball_params p = params ? *params : (struct relume_ball_params){0};
+    const struct relume_ball_params p = PARAMS(relume_ball_params, params);
     const struct relume_image *look_at = p.mask ? p.mask : mean;
     struct pyramid pyramid = {0};
     struct candidate *list = mem_zeroed(MOST, sizeof *list);

@@ -9,6 +9,7 @@
 // are known; else 0.
 #include <relume/photometric.h>
 
+#include "base/params.h"
 #include "base/memory.h"
 #include "math/fft.h"
 
@@ -83,7 +84,7 @@ static void scale(struct relume_image *z, const struct relume_image *normal, dou
 relume_status relume_height_integrate(struct relume_image *out, const struct relume_image *normal,
                                       const struct relume_height_params *params)
 {
-    const struct relume_height_params p = params ? *params : (struct relume_height_params){0};
+    const struct relume_height_params p = PARAMS(relume_height_params, params);
     *out = (struct relume_image){0};
     if (normal->channels != 3 || p.pixel < 0.0 || p.screen < 0.0)
         return RELUME_EINVAL;

@@ -1,6 +1,7 @@
 // photometric.c - normals and albedo from the photographs of a view, band by band
 #include <relume/photometric.h>
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -270,7 +271,7 @@ relume_status relume_photometric_fit(struct relume_photometric *out, const relum
     const struct relume_manifest *m = relume_capture_manifest(capture);
     struct fit f = {
         .capture = capture,
-        .params = params ? *params : (struct relume_photometric_params){0},
+        .params = PARAMS(relume_photometric_params, params),
         .out = out,
         .lights = m->lights,
         .width = relume_capture_width(capture),

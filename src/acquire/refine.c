@@ -9,6 +9,7 @@
 #include <relume/shoot.h>
 
 #include "acquire/integrable.h"
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -457,7 +458,7 @@ relume_status relume_lights_refine(struct relume_vec3 *direction, double *intens
                                    double residual[2], const relume_capture *capture,
                                    const struct relume_refine_params *params)
 {
-    const struct relume_refine_params p = params ? *params : (struct relume_refine_params){0};
+    const struct relume_refine_params p = PARAMS(relume_refine_params, params);
     const struct relume_manifest *m = relume_capture_manifest(capture);
     double curl[2] = {0.0, 0.0};
     bool believed = false;

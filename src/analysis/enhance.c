@@ -7,6 +7,7 @@
 // coin or a raking light but black: what is kept is chosen from the picture (enhance_range.c).
 #include <relume/enhance.h>
 
+#include "base/params.h"
 #include "base/memory.h"
 #include "base/names.h"
 #include "base/thread.h"
@@ -270,7 +271,7 @@ relume_status relume_pass_apply(struct relume_image *image, enum relume_pass pas
         .normals = normals,
         .lights = lights,
         .n = n,
-        .params = params ? *params : (struct relume_pass_params){0},
+        .params = PARAMS(relume_pass_params, params),
     };
     fill_defaults(&e.params);
     if ((unsigned)pass >= RELUME_PASSES || image->channels != 3 ||

@@ -5,6 +5,7 @@
 #include <relume/normals.h>
 #include <relume/relight.h>
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -146,7 +147,7 @@ relume_status relume_normals_fit(struct relume_normals *out, const struct relume
     const struct relume_coder_info *info = relume_coder_info(codes->coder);
     struct fit f = {
         .codes = codes,
-        .params = params ? *params : (struct relume_normals_params){0},
+        .params = PARAMS(relume_normals_params, params),
         .lights = info->lights,
         .direction = info->directions,
         .out = out,

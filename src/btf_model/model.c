@@ -1,6 +1,7 @@
 // model.c - what a model of a BTF is: some arrays, a way to fill them, a way to read a value back
 #include "btf_model/model.h"
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/half.h"
@@ -214,7 +215,7 @@ relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
                              const struct relume_btf_model *model,
                              const struct relume_btf_fit_params *params)
 {
-    const struct relume_btf_fit_params p = params ? *params : (struct relume_btf_fit_params){0};
+    const struct relume_btf_fit_params p = PARAMS(relume_btf_fit_params, params);
     *out = NULL;
     relume_status status = check_values(btf, p.log);
     if (!status)

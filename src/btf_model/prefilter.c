@@ -6,6 +6,7 @@
 // which it leaves out, are the mean over the lobe here, in a table: exact under a uniform sky.
 #include "btf_model/ambient.h"
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -247,8 +248,7 @@ relume_status prefilter_from_cells(relume_prefilter **out,
 relume_status relume_prefilter_create(relume_prefilter **out, const struct relume_light *light,
                                       const struct relume_prefilter_params *params)
 {
-    const struct relume_prefilter_params p =
-        params ? *params : (struct relume_prefilter_params){.height = 0};
+    const struct relume_prefilter_params p = PARAMS(relume_prefilter_params, params);
     *out = NULL;
     relume_status status = check(light, &p);
     if (status)

@@ -2,6 +2,7 @@
 //
 // For a centre c, sort the directions by their cosine to c; between two of them the share of
 // directions in the cap stays and its area grows, so the extremes lie just at the directions.
+#include "base/params.h"
 #include "base/memory.h"
 #include "math/vec.h"
 
@@ -66,8 +67,7 @@ static vec3 spiral_point(int k)
 relume_status relume_lights_discrepancy(double *out, const struct relume_vec3 *lights, int n,
                                         const struct relume_lights_params *params)
 {
-    const struct relume_lights_params p =
-        params ? *params : (struct relume_lights_params){.hemisphere = false};
+    const struct relume_lights_params p = PARAMS(relume_lights_params, params);
     *out = 0.0;
     if (n < 1)
         return RELUME_EINVAL;

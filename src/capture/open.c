@@ -1,4 +1,5 @@
 // open.c - a capture is opened: every promise of the manifest checked against the files
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/tree.h"
@@ -208,7 +209,7 @@ relume_status capture_finish(relume_capture **out, relume_capture *c,
 relume_status relume_capture_open(relume_capture **out, const char *path,
                                   const struct relume_capture_params *params)
 {
-    struct relume_capture_params p = params ? *params : (struct relume_capture_params){0};
+    struct relume_capture_params p = PARAMS(relume_capture_params, params);
     *out = NULL;
     relume_capture *c = mem_zeroed(1, sizeof *c);
     if (!c)

@@ -2,6 +2,7 @@
 //
 // Every pattern fills the unit square (phi / 2 pi, t) with t the height along the pole: Archimedes'
 // cylinder map keeps areas, so what is even in the square is even on the sphere.
+#include "base/params.h"
 #include "base/memory.h"
 #include "math/random.h"
 #include "math/vec.h"
@@ -164,8 +165,7 @@ relume_status relume_lights_make(struct relume_vec3 *out, int n,
                                  const struct relume_pattern *pattern,
                                  const struct relume_lights_params *params)
 {
-    const struct relume_lights_params p =
-        params ? *params : (struct relume_lights_params){.hemisphere = false};
+    const struct relume_lights_params p = PARAMS(relume_lights_params, params);
     if (n < 1)
         return RELUME_EINVAL;
     double(*square)[2] = mem_array((size_t)n, sizeof *square);

@@ -1,4 +1,5 @@
 // pictures.c - a capture whose pictures lie in memory and whose manifest a program fills in
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "capture/capture.h"
@@ -111,7 +112,7 @@ relume_status relume_capture_create(relume_capture **out, const struct relume_ma
                                     const struct relume_pictures *pictures,
                                     const struct relume_capture_params *params)
 {
-    struct relume_capture_params p = params ? *params : (struct relume_capture_params){0};
+    struct relume_capture_params p = PARAMS(relume_capture_params, params);
     *out = NULL;
     p.limits = limits_of(p.limits, p.log);
     p.keep_bytes = 0;  // they are in memory

@@ -1,4 +1,5 @@
 // table.c - all images of a view read side by side, so that memory does not grow with their height
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -94,7 +95,7 @@ static relume_status open_near(relume_table *t, struct relume_transfer display, 
 relume_status relume_table_open(relume_table **out, const relume_capture *capture, int view,
                                 const struct relume_table_params *params)
 {
-    const struct relume_table_params p = params ? *params : (struct relume_table_params){0};
+    const struct relume_table_params p = PARAMS(relume_table_params, params);
     const int lights = capture->draft.m.lights;
     struct relume_transfer to = p.display;
     if (to.curve == RELUME_CURVE_AUTO)

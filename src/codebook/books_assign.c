@@ -1,6 +1,7 @@
 // books_assign.c - every pixel of a view becomes one index per book
 #include "codebook/books.h"
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -234,7 +235,7 @@ relume_status relume_books_assign(uint16_t *const *index, double *store_rms,
                                   const relume_books *books, const relume_coefficients *view,
                                   const struct relume_books_params *params)
 {
-    const struct relume_books_params p = params ? *params : (struct relume_books_params){0};
+    const struct relume_books_params p = PARAMS(relume_books_params, params);
     const int workers = thread_count(p.threads);
     struct assignment a = {
         .books = books,

@@ -5,6 +5,7 @@
 // precision (nearest.c), so that books do not depend on the CPU either.
 #include "codebook/codebook.h"
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -338,7 +339,7 @@ static relume_status make_book(relume_codebook **out, struct training *t)
 relume_status relume_codebook_train(relume_codebook **out, const float *vectors, size_t n, int dim,
                                     const struct relume_codebook_params *params)
 {
-    const struct relume_codebook_params p = params ? *params : (struct relume_codebook_params){0};
+    const struct relume_codebook_params p = PARAMS(relume_codebook_params, params);
     const int codes = p.codes ? p.codes : DEFAULT_CODES;
     *out = NULL;
     relume_status status = check(vectors, n, dim, &p, codes);
@@ -386,8 +387,7 @@ relume_status relume_codebook_assign(const relume_codebook *book, const float *v
                                      uint16_t *index, double *squared_error,
                                      const struct relume_codebook_assign_params *params)
 {
-    const struct relume_codebook_assign_params p =
-        params ? *params : (struct relume_codebook_assign_params){0};
+    const struct relume_codebook_assign_params p = PARAMS(relume_codebook_assign_params, params);
     size_t where;
     if (!all_finite(vectors, n * (size_t)book->info.dim, &where))
         return log_fail(p.log, RELUME_EINVAL,

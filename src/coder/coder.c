@@ -1,6 +1,7 @@
 // coder.c - a basis prepared for the lights of one capture: made, asked for weights, destroyed
 #include "coder/basis.h"
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "coder/interpolant.h"
@@ -200,7 +201,7 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
                                   const struct relume_vec3 *lights, int n,
                                   const struct relume_coder_params *params)
 {
-    const struct relume_coder_params p = params ? *params : (struct relume_coder_params){0};
+    const struct relume_coder_params p = PARAMS(relume_coder_params, params);
     *out = NULL;
     if (n < 1 || p.ridge < 0.0 || p.ridge > 1.0 || (p.no_ridge && p.ridge > 0.0))
         return RELUME_EINVAL;

@@ -1,6 +1,7 @@
 // coefficients.c - coefficient planes that wait in a scratch file until their ranges are known
 #include "coder/coefficients.h"
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/scratch.h"
@@ -340,7 +341,7 @@ static relume_status keep_row(relume_coefficients *c, const struct relume_codes 
 relume_status relume_coefficients_keep(relume_coefficients **out, const struct relume_codes *codes,
                                        const struct relume_encode_params *params)
 {
-    struct relume_encode_params p = params ? *params : (struct relume_encode_params){0};
+    struct relume_encode_params p = PARAMS(relume_encode_params, params);
     p.storage = codes->storage;
     void *room = mem_array((size_t)codes->width * (size_t)codes->planes, sizeof(float));
     relume_status status = coefficients_create(out, codes->coder, codes->width, codes->height, &p);

@@ -3,6 +3,7 @@
 // The images are read in bands of rows, whose pixels become coefficients chunk by chunk (apply.c).
 // Ranges for quantising are known only after the last band, so coefficients wait in a scratch file
 // (coefficients.h).
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/scratch.h"
@@ -433,7 +434,7 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
                             const relume_capture *capture, int view,
                             const struct relume_encode_params *params)
 {
-    const struct relume_encode_params p = params ? *params : (struct relume_encode_params){0};
+    const struct relume_encode_params p = PARAMS(relume_encode_params, params);
     const struct relume_manifest *m = relume_capture_manifest(capture);
     *out = NULL;
     if (!coder->map || m->lights != coder->info.lights || view < 0 || view >= m->views)

@@ -2,6 +2,7 @@
 // Simoncelli 2004: luma, 11 x 11 Gaussian window, sigma 1.5), CIEDE2000 (Sharma, Wu, Dalal 2005)
 #include <relume/image.h>
 
+#include "base/params.h"
 #include "base/memory.h"
 #include "base/thread.h"
 #include "compare/ciede2000.h"
@@ -165,7 +166,7 @@ relume_status relume_image_compare(struct relume_difference *out, const struct r
                                    const struct relume_image *reference,
                                    const struct relume_compare_params *params)
 {
-    const struct relume_compare_params p = params ? *params : (struct relume_compare_params){0};
+    const struct relume_compare_params p = PARAMS(relume_compare_params, params);
     *out = (struct relume_difference){0};
     if (image->channels != 3 || reference->channels != 3 || image->width != reference->width ||
         image->height != reference->height)

@@ -1,6 +1,7 @@
 // export.c - a view of a relume file in another format
 #include "exchange/export.h"
 
+#include "base/params.h"
 #include "base/log.h"
 
 #include <math.h>
@@ -70,7 +71,7 @@ relume_status relume_export(relume_pack *pack, const char *path, enum relume_exc
                             struct relume_export_report *report,
                             const struct relume_export_params *params)
 {
-    const struct relume_export_params p = params ? *params : (struct relume_export_params){0};
+    const struct relume_export_params p = PARAMS(relume_export_params, params);
     const struct relume_codes *codes;
     struct relume_export_report found = {0};
     struct source source = {0};

@@ -5,6 +5,7 @@
 #include "exchange/rti.h"
 #include "exchange/web.h"
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/vec.h"
@@ -290,7 +291,7 @@ static relume_status write_pack(const struct material *m, const char *out,
 relume_status relume_import(const char *path, const char *out,
                             const struct relume_import_params *params)
 {
-    const struct relume_import_params p = params ? *params : (struct relume_import_params){0};
+    const struct relume_import_params p = PARAMS(relume_import_params, params);
     struct foreign f = {0};
     struct material m = {.f = &f};
     relume_status status = read_any(&f, path, &p);

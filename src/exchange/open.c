@@ -2,6 +2,7 @@
 // name
 #include <relume/exchange.h>
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/scratch.h"
@@ -195,7 +196,7 @@ static relume_status open_converted(relume_pack **out, enum relume_kind kind, co
 relume_status relume_open(relume_pack **out, const char *path,
                           const struct relume_open_params *params)
 {
-    const struct relume_open_params p = params ? *params : (struct relume_open_params){0};
+    const struct relume_open_params p = PARAMS(relume_open_params, params);
     const enum relume_kind kind = relume_kind_of(path);
     *out = NULL;
     if (kind == RELUME_KIND_UNKNOWN)

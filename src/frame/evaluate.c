@@ -2,6 +2,7 @@
 #include <relume/evaluate.h>
 #include <relume/renderer.h>
 
+#include "base/params.h"
 #include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -337,7 +338,7 @@ relume_status relume_evaluate(struct relume_evaluation *out, relume_pack *pack,
                               const struct relume_evaluate_params *params)
 {
     struct evaluator e = {
-        .params = params ? *params : (struct relume_evaluate_params){0},
+        .params = PARAMS(relume_evaluate_params, params),
         .pack = pack,
         .capture = capture,
         .manifest = relume_capture_manifest(capture),

@@ -8,6 +8,7 @@
 // longer side, to those of the image; so its entries mean the same on every level.
 #include <relume/align.h>
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -308,7 +309,7 @@ relume_status relume_align_homography(struct relume_homography *out,
                                       const struct relume_image *image,
                                       const struct relume_align_params *params)
 {
-    const struct relume_align_params p = params ? *params : (struct relume_align_params){0};
+    const struct relume_align_params p = PARAMS(relume_align_params, params);
     const double roll_deg = p.max_roll_deg > 0.0 ? p.max_roll_deg : default_roll_deg;
     double h[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     *out = (struct relume_homography){.m = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

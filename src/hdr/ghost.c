@@ -11,6 +11,7 @@
 // saturated pixels of a place that something covered.
 #include <relume/align.h>
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -175,7 +176,7 @@ relume_status relume_ghost_masks(struct relume_image *masks, const struct relume
                                  const double *exposures, int n, int anchor,
                                  const struct relume_ghost_params *params)
 {
-    const struct relume_ghost_params p = params ? *params : (struct relume_ghost_params){0};
+    const struct relume_ghost_params p = PARAMS(relume_ghost_params, params);
     struct ghosts g = {
         .codes = codes,
         .threshold = p.threshold > 0.0 ? p.threshold : default_threshold,

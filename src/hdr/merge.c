@@ -4,6 +4,7 @@
 // weights that leave both ends of the code range with value and slope 0.
 #include <relume/response.h>
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/names.h"
@@ -197,7 +198,7 @@ relume_status relume_merge(struct relume_image *out, struct relume_exposure_repo
                            const struct relume_response *response,
                            const struct relume_merge_params *params)
 {
-    const struct relume_merge_params p = params ? *params : (struct relume_merge_params){0};
+    const struct relume_merge_params p = PARAMS(relume_merge_params, params);
     *out = (struct relume_image){0};
     relume_status status = check(codes, exposures, n, &p);
     if (status)

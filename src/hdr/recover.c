@@ -6,6 +6,7 @@
 // unknowns of g however many samples there are.
 #include <relume/response.h>
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/lsq.h"
@@ -363,7 +364,7 @@ relume_status relume_response_recover(struct relume_response *out, const struct 
                                       const double *exposures, int n,
                                       const struct relume_recover_params *params)
 {
-    const struct relume_recover_params p = params ? *params : (struct relume_recover_params){0};
+    const struct relume_recover_params p = PARAMS(relume_recover_params, params);
     const int samples = p.samples > 0 ? p.samples : default_samples;
     const double smoothness = p.smoothness > 0.0 ? p.smoothness : default_smoothness;
     *out = (struct relume_response){0};

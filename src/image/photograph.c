@@ -1,6 +1,7 @@
 // photograph.c - one photograph: what the camera noted, its pixels turned upright and linearised
 #include "image/photograph.h"
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/image.h"
@@ -131,8 +132,7 @@ relume_status relume_photograph_load(struct relume_image *out, struct relume_not
                                      const char *path,
                                      const struct relume_photograph_params *params)
 {
-    const struct relume_photograph_params p =
-        params ? *params : (struct relume_photograph_params){0};
+    const struct relume_photograph_params p = PARAMS(relume_photograph_params, params);
     struct relume_notes own = {0};
     picture_reader *reader;
     size_t icc_size;

@@ -1,6 +1,7 @@
 // ramps.c - how much of a smooth slope is left between contours
 #include <relume/image.h>
 
+#include "base/params.h"
 #include "base/memory.h"
 #include "base/thread.h"
 
@@ -133,7 +134,7 @@ relume_status relume_image_ramps(struct relume_ramps *out, const struct relume_i
                                  const struct relume_image *reference,
                                  const struct relume_compare_params *params)
 {
-    const struct relume_compare_params p = params ? *params : (struct relume_compare_params){0};
+    const struct relume_compare_params p = PARAMS(relume_compare_params, params);
     const struct relume_image *mask = p.mask && p.mask->data ? p.mask : NULL;
     *out = (struct relume_ramps){0};
     if (mask && (mask->width != image->width || mask->height != image->height))

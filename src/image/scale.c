@@ -4,6 +4,7 @@
 // the range of its four texels so that light does not become negative beside an edge.
 #include <relume/image.h>
 
+#include "base/params.h"
 #include "base/memory.h"
 #include "base/names.h"
 #include "base/thread.h"
@@ -163,7 +164,7 @@ static relume_status run(struct pass *p, const struct side *side, int threads,
 relume_status relume_image_scale(struct relume_image *out, const struct relume_image *image,
                                  int width, int height, const struct relume_scale_params *params)
 {
-    const struct relume_scale_params p = params ? *params : (struct relume_scale_params){0};
+    const struct relume_scale_params p = PARAMS(relume_scale_params, params);
     const struct side across = {image->width, width, p.tiles > 1 ? p.tiles : 1, p.wrap};
     const struct side down = {image->height, height, 1, false};
     struct relume_image wide = {0};

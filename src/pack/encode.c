@@ -1,6 +1,7 @@
 // encode.c - from a capture to a file in one call
 #include <relume/pack.h>
 
+#include "base/params.h"
 #include "base/memory.h"
 
 #include <math.h>
@@ -150,8 +151,7 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
                                  const char *path, struct relume_encode_report *report,
                                  const struct relume_pack_encode_params *params)
 {
-    const struct relume_pack_encode_params p =
-        params ? *params : (struct relume_pack_encode_params){0};
+    const struct relume_pack_encode_params p = PARAMS(relume_pack_encode_params, params);
     const struct relume_encode_params encode = {
         .log = p.log,
         .domain = relume_encode_domain(capture, p.domain),

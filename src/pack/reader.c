@@ -1,6 +1,7 @@
 // reader.c - a relume file, of which nothing is believed before it has been checked
 #include <relume/pack.h>
 
+#include "base/params.h"
 #include "base/arena.h"
 #include "base/infile.h"
 #include "base/log.h"
@@ -348,7 +349,7 @@ static relume_status read_header(relume_pack *p)
 relume_status relume_pack_open(relume_pack **out, const char *path,
                                const struct relume_pack_params *params)
 {
-    const struct relume_pack_params params_ = params ? *params : (struct relume_pack_params){0};
+    const struct relume_pack_params params_ = PARAMS(relume_pack_params, params);
     *out = NULL;
     if (!path && !params_.reader)
         return RELUME_EINVAL;

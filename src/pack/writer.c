@@ -1,6 +1,7 @@
 // writer.c - coefficients become a relume file
 #include <relume/pack.h>
 
+#include "base/params.h"
 #include "base/arena.h"
 #include "base/log.h"
 #include "base/memory.h"
@@ -662,7 +663,7 @@ static bool add_view(struct builder *b, const struct relume_pack_contents *c, in
 relume_status relume_pack_write(const struct relume_pack_contents *contents, const char *path,
                                 const struct relume_pack_params *params)
 {
-    const struct relume_pack_params p = params ? *params : (struct relume_pack_params){0};
+    const struct relume_pack_params p = PARAMS(relume_pack_params, params);
     struct builder b = {0};
     const size_t most_parts = 1 + (3 + RELUME_MOST_BOOKS) * (size_t)contents->views;
     if (!path && !p.writer)

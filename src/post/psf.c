@@ -4,6 +4,7 @@
 // the angle -lambda f, so coefficient k of the transform is stored at -k.
 #include <relume/psf.h>
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -49,7 +50,7 @@ struct relume_psf {
 
 relume_status psf_defaults(struct relume_psf_params *out, const struct relume_psf_params *params)
 {
-    struct relume_psf_params p = params ? *params : (struct relume_psf_params){0};
+    struct relume_psf_params p = PARAMS(relume_psf_params, params);
     p.size = p.size ? p.size : DEFAULT_SIZE;
     p.wavelengths = p.wavelengths ? p.wavelengths : DEFAULT_WAVELENGTHS;
     *out = p;

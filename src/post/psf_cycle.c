@@ -4,6 +4,7 @@
 // eye shows after the loop's end. Patterns are light, and a mean of two of them is one.
 #include <relume/psf.h>
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -143,7 +144,7 @@ static relume_status run(relume_psf_cycle *c, relume_psf *psf, relume_eye *eye,
 relume_status relume_psf_cycle_create(relume_psf_cycle **out, relume_psf *psf, relume_eye *eye,
                                       const struct relume_psf_cycle_params *params)
 {
-    struct relume_psf_cycle_params p = params ? *params : (struct relume_psf_cycle_params){0};
+    struct relume_psf_cycle_params p = PARAMS(relume_psf_cycle_params, params);
     p.seconds = p.seconds != 0.0 ? p.seconds : 4.0;
     p.fps = p.fps != 0.0 ? p.fps : 30.0;
     p.fade_s = p.fade_s != 0.0 ? p.fade_s : 0.25 * p.seconds;

@@ -1,6 +1,8 @@
 // tone.c - tone operators: constant tables of curves from linear light to [0, 1]
 #include <relume/tone.h>
 
+#include "base/params.h"
+
 #include "math/luminance.h"
 
 #include <math.h>
@@ -74,7 +76,7 @@ const struct relume_tone *relume_tone_find(const char *name)
 
 relume_status relume_tone_apply(struct relume_image *image, const struct relume_tone_params *params)
 {
-    const struct relume_tone_params p = params ? *params : (struct relume_tone_params){0};
+    const struct relume_tone_params p = PARAMS(relume_tone_params, params);
     const struct relume_tone *tone = p.tone ? p.tone : &relume_tone_linear;
     const float white = (float)(p.white != 0.0 ? p.white : RELUME_TONE_WHITE);
     const float gain = (float)exp2(p.exposure_ev);

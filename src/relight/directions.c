@@ -9,6 +9,7 @@
 // at the lights (triangles.c).
 #include <relume/relight.h>
 
+#include "base/params.h"
 #include "base/memory.h"
 #include "base/thread.h"
 #include "math/vec.h"
@@ -300,8 +301,7 @@ static relume_status make_grid(struct relume_weight_grid *g,
 relume_status relume_weight_grid_create(relume_weight_grid **out, const relume_coder *coder,
                                         const struct relume_weight_grid_params *params)
 {
-    const struct relume_weight_grid_params p =
-        params ? *params : (struct relume_weight_grid_params){0};
+    const struct relume_weight_grid_params p = PARAMS(relume_weight_grid_params, params);
     struct relume_weight_grid *sums;
     *out = NULL;
     if (p.steps && (p.steps < 2 || p.steps > MOST_STEPS))

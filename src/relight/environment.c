@@ -3,6 +3,7 @@
 #include <relume/light.h>
 #include <relume/relight.h>
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/luminance.h"
@@ -167,8 +168,7 @@ static relume_status make_cells(relume_environment *e)
 relume_status relume_environment_create(relume_environment **out, const struct relume_image *map,
                                         const struct relume_environment_params *params)
 {
-    const struct relume_environment_params p =
-        params ? *params : (struct relume_environment_params){0};
+    const struct relume_environment_params p = PARAMS(relume_environment_params, params);
     *out = NULL;
     if (!map->data || map->channels != 3 || map->width < 1 || map->height < 1)
         return RELUME_EINVAL;

@@ -5,6 +5,7 @@
 // that a bilinear value is continuous over the edges and needs no neighbour.
 #include <relume/light.h>
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/vec.h"
@@ -163,7 +164,7 @@ static void clean(struct relume_image *atlas, const char *name, const struct rel
 relume_status relume_gonio_create(relume_gonio **out, const struct relume_image *map,
                                   const struct relume_gonio_params *params)
 {
-    const struct relume_gonio_params p = params ? *params : (struct relume_gonio_params){0};
+    const struct relume_gonio_params p = PARAMS(relume_gonio_params, params);
     const char *name = p.name ? p.name : "distribution";
     const bool cube = map->width == 6LL * map->height;
     *out = NULL;

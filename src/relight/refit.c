@@ -5,6 +5,7 @@
 // it was captured from, in linear light, and `pca` learns that.
 #include <relume/relight.h>
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "image/half.h"
@@ -304,7 +305,7 @@ relume_status relume_refit_create(relume_refit **out, const struct relume_codes 
     struct work w = {
         .from = codes,
         .info = relume_coder_info(codes->coder),
-        .params = params ? *params : (struct relume_refit_params){0},
+        .params = PARAMS(relume_refit_params, params),
     };
     const bool book = codes->books == 1;
     struct relume_codes vectors = *codes;

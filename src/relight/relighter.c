@@ -1,6 +1,7 @@
 // relighter.c - views relit again and again: grids, refits and pictures that are kept
 #include <relume/relighter.h>
 
+#include "base/params.h"
 #include "base/memory.h"
 
 #include <relume/relight.h>
@@ -65,7 +66,7 @@ void relume_relighter_drop(relume_relighter *r, int view)
 relume_status relume_relighter_create(relume_relighter **out, int views,
                                       const struct relume_relighter_params *params)
 {
-    struct relume_relighter_params p = params ? *params : (struct relume_relighter_params){0};
+    struct relume_relighter_params p = PARAMS(relume_relighter_params, params);
     p.groups = p.groups ? p.groups : 1;
     *out = NULL;
     if (views < 1 || p.groups < 1 || p.groups > RELUME_RELIGHTER_GROUPS)

@@ -1,6 +1,7 @@
 // scene.c - the inside of a relume_scene
 #include "scene/scene.h"
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 
@@ -32,7 +33,7 @@ static relume_status build(relume_scene *scene, const struct relume_log *log)
 relume_status relume_scene_create(relume_scene **out, const struct relume_scene_kind *kind,
                                   const struct relume_scene_params *params)
 {
-    const struct relume_scene_params p = params ? *params : (struct relume_scene_params){0};
+    const struct relume_scene_params p = PARAMS(relume_scene_params, params);
     *out = NULL;
     if (p.mesh && !kind->takes_mesh)
         return log_fail(p.log, RELUME_EINVAL,

@@ -7,6 +7,7 @@
 // of dark pixels count, and not so much those of lamps. Then components are added, as many as the
 // quality takes; at last, where the lights could not be met for smoothing, the smoothing goes.
 // Unseen lights are watched by leaving each captured one out (choose.c).
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -555,7 +556,7 @@ relume_status relume_coder_decide(relume_coder **out, struct relume_decision *de
         .capture = capture,
         .manifest = relume_capture_manifest(capture),
         .params = coder ? *coder : (struct relume_coder_params){.choose = true},
-        .encode = encode ? *encode : (struct relume_encode_params){0},
+        .encode = PARAMS(relume_encode_params, encode),
         .quality = quality_db > 0.0 ? quality_db : RELUME_USUAL_DB,
         .display = mem_array(1, sizeof *job.display),
     };

@@ -4,6 +4,7 @@
 // out follow chunk by chunk, as they are and as they come back from each way of storing them.
 #include "selection/heldout.h"
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
@@ -642,7 +643,7 @@ relume_status relume_heldout_open(relume_heldout **out, const relume_capture *ca
     relume_heldout *h = mem_zeroed(1, sizeof *h);
     if (!h)
         return RELUME_ENOMEM;
-    h->params = params ? *params : (struct relume_heldout_params){0};
+    h->params = PARAMS(relume_heldout_params, params);
     h->capture = capture;
     relume_status status = describe(h);
     if (!status)

@@ -7,6 +7,7 @@
 #include "surface/patch.h"
 #include "surface/surface.h"
 
+#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "math/random.h"
@@ -148,7 +149,7 @@ static relume_status check(struct relume_btf_tiles_params *p, const relume_btf_f
 relume_status relume_btf_map_tiles(relume_btf_map **out, const relume_btf_fitted *sample,
                                    const struct relume_btf_tiles_params *params)
 {
-    struct relume_btf_tiles_params p = params ? *params : (struct relume_btf_tiles_params){0};
+    struct relume_btf_tiles_params p = PARAMS(relume_btf_tiles_params, params);
     struct features f = {.texel = NULL};
     *out = NULL;
     relume_status status = check(&p, sample);

@@ -8,6 +8,7 @@
 // edges.
 #include <relume/view.h>
 
+#include "base/params.h"
 #include "base/thread.h"
 #include "image/footprint.h"
 #include "view/panorama.h"
@@ -480,7 +481,7 @@ relume_status relume_panorama_frame(struct relume_image *out,
     const bool finite = isfinite(look.pan_deg) && isfinite(look.tilt_deg) && isfinite(look.zoom);
     if (!layout || !finite || look.zoom < 0.0 || !out->data || out->channels != 3)
         return RELUME_EINVAL;
-    const struct relume_view_params p = params ? *params : (struct relume_view_params){0};
+    const struct relume_view_params p = PARAMS(relume_view_params, params);
     struct frame frame = {
         .out = out,
         .gaze = gaze_of(look, out->width, out->height),

@@ -5,6 +5,7 @@
 // abruptly where another one goes on; through a lens, the mean of that over its pinholes.
 #include "view/slabs.h"
 
+#include "base/params.h"
 #include "base/memory.h"
 #include "base/thread.h"
 
@@ -118,7 +119,7 @@ static int count_pinholes(const struct relume_window *window, int width,
 int relume_slabs_needs(bool *needed, const relume_slabs *slabs, const struct relume_window *window,
                        int width, const struct relume_view_params *params)
 {
-    const struct relume_view_params p = params ? *params : (struct relume_view_params){0};
+    const struct relume_view_params p = PARAMS(relume_view_params, params);
     const int pinholes = count_pinholes(window, width, &p);
     int n = 0;
     memset(needed, 0, (size_t)slabs->views * sizeof *needed);

@@ -2,6 +2,8 @@
 // obey
 #include "test.h"
 
+#include "base/params.h"
+
 static void test_whole(void **state)
 {
     (void)state;
@@ -50,9 +52,43 @@ static void test_printable(void **state)
     }
 }
 
+// A caller's struct may end sooner or later than ours.
+static void params_of_other_versions(void **state)
+{
+    (void)state;
+    struct mine {
+        size_t struct_size;
+        int a, b;
+    };
+    const struct theirs {
+        size_t struct_size;
+        int a, b, later;
+    } given = {.a = 3, .b = 4, .later = 5};
+    static const struct {
+        size_t size;
+        int a, b;
+    } cases[] = {
+        {0, 3, 4},  // filled without the macro
+        {offsetof(struct theirs, b), 3, 0},
+        {sizeof(struct mine), 3, 4},
+        {sizeof(struct theirs), 3, 4},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct theirs params = given;
+        params.struct_size = cases[i].size;
+        const struct mine own = PARAMS(mine, &params);
+        assert_int_equal(own.struct_size, sizeof own);
+        assert_int_equal(own.a, cases[i].a);
+        assert_int_equal(own.b, cases[i].b);
+    }
+    const struct mine none = PARAMS(mine, NULL);
+    assert_int_equal(none.a + none.b, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(params_of_other_versions),
         cmocka_unit_test(test_whole),
         cmocka_unit_test(test_printable),
     };

@@ -16,7 +16,7 @@ compare:base math image:base image
 capture:base math image:base image lights capture response
 hdr:base math image:base image photograph response align
 multiview:base math image capture:base image capture photograph views lightfield
-acquire:base math image capture multiview:base image lights capture ball photometric shoot photograph align
+acquire:base math image capture multiview:base image lights capture ball photometric acquire photograph align
 coder:base math image:base image capture coder
 codebook:base math image coder:base coder codebook
 selection:base math image coder compare:base image capture coder codebook heldout

@@ -78,7 +78,8 @@ RELUME_RESULT relume_status relume_warp_homography(struct relume_image *out,
 // How alike two pictures are whatever their exposure: the correlation of their normalised gradient
 // magnitudes where they are, [-1, 1]. Exposures of one scene reach 0.3 and more, of others about 0.
 // NaN when one shows no detail, when sizes differ or memory is short.
-RELUME_API double relume_likeness(const struct relume_image *a, const struct relume_image *b);
+RELUME_API double relume_edge_correlation(const struct relume_image *a,
+                                          const struct relume_image *b);
 
 struct relume_ghost_params {
     size_t struct_size;  // filled by the macro (base.h)

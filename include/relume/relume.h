@@ -34,7 +34,7 @@
 #include <relume/response.h>
 #include <relume/rig.h>
 #include <relume/scene.h>
-#include <relume/shoot.h>
+#include <relume/acquire.h>
 #include <relume/sight.h>
 #include <relume/slabs.h>
 #include <relume/surface.h>

@@ -53,7 +53,7 @@ relume_status shoot_drop(struct shoot *s, int i, const char *format, ...)
 
 // ---------------------------------------------------------------- results
 
-void relume_shoot_destroy(struct relume_shoot *shoot)
+void relume_acquisition_destroy(struct relume_acquisition *shoot)
 {
     for (int i = 0; shoot->photo && i < shoot->lights; i++)
         free(shoot->photo[i].path);
@@ -66,12 +66,12 @@ void relume_shoot_destroy(struct relume_shoot *shoot)
     free(shoot->ball);
     free(shoot->warning);
     relume_photometric_destroy(&shoot->photometric);
-    *shoot = (struct relume_shoot){0};
+    *shoot = (struct relume_acquisition){0};
 }
 
 static relume_status alloc_result(struct shoot *s)
 {
-    struct relume_shoot *out = s->out;
+    struct relume_acquisition *out = s->out;
     const size_t n = (size_t)s->shots;
     out->photo = mem_zeroed(n, sizeof *out->photo);
     out->direction = mem_array(n, sizeof *out->direction);
@@ -87,13 +87,13 @@ static relume_status alloc_result(struct shoot *s)
 
 static relume_status fill_result(struct shoot *s)
 {
-    struct relume_shoot *out = s->out;
+    struct relume_acquisition *out = s->out;
     out->width = s->width;
     out->height = s->height;
     const relume_status status = alloc_result(s);
     for (int i = 0; !status && i < s->shots; i++) {
         const struct shot *from = &s->shot[i];
-        out->photo[i] = (struct relume_shoot_photo){
+        out->photo[i] = (struct relume_acquired_photo){
             .path = mem_text(from->path),
             .saturated = from->saturated,
             .black = from->black,
@@ -207,19 +207,19 @@ static relume_status describe(const struct shoot *s)
 
 static relume_status refine(struct shoot *s, const relume_capture *capture)
 {
-    struct relume_shoot *out = s->out;
+    struct relume_acquisition *out = s->out;
     double residual[2], curl[2] = {0.0, 0.0};
     double *bright = mem_array((size_t)out->lights, sizeof *bright);
-    const struct relume_refine_params p = {
+    const struct relume_acquire_refine_params p = {
         .log = s->p.log,
         .threads = s->p.threads,
         .brightness = s->p.brightness,
         .integrable = s->p.integrable,
         .curl = curl,
     };
-    relume_status status = bright
-                               ? relume_lights_refine(out->direction, bright, residual, capture, &p)
-                               : RELUME_ENOMEM;
+    relume_status status =
+        bright ? relume_acquire_refine(out->direction, bright, residual, capture, &p)
+               : RELUME_ENOMEM;
     for (int i = 0; !status && i < out->lights; i++)
         for (int c = 0; c < 3; c++)
             out->intensity[i][c] *= (float)bright[i];
@@ -270,7 +270,7 @@ static relume_status name_outliers(struct shoot *s)
 
 static relume_status fit(struct shoot *s, const relume_capture *capture)
 {
-    struct relume_shoot *out = s->out;
+    struct relume_acquisition *out = s->out;
     relume_status status =
         relume_photometric_fit(&out->photometric, capture, 0,
                                relume_photometric_params(.log = s->p.log, .threads = s->p.threads));
@@ -358,7 +358,7 @@ static const char *odd_one(const char *const *list, int n, const char *const *ot
     return count == n - m ? odd : NULL;
 }
 
-static relume_status check_balls(const struct relume_shoot_params *p)
+static relume_status check_balls(const struct relume_acquire_params *p)
 {
     const int balls = p->ball_photograph_count, objects = p->photograph_count;
     if (!p->ball_photographs || balls == objects)
@@ -377,7 +377,7 @@ static relume_status check_balls(const struct relume_shoot_params *p)
                     objects);
 }
 
-static relume_status check_params(const struct relume_shoot_params *p)
+static relume_status check_params(const struct relume_acquire_params *p)
 {
     if (p->photograph_count < 3)
         return log_fail(p->log, RELUME_EDATA, "%d photographs; expected at least 3",
@@ -415,11 +415,11 @@ static void release(struct shoot *s)
     relume_image_destroy(&s->change);
 }
 
-relume_status relume_shoot_make(struct relume_shoot *out, const char *dir,
-                                const struct relume_shoot_params *params)
+relume_status relume_acquire(struct relume_acquisition *out, const char *dir,
+                             const struct relume_acquire_params *params)
 {
     struct shoot s = {.p = *params, .out = out, .shots = params->photograph_count};
-    *out = (struct relume_shoot){0};
+    *out = (struct relume_acquisition){0};
     relume_status status = check_params(params);
     if (status)
         return status;
@@ -435,6 +435,6 @@ relume_status relume_shoot_make(struct relume_shoot *out, const char *dir,
     status = outdir_end(&s.dir, status);
     release(&s);
     if (status)
-        relume_shoot_destroy(out);
+        relume_acquisition_destroy(out);
     return status;
 }

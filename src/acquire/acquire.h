@@ -6,7 +6,7 @@
 #include "math/vec.h"
 
 #include <relume/photograph.h>
-#include <relume/shoot.h>
+#include <relume/acquire.h>
 
 // One photograph and, where balls have photographs of their own, that of the ball under its light.
 struct shot {
@@ -42,8 +42,8 @@ struct alike {
 };
 
 struct shoot {
-    struct relume_shoot_params p;
-    struct relume_shoot *out;
+    struct relume_acquire_params p;
+    struct relume_acquisition *out;
     outdir *dir;
     int shots;
     struct shot *shot;
@@ -101,6 +101,6 @@ relume_status shoot_check_lights(struct shoot *s);
 // lights.svg and report.html into the folder `dir`.
 relume_status shoot_report(const struct shoot *s, const char *dir);
 // The lights on the sphere, as SVG, to be freed; NULL when memory is short.
-char *shoot_light_sphere(const struct relume_shoot *out);
+char *shoot_light_sphere(const struct relume_acquisition *out);
 
 #endif

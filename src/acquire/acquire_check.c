@@ -31,7 +31,8 @@ static float likeness(const struct shoot *s, int i)
     int n = 0;
     const int step = s->shots > PAIRS ? (s->shots - 1) / PAIRS : 1;
     for (int k = 1; k < s->shots && n < PAIRS; k += step) {
-        const double like = relume_likeness(&s->shot[i].small, &s->shot[(i + k) % s->shots].small);
+        const double like =
+            relume_edge_correlation(&s->shot[i].small, &s->shot[(i + k) % s->shots].small);
         if (isfinite(like))
             found[n++] = like;
     }
@@ -98,7 +99,7 @@ static vec3 grid_direction(int i)
 }
 
 // The direction farthest from all lights and from the `n` already proposed.
-static double find_gap(const struct relume_shoot *out, const vec3 *proposed, int n, vec3 *gap)
+static double find_gap(const struct relume_acquisition *out, const vec3 *proposed, int n, vec3 *gap)
 {
     double widest = 0.0;
     for (int k = 0; k < GRID; k++) {
@@ -139,12 +140,13 @@ static size_t put_place(char *out, size_t room, const char *before, vec3 d)
 static relume_status check_coverage(struct shoot *s)
 {
     enum { SAID = 4 };
-    struct relume_shoot *out = s->out;
+    struct relume_acquisition *out = s->out;
     char places[512] = "";
     size_t at = 0;
     int n = 0;
     out->gap_deg = find_gap(out, NULL, 0, &out->gap);
-    while (n < RELUME_SHOOT_WANTED && find_gap(out, out->wanted, n, &out->wanted[n]) > WIDE_GAP)
+    while (n < RELUME_ACQUIRE_SUGGESTIONS &&
+           find_gap(out, out->wanted, n, &out->wanted[n]) > WIDE_GAP)
         n++;
     out->wanted_count = n;
     for (int i = 0; i < n && i < SAID; i++)
@@ -157,7 +159,7 @@ static relume_status check_coverage(struct shoot *s)
 
 relume_status shoot_check_lights(struct shoot *s)
 {
-    const struct relume_shoot *out = s->out;
+    const struct relume_acquisition *out = s->out;
     double m[9] = {0.0}, values[3];
     for (int i = 0; i < out->lights; i++) {
         const vec3 d = out->direction[i];

@@ -35,7 +35,7 @@ static relume_status load_mask(const struct shoot *s, struct relume_image *out)
 
 static relume_status outline_given(struct shoot *s)
 {
-    struct relume_shoot *out = s->out;
+    struct relume_acquisition *out = s->out;
     for (int b = 0; b < out->balls; b++) {
         const double *c = s->p.ball[b];
         out->ball[b] = relume_ball_outlined(c[0], c[1], c[2], &s->camera);
@@ -115,7 +115,7 @@ struct telling {
 
 // Take the candidates that tell the lamp best and do not overlap, the first of equals; returns how
 // badly the last of them tells it, infinity where there are too few.
-static double take_best(struct relume_shoot *out, const struct telling *t)
+static double take_best(struct relume_acquisition *out, const struct telling *t)
 {
     double worst = 0.0;
     bool used[MOST_BALLS + 2 * CANDIDATES] = {false};
@@ -170,7 +170,7 @@ static relume_status seek_tables(struct shoot *s, double *bad)
 // that what is wrong with them is told.
 static relume_status find_telling(struct shoot *s, const struct relume_ball_params *params)
 {
-    struct relume_shoot *out = s->out;
+    struct relume_acquisition *out = s->out;
     struct telling t = {0};
     relume_status status = add_candidates(&t, s, &s->mean, out->balls + CANDIDATES, params);
     double bad = take_best(out, &t);
@@ -202,7 +202,7 @@ static relume_status no_ball(const struct shoot *s)
 
 static relume_status find_balls(struct shoot *s)
 {
-    struct relume_shoot *out = s->out;
+    struct relume_acquisition *out = s->out;
     out->balls = s->p.balls > 0 ? s->p.balls : 1;
     if (out->balls > MOST_BALLS)
         return log_fail(s->p.log, RELUME_EINVAL, "%d balls; expected at most %d", out->balls,

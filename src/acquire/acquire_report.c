@@ -57,7 +57,7 @@ static void put_picture(struct report *r, const struct relume_image *image, int 
 
 static void put_warnings(struct report *r)
 {
-    const struct relume_shoot *out = r->s->out;
+    const struct relume_acquisition *out = r->s->out;
     fputs("<h2>Warnings</h2>\n", r->f);
     if (!out->warnings)
         fputs("<p class=\"good\">none</p>\n", r->f);
@@ -68,7 +68,7 @@ static void put_warnings(struct report *r)
     }
 }
 
-static double mean_sigma(const struct relume_shoot *out)
+static double mean_sigma(const struct relume_acquisition *out)
 {
     double sum = 0.0;
     for (int i = 0; i < out->lights; i++)
@@ -78,7 +78,7 @@ static double mean_sigma(const struct relume_shoot *out)
 
 static void put_summary(struct report *r)
 {
-    const struct relume_shoot *out = r->s->out;
+    const struct relume_acquisition *out = r->s->out;
     FILE *f = r->f;
     fprintf(f, "<table><tr><td>pictures</td><td>%d of %d x %d pixels</td></tr>\n", out->lights,
             out->width, out->height);
@@ -103,7 +103,7 @@ static void put_summary(struct report *r)
 // The mean photograph of the balls with their outlines and all highlights.
 static void put_balls(struct report *r)
 {
-    const struct relume_shoot *out = r->s->out;
+    const struct relume_acquisition *out = r->s->out;
     const struct relume_image *mean = &r->s->mean;
     if (!out->balls || !mean->data)
         return;
@@ -157,12 +157,12 @@ static void put_surface(struct report *r)
           r->f);
 }
 
-static double miss_of(const struct relume_shoot *out, int i)
+static double miss_of(const struct relume_acquisition *out, int i)
 {
     return out->photometric.light_residual ? out->photometric.light_residual[i] : 0.0;
 }
 
-static double most_missed(const struct relume_shoot *out)
+static double most_missed(const struct relume_acquisition *out)
 {
     double most = 0.0;
     for (int i = 0; i < out->lights; i++)
@@ -177,9 +177,9 @@ static void put_bar(FILE *f, double value, double most)
             most > 0.0 ? 100.0 * value / most : 0.0, 100.0 * value);
 }
 
-static void put_row(FILE *f, const struct relume_shoot *out, int i, double most)
+static void put_row(FILE *f, const struct relume_acquisition *out, int i, double most)
 {
-    const struct relume_shoot_photo *p = &out->photo[i];
+    const struct relume_acquired_photo *p = &out->photo[i];
     const vec3 d = out->position ? out->position[i] : out->direction[i];
     fprintf(f, "<tr%s><td>%d ", p->outlier ? " class=\"off\"" : "", i);
     put_text(f, shoot_base_name(p->path));
@@ -193,7 +193,7 @@ static void put_row(FILE *f, const struct relume_shoot *out, int i, double most)
 
 static void put_table(struct report *r)
 {
-    const struct relume_shoot *out = r->s->out;
+    const struct relume_acquisition *out = r->s->out;
     const double most = most_missed(out);
     fputs("<h2>Lights</h2>\n<div class=\"wide\"><table><tr><th>photograph</th><th>x</th><th>y</th>"
           "<th>z</th><th>error</th><th>lamp's width</th><th>brightness "

@@ -31,7 +31,7 @@ static void put_grid(FILE *f)
             SIZE / 2.0 - RADIUS / 2.0 - 3.0);
 }
 
-static void put_gap(FILE *f, const struct relume_shoot *out)
+static void put_gap(FILE *f, const struct relume_acquisition *out)
 {
     double xy[2];
     project(out->gap, xy);
@@ -52,7 +52,7 @@ static void put_wanted(FILE *f, vec3 d)
             xy[0] - 5.0, xy[1]);
 }
 
-static void put_light(FILE *f, const struct relume_shoot *out, int i)
+static void put_light(FILE *f, const struct relume_acquisition *out, int i)
 {
     const double sigma = out->photo[i].sigma_deg;
     double xy[2];
@@ -69,7 +69,7 @@ static void put_light(FILE *f, const struct relume_shoot *out, int i)
         fprintf(f, "<text x=\"%.1f\" y=\"%.1f\">%d</text>\n", xy[0] + 5.0, xy[1] - 4.0, i);
 }
 
-char *shoot_light_sphere(const struct relume_shoot *out)
+char *shoot_light_sphere(const struct relume_acquisition *out)
 {
     char *text = NULL;
     size_t size = 0;

@@ -9,7 +9,7 @@
 
 static relume_status keep(struct shoot *s, const char *text)
 {
-    struct relume_shoot *out = s->out;
+    struct relume_acquisition *out = s->out;
     char **grown = mem_resize(out->warning, (size_t)out->warnings + 1, sizeof *grown);
     if (!grown)
         return RELUME_ENOMEM;

@@ -6,7 +6,7 @@
 // taken brings the l nearest to the directions given, over all lights: their common error stays,
 // that of one against the others goes. Where it is asked for, integrability (integrable.h) then
 // corrects part of the common error as well.
-#include <relume/shoot.h>
+#include <relume/acquire.h>
 
 #include "acquire/integrable.h"
 #include "base/params.h"
@@ -454,11 +454,11 @@ static relume_status solve(struct refiner *r, bool *believed, const vec3 *given,
     return status;
 }
 
-relume_status relume_lights_refine(struct relume_vec3 *direction, double *intensity,
-                                   double residual[2], const relume_capture *capture,
-                                   const struct relume_refine_params *params)
+relume_status relume_acquire_refine(struct relume_vec3 *direction, double *intensity,
+                                    double residual[2], const relume_capture *capture,
+                                    const struct relume_acquire_refine_params *params)
 {
-    const struct relume_refine_params p = PARAMS(relume_refine_params, params);
+    const struct relume_acquire_refine_params p = PARAMS(relume_acquire_refine_params, params);
     const struct relume_manifest *m = relume_capture_manifest(capture);
     double curl[2] = {0.0, 0.0};
     bool believed = false;

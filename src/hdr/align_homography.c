@@ -372,7 +372,7 @@ static double likeness_of(const struct relume_image *dark, const struct relume_i
 }
 
 // The darker one is given the tones of the brighter one: it saturates where that does.
-double relume_likeness(const struct relume_image *a, const struct relume_image *b)
+double relume_edge_correlation(const struct relume_image *a, const struct relume_image *b)
 {
     struct pyramid pa = {0}, pb = {0};
     double likeness = NAN;

@@ -182,10 +182,10 @@ static void test_likeness(void **state)
     const struct made_shot elsewhere = {.time = 1, .noise = 1, .shift = {9000, 4000}, .seed = 8};
     struct relume_image a = made_shoot(&anchor_shot, W, H), b = made_shoot(&bright, W, H);
     struct relume_image c = made_shoot(&elsewhere, W, H);
-    CHECK_NEAR(relume_likeness(&a, &a), 1.0, 1e-3);  // tones come in steps of 1/1024
-    assert_true(relume_likeness(&a, &b) > 0.5);
-    CHECK_NEAR(relume_likeness(&a, &c), 0.0, 0.1);
-    assert_true(isnan(relume_likeness(&a, &(struct relume_image){8, 8, 3, a.data})));
+    CHECK_NEAR(relume_edge_correlation(&a, &a), 1.0, 1e-3);  // tones come in steps of 1/1024
+    assert_true(relume_edge_correlation(&a, &b) > 0.5);
+    CHECK_NEAR(relume_edge_correlation(&a, &c), 0.0, 0.1);
+    assert_true(isnan(relume_edge_correlation(&a, &(struct relume_image){8, 8, 3, a.data})));
     relume_image_destroy(&a);
     relume_image_destroy(&b);
     relume_image_destroy(&c);

@@ -170,7 +170,7 @@ static void refined_lights(void **state)
     CHECK_OK(relume_manifest_write(&m, path, NULL));
     relume_capture_destroy(&capture);
     CHECK_OK(relume_capture_open(&capture, path, NULL));
-    CHECK_OK(relume_lights_refine(refined, found, residual, capture, NULL));
+    CHECK_OK(relume_acquire_refine(refined, found, residual, capture, NULL));
     for (int i = 0; i < BUMP_LIGHTS; i++)
         after += acos(fmin(bump_dot(refined[i], bump_light(i)), 1.0)) * 180.0 / M_PI / BUMP_LIGHTS;
     // What stays is the error that all lights share, a linear map fitted to 14 of them: the root of
@@ -201,8 +201,8 @@ static void refined_brightness(void **state)
         const struct relume_manifest *m = relume_capture_manifest(capture);
         struct relume_vec3 direction[BUMP_LIGHTS];
         memcpy(direction, m->directions, sizeof direction);
-        CHECK_OK(relume_lights_refine(direction, found, residual, capture,
-                                      &(struct relume_refine_params){.brightness = true}));
+        CHECK_OK(relume_acquire_refine(direction, found, residual, capture,
+                                       &(struct relume_acquire_refine_params){.brightness = true}));
         for (int i = 0; i < BUMP_LIGHTS; i++) {
             CHECK_NEAR(bump_dot(direction[i], m->directions[i]), 1.0, 1e-12);
             CHECK_NEAR(found[i], brightness[i] / mean, tolerance[k]);
@@ -250,9 +250,9 @@ static double refined_error(const struct bump *s, enum common_error e, bool inte
     CHECK_OK(relume_manifest_write(&m, path, NULL));
     relume_capture_destroy(&capture);
     CHECK_OK(relume_capture_open(&capture, path, NULL));
-    CHECK_OK(relume_lights_refine(
+    CHECK_OK(relume_acquire_refine(
         refined, found, residual, capture,
-        &(struct relume_refine_params){.integrable = integrable, .curl = curl}));
+        &(struct relume_acquire_refine_params){.integrable = integrable, .curl = curl}));
     for (int i = 0; i < BUMP_LIGHTS; i++) {
         before += acos(fmin(bump_dot(given[i], bump_light(i)), 1.0));
         after += acos(fmin(bump_dot(refined[i], bump_light(i)), 1.0));

@@ -75,7 +75,7 @@ static relume_status check_scene(struct bracket *b, const int *order, const bool
         for (int j = i + 1; j < b->n && j <= i + 2; j++) {
             if (blank[order[i]] || blank[order[j]])
                 continue;
-            const double l = relume_likeness(&thumb[i], &thumb[j]);
+            const double l = relume_edge_correlation(&thumb[i], &thumb[j]);
             likeness[i] = fmax(likeness[i], l);
             likeness[j] = fmax(likeness[j], l);
         }

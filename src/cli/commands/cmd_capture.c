@@ -77,8 +77,8 @@ struct job {
     struct photo_list photos, balls, flats;
     char *mask, *ball_mask;  // found among them, or NULL
     double (*outline)[3];
-    struct relume_shoot_params p;
-    struct relume_shoot shoot;
+    struct relume_acquire_params p;
+    struct relume_acquisition shoot;
 };
 
 static void free_job(struct job *job)
@@ -89,7 +89,7 @@ static void free_job(struct job *job)
     free(job->mask);
     free(job->ball_mask);
     free(job->outline);
-    relume_shoot_destroy(&job->shoot);
+    relume_acquisition_destroy(&job->shoot);
 }
 
 // ---------------------------------------------------------------- photographs
@@ -208,7 +208,7 @@ static relume_status read_options(const struct capture_options *o, struct job *j
 {
     const char *transfer = o->transfer;
     const char *of_balls = o->ball_transfer;
-    job->p = (struct relume_shoot_params){
+    job->p = (struct relume_acquire_params){
         .log = o->args.log,
         .mask = (o->mask ? o->mask : job->mask),
         .ball_mask = (o->ball_mask ? o->ball_mask : job->ball_mask),
@@ -257,7 +257,8 @@ static relume_status save(const struct capture_options *o, const char *path,
     return relume_image_save(image, path, relume_image_params(.log = o->args.log));
 }
 
-static relume_status save_height(const struct capture_options *o, const struct relume_shoot *shoot)
+static relume_status save_height(const struct capture_options *o,
+                                 const struct relume_acquisition *shoot)
 {
     struct relume_image height = {0};
     relume_status status = RELUME_OK;
@@ -344,7 +345,7 @@ static void put_vector(const char *key, struct relume_vec3 v)
     printf(",\"%s\":[%.9g,%.9g,%.9g]", key, v.x, v.y, v.z);
 }
 
-static void print_json(const struct relume_shoot *s)
+static void print_json(const struct relume_acquisition *s)
 {
     printf("{\"lights\":%d,\"width\":%d,\"height\":%d,\"balls\":[", s->lights, s->width, s->height);
     for (int b = 0; b < s->balls; b++)
@@ -373,7 +374,7 @@ static void print_json(const struct relume_shoot *s)
     puts("]}");
 }
 
-static void say(const struct capture_options *o, const struct relume_shoot *s)
+static void say(const struct capture_options *o, const struct relume_acquisition *s)
 {
     const struct relume_log *log = o->args.log;
     double sigma = 0.0;
@@ -394,7 +395,7 @@ static void say(const struct capture_options *o, const struct relume_shoot *s)
 static relume_status make(const struct capture_options *o, struct job *job)
 {
     const char *file = o->encode;
-    relume_status status = relume_shoot_make(&job->shoot, o->output, &job->p);
+    relume_status status = relume_acquire(&job->shoot, o->output, &job->p);
     if (status)
         return status;
     status = save(o, o->normals, &job->shoot.photometric.normal);

@@ -1,9 +1,9 @@
-// shoot.h - from photographs of one scene, each under one light, to a capture with known lights
+// acquire.h - from photographs of one scene, each under one light, to a capture with known lights
 //
 // Reads photographs, finds the lights, checks what can be checked, and writes a capture folder:
 // linear half-float images, capture.json, lights.lp, lights.svg and report.html.
-#ifndef RELUME_SHOOT_H
-#define RELUME_SHOOT_H
+#ifndef RELUME_ACQUIRE_H
+#define RELUME_ACQUIRE_H
 
 #include <relume/ball.h>
 #include <relume/base.h>
@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-struct relume_shoot_params {
+struct relume_acquire_params {
     const struct relume_log *log;  // warnings, progress
     const struct relume_limits *limits;
     const char *const *photographs;  // [photograph_count]
@@ -35,7 +35,7 @@ struct relume_shoot_params {
     // light in the order of their names, and one of `photographs`. NULL: balls.
     const char *lights;
     bool near;        // positions: from two balls or more, or from `lights`
-    bool refine;      // relume_lights_refine afterwards
+    bool refine;      // relume_acquire_refine afterwards
     bool brightness;  // the same with its `brightness`
     bool integrable;  // the same with its `integrable`
     bool align;       // bring photographs on top of the first one by homographies
@@ -56,44 +56,45 @@ struct relume_shoot_params {
 };
 
 // One photograph that was used.
-struct relume_shoot_photo {
+struct relume_acquired_photo {
     char *path;                      // as it was given
     float saturated, black;          // shares of the pixels
-    float likeness;                  // median to others, relume_likeness; NaN: not measured
+    float likeness;                  // median to others, relume_edge_correlation; NaN: not measured
     struct relume_ball_light light;  // by the first ball
     double sigma_deg;                // estimated error of the direction, degrees; 0: not known
     bool outlier;                    // contradicts its light and the others
 };
 
-enum { RELUME_SHOOT_WANTED = 12 };
+enum { RELUME_ACQUIRE_SUGGESTIONS = 12 };
 
 // What came out. Thread-safety: plain data.
-struct relume_shoot {
+struct relume_acquisition {
     int width, height, lights;
-    struct relume_shoot_photo *photo;  // [lights]: those that were used
-    struct relume_vec3 *direction;     // [lights], unit
-    struct relume_vec3 *position;      // [lights], world units, or NULL
-    float (*intensity)[3];             // [lights], or NULL: all 1
-    double position_error;             // mean standard error / distance, of triangulated positions
-    struct relume_ball *ball;          // [balls] as they were found
+    struct relume_acquired_photo *photo;  // [lights]: those that were used
+    struct relume_vec3 *direction;        // [lights], unit
+    struct relume_vec3 *position;         // [lights], world units, or NULL
+    float (*intensity)[3];                // [lights], or NULL: all 1
+    double position_error;     // mean standard error / distance, of triangulated positions
+    struct relume_ball *ball;  // [balls] as they were found
     int balls;
     double gap_deg;          // of the upper hemisphere: how far the emptiest direction is
     struct relume_vec3 gap;  // from its nearest light, and which that is
-    struct relume_vec3 wanted[RELUME_SHOOT_WANTED];  // where lights should be added, widest gap
-    int wanted_count;                                // first; until none is wider than 40 degrees
-    struct relume_photometric photometric;  // normals, albedo; empty where lights do not allow it
-    char **warning;                         // [warnings]: sentences, also sent to the log
+    struct relume_vec3
+        wanted[RELUME_ACQUIRE_SUGGESTIONS];  // where lights should be added, widest gap
+    int wanted_count;                        // first; until none is wider than 40 degrees
+    struct relume_photometric photometric;   // normals, albedo; empty where lights do not allow it
+    char **warning;                          // [warnings]: sentences, also sent to the log
     int warnings;
 };
 
 // Make the folder `dir`, whole or not at all. On failure `out` is empty. RELUME_EDATA,
 // RELUME_EINVAL (the folder exists; counts do not match), RELUME_EIO, RELUME_ENOMEM,
 // RELUME_ECANCEL.
-RELUME_RESULT relume_status relume_shoot_make(struct relume_shoot *out, const char *dir,
-                                              const struct relume_shoot_params *params);
-RELUME_API void relume_shoot_destroy(struct relume_shoot *shoot);
+RELUME_RESULT relume_status relume_acquire(struct relume_acquisition *out, const char *dir,
+                                           const struct relume_acquire_params *params);
+RELUME_API void relume_acquisition_destroy(struct relume_acquisition *shoot);
 
-struct relume_refine_params {
+struct relume_acquire_refine_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int threads;
@@ -105,8 +106,9 @@ struct relume_refine_params {
     double *curl;  // [2], or NULL: RMS of the curl before and after, relative to the surface's
                    // curvature
 };
-#define relume_refine_params(...)                                                                  \
-    (&(const struct relume_refine_params){RELUME_SIZED(relume_refine_params), __VA_ARGS__})
+#define relume_acquire_refine_params(...)                                                          \
+    (&(const struct relume_acquire_refine_params){RELUME_SIZED(relume_acquire_refine_params),      \
+                                                  __VA_ARGS__})
 // Better directions and intensities from the images of a planar capture with distant lights:
 // surface vectors and lights in turn minimise what Lambert's law misses, shadows and highlights
 // left out; the linear map that the images leave open (it contains the bas-relief ambiguity,
@@ -116,9 +118,9 @@ struct relume_refine_params {
 // they are (it faces one way, or gloss passes for light: halves of it disagree), they stay,
 // intensities are 1, both residuals are equal and curl is 0, with a warning. RELUME_EDATA where the
 // lights do not span space or there are fewer than 6, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_lights_refine(struct relume_vec3 *direction, double *intensity,
-                                                 double residual[2], const relume_capture *capture,
-                                                 const struct relume_refine_params *params);
+RELUME_RESULT relume_status relume_acquire_refine(
+    struct relume_vec3 *direction, double *intensity, double residual[2],
+    const relume_capture *capture, const struct relume_acquire_refine_params *params);
 
 #ifdef __cplusplus
 }

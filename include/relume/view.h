@@ -50,10 +50,11 @@ struct relume_view_params {
 // pixel centre sees, not finite where `depth` is infinite. `uv` is the camera's place in a slab;
 // `depth` (one channel) may be NULL for planar views, which then lie on z = 0. RELUME_EINVAL,
 // RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_surface(struct relume_image *out,
-                                           const struct relume_geometry *geometry,
-                                           const double uv[2], const struct relume_image *depth,
-                                           int width, int height);
+RELUME_RESULT relume_status relume_view_positions(struct relume_image *out,
+                                                  const struct relume_geometry *geometry,
+                                                  const double uv[2],
+                                                  const struct relume_image *depth, int width,
+                                                  int height);
 
 // ------------------------------------------------------------------ light slab
 // The cameras of a slab as a grid. Never changes. Thread-safety: safe.

@@ -313,8 +313,8 @@ static relume_status find_positions(relume_renderer *r, int view, bool backgroun
     if (!status && !depth.data && r->params.assume_depth > 0.0)
         status = assume_depth(r, &depth);
     if (!status)
-        status = relume_surface(out, relume_pack_geometry(r->pack, view), r->info->uv[view],
-                                depth.data ? &depth : NULL, r->info->width, r->info->height);
+        status = relume_view_positions(out, relume_pack_geometry(r->pack, view), r->info->uv[view],
+                                       depth.data ? &depth : NULL, r->info->width, r->info->height);
     if (status == RELUME_EINVAL)
         status = log_fail(r->params.log, RELUME_EDATA,
                           "%s; use a file with depth, or "

@@ -29,9 +29,9 @@ static void pixel_ray(const struct relume_geometry *g, const double uv[2], int w
     }
 }
 
-relume_status relume_surface(struct relume_image *out, const struct relume_geometry *geometry,
-                             const double uv[2], const struct relume_image *depth, int width,
-                             int height)
+relume_status relume_view_positions(struct relume_image *out,
+                                    const struct relume_geometry *geometry, const double uv[2],
+                                    const struct relume_image *depth, int width, int height)
 {
     *out = (struct relume_image){0};
     if ((!depth && geometry->projection != RELUME_PLANAR) ||

@@ -319,7 +319,7 @@ static struct relume_image plane_surface(void)
 {
     const struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, SIDE, SIDE);
     struct relume_image surface;
-    CHECK_OK(relume_surface(&surface, &g, NULL, NULL, SIDE, SIDE));
+    CHECK_OK(relume_view_positions(&surface, &g, NULL, NULL, SIDE, SIDE));
     surface.data[3 * 5 + 1] = INFINITY;  // one background pixel
     return surface;
 }

@@ -218,10 +218,10 @@ static void surfaces_are_in_the_world(void **state)
     CHECK_OK(relume_image_create(&depth, 3, 2, 1));
     for (int i = 0; i < 6; i++)
         depth.data[i] = (float)(1 + 0.3 * i);
-    CHECK_OK(relume_surface(&there, &slab[1], uv, &depth, 3, 2));
+    CHECK_OK(relume_view_positions(&there, &slab[1], uv, &depth, 3, 2));
     const struct relume_pose pose = slab[1].pose;
     slab[1].pose = (struct relume_pose){0};
-    CHECK_OK(relume_surface(&here, &slab[1], uv, &depth, 3, 2));
+    CHECK_OK(relume_view_positions(&here, &slab[1], uv, &depth, 3, 2));
     for (int i = 0; i < 6; i++) {
         const float *p = here.data + 3 * i, *q = there.data + 3 * i;
         const vec3 want =

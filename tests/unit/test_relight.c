@@ -39,7 +39,7 @@ static void test_point_light(void **state)
         make(&s, round / 2, round % 2 ? RELUME_DOMAIN_DISPLAY : RELUME_DOMAIN_LINEAR);
         const struct relume_geometry g = relume_geometry_default(RELUME_PLANAR, SIDE, SIDE);
         struct relume_image surface, out = {0};
-        CHECK_OK(relume_surface(&surface, &g, NULL, NULL, SIDE, SIDE));
+        CHECK_OK(relume_view_positions(&surface, &g, NULL, NULL, SIDE, SIDE));
         surface.data[0] = INFINITY;  // one background pixel
         const struct relume_light light = {.kind = RELUME_LIGHT_POINT,
                                            .nofall = true,
@@ -88,7 +88,7 @@ static void test_surface_of_depth(void **state)
     for (int i = 0; i < SIDE * SIDE; i++)
         depth.data[i] = 2.0f;
     depth.data[5] = INFINITY;
-    CHECK_OK(relume_surface(&surface, &g, uv, &depth, SIDE, SIDE));
+    CHECK_OK(relume_view_positions(&surface, &g, uv, &depth, SIDE, SIDE));
     for (int i = 0; i < SIDE * SIDE; i++) {
         const float *p = surface.data + 3 * i;
         if (i == 5) {
@@ -102,7 +102,7 @@ static void test_surface_of_depth(void **state)
         CHECK_NEAR(-0.25 + dy * 3.0 / -dz, 1.0 - (i / SIDE + 0.5) * 2.0 / SIDE, 1e-5);
     }
     relume_image_destroy(&surface);
-    assert_int_equal(relume_surface(&surface, &g, uv, NULL, SIDE, SIDE), RELUME_EINVAL);
+    assert_int_equal(relume_view_positions(&surface, &g, uv, NULL, SIDE, SIDE), RELUME_EINVAL);
     relume_image_destroy(&depth);
 }
 

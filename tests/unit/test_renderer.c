@@ -253,7 +253,8 @@ static void places_are_where_depth_says(void **state)
     const struct relume_pack_info *info = relume_pack_info(slab);
     CHECK_OK(relume_renderer_places(&places, r, &cameras[0]));
     CHECK_OK(relume_pack_depth(&depth, slab, 1));
-    CHECK_OK(relume_surface(&surface, relume_pack_geometry(slab, 1), info->uv[1], &depth, W, H));
+    CHECK_OK(
+        relume_view_positions(&surface, relume_pack_geometry(slab, 1), info->uv[1], &depth, W, H));
     for (int i = 0; i < 3 * W * H; i++)
         if (isfinite(depth.data[i / 3]))
             assert_true(places.data[i] == surface.data[i]);

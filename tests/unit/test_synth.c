@@ -473,7 +473,8 @@ static void a_ring_looks_at_the_origin(void **state)
         struct relume_image depth, surface;
         assert_int_equal(m->view[view].slab, 1);
         assert_int_equal(relume_capture_depth(&depth, c, view, NULL), RELUME_OK);
-        assert_int_equal(relume_surface(&surface, g, m->view[view].uv, &depth, 8, 8), RELUME_OK);
+        assert_int_equal(relume_view_positions(&surface, g, m->view[view].uv, &depth, 8, 8),
+                         RELUME_OK);
         // the picture's right is on the near side of the plane
         for (int y = 0; y < 8; y += 7) {
             check_near(at(&surface, 7, y)[2], 0.0, 1e-5);

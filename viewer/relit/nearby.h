@@ -26,7 +26,7 @@ struct nearby {
 
 // What the passes need to know of a view.
 struct nearby_view {
-    struct relume_image surface;  // as relume_surface; empty: not known yet
+    struct relume_image surface;  // as relume_view_positions; empty: not known yet
     GLuint positions;             // the same as a texture, alpha 0 for background
     GLuint affine;                // scale and offset of its planes
     GLuint vectors;               // array texture of its codebooks

@@ -72,8 +72,8 @@ static relume_status find_surface(struct relume_image *out, void *user, int view
     struct relume_image depth;
     relume_status status = read_depth(&depth, user, view);
     if (!status)
-        status = relume_surface(out, relume_pack_geometry(s->pack, view), info->uv[view],
-                                depth.data ? &depth : NULL, info->width, info->height);
+        status = relume_view_positions(out, relume_pack_geometry(s->pack, view), info->uv[view],
+                                       depth.data ? &depth : NULL, info->width, info->height);
     relume_image_destroy(&depth);
     return status;
 }

@@ -10,7 +10,7 @@ extern "C" {
 #endif
 
 // What the file says. Zero in a field: not noted. Thread-safety: plain data.
-struct relume_notes {
+struct relume_exif {
     int width, height;   // as shown: after turning by the orientation
     double time_s;       // shutter
     double f_number;     // aperture
@@ -27,18 +27,18 @@ struct relume_notes {
 };
 
 // Read only the header. Returns RELUME_EDATA, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_notes_read(struct relume_notes *out, const char *path,
-                                              const struct relume_log *log);
+RELUME_RESULT relume_status relume_exif_read(struct relume_exif *out, const char *path,
+                                             const struct relume_log *log);
 // How much light the sensor counted, for comparison between photographs of one scene: shutter time
 // x ISO / 100 / aperture^2; what is not noted counts as 1. Zero when the shutter is not noted.
-RELUME_API double relume_notes_exposure(const struct relume_notes *notes);
+RELUME_API double relume_exif_exposure(const struct relume_exif *notes);
 
 // Photographs of one scene that follow each other: group[i] counts from 0 in the order of time (of
 // the list where no times are noted). A new group begins after a pause of more than `pause_s`
 // beyond the exposure itself (0: 10 s), when the camera or size changes, and when an exposure
 // comes again. Returns the number of groups, 0 when memory is short.
-RELUME_API int relume_notes_group(int *group, const struct relume_notes *notes, int n,
-                                  double pause_s);
+RELUME_API int relume_exif_brackets(int *group, const struct relume_exif *notes, int n,
+                                    double pause_s);
 
 struct relume_photograph_params {
     size_t struct_size;  // filled by the macro (base.h)
@@ -57,7 +57,7 @@ struct relume_photograph_params {
 // is followed (ICC.1:2010 with Bradford adaptation), others are named in a warning and treated as
 // sRGB. `notes` may be NULL. RELUME_EDATA (also for NaN and infinity), RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_photograph_load(struct relume_image *out,
-                                                   struct relume_notes *notes, const char *path,
+                                                   struct relume_exif *notes, const char *path,
                                                    const struct relume_photograph_params *params);
 
 // ---- the light's colour, and its fall-off across the picture; all in place, on linear images

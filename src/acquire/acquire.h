@@ -13,7 +13,7 @@ struct shot {
     const char *path, *ball_path;  // borrowed
     int number;                    // among those that were given
     char name[32];                 // of the image in the folder
-    struct relume_notes notes;
+    struct relume_exif notes;
     struct relume_image small;  // three channels, linear, at most SHOT_SMALL pixels a side
     float saturated, black, likeness;
     double sigma_deg;

@@ -536,7 +536,7 @@ static relume_status weigh_exposures(struct shoot *s)
 {
     double least = INFINITY, most = 0.0, sum = 0.0;
     for (int i = 0; i < s->shots; i++) {
-        const double e = relume_notes_exposure(&s->shot[i].notes);
+        const double e = relume_exif_exposure(&s->shot[i].notes);
         least = fmin(least, e);
         most = fmax(most, e);
         sum += e;
@@ -545,7 +545,7 @@ static relume_status weigh_exposures(struct shoot *s)
         return RELUME_OK;
     for (int i = 0; i < s->shots; i++)
         for (int c = 0; c < 3; c++) {
-            const float e = (float)(relume_notes_exposure(&s->shot[i].notes) * s->shots / sum);
+            const float e = (float)(relume_exif_exposure(&s->shot[i].notes) * s->shots / sum);
             s->shot[i].intensity[c] = (s->has_intensities ? s->shot[i].intensity[c] : 1.0f) * e;
         }
     s->has_intensities = true;

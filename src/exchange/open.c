@@ -130,8 +130,8 @@ static relume_status encode(const char *path, const char *out, const struct relu
 
 static relume_status picture(const char *path, const char *out, const struct relume_open_params *p)
 {
-    struct relume_notes notes;
-    const relume_status status = relume_notes_read(&notes, path, p->log);
+    struct relume_exif notes;
+    const relume_status status = relume_exif_read(&notes, path, p->log);
     if (status)
         return status;
     if (!notes.floats)

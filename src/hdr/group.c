@@ -22,7 +22,7 @@ static int by_time(const void *a, const void *b)
     return x->index < y->index ? -1 : x->index > y->index;
 }
 
-static bool have_times(const struct relume_notes *notes, int n)
+static bool have_times(const struct relume_exif *notes, int n)
 {
     for (int i = 0; i < n; i++)
         if (!notes[i].taken_s)
@@ -30,22 +30,22 @@ static bool have_times(const struct relume_notes *notes, int n)
     return true;
 }
 
-static bool is_same_exposure(const struct relume_notes *a, const struct relume_notes *b)
+static bool is_same_exposure(const struct relume_exif *a, const struct relume_exif *b)
 {
-    const double ea = relume_notes_exposure(a), eb = relume_notes_exposure(b);
+    const double ea = relume_exif_exposure(a), eb = relume_exif_exposure(b);
     return ea > 0.0 && fmax(ea, eb) <= same_exposure * fmin(ea, eb);
 }
 
-static bool is_same_camera(const struct relume_notes *a, const struct relume_notes *b)
+static bool is_same_camera(const struct relume_exif *a, const struct relume_exif *b)
 {
     return a->width == b->width && a->height == b->height && !strcmp(a->camera, b->camera);
 }
 
 // Whether order[i] continues the group that began at order[first].
-static bool continues(const struct relume_notes *notes, const struct entry *order, int first, int i,
+static bool continues(const struct relume_exif *notes, const struct entry *order, int first, int i,
                       double pause_s)
 {
-    const struct relume_notes *now = &notes[order[i].index], *last = &notes[order[i - 1].index];
+    const struct relume_exif *now = &notes[order[i].index], *last = &notes[order[i - 1].index];
     const double gap_s = (double)(order[i].taken_s - order[i - 1].taken_s);
     if (!is_same_camera(now, last) || gap_s > pause_s + now->time_s + last->time_s)
         return false;
@@ -55,7 +55,7 @@ static bool continues(const struct relume_notes *notes, const struct entry *orde
     return true;
 }
 
-int relume_notes_group(int *group, const struct relume_notes *notes, int n, double pause_s)
+int relume_exif_brackets(int *group, const struct relume_exif *notes, int n, double pause_s)
 {
     struct entry *order = mem_array((size_t)n, sizeof *order);
     if (!order || n < 1) {

@@ -371,7 +371,7 @@ relume_status write_image(const char *path, const relume_writer *writer, int wid
     }
 }
 
-void notes(const picture_reader *reader, relume_notes *out)
+void notes(const picture_reader *reader, relume_exif *out)
 {
     const ImageSpec &spec = spec_of(reader);
     std::string date = spec.get_string_attribute("Exif:DateTimeOriginal");

@@ -21,7 +21,7 @@ static bool is_turned_sideways(int orientation)
 }
 
 // `profile` may be NULL.
-static relume_status notes_of(struct relume_notes *out, const picture_reader *reader,
+static relume_status notes_of(struct relume_exif *out, const picture_reader *reader,
                               struct profile *profile, const struct relume_log *log)
 {
     size_t size;
@@ -39,11 +39,11 @@ static relume_status notes_of(struct relume_notes *out, const picture_reader *re
     return status;
 }
 
-relume_status photograph_notes(struct relume_notes *out, const char *path,
+relume_status photograph_notes(struct relume_exif *out, const char *path,
                                const struct relume_limits *limits, const struct relume_log *log)
 {
     picture_reader *reader;
-    *out = (struct relume_notes){0};
+    *out = (struct relume_exif){0};
     relume_status status = picture_open(&reader, path, NULL, limits, log);
     if (status)
         return status;
@@ -52,13 +52,13 @@ relume_status photograph_notes(struct relume_notes *out, const char *path,
     return status;
 }
 
-relume_status relume_notes_read(struct relume_notes *out, const char *path,
-                                const struct relume_log *log)
+relume_status relume_exif_read(struct relume_exif *out, const char *path,
+                               const struct relume_log *log)
 {
     return photograph_notes(out, path, NULL, log);
 }
 
-double relume_notes_exposure(const struct relume_notes *notes)
+double relume_exif_exposure(const struct relume_exif *notes)
 {
     const double f = notes->f_number > 0.0 ? notes->f_number : 1.0;
     const double iso = notes->iso > 0.0 ? notes->iso / 100.0 : 1.0;
@@ -128,17 +128,17 @@ static relume_status read_pixels(struct relume_image *out, const char *path, pic
     return status;
 }
 
-relume_status relume_photograph_load(struct relume_image *out, struct relume_notes *notes,
+relume_status relume_photograph_load(struct relume_image *out, struct relume_exif *notes,
                                      const char *path,
                                      const struct relume_photograph_params *params)
 {
     const struct relume_photograph_params p = PARAMS(relume_photograph_params, params);
-    struct relume_notes own = {0};
+    struct relume_exif own = {0};
     picture_reader *reader;
     size_t icc_size;
     *out = (struct relume_image){0};
     notes = notes ? notes : &own;
-    *notes = (struct relume_notes){0};
+    *notes = (struct relume_exif){0};
     struct profile *profile = mem_array(1, sizeof *profile);
     if (!profile)
         return RELUME_ENOMEM;

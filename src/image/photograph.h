@@ -4,8 +4,8 @@
 
 #include <relume/photograph.h>
 
-// relume_notes_read, of files within `limits`.
-relume_status photograph_notes(struct relume_notes *out, const char *path,
+// relume_exif_read, of files within `limits`.
+relume_status photograph_notes(struct relume_exif *out, const char *path,
                                const struct relume_limits *limits, const struct relume_log *log);
 
 #endif

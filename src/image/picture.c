@@ -154,7 +154,7 @@ relume_status picture_read_bytes(picture_reader *reader, int row, int rows, uint
     return reader->format->read_bytes(reader, row, rows, out);
 }
 
-static relume_status exif_notes(const picture_reader *of, struct relume_notes *out,
+static relume_status exif_notes(const picture_reader *of, struct relume_exif *out,
                                 const struct relume_log *log)
 {
     static const struct picture_kind jpeg = {.what = "JPEG", .reader = "jpeg", .listed = true};
@@ -172,12 +172,12 @@ static relume_status exif_notes(const picture_reader *of, struct relume_notes *o
     return RELUME_OK;
 }
 
-relume_status picture_notes(const picture_reader *reader, struct relume_notes *out,
+relume_status picture_notes(const picture_reader *reader, struct relume_exif *out,
                             const struct relume_log *log)
 {
     const struct picture_info *info = &reader->info;
     relume_status status = RELUME_OK;
-    *out = (struct relume_notes){0};
+    *out = (struct relume_exif){0};
     if (reader->format->notes)
         reader->format->notes(reader, out);
     if (reader->exif)

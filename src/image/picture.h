@@ -39,7 +39,7 @@ relume_status picture_read_floats(picture_reader *reader, int row, int rows, flo
 relume_status picture_read_bytes(picture_reader *reader, int row, int rows, uint8_t *out);
 // What the camera noted: all but the profile; EXIF of files only. RELUME_ESYSTEM without the
 // helper, where it takes that.
-relume_status picture_notes(const picture_reader *reader, struct relume_notes *out,
+relume_status picture_notes(const picture_reader *reader, struct relume_exif *out,
                             const struct relume_log *log);
 // The ICC profile, NULL when there is none; belongs to the reader.
 const void *picture_profile(const picture_reader *reader, size_t *size);

@@ -20,7 +20,7 @@ struct picture_format {
     relume_status (*read_floats)(picture_reader *reader, int row, int rows, float *out);
     relume_status (*read_bytes)(picture_reader *reader, int row, int rows, uint8_t *out);
     // NULL: the file says nothing of itself. `out` holds what the reader's `info` tells.
-    void (*notes)(const picture_reader *reader, struct relume_notes *out);
+    void (*notes)(const picture_reader *reader, struct relume_exif *out);
     const void *(*profile)(const picture_reader *reader, size_t *size);
     const char *(*error)(const picture_reader *reader);
     void (*close)(picture_reader *reader);

@@ -17,7 +17,7 @@ struct helped {
     struct helper_job job;
     int place;          // there; -1: it is not open
     bool limit_is_set;  // of memory
-    struct relume_notes notes;
+    struct relume_exif notes;
     void *profile;
     size_t profile_bytes;
     uint8_t *band;  // memory shared with the process
@@ -126,7 +126,7 @@ static relume_status read_bytes(picture_reader *reader, int row, int rows, uint8
     return read_rows((struct helped *)reader, PICTURE_READ_BYTES, row, rows, out);
 }
 
-static void notes(const picture_reader *reader, struct relume_notes *out)
+static void notes(const picture_reader *reader, struct relume_exif *out)
 {
     *out = ((const struct helped *)reader)->notes;
 }
@@ -170,7 +170,7 @@ static bool is_sound(const struct picture_info *i, const struct relume_limits *l
 }
 
 // 0, which is not noted, for what no camera has.
-static void make_likely(struct relume_notes *n)
+static void make_likely(struct relume_exif *n)
 {
     double *const numbers[] = {&n->time_s, &n->f_number, &n->iso, &n->focal_mm, &n->focal_35mm};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
@@ -184,7 +184,7 @@ static void make_likely(struct relume_notes *n)
 static void make_whole(struct picture_answer *answer)
 {
     struct picture_info *info = &answer->info;
-    struct relume_notes *notes = &answer->notes;
+    struct relume_exif *notes = &answer->notes;
     bool *const bools[] = {&info->bytes,  &info->floats,  &info->linear,  &notes->linear,
                            &notes->bytes, &notes->floats, &notes->profile};
     for (size_t i = 0; i < sizeof bools / sizeof *bools; i++)

@@ -27,7 +27,7 @@ struct picture_answer {
     int memory, place;  // RELUME_ENOMEM: enum helper_short; PICTURE_OPEN
     char why[HELPER_WHY];
     struct picture_info info;  // PICTURE_OPEN
-    struct relume_notes notes;
+    struct relume_exif notes;
     uint64_t profile_bytes;
 };
 

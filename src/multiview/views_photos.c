@@ -99,7 +99,7 @@ static relume_status list_lights(struct photo_set *set, int index, const char *n
 static relume_status check_size(struct photo_set *set, const char *path,
                                 const struct relume_ingest_params *p)
 {
-    struct relume_notes notes;
+    struct relume_exif notes;
     const relume_status status = photograph_notes(&notes, path, p->limits, p->log);
     if (status)
         return status;

@@ -67,7 +67,7 @@ static bool try_picture(const struct fuzz *f)
 {
     char path[128];
     struct relume_image image;
-    struct relume_notes notes;
+    struct relume_exif notes;
     snprintf(path, sizeof path, "%s/picture.hdr", f->folder);
     if (relume_photograph_load(&image, &notes, path, relume_photograph_params(.limits = &small)))
         return false;
@@ -77,7 +77,7 @@ static bool try_picture(const struct fuzz *f)
     for (int i = 0; i < image.width * image.height * image.channels; i++)
         if (!isfinite(image.data[i]))
             abort();
-    if (!isfinite(relume_notes_exposure(&notes)))
+    if (!isfinite(relume_exif_exposure(&notes)))
         abort();
     relume_image_destroy(&image);
     return true;

@@ -114,7 +114,7 @@ static bool try_times(const char *path, struct bytes b)
 {
     char names[2][16] = {"IMG_1.jpg", "IMG_2.jpg"}, *photos[] = {names[0], names[1]};
     const struct photo_list list = {2, photos};
-    struct relume_notes notes[2] = {{.iso = 1.0}};
+    struct relume_exif notes[2] = {{.iso = 1.0}};
     fuzz_store(path, (struct bytes){b.data + 1, b.size - 1});
     if (read_times(path, &list, notes, NULL))
         return false;

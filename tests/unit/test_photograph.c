@@ -52,18 +52,18 @@ static void test_notes_and_turning(void **state)
                                         "RBGG", "BRGG", "GGBR", "GGRB"};
     for (int orientation = 1; orientation <= 8; orientation++) {
         struct relume_image image;
-        struct relume_notes notes, read;
+        struct relume_exif notes, read;
         write_jpeg(path);
         exif_make(&exif, orientation);
         exif_insert(path, 0xe1, &exif);
         CHECK_OK(relume_photograph_load(&image, &notes, path, NULL));
-        CHECK_OK(relume_notes_read(&read, path, NULL));
+        CHECK_OK(relume_exif_read(&read, path, NULL));
         assert_memory_equal(&notes, &read, sizeof notes);
         CHECK_NEAR(notes.time_s, 0.02, 1e-7);
         CHECK_NEAR(notes.f_number, 2.8, 1e-6);
         CHECK_NEAR(notes.iso, 400.0, 0.0);
         assert_int_equal(notes.taken_s, 1614834367);  // date -u -d '2021-03-04 05:06:07' +%s
-        CHECK_NEAR(relume_notes_exposure(&notes), 0.02 * 4.0 / 2.8 / 2.8, 1e-7);
+        CHECK_NEAR(relume_exif_exposure(&notes), 0.02 * 4.0 / 2.8 / 2.8, 1e-7);
         assert_int_equal(notes.orientation, orientation);
         assert_int_equal(image.width, orientation > 4 ? 16 : 32);
         assert_int_equal(notes.width, image.width);
@@ -84,7 +84,7 @@ static void test_profile(void **state)
     char folder[64], path[96];
     struct exif_bytes *icc = calloc(1, sizeof *icc);
     struct relume_image image, codes, grey;
-    struct relume_notes notes;
+    struct relume_exif notes;
     snprintf(path, sizeof path, "%s/a.jpg", test_folder(folder));
     CHECK_OK(relume_image_create(&grey, 16, 16, 3));
     for (int i = 0; i < 3 * 16 * 16; i++)
@@ -142,22 +142,22 @@ static void test_groups(void **state)
     static const double time_s[9] = {1, 0.25, 4, 1, 0.25, 4, 1, 0.25, 4};
     static const int64_t taken_s[9] = {0, 1, 5, 100, 101, 105, 110, 111, 115};
     static const int disorder[9] = {4, 0, 8, 2, 6, 1, 3, 7, 5};
-    struct relume_notes notes[9];
+    struct relume_exif notes[9];
     int group[9];
     memset(notes, 0, sizeof notes);
     for (int i = 0; i < 9; i++)
-        notes[i] = (struct relume_notes){.width = 10,
-                                         .height = 10,
-                                         .time_s = time_s[disorder[i]],
-                                         .taken_s = 1000000 + taken_s[disorder[i]]};
-    assert_int_equal(relume_notes_group(group, notes, 9, 0.0), 3);
+        notes[i] = (struct relume_exif){.width = 10,
+                                        .height = 10,
+                                        .time_s = time_s[disorder[i]],
+                                        .taken_s = 1000000 + taken_s[disorder[i]]};
+    assert_int_equal(relume_exif_brackets(group, notes, 9, 0.0), 3);
     for (int i = 0; i < 9; i++)
         assert_int_equal(group[i], disorder[i] / 3);
     for (int i = 0; i < 9; i++)  // no clock: the order of the list
-        notes[i] = (struct relume_notes){.time_s = time_s[i]};
-    assert_int_equal(relume_notes_group(group, notes, 9, 0.0), 3);
+        notes[i] = (struct relume_exif){.time_s = time_s[i]};
+    assert_int_equal(relume_exif_brackets(group, notes, 9, 0.0), 3);
     notes[4].width = 11;  // another camera in between
-    assert_int_equal(relume_notes_group(group, notes, 9, 0.0), 5);
+    assert_int_equal(relume_exif_brackets(group, notes, 9, 0.0), 5);
 }
 
 static void test_white(void **state)
@@ -225,7 +225,7 @@ static void test_raw(void **state)
     (void)state;
     char folder[64], path[96];
     struct relume_image image;
-    struct relume_notes notes;
+    struct relume_exif notes;
     struct test_log log;
     snprintf(path, sizeof path, "%s/a.dng", test_folder(folder));
     for (int k = 1; k <= 3; k++) {

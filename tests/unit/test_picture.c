@@ -50,7 +50,7 @@ static void compare(const char *path)
     assert_int_equal(i.height, j.height);
     assert_true(i.x == j.x && i.y == j.y && i.channels == j.channels);
     assert_true(i.bytes == j.bytes && i.floats == j.floats && i.linear == j.linear);
-    struct relume_notes n, m;
+    struct relume_exif n, m;
     size_t size;
     CHECK_OK(picture_notes(a, &n, NULL));
     CHECK_OK(picture_notes(b, &m, NULL));

@@ -70,7 +70,7 @@ relume_status bracket_load(struct bracket *b, const struct hdr_options *o)
     const struct relume_log soft = softly(o);
     const struct relume_log *log = skip ? &soft : o->args.log;
     for (int i = 0; i < b->n;) {
-        const struct relume_notes noted = b->notes[i];
+        const struct relume_exif noted = b->notes[i];
         relume_status status =
             relume_photograph_load(&b->codes[i], &b->notes[i], b->path[i],
                                    relume_photograph_params(.log = log, .codes = true));
@@ -87,7 +87,7 @@ relume_status bracket_load(struct bracket *b, const struct hdr_options *o)
             i++;
     }
     for (int i = 0; i < b->n; i++)
-        b->exposure[i] = relume_notes_exposure(&b->notes[i]);
+        b->exposure[i] = relume_exif_exposure(&b->notes[i]);
     return bracket_remains(b);
 }
 

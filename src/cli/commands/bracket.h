@@ -18,7 +18,7 @@ struct bracket {
     int n, anchor;
     bool aligned;  // to the anchor
     const char *path[MAX_BRACKET];
-    struct relume_notes notes[MAX_BRACKET];
+    struct relume_exif notes[MAX_BRACKET];
     struct relume_image codes[MAX_BRACKET], masks[MAX_BRACKET];  // masks may be empty: all good
     double exposure[MAX_BRACKET];
     double shift[MAX_BRACKET];   // median displacement, pixels; 0 when not aligned

@@ -79,7 +79,7 @@ static const double *find(const struct times *t, const char *name)
 }
 
 static relume_status assign(const char *path, const struct times *t, const struct photo_list *list,
-                            struct relume_notes *notes)
+                            struct relume_exif *notes)
 {
     const bool named = t->count > 0 && *t->line[0].name;
     if (t->count == 0 || (!named && list->count % t->count))
@@ -97,8 +97,8 @@ static relume_status assign(const char *path, const struct times *t, const struc
     return RELUME_OK;
 }
 
-relume_status read_times(const char *path, const struct photo_list *list,
-                         struct relume_notes *notes, const struct relume_log *log)
+relume_status read_times(const char *path, const struct photo_list *list, struct relume_exif *notes,
+                         const struct relume_log *log)
 {
     struct times *t = calloc(1, sizeof *t);
     if (!t)

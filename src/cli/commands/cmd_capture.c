@@ -278,11 +278,11 @@ static relume_status encode(const struct capture_options *o, const struct job *j
 {
     relume_capture *capture;
     relume_coder *coder = NULL;
-    struct relume_notes notes;
+    struct relume_exif notes;
     relume_status status =
         relume_capture_open(&capture, o->output, relume_capture_params(.log = o->args.log));
     if (!status)
-        status = relume_notes_read(&notes, job->shoot.photo[0].path, o->args.log);
+        status = relume_exif_read(&notes, job->shoot.photo[0].path, o->args.log);
     if (status)
         goto done;
     const enum relume_domain domain = notes.floats ? RELUME_DOMAIN_LINEAR : RELUME_DOMAIN_DISPLAY;

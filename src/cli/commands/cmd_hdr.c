@@ -205,14 +205,14 @@ static relume_status run_bracket(struct bracket *b, const struct choices *c, con
 
 // ---------------------------------------------------------------- all of them
 
-static relume_status read_notes(struct relume_notes *notes, struct photo_list *list,
+static relume_status read_notes(struct relume_exif *notes, struct photo_list *list,
                                 const struct hdr_options *o)
 {
     const struct relume_log silent = {.inputs = o->args.log->inputs, .limits = o->args.log->limits};
     const bool skip = o->skip_bad;
     for (int i = 0; i < list->count; i++) {
         const relume_status status =
-            relume_notes_read(&notes[i], list->path[i], skip ? &silent : o->args.log);
+            relume_exif_read(&notes[i], list->path[i], skip ? &silent : o->args.log);
         if (status && !(skip && status == RELUME_EDATA))
             return status;
     }
@@ -226,7 +226,7 @@ static relume_status read_notes(struct relume_notes *notes, struct photo_list *l
 }
 
 static int photos_of(struct bracket *b, const struct photo_list *list,
-                     const struct relume_notes *notes, const int *group, int which)
+                     const struct relume_exif *notes, const int *group, int which)
 {
     int n = 0;
     for (int i = 0; i < list->count; i++)
@@ -251,7 +251,7 @@ static void output_name(char *out, size_t size, const struct choices *c, const s
 }
 
 static relume_status run_group(const struct choices *c, const struct photo_list *list,
-                               const struct relume_notes *notes, const int *group, int which,
+                               const struct relume_exif *notes, const int *group, int which,
                                const char *to, FILE *report, const struct hdr_options *o)
 {
     char output[4096], written[4096];
@@ -271,7 +271,7 @@ static relume_status run_group(const struct choices *c, const struct photo_list 
 }
 
 static relume_status run_groups(const struct choices *c, struct photo_list *list,
-                                struct relume_notes *notes, int *group, FILE *report,
+                                struct relume_exif *notes, int *group, FILE *report,
                                 const struct hdr_options *o)
 {
     const bool json = o->json;
@@ -279,7 +279,7 @@ static relume_status run_groups(const struct choices *c, struct photo_list *list
     struct fill folder = {.path = o->output};
     relume_status status = read_notes(notes, list, o);
     if (!status && !c->is_file) {
-        groups = relume_notes_group(group, notes, list->count, 0.0);
+        groups = relume_exif_brackets(group, notes, list->count, 0.0);
         status = groups > 0 ? fill_open(&folder, folder.path, o->args.log) : RELUME_ENOMEM;
     }
     fputs(json ? "{\"brackets\": [" : "", report);
@@ -302,7 +302,7 @@ static relume_status run(const struct args *args)
         status = photo_list_make(&list, &o->args);
     if (status)
         return status;
-    struct relume_notes *notes = calloc((size_t)list.count, sizeof *notes);
+    struct relume_exif *notes = calloc((size_t)list.count, sizeof *notes);
     int *group = calloc((size_t)list.count, sizeof *group);
     FILE *report = open_memstream(&text, &size);
     status = notes && group && report ? run_groups(&choices, &list, notes, group, report, o)

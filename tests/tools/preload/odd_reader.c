@@ -31,7 +31,7 @@ static relume_status read_bytes(picture_reader *reader, int row, int rows, uint8
     return RELUME_OK;
 }
 
-static void notes(const picture_reader *reader, struct relume_notes *out)
+static void notes(const picture_reader *reader, struct relume_exif *out)
 {
     (void)reader;
     out->orientation = 1;

@@ -39,15 +39,15 @@ RELUME_API void relume_btf_set_directions(const struct relume_btf_set *set,
                                           struct relume_vec3 *out);
 
 // Directions triangulated over the hemisphere. Never changes. Thread-safety: safe.
-typedef struct relume_dome relume_dome;
+typedef struct relume_direction_mesh relume_direction_mesh;
 // At least 3 unit directions with z > 0, not all on one great circle. RELUME_EDATA, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_dome_create(relume_dome **out,
-                                               const struct relume_vec3 *directions, int n,
-                                               const struct relume_log *log);
-RELUME_API void relume_dome_destroy(relume_dome **dome);
+RELUME_RESULT relume_status relume_direction_mesh_create(relume_direction_mesh **out,
+                                                         const struct relume_vec3 *directions,
+                                                         int n, const struct relume_log *log);
+RELUME_API void relume_direction_mesh_destroy(relume_direction_mesh **dome);
 
 // Which directions replace one, and how much each counts: barycentric weights, all > 0, sum 1.
-struct relume_dome_blend {
+struct relume_direction_blend {
     int count;     // 1 to 3
     int index[3];  // numbers of directions
     double weight[3];
@@ -60,10 +60,12 @@ struct relume_dome_blend {
     double length;
 };
 // The three around a unit direction.
-RELUME_API struct relume_dome_blend relume_dome_at(const relume_dome *dome, struct relume_vec3 d);
+RELUME_API struct relume_direction_blend relume_direction_mesh_at(const relume_direction_mesh *dome,
+                                                                  struct relume_vec3 d);
 // The triangles of directions that cover the sphere, `*n` of them, for clients that look directions
 // up themselves: corner n is the nadir, which is no measured direction. They belong to the dome.
-RELUME_API const int (*relume_dome_triangles(const relume_dome *dome, int *n))[3];
+RELUME_API const int (*relume_direction_mesh_triangles(const relume_direction_mesh *dome,
+                                                       int *n))[3];
 
 // ---------------------------------------------------------------- the measured values
 

@@ -7,9 +7,9 @@
 // of the objects lies between: shadows are hard, there is no light from object to object. Pixels
 // that cover many texels show means of them: levels of detail of the model, where it has such.
 //
-// Under an environment a material shows what relume_btf_sky says, times the share of the light that
-// reaches the point, in each colour: of 64 lamps drawn from the environment, each times n.l, what
-// nothing stands before over all (a ratio estimator; Heitz, Hill, McGuire 2018).
+// Under an environment a material shows what relume_btf_environment says, times the share of the
+// light that reaches the point, in each colour: of 64 lamps drawn from the environment, each times
+// n.l, what nothing stands before over all (a ratio estimator; Heitz, Hill, McGuire 2018).
 #ifndef RELUME_OBJECT_H
 #define RELUME_OBJECT_H
 

@@ -3,7 +3,7 @@
 #define RELUME_H
 
 #include <relume/align.h>
-#include <relume/ambient.h>
+#include <relume/btf_environment.h>
 #include <relume/base.h>
 #include <relume/ball.h>
 #include <relume/btf.h>

@@ -8,7 +8,7 @@
 #ifndef RELUME_SURFACE_H
 #define RELUME_SURFACE_H
 
-#include <relume/ambient.h>
+#include <relume/btf_environment.h>
 #include <relume/base.h>
 #include <relume/btf.h>
 #include <relume/image.h>
@@ -128,9 +128,9 @@ struct relume_btf_ray {
     struct relume_vec3 view, light;  // towards the eye, towards the light
     // An environment in place of the light, or NULL: in the one orientation of an ambient, or in
     // that of `frame`.
-    const relume_btf_ambient *ambient;
-    const relume_btf_sky *sky;      // an environment in place of `light`, or NULL
-    struct relume_btf_frame frame;  // with `sky`: of the surface in the world
+    const relume_btf_oriented_light *ambient;
+    const relume_btf_environment *sky;  // an environment in place of `light`, or NULL
+    struct relume_btf_frame frame;      // with `sky`: of the surface in the world
 };
 
 // The value at (x, y) texels, as relume_btf_evaluate: the four texels around the point are fetched

@@ -74,12 +74,12 @@ static void say_with_name(void *user, enum relume_level level, const char *text)
     log_line(n->log, level, "%s: %s %s", n->path, n->what, text);
 }
 
-relume_status btf_make_dome(relume_dome **out, const vec3 *directions, int n, const char *path,
-                            const char *what, const struct relume_log *log)
+relume_status btf_make_dome(relume_direction_mesh **out, const vec3 *directions, int n,
+                            const char *path, const char *what, const struct relume_log *log)
 {
     struct named_log named = {log, path, what};
     const struct relume_log own = {.message = say_with_name, .user = &named};
-    return relume_dome_create(out, directions, n, path ? &own : log);
+    return relume_direction_mesh_create(out, directions, n, path ? &own : log);
 }
 
 relume_status btf_start(relume_btf **out, const struct relume_btf_info *info, const char *path,
@@ -155,8 +155,8 @@ void relume_btf_destroy(relume_btf **btf)
     if (b->own)
         scratch_unmap(b->own, own_bytes(b));
     npy_close(&b->file);
-    relume_dome_destroy(&b->views);
-    relume_dome_destroy(&b->lights);
+    relume_direction_mesh_destroy(&b->views);
+    relume_direction_mesh_destroy(&b->lights);
     relume_image_destroy(&b->info.relief);
     relume_image_destroy(&b->info.normals);
     free((void *)b->info.name);
@@ -249,8 +249,8 @@ void relume_btf_evaluate(const relume_btf *btf, int x, int y, struct relume_vec3
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     if (!(view.z > 0.0) || !(light.z > 0.0))
         return;
-    const struct relume_dome_blend v = relume_dome_at(btf->views, view);
-    const struct relume_dome_blend l = relume_dome_at(btf->lights, light);
+    const struct relume_direction_blend v = relume_direction_mesh_at(btf->views, view);
+    const struct relume_direction_blend l = relume_direction_mesh_at(btf->lights, light);
     for (int i = 0; i < v.count; i++)
         for (int j = 0; j < l.count; j++) {
             const uint16_t *p = relume_btf_picture(btf, v.index[i], l.index[j]) + 3 * texel;

@@ -11,7 +11,7 @@ struct relume_btf {
     struct relume_btf_info info;  // owns what it points to
     char *path;                   // where it was read from, or NULL
     vec3 *view, *light;
-    relume_dome *views, *lights;
+    relume_direction_mesh *views, *lights;
     const uint16_t *values;   // [stored view][stored light][height][width][3]
     uint16_t *own;            // or NULL: scratch memory behind `values`
     struct npy_file file;     // or the file behind them
@@ -34,9 +34,9 @@ static inline const char *btf_name(const relume_btf *btf)
 // directions that cannot be used.
 relume_status btf_start(relume_btf **out, const struct relume_btf_info *info, const char *path,
                         const struct relume_log *log);
-// relume_dome_create, with sentences that begin "PATH: WHAT "; `path` may be NULL.
-relume_status btf_make_dome(relume_dome **out, const vec3 *directions, int n, const char *path,
-                            const char *what, const struct relume_log *log);
+// relume_direction_mesh_create, with sentences that begin "PATH: WHAT "; `path` may be NULL.
+relume_status btf_make_dome(relume_direction_mesh **out, const vec3 *directions, int n,
+                            const char *path, const char *what, const struct relume_log *log);
 // Zeroed scratch memory as its values.
 relume_status btf_make_room(relume_btf *btf, const struct relume_btf_params *params);
 // A folder of pictures named by their angles.

@@ -7,7 +7,7 @@
 #include <relume/btf.h>
 #include <string.h>
 
-struct relume_dome {
+struct relume_direction_mesh {
     vec3 *point;  // [n + 1]; the last is the nadir, which closes the hull below the rim
     int n;
     struct hull_triangle *triangle;
@@ -33,7 +33,7 @@ static relume_status check(const struct relume_vec3 *d, int n, const struct relu
     return RELUME_OK;
 }
 
-static relume_status triangulate(relume_dome *d, const struct relume_vec3 *directions)
+static relume_status triangulate(relume_direction_mesh *d, const struct relume_vec3 *directions)
 {
     d->point = mem_array((size_t)d->n + 1, sizeof *d->point);
     if (!d->point)
@@ -52,7 +52,7 @@ static relume_status triangulate(relume_dome *d, const struct relume_vec3 *direc
 }
 
 // The triangle that has the edge from `a` to `b` the other way round.
-static int find_beside(const relume_dome *d, int a, int b)
+static int find_beside(const relume_direction_mesh *d, int a, int b)
 {
     for (int i = 0; i < d->triangles; i++)
         for (int c = 0; c < 3; c++)
@@ -82,7 +82,7 @@ static bool weigh(const vec3 across[3], vec3 d, double weight[3])
 }
 
 // The triangle that `d` meets: the one whose smallest weight is largest, for rays through edges.
-static int search(const relume_dome *dome, vec3 d, double weight[3])
+static int search(const relume_direction_mesh *dome, vec3 d, double weight[3])
 {
     int best = 0;
     double most = -INFINITY;
@@ -102,7 +102,7 @@ static int search(const relume_dome *dome, vec3 d, double weight[3])
 
 // The same from the triangle at the middle of the cell, by the edge that `d` lies behind; what the
 // ray only grazes is searched for, so that the answer does not depend on the way.
-static const struct hull_triangle *find(const relume_dome *dome, vec3 d, double weight[3])
+static const struct hull_triangle *find(const relume_direction_mesh *dome, vec3 d, double weight[3])
 {
     int i = dome->start[cell_of(d)];
     for (int step = 0; step < MOST_STEPS && weigh(dome->across[i], d, weight); step++) {
@@ -118,7 +118,7 @@ static const struct hull_triangle *find(const relume_dome *dome, vec3 d, double 
     return &dome->triangle[search(dome, d, weight)];
 }
 
-static relume_status prepare_find(relume_dome *d)
+static relume_status prepare_find(relume_direction_mesh *d)
 {
     d->beside = mem_array((size_t)d->triangles, sizeof *d->beside);
     d->start = mem_array((size_t)CELLS * CELLS, sizeof *d->start);
@@ -138,14 +138,15 @@ static relume_status prepare_find(relume_dome *d)
     return RELUME_OK;
 }
 
-relume_status relume_dome_create(relume_dome **out, const struct relume_vec3 *directions, int n,
-                                 const struct relume_log *log)
+relume_status relume_direction_mesh_create(relume_direction_mesh **out,
+                                           const struct relume_vec3 *directions, int n,
+                                           const struct relume_log *log)
 {
     *out = NULL;
     relume_status status = check(directions, n, log);
     if (status)
         return status;
-    relume_dome *d = mem_zeroed(1, sizeof *d);
+    relume_direction_mesh *d = mem_zeroed(1, sizeof *d);
     if (!d)
         return RELUME_ENOMEM;
     d->n = n;
@@ -155,12 +156,12 @@ relume_status relume_dome_create(relume_dome **out, const struct relume_vec3 *di
     if (!status)
         status = prepare_find(d);
     if (status)
-        relume_dome_destroy(&d);
+        relume_direction_mesh_destroy(&d);
     *out = d;
     return status;
 }
 
-void relume_dome_destroy(relume_dome **dome)
+void relume_direction_mesh_destroy(relume_direction_mesh **dome)
 {
     if (*dome) {
         free((*dome)->point);
@@ -173,13 +174,13 @@ void relume_dome_destroy(relume_dome **dome)
     *dome = NULL;
 }
 
-const int (*relume_dome_triangles(const relume_dome *dome, int *n))[3]
+const int (*relume_direction_mesh_triangles(const relume_direction_mesh *dome, int *n))[3]
 {
     *n = dome->triangles;
     return (const int(*)[3])dome->triangle;
 }
 
-static void keep_real(struct relume_dome_blend *b, const relume_dome *dome,
+static void keep_real(struct relume_direction_blend *b, const relume_direction_mesh *dome,
                       const struct hull_triangle *t, const double weight[3])
 {
     for (int c = 0; c < 3; c++)
@@ -194,14 +195,15 @@ static void keep_real(struct relume_dome_blend *b, const relume_dome *dome,
         }
 }
 
-static bool has_nadir(const relume_dome *dome, const struct hull_triangle *t)
+static bool has_nadir(const relume_direction_mesh *dome, const struct hull_triangle *t)
 {
     return t->corner[0] == dome->n || t->corner[1] == dome->n || t->corner[2] == dome->n;
 }
 
-struct relume_dome_blend relume_dome_at(const relume_dome *dome, struct relume_vec3 d)
+struct relume_direction_blend relume_direction_mesh_at(const relume_direction_mesh *dome,
+                                                       struct relume_vec3 d)
 {
-    struct relume_dome_blend b = {.direction = d, .rim = 1.0, .length = 1.0};
+    struct relume_direction_blend b = {.direction = d, .rim = 1.0, .length = 1.0};
     double weight[3] = {1.0, 0.0, 0.0}, sum = 0.0;
     vec3 middle = {0.0, 0.0, 0.0};
     const struct hull_triangle *t = find(dome, d, weight);

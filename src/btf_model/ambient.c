@@ -14,13 +14,13 @@ static vec3 to_sample(const struct relume_btf_frame *f, vec3 d)
 }
 
 // What arrives from a cell: from the direction and at the strength that the model is asked for.
-static bool arrives(const relume_btf_ambient *a, const struct relume_environment_cell *cell,
-                    struct relume_dome_blend *blend, struct relume_environment_cell *out)
+static bool arrives(const relume_btf_oriented_light *a, const struct relume_environment_cell *cell,
+                    struct relume_direction_blend *blend, struct relume_environment_cell *out)
 {
     const vec3 l = to_sample(&a->frame, cell->direction);
     if (!(l.z > 0.0))
         return false;
-    *blend = relume_dome_at(a->model->light_dome, l);
+    *blend = relume_direction_mesh_at(a->model->light_dome, l);
     const double scale = a->model->without_cosine ? l.z : blend->rim;
     out->direction = blend->direction;
     for (int c = 0; c < 3; c++)
@@ -28,8 +28,8 @@ static bool arrives(const relume_btf_ambient *a, const struct relume_environment
     return true;
 }
 
-static void add_cell(relume_btf_ambient *a, const struct relume_environment_cell *cell,
-                     const struct relume_dome_blend *b)
+static void add_cell(relume_btf_oriented_light *a, const struct relume_environment_cell *cell,
+                     const struct relume_direction_blend *b)
 {
     const bool bare = a->model->without_cosine;
     for (int c = 0; c < 3; c++) {
@@ -42,8 +42,8 @@ static void add_cell(relume_btf_ambient *a, const struct relume_environment_cell
 }
 
 // Cells as the lobes of the model see them.
-static relume_status make_own_maps(relume_btf_ambient *a, struct relume_environment_cell *cell,
-                                   int n, int threads)
+static relume_status make_own_maps(relume_btf_oriented_light *a,
+                                   struct relume_environment_cell *cell, int n, int threads)
 {
     enum { HEIGHT = 48 };
     const bool cosine = a->model->model->lobes_times_cosine && !a->model->without_cosine;
@@ -53,7 +53,8 @@ static relume_status make_own_maps(relume_btf_ambient *a, struct relume_environm
     return prefilter_from_cells(&a->own, cell, n, HEIGHT, 0.0, threads);
 }
 
-static relume_status fill(relume_btf_ambient *a, const struct relume_btf_ambient_params *p)
+static relume_status fill(relume_btf_oriented_light *a,
+                          const struct relume_btf_oriented_light_params *p)
 {
     const size_t most = (size_t)a->prefilter->cells;
     struct relume_environment_cell *cell = mem_array(most, sizeof *cell);
@@ -61,7 +62,7 @@ static relume_status fill(relume_btf_ambient *a, const struct relume_btf_ambient
     if (!cell)
         return RELUME_ENOMEM;
     for (size_t i = 0; i < most; i++) {
-        struct relume_dome_blend b;
+        struct relume_direction_blend b;
         if (arrives(a, &a->prefilter->cell[i], &b, &cell[n]))
             add_cell(a, &cell[n++], &b);
     }
@@ -71,12 +72,12 @@ static relume_status fill(relume_btf_ambient *a, const struct relume_btf_ambient
     return status;
 }
 
-relume_status relume_btf_ambient_create(relume_btf_ambient **out, const relume_btf_fitted *model,
-                                        const relume_prefilter *prefilter,
-                                        const struct relume_btf_frame *frame,
-                                        const struct relume_btf_ambient_params *params)
+relume_status relume_btf_oriented_light_create(
+    relume_btf_oriented_light **out, const relume_btf_fitted *model,
+    const relume_prefiltered *prefilter, const struct relume_btf_frame *frame,
+    const struct relume_btf_oriented_light_params *params)
 {
-    relume_btf_ambient *a = mem_zeroed(1, sizeof *a);
+    relume_btf_oriented_light *a = mem_zeroed(1, sizeof *a);
     *out = NULL;
     if (!a)
         return RELUME_ENOMEM;
@@ -86,33 +87,33 @@ relume_status relume_btf_ambient_create(relume_btf_ambient **out, const relume_b
     a->weight = mem_zeroed(3 * (size_t)model->lights, sizeof *a->weight);
     const relume_status status = a->weight ? fill(a, params) : RELUME_ENOMEM;
     if (status)
-        relume_btf_ambient_destroy(&a);
+        relume_btf_oriented_light_destroy(&a);
     *out = a;
     return status;
 }
 
-void relume_btf_ambient_destroy(relume_btf_ambient **ambient)
+void relume_btf_oriented_light_destroy(relume_btf_oriented_light **ambient)
 {
     if (*ambient) {
-        relume_prefilter_destroy(&(*ambient)->own);
+        relume_prefiltered_destroy(&(*ambient)->own);
         free((*ambient)->weight);
     }
     free(*ambient);
     *ambient = NULL;
 }
 
-const float *relume_btf_ambient_weights(const relume_btf_ambient *ambient)
+const float *relume_btf_oriented_light_weights(const relume_btf_oriented_light *ambient)
 {
     return ambient->weight;
 }
 
-void ambient_even(const relume_btf_ambient *a, bool cosine, float rgb[3])
+void ambient_even(const relume_btf_oriented_light *a, bool cosine, float rgb[3])
 {
     for (int c = 0; c < 3; c++)
         rgb[c] = a->even[cosine][c];
 }
 
-void ambient_lobe(const relume_btf_ambient *a, const float t[3], float exponent, bool cosine,
+void ambient_lobe(const relume_btf_oriented_light *a, const float t[3], float exponent, bool cosine,
                   float rgb[3])
 {
     const double length = sqrt((double)(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]));
@@ -123,20 +124,20 @@ void ambient_lobe(const relume_btf_ambient *a, const float t[3], float exponent,
     const struct relume_btf_frame *f = &a->frame;
     double height = exp((double)exponent * log(length));
     if (a->own) {
-        relume_prefilter_specular(rgb, a->own, u, exponent);
+        relume_prefiltered_specular(rgb, a->own, u, exponent);
         height *= 2.0 / ((double)exponent + 1.0);
     } else {
         const vec3 axis = vec3_add(vec3_scale(f->right, u.x),
                                    vec3_add(vec3_scale(f->up, u.y), vec3_scale(f->normal, u.z)));
-        relume_prefilter_lobe(rgb, a->prefilter, f->normal, axis, exponent, cosine);
+        relume_prefiltered_lobe(rgb, a->prefilter, f->normal, axis, exponent, cosine);
     }
     for (int c = 0; c < 3; c++)
         rgb[c] *= (float)height;
 }
 
 // What models that know lobes of the light make of it.
-static void look_up(const relume_btf_ambient *a, const relume_btf_fitted *m, size_t texel,
-                    const struct relume_dome_blend *view, float rgb[3])
+static void look_up(const relume_btf_oriented_light *a, const relume_btf_fitted *m, size_t texel,
+                    const struct relume_direction_blend *view, float rgb[3])
 {
     const int count = m->model->view_grid ? view->count : 1;
     for (int i = 0; i < count; i++) {
@@ -150,8 +151,8 @@ static void look_up(const relume_btf_ambient *a, const relume_btf_fitted *m, siz
 }
 
 // All measured lights at once: what models do that say nothing better.
-static void sum_lights(const relume_btf_ambient *a, const relume_btf_fitted *m, size_t texel,
-                       const struct relume_dome_blend *view, float rgb[3])
+static void sum_lights(const relume_btf_oriented_light *a, const relume_btf_fitted *m, size_t texel,
+                       const struct relume_direction_blend *view, float rgb[3])
 {
     struct model_blend at = {.view = *view, .v = view->direction, .l = {0.0, 0.0, 1.0}};
     for (int i = 0; i < m->lights; i++) {
@@ -166,20 +167,20 @@ static void sum_lights(const relume_btf_ambient *a, const relume_btf_fitted *m, 
     }
 }
 
-void ambient_blend(const relume_btf_ambient *a, const relume_btf_fitted *m, size_t texel,
-                   const struct relume_dome_blend *view, float rgb[3])
+void ambient_blend(const relume_btf_oriented_light *a, const relume_btf_fitted *m, size_t texel,
+                   const struct relume_direction_blend *view, float rgb[3])
 {
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     (m->model->lit ? look_up : sum_lights)(a, m, texel, view, rgb);
 }
 
-void relume_btf_ambient_evaluate(const relume_btf_ambient *ambient, int level, int x, int y,
-                                 struct relume_vec3 view, float rgb[3])
+void relume_btf_oriented_light_evaluate(const relume_btf_oriented_light *ambient, int level, int x,
+                                        int y, struct relume_vec3 view, float rgb[3])
 {
     const relume_btf_fitted *m = relume_btf_fitted_level(ambient->model, level);
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     if (!(view.z > 0.0))
         return;
-    const struct relume_dome_blend b = relume_dome_at(m->view_dome, view);
+    const struct relume_direction_blend b = relume_direction_mesh_at(m->view_dome, view);
     ambient_blend(ambient, m, (size_t)y * (size_t)m->width + (size_t)x, &b, rgb);
 }

@@ -20,7 +20,7 @@ static const double MOST_ALBEDO = 64.0;
 // Values from so dark to so bright are fitted as they are, others in units that bring them there.
 static const double DARKEST = 1.0 / 64, BRIGHTEST = 8.0;
 // What a fit without a floor must leave of the squared error to be taken: lobes that hold the matt
-// part as well are further from their environment (ambient.h) than a floor is.
+// part as well are further from their environment (btf_environment.h) than a floor is.
 static const double MATT = 0.03;
 
 void fields_layout(relume_btf_fitted *m, size_t entries, bool each)
@@ -345,7 +345,7 @@ struct relume_btf_cost fields_cost(const relume_btf_fitted *m)
 }
 
 void fields_lit(const relume_btf_fitted *m, size_t entry, const struct model_at *at,
-                const struct relume_btf_ambient *ambient, float rgb[3])
+                const struct relume_btf_oriented_light *ambient, float rgb[3])
 {
     const size_t slice = entry * (size_t)m->views + (size_t)at->view;
     const float *lobe = model_floats(m, FIELD_LOBE) + slice * (size_t)m->lobes * 4;

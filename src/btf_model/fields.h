@@ -28,6 +28,6 @@ bool fields_fit(const struct fields *s, size_t entry, const float *values);
 struct relume_btf_cost fields_cost(const relume_btf_fitted *m);
 void fields_eval(const relume_btf_fitted *m, size_t entry, const struct model_at *at, float rgb[3]);
 void fields_lit(const relume_btf_fitted *m, size_t entry, const struct model_at *at,
-                const struct relume_btf_ambient *ambient, float rgb[3]);
+                const struct relume_btf_oriented_light *ambient, float rgb[3]);
 
 #endif

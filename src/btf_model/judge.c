@@ -13,14 +13,14 @@ struct texel_error {
 struct judge {
     const relume_btf_fitted *model;
     const relume_btf *btf;
-    struct relume_dome_blend *view, *light;  // of the BTF's directions among the model's
-    bool *pair;                              // [view][light]: whether it counts
+    struct relume_direction_blend *view, *light;  // of the BTF's directions among the model's
+    bool *pair;                                   // [view][light]: whether it counts
     size_t pairs;
     struct texel_error *error;  // [texel]
 };
 
 // Whether the model was fitted to that direction.
-static bool is_known(const struct relume_dome_blend *b)
+static bool is_known(const struct relume_direction_blend *b)
 {
     return b->count == 1 && b->rim > 1.0 - 1e-9;
 }
@@ -35,9 +35,9 @@ static relume_status prepare(struct judge *j, bool unseen)
     if (!j->view || !j->light || !j->pair || !j->error)
         return RELUME_ENOMEM;
     for (int v = 0; v < info->views; v++)
-        j->view[v] = relume_dome_at(j->model->view_dome, info->view[v]);
+        j->view[v] = relume_direction_mesh_at(j->model->view_dome, info->view[v]);
     for (int l = 0; l < info->lights; l++)
-        j->light[l] = relume_dome_at(j->model->light_dome, info->light[l]);
+        j->light[l] = relume_direction_mesh_at(j->model->light_dome, info->light[l]);
     for (int v = 0; v < info->views; v++)
         for (int l = 0; l < info->lights; l++) {
             const bool counts = !unseen || !is_known(&j->view[v]) || !is_known(&j->light[l]);

@@ -61,8 +61,8 @@ void relume_btf_fitted_destroy(relume_btf_fitted **fitted)
     free_arrays(m);
     free(m->prepared);
     relume_btf_fitted_destroy(&m->half);
-    relume_dome_destroy(&m->view_dome);
-    relume_dome_destroy(&m->light_dome);
+    relume_direction_mesh_destroy(&m->view_dome);
+    relume_direction_mesh_destroy(&m->light_dome);
     free(m->view);
     free(m->light);
     free(m);
@@ -141,8 +141,9 @@ static relume_status copy_directions(relume_btf_fitted *m, const relume_btf *btf
     m->light = mem_copy(btf->light, (size_t)m->lights, sizeof *m->light);
     if (!m->view || !m->light)
         return RELUME_ENOMEM;
-    const relume_status status = relume_dome_create(&m->view_dome, m->view, m->views, log);
-    return status ? status : relume_dome_create(&m->light_dome, m->light, m->lights, log);
+    const relume_status status =
+        relume_direction_mesh_create(&m->view_dome, m->view, m->views, log);
+    return status ? status : relume_direction_mesh_create(&m->light_dome, m->light, m->lights, log);
 }
 
 relume_status model_make_arrays(relume_btf_fitted *m)
@@ -239,13 +240,13 @@ relume_status relume_btf_as_model(relume_btf_fitted **out, const relume_btf *btf
 // ---------------------------------------------------------------- reading back
 
 // All around, a hair above the horizon.
-static double mean_rim(const relume_dome *lights)
+static double mean_rim(const relume_direction_mesh *lights)
 {
     enum { AROUND = 48 };
     double sum = 0.0;
     for (int i = 0; i < AROUND; i++) {
         const double phi = 2.0 * M_PI * i / AROUND;
-        sum += relume_dome_at(lights, vec3_of(cos(phi), sin(phi), 1e-9)).direction.z;
+        sum += relume_direction_mesh_at(lights, vec3_of(cos(phi), sin(phi), 1e-9)).direction.z;
     }
     return sum / AROUND;
 }
@@ -292,17 +293,17 @@ const relume_btf_fitted *relume_btf_fitted_level(const relume_btf_fitted *m, int
 }
 
 // What stands for a direction where the model is not gridded: itself.
-static struct relume_dome_blend alone(const struct relume_dome_blend *b)
+static struct relume_direction_blend alone(const struct relume_direction_blend *b)
 {
-    return (struct relume_dome_blend){
+    return (struct relume_direction_blend){
         .count = 1, .weight = {1.0}, .direction = b->direction, .rim = b->rim, .length = 1.0};
 }
 
 void model_blend(const relume_btf_fitted *m, size_t texel, const struct model_blend *at,
                  float rgb[3])
 {
-    const struct relume_dome_blend v = m->model->view_grid ? at->view : alone(&at->view);
-    const struct relume_dome_blend l = m->model->light_grid ? at->light : alone(&at->light);
+    const struct relume_direction_blend v = m->model->view_grid ? at->view : alone(&at->view);
+    const struct relume_direction_blend l = m->model->light_grid ? at->light : alone(&at->light);
     double sum[3] = {0.0, 0.0, 0.0};
     for (int i = 0; i < v.count; i++)
         for (int j = 0; j < l.count; j++) {
@@ -324,7 +325,8 @@ void relume_btf_fitted_evaluate(const relume_btf_fitted *fitted, int x, int y,
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
     if (!(view.z > 0.0) || !(light.z > 0.0))
         return;
-    const struct model_blend at = {relume_dome_at(fitted->view_dome, view),
-                                   relume_dome_at(fitted->light_dome, light), view, light};
+    const struct model_blend at = {relume_direction_mesh_at(fitted->view_dome, view),
+                                   relume_direction_mesh_at(fitted->light_dome, light), view,
+                                   light};
     model_blend(fitted, (size_t)y * (size_t)fitted->width + (size_t)x, &at, rgb);
 }

@@ -30,7 +30,7 @@ struct relume_btf_fitted {
     int texel_bytes, pair_bytes;      // of a row of bits, where the model has such
     bool without_cosine;
     vec3 *view, *light;
-    relume_dome *view_dome, *light_dome;
+    relume_direction_mesh *view_dome, *light_dome;
     struct model_array array[MODEL_ARRAYS];
     int arrays;
     void *prepared;           // what the model's `prepare` made of them, or NULL
@@ -55,7 +55,7 @@ struct fitting {
     double ratio;  // asked for; 0: the model's choice
 };
 
-struct relume_btf_ambient;
+struct relume_btf_oriented_light;
 
 struct relume_btf_model {
     const char *name;
@@ -76,7 +76,7 @@ struct relume_btf_model {
     bool lobes_times_cosine;  // where values include n.l
     // Under an environment (btf_model/ambient.h); NULL: the sum over the measured lights.
     void (*lit)(const relume_btf_fitted *m, const struct model_at *at,
-                const struct relume_btf_ambient *ambient, float rgb[3]);
+                const struct relume_btf_oriented_light *ambient, float rgb[3]);
 };
 
 extern const struct relume_btf_model model_lit, model_bump, model_laf, model_slaf, model_rfp,
@@ -111,21 +111,21 @@ relume_status model_save_into(const relume_btf_fitted *m, const char *folder,
 
 // Value of the fitted model between its directions.
 struct model_blend {
-    struct relume_dome_blend view, light;
+    struct relume_direction_blend view, light;
     vec3 v, l;
 };
 void model_blend(const relume_btf_fitted *m, size_t texel, const struct model_blend *at,
                  float rgb[3]);
 // Light number `i` alone. What is summed over lights has n.l in its weights: model_blend.l is then
 // the pole.
-static inline struct relume_dome_blend model_measured_light(const relume_btf_fitted *m, int i)
+static inline struct relume_direction_blend model_measured_light(const relume_btf_fitted *m, int i)
 {
-    return (struct relume_dome_blend){.count = 1,
-                                      .index = {i},
-                                      .weight = {1.0},
-                                      .direction = m->light[i],
-                                      .rim = 1.0,
-                                      .length = 1.0};
+    return (struct relume_direction_blend){.count = 1,
+                                           .index = {i},
+                                           .weight = {1.0},
+                                           .direction = m->light[i],
+                                           .rim = 1.0,
+                                           .length = 1.0};
 }
 
 static inline size_t model_pairs(const relume_btf_fitted *m)

@@ -128,7 +128,7 @@ static const double LEAST_COSINE = 1e-6;
 // What the table's value is times: the share that arrives below its lowest lights, or, where values
 // lack n.l, the cosine of the light on the turned plane over that on the plane, which follows.
 static double scale_of(const relume_btf_fitted *m, vec3 light, vec3 turned,
-                       const struct relume_dome_blend *at)
+                       const struct relume_direction_blend *at)
 {
     return m->without_cosine ? fmax(turned.z, 0.0) / fmax(light.z, LEAST_COSINE)
                              : at->rim / at->length;
@@ -141,9 +141,10 @@ static void eval(const relume_btf_fitted *m, const struct model_at *at, float rg
     const vec3 n =
         vec3_unit(vec3_of((double)float_from_half(normal[0]), (double)float_from_half(normal[1]),
                           (double)float_from_half(normal[2])));
-    const struct relume_dome_blend v = relume_dome_at(m->view_dome, vec3_upright(at->v, n));
+    const struct relume_direction_blend v =
+        relume_direction_mesh_at(m->view_dome, vec3_upright(at->v, n));
     const vec3 turned = vec3_upright(at->l, n);
-    const struct relume_dome_blend l = relume_dome_at(m->light_dome, turned);
+    const struct relume_direction_blend l = relume_direction_mesh_at(m->light_dome, turned);
     const double scale = scale_of(m, at->l, turned, &l);
     double sum[3] = {0.0, 0.0, 0.0};
     for (int i = 0; i < v.count; i++)

@@ -333,7 +333,7 @@ static struct relume_btf_cost cost_scaled(const relume_btf_fitted *m)
 
 // For one view a Lafortune lobe is a cosine lobe of the light; all of the sum is times n.l.
 static void lit(const relume_btf_fitted *m, const struct model_at *at,
-                const struct relume_btf_ambient *ambient, float rgb[3])
+                const struct relume_btf_oriented_light *ambient, float rgb[3])
 {
     const size_t lobes = (size_t)m->lobes;
     const uint16_t *diffuse = model_halfs(m, DIFFUSE) + 3 * at->texel;
@@ -354,7 +354,7 @@ static void lit(const relume_btf_fitted *m, const struct model_at *at,
 }
 
 static void lit_scaled(const relume_btf_fitted *m, const struct model_at *at,
-                       const struct relume_btf_ambient *ambient, float rgb[3])
+                       const struct relume_btf_oriented_light *ambient, float rgb[3])
 {
     const float factor = model_floats(m, FACTOR)[at->texel * (size_t)m->views + (size_t)at->view];
     lit(m, at, ambient, rgb);

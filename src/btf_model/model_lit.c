@@ -51,7 +51,7 @@ static struct relume_btf_cost cost(const relume_btf_fitted *m)
 }
 
 static void under(const relume_btf_fitted *m, const struct model_at *at,
-                  const struct relume_btf_ambient *ambient, float rgb[3])
+                  const struct relume_btf_oriented_light *ambient, float rgb[3])
 {
     const uint16_t *texture = model_halfs(m, TEXTURE) + 3 * at->texel;
     ambient_even(ambient, true, rgb);

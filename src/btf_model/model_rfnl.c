@@ -40,7 +40,7 @@ static struct relume_btf_cost cost(const relume_btf_fitted *m)
 }
 
 static void lit(const relume_btf_fitted *m, const struct model_at *at,
-                const struct relume_btf_ambient *ambient, float rgb[3])
+                const struct relume_btf_oriented_light *ambient, float rgb[3])
 {
     fields_lit(m, at->texel, at, ambient, rgb);
 }

@@ -14,7 +14,7 @@
 
 #include <string.h>
 
-enum { EXPONENTS = RELUME_PREFILTER_EXPONENTS, STEPS = RELUME_PREFILTER_STEPS };
+enum { EXPONENTS = RELUME_PREFILTERED_EXPONENTS, STEPS = RELUME_PREFILTERED_STEPS };
 enum { CELL_COLUMNS = 96, CELL_ROWS = 48 };  // cells of 3.75 degrees: the sharpest lobe has 12
 enum { LANES = 16 };                         // exponents, and what fills vectors
 enum { TABLE = 2048, USUAL_HEIGHT = 48 };
@@ -69,7 +69,7 @@ static int gather(struct relume_environment_cell *cell, const struct relume_ligh
 // ---------------------------------------------------------------- maps
 
 struct filtering {
-    relume_prefilter *p;
+    relume_prefiltered *p;
     float (*power)[LANES];  // [TABLE + 1]: (i / TABLE)^e
 };
 
@@ -92,7 +92,7 @@ static inline void add_lobes(struct sums *restrict sums, const float low[restric
 
 static void filter_pixel(const struct filtering *f, vec3 d, struct sums *sums)
 {
-    const relume_prefilter *p = f->p;
+    const relume_prefiltered *p = f->p;
     for (int i = 0; i < p->cells; i++) {
         const struct relume_environment_cell *cell = &p->cell[i];
         const double z = vec3_dot(d, cell->direction);
@@ -111,7 +111,7 @@ static void filter_row(void *context, size_t row, int worker)
 {
     (void)worker;
     const struct filtering *f = context;
-    relume_prefilter *p = f->p;
+    relume_prefiltered *p = f->p;
     const size_t width = (size_t)p->width, plane = width * (size_t)p->height;
     for (size_t x = 0; x < width; x++) {
         struct sums sums = {.diffuse = {0.0f}};
@@ -126,7 +126,7 @@ static void filter_row(void *context, size_t row, int worker)
     }
 }
 
-static relume_status filter(relume_prefilter *p, int threads)
+static relume_status filter(relume_prefiltered *p, int threads)
 {
     struct filtering f = {p, mem_zeroed(TABLE + 1, sizeof *f.power)};
     if (!f.power)
@@ -186,7 +186,7 @@ static void parts_of_lobes(double axis, double rim, double even[EXPONENTS],
 }
 
 // A whole lobe has the integral 2 pi / (e + 1).
-static void fill_parts(relume_prefilter *p)
+static void fill_parts(relume_prefiltered *p)
 {
     for (int i = 0; i < STEPS; i++) {
         double even[EXPONENTS], cosine[EXPONENTS];
@@ -202,7 +202,7 @@ static void fill_parts(relume_prefilter *p)
 // ---------------------------------------------------------------- making one
 
 static relume_status check(const struct relume_light *light,
-                           const struct relume_prefilter_params *p)
+                           const struct relume_prefiltered_params *p)
 {
     if (light->kind != RELUME_LIGHT_ENVIRONMENT)
         return log_fail(p->log, RELUME_EINVAL, "prefilter: expected an environment; found '%s'",
@@ -216,12 +216,12 @@ static relume_status check(const struct relume_light *light,
     return relume_light_check(light, "environment", p->log);
 }
 
-relume_status prefilter_from_cells(relume_prefilter **out,
+relume_status prefilter_from_cells(relume_prefiltered **out,
                                    const struct relume_environment_cell *cell, int cells,
                                    int height, double rim, int threads)
 {
     *out = NULL;
-    relume_prefilter *p = mem_zeroed(1, sizeof *p);
+    relume_prefiltered *p = mem_zeroed(1, sizeof *p);
     if (!p)
         return RELUME_ENOMEM;
     p->height = height;
@@ -240,15 +240,15 @@ relume_status prefilter_from_cells(relume_prefilter **out,
         status = filter(p, threads);
     }
     if (status)
-        relume_prefilter_destroy(&p);
+        relume_prefiltered_destroy(&p);
     *out = p;
     return status;
 }
 
-relume_status relume_prefilter_create(relume_prefilter **out, const struct relume_light *light,
-                                      const struct relume_prefilter_params *params)
+relume_status relume_prefiltered_create(relume_prefiltered **out, const struct relume_light *light,
+                                        const struct relume_prefiltered_params *params)
 {
-    const struct relume_prefilter_params p = PARAMS(relume_prefilter_params, params);
+    const struct relume_prefiltered_params p = PARAMS(relume_prefiltered_params, params);
     *out = NULL;
     relume_status status = check(light, &p);
     if (status)
@@ -262,9 +262,9 @@ relume_status relume_prefilter_create(relume_prefilter **out, const struct relum
     return status;
 }
 
-void relume_prefilter_destroy(relume_prefilter **prefilter)
+void relume_prefiltered_destroy(relume_prefiltered **prefilter)
 {
-    relume_prefilter *p = *prefilter;
+    relume_prefiltered *p = *prefilter;
     *prefilter = NULL;
     if (!p)
         return;
@@ -275,15 +275,15 @@ void relume_prefilter_destroy(relume_prefilter **prefilter)
     free(p);
 }
 
-struct relume_prefilter_info relume_prefilter_info(const relume_prefilter *p)
+struct relume_prefiltered_info relume_prefiltered_info(const relume_prefiltered *p)
 {
-    return (struct relume_prefilter_info){p->width, p->height, p->diffuse, p->specular, p->part};
+    return (struct relume_prefiltered_info){p->width, p->height, p->diffuse, p->specular, p->part};
 }
 
 // ---------------------------------------------------------------- lookups
 
 // Bilinear; columns repeat, rows end at the poles.
-static void add_map(const relume_prefilter *p, const float *map, const double at[2], float weight,
+static void add_map(const relume_prefiltered *p, const float *map, const double at[2], float weight,
                     float rgb[3])
 {
     const double u = at[0] * p->width - 0.5, v = fmax(at[1] * p->height - 0.5, 0.0);
@@ -309,7 +309,8 @@ static int layer_of(double exponent, float *part)
     return low;
 }
 
-void relume_prefilter_diffuse(float rgb[3], const relume_prefilter *p, struct relume_vec3 normal)
+void relume_prefiltered_diffuse(float rgb[3], const relume_prefiltered *p,
+                                struct relume_vec3 normal)
 {
     double at[2];
     place_of(normal, at);
@@ -317,8 +318,8 @@ void relume_prefilter_diffuse(float rgb[3], const relume_prefilter *p, struct re
     add_map(p, p->diffuse, at, 1.0f, rgb);
 }
 
-void relume_prefilter_specular(float rgb[3], const relume_prefilter *p, struct relume_vec3 axis,
-                               double exponent)
+void relume_prefiltered_specular(float rgb[3], const relume_prefiltered *p, struct relume_vec3 axis,
+                                 double exponent)
 {
     double at[2];
     float part;
@@ -331,7 +332,7 @@ void relume_prefilter_specular(float rgb[3], const relume_prefilter *p, struct r
     add_map(p, map + plane, at, part, rgb);
 }
 
-static float part_at(const relume_prefilter *p, double cosine, double exponent, bool with_cosine)
+static float part_at(const relume_prefiltered *p, double cosine, double exponent, bool with_cosine)
 {
     float part;
     const int low = layer_of(exponent, &part);
@@ -344,10 +345,10 @@ static float part_at(const relume_prefilter *p, double cosine, double exponent, 
     return a + part * (b - a);
 }
 
-void relume_prefilter_lobe(float rgb[3], const relume_prefilter *p, struct relume_vec3 normal,
-                           struct relume_vec3 axis, double exponent, bool cosine)
+void relume_prefiltered_lobe(float rgb[3], const relume_prefiltered *p, struct relume_vec3 normal,
+                             struct relume_vec3 axis, double exponent, bool cosine)
 {
-    relume_prefilter_specular(rgb, p, axis, exponent);
+    relume_prefiltered_specular(rgb, p, axis, exponent);
     const float scale =
         (float)(2.0 / (exponent + 1.0)) * part_at(p, vec3_dot(normal, axis), exponent, cosine);
     for (int c = 0; c < 3; c++)

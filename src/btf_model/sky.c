@@ -17,18 +17,18 @@ static double exponent_of(double mean_cosine)
     return fmin(fmax(e, 1.0), SHARPEST);
 }
 
-static void add_direction(struct relume_btf_sky *s, vec3 d, double solid_angle)
+static void add_direction(struct relume_btf_environment *s, vec3 d, double solid_angle)
 {
-    const struct relume_dome_blend b = relume_dome_at(s->model->light_dome, d);
+    const struct relume_direction_blend b = relume_direction_mesh_at(s->model->light_dome, d);
     const double arrives = (s->model->without_cosine ? d.z : b.rim / b.length) * solid_angle / M_PI;
     for (int i = 0; i < b.count; i++) {
-        struct relume_btf_cone *cone = &s->cone[b.index[i]];
+        struct relume_btf_light_lobe *cone = &s->cone[b.index[i]];
         cone->weight += arrives * b.weight[i];
         cone->axis = vec3_add(cone->axis, vec3_scale(d, arrives * b.weight[i]));
     }
 }
 
-static void fill_cones(struct relume_btf_sky *s)
+static void fill_cones(struct relume_btf_environment *s)
 {
     enum { ROWS = 48, COLUMNS = 128 };
     for (int i = 0; i < ROWS * COLUMNS; i++) {
@@ -37,7 +37,7 @@ static void fill_cones(struct relume_btf_sky *s)
         add_direction(s, vec3_of(r * cos(phi), r * sin(phi), z), 2.0 * M_PI / (ROWS * COLUMNS));
     }
     for (int i = 0; i < s->model->lights; i++) {
-        struct relume_btf_cone *cone = &s->cone[i];
+        struct relume_btf_light_lobe *cone = &s->cone[i];
         const double length = vec3_length(cone->axis);
         const bool met = length > 0.0;  // all are but what is far below the grid
         cone->exponent = met ? exponent_of(length / cone->weight) : 1.0;
@@ -45,10 +45,11 @@ static void fill_cones(struct relume_btf_sky *s)
     }
 }
 
-relume_status relume_btf_sky_create(relume_btf_sky **out, const relume_btf_fitted *model,
-                                    const relume_prefilter *prefilter)
+relume_status relume_btf_environment_create(relume_btf_environment **out,
+                                            const relume_btf_fitted *model,
+                                            const relume_prefiltered *prefilter)
 {
-    relume_btf_sky *s = mem_zeroed(1, sizeof *s);
+    relume_btf_environment *s = mem_zeroed(1, sizeof *s);
     *out = s;
     if (!s)
         return RELUME_ENOMEM;
@@ -58,11 +59,11 @@ relume_status relume_btf_sky_create(relume_btf_sky **out, const relume_btf_fitte
     if (s->cone)
         fill_cones(s);
     else
-        relume_btf_sky_destroy(out);
+        relume_btf_environment_destroy(out);
     return *out ? RELUME_OK : RELUME_ENOMEM;
 }
 
-void relume_btf_sky_destroy(relume_btf_sky **sky)
+void relume_btf_environment_destroy(relume_btf_environment **sky)
 {
     if (*sky)
         free((*sky)->cone);
@@ -70,31 +71,31 @@ void relume_btf_sky_destroy(relume_btf_sky **sky)
     *sky = NULL;
 }
 
-const struct relume_btf_cone *relume_btf_sky_cones(const relume_btf_sky *sky)
+const struct relume_btf_light_lobe *relume_btf_environment_cones(const relume_btf_environment *sky)
 {
     return sky->cone;
 }
 
-void relume_btf_sky_weight(float rgb[3], const relume_btf_sky *sky,
-                           const struct relume_btf_frame *f, int i)
+void relume_btf_environment_weight(float rgb[3], const relume_btf_environment *sky,
+                                   const struct relume_btf_frame *f, int i)
 {
-    const struct relume_btf_cone *cone = &sky->cone[i];
+    const struct relume_btf_light_lobe *cone = &sky->cone[i];
     const vec3 axis =
         vec3_add(vec3_scale(f->right, cone->axis.x),
                  vec3_add(vec3_scale(f->up, cone->axis.y), vec3_scale(f->normal, cone->axis.z)));
-    relume_prefilter_specular(rgb, sky->prefilter, axis, cone->exponent);
+    relume_prefiltered_specular(rgb, sky->prefilter, axis, cone->exponent);
     for (int c = 0; c < 3; c++)
         rgb[c] *= (float)cone->weight;
 }
 
-struct relume_btf_ambient sky_ambient(const relume_btf_sky *sky,
-                                      const struct relume_btf_frame *frame)
+struct relume_btf_oriented_light sky_ambient(const relume_btf_environment *sky,
+                                             const struct relume_btf_frame *frame)
 {
     const relume_btf_fitted *m = sky->model;
-    struct relume_btf_ambient a = {.model = m, .prefilter = sky->prefilter, .frame = *frame};
+    struct relume_btf_oriented_light a = {.model = m, .prefilter = sky->prefilter, .frame = *frame};
     // the mean under a lobe of exponent 1 is the integral of n.l E / pi
-    relume_prefilter_specular(a.even[1], sky->prefilter, frame->normal, 1.0);
-    relume_prefilter_diffuse(a.even[0], sky->prefilter, frame->normal);
+    relume_prefiltered_specular(a.even[1], sky->prefilter, frame->normal, 1.0);
+    relume_prefiltered_diffuse(a.even[0], sky->prefilter, frame->normal);
     for (int c = 0; c < 3 && m->without_cosine; c++)
         a.even[0][c] = a.even[1][c];
     return a;

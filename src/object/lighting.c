@@ -21,7 +21,7 @@ static double rim_of(const relume_objects *o, int material)
 }
 
 // The maps of an earlier material whose lowest lights are the same, or new ones.
-static relume_status find_prefilter(relume_prefilter **out, struct sky_light *sky,
+static relume_status find_prefilter(relume_prefiltered **out, struct sky_light *sky,
                                     const relume_objects *o, int material,
                                     const struct relume_light *light, int threads)
 {
@@ -31,8 +31,9 @@ static relume_status find_prefilter(relume_prefilter **out, struct sky_light *sk
             *out = sky->prefilter[i];
             return RELUME_OK;
         }
-    const relume_status status = relume_prefilter_create(
-        &sky->prefilter[material], light, relume_prefilter_params(.rim = rim, .threads = threads));
+    const relume_status status =
+        relume_prefiltered_create(&sky->prefilter[material], light,
+                                  relume_prefiltered_params(.rim = rim, .threads = threads));
     *out = sky->prefilter[material];
     return status;
 }
@@ -45,12 +46,12 @@ static relume_status make_sky(struct sky_light *sky, const relume_objects *o,
     sky->sky = mem_zeroed(materials, sizeof *sky->sky);
     relume_status status = sky->prefilter && sky->sky ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; i < o->info.materials && !status; i++) {
-        relume_prefilter *prefilter;
+        relume_prefiltered *prefilter;
         if (!is_shown(o, i))
             continue;
         status = find_prefilter(&prefilter, sky, o, i, light, threads);
         if (!status)
-            status = relume_btf_sky_create(&sky->sky[i], model_of(o, i), prefilter);
+            status = relume_btf_environment_create(&sky->sky[i], model_of(o, i), prefilter);
     }
     return status;
 }
@@ -89,8 +90,8 @@ void lighting_destroy(struct lighting *l)
 {
     for (int i = 0; i < l->skies; i++) {
         for (int k = 0; k < l->materials && l->sky[i].prefilter && l->sky[i].sky; k++) {
-            relume_btf_sky_destroy(&l->sky[i].sky[k]);
-            relume_prefilter_destroy(&l->sky[i].prefilter[k]);
+            relume_btf_environment_destroy(&l->sky[i].sky[k]);
+            relume_prefiltered_destroy(&l->sky[i].prefilter[k]);
         }
         free(l->sky[i].prefilter);
         free(l->sky[i].sky);

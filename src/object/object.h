@@ -72,8 +72,8 @@ bool objects_reached(const relume_objects *o, vec3 point, vec3 normal, vec3 towa
 // An environment on each of the materials; what is not shown has none.
 struct sky_light {
     int first, lamps;
-    relume_prefilter **prefilter;  // [materials]; NULL also where it is that of another
-    relume_btf_sky **sky;          // [materials]
+    relume_prefiltered **prefilter;  // [materials]; NULL also where it is that of another
+    relume_btf_environment **sky;    // [materials]
 };
 struct lighting {
     struct relume_lamp *lamp;

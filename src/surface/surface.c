@@ -164,23 +164,24 @@ struct relume_btf_surface_level relume_btf_surface_level(const relume_btf_surfac
 // A ray between the measured directions.
 struct blend {
     struct model_blend at;  // its light is unused under an environment
-    const relume_btf_ambient *ambient;
-    const relume_btf_sky *summed;  // or NULL: an environment that is summed over the lights
-    struct relume_btf_ambient sky;
+    const relume_btf_oriented_light *ambient;
+    const relume_btf_environment *summed;  // or NULL: an environment that is summed over the lights
+    struct relume_btf_oriented_light sky;
 };
 
 static struct blend blend_of(const relume_btf_surface *s, const struct relume_btf_ray *ray)
 {
     const relume_btf_fitted *m = s->level[0].model;
-    struct blend b = {
-        .at = {.view = relume_dome_at(m->view_dome, ray->view), .v = ray->view, .l = ray->light},
-        .ambient = ray->ambient};
+    struct blend b = {.at = {.view = relume_direction_mesh_at(m->view_dome, ray->view),
+                             .v = ray->view,
+                             .l = ray->light},
+                      .ambient = ray->ambient};
     if (ray->sky && m->model->lit)
         b.sky = sky_ambient(ray->sky, &ray->frame);
     else if (ray->sky)
         b.summed = ray->sky;
     else if (!ray->ambient)
-        b.at.light = relume_dome_at(m->light_dome, ray->light);
+        b.at.light = relume_direction_mesh_at(m->light_dome, ray->light);
     return b;
 }
 
@@ -261,7 +262,7 @@ static void sum_sky(const relume_btf_surface *s, const struct points *p, struct 
     at->at.l = vec3_of(0.0, 0.0, 1.0);  // n.l is in the weight
     for (int i = 0; i < m->lights; i++) {
         float weight[3], value[3] = {0.0f, 0.0f, 0.0f};
-        relume_btf_sky_weight(weight, at->summed, frame, i);
+        relume_btf_environment_weight(weight, at->summed, frame, i);
         at->at.light = model_measured_light(m, i);
         add_points(s, p, at, value);
         for (int c = 0; c < 3; c++)

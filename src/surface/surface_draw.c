@@ -17,8 +17,8 @@ struct drawing {
     const struct relume_btf_camera *camera;
     struct lens lens;
     const struct relume_light *lights;
-    relume_btf_ambient **ambient;  // of each light, NULL: no environment
-    relume_prefilter **prefilter;
+    relume_btf_oriented_light **ambient;  // of each light, NULL: no environment
+    relume_prefiltered **prefilter;
     int count;
     double unit;           // texels of a world unit
     double width, height;  // of the surface, texels
@@ -172,14 +172,14 @@ static relume_status make_ambient(struct drawing *d, int i, const struct relume_
     // the surface lies in the world as in its own frame
     const struct relume_btf_frame frame = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
     const relume_btf_fitted *model = d->surface->level[0].model;
-    const relume_status status = relume_prefilter_create(
+    const relume_status status = relume_prefiltered_create(
         &d->prefilter[i], &d->lights[i],
-        relume_prefilter_params(.log = p->log, .rim = relume_btf_fitted_info(model).rim,
-                                .threads = p->threads));
+        relume_prefiltered_params(.log = p->log, .rim = relume_btf_fitted_info(model).rim,
+                                  .threads = p->threads));
     return status ? status
-                  : relume_btf_ambient_create(
+                  : relume_btf_oriented_light_create(
                         &d->ambient[i], model, d->prefilter[i], &frame,
-                        relume_btf_ambient_params(.own_maps = true, .threads = p->threads));
+                        relume_btf_oriented_light_params(.own_maps = true, .threads = p->threads));
 }
 
 static relume_status make_ambients(struct drawing *d, const struct relume_btf_draw_params *p)
@@ -196,8 +196,8 @@ static relume_status make_ambients(struct drawing *d, const struct relume_btf_dr
 static void free_ambients(struct drawing *d)
 {
     for (int i = 0; i < d->count && d->ambient && d->prefilter; i++) {
-        relume_btf_ambient_destroy(&d->ambient[i]);
-        relume_prefilter_destroy(&d->prefilter[i]);
+        relume_btf_oriented_light_destroy(&d->ambient[i]);
+        relume_prefiltered_destroy(&d->prefilter[i]);
     }
     free(d->ambient);
     free(d->prefilter);

@@ -4,8 +4,9 @@
 //   bench_ambient SKY.hdr... -- MODEL...
 //
 // Relative RMS over 8 texels from one eye: `plane` are the maps of the environment and `own` those
-// of the one orientation (relume_btf_ambient), of a wall that faces +z; `plane, any` and `ball` are
-// relume_btf_sky on that wall and over orientations all around, the latter relative to all of them.
+// of the one orientation (relume_btf_oriented_light), of a wall that faces +z; `plane, any` and
+// `ball` are relume_btf_environment on that wall and over orientations all around, the latter
+// relative to all of them.
 #include <relume/relume.h>
 
 #include <math.h>
@@ -56,8 +57,8 @@ struct trial {
     const relume_btf_fitted *model;
     const relume_btf_surface *surface;
     const struct relume_light *light;
-    const relume_prefilter *prefilter;
-    const relume_btf_sky *sky;
+    const relume_prefiltered *prefilter;
+    const relume_btf_environment *sky;
     struct relume_btf_frame frame;
     struct relume_vec3 view;
     int width, height;
@@ -92,19 +93,19 @@ static void brute(const struct trial *t, double rgb[TEXELS][3])
 
 static void ambient(const struct trial *t, bool own, double rgb[TEXELS][3])
 {
-    relume_btf_ambient *a;
-    must(relume_btf_ambient_create(&a, t->model, t->prefilter, &t->frame,
-                                   relume_btf_ambient_params(.own_maps = own)),
+    relume_btf_oriented_light *a;
+    must(relume_btf_oriented_light_create(&a, t->model, t->prefilter, &t->frame,
+                                          relume_btf_oriented_light_params(.own_maps = own)),
          "ambient");
     for (int k = 0; k < TEXELS; k++) {
         float value[3];
         int x, y;
         place(t, k, &x, &y);
-        relume_btf_ambient_evaluate(a, 0, x, y, t->view, value);
+        relume_btf_oriented_light_evaluate(a, 0, x, y, t->view, value);
         for (int c = 0; c < 3; c++)
             rgb[k][c] = (double)value[c];
     }
-    relume_btf_ambient_destroy(&a);
+    relume_btf_oriented_light_destroy(&a);
 }
 
 static void any(const struct trial *t, double rgb[TEXELS][3])
@@ -162,8 +163,8 @@ static void run(const char *sky, const char *folder)
     relume_environment *e;
     relume_btf_fitted *model;
     relume_btf_surface *surface;
-    relume_prefilter *prefilter;
-    relume_btf_sky *any_way;
+    relume_prefiltered *prefilter;
+    relume_btf_environment *any_way;
     must(relume_image_load(&map, sky, NULL), sky);
     must(relume_environment_create(&e, &map, NULL), sky);
     must(relume_btf_fitted_open(&model, folder, NULL), folder);
@@ -171,15 +172,15 @@ static void run(const char *sky, const char *folder)
     const struct relume_btf_fitted_info info = relume_btf_fitted_info(model);
     const struct relume_light light = {
         .kind = RELUME_LIGHT_ENVIRONMENT, .environment = e, .rgb = {1, 1, 1}};
-    must(relume_prefilter_create(&prefilter, &light, relume_prefilter_params(.rim = info.rim)),
+    must(relume_prefiltered_create(&prefilter, &light, relume_prefiltered_params(.rim = info.rim)),
          sky);
-    must(relume_btf_sky_create(&any_way, model, prefilter), folder);
+    must(relume_btf_environment_create(&any_way, model, prefilter), folder);
     struct trial t = {
         model,      surface,    &light, prefilter, any_way, frame_of(0), unit(0.28, 0, 0.96),
         info.width, info.height};
     judge(&t, sky, folder);
-    relume_btf_sky_destroy(&any_way);
-    relume_prefilter_destroy(&prefilter);
+    relume_btf_environment_destroy(&any_way);
+    relume_prefiltered_destroy(&prefilter);
     relume_btf_surface_destroy(&surface);
     relume_btf_fitted_destroy(&model);
     relume_environment_destroy(&e);

@@ -107,7 +107,7 @@ static void brute(const relume_btf_fitted *m, const struct relume_light *light,
 }
 
 // The greatest error over two orientations and views, relative to the green that is right.
-static double worst(const relume_btf_fitted *m, const relume_prefilter *prefilter,
+static double worst(const relume_btf_fitted *m, const relume_prefiltered *prefilter,
                     const struct relume_light *light, bool own_maps)
 {
     static const vec3 normals[] = {{0.0, 0.0, 1.0}, {0.3, 0.9, -0.2}};
@@ -116,31 +116,31 @@ static double worst(const relume_btf_fitted *m, const relume_prefilter *prefilte
     for (int k = 0; k < 2; k++) {
         const struct relume_btf_frame f = frame_of(normals[k]);
         const vec3 view = vec3_unit(views[k]);
-        relume_btf_ambient *a;
+        relume_btf_oriented_light *a;
         float got[3];
         double want[3];
-        CHECK_OK(relume_btf_ambient_create(&a, m, prefilter, &f,
-                                           relume_btf_ambient_params(.own_maps = own_maps)));
-        relume_btf_ambient_evaluate(a, 0, 2, 1, view, got);
+        CHECK_OK(relume_btf_oriented_light_create(
+            &a, m, prefilter, &f, relume_btf_oriented_light_params(.own_maps = own_maps)));
+        relume_btf_oriented_light_evaluate(a, 0, 2, 1, view, got);
         brute(m, light, &f, 2, view, want);
         for (int c = 0; c < 3; c++)
             most = fmax(most, fabs((double)got[c] - want[c]) / want[1]);
-        relume_btf_ambient_destroy(&a);
+        relume_btf_oriented_light_destroy(&a);
     }
     return most;
 }
 
 // The same of a sky in any orientation.
-static double worst_sky(const relume_btf_fitted *m, const relume_prefilter *prefilter,
+static double worst_sky(const relume_btf_fitted *m, const relume_prefiltered *prefilter,
                         const struct relume_light *light)
 {
     static const vec3 normals[] = {
         {0.0, 0.0, 1.0}, {0.3, 0.9, -0.2}, {-0.8, 0.1, 0.2}, {0.1, -0.9, 0.4}};
     relume_btf_surface *surface;
-    relume_btf_sky *sky;
+    relume_btf_environment *sky;
     double most = 0.0;
     CHECK_OK(relume_btf_surface_create(&surface, m, NULL, NULL));
-    CHECK_OK(relume_btf_sky_create(&sky, m, prefilter));
+    CHECK_OK(relume_btf_environment_create(&sky, m, prefilter));
     for (int k = 0; k < 4; k++) {
         const struct relume_btf_ray ray = {
             .view = vec3_unit(vec3_of(0.6, -0.3, 0.7)), .sky = sky, .frame = frame_of(normals[k])};
@@ -151,7 +151,7 @@ static double worst_sky(const relume_btf_fitted *m, const relume_prefilter *pref
         for (int c = 0; c < 3; c++)
             most = fmax(most, fabs((double)got[c] - want[c]) / want[1]);
     }
-    relume_btf_sky_destroy(&sky);
+    relume_btf_environment_destroy(&sky);
     relume_btf_surface_destroy(&surface);
     return most;
 }
@@ -184,9 +184,9 @@ static void test_brute_force(void **state)
                                        .environment = e,
                                        .rotate_deg = 25.0,
                                        .rgb = {1.0f, 0.9f, 1.2f}};
-    relume_prefilter *p;
+    relume_prefiltered *p;
     // cosine of the lowest lights, 70 degrees from the pole; their ring of 12 is a polygon
-    CHECK_OK(relume_prefilter_create(&p, &light, relume_prefilter_params(.rim = 0.347)));
+    CHECK_OK(relume_prefiltered_create(&p, &light, relume_prefiltered_params(.rim = 0.347)));
     for (int bare = 0; bare < 2; bare++) {
         relume_btf *btf = make(lambert_and_gloss, "coarse", bare);
         for (const struct relume_btf_model *const *k = relume_btf_models; *k; k++) {
@@ -210,7 +210,7 @@ static void test_brute_force(void **state)
         }
         relume_btf_destroy(&btf);
     }
-    relume_prefilter_destroy(&p);
+    relume_prefiltered_destroy(&p);
     relume_environment_destroy(&e);
 }
 
@@ -231,8 +231,8 @@ static void test_measured_lights(void **state)
                                        .environment = e,
                                        .rotate_deg = 25.0,
                                        .rgb = {1.0f, 0.9f, 1.2f}};
-    relume_prefilter *p;  // the lowest lights stand 75 degrees from the pole
-    CHECK_OK(relume_prefilter_create(&p, &light, relume_prefilter_params(.rim = 0.257)));
+    relume_prefiltered *p;  // the lowest lights stand 75 degrees from the pole
+    CHECK_OK(relume_prefiltered_create(&p, &light, relume_prefiltered_params(.rim = 0.257)));
     for (int bare = 0; bare < 2; bare++) {
         relume_btf *btf = make(lambert_and_gloss, "bonn", bare);
         for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
@@ -244,7 +244,7 @@ static void test_measured_lights(void **state)
         }
         relume_btf_destroy(&btf);
     }
-    relume_prefilter_destroy(&p);
+    relume_prefiltered_destroy(&p);
     relume_environment_destroy(&e);
 }
 
@@ -254,32 +254,33 @@ static void check_furnace(const relume_btf *btf, const struct relume_light *ligh
 {
     const struct relume_btf_frame f = frame_of(vec3_of(0.5, -0.7, 0.3));
     const vec3 view = vec3_unit(vec3_of(0.2, 0.1, 0.9));
-    relume_prefilter *p;
-    CHECK_OK(relume_prefilter_create(&p, light, relume_prefilter_params(.height = 12, .rim = rim)));
+    relume_prefiltered *p;
+    CHECK_OK(
+        relume_prefiltered_create(&p, light, relume_prefiltered_params(.height = 12, .rim = rim)));
     for (const struct relume_btf_model *const *k = relume_btf_models; *k; k++) {
         relume_btf_fitted *m = fit(btf, relume_btf_model_name(*k));
-        relume_btf_ambient *a;
+        relume_btf_oriented_light *a;
         float got[3];
-        CHECK_OK(relume_btf_ambient_create(&a, m, p, &f, NULL));
-        relume_btf_ambient_evaluate(a, 0, 1, 1, view, got);
+        CHECK_OK(relume_btf_oriented_light_create(&a, m, p, &f, NULL));
+        relume_btf_oriented_light_evaluate(a, 0, 1, 1, view, got);
         // cells that the horizon cuts through count whole or not; fits are halfs
         // (the polynomials of rfp hold n.l to 0.3 %)
         const double most = 0.005;
         CHECK_NEAR(got[0], 1.0, most);
         relume_btf_surface *surface;
-        relume_btf_sky *any;
+        relume_btf_environment *any;
         CHECK_OK(relume_btf_surface_create(&surface, m, NULL, NULL));
-        CHECK_OK(relume_btf_sky_create(&any, m, p));
+        CHECK_OK(relume_btf_environment_create(&any, m, p));
         relume_btf_surface_evaluate(surface, 1.5, 1.5, 0.0,
                                     &(struct relume_btf_ray){.view = view, .sky = any, .frame = f},
                                     got);
         CHECK_NEAR(got[0], 1.0, most);
-        relume_btf_sky_destroy(&any);
+        relume_btf_environment_destroy(&any);
         relume_btf_surface_destroy(&surface);
-        relume_btf_ambient_destroy(&a);
+        relume_btf_oriented_light_destroy(&a);
         relume_btf_fitted_destroy(&m);
     }
-    relume_prefilter_destroy(&p);
+    relume_prefiltered_destroy(&p);
 }
 
 static void test_furnace(void **state)
@@ -307,31 +308,31 @@ static void test_even_sky(void **state)
     const struct relume_light light = {
         .kind = RELUME_LIGHT_ENVIRONMENT, .environment = e, .rgb = {1.0f, 2.0f, 1.0f}};
     const vec3 n = vec3_unit(vec3_of(0.3, 0.2, -0.8));
-    relume_prefilter *p;
+    relume_prefiltered *p;
     float rgb[3];
-    CHECK_OK(
-        relume_prefilter_create(&p, &light, relume_prefilter_params(.height = 16, .threads = 2)));
-    relume_prefilter_diffuse(rgb, p, n);
+    CHECK_OK(relume_prefiltered_create(&p, &light,
+                                       relume_prefiltered_params(.height = 16, .threads = 2)));
+    relume_prefiltered_diffuse(rgb, p, n);
     CHECK_NEAR(rgb[0], 2.0, 0.01);  // cells at the horizon
     CHECK_NEAR(rgb[1], 4.0, 0.02);
     for (double exponent = 1.0; exponent < 33.0; exponent *= 1.7) {
-        relume_prefilter_specular(rgb, p, n, exponent);
+        relume_prefiltered_specular(rgb, p, n, exponent);
         CHECK_NEAR(rgb[0], 1.0, 0.005);  // lobes of 24 degrees over cells of 3.75
-        relume_prefilter_lobe(rgb, p, n, n, exponent, false);
+        relume_prefiltered_lobe(rgb, p, n, n, exponent, false);
         CHECK_NEAR(rgb[0] * (exponent + 1.0) / 2.0, 1.0, 0.005);
-        relume_prefilter_lobe(rgb, p, n, n, exponent, true);
+        relume_prefiltered_lobe(rgb, p, n, n, exponent, true);
         // between exponents the factor (e + 1) / (e + 2) is taken as linear in log2 e
         CHECK_NEAR(rgb[0] * (exponent + 2.0) / 2.0, 1.0, 0.01);
     }
     // a lobe along the horizon: one half arrives
     const vec3 across = vec3_unit(vec3_cross(n, vec3_of(0.0, 1.0, 0.0)));
-    relume_prefilter_lobe(rgb, p, n, across, 4.0, false);
+    relume_prefiltered_lobe(rgb, p, n, across, 4.0, false);
     CHECK_NEAR(rgb[0], 0.5 * 2.0 / 5.0, 0.002);
-    relume_prefilter_destroy(&p);
-    assert_int_equal(relume_prefilter_create(&p, &light, relume_prefilter_params(.height = 2)),
+    relume_prefiltered_destroy(&p);
+    assert_int_equal(relume_prefiltered_create(&p, &light, relume_prefiltered_params(.height = 2)),
                      RELUME_EINVAL);
     const struct relume_light other = {.kind = RELUME_LIGHT_DIRECTIONAL};
-    assert_int_equal(relume_prefilter_create(&p, &other, NULL), RELUME_EINVAL);
+    assert_int_equal(relume_prefiltered_create(&p, &other, NULL), RELUME_EINVAL);
     relume_environment_destroy(&e);
 }
 
@@ -357,19 +358,19 @@ static void test_spot(void **state)
         sent += (double)cell[i].rgb[0];
     const vec3 to = relume_environment_turn(vec3_unit(vec3_of(1.0, 0.5, -0.4)), 70.0);
     const vec3 side = vec3_unit(vec3_cross(to, vec3_of(0.0, 0.0, 1.0)));
-    relume_prefilter *p;
-    CHECK_OK(relume_prefilter_create(&p, &light, NULL));
-    for (int i = 0; i < RELUME_PREFILTER_EXPONENTS; i++)
+    relume_prefiltered *p;
+    CHECK_OK(relume_prefiltered_create(&p, &light, NULL));
+    for (int i = 0; i < RELUME_PREFILTERED_EXPONENTS; i++)
         for (double angle = 0.0; angle < 1.0; angle += 0.3) {
             const double exponent = pow(2.0, 0.5 * i);
             const vec3 axis = vec3_add(vec3_scale(to, cos(angle)), vec3_scale(side, sin(angle)));
             float rgb[3];
-            relume_prefilter_specular(rgb, p, axis, exponent);
+            relume_prefiltered_specular(rgb, p, axis, exponent);
             // bilinear between pixels h = 3.75 degrees apart: h^2 e / 8 along rows and columns
             CHECK_NEAR(rgb[0] * 2.0 / (exponent + 1.0), sent * pow(cos(angle), exponent),
                        (0.003 + 0.0011 * exponent) * sent);
         }
-    relume_prefilter_destroy(&p);
+    relume_prefiltered_destroy(&p);
     relume_environment_destroy(&e);
 }
 

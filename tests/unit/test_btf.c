@@ -52,10 +52,10 @@ static void check_dome(const char *name)
 {
     int n;
     vec3 *d = set_directions(name, &n);
-    relume_dome *dome;
-    CHECK_OK(relume_dome_create(&dome, d, n, NULL));
+    relume_direction_mesh *dome;
+    CHECK_OK(relume_direction_mesh_create(&dome, d, n, NULL));
     for (int i = 0; i < n; i++) {
-        const struct relume_dome_blend b = relume_dome_at(dome, d[i]);
+        const struct relume_direction_blend b = relume_direction_mesh_at(dome, d[i]);
         assert_int_equal(b.count, 1);
         assert_int_equal(b.index[0], i);
         CHECK_NEAR(b.weight[0], 1.0, 0.0);
@@ -65,7 +65,7 @@ static void check_dome(const char *name)
     for (int i = 0; i < 2000; i++) {
         vec3 q = test_direction(&seed);
         q.z = fabs(q.z);
-        const struct relume_dome_blend b = relume_dome_at(dome, q);
+        const struct relume_direction_blend b = relume_direction_mesh_at(dome, q);
         vec3 mean = {0, 0, 0};
         double sum = 0.0;
         for (int k = 0; k < b.count; k++) {
@@ -81,7 +81,7 @@ static void check_dome(const char *name)
         CHECK_NEAR(atan2(q.y, q.x), atan2(b.direction.y, b.direction.x), 1e-6);
         CHECK_NEAR(b.rim * b.direction.z, q.z, 1e-7);
     }
-    relume_dome_destroy(&dome);
+    relume_direction_mesh_destroy(&dome);
     free(d);
 }
 
@@ -93,12 +93,12 @@ static void test_domes(void **state)
     check_dome("coarse");
     struct test_log log;
     test_log_init(&log);
-    relume_dome *dome;
+    relume_direction_mesh *dome;
     const vec3 below[3] = {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
-    assert_int_equal(relume_dome_create(&dome, below, 3, &log.log), RELUME_EDATA);
+    assert_int_equal(relume_direction_mesh_create(&dome, below, 3, &log.log), RELUME_EDATA);
     assert_non_null(strstr(log.text, "direction 1"));
     const vec3 line[3] = {{0, 0, 1}, {0.6, 0, 0.8}, {-0.6, 0, 0.8}};
-    assert_int_equal(relume_dome_create(&dome, line, 3, &log.log), RELUME_EDATA);
+    assert_int_equal(relume_direction_mesh_create(&dome, line, 3, &log.log), RELUME_EDATA);
     assert_null(dome);
 }
 
@@ -146,8 +146,9 @@ static relume_btf *make_btf(const char *set, bool without_cosine)
 }
 
 // Three views times three lights, by hand.
-static double blended(const relume_btf *btf, int x, int y, int c, const struct relume_dome_blend *v,
-                      const struct relume_dome_blend *l)
+static double blended(const relume_btf *btf, int x, int y, int c,
+                      const struct relume_direction_blend *v,
+                      const struct relume_direction_blend *l)
 {
     const struct relume_btf_info *info = relume_btf_info(btf);
     double sum = 0.0;
@@ -165,8 +166,8 @@ static void check_reference(bool without_cosine)
     for (int i = 0; i < 200; i++) {
         vec3 v = test_direction(&seed), l = test_direction(&seed);
         v.z = fabs(v.z), l.z = fabs(l.z);
-        const struct relume_dome_blend at_v = relume_dome_at(btf->views, v);
-        const struct relume_dome_blend at_l = relume_dome_at(btf->lights, l);
+        const struct relume_direction_blend at_v = relume_direction_mesh_at(btf->views, v);
+        const struct relume_direction_blend at_l = relume_direction_mesh_at(btf->lights, l);
         float rgb[3];
         relume_btf_evaluate(btf, i % W, i % H, v, l, rgb);
         for (int c = 0; c < 3; c++)

@@ -316,32 +316,32 @@ static void test_ambient(void **state)
     const struct relume_light light = {
         .kind = RELUME_LIGHT_ENVIRONMENT, .environment = e, .rgb = {1.0f, 1.0f, 1.0f}};
     const struct relume_btf_frame frame = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    relume_prefilter *p;
-    relume_btf_ambient *a;
+    relume_prefiltered *p;
+    relume_btf_oriented_light *a;
     relume_btf_surface *s;
-    CHECK_OK(relume_prefilter_create(&p, &light, NULL));
-    CHECK_OK(relume_btf_ambient_create(&a, m, p, &frame, NULL));
+    CHECK_OK(relume_prefiltered_create(&p, &light, NULL));
+    CHECK_OK(relume_btf_oriented_light_create(&a, m, p, &frame, NULL));
     CHECK_OK(relume_btf_surface_create(&s, m, NULL, NULL));
     const struct relume_btf_ray under = {.view = ray.view, .ambient = a};
     float got[3], left[3], right[3], coarse[3];
     relume_btf_surface_evaluate(s, 3.0, 1.5, 0.0, &under, got);
-    relume_btf_ambient_evaluate(a, 0, 2, 1, ray.view, left);
-    relume_btf_ambient_evaluate(a, 0, 3, 1, ray.view, right);
+    relume_btf_oriented_light_evaluate(a, 0, 2, 1, ray.view, left);
+    relume_btf_oriented_light_evaluate(a, 0, 3, 1, ray.view, right);
     for (int c = 0; c < 3; c++)
         CHECK_NEAR(got[c], 0.5 * (left[c] + right[c]), 1e-6);
     relume_btf_surface_evaluate(s, 3.0, 1.0, 1.0, &under, got);
-    relume_btf_ambient_evaluate(a, 1, 1, 0, ray.view, coarse);
+    relume_btf_oriented_light_evaluate(a, 1, 1, 0, ray.view, coarse);
     for (int c = 0; c < 3; c++)
         CHECK_NEAR(got[c], coarse[c], 1e-6);
     // one of the sums that a renderer of its own would make
-    const float *w = relume_btf_ambient_weights(a);
+    const float *w = relume_btf_oriented_light_weights(a);
     float total = 0.0f;
     for (int i = 0; i < MADE_DIRECTIONS; i++)
         total += w[3 * i];
     assert_true(total > 0.0f);
     relume_btf_surface_destroy(&s);
-    relume_btf_ambient_destroy(&a);
-    relume_prefilter_destroy(&p);
+    relume_btf_oriented_light_destroy(&a);
+    relume_prefiltered_destroy(&p);
     relume_environment_destroy(&e);
     relume_btf_fitted_destroy(&m);
     relume_btf_destroy(&btf);

@@ -235,12 +235,12 @@ static relume_status upload_dome(struct btf_material *m, const struct gl *gl, in
                                  const struct relume_vec3 *direction, int n,
                                  const struct relume_log *log)
 {
-    relume_dome *dome;
-    relume_status status = relume_dome_create(&dome, direction, n, log);
+    relume_direction_mesh *dome;
+    relume_status status = relume_direction_mesh_create(&dome, direction, n, log);
     if (status)
         return status;
     struct dome_list d = {.point = direction, .points = n};
-    d.triangle = relume_dome_triangles(dome, &d.triangles);
+    d.triangle = relume_direction_mesh_triangles(dome, &d.triangles);
     d.cell = malloc(CELLS * CELLS * sizeof *d.cell);
     status = d.cell ? RELUME_OK : RELUME_ENOMEM;
     for (int c = 0; c < CELLS * CELLS && !status; c++)
@@ -253,7 +253,7 @@ static relume_status upload_dome(struct btf_material *m, const struct gl *gl, in
             fill(m, gl, i + 1, GL_RGBA32F, d.used * TEXELS, d.used * sizeof *d.texel, d.texel, log);
     free(d.cell);
     free(d.texel);
-    relume_dome_destroy(&dome);
+    relume_direction_mesh_destroy(&dome);
     return status;
 }
 
@@ -338,16 +338,16 @@ relume_status btf_upload(struct btf_material *out, const struct gl *gl,
 // ---------------------------------------------------------------- under an environment
 
 static relume_status upload_cones(struct btf_material *m, const struct gl *gl,
-                                  const relume_btf_fitted *model, const relume_prefilter *prefilter,
-                                  const struct relume_log *log)
+                                  const relume_btf_fitted *model,
+                                  const relume_prefiltered *prefilter, const struct relume_log *log)
 {
-    relume_btf_sky *sky;
+    relume_btf_environment *sky;
     const int lights = m->level->counts[1];
     const struct relume_vec3 *light = relume_btf_fitted_directions(model).light;
-    relume_status status = relume_btf_sky_create(&sky, model, prefilter);
+    relume_status status = relume_btf_environment_create(&sky, model, prefilter);
     if (status)
         return status;
-    const struct relume_btf_cone *cone = relume_btf_sky_cones(sky);
+    const struct relume_btf_light_lobe *cone = relume_btf_environment_cones(sky);
     float(*texel)[2][4] = malloc((size_t)lights * sizeof *texel);
     for (int i = 0; texel && i < lights; i++) {
         const float values[2][4] = {
@@ -360,21 +360,21 @@ static relume_status upload_cones(struct btf_material *m, const struct gl *gl,
                     : fill_buffer(m, gl, &m->table, &m->table_buffer, GL_RGBA32F,
                                   2 * (size_t)lights, (size_t)lights * sizeof *texel, texel, log);
     free(texel);
-    relume_btf_sky_destroy(&sky);
+    relume_btf_environment_destroy(&sky);
     return status;
 }
 
 relume_status btf_need_table(struct btf_material *m, const struct gl *gl,
                              const struct relume_object_material *from,
-                             const relume_prefilter *prefilter, const struct relume_log *log)
+                             const relume_prefiltered *prefilter, const struct relume_log *log)
 {
-    enum { PARTS = 2 * RELUME_PREFILTER_EXPONENTS * RELUME_PREFILTER_STEPS };
+    enum { PARTS = 2 * RELUME_PREFILTERED_EXPONENTS * RELUME_PREFILTERED_STEPS };
     if (m->table)
         return RELUME_OK;
     if (!m->twin->lobes)
         return upload_cones(m, gl, relume_btf_surface_info(from->surface).model, prefilter, log);
     return fill_buffer(m, gl, &m->table, &m->table_buffer, GL_R32F, PARTS, PARTS * sizeof(float),
-                       relume_prefilter_info(prefilter).part, log);
+                       relume_prefiltered_info(prefilter).part, log);
 }
 
 void btf_release(struct btf_material *m, const struct gl *gl)

@@ -60,6 +60,6 @@ void btf_use(const struct btf_material *material, const struct gl *gl, int level
 // RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status btf_need_table(struct btf_material *material, const struct gl *gl,
                              const struct relume_object_material *from,
-                             const relume_prefilter *prefilter, const struct relume_log *log);
+                             const relume_prefiltered *prefilter, const struct relume_log *log);
 
 #endif

@@ -11,16 +11,16 @@
 // One below the other: the diffuse map, then those of the exponents.
 static relume_status upload(struct sky_map *map, const struct gl *gl, const struct relume_log *log)
 {
-    const struct relume_prefilter_info i = relume_prefilter_info(map->prefilter);
+    const struct relume_prefiltered_info i = relume_prefiltered_info(map->prefilter);
     const size_t plane = 3 * (size_t)i.width * (size_t)i.height;
-    float *texels = malloc((RELUME_PREFILTER_EXPONENTS + 1) * plane * sizeof *texels);
+    float *texels = malloc((RELUME_PREFILTERED_EXPONENTS + 1) * plane * sizeof *texels);
     if (!texels)
         return RELUME_ENOMEM;
     memcpy(texels, i.diffuse, plane * sizeof *texels);
-    memcpy(texels + plane, i.specular, RELUME_PREFILTER_EXPONENTS * plane * sizeof *texels);
+    memcpy(texels + plane, i.specular, RELUME_PREFILTERED_EXPONENTS * plane * sizeof *texels);
     gl->GenTextures(1, &map->texture);
     shine_upload(gl, 0, map->texture, GL_RGB32F, GL_RGB, i.width,
-                 (RELUME_PREFILTER_EXPONENTS + 1) * i.height, texels);
+                 (RELUME_PREFILTERED_EXPONENTS + 1) * i.height, texels);
     free(texels);
     return gl_check(gl, "uploading an environment", log);
 }
@@ -28,7 +28,7 @@ static relume_status upload(struct sky_map *map, const struct gl *gl, const stru
 static void destroy(struct sky_map *map, const struct gl *gl)
 {
     gl->DeleteTextures(1, &map->texture);
-    relume_prefilter_destroy(&map->prefilter);
+    relume_prefiltered_destroy(&map->prefilter);
     free(map);
 }
 
@@ -46,8 +46,8 @@ relume_status sky_maps_find(const struct sky_map **out, struct sky_maps *maps,
                                        .rgb = {1.0f, 1.0f, 1.0f}};
     map->of = light->environment;
     map->rim = rim;
-    relume_status status = relume_prefilter_create(
-        &map->prefilter, &plain, relume_prefilter_params(.log = maps->log, .rim = rim));
+    relume_status status = relume_prefiltered_create(
+        &map->prefilter, &plain, relume_prefiltered_params(.log = maps->log, .rim = rim));
     if (!status)
         status = upload(map, maps->gl, maps->log);
     if (status) {

@@ -5,12 +5,12 @@
 
 #include "gl/gl.h"
 
-#include <relume/ambient.h>
+#include <relume/btf_environment.h>
 
 struct sky_map {
     const relume_environment *of;
     double rim;
-    relume_prefilter *prefilter;
+    relume_prefiltered *prefilter;
     GLuint texture;  // sky.glsl
     struct sky_map *next;
 };

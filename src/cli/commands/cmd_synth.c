@@ -155,11 +155,12 @@ static relume_status read_directions(struct relume_vec3 **out, int *n, const cha
                                      const struct synth_options *o)
 {
     struct prefix_log about;
-    relume_dome *dome = NULL;
+    relume_direction_mesh *dome = NULL;
     relume_status status = relume_lights_read(out, n, file, o->args.log);
     if (!status)
-        status = relume_dome_create(&dome, *out, *n, prefix_log(&about, o->args.log, file));
-    relume_dome_destroy(&dome);
+        status =
+            relume_direction_mesh_create(&dome, *out, *n, prefix_log(&about, o->args.log, file));
+    relume_direction_mesh_destroy(&dome);
     return status;
 }
 

@@ -25,7 +25,7 @@ struct Blend {
     ivec3 index;
     vec3 weight;
     vec3 direction;
-    float rim, size;  // relume_dome_blend.length
+    float rim, size;  // relume_direction_blend.length
 };
 
 const int CELLS = 32;  // along each side of the octahedral map
@@ -39,7 +39,7 @@ int cell_of(vec3 d)
     return at.y * CELLS + at.x;
 }
 
-// Twin: relume_dome_at. A cell lists the triangles that directions in it can meet, each as six
+// Twin: relume_direction_mesh_at. A cell lists the triangles that directions in it can meet, each as six
 // texels: for each corner the vector along which its weight grows and its number (-1: the nadir),
 // then where the corners are.
 Blend dome_at(isamplerBuffer cells, samplerBuffer triangles, vec3 d)

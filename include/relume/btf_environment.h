@@ -1,7 +1,8 @@
-// ambient.h - environment light on measured materials: prefiltered maps for models of lobes, sums
-// over the measured lights for all others (Meseth 2008, 9.4; McAllister, Lastra, Heidrich 2002)
-#ifndef RELUME_AMBIENT_H
-#define RELUME_AMBIENT_H
+// btf_environment.h - environment light on measured materials: prefiltered maps for models of
+// lobes, sums over the measured lights for all others (Meseth 2008, 9.4; McAllister, Lastra,
+// Heidrich 2002)
+#ifndef RELUME_BTF_ENVIRONMENT_H
+#define RELUME_BTF_ENVIRONMENT_H
 
 #include <relume/base.h>
 #include <relume/btf.h>
@@ -14,14 +15,14 @@ extern "C" {
 // ---------------------------------------------------------------- prefiltered maps
 
 // An environment as lobes see it. Never changes. Thread-safety: safe.
-typedef struct relume_prefilter relume_prefilter;
+typedef struct relume_prefiltered relume_prefiltered;
 
 enum {
-    RELUME_PREFILTER_EXPONENTS = 15,  // 2^(i / 2): 1, 1.41, 2, ... 128; the thesis ends at 32
-    RELUME_PREFILTER_STEPS = 33,      // of a cosine from -1 to 1
+    RELUME_PREFILTERED_EXPONENTS = 15,  // 2^(i / 2): 1, 1.41, 2, ... 128; the thesis ends at 32
+    RELUME_PREFILTERED_STEPS = 33,      // of a cosine from -1 to 1
 };
 
-struct relume_prefilter_params {
+struct relume_prefiltered_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     int height;  // of the maps, pixels; they are twice as wide; default 48, [4, 512]
@@ -30,19 +31,20 @@ struct relume_prefilter_params {
     double rim;
     int threads;  // default: all cores
 };
-#define relume_prefilter_params(...)                                                               \
-    (&(const struct relume_prefilter_params){RELUME_SIZED(relume_prefilter_params), __VA_ARGS__})
+#define relume_prefiltered_params(...)                                                             \
+    (&(const struct relume_prefiltered_params){RELUME_SIZED(relume_prefiltered_params),            \
+                                               __VA_ARGS__})
 
 // `light` is an environment; its colour and rotation are taken over. RELUME_EINVAL, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_prefilter_create(relume_prefilter **out,
-                                                    const struct relume_light *light,
-                                                    const struct relume_prefilter_params *params);
-RELUME_API void relume_prefilter_destroy(relume_prefilter **prefilter);
+RELUME_RESULT relume_status
+relume_prefiltered_create(relume_prefiltered **out, const struct relume_light *light,
+                          const struct relume_prefiltered_params *params);
+RELUME_API void relume_prefiltered_destroy(relume_prefiltered **prefilter);
 
 // Plain arrays for other renderers; they belong to the prefilter. Maps are spherical (row 0 is up
 // +y, the middle column -z, +x to its right, pixel centres at +0.5), so that bilinear lookups
 // repeat in columns and clamp in rows. E is the radiance of the environment.
-struct relume_prefilter_info {
+struct relume_prefiltered_info {
     int width, height;
     // [height][width][3]: the sum of E fall(n.l) dw / pi over n.l > 0, fall(z) being
     // min(z / rim, 1): what a value of 1 for all lights shows on a surface facing the direction n.
@@ -57,26 +59,27 @@ struct relume_prefilter_info {
     const float *part;
 };
 // The arrays as they are; they hold as long as the prefilter.
-RELUME_API struct relume_prefilter_info relume_prefilter_info(const relume_prefilter *prefilter);
+RELUME_API struct relume_prefiltered_info relume_prefiltered_info(
+    const relume_prefiltered *prefilter);
 
 // The maps in a unit direction of the world, `exponent` > 0.
-RELUME_API void relume_prefilter_diffuse(float rgb[3], const relume_prefilter *prefilter,
-                                         struct relume_vec3 normal);
+RELUME_API void relume_prefiltered_diffuse(float rgb[3], const relume_prefiltered *prefilter,
+                                           struct relume_vec3 normal);
 // The mean under a lobe about a unit direction, `exponent` > 0.
-RELUME_API void relume_prefilter_specular(float rgb[3], const relume_prefilter *prefilter,
-                                          struct relume_vec3 axis, double exponent);
+RELUME_API void relume_prefiltered_specular(float rgb[3], const relume_prefiltered *prefilter,
+                                            struct relume_vec3 axis, double exponent);
 // What a lobe height * max(0, axis.l)^exponent shows on a surface facing `normal`. `cosine`: values
 // do not include n.l.
-RELUME_API void relume_prefilter_lobe(float rgb[3], const relume_prefilter *prefilter,
-                                      struct relume_vec3 normal, struct relume_vec3 axis,
-                                      double exponent, bool cosine);
+RELUME_API void relume_prefiltered_lobe(float rgb[3], const relume_prefiltered *prefilter,
+                                        struct relume_vec3 normal, struct relume_vec3 axis,
+                                        double exponent, bool cosine);
 
 // ---------------------------------------------------------------- a material in one orientation
 
 // What an environment sends to a surface that lies one way in the world: each measured light stands
 // for the directions around it, with the weights that interpolation gives it, so that the sum over
 // lights is the integral over the sphere. Thread-safety: safe.
-typedef struct relume_btf_ambient relume_btf_ambient;
+typedef struct relume_btf_oriented_light relume_btf_oriented_light;
 
 // Axes of the sample's frame in the world: unit vectors, orthogonal. Left-handed frames (mirrored
 // texture coordinates) are fine.
@@ -84,7 +87,7 @@ struct relume_btf_frame {
     struct relume_vec3 right, up, normal;  // along the sample's rows, up in its picture, off it
 };
 
-struct relume_btf_ambient_params {
+struct relume_btf_oriented_light_params {
     size_t struct_size;  // filled by the macro (base.h)
     // Prefiltered maps of this orientation, for models of lobes: exact at the horizon, where those
     // of the environment know only the mean of a lobe. They take 0.1 s or so of one core: for flat
@@ -92,27 +95,29 @@ struct relume_btf_ambient_params {
     bool own_maps;
     int threads;  // default: all cores
 };
-#define relume_btf_ambient_params(...)                                                             \
-    (&(const struct relume_btf_ambient_params){RELUME_SIZED(relume_btf_ambient_params),            \
-                                               __VA_ARGS__})
+#define relume_btf_oriented_light_params(...)                                                      \
+    (&(const struct relume_btf_oriented_light_params){                                             \
+        RELUME_SIZED(relume_btf_oriented_light_params), __VA_ARGS__})
 
 // Some 2000 directions are interpolated: a few milliseconds. Both objects must outlive it.
 // RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_btf_ambient_create(
-    relume_btf_ambient **out, const relume_btf_fitted *model, const relume_prefilter *prefilter,
-    const struct relume_btf_frame *frame, const struct relume_btf_ambient_params *params);
-RELUME_API void relume_btf_ambient_destroy(relume_btf_ambient **ambient);
+RELUME_RESULT relume_status relume_btf_oriented_light_create(
+    relume_btf_oriented_light **out, const relume_btf_fitted *model,
+    const relume_prefiltered *prefilter, const struct relume_btf_frame *frame,
+    const struct relume_btf_oriented_light_params *params);
+RELUME_API void relume_btf_oriented_light_destroy(relume_btf_oriented_light **ambient);
 
 // The weights of the measured lights [lights][3]: red, green, blue of the light i times a value
 // under that light, summed over i, is the value under the environment. For renderers of linear
 // models.
-RELUME_API const float *relume_btf_ambient_weights(const relume_btf_ambient *ambient);
+RELUME_API const float *relume_btf_oriented_light_weights(const relume_btf_oriented_light *ambient);
 
 // One texel of a level of detail from a direction in the frame of the sample, under the
 // environment. Models of lobes (laf, slaf, rfnl, rfnlc) look their lobes up in the prefiltered
 // maps, all others are summed over the measured lights.
-RELUME_API void relume_btf_ambient_evaluate(const relume_btf_ambient *ambient, int level, int x,
-                                            int y, struct relume_vec3 view, float rgb[3]);
+RELUME_API void relume_btf_oriented_light_evaluate(const relume_btf_oriented_light *ambient,
+                                                   int level, int x, int y, struct relume_vec3 view,
+                                                   float rgb[3]);
 
 // ---------------------------------------------------------------- a material in any orientation
 
@@ -120,26 +125,28 @@ RELUME_API void relume_btf_ambient_evaluate(const relume_btf_ambient *ambient, i
 // for the directions around it; here it stands for a cosine lobe of the same integral, mean
 // direction and mean cosine, and the radiance under that lobe is one lookup: an orientation costs
 // as many as there are lights, and none where a model of lobes is looked up itself.
-struct relume_btf_cone {
+struct relume_btf_light_lobe {
     struct relume_vec3 axis;  // unit, in the frame of the sample
     double exponent;          // [1, 128]
     double weight;            // integral over directions / pi, n.l and all
 };
 
 // Never changes. Thread-safety: safe.
-typedef struct relume_btf_sky relume_btf_sky;
+typedef struct relume_btf_environment relume_btf_environment;
 
 // Some milliseconds. Model and prefilter must outlive it; the rim of the prefilter is the model's
 // own. RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_btf_sky_create(relume_btf_sky **out,
-                                                  const relume_btf_fitted *model,
-                                                  const relume_prefilter *prefilter);
-RELUME_API void relume_btf_sky_destroy(relume_btf_sky **sky);
+RELUME_RESULT relume_status relume_btf_environment_create(relume_btf_environment **out,
+                                                          const relume_btf_fitted *model,
+                                                          const relume_prefiltered *prefilter);
+RELUME_API void relume_btf_environment_destroy(relume_btf_environment **sky);
 // [lights]; they belong to the sky.
-RELUME_API const struct relume_btf_cone *relume_btf_sky_cones(const relume_btf_sky *sky);
-// What light number `i` of the model stands for in an orientation: relume_btf_ambient_weights.
-RELUME_API void relume_btf_sky_weight(float rgb[3], const relume_btf_sky *sky,
-                                      const struct relume_btf_frame *frame, int i);
+RELUME_API const struct relume_btf_light_lobe *relume_btf_environment_cones(
+    const relume_btf_environment *sky);
+// What light number `i` of the model stands for in an orientation:
+// relume_btf_oriented_light_weights.
+RELUME_API void relume_btf_environment_weight(float rgb[3], const relume_btf_environment *sky,
+                                              const struct relume_btf_frame *frame, int i);
 
 #ifdef __cplusplus
 }

@@ -27,13 +27,13 @@ relight:base math image:base image coder light relight rig relighter
 analysis:base math:base image coder light relight normals enhance
 view:base math image:base image light relight view slabs capture
 post:base math image:base image tone eye psf glare
-frame:base math image:base image capture coder pack light relight view slabs frame sight evaluate normals enhance renderer relighter rig
+frame:base math image:base image capture coder pack light relight view slabs frame viewport evaluate normals enhance renderer relighter rig
 btf:base math image:base image lights capture btf
 btf_model:base math image btf:base image light lights btf btf_environment
 surface:base math btf btf_model:base image btf btf_environment surface
 mesh:base math geometry:base object
 scene:base math image geometry mesh:base image lights capture btf scene
-object:base math mesh:base image capture light relight view slabs pack frame sight btf btf_environment surface object renderer
+object:base math mesh:base image capture light relight view slabs pack frame viewport btf btf_environment surface object renderer
 helper:base image mesh:base
 cli::*
 cli/commands:commands:*

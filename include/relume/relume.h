@@ -35,7 +35,7 @@
 #include <relume/rig.h>
 #include <relume/scene.h>
 #include <relume/acquire.h>
-#include <relume/sight.h>
+#include <relume/viewport.h>
 #include <relume/slabs.h>
 #include <relume/surface.h>
 #include <relume/tone.h>

@@ -1,5 +1,5 @@
 // lamps.c - lights that stand in the frame, so that they can dazzle
-#include <relume/sight.h>
+#include <relume/viewport.h>
 
 #include "base/memory.h"
 #include "frame/renderer.h"
@@ -10,16 +10,16 @@ enum { FACETS = 8 };                 // of an area light, along one side
 // ---------------------------------------------------------------- finding
 
 struct finding {
-    const struct relume_sight *sight;
+    const struct relume_viewport *sight;
     vec3 eye;
     bool (*hides)(void *user, const double xy[2], vec3 point);
     void *user;
-    struct relume_source *out;
+    struct relume_visible_light *out;
     int n;
 };
 
 // A pixel beyond the border still reaches into the frame.
-static bool in_frame(const struct relume_sight *s, const double xy[2])
+static bool in_frame(const struct relume_viewport *s, const double xy[2])
 {
     return xy[0] > -0.5 && xy[1] > -0.5 && xy[0] < s->width + 0.5 && xy[1] < s->height + 0.5;
 }
@@ -27,13 +27,13 @@ static bool in_frame(const struct relume_sight *s, const double xy[2])
 static void add(struct finding *f, vec3 point, const float rgb[3])
 {
     double xy[2];
-    if (f->n == RELUME_SOURCES_MOST || !(rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0) ||
-        !relume_sight_place(xy, f->sight, point) || !in_frame(f->sight, xy) ||
+    if (f->n == RELUME_VISIBLE_LIGHTS_MOST || !(rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0) ||
+        !relume_viewport_project(xy, f->sight, point) || !in_frame(f->sight, xy) ||
         (f->hides && f->hides(f->user, xy, point)))
         return;
-    struct relume_source *const s = &f->out[f->n++];
-    const double solid = relume_sight_pixel(f->sight, xy[0], xy[1]);
-    *s = (struct relume_source){.x = xy[0], .y = xy[1]};
+    struct relume_visible_light *const s = &f->out[f->n++];
+    const double solid = relume_viewport_solid_angle(f->sight, xy[0], xy[1]);
+    *s = (struct relume_visible_light){.x = xy[0], .y = xy[1]};
     for (int c = 0; c < 3; c++)
         s->rgb[c] = (float)fmin(M_PI * (double)rgb[c] / solid, 1e30);
 }
@@ -51,19 +51,19 @@ static void add_area(struct finding *f, const struct relume_light *light)
 
 static void add_distant(struct finding *f, const struct relume_light *light)
 {
-    const bool window = f->sight->kind == RELUME_SIGHT_WINDOW;
+    const bool window = f->sight->kind == RELUME_VIEWPORT_PERSPECTIVE;
     const double wide = window ? vec3_length(f->sight->window.right) : 1.0;
     const vec3 towards = vec3_unit(light->direction);
-    if (f->sight->kind != RELUME_SIGHT_PARALLEL)
+    if (f->sight->kind != RELUME_VIEWPORT_PARALLEL)
         add(f, vec3_add(f->eye, vec3_scale(towards, far_away * wide)), light->rgb);
 }
 
-int relume_sight_lamps(struct relume_source *out, const struct relume_sight *sight,
-                       const struct relume_light *lights, int n,
-                       bool (*hides)(void *user, const double xy[2], struct relume_vec3 point),
-                       void *user)
+int relume_viewport_lights(struct relume_visible_light *out, const struct relume_viewport *sight,
+                           const struct relume_light *lights, int n,
+                           bool (*hides)(void *user, const double xy[2], struct relume_vec3 point),
+                           void *user)
 {
-    struct finding f = {sight, relume_sight_eye(sight), hides, user, out, 0};
+    struct finding f = {sight, relume_viewport_eye(sight), hides, user, out, 0};
     for (int i = 0; i < n; i++) {
         vec3 towards;
         float rgb[3];
@@ -80,7 +80,8 @@ int relume_sight_lamps(struct relume_source *out, const struct relume_sight *sig
 
 // ---------------------------------------------------------------- drawing
 
-void relume_sources_draw(struct relume_image *frame, const struct relume_source *sources, int n)
+void relume_visible_lights_draw(struct relume_image *frame,
+                                const struct relume_visible_light *sources, int n)
 {
     for (int i = 0; i < n; i++) {
         const double x = sources[i].x - 0.5, y = sources[i].y - 0.5;
@@ -99,7 +100,7 @@ void relume_sources_draw(struct relume_image *frame, const struct relume_source 
 // ---------------------------------------------------------------- a frame
 
 struct scene {
-    const struct relume_sight *sight;
+    const struct relume_viewport *sight;
     struct relume_image places;
 };
 
@@ -115,33 +116,35 @@ static bool hidden(void *user, const double xy[2], vec3 point)
     const int x = clamp_index(xy[0], s->places.width), y = clamp_index(xy[1], s->places.height);
     const float *const at = s->places.data + 3 * ((size_t)y * (size_t)s->places.width + (size_t)x);
     const vec3 surface = vec3_of((double)at[0], (double)at[1], (double)at[2]);
-    return !isnan(surface.x) && relume_sight_hides(s->sight, surface, point);
+    return !isnan(surface.x) && relume_viewport_hides(s->sight, surface, point);
 }
 
-relume_status relume_frame_lamps(struct relume_image *frame, int *seen, relume_renderer *renderer,
-                                 const struct relume_camera *camera)
+relume_status relume_frame_visible_lights(struct relume_image *frame, int *seen,
+                                          relume_renderer *renderer,
+                                          const struct relume_camera *camera)
 {
     relume_renderer *r = renderer;
     const struct relume_frame_params params = r->params;
     struct relume_frame_params sharp = params;
     struct relume_camera sized = *camera;
-    struct relume_sight sight;
+    struct relume_viewport sight;
     struct scene scene = {.sight = &sight};
-    struct relume_source *sources = NULL;
+    struct relume_visible_light *sources = NULL;
     sharp.aperture = sharp.focus = 0.0;
     sized.width = frame->width;
     sized.height = frame->height;
-    relume_status status = relume_frame_sight(&sight, r->pack, camera, frame->width, frame->height);
+    relume_status status =
+        relume_frame_viewport(&sight, r->pack, camera, frame->width, frame->height);
     r->params = sharp;
     if (!status && r->info->has_depth)
         status = relume_renderer_places(&scene.places, r, &sized);
     r->params = params;
-    if (!status && !(sources = mem_array(RELUME_SOURCES_MOST, sizeof *sources)))
+    if (!status && !(sources = mem_array(RELUME_VISIBLE_LIGHTS_MOST, sizeof *sources)))
         status = RELUME_ENOMEM;
     const int count = status ? 0
-                             : relume_sight_lamps(sources, &sight, r->lights, r->light_count,
-                                                  scene.places.data ? hidden : NULL, &scene);
-    relume_sources_draw(frame, sources, count);
+                             : relume_viewport_lights(sources, &sight, r->lights, r->light_count,
+                                                      scene.places.data ? hidden : NULL, &scene);
+    relume_visible_lights_draw(frame, sources, count);
     if (seen)
         *seen = count;
     free(sources);

@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "frame/renderer.h"
 
-#include <relume/sight.h>
+#include <relume/viewport.h>
 
 // Relighting two texels costs about as much as a thousand of many.
 enum { FEW = 64 };
@@ -208,13 +208,13 @@ relume_status relume_renderer_pixel(float rgb[3], relume_renderer *r,
                                     const struct relume_camera *camera, double x, double y)
 {
     int frame[2];
-    struct relume_sight sight;
+    struct relume_viewport sight;
     struct relume_ray ray;
     (void)relume_camera_place(frame, r->info, camera);
-    const relume_status status = relume_frame_sight(&sight, r->pack, camera, frame[0], frame[1]);
+    const relume_status status = relume_frame_viewport(&sight, r->pack, camera, frame[0], frame[1]);
     if (status)
         return status;
-    relume_sight_ray(&ray.eye, &ray.direction, &sight, x, y);
+    relume_viewport_ray(&ray.eye, &ray.direction, &sight, x, y);
     return relume_renderer_rays((float(*)[3])rgb, r, &ray, 1);
 }
 

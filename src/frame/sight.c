@@ -1,5 +1,5 @@
 // sight.c - the ray of a pixel and the pixel of a point, for every kind of frame
-#include <relume/sight.h>
+#include <relume/viewport.h>
 
 #include "math/vec.h"
 
@@ -15,7 +15,7 @@ struct relume_window relume_planar_window(const struct relume_geometry *g)
     };
 }
 
-static void sight_of_view(struct relume_sight *s, const relume_pack *pack, int view)
+static void sight_of_view(struct relume_viewport *s, const relume_pack *pack, int view)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
     s->geometry = *relume_pack_geometry(pack, view);
@@ -23,16 +23,16 @@ static void sight_of_view(struct relume_sight *s, const relume_pack *pack, int v
     if (g->projection == RELUME_SLAB) {
         const vec3 camera = vec3_of(info->uv[view][0], info->uv[view][1], g->uv_z);
         s->window = relume_slab_window(g, relume_pose_world(&g->pose, camera));
-        s->kind = RELUME_SIGHT_WINDOW;
+        s->kind = RELUME_VIEWPORT_PERSPECTIVE;
     } else if (g->projection == RELUME_PLANAR) {
         s->window = relume_planar_window(g);
-        s->kind = g->perspective ? RELUME_SIGHT_WINDOW : RELUME_SIGHT_PARALLEL;
+        s->kind = g->perspective ? RELUME_VIEWPORT_PERSPECTIVE : RELUME_VIEWPORT_PARALLEL;
     } else {
-        s->kind = RELUME_SIGHT_UNFOLDED;
+        s->kind = RELUME_VIEWPORT_UNFOLDED;
     }
 }
 
-static relume_status sight_of_eye(struct relume_sight *s, const relume_pack *pack,
+static relume_status sight_of_eye(struct relume_viewport *s, const relume_pack *pack,
                                   const struct relume_camera *camera)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
@@ -54,8 +54,8 @@ static relume_status sight_of_eye(struct relume_sight *s, const relume_pack *pac
     return sees ? RELUME_OK : RELUME_EINVAL;
 }
 
-relume_status relume_frame_sight(struct relume_sight *out, relume_pack *pack,
-                                 const struct relume_camera *camera, int width, int height)
+relume_status relume_frame_viewport(struct relume_viewport *out, relume_pack *pack,
+                                    const struct relume_camera *camera, int width, int height)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
     const bool slab = info->geometry.projection == RELUME_SLAB;
@@ -65,18 +65,18 @@ relume_status relume_frame_sight(struct relume_sight *out, relume_pack *pack,
     sized.width = width;
     sized.height = height;
     const struct relume_place place = relume_camera_place(frame, info, &sized);
-    *out = (struct relume_sight){.width = width,
-                                 .height = height,
-                                 .left = place.left,
-                                 .top = place.top,
-                                 .wide = place.width,
-                                 .high = place.height,
-                                 .geometry = info->geometry,
-                                 .look = camera->look};
+    *out = (struct relume_viewport){.width = width,
+                                    .height = height,
+                                    .left = place.left,
+                                    .top = place.top,
+                                    .wide = place.width,
+                                    .high = place.height,
+                                    .geometry = info->geometry,
+                                    .look = camera->look};
     if (view < 0 || view >= info->views)
         return RELUME_EINVAL;
     if (camera->framing == RELUME_FRAME_LOOK)
-        out->kind = RELUME_SIGHT_LOOK;
+        out->kind = RELUME_VIEWPORT_PANORAMA;
     else if (camera->framing == RELUME_FRAME_EYE || (slab && camera->framing != RELUME_FRAME_VIEW))
         return sight_of_eye(out, pack, camera);
     else
@@ -91,13 +91,13 @@ struct part {
     double left, top, wide, high;
 };
 
-static struct part part_of(const struct relume_sight *s)
+static struct part part_of(const struct relume_viewport *s)
 {
     return s->wide > 0.0 ? (struct part){s->left, s->top, s->wide, s->high}
                          : (struct part){0, 0, s->width, s->height};
 }
 
-static vec3 on_window(const struct relume_sight *s, double x, double y)
+static vec3 on_window(const struct relume_viewport *s, double x, double y)
 {
     const struct relume_window *w = &s->window;
     const struct part p = part_of(s);
@@ -125,32 +125,32 @@ static struct axes axes_of(struct relume_look look)
     };
 }
 
-static double zoom_of(const struct relume_sight *s)
+static double zoom_of(const struct relume_viewport *s)
 {
     return s->look.zoom > 0.0 ? s->look.zoom : 1.0;
 }
 
-void relume_sight_ray(struct relume_vec3 *origin, struct relume_vec3 *direction,
-                      const struct relume_sight *s, double x, double y)
+void relume_viewport_ray(struct relume_vec3 *origin, struct relume_vec3 *direction,
+                         const struct relume_viewport *s, double x, double y)
 {
     const struct part p = part_of(s);
     vec3 at;
     switch (s->kind) {
-    case RELUME_SIGHT_WINDOW:
+    case RELUME_VIEWPORT_PERSPECTIVE:
         *origin = s->window.eye;
         *direction = vec3_unit(vec3_sub(on_window(s, x, y), s->window.eye));
         break;
-    case RELUME_SIGHT_PARALLEL:
+    case RELUME_VIEWPORT_PARALLEL:
         at = on_window(s, x, y);
         *direction = vec3_unit(normal_of(&s->window));
         *origin =
             vec3_add(at, vec3_scale(*direction, vec3_dot(vec3_sub(s->window.eye, at), *direction)));
         break;
-    case RELUME_SIGHT_LOOK:
+    case RELUME_VIEWPORT_PANORAMA:
         *origin = s->geometry.center;
         *direction = relume_look_ray(s->look, s->width, s->height, x, y);
         break;
-    case RELUME_SIGHT_UNFOLDED:
+    case RELUME_VIEWPORT_UNFOLDED:
         *origin = s->geometry.center;
         *direction =
             relume_panorama_ray(&s->geometry, s->width, s->height, (x - p.left) / p.wide * s->width,
@@ -159,12 +159,12 @@ void relume_sight_ray(struct relume_vec3 *origin, struct relume_vec3 *direction,
     }
 }
 
-struct relume_vec3 relume_sight_eye(const struct relume_sight *s)
+struct relume_vec3 relume_viewport_eye(const struct relume_viewport *s)
 {
     const struct relume_window *w = &s->window;
-    if (s->kind == RELUME_SIGHT_WINDOW)
+    if (s->kind == RELUME_VIEWPORT_PERSPECTIVE)
         return w->eye;
-    if (s->kind != RELUME_SIGHT_PARALLEL)
+    if (s->kind != RELUME_VIEWPORT_PARALLEL)
         return s->geometry.center;
     const vec3 middle = vec3_add(w->corner, vec3_scale(vec3_add(w->right, w->down), 0.5));
     const double away = 0.5 * vec3_length(w->right) / tan(0.5 * RELUME_SCREEN_DEG * M_PI / 180.0);
@@ -174,12 +174,12 @@ struct relume_vec3 relume_sight_eye(const struct relume_sight *s)
 // ---------------------------------------------------------------- where points appear
 
 // point - eye = a right + b down + c (corner - eye), or - c normal: it appears at (a, b) / c.
-static bool place_in_window(double xy[2], const struct relume_sight *s, vec3 point)
+static bool place_in_window(double xy[2], const struct relume_viewport *s, vec3 point)
 {
     const struct relume_window *w = &s->window;
     const struct part p = part_of(s);
     const vec3 normal = normal_of(w);
-    const bool parallel = s->kind == RELUME_SIGHT_PARALLEL;
+    const bool parallel = s->kind == RELUME_VIEWPORT_PARALLEL;
     const vec3 ahead = parallel ? normal : vec3_sub(w->corner, w->eye);
     const vec3 d = vec3_sub(point, parallel ? w->corner : w->eye);
     const double volume = vec3_dot(normal, ahead);
@@ -191,7 +191,7 @@ static bool place_in_window(double xy[2], const struct relume_sight *s, vec3 poi
     return true;
 }
 
-static bool place_in_look(double xy[2], const struct relume_sight *s, vec3 point)
+static bool place_in_look(double xy[2], const struct relume_viewport *s, vec3 point)
 {
     const struct axes a = axes_of(s->look);
     const vec3 d = vec3_sub(point, s->geometry.center);
@@ -205,12 +205,13 @@ static bool place_in_look(double xy[2], const struct relume_sight *s, vec3 point
     return true;
 }
 
-bool relume_sight_place(double xy[2], const struct relume_sight *s, struct relume_vec3 point)
+bool relume_viewport_project(double xy[2], const struct relume_viewport *s,
+                             struct relume_vec3 point)
 {
     const struct part p = part_of(s);
-    if (s->kind == RELUME_SIGHT_LOOK)
+    if (s->kind == RELUME_VIEWPORT_PANORAMA)
         return place_in_look(xy, s, point);
-    if (s->kind != RELUME_SIGHT_UNFOLDED)
+    if (s->kind != RELUME_VIEWPORT_UNFOLDED)
         return place_in_window(xy, s, point);
     if (!relume_panorama_pixel(xy, &s->geometry, s->width, s->height,
                                vec3_sub(point, s->geometry.center)))
@@ -222,26 +223,26 @@ bool relume_sight_place(double xy[2], const struct relume_sight *s, struct relum
 
 // ---------------------------------------------------------------- solid angles, shadows
 
-static double window_pixel(const struct relume_sight *s, double x, double y)
+static double window_pixel(const struct relume_viewport *s, double x, double y)
 {
     const struct part p = part_of(s);
     const vec3 normal = normal_of(&s->window);
-    if (s->kind == RELUME_SIGHT_PARALLEL) {  // as the screen's middle
+    if (s->kind == RELUME_VIEWPORT_PARALLEL) {  // as the screen's middle
         x = p.left + 0.5 * p.wide;
         y = p.top + 0.5 * p.high;
     }
-    const vec3 away = vec3_sub(on_window(s, x, y), relume_sight_eye(s));
+    const vec3 away = vec3_sub(on_window(s, x, y), relume_viewport_eye(s));
     return fabs(vec3_dot(normal, away)) / pow(vec3_length(away), 3.0) / (p.wide * p.high);
 }
 
-double relume_sight_pixel(const struct relume_sight *s, double x, double y)
+double relume_viewport_solid_angle(const struct relume_viewport *s, double x, double y)
 {
-    const bool round = s->kind == RELUME_SIGHT_LOOK && s->look.stereographic;
-    if (s->kind == RELUME_SIGHT_UNFOLDED) {
+    const bool round = s->kind == RELUME_VIEWPORT_PANORAMA && s->look.stereographic;
+    if (s->kind == RELUME_VIEWPORT_UNFOLDED) {
         const double around = s->geometry.projection == RELUME_CUBE ? 12.0 : 2.0 * M_PI;
         return pow(around / part_of(s).wide, 2.0);
     }
-    if (s->kind != RELUME_SIGHT_LOOK)
+    if (s->kind != RELUME_VIEWPORT_PANORAMA)
         return window_pixel(s, x, y);
     const double pixel = (round ? 4.0 : 2.0) / (zoom_of(s) * s->width);
     const double a = pixel * (x - 0.5 * s->width), b = pixel * (y - 0.5 * s->height);
@@ -251,13 +252,13 @@ double relume_sight_pixel(const struct relume_sight *s, double x, double y)
 
 static const double slack = 0.02;
 
-bool relume_sight_hides(const struct relume_sight *s, struct relume_vec3 surface,
-                        struct relume_vec3 point)
+bool relume_viewport_hides(const struct relume_viewport *s, struct relume_vec3 surface,
+                           struct relume_vec3 point)
 {
-    const vec3 eye = relume_sight_eye(s);
+    const vec3 eye = relume_viewport_eye(s);
     const double to_surface = vec3_length(vec3_sub(surface, eye));
     const double to_point = vec3_length(vec3_sub(point, eye));
-    if (s->kind != RELUME_SIGHT_PARALLEL)
+    if (s->kind != RELUME_VIEWPORT_PARALLEL)
         return to_surface < (1.0 - slack) * to_point;
     const vec3 towards = vec3_unit(normal_of(&s->window));
     return vec3_dot(vec3_sub(point, surface), towards) > 0.5 * slack * vec3_length(s->window.right);

@@ -3,7 +3,7 @@
 #include "base/thread.h"
 #include "object/object.h"
 
-#include <relume/sight.h>
+#include <relume/viewport.h>
 #include <string.h>
 
 // ---------------------------------------------------------------- the scene, in their shadow
@@ -116,15 +116,15 @@ static relume_status add_light(struct shadows *s, relume_renderer *renderer,
 
 struct layered {
     const relume_objects *o;
-    const struct relume_sight *sight;
+    const struct relume_viewport *sight;
     const struct relume_image *scene, *places;
     const struct lighting *lighting;
 };
 
-static struct ray ray_of(const struct relume_sight *sight, double x, double y)
+static struct ray ray_of(const struct relume_viewport *sight, double x, double y)
 {
     struct ray ray;
-    relume_sight_ray(&ray.origin, &ray.direction, sight, x, y);
+    relume_viewport_ray(&ray.origin, &ray.direction, sight, x, y);
     return ray;
 }
 
@@ -174,7 +174,7 @@ relume_status relume_objects_frame(struct relume_image *out, const relume_object
 {
     struct relume_image places = {0}, scene = {0};
     struct lighting lighting = {0};
-    struct relume_sight sight;
+    struct relume_viewport sight;
     int n;
     const struct relume_light *own = relume_renderer_lights(&n, renderer);
     struct relume_light *lights = mem_copy(own, (size_t)n, sizeof *lights);
@@ -182,8 +182,8 @@ relume_status relume_objects_frame(struct relume_image *out, const relume_object
     relume_status status =
         lights ? relume_renderer_places(&places, renderer, camera) : RELUME_ENOMEM;
     if (!status)
-        status = relume_frame_sight(&sight, relume_renderer_pack(renderer), camera, places.width,
-                                    places.height);
+        status = relume_frame_viewport(&sight, relume_renderer_pack(renderer), camera, places.width,
+                                       places.height);
     if (!status)
         status = lighting_create(&lighting, objects, lights, n, params);
     if (!status)

@@ -530,7 +530,7 @@ static void lamps_in_view_send_what_they_send(void **state)
         {.kind = RELUME_LIGHT_POINT, .position = {0, 0, -2}, .rgb = {1, 0.5f, 0}},
         {.kind = RELUME_LIGHT_POINT, .position = {0, 0, 2}, .rgb = {1, 1, 1}},
         {.kind = RELUME_LIGHT_DIRECTIONAL, .direction = {0.5, 0, -1}, .rgb = {1, 1, 1}}};
-    struct relume_source *seen = malloc(RELUME_SOURCES_MOST * sizeof *seen);
+    struct relume_visible_light *seen = malloc(RELUME_VISIBLE_LIGHTS_MOST * sizeof *seen);
     struct app app;
     assert_int_equal(app_start(&app, &file, &start, true, NULL), RELUME_OK);
     struct frame_request q = {0};

@@ -104,7 +104,7 @@ void draw_ball(const struct program *program, const struct gl *gl, const struct 
 relume_status draw_source_create(struct program *program, const struct gl *gl,
                                  const struct relume_log *log);
 void draw_sources(const struct program *program, const struct gl *gl, const struct place *place,
-                  const struct relume_source *sources, int n);
+                  const struct relume_visible_light *sources, int n);
 
 // Where a frame lies in a window: so many pixels from its left edge.
 struct window_place {

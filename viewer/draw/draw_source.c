@@ -13,13 +13,13 @@ relume_status draw_source_create(struct program *program, const struct gl *gl,
 }
 
 void draw_sources(const struct program *program, const struct gl *gl, const struct place *place,
-                  const struct relume_source *sources, int n)
+                  const struct relume_visible_light *sources, int n)
 {
     gl->UseProgram(program->id);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
     for (int i = 0; i < n; i++) {
-        const struct relume_source *s = &sources[i];
+        const struct relume_visible_light *s = &sources[i];
         const double left = floor(s->x - 0.5), top = floor(s->y - 0.5);
         const float e = place->exposure;
         gl->Uniform2f(program->at[MIDDLE], (float)s->x, (float)s->y);

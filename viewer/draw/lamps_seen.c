@@ -1,4 +1,4 @@
-// lamps_seen.c - the lights that are in view of the app's frame (sight.h)
+// lamps_seen.c - the lights that are in view of the app's frame (viewport.h)
 #include "draw/lamps_seen.h"
 
 #include "common/vec.h"
@@ -27,17 +27,17 @@ static int nearest_view(const struct frame_request *q, const struct lamp_scene *
 }
 
 // Of a captured picture; a slab's as it looks from `eye`.
-static struct relume_sight sight_of_picture(const struct app_file *file, struct relume_vec3 eye)
+static struct relume_viewport sight_of_picture(const struct app_file *file, struct relume_vec3 eye)
 {
     const struct relume_geometry *g = &file->geometry;
-    struct relume_sight s = {.width = file->width, .height = file->height, .geometry = *g};
+    struct relume_viewport s = {.width = file->width, .height = file->height, .geometry = *g};
     if (g->projection == RELUME_SLAB) {
         s.window = relume_slab_window(g, eye);
     } else if (g->projection == RELUME_PLANAR) {
         s.window = relume_planar_window(g);
-        s.kind = g->perspective ? RELUME_SIGHT_WINDOW : RELUME_SIGHT_PARALLEL;
+        s.kind = g->perspective ? RELUME_VIEWPORT_PERSPECTIVE : RELUME_VIEWPORT_PARALLEL;
     } else {
-        s.kind = RELUME_SIGHT_UNFOLDED;
+        s.kind = RELUME_VIEWPORT_UNFOLDED;
     }
     return s;
 }
@@ -51,7 +51,7 @@ static struct relume_vec3 camera_of(const struct frame_request *q, const struct 
 }
 
 // False where the eye sees nothing.
-static bool sight_of(struct relume_sight *out, const struct frame_request *q,
+static bool sight_of(struct relume_viewport *out, const struct frame_request *q,
                      const struct lamp_scene *s)
 {
     const struct relume_camera *camera = &q->camera;
@@ -63,7 +63,7 @@ static bool sight_of(struct relume_sight *out, const struct frame_request *q,
     if (q->has_window)
         out->window = q->window;
     if (camera->framing == RELUME_FRAME_LOOK)
-        out->kind = RELUME_SIGHT_LOOK;
+        out->kind = RELUME_VIEWPORT_PANORAMA;
     out->look = camera->look;
     out->width = q->width;
     out->height = q->height;
@@ -84,8 +84,8 @@ static bool find_view(int *view, double at[2], const struct frame_request *q,
     if (q->has_window)
         return relume_slabs_nearest(view, at, f->around, eye, vec_sub(p, eye));
     *view = nearest_view(q, s);
-    const struct relume_sight picture = sight_of_picture(f, camera_of(q, s, *view));
-    if (!relume_sight_place(at, &picture, p))
+    const struct relume_viewport picture = sight_of_picture(f, camera_of(q, s, *view));
+    if (!relume_viewport_project(at, &picture, p))
         return false;
     at[0] /= f->width;
     at[1] /= f->height;
@@ -105,7 +105,7 @@ static bool need_surface(struct lamp_scene *s, int view)
 struct looking {
     const struct frame_request *request;
     struct lamp_scene *scene;
-    struct relume_sight sight;
+    struct relume_viewport sight;
 };
 
 // What the view shows where it sees the point `p`; false where that is not known.
@@ -114,7 +114,7 @@ static bool surface_near(struct relume_vec3 *out, const struct looking *l, struc
     const struct relume_image *image = &l->scene->surface;
     double at[2];
     int view;
-    if (!find_view(&view, at, l->request, l->scene, relume_sight_eye(&l->sight), p) ||
+    if (!find_view(&view, at, l->request, l->scene, relume_viewport_eye(&l->sight), p) ||
         !need_surface(l->scene, view))
         return false;
     const double x = floor(at[0] * image->width), y = floor(at[1] * image->height);
@@ -130,16 +130,16 @@ static bool hidden(void *user, const double xy[2], struct relume_vec3 p)
     const struct looking *l = user;
     struct relume_vec3 surface;
     (void)xy;
-    return surface_near(&surface, l, p) && relume_sight_hides(&l->sight, surface, p);
+    return surface_near(&surface, l, p) && relume_viewport_hides(&l->sight, surface, p);
 }
 
-int lamps_seen(struct relume_source *out, const struct frame_request *q,
+int lamps_seen(struct relume_visible_light *out, const struct frame_request *q,
                const struct relume_light *lights, int n, struct lamp_scene *scene)
 {
     struct looking l = {.request = q, .scene = scene};
     if (!sight_of(&l.sight, q, scene))
         return 0;
-    return relume_sight_lamps(out, &l.sight, lights, n, scene ? hidden : NULL, &l);
+    return relume_viewport_lights(out, &l.sight, lights, n, scene ? hidden : NULL, &l);
 }
 
 // A view beside the eye sees another place of the surface; its depth is a better guess, and so on.
@@ -151,7 +151,7 @@ bool lamps_surface(struct relume_vec3 *out, const struct frame_request *q, struc
     struct relume_vec3 from, ray;
     if (!sight_of(&l.sight, q, scene))
         return false;
-    relume_sight_ray(&from, &ray, &l.sight, x, y);
+    relume_viewport_ray(&from, &ray, &l.sight, x, y);
     double t = vec_dot(vec_sub(q->middle, from), ray);
     for (int i = 0; i < ROUNDS; i++) {
         const struct relume_vec3 p = {from.x + t * ray.x, from.y + t * ray.y, from.z + t * ray.z};

@@ -1,4 +1,4 @@
-// lamps_seen.h - the lights that are in view of a frame (sight.h)
+// lamps_seen.h - the lights that are in view of a frame (viewport.h)
 //
 // The surface hides what lies behind it, as the nearest view knows it.
 #ifndef VIEWER_LAMPS_SEEN_H
@@ -7,7 +7,7 @@
 #include "app/frame_request.h"
 #include "relit/loader.h"
 
-#include <relume/sight.h>
+#include <relume/viewport.h>
 
 // Where views stand, and where their pixels lie. `source` and `uv` must outlive it.
 struct lamp_scene {
@@ -20,8 +20,8 @@ struct lamp_scene {
 };
 void lamp_scene_forget(struct lamp_scene *scene);
 
-// As relume_sight_lamps. Without `scene` nothing is hidden.
-int lamps_seen(struct relume_source *out, const struct frame_request *request,
+// As relume_viewport_lights. Without `scene` nothing is hidden.
+int lamps_seen(struct relume_visible_light *out, const struct frame_request *request,
                const struct relume_light *lights, int n, struct lamp_scene *scene);
 
 // The surface that the frame shows at (x, y), as the nearest view knows it; false where nothing is

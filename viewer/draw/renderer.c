@@ -404,7 +404,7 @@ static relume_status draw_lights_in_view(struct renderer *r, const struct frame_
 {
     if (!q->gaze.sources || q->pass != RELUME_PASS_COLOUR)
         return RELUME_OK;
-    struct relume_source *sources = malloc(RELUME_SOURCES_MOST * sizeof *sources);
+    struct relume_visible_light *sources = malloc(RELUME_VISIBLE_LIGHTS_MOST * sizeof *sources);
     if (!sources)
         return RELUME_ENOMEM;
     const int n = lamps_seen(sources, q, q->light, q->lights, &r->backdrop);

@@ -1,4 +1,4 @@
-// sight.h - where objects stand in the frame: a matrix for OpenGL, and the eye
+// viewport.h - where objects stand in the frame: a matrix for OpenGL, and the eye
 #ifndef VIEWER_SIGHT_H
 #define VIEWER_SIGHT_H
 

@@ -253,7 +253,7 @@ static relume_status add_glare(struct relume_image *frame, relume_renderer *rend
     struct relume_image seen = {0};
     if (info->geometry.projection > RELUME_SLAB && camera->framing != RELUME_FRAME_LOOK)
         return usage_error("--pass glare: expected --pan, --tilt or --zoom for a panorama");
-    relume_status status = relume_frame_lamps(frame, NULL, renderer, camera);
+    relume_status status = relume_frame_visible_lights(frame, NULL, renderer, camera);
     const double luminance = o->glare.nits * relume_glare_luminance(frame);
     if (!status)
         status = open_viewer_eye(&eye, &o->args, &o->glare, luminance,

@@ -28,31 +28,30 @@ struct relume_camera {
     enum relume_framing framing;  // which picture it is
     int view;                     // VIEW: its number
     struct relume_vec3 eye;
-    struct relume_aim
+    struct relume_look_at
         aim;      // EYE, several slabs: where it looks. Of one slab: all zero is the window
     int through;  // EYE, several slabs: 1 + the slab whose st window it looks through
-    struct relume_look look;  // LOOK
+    struct relume_pan_tilt look;  // LOOK
     // Default: the view's own size, LOOK 1024 x 512; of one of them the other, by proportion.
     int width, height;
 };
 
 // Where a picture lies in a frame, pixels.
-struct relume_place {
+struct relume_rect {
     int left, top, width, height;
 };
 // In the middle, as large as a picture of width x height pixels can be without being stretched;
 // black is beside it. All of the frame where that leaves less than a pixel.
-RELUME_API struct relume_place relume_place_fit(int width, int height, int frame_width,
-                                                int frame_height);
+RELUME_API struct relume_rect relume_rect_fit(int width, int height, int frame_width,
+                                              int frame_height);
 // Of a frame whose own size is `own`: what `camera` says, one side alone with the other by
 // proportion.
 RELUME_API void relume_frame_size(int *width, int *height, const int own[2],
                                   const struct relume_camera *camera);
 // The frame that `camera` asks for, in `*frame`, and the part of it that shows something: all of it
 // in a look and with a field of view, whose pixels are square whatever the frame.
-RELUME_API struct relume_place relume_camera_place(int frame[2],
-                                                   const struct relume_pack_info *info,
-                                                   const struct relume_camera *camera);
+RELUME_API struct relume_rect relume_camera_rect(int frame[2], const struct relume_pack_info *info,
+                                                 const struct relume_camera *camera);
 
 struct relume_frame_params {
     size_t struct_size;  // filled by the macro (base.h)
@@ -74,7 +73,7 @@ struct relume_frame_params {
 #define relume_frame_params(...)                                                                   \
     (&(const struct relume_frame_params){RELUME_SIZED(relume_frame_params), __VA_ARGS__})
 
-// Create `*out`, linear, three channels; relume_camera_place says where in it the picture is and a
+// Create `*out`, linear, three channels; relume_camera_rect says where in it the picture is and a
 // note in the log that there is something beside it. Only the views that the frame touches are read
 // and relit. Returns RELUME_EINVAL (camera does not fit the file, a light is wrong), RELUME_EDATA
 // (also: near lights and no depth), RELUME_ENOMEM.

@@ -139,7 +139,7 @@ struct relume_render_params {
 // The window through which `eye` sees all of the objects (its aim: all zero is their middle, +y up
 // and the least square view that holds them). False as relume_slabs_window.
 RELUME_API bool relume_objects_window(struct relume_window *out, const relume_objects *objects,
-                                      struct relume_vec3 eye, const struct relume_aim *aim,
+                                      struct relume_vec3 eye, const struct relume_look_at *aim,
                                       int width, int height);
 
 // Ray trace the objects as seen through the window before black, linear: the reference of all other

@@ -48,7 +48,7 @@ struct relume_window {
 
 // Where an eye looks. All zero: at the middle of the object, +y up, through a window as large as
 // the largest st window; for an eye straight before a slab it is that slab's window.
-struct relume_aim {
+struct relume_look_at {
     bool aimed;             // at `at`; else at the middle
     struct relume_vec3 at;  // world
     struct relume_vec3 up;  // zero: +y, for an eye straight above or below -z or +z
@@ -56,11 +56,11 @@ struct relume_aim {
     double field_of_view_deg;
 };
 // Whether anything is not zero.
-RELUME_API bool relume_aim_given(const struct relume_aim *aim);
+RELUME_API bool relume_look_at_given(const struct relume_look_at *aim);
 // False when the eye stands where it looks, looks along `up`, or something is not finite.
 RELUME_API bool relume_slabs_window(struct relume_window *out, const relume_slabs *slabs,
-                                    struct relume_vec3 eye, const struct relume_aim *aim, int width,
-                                    int height);
+                                    struct relume_vec3 eye, const struct relume_look_at *aim,
+                                    int width, int height);
 // The st window of a slab as seen from `eye` (world), as relume_slab_frame shows it.
 RELUME_API struct relume_window relume_slab_window(const struct relume_geometry *slab,
                                                    struct relume_vec3 eye);

@@ -155,15 +155,15 @@ RELUME_RESULT relume_status relume_slab_value(float rgb[3], const relume_slab *s
 // first, then pan. The horizontal field of view is 2 atan(1 / zoom), of a stereographic look twice
 // that: it shows up to nearly everything, circles stay circles, and tilted by -90 it is a little
 // planet.
-struct relume_look {
+struct relume_pan_tilt {
     double pan_deg, tilt_deg, zoom;  // zoom 0 means 1
     bool stereographic;              // instead of perspective
 };
 
 // Unit direction through the (fractional) position (x, y) of a width x height frame; pixel centres
 // are at +0.5.
-RELUME_API struct relume_vec3 relume_look_ray(struct relume_look look, int width, int height,
-                                              double x, double y);
+RELUME_API struct relume_vec3 relume_pan_tilt_ray(struct relume_pan_tilt look, int width,
+                                                  int height, double x, double y);
 
 // Unit direction at the (fractional) position (x, y) of a panorama image; pixel centres are at
 // +0.5. A cube's faces lie side by side, its width is 6 x its height. Zero for other projections.
@@ -188,7 +188,7 @@ RELUME_API bool relume_panorama_sample(float rgb[3], const struct relume_geometr
 RELUME_RESULT relume_status relume_panorama_frame(struct relume_image *out,
                                                   const struct relume_geometry *geometry,
                                                   const struct relume_image *image,
-                                                  struct relume_look look,
+                                                  struct relume_pan_tilt look,
                                                   const struct relume_view_params *params);
 
 #ifdef __cplusplus

@@ -34,7 +34,7 @@ struct relume_viewport {
     double left, top, wide, high;     // of the picture in it, pixels; wide 0: all of the frame
     struct relume_window window;      // WINDOW, PARALLEL
     struct relume_geometry geometry;  // LOOK, UNFOLDED
-    struct relume_look look;          // LOOK
+    struct relume_pan_tilt look;      // LOOK
 };
 
 // Of a frame that relume_frame makes of that camera. RELUME_EINVAL, RELUME_ENOMEM.

@@ -76,11 +76,11 @@ struct relume_pack_info { int version; void *coder; int domain; struct relume_tr
 struct relume_codes { void *coder; int domain; struct relume_transfer display;
     int width, height, planes; int storage; void *plane; void *scale, *offset; int books;
     void *index; void *vectors; void *book_codes; };
-struct relume_aim { bool aimed; struct relume_vec3 at; struct relume_vec3 up;
+struct relume_look_at { bool aimed; struct relume_vec3 at; struct relume_vec3 up;
     double field_of_view_deg; };
-struct relume_look { double pan_deg, tilt_deg, zoom; bool stereographic; };
-struct relume_camera { int framing; int view; struct relume_vec3 eye; struct relume_aim aim;
-    int through; struct relume_look look; int width, height; };
+struct relume_pan_tilt { double pan_deg, tilt_deg, zoom; bool stereographic; };
+struct relume_camera { int framing; int view; struct relume_vec3 eye; struct relume_look_at aim;
+    int through; struct relume_pan_tilt look; int width, height; };
 struct relume_open_params { size_t struct_size; void *log; void *limits; bool allow_outside; bool sphere;
     int threads; };
 struct relume_evaluate_params { size_t struct_size; void *log; char *file; char *capture; int threads;
@@ -96,7 +96,7 @@ struct relume_heldout_quality { double psnr_db; double psnr_pooled_db; double ss
 struct relume_frame_params { size_t struct_size; void *log; unsigned cpu_off; int threads; double assume_depth;
     int pass; void *capture; int interpolation; double aperture, focus; int filter;
     uint64_t memory; };
-struct relume_place { int left, top, width, height; };
+struct relume_rect { int left, top, width, height; };
 struct relume_target { void *data; int format; int width, height; ptrdiff_t stride;
     float exposure_ev; };
 """
@@ -141,7 +141,7 @@ void relume_pack_drop(relume_pack *pack, int view);
 relume_status relume_pack_depth(struct relume_image *out, relume_pack *pack, int view);
 relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view);
 void relume_codes_plane(const struct relume_codes *codes, int plane, size_t first, size_t n, float *out);
-struct relume_place relume_camera_place(int frame[2], const struct relume_pack_info *info, const struct relume_camera *camera);
+struct relume_rect relume_camera_rect(int frame[2], const struct relume_pack_info *info, const struct relume_camera *camera);
 relume_status relume_renderer_create(relume_renderer **out, relume_pack *pack, const struct relume_frame_params *params);
 void relume_renderer_destroy(relume_renderer **renderer);
 relume_status relume_renderer_set_rig(relume_renderer *renderer, relume_rig *rig);

@@ -73,7 +73,7 @@ def _camera(view, eye, look, size):
     if eye is not None:
         camera.framing, camera.eye = CONSTANTS["RELUME_FRAME_EYE"], structs["relume_vec3"](*eye)
     if look is not None:
-        camera.framing, camera.look = CONSTANTS["RELUME_FRAME_LOOK"], structs["relume_look"](*look)
+        camera.framing, camera.look = CONSTANTS["RELUME_FRAME_LOOK"], structs["relume_pan_tilt"](*look)
     return camera
 
 
@@ -198,7 +198,7 @@ class File(Handle):
     def _draw(self, lights, camera, format_: str, dtype, exposure_ev: float = 0.0) -> np.ndarray:
         size = (ctypes.c_int * 2)()
         with self._lock:
-            lib.relume_camera_place(size, lib.relume_pack_info(self.pointer), ctypes.byref(camera))
+            lib.relume_camera_rect(size, lib.relume_pack_info(self.pointer), ctypes.byref(camera))
             self._set_lights(lights)
             out = np.empty((size[1], size[0], 3 if format_ == "RGB" else 4), dtype)
             target = structs["relume_target"](out.ctypes.data, CONSTANTS["RELUME_TARGET_" + format_],

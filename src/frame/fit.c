@@ -3,13 +3,13 @@
 
 #include <math.h>
 
-struct relume_place relume_place_fit(int width, int height, int frame_width, int frame_height)
+struct relume_rect relume_rect_fit(int width, int height, int frame_width, int frame_height)
 {
     if (width < 1 || height < 1)
-        return (struct relume_place){0, 0, frame_width, frame_height};
+        return (struct relume_rect){0, 0, frame_width, frame_height};
     const double scale = fmin((double)frame_width / width, (double)frame_height / height);
-    struct relume_place place = {.width = (int)fmax(lround(width * scale), 1.0),
-                                 .height = (int)fmax(lround(height * scale), 1.0)};
+    struct relume_rect place = {.width = (int)fmax(lround(width * scale), 1.0),
+                                .height = (int)fmax(lround(height * scale), 1.0)};
     if (frame_width - width * scale < 1.0)
         place.width = frame_width;
     if (frame_height - height * scale < 1.0)
@@ -35,13 +35,13 @@ void relume_frame_size(int *width, int *height, const int own[2],
                               : own[1];
 }
 
-struct relume_place relume_camera_place(int frame[2], const struct relume_pack_info *info,
-                                        const struct relume_camera *camera)
+struct relume_rect relume_camera_rect(int frame[2], const struct relume_pack_info *info,
+                                      const struct relume_camera *camera)
 {
     const bool look = camera->framing == RELUME_FRAME_LOOK;
     const bool square = look || camera->aim.field_of_view_deg != 0.0;
     const int own[2] = {look ? 1024 : info->width, look ? 512 : info->height};
     relume_frame_size(&frame[0], &frame[1], own, camera);
-    return square ? (struct relume_place){0, 0, frame[0], frame[1]}
-                  : relume_place_fit(own[0], own[1], frame[0], frame[1]);
+    return square ? (struct relume_rect){0, 0, frame[0], frame[1]}
+                  : relume_rect_fit(own[0], own[1], frame[0], frame[1]);
 }

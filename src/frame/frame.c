@@ -98,13 +98,13 @@ static relume_status render(relume_renderer *r, const struct relume_camera *came
 }
 
 // The picture alone, without what lies beside it; `place` says where it belongs in `frame`.
-static relume_status draw_picture(struct relume_image *out, struct relume_place *place,
-                                  int frame[2], relume_renderer *r,
-                                  const struct relume_camera *camera, enum shown shown)
+static relume_status draw_picture(struct relume_image *out, struct relume_rect *place, int frame[2],
+                                  relume_renderer *r, const struct relume_camera *camera,
+                                  enum shown shown)
 {
     struct relume_camera within = *camera;
     *out = (struct relume_image){0};
-    *place = relume_camera_place(frame, r->info, camera);
+    *place = relume_camera_rect(frame, r->info, camera);
     within.width = place->width;
     within.height = place->height;
     relume_status status = check_size(r, frame);
@@ -127,7 +127,7 @@ static relume_status draw_picture(struct relume_image *out, struct relume_place 
 static relume_status draw_frame(struct relume_image *out, relume_renderer *r,
                                 const struct relume_camera *camera, enum shown shown)
 {
-    struct relume_place place;
+    struct relume_rect place;
     struct relume_image picture;
     int frame[2];
     relume_status status = draw_picture(&picture, &place, frame, r, camera, shown);
@@ -214,7 +214,7 @@ static relume_status draw_straight(relume_renderer *r, const struct relume_camer
 struct putting {
     const struct relume_target *target;
     const struct relume_image *picture;
-    struct relume_place place;
+    struct relume_rect place;
     struct byte_coder coder;
 };
 

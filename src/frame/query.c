@@ -210,7 +210,7 @@ relume_status relume_renderer_pixel(float rgb[3], relume_renderer *r,
     int frame[2];
     struct relume_viewport sight;
     struct relume_ray ray;
-    (void)relume_camera_place(frame, r->info, camera);
+    (void)relume_camera_rect(frame, r->info, camera);
     const relume_status status = relume_frame_viewport(&sight, r->pack, camera, frame[0], frame[1]);
     if (status)
         return status;

@@ -43,7 +43,7 @@ static relume_status sight_of_eye(struct relume_viewport *s, const relume_pack *
     if (status)
         return status;
     const vec3 eye = camera->framing == RELUME_FRAME_EYE ? camera->eye : relume_slabs_eye(slabs, 0);
-    const bool window = !info->slabs && !relume_aim_given(&camera->aim);
+    const bool window = !info->slabs && !relume_look_at_given(&camera->aim);
     const int through = window ? 1 : camera->through;
     bool sees = true;
     if (through > 0 && through <= relume_slabs_count(slabs))
@@ -64,7 +64,7 @@ relume_status relume_frame_viewport(struct relume_viewport *out, relume_pack *pa
     int frame[2];
     sized.width = width;
     sized.height = height;
-    const struct relume_place place = relume_camera_place(frame, info, &sized);
+    const struct relume_rect place = relume_camera_rect(frame, info, &sized);
     *out = (struct relume_viewport){.width = width,
                                     .height = height,
                                     .left = place.left,
@@ -115,7 +115,7 @@ struct axes {
     vec3 right, up, ahead;
 };
 
-static struct axes axes_of(struct relume_look look)
+static struct axes axes_of(struct relume_pan_tilt look)
 {
     const double pan = look.pan_deg * M_PI / 180.0, tilt = look.tilt_deg * M_PI / 180.0;
     return (struct axes){
@@ -148,7 +148,7 @@ void relume_viewport_ray(struct relume_vec3 *origin, struct relume_vec3 *directi
         break;
     case RELUME_VIEWPORT_PANORAMA:
         *origin = s->geometry.center;
-        *direction = relume_look_ray(s->look, s->width, s->height, x, y);
+        *direction = relume_pan_tilt_ray(s->look, s->width, s->height, x, y);
         break;
     case RELUME_VIEWPORT_UNFOLDED:
         *origin = s->geometry.center;

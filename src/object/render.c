@@ -320,7 +320,7 @@ relume_status relume_objects_render(struct relume_image *out, const relume_objec
 }
 
 bool relume_objects_window(struct relume_window *out, const relume_objects *objects,
-                           struct relume_vec3 eye, const struct relume_aim *aim, int width,
+                           struct relume_vec3 eye, const struct relume_look_at *aim, int width,
                            int height)
 {
     const vec3 min = objects->info.min, max = objects->info.max;

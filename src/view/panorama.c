@@ -323,7 +323,7 @@ struct gaze {
     double half_width, half_height;
 };
 
-static struct gaze gaze_of(struct relume_look look, int width, int height)
+static struct gaze gaze_of(struct relume_pan_tilt look, int width, int height)
 {
     const double tilt = look.tilt_deg * M_PI / 180.0, pan = look.pan_deg * M_PI / 180.0;
     return (struct gaze){
@@ -360,8 +360,8 @@ static void gaze_steps(vec3 step[2], const struct gaze *g, double x, double y)
     step[1] = vec3_scale(vec3_sub(vec3_scale(g->ahead, b), g->up), g->pixel);
 }
 
-struct relume_vec3 relume_look_ray(struct relume_look look, int width, int height, double x,
-                                   double y)
+struct relume_vec3 relume_pan_tilt_ray(struct relume_pan_tilt look, int width, int height, double x,
+                                       double y)
 {
     const struct gaze g = gaze_of(look, width, height);
     return gaze_ray(&g, x, y);
@@ -474,7 +474,7 @@ static void draw_row(void *context, size_t row, int worker)
 
 relume_status relume_panorama_frame(struct relume_image *out,
                                     const struct relume_geometry *geometry,
-                                    const struct relume_image *image, struct relume_look look,
+                                    const struct relume_image *image, struct relume_pan_tilt look,
                                     const struct relume_view_params *params)
 {
     const struct layout *layout = usable_layout(geometry, image);

@@ -140,7 +140,7 @@ static double draw_frame(struct scene *s, const struct relume_light *lights, int
     bench_check(relighter_view(&view, &s->relighter, 0));
     gl.BindVertexArray(s->relighter.vertices);
     target_begin(&s->frame, &gl);
-    draw_panorama(&s->panorama, &gl, &place, &g, (struct relume_look){.zoom = 1.0}, view);
+    draw_panorama(&s->panorama, &gl, &place, &g, (struct relume_pan_tilt){.zoom = 1.0}, view);
     gl.Finish();
     return bench_now_s() - start;
 }

@@ -157,7 +157,7 @@ static double angle(struct relume_vec3 a, struct relume_vec3 b)
 
 static struct relume_vec3 seen_at(const struct app *app, double x, double y)
 {
-    return relume_look_ray(app->now.camera.look, app->width, app->height, x, y);
+    return relume_pan_tilt_ray(app->now.camera.look, app->width, app->height, x, y);
 }
 
 // A pixel of 1024 is a twentieth of a degree; where pan and tilt cannot hold the place, the middle
@@ -165,7 +165,7 @@ static struct relume_vec3 seen_at(const struct app *app, double x, double y)
 static void a_panorama_zooms_about_the_cursor(void **state)
 {
     (void)state;
-    static const struct relume_look looks[] = {
+    static const struct relume_pan_tilt looks[] = {
         {0, 0, 1, false}, {170, 20, 1.5, false}, {-60, -40, 1, false}, {40, 10, 1.5, true}};
     static const double cursors[][2] = {{512, 256}, {100, 400}, {1000, 30}, {700, 256}};
     for (size_t i = 0; i < sizeof looks / sizeof *looks; i++)
@@ -179,7 +179,7 @@ static void a_panorama_zooms_about_the_cursor(void **state)
             assert_true(angle(before, seen_at(&app, x, y)) < 0.05);
         }
     OWNED_APP app = make_app(RELUME_SPHERICAL, true);
-    app.now.camera.look = (struct relume_look){0, -90, 0.5, true};
+    app.now.camera.look = (struct relume_pan_tilt){0, -90, 0.5, true};
     app_handle(&app, &(struct app_event){.kind = APP_WHEEL, .wheel = 3, .x = 512, .y = 400});
     assert_true(app.now.camera.look.tilt_deg == -90);
 }
@@ -192,7 +192,7 @@ static void fields_of_view_have_limits(void **state)
         const double field = stereographic ? 4 : 2;
         OWNED_APP app = make_app(RELUME_SPHERICAL, true);
         app.now.camera.look.stereographic = stereographic;
-        const struct relume_look *look = &app.now.camera.look;
+        const struct relume_pan_tilt *look = &app.now.camera.look;
         const struct app_event out = {.kind = APP_WHEEL, .wheel = -100, .x = 512, .y = 256};
         const struct app_event in = {.kind = APP_WHEEL, .wheel = 100, .x = 512, .y = 256};
         app_handle(&app, &out);
@@ -379,7 +379,7 @@ static void the_light_turns_as_seen_in_a_panorama(void **state)
 {
     (void)state;
     OWNED_APP app = make_app(RELUME_SPHERICAL, true);
-    app.now.camera.look = (struct relume_look){90, 30, 1, false};
+    app.now.camera.look = (struct relume_pan_tilt){90, 30, 1, false};
     const struct relume_vec3 before = app_seen_light(&app, 0);
     assert_float_equal(before.x, 1, 1e-12);  // looking to +x, the light at +z is on the right
     drag(&app, APP_RIGHT, -256, 0);          // a quarter turn to the left: now behind the viewer
@@ -549,9 +549,9 @@ static void a_planet_and_back(void **state)
 {
     (void)state;
     OWNED_APP app = make_app(RELUME_CUBE, true);
-    app.now.camera.look = (struct relume_look){30, 10, 2, false};
+    app.now.camera.look = (struct relume_pan_tilt){30, 10, 2, false};
     assert_true(key(&app, 'o'));
-    const struct relume_look planet = app.now.camera.look;
+    const struct relume_pan_tilt planet = app.now.camera.look;
     assert_true(planet.stereographic && planet.tilt_deg == -90 && planet.pan_deg == 30);
     assert_true(key(&app, 'o'));
     assert_false(app.now.camera.look.stereographic);

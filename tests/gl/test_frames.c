@@ -401,7 +401,7 @@ static void cameras_without_a_grid_are_refused(void **state)
 // All pixels within `bound`; 0: most of them.
 static void compare_panorama(const struct relume_geometry *g, int width, int height, double bound)
 {
-    static const struct relume_look looks[] = {
+    static const struct relume_pan_tilt looks[] = {
         {0, 0, 1, 0},      {180, 0, 1, 0},  {-90, 40, 1.5, 0}, {30, 90, 1, 0},
         {70, -80, 0.7, 0}, {135, 35, 2, 0}, {20, -90, 0.5, 1}, {-130, 25, 0.8, 1}};
     struct fixture_file f =

@@ -423,7 +423,7 @@ static void the_cursor_finds_its_pixel(void **state)
     assert_int_equal(pixel[0], 0);
     app.file.geometry.projection = RELUME_SPHERICAL;
     app.now.camera.framing = RELUME_FRAME_LOOK;  // ahead is the middle of the panorama
-    app.now.camera.look = (struct relume_look){.zoom = 1};
+    app.now.camera.look = (struct relume_pan_tilt){.zoom = 1};
     assert_true(inspect_pick(&view, pixel, &app, NULL, 320.5, 280.5));
     assert_true(pixel[0] == 200 && pixel[1] == 200);
 }

@@ -265,21 +265,24 @@ static void no_direction_no_pixel(void **state)
 static void look_turns_as_the_contract_says(void **state)
 {
     (void)state;
-    const struct relume_look front = {0, 0, 1, false};
-    assert_vec3(relume_look_ray(front, 200, 100, 100, 50), 0, 0, -1);
+    const struct relume_pan_tilt front = {0, 0, 1, false};
+    assert_vec3(relume_pan_tilt_ray(front, 200, 100, 100, 50), 0, 0, -1);
     // zoom 1 sees 90 degrees across, zoom 2 half the tangent; pixels are square
-    assert_vec3(relume_look_ray(front, 200, 100, 200, 50), sqrt(.5), 0, -sqrt(.5));
-    assert_vec3(relume_look_ray((struct relume_look){0, 0, 2, false}, 200, 100, 0, 50), -sqrt(.2),
-                0, -sqrt(.8));
-    assert_vec3(relume_look_ray(front, 200, 100, 100, 0), 0, sqrt(.2), -sqrt(.8));
-    assert_vec3(relume_look_ray((struct relume_look){90, 0, 1, false}, 200, 100, 100, 50), 1, 0, 0);
-    assert_vec3(relume_look_ray((struct relume_look){0, 30, 0, false}, 200, 100, 100, 50), 0, 0.5,
-                -sqrt(.75));
+    assert_vec3(relume_pan_tilt_ray(front, 200, 100, 200, 50), sqrt(.5), 0, -sqrt(.5));
+    assert_vec3(relume_pan_tilt_ray((struct relume_pan_tilt){0, 0, 2, false}, 200, 100, 0, 50),
+                -sqrt(.2), 0, -sqrt(.8));
+    assert_vec3(relume_pan_tilt_ray(front, 200, 100, 100, 0), 0, sqrt(.2), -sqrt(.8));
+    assert_vec3(relume_pan_tilt_ray((struct relume_pan_tilt){90, 0, 1, false}, 200, 100, 100, 50),
+                1, 0, 0);
+    assert_vec3(relume_pan_tilt_ray((struct relume_pan_tilt){0, 30, 0, false}, 200, 100, 100, 50),
+                0, 0.5, -sqrt(.75));
     // tilt first, then pan: no roll, the right edge stays level
-    assert_vec3(relume_look_ray((struct relume_look){90, 30, 1, false}, 200, 100, 100, 50),
+    assert_vec3(relume_pan_tilt_ray((struct relume_pan_tilt){90, 30, 1, false}, 200, 100, 100, 50),
                 sqrt(.75), 0.5, 0);
-    const vec3 centre = relume_look_ray((struct relume_look){20, 0, 1, false}, 200, 100, 100, 50);
-    const vec3 right = relume_look_ray((struct relume_look){20, 0, 1, false}, 200, 100, 200, 50);
+    const vec3 centre =
+        relume_pan_tilt_ray((struct relume_pan_tilt){20, 0, 1, false}, 200, 100, 100, 50);
+    const vec3 right =
+        relume_pan_tilt_ray((struct relume_pan_tilt){20, 0, 1, false}, 200, 100, 200, 50);
     assert_float_equal(centre.y, right.y, 1e-15);
 }
 
@@ -288,23 +291,23 @@ static void look_turns_as_the_contract_says(void **state)
 static void stereographic_looks(void **state)
 {
     (void)state;
-    const struct relume_look front = {0, 0, 1, true};
-    assert_vec3(relume_look_ray(front, 200, 100, 100, 50), 0, 0, -1);
-    assert_vec3(relume_look_ray(front, 200, 100, 200, 50), 1, 0, 0);
-    const struct relume_look planet = {0, -90, 0.5, true};
-    assert_vec3(relume_look_ray(planet, 200, 200, 100, 100), 0, -1, 0);
-    assert_vec3(relume_look_ray(planet, 200, 200, 150, 100), 1, 0, 0);  // the horizon
-    assert_vec3(relume_look_ray(planet, 200, 200, 100, 50), 0, 0, -1);  // ahead is up
-    const struct relume_look looks[] = {{30, -90, 0.4, true}, {-100, 20, 1.3, true}};
+    const struct relume_pan_tilt front = {0, 0, 1, true};
+    assert_vec3(relume_pan_tilt_ray(front, 200, 100, 100, 50), 0, 0, -1);
+    assert_vec3(relume_pan_tilt_ray(front, 200, 100, 200, 50), 1, 0, 0);
+    const struct relume_pan_tilt planet = {0, -90, 0.5, true};
+    assert_vec3(relume_pan_tilt_ray(planet, 200, 200, 100, 100), 0, -1, 0);
+    assert_vec3(relume_pan_tilt_ray(planet, 200, 200, 150, 100), 1, 0, 0);  // the horizon
+    assert_vec3(relume_pan_tilt_ray(planet, 200, 200, 100, 50), 0, 0, -1);  // ahead is up
+    const struct relume_pan_tilt looks[] = {{30, -90, 0.4, true}, {-100, 20, 1.3, true}};
     for (int i = 0; i < 2; i++)
         for (int k = 0; k < 50; k++) {
             const double x = 13.0 + 3.7 * k, y = 90.0 - 1.6 * k, step = 1e-4;
-            const vec3 middle = relume_look_ray(looks[i], 200, 100, 100, 50);
-            const vec3 at = relume_look_ray(looks[i], 200, 100, x, y);
+            const vec3 middle = relume_pan_tilt_ray(looks[i], 200, 100, 100, 50);
+            const vec3 at = relume_pan_tilt_ray(looks[i], 200, 100, x, y);
             const double r = hypot(x - 100, y - 50) / 100 / looks[i].zoom;
             assert_float_equal(vec3_angle(middle, at), 2 * atan(r), 1e-9);
-            const vec3 across = vec3_sub(relume_look_ray(looks[i], 200, 100, x + step, y), at);
-            const vec3 down = vec3_sub(relume_look_ray(looks[i], 200, 100, x, y + step), at);
+            const vec3 across = vec3_sub(relume_pan_tilt_ray(looks[i], 200, 100, x + step, y), at);
+            const vec3 down = vec3_sub(relume_pan_tilt_ray(looks[i], 200, 100, x, y + step), at);
             const double scale = vec3_length(across);
             // one-sided differences over 1e-6 of the frame
             assert_float_equal(vec3_length(down) / scale, 1, 1e-5);
@@ -316,7 +319,7 @@ static void frames_show_the_directions_they_look_at(void **state)
 {
     (void)state;
     enum { W = 96, H = 48 };
-    static const struct relume_look looks[] = {
+    static const struct relume_pan_tilt looks[] = {
         {0, 0, 1, false},   {180, 10, 1, false}, {-179, -5, 2, false}, {45, 20, 1.5, false},
         {30, 90, 1, false}, {0, -75, 1, false},  {135, 35, 1, false},  {10, -90, 0.6, true},
     };
@@ -332,7 +335,7 @@ static void frames_show_the_directions_they_look_at(void **state)
                              RELUME_OK);
             for (int y = 0; y < H; y++)
                 for (int x = 0; x < W; x++) {
-                    const vec3 want = relume_look_ray(looks[k], W, H, x + 0.5, y + 0.5);
+                    const vec3 want = relume_pan_tilt_ray(looks[k], W, H, x + 0.5, y + 0.5);
                     const float *rgb = &out.data[3 * (y * W + x)];
                     assert_true(distance((vec3){rgb[0], rgb[1], rgb[2]}, want) < p->bound);
                 }
@@ -468,7 +471,7 @@ static void frames_do_not_depend_on_threads(void **state)
     (void)state;
     enum { W = 33, H = 21 };
     const struct panorama *p = &panoramas[1];
-    const struct relume_look look = {170, 60, 1, true};
+    const struct relume_pan_tilt look = {170, 60, 1, true};
     struct relume_image image = random_image(p), one, many;
     assert_int_equal(relume_image_create(&one, W, H, 3), RELUME_OK);
     assert_int_equal(relume_image_create(&many, W, H, 3), RELUME_OK);
@@ -490,7 +493,7 @@ static void frames_refuse_what_is_no_panorama(void **state)
     const struct relume_geometry planar = {.projection = RELUME_PLANAR};
     const struct relume_geometry cube = {.projection = RELUME_CUBE};
     const struct relume_geometry sphere = {.projection = RELUME_SPHERICAL};
-    const struct relume_look front = {0}, broken = {.pan_deg = NAN};
+    const struct relume_pan_tilt front = {0}, broken = {.pan_deg = NAN};
     struct relume_image image = make_image(&panoramas[1]), out = make_image(&panoramas[1]);
     assert_int_equal(relume_panorama_frame(&out, &planar, &image, front, NULL), RELUME_EINVAL);
     assert_int_equal(relume_panorama_frame(&out, &cube, &image, front, NULL), RELUME_EINVAL);

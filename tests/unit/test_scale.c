@@ -194,7 +194,7 @@ static const struct relume_geometry sphere = {.projection = RELUME_SPHERICAL};
 // The mean over RAYS x RAYS rays of every pixel: of the picture between its texels.
 static struct relume_image panorama_reference(const struct relume_geometry *g,
                                               const struct relume_image *image,
-                                              struct relume_look look, int width, int height)
+                                              struct relume_pan_tilt look, int width, int height)
 {
     struct relume_image out = make(width, height);
     for (int i = 0; i < width * height; i++)
@@ -202,8 +202,8 @@ static struct relume_image panorama_reference(const struct relume_geometry *g,
             float rgb[3];
             const double x = i % width + (k % RAYS + 0.5) / RAYS;
             const double y = i / width + (k / RAYS + 0.5) / RAYS;
-            (void)relume_panorama_sample(rgb, g, image, relume_look_ray(look, width, height, x, y),
-                                         NULL);
+            (void)relume_panorama_sample(rgb, g, image,
+                                         relume_pan_tilt_ray(look, width, height, x, y), NULL);
             for (int c = 0; c < 3; c++)
                 out.data[3 * i + c] += rgb[c] / (RAYS * RAYS);
         }
@@ -227,7 +227,7 @@ static struct relume_image scene(const struct relume_geometry *g, int width, int
 }
 
 static void compare_look(const char *name, const struct relume_geometry *g,
-                         const struct relume_image *image, struct relume_look look, int width,
+                         const struct relume_image *image, struct relume_pan_tilt look, int width,
                          double least)
 {
     const int height = width / 2;
@@ -257,10 +257,10 @@ static void reduced_looks_are_means(void **state)
                                                  .v_min = -1,
                                                  .v_max = 1,
                                                  .disc = 160};
-    const struct relume_look ahead = {.pan_deg = 20, .tilt_deg = 5, .zoom = 1};
-    const struct relume_look up = {.pan_deg = 40, .tilt_deg = 60, .zoom = 0.8};
-    const struct relume_look wide = {.pan_deg = 20, .zoom = 0.35};
-    const struct relume_look planet = {.tilt_deg = -90, .zoom = 0.5, .stereographic = true};
+    const struct relume_pan_tilt ahead = {.pan_deg = 20, .tilt_deg = 5, .zoom = 1};
+    const struct relume_pan_tilt up = {.pan_deg = 40, .tilt_deg = 60, .zoom = 0.8};
+    const struct relume_pan_tilt wide = {.pan_deg = 20, .zoom = 0.35};
+    const struct relume_pan_tilt planet = {.tilt_deg = -90, .zoom = 0.5, .stereographic = true};
     struct relume_image image = scene(&sphere, SPHERE_W, SPHERE_H);
     compare_look("sphere, a quarter", &sphere, &image, ahead, 32, 38);
     compare_look("sphere, half", &sphere, &image, ahead, 64, 34);
@@ -284,7 +284,7 @@ static void enlarged_looks_are_single_rays(void **state)
     (void)state;
     struct relume_image image = scene(&sphere, 128, 64);
     struct relume_image a = make(80, 40), b = make(80, 40);
-    const struct relume_look look = {.pan_deg = -100, .tilt_deg = -20, .zoom = 4};
+    const struct relume_pan_tilt look = {.pan_deg = -100, .tilt_deg = -20, .zoom = 4};
     CHECK_OK(relume_panorama_frame(&a, &sphere, &image, look, NULL));
     CHECK_OK(relume_panorama_frame(&b, &sphere, &image, look, relume_view_params(.one = true)));
     assert_memory_equal(a.data, b.data, 3 * 80 * 40 * sizeof *a.data);
@@ -312,14 +312,14 @@ static void cubic_looks_are_smoother(void **state)
         image.data[3 * i + 1] = (float)d.y;
         image.data[3 * i + 2] = (float)d.z;
     }
-    const struct relume_look look = {.pan_deg = 130, .tilt_deg = 30, .zoom = 2};
+    const struct relume_pan_tilt look = {.pan_deg = 130, .tilt_deg = 30, .zoom = 2};
     double worst[2] = {0, 0};
     for (int k = 0; k < 2; k++) {
         const enum relume_filter filter = k ? RELUME_FILTER_CUBIC : RELUME_FILTER_LINEAR;
         CHECK_OK(relume_panorama_frame(&out, &sphere, &image, look,
                                        relume_view_params(.filter = filter)));
         for (int i = 0; i < 120 * 60; i++) {
-            const vec3 d = relume_look_ray(look, 120, 60, i % 120 + 0.5, i / 120 + 0.5);
+            const vec3 d = relume_pan_tilt_ray(look, 120, 60, i % 120 + 0.5, i / 120 + 0.5);
             const float *v = &out.data[3 * i];
             worst[k] =
                 fmax(worst[k],

@@ -632,7 +632,7 @@ static void eyes_look_where_they_are_told(void **state)
 {
     (void)state;
     struct relume_window w;
-    const struct relume_aim aim = {
+    const struct relume_look_at aim = {
         .aimed = true, .at = {0, 1, 0}, .up = {1, 0, 0}, .field_of_view_deg = 90};
     const vec3 eye = {0, 1, 2};
     assert_true(relume_slabs_window(&w, c.slabs, eye, &aim, 200, 100));
@@ -643,11 +643,11 @@ static void eyes_look_where_they_are_told(void **state)
     // from straight above the picture's top is -z, as of the slab above a cube
     assert_true(relume_slabs_window(&w, c.slabs, (vec3){0, 4, 0}, NULL, 1, 1));
     assert_true(w.down.z > 0 && w.right.x > 0);
-    const struct relume_aim wrong[] = {{.aimed = true, .at = eye},
-                                       {.up = {0, -1, -2}},
-                                       {.field_of_view_deg = 180},
-                                       {.field_of_view_deg = -1},
-                                       {.aimed = true, .at = {(double)NAN, 0, 0}}};
+    const struct relume_look_at wrong[] = {{.aimed = true, .at = eye},
+                                           {.up = {0, -1, -2}},
+                                           {.field_of_view_deg = 180},
+                                           {.field_of_view_deg = -1},
+                                           {.aimed = true, .at = {(double)NAN, 0, 0}}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         assert_false(relume_slabs_window(&w, c.slabs, eye, &wrong[i], 1, 1));
     assert_false(relume_slabs_window(&w, c.slabs, (vec3){0, 0, 0}, NULL, 1, 1));

@@ -70,12 +70,12 @@ static double degrees_per_pixel(const struct app *app)
 {
     if (orbit_is(app))
         return orbit_degrees_per_pixel(app);
-    const struct relume_look *look = &app->now.camera.look;
+    const struct relume_pan_tilt *look = &app->now.camera.look;
     const double field = (look->stereographic ? 4 : 2) * atan(1 / look->zoom) * 180 / M_PI;
     return field / app->width;
 }
 
-static void turn_by(struct relume_look *look, double pan_deg, double tilt_deg)
+static void turn_by(struct relume_pan_tilt *look, double pan_deg, double tilt_deg)
 {
     look->pan_deg = remainder(look->pan_deg + pan_deg, 360);
     look->tilt_deg = clamp(look->tilt_deg + tilt_deg, -90, 90);
@@ -95,7 +95,7 @@ static void look_error(double error[2], const struct app *app, double x, double 
                        struct relume_vec3 want)
 {
     const struct relume_vec3 got =
-        relume_look_ray(app->now.camera.look, app->width, app->height, x, y);
+        relume_pan_tilt_ray(app->now.camera.look, app->width, app->height, x, y);
     error[0] = remainder(atan2(got.x, -got.z) - atan2(want.x, -want.z), 2 * M_PI) * 180 / M_PI;
     error[1] = (asin(clamp(got.y, -1, 1)) - asin(clamp(want.y, -1, 1))) * 180 / M_PI;
 }
@@ -105,11 +105,11 @@ static void look_error(double error[2], const struct app *app, double x, double 
 static void zoom_look(struct app *app, double x, double y, double factor)
 {
     enum { ROUNDS = 32 };
-    struct relume_look *look = &app->now.camera.look;
-    const struct relume_vec3 want = relume_look_ray(*look, app->width, app->height, x, y);
+    struct relume_pan_tilt *look = &app->now.camera.look;
+    const struct relume_vec3 want = relume_pan_tilt_ray(*look, app->width, app->height, x, y);
     double error[2];
     look->zoom = clamp(look->zoom * factor, look_least[look->stereographic], look_most);
-    const struct relume_look middle = *look;
+    const struct relume_pan_tilt middle = *look;
     for (int i = 0; i < ROUNDS; i++) {
         look_error(error, app, x, y, want);
         turn_by(look, -error[0], -error[1]);

@@ -15,7 +15,7 @@ static double half_frame(const struct app *app, double picture)
 
 static double tangent_of_look(const struct app *app)
 {
-    const struct relume_look *look = &app->now.camera.look;
+    const struct relume_pan_tilt *look = &app->now.camera.look;
     return (look->stereographic ? 2 : 1) / look->zoom;
 }
 

@@ -137,7 +137,7 @@ static bool press_auto_exposure(struct app *app, int key)
 
 static bool press_planet(struct app *app, int key)
 {
-    struct relume_look *look = &app->now.camera.look;
+    struct relume_pan_tilt *look = &app->now.camera.look;
     (void)key;
     if (app->now.camera.framing != RELUME_FRAME_LOOK)
         return false;
@@ -147,7 +147,7 @@ static bool press_planet(struct app *app, int key)
         return true;
     }
     app->before_planet = *look;
-    *look = (struct relume_look){look->pan_deg, -90, planet_zoom, true};
+    *look = (struct relume_pan_tilt){look->pan_deg, -90, planet_zoom, true};
     return true;
 }
 

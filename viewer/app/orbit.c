@@ -41,7 +41,7 @@ bool orbit_is(const struct app *app)
 // What the eye goes around.
 static struct relume_vec3 target_of(const struct app *app)
 {
-    const struct relume_aim *aim = &app->now.camera.aim;
+    const struct relume_look_at *aim = &app->now.camera.aim;
     return aim->aimed ? aim->at : relume_slabs_middle(app->file.around);
 }
 

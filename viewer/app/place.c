@@ -14,9 +14,9 @@ struct app_rectangle app_picture(const struct app *app)
     const struct app_state *s = &app->now;
     if (s->camera.framing == RELUME_FRAME_LOOK)
         return (struct app_rectangle){0, 0, app->width, app->height};
-    struct relume_place at = {0, 0, app->width, app->height};
+    struct relume_rect at = {0, 0, app->width, app->height};
     if (s->camera.aim.field_of_view_deg == 0.0)
-        at = relume_place_fit(app->file.width, app->file.height, app->width, app->height);
+        at = relume_rect_fit(app->file.width, app->file.height, app->width, app->height);
     const double middle[2] = {0.5 * app->width, 0.5 * app->height};
     const double left = middle[0] + s->shift[0] + (at.left - middle[0]) * s->zoom;
     const double top = middle[1] + s->shift[1] + (at.top - middle[1]) * s->zoom;

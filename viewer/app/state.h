@@ -167,7 +167,7 @@ struct app {
     double adapted_ev, metered_ev;  // automatic exposure: in force, and aimed at
     bool metered;
     double eye_s;  // that the eye has lived: only while it looks, and not while it is paused
-    struct relume_look before_planet;
+    struct relume_pan_tilt before_planet;
 };
 
 #endif

@@ -91,7 +91,7 @@ relume_status draw_panorama_create(struct program *program, const struct gl *gl,
                                    const struct relume_geometry *geometry,
                                    const struct relume_log *log);
 void draw_panorama(const struct program *program, const struct gl *gl, const struct place *place,
-                   const struct relume_geometry *geometry, struct relume_look look,
+                   const struct relume_geometry *geometry, struct relume_pan_tilt look,
                    const struct target *view);
 
 // The ball of gizmo_ball, lit from `light` (as the viewer sees it).

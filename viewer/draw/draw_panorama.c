@@ -21,7 +21,7 @@ relume_status draw_panorama_create(struct program *program, const struct gl *gl,
 }
 
 void draw_panorama(const struct program *program, const struct gl *gl, const struct place *place,
-                   const struct relume_geometry *geometry, struct relume_look look,
+                   const struct relume_geometry *geometry, struct relume_pan_tilt look,
                    const struct target *view)
 {
     const GLint *at = program->at;

@@ -44,12 +44,12 @@ static struct relume_window planar_window(const struct relume_geometry *g)
 // A window at distance 1 along the middle of a perspective look.
 static struct relume_window look_window(const struct frame_request *q)
 {
-    const struct relume_look look = q->camera.look;
+    const struct relume_pan_tilt look = q->camera.look;
     const int w = q->width, h = q->height;
-    const struct relume_vec3 ahead = relume_look_ray(look, w, h, 0.5 * w, 0.5 * h);
+    const struct relume_vec3 ahead = relume_pan_tilt_ray(look, w, h, 0.5 * w, 0.5 * h);
     struct relume_vec3 corner[3];
     for (int i = 0; i < 3; i++) {
-        corner[i] = relume_look_ray(look, w, h, i == 1 ? w : 0, i == 2 ? h : 0);
+        corner[i] = relume_pan_tilt_ray(look, w, h, i == 1 ? w : 0, i == 2 ? h : 0);
         corner[i] = vec_scale(corner[i], 1.0 / vec_dot(corner[i], ahead));
     }
     const struct relume_vec3 eye = q->file->geometry.center;

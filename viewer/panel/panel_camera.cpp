@@ -162,7 +162,7 @@ static bool slab_rows(app *app)
 
 static bool look_rows(app *app)
 {
-    relume_look *look = &app->now.camera.look;
+    relume_pan_tilt *look = &app->now.camera.look;
     double pan = look->pan_deg, tilt = look->tilt_deg;
     bool changed = slider("pan", &pan, -180, 180, "%.1f deg", "to the right");
     changed |= slider("tilt", &tilt, -90, 90, "%.1f deg", "upwards");

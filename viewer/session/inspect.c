@@ -130,7 +130,7 @@ static bool pick_look(int pixel[2], const struct app *app, double x, double y)
 {
     double xy[2];
     const struct relume_vec3 ray =
-        relume_look_ray(app->now.camera.look, app->width, app->height, x, y);
+        relume_pan_tilt_ray(app->now.camera.look, app->width, app->height, x, y);
     if (!relume_panorama_pixel(xy, &app->file.geometry, app->file.width, app->file.height, ray))
         return false;
     pixel[0] = clamp_to(xy[0], app->file.width);

@@ -154,7 +154,7 @@ static relume_status take_zoom(struct options *o, const char *name, const char *
 static relume_status take_projection(struct options *o, const char *name, const char *text,
                                      const struct relume_log *log)
 {
-    struct relume_look *look = &o->start.camera.look;
+    struct relume_pan_tilt *look = &o->start.camera.look;
     const bool planet = !strcmp(text, "planet");
     if (strcmp(text, "perspective") && strcmp(text, "stereographic") && !planet)
         return say(log, RELUME_EINVAL,
@@ -757,7 +757,7 @@ relume_status options_parse(struct options *o, int argc, char **argv, const stru
         if (status)
             return status;
     }
-    if (relume_aim_given(&o->start.camera.aim) && o->start.camera.framing != RELUME_FRAME_EYE)
+    if (relume_look_at_given(&o->start.camera.aim) && o->start.camera.framing != RELUME_FRAME_EYE)
         return say(log, RELUME_EINVAL, "--look-at, --up and --fov need --eye");
     if (o->record != (o->output != NULL))
         return say(log, RELUME_EINVAL, "expected --record KIND and -o OUT together");

@@ -168,7 +168,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
     if (status)
         return status;
     struct app_file file = describe(pack);
-    status = find_slabs(&around, pack, relume_aim_given(&start->camera.aim), s->log);
+    status = find_slabs(&around, pack, relume_look_at_given(&start->camera.aim), s->log);
     file.around = around;
     file.objects = s->objects;
     if (!status)

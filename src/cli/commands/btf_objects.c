@@ -38,7 +38,7 @@ static relume_status parse_window(struct relume_window *out, int size[2],
     const double extent = sqrt(pow(i->max.x - i->min.x, 2) + pow(i->max.y - i->min.y, 2) +
                                pow(i->max.z - i->min.z, 2));
     struct relume_vec3 eye = {middle.x, middle.y + 0.6 * extent, middle.z + 1.8 * extent};
-    struct relume_aim aim = {.aimed = o->look_at, .field_of_view_deg = o->fov};
+    struct relume_look_at aim = {.aimed = o->look_at, .field_of_view_deg = o->fov};
     const char *text = o->picture ? o->picture : "512x512";
     char rest;
     if (sscanf(text, "%dx%d%c", &size[0], &size[1], &rest) != 2 || size[0] < 1 || size[0] > 16384 ||

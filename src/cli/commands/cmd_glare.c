@@ -111,7 +111,7 @@ static relume_status look_around(struct relume_image *frame, const struct glare_
 {
     const struct relume_geometry sphere = {.projection = RELUME_SPHERICAL};
     const double fov = o->fov > 0.0 ? o->fov : 45.0;
-    const struct relume_look look = {
+    const struct relume_pan_tilt look = {
         .pan_deg = o->pan, .tilt_deg = o->tilt, .zoom = 1.0 / tan(0.5 * fov * M_PI / 180.0)};
     struct relume_image whole = *frame;
     int width = 1280, height = 720;

@@ -88,7 +88,7 @@ static relume_status parse_filter(const struct relight_options *o,
                                                       : RELUME_OK;
 }
 
-static relume_status parse_look(const struct relight_options *o, struct relume_look *look)
+static relume_status parse_look(const struct relight_options *o, struct relume_pan_tilt *look)
 {
     static const char *const names[] = {"perspective", "stereographic", "planet", NULL};
     const char *name = o->projection ? o->projection : names[0];
@@ -224,9 +224,9 @@ static double field_of_view(const struct relume_pack_info *info, const struct re
     if (camera->framing == RELUME_FRAME_LOOK) {
         const double y = 0.5 * frame->height, x = 0.5 * frame->width;
         const struct relume_vec3 a =
-            relume_look_ray(camera->look, frame->width, frame->height, x - 0.5, y);
+            relume_pan_tilt_ray(camera->look, frame->width, frame->height, x - 0.5, y);
         const struct relume_vec3 b =
-            relume_look_ray(camera->look, frame->width, frame->height, x + 0.5, y);
+            relume_pan_tilt_ray(camera->look, frame->width, frame->height, x + 0.5, y);
         const double pixel = hypot(hypot(a.x - b.x, a.y - b.y), a.z - b.z);
         return 2.0 * atan(0.5 * pixel * frame->width) * 180.0 / M_PI;
     }
@@ -240,7 +240,7 @@ static double field_of_view(const struct relume_pack_info *info, const struct re
     } else if (g->projection == RELUME_PLANAR && g->perspective) {
         distance = g->camera_z;
     }
-    width *= (double)frame->width / relume_camera_place(size, info, camera).width;
+    width *= (double)frame->width / relume_camera_rect(size, info, camera).width;
     return distance > 0.0 ? 2.0 * atan(0.5 * width / distance) * 180.0 / M_PI : 0.0;
 }
 
@@ -317,7 +317,7 @@ static relume_status render(const struct relight_options *o, const struct relume
     if (status)
         return status;
     const struct relume_pack_info *info = relume_pack_info(pack);
-    const bool free_eye = info->slabs || relume_aim_given(&camera->aim);
+    const bool free_eye = info->slabs || relume_look_at_given(&camera->aim);
     const double plane_z = free_eye ? 0.0 : info->geometry.st_z;
     params.log = prefix_log(&about, o->args.log, o->args.input[0]);
     params.focus = args_given(&o->args, &o->focus) ? o->focus - plane_z : 0.0;

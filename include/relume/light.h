@@ -78,25 +78,26 @@ RELUME_API void relume_light_frame(struct relume_vec3 *right, struct relume_vec3
 // ------------------------------------------------------------------ area
 // A piece of an area light: sends rgb * max(0, cos) / distance^2, the cosine being between `normal`
 // and the direction from the piece to the point.
-struct relume_facet {
+struct relume_light_patch {
     struct relume_vec3 position, normal;
     float rgb[3];  // radiance x area / pi
 };
 
-enum { RELUME_FACETS_MOST = 32 };  // along one side
+enum { RELUME_LIGHT_PATCHES_MOST = 32 };  // along one side
 
 // How many facets a side an area light needs so that their sum is the integral to about 1 percent
-// at points at least `distance` away; in [1, RELUME_FACETS_MOST].
-RELUME_API int relume_light_facet_side(const struct relume_light *area, double distance);
+// at points at least `distance` away; in [1, RELUME_LIGHT_PATCHES_MOST].
+RELUME_API int relume_light_patch_side(const struct relume_light *area, double distance);
 
 // The light in side x side pieces: Gauss-Legendre nodes, for discs in radius^2 and evenly in angle.
 // Fills out[side * side].
-RELUME_API void relume_light_facets(struct relume_facet *out, const struct relume_light *area,
-                                    int side);
+RELUME_API void relume_light_patches(struct relume_light_patch *out,
+                                     const struct relume_light *area, int side);
 
 // What a facet sends to `point`, as relume_light_at.
-RELUME_API bool relume_facet_at(struct relume_vec3 *towards, float rgb[3],
-                                const struct relume_facet *facet, struct relume_vec3 point);
+RELUME_API bool relume_light_patch_at(struct relume_vec3 *towards, float rgb[3],
+                                      const struct relume_light_patch *facet,
+                                      struct relume_vec3 point);
 
 // The least distance from an area light of the positions in `surface` (three channels) that lie
 // before it; infinite when there are none.

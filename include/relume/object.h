@@ -104,25 +104,27 @@ RELUME_RESULT relume_status relume_objects_choose(relume_objects *objects, int p
 // ---------------------------------------------------------------- lights
 
 // A light as drawing takes it: from one direction at each point.
-struct relume_lamp {
-    bool is_facet;              // of an area light: `facet`, not `light`, is what it sends
-    bool is_sky;                // of an environment: where it arrives, not what it shows
-    int number;                 // of the light that it is of
-    struct relume_light light;  // never area or environment
-    struct relume_facet facet;  // of an area light
+struct relume_object_light {
+    bool is_patch;                    // of an area light: `facet`, not `light`, is what it sends
+    bool is_sky;                      // of an environment: where it arrives, not what it shows
+    int number;                       // of the light that it is of
+    struct relume_light light;        // never area or environment
+    struct relume_light_patch facet;  // of an area light
 };
 
-enum { RELUME_LAMPS_MOST = 64 };  // of one light
+enum { RELUME_OBJECT_LIGHTS_MOST = 64 };  // of one light
 // The lights in lamps, `*n` of them: areas in as many facets as the objects' distance asks for, at
-// most 36; environments in RELUME_LAMPS_MOST directional lights (relume_environment_sample). `*out`
-// is to be freed. RELUME_ENOMEM; RELUME_EINVAL for a light that relume_light_check refuses.
-RELUME_RESULT relume_status relume_objects_lamps(struct relume_lamp **out, int *n,
-                                                 const relume_objects *objects,
-                                                 const struct relume_light *lights, int count);
+// most 36; environments in RELUME_OBJECT_LIGHTS_MOST directional lights
+// (relume_environment_sample). `*out` is to be freed. RELUME_ENOMEM; RELUME_EINVAL for a light that
+// relume_light_check refuses.
+RELUME_RESULT relume_status relume_objects_lights(struct relume_object_light **out, int *n,
+                                                  const relume_objects *objects,
+                                                  const struct relume_light *lights, int count);
 // What it sends to `point` and the unit direction towards it, as relume_light_at; `*distance` may
 // be infinite.
-RELUME_API bool relume_lamp_at(struct relume_vec3 *towards, float rgb[3], double *distance,
-                               const struct relume_lamp *lamp, struct relume_vec3 point);
+RELUME_API bool relume_object_light_at(struct relume_vec3 *towards, float rgb[3], double *distance,
+                                       const struct relume_object_light *lamp,
+                                       struct relume_vec3 point);
 
 // ---------------------------------------------------------------- pictures
 

@@ -40,12 +40,12 @@ static void add(struct finding *f, vec3 point, const float rgb[3])
 
 static void add_area(struct finding *f, const struct relume_light *light)
 {
-    struct relume_facet facets[FACETS * FACETS];
+    struct relume_light_patch facets[FACETS * FACETS];
     vec3 towards;
     float rgb[3];
-    relume_light_facets(facets, light, FACETS);
+    relume_light_patches(facets, light, FACETS);
     for (int i = 0; i < FACETS * FACETS; i++)
-        if (relume_facet_at(&towards, rgb, &facets[i], f->eye))
+        if (relume_light_patch_at(&towards, rgb, &facets[i], f->eye))
             add(f, facets[i].position, rgb);
 }
 

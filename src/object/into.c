@@ -12,7 +12,7 @@ struct shadows {
     const relume_objects *o;
     const struct relume_image *places, *lone;
     struct relume_image *sum;
-    const struct relume_lamp *lamps;
+    const struct relume_object_light *lamps;
     int n;
     bool none;
 };
@@ -46,9 +46,9 @@ static vec3 scene_normal(const struct relume_image *places, size_t x, size_t y)
 }
 
 // What a lamp among several of one light counts for in a pixel: its value times n.l.
-static double counts_for(const struct relume_lamp *lamp, vec3 towards, vec3 normal)
+static double counts_for(const struct relume_object_light *lamp, vec3 towards, vec3 normal)
 {
-    const float *rgb = lamp->is_facet ? lamp->facet.rgb : lamp->light.rgb;
+    const float *rgb = lamp->is_patch ? lamp->facet.rgb : lamp->light.rgb;
     const bool unknown = vec3_length(normal) == 0.0;
     return (double)(rgb[0] + rgb[1] + rgb[2]) *
            (unknown ? 1.0 : fmax(vec3_dot(normal, towards), 0.0));
@@ -62,8 +62,8 @@ static double share(const struct shadows *s, vec3 point, vec3 normal)
         float unused[3];
         double distance;
         vec3 towards;
-        const struct relume_lamp *lamp = &s->lamps[i];
-        (void)relume_lamp_at(&towards, unused, &distance, lamp, point);
+        const struct relume_object_light *lamp = &s->lamps[i];
+        (void)relume_object_light_at(&towards, unused, &distance, lamp, point);
         const double value = s->n > 1 ? counts_for(lamp, towards, normal) : 1.0;
         sent += value;
         if (value > 0.0 && objects_reached(s->o, point, vec3_of(0, 0, 0), towards, distance))
@@ -94,8 +94,8 @@ static relume_status add_light(struct shadows *s, relume_renderer *renderer,
                                int threads)
 {
     struct relume_image lone = {0};
-    struct relume_lamp *lamps;
-    relume_status status = relume_objects_lamps(&lamps, &s->n, s->o, light, 1);
+    struct relume_object_light *lamps;
+    relume_status status = relume_objects_lights(&lamps, &s->n, s->o, light, 1);
     if (status)
         return status;
     status = relume_renderer_set_lights(renderer, light, 1);

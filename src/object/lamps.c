@@ -5,7 +5,7 @@
 #include <relume/light.h>
 
 // Enough for penumbrae and soft shading to look smooth; of an environment they are its shadows.
-enum { MOST_SIDE = 6, SKY = RELUME_LAMPS_MOST };
+enum { MOST_SIDE = 6, SKY = RELUME_OBJECT_LIGHTS_MOST };
 
 // How far the objects are from an area light at least.
 static double distance_to(const relume_objects *o, const struct relume_light *area)
@@ -20,7 +20,7 @@ static double distance_to(const relume_objects *o, const struct relume_light *ar
 
 static int side_of(const relume_objects *o, const struct relume_light *area)
 {
-    const int side = relume_light_facet_side(area, distance_to(o, area));
+    const int side = relume_light_patch_side(area, distance_to(o, area));
     return side < MOST_SIDE ? side : MOST_SIDE;
 }
 
@@ -32,32 +32,33 @@ static int count_of(const relume_objects *o, const struct relume_light *light)
     return side * side;
 }
 
-static relume_status fill(struct relume_lamp *to, int n, const relume_objects *o,
+static relume_status fill(struct relume_object_light *to, int n, const relume_objects *o,
                           const struct relume_light *light, int number)
 {
-    struct relume_facet facet[MOST_SIDE * MOST_SIDE];
+    struct relume_light_patch facet[MOST_SIDE * MOST_SIDE];
     struct relume_light sky[SKY];
     relume_status status = RELUME_OK;
     if (light->kind == RELUME_LIGHT_AREA)
-        relume_light_facets(facet, light, side_of(o, light));
+        relume_light_patches(facet, light, side_of(o, light));
     if (light->kind == RELUME_LIGHT_ENVIRONMENT)
         status = relume_environment_sample(sky, SKY, light, 0);
     for (int i = 0; i < n && !status; i++) {
-        to[i] = (struct relume_lamp){.is_facet = light->kind == RELUME_LIGHT_AREA,
-                                     .is_sky = light->kind == RELUME_LIGHT_ENVIRONMENT,
-                                     .number = number};
-        if (to[i].is_facet)
+        to[i] = (struct relume_object_light){.is_patch = light->kind == RELUME_LIGHT_AREA,
+                                             .is_sky = light->kind == RELUME_LIGHT_ENVIRONMENT,
+                                             .number = number};
+        if (to[i].is_patch)
             to[i].facet = facet[i];
         else
             to[i].light = light->kind == RELUME_LIGHT_ENVIRONMENT ? sky[i] : *light;
-        if (to[i].light.kind == RELUME_LIGHT_DIRECTIONAL && !to[i].is_facet)
+        if (to[i].light.kind == RELUME_LIGHT_DIRECTIONAL && !to[i].is_patch)
             to[i].light.direction = vec3_unit(to[i].light.direction);
     }
     return status;
 }
 
-relume_status relume_objects_lamps(struct relume_lamp **out, int *n, const relume_objects *objects,
-                                   const struct relume_light *lights, int count)
+relume_status relume_objects_lights(struct relume_object_light **out, int *n,
+                                    const relume_objects *objects,
+                                    const struct relume_light *lights, int count)
 {
     size_t total = 0, at = 0;
     *out = NULL;
@@ -67,7 +68,7 @@ relume_status relume_objects_lamps(struct relume_lamp **out, int *n, const relum
             return RELUME_EINVAL;
         total += (size_t)count_of(objects, &lights[i]);
     }
-    struct relume_lamp *lamps = mem_array(total, sizeof *lamps);
+    struct relume_object_light *lamps = mem_array(total, sizeof *lamps);
     relume_status status = lamps ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; i < count && !status; i++) {
         const int own = count_of(objects, &lights[i]);
@@ -81,18 +82,18 @@ relume_status relume_objects_lamps(struct relume_lamp **out, int *n, const relum
     return status;
 }
 
-bool relume_lamp_at(struct relume_vec3 *towards, float rgb[3], double *distance,
-                    const struct relume_lamp *lamp, struct relume_vec3 point)
+bool relume_object_light_at(struct relume_vec3 *towards, float rgb[3], double *distance,
+                            const struct relume_object_light *lamp, struct relume_vec3 point)
 {
     *distance = INFINITY;
-    if (!lamp->is_facet && !relume_light_is_near(lamp->light.kind)) {
+    if (!lamp->is_patch && !relume_light_is_near(lamp->light.kind)) {
         *towards = lamp->light.direction;
         for (int c = 0; c < 3; c++)
             rgb[c] = lamp->light.rgb[c];
         return true;
     }
-    const vec3 from = lamp->is_facet ? lamp->facet.position : lamp->light.position;
+    const vec3 from = lamp->is_patch ? lamp->facet.position : lamp->light.position;
     *distance = vec3_length(vec3_sub(from, point));
-    return lamp->is_facet ? relume_facet_at(towards, rgb, &lamp->facet, point)
+    return lamp->is_patch ? relume_light_patch_at(towards, rgb, &lamp->facet, point)
                           : relume_light_at(towards, rgb, &lamp->light, point);
 }

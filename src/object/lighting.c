@@ -71,7 +71,7 @@ relume_status lighting_create(struct lighting *out, const relume_objects *o,
 {
     *out = (struct lighting){.materials = o->info.materials,
                              .no_shadows = params && params->no_shadows};
-    relume_status status = relume_objects_lamps(&out->lamp, &out->lamps, o, lights, n);
+    relume_status status = relume_objects_lights(&out->lamp, &out->lamps, o, lights, n);
     if (!status) {
         out->sky = mem_zeroed((size_t)n, sizeof *out->sky);
         status = out->sky ? RELUME_OK : RELUME_ENOMEM;

@@ -76,7 +76,7 @@ struct sky_light {
     relume_btf_environment **sky;    // [materials]
 };
 struct lighting {
-    struct relume_lamp *lamp;
+    struct relume_object_light *lamp;
     int lamps;
     struct sky_light *sky;
     int skies;

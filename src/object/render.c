@@ -158,12 +158,12 @@ static void ask(float rgb[3], const relume_objects *o, const struct surface_poin
 }
 
 static void add_lamp(float rgb[3], const relume_objects *o, const struct surface_point *p,
-                     vec3 view, const struct relume_lamp *lamp, bool no_shadows)
+                     vec3 view, const struct relume_object_light *lamp, bool no_shadows)
 {
     float arriving[3], value[3];
     double distance;
     vec3 towards;
-    if (!relume_lamp_at(&towards, arriving, &distance, lamp, p->position))
+    if (!relume_object_light_at(&towards, arriving, &distance, lamp, p->position))
         return;
     const vec3 light = local(p, towards);
     if (!(light.z > 0.0))

@@ -10,12 +10,12 @@
 
 #include <math.h>
 
-int relume_light_facet_side(const struct relume_light *area, double distance)
+int relume_light_patch_side(const struct relume_light *area, double distance)
 {
     const double half = fmax(vec3_length(area->u), vec3_length(area->v));
     // rho^-2n = e^-7 leaves room for the pole's second order.
     const double side = ceil(1.0 + 3.5 / asinh(fmax(distance, 1e-9 * half) / half));
-    return side < RELUME_FACETS_MOST ? (int)side : RELUME_FACETS_MOST;
+    return side < RELUME_LIGHT_PATCHES_MOST ? (int)side : RELUME_LIGHT_PATCHES_MOST;
 }
 
 // The Legendre polynomial of degree n and its derivative.
@@ -44,12 +44,13 @@ static void gauss_legendre(double *node, double *weight, int n)
     }
 }
 
-static struct relume_facet facet(const struct relume_light *area, double a, double b, double share)
+static struct relume_light_patch facet(const struct relume_light *area, double a, double b,
+                                       double share)
 {
     const vec3 across = vec3_cross(area->u, area->v);
     const double size = share * vec3_length(across) / M_PI;
     const vec3 offset = vec3_add(vec3_scale(area->u, a), vec3_scale(area->v, b));
-    return (struct relume_facet){
+    return (struct relume_light_patch){
         .position = vec3_add(area->position, offset),
         .normal = vec3_unit(across),
         .rgb = {(float)(area->rgb[0] * size), (float)(area->rgb[1] * size),
@@ -57,9 +58,9 @@ static struct relume_facet facet(const struct relume_light *area, double a, doub
     };
 }
 
-void relume_light_facets(struct relume_facet *out, const struct relume_light *area, int side)
+void relume_light_patches(struct relume_light_patch *out, const struct relume_light *area, int side)
 {
-    double node[RELUME_FACETS_MOST] = {0.0}, weight[RELUME_FACETS_MOST] = {2.0};
+    double node[RELUME_LIGHT_PATCHES_MOST] = {0.0}, weight[RELUME_LIGHT_PATCHES_MOST] = {2.0};
     if (side > 1)
         gauss_legendre(node, weight, side);
     for (int i = 0; i < side; i++)

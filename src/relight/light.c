@@ -245,8 +245,8 @@ bool relume_light_at(struct relume_vec3 *towards, float rgb[3], const struct rel
     return false;
 }
 
-bool relume_facet_at(struct relume_vec3 *towards, float rgb[3], const struct relume_facet *facet,
-                     struct relume_vec3 point)
+bool relume_light_patch_at(struct relume_vec3 *towards, float rgb[3],
+                           const struct relume_light_patch *facet, struct relume_vec3 point)
 {
     double distance;
     if (!ray_to(towards, &distance, facet->position, point))

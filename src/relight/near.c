@@ -19,13 +19,13 @@ enum { LANES = 64, LEAST_LANES = 4, MOST_FLOATS = 3 * RELUME_MOST_COEFFICIENTS *
 
 static int facet_side(const struct near *near, const struct relume_light *area)
 {
-    return relume_light_facet_side(area, relume_area_distance(area, near->surface));
+    return relume_light_patch_side(area, relume_area_distance(area, near->surface));
 }
 
 static void cut(struct emitter *to, const struct relume_light *area, int side)
 {
-    struct relume_facet facets[RELUME_FACETS_MOST * RELUME_FACETS_MOST];
-    relume_light_facets(facets, area, side);
+    struct relume_light_patch facets[RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST];
+    relume_light_patches(facets, area, side);
     for (int i = 0; i < side * side; i++)
         to[i].facet = facets[i];
 }
@@ -72,7 +72,7 @@ static bool reaches(vec3 *towards, float rgb[3], const struct near *near, const 
 {
     if (e->light)
         return relume_light_at(towards, rgb, e->light, point);
-    return relume_facet_at(towards, rgb, &e->facet, point) && is_captured(near, *towards);
+    return relume_light_patch_at(towards, rgb, &e->facet, point) && is_captured(near, *towards);
 }
 
 // Where the light is taken from, as with directional lights, and its share of what reaches a point.

@@ -9,7 +9,7 @@
 // A point-like light, or a facet of an area light.
 struct emitter {
     const struct relume_light *light;  // or NULL
-    struct relume_facet facet;
+    struct relume_light_patch facet;
 };
 
 struct near {

@@ -112,13 +112,13 @@ static void test_frames(void **state)
 // What a Lambertian point of normal +z at the origin reflects: the form factor for E = 1.
 static double lambertian(const struct relume_light *area, int side)
 {
-    struct relume_facet facets[RELUME_FACETS_MOST * RELUME_FACETS_MOST];
+    struct relume_light_patch facets[RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST];
     double sum = 0.0;
-    relume_light_facets(facets, area, side);
+    relume_light_patches(facets, area, side);
     for (int i = 0; i < side * side; i++) {
         struct relume_vec3 towards;
         float rgb[3];
-        if (relume_facet_at(&towards, rgb, &facets[i], (struct relume_vec3){0, 0, 0}))
+        if (relume_light_patch_at(&towards, rgb, &facets[i], (struct relume_vec3){0, 0, 0}))
             sum += (double)rgb[1] * fmax(towards.z, 0.0);
     }
     return sum;
@@ -148,16 +148,16 @@ static void test_area_converges(void **state)
     for (size_t i = 0; i < sizeof heights / sizeof *heights; i++) {
         const double h = heights[i];
         const struct relume_light disc = area(h, 1, 1, true), box = area(h, 0.7, 1, false);
-        const int side = relume_light_facet_side(&disc, h);
-        // The promise of relume_light_facet_side.
+        const int side = relume_light_patch_side(&disc, h);
+        // The promise of relume_light_patch_side.
         CHECK_NEAR(lambertian(&disc, side) * (1 + h * h), 1, 0.01);
         CHECK_NEAR(lambertian(&box, side) / (4 * corner(0.7, 1, h)), 1, 0.01);
         if (h >= 0.4)  // and with all facets nearly the integral; values are floats
-            CHECK_NEAR(lambertian(&disc, RELUME_FACETS_MOST) * (1 + h * h), 1, 1e-5);
+            CHECK_NEAR(lambertian(&disc, RELUME_LIGHT_PATCHES_MOST) * (1 + h * h), 1, 1e-5);
     }
-    assert_int_equal(relume_light_facet_side(&(struct relume_light){.u = {1}, .v = {0, 1}}, 1e-9),
-                     RELUME_FACETS_MOST);
-    assert_true(relume_light_facet_side(&(struct relume_light){.u = {1}, .v = {0, 1}}, 100) <= 2);
+    assert_int_equal(relume_light_patch_side(&(struct relume_light){.u = {1}, .v = {0, 1}}, 1e-9),
+                     RELUME_LIGHT_PATCHES_MOST);
+    assert_true(relume_light_patch_side(&(struct relume_light){.u = {1}, .v = {0, 1}}, 100) <= 2);
 }
 
 // A rectangle perpendicular to the surface, its edge on it: half of it would be seen edge-on.
@@ -174,7 +174,7 @@ static void test_area_beside(void **state)
     // Howell B-3, corner of a perpendicular rectangle.
     const double x = a / b, y = c / b, r = sqrt(x * x + y * y);
     const double want = 2 * (atan(1 / y) - y / r * atan(1 / r)) / (2 * M_PI);
-    CHECK_NEAR(lambertian(&wall, relume_light_facet_side(&wall, c)), want, 0.01 * want);
+    CHECK_NEAR(lambertian(&wall, relume_light_patch_side(&wall, c)), want, 0.01 * want);
     struct relume_light away = wall;
     away.v.y = -b;  // turned round it gives nothing
     CHECK_NEAR(lambertian(&away, 4), 0, 0);

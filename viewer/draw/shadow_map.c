@@ -95,12 +95,12 @@ static void aim_cube(struct shadow_map *map, struct relume_vec3 eye, double reac
     }
 }
 
-static void aim(struct shadow_map *map, const struct relume_lamp *lamp, struct relume_vec3 middle,
-                double radius)
+static void aim(struct shadow_map *map, const struct relume_object_light *lamp,
+                struct relume_vec3 middle, double radius)
 {
-    const bool near = lamp->is_facet || relume_light_is_near(lamp->light.kind);
+    const bool near = lamp->is_patch || relume_light_is_near(lamp->light.kind);
     const struct relume_vec3 at = !near            ? lamp->light.direction
-                                  : lamp->is_facet ? lamp->facet.position
+                                  : lamp->is_patch ? lamp->facet.position
                                                    : lamp->light.position;
     const float place[4] = {(float)at.x, (float)at.y, (float)at.z, near ? 1.0f : 0.0f};
     memcpy(map->lamp, place, sizeof map->lamp);
@@ -123,7 +123,7 @@ static void aim(struct shadow_map *map, const struct relume_lamp *lamp, struct r
     map->texel = (float)(2.0 * tangent / map->side);
 }
 
-void shadow_map_fill(struct shadow_map *map, const struct relume_lamp *lamp,
+void shadow_map_fill(struct shadow_map *map, const struct relume_object_light *lamp,
                      struct relume_vec3 middle, double radius,
                      void (*draw)(void *context, const float clip[16]), void *context)
 {

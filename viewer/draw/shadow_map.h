@@ -27,7 +27,7 @@ void shadow_map_destroy(struct shadow_map *map);
 
 // Aim it; `middle` and `radius` are those of the ball. Then each layer is drawn by `draw` with its
 // matrix (columns first), into the depth buffer in use.
-void shadow_map_fill(struct shadow_map *map, const struct relume_lamp *lamp,
+void shadow_map_fill(struct shadow_map *map, const struct relume_object_light *lamp,
                      struct relume_vec3 middle, double radius,
                      void (*draw)(void *context, const float clip[16]), void *context);
 

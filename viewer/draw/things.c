@@ -294,7 +294,7 @@ relume_status things_light(struct things *t, const struct relume_light *lights, 
     t->light = light;
     t->lights = n;
     free(t->lamp);
-    return relume_objects_lamps(&t->lamp, &t->lamps, t->objects, lights, n);
+    return relume_objects_lights(&t->lamp, &t->lamps, t->objects, lights, n);
 }
 
 // ---------------------------------------------------------------- passes
@@ -412,10 +412,10 @@ static void draw_levels(const struct things *t, const struct program *program,
 }
 
 // A lamp as a light: a facet is an area light's piece, its normal the axis.
-static struct relume_light light_of(const struct relume_lamp *lamp)
+static struct relume_light light_of(const struct relume_object_light *lamp)
 {
     struct relume_light light = lamp->light;
-    if (!lamp->is_facet)
+    if (!lamp->is_patch)
         return light;
     light = (struct relume_light){.kind = RELUME_LIGHT_AREA, .position = lamp->facet.position};
     memcpy(light.rgb, lamp->facet.rgb, sizeof light.rgb);
@@ -445,7 +445,7 @@ static relume_status shade_part(struct things *t, int part, int material, int la
     const struct relume_light light = light_of(&t->lamp[lamp]);
     gl->Uniform1i(program->at[PICTURE], BTF_UNIT_PICTURE);
     status = shine_set(&t->shine, program->at + LIGHT, BTF_UNIT_PICTURE, &light);
-    if (t->lamp[lamp].is_facet) {
+    if (t->lamp[lamp].is_patch) {
         const struct relume_vec3 n = t->lamp[lamp].facet.normal;
         gl->Uniform3f(program->at[LIGHT + SHINE_AXIS], (float)n.x, (float)n.y, (float)n.z);
     }
@@ -555,21 +555,21 @@ void things_over(const struct things *t, const struct place *place, GLuint scene
 }
 
 // A lamp of several: its direction times its value and 0, or its place and its value.
-static void put_lamp(float to[4], const struct relume_lamp *lamp)
+static void put_lamp(float to[4], const struct relume_object_light *lamp)
 {
-    const float *rgb = lamp->is_facet ? lamp->facet.rgb : lamp->light.rgb;
-    const struct relume_vec3 at = lamp->is_facet ? lamp->facet.position : lamp->light.direction;
-    const float value = rgb[0] + rgb[1] + rgb[2], scale = lamp->is_facet ? 1.0f : value;
+    const float *rgb = lamp->is_patch ? lamp->facet.rgb : lamp->light.rgb;
+    const struct relume_vec3 at = lamp->is_patch ? lamp->facet.position : lamp->light.direction;
+    const float value = rgb[0] + rgb[1] + rgb[2], scale = lamp->is_patch ? 1.0f : value;
     to[0] = scale * (float)at.x;
     to[1] = scale * (float)at.y;
     to[2] = scale * (float)at.z;
-    to[3] = lamp->is_facet ? value : 0.0f;
+    to[3] = lamp->is_patch ? value : 0.0f;
 }
 
 // A single lamp counts whole.
 static void use_lamps(const struct things *t, int lamp)
 {
-    float at[RELUME_LAMPS_MOST][4];
+    float at[RELUME_OBJECT_LIGHTS_MOST][4];
     const int n = t->lamps > 1 ? t->lamps : 0;
     for (int i = 0; i < n; i++)
         put_lamp(at[i], &t->lamp[i]);

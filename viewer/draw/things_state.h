@@ -32,7 +32,7 @@ struct things {
     GLuint surface_buffer, depth_texture, share_buffer;
     int grid;
     bool no_shadows;
-    struct relume_lamp *lamp;  // of the present frame, and its lights
+    struct relume_object_light *lamp;  // of the present frame, and its lights
     int lamps;
     struct relume_light *light;
     int lights;

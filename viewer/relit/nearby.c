@@ -371,10 +371,10 @@ static void put_vec3(float *texel, struct relume_vec3 v)
 static void use_facets(const struct nearby *near, const struct nearby_view *view,
                        const struct relume_light *light, int *n)
 {
-    struct relume_facet facet[RELUME_FACETS_MOST * RELUME_FACETS_MOST];
-    float texels[3][RELUME_FACETS_MOST * RELUME_FACETS_MOST][3];
-    const int side = relume_light_facet_side(light, relume_area_distance(light, &view->surface));
-    relume_light_facets(facet, light, side);
+    struct relume_light_patch facet[RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST];
+    float texels[3][RELUME_LIGHT_PATCHES_MOST * RELUME_LIGHT_PATCHES_MOST][3];
+    const int side = relume_light_patch_side(light, relume_area_distance(light, &view->surface));
+    relume_light_patches(facet, light, side);
     *n = side * side;
     for (int i = 0; i < *n; i++) {
         put_vec3(texels[0][i], facet[i].position);

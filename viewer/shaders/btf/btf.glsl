@@ -213,7 +213,7 @@ vec3 lit(vec3 point, vec3 normal, Points p, Blend v, mat3 frame)
 
 #else
 
-// Twin: relume_lamp_at. A facet's place and normal are those of the light.
+// Twin: relume_object_light_at. A facet's place and normal are those of the light.
 bool lamp_at(out vec3 towards, out vec3 rgb, vec3 point)
 {
     if (light.kind == DIRECTIONAL) {

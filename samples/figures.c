@@ -528,8 +528,8 @@ static void errors(char **args)
     struct file table = open_file(args[0]);
     const struct box square = box_of(args[1]);
     vec3 directions[TEST_LIGHTS];
-    must(relume_lights_make(directions, TEST_LIGHTS, relume_pattern_find("hammersley"),
-                            relume_lights_params(.hemisphere = true)),
+    must(relume_directions_make(directions, TEST_LIGHTS, relume_pattern_find("hammersley"),
+                                relume_directions_params(.hemisphere = true)),
          "lights");
     struct relume_light light[TEST_LIGHTS + 1] = {light_of(args[2])};
     struct relume_image reference[TEST_LIGHTS + 1], image[TEST_LIGHTS + 1];

@@ -28,8 +28,8 @@ int main(void)
     relume_coder *coder = NULL;
     relume_pack *pack = NULL;
 
-    relume_status status = relume_lights_make(lights, LIGHTS, relume_pattern_find("hammersley"),
-                                              relume_lights_params(.hemisphere = true));
+    relume_status status = relume_directions_make(lights, LIGHTS, relume_pattern_find("hammersley"),
+                                                  relume_directions_params(.hemisphere = true));
     for (int i = 0; !status && i < LIGHTS; i++)
         for (int y = 0; y < SIDE; y++)
             for (int x = 0; x < SIDE; x++)

@@ -245,9 +245,9 @@ int main(int argc, char **argv)
     struct relume_manifest_view *view = calloc((size_t)views, sizeof *view);
     const struct relume_pattern *pattern = relume_pattern_find(o.pattern);
     if (!directions || !intensities || !view || !pattern ||
-        relume_lights_make(
+        relume_directions_make(
             directions, o.lights, pattern,
-            relume_lights_params(.seed = (uint64_t)o.seed, .hemisphere = o.hemisphere)))
+            relume_directions_params(.seed = (uint64_t)o.seed, .hemisphere = o.hemisphere)))
         fail("no such lights", o.pattern);
     for (int i = 0; i < o.lights; i++)
         for (int c = 0; c < 3; c++)

@@ -39,8 +39,8 @@ static inline void fixture_write(const struct fixture *f, const char *folder)
     struct relume_manifest_view *view = calloc((size_t)f->views, sizeof *view);
     char path[512];
     struct relume_image image, plane;
-    fixture_must(relume_lights_make(directions, f->lights, relume_pattern_find("hammersley"),
-                                    relume_lights_params(.hemisphere = f->hemisphere)),
+    fixture_must(relume_directions_make(directions, f->lights, relume_pattern_find("hammersley"),
+                                        relume_directions_params(.hemisphere = f->hemisphere)),
                  "lights");
     fixture_must(relume_image_create(&image, f->width, f->height, 3), "image");
     fixture_must(relume_image_create(&plane, f->width, f->height, 1), "plane");

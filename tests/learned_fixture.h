@@ -33,9 +33,9 @@ static inline void learned_create(struct learned *l, const struct relume_basis *
                                   bool hemispherical, bool pole_y, int coefficients)
 {
     uint32_t seed = 5;
-    CHECK_OK(
-        relume_lights_make(l->lights, LEARNED_LIGHTS, relume_pattern_find("hammersley"),
-                           relume_lights_params(.hemisphere = hemispherical, .pole_y = pole_y)));
+    CHECK_OK(relume_directions_make(
+        l->lights, LEARNED_LIGHTS, relume_pattern_find("hammersley"),
+        relume_directions_params(.hemisphere = hemispherical, .pole_y = pole_y)));
     l->samples = malloc(sizeof(float) * 3 * LEARNED_LIGHTS * LEARNED_PIXELS);
     for (int x = 0; x < LEARNED_PIXELS; x++) {
         l->normal[x] = test_direction(&seed);

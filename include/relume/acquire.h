@@ -30,9 +30,9 @@ struct relume_acquire_params {
     bool matte;               // matte white balls; default mirrors
     double fov_deg;           // horizontal field of view; default: orthographic
     double ball_z;            // height of the balls' middles, world units (window: width 2)
-    // The lights are known: a file as relume_lights_load reads it, positions with `near`; or a
-    // folder of COLMAP's text files that pose a camera tied to the lamp, one photograph for every
-    // light in the order of their names, and one of `photographs`. NULL: balls.
+    // The lights are known: a file as relume_captured_lights_load reads it, positions with `near`;
+    // or a folder of COLMAP's text files that pose a camera tied to the lamp, one photograph for
+    // every light in the order of their names, and one of `photographs`. NULL: balls.
     const char *lights;
     bool near;        // positions: from two balls or more, or from `lights`
     bool refine;      // relume_acquire_refine afterwards

@@ -21,7 +21,7 @@
 #include <relume/io.h>
 #include <relume/light.h>
 #include <relume/lightfield.h>
-#include <relume/lights.h>
+#include <relume/directions.h>
 #include <relume/normals.h>
 #include <relume/object.h>
 #include <relume/pack.h>

@@ -49,7 +49,7 @@ struct relume_pictures { int sample; int width, height; int channels; void *data
     void *mask; };
 struct relume_capture_params { size_t struct_size; void *log; void *limits; struct relume_transfer transfer;
     bool skip_missing; bool allow_outside; bool repair; double assume_depth; size_t keep_bytes; };
-struct relume_lights_params { size_t struct_size; void *log; uint64_t seed; bool hemisphere; bool pole_y; };
+struct relume_directions_params { size_t struct_size; void *log; uint64_t seed; bool hemisphere; bool pole_y; };
 struct relume_coder_params { size_t struct_size; void *log; int coefficients; bool hemispherical; bool pole_y;
     double ridge; bool no_ridge; bool luminance; bool robust; bool force; void *interpolant;
     bool choose; double parameter[4]; void *samples; int threads; bool decode; void *transform;
@@ -111,7 +111,7 @@ relume_status relume_image_load(struct relume_image *out, const char *path, cons
 relume_status relume_image_save(const struct relume_image *image, const char *path, const struct relume_image_params *params);
 void relume_image_destroy(struct relume_image *image);
 const struct relume_pattern *relume_pattern_find(const char *name);
-relume_status relume_lights_make(struct relume_vec3 *out, int n, const struct relume_pattern *pattern, const struct relume_lights_params *params);
+relume_status relume_directions_make(struct relume_vec3 *out, int n, const struct relume_pattern *pattern, const struct relume_directions_params *params);
 relume_status relume_capture_open(relume_capture **out, const char *path, const struct relume_capture_params *params);
 relume_status relume_capture_create(relume_capture **out, const struct relume_manifest *manifest, const struct relume_pictures *pictures, const struct relume_capture_params *params);
 void relume_capture_destroy(relume_capture **capture);

@@ -52,8 +52,8 @@ def light_directions(pattern: str, n: int, hemisphere: bool = False, seed: int =
     if not found:
         raise UsageError(f"pattern '{pattern}' is unknown; see 'relume lights --help'")
     out = np.empty((max(n, 0), 3))
-    params = structs["relume_lights_params"](log=log.address, seed=seed, hemisphere=hemisphere)
-    log.check(lib.relume_lights_make(out.ctypes.data, n, found, ctypes.byref(params)))
+    params = structs["relume_directions_params"](log=log.address, seed=seed, hemisphere=hemisphere)
+    log.check(lib.relume_directions_make(out.ctypes.data, n, found, ctypes.byref(params)))
     return out
 
 

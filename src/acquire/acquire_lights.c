@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "capture/manifest.h"
 
-#include <relume/lights.h>
+#include <relume/directions.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -494,7 +494,8 @@ static relume_status match_names(struct shoot *s, int *order, bool *matched)
 }
 
 // `order` says which light of the list is that of a shot.
-static void take_lights(struct shoot *s, const struct relume_light_list *list, const int *order)
+static void take_lights(struct shoot *s, const struct relume_captured_lights *list,
+                        const int *order)
 {
     for (int i = 0; i < s->shots; i++) {
         const int k = order[i];
@@ -508,14 +509,14 @@ static void take_lights(struct shoot *s, const struct relume_light_list *list, c
 
 static relume_status lights_from_file(struct shoot *s)
 {
-    struct relume_light_list list = {0};
+    struct relume_captured_lights list = {0};
     bool matched = false;
     int *order = mem_array((size_t)s->shots, sizeof *order);
     relume_status status = order ? RELUME_OK : RELUME_ENOMEM;
     for (int i = 0; !status && i < s->shots; i++)
         order[i] = s->shot[i].number;
     if (!status)
-        status = relume_lights_load(&list, s->p.lights, s->p.near, s->p.log);
+        status = relume_captured_lights_load(&list, s->p.lights, s->p.near, s->p.log);
     if (!status && is_lp(s->p.lights))
         status = match_names(s, order, &matched);
     if (!status && !matched && list.count != s->p.photograph_count)
@@ -524,7 +525,7 @@ static relume_status lights_from_file(struct shoot *s)
     if (!status)
         take_lights(s, &list, order);
     free(order);
-    relume_light_list_destroy(&list);
+    relume_captured_lights_destroy(&list);
     return status;
 }
 

@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "math/vec.h"
 
-#include <relume/lights.h>
+#include <relume/directions.h>
 
 enum { CENTRES = 1024 };
 
@@ -43,7 +43,7 @@ static double share_of_cap(vec3 centre, double h, bool hemisphere, bool pole_y)
 }
 
 static double worst_around(vec3 centre, const vec3 *lights, int n, double *cosines,
-                           const struct relume_lights_params *p)
+                           const struct relume_directions_params *p)
 {
     for (int i = 0; i < n; i++)
         cosines[i] = fmin(fmax(vec3_dot(centre, lights[i]), -1.0), 1.0);
@@ -64,10 +64,10 @@ static vec3 spiral_point(int k)
     return vec3_of(r * cos(phi_rad), r * sin(phi_rad), z);
 }
 
-relume_status relume_lights_discrepancy(double *out, const struct relume_vec3 *lights, int n,
-                                        const struct relume_lights_params *params)
+relume_status relume_directions_discrepancy(double *out, const struct relume_vec3 *lights, int n,
+                                            const struct relume_directions_params *params)
 {
-    const struct relume_lights_params p = PARAMS(relume_lights_params, params);
+    const struct relume_directions_params p = PARAMS(relume_directions_params, params);
     *out = 0.0;
     if (n < 1)
         return RELUME_EINVAL;

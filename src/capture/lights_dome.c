@@ -42,8 +42,9 @@ static bool triple(double out[3], const jvalue *value, const char *const keys[3]
     return true;
 }
 
-static relume_status read_vectors(struct relume_light_list *out, const jvalue *array, double scale,
-                                  const char *key, const char *path, const struct relume_log *log)
+static relume_status read_vectors(struct relume_captured_lights *out, const jvalue *array,
+                                  double scale, const char *key, const char *path,
+                                  const struct relume_log *log)
 {
     static const char *const xyz[3] = {"x", "y", "z"};
     const size_t n = jvalue_count(array);
@@ -68,7 +69,7 @@ static relume_status read_vectors(struct relume_light_list *out, const jvalue *a
     return RELUME_OK;
 }
 
-static relume_status read_adjustments(struct relume_light_list *out, const jvalue *array,
+static relume_status read_adjustments(struct relume_captured_lights *out, const jvalue *array,
                                       const char *path, const struct relume_log *log)
 {
     static const char *const rgb[3] = {"r", "g", "b"};
@@ -91,14 +92,14 @@ static relume_status read_adjustments(struct relume_light_list *out, const jvalu
     return RELUME_OK;
 }
 
-relume_status dome_lights(struct relume_light_list *out, const jvalue *root, const char *path,
+relume_status dome_lights(struct relume_captured_lights *out, const jvalue *root, const char *path,
                           const struct relume_log *log)
 {
     const char *named = jvalue_text(jvalue_member(root, "lightConfiguration"));
     const jvalue *width = jvalue_member(root, "imageWidth");
     double width_mm = 0.0;
     int form = 0;
-    *out = (struct relume_light_list){0};
+    *out = (struct relume_captured_lights){0};
     while (named && form < FORMS && strcmp(named, forms[form].configuration))
         form++;
     if (!named || form == FORMS)

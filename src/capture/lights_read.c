@@ -5,7 +5,7 @@
 #include "capture/manifest.h"
 
 #include <errno.h>
-#include <relume/lights.h>
+#include <relume/directions.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -51,7 +51,7 @@ static relume_status look(enum kind *kind, const char *path, const struct relume
     return RELUME_OK;
 }
 
-static relume_status from_json(struct relume_light_list *out, const char *path,
+static relume_status from_json(struct relume_captured_lights *out, const char *path,
                                const struct relume_log *log)
 {
     jvalue *root;
@@ -62,7 +62,7 @@ static relume_status from_json(struct relume_light_list *out, const char *path,
     return status;
 }
 
-static relume_status from_lp(struct relume_light_list *out, const char *path,
+static relume_status from_lp(struct relume_captured_lights *out, const char *path,
                              const struct relume_log *log)
 {
     struct draft draft = {0};
@@ -94,7 +94,7 @@ static int parse_line(char *line, struct relume_vec3 *v)
                : -1;
 }
 
-static relume_status read_lines(struct relume_light_list *out, FILE *file, const char *path,
+static relume_status read_lines(struct relume_captured_lights *out, FILE *file, const char *path,
                                 const struct relume_log *log)
 {
     const int most = limits_or_default(NULL).max_lights;
@@ -134,7 +134,7 @@ static relume_status read_lines(struct relume_light_list *out, FILE *file, const
                : log_fail(log, RELUME_EDATA, "%s: no light directions; expected lines x y z", path);
 }
 
-static relume_status from_lines(struct relume_light_list *out, const char *path,
+static relume_status from_lines(struct relume_captured_lights *out, const char *path,
                                 const struct relume_log *log)
 {
     FILE *file = input_open(path, log);
@@ -145,24 +145,24 @@ static relume_status from_lines(struct relume_light_list *out, const char *path,
     return status;
 }
 
-void relume_light_list_destroy(struct relume_light_list *list)
+void relume_captured_lights_destroy(struct relume_captured_lights *list)
 {
     free(list->direction);
     free(list->position);
     free(list->intensity);
-    *list = (struct relume_light_list){0};
+    *list = (struct relume_captured_lights){0};
 }
 
-relume_status relume_lights_load(struct relume_light_list *out, const char *path, bool positions,
-                                 const struct relume_log *log)
+relume_status relume_captured_lights_load(struct relume_captured_lights *out, const char *path,
+                                          bool positions, const struct relume_log *log)
 {
-    static relume_status (*const read[])(struct relume_light_list *, const char *,
+    static relume_status (*const read[])(struct relume_captured_lights *, const char *,
                                          const struct relume_log *) = {
         [KIND_LINES] = from_lines,
         [KIND_LP] = from_lp,
         [KIND_JSON] = from_json,
     };
-    *out = (struct relume_light_list){0};
+    *out = (struct relume_captured_lights){0};
     enum kind kind;
     relume_status status = look(&kind, path, log);
     if (!status)
@@ -175,18 +175,18 @@ relume_status relume_lights_load(struct relume_light_list *out, const char *path
         status = log_fail(log, RELUME_EDATA,
                           "%s: holds directions only; expected positions of near lights", path);
     if (status)
-        relume_light_list_destroy(out);
+        relume_captured_lights_destroy(out);
     return status;
 }
 
-relume_status relume_lights_read(struct relume_vec3 **out, int *n, const char *path,
-                                 const struct relume_log *log)
+relume_status relume_captured_lights_read(struct relume_vec3 **out, int *n, const char *path,
+                                          const struct relume_log *log)
 {
-    struct relume_light_list list;
-    const relume_status status = relume_lights_load(&list, path, false, log);
+    struct relume_captured_lights list;
+    const relume_status status = relume_captured_lights_load(&list, path, false, log);
     *out = list.direction;
     *n = list.count;
     list.direction = NULL;
-    relume_light_list_destroy(&list);
+    relume_captured_lights_destroy(&list);
     return status;
 }

@@ -441,14 +441,14 @@ relume_status manifest_read(struct draft *out, const char *path,
     return status;
 }
 
-relume_status manifest_lights(struct relume_light_list *out, const jvalue *root, const char *path,
-                              const struct relume_log *log)
+relume_status manifest_lights(struct relume_captured_lights *out, const jvalue *root,
+                              const char *path, const struct relume_log *log)
 {
     struct draft draft = {0};
     char no_folder[] = ".";
     const struct parser p = {&draft, path, no_folder, limits_or_default(NULL), log, false};
     const jvalue *lights = jvalue_member(root, "lights");
-    *out = (struct relume_light_list){0};
+    *out = (struct relume_captured_lights){0};
     // The output of `relume lights --json` has the directions at its top.
     relume_status status = read_lights(&p, lights ? lights : root);
     if (!status) {

@@ -6,7 +6,7 @@
 #include "base/json.h"
 
 #include <relume/capture.h>
-#include <relume/lights.h>
+#include <relume/directions.h>
 
 enum { MANIFEST_VERSION = 1 };
 
@@ -55,11 +55,11 @@ relume_status manifest_wrong(const char *path, const char *where, const char *ex
 bool leaves_folder(const char *name);
 
 // Only the lights of the tree of a capture.json or of `relume lights --json`.
-relume_status manifest_lights(struct relume_light_list *out, const jvalue *root, const char *path,
-                              const struct relume_log *log);
+relume_status manifest_lights(struct relume_captured_lights *out, const jvalue *root,
+                              const char *path, const struct relume_log *log);
 // Those of a .dome file; the vectors that it says are in use.
 bool is_dome(const jvalue *root);
-relume_status dome_lights(struct relume_light_list *out, const jvalue *root, const char *path,
+relume_status dome_lights(struct relume_captured_lights *out, const jvalue *root, const char *path,
                           const struct relume_log *log);
 
 // Normalise; false for a vector that is zero, infinite or NaN.

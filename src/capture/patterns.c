@@ -7,7 +7,7 @@
 #include "math/random.h"
 #include "math/vec.h"
 
-#include <relume/lights.h>
+#include <relume/directions.h>
 #include <string.h>
 
 static double radical_inverse_2(uint32_t k)
@@ -161,11 +161,11 @@ const struct relume_pattern *relume_pattern_find(const char *name)
     return NULL;
 }
 
-relume_status relume_lights_make(struct relume_vec3 *out, int n,
-                                 const struct relume_pattern *pattern,
-                                 const struct relume_lights_params *params)
+relume_status relume_directions_make(struct relume_vec3 *out, int n,
+                                     const struct relume_pattern *pattern,
+                                     const struct relume_directions_params *params)
 {
-    const struct relume_lights_params p = PARAMS(relume_lights_params, params);
+    const struct relume_directions_params p = PARAMS(relume_directions_params, params);
     if (n < 1)
         return RELUME_EINVAL;
     double(*square)[2] = mem_array((size_t)n, sizeof *square);

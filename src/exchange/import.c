@@ -10,7 +10,7 @@
 #include "base/memory.h"
 #include "math/vec.h"
 
-#include <relume/lights.h>
+#include <relume/directions.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
@@ -155,8 +155,8 @@ static relume_status choose_lights(struct material *m)
     if (!m->light)
         return RELUME_ENOMEM;
     if (!interpolates)
-        return relume_lights_make(m->light, m->lights, relume_pattern_find("hammersley"),
-                                  relume_lights_params(.hemisphere = true));
+        return relume_directions_make(m->light, m->lights, relume_pattern_find("hammersley"),
+                                      relume_directions_params(.hemisphere = true));
     for (int i = 0; i < m->lights; i++)
         m->light[i] =
             f->kind == FUNCTIONS_GRID ? functions_grid_node(f->resolution, i) : f->lights[i];

@@ -7,7 +7,7 @@
 #include "math/lsq.h"
 #include "math/vec.h"
 
-#include <relume/lights.h>
+#include <relume/directions.h>
 #include <relume/relight.h>
 #include <string.h>
 
@@ -29,8 +29,8 @@ static relume_status choose_lights(struct source *s)
     if (!s->light)
         return RELUME_ENOMEM;
     if (stand_in)
-        return relume_lights_make(s->light, s->lights, relume_pattern_find("hammersley"),
-                                  relume_lights_params(.hemisphere = true));
+        return relume_directions_make(s->light, s->lights, relume_pattern_find("hammersley"),
+                                      relume_directions_params(.hemisphere = true));
     memcpy(s->light, info->directions, (size_t)s->lights * sizeof *s->light);
     return RELUME_OK;
 }

@@ -37,8 +37,8 @@ static void make_capture(const char *folder, int side)
     struct relume_vec3 lights[LIGHTS];
     struct relume_image image;
     char path[256];
-    bench_check(relume_lights_make(lights, LIGHTS, relume_pattern_find("hammersley"),
-                                   relume_lights_params(.hemisphere = true)));
+    bench_check(relume_directions_make(lights, LIGHTS, relume_pattern_find("hammersley"),
+                                       relume_directions_params(.hemisphere = true)));
     bench_check(relume_image_create(&image, side, side, 3));
     snprintf(path, sizeof path, "%s/dirs.lp", folder);
     FILE *lp = fopen(path, "w");

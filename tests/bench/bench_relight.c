@@ -29,7 +29,7 @@ static relume_coder *make_coder(void)
 {
     struct relume_vec3 lights[100];
     relume_coder *coder;
-    bench_check(relume_lights_make(lights, 100, relume_pattern_find("hammersley"), NULL));
+    bench_check(relume_directions_make(lights, 100, relume_pattern_find("hammersley"), NULL));
     bench_check(relume_coder_create(&coder, &relume_basis_sh, lights, 100,
                                     relume_coder_params(.coefficients = K)));
     return coder;

@@ -61,7 +61,7 @@ static struct file make_file(bool book)
     struct relume_vec3 lights[100];
     struct file f = {.coder = NULL};
     const size_t pixels = (size_t)width * (size_t)height;
-    bench_check(relume_lights_make(lights, 100, relume_pattern_find("hammersley"), NULL));
+    bench_check(relume_directions_make(lights, 100, relume_pattern_find("hammersley"), NULL));
     bench_check(relume_coder_create(&f.coder, &relume_basis_sh, lights, 100,
                                     relume_coder_params(.coefficients = 25, .pole_y = true)));
     f.index = calloc(pixels, sizeof *f.index);

@@ -1,7 +1,7 @@
 // fuzz_manifest.c - capture.json and .lp files made of noise
 #include "fuzz.h"
 
-#include <relume/lights.h>
+#include <relume/directions.h>
 
 static const struct relume_limits limits = {
     .max_side = 256, .max_pixels = 1 << 14, .max_lights = 200, .max_views = 16};
@@ -36,7 +36,7 @@ static bool open_as(struct fuzz *f, const char *name, struct bytes b, bool skip)
     }
     struct relume_vec3 *lights;
     int n;
-    const bool read = !relume_lights_read(&lights, &n, path, NULL);
+    const bool read = !relume_captured_lights_read(&lights, &n, path, NULL);
     if (read)
         free(lights);
     return read || !status;

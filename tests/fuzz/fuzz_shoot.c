@@ -6,7 +6,7 @@
 #include "multiview/views.h"
 #include "multiview/views_colmap.h"
 
-#include <relume/lights.h>
+#include <relume/directions.h>
 #include <relume/response.h>
 
 static const char *const words[] = {"lightConfiguration",
@@ -50,12 +50,12 @@ static bool try_lights(const char *path)
 {
     bool read = false;
     for (int positions = 0; positions < 2; positions++) {
-        struct relume_light_list list;
-        const relume_status status = relume_lights_load(&list, path, positions, NULL);
+        struct relume_captured_lights list;
+        const relume_status status = relume_captured_lights_load(&list, path, positions, NULL);
         if (!status && list.count < 1)
             abort();
         read |= !status;
-        relume_light_list_destroy(&list);
+        relume_captured_lights_destroy(&list);
     }
     return read;
 }

@@ -169,8 +169,9 @@ static void check_dome(const struct relume_basis *basis, struct relume_coder_par
     const struct relume_codes *codes;
     struct relume_vec3 lights[FIXTURE_LIGHTS];
     relume_coder *coder;
-    assert_int_equal(relume_lights_make(lights, FIXTURE_LIGHTS, relume_pattern_find("hammersley"),
-                                        relume_lights_params(.hemisphere = true)),
+    assert_int_equal(relume_directions_make(lights, FIXTURE_LIGHTS,
+                                            relume_pattern_find("hammersley"),
+                                            relume_directions_params(.hemisphere = true)),
                      RELUME_OK);
     for (int i = 0; i < FIXTURE_LIGHTS; i++) {
         const double z = lowest + (1.0 - lowest) * lights[i].z;

@@ -12,7 +12,7 @@ static struct relume_vec3 dome[LIGHTS];  // the same above the horizon
 static int setup(void **state)
 {
     (void)state;
-    if (relume_lights_make(lights, LIGHTS, relume_pattern_find("hammersley"), NULL))
+    if (relume_directions_make(lights, LIGHTS, relume_pattern_find("hammersley"), NULL))
         return 1;
     for (int i = 0; i < LIGHTS; i++)
         dome[i] = (struct relume_vec3){lights[i].x, lights[i].y, fabs(lights[i].z)};
@@ -294,7 +294,7 @@ static void test_sh_energy_under_rotation(void **state)
     for (int k = 0; k < 16; k++)
         coefficients[k] = test_uniform(&seed) - 0.5;
     struct relume_vec3 many[4000];
-    CHECK_OK(relume_lights_make(many, 4000, relume_pattern_find("spiral"), NULL));
+    CHECK_OK(relume_directions_make(many, 4000, relume_pattern_find("spiral"), NULL));
     for (int i = 0; i < 4000; i++)
         for (int turned = 0; turned < 2; turned++) {
             float values[16];

@@ -16,8 +16,8 @@ struct set {
 static struct set make(int n, bool hemisphere)
 {
     struct set s = {.n = n};
-    CHECK_OK(relume_lights_make(s.light, n, relume_pattern_find("hammersley"),
-                                relume_lights_params(.hemisphere = hemisphere)));
+    CHECK_OK(relume_directions_make(s.light, n, relume_pattern_find("hammersley"),
+                                    relume_directions_params(.hemisphere = hemisphere)));
     return s;
 }
 

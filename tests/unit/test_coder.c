@@ -13,8 +13,8 @@ static int setup(void **state)
 {
     (void)state;
     test_folder(folder);
-    return relume_lights_make(dome, LIGHTS, relume_pattern_find("hammersley"),
-                              relume_lights_params(.hemisphere = true)) != RELUME_OK;
+    return relume_directions_make(dome, LIGHTS, relume_pattern_find("hammersley"),
+                                  relume_directions_params(.hemisphere = true)) != RELUME_OK;
 }
 
 static int teardown(void **state)
@@ -71,8 +71,9 @@ static void test_ptm_holds_quadratics(void **state)
     relume_coder_destroy(&coder);
 }
 
-// Without smoothing what is left is orthogonal to every function, as least squares has it; the usual
-// ridge leaves 4e-5 of the second degree. Lights that do not determine the fit are refused then.
+// Without smoothing what is left is orthogonal to every function, as least squares has it; the
+// usual ridge leaves 4e-5 of the second degree. Lights that do not determine the fit are refused
+// then.
 static void test_no_ridge(void **state)
 {
     (void)state;

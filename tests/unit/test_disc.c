@@ -75,7 +75,7 @@ static void test_two_discs(void **state)
     enum { K = 7, UPPER = 4, LIGHTS = 40 };
     struct relume_vec3 lights[LIGHTS];
     relume_coder *c;
-    CHECK_OK(relume_lights_make(lights, LIGHTS, relume_pattern_find("hammersley"), NULL));
+    CHECK_OK(relume_directions_make(lights, LIGHTS, relume_pattern_find("hammersley"), NULL));
     CHECK_OK(relume_coder_create(&c, &relume_basis_dct, lights, LIGHTS,
                                  relume_coder_params(.coefficients = K, .decode = true)));
     float w[3 * K], constant[3];

@@ -79,8 +79,9 @@ static void test_triangles(void **state)
         relume_weight_grid *grid;
         uint32_t seed = 8;
         int n = 0;
-        CHECK_OK(relume_lights_make(lights, sets[s].n, relume_pattern_find(sets[s].pattern),
-                                    relume_lights_params(.hemisphere = sets[s].hemisphere)));
+        CHECK_OK(
+            relume_directions_make(lights, sets[s].n, relume_pattern_find(sets[s].pattern),
+                                   relume_directions_params(.hemisphere = sets[s].hemisphere)));
         for (int i = 0; i < sets[s].n; i++)
             if (lights[i].z >= sets[s].lowest)
                 lights[n++] = lights[i];
@@ -131,8 +132,8 @@ static void test_cusps(void **state)
         uint32_t seed = 5;
         double worst = 0, square = 0;
         const bool half = set / 2;
-        CHECK_OK(relume_lights_make(lights, N, relume_pattern_find("hammersley"),
-                                    relume_lights_params(.hemisphere = half)));
+        CHECK_OK(relume_directions_make(lights, N, relume_pattern_find("hammersley"),
+                                        relume_directions_params(.hemisphere = half)));
         CHECK_OK(relume_coder_create(
             &coder, &relume_basis_table, lights, N,
             relume_coder_params(.interpolant = relume_interpolant_find(names[set % 2]),

@@ -278,7 +278,7 @@ static void write_wall(void)
     struct relume_vec3 lights[9];
     struct relume_image image;
     char name[128];
-    CHECK_OK(relume_lights_make(lights, 9, relume_pattern_find("hammersley"), NULL));
+    CHECK_OK(relume_directions_make(lights, 9, relume_pattern_find("hammersley"), NULL));
     CHECK_OK(relume_image_create(&image, SIDE, SIDE, 3));
     snprintf(name, sizeof name, "%s/wall.lp", folder);
     FILE *lp = fopen(name, "w");

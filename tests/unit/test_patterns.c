@@ -1,7 +1,7 @@
 // Light patterns, their discrepancy, and reading directions from files.
 #include "math/vec.h"
 
-#include <relume/lights.h>
+#include <relume/directions.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -23,7 +23,7 @@ static double discrepancy(const vec3 *v, int n, bool hemisphere)
 {
     double d = -1.0;
     assert_int_equal(
-        relume_lights_discrepancy(&d, v, n, relume_lights_params(.hemisphere = hemisphere)),
+        relume_directions_discrepancy(&d, v, n, relume_directions_params(.hemisphere = hemisphere)),
         RELUME_OK);
     return d;
 }
@@ -32,10 +32,11 @@ static void make(vec3 *out, int n, const char *pattern, uint64_t seed, bool hemi
 {
     const struct relume_pattern *p = relume_pattern_find(pattern);
     assert_non_null(p);
-    assert_int_equal(relume_lights_make(out, n, p,
-                                        relume_lights_params(.seed = seed, .hemisphere = hemisphere,
-                                                             .pole_y = pole_y)),
-                     RELUME_OK);
+    assert_int_equal(
+        relume_directions_make(
+            out, n, p,
+            relume_directions_params(.seed = seed, .hemisphere = hemisphere, .pole_y = pole_y)),
+        RELUME_OK);
 }
 
 static void hammersley_follows_the_book(void **state)
@@ -76,8 +77,8 @@ static void no_lights_are_refused(void **state)
     (void)state;
     vec3 v;
     double d;
-    assert_int_equal(relume_lights_make(&v, 0, relume_patterns[0], NULL), RELUME_EINVAL);
-    assert_int_equal(relume_lights_discrepancy(&d, &v, 0, NULL), RELUME_EINVAL);
+    assert_int_equal(relume_directions_make(&v, 0, relume_patterns[0], NULL), RELUME_EINVAL);
+    assert_int_equal(relume_directions_discrepancy(&d, &v, 0, NULL), RELUME_EINVAL);
 }
 
 static void seeds_count(void **state)
@@ -149,7 +150,7 @@ static relume_status read_text(const char *text, vec3 **v, int *n)
     const int fd = mkstemp(path);
     assert_true(fd >= 0 && write(fd, text, strlen(text)) == (ssize_t)strlen(text));
     close(fd);
-    const relume_status status = relume_lights_read(v, n, path, NULL);
+    const relume_status status = relume_captured_lights_read(v, n, path, NULL);
     unlink(path);
     return status;
 }
@@ -214,16 +215,16 @@ static void broken_direction_files_are_refused(void **state)
     }
     vec3 *v;
     int n;
-    assert_int_equal(relume_lights_read(&v, &n, "/nowhere/at/all", NULL), RELUME_EDATA);
+    assert_int_equal(relume_captured_lights_read(&v, &n, "/nowhere/at/all", NULL), RELUME_EDATA);
 }
 
-static relume_status load_text(struct relume_light_list *out, const char *text, bool positions)
+static relume_status load_text(struct relume_captured_lights *out, const char *text, bool positions)
 {
     char path[] = "/tmp/relume-lights-XXXXXX";
     const int fd = mkstemp(path);
     assert_true(fd >= 0 && write(fd, text, strlen(text)) == (ssize_t)strlen(text));
     close(fd);
-    const relume_status status = relume_lights_load(out, path, positions, NULL);
+    const relume_status status = relume_captured_lights_load(out, path, positions, NULL);
     unlink(path);
     return status;
 }
@@ -238,7 +239,7 @@ static void a_dome_tells_positions_and_leds(void **state)
         "\"positionsSphere\":[{\"x\":0,\"y\":0,\"z\":150},{\"x\":90,\"y\":0,\"z\":120}],"
         "\"ledAdjust\":[{\"r\":1,\"g\":1,\"b\":1},{\"r\":2,\"g\":1,\"b\":0.5}]}";
     for (int positions = 0; positions < 2; positions++) {
-        struct relume_light_list list;
+        struct relume_captured_lights list;
         assert_int_equal(load_text(&list, text, positions), RELUME_OK);
         assert_int_equal(list.count, 2);
         check_near(list.direction[1].x, 0.6, 1e-12);
@@ -246,7 +247,7 @@ static void a_dome_tells_positions_and_leds(void **state)
         check_near(list.position[1].z, 1.2, 1e-12);
         check_near(list.intensity[1][0], 0.5, 1e-6);
         check_near(list.intensity[1][2], 2.0, 1e-6);
-        relume_light_list_destroy(&list);
+        relume_captured_lights_destroy(&list);
     }
 }
 
@@ -255,16 +256,16 @@ static void vectors_are_positions_when_asked(void **state)
     (void)state;
     static const char *const texts[] = {"0 0 2\n3 0 4\n", "2\na.png 0 0 2\nb.png 3 0 4\n",
                                         "{\"positions\":[[0,0,2],[3,0,4]]}"};
-    struct relume_light_list list;
+    struct relume_captured_lights list;
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         assert_int_equal(load_text(&list, texts[i], true), RELUME_OK);
         check_near(list.position[1].z, 4.0, 1e-12);
         check_near(list.direction[1].z, 0.8, 1e-12);
-        relume_light_list_destroy(&list);
+        relume_captured_lights_destroy(&list);
     }
     assert_int_equal(load_text(&list, texts[0], false), RELUME_OK);
     assert_null(list.position);
-    relume_light_list_destroy(&list);
+    relume_captured_lights_destroy(&list);
     assert_int_equal(load_text(&list, "{\"directions\":[[0,0,1]]}", true), RELUME_EDATA);
     assert_null(list.direction);
 }

@@ -14,8 +14,8 @@ static int setup(void **state)
 {
     (void)state;
     uint32_t seed = 11;
-    if (relume_lights_make(lights, LIGHTS, relume_pattern_find("hammersley"),
-                           relume_lights_params(.hemisphere = true)))
+    if (relume_directions_make(lights, LIGHTS, relume_pattern_find("hammersley"),
+                               relume_directions_params(.hemisphere = true)))
         return 1;
     for (size_t x = 0; x < PIXELS; x++) {
         const vec3 n = test_direction(&seed), m = test_direction(&seed);

@@ -18,8 +18,8 @@ static int setup(void **state)
     (void)state;
     uint32_t seed = 5;
     test_folder(folder);
-    if (relume_lights_make(directions, LIGHTS, relume_pattern_find("hammersley"),
-                           relume_lights_params(.hemisphere = true)))
+    if (relume_directions_make(directions, LIGHTS, relume_pattern_find("hammersley"),
+                               relume_directions_params(.hemisphere = true)))
         return 1;
     for (int v = 0; v < VIEWS; v++) {
         for (int i = 0; i < LIGHTS; i++)

@@ -2,7 +2,7 @@
 #include "test.h"
 
 #include <relume/coder.h>
-#include <relume/lights.h>
+#include <relume/directions.h>
 
 enum { LIGHTS = 48, K = 6, STRAY = 9 };
 
@@ -11,8 +11,8 @@ static struct relume_vec3 lights[LIGHTS];
 static int setup(void **state)
 {
     (void)state;
-    return relume_lights_make(lights, LIGHTS, relume_pattern_find("hammersley"),
-                              relume_lights_params(.hemisphere = true)) != RELUME_OK;
+    return relume_directions_make(lights, LIGHTS, relume_pattern_find("hammersley"),
+                                  relume_directions_params(.hemisphere = true)) != RELUME_OK;
 }
 
 static relume_coder *create(const struct relume_basis *basis, bool robust)

@@ -3,7 +3,7 @@
 #include "scene/render.h"
 
 #include <relume/capture.h>
-#include <relume/lights.h>
+#include <relume/directions.h>
 #include <relume/view.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -270,8 +270,8 @@ static double under_a_sky(const relume_scene *scene, int bounces)
 {
     enum { LIGHTS = 256 };
     vec3 lights[LIGHTS];
-    assert_int_equal(relume_lights_make(lights, LIGHTS, relume_pattern_find("spiral"),
-                                        relume_lights_params(.hemisphere = true)),
+    assert_int_equal(relume_directions_make(lights, LIGHTS, relume_pattern_find("spiral"),
+                                            relume_directions_params(.hemisphere = true)),
                      RELUME_OK);
     struct render_job job = job_for(scene, RELUME_PLANAR, 16, 16);
     job.samples = 16;

@@ -10,7 +10,8 @@ relume_status ingest_params(struct relume_ingest_params *out, struct relume_vec3
     if (o->transfer && relume_transfer_parse(&out->transfer, o->transfer))
         return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", o->transfer);
     const relume_status status =
-        o->lights ? relume_lights_read(lights, &out->light_count, o->lights, args->log) : RELUME_OK;
+        o->lights ? relume_captured_lights_read(lights, &out->light_count, o->lights, args->log)
+                  : RELUME_OK;
     out->lights = *lights;
     return status;
 }

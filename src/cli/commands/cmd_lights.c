@@ -53,7 +53,7 @@ static relume_status run(const struct args *args)
 {
     const struct lights_options *o = (const void *)args;
     const struct relume_pattern *pattern;
-    struct relume_lights_params params = {
+    struct relume_directions_params params = {
         .log = o->args.log,
         .seed = (uint64_t)o->seed,
         .hemisphere = o->hemisphere,
@@ -66,9 +66,9 @@ static relume_status run(const struct args *args)
     const int n = o->count;
     struct relume_vec3 *v = malloc((size_t)n * sizeof *v);
     double discrepancy = 0.0;
-    status = v ? relume_lights_make(v, n, pattern, &params) : RELUME_ENOMEM;
+    status = v ? relume_directions_make(v, n, pattern, &params) : RELUME_ENOMEM;
     if (!status)
-        status = relume_lights_discrepancy(&discrepancy, v, n, &params);
+        status = relume_directions_discrepancy(&discrepancy, v, n, &params);
     if (!status && o->json)
         print_json(pattern, params.hemisphere, v, n, discrepancy);
     else if (!status)

@@ -123,7 +123,7 @@ static relume_status make_lights(struct relume_vec3 **out, int *n, bool pole_y,
 {
     const char *file = o->lights_from;
     if (file)
-        return relume_lights_read(out, n, file, o->args.log);
+        return relume_captured_lights_read(out, n, file, o->args.log);
     const struct relume_pattern *pattern;
     const relume_status status = choose_pattern(&pattern, o->pattern);
     if (status)
@@ -132,9 +132,10 @@ static relume_status make_lights(struct relume_vec3 **out, int *n, bool pole_y,
     *out = malloc((size_t)*n * sizeof **out);
     if (!*out)
         return RELUME_ENOMEM;
-    return relume_lights_make(*out, *n, pattern,
-                              relume_lights_params(.log = o->args.log, .seed = (uint64_t)o->seed,
-                                                   .hemisphere = o->hemisphere, .pole_y = pole_y));
+    return relume_directions_make(
+        *out, *n, pattern,
+        relume_directions_params(.log = o->args.log, .seed = (uint64_t)o->seed,
+                                 .hemisphere = o->hemisphere, .pole_y = pole_y));
 }
 
 // ---------------------------------------------------------------- materials
@@ -156,7 +157,7 @@ static relume_status read_directions(struct relume_vec3 **out, int *n, const cha
 {
     struct prefix_log about;
     relume_direction_mesh *dome = NULL;
-    relume_status status = relume_lights_read(out, n, file, o->args.log);
+    relume_status status = relume_captured_lights_read(out, n, file, o->args.log);
     if (!status)
         status =
             relume_direction_mesh_create(&dome, *out, *n, prefix_log(&about, o->args.log, file));

@@ -1,6 +1,6 @@
-// lights.h - patterns of light directions on the sphere (Wong 1998, 8.1.4)
-#ifndef RELUME_LIGHTS_H
-#define RELUME_LIGHTS_H
+// directions.h - patterns of light directions on the sphere (Wong 1998, 8.1.4)
+#ifndef RELUME_DIRECTIONS_H
+#define RELUME_DIRECTIONS_H
 
 #include <relume/base.h>
 
@@ -22,32 +22,32 @@ extern RELUME_API const struct relume_pattern *const relume_patterns[];
 // NULL when there is none of that name.
 RELUME_API const struct relume_pattern *relume_pattern_find(const char *name);
 
-struct relume_lights_params {
+struct relume_directions_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
     uint64_t seed;    // equal seeds give equal directions
     bool hemisphere;  // only directions on the pole's side
     bool pole_y;      // the pole is +y (panoramas); default +z
 };
-#define relume_lights_params(...)                                                                  \
-    (&(const struct relume_lights_params){RELUME_SIZED(relume_lights_params), __VA_ARGS__})
+#define relume_directions_params(...)                                                              \
+    (&(const struct relume_directions_params){RELUME_SIZED(relume_directions_params), __VA_ARGS__})
 
 // Fill `out[n]` with unit directions. RELUME_EINVAL when n < 1, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_lights_make(struct relume_vec3 *out, int n,
-                                               const struct relume_pattern *pattern,
-                                               const struct relume_lights_params *params);
+RELUME_RESULT relume_status relume_directions_make(struct relume_vec3 *out, int n,
+                                                   const struct relume_pattern *pattern,
+                                                   const struct relume_directions_params *params);
 
 // Spherical cap discrepancy: the largest difference, over caps, between the share of directions in
 // a cap and the share of area; in [0, 1], smaller is more even. The maximum is taken over caps of
 // every radius around the directions (1024 of them when there are more), their antipodes and 1024
 // spiral points, so it is a close lower bound. With `hemisphere` areas are shares of the pole's
 // hemisphere.
-RELUME_RESULT relume_status relume_lights_discrepancy(double *out, const struct relume_vec3 *lights,
-                                                      int n,
-                                                      const struct relume_lights_params *params);
+RELUME_RESULT relume_status
+relume_directions_discrepancy(double *out, const struct relume_vec3 *lights, int n,
+                              const struct relume_directions_params *params);
 
 // Lights that a file gives. Thread-safety: plain data.
-struct relume_light_list {
+struct relume_captured_lights {
     int count;
     struct relume_vec3 *direction;  // [count], unit, in the order of the file
     struct relume_vec3 *position;   // [count], world units, or NULL: only directions are given
@@ -61,13 +61,15 @@ struct relume_light_list {
 // of lines and .lp files are positions in world units, and a file that gives none is an error.
 // Images that a file names need not exist. The caller destroys `out`, which is empty on failure.
 // RELUME_EDATA, RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_lights_load(struct relume_light_list *out, const char *path,
-                                               bool positions, const struct relume_log *log);
-RELUME_API void relume_light_list_destroy(struct relume_light_list *list);
+RELUME_RESULT relume_status relume_captured_lights_load(struct relume_captured_lights *out,
+                                                        const char *path, bool positions,
+                                                        const struct relume_log *log);
+RELUME_API void relume_captured_lights_destroy(struct relume_captured_lights *list);
 
 // Only the directions; `*out` is to be freed with free().
-RELUME_RESULT relume_status relume_lights_read(struct relume_vec3 **out, int *n, const char *path,
-                                               const struct relume_log *log);
+RELUME_RESULT relume_status relume_captured_lights_read(struct relume_vec3 **out, int *n,
+                                                        const char *path,
+                                                        const struct relume_log *log);
 
 #ifdef __cplusplus
 }

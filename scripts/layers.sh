@@ -15,7 +15,7 @@ image:base math:base io image photograph response
 compare:base math image:base image
 capture:base math image:base image directions capture response
 hdr:base math image:base image photograph response align
-multiview:base math image capture:base image capture photograph views lightfield
+multiview:base math image capture:base image capture photograph ingest slab_depth
 acquire:base math image capture multiview:base image directions capture ball photometric acquire photograph align
 coder:base math image:base image capture coder
 codebook:base math image coder:base coder codebook
@@ -25,15 +25,15 @@ foreign:base math image:base image directions coder relight
 exchange:base math image foreign:base image photograph directions codebook coder capture pack relight exchange
 relight:base math image:base image coder light relight rig relighter
 analysis:base math:base image coder light relight normals enhance
-view:base math image:base image light relight view slabs capture
+view:base math image:base image light relight view slab_set capture
 post:base math image:base image tone eye psf glare
-frame:base math image:base image capture coder pack light relight view slabs frame viewport evaluate normals enhance renderer relighter rig
+frame:base math image:base image capture coder pack light relight view slab_set frame viewport evaluate normals enhance renderer relighter rig
 btf:base math image:base image directions capture btf
 btf_model:base math image btf:base image light directions btf btf_environment
 surface:base math btf btf_model:base image btf btf_environment surface
 mesh:base math geometry:base object
 scene:base math image geometry mesh:base image directions capture btf scene
-object:base math mesh:base image capture light relight view slabs pack frame viewport btf btf_environment surface object renderer
+object:base math mesh:base image capture light relight view slab_set pack frame viewport btf btf_environment surface object renderer
 helper:base image mesh:base
 cli::*
 cli/commands:commands:*

@@ -8,7 +8,7 @@
 #include <relume/image.h>
 #include <relume/pack.h>
 #include <relume/relight.h>
-#include <relume/slabs.h>
+#include <relume/slab_set.h>
 #include <relume/view.h>
 
 #ifdef __cplusplus

@@ -19,7 +19,7 @@
 #include <relume/image.h>
 #include <relume/light.h>
 #include <relume/renderer.h>
-#include <relume/slabs.h>
+#include <relume/slab_set.h>
 #include <relume/surface.h>
 
 #ifdef __cplusplus
@@ -139,7 +139,7 @@ struct relume_render_params {
     (&(const struct relume_render_params){RELUME_SIZED(relume_render_params), __VA_ARGS__})
 
 // The window through which `eye` sees all of the objects (its aim: all zero is their middle, +y up
-// and the least square view that holds them). False as relume_slabs_window.
+// and the least square view that holds them). False as relume_slab_set_window.
 RELUME_API bool relume_objects_window(struct relume_window *out, const relume_objects *objects,
                                       struct relume_vec3 eye, const struct relume_look_at *aim,
                                       int width, int height);

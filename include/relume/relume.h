@@ -20,7 +20,7 @@
 #include <relume/image.h>
 #include <relume/io.h>
 #include <relume/light.h>
-#include <relume/lightfield.h>
+#include <relume/slab_depth.h>
 #include <relume/directions.h>
 #include <relume/normals.h>
 #include <relume/object.h>
@@ -36,10 +36,10 @@
 #include <relume/scene.h>
 #include <relume/acquire.h>
 #include <relume/viewport.h>
-#include <relume/slabs.h>
+#include <relume/slab_set.h>
 #include <relume/surface.h>
 #include <relume/tone.h>
 #include <relume/view.h>
-#include <relume/views.h>
+#include <relume/ingest.h>
 
 #endif

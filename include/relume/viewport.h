@@ -10,7 +10,7 @@
 #include <relume/light.h>
 #include <relume/pack.h>
 #include <relume/renderer.h>
-#include <relume/slabs.h>
+#include <relume/slab_set.h>
 #include <relume/view.h>
 
 #ifdef __cplusplus

@@ -2,18 +2,19 @@
 #include "base/log.h"
 #include "frame/renderer.h"
 
-#include <relume/slabs.h>
+#include <relume/slab_set.h>
 
 static relume_status choose_window(struct relume_window *window, const relume_renderer *r,
                                    const struct relume_camera *camera)
 {
-    const relume_slabs *slabs = r->slabs;
-    const vec3 eye = camera->framing == RELUME_FRAME_EYE ? camera->eye : relume_slabs_eye(slabs, 0);
-    if (camera->through > 0 && camera->through <= relume_slabs_count(slabs)) {
-        *window = relume_slab_window(relume_slabs_geometry(slabs, camera->through - 1), eye);
+    const relume_slab_set *slabs = r->slabs;
+    const vec3 eye =
+        camera->framing == RELUME_FRAME_EYE ? camera->eye : relume_slab_set_eye(slabs, 0);
+    if (camera->through > 0 && camera->through <= relume_slab_set_count(slabs)) {
+        *window = relume_slab_window(relume_slab_set_geometry(slabs, camera->through - 1), eye);
         return RELUME_OK;
     }
-    if (relume_slabs_window(window, slabs, eye, &camera->aim, camera->width, camera->height))
+    if (relume_slab_set_window(window, slabs, eye, &camera->aim, camera->width, camera->height))
         return RELUME_OK;
     return log_fail(
         r->params.log, RELUME_EINVAL,
@@ -45,7 +46,7 @@ relume_status frame_around(relume_renderer *r, const struct relume_camera *camer
         status = check_lens(r, &window);
     if (status)
         return status;
-    if (relume_slabs_needs(r->needed, r->slabs, &window, camera->width, &r->view) == 0)
+    if (relume_slab_set_needs(r->needed, r->slabs, &window, camera->width, &r->view) == 0)
         return log_fail(r->params.log, RELUME_EDATA,
                         "the eye (%g, %g, %g) sees nothing of the slabs; move it so that it "
                         "looks at the object through a camera grid",
@@ -54,5 +55,5 @@ relume_status frame_around(relume_renderer *r, const struct relume_camera *camer
     if (!status)
         status = relume_image_create(out, camera->width, camera->height, 3);
     return status ? status
-                  : relume_slabs_frame(out, r->slabs, &window, r->image[r->shown], &r->view);
+                  : relume_slab_set_frame(out, r->slabs, &window, r->image[r->shown], &r->view);
 }

@@ -134,14 +134,15 @@ static relume_status several_slabs(struct rays *q, const struct relume_ray *ray,
     const struct relume_window window = {.eye = ray->eye,
                                          .corner = vec3_add(ray->eye, ray->direction)};
     const struct relume_view_params params = view_params(q);
-    if (relume_slabs_needs(q->r->needed, q->r->slabs, &window, 1, &params) == 0)
+    if (relume_slab_set_needs(q->r->needed, q->r->slabs, &window, 1, &params) == 0)
         return none(q, "it misses the camera grids or the windows");
     relume_status status = RELUME_OK;
     for (int i = 0; !status && i < q->r->info->views; i++)
         if (q->r->needed[i])
             status = need(q, i);
     if (!status)
-        status = relume_slabs_value(rgb, q->r->slabs, ray->eye, ray->direction, images(q), &params);
+        status =
+            relume_slab_set_value(rgb, q->r->slabs, ray->eye, ray->direction, images(q), &params);
     return status == RELUME_EINVAL ? none(q, "it misses the camera grids or the windows") : status;
 }
 

@@ -166,7 +166,7 @@ void relume_renderer_destroy(relume_renderer **renderer)
     }
     relume_relighter_destroy(&r->relighter);
     relume_slab_destroy(&r->slab);
-    relume_slabs_destroy(&r->slabs);
+    relume_slab_set_destroy(&r->slabs);
     for (int i = 0; i < SHOWN; i++)
         free(r->image[i]);
     free(r->kept);
@@ -271,9 +271,9 @@ relume_status renderer_need_slabs(relume_renderer *r)
     return r->slabs
                ? RELUME_OK
                : no_grid(r,
-                         relume_slabs_create(&r->slabs, info->slabs ? info->slab : &info->geometry,
-                                             info->slabs ? info->slabs : 1, info->uv, info->slab_of,
-                                             info->views),
+                         relume_slab_set_create(
+                             &r->slabs, info->slabs ? info->slab : &info->geometry,
+                             info->slabs ? info->slabs : 1, info->uv, info->slab_of, info->views),
                          "a slab");
 }
 
@@ -352,7 +352,7 @@ relume_status renderer_need_disparity(relume_renderer *r, int view)
     if (r->disparity[view].data)
         return RELUME_OK;
     const relume_slab *slab =
-        r->slabs ? relume_slabs_slab(r->slabs, r->info->slab_of ? r->info->slab_of[view] : 0)
+        r->slabs ? relume_slab_set_slab(r->slabs, r->info->slab_of ? r->info->slab_of[view] : 0)
                  : r->slab;
     struct relume_image depth = {0};
     relume_status status = relume_pack_depth(&depth, r->pack, view);

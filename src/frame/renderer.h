@@ -6,7 +6,7 @@
 
 #include <relume/relighter.h>
 #include <relume/renderer.h>
-#include <relume/slabs.h>
+#include <relume/slab_set.h>
 
 // What is noted of a frame, once: the same words are not said of the next.
 enum note { NOTE_BESIDE, NOTE_BORDERS, NOTES };
@@ -43,7 +43,7 @@ struct relume_renderer {
     bool *needed;                       // [views]: by the present frame
     relume_status texels;               // of renderer_texels
     relume_slab *slab;                  // of a single slab, ...
-    relume_slabs *slabs;                // ... of several; NULL: not needed yet
+    relume_slab_set *slabs;             // ... of several; NULL: not needed yet
 };
 
 __attribute__((format(printf, 3, 4))) void renderer_note(relume_renderer *r, enum note note,

@@ -36,21 +36,22 @@ static relume_status sight_of_eye(struct relume_viewport *s, const relume_pack *
                                   const struct relume_camera *camera)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
-    relume_slabs *slabs;
+    relume_slab_set *slabs;
     const relume_status status =
-        relume_slabs_create(&slabs, info->slabs ? info->slab : &info->geometry,
-                            info->slabs ? info->slabs : 1, info->uv, info->slab_of, info->views);
+        relume_slab_set_create(&slabs, info->slabs ? info->slab : &info->geometry,
+                               info->slabs ? info->slabs : 1, info->uv, info->slab_of, info->views);
     if (status)
         return status;
-    const vec3 eye = camera->framing == RELUME_FRAME_EYE ? camera->eye : relume_slabs_eye(slabs, 0);
+    const vec3 eye =
+        camera->framing == RELUME_FRAME_EYE ? camera->eye : relume_slab_set_eye(slabs, 0);
     const bool window = !info->slabs && !relume_look_at_given(&camera->aim);
     const int through = window ? 1 : camera->through;
     bool sees = true;
-    if (through > 0 && through <= relume_slabs_count(slabs))
-        s->window = relume_slab_window(relume_slabs_geometry(slabs, through - 1), eye);
+    if (through > 0 && through <= relume_slab_set_count(slabs))
+        s->window = relume_slab_window(relume_slab_set_geometry(slabs, through - 1), eye);
     else
-        sees = relume_slabs_window(&s->window, slabs, eye, &camera->aim, s->width, s->height);
-    relume_slabs_destroy(&slabs);
+        sees = relume_slab_set_window(&s->window, slabs, eye, &camera->aim, s->width, s->height);
+    relume_slab_set_destroy(&slabs);
     return sees ? RELUME_OK : RELUME_EINVAL;
 }
 

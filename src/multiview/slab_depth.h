@@ -4,7 +4,7 @@
 
 #include "multiview/sweep.h"
 
-#include <relume/lightfield.h>
+#include <relume/slab_depth.h>
 
 enum { DEPTH_LIGHTS = 4 };
 

@@ -1,4 +1,4 @@
-// views.h - the photographs of many cameras, found and checked, and the folder they become
+// ingest.h - the photographs of many cameras, found and checked, and the folder they become
 #ifndef MULTIVIEW_VIEWS_H
 #define MULTIVIEW_VIEWS_H
 
@@ -6,7 +6,7 @@
 #include "base/outdir.h"
 
 #include <relume/capture.h>
-#include <relume/views.h>
+#include <relume/ingest.h>
 
 // One camera: what was named, and its photographs, one a light.
 struct camera_photos {

@@ -5,7 +5,7 @@
 // the largest blur.
 #include "math/vec.h"
 
-#include <relume/slabs.h>
+#include <relume/slab_set.h>
 
 enum { FEWEST = 8, MOST = 64 };
 // Of how near and how far things lie, by how far away the window is.

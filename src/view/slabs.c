@@ -9,13 +9,14 @@ static const double fade_st = 0.0625;
 // Cameras at the border have a say where there is no other slab.
 static const double least = 1e-4;
 
-relume_status relume_slabs_create(relume_slabs **out, const struct relume_geometry *slab, int slabs,
-                                  const double (*uv)[2], const int *slab_of, int views)
+relume_status relume_slab_set_create(relume_slab_set **out, const struct relume_geometry *slab,
+                                     int slabs, const double (*uv)[2], const int *slab_of,
+                                     int views)
 {
     *out = NULL;
     if (slabs < 1 || slabs > RELUME_MOST_SLABS)
         return RELUME_EINVAL;
-    relume_slabs *s = mem_zeroed(1, sizeof *s);
+    relume_slab_set *s = mem_zeroed(1, sizeof *s);
     if (!s)
         return RELUME_ENOMEM;
     s->count = slabs;
@@ -28,12 +29,12 @@ relume_status relume_slabs_create(relume_slabs **out, const struct relume_geomet
                      : RELUME_EINVAL;
     }
     if (status)
-        relume_slabs_destroy(&s);
+        relume_slab_set_destroy(&s);
     *out = s;
     return status;
 }
 
-void relume_slabs_destroy(relume_slabs **slabs)
+void relume_slab_set_destroy(relume_slab_set **slabs)
 {
     if (!*slabs)
         return;
@@ -43,22 +44,22 @@ void relume_slabs_destroy(relume_slabs **slabs)
     *slabs = NULL;
 }
 
-int relume_slabs_count(const relume_slabs *slabs)
+int relume_slab_set_count(const relume_slab_set *slabs)
 {
     return slabs->count;
 }
 
-const struct relume_geometry *relume_slabs_geometry(const relume_slabs *slabs, int i)
+const struct relume_geometry *relume_slab_set_geometry(const relume_slab_set *slabs, int i)
 {
     return &slabs->slab[i]->geometry;
 }
 
-const relume_slab *relume_slabs_slab(const relume_slabs *slabs, int i)
+const relume_slab *relume_slab_set_slab(const relume_slab_set *slabs, int i)
 {
     return slabs->slab[i];
 }
 
-vec3 relume_slabs_middle(const relume_slabs *slabs)
+vec3 relume_slab_set_middle(const relume_slab_set *slabs)
 {
     vec3 sum = {0};
     for (int i = 0; i < slabs->count; i++) {
@@ -70,7 +71,7 @@ vec3 relume_slabs_middle(const relume_slabs *slabs)
     return vec3_scale(sum, 1.0 / slabs->count);
 }
 
-vec3 relume_slabs_eye(const relume_slabs *slabs, int i)
+vec3 relume_slab_set_eye(const relume_slab_set *slabs, int i)
 {
     const relume_slab *slab = slabs->slab[i];
     return relume_pose_world(&slab->geometry.pose, relume_slab_middle(slab));
@@ -123,7 +124,7 @@ struct relume_window relume_slab_window(const struct relume_geometry *g, vec3 ey
 }
 
 // Half the extent of the largest st window.
-static void find_half(double half[2], const relume_slabs *slabs)
+static void find_half(double half[2], const relume_slab_set *slabs)
 {
     half[0] = half[1] = 0.0;
     for (int i = 0; i < slabs->count; i++)
@@ -151,11 +152,11 @@ bool relume_look_at_given(const struct relume_look_at *aim)
     return aim->aimed || aim->field_of_view_deg != 0.0 || !is_zero(aim->up);
 }
 
-bool relume_slabs_window(struct relume_window *out, const relume_slabs *slabs, vec3 eye,
-                         const struct relume_look_at *aim, int width, int height)
+bool relume_slab_set_window(struct relume_window *out, const relume_slab_set *slabs, vec3 eye,
+                            const struct relume_look_at *aim, int width, int height)
 {
     const struct relume_look_at a = aim ? *aim : (struct relume_look_at){0};
-    const vec3 at = a.aimed ? a.at : relume_slabs_middle(slabs);
+    const vec3 at = a.aimed ? a.at : relume_slab_set_middle(slabs);
     const double distance = vec3_length(vec3_sub(at, eye));
     const vec3 ahead = vec3_unit(vec3_sub(at, eye));
     const vec3 sideways = vec3_cross(ahead, vec3_unit(choose_up(a.up, ahead)));

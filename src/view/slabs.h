@@ -1,13 +1,13 @@
-// slabs.h - the inside of relume_slabs
+// slab_set.h - the inside of relume_slab_set
 #ifndef VIEW_SLABS_H
 #define VIEW_SLABS_H
 
 #include "math/vec.h"
 #include "view/slab.h"
 
-#include <relume/slabs.h>
+#include <relume/slab_set.h>
 
-struct relume_slabs {
+struct relume_slab_set {
     int count, views;
     relume_slab *slab[RELUME_MOST_SLABS];
 };

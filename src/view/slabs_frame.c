@@ -20,7 +20,7 @@ struct seen {
 };
 
 struct picture {
-    const relume_slabs *slabs;
+    const relume_slab_set *slabs;
     struct relume_image *out;
     int pinholes;
     struct seen *seen;  // [pinholes][slabs]
@@ -116,8 +116,9 @@ static int count_pinholes(const struct relume_window *window, int width,
                : 0;
 }
 
-int relume_slabs_needs(bool *needed, const relume_slabs *slabs, const struct relume_window *window,
-                       int width, const struct relume_view_params *params)
+int relume_slab_set_needs(bool *needed, const relume_slab_set *slabs,
+                          const struct relume_window *window, int width,
+                          const struct relume_view_params *params)
 {
     const struct relume_view_params p = PARAMS(relume_view_params, params);
     const int pinholes = count_pinholes(window, width, &p);
@@ -292,7 +293,7 @@ static relume_status prepare(struct job *job, const struct relume_window *window
     return RELUME_OK;
 }
 
-static relume_status begin(struct job *job, const relume_slabs *slabs,
+static relume_status begin(struct job *job, const relume_slab_set *slabs,
                            const struct relume_window *window, int width,
                            const struct relume_image *views,
                            const struct relume_view_params *params)
@@ -319,10 +320,10 @@ static void end(struct job *job)
     free(job->picture.seen);
 }
 
-relume_status relume_slabs_frame(struct relume_image *out, const relume_slabs *slabs,
-                                 const struct relume_window *window,
-                                 const struct relume_image *views,
-                                 const struct relume_view_params *params)
+relume_status relume_slab_set_frame(struct relume_image *out, const relume_slab_set *slabs,
+                                    const struct relume_window *window,
+                                    const struct relume_image *views,
+                                    const struct relume_view_params *params)
 {
     struct job job;
     if (!out->data || out->channels != 3)
@@ -337,9 +338,9 @@ relume_status relume_slabs_frame(struct relume_image *out, const relume_slabs *s
     return status;
 }
 
-relume_status relume_slabs_value(float rgb[3], const relume_slabs *slabs, vec3 eye, vec3 direction,
-                                 const struct relume_image *views,
-                                 const struct relume_view_params *params)
+relume_status relume_slab_set_value(float rgb[3], const relume_slab_set *slabs, vec3 eye,
+                                    vec3 direction, const struct relume_image *views,
+                                    const struct relume_view_params *params)
 {
     struct job job;
     const struct relume_window window = {.eye = eye, .corner = vec3_add(eye, direction)};
@@ -373,8 +374,8 @@ static double nearest_in(int *view, double place[2], const relume_slab *slab, ve
     return weights[best] * relume_slab_weight(slab, uv, st);
 }
 
-bool relume_slabs_nearest(int *view, double place[2], const relume_slabs *slabs, vec3 eye,
-                          vec3 direction)
+bool relume_slab_set_nearest(int *view, double place[2], const relume_slab_set *slabs, vec3 eye,
+                             vec3 direction)
 {
     double most = 0.0;
     for (int i = 0; i < slabs->count; i++) {

@@ -18,7 +18,7 @@ static const struct relume_light lamp = {.direction = {0.2, 0.3, 0.8}, .rgb = {1
 struct around {
     struct fixture_file file;
     struct relume_geometry slab[SLABS];
-    relume_slabs *slabs;
+    relume_slab_set *slabs;
     struct renderer renderer;
     struct app app;
     struct relume_image views[VIEWS], disparity[VIEWS];
@@ -83,8 +83,8 @@ static void open_app(struct around *t)
         t->uv[i][0] = columns[i / SLABS % COLUMNS];
         t->uv[i][1] = rows[i / SLABS / COLUMNS];
     }
-    assert_int_equal(relume_slabs_create(&t->slabs, t->slab, SLABS, (const double(*)[2])t->uv,
-                                         t->slab_of, VIEWS),
+    assert_int_equal(relume_slab_set_create(&t->slabs, t->slab, SLABS, (const double(*)[2])t->uv,
+                                            t->slab_of, VIEWS),
                      RELUME_OK);
     start_app(t);
 }
@@ -92,7 +92,7 @@ static void open_app(struct around *t)
 static void close_app(struct around *t)
 {
     app_release(&t->app);
-    relume_slabs_destroy(&t->slabs);
+    relume_slab_set_destroy(&t->slabs);
 }
 
 static void open_around(struct around *t)
@@ -109,8 +109,8 @@ static void open_around(struct around *t)
         t->views[i] = fixture_relight(&t->file, i, &lamp, 1);
         assert_int_equal(make_depth(&depth, t, i), RELUME_OK);
         assert_int_equal(relume_slab_disparity(&t->disparity[i],
-                                               relume_slabs_slab(t->slabs, t->slab_of[i]), t->uv[i],
-                                               &depth),
+                                               relume_slab_set_slab(t->slabs, t->slab_of[i]),
+                                               t->uv[i], &depth),
                          RELUME_OK);
         relume_image_destroy(&depth);
     }
@@ -138,7 +138,7 @@ static double share_off(struct around *t, const struct relume_view_params *param
     int off = 0;
     assert_true(app_window(&t->app, &window));
     assert_int_equal(relume_image_create(&want, t->app.width, t->app.height, 3), RELUME_OK);
-    assert_int_equal(relume_slabs_frame(&want, t->slabs, &window, t->views, params), RELUME_OK);
+    assert_int_equal(relume_slab_set_frame(&want, t->slabs, &window, t->views, params), RELUME_OK);
     assert_int_equal(draw_app(&t->renderer, &t->app), RELUME_OK);
     assert_int_equal(renderer_read(&got, &t->renderer), RELUME_OK);
     for (int i = 0; i < 3 * want.width * want.height; i++)
@@ -318,7 +318,7 @@ static void the_wheel_dollies(void **state)
     (void)state;
     struct around t = {0};
     open_app(&t);
-    const double captured = length_of(relume_slabs_eye(t.slabs, 0));
+    const double captured = length_of(relume_slab_set_eye(t.slabs, 0));
     app_handle(&t.app, &(struct app_event){.kind = APP_WHEEL, .wheel = 1, .x = 3, .y = 3});
     assert_true(fabs(length_of(t.app.now.camera.eye) - captured / 1.1) < 1e-9);
     for (int i = 0; i < 100; i++)

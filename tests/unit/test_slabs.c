@@ -1,7 +1,7 @@
 // Several slabs around a painted ball: what any eye sees of it is known in closed form
 #include "test.h"
 
-#include <relume/slabs.h>
+#include <relume/slab_set.h>
 
 #define PI 3.14159265358979323846
 
@@ -86,7 +86,7 @@ struct captured {
     struct relume_geometry slab[RING];
     double uv[VIEWS][2];
     int slab_of[VIEWS];
-    relume_slabs *slabs;
+    relume_slab_set *slabs;
     struct relume_image view[VIEWS], disparity[VIEWS];
 };
 static struct captured c;
@@ -103,14 +103,14 @@ static int capture(void **state)
         c.uv[i][1] = place(i / RING / SIDE);
     }
     CHECK_OK(
-        relume_slabs_create(&c.slabs, c.slab, RING, (const double(*)[2])c.uv, c.slab_of, VIEWS));
+        relume_slab_set_create(&c.slabs, c.slab, RING, (const double(*)[2])c.uv, c.slab_of, VIEWS));
     for (int i = 0; i < VIEWS; i++) {
         const struct relume_geometry *g = &c.slab[c.slab_of[i]];
         const vec3 camera = {c.uv[i][0], c.uv[i][1], uv_z};
         const struct relume_window w = relume_slab_window(g, relume_pose_world(&g->pose, camera));
         struct relume_image depth;
         render(&c.view[i], &depth, &w, W, W);
-        CHECK_OK(relume_slab_disparity(&c.disparity[i], relume_slabs_slab(c.slabs, c.slab_of[i]),
+        CHECK_OK(relume_slab_disparity(&c.disparity[i], relume_slab_set_slab(c.slabs, c.slab_of[i]),
                                        c.uv[i], &depth));
         relume_image_destroy(&depth);
     }
@@ -124,7 +124,7 @@ static int release(void **state)
         relume_image_destroy(&c.view[i]);
         relume_image_destroy(&c.disparity[i]);
     }
-    relume_slabs_destroy(&c.slabs);
+    relume_slab_set_destroy(&c.slabs);
     return 0;
 }
 
@@ -137,7 +137,7 @@ static vec3 eye_at(double azimuth_deg, double height, double distance)
 static struct relume_window window_from(vec3 eye)
 {
     struct relume_window w;
-    assert_true(relume_slabs_window(&w, c.slabs, eye, NULL, W, W));
+    assert_true(relume_slab_set_window(&w, c.slabs, eye, NULL, W, W));
     return w;
 }
 
@@ -146,7 +146,7 @@ static struct relume_image draw(const struct relume_window *w,
 {
     struct relume_image out;
     CHECK_OK(relume_image_create(&out, W, W, 3));
-    CHECK_OK(relume_slabs_frame(&out, c.slabs, w, c.view, params));
+    CHECK_OK(relume_slab_set_frame(&out, c.slabs, w, c.view, params));
     return out;
 }
 
@@ -210,7 +210,7 @@ static void look_at_ball(float rgb[3], double azimuth_deg, const struct relume_v
 {
     const vec3 eye = eye_at(azimuth_deg, 0.4, 3.3);
     const vec3 way = {0.3 - eye.x, 0.02 - eye.y, -eye.z};
-    CHECK_OK(relume_slabs_value(rgb, c.slabs, eye, way, c.view, params));
+    CHECK_OK(relume_slab_set_value(rgb, c.slabs, eye, way, c.view, params));
 }
 
 // A ray onto the ball, from an eye that goes around it: nowhere does its value jump, also where
@@ -255,7 +255,7 @@ static void poses_turn_with_the_world(void **state)
     const struct relume_pose turn = {{0.3, -2, 1},
                                      {{0.36, 0.48, -0.8}, {-0.8, 0.6, 0}, {0.48, 0.64, 0.6}}};
     struct relume_geometry slab[RING];
-    relume_slabs *turned;
+    relume_slab_set *turned;
     for (int i = 0; i < RING; i++) {
         slab[i] = c.slab[i];
         slab[i].pose.origin = relume_pose_world(&turn, slab[i].pose.origin);
@@ -263,7 +263,8 @@ static void poses_turn_with_the_world(void **state)
             slab[i].pose.axis[k] = relume_pose_turn(&turn, slab[i].pose.axis[k]);
         assert_true(relume_pose_normalise(&slab[i].pose));
     }
-    CHECK_OK(relume_slabs_create(&turned, slab, RING, (const double(*)[2])c.uv, c.slab_of, VIEWS));
+    CHECK_OK(
+        relume_slab_set_create(&turned, slab, RING, (const double(*)[2])c.uv, c.slab_of, VIEWS));
     const struct relume_window w = window_from(eye_at(25, 0.3, 3.1));
     const struct relume_window there = {
         relume_pose_world(&turn, w.eye), relume_pose_world(&turn, w.corner),
@@ -271,11 +272,11 @@ static void poses_turn_with_the_world(void **state)
     const struct relume_view_params params = {.interpolation = RELUME_INTERPOLATE_LINEAR};
     struct relume_image want = draw(&w, &params), got;
     CHECK_OK(relume_image_create(&got, W, W, 3));
-    CHECK_OK(relume_slabs_frame(&got, turned, &there, c.view, &params));
+    CHECK_OK(relume_slab_set_frame(&got, turned, &there, c.view, &params));
     assert_true(difference(&got, &want) < 1e-5);
     relume_image_destroy(&got);
     relume_image_destroy(&want);
-    relume_slabs_destroy(&turned);
+    relume_slab_set_destroy(&turned);
 }
 
 // One slab through its window is relume_slab_frame, wherever the window's border has not faded.
@@ -285,14 +286,14 @@ static void one_slab_is_a_slab(void **state)
     struct relume_geometry g = c.slab[0];
     struct relume_image view[GRID], disparity[GRID];
     double uv[GRID][2];
-    relume_slabs *slabs;
+    relume_slab_set *slabs;
     relume_slab *slab;
     for (int i = 0; i < GRID; i++) {
         view[i] = c.view[RING * i];
         disparity[i] = c.disparity[RING * i];
         memcpy(uv[i], c.uv[RING * i], sizeof uv[i]);
     }
-    CHECK_OK(relume_slabs_create(&slabs, &g, 1, (const double(*)[2])uv, NULL, GRID));
+    CHECK_OK(relume_slab_set_create(&slabs, &g, 1, (const double(*)[2])uv, NULL, GRID));
     CHECK_OK(relume_slab_create(&slab, &g, (const double(*)[2])uv, GRID));
     for (int i = 0; i < 6; i++) {
         const vec3 eye = {0.2 * i - 0.5, 0.3, i % 2 ? 2.4 : 3.5};
@@ -304,14 +305,14 @@ static void one_slab_is_a_slab(void **state)
         struct relume_image got, want;
         CHECK_OK(relume_image_create(&got, W, W, 3));
         CHECK_OK(relume_image_create(&want, W, W, 3));
-        CHECK_OK(relume_slabs_frame(&got, slabs, &w, view, &params));
+        CHECK_OK(relume_slab_set_frame(&got, slabs, &w, view, &params));
         CHECK_OK(relume_slab_frame(&want, slab, eye, view, &params));
         assert_true(difference(&got, &want) < 1e-5);
         relume_image_destroy(&got);
         relume_image_destroy(&want);
     }
     relume_slab_destroy(&slab);
-    relume_slabs_destroy(&slabs);
+    relume_slab_set_destroy(&slabs);
 }
 
 // A frame of slab 0, `n` times in the same place.
@@ -322,7 +323,7 @@ static struct relume_image draw_twins(int n)
     struct relume_image view[2 * GRID], disparity[2 * GRID], out;
     double uv[2 * GRID][2];
     int slab_of[2 * GRID];
-    relume_slabs *slabs;
+    relume_slab_set *slabs;
     for (int i = 0; i < n * GRID; i++) {
         const int from = RING * (i / n);
         view[i] = c.view[from];
@@ -330,10 +331,11 @@ static struct relume_image draw_twins(int n)
         memcpy(uv[i], c.uv[from], sizeof uv[i]);
         slab_of[i] = i % n;
     }
-    CHECK_OK(relume_slabs_create(&slabs, twin, n, (const double(*)[2])uv, slab_of, n * GRID));
+    CHECK_OK(relume_slab_set_create(&slabs, twin, n, (const double(*)[2])uv, slab_of, n * GRID));
     CHECK_OK(relume_image_create(&out, W, W, 3));
-    CHECK_OK(relume_slabs_frame(&out, slabs, &w, view, relume_view_params(.disparity = disparity)));
-    relume_slabs_destroy(&slabs);
+    CHECK_OK(
+        relume_slab_set_frame(&out, slabs, &w, view, relume_view_params(.disparity = disparity)));
+    relume_slab_set_destroy(&slabs);
     return out;
 }
 
@@ -354,7 +356,7 @@ static void only_needed_views_are_read(void **state)
     const struct relume_view_params params = {.disparity = c.disparity};
     struct relume_image view[VIEWS], disparity[VIEWS], got, want = draw(&w, &params);
     bool needed[VIEWS];
-    const int n = relume_slabs_needs(needed, c.slabs, &w, W, &params);
+    const int n = relume_slab_set_needs(needed, c.slabs, &w, W, &params);
     int marked = 0, first = -1;
     for (int i = 0; i < VIEWS; i++) {
         view[i] = needed[i] ? c.view[i] : (struct relume_image){0};
@@ -367,16 +369,16 @@ static void only_needed_views_are_read(void **state)
     assert_true(n > 0 && n < VIEWS / 3);
     CHECK_OK(relume_image_create(&got, W, W, 3));
     CHECK_OK(
-        relume_slabs_frame(&got, c.slabs, &w, view, relume_view_params(.disparity = disparity)));
+        relume_slab_set_frame(&got, c.slabs, &w, view, relume_view_params(.disparity = disparity)));
     assert_true(difference(&got, &want) == 0);
     view[first].data = NULL;
     assert_int_equal(
-        relume_slabs_frame(&got, c.slabs, &w, view, relume_view_params(.disparity = disparity)),
+        relume_slab_set_frame(&got, c.slabs, &w, view, relume_view_params(.disparity = disparity)),
         RELUME_EINVAL);
     view[first] = c.view[first];
     disparity[first].width--;
     assert_int_equal(
-        relume_slabs_frame(&got, c.slabs, &w, view, relume_view_params(.disparity = disparity)),
+        relume_slab_set_frame(&got, c.slabs, &w, view, relume_view_params(.disparity = disparity)),
         RELUME_EINVAL);
     relume_image_destroy(&got);
     relume_image_destroy(&want);
@@ -393,7 +395,7 @@ static void a_ray_is_its_pixel(void **state)
             const vec3 way = ray_of(&w, (at % W + 0.5) / W, (at / W + 0.5) / W);
             float rgb[3];
             const relume_status status =
-                relume_slabs_value(rgb, c.slabs, w.eye, way, c.view, &params);
+                relume_slab_set_value(rgb, c.slabs, w.eye, way, c.view, &params);
             // the walk's steps follow the range of the views that a frame needs, a ray fewer
             for (int k = 0; k < 3 && !status; k++)
                 CHECK_NEAR(rgb[k], frame.data[3 * at + k], i ? 0.02 : 1e-6);
@@ -543,11 +545,11 @@ static void small_lenses(void **state)
     struct relume_view_params params = {.disparity = c.disparity, .aperture = 0.4};
     struct relume_image view[VIEWS], want = draw(&w, &params), got;
     bool needed[VIEWS];
-    assert_true(relume_slabs_needs(needed, c.slabs, &w, W, &params) < VIEWS / 3);
+    assert_true(relume_slab_set_needs(needed, c.slabs, &w, W, &params) < VIEWS / 3);
     for (int i = 0; i < VIEWS; i++)
         view[i] = needed[i] ? c.view[i] : (struct relume_image){0};
     CHECK_OK(relume_image_create(&got, W, W, 3));
-    CHECK_OK(relume_slabs_frame(&got, c.slabs, &w, view, &params));
+    CHECK_OK(relume_slab_set_frame(&got, c.slabs, &w, view, &params));
     assert_true(difference(&got, &want) == 0);
     const struct relume_view_params wrong[] = {{.aperture = -1},
                                                {.aperture = (double)NAN},
@@ -555,7 +557,8 @@ static void small_lenses(void **state)
                                                {.focus = 3.3},
                                                {.aperture = 0.1, .focus = (double)NAN}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
-        assert_int_equal(relume_slabs_frame(&got, c.slabs, &w, c.view, &wrong[i]), RELUME_EINVAL);
+        assert_int_equal(relume_slab_set_frame(&got, c.slabs, &w, c.view, &wrong[i]),
+                         RELUME_EINVAL);
     relume_image_destroy(&sharp);
     relume_image_destroy(&pinhole);
     relume_image_destroy(&want);
@@ -596,7 +599,7 @@ static void pinholes_fill_the_lens(void **state)
 static void weights_fade_to_the_border(void **state)
 {
     (void)state;
-    const relume_slab *slab = relume_slabs_slab(c.slabs, 0);
+    const relume_slab *slab = relume_slab_set_slab(c.slabs, 0);
     const double edge = place(SIDE - 1), zero[2] = {0, 0}, rim[2] = {window, 0};
     const double quarter[2] = {0.75 * edge, 0.1}, border[2] = {edge, 0.1},
                  beyond[2] = {edge + 0.01, 0};
@@ -617,14 +620,14 @@ static void weights_fade_to_the_border(void **state)
 static void an_eye_before_a_slab_has_its_window(void **state)
 {
     (void)state;
-    const struct relume_geometry *g = relume_slabs_geometry(c.slabs, 1);
-    const vec3 eye = relume_slabs_eye(c.slabs, 1);
+    const struct relume_geometry *g = relume_slab_set_geometry(c.slabs, 1);
+    const vec3 eye = relume_slab_set_eye(c.slabs, 1);
     const struct relume_window got = window_from(eye), want = relume_slab_window(g, eye);
     const vec3 off[] = {minus(got.corner, want.corner), minus(got.right, want.right),
                         minus(got.down, want.down)};
     for (int i = 0; i < 3; i++)
         assert_true(dot(off[i], off[i]) < 1e-24);
-    const vec3 middle = relume_slabs_middle(c.slabs);
+    const vec3 middle = relume_slab_set_middle(c.slabs);
     assert_true(dot(middle, middle) < 1e-24);
 }
 
@@ -635,13 +638,13 @@ static void eyes_look_where_they_are_told(void **state)
     const struct relume_look_at aim = {
         .aimed = true, .at = {0, 1, 0}, .up = {1, 0, 0}, .field_of_view_deg = 90};
     const vec3 eye = {0, 1, 2};
-    assert_true(relume_slabs_window(&w, c.slabs, eye, &aim, 200, 100));
+    assert_true(relume_slab_set_window(&w, c.slabs, eye, &aim, 200, 100));
     const vec3 middle = ray_of(&w, 0.5, 0.5), side = ray_of(&w, 1, 0.5), top = ray_of(&w, 0.5, 0);
     assert_true(fabs(middle.x) < 1e-12 && fabs(middle.y) < 1e-12 && middle.z < 0);
     CHECK_NEAR(side.y / side.z, 1, 1e-12);  // up is +x, so right is -y; half of 90 degrees
     CHECK_NEAR(top.x / -top.z, 0.5, 1e-12);
     // from straight above the picture's top is -z, as of the slab above a cube
-    assert_true(relume_slabs_window(&w, c.slabs, (vec3){0, 4, 0}, NULL, 1, 1));
+    assert_true(relume_slab_set_window(&w, c.slabs, (vec3){0, 4, 0}, NULL, 1, 1));
     assert_true(w.down.z > 0 && w.right.x > 0);
     const struct relume_look_at wrong[] = {{.aimed = true, .at = eye},
                                            {.up = {0, -1, -2}},
@@ -649,8 +652,8 @@ static void eyes_look_where_they_are_told(void **state)
                                            {.field_of_view_deg = -1},
                                            {.aimed = true, .at = {(double)NAN, 0, 0}}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
-        assert_false(relume_slabs_window(&w, c.slabs, eye, &wrong[i], 1, 1));
-    assert_false(relume_slabs_window(&w, c.slabs, (vec3){0, 0, 0}, NULL, 1, 1));
+        assert_false(relume_slab_set_window(&w, c.slabs, eye, &wrong[i], 1, 1));
+    assert_false(relume_slab_set_window(&w, c.slabs, (vec3){0, 0, 0}, NULL, 1, 1));
 }
 
 static void the_nearest_view_is_found(void **state)
@@ -664,11 +667,11 @@ static void the_nearest_view_is_found(void **state)
         const vec3 point = relume_pose_world(&g->pose, (vec3){0.5 * window, 0.25 * window, 0});
         int view;
         double at[2];
-        assert_true(relume_slabs_nearest(&view, at, c.slabs, eye, minus(point, eye)));
+        assert_true(relume_slab_set_nearest(&view, at, c.slabs, eye, minus(point, eye)));
         assert_int_equal(view, i);
         CHECK_NEAR(at[0], 0.75, 1e-9);
         CHECK_NEAR(at[1], 0.375, 1e-9);
-        assert_false(relume_slabs_nearest(&view, at, c.slabs, eye, minus(eye, point)));
+        assert_false(relume_slab_set_nearest(&view, at, c.slabs, eye, minus(eye, point)));
     }
 }
 
@@ -680,20 +683,20 @@ static void wrong_slabs_are_refused(void **state)
     struct relume_geometry many[RELUME_MOST_SLABS + 1];
     double uv[RELUME_MOST_SLABS + 1][2];
     int of[RELUME_MOST_SLABS + 1];
-    relume_slabs *slabs = (void *)1;
+    relume_slab_set *slabs = (void *)1;
     for (int i = 0; i <= RELUME_MOST_SLABS; i++) {
         many[i] = slab_of_ring(i);
         uv[i][0] = uv[i][1] = 0;
         of[i] = i;
     }
     const double(*places)[2] = (const double(*)[2])uv;
-    assert_int_equal(relume_slabs_create(&slabs, many, 65, places, of, 65), RELUME_EINVAL);
+    assert_int_equal(relume_slab_set_create(&slabs, many, 65, places, of, 65), RELUME_EINVAL);
     assert_null(slabs);
-    assert_int_equal(relume_slabs_create(&slabs, many, 0, places, of, 65), RELUME_EINVAL);
-    CHECK_OK(relume_slabs_create(&slabs, many, 64, places, of, 64));
-    relume_slabs_destroy(&slabs);
+    assert_int_equal(relume_slab_set_create(&slabs, many, 0, places, of, 65), RELUME_EINVAL);
+    CHECK_OK(relume_slab_set_create(&slabs, many, 64, places, of, 64));
+    relume_slab_set_destroy(&slabs);
     of[3] = 2;  // slab 3 has no view, slab 2 two in one place
-    assert_int_equal(relume_slabs_create(&slabs, many, 64, places, of, 64), RELUME_EINVAL);
+    assert_int_equal(relume_slab_set_create(&slabs, many, 64, places, of, 64), RELUME_EINVAL);
 }
 
 static void wrong_frames_are_refused(void **state)
@@ -707,13 +710,14 @@ static void wrong_frames_are_refused(void **state)
     float rgb[3];
     CHECK_OK(relume_image_create(&out, W, W, 3));
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
-        assert_int_equal(relume_slabs_frame(&out, c.slabs, &w, c.view, &wrong[i]), RELUME_EINVAL);
-    assert_int_equal(relume_slabs_frame(&out, c.slabs, &high, c.view, NULL), RELUME_EINVAL);
-    assert_int_equal(relume_slabs_value(rgb, c.slabs, w.eye, (vec3){0, 0, 1}, c.view, NULL),
+        assert_int_equal(relume_slab_set_frame(&out, c.slabs, &w, c.view, &wrong[i]),
+                         RELUME_EINVAL);
+    assert_int_equal(relume_slab_set_frame(&out, c.slabs, &high, c.view, NULL), RELUME_EINVAL);
+    assert_int_equal(relume_slab_set_value(rgb, c.slabs, w.eye, (vec3){0, 0, 1}, c.view, NULL),
                      RELUME_EINVAL);
     relume_image_destroy(&out);
     CHECK_OK(relume_image_create(&out, W, W, 1));
-    assert_int_equal(relume_slabs_frame(&out, c.slabs, &w, c.view, NULL), RELUME_EINVAL);
+    assert_int_equal(relume_slab_set_frame(&out, c.slabs, &w, c.view, NULL), RELUME_EINVAL);
     relume_image_destroy(&out);
 }
 

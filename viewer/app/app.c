@@ -20,7 +20,7 @@ static void choose_framing(struct relume_camera *camera, const struct app_file *
         return;
     camera->framing = RELUME_FRAME_EYE;
     if (file->around) {
-        camera->eye = relume_slabs_eye(file->around, 0);
+        camera->eye = relume_slab_set_eye(file->around, 0);
         return;
     }
     camera->eye = (struct relume_vec3){
@@ -52,7 +52,8 @@ static relume_status check_around(const struct relume_camera *camera, const stru
     struct relume_window window;
     if (!file->around || camera->framing != RELUME_FRAME_EYE)
         return RELUME_OK;
-    if (!relume_slabs_window(&window, file->around, eye, &camera->aim, file->width, file->height))
+    if (!relume_slab_set_window(&window, file->around, eye, &camera->aim, file->width,
+                                file->height))
         return say(log, RELUME_EINVAL,
                    "--eye: expected a point away from what it looks at; found %g,%g,%g", eye.x,
                    eye.y, eye.z);

@@ -42,7 +42,7 @@ bool orbit_is(const struct app *app)
 static struct relume_vec3 target_of(const struct app *app)
 {
     const struct relume_look_at *aim = &app->now.camera.aim;
-    return aim->aimed ? aim->at : relume_slabs_middle(app->file.around);
+    return aim->aimed ? aim->at : relume_slab_set_middle(app->file.around);
 }
 
 static void put_eye(struct app *app, struct relume_vec3 d)
@@ -75,14 +75,14 @@ static bool is_covered(const struct app *app, struct relume_vec3 d)
     const struct relume_vec3 eye = {m.x + d.x, m.y + d.y, m.z + d.z};
     double place[2];
     int view;
-    return relume_slabs_nearest(&view, place, app->file.around, eye, scaled(d, -1));
+    return relume_slab_set_nearest(&view, place, app->file.around, eye, scaled(d, -1));
 }
 
 // As high or low as cameras go on the way from the first slab's height to the wanted one; false
 // when they do not stand at this azimuth.
 static bool find_covered(double *elevation, const struct app *app, double azimuth, double away)
 {
-    double inside = elevation_of(minus(relume_slabs_eye(app->file.around, 0), target_of(app)));
+    double inside = elevation_of(minus(relume_slab_set_eye(app->file.around, 0), target_of(app)));
     double outside = *elevation;
     if (!is_covered(app, from_middle(azimuth, inside, away)))
         return false;
@@ -124,8 +124,8 @@ void orbit_drag(double turn_deg[2], const struct app *app, double dx, double dy)
 
 void orbit_dolly(struct app *app, double factor)
 {
-    const relume_slabs *slabs = app->file.around;
-    const double captured = length(minus(relume_slabs_eye(slabs, 0), target_of(app)));
+    const relume_slab_set *slabs = app->file.around;
+    const double captured = length(minus(relume_slab_set_eye(slabs, 0), target_of(app)));
     const struct relume_vec3 d = eye_from_middle(app);
     const double now = length(d);
     put_eye(app, scaled(d, captured * clamp(now / captured * factor, 0.25, 4.0) / now));

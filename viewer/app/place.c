@@ -25,21 +25,21 @@ struct app_rectangle app_picture(const struct app *app)
 
 bool app_window(const struct app *app, struct relume_window *window)
 {
-    return relume_slabs_window(window, app->file.around, app->now.camera.eye, &app->now.camera.aim,
-                               app->width, app->height);
+    return relume_slab_set_window(window, app->file.around, app->now.camera.eye,
+                                  &app->now.camera.aim, app->width, app->height);
 }
 
 bool app_pole_y(const struct app *app)
 {
-    const relume_slabs *around = app->file.around;
-    return (around && relume_slabs_count(around) > 1) || app_is_panorama(&app->file);
+    const relume_slab_set *around = app->file.around;
+    return (around && relume_slab_set_count(around) > 1) || app_is_panorama(&app->file);
 }
 
 struct relume_vec3 app_middle(const struct app *app)
 {
     const struct relume_geometry *g = &app->file.geometry;
     if (app->file.around)
-        return relume_slabs_middle(app->file.around);
+        return relume_slab_set_middle(app->file.around);
     if (app_is_panorama(&app->file))
         return g->center;
     const bool slab = g->projection == RELUME_SLAB;

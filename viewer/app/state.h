@@ -11,7 +11,7 @@
 #include <relume/frame.h>
 #include <relume/object.h>
 #include <relume/relight.h>
-#include <relume/slabs.h>
+#include <relume/slab_set.h>
 
 enum { APP_LIGHTS = 65536 };  // lights at once, as RELUME_RIG_MOST
 
@@ -65,7 +65,7 @@ struct app_file {
     int width, height;  // of a view
     int views;
     double uv_min[2], uv_max[2];     // slab: where cameras stand
-    const relume_slabs *around;      // several slabs, about whose middle the eye goes; NULL: none
+    const relume_slab_set *around;   // several slabs, about whose middle the eye goes; NULL: none
     relume_objects *objects;         // in the scene, or all that there is; NULL: none
     const struct relume_zone *zone;  // where its light was captured; NULL: not known
     bool empty;                      // no file is open yet

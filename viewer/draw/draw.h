@@ -10,7 +10,7 @@
 #include "gl/program.h"
 #include "gl/target.h"
 
-#include <relume/slabs.h>
+#include <relume/slab_set.h>
 #include <relume/view.h>
 
 // Where and how bright; pixels from the frame's top left corner.
@@ -58,7 +58,7 @@ bool draw_use_cell(const struct gl *gl, const struct target *const *views, const
 
 // Several slabs through a window of the world, which the place's picture shows.
 struct slabs_seen {
-    const relume_slabs *slabs;
+    const relume_slab_set *slabs;
     const struct relume_window *window;
     const struct target *const *views;  // relit, by view number; NULL where they have no weight
     const GLuint *disparity;            // by depth: textures by view number, else NULL ...

@@ -77,7 +77,7 @@ struct turned {
 static struct turned turn(const struct program *program, const struct gl *gl,
                           const struct place *place, const struct slabs_seen *seen, int slab)
 {
-    const struct relume_geometry *g = relume_slabs_geometry(seen->slabs, slab);
+    const struct relume_geometry *g = relume_slab_set_geometry(seen->slabs, slab);
     const struct relume_window *w = seen->window;
     struct turned t = {
         .program = program,
@@ -85,7 +85,7 @@ static struct turned turn(const struct program *program, const struct gl *gl,
         .place = place,
         .seen = seen,
         .geometry = g,
-        .slab = relume_slabs_slab(seen->slabs, slab),
+        .slab = relume_slab_set_slab(seen->slabs, slab),
         .eye = relume_pose_local(&g->pose, w->eye),
         .corner = relume_pose_turn_back(&g->pose, minus(w->corner, w->eye)),
         .right = relume_pose_turn_back(&g->pose, w->right),
@@ -218,7 +218,7 @@ void draw_slabs(const struct program *program, const struct gl *gl, const struct
 {
     begin(program, gl, place);
     gl->Uniform1i(program->at[NEAREST], nearest);
-    for (int i = 0; i < relume_slabs_count(seen->slabs); i++) {
+    for (int i = 0; i < relume_slab_set_count(seen->slabs); i++) {
         const struct turned t = turn(program, gl, place, seen, i);
         draw_slab_cells(&t);
     }
@@ -246,7 +246,7 @@ void draw_slabs_depth(const struct program *program, const struct gl *gl, const 
     begin(program, gl, place);
     for (int i = 0; i < 4; i++)
         gl->Uniform1i(program->at[DISPARITY_00 + i], 4 + i);
-    for (int i = 0; i < relume_slabs_count(seen->slabs); i++) {
+    for (int i = 0; i < relume_slab_set_count(seen->slabs); i++) {
         const struct turned t = turn(program, gl, place, seen, i);
         set_range(&t);
         draw_slab_cells(&t);

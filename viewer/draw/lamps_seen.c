@@ -82,7 +82,7 @@ static bool find_view(int *view, double at[2], const struct frame_request *q,
 {
     const struct app_file *f = q->file;
     if (q->has_window)
-        return relume_slabs_nearest(view, at, f->around, eye, vec_sub(p, eye));
+        return relume_slab_set_nearest(view, at, f->around, eye, vec_sub(p, eye));
     *view = nearest_view(q, s);
     const struct relume_viewport picture = sight_of_picture(f, camera_of(q, s, *view));
     if (!relume_viewport_project(at, &picture, p))

@@ -70,7 +70,7 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
     return status;
 }
 
-void renderer_use_slabs(struct renderer *r, const relume_slabs *slabs, const double (*uv)[2],
+void renderer_use_slabs(struct renderer *r, const relume_slab_set *slabs, const double (*uv)[2],
                         const int *slab_of)
 {
     r->around = slabs;
@@ -83,8 +83,8 @@ relume_status renderer_use_depth(struct renderer *r, const struct depth_source *
 {
     const relume_slab *slab[RELUME_MOST_SLABS] = {r->grid};
     int slabs = r->grid != NULL;
-    for (; r->around && slabs < relume_slabs_count(r->around); slabs++)
-        slab[slabs] = relume_slabs_slab(r->around, slabs);
+    for (; r->around && slabs < relume_slab_set_count(r->around); slabs++)
+        slab[slabs] = relume_slab_set_slab(r->around, slabs);
     return slabs ? depths_create(&r->depths, r->gl, slab, slabs, source) : RELUME_OK;
 }
 
@@ -148,7 +148,7 @@ static int picture_width(const struct frame_request *q)
 static void mark_around(struct renderer *r, const struct frame_request *q)
 {
     if (q->has_window)
-        (void)relume_slabs_needs(r->needed, r->around, &q->window, picture_width(q), &q->view);
+        (void)relume_slab_set_needs(r->needed, r->around, &q->window, picture_width(q), &q->view);
 }
 
 static void mark_eye(struct renderer *r, const struct frame_request *q)
@@ -225,7 +225,7 @@ static void add_around(struct renderer *r, const struct frame_request *q, const 
     r->gl->Disable(GL_BLEND);
 }
 
-// Twin of relume_slabs_frame: the mean over the pinholes that show anything.
+// Twin of relume_slab_set_frame: the mean over the pinholes that show anything.
 static relume_status draw_around_lens(struct renderer *r, const struct frame_request *q,
                                       const struct place *place, const struct relume_window *window,
                                       bool by_depth)

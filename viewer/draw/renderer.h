@@ -13,8 +13,8 @@ relume_status renderer_create(struct renderer *renderer, const struct gl *gl,
 void renderer_destroy(struct renderer *renderer);
 
 // Several slabs; all of it must outlive the renderer.
-void renderer_use_slabs(struct renderer *renderer, const relume_slabs *slabs, const double (*uv)[2],
-                        const int *slab_of);
+void renderer_use_slabs(struct renderer *renderer, const relume_slab_set *slabs,
+                        const double (*uv)[2], const int *slab_of);
 
 // The views of a slab, or of several, have depth. RELUME_ENOMEM.
 relume_status renderer_use_depth(struct renderer *renderer, const struct depth_source *source);

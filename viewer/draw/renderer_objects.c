@@ -64,7 +64,7 @@ static struct relume_window look_window(const struct frame_request *q)
 static struct relume_window slab_view_window(const struct renderer *r, int view)
 {
     const struct relume_geometry *g =
-        r->around ? relume_slabs_geometry(r->around, r->slab_of ? r->slab_of[view] : 0)
+        r->around ? relume_slab_set_geometry(r->around, r->slab_of ? r->slab_of[view] : 0)
                   : &r->geometry;
     const struct relume_vec3 camera = {r->uv[view][0], r->uv[view][1], g->uv_z};
     return relume_slab_window(g, relume_pose_world(&g->pose, camera));

@@ -25,9 +25,9 @@ struct renderer {
     struct target sum;       // of an aperture's cameras, of several slabs; made when first needed
     struct target pinholes;  // of a lens before several slabs, their sum; likewise
     relume_slab *grid;       // NULL: not a slab, or several
-    const relume_slabs *around;  // several; else NULL
-    const int *slab_of;          // of several: [views]
-    struct depths depths;        // empty: not a slab, or without depth
+    const relume_slab_set *around;  // several; else NULL
+    const int *slab_of;             // of several: [views]
+    struct depths depths;           // empty: not a slab, or without depth
     struct relume_geometry geometry;
     int views;
     double (*uv)[2];              // [views]

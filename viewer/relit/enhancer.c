@@ -62,7 +62,7 @@ relume_status enhancer_create(struct enhancer *e, const struct gl *gl,
     return program_create(&e->program, gl, "enhance.frag", uniforms, COUNT, log);
 }
 
-void enhancer_use_slabs(struct enhancer *e, const relume_slabs *slabs, const double (*uv)[2],
+void enhancer_use_slabs(struct enhancer *e, const relume_slab_set *slabs, const double (*uv)[2],
                         const int *slab_of)
 {
     e->around = slabs;
@@ -167,7 +167,7 @@ static struct relume_vec3 towards_eye(const struct enhancer *e, int slab, const 
                                       int x, int y)
 {
     if (e->around)
-        return relume_slabs_geometry(e->around, slab)->pose.axis[2];
+        return relume_slab_set_geometry(e->around, slab)->pose.axis[2];
     const struct relume_vec3 ray =
         relume_panorama_ray(&e->geometry, view->width, view->height, x + 0.5, y + 0.5);
     return (struct relume_vec3){-ray.x, -ray.y, -ray.z};

@@ -6,7 +6,7 @@
 
 #include <relume/capture.h>
 #include <relume/enhance.h>
-#include <relume/slabs.h>
+#include <relume/slab_set.h>
 
 struct enhanced_view {
     GLuint normal, albedo, detail;  // 0: not fitted yet
@@ -25,7 +25,7 @@ struct enhancer {
     struct code_source source;
     struct relume_geometry geometry;
     const double (*uv)[2];
-    const relume_slabs *around;     // several slabs, or NULL
+    const relume_slab_set *around;  // several slabs, or NULL
     const int *slab_of;             // of several: [views]
     const relume_capture *capture;  // to compare with, or NULL
     struct program program;
@@ -47,8 +47,8 @@ relume_status enhancer_create(struct enhancer *enhancer, const struct gl *gl,
                               const struct relume_geometry *geometry, const double (*uv)[2],
                               int views, const struct relume_log *log);
 // Several slabs; all of it must outlive the enhancer.
-void enhancer_use_slabs(struct enhancer *enhancer, const relume_slabs *slabs, const double (*uv)[2],
-                        const int *slab_of);
+void enhancer_use_slabs(struct enhancer *enhancer, const relume_slab_set *slabs,
+                        const double (*uv)[2], const int *slab_of);
 void enhancer_destroy(struct enhancer *enhancer);
 
 // What `pass` shows of `relit`, view number `view` under `n` lights; valid until the next call for

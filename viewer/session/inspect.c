@@ -171,7 +171,7 @@ static bool pick_around(int *view, int pixel[2], const struct app *app, double x
 {
     const struct relume_vec3 way = orbit_ray(app, x, y);
     double place[2];
-    if (!relume_slabs_nearest(view, place, app->file.around, app->now.camera.eye, way))
+    if (!relume_slab_set_nearest(view, place, app->file.around, app->now.camera.eye, way))
         return false;
     pixel[0] = clamp_to(place[0] * app->file.width, app->file.width);
     pixel[1] = clamp_to(place[1] * app->file.height, app->file.height);

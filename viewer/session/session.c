@@ -43,7 +43,7 @@ static struct app_file describe(const relume_pack *pack)
 }
 
 // Several slabs, or one for a free eye.
-static relume_status find_slabs(relume_slabs **around, const relume_pack *pack, bool free_eye,
+static relume_status find_slabs(relume_slab_set **around, const relume_pack *pack, bool free_eye,
                                 const struct relume_log *log)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
@@ -51,8 +51,8 @@ static relume_status find_slabs(relume_slabs **around, const relume_pack *pack, 
     if (!info->slabs && !(free_eye && info->geometry.projection == RELUME_SLAB))
         return RELUME_OK;
     const relume_status status =
-        relume_slabs_create(around, info->slabs ? info->slab : &info->geometry,
-                            info->slabs ? info->slabs : 1, info->uv, info->slab_of, info->views);
+        relume_slab_set_create(around, info->slabs ? info->slab : &info->geometry,
+                               info->slabs ? info->slabs : 1, info->uv, info->slab_of, info->views);
     if (status == RELUME_EINVAL)
         return say(log, RELUME_EDATA, "the cameras of a slab do not stand on a grid");
     return status;
@@ -147,15 +147,15 @@ void session_close_file(struct session *s)
     renderer_destroy(&s->renderer);
     pack_source_destroy(&s->source);
     relume_pack_destroy(&s->pack);
-    relume_slabs_destroy(&s->around);
-    relume_slabs_destroy(&s->stage);
+    relume_slab_set_destroy(&s->around);
+    relume_slab_set_destroy(&s->stage);
 }
 
 relume_status session_open(struct session *s, const char *path, const struct app_state *start,
                            bool look_ahead)
 {
     relume_pack *pack;
-    relume_slabs *around;
+    relume_slab_set *around;
     struct app app;
     if (!path)
         return s->objects ? session_open_stage(s, start) : session_open_nothing(s, start);
@@ -178,7 +178,7 @@ relume_status session_open(struct session *s, const char *path, const struct app
     if (status) {
         app_release(&app);
         relume_pack_destroy(&pack);
-        relume_slabs_destroy(&around);
+        relume_slab_set_destroy(&around);
         return status;
     }
     session_close_file(s);

@@ -45,8 +45,8 @@ struct session {
     relume_pack *pack;              // NULL: there are objects alone, on a stage
     relume_objects *objects;        // or NULL
     struct session_objects wanted;  // that it was started with; its mesh may be shown otherwise
-    relume_slabs *stage;            // what the eye goes around there
-    relume_slabs *around;           // of it, where there are several
+    relume_slab_set *stage;         // what the eye goes around there
+    relume_slab_set *around;        // of it, where there are several
     struct pack_source *source;     // of it, for the renderer and its threads
     relume_capture *capture;        // of the file, to compare with, or NULL
     relume_rig *rig;                // owns what lights point at; the app's list says what shines

@@ -66,7 +66,7 @@ relume_status session_open_objects(struct session *s, const char *path,
 enum { SIDE = 640 };  // of the picture, where no size is asked for
 
 // One camera far away before +z looks at all of the objects; the eye starts beside it.
-static relume_status make_stage(relume_slabs **out, struct relume_geometry *g,
+static relume_status make_stage(relume_slab_set **out, struct relume_geometry *g,
                                 struct relume_vec3 *eye, const struct relume_objects_info *info)
 {
     const double uv[1][2] = {{0.0, 0.0}};
@@ -82,7 +82,7 @@ static relume_status make_stage(relume_slabs **out, struct relume_geometry *g,
     };
     *eye = (struct relume_vec3){middle.x + 1.2 * radius, middle.y + 1.2 * radius,
                                 middle.z + 3.6 * radius};
-    return relume_slabs_create(out, g, 1, uv, NULL, 1);
+    return relume_slab_set_create(out, g, 1, uv, NULL, 1);
 }
 
 // What the panel says of them.
@@ -114,7 +114,7 @@ relume_status session_open_stage(struct session *s, const struct app_state *star
     struct app_file file = {.width = SIDE, .height = SIDE, .views = 1, .objects = s->objects};
     struct app_state from = *start;
     struct relume_vec3 eye;
-    relume_slabs *stage;
+    relume_slab_set *stage;
     struct app app;
     relume_status status = make_stage(&stage, &file.geometry, &eye, info);
     if (status)
@@ -129,7 +129,7 @@ relume_status session_open_stage(struct session *s, const struct app_state *star
     status = app_start(&app, &file, &from, true, s->log);
     if (status) {
         app_release(&app);
-        relume_slabs_destroy(&stage);
+        relume_slab_set_destroy(&stage);
         return status;
     }
     session_close_file(s);

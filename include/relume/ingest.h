@@ -1,10 +1,10 @@
-// views.h - photographs from several places, or all around one, become a capture
+// ingest.h - photographs from several places, or all around one, become a capture
 //
 // A camera's photographs are one file (fixed lighting: a capture of one light), or a folder that
 // holds one file for each light, in the order of their names. Photographs are not copied: the
 // capture names them by relative paths, unless their pixels have to move.
-#ifndef RELUME_VIEWS_H
-#define RELUME_VIEWS_H
+#ifndef RELUME_INGEST_H
+#define RELUME_INGEST_H
 
 #include <relume/base.h>
 #include <relume/image.h>

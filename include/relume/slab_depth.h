@@ -1,6 +1,6 @@
-// lightfield.h - depth of a light slab from its own views
-#ifndef RELUME_LIGHTFIELD_H
-#define RELUME_LIGHTFIELD_H
+// slab_depth.h - depth of a light slab from its own views
+#ifndef RELUME_SLAB_DEPTH_H
+#define RELUME_SLAB_DEPTH_H
 
 #include <relume/base.h>
 #include <relume/capture.h>

@@ -1,9 +1,9 @@
-// slabs.h - several light slabs around an object, blended where they meet
+// slab_set.h - several light slabs around an object, blended where they meet
 //
 // Each slab is one of view.h in a frame of its own (struct relume_geometry, `pose`); a frame looks
 // at the object from anywhere: every ray of it is looked up in the slabs whose cameras it passes.
-#ifndef RELUME_SLABS_H
-#define RELUME_SLABS_H
+#ifndef RELUME_SLAB_SET_H
+#define RELUME_SLAB_SET_H
 
 #include <relume/base.h>
 #include <relume/capture.h>
@@ -15,29 +15,30 @@ extern "C" {
 #endif
 
 // Never changes. Thread-safety: safe.
-typedef struct relume_slabs relume_slabs;
+typedef struct relume_slab_set relume_slab_set;
 
 // View i of `views` stands at uv[i] of slab[slab_of[i]]; `slab_of` may be NULL for one slab.
 // RELUME_EINVAL when a pose is no rotation or the cameras of a slab are no grid
 // (relume_slab_create); RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_slabs_create(relume_slabs **out,
-                                                const struct relume_geometry *slab, int slabs,
-                                                const double (*uv)[2], const int *slab_of,
-                                                int views);
-RELUME_API void relume_slabs_destroy(relume_slabs **slabs);
+RELUME_RESULT relume_status relume_slab_set_create(relume_slab_set **out,
+                                                   const struct relume_geometry *slab, int slabs,
+                                                   const double (*uv)[2], const int *slab_of,
+                                                   int views);
+RELUME_API void relume_slab_set_destroy(relume_slab_set **slabs);
 
 // How many slabs there are.
-RELUME_API int relume_slabs_count(const relume_slabs *slabs);
+RELUME_API int relume_slab_set_count(const relume_slab_set *slabs);
 // Slab i in the world; it belongs to `slabs`.
-RELUME_API const struct relume_geometry *relume_slabs_geometry(const relume_slabs *slabs, int i);
+RELUME_API const struct relume_geometry *relume_slab_set_geometry(const relume_slab_set *slabs,
+                                                                  int i);
 // In its own frame, and with the view numbers of all: what takes `views`, `needed` or disparities
 // by view number takes those of the file. It belongs to `slabs`.
-RELUME_API const relume_slab *relume_slabs_slab(const relume_slabs *slabs, int i);
+RELUME_API const relume_slab *relume_slab_set_slab(const relume_slab_set *slabs, int i);
 
 // The middle of the object: the mean of the middles of the st windows.
-RELUME_API struct relume_vec3 relume_slabs_middle(const relume_slabs *slabs);
+RELUME_API struct relume_vec3 relume_slab_set_middle(const relume_slab_set *slabs);
 // The middle of the uv grid of slab i.
-RELUME_API struct relume_vec3 relume_slabs_eye(const relume_slabs *slabs, int i);
+RELUME_API struct relume_vec3 relume_slab_set_eye(const relume_slab_set *slabs, int i);
 
 // A perspective picture in the world: the eye, and the window that it looks through. Its place
 // (x, y), both in [0, 1], rows from the top, is corner + x right + y down.
@@ -58,9 +59,9 @@ struct relume_look_at {
 // Whether anything is not zero.
 RELUME_API bool relume_look_at_given(const struct relume_look_at *aim);
 // False when the eye stands where it looks, looks along `up`, or something is not finite.
-RELUME_API bool relume_slabs_window(struct relume_window *out, const relume_slabs *slabs,
-                                    struct relume_vec3 eye, const struct relume_look_at *aim,
-                                    int width, int height);
+RELUME_API bool relume_slab_set_window(struct relume_window *out, const relume_slab_set *slabs,
+                                       struct relume_vec3 eye, const struct relume_look_at *aim,
+                                       int width, int height);
 // The st window of a slab as seen from `eye` (world), as relume_slab_frame shows it.
 RELUME_API struct relume_window relume_slab_window(const struct relume_geometry *slab,
                                                    struct relume_vec3 eye);
@@ -87,9 +88,9 @@ RELUME_API double relume_slab_weight(const relume_slab *slab, const double uv[2]
 
 // Mark in needed[views] what a frame so many pixels wide can touch; returns how many, 0 when
 // nothing is to be seen.
-RELUME_API int relume_slabs_needs(bool *needed, const relume_slabs *slabs,
-                                  const struct relume_window *window, int width,
-                                  const struct relume_view_params *params);
+RELUME_API int relume_slab_set_needs(bool *needed, const relume_slab_set *slabs,
+                                     const struct relume_window *window, int width,
+                                     const struct relume_view_params *params);
 
 // Every pixel is the weighted mean of what the slabs show in its ray (relume_slab_weight), by depth
 // where disparities are given, times the share of the cameras around the ray that see the surface;
@@ -98,23 +99,25 @@ RELUME_API int relume_slabs_needs(bool *needed, const relume_slabs *slabs,
 // disparities are by view number, read where needed; `out` has the wanted size already.
 // RELUME_EINVAL for a needed view or disparity that is missing or of another size, for a lens that
 // does not fit, and when nothing is to be seen; RELUME_ENOMEM.
-RELUME_RESULT relume_status relume_slabs_frame(struct relume_image *out, const relume_slabs *slabs,
-                                               const struct relume_window *window,
-                                               const struct relume_image *views,
-                                               const struct relume_view_params *params);
+RELUME_RESULT relume_status relume_slab_set_frame(struct relume_image *out,
+                                                  const relume_slab_set *slabs,
+                                                  const struct relume_window *window,
+                                                  const struct relume_image *views,
+                                                  const struct relume_view_params *params);
 
-// One ray of such a frame. Its views are those that relume_slabs_needs marks for a window without
-// extent: `corner` = eye + direction, `right` and `down` zero. RELUME_EINVAL likewise, when no
-// slab has any weight, and for an aperture or a focus.
-RELUME_RESULT relume_status relume_slabs_value(float rgb[3], const relume_slabs *slabs,
-                                               struct relume_vec3 eye, struct relume_vec3 direction,
-                                               const struct relume_image *views,
-                                               const struct relume_view_params *params);
+// One ray of such a frame. Its views are those that relume_slab_set_needs marks for a window
+// without extent: `corner` = eye + direction, `right` and `down` zero. RELUME_EINVAL likewise, when
+// no slab has any weight, and for an aperture or a focus.
+RELUME_RESULT relume_status relume_slab_set_value(float rgb[3], const relume_slab_set *slabs,
+                                                  struct relume_vec3 eye,
+                                                  struct relume_vec3 direction,
+                                                  const struct relume_image *views,
+                                                  const struct relume_view_params *params);
 
 // The view that weighs most in a ray, and the place in [0, 1] x [0, 1] of its picture, rows from
 // the top, where it shows the ray's point on the st plane. False when no slab has any weight.
-RELUME_API bool relume_slabs_nearest(int *view, double place[2], const relume_slabs *slabs,
-                                     struct relume_vec3 eye, struct relume_vec3 direction);
+RELUME_API bool relume_slab_set_nearest(int *view, double place[2], const relume_slab_set *slabs,
+                                        struct relume_vec3 eye, struct relume_vec3 direction);
 
 #ifdef __cplusplus
 }

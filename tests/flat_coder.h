@@ -11,7 +11,7 @@ static inline relume_coder *flat_coder(const relume_coder *coder)
     const struct relume_coder_info *info = relume_coder_info(coder);
     struct relume_coder_triangles unused;
     relume_coder *flat = NULL;
-    if (relume_coder_surround(&unused, coder))
+    if (relume_coder_hull(&unused, coder))
         CHECK_OK(relume_coder_create(
             &flat, info->basis, info->directions, info->lights,
             relume_coder_params(.coefficients = info->coefficients,

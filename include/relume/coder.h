@@ -128,29 +128,30 @@ RELUME_API void relume_coder_destroy(relume_coder **coder);
 // half their local spacing, a quarter with interpolants that do not extrapolate. Seen from its
 // middle, the axis, a direction at the azimuth atan2(d.up, d.right) is inside while it is no
 // farther from the axis than border[azimuth STEPS / 2 pi], linear between these and periodic.
-enum { RELUME_ZONE_STEPS = 256 };
-// A zone; relume_zone_clamp asks it. Plain data.
-struct relume_zone {
-    bool everywhere;                     // there is no such gap; the rest is not set
-    struct relume_vec3 right, up, axis;  // unit vectors of the world, right-handed
-    struct relume_vec3 facing;           // what the scene faces; 0: all sides
-    float border[RELUME_ZONE_STEPS];     // radians
-    double inside;                       // the cosine of the least of them
+enum { RELUME_CAPTURED_REGION_STEPS = 256 };
+// A zone; relume_captured_region_clamp asks it. Plain data.
+struct relume_captured_region {
+    bool everywhere;                             // there is no such gap; the rest is not set
+    struct relume_vec3 right, up, axis;          // unit vectors of the world, right-handed
+    struct relume_vec3 facing;                   // what the scene faces; 0: all sides
+    float border[RELUME_CAPTURED_REGION_STEPS];  // radians
+    double inside;                               // the cosine of the least of them
 };
 
 // What replaces light from a unit direction: `*inside` is the direction itself, or that on the
 // border at its azimuth. Returns the share of it, in linear light: 1 inside; beyond, the cosine of
 // the light (and 0.05) over that at the border, or of how far beyond it lies where scenes face all
 // sides.
-RELUME_API double relume_zone_clamp(struct relume_vec3 *inside, const struct relume_zone *zone,
-                                    struct relume_vec3 direction);
+RELUME_API double relume_captured_region_clamp(struct relume_vec3 *inside,
+                                               const struct relume_captured_region *zone,
+                                               struct relume_vec3 direction);
 
 // The zone of the coder's lights; it belongs to the coder.
-RELUME_API const struct relume_zone *relume_coder_zone(const relume_coder *coder);
+RELUME_API const struct relume_captured_region *relume_coder_region(const relume_coder *coder);
 // Where relighting takes light from a unit direction from, and the share of it: the horizon of a
 // hemispherical capture, then the zone. relume_coder_weights knows the horizon only.
-RELUME_API double relume_coder_captured(struct relume_vec3 *from, const relume_coder *coder,
-                                        struct relume_vec3 direction);
+RELUME_API double relume_coder_clamp(struct relume_vec3 *from, const relume_coder *coder,
+                                     struct relume_vec3 direction);
 
 // What a coder is made of; pointers belong to the coder.
 struct relume_coder_info {
@@ -195,8 +196,7 @@ RELUME_API bool relume_coder_triangles(struct relume_coder_triangles *out,
 
 // As relume_coder_triangles, of the lights of a coder whose interpolant extrapolates: shares for
 // sums over many lights, which may not be negative. False for other coders.
-RELUME_API bool relume_coder_surround(struct relume_coder_triangles *out,
-                                      const relume_coder *coder);
+RELUME_API bool relume_coder_hull(struct relume_coder_triangles *out, const relume_coder *coder);
 
 // The plane that holds coefficient k of channel c.
 static inline int relume_coder_plane(const struct relume_coder_info *info, int k, int c)

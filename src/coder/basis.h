@@ -27,7 +27,7 @@ struct relume_coder {
     int threads;                           // for that
     bool decode, force, no_ridge;
     void *interpolant;  // data of info.interpolant
-    struct relume_zone zone;
+    struct relume_captured_region zone;
     mesh *around;  // of the lights, where the interpolant has none and extrapolates; or NULL
     void *data;    // the basis's own
 };

@@ -113,7 +113,7 @@ static relume_status copy_functions(relume_coder *c, const struct relume_coder_p
     return RELUME_OK;
 }
 
-// Sums over many lights need weights that are nowhere negative (relume_coder_surround).
+// Sums over many lights need weights that are nowhere negative (relume_coder_hull).
 static relume_status find_surround(relume_coder *c)
 {
     if (!c->info.interpolant || !c->info.interpolant->extrapolates)
@@ -130,18 +130,18 @@ static void find_zone(relume_coder *c)
     zone_find(&c->zone, c->world, c->info.lights, &p);
 }
 
-const struct relume_zone *relume_coder_zone(const relume_coder *coder)
+const struct relume_captured_region *relume_coder_region(const relume_coder *coder)
 {
     return &coder->zone;
 }
 
-double relume_coder_captured(struct relume_vec3 *from, const relume_coder *coder,
-                             struct relume_vec3 direction)
+double relume_coder_clamp(struct relume_vec3 *from, const relume_coder *coder,
+                          struct relume_vec3 direction)
 {
     const bool pole_y = coder->info.pole_y;
     const vec3 above =
         clamp_to_captured(coder->info.hemispherical, pole_from_world(direction, pole_y));
-    return relume_zone_clamp(from, &coder->zone, world_from_pole(above, pole_y));
+    return relume_captured_region_clamp(from, &coder->zone, world_from_pole(above, pole_y));
 }
 
 // Lights on a circle, great or small, say nothing about directions off it. They lie in a plane
@@ -341,7 +341,7 @@ bool relume_coder_triangles(struct relume_coder_triangles *out, const relume_cod
     return flat;
 }
 
-bool relume_coder_surround(struct relume_coder_triangles *out, const relume_coder *coder)
+bool relume_coder_hull(struct relume_coder_triangles *out, const relume_coder *coder)
 {
     *out = coder->around ? mesh_triangles(coder->around) : (struct relume_coder_triangles){0};
     return coder->around;

@@ -17,7 +17,7 @@
 #include "coder/basis.h"
 #include "math/vec.h"
 
-enum { STEPS = RELUME_ZONE_STEPS, LEAST_LIGHTS = 4 };
+enum { STEPS = RELUME_CAPTURED_REGION_STEPS, LEAST_LIGHTS = 4 };
 // Lights nearer than this to each other are one; those without a neighbour have one so far away;
 // and each speaks for so much around it, or the lights themselves would lie on the border.
 static const double SAME = 1e-3, WIDEST = M_PI / 3.0, LEAST = M_PI / 90.0;
@@ -46,7 +46,7 @@ static vec3 mean_of(const struct relume_vec3 *lights, int n)
 }
 
 // Any frame will do; at a pole it is that of x and y, or of x and z.
-static void set_axis(struct relume_zone *z, vec3 axis)
+static void set_axis(struct relume_captured_region *z, vec3 axis)
 {
     const vec3 beside = fabs(axis.x) < 0.9 ? vec3_of(1.0, 0.0, 0.0) : vec3_of(0.0, 1.0, 0.0);
     z->axis = axis;
@@ -60,7 +60,7 @@ static double azimuth(int step)
 }
 
 // How far the discs reach along each azimuth of the plane. False when they leave the middle out.
-static bool find_support(double support[STEPS], const struct relume_zone *z,
+static bool find_support(double support[STEPS], const struct relume_captured_region *z,
                          const struct relume_vec3 *lights, int n, double part)
 {
     bool inside = true;
@@ -82,7 +82,7 @@ static bool find_support(double support[STEPS], const struct relume_zone *z,
 }
 
 // The border of the hull is where the first of its tangents is met.
-static void find_border(struct relume_zone *z, const double support[STEPS])
+static void find_border(struct relume_captured_region *z, const double support[STEPS])
 {
     double least = M_PI;
     for (int i = 0; i < STEPS; i++) {
@@ -97,8 +97,8 @@ static void find_border(struct relume_zone *z, const double support[STEPS])
     z->inside = cos(least);
 }
 
-static bool try_axis(struct relume_zone *z, vec3 axis, const struct relume_vec3 *lights, int n,
-                     double part)
+static bool try_axis(struct relume_captured_region *z, vec3 axis, const struct relume_vec3 *lights,
+                     int n, double part)
 {
     double support[STEPS];
     set_axis(z, axis);
@@ -115,7 +115,7 @@ static double least_gap(int n, bool hemispherical)
     return hemispherical ? MESH_WIDE : fmax(MESH_WIDE, sqrt(8.0 * M_PI / (sqrt(3.0) * n)));
 }
 
-void zone_find(struct relume_zone *zone, const struct relume_vec3 *lights, int n,
+void zone_find(struct relume_captured_region *zone, const struct relume_vec3 *lights, int n,
                const struct zone_params *p)
 {
     const double part = p->part;
@@ -123,7 +123,7 @@ void zone_find(struct relume_zone *zone, const struct relume_vec3 *lights, int n
     const vec3 mean = mean_of(lights, n);
     double gap;
     const vec3 lost = mesh_widest_gap(lights, n, &gap);
-    *zone = (struct relume_zone){.everywhere = true};
+    *zone = (struct relume_captured_region){.everywhere = true};
     if (n < LEAST_LIGHTS || gap < least_gap(n, p->hemispherical))
         return;
     zone->everywhere =
@@ -134,7 +134,7 @@ void zone_find(struct relume_zone *zone, const struct relume_vec3 *lights, int n
         zone->facing = pole;
 }
 
-static double border_at(const struct relume_zone *z, double x, double y)
+static double border_at(const struct relume_captured_region *z, double x, double y)
 {
     const double at = (atan2(y, x) / (2.0 * M_PI) + 1.0) * STEPS, low = floor(at);
     const int i = (int)low % STEPS;
@@ -142,8 +142,9 @@ static double border_at(const struct relume_zone *z, double x, double y)
            (at - low) * ((double)z->border[(i + 1) % STEPS] - (double)z->border[i]);
 }
 
-double relume_zone_clamp(struct relume_vec3 *inside, const struct relume_zone *zone,
-                         struct relume_vec3 direction)
+double relume_captured_region_clamp(struct relume_vec3 *inside,
+                                    const struct relume_captured_region *zone,
+                                    struct relume_vec3 direction)
 {
     const vec3 d = direction;
     const double height = vec3_dot(d, zone->axis);

@@ -252,7 +252,7 @@ static relume_status make_sums(struct relume_weight_grid **out, const relume_cod
 {
     struct relume_coder_triangles around;
     *out = NULL;
-    if (!relume_coder_surround(&around, coder))
+    if (!relume_coder_hull(&around, coder))
         return RELUME_OK;
     struct relume_weight_grid *g = new_grid(coder);
     relume_status status = g ? take_triangles(g, &around) : RELUME_ENOMEM;

@@ -244,7 +244,7 @@ void relume_environment_weights(float *weights, float constant[3], const relume_
         vec3 from;
         if (info->hemispherical && pole_from_world(d, info->pole_y).z < 0.0)
             continue;
-        const float share = (float)relume_coder_captured(&from, coder, d);
+        const float share = (float)relume_coder_clamp(&from, coder, d);
         for (int c = 0; c < 3; c++)
             value[c] = share * light->rgb[c] * e->cell[i].rgb[c];
         relume_weight_grid_add(weights, constant, sums, from, value);

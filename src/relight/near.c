@@ -82,7 +82,7 @@ static bool arrives(vec3 *from, float rgb[3], const struct near *near, const str
     vec3 towards;
     if (!reaches(&towards, rgb, near, e, point))
         return false;
-    const float share = (float)relume_coder_captured(from, near->codes->coder, towards);
+    const float share = (float)relume_coder_clamp(from, near->codes->coder, towards);
     for (int c = 0; c < 3; c++)
         rgb[c] *= share;
     return true;

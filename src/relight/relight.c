@@ -88,7 +88,7 @@ static void add_light(struct pass *pass, const relume_coder *coder,
     const int k = relume_coder_info(coder)->coefficients;
     float constant[3];
     vec3 from;
-    const float share = (float)relume_coder_captured(&from, coder, vec3_unit(light->direction));
+    const float share = (float)relume_coder_clamp(&from, coder, vec3_unit(light->direction));
     relume_coder_weights(coder, from, one, constant);
     for (int c = 0; c < 3; c++) {
         const float value = share * light->rgb[c];
@@ -112,7 +112,7 @@ static void set_displayed(struct pass *pass, const relume_coder *coder,
 {
     struct relume_light white = {.rgb = {1.0f, 1.0f, 1.0f}};
     const float share =
-        (float)relume_coder_captured(&white.direction, coder, vec3_unit(light->direction));
+        (float)relume_coder_clamp(&white.direction, coder, vec3_unit(light->direction));
     for (int c = 0; c < 3; c++)
         pass->rgb[c] = share * light->rgb[c];
     add_light(pass, coder, &white, one);
@@ -416,7 +416,7 @@ static void warn_beyond(const struct relume_codes *codes, const struct relume_li
         if (lights[i].kind != RELUME_LIGHT_DIRECTIONAL)
             continue;
         vec3 d = vec3_unit(lights[i].direction), from;
-        (void)relume_zone_clamp(&from, relume_coder_zone(codes->coder), d);
+        (void)relume_captured_region_clamp(&from, relume_coder_region(codes->coder), d);
         const double off = vec3_angle(from, d) * (180.0 / M_PI);
         which = off > most ? i : which;
         most = fmax(off, most);
@@ -708,7 +708,7 @@ void relume_relight_pixel(double rgb[3], const struct relume_codes *codes, int x
         double value[3];
         vec3 from;
         const double share =
-            relume_coder_captured(&from, codes->coder, vec3_unit(lights[i].direction));
+            relume_coder_clamp(&from, codes->coder, vec3_unit(lights[i].direction));
         decode_pixel(value, codes, pixel, from);
         for (int c = 0; c < 3; c++)
             rgb[c] += share * (double)lights[i].rgb[c] *

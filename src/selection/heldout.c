@@ -119,7 +119,7 @@ static relume_status find_unseen(struct fold *f, struct relume_vec3 *direction)
     f->share = mem_array((size_t)f->judged, sizeof *f->share);
     for (int i = 0; f->share && i < f->judged; i++) {
         struct relume_vec3 from;
-        f->share[i] = (float)relume_coder_captured(&from, f->coder, direction[i]);
+        f->share[i] = (float)relume_coder_clamp(&from, f->coder, direction[i]);
         direction[i] = from;
     }
     return f->share ? captured_create(&f->unseen, f->coder, direction, f->judged) : RELUME_ENOMEM;

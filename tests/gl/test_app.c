@@ -1149,9 +1149,9 @@ static void captured_light_is_outlined(void **state)
     assert_int_equal(relume_coder_create(&coder, &relume_basis_ptm, light, 13,
                                          relume_coder_params(.hemispherical = true)),
                      RELUME_OK);
-    app.file.zone = relume_coder_zone(coder);
+    app.file.zone = relume_coder_region(coder);
     const struct gizmo_circle disc = gizmo_disc(&app);
-    for (int step = 0; step <= RELUME_ZONE_STEPS; step++) {
+    for (int step = 0; step <= RELUME_CAPTURED_REGION_STEPS; step++) {
         assert_true(gizmo_border(&g, &app, step) && !g.behind);
         const double r = hypot(g.x - disc.x, g.y - disc.y) / disc.radius;
         assert_true(r > sin((45 + 8.5) * M_PI / 180) && r < sin((45 + 10.6) * M_PI / 180));

@@ -148,7 +148,7 @@ static void slow(double *sum, const struct learned *l, const struct relume_image
             if (info->hemispherical && (info->pole_y ? d.y : d.z) < 0)
                 continue;
             struct relume_vec3 from;
-            const double share = relume_coder_captured(&from, l->coder, d);
+            const double share = relume_coder_clamp(&from, l->coder, d);
             relume_coder_weights(flat ? flat : l->coder, from, weights, constant);
             const float *e = map->data + 3 * (y / CUT * MAP_W + x / CUT);
             for (int c = 0; c < 3; c++) {

@@ -52,31 +52,31 @@ static void test_dome(void **state)
     } list[] = {{"chord", 47.2}, {"delaunay", 43.6}};
     for (int k = 0; k < 2; k++) {
         relume_coder *coder = dome_coder(&relume_basis_table, list[k].interpolant, false);
-        const struct relume_zone *zone = relume_coder_zone(coder);
+        const struct relume_captured_region *zone = relume_coder_region(coder);
         struct relume_vec3 light[LIGHTS];
         vec3 in;
         make_dome(light, false);
         assert_false(zone->everywhere);
         for (int i = 0; i < LIGHTS; i++) {
-            CHECK_NEAR(relume_coder_captured(&in, coder, light[i]), 1.0, 0.0);
+            CHECK_NEAR(relume_coder_clamp(&in, coder, light[i]), 1.0, 0.0);
             CHECK_NEAR(vec3_angle(in, light[i]), 0.0, 0.0);
         }
         for (double phi = -180.0; phi < 180.0; phi += 3.7) {
             const vec3 out = towards(70.0, phi);
-            const double share = relume_coder_captured(&in, coder, out);
+            const double share = relume_coder_clamp(&in, coder, out);
             const double theta = vec3_angle(in, vec3_of(0, 0, 1)) * 180.0 / M_PI;
             CHECK_NEAR(theta, list[k].border - 0.35, 0.4);
             CHECK_NEAR(remainder(atan2(in.y, in.x) * 180.0 / M_PI - phi, 360.0), 0.0, 1e-9);
             CHECK_NEAR(share, (out.z + 0.05) / (in.z + 0.05), 1e-12);  // nearly as of a plane
             // nothing jumps at the border, nor beyond it
             vec3 near, far;
-            (void)relume_coder_captured(&near, coder, towards(theta - 1e-4, phi));
-            (void)relume_coder_captured(&far, coder, towards(theta + 1e-4, phi + 1e-4));
+            (void)relume_coder_clamp(&near, coder, towards(theta - 1e-4, phi));
+            (void)relume_coder_clamp(&far, coder, towards(theta + 1e-4, phi + 1e-4));
             assert_true(vec3_angle(near, far) < 1e-5);
             // what is below the horizon is what is at the horizon
             vec3 below;
-            const double low = relume_coder_captured(&below, coder, towards(110.0, phi));
-            CHECK_NEAR(low, relume_coder_captured(&far, coder, towards(90.0, phi)), 1e-9);
+            const double low = relume_coder_clamp(&below, coder, towards(110.0, phi));
+            CHECK_NEAR(low, relume_coder_clamp(&far, coder, towards(90.0, phi)), 1e-9);
             assert_true(vec3_angle(below, far) < 1e-9);
         }
         relume_coder_destroy(&coder);
@@ -90,19 +90,19 @@ static void test_all_sides(void **state)
     relume_coder *coder = dome_coder(&relume_basis_table, "chord", true);
     vec3 in;
     const vec3 out = world_from_pole(towards(80.0, 33.0), true);
-    const double share = relume_coder_captured(&in, coder, out);
+    const double share = relume_coder_clamp(&in, coder, out);
     CHECK_NEAR(share, cos(vec3_angle(in, out)), 1e-9);
     CHECK_NEAR(acos(in.y) * 180.0 / M_PI, 46.85, 0.4);
     relume_coder_destroy(&coder);
 }
 
-static void find(struct relume_zone *zone, const struct relume_vec3 *light, int n,
+static void find(struct relume_captured_region *zone, const struct relume_vec3 *light, int n,
                  bool hemispherical)
 {
     relume_coder *coder;
     CHECK_OK(relume_coder_create(&coder, &relume_basis_table, light, n,
                                  relume_coder_params(.hemispherical = hemispherical)));
-    *zone = *relume_coder_zone(coder);
+    *zone = *relume_coder_region(coder);
     relume_coder_destroy(&coder);
 }
 
@@ -112,7 +112,7 @@ static void test_other_sets(void **state)
     (void)state;
     enum { MANY = 60 };
     struct relume_vec3 light[MANY];
-    struct relume_zone zone;
+    struct relume_captured_region zone;
     vec3 in;
     for (int i = 0; i < MANY; i++) {
         const double z = 1.0 - (2 * i + 1.0) / MANY, r = sqrt(1.0 - z * z), phi = 2.399963 * i;
@@ -122,7 +122,7 @@ static void test_other_sets(void **state)
     assert_true(zone.everywhere);
     find(&zone, light, 3, true);
     assert_true(zone.everywhere);
-    CHECK_NEAR(relume_zone_clamp(&in, &zone, vec3_of(0.6, 0.0, -0.8)), 1.0, 0.0);
+    CHECK_NEAR(relume_captured_region_clamp(&in, &zone, vec3_of(0.6, 0.0, -0.8)), 1.0, 0.0);
     // from the upper two thirds of the sphere: light from below is not known
     find(&zone, light, 40, false);
     assert_false(zone.everywhere);
@@ -133,13 +133,13 @@ static void test_other_sets(void **state)
     find(&zone, light, 9, true);
     assert_false(zone.everywhere);
     assert_true(vec3_angle(zone.axis, towards(60.0, 0.0)) < 0.1);
-    const double share = relume_zone_clamp(&in, &zone, towards(60.0, 180.0));
+    const double share = relume_captured_region_clamp(&in, &zone, towards(60.0, 180.0));
     assert_true(share > 0.0 && share <= 1.0 && vec3_angle(in, towards(60.0, 0.0)) < 0.4);
     // a ring holds what it surrounds
     for (int i = 0; i < 12; i++)
         light[i] = towards(45.0, 30.0 * i);
     find(&zone, light, 12, true);
-    CHECK_NEAR(relume_zone_clamp(&in, &zone, towards(10.0, 77.0)), 1.0, 0.0);
+    CHECK_NEAR(relume_captured_region_clamp(&in, &zone, towards(10.0, 77.0)), 1.0, 0.0);
 }
 
 // Relighting a pixel of random samples from beyond the zone shows the border's value times the
@@ -171,7 +171,7 @@ static void check_relit(const struct relume_basis *basis, enum relume_domain dom
                                        .offset = plane};
     struct relume_light far = {.direction = towards(75.0, 40.0), .rgb = {1.0f, 2.0f, 0.5f}};
     struct relume_light at = far;
-    const double share = relume_coder_captured(&at.direction, coder, far.direction);
+    const double share = relume_coder_clamp(&at.direction, coder, far.direction);
     struct relume_image got = {0}, want = {0};
     double exact[3];
     CHECK_OK(relume_relight(&got, &codes, &far, 1, NULL));

@@ -55,11 +55,11 @@ static struct relume_vec3 add(struct relume_vec3 a, struct relume_vec3 b)
 
 bool gizmo_border(struct gizmo *out, const struct app *app, int step)
 {
-    const struct relume_zone *z = app->file.zone;
+    const struct relume_captured_region *z = app->file.zone;
     if (!z || z->everywhere)
         return false;
-    const double phi = 2 * M_PI * step / RELUME_ZONE_STEPS;
-    const double border = z->border[step % RELUME_ZONE_STEPS], r = sin(border);
+    const double phi = 2 * M_PI * step / RELUME_CAPTURED_REGION_STEPS;
+    const double border = z->border[step % RELUME_CAPTURED_REGION_STEPS], r = sin(border);
     const struct relume_vec3 across =
         add(vec_scale(z->right, r * cos(phi)), vec_scale(z->up, r * sin(phi)));
     const struct relume_vec3 d = add(vec_scale(z->axis, cos(border)), across);

@@ -16,8 +16,8 @@ struct gizmo_circle {
 };
 struct gizmo_circle gizmo_disc(const struct app *app);
 
-// Step 0 to RELUME_ZONE_STEPS of the border of the captured light directions, on the disc; false
-// where there is none.
+// Step 0 to RELUME_CAPTURED_REGION_STEPS of the border of the captured light directions, on the
+// disc; false where there is none.
 bool gizmo_border(struct gizmo *out, const struct app *app, int step);
 
 // The ball in the lower right corner that shows the light, while app.now.ball. A place on it is

@@ -64,11 +64,11 @@ struct app_file {
     struct relume_geometry geometry;
     int width, height;  // of a view
     int views;
-    double uv_min[2], uv_max[2];     // slab: where cameras stand
-    const relume_slab_set *around;   // several slabs, about whose middle the eye goes; NULL: none
-    relume_objects *objects;         // in the scene, or all that there is; NULL: none
-    const struct relume_zone *zone;  // where its light was captured; NULL: not known
-    bool empty;                      // no file is open yet
+    double uv_min[2], uv_max[2];    // slab: where cameras stand
+    const relume_slab_set *around;  // several slabs, about whose middle the eye goes; NULL: none
+    relume_objects *objects;        // in the scene, or all that there is; NULL: none
+    const struct relume_captured_region *zone;  // where its light was captured; NULL: not known
+    bool empty;                                 // no file is open yet
 };
 
 // What the viewer adds to a light. All zero is a light that shines as it says.

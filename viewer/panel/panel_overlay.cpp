@@ -139,7 +139,7 @@ static void draw_border(ImDrawList *draw, const app *app, float scale)
 {
     const float left = (float)app->beside[0];
     gizmo from, to;
-    for (int i = 0; i < RELUME_ZONE_STEPS && gizmo_border(&from, app, i); i++)
+    for (int i = 0; i < RELUME_CAPTURED_REGION_STEPS && gizmo_border(&from, app, i); i++)
         if (gizmo_border(&to, app, i + 1) && !from.behind && !to.behind)
             draw->AddLine(ImVec2(left + (float)from.x, (float)from.y),
                           ImVec2(left + (float)to.x, (float)to.y), IM_COL32(255, 210, 90, 150),

@@ -247,8 +247,8 @@ static relume_status need_grid(struct nearby *near, const relume_coder *coder)
     if (!status)
         status = upload_grid(near, info);
     if (!status)
-        shine_upload(near->gl, UNIT_BORDER, near->border, GL_R32F, GL_RED, RELUME_ZONE_STEPS, 1,
-                     relume_coder_zone(coder)->border);
+        shine_upload(near->gl, UNIT_BORDER, near->border, GL_R32F, GL_RED,
+                     RELUME_CAPTURED_REGION_STEPS, 1, relume_coder_region(coder)->border);
     relume_weight_grid_destroy(&grid);
     return status;
 }
@@ -402,7 +402,7 @@ static void set_vec3(const struct gl *gl, GLint at, struct relume_vec3 v)
     gl->Uniform3f(at, (float)v.x, (float)v.y, (float)v.z);
 }
 
-static void set_zone(const struct nearby *near, const struct relume_zone *zone)
+static void set_zone(const struct nearby *near, const struct relume_captured_region *zone)
 {
     const struct gl *gl = near->gl;
     const GLint *at = near->program.at;
@@ -464,7 +464,7 @@ relume_status nearby_draw(struct nearby *near, const struct nearby_view *view,
     if (status)
         return status;
     set_codes(near, view, codes);
-    set_zone(near, relume_coder_zone(codes->codes->coder));
+    set_zone(near, relume_coder_region(codes->codes->coder));
     gl->Uniform4f(near->program.at[RECTANGLE], 0, 0, width, height);
     gl->Uniform2f(near->program.at[SIZE], width, height);
     gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);

@@ -61,7 +61,7 @@ static void make_weights(struct inspector *in, const relume_coder *coder)
     for (int i = 0; i < INSPECT_GRID * INSPECT_GRID; i++) {
         struct relume_vec3 d;
         if (cell_direction(&d, in, i, info->pole_y)) {
-            in->share[i] = (float)relume_coder_captured(&d, coder, d);
+            in->share[i] = (float)relume_coder_clamp(&d, coder, d);
             relume_coder_weights(coder, d, in->weights + (size_t)i * size, in->constant[i]);
         }
     }

@@ -25,7 +25,7 @@ struct inspector {
     double zoom, at[2];                // 1: the whole disc; the middle of what is shown, -1 to 1
     float *weights;                    // [INSPECT_GRID^2][3][K], zero outside the disc
     float (*constant)[3];              // [INSPECT_GRID^2]
-    float *share;                      // [INSPECT_GRID^2]: relume_coder_captured
+    float *share;                      // [INSPECT_GRID^2]: relume_coder_clamp
     float *coefficient;                // [3][K] of the pixel
     int view, x, y;                    // shown now; view -1: none
     struct relume_image plot;          // display values

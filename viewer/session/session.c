@@ -30,7 +30,7 @@ static struct app_file describe(const relume_pack *pack)
         .width = info->width,
         .height = info->height,
         .views = info->views,
-        .zone = relume_coder_zone(info->coder),
+        .zone = relume_coder_region(info->coder),
     };
     for (int axis = 0; axis < 2; axis++)
         file.uv_min[axis] = file.uv_max[axis] = info->uv ? info->uv[0][axis] : 0.0;

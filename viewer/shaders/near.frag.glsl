@@ -18,7 +18,7 @@ uniform int triangle_count;    // 0: the weights are a grid, else those of nodes
 uniform int grid_rows, tiles;  // of the grid, below which are tiles; `triangles` then holds the tile
                                // of each cell, and those of each tile's four, 4096 a row
 uniform bool hemisphere, pole_y;
-uniform bool zone_everywhere;  // struct relume_zone, in the world
+uniform bool zone_everywhere;  // struct relume_captured_region, in the world
 uniform vec3 zone_right, zone_up, zone_facing;
 uniform vec4 zone_axis;          // and the cosine within which all is inside
 uniform sampler2D zone_border;  // a row by azimuth
@@ -219,7 +219,7 @@ float zone_border_at(vec2 d)
                texelFetch(zone_border, ivec2((i + 1) % steps, 0), 0).r, at - low);
 }
 
-// Twin: relume_coder_captured. Where the light is taken from, and the share of it.
+// Twin: relume_coder_clamp. Where the light is taken from, and the share of it.
 vec3 captured(vec3 towards, out float share)
 {
     vec3 d = above_horizon(towards);

@@ -3,7 +3,7 @@
 // its shadow map, and what a pixel and lamp cost at least (nearest texel; between texels four times
 // the model's part). bench_objects [WIDTH HEIGHT [osmesa|egl]]
 #include "bench.h"
-#include "draw/things.h"
+#include "draw/objects_drawer.h"
 #include "window/context_offscreen.h"
 
 enum { TEXELS = 16, FRAMES = 9 };
@@ -62,7 +62,7 @@ static void make(char path[][128], int *n)
     relume_btf_destroy(&btf);
 }
 
-static void measure(struct things *t, int width, int height)
+static void measure(struct objects_drawer *t, int width, int height)
 {
     const struct gl *gl = t->gl;
     const struct relume_objects_info *info = relume_objects_info(t->objects);
@@ -73,7 +73,7 @@ static void measure(struct things *t, int width, int height)
     GLuint array;
     gl->GenVertexArrays(1, &array);
     gl->BindVertexArray(array);
-    need(things_light(t, &light, 1));
+    need(objects_drawer_light(t, &light, 1));
     if (!sight_of_window(&sight, &window, all, width, height, info->min, info->max))
         exit(1);
     for (int m = 0; m < info->materials; m++) {
@@ -81,7 +81,7 @@ static void measure(struct things *t, int width, int height)
         const double end = bench_now_s() + 2;
         for (int i = -1; i < FRAMES && (b.runs < 2 || bench_now_s() < end); i++) {
             const double start = bench_now_s();
-            need(things_shade(t, &sight, width, height, m));
+            need(objects_drawer_shade(t, &sight, width, height, m));
             gl->Finish();
             if (i >= 0)
                 bench_add(&b, bench_now_s() - start);
@@ -93,7 +93,7 @@ static void measure(struct things *t, int width, int height)
             "%-9s %8.1f ms (%.1f to %.1f), %6.1f frames/s, %4d operations, %4d fetches, %7.3f MB\n",
             info->material[m].model, 1e3 * bench_median(&b), 1e3 * b.s[0], 1e3 * b.s[b.runs - 1],
             1 / bench_median(&b), c.ops + c.light_ops, c.fetches + c.light_fetches,
-            (double)things_bytes(t, m) * 1e-6);
+            (double)objects_drawer_bytes(t, m) * 1e-6);
     }
     gl->DeleteVertexArrays(1, &array);
 }
@@ -105,7 +105,7 @@ int main(int argc, char **argv)
     const char *materials[MOST];
     const int width = argc > 2 ? atoi(argv[1]) : 320, height = argc > 2 ? atoi(argv[2]) : 256;
     const struct context_backend *backend = context_offscreen(argc > 3 ? argv[3] : "osmesa");
-    struct things things;
+    struct objects_drawer drawer;
     struct gl gl;
     relume_objects *objects;
     void *context;
@@ -124,10 +124,10 @@ int main(int argc, char **argv)
     need(backend->open(&context, 1, 1, "bench", &bench_log));
     need(gl_load(&gl, backend->get_proc, &bench_log));
     need(relume_objects_of_mesh(&objects, mesh, materials, n, 4, NULL));
-    need(things_create(&things, &gl, objects, &bench_log));
+    need(objects_drawer_create(&drawer, &gl, objects, &bench_log));
     printf("objects: %d x %d, %s\n", width, height, (const char *)gl.GetString(GL_RENDERER));
-    measure(&things, width, height);
-    things_destroy(&things);
+    measure(&drawer, width, height);
+    objects_drawer_destroy(&drawer);
     relume_objects_destroy(&objects);
     backend->close(context);
     snprintf(command, sizeof command, "rm -r %s", folder);

@@ -46,7 +46,7 @@ static void shine(const struct relume_light *lights, int n)
     relume_image_destroy(&out);
 }
 
-static bool shine_rig(relume_rig *rig)
+static bool light_uniforms_rig(relume_rig *rig)
 {
     const struct relume_light *lights;
     int n;
@@ -66,7 +66,7 @@ static bool as_words(struct fuzz *f, struct bytes b)
         mem_fail_after(0);
         if (accepted && relume_rig_add(rig, relume_rig_entry(rig, 0)->spec, NULL, NULL))
             abort();  // what it says of itself is understood
-        shine_rig(rig);
+        light_uniforms_rig(rig);
     }
     relume_rig_destroy(&rig);
     free(text);
@@ -81,7 +81,7 @@ static bool as_rig(struct fuzz *f, struct bytes b)
     fuzz_store(f->path, b);
     if (relume_rig_load(&rig, f->path, NULL))
         return false;
-    shine_rig(rig);
+    light_uniforms_rig(rig);
     relume_rig_destroy(&rig);
     return true;
 }

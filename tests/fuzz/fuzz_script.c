@@ -3,7 +3,7 @@
 #include "app/events.h"
 #include "fuzz.h"
 
-#include "app/gaze.h"
+#include "app/observer.h"
 #include "app/lamps.h"
 #include "app/script.h"
 
@@ -58,7 +58,7 @@ static relume_status host_frame(void *user, const char *path)
 static relume_status host_glare(void *user, const char *text, const char **expected)
 {
     struct app *app = user;
-    return gaze_say(&app->now.gaze, text, expected) ? RELUME_OK : RELUME_EDATA;
+    return observer_say(&app->now.observer, text, expected) ? RELUME_OK : RELUME_EDATA;
 }
 
 // The first byte chooses what is shown.

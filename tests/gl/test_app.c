@@ -743,7 +743,7 @@ static relume_status host_frame(void *user, const char *path)
 static relume_status host_glare(void *user, const char *words, const char **expected)
 {
     struct app *app = ((struct frames *)user)->app;
-    return gaze_say(&app->now.gaze, words, expected) ? RELUME_OK : RELUME_EDATA;
+    return observer_say(&app->now.observer, words, expected) ? RELUME_OK : RELUME_EDATA;
 }
 
 static struct script_host host_of(struct frames *frames)
@@ -779,9 +779,9 @@ static void scripts_let_an_eye_live(void **state)
                           "glare run\nkey h\nwait 1\nglare on\nwait 0.25\nframe a\n"),
                      RELUME_OK);
     assert_float_equal(frames.at[0].eye_s, 0.75, 1e-9);
-    assert_true(frames.at[0].now.gaze.on && frames.at[0].now.gaze.squint == 0.3);
+    assert_true(frames.at[0].now.observer.on && frames.at[0].now.observer.squint == 0.3);
     app_reset(&app);
-    assert_false(app.now.gaze.on);
+    assert_false(app.now.observer.on);
     assert_int_equal(play(&app, &frames, "glare\n"), RELUME_EDATA);
     assert_int_equal(play(&app, &frames, "\nglare squint 2\n"), RELUME_EDATA);
     assert_non_null(strstr(said, "line 2, column 7; expected how far"));

@@ -5,7 +5,7 @@
 #include "app/frame_request.h"
 #include "fixture.h"
 
-#include "app/gaze.h"
+#include "app/observer.h"
 #include "app/lamps.h"
 #include "draw/lamps_seen.h"
 #include "glare/gl_glare.h"
@@ -330,7 +330,7 @@ static void open_stage(struct stage *s, bool by_library)
     const struct app_file file = {
         .geometry = {.projection = RELUME_SPHERICAL}, .width = 64, .height = 32, .views = 1};
     const struct app_state start = {.camera = {.width = 48, .height = 40, .look = {.zoom = 40}},
-                                    .gaze = {.on = true, .mode = GAZE_FFT}};
+                                    .observer = {.on = true, .mode = OBSERVER_FFT}};
     *s = (struct stage){.image = made_frame(48, 40)};
     assert_int_equal(app_start(&s->app, &file, &start, true, NULL), RELUME_OK);
     glare_begin(&s->glare, &fixture_gl, &fixture_log);
@@ -381,15 +381,15 @@ static void the_eye_lives_with_the_app(void **state)
     (void)app_advance(&s.app, 0.25);
     assert_true(changed(&s, &seen) > 0.01);
     assert_float_equal(relume_eye_state(s.glare.eye)->time_s, 0.25, 1e-12);
-    s.app.now.gaze.paused = true;
+    s.app.now.observer.paused = true;
     (void)app_advance(&s.app, 5);
     assert_true(changed(&s, &seen) == 0);
     assert_float_equal(relume_eye_state(s.glare.eye)->time_s, 0.25, 1e-12);
-    s.app.now.gaze.squint = 0.6;
+    s.app.now.observer.squint = 0.6;
     assert_true(changed(&s, &seen) > 0.01);
-    s.app.now.gaze.magnify = 4;
+    s.app.now.observer.magnify = 4;
     assert_true(changed(&s, &seen) > 0.01);
-    s.app.now.gaze.parts_off = RELUME_EYE_LENS;
+    s.app.now.observer.parts_off = RELUME_EYE_LENS;
     assert_true(changed(&s, &seen) > 0.01);
     relume_image_destroy(&seen);
     close_stage(&s);
@@ -401,7 +401,7 @@ static void a_loop_goes_around(void **state)
     struct stage s;
     (void)state;
     open_stage(&s, false);
-    s.app.now.gaze.cycle_s = 0.4;
+    s.app.now.observer.cycle_s = 0.4;
     (void)app_advance(&s.app, 0.1);
     struct relume_image first = look(&s), seen = look(&s);
     assert_true(s.glare.loop.cycle && !s.glare.passes);
@@ -411,9 +411,9 @@ static void a_loop_goes_around(void **state)
     (void)changed(&s, &seen);
     // times of the app are sums of its steps; a part of 1e-12 between two patterns
     assert_below("after a loop", most_apart(&first, &seen), 1e-3);
-    s.app.now.gaze.squint = 0.6;
+    s.app.now.observer.squint = 0.6;
     assert_true(changed(&s, &seen) > 0.01);
-    s.app.now.gaze.cycle_s = 0;
+    s.app.now.observer.cycle_s = 0;
     (void)changed(&s, &seen);
     assert_null(s.glare.loop.cycle);
     relume_image_destroy(&first);
@@ -487,7 +487,7 @@ static void fields_of_view_follow_the_camera(void **state)
     app.now.camera.look.zoom = 1e9;
     assert_float_equal(app_fov_deg(&app), 0.01, 1e-9);
     app.now.camera.look.zoom = 57;
-    app.now.gaze.magnify = 1000;
+    app.now.observer.magnify = 1000;
     struct frame_request q = {0};
     assert_int_equal(frame_request_make(&q, &app), RELUME_OK);
     const struct relume_glare_params p = glare_view(&q, &pattern);
@@ -504,17 +504,17 @@ static void words_change_the_gaze_or_nothing(void **state)
                                         "nits 0", "squint 1", "mode quick", "lens",
                                         "on off", "lids of"};
     const char *expected;
-    struct gaze s = {0};
-    assert_true(gaze_say(&s, "on", &expected) && s.on);
-    assert_true(gaze_say(&s, " magnify 3 ", &expected) && s.magnify == 3);
-    assert_true(gaze_say(&s, "lens off", &expected) && s.parts_off == RELUME_EYE_LENS);
-    assert_true(gaze_say(&s, "lens on", &expected) && s.parts_off == 0);
-    assert_true(gaze_say(&s, "cycle 4", &expected) && s.cycle_s == 4);
-    assert_true(gaze_say(&s, "mode hybrid", &expected) && s.mode == GAZE_HYBRID);
-    assert_true(gaze_say(&s, "pause", &expected) && s.paused && !gaze_lives(&s));
-    const struct gaze before = s;
+    struct observer s = {0};
+    assert_true(observer_say(&s, "on", &expected) && s.on);
+    assert_true(observer_say(&s, " magnify 3 ", &expected) && s.magnify == 3);
+    assert_true(observer_say(&s, "lens off", &expected) && s.parts_off == RELUME_EYE_LENS);
+    assert_true(observer_say(&s, "lens on", &expected) && s.parts_off == 0);
+    assert_true(observer_say(&s, "cycle 4", &expected) && s.cycle_s == 4);
+    assert_true(observer_say(&s, "mode hybrid", &expected) && s.mode == OBSERVER_HYBRID);
+    assert_true(observer_say(&s, "pause", &expected) && s.paused && !observer_lives(&s));
+    const struct observer before = s;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        assert_false(gaze_say(&s, wrong[i], &expected));
+        assert_false(observer_say(&s, wrong[i], &expected));
         assert_true(expected[0] && !memcmp(&s, &before, sizeof s));
     }
 }

@@ -1,6 +1,6 @@
 // Objects covered with measured materials: OpenGL against the ray traced reference, for every
 // model under every kind of light, and shadows.
-#include "draw/things.h"
+#include "draw/objects_drawer.h"
 #include "fixture.h"
 
 #include <unistd.h>
@@ -149,7 +149,7 @@ static struct relume_window window_of(const relume_objects *o)
     return w;
 }
 
-static struct relume_image draw(struct things *t, const struct relume_window *w,
+static struct relume_image draw(struct objects_drawer *t, const struct relume_window *w,
                                 const struct relume_light *lights, int n)
 {
     const struct gl *gl = &fixture_gl;
@@ -162,11 +162,11 @@ static struct relume_image draw(struct things *t, const struct relume_window *w,
     gl->BindVertexArray(array);
     const struct place place = {SIDE, SIDE, {0, 0, SIDE, SIDE}, 1};
     assert_true(sight_of_window(&sight, w, place.picture, SIDE, SIDE, info->min, info->max));
-    assert_int_equal(things_light(t, lights, n), RELUME_OK);
-    assert_int_equal(things_shade(t, &sight, SIDE, SIDE, -1), RELUME_OK);
+    assert_int_equal(objects_drawer_light(t, lights, n), RELUME_OK);
+    assert_int_equal(objects_drawer_shade(t, &sight, SIDE, SIDE, -1), RELUME_OK);
     assert_int_equal(target_create(&frame, gl, SIDE, SIDE, &fixture_log), RELUME_OK);
     target_begin(&frame, gl);
-    things_over(t, &place, 0, false);
+    objects_drawer_over(t, &place, 0, false);
     assert_int_equal(target_read(&image, &frame, gl), RELUME_OK);
     target_destroy(&frame, gl);
     gl->DeleteVertexArrays(1, &array);
@@ -196,7 +196,7 @@ struct picture {
     struct relume_image cpu, gl;
 };
 
-static struct picture both(struct things *t, const struct relume_light *lights, int n,
+static struct picture both(struct objects_drawer *t, const struct relume_light *lights, int n,
                            bool no_shadows)
 {
     struct picture p = {0};
@@ -222,15 +222,16 @@ static void choose(relume_objects *o, int material)
         assert_int_equal(relume_objects_choose(o, i, material), RELUME_OK);
 }
 
-static void start(struct things *t, double repeat)
+static void start(struct objects_drawer *t, double repeat)
 {
-    assert_int_equal(things_create(t, &fixture_gl, open_objects(repeat), &fixture_log), RELUME_OK);
+    assert_int_equal(objects_drawer_create(t, &fixture_gl, open_objects(repeat), &fixture_log),
+                     RELUME_OK);
 }
 
-static void finish(struct things *t)
+static void finish(struct objects_drawer *t)
 {
     relume_objects *o = t->objects;
-    things_destroy(t);
+    objects_drawer_destroy(t);
     relume_objects_destroy(&o);
 }
 
@@ -245,7 +246,8 @@ static relume_rig *rig_of(const char *const *specs)
     return rig;
 }
 
-static void compare_about(struct things *t, relume_rig *rig, const char *what, double tolerance)
+static void compare_about(struct objects_drawer *t, relume_rig *rig, const char *what,
+                          double tolerance)
 {
     const struct relume_light *lights;
     double brightest;
@@ -261,7 +263,7 @@ static void compare_about(struct things *t, relume_rig *rig, const char *what, d
 }
 
 // floats against doubles: 1e-3
-static void compare(struct things *t, relume_rig *rig, const char *what)
+static void compare(struct objects_drawer *t, relume_rig *rig, const char *what)
 {
     compare_about(t, rig, what, 1e-3);
 }
@@ -279,7 +281,7 @@ static int material_of(const relume_objects *o, const char *model)
 static void models_agree(void **state)
 {
     (void)state;
-    struct things t;
+    struct objects_drawer t;
     start(&t, 0.7);  // texels are wider than pixels
     relume_rig *rig = rig_of((const char *const[]){sunlight, NULL});
     for (int i = 0; i < relume_objects_info(t.objects)->materials; i++) {
@@ -296,7 +298,7 @@ static void models_agree_under_the_sky(void **state)
 {
     (void)state;
     static const char *const list[PARTS] = {"lit", "laf", "slaf", "lpca", "rfnl", "rfnlc", "bump"};
-    struct things t;
+    struct objects_drawer t;
     start(&t, 0.7);
     relume_rig *rig = rig_of((const char *const[]){"env sky.exr 30 rgb 1 0.8 1.1", NULL});
     for (int i = 0; i < PARTS; i++)
@@ -324,12 +326,12 @@ static void long_sums_agree(void **state)
             RELUME_OK);
         relume_btf_fitted_destroy(&fitted);
         const char *const materials[] = {path_of("long")};
-        struct things t;
+        struct objects_drawer t;
         relume_objects *o;
         assert_int_equal(relume_objects_of_mesh(&o, path_of("mesh.obj"), materials, 1, 2.0,
                                                 relume_objects_params(.log = &fixture_log)),
                          RELUME_OK);
-        assert_int_equal(things_create(&t, &fixture_gl, o, &fixture_log), RELUME_OK);
+        assert_int_equal(objects_drawer_create(&t, &fixture_gl, o, &fixture_log), RELUME_OK);
         for (int k = 0; k < 2; k++) {
             relume_rig *rig = rig_of((const char *const[]){k ? "env sky.exr 30" : sunlight, NULL});
             compare_about(&t, rig, list[i], 5e-3);
@@ -346,7 +348,7 @@ static void long_sums_agree(void **state)
 static void levels_agree(void **state)
 {
     (void)state;
-    struct things t;
+    struct objects_drawer t;
     start(&t, 25.0);
     relume_rig *rig = rig_of((const char *const[]){sunlight, NULL});
     const struct relume_light *lights;
@@ -375,7 +377,7 @@ static void levels_agree(void **state)
 static void lights_agree(void **state)
 {
     (void)state;
-    struct things t;
+    struct objects_drawer t;
     start(&t, 0.7);
     const char *const specs[] = {"point 0.3 0.9 1.4",
                                  "spot -0.5 -0.6 2 0.2 0.2 -1 24 nofall",
@@ -403,7 +405,7 @@ static void lights_agree(void **state)
 static void shadows_agree(void **state)
 {
     (void)state;
-    struct things t;
+    struct objects_drawer t;
     start(&t, 0.7);
     const char *const specs[] = {sunlight, "point 0.3 0.9 3.4", "point -0.6 -0.5 0.9",
                                  "env sky.exr 30", NULL};

@@ -327,7 +327,7 @@ double app_steady_s(const struct app *app)
 
 void app_live(struct app *app, double seconds)
 {
-    if (gaze_lives(&app->now.gaze) && seconds > 0)
+    if (observer_lives(&app->now.observer) && seconds > 0)
         app->eye_s += seconds;
 }
 

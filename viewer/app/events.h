@@ -19,7 +19,7 @@ double app_steady_s(const struct app *app);
 // How much of a note with `left` seconds to go is still to be seen, 0 to 1.
 double app_note_alpha(double left_s);
 
-// The same for the living eye alone (struct gaze), which never rests.
+// The same for the living eye alone (struct observer), which never rests.
 void app_live(struct app *app, double seconds);
 
 #endif

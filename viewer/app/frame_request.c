@@ -52,7 +52,7 @@ relume_status frame_request_make(struct frame_request *q, const struct app *app)
         .enhance = now->enhance,
         .light = q->light,
         .room = q->room,
-        .gaze = now->gaze,
+        .observer = now->observer,
         .eye_s = app->eye_s,
         .fov_deg = app_fov_deg(app),
         .split = now->split,

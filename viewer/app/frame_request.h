@@ -22,7 +22,7 @@ struct frame_request {
     struct relume_pass_params enhance;  // of it
     struct relume_light *light;         // [lights]: those that shine
     int lights, room;
-    struct gaze gaze;
+    struct observer observer;
     double eye_s;    // that the eye has lived
     double fov_deg;  // of the frame, as app_fov_deg
     enum app_split split;

@@ -200,7 +200,7 @@ static bool press_pick_focus(struct app *app, int key)
 static bool press_glare(struct app *app, int key)
 {
     (void)key;
-    app->now.gaze.on = !app->now.gaze.on;
+    app->now.observer.on = !app->now.observer.on;
     return true;
 }
 

@@ -9,7 +9,7 @@ double lamps_factor(const struct app_state *state, int light);
 
 // The lights that shine with the values that they have; returns how many. Fills out[state->lights].
 int lamps_shining(const struct app_state *state, struct relume_light *out);
-// How many near lights shine.
+// How many near lights uniforms.
 int lamps_near(const struct app_state *state);
 
 // `to`, which is released, becomes `from` with lists of its own. False when memory is short; then

@@ -22,7 +22,7 @@ struct script_host {
     relume_status (*frame)(void *user, const char *path);  // the picture alone
     relume_status (*shot)(void *user, const char *path);   // with all that is drawn over it
     const struct relume_log *log;
-    // What an eye shall do (gaze_say); what is wrong is RELUME_EDATA with what was expected.
+    // What an eye shall do (observer_say); what is wrong is RELUME_EDATA with what was expected.
     relume_status (*glare)(void *user, const char *words, const char **expected);
 };
 

@@ -5,7 +5,7 @@
 #ifndef VIEWER_STATE_H
 #define VIEWER_STATE_H
 
-#include "app/gaze.h"
+#include "app/observer.h"
 
 #include <relume/enhance.h>
 #include <relume/frame.h>
@@ -111,10 +111,10 @@ struct app_state {
     bool ball;     // show the light's direction on a ball in the corner
     enum relume_pass pass;
     struct relume_pass_params
-        enhance;           // of it: gain, specular, exponent, radius, low, top; 0: usual
-    enum app_split split;  // objects ...
-    int other;             // ... in this of their materials as well
-    struct gaze gaze;      // how an eye sees the frame
+        enhance;               // of it: gain, specular, exponent, radius, low, top; 0: usual
+    enum app_split split;      // objects ...
+    int other;                 // ... in this of their materials as well
+    struct observer observer;  // how an eye sees the frame
 };
 
 enum app_drag { APP_DRAG_NONE, APP_DRAG_CAMERA, APP_DRAG_LIGHT, APP_DRAG_GIZMO, APP_DRAG_BALL };

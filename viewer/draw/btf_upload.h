@@ -4,7 +4,7 @@
 #define VIEWER_BTF_UPLOAD_H
 
 #include "gl/program.h"
-#include "relit/shine.h"
+#include "relit/light_uniforms.h"
 
 #include <relume/object.h>
 

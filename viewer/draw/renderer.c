@@ -392,7 +392,7 @@ static relume_status prepare(struct renderer *r, const struct frame_request *q)
 static relume_status see(struct renderer *r, const struct frame_request *q)
 {
     r->shown = &r->frame;
-    if (!q->gaze.on || q->pass != RELUME_PASS_COLOUR)
+    if (!q->observer.on || q->pass != RELUME_PASS_COLOUR)
         return RELUME_OK;
     const relume_status status = glare_see(&r->glare, &r->frame, q);
     r->shown = &r->glare.seen;
@@ -402,7 +402,7 @@ static relume_status see(struct renderer *r, const struct frame_request *q)
 static relume_status draw_lights_in_view(struct renderer *r, const struct frame_request *q,
                                          const struct place *place)
 {
-    if (!q->gaze.sources || q->pass != RELUME_PASS_COLOUR)
+    if (!q->observer.sources || q->pass != RELUME_PASS_COLOUR)
         return RELUME_OK;
     struct relume_visible_light *sources = malloc(RELUME_VISIBLE_LIGHTS_MOST * sizeof *sources);
     if (!sources)
@@ -424,11 +424,11 @@ relume_status renderer_draw(struct renderer *r, const struct frame_request *q)
     relume_status status = prepare(r, q);
     if (!status && r->empty)
         target_begin(&r->frame, r->gl);
-    else if (!status && r->things.gl)
+    else if (!status && r->drawer.gl)
         status = renderer_draw_objects(r, q, &place, q->light, q->lights);
     else if (!status)
         status = renderer_relight_views(r, q, q->light, q->lights);
-    if (!status && !r->things.gl && !r->empty)
+    if (!status && !r->drawer.gl && !r->empty)
         status = renderer_frame(r, q, &place);
     if (!status)
         status = draw_lights_in_view(r, q, &place);

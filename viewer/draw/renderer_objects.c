@@ -16,7 +16,7 @@ relume_status renderer_use_objects(struct renderer *r, relume_objects *objects,
     if (places)
         r->place_source = *places;
     r->place = calloc((size_t)r->views, sizeof *r->place);
-    return r->place ? things_create(&r->things, r->gl, objects, r->log) : RELUME_ENOMEM;
+    return r->place ? objects_drawer_create(&r->drawer, r->gl, objects, r->log) : RELUME_ENOMEM;
 }
 
 void renderer_objects_destroy(struct renderer *r)
@@ -26,7 +26,7 @@ void renderer_objects_destroy(struct renderer *r)
     free(r->place);
     target_destroy(&r->scene, r->gl);
     target_destroy(&r->lit, r->gl);
-    things_destroy(&r->things);
+    objects_drawer_destroy(&r->drawer);
 }
 
 // ---------------------------------------------------------------- where the eye is
@@ -95,7 +95,7 @@ static bool find_window(struct relume_window *w, const struct renderer *r,
 static bool find_sight(struct sight *out, const struct renderer *r, const struct frame_request *q,
                        const struct place *place)
 {
-    const struct relume_objects_info *info = relume_objects_info(r->things.objects);
+    const struct relume_objects_info *info = relume_objects_info(r->drawer.objects);
     const struct relume_geometry *g = &r->geometry;
     struct relume_window window;
     if (g->projection == RELUME_PLANAR && !g->perspective) {
@@ -161,10 +161,10 @@ static relume_status light_scene(struct renderer *r, const struct frame_request 
         if (!status)
             status = renderer_frame(r, q, place);
         if (!status)
-            status = things_light(&r->things, &lights[i], 1);
+            status = objects_drawer_light(&r->drawer, &lights[i], 1);
         target_resume(&r->lit, r->gl);
-        for (int k = 0; k < r->things.lamps && !status; k++)
-            things_cast(&r->things, place, k, r->scene.texture, &r->frame);
+        for (int k = 0; k < r->drawer.lamps && !status; k++)
+            objects_drawer_cast(&r->drawer, place, k, r->scene.texture, &r->frame);
     }
     swap(&r->frame, &r->lit);
     return status;
@@ -207,7 +207,7 @@ static relume_status shade(struct renderer *r, const struct frame_request *q,
     if (q->timed)
         r->gl->Finish();
     const double start = now_ms();
-    const relume_status status = things_shade(&r->things, sight, q->width, q->height, only);
+    const relume_status status = objects_drawer_shade(&r->drawer, sight, q->width, q->height, only);
     if (q->timed)
         r->gl->Finish();
     *ms = now_ms() - start;
@@ -221,7 +221,7 @@ static void draw_split(const struct renderer *r, const struct place *place, GLui
     const int middle = place->width / 2;
     gl->Enable(GL_SCISSOR_TEST);
     gl->Scissor(middle, 0, place->width - middle, place->height);
-    things_over(&r->things, place, scene, false);
+    objects_drawer_over(&r->drawer, place, scene, false);
     gl->Scissor(middle - 1, 0, 2, place->height);
     gl->ClearColor(0.5f, 0.5f, 0.5f, 1.0f);
     gl->Clear(GL_COLOR_BUFFER_BIT);
@@ -235,17 +235,17 @@ static relume_status draw_things(struct renderer *r, const struct frame_request 
     const bool both = q->split != APP_SPLIT_NONE;
     relume_status status = RELUME_OK;
     if (both)
-        status = shade(r, q, sight, q->other, &r->things_ms[1]);
-    things_swap(&r->things);
+        status = shade(r, q, sight, q->other, &r->objects_drawer_ms[1]);
+    objects_drawer_swap(&r->drawer);
     if (!status)
-        status = shade(r, q, sight, -1, &r->things_ms[0]);
+        status = shade(r, q, sight, -1, &r->objects_drawer_ms[0]);
     if (status)
         return status;
     r->gl->BindVertexArray(r->vertices);
     target_resume(&r->frame, r->gl);
-    things_over(&r->things, place, scene, q->split == APP_SPLIT_DIFFERENCE);
+    objects_drawer_over(&r->drawer, place, scene, q->split == APP_SPLIT_DIFFERENCE);
     if (q->split == APP_SPLIT_SIDES) {
-        things_swap(&r->things);
+        objects_drawer_swap(&r->drawer);
         draw_split(r, place, scene);
     }
     return RELUME_OK;
@@ -261,6 +261,6 @@ relume_status renderer_draw_objects(struct renderer *r, const struct frame_reque
     relume_status status = draw_scene(r, q, place, lights, count, seen);
     if (status || !seen || q->pass != RELUME_PASS_COLOUR)
         return status;
-    status = things_light(&r->things, lights, count);
+    status = objects_drawer_light(&r->drawer, lights, count);
     return status ? status : draw_things(r, q, place, &sight);
 }

@@ -4,7 +4,7 @@
 
 #include "app/frame_request.h"
 #include "draw/draw.h"
-#include "draw/things.h"
+#include "draw/objects_drawer.h"
 #include "glare/glare.h"
 #include "relit/depths.h"
 #include "relit/enhancer.h"
@@ -30,17 +30,18 @@ struct renderer {
     struct depths depths;           // empty: not a slab, or without depth
     struct relume_geometry geometry;
     int views;
-    double (*uv)[2];              // [views]
-    bool *needed;                 // [views]
-    const struct target **relit;  // [views]; NULL where not needed
-    struct things things;         // objects; empty: none
-    bool stage;                   // there is nothing but objects
-    bool empty;                   // there is nothing at all
+    double (*uv)[2];               // [views]
+    bool *needed;                  // [views]
+    const struct target **relit;   // [views]; NULL where not needed
+    struct objects_drawer drawer;  // objects; empty: none
+    bool stage;                    // there is nothing but objects
+    bool empty;                    // there is nothing at all
     // Of a scene with objects: where it is, what one light shows of it, and of each view what its
     // pixels see; made when first needed.
     struct depth_source place_source;
     struct target scene, lit, *place;
-    double things_ms[2];         // what the objects took in the last frame, and in another material
+    double
+        objects_drawer_ms[2];    // what the objects took in the last frame, and in another material
     struct lamp_scene backdrop;  // that hides lights
 };
 

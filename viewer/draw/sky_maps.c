@@ -3,7 +3,7 @@
 #include "draw/sky_maps.h"
 
 #include "gl/target.h"
-#include "relit/shine.h"
+#include "relit/light_uniforms.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,8 +19,8 @@ static relume_status upload(struct sky_map *map, const struct gl *gl, const stru
     memcpy(texels, i.diffuse, plane * sizeof *texels);
     memcpy(texels + plane, i.specular, RELUME_PREFILTERED_EXPONENTS * plane * sizeof *texels);
     gl->GenTextures(1, &map->texture);
-    shine_upload(gl, 0, map->texture, GL_RGB32F, GL_RGB, i.width,
-                 (RELUME_PREFILTERED_EXPONENTS + 1) * i.height, texels);
+    light_uniforms_upload(gl, 0, map->texture, GL_RGB32F, GL_RGB, i.width,
+                          (RELUME_PREFILTERED_EXPONENTS + 1) * i.height, texels);
     free(texels);
     return gl_check(gl, "uploading an environment", log);
 }

@@ -63,19 +63,19 @@ static void leave_it_to_library(struct glare *g, const char *why)
         g->log->message(g->log->user, RELUME_WARNING, text);
 }
 
-static struct relume_psf_params pattern_of(const struct glare *g, const struct gaze *gaze,
+static struct relume_psf_params pattern_of(const struct glare *g, const struct observer *observer,
                                            bool passes)
 {
     return (struct relume_psf_params){.log = g->log,
                                       .threads = g->threads,
                                       .size = size_of(g, passes),
                                       .half_field_deg = g->field_deg > 0 ? g->field_deg : field_deg,
-                                      .parts_off = gaze->parts_off};
+                                      .parts_off = observer->parts_off};
 }
 
-static bool can_pass(struct glare *g, const struct gaze *gaze)
+static bool can_pass(struct glare *g, const struct observer *observer)
 {
-    const struct relume_psf_params params = pattern_of(g, gaze, true);
+    const struct relume_psf_params params = pattern_of(g, observer, true);
 
     if (!g->by_library && !g->gl->compute)
         leave_it_to_library(g, "OpenGL has no compute passes here (version 4.3)");
@@ -84,17 +84,18 @@ static bool can_pass(struct glare *g, const struct gaze *gaze)
     return !g->by_library;
 }
 
-static bool wants_passes(struct glare *g, const struct gaze *gaze)
+static bool wants_passes(struct glare *g, const struct observer *observer)
 {
-    return !gaze->cycle_s && (gaze->mode == GAZE_AUTO || gaze->mode == GAZE_FFT) &&
-           can_pass(g, gaze);
+    return !observer->cycle_s &&
+           (observer->mode == OBSERVER_AUTO || observer->mode == OBSERVER_FFT) &&
+           can_pass(g, observer);
 }
 
-static relume_status prepare(struct glare *g, const struct gaze *gaze, bool passes)
+static relume_status prepare(struct glare *g, const struct observer *observer, bool passes)
 {
-    if (g->ready && g->passes == passes && g->parts_off == gaze->parts_off)
+    if (g->ready && g->passes == passes && g->parts_off == observer->parts_off)
         return RELUME_OK;
-    const struct relume_psf_params params = pattern_of(g, gaze, passes);
+    const struct relume_psf_params params = pattern_of(g, observer, passes);
     forget_pattern(g);
     relume_status status =
         passes ? gl_glare_prepare(&g->card, g->gl, &params) : relume_glare_create(&g->library.work);
@@ -102,23 +103,23 @@ static relume_status prepare(struct glare *g, const struct gaze *gaze, bool pass
         status = relume_psf_create(&g->library.psf, &params);
     g->ready = !status;
     g->passes = passes;
-    g->parts_off = gaze->parts_off;
+    g->parts_off = observer->parts_off;
     return status;
 }
 
 // ---------------------------------------------------------------- the eye
 
-static double squint_of(const struct glare *g, const struct gaze *gaze)
+static double squint_of(const struct glare *g, const struct observer *observer)
 {
     const double own = g->subject ? g->subject->lids.squint : 0;
-    return fmin(fmax(own, gaze->squint), 0.99);
+    return fmin(fmax(own, observer->squint), 0.99);
 }
 
 // Live on; `*moved`: it is not as it was.
 static relume_status live(struct glare *g, const struct frame_request *q, double luminance,
                           bool *moved)
 {
-    const double squint = squint_of(g, &q->gaze);
+    const double squint = squint_of(g, &q->observer);
     relume_status status = RELUME_OK;
     *moved = !g->eye || q->eye_s > g->eye_s;
     if (!g->eye)
@@ -134,9 +135,9 @@ static relume_status live(struct glare *g, const struct frame_request *q, double
 }
 
 // Of an eye that opens now, adapted to that luminance.
-static relume_status begin_loop(struct glare *g, const struct gaze *gaze, double luminance)
+static relume_status begin_loop(struct glare *g, const struct observer *observer, double luminance)
 {
-    const double squint = squint_of(g, gaze);
+    const double squint = squint_of(g, observer);
     forget_loop(g);
     relume_eye_destroy(&g->eye);
     relume_status status = relume_eye_create(&g->eye, g->subject, luminance);
@@ -145,19 +146,20 @@ static relume_status begin_loop(struct glare *g, const struct gaze *gaze, double
     relume_eye_squint(g->eye, squint);
     status = relume_psf_cycle_create(
         &g->loop.cycle, g->library.psf, g->eye,
-        relume_psf_cycle_params(.log = g->log, .seconds = fmax(gaze->cycle_s, shortest_s),
+        relume_psf_cycle_params(.log = g->log, .seconds = fmax(observer->cycle_s, shortest_s),
                                 .luminance = luminance));
-    g->loop.seconds = gaze->cycle_s;
+    g->loop.seconds = observer->cycle_s;
     g->loop.squint = squint;
     return status;
 }
 
 static relume_status go_around(struct glare *g, const struct frame_request *q, double luminance)
 {
-    const struct gaze *gaze = &q->gaze;
+    const struct observer *observer = &q->observer;
     relume_status status = RELUME_OK;
-    if (!g->loop.cycle || g->loop.seconds != gaze->cycle_s || g->loop.squint != squint_of(g, gaze))
-        status = begin_loop(g, gaze, luminance);
+    if (!g->loop.cycle || g->loop.seconds != observer->cycle_s ||
+        g->loop.squint != squint_of(g, observer))
+        status = begin_loop(g, observer, luminance);
     else if (g->fresh && q->eye_s == g->eye_s)
         return RELUME_OK;
     g->fresh = false;
@@ -168,10 +170,10 @@ static relume_status go_around(struct glare *g, const struct frame_request *q, d
 static relume_status live_and_update(struct glare *g, const struct frame_request *q,
                                      double luminance)
 {
-    const double nits = luminance / (double)q->exposure * gaze_nits(&q->gaze);
+    const double nits = luminance / (double)q->exposure * observer_nits(&q->observer);
     const double seen = nits >= 0 ? fmin(nits, most_nits) : 0;
     bool moved;
-    if (q->gaze.cycle_s > 0)
+    if (q->observer.cycle_s > 0)
         return go_around(g, q, seen);
     forget_loop(g);
     relume_status status = live(g, q, seen, &moved);
@@ -230,13 +232,13 @@ static relume_status take_frame(struct glare *g, const struct target *frame, boo
 }
 
 // Few bright pixels by themselves and a coarse veil of the rest are faster for large frames.
-static enum relume_glare_mode mode_of(const struct gaze *gaze, const struct target *frame)
+static enum relume_glare_mode mode_of(const struct observer *observer, const struct target *frame)
 {
     enum { LARGE = 640 * 360 };
-    switch (gaze->mode) {
-    case GAZE_FFT: return RELUME_GLARE_FFT;
-    case GAZE_BILLBOARD: return RELUME_GLARE_BILLBOARD;
-    case GAZE_HYBRID: return RELUME_GLARE_HYBRID;
+    switch (observer->mode) {
+    case OBSERVER_FFT: return RELUME_GLARE_FFT;
+    case OBSERVER_BILLBOARD: return RELUME_GLARE_BILLBOARD;
+    case OBSERVER_HYBRID: return RELUME_GLARE_HYBRID;
     default: break;
     }
     return frame->width * frame->height > LARGE ? RELUME_GLARE_HYBRID : RELUME_GLARE_FFT;
@@ -267,7 +269,7 @@ static relume_status see_by_library(struct glare *g, const struct target *frame,
     if (status)
         return status;
     struct relume_glare_params view = glare_view(q, relume_psf_shape(g->library.psf));
-    view.mode = mode_of(&q->gaze, frame);
+    view.mode = mode_of(&q->observer, frame);
     if (g->fresh && same && same_view(&view, &g->view))
         return RELUME_OK;
     g->view = view;
@@ -295,11 +297,11 @@ static relume_status see_by_passes(struct glare *g, const struct target *frame,
 
 relume_status glare_see(struct glare *g, const struct target *frame, const struct frame_request *q)
 {
-    const bool passes = wants_passes(g, &q->gaze);
+    const bool passes = wants_passes(g, &q->observer);
     bool fits = true;
     relume_status status = need_seen(g, frame->width, frame->height);
     if (!status)
-        status = prepare(g, &q->gaze, passes);
+        status = prepare(g, &q->observer, passes);
     if (!status)
         status = passes ? see_by_passes(g, frame, q, &fits) : see_by_library(g, frame, q);
     g->fresh = !status;

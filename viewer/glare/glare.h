@@ -1,8 +1,8 @@
 // glare.h - the frame as a living eye sees it: the eye in time, its pattern, the picture
 //
 // Compute passes do all of it where OpenGL has them (gl_glare.h), else the library does; where
-// OpenGL is software the library is faster and comes first. Bright spots alone (GAZE_BILLBOARD,
-// GAZE_HYBRID) are the library's.
+// OpenGL is software the library is faster and comes first. Bright spots alone (OBSERVER_BILLBOARD,
+// OBSERVER_HYBRID) are the library's.
 #ifndef VIEWER_GLARE_H
 #define VIEWER_GLARE_H
 

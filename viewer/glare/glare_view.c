@@ -8,7 +8,7 @@ struct relume_glare_params glare_view(const struct frame_request *q,
 {
     struct relume_glare_params p = {
         .fov_deg = q->fov_deg,
-        .magnify = gaze_magnify(&q->gaze),
+        .magnify = observer_magnify(&q->observer),
     };
     const double pixel = relume_glare_pixel(p.fov_deg, q->width);
     const double most = fmax(fmax(q->width, q->height), 64) * pixel;

@@ -215,7 +215,7 @@ static bool sections(panel *panel, app *app, const panel_facts *facts)
         changed |= panel_picture(app, facts);
     if (ImGui::CollapsingHeader("Camera"))
         changed |= panel_camera(app);
-    if (ImGui::CollapsingHeader("Glare", app->now.gaze.on ? ImGuiTreeNodeFlags_DefaultOpen : 0))
+    if (ImGui::CollapsingHeader("Glare", app->now.observer.on ? ImGuiTreeNodeFlags_DefaultOpen : 0))
         changed |= panel_glare(app, facts);
     panel->histogram = ImGui::CollapsingHeader("Histogram");
     if (panel->histogram)

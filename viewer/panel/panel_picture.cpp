@@ -79,26 +79,26 @@ bool panel_picture(app *app, const panel_facts *facts)
     return changed;
 }
 
-static bool choose_mode(gaze *s)
+static bool choose_mode(observer *s)
 {
     bool changed = false;
-    if (!ImGui::BeginCombo("mode", gaze_mode_name(s->mode)))
+    if (!ImGui::BeginCombo("mode", observer_mode_name(s->mode)))
         return false;
-    for (int i = 0; i < GAZE_MODES; i++)
-        if (ImGui::Selectable(gaze_mode_name((gaze_mode)i), s->mode == i)) {
-            s->mode = (gaze_mode)i;
+    for (int i = 0; i < OBSERVER_MODES; i++)
+        if (ImGui::Selectable(observer_mode_name((observer_mode)i), s->mode == i)) {
+            s->mode = (observer_mode)i;
             changed = true;
         }
     ImGui::EndCombo();
     return changed;
 }
 
-static bool parts_row(gaze *s)
+static bool parts_row(observer *s)
 {
     bool changed = false;
-    for (const gaze_part *p = gaze_parts; p->name; p++) {
+    for (const observer_part *p = observer_parts; p->name; p++) {
         bool on = !(s->parts_off & p->part);
-        if (p != gaze_parts && p != gaze_parts + 3)
+        if (p != observer_parts && p != observer_parts + 3)
             ImGui::SameLine();
         if (ImGui::Checkbox(p->name, &on)) {
             s->parts_off ^= p->part;
@@ -112,9 +112,9 @@ static bool parts_row(gaze *s)
 
 bool panel_glare(app *app, const panel_facts *facts)
 {
-    gaze *s = &app->now.gaze;
+    observer *s = &app->now.observer;
     const double least[] = {0.1, 1e-2, 0}, most[] = {20, 1e5, 0.95};
-    double magnify = gaze_magnify(s), nits = gaze_nits(s);
+    double magnify = observer_magnify(s), nits = observer_nits(s);
     bool changed = false;
     if (ImGui::Checkbox("glare", &s->on))
         changed = true;

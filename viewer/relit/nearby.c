@@ -70,7 +70,7 @@ enum { VECTORS_WIDE = 64 };
 
 relume_status nearby_create(struct nearby *near, const struct gl *gl, const struct relume_log *log)
 {
-    *near = (struct nearby){.gl = gl, .log = log, .shine = {.gl = gl, .log = log}};
+    *near = (struct nearby){.gl = gl, .log = log, .uniforms = {.gl = gl, .log = log}};
     gl->GenTextures(1, &near->grid);
     gl->GenTextures(1, &near->triangles);
     gl->GenTextures(1, &near->facets);
@@ -80,7 +80,7 @@ relume_status nearby_create(struct nearby *near, const struct gl *gl, const stru
 
 void nearby_forget(struct nearby *near)
 {
-    shine_forget(&near->shine);
+    light_uniforms_forget(&near->uniforms);
 }
 
 void nearby_destroy(struct nearby *near)
@@ -247,8 +247,8 @@ static relume_status need_grid(struct nearby *near, const relume_coder *coder)
     if (!status)
         status = upload_grid(near, info);
     if (!status)
-        shine_upload(near->gl, UNIT_BORDER, near->border, GL_R32F, GL_RED,
-                     RELUME_CAPTURED_REGION_STEPS, 1, relume_coder_region(coder)->border);
+        light_uniforms_upload(near->gl, UNIT_BORDER, near->border, GL_R32F, GL_RED,
+                              RELUME_CAPTURED_REGION_STEPS, 1, relume_coder_region(coder)->border);
     relume_weight_grid_destroy(&grid);
     return status;
 }
@@ -269,8 +269,8 @@ static relume_status upload_positions(struct nearby_view *v, const struct gl *gl
         texels[4 * i + 3] = finite ? 1.0f : 0.0f;
     }
     gl->GenTextures(1, &v->positions);
-    shine_upload(gl, UNIT_PICTURE, v->positions, GL_RGBA32F, GL_RGBA, v->surface.width,
-                 v->surface.height, texels);
+    light_uniforms_upload(gl, UNIT_PICTURE, v->positions, GL_RGBA32F, GL_RGBA, v->surface.width,
+                          v->surface.height, texels);
     free(texels);
     return RELUME_OK;
 }
@@ -288,7 +288,7 @@ static relume_status upload_affine(struct nearby_view *v, const struct gl *gl,
         layer[LANES] = c->codes->offset[p];
     }
     gl->GenTextures(1, &v->affine);
-    shine_upload(gl, UNIT_PICTURE, v->affine, GL_RGBA32F, GL_RGBA, 2, c->layers, texels);
+    light_uniforms_upload(gl, UNIT_PICTURE, v->affine, GL_RGBA32F, GL_RGBA, 2, c->layers, texels);
     free(texels);
     return RELUME_OK;
 }
@@ -383,7 +383,8 @@ static void use_facets(const struct nearby *near, const struct nearby_view *view
     }
     for (int row = 1; row < 3; row++)
         memmove(&texels[0][0][0] + row * *n * 3, texels[row], (size_t)*n * sizeof *texels[row]);
-    shine_upload(near->gl, UNIT_PICTURE, near->facets, GL_RGB32F, GL_RGB, *n, 3, &texels[0][0][0]);
+    light_uniforms_upload(near->gl, UNIT_PICTURE, near->facets, GL_RGB32F, GL_RGB, *n, 3,
+                          &texels[0][0][0]);
 }
 
 static relume_status set_light(struct nearby *near, const struct nearby_view *view,
@@ -394,7 +395,7 @@ static relume_status set_light(struct nearby *near, const struct nearby_view *vi
     if (l->kind == RELUME_LIGHT_AREA)
         use_facets(near, view, l, &facets);
     near->gl->Uniform1i(at[FACETS], facets);
-    return shine_set(&near->shine, at + LIGHT, UNIT_PICTURE, l);
+    return light_uniforms_set(&near->uniforms, at + LIGHT, UNIT_PICTURE, l);
 }
 
 static void set_vec3(const struct gl *gl, GLint at, struct relume_vec3 v)

@@ -5,7 +5,7 @@
 
 #include "gl/program.h"
 #include "gl/target.h"
-#include "relit/shine.h"
+#include "relit/light_uniforms.h"
 
 #include <relume/relight.h>
 
@@ -21,7 +21,7 @@ struct nearby {
     int grid_rows, tiles;  // its rows above the tiles of divided cells
     GLuint facets;         // a column for each facet of the area light in use
     GLuint border;         // of the captured zone, by azimuth
-    struct shine shine;
+    struct light_uniforms uniforms;
 };
 
 // What the passes need to know of a view.

@@ -135,7 +135,7 @@ static relume_status host_open(void *user, const char *path, const struct relume
 static relume_status host_glare(void *user, const char *words, const char **expected)
 {
     struct session *s = user;
-    return gaze_say(&s->app.now.gaze, words, expected) ? RELUME_OK : RELUME_EDATA;
+    return observer_say(&s->app.now.observer, words, expected) ? RELUME_OK : RELUME_EDATA;
 }
 
 static const double frame_s = 1.0 / 60;  // between frames when time is played
@@ -154,7 +154,7 @@ static relume_status host_wait(void *user, double seconds)
         moves = session_pass(s, fmin(left, step)) || renderer_is_pending(&s->renderer);
         if (s->film)
             status = session_film(s);
-        else if (moves || until_idle || gaze_lives(&s->app.now.gaze))
+        else if (moves || until_idle || observer_lives(&s->app.now.observer))
             status = (s->streams ? show_frame : session_draw)(s);
     }
     return status;
@@ -283,7 +283,7 @@ static relume_status live(struct session *s, struct script *script)
         if (!status && changed && !s->app.quit)
             status = show_frame(s);
         changed = !status && (renderer_is_pending(&s->renderer) || session_is_busy(s) ||
-                              gaze_lives(&s->app.now.gaze));
+                              observer_lives(&s->app.now.observer));
     }
     return status;
 }

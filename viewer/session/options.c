@@ -283,7 +283,7 @@ static relume_status take_glare(struct options *o, const char *name, const char 
                                 const struct relume_log *log)
 {
     (void)name, (void)text, (void)log;
-    o->start.gaze.on = true;
+    o->start.observer.on = true;
     return RELUME_OK;
 }
 
@@ -291,7 +291,7 @@ static relume_status take_sources(struct options *o, const char *name, const cha
                                   const struct relume_log *log)
 {
     (void)name, (void)text, (void)log;
-    o->start.gaze.sources = true;
+    o->start.observer.sources = true;
     return RELUME_OK;
 }
 
@@ -329,7 +329,7 @@ static relume_status take_sight(struct options *o, const char *name, const char 
     const char *expected;
     char words[80];
     snprintf(words, sizeof words, "%s %.60s", strrchr(name, '-') + 1, text);
-    if (gaze_say(&o->start.gaze, words, &expected))
+    if (observer_say(&o->start.observer, words, &expected))
         return RELUME_OK;
     return say(log, RELUME_EINVAL, "%s: expected %s; found '%s'", name, expected, text);
 }

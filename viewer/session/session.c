@@ -328,7 +328,7 @@ static relume_status replace(struct session *s, const char *path, bool *opened)
         .auto_exposure = was.now.auto_exposure,
         .tone = was.now.tone,
         .white = was.now.white,
-        .gaze = was.now.gaze,
+        .observer = was.now.observer,
     };
     relume_status status = was.keep_lights ? keep_lights(&start, &was.now) : RELUME_OK;
     s->told[0] = '\0';

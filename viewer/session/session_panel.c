@@ -102,10 +102,10 @@ relume_status session_build_panel(struct session *s, bool histogram)
     relume_status status = s->app.inspect && s->pack ? inspect(s, &plot) : RELUME_OK;
     if (!status)
         status = list_maps(s);
-    for (int i = 0; s->renderer.things.gl && i < relume_objects_info(s->objects)->materials &&
+    for (int i = 0; s->renderer.drawer.gl && i < relume_objects_info(s->objects)->materials &&
                     i < SESSION_MATERIALS;
          i++)
-        s->material_bytes[i] = things_bytes(&s->renderer.things, i);
+        s->material_bytes[i] = objects_drawer_bytes(&s->renderer.drawer, i);
     const struct panel_facts facts = {
         .file = s->name,
         .line = s->lines,
@@ -118,7 +118,7 @@ relume_status session_build_panel(struct session *s, bool histogram)
         .map_in_use = file_name(session_map_in_use(s)),
         .material_bytes = s->objects ? s->material_bytes : NULL,
         .materials = SESSION_MATERIALS,
-        .objects_ms = s->renderer.things_ms,
+        .objects_ms = s->renderer.objects_drawer_ms,
         .range = {s->renderer.enhancer.range.low, s->renderer.enhancer.range.high},
         .browser = s->browser.folder[0] ? &s->browser : NULL,
         .recording = session_records(s) ? s->recording.path : NULL,

@@ -1,5 +1,6 @@
-// gaze.c - what can be chosen of the eye that looks at the frame (glare), in numbers and in words
-#include "app/gaze.h"
+// observer.c - what can be chosen of the eye that looks at the frame (glare), in numbers and in
+// words
+#include "app/observer.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -8,17 +9,17 @@
 
 static const double usual_nits = 100;  // white of an ordinary screen
 
-double gaze_magnify(const struct gaze *s)
+double observer_magnify(const struct observer *s)
 {
     return s->magnify > 0 ? s->magnify : 1;
 }
 
-double gaze_nits(const struct gaze *s)
+double observer_nits(const struct observer *s)
 {
     return s->nits > 0 ? s->nits : usual_nits;
 }
 
-const struct gaze_part gaze_parts[] = {
+const struct observer_part observer_parts[] = {
     {"cornea", "flat cells of the cornea", RELUME_EYE_CORNEA},
     {"fibres", "fibres of the lens: the coloured ring", RELUME_EYE_FIBRES},
     {"lens", "particles of the lens: the needles", RELUME_EYE_LENS},
@@ -29,7 +30,7 @@ const struct gaze_part gaze_parts[] = {
 
 static const char *const mode_names[] = {"auto", "fft", "billboard", "hybrid"};
 
-const char *gaze_mode_name(enum gaze_mode mode)
+const char *observer_mode_name(enum observer_mode mode)
 {
     return mode_names[mode];
 }
@@ -67,12 +68,12 @@ static bool take_number(double *out, const char *text, double least, double most
     return true;
 }
 
-static bool take_mode(struct gaze *s, const char *text)
+static bool take_mode(struct observer *s, const char *text)
 {
-    for (int i = 0; i < GAZE_MODES; i++) {
+    for (int i = 0; i < OBSERVER_MODES; i++) {
         const char *at = text;
         if (word_is(&at, mode_names[i]) && at_end(at)) {
-            s->mode = (enum gaze_mode)i;
+            s->mode = (enum observer_mode)i;
             return true;
         }
     }
@@ -84,13 +85,16 @@ static const struct number {
     size_t offset;
     double least, most;
 } numbers[] = {
-    {"magnify", "a magnification from 0.01 to 1000", offsetof(struct gaze, magnify), 0.01, 1000},
-    {"nits", "cd/m^2 of a pixel of value 1, 1e-6 to 1e9", offsetof(struct gaze, nits), 1e-6, 1e9},
-    {"squint", "how far the lids are closed, 0 to 0.95", offsetof(struct gaze, squint), 0, 0.95},
-    {"cycle", "seconds of a loop, 0 (none) to 10", offsetof(struct gaze, cycle_s), 0, 10},
+    {"magnify", "a magnification from 0.01 to 1000", offsetof(struct observer, magnify), 0.01,
+     1000},
+    {"nits", "cd/m^2 of a pixel of value 1, 1e-6 to 1e9", offsetof(struct observer, nits), 1e-6,
+     1e9},
+    {"squint", "how far the lids are closed, 0 to 0.95", offsetof(struct observer, squint), 0,
+     0.95},
+    {"cycle", "seconds of a loop, 0 (none) to 10", offsetof(struct observer, cycle_s), 0, 10},
 };
 
-bool gaze_say(struct gaze *s, const char *words, const char **expected)
+bool observer_say(struct observer *s, const char *words, const char **expected)
 {
     bool on;
     *expected = "on or off";
@@ -98,7 +102,7 @@ bool gaze_say(struct gaze *s, const char *words, const char **expected)
         s->on = on;
         return true;
     }
-    for (const struct gaze_part *p = gaze_parts; p->name; p++) {
+    for (const struct observer_part *p = observer_parts; p->name; p++) {
         if (!word_is(&words, p->name))
             continue;
         if (!take_switch(&on, words))

@@ -1,9 +1,9 @@
-// things.c - objects covered with measured materials, on the GPU
-#include "draw/things.h"
+// objects_drawer.c - objects covered with measured materials, on the GPU
+#include "draw/objects_drawer.h"
 
 #include "common/say.h"
 #include "common/vec.h"
-#include "draw/things_parts.h"
+#include "draw/objects_drawer_parts.h"
 
 #include <stddef.h>
 
@@ -81,7 +81,7 @@ enum { SHADOW_SIDE = 2048, SHADOW_SIDE_SOFTWARE = 1024, FINER = 2 };
 
 // ---------------------------------------------------------------- making
 
-static void upload_mesh(struct things *t, const struct relume_objects_info *info)
+static void upload_mesh(struct objects_drawer *t, const struct relume_objects_info *info)
 {
     const struct gl *gl = t->gl;
     static const struct {
@@ -110,7 +110,7 @@ static void upload_mesh(struct things *t, const struct relume_objects_info *info
     }
 }
 
-static relume_status create_programs(struct things *t)
+static relume_status create_programs(struct objects_drawer *t)
 {
     const struct gl *gl = t->gl;
     relume_status status =
@@ -123,19 +123,19 @@ static relume_status create_programs(struct things *t)
         status = program_create(&t->over, gl, "btf_over.frag", over_uniforms, OVER_COUNT, t->log);
     if (!status)
         status = program_create(&t->cast, gl, "btf_cast.frag", cast_uniforms, CAST_COUNT, t->log);
-    return status ? status : things_create_sky(t);
+    return status ? status : objects_drawer_create_sky(t);
 }
 
-relume_status things_create(struct things *t, const struct gl *gl, relume_objects *objects,
-                            const struct relume_log *log)
+relume_status objects_drawer_create(struct objects_drawer *t, const struct gl *gl,
+                                    relume_objects *objects, const struct relume_log *log)
 {
     const struct relume_objects_info *info = relume_objects_info(objects);
-    *t = (struct things){.gl = gl,
-                         .log = log,
-                         .objects = objects,
-                         .shine = {.gl = gl, .log = log},
-                         .maps = {.gl = gl, .log = log},
-                         .grid = gl->software ? 1 : FINER};
+    *t = (struct objects_drawer){.gl = gl,
+                                 .log = log,
+                                 .objects = objects,
+                                 .uniforms = {.gl = gl, .log = log},
+                                 .maps = {.gl = gl, .log = log},
+                                 .grid = gl->software ? 1 : FINER};
     const struct relume_vec3 extent = vec_sub(info->max, info->min);
     t->radius = 0.5 * vec_length(extent);
     t->middle = vec_sub(info->max, vec_scale(extent, 0.5));
@@ -149,13 +149,13 @@ relume_status things_create(struct things *t, const struct gl *gl, relume_object
         status = gl_check(gl, "uploading objects", log);
     }
     if (status)
-        things_destroy(t);
+        objects_drawer_destroy(t);
     return status;
 }
 
 // The first four are what the surface is drawn into.
 enum { SURFACES = 4, TARGETS = 9 };
-static void find_targets(struct target *out[TARGETS], struct things *t)
+static void find_targets(struct target *out[TARGETS], struct objects_drawer *t)
 {
     struct target *const all[TARGETS] = {&t->place,     &t->normal, &t->tangent,
                                          &t->footprint, &t->shaded, &t->other,
@@ -163,7 +163,7 @@ static void find_targets(struct target *out[TARGETS], struct things *t)
     memcpy(out, all, sizeof all);
 }
 
-static void destroy_targets(struct things *t)
+static void destroy_targets(struct objects_drawer *t)
 {
     struct target *target[TARGETS];
     find_targets(target, t);
@@ -175,7 +175,7 @@ static void destroy_targets(struct things *t)
     t->surface_buffer = t->share_buffer = t->depth_texture = 0;
 }
 
-void things_destroy(struct things *t)
+void objects_drawer_destroy(struct objects_drawer *t)
 {
     if (!t->gl)
         return;
@@ -190,7 +190,7 @@ void things_destroy(struct things *t)
         program_destroy(programs[i], t->gl);
     destroy_targets(t);
     shadow_map_destroy(&t->shadow);
-    shine_forget(&t->shine);
+    light_uniforms_forget(&t->uniforms);
     sky_maps_forget(&t->maps);
     t->gl->DeleteVertexArrays(1, &t->array);
     t->gl->DeleteBuffers(1, &t->vertices);
@@ -199,10 +199,10 @@ void things_destroy(struct things *t)
     free(t->material);
     free(t->lamp);
     free(t->light);
-    *t = (struct things){0};
+    *t = (struct objects_drawer){0};
 }
 
-size_t things_bytes(const struct things *t, int material)
+size_t objects_drawer_bytes(const struct objects_drawer *t, int material)
 {
     return t->material[material].bytes;
 }
@@ -210,8 +210,8 @@ size_t things_bytes(const struct things *t, int material)
 // ---------------------------------------------------------------- what is needed
 
 // A framebuffer that draws into `n` targets at once.
-static relume_status join_targets(GLuint *out, struct things *t, struct target *const *target,
-                                  int n)
+static relume_status join_targets(GLuint *out, struct objects_drawer *t,
+                                  struct target *const *target, int n)
 {
     const struct gl *gl = t->gl;
     GLenum buffers[SURFACES];
@@ -230,7 +230,7 @@ static relume_status join_targets(GLuint *out, struct things *t, struct target *
     return say(t->log, RELUME_ESYSTEM, "OpenGL: cannot draw the surface of objects");
 }
 
-static relume_status need_targets(struct things *t, int width, int height)
+static relume_status need_targets(struct objects_drawer *t, int width, int height)
 {
     const struct gl *gl = t->gl;
     struct target *target[TARGETS];
@@ -258,7 +258,7 @@ static relume_status need_targets(struct things *t, int width, int height)
 }
 
 // The program of a model, compiled when it is first shown.
-static relume_status need_program(const struct program **out, struct things *t,
+static relume_status need_program(const struct program **out, struct objects_drawer *t,
                                   const struct btf_twin *twin, bool sky)
 {
     for (int i = 0; i < t->programs; i++)
@@ -266,18 +266,18 @@ static relume_status need_program(const struct program **out, struct things *t,
             *out = &t->program[i].program;
             return RELUME_OK;
         }
-    struct things_program *more =
+    struct objects_drawer_program *more =
         realloc(t->program, ((size_t)t->programs + 1) * sizeof *t->program);
     if (!more)
         return RELUME_ENOMEM;
     t->program = more;
-    more[t->programs] = (struct things_program){.twin = twin, .sky = sky};
+    more[t->programs] = (struct objects_drawer_program){.twin = twin, .sky = sky};
     *out = &more[t->programs].program;
     return program_create_variant(&more[t->programs++].program, t->gl, twin->shader,
                                   sky ? "#define SKY\n" : NULL, btf_uniforms, BTF_COUNT, t->log);
 }
 
-static relume_status need_material(struct things *t, int i)
+static relume_status need_material(struct objects_drawer *t, int i)
 {
     if (t->material[i].twin)
         return RELUME_OK;
@@ -285,7 +285,8 @@ static relume_status need_material(struct things *t, int i)
                       t->log);
 }
 
-relume_status things_light(struct things *t, const struct relume_light *lights, int n)
+relume_status objects_drawer_light(struct objects_drawer *t, const struct relume_light *lights,
+                                   int n)
 {
     struct relume_light *light = realloc(t->light, ((size_t)n + 1) * sizeof *light);
     if (!light)
@@ -301,14 +302,14 @@ relume_status things_light(struct things *t, const struct relume_light *lights, 
 
 static void draw_all(void *context, const float clip[16])
 {
-    const struct things *t = context;
+    const struct objects_drawer *t = context;
     t->gl->UniformMatrix4fv(t->depth.at[SURFACE_CLIP], 1, GL_FALSE, clip);
     t->gl->DrawElements(GL_TRIANGLES,
                         (GLsizei)(3 * relume_objects_info(t->objects)->triangle_count),
                         GL_UNSIGNED_INT, NULL);
 }
 
-void things_draw_shadow(struct things *t, int lamp)
+void objects_drawer_draw_shadow(struct objects_drawer *t, int lamp)
 {
     GLint before = 0;
     t->shadow.layers = 0;
@@ -321,7 +322,7 @@ void things_draw_shadow(struct things *t, int lamp)
     t->gl->BindVertexArray((GLuint)before);
 }
 
-static void draw_surface(struct things *t, const struct sight *sight)
+static void draw_surface(struct objects_drawer *t, const struct sight *sight)
 {
     const struct gl *gl = t->gl;
     const struct relume_objects_info *info = relume_objects_info(t->objects);
@@ -345,7 +346,7 @@ static void draw_surface(struct things *t, const struct sight *sight)
     gl->BindVertexArray((GLuint)before);
 }
 
-static void set_uniforms(const struct things *t, const struct program *program, int part,
+static void set_uniforms(const struct objects_drawer *t, const struct program *program, int part,
                          const struct btf_material *m)
 {
     const struct gl *gl = t->gl;
@@ -381,19 +382,19 @@ static int lights_at_once(const struct btf_level *l)
     return rounds < MOST_ROUNDS ? MOST_ROUNDS / rounds : 1;
 }
 
-static void draw_level(const struct things *t, const struct program *program,
+static void draw_level(const struct objects_drawer *t, const struct program *program,
                        const struct place *place, const struct btf_level *l, bool sums)
 {
     const int lights = l->counts[1], step = sums ? lights_at_once(l) : lights;
     for (int from = 0; from < lights; from += step) {
         const int end = from + step < lights ? from + step : lights;
         t->gl->Uniform2i(program->at[SOME_LIGHTS], from, end);
-        things_draw_whole(t->gl, program, place);
+        objects_drawer_draw_whole(t->gl, program, place);
     }
 }
 
 // Each level of detail adds its part; `sums`: over the measured lights.
-static void draw_levels(const struct things *t, const struct program *program,
+static void draw_levels(const struct objects_drawer *t, const struct program *program,
                         const struct target *target, const struct btf_material *m, bool sums)
 {
     const struct gl *gl = t->gl;
@@ -422,7 +423,7 @@ static struct relume_light light_of(const struct relume_object_light *lamp)
     return light;
 }
 
-static relume_status use_material(const struct program **out, struct things *t, int part,
+static relume_status use_material(const struct program **out, struct objects_drawer *t, int part,
                                   int material, bool sky)
 {
     relume_status status = need_material(t, material);
@@ -435,7 +436,7 @@ static relume_status use_material(const struct program **out, struct things *t, 
     return RELUME_OK;
 }
 
-static relume_status shade_part(struct things *t, int part, int material, int lamp)
+static relume_status shade_part(struct objects_drawer *t, int part, int material, int lamp)
 {
     const struct program *program;
     const struct gl *gl = t->gl;
@@ -444,7 +445,7 @@ static relume_status shade_part(struct things *t, int part, int material, int la
         return status;
     const struct relume_light light = light_of(&t->lamp[lamp]);
     gl->Uniform1i(program->at[PICTURE], BTF_UNIT_PICTURE);
-    status = shine_set(&t->shine, program->at + LIGHT, BTF_UNIT_PICTURE, &light);
+    status = light_uniforms_set(&t->uniforms, program->at + LIGHT, BTF_UNIT_PICTURE, &light);
     if (t->lamp[lamp].is_patch) {
         const struct relume_vec3 n = t->lamp[lamp].facet.normal;
         gl->Uniform3f(program->at[LIGHT + SHINE_AXIS], (float)n.x, (float)n.y, (float)n.z);
@@ -455,8 +456,8 @@ static relume_status shade_part(struct things *t, int part, int material, int la
     return status;
 }
 
-relume_status things_shade_sky(struct things *t, int part, int material,
-                               const struct relume_light *light)
+relume_status objects_drawer_shade_sky(struct objects_drawer *t, int part, int material,
+                                       const struct relume_light *light)
 {
     const struct sky_map *map;
     const struct program *program;
@@ -483,12 +484,12 @@ relume_status things_shade_sky(struct things *t, int part, int material,
     return RELUME_OK;
 }
 
-static relume_status add_lamp(struct things *t, int lamp, int only)
+static relume_status add_lamp(struct objects_drawer *t, int lamp, int only)
 {
     const struct gl *gl = t->gl;
     const struct relume_objects_info *info = relume_objects_info(t->objects);
     relume_status status = RELUME_OK;
-    things_draw_shadow(t, lamp);
+    objects_drawer_draw_shadow(t, lamp);
     target_resume(&t->shaded, gl);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
@@ -498,8 +499,8 @@ static relume_status add_lamp(struct things *t, int lamp, int only)
     return status;
 }
 
-relume_status things_shade(struct things *t, const struct sight *sight, int width, int height,
-                           int only)
+relume_status objects_drawer_shade(struct objects_drawer *t, const struct sight *sight, int width,
+                                   int height, int only)
 {
     const struct gl *gl = t->gl;
     relume_status status = need_targets(t, width, height);
@@ -513,24 +514,25 @@ relume_status things_shade(struct things *t, const struct sight *sight, int widt
             status = add_lamp(t, i, only);
     for (int i = 0; i < t->lights && !status; i++)
         if (t->light[i].kind == RELUME_LIGHT_ENVIRONMENT)
-            status = things_add_sky(t, i, only);
+            status = objects_drawer_add_sky(t, i, only);
     return status ? status : gl_check(gl, "drawing objects", t->log);
 }
 
-void things_draw_whole(const struct gl *gl, const struct program *program,
-                       const struct place *place)
+void objects_drawer_draw_whole(const struct gl *gl, const struct program *program,
+                               const struct place *place)
 {
     draw_rectangle(gl, program, place, (struct app_rectangle){0, 0, place->width, place->height});
 }
 
-void things_swap(struct things *t)
+void objects_drawer_swap(struct objects_drawer *t)
 {
     const struct target shaded = t->shaded;
     t->shaded = t->other;
     t->other = shaded;
 }
 
-void things_over(const struct things *t, const struct place *place, GLuint scene, bool difference)
+void objects_drawer_over(const struct objects_drawer *t, const struct place *place, GLuint scene,
+                         bool difference)
 {
     const struct gl *gl = t->gl;
     const GLint *at = t->over.at;
@@ -550,7 +552,7 @@ void things_over(const struct things *t, const struct place *place, GLuint scene
     gl->Uniform1f(at[EXPOSURE], place->exposure);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    things_draw_whole(gl, &t->over, place);
+    objects_drawer_draw_whole(gl, &t->over, place);
     gl->Disable(GL_BLEND);
 }
 
@@ -567,7 +569,7 @@ static void put_lamp(float to[4], const struct relume_object_light *lamp)
 }
 
 // A single lamp counts whole.
-static void use_lamps(const struct things *t, int lamp)
+static void use_lamps(const struct objects_drawer *t, int lamp)
 {
     float at[RELUME_OBJECT_LIGHTS_MOST][4];
     const int n = t->lamps > 1 ? t->lamps : 0;
@@ -579,14 +581,14 @@ static void use_lamps(const struct things *t, int lamp)
         t->gl->Uniform4fv(t->cast.at[CAST_LAMPS], n, at[0]);
 }
 
-void things_cast(struct things *t, const struct place *place, int lamp, GLuint scene,
-                 const struct target *lone)
+void objects_drawer_cast(struct objects_drawer *t, const struct place *place, int lamp,
+                         GLuint scene, const struct target *lone)
 {
     const struct gl *gl = t->gl;
     GLint before = 0, viewport[4];
     gl->GetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &before);
     gl->GetIntegerv(GL_VIEWPORT, viewport);
-    things_draw_shadow(t, lamp);
+    objects_drawer_draw_shadow(t, lamp);
     gl->BindFramebuffer(GL_FRAMEBUFFER, (GLuint)before);
     gl->Viewport(viewport[0], viewport[1], viewport[2], viewport[3]);
     gl->UseProgram(t->cast.id);
@@ -598,6 +600,6 @@ void things_cast(struct things *t, const struct place *place, int lamp, GLuint s
     shadow_map_use(t->shadow.layers ? &t->shadow : NULL, gl, t->cast.at + CAST_SHADOW, 2);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
-    things_draw_whole(gl, &t->cast, place);
+    objects_drawer_draw_whole(gl, &t->cast, place);
     gl->Disable(GL_BLEND);
 }

@@ -1,6 +1,6 @@
-// things_state.h - what objects keep on the GPU
-#ifndef VIEWER_THINGS_STATE_H
-#define VIEWER_THINGS_STATE_H
+// objects_drawer_state.h - what objects keep on the GPU
+#ifndef VIEWER_OBJECTS_DRAWER_STATE_H
+#define VIEWER_OBJECTS_DRAWER_STATE_H
 
 #include "draw/btf_upload.h"
 #include "draw/draw.h"
@@ -8,22 +8,22 @@
 #include "draw/sight.h"
 #include "draw/sky_maps.h"
 
-struct things_program {
+struct objects_drawer_program {
     struct program program;
     const struct btf_twin *twin;
     bool sky;  // for environments
 };
 
-struct things {
+struct objects_drawer {
     const struct gl *gl;
     const struct relume_log *log;
     relume_objects *objects;  // borrowed
     GLuint array, vertices, indices;
     struct program surface, depth, over, cast, share, sky;
-    struct things_program *program;  // [programs]: of the models in use
+    struct objects_drawer_program *program;  // [programs]: of the models in use
     int programs;
     struct btf_material *material;  // [materials]; without a twin until it is shown
-    struct shine shine;
+    struct light_uniforms uniforms;
     struct sky_maps maps;
     struct shadow_map shadow;
     // Of the frame, `grid` times finer; `other` is in another material, to compare with.

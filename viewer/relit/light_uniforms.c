@@ -1,5 +1,6 @@
-// shine.c - a light as uniforms of light.glsl, and the pictures that some lights need as textures
-#include "relit/shine.h"
+// light_uniforms.c - a light as uniforms of light.glsl, and the pictures that some lights need as
+// textures
+#include "relit/light_uniforms.h"
 
 #include "common/say.h"
 #include "common/vec.h"
@@ -7,24 +8,24 @@
 
 #include <stdlib.h>
 
-struct shine_picture {
+struct light_uniforms_picture {
     const void *key;
     GLuint texture;
-    struct shine_picture *next;
+    struct light_uniforms_picture *next;
 };
 
-void shine_forget(struct shine *s)
+void light_uniforms_forget(struct light_uniforms *s)
 {
     while (s->picture) {
-        struct shine_picture *p = s->picture;
+        struct light_uniforms_picture *p = s->picture;
         s->picture = p->next;
         s->gl->DeleteTextures(1, &p->texture);
         free(p);
     }
 }
 
-void shine_upload(const struct gl *gl, int unit, GLuint texture, GLint internal, GLenum format,
-                  int width, int height, const float *values)
+void light_uniforms_upload(const struct gl *gl, int unit, GLuint texture, GLint internal,
+                           GLenum format, int width, int height, const float *values)
 {
     texture_use(gl, unit, GL_TEXTURE_2D, texture);
     gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -43,12 +44,12 @@ static relume_status upload_lamp(const struct gl *gl, int unit, GLuint texture,
     for (int y = 0; y < DOWN; y++)
         for (int x = 0; x < ACROSS; x++)
             texels[y * ACROSS + x] = (float)relume_ies_value(ies, 0.5 * y, 0.5 * x);
-    shine_upload(gl, unit, texture, GL_R32F, GL_RED, ACROSS, DOWN, texels);
+    light_uniforms_upload(gl, unit, texture, GL_R32F, GL_RED, ACROSS, DOWN, texels);
     free(texels);
     return RELUME_OK;
 }
 
-static relume_status upload_slide(const struct shine *s, int unit, GLuint texture,
+static relume_status upload_slide(const struct light_uniforms *s, int unit, GLuint texture,
                                   const struct relume_image *image)
 {
     const int most = s->gl->max_texture;
@@ -57,7 +58,8 @@ static relume_status upload_slide(const struct shine *s, int unit, GLuint textur
                    "a light's picture of %d x %d: OpenGL takes at most %d x %d "
                    "here",
                    image->width, image->height, most, most);
-    shine_upload(s->gl, unit, texture, GL_RGB32F, GL_RGB, image->width, image->height, image->data);
+    light_uniforms_upload(s->gl, unit, texture, GL_RGB32F, GL_RGB, image->width, image->height,
+                          image->data);
     return RELUME_OK;
 }
 
@@ -71,7 +73,7 @@ static const void *key_of(const struct relume_light *light)
     }
 }
 
-static relume_status upload_light(const struct shine *s, int unit, GLuint texture,
+static relume_status upload_light(const struct light_uniforms *s, int unit, GLuint texture,
                                   const struct relume_light *light)
 {
     if (light->kind == RELUME_LIGHT_IES)
@@ -81,10 +83,11 @@ static relume_status upload_light(const struct shine *s, int unit, GLuint textur
                                                           : relume_gonio_map(light->gonio));
 }
 
-static relume_status use_picture(struct shine *s, int unit, const struct relume_light *light)
+static relume_status use_picture(struct light_uniforms *s, int unit,
+                                 const struct relume_light *light)
 {
     const void *key = key_of(light);
-    struct shine_picture *p = s->picture;
+    struct light_uniforms_picture *p = s->picture;
     while (p && p->key != key)
         p = p->next;
     relume_status status = RELUME_OK;
@@ -107,7 +110,8 @@ static void set_vec3(const struct gl *gl, GLint at, struct relume_vec3 v)
     gl->Uniform3f(at, (float)v.x, (float)v.y, (float)v.z);
 }
 
-relume_status shine_set(struct shine *s, const GLint *at, int unit, const struct relume_light *l)
+relume_status light_uniforms_set(struct light_uniforms *s, const GLint *at, int unit,
+                                 const struct relume_light *l)
 {
     const struct gl *gl = s->gl;
     const relume_status status = key_of(l) ? use_picture(s, unit, l) : RELUME_OK;

@@ -1,22 +1,23 @@
-// shine.h - a light as uniforms of light.glsl, and the pictures that some lights need as textures
-#ifndef VIEWER_SHINE_H
-#define VIEWER_SHINE_H
+// light_uniforms.h - a light as uniforms of light.glsl, and the pictures that some lights need as
+// textures
+#ifndef VIEWER_LIGHT_UNIFORMS_H
+#define VIEWER_LIGHT_UNIFORMS_H
 
 #include "gl/gl.h"
 
 #include <relume/light.h>
 
-struct shine_picture;
+struct light_uniforms_picture;
 
 // Zeroed but for these two, which must outlive it, it holds nothing.
-struct shine {
+struct light_uniforms {
     const struct gl *gl;
     const struct relume_log *log;
-    struct shine_picture *picture;  // what slides and lamps need, by their pointers
+    struct light_uniforms_picture *picture;  // what slides and lamps need, by their pointers
 };
 
 // The uniforms of a light, one after the other.
-enum shine_uniform {
+enum light_uniforms_uniform {
     SHINE_KIND,
     SHINE_RGB,
     SHINE_NOFALL,
@@ -33,13 +34,13 @@ enum shine_uniform {
 
 // Set those of the program in use, `at` being where its list of them begins; its picture is bound
 // to texture unit `unit`. RELUME_ENOMEM, RELUME_ESYSTEM.
-relume_status shine_set(struct shine *s, const GLint *at, int unit,
-                        const struct relume_light *light);
+relume_status light_uniforms_set(struct light_uniforms *s, const GLint *at, int unit,
+                                 const struct relume_light *light);
 // Pictures and lamps may have gone: forget what was kept of them.
-void shine_forget(struct shine *s);
+void light_uniforms_forget(struct light_uniforms *s);
 
 // Fill a texture with floats, by way of texture unit `unit`.
-void shine_upload(const struct gl *gl, int unit, GLuint texture, GLint internal, GLenum format,
-                  int width, int height, const float *values);
+void light_uniforms_upload(const struct gl *gl, int unit, GLuint texture, GLint internal,
+                           GLenum format, int width, int height, const float *values);
 
 #endif

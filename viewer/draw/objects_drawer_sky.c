@@ -1,6 +1,6 @@
-// things_sky.c - environments on objects: what the materials show of them in the open, times the
-// share that arrives. Twins: add_sky, share_of_sky.
-#include "draw/things_parts.h"
+// objects_drawer_sky.c - environments on objects: what the materials show of them in the open,
+// times the share that arrives. Twins: add_sky, share_of_sky.
+#include "draw/objects_drawer_parts.h"
 
 enum {
     SHARE_PLACE = DRAW_OWN,
@@ -15,7 +15,7 @@ static const char *const share_uniforms[] = {"rectangle", "frame_size", "place",
 enum { SHOWN = DRAW_OWN, SENT, ARRIVED, SKY_COUNT };
 static const char *const sky_uniforms[] = {"rectangle", "frame_size", "shown", "sent", "arrived"};
 
-relume_status things_create_sky(struct things *t)
+relume_status objects_drawer_create_sky(struct objects_drawer *t)
 {
     const relume_status status =
         program_create(&t->share, t->gl, "btf_share.frag", share_uniforms, SHARE_COUNT, t->log);
@@ -23,7 +23,7 @@ relume_status things_create_sky(struct things *t)
                   : program_create(&t->sky, t->gl, "btf_sky.frag", sky_uniforms, SKY_COUNT, t->log);
 }
 
-static relume_status show(struct things *t, const struct relume_light *light, int only)
+static relume_status show(struct objects_drawer *t, const struct relume_light *light, int only)
 {
     const struct gl *gl = t->gl;
     const struct relume_objects_info *info = relume_objects_info(t->objects);
@@ -32,17 +32,17 @@ static relume_status show(struct things *t, const struct relume_light *light, in
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
     for (int i = 0; i < info->parts && !status; i++)
-        status = things_shade_sky(t, i, only >= 0 ? only : info->part[i].material, light);
+        status = objects_drawer_shade_sky(t, i, only >= 0 ? only : info->part[i].material, light);
     gl->Disable(GL_BLEND);
     return status;
 }
 
-static void add_share(struct things *t, int number)
+static void add_share(struct objects_drawer *t, int number)
 {
     const struct gl *gl = t->gl;
     const struct relume_light *lamp = &t->lamp[number].light;
     const struct place whole = {.width = t->sent.width, .height = t->sent.height};
-    things_draw_shadow(t, number);
+    objects_drawer_draw_shadow(t, number);
     gl->BindFramebuffer(GL_FRAMEBUFFER, t->share_buffer);
     gl->Viewport(0, 0, whole.width, whole.height);
     gl->UseProgram(t->share.id);
@@ -56,11 +56,11 @@ static void add_share(struct things *t, int number)
     shadow_map_use(&t->shadow, gl, t->share.at + SHARE_SHADOW, 2);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
-    things_draw_whole(gl, &t->share, &whole);
+    objects_drawer_draw_whole(gl, &t->share, &whole);
     gl->Disable(GL_BLEND);
 }
 
-static void find_share(struct things *t, int number)
+static void find_share(struct objects_drawer *t, int number)
 {
     const struct gl *gl = t->gl;
     gl->BindFramebuffer(GL_FRAMEBUFFER, t->share_buffer);
@@ -71,7 +71,7 @@ static void find_share(struct things *t, int number)
             add_share(t, i);
 }
 
-relume_status things_add_sky(struct things *t, int number, int only)
+relume_status objects_drawer_add_sky(struct objects_drawer *t, int number, int only)
 {
     const struct gl *gl = t->gl;
     const struct place whole = {.width = t->shown.width, .height = t->shown.height};
@@ -89,7 +89,7 @@ relume_status things_add_sky(struct things *t, int number, int only)
     gl->Uniform1i(t->sky.at[ARRIVED], 2);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
-    things_draw_whole(gl, &t->sky, &whole);
+    objects_drawer_draw_whole(gl, &t->sky, &whole);
     gl->Disable(GL_BLEND);
     return RELUME_OK;
 }

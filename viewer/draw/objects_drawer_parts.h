@@ -1,0 +1,51 @@
+// objects_drawer_parts.h - what the files of the objects drawer share
+#ifndef VIEWER_OBJECTS_DRAWER_PARTS_H
+#define VIEWER_OBJECTS_DRAWER_PARTS_H
+
+#include "draw/objects_drawer_state.h"
+
+// Uniforms of the programs of models.
+enum {
+    ARRAYS = DRAW_OWN,
+    DOMES = ARRAYS + BTF_ARRAYS,
+    PLACE = DOMES + BTF_DOMES,
+    NORMAL,
+    TANGENT,
+    FOOTPRINT,
+    PICTURE,
+    PART,
+    EYE,
+    TEXELS,
+    FINEST,
+    LEVEL,
+    LEVELS,
+    BILINEAR,
+    WITHOUT_COSINE,
+    COUNTS,
+    AREA,
+    MAP,
+    MAP_TEXELS,
+    SKY,
+    SKY_TURN,
+    SKY_RGB,
+    SKY_TABLE,
+    SOME_LIGHTS,
+    LIGHT,
+    SHADOW = LIGHT + SHINE_UNIFORMS,
+    BTF_COUNT = SHADOW + SHADOW_UNIFORMS
+};
+
+// The shadow map of a lamp; it takes over the target.
+void objects_drawer_draw_shadow(struct objects_drawer *t, int lamp);
+void objects_drawer_draw_whole(const struct gl *gl, const struct program *program,
+                               const struct place *place);
+// What a part shows of an environment, into the target in use.
+relume_status objects_drawer_shade_sky(struct objects_drawer *t, int part, int material,
+                                       const struct relume_light *light);
+
+// objects_drawer_sky.c
+relume_status objects_drawer_create_sky(struct objects_drawer *t);
+// Light number `number`, an environment, onto what is shaded.
+relume_status objects_drawer_add_sky(struct objects_drawer *t, int number, int only);
+
+#endif

@@ -52,7 +52,7 @@ static void make(char path[][128], int *n)
     for (int i = 0; relume_btf_models[i]; i++) {
         relume_btf_fitted *fitted;
         const char *name = relume_btf_model_name(relume_btf_models[i]);
-        if (!btf_twin_find(name))
+        if (!btf_shader_find(name))
             continue;
         need(relume_btf_fit(&fitted, btf, relume_btf_models[i], NULL));
         snprintf(path[*n], sizeof path[0], "%s/%s", folder, name);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const struct btf_twin btf_twins[] = {
+const struct btf_shader btf_shaders[] = {
     {"measured", "btf_measured.frag", {3}, false},
     {"lit", "btf_lit.frag", {3}, true},
     {"bump", "btf_bump.frag", {3, 3, 3}, false},
@@ -26,9 +26,9 @@ const struct btf_twin btf_twins[] = {
     {NULL, NULL, {0}, false},
 };
 
-const struct btf_twin *btf_twin_find(const char *model)
+const struct btf_shader *btf_shader_find(const char *model)
 {
-    for (const struct btf_twin *t = btf_twins; t->model; t++)
+    for (const struct btf_shader *t = btf_shaders; t->model; t++)
         if (!strcmp(t->model, model))
             return t;
     return NULL;
@@ -314,7 +314,7 @@ relume_status btf_upload(struct btf_material *out, const struct gl *gl,
                          const struct relume_object_material *material,
                          const struct relume_log *log)
 {
-    *out = (struct btf_material){.twin = btf_twin_find(material->model)};
+    *out = (struct btf_material){.twin = btf_shader_find(material->model)};
     struct btf_material *m = out;
     if (!m->twin)
         return say(log, RELUME_ESYSTEM, "%s: model %s cannot be drawn here", material->name,

@@ -11,15 +11,15 @@
 enum { BTF_ARRAYS = 5, BTF_DOMES = 4, BTF_BUFFERS = BTF_ARRAYS + BTF_DOMES + 1, BTF_LEVELS = 17 };
 
 // How a model is drawn.
-struct btf_twin {
+struct btf_shader {
     const char *model;  // NULL ends the list
     const char *shader;
     int numbers[BTF_ARRAYS];  // of a texel of each array: 1, 3 or 4; 0: there is none
     bool lobes;  // which an environment is looked up for, rather than summed over the lights
 };
-extern const struct btf_twin btf_twins[];
+extern const struct btf_shader btf_shaders[];
 // NULL when a model cannot be drawn.
-const struct btf_twin *btf_twin_find(const char *model);
+const struct btf_shader *btf_shader_find(const char *model);
 
 // Texture units of its programs.
 enum {
@@ -41,7 +41,7 @@ struct btf_level {
     int width, height, area, counts[4], map[4];  // as btf.glsl
 };
 struct btf_material {
-    const struct btf_twin *twin;
+    const struct btf_shader *twin;
     struct btf_level level[BTF_LEVELS];
     int levels;
     GLuint table, table_buffer;  // what an environment needs (btf_need_table), or 0

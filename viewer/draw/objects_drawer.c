@@ -259,7 +259,7 @@ static relume_status need_targets(struct objects_drawer *t, int width, int heigh
 
 // The program of a model, compiled when it is first shown.
 static relume_status need_program(const struct program **out, struct objects_drawer *t,
-                                  const struct btf_twin *twin, bool sky)
+                                  const struct btf_shader *twin, bool sky)
 {
     for (int i = 0; i < t->programs; i++)
         if (t->program[i].twin == twin && t->program[i].sky == sky) {

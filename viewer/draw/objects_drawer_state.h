@@ -10,7 +10,7 @@
 
 struct objects_drawer_program {
     struct program program;
-    const struct btf_twin *twin;
+    const struct btf_shader *twin;
     bool sky;  // for environments
 };
 

@@ -8,7 +8,7 @@ set -eu
 packages="gcc g++ make pkg-config libc6-dev libopenexr-dev libopenimageio-dev libembree-dev
 libeigen3-dev libfftw3-dev libkissfft-dev libjansson-dev libjpeg-dev libpng-dev liblcms2-dev
 libassimp-dev libcmocka-dev libcairo2-dev libglfw3-dev libosmesa6-dev
-libegl-dev libegl-mesa0 libimgui-dev libstb-dev xvfb xdotool"
+libegl-dev libegl-mesa0 libimgui-dev fonts-dejavu-core libstb-dev xvfb xdotool"
 [ "${1:-}" = web ] && packages="chromium"
 [ "${1:-}" = stitch ] && packages="libopencv-stitching-dev"
 [ "${1:-}" = docs ] && packages="doxygen"

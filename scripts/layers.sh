@@ -75,7 +75,7 @@ png:src/image/png.c
 lcms2:src/image/profile.c tests/unit/test_photograph.c
 cairo:src/cli/plot.c
 GLFW:viewer/window/context_glfw.c
-imgui:viewer/panel/panel_parts.h viewer/panel/panel.cpp
+imgui:viewer/panel/panel_parts.h viewer/panel/panel.cpp viewer/panel/panel_font.cpp
 panel/panel_parts:$(echo viewer/panel/panel*.cpp)
 GL/osmesa:viewer/window/context_osmesa.c
 EGL/:viewer/window/context_egl.c

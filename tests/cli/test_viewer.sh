@@ -78,6 +78,23 @@ if cmp -s shot.png open.png; then not_ok 'a shot shows the panel' 'it is the pic
 "$RELUME" compare dark.png shot.png >dark.txt 2>&1
 if cmp -s dark.png open.png; then not_ok 'a click turns the light off' 'nothing changed'; else ok 'a click turns the light off'; fi
 
+# letters: a font beside the program is taken before the packaged one; one that is no font is told
+# once to who sees the panel; the panel grows
+mkdir own
+cp "$VIEWER" own/relume-view
+echo junk >own/DejaVuSans.ttf
+own() { LD_LIBRARY_PATH=$BUILD own/relume-view teapot.exr "$@"; }
+own --script panel.txt 2>err.txt
+check 'a panel without its font is drawn' test -s shot.png
+check 'its font is missed once' test "$(grep -c 'warning: .*/own/DejaVuSans.ttf: the panel needs' err.txt)/$(wc -l <err.txt)" = 1/1
+own --offscreen plain.png 2>err.txt
+check 'a picture misses no font' test ! -s err.txt
+printf 'size 700 600\nkey tab\ndrag left 152 252 218 252\nkey w\n' >scaled.txt
+"$VIEWER" teapot.exr --script scaled.txt --ui-scale 2
+x=$(sed -n 's/.*"dir \([^ ]*\) .*/\1/p' teapot-0001.json)
+if awk "BEGIN { exit !(${x:-9} > 0.57 && ${x:-9} < 0.63) }"; then ok '--ui-scale 2'; else not_ok '--ui-scale 2' "x = '$x', expected 0.6"; fi
+rm -f teapot-0001.json
+
 # another file begins with its own light, unless the lights are to be kept; near ones need a place to stand
 cat >next.txt <<'END'
 light "dir 1 0.2 0.4 rgb 1 0.5 0.2"
@@ -276,6 +293,7 @@ refuse 'a recording without a name' 2 'expected --record KIND and -o OUT' \
     "$VIEWER" teapot.exr --record sweep
 refuse 'a film without ffmpeg' 3 'ffmpeg is not installed' \
     env PATH=/nonexistent "$VIEWER" teapot.exr --record sweep -o none.png.mp4 --frames 2
+refuse 'a panel too large' 2 '--ui-scale: expected a number from 0.5 to 4' "$VIEWER" teapot.exr --ui-scale 5
 refuse 'an unknown pass' 2 "did you mean 'normals'" "$VIEWER" teapot.exr --pass normal
 if [ -e none.png ]; then not_ok 'nothing is written' 'none.png exists'; else ok 'nothing is written'; fi
 finish

@@ -117,7 +117,7 @@ static struct panel *make_panel(struct app *app, const struct panel_facts *facts
     struct panel *panel;
     assert_int_equal(app_start(app, &file, &start, false, NULL), RELUME_OK);
     app->browse = true;
-    assert_int_equal(panel_create(&panel, 1), RELUME_OK);
+    assert_int_equal(panel_create(&panel, 1, NULL), RELUME_OK);
     panel_build(panel, app, facts);
     return panel;
 }

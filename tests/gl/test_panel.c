@@ -7,6 +7,9 @@
 #include "relit/enhancer.h"
 #include "session/inspect.h"
 
+#include <stdlib.h>
+#include <unistd.h>
+
 static struct app make_app(void)
 {
     const struct app_file file = {
@@ -28,7 +31,7 @@ static struct panel *make_panel(struct app *app)
 {
     static const struct panel_facts none = {0};
     struct panel *panel;
-    assert_int_equal(panel_create(&panel, 1), RELUME_OK);
+    assert_int_equal(panel_create(&panel, 1, NULL), RELUME_OK);
     panel_build(panel, app, &none);
     panel_build(panel, app, &none);
     return panel;
@@ -211,6 +214,35 @@ static void the_question_is_answered_by_its_buttons(void **state)
         (void)drag(panel, &app, x, 292, x, 292);
         assert_int_equal(app.quit, quits);
         assert_int_equal(app.asks, quits);
+        panel_destroy(&panel);
+    }
+}
+
+// The packaged font has the letters of names; a file that is none, or is cut off, is not taken.
+static void the_font_is_a_file(void **state)
+{
+    (void)state;
+    static const char packaged[] = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+    static const char cut[] = "\0\1\0\0\0\1\0\0\0\0\0\0glyf\0\0\0\0\0\0\0\20\0\0\0\40";
+    char path[] = "/tmp/panel-XXXXXX";
+    struct panel *panel;
+    const int file = mkstemp(path);
+    assert_true(file >= 0 && write(file, cut, sizeof cut - 1) == sizeof cut - 1 && !close(file));
+    const char *const none[] = {NULL, "/nonexistent.ttf", "/", path};
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(panel_create(&panel, 1, none[i]), RELUME_OK);
+        assert_false(panel_has_font(panel));
+        panel_destroy(&panel);
+    }
+    assert_int_equal(unlink(path), 0);
+    if (access(packaged, R_OK)) {
+        print_message("skipped: fonts-dejavu-core is not installed\n");
+        return;
+    }
+    for (double scale = 0.5; scale <= 4; scale *= 2) {
+        assert_int_equal(panel_create(&panel, scale, packaged), RELUME_OK);
+        assert_true(panel_has_font(panel));
+        assert_int_equal(panel_width(panel), (int)(306 * scale));
         panel_destroy(&panel);
     }
 }
@@ -439,6 +471,7 @@ int main(void)
         cmocka_unit_test(escape_closes_a_list),
         cmocka_unit_test(notes_are_drawn),
         cmocka_unit_test(the_question_is_answered_by_its_buttons),
+        cmocka_unit_test(the_font_is_a_file),
         cmocka_unit_test(tiny_frames_do_no_harm),
         cmocka_unit_test(the_panel_is_drawn_where_it_is),
         cmocka_unit_test(passes_are_those_of_the_library),

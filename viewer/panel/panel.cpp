@@ -12,6 +12,7 @@
 
 static const float width_units = 290;  // of the panel
 static const float margin_units = 8;
+static const float row_units = 19;
 
 // ---------------------------------------------------------------- making
 
@@ -32,10 +33,15 @@ static void map_keys(ImGuiIO &io)
         io.KeyMap[ImGuiKey_A + i] = "acvxyz"[i];
 }
 
-static void set_style(float scale)
+// Rows are equally high with any font.
+static void set_style(float scale, float letters)
 {
     ImGuiStyle &style = ImGui::GetStyle();
     ImGui::StyleColorsDark();
+    style.WindowPadding = ImVec2(margin_units, margin_units);
+    style.FramePadding = ImVec2(5, 0.5f * (row_units - letters));
+    style.ItemSpacing = ImVec2(6, 4);
+    style.ItemInnerSpacing = ImVec2(5, 4);
     style.WindowRounding = 4;
     style.FrameRounding = 3;
     style.GrabRounding = 3;
@@ -43,24 +49,24 @@ static void set_style(float scale)
     style.ScaleAllSizes(scale);
 }
 
-extern "C" relume_status panel_create(struct panel **out, double scale)
+extern "C" relume_status panel_create(struct panel **out, double scale, const char *font)
 {
     *out = new (std::nothrow) panel();
     if (!*out)
         return RELUME_ENOMEM;
     panel *p = *out;
-    p->scale = (float)std::clamp(scale, 1.0, 4.0);
+    p->scale = (float)std::clamp(scale, PANEL_SCALE_LEAST, PANEL_SCALE_MOST);
     p->context = ImGui::CreateContext();
     ImGui::SetCurrentContext(p->context);
     ImGuiIO &io = ImGui::GetIO();
     io.IniFilename = nullptr;
     io.LogFilename = nullptr;
     io.MousePos = ImVec2(-FLT_MAX, -FLT_MAX);
-    ImFontConfig font;
-    font.SizePixels = std::floor(13 * p->scale);
-    io.Fonts->AddFontDefault(&font);
+    p->has_font = font && panel_add_font(font, p->scale);
+    if (!p->has_font)
+        panel_add_plain_font(p->scale);
     map_keys(io);
-    set_style(p->scale);
+    set_style(p->scale, io.Fonts->ConfigData[0].SizePixels / p->scale);
     (void)panel_font(p);
     return RELUME_OK;
 }
@@ -84,6 +90,12 @@ extern "C" struct panel_letters panel_font(const struct panel *panel)
     letters.alpha = alpha;
     return letters;
 }
+
+extern "C" bool panel_has_font(const struct panel *panel)
+{
+    return panel->has_font;
+}
+
 // ---------------------------------------------------------------- events
 
 static bool over_a_window(const panel *panel, double x, double y)

@@ -14,9 +14,15 @@ extern "C" {
 // Thread-safety: main thread only.
 struct panel;
 
-// `scale`: pixels per unit of the desktop, 1 on ordinary screens. RELUME_ENOMEM.
-relume_status panel_create(struct panel **out, double scale);
+// `scale`: pixels per unit of the desktop, 1 on ordinary screens. `font`: a TrueType file, read
+// here; NULL, or one that cannot be used: the letters that Dear ImGui brings, ASCII alone.
+// RELUME_ENOMEM.
+#define PANEL_SCALE_LEAST 0.5
+#define PANEL_SCALE_MOST  4.0
+relume_status panel_create(struct panel **out, double scale, const char *font);
 void panel_destroy(struct panel **panel);
+// Whether the letters are those of `font`.
+bool panel_has_font(const struct panel *panel);
 
 // Hear of an event. True when it belongs to the panel, and the app must not have it. What follows a
 // press belongs to who got the press.

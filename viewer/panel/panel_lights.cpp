@@ -223,6 +223,7 @@ static bool light_buttons(panel *panel, app *app)
         if (ImGui::IsItemHovered())
             ImGui::SetTooltip("%s", p->what);
     }
+    ImGui::SetNextItemWidth(-1);
     if (ImGui::InputTextWithHint("##spec", "spot 0 0 2 0 0 -1 20 rgb 1 .8 .6", panel->spec,
                                  sizeof panel->spec, ImGuiInputTextFlags_EnterReturnsTrue))
         wish_light(app, panel->spec);
@@ -247,6 +248,7 @@ static void environment_rows(panel *panel, app *app, const panel_facts *facts)
                 wish_map(app, facts->map_folder, *name);
         ImGui::EndCombo();
     }
+    ImGui::SetNextItemWidth(-1);
     if (ImGui::InputTextWithHint("##environment", "or file.hdr, then Enter", panel->environment,
                                  sizeof panel->environment, ImGuiInputTextFlags_EnterReturnsTrue) &&
         panel->environment[0])

@@ -18,6 +18,7 @@ extern "C" {
 struct panel {
     ImGuiContext *context;
     float scale;
+    bool has_font;
     std::vector<app_event> queue;
     bool held;         // a press belongs to the panel
     bool held_by_app;  // or to the app
@@ -32,6 +33,10 @@ struct panel {
     std::string browsed;  // the folder that it is in
     int listed;           // the light that the list has scrolled to
 };
+
+// The letters of the panel, from a file (false: it is no font that can be read) or without one.
+bool panel_add_font(const char *path, float scale);
+void panel_add_plain_font(float scale);
 
 // Sections of the panel: what they return is whether the picture changed.
 bool panel_lights(panel *panel, app *app, const panel_facts *facts);

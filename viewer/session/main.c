@@ -396,6 +396,7 @@ int main(int argc, char **argv)
     session.threads = options.threads;
     session.relight = options.relight;
     session.glare = options.glare;
+    session.ui_scale = options.ui_scale;
     session.glare_size = options.glare_size;
     session.subject = &options.subject;
     session.vram_bytes = (size_t)(options.vram_mb * 1048576.0);

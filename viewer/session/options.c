@@ -512,6 +512,12 @@ static relume_status take_dock(struct options *o, const char *name, const char *
     return say(log, RELUME_EINVAL, "%s: expected over, left or right; found '%s'", name, text);
 }
 
+static relume_status take_ui_scale(struct options *o, const char *name, const char *text,
+                                   const struct relume_log *log)
+{
+    return take_number(&o->ui_scale, name, text, PANEL_SCALE_LEAST, PANEL_SCALE_MOST, log);
+}
+
 static relume_status take_window(struct options *o, const char *name, const char *text,
                                  const struct relume_log *log)
 {
@@ -598,6 +604,8 @@ static const struct option options[] = {
      take_keep_lights},
     {"--dock", "SIDE", "start with the panel at the left or right of the picture, or over it",
      take_dock},
+    {"--ui-scale", "F", "size of the panel and its letters, 0.5 to 4; default: the desktop's scale",
+     take_ui_scale},
     {"--ball", NULL, "offscreen: draw the ball that shows the light, as the window does",
      take_ball},
     {"--help", NULL, "this text", NULL},

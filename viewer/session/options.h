@@ -26,13 +26,14 @@ struct options {
     bool keep_lights;
     bool docked;  // --dock was given
     enum app_dock dock;
+    double ui_scale;  // of the panel; 0: the desktop's
     struct app_state start;
     relume_rig *rig;  // of --rig and --light, NULL without either
     bool sized;       // --size was given
     const char *gl;   // what offscreen frames are drawn by: a name that context_offscreen knows
     int threads;      // that read files; 0: all cores
     struct relume_limits limits;
-    double vram_mb;   // graphics memory for views
+    double vram_mb;  // graphics memory for views
     enum session_relight relight, glare;
     int glare_size;
     struct relume_subject subject;

@@ -10,6 +10,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 void session_say(struct session *s, const char *format, ...)
 {
@@ -254,9 +255,26 @@ static relume_status make_renderer(struct session *s)
     return status || !s->streams || s->objects ? status : renderer_stream(&s->renderer);
 }
 
+// Beside the program, else where its package puts it.
+static void find_font(char path[PATH_MAX])
+{
+    static const char name[] = "DejaVuSans.ttf";
+    const ssize_t n = readlink("/proc/self/exe", path, PATH_MAX - sizeof name);
+    path[n > 0 ? n : 0] = '\0';
+    char *slash = strrchr(path, '/');
+    if (slash) {
+        strcpy(slash + 1, name);
+        if (!access(path, R_OK))
+            return;
+    }
+    strcat(strcpy(path, "/usr/share/fonts/truetype/dejavu/"), name);
+}
+
 static relume_status make_panel(struct session *s, double scale)
 {
-    const relume_status status = panel_create(&s->panel, scale);
+    find_font(s->font);
+    const relume_status status =
+        panel_create(&s->panel, s->ui_scale > 0 ? s->ui_scale : scale, s->font);
     if (status)
         return status;
     s->app.dock_width = panel_width(s->panel);

@@ -69,6 +69,9 @@ struct session {
     const char *lines[SESSION_LINES + 1];  // what the panel says of the file
     char message[SESSION_TEXT];            // what was said last
     bool full_screen;
+    double ui_scale;          // of the panel, as context_backend.scale; 0: what that says
+    char font[PATH_MAX];      // of the panel
+    bool font_told;           // that it is missing
     char told[SESSION_TEXT];  // by the log while a file was opened
     bool listens;             // to it
     int threads;              // that read files

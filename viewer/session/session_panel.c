@@ -95,9 +95,24 @@ static const char *describe_eye(char *text, size_t size, const struct glare *gla
     return text;
 }
 
+// Only those who see the panel need to know.
+static void tell_font(struct session *s)
+{
+    char text[PATH_MAX + 160];
+    if (s->font_told || panel_has_font(s->panel))
+        return;
+    s->font_told = true;
+    snprintf(text, sizeof text,
+             "%s: the panel needs this TrueType font (package fonts-dejavu-core); it is drawn with "
+             "a built-in one without accents",
+             s->font);
+    s->log->message(s->log->user, RELUME_WARNING, text);
+}
+
 relume_status session_build_panel(struct session *s, bool histogram)
 {
     char eye[160];
+    tell_font(s);
     bool plot = false;
     relume_status status = s->app.inspect && s->pack ? inspect(s, &plot) : RELUME_OK;
     if (!status)

@@ -177,6 +177,101 @@ static int runs_of(struct panel *panel, struct app *app, const struct panel_fact
     return indices;
 }
 
+// The pointer goes over `width` x `height` pixels in steps finer than the smallest control, and
+// nothing under it is without a tip. Returns how often it met a tip.
+static int walk(struct panel *panel, struct app *app, const struct panel_facts *facts, int width,
+                int height)
+{
+    int tips = 0;
+    (void)tell(panel, APP_MOVE, -9, -9);
+    const int still = runs_of(panel, app, facts);
+    for (int y = 4; y < height; y += 9)
+        for (int x = 4; x < width; x += 12) {
+            (void)tell(panel, APP_MOVE, x, y);
+            tips += runs_of(panel, app, facts) > still;
+            if (panel_is_mute(panel))
+                fail_msg("the control at %d, %d has no tip", x, y);
+        }
+    return tips;
+}
+
+static void every_light_says_what_it_is(struct panel *panel, struct app *app)
+{
+    static const struct panel_facts none = {0};
+    for (int kind = 0; kind <= RELUME_LIGHT_GONIO; kind++) {
+        app->now.light[0] = (struct relume_light){
+            .kind = (enum relume_light_kind)kind,
+            .direction = {0, 0, -1},
+            .rgb = {1, 1, 1},
+            .position = {0, 0, 2},
+            .u = {1, 0, 0},
+            .v = {0, 1, 0},
+            .half_angle_deg = 20,
+        };
+        assert_true(walk(panel, app, &none, 306, 400) > 100);
+    }
+}
+
+static void every_view_says_what_it_is(struct panel *panel, struct app *app)
+{
+    static const struct panel_facts none = {0};
+    for (int pass = 0; pass < RELUME_PASSES; pass++) {
+        app->now.pass = (enum relume_pass)pass;
+        assert_true(walk(panel, app, &none, 306, 350) > 100);
+    }
+}
+
+// Each section alone, below those that are closed.
+static void every_control_says_what_it_is_for(void **state)
+{
+    (void)state;
+    enum { LIGHTS, PICTURE, CAMERA, GLARE, HISTOGRAM, FILE_SECTION, PANEL, SECTIONS };
+    static const enum relume_framing framings[] = {RELUME_FRAME_VIEW, RELUME_FRAME_EYE,
+                                                   RELUME_FRAME_LOOK};
+    static const struct panel_facts none = {0};
+    OWNED_APP app = make_app();
+    struct panel *panel = make_panel(&app);
+    app.near_lights = true;
+    app.now.enhance.low = 0.1f;
+    app.now.enhance.top = 0.4f;
+    (void)click(panel, &app, 100, 26);
+    (void)click(panel, &app, 100, 49);
+    assert_true(walk(panel, &app, &none, 306, 220) > 100);  // the headers
+    for (int i = 0; i < SECTIONS; i++) {
+        (void)click(panel, &app, 100, 26 + 23 * i);
+        if (i == LIGHTS)
+            every_light_says_what_it_is(panel, &app);
+        if (i == PICTURE)
+            every_view_says_what_it_is(panel, &app);
+        for (int k = 0; k < (i == CAMERA ? 3 : i >= GLARE); k++) {
+            app.now.camera.framing = framings[k];
+            assert_true(walk(panel, &app, &none, 306, 440) > 100);
+        }
+        (void)click(panel, &app, 100, 26 + 23 * i);
+    }
+    panel_destroy(&panel);
+}
+
+static void every_window_says_what_it_is_for(void **state)
+{
+    (void)state;
+    struct browser b = {.count = 0};
+    assert_int_equal(browse_list(&b, "/"), RELUME_OK);
+    const struct panel_facts facts = {.browser = &b};
+    for (int i = 0; i < 3; i++) {
+        OWNED_APP app = make_app();
+        struct panel *panel = make_panel(&app);
+        app.panel = false;
+        app.file.empty = i == 0;
+        app.browse = i == 1;
+        app.asks = i == 2;
+        panel_build(panel, &app, &facts);
+        assert_true(walk(panel, &app, &facts, 640, 560) > 5);
+        panel_destroy(&panel);
+    }
+    browse_destroy(&b);
+}
+
 // Notes are drawn while they last, and the pointer goes through them.
 static void notes_are_drawn(void **state)
 {
@@ -472,6 +567,8 @@ int main(void)
         cmocka_unit_test(notes_are_drawn),
         cmocka_unit_test(the_question_is_answered_by_its_buttons),
         cmocka_unit_test(the_font_is_a_file),
+        cmocka_unit_test(every_control_says_what_it_is_for),
+        cmocka_unit_test(every_window_says_what_it_is_for),
         cmocka_unit_test(tiny_frames_do_no_harm),
         cmocka_unit_test(the_panel_is_drawn_where_it_is),
         cmocka_unit_test(passes_are_those_of_the_library),

@@ -91,6 +91,18 @@ extern "C" struct panel_letters panel_font(const struct panel *panel)
     return letters;
 }
 
+// What scrolls explains itself.
+extern "C" bool panel_is_mute(const struct panel *panel)
+{
+    const ImGuiID id = panel->context->HoveredId;
+    ImGui::SetCurrentContext(panel->context);
+    for (ImGuiWindow *w : panel->context->Windows)
+        if (w->Active && (w->Flags & ImGuiWindowFlags_Tooltip ||
+                          id == ImGui::GetWindowScrollbarID(w, ImGuiAxis_Y)))
+            return false;
+    return id != 0;
+}
+
 extern "C" bool panel_has_font(const struct panel *panel)
 {
     return panel->has_font;
@@ -209,6 +221,7 @@ static bool dock_row(app *app)
         if (i)
             ImGui::SameLine();
         ImGui::RadioButton(names[i], &dock, i);
+        panel_tip("where this panel is");
     }
     const bool changed = dock != app->dock;
     app->dock = (app_dock)dock;
@@ -216,25 +229,32 @@ static bool dock_row(app *app)
     return changed;
 }
 
+static bool section(const char *name, const char *what, bool open = true)
+{
+    const bool shown = ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+    panel_tip(what);
+    return shown;
+}
+
 static bool sections(panel *panel, app *app, const panel_facts *facts)
 {
     bool changed = false;
-    if (ImGui::CollapsingHeader("Lights", ImGuiTreeNodeFlags_DefaultOpen))
+    if (section("Lights", "what shines, from where and how strongly"))
         changed |= panel_lights(panel, app, facts);
-    if (app->file.objects && ImGui::CollapsingHeader("Objects", ImGuiTreeNodeFlags_DefaultOpen))
+    if (app->file.objects && section("Objects", "the materials of the objects"))
         changed |= panel_objects(app, facts);
-    if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen))
+    if (section("Picture", "exposure, views, saving and recording"))
         changed |= panel_picture(app, facts);
-    if (ImGui::CollapsingHeader("Camera"))
+    if (section("Camera", "from where and how closely it is looked at", false))
         changed |= panel_camera(app);
-    if (ImGui::CollapsingHeader("Glare", app->now.observer.on ? ImGuiTreeNodeFlags_DefaultOpen : 0))
+    if (section("Glare", "the picture as a human eye sees it", app->now.observer.on))
         changed |= panel_glare(app, facts);
-    panel->histogram = ImGui::CollapsingHeader("Histogram");
+    panel->histogram = section("Histogram", "how often each value is on the screen", false);
     if (panel->histogram)
         panel_histogram(facts, panel->scale);
-    if (ImGui::CollapsingHeader("File"))
+    if (section("File", "what is in it, and another one", false))
         panel_file(app, facts);
-    if (ImGui::CollapsingHeader("Panel"))
+    if (section("Panel", "where it stands", false))
         changed |= dock_row(app);
     return changed;
 }
@@ -246,7 +266,8 @@ static bool panel_window(panel *panel, app *app, const panel_facts *facts)
     ImGui::Begin("relume", nullptr,
                  ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar |
                      ImGuiWindowFlags_AlwaysAutoResize);
-    ImGui::PushItemWidth(0.62f * ImGui::GetWindowWidth());
+    ImGui::PushItemWidth(-ImGui::CalcTextSize("environment").x -  // the longest label
+                         ImGui::GetStyle().ItemInnerSpacing.x);
     const bool changed = sections(panel, app, facts);
     if (facts->message && facts->message[0])
         ImGui::TextWrapped("%s", facts->message);

@@ -39,6 +39,8 @@ int panel_width(const struct panel *panel);
 bool panel_wants_histogram(const struct panel *panel);
 // Whether maps are being chosen from.
 bool panel_wants_maps(const struct panel *panel);
+// Whether the pointer is on a control that does not say what it is for: none should be.
+bool panel_is_mute(const struct panel *panel);
 
 // The letters, one byte a pixel, to be made a texture.
 struct panel_letters {

@@ -9,31 +9,12 @@ extern "C" {
 #include <algorithm>
 #include <cmath>
 
-void panel_tip(const char *text)
-{
-    if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("%s", text);
-}
-
-static bool slider(const char *label, double *value, double least, double most, const char *format,
-                   const char *what, ImGuiSliderFlags flags = 0)
-{
-    double now = *value;
-    const bool moved =
-        ImGui::SliderScalar(label, ImGuiDataType_Double, &now, &least, &most, format, flags);
-    panel_tip(what);
-    if (!moved || !std::isfinite(now))
-        return false;
-    *value = std::clamp(now, least, most);  // typed values may lie beyond
-    return true;
-}
-
 static bool float_slider(const char *label, float *value, float usual, float least, float most,
                          const char *format, const char *what)
 {
     double now = (double)(*value != 0 ? *value : usual);
-    if (!slider(label, &now, (double)least, (double)most, format, what,
-                ImGuiSliderFlags_Logarithmic))
+    if (!panel_slider(label, &now, (double)least, (double)most, format, what,
+                      ImGuiSliderFlags_Logarithmic))
         return false;
     *value = (float)now;
     return true;
@@ -44,8 +25,8 @@ static bool float_slider(const char *label, float *value, float usual, float lea
 static bool range_rows(relume_pass_params *p, const panel_facts *facts)
 {
     bool automatic = !(p->top > p->low);
-    bool changed = ImGui::Checkbox("range from the picture", &automatic);
-    panel_tip(
+    bool changed = panel_box(
+        "range from the picture", &automatic,
         "covers the picture without its darkest and brightest 1 % and without the background");
     if (changed) {
         p->low = automatic ? 0 : facts->range[0];
@@ -86,8 +67,8 @@ bool panel_enhancement(app *app, const panel_facts *facts)
         double radius = p->radius > 0 ? p->radius : 4;
         changed |= float_slider("gain", &p->gain, RELUME_PASS_GAIN, 1, 20, "%.1f times",
                                 "strength of the sharpening");
-        if (slider("radius", &radius, 1, 64, "%.0f pixels", "sharpens detail finer than this",
-                   ImGuiSliderFlags_Logarithmic)) {
+        if (panel_slider("radius", &radius, 1, 64, "%.0f pixels", "sharpens detail finer than this",
+                         ImGuiSliderFlags_Logarithmic)) {
             p->radius = (int)std::lround(radius);
             changed = true;
         }
@@ -117,9 +98,9 @@ static bool distance_row(app *app)
 {
     const double now = distance_of(app);
     double wanted = now;
-    if (!slider("distance", &wanted, 0.05 * now, 20 * now, "%.3g",
-                "from the eye to the object, world units; also by [ and ]",
-                ImGuiSliderFlags_Logarithmic))
+    if (!panel_slider("distance", &wanted, 0.05 * now, 20 * now, "%.3g",
+                      "from the eye to the object, world units; also by [ and ]",
+                      ImGuiSliderFlags_Logarithmic))
         return false;
     app_dolly(app, wanted / now);
     return true;
@@ -133,15 +114,15 @@ static bool lens_rows(app *app)
     const double away = distance_of(app);
     const double plane = orbit_is(app) ? 0 : f->geometry.st_z;
     const double least = plane - 4 * std::fabs(away), most = plane + 0.9 * std::fabs(away);
-    bool changed = slider("aperture", &s->aperture, 0, extent > 0 ? extent : away, "%.3g",
-                          "width of the lens, world units: 0 is sharp everywhere; also by A");
-    changed |=
-        slider("focus", &s->focus_z, least, most, "%.3g",
-               orbit_is(app) ? "distance from the middle to the plane in focus, world units"
-                             : "height z of the plane in focus, world units; also by , and .");
-    if (ImGui::Button(app->picks_focus ? "now click in the picture" : "focus by a click (F)"))
+    bool changed = panel_slider("aperture", &s->aperture, 0, extent > 0 ? extent : away, "%.3g",
+                                "width of the lens, world units: 0 is sharp everywhere; also by A");
+    changed |= panel_slider("focus", &s->focus_z, least, most, "%.3g",
+                            orbit_is(app)
+                                ? "distance from the middle to the plane in focus, world units"
+                                : "height z of the plane in focus, world units; also by , and .");
+    if (panel_button(app->picks_focus ? "now click in the picture" : "focus by a click (F)",
+                     "then click on what should be sharp"))
         (void)keys_press(app, 'f', false);
-    panel_tip("then click on what should be sharp");
     return changed;
 }
 
@@ -151,10 +132,10 @@ static bool slab_rows(app *app)
     relume_vec3 *eye = &app->now.camera.eye;
     bool changed = false;
     if (!orbit_is(app)) {
-        changed |= slider("eye x", &eye->x, f->uv_min[0], f->uv_max[0], "%.3f",
-                          "to the right, world units");
-        changed |=
-            slider("eye y", &eye->y, f->uv_min[1], f->uv_max[1], "%.3f", "upwards, world units");
+        changed |= panel_slider("eye x", &eye->x, f->uv_min[0], f->uv_max[0], "%.3f",
+                                "to the right, world units");
+        changed |= panel_slider("eye y", &eye->y, f->uv_min[1], f->uv_max[1], "%.3f",
+                                "upwards, world units");
     }
     changed |= distance_row(app);
     return changed | lens_rows(app);
@@ -164,21 +145,22 @@ static bool look_rows(app *app)
 {
     relume_pan_tilt *look = &app->now.camera.look;
     double pan = look->pan_deg, tilt = look->tilt_deg;
-    bool changed = slider("pan", &pan, -180, 180, "%.1f deg", "to the right");
-    changed |= slider("tilt", &tilt, -90, 90, "%.1f deg", "upwards");
+    bool changed = panel_slider("pan", &pan, -180, 180, "%.1f deg", "to the right");
+    changed |= panel_slider("tilt", &tilt, -90, 90, "%.1f deg", "upwards");
     look->pan_deg = pan;
     look->tilt_deg = tilt;
-    return changed | slider("zoom", &look->zoom, 0.3, 50, "%.2f times",
-                            "1 shows 90 degrees across; also by the wheel",
-                            ImGuiSliderFlags_Logarithmic);
+    return changed | panel_slider("zoom", &look->zoom, 0.3, 50, "%.2f times",
+                                  "1 shows 90 degrees across; also by the wheel",
+                                  ImGuiSliderFlags_Logarithmic);
 }
 
 static bool picture_rows(app *app)
 {
     app_state *s = &app->now;
-    bool changed = slider("zoom", &s->zoom, 0.1, 64, "%.2f times",
-                          "1 fits the window; also by the wheel", ImGuiSliderFlags_Logarithmic);
-    if (ImGui::Button("fit the window")) {
+    bool changed =
+        panel_slider("zoom", &s->zoom, 0.1, 64, "%.2f times",
+                     "1 fits the window; also by the wheel", ImGuiSliderFlags_Logarithmic);
+    if (panel_button("fit the window", "show the whole picture, in the middle")) {
         s->zoom = 1;
         s->shift[0] = s->shift[1] = 0;
         changed = true;

@@ -20,24 +20,22 @@ static bool list_row(app_state *s, int i)
     char label[64];
     ImGui::PushID(i);
     bool on = !s->lamp[i].off;
-    if (ImGui::Checkbox("##on", &on)) {
+    if (panel_box("##on", &on, "whether this light shines")) {
         s->lamp[i].off = !on;
         changed = true;
     }
-    if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("on");
     ImGui::SameLine();
-    changed |= ImGui::Checkbox("##solo", &s->lamp[i].solo);
-    if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("solo: only the lights marked here shine");
+    changed |= panel_box("##solo", &s->lamp[i].solo, "solo: only the lights marked here shine");
     ImGui::SameLine();
     ImGui::ColorButton("##colour", colour_of(s->light[i]), ImGuiColorEditFlags_NoTooltip);
+    panel_tip("the colour of this light; select it to change that below");
     ImGui::SameLine();
     std::snprintf(label, sizeof label, "%d %s", i + 1, lamps_kind_words(s->light[i].kind));
     if (ImGui::Selectable(label, s->selected == i)) {
         s->selected = i;
         changed = true;
     }
+    panel_tip("select this light to change it below");
     ImGui::PopID();
     return changed;
 }
@@ -82,6 +80,7 @@ static bool ball(app *app, float side)
     app_state *s = &app->now;
     ImDrawList *draw = ImGui::GetWindowDrawList();
     ImGui::InvisibleButton("##ball", ImVec2(side, side));
+    panel_tip("a ball seen from the front: drag to where the light comes from");
     bool changed = false;
     if (ImGui::IsItemActive()) {
         const ImVec2 at = ImGui::GetIO().MousePos;
@@ -102,13 +101,14 @@ static bool ball(app *app, float side)
     return changed;
 }
 
-static bool edit_vector(const char *label, relume_vec3 *v)
+static bool edit_vector(const char *label, relume_vec3 *v, const char *what)
 {
     double values[3] = {v->x, v->y, v->z};
-    if (!ImGui::DragScalarN(label, ImGuiDataType_Double, values, 3, 0.01f, nullptr, nullptr,
-                            "%.3f"))
-        return false;
-    if (!std::isfinite(values[0]) || !std::isfinite(values[1]) || !std::isfinite(values[2]))
+    const bool moved =
+        ImGui::DragScalarN(label, ImGuiDataType_Double, values, 3, 0.01f, nullptr, nullptr, "%.3f");
+    panel_tip(what);
+    if (!moved || !std::isfinite(values[0]) || !std::isfinite(values[1]) ||
+        !std::isfinite(values[2]))
         return false;
     *v = relume_vec3{values[0], values[1], values[2]};
     return true;
@@ -118,7 +118,7 @@ static bool flip_side(app *app)
 {
     relume_vec3 d = app_seen_light(app, app->now.selected);
     bool behind = d.z < 0;
-    if (!ImGui::Checkbox("from behind", &behind))
+    if (!panel_box("from behind", &behind, "the half of the ball that cannot be seen"))
         return false;
     d.z = -d.z;
     app_aim_light(app, app->now.selected, d);
@@ -129,22 +129,24 @@ static bool flip_side(app *app)
 static bool edit_geometry(relume_light *light)
 {
     const relume_light was = *light;
-    const double least = -180, most = 180, narrow = 0.5, wide = 89.5;
     const unsigned fields = lamps_fields(light->kind);
     bool changed = false;
     if (fields & LAMP_TURN)
-        changed |= ImGui::SliderScalar("rotation", ImGuiDataType_Double, &light->rotate_deg, &least,
-                                       &most, "%.1f deg");
+        changed |= panel_slider("rotation", &light->rotate_deg, -180, 180, "%.1f deg",
+                                "turns the surroundings about the vertical axis");
     if (fields & LAMP_PLACE)
-        changed |= edit_vector("position", &light->position);
+        changed |= edit_vector("position", &light->position,
+                               "x, y, z in world units: drag sideways, or Ctrl+click and type");
     if (fields & LAMP_AXIS)
-        changed |= edit_vector("axis", &light->direction);
+        changed |= edit_vector("axis", &light->direction, "x, y, z of where it shines to");
     if (fields & LAMP_ANGLE)
-        changed |= ImGui::SliderScalar("half angle", ImGuiDataType_Double, &light->half_angle_deg,
-                                       &narrow, &wide, "%.1f deg");
+        changed |= panel_slider("half angle", &light->half_angle_deg, 0.5, 89.5, "%.1f deg",
+                                "from the axis to the edge of its cone");
     if (fields & LAMP_EDGES) {
-        changed |= edit_vector("half edge u", &light->u);
-        changed |= edit_vector("half edge v", &light->v);
+        changed |= edit_vector("half edge u", &light->u,
+                               "x, y, z from the middle to the middle of one side");
+        changed |= edit_vector("half edge v", &light->v,
+                               "x, y, z from the middle to the middle of the next side");
     }
     if (changed && relume_light_check(light, "light", nullptr))
         *light = was;
@@ -158,18 +160,18 @@ static bool choose_kind(app *app)
                                               RELUME_LIGHT_SPOT, RELUME_LIGHT_AREA};
     app_state *s = &app->now;
     const relume_light_kind now = s->light[s->selected].kind;
-    bool changed = false;
-    if (!app->near_lights || !(lamps_fields(now) & LAMP_CHANGE) ||
-        !ImGui::BeginCombo("kind", lamps_kind_words(now)))
+    if (!app->near_lights || !(lamps_fields(now) & LAMP_CHANGE))
         return false;
-    for (const relume_light_kind kind : kinds) {
-        if (ImGui::Selectable(lamps_kind_words(kind), kind == now) && kind != now) {
-            lamps_change_kind(s, s->selected, kind, app_middle(app), 1.5 * app_reach(app));
-            changed = true;
-        }
-    }
-    ImGui::EndCombo();
-    return changed;
+    const int was = (int)(std::find(kinds, std::end(kinds), now) - kinds);
+    int chosen = was;
+    if (!panel_choice(
+            "kind", &chosen, (int)std::size(kinds),
+            [](int i) { return lamps_kind_words(kinds[i]); },
+            "far away, a point, a cone or a glowing rectangle") ||
+        chosen == was)
+        return false;
+    lamps_change_kind(s, s->selected, kinds[chosen], app_middle(app), 1.5 * app_reach(app));
+    return true;
 }
 
 static bool edit_light(panel *panel, app *app)
@@ -185,12 +187,11 @@ static bool edit_light(panel *panel, app *app)
     changed |= flip_side(app);
     changed |= ImGui::ColorEdit3("colour", light->rgb,
                                  ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_Float |
-                                     ImGuiColorEditFlags_HDR);
+                                     ImGuiColorEditFlags_HDR | ImGuiColorEditFlags_NoTooltip);
+    panel_tip("the colour of this light: click to choose one");
     ImGui::EndGroup();
-    const double least = -8, most = 8;
-    changed |=
-        ImGui::SliderScalar("stops", ImGuiDataType_Double, &lamp->stops, &least, &most, "%+.2f");
-    panel_tip("brightness of this light: +1 doubles it, -1 halves it");
+    changed |= panel_slider("stops", &lamp->stops, -8, 8, "%+.2f",
+                            "brightness of this light: +1 doubles it, -1 halves it");
     changed |= choose_kind(app);
     return changed | edit_geometry(light);
 }
@@ -204,24 +205,21 @@ static void wish_light(app *app, const char *spec)
 static bool light_buttons(panel *panel, app *app)
 {
     bool changed = false;
-    if (ImGui::Button("add"))
+    if (panel_button("add", "one more light; also by M"))
         changed |= keys_press(app, 'm', false);
     ImGui::SameLine();
-    if (ImGui::Button("remove"))
+    if (panel_button("remove", "the selected light; also by Delete"))
         changed |= keys_press(app, APP_KEY_DELETE, false);
     ImGui::SameLine();
-    if (ImGui::Button("save rig"))
+    if (panel_button("save rig", "save these lights as a rig file, which --rig reads"))
         app->wish = APP_WISH_SAVE_RIG;
-    panel_tip("save these lights as a rig file, which --rig reads");
     for (const lamp_preset *p = lamp_presets; p->name; p++) {
         if (p != lamp_presets)
             ImGui::SameLine();
-        if (ImGui::Button(p->name)) {
+        if (panel_button(p->name, p->what)) {
             lamps_arrange(&app->now, p, app_pole_y(app));
             changed = true;
         }
-        if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s", p->what);
     }
     ImGui::SetNextItemWidth(-1);
     if (ImGui::InputTextWithHint("##spec", "spot 0 0 2 0 0 -1 20 rgb 1 .8 .6", panel->spec,
@@ -242,6 +240,8 @@ static void environment_rows(panel *panel, app *app, const panel_facts *facts)
 {
     const char *now = facts->map_in_use ? facts->map_in_use : "choose a file";
     panel->maps = ImGui::BeginCombo("environment", now);
+    if (!panel->maps)
+        panel_tip("light from all around: a map (.hdr, .exr, .pfm) beside the one in use");
     if (panel->maps) {
         for (const char *const *name = facts->map; name && *name; name++)
             if (ImGui::Selectable(*name, !std::strcmp(*name, now)))
@@ -249,9 +249,11 @@ static void environment_rows(panel *panel, app *app, const panel_facts *facts)
         ImGui::EndCombo();
     }
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::InputTextWithHint("##environment", "or file.hdr, then Enter", panel->environment,
-                                 sizeof panel->environment, ImGuiInputTextFlags_EnterReturnsTrue) &&
-        panel->environment[0])
+    const bool entered =
+        ImGui::InputTextWithHint("##environment", "or file.hdr, then Enter", panel->environment,
+                                 sizeof panel->environment, ImGuiInputTextFlags_EnterReturnsTrue);
+    panel_tip("type the name of a map and press Enter");
+    if (entered && panel->environment[0])
         wish_map(app, "", panel->environment);
 }
 

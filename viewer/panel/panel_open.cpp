@@ -31,7 +31,7 @@ void panel_start(app *app, float scale)
     ImGui::TextUnformatted("Look at an object under any light.");
     ImGui::Dummy(ImVec2(1, margin));
     ImGui::TextUnformatted("Drop a file onto this window, or");
-    if (ImGui::Button("open a file (Ctrl+O)"))
+    if (panel_button("open a file (Ctrl+O)", "choose one from a list"))
         (void)keys_press(app, APP_CONTROL | 'o', false);
     ImGui::Dummy(ImVec2(1, margin));
     ImGui::TextUnformatted(
@@ -64,6 +64,7 @@ static void entries(panel *panel, app *app, const browser *b)
     char label[300];
     if (ImGui::Selectable(".. (one folder up)", false))
         wish_path(app, b, "..");
+    panel_tip("go into the folder that holds this one");
     if (b->trouble)
         ImGui::TextWrapped("This folder cannot be read: %s", b->trouble);
     else if (!b->count)
@@ -76,7 +77,11 @@ static void entries(panel *panel, app *app, const browser *b)
             const bool chosen = !std::strcmp(panel->path, e.name);
             std::snprintf(label, sizeof label, "%s%s%s##%d", e.name, e.folder ? "/" : "",
                           e.opens ? " (opens)" : "", i);
-            if (!ImGui::Selectable(label, chosen, ImGuiSelectableFlags_AllowDoubleClick))
+            const bool clicked =
+                ImGui::Selectable(label, chosen, ImGuiSelectableFlags_AllowDoubleClick);
+            panel_tip(e.folder && !e.opens ? "click to go into this folder"
+                                           : "double-click to open it");
+            if (!clicked)
                 continue;
             if ((e.folder && !e.opens) || ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
                 wish_path(app, b, e.name);
@@ -96,8 +101,11 @@ static bool path_line(panel *panel, const browser *b)
     ImGui::SetNextItemWidth(-1);
     if (appears)
         ImGui::SetKeyboardFocusHere();
-    return ImGui::InputTextWithHint("##path", "or type a path, then Enter", panel->path,
-                                    sizeof panel->path, ImGuiInputTextFlags_EnterReturnsTrue);
+    const bool entered =
+        ImGui::InputTextWithHint("##path", "or type a path, then Enter", panel->path,
+                                 sizeof panel->path, ImGuiInputTextFlags_EnterReturnsTrue);
+    panel_tip("of a file or a folder; ~ is your own");
+    return entered;
 }
 
 void panel_browse(panel *panel, app *app, const browser *b)
@@ -118,9 +126,9 @@ void panel_browse(panel *panel, app *app, const browser *b)
     bool opens = path_line(panel, b);
     if (opens)
         ImGui::SetKeyboardFocusHere(-1);  // what is typed after a mistake corrects it
-    opens |= ImGui::Button("open (Enter)");
+    opens |= panel_button("open (Enter)", "what the line says");
     ImGui::SameLine();
-    if (ImGui::Button("cancel (Esc)"))
+    if (panel_button("cancel (Esc)", "back to the picture"))
         app->browse = false;
     if (opens)
         wish_path(app, b, panel->path);

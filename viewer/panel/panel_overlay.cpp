@@ -5,6 +5,7 @@ extern "C" {
 #include "app/events.h"
 }
 
+#include <algorithm>
 #include <cstdio>
 
 static const ImGuiWindowFlags fixed =
@@ -90,40 +91,55 @@ void panel_question(app *app, float scale)
                             ImVec2(0.5f, 0.5f));
     ImGui::Begin("quit", nullptr, fixed);
     ImGui::TextUnformatted("Quit the viewer?");
-    if (ImGui::Button("quit (Enter)"))
+    if (panel_button("quit (Enter)", "close the window"))
         app->quit = true;
     ImGui::SameLine(0, 12 * scale);
-    if (ImGui::Button("stay (Esc)"))
+    if (panel_button("stay (Esc)", "back to the picture"))
         app->asks = false;
     ImGui::End();
 }
 
 // ---------------------------------------------------------------- keys
 
+using help_rows = std::vector<const key_binding *>;
+static const float keys_units = 110;  // for the names of keys
+
+// Of rows `from` and on, with a margin behind them.
+static float help_width(const help_rows &rows, size_t from, size_t count, float scale)
+{
+    float widest = 0;
+    for (size_t i = from; i < std::min(from + count, rows.size()); i++)
+        widest = std::max(widest, ImGui::CalcTextSize(rows[i]->what).x);
+    return (keys_units + 16) * scale + widest;
+}
+
 static void help_row(const key_binding *b, float left, float scale)
 {
     if (left > 0)
         ImGui::SameLine(left);
     ImGui::TextColored(ImVec4(1, 0.85f, 0.5f, 1), "%s", b->shown);
-    ImGui::SameLine(left + 110 * scale);
+    ImGui::SameLine(left + keys_units * scale);
     ImGui::TextUnformatted(b->what);
 }
 
 // In two columns where one is too long for the window, if it is wide enough; else it scrolls.
 void panel_help(const app *app, float scale)
 {
-    const float all = (float)app_window_width(app), column = 440 * scale;
+    const float all = (float)app_window_width(app);
     ImGui::SetNextWindowPos(ImVec2(0.5f * all, 0.5f * (float)app->height), ImGuiCond_Always,
                             ImVec2(0.5f, 0.5f));
     ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), ImVec2(all, (float)app->height));
     ImGui::Begin("keys", nullptr, fixed);
-    std::vector<const key_binding *> shown;
+    help_rows shown;
     for (const key_binding *b = key_bindings; b->key; b++)
         if (b->shown)
             shown.push_back(b);
     const bool fits = (float)shown.size() * ImGui::GetTextLineHeightWithSpacing() <
                       (float)app->height - 2 * ImGui::GetStyle().WindowPadding.y;
-    const size_t rows = fits || 2 * column > all ? shown.size() : (shown.size() + 1) / 2;
+    const size_t half = (shown.size() + 1) / 2;
+    const float column = help_width(shown, 0, half, scale);
+    const bool wide = column + help_width(shown, half, half, scale) <= all;
+    const size_t rows = fits || !wide ? shown.size() : half;
     for (size_t i = 0; i < rows; i++) {
         help_row(shown[i], 0, scale);
         if (i + rows < shown.size()) {

@@ -12,6 +12,7 @@ extern "C" {
 
 #include <imgui.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -38,13 +39,22 @@ struct panel {
 bool panel_add_font(const char *path, float scale);
 void panel_add_plain_font(float scale);
 
+// Controls: `what` each is for is said while the pointer is on it, and panel_tip says it of the
+// last one of any other kind. They return whether the user changed the value, or pressed.
+void panel_tip(const char *what);
+bool panel_button(const char *label, const char *what);
+bool panel_box(const char *label, bool *on, const char *what);
+bool panel_slider(const char *label, double *value, double least, double most, const char *format,
+                  const char *what, ImGuiSliderFlags flags = 0);
+// One of `count` by their names, which must outlast the call of `name` alone.
+bool panel_choice(const char *label, int *chosen, int count,
+                  const std::function<const char *(int)> &name, const char *what);
+
 // Sections of the panel: what they return is whether the picture changed.
 bool panel_lights(panel *panel, app *app, const panel_facts *facts);
 bool panel_picture(app *app, const panel_facts *facts);
 bool panel_enhancement(app *app, const panel_facts *facts);
 bool panel_camera(app *app);
-// What the last item is for, while the pointer is on it.
-void panel_tip(const char *text);
 bool panel_glare(app *app, const panel_facts *facts);
 bool panel_objects(app *app, const panel_facts *facts);
 void panel_histogram(const panel_facts *facts, float scale);

@@ -6,55 +6,46 @@
 
 #include <cstdio>
 
+// The difference comes last, and needs photographs.
+static_assert(RELUME_PASS_DIFFERENCE == RELUME_PASSES - 1, "views are counted");
 static bool choose_pass(app *app)
 {
-    bool changed = false;
-    if (!ImGui::BeginCombo("view", relume_pass_name(app->now.pass)))
-        return false;
-    for (int i = 0; i < RELUME_PASSES; i++) {
-        if (i == RELUME_PASS_DIFFERENCE && !app->compared)
-            continue;
-        if (ImGui::Selectable(relume_pass_name((relume_pass)i), app->now.pass == i)) {
-            app->now.pass = (relume_pass)i;
-            changed = true;
-        }
-    }
-    ImGui::EndCombo();
+    int pass = app->now.pass;
+    const bool changed = panel_choice(
+        "view", &pass, app->compared ? RELUME_PASSES : RELUME_PASS_DIFFERENCE,
+        [](int i) { return relume_pass_name((relume_pass)i); },
+        "what is shown: colours, shapes or enhanced detail; also by V");
+    app->now.pass = (relume_pass)pass;
     return changed;
 }
 
-static bool choose_tone(app *app)
+static int count_tones()
 {
-    bool changed = false;
-    if (!ImGui::BeginCombo("tone", relume_tones[app->now.tone]->name))
-        return false;
-    for (int i = 0; relume_tones[i]; i++)
-        if (ImGui::Selectable(relume_tones[i]->name, app->now.tone == i)) {
-            app->now.tone = i;
-            changed = true;
-        }
-    ImGui::EndCombo();
-    return changed;
+    int n = 0;
+    while (relume_tones[n])
+        n++;
+    return n;
 }
 
 bool panel_picture(app *app, const panel_facts *facts)
 {
-    const double least = -10, most = 10;
-    bool changed = ImGui::SliderScalar("exposure", ImGuiDataType_Double, &app->now.exposure_ev,
-                                       &least, &most, "%+.2f EV");
-    panel_tip("brightness of the picture: +1 EV doubles it; also by + and -");
+    bool changed = panel_slider("exposure", &app->now.exposure_ev, -10, 10, "%+.2f EV",
+                                "brightness of the picture: +1 EV doubles it; also by + and -");
     bool automatic = app->now.auto_exposure;
-    if (ImGui::Checkbox("automatic exposure", &automatic))
+    if (panel_box("automatic exposure", &automatic, "as an eye adapts to what it sees"))
         changed |= keys_press(app, 'e', false);
-    panel_tip("as an eye adapts to what it sees");
-    changed |= choose_tone(app);
+    changed |= panel_choice(
+        "tone", &app->now.tone, count_tones(), [](int i) { return relume_tones[i]->name; },
+        "how bright light is brought into the range of the screen");
     changed |= choose_pass(app);
     changed |= panel_enhancement(app, facts);
-    changed |= ImGui::Checkbox("ball", &app->now.ball);
+    changed |=
+        panel_box("ball", &app->now.ball, "a ball in the corner shows the light: drag on it");
     ImGui::SameLine();
-    changed |= ImGui::Checkbox("handles", &app->gizmos);
+    changed |= panel_box("handles", &app->gizmos, "marks of the lights in the picture: drag them");
     ImGui::SameLine();
-    changed |= ImGui::Checkbox("inspector", &app->inspect);
+    changed |= panel_box("inspector", &app->inspect,
+                         "the reflectance of the pixel under the pointer, in every direction");
     static const struct {
         const char *name;
         app_wish wish;
@@ -66,30 +57,14 @@ bool panel_picture(app *app, const panel_facts *facts)
         {"turntable", APP_WISH_TURNTABLE, "record the eye going once around"},
     };
     for (const auto &w : wishes) {
-        if (ImGui::Button(w.name))
+        if (panel_button(w.name, w.what))
             app->wish = w.wish;
-        panel_tip(w.what);
         ImGui::SameLine();
     }
-    if (ImGui::Button("reset")) {
+    if (panel_button("reset", "eye, lights and picture as they were at the start")) {
         app_reset(app);
         changed = true;
     }
-    panel_tip("eye, lights and picture as they were at the start");
-    return changed;
-}
-
-static bool choose_mode(observer *s)
-{
-    bool changed = false;
-    if (!ImGui::BeginCombo("mode", observer_mode_name(s->mode)))
-        return false;
-    for (int i = 0; i < OBSERVER_MODES; i++)
-        if (ImGui::Selectable(observer_mode_name((observer_mode)i), s->mode == i)) {
-            s->mode = (observer_mode)i;
-            changed = true;
-        }
-    ImGui::EndCombo();
     return changed;
 }
 
@@ -100,12 +75,10 @@ static bool parts_row(observer *s)
         bool on = !(s->parts_off & p->part);
         if (p != observer_parts && p != observer_parts + 3)
             ImGui::SameLine();
-        if (ImGui::Checkbox(p->name, &on)) {
+        if (panel_box(p->name, &on, p->what)) {
             s->parts_off ^= p->part;
             changed = true;
         }
-        if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s", p->what);
     }
     return changed;
 }
@@ -113,37 +86,37 @@ static bool parts_row(observer *s)
 bool panel_glare(app *app, const panel_facts *facts)
 {
     observer *s = &app->now.observer;
-    const double least[] = {0.1, 1e-2, 0}, most[] = {20, 1e5, 0.95};
     double magnify = observer_magnify(s), nits = observer_nits(s);
-    bool changed = false;
-    if (ImGui::Checkbox("glare", &s->on))
-        changed = true;
+    int mode = s->mode;
+    bool changed = panel_box("glare", &s->on,
+                             "the picture as a human eye sees it, with halos around lights; H");
     ImGui::SameLine();
-    changed |= ImGui::Checkbox("paused", &s->paused);
+    changed |= panel_box("paused", &s->paused, "the eye's time stands still");
     ImGui::SameLine();
-    changed |= ImGui::Checkbox("sources", &s->sources);
-    if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("lights in view are drawn as small bright points");
-    if (ImGui::SliderScalar("magnify", ImGuiDataType_Double, &magnify, &least[0], &most[0], "%.2f",
-                            ImGuiSliderFlags_Logarithmic)) {
+    changed |= panel_box("sources", &s->sources, "lights in view are drawn as small bright points");
+    if (panel_slider("magnify", &magnify, 0.1, 20, "%.2f", "size of the halos: 1 is true to scale",
+                     ImGuiSliderFlags_Logarithmic)) {
         s->magnify = magnify;
         changed = true;
     }
-    if (ImGui::SliderScalar("cd/m2", ImGuiDataType_Double, &nits, &least[1], &most[1], "%.3g",
-                            ImGuiSliderFlags_Logarithmic)) {
+    if (panel_slider("cd/m2", &nits, 1e-2, 1e5, "%.3g",
+                     "luminance of a pixel of value 1: the pupil adapts to it",
+                     ImGuiSliderFlags_Logarithmic)) {
         s->nits = nits;
         changed = true;
     }
-    changed |= ImGui::SliderScalar("squint", ImGuiDataType_Double, &s->squint, &least[2], &most[2],
-                                   "%.2f");
+    changed |= panel_slider("squint", &s->squint, 0, 0.95, "%.2f",
+                            "how far the lids are closed: 0 is open");
     bool loop = s->cycle_s > 0;
-    if (ImGui::Checkbox("loop of 4 s", &loop)) {
+    if (panel_box("loop of 4 s", &loop, "computed once, then repeated: fast")) {
         s->cycle_s = loop ? 4 : 0;
         changed = true;
     }
-    if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("computed once, then repeated: fast");
-    changed |= choose_mode(s);
+    changed |= panel_choice(
+        "mode", &mode, OBSERVER_MODES, [](int i) { return observer_mode_name((observer_mode)i); },
+        "how light scatters: of every pixel (fft), of bright spots only (billboard), or both "
+        "(hybrid)");
+    s->mode = (observer_mode)mode;
     changed |= parts_row(s);
     if (facts->eye)
         ImGui::TextUnformatted(facts->eye);
@@ -153,22 +126,14 @@ bool panel_glare(app *app, const panel_facts *facts)
 static bool choose_material(const char *label, const struct relume_objects_info *info,
                             int *material)
 {
-    char text[128];
-    bool changed = false;
-    std::snprintf(text, sizeof text, "%s (%s)", info->material[*material].name,
-                  info->material[*material].model);
-    if (!ImGui::BeginCombo(label, text))
-        return false;
-    for (int i = 0; i < info->materials; i++) {
-        std::snprintf(text, sizeof text, "%s (%s)##%d", info->material[i].name,
-                      info->material[i].model, i);
-        if (ImGui::Selectable(text, i == *material)) {
-            *material = i;
-            changed = true;
-        }
-    }
-    ImGui::EndCombo();
-    return changed;
+    std::string text;
+    return panel_choice(
+        label, material, info->materials,
+        [&](int i) {
+            text = std::string(info->material[i].name) + " (" + info->material[i].model + ")";
+            return text.c_str();
+        },
+        "the material that covers it");
 }
 
 // What a material takes on disk and of graphics memory, and the time of its last frame.
@@ -199,6 +164,7 @@ bool panel_objects(app *app, const panel_facts *facts)
         if (i)
             ImGui::SameLine();
         const bool chosen = ImGui::RadioButton(splits[i], app->now.split == i);
+        panel_tip("compare two materials of the first part; also by Q");
         while (chosen && app->now.split != i)
             changed |= keys_press(app, 'q', false);
     }
@@ -240,9 +206,9 @@ void panel_file(app *app, const panel_facts *facts)
     ImGui::TextUnformatted(facts->file ? facts->file : "");
     for (const char *const *line = facts->line; line && *line; line++)
         ImGui::TextUnformatted(*line);
-    if (ImGui::Button("open another file"))
+    if (panel_button("open another file",
+                     "choose one from a list; also by Ctrl+O, or drop it here"))
         (void)keys_press(app, APP_CONTROL | 'o', false);
-    ImGui::Checkbox("keep these lights for it", &app->keep_lights);
-    if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("otherwise the next file begins with one light from the front");
+    (void)panel_box("keep these lights for it", &app->keep_lights,
+                    "otherwise the next file begins with one light from the front");
 }

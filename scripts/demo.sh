@@ -33,7 +33,7 @@ echo "  $out/bust.jpg  all five in a row (docs/pictures/bust.jpg)"
 
 echo "A glossy teapot: 49 eyes, 100 lights, one file"
 "$relume" synth teapot -o "$out/teapot" --views 7x7 --lights 100 --size 288 --samples 4
-"$relume" encode "$out/teapot" -o "$out/teapot.exr" --basis sh --coefficients 49
+"$relume" encode "$out/teapot" -o "$out/teapot.exr"
 picture "light from the upper left" "$out/teapot-left.png" \
     "$relume" relight "$out/teapot.exr" --light "dir -1 0.7 0.8"
 picture "light from the upper right" "$out/teapot-right.png" \

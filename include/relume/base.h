@@ -40,6 +40,8 @@ struct relume_limits;
 // How much a sentence of the log matters.
 enum relume_level { RELUME_ERROR, RELUME_WARNING, RELUME_NOTE };
 
+// The ending of a counted noun: "" for 1, else "s".
+RELUME_API const char *relume_plural(int64_t n);
 // The name in a NULL-terminated list that somebody most likely meant who typed `given`; NULL when
 // none is near.
 RELUME_API const char *relume_name_nearest(const char *given, const char *const *names);
@@ -132,8 +134,13 @@ RELUME_RESULT relume_status relume_file_save(const char *path, const void *bytes
                                              const struct relume_log *log);
 
 // What relume_file_save would refuse before it writes, for work that takes long: `path` is a file
-// that is read here (RELUME_EINVAL with a sentence), or its folder is not there (RELUME_EIO).
+// that is read here (RELUME_EINVAL with a sentence), or a folder or may not be written, or its own
+// folder is not there or may not be written (RELUME_EIO).
 RELUME_RESULT relume_status relume_file_check(const char *path, const struct relume_log *log);
+// The same of a folder that a `force` may replace: RELUME_EINVAL with a sentence where one with
+// something in it is there.
+RELUME_RESULT relume_status relume_folder_check(const char *path, bool force,
+                                                const struct relume_log *log);
 
 // Something that takes long to make, a folder or a file written by others (a film): made in a place
 // of its own beside its name, and given the name when it is whole. What a stopped run leaves there

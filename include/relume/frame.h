@@ -69,6 +69,8 @@ struct relume_frame_params {
     enum relume_filter filter;  // as relume_view_params, and of views in another size
     uint64_t memory;  // bytes that a renderer keeps between frames; default: 1 GiB. One frame may
                       // need more
+    // How strong `pass` is; pictures, range and threads in it are not looked at. Default: NULL.
+    const struct relume_pass_params *strength;
 };
 #define relume_frame_params(...)                                                                   \
     (&(const struct relume_frame_params){RELUME_SIZED(relume_frame_params), __VA_ARGS__})

@@ -33,6 +33,34 @@ RELUME_RESULT relume_status relume_exif_read(struct relume_exif *out, const char
 // x ISO / 100 / aperture^2; what is not noted counts as 1. Zero when the shutter is not noted.
 RELUME_API double relume_exif_exposure(const struct relume_exif *notes);
 
+// The photographs that somebody named. Thread-safety: plain data.
+struct relume_photographs {
+    int count;
+    char **path;   // [count]
+    char *mask;    // the last that its name calls a mask, else NULL
+    char *lights;  // the only .lp file beside them, else NULL
+};
+struct relume_photographs_params {
+    size_t struct_size;  // filled by the macro (base.h)
+    const struct relume_log *log;
+    bool folders;      // keep folders inside folders: they hold the photographs of one camera each
+    bool by_products;  // keep pictures whatever their names say
+    bool quiet;        // no note
+    bool companions;   // `mask` and `lights` are used: the note does not call them left out
+};
+#define relume_photographs_params(...)                                                             \
+    (&(const struct relume_photographs_params){RELUME_SIZED(relume_photographs_params),            \
+                                               __VA_ARGS__})
+
+// What `n` paths name: files, and what folders hold in the order of names. Left out, and named in
+// one note, is what both first bytes and name say is no photograph (texts, archives, videos), what
+// relume wrote, and beside other pictures those named as their mask, depth, normals, disparity or
+// albedo. RELUME_EDATA where a path does not exist or no photograph is left, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_photographs_list(struct relume_photographs *out,
+                                                    const char *const *paths, int n,
+                                                    const struct relume_photographs_params *params);
+RELUME_API void relume_photographs_free(struct relume_photographs *list);
+
 // Photographs of one scene that follow each other: group[i] counts from 0 in the order of time (of
 // the list where no times are noted). A new group begins after a pause of more than `pause_s`
 // beyond the exposure itself (0: 10 s), when the camera or size changes, and when an exposure

@@ -373,15 +373,15 @@ static relume_status check_balls(const struct relume_acquire_params *p)
                         "the ball, %d of the object",
                         odd, what, balls, objects);
     return log_fail(p->log, RELUME_EDATA,
-                    "%d photographs of the ball; expected %d, one for each of the object", balls,
-                    objects);
+                    "%d photograph%s of the ball; expected %d, one for each of the object", balls,
+                    relume_plural(balls), objects);
 }
 
 static relume_status check_params(const struct relume_acquire_params *p)
 {
     if (p->photograph_count < 3)
-        return log_fail(p->log, RELUME_EDATA, "%d photographs; expected at least 3",
-                        p->photograph_count);
+        return log_fail(p->log, RELUME_EDATA, "%d photograph%s; expected at least 3",
+                        p->photograph_count, relume_plural(p->photograph_count));
     const relume_status status = check_balls(p);
     if (status)
         return status;

@@ -197,7 +197,7 @@ static relume_status no_ball(const struct shoot *s)
     return log_fail(s->p.log, RELUME_EDATA,
                     "%s: %s %s ball%s found; give --lights FILE, or --ball x,y,r where one is%s",
                     ball_photo(&s->shot[0]), what, s->p.matte ? "matte" : "mirror",
-                    n > 1 ? "s" : "", s->p.matte ? "" : ", or --matte for a white ball");
+                    relume_plural(n), s->p.matte ? "" : ", or --matte for a white ball");
 }
 
 static relume_status find_balls(struct shoot *s)
@@ -520,8 +520,9 @@ static relume_status lights_from_file(struct shoot *s)
     if (!status && is_lp(s->p.lights))
         status = match_names(s, order, &matched);
     if (!status && !matched && list.count != s->p.photograph_count)
-        status = log_fail(s->p.log, RELUME_EDATA, "%s: %d lights; expected %d as photographs",
-                          s->p.lights, list.count, s->p.photograph_count);
+        status =
+            log_fail(s->p.log, RELUME_EDATA, "%s: %d light%s; expected %d as photographs",
+                     s->p.lights, list.count, relume_plural(list.count), s->p.photograph_count);
     if (!status)
         take_lights(s, &list, order);
     free(order);

@@ -79,9 +79,9 @@ static relume_status tell_apart(const struct shoot *s, const struct posed_model 
     if (lamps == s->p.photograph_count)
         return RELUME_OK;
     return log_fail(s->p.log, RELUME_EDATA,
-                    "%s: poses of %d photographs from the lamp; expected %d, one for each of the "
+                    "%s: poses of %d photograph%s from the lamp; expected %d, one for each of the "
                     "object",
-                    s->p.lights, lamps, s->p.photograph_count);
+                    s->p.lights, lamps, relume_plural(lamps), s->p.photograph_count);
 }
 
 static void place(struct shoot *s, const struct posed_camera *object,

@@ -409,8 +409,8 @@ relume_status relume_ball_find(struct relume_ball *out, int count, const struct 
     ball_sort(out, found);
     if (!status && found < count)
         return log_fail(params ? params->log : NULL, RELUME_EDATA,
-                        "%d of %d balls found; expected round outlines against the background, "
+                        "%d of %d ball%s found; expected round outlines against the background, "
                         "or --ball x,y,r",
-                        found, count);
+                        found, count, relume_plural(count));
     return status;
 }

@@ -1,6 +1,8 @@
 // log.c - sentences for people on their way to the callbacks of the caller
 #include "base/log.h"
 
+#include "base/called.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -13,6 +15,7 @@ static void say(const struct relume_log *log, enum relume_level level, const cha
         return;
     char text[LINE];
     vsnprintf(text, sizeof text, format, args);
+    called_rename(text, sizeof text);
     log->message(log->user, level, relume_printable(text));
 }
 

@@ -1,8 +1,13 @@
 // names.c - names looked up; what somebody meant who mistyped: the smallest edit distance
-// (Levenshtein 1966)
+// (Levenshtein 1966); endings of counted nouns
 #include "base/names.h"
 
 #include <string.h>
+
+const char *relume_plural(int64_t n)
+{
+    return n == 1 ? "" : "s";
+}
 
 static int edit_distance(const char *a, const char *b)
 {

@@ -2,6 +2,7 @@
 #include "base/outdir.h"
 
 #include "base/beside.h"
+#include "base/called.h"
 #include "base/inputs.h"
 #include "base/inventory.h"
 #include "base/log.h"
@@ -22,6 +23,7 @@ struct relume_making {
     char *target;  // where that leads
     char *dir;     // the folder of `target`
     beside *beside;
+    struct called called;  // `beside`, by `path`
     enum relume_made kind;
     bool force;
     const char *otherwise;  // what may be done where a folder is there already
@@ -36,6 +38,8 @@ static relume_status fail(const relume_making *m, const char *what)
 }
 
 // ---------------------------------------------------------------- what is there already
+
+static const char or_force[] = ", or --force";
 
 // Something that a new folder of that name would hide or replace.
 static bool is_occupied(const char *path)
@@ -96,6 +100,9 @@ static relume_status make_place(relume_making *m)
     free(name);
     if (!m->beside || (m->kind == RELUME_MADE_FOLDER && mkdir(beside_new(m->beside), 0777)))
         return fail(m, "cannot be created");
+    m->called = (struct called){.path = beside_new(m->beside), .name = m->path};
+    if (m->target)
+        called_enter(&m->called);
     return RELUME_OK;
 }
 
@@ -115,6 +122,20 @@ static relume_status open_place(relume_making **out, const char *path, enum relu
     if (status)
         relume_making_abort(&m);
     *out = m;
+    return status;
+}
+
+relume_status relume_folder_check(const char *path, bool force, const struct relume_log *log)
+{
+    relume_making *m = mem_zeroed(1, sizeof *m);
+    if (!m)
+        return RELUME_ENOMEM;
+    *m = (relume_making){
+        .kind = RELUME_MADE_FOLDER, .force = force, .otherwise = or_force, .log = log};
+    relume_status status = find_target(m, path);
+    if (!status)
+        status = check_old(m);
+    relume_making_abort(&m);
     return status;
 }
 
@@ -215,6 +236,7 @@ void relume_making_abort(relume_making **making)
     *making = NULL;
     if (!m)
         return;
+    called_leave(&m->called);
     beside_close(&m->beside);
     free(m->path);
     free(m->target);
@@ -226,7 +248,7 @@ void relume_making_abort(relume_making **making)
 
 relume_status outdir_open(outdir **out, const char *path, bool force, const struct relume_log *log)
 {
-    return open_place(out, path, RELUME_MADE_FOLDER, force, ", or --force", log);
+    return open_place(out, path, RELUME_MADE_FOLDER, force, or_force, log);
 }
 
 const char *outdir_path(const outdir *dir)

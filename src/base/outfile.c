@@ -343,7 +343,7 @@ relume_status outfile_save(const char *path, const void *bytes, size_t size,
     return outfile_save_to(path, NULL, bytes, size, log);
 }
 
-// A folder of the path is missing.
+// A folder of the path is missing, or nothing can be made in it.
 static relume_status check_parent(const char *path, const struct relume_log *log)
 {
     struct stat s;
@@ -353,6 +353,8 @@ static relume_status check_parent(const char *path, const struct relume_log *log
         status =
             log_fail(log, RELUME_EIO, "%s: cannot be created; there is no folder %s: make it first",
                      path, parent);
+    else if (parent && access(parent, W_OK))
+        status = log_fail(log, RELUME_EIO, "%s: cannot be created; %s", path, strerror(errno));
     free(parent);
     return status;
 }
@@ -362,8 +364,9 @@ relume_status relume_file_check(const char *path, const struct relume_log *log)
     struct stat s;
     if (lstat(path, &s))
         return check_parent(path, log);
-    char *target = stat(path, &s) || !S_ISREG(s.st_mode) ? NULL : tree_resolve(path);
-    const relume_status status = target ? input_refuse(target, path, log) : RELUME_OK;
+    const bool plain = !stat(path, &s) && (S_ISREG(s.st_mode) || S_ISDIR(s.st_mode));
+    char *target = plain ? tree_resolve(path) : NULL;
+    const relume_status status = target ? outfile_check(target, path, log) : RELUME_OK;
     free(target);
     return status;
 }

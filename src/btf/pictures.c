@@ -462,8 +462,8 @@ static relume_status fill_gaps(const struct pictures *p, relume_btf *btf)
                 filled++;
             }
     if (!status && filled)
-        log_line(p->log, RELUME_WARNING, "%s: %d missing pictures were interpolated", p->path,
-                 filled);
+        log_line(p->log, RELUME_WARNING, "%s: %d missing picture%s interpolated", p->path, filled,
+                 filled == 1 ? " was" : "s were");
     return status;
 }
 

@@ -37,7 +37,7 @@ static relume_status get_numbers(const struct parser *p, const jvalue *object, c
     if (count == 1 && jvalue_number(value, out))
         return RELUME_OK;
     char expected[32];
-    snprintf(expected, sizeof expected, "%zu number%s", count, count == 1 ? "" : "s");
+    snprintf(expected, sizeof expected, "%zu number%s", count, relume_plural((int64_t)count));
     return jvalue_numbers(value, out, count) ? RELUME_OK : wrong(p, key, expected);
 }
 

@@ -223,7 +223,7 @@ static relume_status refuse_broken(relume_table *t, int first)
     for (int i = 0; i < m->lights; i++)
         others += i != first && t->broken[i];
     if (others)
-        snprintf(more, sizeof more, ", and some of %d more image%s", others, others > 1 ? "s" : "");
+        snprintf(more, sizeof more, ", and some of %d more image%s", others, relume_plural(others));
     const size_t n = t->broken[first];
     return log_fail(t->log, RELUME_EDATA,
                     "%s: %zu pixel%s NaN or infinite%s; expected finite radiance, or --repair",

@@ -98,6 +98,9 @@ struct prefix_log {
 const struct relume_log *prefix_log(struct prefix_log *p, const struct relume_log *to,
                                     const char *prefix);
 
+// A sentence to the log.
+__attribute__((format(printf, 3, 4))) void say(const struct args *args, enum relume_level level,
+                                               const char *format, ...);
 // "relume: ..." on stderr; returns RELUME_EINVAL, so that a command may return it.
 __attribute__((format(printf, 1, 2))) relume_status usage_error(const char *format, ...);
 // The same for inputs at fault: RELUME_EDATA.
@@ -108,6 +111,12 @@ relume_status unknown_name(const char *what, const char *given, const char *cons
 bool parse_numbers(const char *text, double *out, int count);
 // "x,y,z" of an option; RELUME_EINVAL with a sentence.
 relume_status args_vec3(struct relume_vec3 *out, const char *option, const char *text);
+
+// What a PSNR means for who looks at the pictures: "differences not visible".
+const char *judgement(double psnr_db);
+
+// The file that `relume encode CAPTURE -o OUTPUT` makes, and what it says.
+relume_status encode_as_usual(const struct args *args, const char *capture, const char *output);
 
 // A name or note as a line for people may hold it; the text lives in `out`.
 struct shown {

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -192,6 +193,16 @@ static void say_error(const char *format, va_list list)
     char text[2048];
     vsnprintf(text, sizeof text, format, list);
     print_line("", text);
+}
+
+void say(const struct args *args, enum relume_level level, const char *format, ...)
+{
+    char text[2048];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    args->log->message(args->log->user, level, text);
 }
 
 relume_status usage_error(const char *format, ...)
@@ -483,6 +494,9 @@ static const struct command *find_command(const struct command *const *list, con
 static relume_status unknown_command(const char *what, const struct command *const *list,
                                      const char *given)
 {
+    if (is_option(given))
+        return usage_error("%s: options come after the command; expected 'relume COMMAND %s ...'",
+                           given, given);
     const char *names[32];
     int n = 0;
     for (; *list; list++)
@@ -509,6 +523,14 @@ static int exit_code(relume_status status)
     return 3;
 }
 
+// A folder that is there may be one that a command fills or replaces.
+static bool is_output(const struct given *g)
+{
+    struct stat s;
+    return g->option->kind > OPTION_OUTPUT ||
+           (g->option->kind == OPTION_OUTPUT && (stat(g->text, &s) || !S_ISDIR(s.st_mode)));
+}
+
 // What the command line names and is there is read, except what it says is written. Files that
 // these name in turn are noted as they are opened.
 static relume_status note_inputs(struct parsed *p)
@@ -522,7 +544,7 @@ static relume_status note_inputs(struct parsed *p)
             relume_inputs_add(p->log.inputs, p->given[i].text);
     }
     for (int i = 0; !status && i < p->given_count; i++)
-        if (p->given[i].option->kind >= OPTION_OUTPUT)
+        if (is_output(&p->given[i]))
             status = relume_file_check(p->given[i].text, &p->log);
     return status;
 }
@@ -595,7 +617,7 @@ static relume_status run_command(struct parsed *p, int argc, char **argv)
         (void)usage_error("'relume capture %s' is now 'relume %s'", old, c->name);
     if (p->input_count < c->min_inputs || p->input_count > c->max_inputs)
         return usage_error("%s: expected 'relume %s %s'; found %d input%s", c->name, c->name,
-                           c->usage, p->input_count, p->input_count == 1 ? "" : "s");
+                           c->usage, p->input_count, relume_plural(p->input_count));
     status = note_inputs(p);
     return status ? status : c->run(p->args);
 }
@@ -669,6 +691,30 @@ static void listen_to_signals(void)
         sigaction(SIGHUP, &action, NULL);
 }
 
+// "relume -q info x" is "relume info -q x". The place of the command's name; 1 where there is none.
+static int command_at(int argc, char **argv)
+{
+    int at = 1;
+    while (at < argc && is_option(argv[at])) {
+        const size_t length = strcspn(argv[at], "=");
+        const struct option *o = common;
+        while (o->name && (strlen(o->name) != length || strncmp(o->name, argv[at], length)))
+            o++;
+        if (!o->name)
+            return 1;
+        at += o->kind == OPTION_FLAG || argv[at][length] ? 1 : 2;
+    }
+    return at < argc ? at : 1;
+}
+
+static void put_command_first(int argc, char **argv)
+{
+    const int at = command_at(argc, argv);
+    char *name = argv[at];
+    memmove(argv + 2, argv + 1, (size_t)(at - 1) * sizeof *argv);
+    argv[1] = name;
+}
+
 int main(int argc, char **argv)
 {
     keep_freed_memory();
@@ -690,6 +736,7 @@ int main(int argc, char **argv)
     struct parsed *p = calloc(1, sizeof *p);
     if (!p)
         return exit_code(RELUME_ENOMEM);
+    put_command_first(argc, argv);
     p->log = (struct relume_log){
         .message = on_message, .progress = on_progress, .user = p, .limits = &p->limits};
     p->command = find_command(commands, argv[1]);

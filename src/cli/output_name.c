@@ -4,9 +4,15 @@
 #include <string.h>
 #include <strings.h>
 
+const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 const char *name_ending(const char *path)
 {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *name = base_name(path);
     const char *dot = strrchr(name, '.');
     return dot && dot > name ? dot : "";
 }

@@ -9,6 +9,8 @@ relume_status picture_name(const char *option, const char *path);  // any format
 relume_status floats_name(const char *option, const char *path);   // values below 0 as well
 relume_status relume_name(const char *option, const char *path);   // a relume file: .exr
 
+// The last part of `path`.
+const char *base_name(const char *path);
 // The ending of the last part of `path` with its dot; "" where there is none.
 const char *name_ending(const char *path);
 

@@ -9,6 +9,14 @@ const char *shown(struct shown *out, const char *text)
     return relume_printable(out->text);
 }
 
+const char *judgement(double psnr_db)
+{
+    return psnr_db >= 45.0   ? "not visible"
+           : psnr_db >= 38.0 ? "hardly visible"
+           : psnr_db >= 30.0 ? "visible"
+                             : "clearly visible";
+}
+
 void json_number(FILE *out, double value)
 {
     if (isfinite(value))

@@ -57,28 +57,29 @@ static relume_status choose_count(const struct relume_basis *basis, int lights,
     const int want = p->coefficients;
     if (want && !basis->has_count(want))
         return log_fail(p->log, RELUME_EINVAL,
-                        "basis %s cannot have %d coefficients; the nearest number is %d",
-                        basis->name, want, basis->fit_count(want, want));
+                        "basis %s cannot have %d coefficient%s; the nearest number is %d",
+                        basis->name, want, relume_plural(want), basis->fit_count(want, want));
     *count = basis->fit_count(want, lights);
     if (want > *count && p->force && !basis->interpolates) {
         if (!p->decode)
             log_line(
                 p->log, RELUME_WARNING,
-                "%d lights are too few for %d coefficients of basis %s; smoothing guesses the rest",
-                lights, want, basis->name);
+                "%d light%s too few for %d coefficients of basis %s; smoothing guesses the rest",
+                lights, lights == 1 ? " is" : "s are", want, basis->name);
         *count = want;
     }
     if (want && *count < want && !basis->interpolates)
         return log_fail(p->log, RELUME_EDATA,
-                        "%d coefficients of basis %s need at least %d lights; found %d", want,
-                        basis->name, want, lights);
+                        "%d coefficient%s of basis %s need at least %d light%s; found %d", want,
+                        relume_plural(want), basis->name, want, relume_plural(want), lights);
     if (want && *count != want)
         return log_fail(p->log, RELUME_EDATA,
-                        "basis %s takes %s%d coefficients for %d lights; found %d", basis->name,
-                        basis->learned ? "at most " : "", *count, lights, want);
+                        "basis %s takes %s%d coefficient%s for %d light%s; found %d", basis->name,
+                        basis->learned ? "at most " : "", *count, relume_plural(*count), lights,
+                        relume_plural(lights), want);
     if (*count < 1)
-        return log_fail(p->log, RELUME_EDATA, "basis %s cannot be fitted to %d lights", basis->name,
-                        lights);
+        return log_fail(p->log, RELUME_EDATA, "basis %s cannot be fitted to %d light%s",
+                        basis->name, lights, relume_plural(lights));
     return RELUME_OK;
 }
 

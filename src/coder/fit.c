@@ -79,7 +79,7 @@ static relume_status refuse_rank(const struct system *s, const struct relume_bas
     char instead[64] = "";
     if (most)
         snprintf(instead, sizeof instead, ", or at most %d coefficient%s", most,
-                 most > 1 ? "s" : "");
+                 relume_plural(most));
     return log_fail(log, RELUME_EDATA,
                     "the %d light directions determine only %d of %d coefficients; expected lights "
                     "spread in both angles%s",

@@ -205,7 +205,8 @@ static relume_status choose_functions(const struct export *e, struct functions *
     f->count = p->coefficients ? p->coefficients : f->kind == FUNCTIONS_PTM ? 6 : 9;
     if (web_has_count(f->kind, f->count))
         return RELUME_OK;
-    return log_fail(e->log, RELUME_EINVAL, "%d coefficients; expected %s", f->count,
+    return log_fail(e->log, RELUME_EINVAL, "%d coefficient%s; expected %s", f->count,
+                    relume_plural(f->count),
                     f->kind == FUNCTIONS_PTM ? "3 or 6 for ptm" : "1, 4 or 9 for hsh and sh");
 }
 

@@ -34,9 +34,17 @@ static relume_status read_any(struct foreign *f, const char *path,
     struct stat st;
     if (stat(path, &st))
         return log_fail(p->log, RELUME_EDATA, "%s: no such file or folder", path);
+    if (S_ISDIR(st.st_mode) && relume_kind_of(path) != RELUME_KIND_FOREIGN)
+        return log_fail(p->log, RELUME_EDATA,
+                        "%s: a folder without info.json, so no web folder; expected one as relight "
+                        "and OpenLIME read it, or a .ptm, .rti or .hsh file%s",
+                        path,
+                        relume_kind_of(path) == RELUME_KIND_CAPTURE
+                            ? "; this is a capture, for 'relume encode'"
+                            : "");
     if (S_ISDIR(st.st_mode) || ends_with(path, ".json"))
         return web_read(f, path, limits, p->log);
-    if (ends_with(path, ".ptm"))
+    if (ends_with(path, ".ptm") || ends_with(path, ".lptm"))
         return ptm_read(f, path, limits, p->log);
     if (ends_with(path, ".rti") || ends_with(path, ".hsh"))
         return rti_read(f, path, ends_with(path, ".hsh"), limits, p->log);

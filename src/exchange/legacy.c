@@ -167,8 +167,8 @@ relume_status export_legacy(const struct export *e, const char *path, enum relum
                         .functions = t.functions,
                         .terms = t.functions.count};
     if (!functions_has_count(t.functions.kind, t.functions.count))
-        return log_fail(e->log, RELUME_EINVAL, "%d coefficients; expected 1, 4, 9 or 16 for hsh",
-                        t.functions.count);
+        return log_fail(e->log, RELUME_EINVAL, "%d coefficient%s; expected 1, 4, 9 or 16 for hsh",
+                        t.functions.count, relume_plural(t.functions.count));
     relume_status status = jpeg ? legacy_check_jpeg(e, path, format) : RELUME_OK;
     if (!status)
         status = foreign_create(&f, path, codes->width, codes->height,

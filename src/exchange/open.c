@@ -8,6 +8,7 @@
 #include "base/scratch.h"
 #include "base/tree.h"
 #include "exchange/still.h"
+#include "image/picture.h"
 
 #include <errno.h>
 #include <relume/capture.h>
@@ -45,7 +46,7 @@ static enum relume_kind kind_of_folder(const char *path)
 }
 
 enum { HEAD = 4096 };
-static const char exr_magic[] = "\x76\x2f\x31\x01", attributes[] = "relume.";
+static const char exr_magic[] = "\x76\x2f\x31\x01";
 
 static size_t read_head(char head[HEAD], const char *path)
 {
@@ -74,7 +75,7 @@ static enum relume_kind kind_of_json(const char *head, size_t n, const char *pat
 
 enum relume_kind relume_kind_of(const char *path)
 {
-    static const char *const foreign[] = {".ptm", ".rti", ".hsh", NULL};
+    static const char *const foreign[] = {".ptm", ".lptm", ".rti", ".hsh", NULL};
     static const char *const photographs[] = {".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf", NULL};
     char head[HEAD];
     struct stat s;
@@ -90,8 +91,7 @@ enum relume_kind relume_kind_of(const char *path)
     if (ends_with(path, ".json"))
         return kind_of_json(head, n, path);
     if (n > 4 && !memcmp(head, exr_magic, 4))
-        return memmem(head, n, attributes, strlen(attributes)) ? RELUME_KIND_RELUME
-                                                               : RELUME_KIND_PICTURE;
+        return picture_is_relume(path) ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
     if (relume_image_can_save(path) || is_among(path, photographs))
         return ends_with(path, ".exr") ? RELUME_KIND_RELUME : RELUME_KIND_PICTURE;
     return RELUME_KIND_UNKNOWN;

@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/vec.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -181,11 +182,22 @@ static void drop_images(struct evaluator *e)
         relume_image_destroy(&e->image[i]);
 }
 
+// Lamps a little below the horizon of a hemispherical capture count as on it, when it is encoded
+// and here: nothing is to be warned of.
+static vec3 photographed_from(const struct evaluator *e, int light)
+{
+    const struct relume_coder_info *info = relume_coder_info(e->info->coder);
+    vec3 d = pole_from_world(e->manifest->directions[light], info->pole_y);
+    if (info->hemispherical && relume_capture_hemispherical(e->capture))
+        d.z = fmax(d.z, 0.0);
+    return world_from_pole(d, info->pole_y);
+}
+
 static relume_status compare_light(struct evaluator *e, const struct relume_image *captured,
                                    int light, const struct relume_camera *camera,
                                    const struct relume_image *mask)
 {
-    struct relume_light lamp = {.direction = e->manifest->directions[light],
+    struct relume_light lamp = {.direction = photographed_from(e, light),
                                 .rgb = {1.0f, 1.0f, 1.0f}};
     if (e->manifest->positions) {
         lamp.kind = RELUME_LIGHT_POINT;

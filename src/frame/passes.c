@@ -89,7 +89,10 @@ relume_status passes_apply(struct relume_image *image, relume_pack *pack, int vi
                            int n, const struct relume_frame_params *params)
 {
     const struct relume_pack_info *info = relume_pack_info(pack);
-    struct relume_pass_params p = {.threads = params->threads};
+    struct relume_pass_params p =
+        params->strength ? *params->strength : (struct relume_pass_params){0};
+    p.threads = params->threads;
+    p.range = NULL;
     struct relume_normals normals = {0};
     struct relume_image towards = {0}, reference = {0};
     relume_status status = RELUME_OK;

@@ -484,8 +484,8 @@ struct exr_part_info exr_part_info(const exr_file *file, int part)
     };
     for (int i = 0; i < list->num_channels; i++) {
         const exr_attr_chlist_entry_t *e = &list->entries[i];
-        info.uniform &= e->pixel_type == list->entries[0].pixel_type && e->x_sampling == 1 &&
-                        e->y_sampling == 1;
+        info.subsampled |= e->x_sampling != 1 || e->y_sampling != 1;
+        info.uniform &= e->pixel_type == list->entries[0].pixel_type && !info.subsampled;
     }
     return info;
 }

@@ -61,6 +61,7 @@ struct exr_part_info {
     int x, y;                // where the data window begins
     enum exr_sample sample;  // of the first channel
     bool uniform;            // all channels have that type and full resolution
+    bool subsampled;         // some have less
     int channels;
     const char *codec;
 };

@@ -67,6 +67,28 @@ static relume_status look(struct opening *s, const struct relume_log *log)
     return RELUME_OK;
 }
 
+const struct picture_kind *picture_kind_at(const char *path)
+{
+    struct opening s = {.path = path};
+    const relume_status status = look(&s, NULL);
+    infile_close(&s.in);
+    return status ? NULL : s.kind;
+}
+
+// The first part's attributes follow each other from the start.
+bool picture_is_relume(const char *path)
+{
+    static const char magic[] = "\x76\x2f\x31\x01", attributes[] = "relume.";
+    char head[4096];
+    struct infile in;
+    if (!infile_open(&in, path, NULL, NULL))
+        return false;
+    const int64_t n = infile_read(&in, head, sizeof head, 0);
+    infile_close(&in);
+    return n > 4 && !memcmp(head, magic, 4) &&
+           memmem(head, (size_t)n, attributes, strlen(attributes));
+}
+
 static relume_status open_inside(picture_reader **out, const struct opening *s,
                                  const struct relume_limits *limits, const struct relume_log *log)
 {

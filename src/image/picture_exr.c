@@ -1,5 +1,6 @@
 // picture_exr.c - EXR pictures of the plain kind: one part of scanlines, grey or red, green and
 // blue, perhaps with alpha, and nothing noted in the header
+#include "base/log.h"
 #include "base/memory.h"
 #include "image/exr.h"
 #include "image/half.h"
@@ -77,6 +78,20 @@ static bool is_plain(struct picture_info *out, const exr_file *file)
            strcmp(info.codec, "other") && exr_is_plain(file, 0) && find_colour(out, file);
 }
 
+// OpenImageIO does not read these either, and says so once for each channel.
+static relume_status refuse_subsampled(const exr_file *file, const char *path,
+                                       const struct relume_log *log)
+{
+    const struct exr_part_info info = exr_part_info(file, 0);
+    if (!info.subsampled)
+        return RELUME_OK;
+    return log_fail(
+        log, RELUME_EDATA,
+        "%s: its channels (%s, ...) differ in resolution, as luminance with coarser colour (Y, "
+        "RY, BY); convert it to RGB first, with ImageMagick: convert %s rgb.exr",
+        path, exr_channel_name(file, 0, 0), path);
+}
+
 relume_status exr_picture_open(picture_reader **out, const char *path,
                                const struct relume_reader *from, const struct relume_limits *limits,
                                const struct relume_log *log)
@@ -89,9 +104,10 @@ relume_status exr_picture_open(picture_reader **out, const char *path,
         return relume_input_fail(log, path, "cannot be opened", EMFILE);
     if (status)
         return status == RELUME_ENOMEM ? status : RELUME_OK;
-    if (!is_plain(&info, file)) {
+    status = refuse_subsampled(file, path, log);
+    if (status || !is_plain(&info, file)) {
         exr_close(&file);
-        return RELUME_OK;
+        return status;
     }
     struct exr_picture *p = mem_zeroed(1, sizeof *p);
     if (p)

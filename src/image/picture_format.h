@@ -34,6 +34,9 @@ struct picture_reader {
     const char *path;
 };
 
+// What a file is; NULL where it cannot be read.
+const struct picture_kind *picture_kind_at(const char *path);
+
 // `*out` is NULL with RELUME_OK where the file is not of the plain kind: broken ones are not, and
 // what is wrong with them is for the module to say. RELUME_ENOMEM, RELUME_ESYSTEM.
 // All of these read `from` in place of the file `path` where that is not NULL (base/infile.h).

@@ -44,8 +44,8 @@ static relume_status order_faces(int camera[FACES], const struct photo_set *set,
                                  const struct relume_log *log)
 {
     if (set->count != FACES)
-        return log_fail(log, RELUME_EDATA, "%s: one of %d pictures; expected six faces of a cube",
-                        set->camera[0].name, set->count);
+        return log_fail(log, RELUME_EDATA, "%s: one of %d picture%s; expected six faces of a cube",
+                        set->camera[0].name, set->count, relume_plural(set->count));
     for (int f = 0; f < FACES; f++)
         camera[f] = -1;
     int named = 0;

@@ -156,8 +156,9 @@ static relume_status fill_grid(struct slab *s, const int *rows, const int *colum
             if (!s->p->fill)
                 status = log_fail(log, RELUME_EDATA,
                                   "no photograph of row %d, column %d; expected a whole grid of "
-                                  "%d x %d, or --fill; found %d photographs",
-                                  rows[r], columns[c], s->rows, s->columns, s->set.count);
+                                  "%d x %d, or --fill; found %d photograph%s",
+                                  rows[r], columns[c], s->rows, s->columns, s->set.count,
+                                  relume_plural(s->set.count));
             else
                 log_line(log, RELUME_WARNING, "row %d, column %d: missing; filled by %s", rows[r],
                          columns[c], s->set.camera[*at].name);

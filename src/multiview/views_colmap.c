@@ -209,8 +209,8 @@ static relume_status read_poses(struct posed_model *m, const char *folder, const
             text_next(&t);
     }
     if (!status && m->count < 2)
-        status = log_fail(log, RELUME_EDATA, "%s: %d photographs; expected two or more", t.path,
-                          m->count);
+        status = log_fail(log, RELUME_EDATA, "%s: %d photograph%s; expected two or more", t.path,
+                          m->count, relume_plural(m->count));
     if (!status) {
         qsort(all, (size_t)m->count, sizeof *all, by_name);
         m->camera = arena_array(&m->arena, (size_t)m->count, sizeof *all);

@@ -7,13 +7,11 @@
 #include "capture/manifest.h"
 #include "image/photograph.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <libgen.h>
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -29,45 +27,23 @@ static bool is_folder(const char *path)
     return !stat(path, &s) && S_ISDIR(s.st_mode);
 }
 
-// Texts beside the photographs are none.
-static int is_candidate(const struct dirent *entry)
+// What was named, in the arena.
+static relume_status list_photographs(const char ***out, int *count, struct arena *arena,
+                                      const char *const *paths, int n, bool cameras, bool quiet,
+                                      const struct relume_log *log)
 {
-    static const char *const texts[] = {".txt", ".json", ".md", ".cfg", ".xml", ".lp", ".bin"};
-    const char *dot = strrchr(entry->d_name, '.');
-    if (entry->d_name[0] == '.')
-        return 0;
-    for (size_t i = 0; dot && i < sizeof texts / sizeof *texts; i++)
-        if (!strcasecmp(dot, texts[i]))
-            return 0;
-    return 1;
-}
-
-static int by_name(const struct dirent **a, const struct dirent **b)
-{
-    return strcmp((*a)->d_name, (*b)->d_name);
-}
-
-// The photographs of a folder, in the order of their names.
-static relume_status list_folder(const char ***out, int *n, struct arena *arena, const char *folder,
-                                 const struct relume_log *log)
-{
-    struct dirent **entries;
-    const int found = scandir(folder, &entries, is_candidate, by_name);
-    if (found < 0)
-        return relume_input_fail(log, folder, "cannot be listed", errno);
-    *out = arena_array(arena, (size_t)found + 1, sizeof **out);
-    *n = found;
-    bool whole = *out != NULL;
-    for (int i = 0; i < found; i++) {
-        if (whole)
-            whole = ((*out)[i] = arena_format(arena, "%s/%s", folder, entries[i]->d_name)) != NULL;
-        free(entries[i]);
-    }
-    free(entries);
-    if (!whole)
-        return RELUME_ENOMEM;
-    return found ? RELUME_OK
-                 : log_fail(log, RELUME_EDATA, "%s: an empty folder; expected photographs", folder);
+    struct relume_photographs list;
+    const relume_status status = relume_photographs_list(
+        &list, paths, n, relume_photographs_params(.log = log, .folders = cameras, .quiet = quiet));
+    if (status)
+        return status;
+    *count = list.count;
+    *out = arena_array(arena, (size_t)list.count, sizeof **out);
+    for (int i = 0; *out && i < list.count; i++)
+        if (!((*out)[i] = arena_text(arena, list.path[i])))
+            *out = NULL;
+    relume_photographs_free(&list);
+    return *out ? RELUME_OK : RELUME_ENOMEM;
 }
 
 static relume_status list_lights(struct photo_set *set, int index, const char *name,
@@ -78,7 +54,7 @@ static relume_status list_lights(struct photo_set *set, int index, const char *n
     relume_status status = RELUME_OK;
     c->name = arena_text(&set->arena, name);
     if (is_folder(name)) {
-        status = list_folder(&c->images, &n, &set->arena, name, log);
+        status = list_photographs(&c->images, &n, &set->arena, &name, 1, false, index > 0, log);
     } else {
         c->images = arena_array(&set->arena, 1, sizeof *c->images);
         if (c->images)
@@ -92,8 +68,8 @@ static relume_status list_lights(struct photo_set *set, int index, const char *n
         set->lights = n;
     if (n == set->lights)
         return RELUME_OK;
-    return log_fail(log, RELUME_EDATA, "%s: %d photographs; expected %d, one a light, as in %s",
-                    name, n, set->lights, set->camera[0].name);
+    return log_fail(log, RELUME_EDATA, "%s: %d photograph%s; expected %d, one a light, as in %s",
+                    name, n, relume_plural(n), set->lights, set->camera[0].name);
 }
 
 static relume_status check_size(struct photo_set *set, const char *path,
@@ -136,8 +112,8 @@ static relume_status check_lights(struct photo_set *set, const struct relume_ing
     if (known == set->lights)
         return RELUME_OK;
     return log_fail(p->log, p->lights ? RELUME_EDATA : RELUME_EINVAL,
-                    "%s: %d photographs of this camera; expected %d, one for every known light%s",
-                    set->camera[0].name, set->lights, known,
+                    "%s: %d photograph%s of this camera; expected %d, one for every known light%s",
+                    set->camera[0].name, set->lights, relume_plural(set->lights), known,
                     p->lights ? "" : " (--lights says where lights are)");
 }
 
@@ -145,17 +121,14 @@ relume_status photo_set_open(struct photo_set *out, const char *const *photos, i
                              const struct relume_ingest_params *p)
 {
     *out = (struct photo_set){0};
-    relume_status status = RELUME_OK;
     const char **listed;
-    if (n == 1 && is_folder(photos[0])) {
-        status = list_folder(&listed, &n, &out->arena, photos[0], p->log);
-        photos = listed;
-    }
+    relume_status status =
+        list_photographs(&listed, &n, &out->arena, photos, n, true, false, p->log);
     if (!status && !(out->camera = arena_array(&out->arena, (size_t)n, sizeof *out->camera)))
         status = RELUME_ENOMEM;
     out->count = n;
     for (int i = 0; !status && i < n; i++)
-        status = list_lights(out, i, photos[i], p->log);
+        status = list_lights(out, i, listed[i], p->log);
     if (!status)
         status = check_lights(out, p);
     if (!status)

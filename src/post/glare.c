@@ -130,8 +130,8 @@ static relume_status clean_frame(const float **out, relume_glare *glare,
     if (!bad)
         return RELUME_OK;
     log_line(log, RELUME_WARNING,
-             "%zu pixels are not numbers; NaN is treated as black, infinity as the brightest pixel",
-             bad);
+             "%zu pixel%s not numbers; NaN is treated as black, infinity as the brightest pixel",
+             bad, bad == 1 ? " is" : "s are");
     if (glare->clean_size != n) {
         free(glare->clean);
         glare->clean = mem_array(n, sizeof *glare->clean);

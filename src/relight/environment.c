@@ -50,8 +50,8 @@ static void say_oddities(const struct relume_image *map, size_t bad,
     const char *name = p->name ? p->name : "environment";
     if (bad)
         log_line(p->log, RELUME_WARNING,
-                 "%s: %zu pixels are negative, not finite or above 1e9; treated as black", name,
-                 bad);
+                 "%s: %zu pixel%s negative, not finite or above 1e9; treated as black", name, bad,
+                 bad == 1 ? " is" : "s are");
     if (map->width != 2 * map->height)
         log_line(
             p->log, RELUME_WARNING,

@@ -121,8 +121,8 @@ static void clean_picture(struct resource *r, const struct relume_log *log)
         }
     if (bad)
         log_line(log, RELUME_WARNING,
-                 "%s: %zu pixels are negative, not finite or above 1e9; treated as black", r->path,
-                 bad);
+                 "%s: %zu pixel%s negative, not finite or above 1e9; treated as black", r->path,
+                 bad, bad == 1 ? " is" : "s are");
 }
 
 static relume_status find_resource(struct resource **out, relume_rig *rig,

@@ -173,6 +173,13 @@ static relume_status unknown_kind(const char *text, const struct relume_log *log
     for (int i = 0; i < GRAMMARS; i++)
         names[i] = relume_light_kind_name(grammars[i].kind);
     const char *near = relume_name_nearest(given, names);
+    double v[3];
+    if (sscanf(word, "%lf%*[ \t,]%lf%*[ \t,]%lf", &v[0], &v[1], &v[2]) == 3)
+        return log_fail(
+            log, RELUME_EINVAL,
+            "light '%.200s': its kind is missing; did you mean 'dir %g %g %g'? Expected "
+            "dir, point, spot, slide, area, env, ies or gonio first",
+            text, v[0], v[1], v[2]);
     return log_fail(log, RELUME_EINVAL,
                     "light '%.200s': unknown kind%s%s%s; expected dir, point, spot, slide, area, "
                     "env, ies or gonio",

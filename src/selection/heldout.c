@@ -618,8 +618,8 @@ static relume_status describe(relume_heldout *h)
         if (k >= m->lights)
             return log_fail(
                 h->params.log, RELUME_EINVAL,
-                "leaving out %d lights leaves none; expected fewer than the %d photographed", k,
-                m->lights);
+                "leaving out %d light%s leaves none; expected fewer than the %d photographed", k,
+                relume_plural(k), m->lights);
         h->info.folds = (m->lights + k - 1) / k;
         h->info.fewest = m->lights - (m->lights + h->info.folds - 1) / h->info.folds;
         h->info.judged = m->lights;

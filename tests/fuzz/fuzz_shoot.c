@@ -113,7 +113,7 @@ const char *base_name(const char *path)
 static bool try_times(const char *path, struct bytes b)
 {
     char names[2][16] = {"IMG_1.jpg", "IMG_2.jpg"}, *photos[] = {names[0], names[1]};
-    const struct photo_list list = {2, photos};
+    const struct relume_photographs list = {.count = 2, .path = photos};
     struct relume_exif notes[2] = {{.iso = 1.0}};
     fuzz_store(path, (struct bytes){b.data + 1, b.size - 1});
     if (read_times(path, &list, notes, NULL))

@@ -262,7 +262,7 @@ bool panel_lights(panel *panel, app *app, const panel_facts *facts)
     bool changed = list_lights(panel, &app->now);
     const int near = lamps_near(&app->now);
     if (app->now.lights > rows_most || near)
-        ImGui::Text("%d lights, %d of them near", app->now.lights, near);
+        ImGui::Text("%d light%s, %d near", app->now.lights, relume_plural(app->now.lights), near);
     ImGui::Separator();
     changed |= edit_light(panel, app);
     changed |= light_buttons(panel, app);

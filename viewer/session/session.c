@@ -95,17 +95,19 @@ static void describe_lines(struct session *s)
     snprintf(s->line[n++], SESSION_TEXT, "%s, %d x %d",
              relume_projection_name(info->geometry.projection), info->width, info->height);
     if (info->slabs)
-        snprintf(s->line[n++], SESSION_TEXT, "%d slabs, %d views", info->slabs, info->views);
+        snprintf(s->line[n++], SESSION_TEXT, "%d slab%s, %d view%s", info->slabs,
+                 relume_plural(info->slabs), info->views, relume_plural(info->views));
     else if (info->views > 1)
         snprintf(s->line[n++], SESSION_TEXT, "%d views", info->views);
-    snprintf(s->line[n++], SESSION_TEXT, "%s, %d coefficients, %d lights", coder->basis->name,
-             info->coefficients, coder->lights);
+    snprintf(s->line[n++], SESSION_TEXT, "%s, %d coefficient%s, %d light%s", coder->basis->name,
+             info->coefficients, relume_plural(info->coefficients), coder->lights,
+             relume_plural(coder->lights));
     snprintf(s->line[n++], SESSION_TEXT, "%s domain%s",
              info->domain == RELUME_DOMAIN_DISPLAY ? "display" : "linear",
              info->has_depth ? ", with depth" : "");
     if (info->books)
-        snprintf(s->line[n++], SESSION_TEXT, "%d codebooks, the first of %d", info->books,
-                 info->codes);
+        snprintf(s->line[n++], SESSION_TEXT, "%d codebook%s, the first of %d", info->books,
+                 relume_plural(info->books), info->codes);
     else
         snprintf(s->line[n++], SESSION_TEXT, "%s bits, %s", relume_storage_name(info->storage),
                  info->compression);

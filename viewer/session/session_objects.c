@@ -89,8 +89,9 @@ static relume_status make_stage(relume_slab_set **out, struct relume_geometry *g
 static void describe(struct session *s, const struct relume_objects_info *info)
 {
     snprintf(s->name, sizeof s->name, "objects");
-    snprintf(s->line[0], SESSION_TEXT, "%zu triangles, %d parts, %d materials",
-             info->triangle_count, info->parts, info->materials);
+    snprintf(s->line[0], SESSION_TEXT, "%zu triangle%s, %d part%s, %d material%s",
+             info->triangle_count, relume_plural((int64_t)info->triangle_count), info->parts,
+             relume_plural(info->parts), info->materials, relume_plural(info->materials));
     s->lines[0] = s->line[0];
     s->lines[1] = NULL;
 }

@@ -48,7 +48,7 @@ static relume_status finish(struct session *s)
     else
         record_abort(&r->record);
     if (r->frame && !status)
-        session_say(s, "recorded %.200s, %d pictures", r->path, r->frame);
+        session_say(s, "recorded %.200s, %d picture%s", r->path, r->frame, relume_plural(r->frame));
     else
         session_say(s, "%.200s was not recorded", r->path);
     put_back(s);

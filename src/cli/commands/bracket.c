@@ -1,7 +1,7 @@
 // bracket.c - the photographs of one radiance map on their way through `relume hdr`
 #include "commands/bracket.h"
 
-#include "photo_list.h"
+#include "output_name.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -261,7 +261,6 @@ static relume_status find_response_and_ghosts(struct bracket *b, const struct hd
 // from there to the others' times, in part.
 static void report_bias(const struct bracket *b, const struct hdr_options *o)
 {
-    char text[1024];
     int worst = 0, wrong = 0;
     double most = clear_bias_ev;
     for (int i = 0; i < b->n; i++) {  // no bias is known of what nothing overlaps: NaN
@@ -275,11 +274,10 @@ static void report_bias(const struct bracket *b, const struct hdr_options *o)
     if (!wrong)
         return;
     const double time_s = b->notes[worst].time_s;
-    snprintf(text, sizeof text,
-             "%s: its exposure time is given as %.4g s; its brightness fits %.4g s%s",
-             b->path[worst], time_s, time_s * exp2(b->report[worst].bias_ev),
-             wrong > 1 ? "; other times are wrong as well, by less" : "");
-    o->args.log->message(o->args.log->user, RELUME_WARNING, text);
+    say(&o->args, RELUME_WARNING,
+        "%s: its exposure time is given as %.4g s; its brightness fits %.4g s%s", b->path[worst],
+        time_s, time_s * exp2(b->report[worst].bias_ev),
+        wrong > 1 ? "; other times are wrong as well, by less" : "");
 }
 
 // Numbers of a float file do not end at 1: nothing is saturated there, and above 1, where the merge

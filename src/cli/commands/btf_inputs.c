@@ -1,7 +1,9 @@
 // btf_inputs.c - what `relume btf` is given: BTFs, models, names of materials
 #include "commands/btf_inputs.h"
 
+#include <errno.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 
 static bool exists(const char *path)
@@ -20,6 +22,34 @@ bool btf_is_surface(const char *path)
 {
     char file[4096];
     return snprintf(file, sizeof file, "%s/surface.json", path) < (int)sizeof file && exists(file);
+}
+
+static void list_materials(const char *names[16])
+{
+    int n = 0;
+    for (const struct relume_btf_material *const *m = relume_btf_materials; *m && n < 15; m++)
+        names[n++] = relume_btf_material_name(*m);
+    names[n] = NULL;
+}
+
+relume_status btf_find_material(const struct relume_btf_material **out, const char *name)
+{
+    const char *names[16];
+    list_materials(names);
+    *out = relume_btf_material_find(name);
+    return *out ? RELUME_OK : unknown_name("material", name, names);
+}
+
+static relume_status nothing_there(const char *name)
+{
+    const char *names[16];
+    char list[256] = "";
+    list_materials(names);
+    for (int i = 0; names[i]; i++)
+        snprintf(list + strlen(list), sizeof list - strlen(list), " %s", names[i]);
+    return data_error("%s: cannot be read; no such file or folder, and no built-in material, which "
+                      "are:%s",
+                      name, list);
 }
 
 static relume_status synth_material(relume_btf **out, const struct relume_btf_material *material,
@@ -67,6 +97,8 @@ static relume_status open_btf(relume_btf **out, const char *name, bool outline,
     if (material && !exists(name))
         return o->crop ? usage_error("--crop: expected a .btf file; found '%s'", name)
                        : synth_material(out, material, o);
+    if (!exists(name) && errno == ENOENT)
+        return nothing_there(name);
     const relume_status status = parse_crop(params.crop, o);
     return status ? status : relume_btf_open(out, name, &params);
 }

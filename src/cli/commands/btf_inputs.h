@@ -15,6 +15,9 @@ struct btf_options {
     struct light_options lighting;
 };
 
+// A built-in material; RELUME_EINVAL with a sentence that lists them.
+relume_status btf_find_material(const struct relume_btf_material **out, const char *name);
+
 // Whether the folder holds a fitted model.
 bool btf_is_model(const char *path);
 

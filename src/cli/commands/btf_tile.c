@@ -88,7 +88,10 @@ relume_status btf_tile(const struct args *args)
     relume_btf_map *map = NULL;
     if (!o->output)
         return usage_error("btf tile: expected -o DIR");
-    relume_status status = btf_open_sample(&sample, o->args.input[0], o);
+    relume_status status = relume_folder_check(o->output, o->force, o->args.log);
+    if (status)
+        return status;
+    status = btf_open_sample(&sample, o->args.input[0], o);
     if (!status)
         status = make_map(&map, sample.model, o);
     if (!status)

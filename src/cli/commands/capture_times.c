@@ -78,13 +78,13 @@ static const double *find(const struct times *t, const char *name)
     return NULL;
 }
 
-static relume_status assign(const char *path, const struct times *t, const struct photo_list *list,
-                            struct relume_exif *notes)
+static relume_status assign(const char *path, const struct times *t,
+                            const struct relume_photographs *list, struct relume_exif *notes)
 {
     const bool named = t->count > 0 && *t->line[0].name;
     if (t->count == 0 || (!named && list->count % t->count))
-        return data_error("%s: %d times; expected one for each of the %d photographs", path,
-                          t->count, list->count);
+        return data_error("%s: %d time%s; expected one for each of the %d photographs", path,
+                          t->count, relume_plural(t->count), list->count);
     for (int i = 0; i < list->count; i++) {
         const double *seconds =
             named ? find(t, base_name(list->path[i])) : &t->line[i % t->count].seconds;
@@ -97,8 +97,8 @@ static relume_status assign(const char *path, const struct times *t, const struc
     return RELUME_OK;
 }
 
-relume_status read_times(const char *path, const struct photo_list *list, struct relume_exif *notes,
-                         const struct relume_log *log)
+relume_status read_times(const char *path, const struct relume_photographs *list,
+                         struct relume_exif *notes, const struct relume_log *log)
 {
     struct times *t = calloc(1, sizeof *t);
     if (!t)

@@ -1,4 +1,5 @@
-// capture_views.c - what lightfield and panorama share: transfer, lights, range of depth
+// capture_views.c - what lightfield and panorama share: transfer, lights, range of depth, what
+// comes next
 #include "commands/capture_views.h"
 
 relume_status ingest_params(struct relume_ingest_params *out, struct relume_vec3 **lights,
@@ -22,4 +23,9 @@ relume_status parse_depth_range(double range[2], const struct views_options *o)
     if (!text || parse_numbers(text, range, 2))
         return RELUME_OK;
     return usage_error("--depth-range: expected two numbers like 2,5; found '%s'", text);
+}
+
+void say_next(const struct args *args, const char *dir, const char *what)
+{
+    say(args, RELUME_NOTE, "%s: %s; next: relume encode %s -o FILE.exr", dir, what, dir);
 }

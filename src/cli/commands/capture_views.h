@@ -21,6 +21,8 @@ struct views_options {
 // The lights belong to `*lights`, which is to be freed. RELUME_EINVAL with a sentence.
 relume_status ingest_params(struct relume_ingest_params *out, struct relume_vec3 **lights,
                             const struct args *args, const struct views_options *options);
+// That folder `dir` is made and what may be done with it.
+void say_next(const struct args *args, const char *dir, const char *what);
 // "A,B" of --depth-range; what is not given stays.
 relume_status parse_depth_range(double range[2], const struct views_options *options);
 

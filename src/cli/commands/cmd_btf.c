@@ -258,7 +258,9 @@ static relume_status fit(const struct args *args)
     relume_btf_fitted *fitted = NULL;
     if (!o->output)
         return usage_error("btf fit: expected -o DIR");
-    relume_status status = btf_open(&btf, o->args.input[0], o);
+    relume_status status = relume_folder_check(o->output, o->force, o->args.log);
+    if (!status)
+        status = btf_open(&btf, o->args.input[0], o);
     if (!status)
         status = make_part(&part, btf, o);
     if (!status)

@@ -1,6 +1,5 @@
 // cmd_capture.c - relume capture PHOTO ... -o DIR: a light sequence becomes a capture
 #include "frame_options.h"
-#include "photo_list.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -74,8 +73,7 @@ static const struct option options[] = {
 };
 
 struct job {
-    struct photo_list photos, balls, flats;
-    char *mask, *ball_mask;  // found among them, or NULL
+    struct relume_photographs photos, balls, flats;
     double (*outline)[3];
     struct relume_acquire_params p;
     struct relume_acquisition shoot;
@@ -83,31 +81,14 @@ struct job {
 
 static void free_job(struct job *job)
 {
-    photo_list_free(&job->photos);
-    photo_list_free(&job->balls);
-    photo_list_free(&job->flats);
-    free(job->mask);
-    free(job->ball_mask);
+    relume_photographs_free(&job->photos);
+    relume_photographs_free(&job->balls);
+    relume_photographs_free(&job->flats);
     free(job->outline);
     relume_acquisition_destroy(&job->shoot);
 }
 
 // ---------------------------------------------------------------- photographs
-
-// A picture whose name says so is no photograph but the mask of the others; the last one counts.
-static void split_masks(struct photo_list *list, char **mask)
-{
-    int n = 0;
-    for (int i = 0; i < list->count; i++) {
-        if (!strstr(base_name(list->path[i]), "mask")) {
-            list->path[n++] = list->path[i];
-            continue;
-        }
-        free(*mask);
-        *mask = list->path[i];
-    }
-    list->count = n;
-}
 
 static int by_number(const void *a, const void *b)
 {
@@ -115,25 +96,44 @@ static int by_number(const void *a, const void *b)
 }
 
 // img2 comes before img10, whatever the shell says.
-static void put_in_order(struct photo_list *list)
+static void put_in_order(struct relume_photographs *list)
 {
     if (list->count)
         qsort(list->path, (size_t)list->count, sizeof *list->path, by_number);
 }
 
+static relume_status list(struct relume_photographs *out, const char *const *paths, int n,
+                          const struct capture_options *o)
+{
+    const relume_status status = relume_photographs_list(
+        out, paths, n, relume_photographs_params(.log = o->args.log, .companions = true));
+    if (!status)
+        put_in_order(out);
+    return status;
+}
+
 static relume_status gather(const struct capture_options *o, struct job *job)
 {
-    relume_status status = photo_list_make(&job->photos, &o->args);
-    for (int i = 0; !status && i < o->ball_photos.count; i++)
-        status = photo_list_add(&job->balls, o->ball_photos.text[i], o->args.log);
-    for (int i = 0; !status && i < o->flat.count; i++)
-        status = photo_list_add(&job->flats, o->flat.text[i], o->args.log);
-    split_masks(&job->photos, &job->mask);
-    split_masks(&job->balls, &job->ball_mask);
-    put_in_order(&job->photos);
-    put_in_order(&job->balls);
-    put_in_order(&job->flats);
+    relume_status status = list(&job->photos, o->args.input, o->args.inputs, o);
+    if (!status && o->ball_photos.count)
+        status = list(&job->balls, o->ball_photos.text, o->ball_photos.count, o);
+    if (!status && o->flat.count)
+        status = list(&job->flats, o->flat.text, o->flat.count, o);
     return status;
+}
+
+// --lights, or the .lp file that lies with the photographs unless a ball is to tell.
+static const char *lights_file(const struct capture_options *o, const struct job *job)
+{
+    if (o->lights || o->ball.count || o->ball_photos.count || args_given(&o->args, &o->balls) ||
+        o->ball_mask || o->matte)
+        return o->lights;
+    if (job->photos.lights)
+        say(&o->args, RELUME_NOTE,
+            "%s: light directions are taken from this file; --ball or --ball-photos take "
+            "them from a mirror ball instead",
+            job->photos.lights);
+    return job->photos.lights;
 }
 
 // ---------------------------------------------------------------- options
@@ -210,8 +210,8 @@ static relume_status read_options(const struct capture_options *o, struct job *j
     const char *of_balls = o->ball_transfer;
     job->p = (struct relume_acquire_params){
         .log = o->args.log,
-        .mask = (o->mask ? o->mask : job->mask),
-        .ball_mask = (o->ball_mask ? o->ball_mask : job->ball_mask),
+        .mask = (o->mask ? o->mask : job->photos.mask),
+        .ball_mask = (o->ball_mask ? o->ball_mask : job->balls.mask),
         .photographs = (const char *const *)job->photos.path,
         .photograph_count = job->photos.count,
         .ball_photographs = (const char *const *)job->balls.path,
@@ -220,7 +220,7 @@ static relume_status read_options(const struct capture_options *o, struct job *j
         .matte = o->matte,
         .fov_deg = field_of_view(o),
         .ball_z = o->ball_z,
-        .lights = o->lights,
+        .lights = lights_file(o, job),
         .flats = (const char *const *)job->flats.path,
         .flat_count = job->flats.count,
         .radial = o->radial,
@@ -272,33 +272,6 @@ static relume_status save_height(const struct capture_options *o,
 }
 
 // ---------------------------------------------------------------- the file
-
-static relume_status encode(const struct capture_options *o, const struct job *job,
-                            const char *path)
-{
-    relume_capture *capture;
-    relume_coder *coder = NULL;
-    struct relume_exif notes;
-    relume_status status =
-        relume_capture_open(&capture, o->output, relume_capture_params(.log = o->args.log));
-    if (!status)
-        status = relume_exif_read(&notes, job->shoot.photo[0].path, o->args.log);
-    if (status)
-        goto done;
-    const enum relume_domain domain = notes.floats ? RELUME_DOMAIN_LINEAR : RELUME_DOMAIN_DISPLAY;
-    status = relume_coder_learn(
-        &coder, &relume_basis_pca, capture, relume_coder_params(.log = o->args.log, .choose = true),
-        relume_encode_params(.log = o->args.log, .domain = domain, .threads = o->args.threads));
-    if (!status)
-        status = relume_pack_encode(capture, coder, path, NULL,
-                                    relume_pack_encode_params(.log = o->args.log, .domain = domain,
-                                                              .compression = RELUME_COMPRESS_PIZ,
-                                                              .threads = o->args.threads));
-done:
-    relume_coder_destroy(&coder);
-    relume_capture_destroy(&capture);
-    return status;
-}
 
 // What lies outside the file's mask is not known.
 static relume_status blacken(struct relume_image *frame, relume_pack *pack)
@@ -374,22 +347,21 @@ static void print_json(const struct relume_acquisition *s)
     puts("]}");
 }
 
-static void say(const struct capture_options *o, const struct relume_acquisition *s)
+static void say_made(const struct capture_options *o, const struct relume_acquisition *s)
 {
-    const struct relume_log *log = o->args.log;
     double sigma = 0.0;
-    char text[512];
+    char directions[64] = "", positions[64] = "", next[160] = "";
     for (int i = 0; i < s->lights; i++)
         sigma += s->photo[i].sigma_deg / s->lights;
-    size_t at = (size_t)snprintf(text, sizeof text, "%s: %d lights", o->output, s->lights);
     if (sigma > 0.0)
-        at += (size_t)snprintf(text + at, sizeof text - at, ", directions to about %.2f degrees",
-                               sigma);
+        snprintf(directions, sizeof directions, ", directions to about %.2f degrees", sigma);
     if (s->position_error > 0.0)
-        at += (size_t)snprintf(text + at, sizeof text - at, ", positions to about %.1f %%",
-                               100.0 * s->position_error);
-    snprintf(text + at, sizeof text - at, "; see report.html there");
-    log->message(log->user, RELUME_NOTE, text);
+        snprintf(positions, sizeof positions, ", positions to about %.1f %%",
+                 100.0 * s->position_error);
+    if (!o->encode)
+        snprintf(next, sizeof next, "; next: relume encode %.100s -o FILE.exr", o->output);
+    say(&o->args, RELUME_NOTE, "%s: %d lights%s%s; see report.html there%s", o->output, s->lights,
+        directions, positions, next);
 }
 
 static relume_status make(const struct capture_options *o, struct job *job)
@@ -404,13 +376,13 @@ static relume_status make(const struct capture_options *o, struct job *job)
     if (!status)
         status = save_height(o, &job->shoot);
     if (!status && file)
-        status = encode(o, job, file);
+        status = encode_as_usual(&o->args, o->output, file);
     if (!status && o->relight)
         status = relight(o, file);
     if (!status && o->json)
         print_json(&job->shoot);
     else if (!status)
-        say(o, &job->shoot);
+        say_made(o, &job->shoot);
     return status;
 }
 

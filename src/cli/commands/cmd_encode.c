@@ -125,8 +125,10 @@ static relume_status parse_transfer(const char *text, struct relume_transfer *ou
 }
 
 struct request {
+    const char *input, *output;
+    bool bits;  // the storage was asked for
+    struct relume_capture_params open;
     const struct relume_basis *basis;
-    struct relume_transfer transfer;
     struct relume_coder_params coder;
     struct relume_pack_encode_params pack;
     struct relume_books_params books;
@@ -158,26 +160,26 @@ static void bytes_words(char text[48], const relume_capture *capture, const char
         snprintf(text, 48, ", %.1f bytes a pixel", (double)file.st_size / pixels);
 }
 
-static void say_result(const struct encode_options *o, const relume_capture *capture,
+static void say_result(const struct args *args, const relume_capture *capture,
                        const relume_coder *coder, const struct relume_encode_report *report,
                        const struct request *r)
 {
     const struct relume_coder_info *info = relume_coder_info(coder);
-    const char *path = o->output;
-    char text[512], bytes[48], unseen[64] = "", more[96] = "";
+    char bytes[48], unseen[64] = "", more[96] = "";
     const bool one = info->lights == 1, short_of = r->decide && r->quality > report->psnr_db + 0.5;
-    bytes_words(bytes, capture, path);
+    bytes_words(bytes, capture, r->output);
     if (r->unseen > 0.0 && !one)
         snprintf(unseen, sizeof unseen, "; unseen light directions: about %.0f dB", r->unseen);
     if (short_of && !one && !r->coder.coefficients)
         snprintf(more, sizeof more, "; %g dB is more than %d coefficients reach", r->quality,
                  info->coefficients);
-    snprintf(text, sizeof text,
-             "%s: reproduces your photograph%s at %.1f dB PSNR with %d coefficient%s%s, %s%s%s%s",
-             path, one ? "" : "s", report->psnr_db, info->coefficients,
-             info->coefficients == 1 ? "" : "s", info->joint ? "" : " a colour",
-             storage_words(r->pack.storage), bytes, unseen, more);
-    o->args.log->message(o->args.log->user, RELUME_NOTE, text);
+    say(args, RELUME_NOTE,
+        "%s: reproduces your photograph%s at %.1f dB PSNR (differences %s) with %d "
+        "coefficient%s%s, "
+        "%s%s%s%s",
+        r->output, one ? "" : "s", report->psnr_db, judgement(report->psnr_db), info->coefficients,
+        relume_plural(info->coefficients), info->joint ? "" : " a colour",
+        storage_words(r->pack.storage), bytes, unseen, more);
 }
 
 // Codes are even steps up to the brightest value: a lamp in the picture of HDR radiance leaves the
@@ -189,41 +191,29 @@ static bool is_coarse(const struct relume_encode_report *report)
     return lost >= COARSE && report->steps_rms >= report->fit_rms;
 }
 
-static void say_coarse(const struct encode_options *o, const struct relume_encode_report *report,
+static void say_coarse(const struct args *args, const struct relume_encode_report *report,
                        const struct request *r)
 {
-    char text[384];
-    if (!o->bits || !is_coarse(report))
-        return;
-    snprintf(text, sizeof text,
-             "%s: very bright highlights: %s will ruin the picture; use --bits half", o->output,
-             storage_words(r->pack.storage));
-    o->args.log->message(o->args.log->user, RELUME_WARNING, text);
+    if (r->bits && is_coarse(report))
+        say(args, RELUME_WARNING,
+            "%s: very bright highlights: %s will ruin the picture; use --bits half", r->output,
+            storage_words(r->pack.storage));
 }
 
 // What in the capture says little: black and clipped pixels, black images.
-static void say_census(const struct encode_options *o, const struct relume_encode_census *c,
-                       bool hemispherical)
+static void say_census(const struct args *args, const struct request *r,
+                       const struct relume_encode_census *c, bool hemispherical)
 {
-    const struct relume_log *log = o->args.log;
-    char text[256];
-    if (c->black) {
-        snprintf(text, sizeof text, "%s: %zu of %zu pixels are black under every light",
-                 o->args.input[0], c->black, c->pixels);
-        log->message(log->user, c->black == c->pixels ? RELUME_WARNING : RELUME_NOTE, text);
-    }
-    if (c->clipped) {
-        snprintf(text, sizeof text,
-                 "%s: %zu of %zu pixels are overexposed in at least one photograph, %zu in all",
-                 o->args.input[0], c->clipped, c->pixels, c->always_clipped);
-        log->message(log->user, c->always_clipped == c->pixels ? RELUME_WARNING : RELUME_NOTE,
-                     text);
-    }
-    if (c->black_images && hemispherical) {
-        snprintf(text, sizeof text, "%s: %d image%s black", o->args.input[0], c->black_images,
-                 c->black_images > 1 ? "s are" : " is");
-        log->message(log->user, RELUME_WARNING, text);
-    }
+    if (c->black)
+        say(args, c->black == c->pixels ? RELUME_WARNING : RELUME_NOTE,
+            "%s: %zu of %zu pixels are black under every light", r->input, c->black, c->pixels);
+    if (c->clipped)
+        say(args, c->always_clipped == c->pixels ? RELUME_WARNING : RELUME_NOTE,
+            "%s: %zu of %zu pixels are overexposed in at least one photograph, %zu in all",
+            r->input, c->clipped, c->pixels, c->always_clipped);
+    if (c->black_images && hemispherical)
+        say(args, RELUME_WARNING, "%s: %d image%s black", r->input, c->black_images,
+            c->black_images > 1 ? "s are" : " is");
 }
 
 // Near lights are resampled where the places of the pixels are known (capture.h).
@@ -255,33 +245,26 @@ static relume_status learn(relume_coder **coder, const relume_capture *capture, 
 }
 
 // Where nobody asked for even steps and they turn out too coarse, as halves.
-static relume_status write_file(const struct encode_options *o, const relume_capture *capture,
-                                const relume_coder *coder, struct request *r,
-                                struct relume_encode_report *report)
+static relume_status write_file(const relume_capture *capture, const relume_coder *coder,
+                                struct request *r, struct relume_encode_report *report)
 {
-    const char *path = o->output;
-    relume_status status = relume_pack_encode(capture, coder, path, report, &r->pack);
-    if (status || o->bits || !is_coarse(report))
+    relume_status status = relume_pack_encode(capture, coder, r->output, report, &r->pack);
+    if (status || r->bits || !is_coarse(report))
         return status;
     r->pack.storage = RELUME_STORE_HALF;
-    return relume_pack_encode(capture, coder, path, report, &r->pack);
+    return relume_pack_encode(capture, coder, r->output, report, &r->pack);
 }
 
-static relume_status encode(const struct encode_options *o, struct request *r)
+static relume_status encode(const struct args *args, struct request *r)
 {
     relume_capture *capture;
     relume_coder *coder = NULL;
     struct prefix_log about;
-    const size_t keep = r->basis->learned || r->coder.choose ? KEEP_BYTES : 0;
-    relume_status status = relume_capture_open(
-        &capture, o->args.input[0],
-        relume_capture_params(.log = o->args.log, .transfer = r->transfer,
-                              .skip_missing = o->skip_missing, .allow_outside = o->allow_outside,
-                              .assume_depth = o->assume_depth, .repair = o->repair,
-                              .keep_bytes = keep));
+    r->open.keep_bytes = r->basis->learned || r->coder.choose ? KEEP_BYTES : 0;
+    relume_status status = relume_capture_open(&capture, r->input, &r->open);
     if (status)
         return status;
-    r->coder.log = prefix_log(&about, o->args.log, o->args.input[0]);
+    r->coder.log = prefix_log(&about, args->log, r->input);
     r->books.log = r->coder.log;
     if (ignores_positions(relume_capture_manifest(capture)))
         about.log.message(about.log.user, RELUME_WARNING,
@@ -289,11 +272,11 @@ static relume_status encode(const struct encode_options *o, struct request *r)
     status = learn(&coder, capture, r);
     struct relume_encode_report report;
     if (!status)
-        status = write_file(o, capture, coder, r, &report);
+        status = write_file(capture, coder, r, &report);
     if (!status) {
-        say_census(o, &report.census, relume_capture_hemispherical(capture));
-        say_result(o, capture, coder, &report, r);
-        say_coarse(o, &report, r);
+        say_census(args, r, &report.census, relume_capture_hemispherical(capture));
+        say_result(args, capture, coder, &report, r);
+        say_coarse(args, &report, r);
     }
     relume_coder_destroy(&coder);
     relume_capture_destroy(&capture);
@@ -306,6 +289,14 @@ static relume_status parse(const struct encode_options *o, struct request *r)
     static const char *const colours[] = {"rgb", "luminance", NULL};
     int step = 0, colour = 0;
     *r = (struct request){
+        .input = o->args.input[0],
+        .output = o->output,
+        .bits = o->bits != NULL,
+        .open = {.log = o->args.log,
+                 .skip_missing = o->skip_missing,
+                 .allow_outside = o->allow_outside,
+                 .assume_depth = o->assume_depth,
+                 .repair = o->repair},
         .coder = {.coefficients = o->coefficients,
                   .ridge = o->ridge,
                   .no_ridge = args_given(&o->args, &o->ridge) && o->ridge == 0.0,
@@ -313,7 +304,7 @@ static relume_status parse(const struct encode_options *o, struct request *r)
                   .force = o->force},
         .pack = {.log = o->args.log, .threads = o->args.threads},
     };
-    if (!o->output)
+    if (!r->output)
         return usage_error("encode: expected -o FILE.exr");
     const char *basis = o->basis;
     relume_status status = parse_basis(basis, &r->basis);
@@ -331,7 +322,7 @@ static relume_status parse(const struct encode_options *o, struct request *r)
     if (!status)
         status = parse_compression(o->compression, &r->pack.compression);
     if (!status)
-        status = parse_transfer(o->transfer, &r->transfer);
+        status = parse_transfer(o->transfer, &r->open.transfer);
     const bool books = o->books.codes > 0;
     if (!status)
         status = parse_books(&o->args, &o->books, books, &r->books);
@@ -353,7 +344,21 @@ static relume_status run(const struct args *args)
     const struct encode_options *o = (const void *)args;
     struct request r;
     const relume_status status = parse(o, &r);
-    return status ? status : encode(o, &r);
+    return status ? status : encode(args, &r);
+}
+
+relume_status encode_as_usual(const struct args *args, const char *capture, const char *output)
+{
+    struct request r = {
+        .input = capture,
+        .output = output,
+        .open = {.log = args->log},
+        .basis = &relume_basis_pca,
+        .coder = {.choose = true},
+        .pack = {.log = args->log, .compression = RELUME_COMPRESS_PIZ, .threads = args->threads},
+        .decide = true,
+    };
+    return encode(args, &r);
 }
 
 const struct command command_encode = {

@@ -67,8 +67,16 @@ static void print_json(const struct relume_evaluation *e)
 
 static void print_text(const struct relume_evaluation *e)
 {
-    printf("images    %zu (%d views x %d lights)\n", e->images, e->views, e->lights);
-    printf("PSNR      %.2f dB (mean over images)\n", e->psnr_db);
+    int worst = 0;
+    for (int i = 1; i < e->lights; i++)
+        worst = e->light[i].psnr_db < e->light[worst].psnr_db ? i : worst;
+    printf("images    %zu (%d view%s x %d light%s)\n", e->images, e->views, relume_plural(e->views),
+           e->lights, relume_plural(e->lights));
+    printf("PSNR      %.2f dB (mean over images): differences %s\n", e->psnr_db,
+           judgement(e->psnr_db));
+    if (e->lights > 1)
+        printf("worst     %.2f dB (light %d): differences %s\n", e->light[worst].psnr_db, worst + 1,
+               judgement(e->light[worst].psnr_db));
     if (isfinite(e->ssim))
         printf("SSIM      %.4f\n", e->ssim);
     printf("deltaE    %.3f (CIEDE2000)\n", e->delta_e);

@@ -42,31 +42,22 @@ static const struct option options[] = {
     {0},
 };
 
-// What an error means for who looks at the pictures.
-static const char *judgement(double psnr_db)
-{
-    return psnr_db >= 45.0   ? "not visible"
-           : psnr_db >= 38.0 ? "hardly visible"
-           : psnr_db >= 30.0 ? "visible"
-                             : "clearly visible";
-}
-
 static void say_result(const struct export_options *o, const struct relume_export_report *r)
 {
     const char *out = o->output;
-    char text[512], quality[64] = "";
+    char quality[64] = "";
     if (r->quality)
         snprintf(quality, sizeof quality, "quality %d%s, ", r->quality,
                  args_given(&o->args, &o->quality) ? "" : " (chosen)");
     if (r->exact)
-        snprintf(text, sizeof text, "%s: %d planes, copied unchanged: nothing is lost", out,
-                 r->planes);
+        say(&o->args, RELUME_NOTE, "%s: %d plane%s, copied unchanged: nothing is lost", out,
+            r->planes, relume_plural(r->planes));
     else
-        snprintf(text, sizeof text,
-                 "%s: %s%d planes, %.3f bytes per pixel; the export differs from the original by "
-                 "%.2f dB (%s)",
-                 out, quality, r->planes, r->bytes_per_pixel, r->psnr_db, judgement(r->psnr_db));
-    o->args.log->message(o->args.log->user, RELUME_NOTE, text);
+        say(&o->args, RELUME_NOTE,
+            "%s: %s%d plane%s, %.3f bytes per pixel; the export differs from the original by "
+            "%.2f dB (%s)",
+            out, quality, r->planes, relume_plural(r->planes), r->bytes_per_pixel, r->psnr_db,
+            judgement(r->psnr_db));
 }
 
 // What a name's ending means; NULL: nothing, or nothing that export writes.

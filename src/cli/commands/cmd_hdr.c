@@ -3,7 +3,6 @@
 #include "commands/capture_times.h"
 #include "fill.h"
 #include "output_name.h"
-#include "photo_list.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -205,7 +204,7 @@ static relume_status run_bracket(struct bracket *b, const struct choices *c, con
 
 // ---------------------------------------------------------------- all of them
 
-static relume_status read_notes(struct relume_exif *notes, struct photo_list *list,
+static relume_status read_notes(struct relume_exif *notes, struct relume_photographs *list,
                                 const struct hdr_options *o)
 {
     const struct relume_log silent = {.inputs = o->args.log->inputs, .limits = o->args.log->limits};
@@ -225,7 +224,7 @@ static relume_status read_notes(struct relume_exif *notes, struct photo_list *li
     return status;
 }
 
-static int photos_of(struct bracket *b, const struct photo_list *list,
+static int photos_of(struct bracket *b, const struct relume_photographs *list,
                      const struct relume_exif *notes, const int *group, int which)
 {
     int n = 0;
@@ -250,7 +249,7 @@ static void output_name(char *out, size_t size, const struct choices *c, const s
         snprintf(out, size, "%s/%.*s.exr", output, length, name);
 }
 
-static relume_status run_group(const struct choices *c, const struct photo_list *list,
+static relume_status run_group(const struct choices *c, const struct relume_photographs *list,
                                const struct relume_exif *notes, const int *group, int which,
                                const char *to, FILE *report, const struct hdr_options *o)
 {
@@ -270,7 +269,7 @@ static relume_status run_group(const struct choices *c, const struct photo_list 
     return status;
 }
 
-static relume_status run_groups(const struct choices *c, struct photo_list *list,
+static relume_status run_groups(const struct choices *c, struct relume_photographs *list,
                                 struct relume_exif *notes, int *group, FILE *report,
                                 const struct hdr_options *o)
 {
@@ -294,12 +293,14 @@ static relume_status run(const struct args *args)
 {
     const struct hdr_options *o = (const void *)args;
     struct choices choices;
-    struct photo_list list;
+    struct relume_photographs list;
     char *text = NULL;
     size_t size = 0;
     relume_status status = parse_choices(&choices, o);
     if (!status)
-        status = photo_list_make(&list, &o->args);
+        status = relume_photographs_list(
+            &list, o->args.input, o->args.inputs,
+            relume_photographs_params(.log = o->args.log, .by_products = true));
     if (status)
         return status;
     struct relume_exif *notes = calloc((size_t)list.count, sizeof *notes);
@@ -314,7 +315,7 @@ static relume_status run(const struct args *args)
     free(text);
     free(notes);
     free(group);
-    photo_list_free(&list);
+    relume_photographs_free(&list);
     return status;
 }
 

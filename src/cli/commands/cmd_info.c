@@ -82,7 +82,8 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
     printf("views         %d of %d x %d pixels\n", i->views, i->width, i->height);
     printf("lights        %d, %s\n", c->lights,
            c->hemispherical ? "one hemisphere" : "whole sphere");
-    printf("basis         %s, %d coefficients %s\n", c->basis->name, i->coefficients,
+    printf("basis         %s, %d coefficient%s %s\n", c->basis->name, i->coefficients,
+           relume_plural(i->coefficients),
            c->luminance ? "and a colour"
            : c->joint   ? "for all channels"
                         : "per channel");
@@ -95,7 +96,7 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
     printf("storage       %s%s, %s\n", relume_storage_name(i->storage),
            relume_storage_top(i->storage) ? " bits" : "", i->compression);
     if (i->books)
-        printf("codebooks     %d of %d vectors, %s\n", i->books, i->codes,
+        printf("codebooks     %d of %d vector%s, %s\n", i->books, i->codes, relume_plural(i->codes),
                i->shared ? "for all views" : "for each view");
     if (isfinite(i->report.fit_rms))
         print_error(i->report.fit_rms, i->report.store_rms);

@@ -76,8 +76,8 @@ static relume_status posed(const struct lightfield_options *o, const char *photo
     if (grid && sscanf(grid, "%4dx%4d%c", &posed.grid[0], &posed.grid[1], &rest) != 2)
         return usage_error("--views: expected a grid like 5x5; found '%s'", grid);
     if (o->args.inputs != 1)
-        return usage_error("--colmap: expected the folder of the photographs; found %d inputs",
-                           o->args.inputs);
+        return usage_error("--colmap: expected the folder of the photographs; found %d input%s",
+                           o->args.inputs, relume_plural(o->args.inputs));
     return relume_posed_ingest(o->views.output, o->colmap, photos, &posed, p);
 }
 
@@ -86,7 +86,7 @@ static void print_depth(const struct relume_slab_depth_report *r, bool json)
     const bool known = r->compared > 0;
     if (!json) {
         printf("views     %d, searched at %d x %d under %d light%s\n", r->views, r->width,
-               r->height, r->lights, r->lights == 1 ? "" : "s");
+               r->height, r->lights, relume_plural(r->lights));
         printf("planes    %d, distances %.4g to %.4g\n", r->planes, r->range[0], r->range[1]);
         printf("trusted   %.1f %% of pixels agree with the neighbouring views\n",
                100.0 * r->trusted);
@@ -125,6 +125,8 @@ static relume_status depth_of(const struct lightfield_options *o)
         status = relume_slab_depth(&report, c, o->views.output, &p);
     if (!status && (o->json || !o->args.quiet))
         print_depth(&report, o->json);
+    if (!status)
+        say_next(&o->args, o->views.output, "a light slab with depth");
     relume_capture_destroy(&c);
     return status;
 }
@@ -145,6 +147,8 @@ static relume_status run(const struct args *args)
     if (!status)
         status = o->colmap ? posed(o, o->args.input[0], &p) : slab(o, &p);
     free(lights);
+    if (!status)
+        say_next(args, o->views.output, "a light slab");
     return status;
 }
 

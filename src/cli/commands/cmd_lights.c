@@ -46,7 +46,7 @@ static void print_lines(const struct relume_vec3 *v, int n, double discrepancy)
 {
     for (int i = 0; i < n; i++)
         printf("%.9g %.9g %.9g\n", v[i].x, v[i].y, v[i].z);
-    printf("# %d directions, spherical cap discrepancy %.6g\n", n, discrepancy);
+    printf("# %d direction%s, spherical cap discrepancy %.6g\n", n, relume_plural(n), discrepancy);
 }
 
 static relume_status run(const struct args *args)

@@ -59,6 +59,8 @@ static relume_status run(const struct args *args)
     if (!status)
         status = make(o, &p);
     free(lights);
+    if (!status)
+        say_next(args, o->views.output, "a panorama");
     return status;
 }
 

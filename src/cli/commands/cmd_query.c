@@ -70,16 +70,14 @@ static void print(const struct query_options *o, const float (*rgb)[3], int n)
 
 static void count_none(const struct query_options *o, const float (*rgb)[3], int n)
 {
-    char text[200];
     int none = 0;
     for (int i = 0; i < n; i++)
         none += isnan(rgb[i][0]);
     if (!none)
         return;
-    snprintf(text, sizeof text,
-             "%d of %d rays are not in the file (they miss its window or its cameras): %s", none, n,
-             o->json ? "null" : "none");
-    o->args.log->message(o->args.log->user, RELUME_WARNING, text);
+    say(&o->args, RELUME_WARNING,
+        "%d of %d rays are not in the file (they miss its window or its cameras): %s", none, n,
+        o->json ? "null" : "none");
 }
 
 static relume_status query(const struct query_options *o, const struct relume_ray *rays, int n,

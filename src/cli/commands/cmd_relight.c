@@ -10,9 +10,10 @@
 
 struct relight_options {
     struct args args;
-    const char *output, *eye, *look_at, *up, *projection, *size, *filter, *pass, *objects, *capture;
-    int view, samples;
-    double fov, pan, tilt, zoom, aperture, focus;
+    const char *output, *eye, *look_at, *up, *projection, *size, *filter, *pass, *objects, *capture,
+        *range;
+    int view, samples, radius;
+    double fov, pan, tilt, zoom, aperture, focus, gain, highlight, exponent;
     bool alpha;
     struct light_options lighting;
     struct interpolate_options interpolation;
@@ -61,6 +62,20 @@ static const struct option options[] = {
     TEXT("--pass", pass, "picture", "NAME",
          "colour, normals, specular, diffuse-gain, unsharp, luminance, false-colour, difference, "
          "glare"),
+    NUMBER("--gain", gain, "picture", "G",
+           "--pass diffuse-gain, unsharp: how strongly relief is exaggerated; default: 2", 1, 20),
+    NUMBER("--highlight", highlight, "picture", "H",
+           "--pass specular: brightness against the brightest parts of the picture; default: 0.6",
+           0.01, 10),
+    NUMBER("--exponent", exponent, "picture", "E",
+           "--pass specular: how narrow the highlight is, 1 matt to 1000 like a mirror; default: "
+           "40",
+           1, 1000),
+    INT("--radius", radius, "picture", "PX",
+        "--pass unsharp: sharpen detail finer than this; default: 4", 1, 64),
+    TEXT("--range", range, "picture", "LOW,HIGH",
+         "--pass false-colour: linear luminance of dark blue and of yellow; default: the "
+         "picture's"),
     GLARE_OPTIONS,
     FLAG("--alpha", alpha, "picture",
          "make the background transparent where the capture has a mask: .png and .exr of a "
@@ -171,6 +186,42 @@ static relume_status parse_pass(const struct relight_options *o, struct relume_f
     const bool difference = params->pass == RELUME_PASS_DIFFERENCE;
     if (difference != (o->capture != NULL))
         return usage_error("relight: --pass difference and --capture work only together");
+    return RELUME_OK;
+}
+
+// As the viewer's sliders. Each belongs to a pass or two.
+static relume_status parse_strength(const struct relight_options *o, struct relume_pass_params *out,
+                                    enum relume_pass pass)
+{
+    const struct {
+        const char *option;
+        const void *member;
+        enum relume_pass pass, other;
+    } belongs[] = {
+        {"--gain", &o->gain, RELUME_PASS_DIFFUSE_GAIN, RELUME_PASS_UNSHARP},
+        {"--highlight", &o->highlight, RELUME_PASS_SPECULAR, RELUME_PASS_SPECULAR},
+        {"--exponent", &o->exponent, RELUME_PASS_SPECULAR, RELUME_PASS_SPECULAR},
+        {"--radius", &o->radius, RELUME_PASS_UNSHARP, RELUME_PASS_UNSHARP},
+        {"--range", &o->range, RELUME_PASS_FALSE_COLOUR, RELUME_PASS_FALSE_COLOUR},
+    };
+    double ends[2] = {0.0, 0.0};
+    for (size_t i = 0; i < sizeof belongs / sizeof *belongs; i++)
+        if (args_given(&o->args, belongs[i].member) && pass != belongs[i].pass &&
+            pass != belongs[i].other)
+            return usage_error("relight: %s works only with --pass %s", belongs[i].option,
+                               relume_pass_name(belongs[i].pass));
+    if (o->range && (!parse_numbers(o->range, ends, 2) || !(ends[0] >= 0.0 && ends[0] < ends[1])))
+        return usage_error(
+            "--range: expected two luminances LOW,HIGH, the first one smaller; found '%s'",
+            o->range);
+    *out = (struct relume_pass_params){
+        .gain = (float)o->gain,
+        .specular = (float)o->highlight,
+        .exponent = (float)o->exponent,
+        .radius = o->radius,
+        .low = (float)ends[0],
+        .top = (float)ends[1],
+    };
     return RELUME_OK;
 }
 
@@ -353,6 +404,7 @@ static relume_status run(const struct args *args)
     const struct relight_options *o = (const void *)args;
     struct relume_camera camera;
     struct relume_frame_params params = parse_frame(args, &o->lighting, o->cpu_mask);
+    struct relume_pass_params strength = {0};
     struct developing developing = {0};
     relume_rig *rig = NULL;
     const struct relume_light *lights;
@@ -369,6 +421,9 @@ static relume_status run(const struct args *args)
         status = parse_filter(o, &params);
     if (!status)
         status = parse_pass(o, &params);
+    if (!status)
+        status = parse_strength(o, &strength, params.pass);
+    params.strength = &strength;
     if (!status)
         status = parse_developing(&o->develop, &developing);
     if (!status)

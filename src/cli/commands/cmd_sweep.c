@@ -481,11 +481,6 @@ static relume_status measure_group(struct work *w, int first, int end)
 
 // ---------------------------------------------------------------- the whole
 
-static void note(const struct args *args, const char *text)
-{
-    args->log->message(args->log->user, RELUME_NOTE, text);
-}
-
 static bool all_known(const struct sweep *sweep)
 {
     for (int i = 0; i < sweep->rows; i++)
@@ -507,13 +502,10 @@ static relume_status measure_all(struct work *w, const relume_capture *test)
         s->measured = (double)info.pixels / (double)info.all_pixels;
         status = relume_making_open(&w->folder, NULL, RELUME_MADE_FOLDER, false, s->args->log);
     }
-    if (!status && s->measured < 1.0) {
-        char text[128];
-        snprintf(text, sizeof text,
-                 "measured on %.0f %% of the picture's rows; give more --memory to use more",
-                 100.0 * s->measured);
-        note(s->args, text);
-    }
+    if (!status && s->measured < 1.0)
+        say(s->args, RELUME_NOTE,
+            "measured on %.0f %% of the picture's rows; give more --memory to use more",
+            100.0 * s->measured);
     for (int first = 0, end; !status && first < s->rows; first = end) {
         end = group_end(s, first);
         status = measure_group(w, first, end);
@@ -554,7 +546,8 @@ static relume_status sweep_captures(struct sweep *sweep, relume_capture *capture
     if (!status && !all_known(sweep))
         status = measure_all(&w, test);
     if (status == RELUME_ECANCEL && sweep->out)
-        note(sweep->args, "finished rows are kept; run the same command again to continue");
+        say(sweep->args, RELUME_NOTE,
+            "finished rows are kept; run the same command again to continue");
     if (!status)
         status = finish(sweep, w.resume);
     sweep_resume_close(&w.resume);

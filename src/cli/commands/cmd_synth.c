@@ -1,4 +1,5 @@
 // cmd_synth.c - relume synth: a built-in scene on the virtual light stage
+#include "commands/btf_inputs.h"
 #include "pattern_option.h"
 
 #include <stdlib.h>
@@ -140,17 +141,6 @@ static relume_status make_lights(struct relume_vec3 **out, int *n, bool pole_y,
 
 // ---------------------------------------------------------------- materials
 
-static relume_status choose_material(const struct relume_btf_material **out, const char *name)
-{
-    const char *names[16];
-    int n = 0;
-    for (const struct relume_btf_material *const *m = relume_btf_materials; *m && n < 15; m++)
-        names[n++] = relume_btf_material_name(*m);
-    names[n] = NULL;
-    *out = relume_btf_material_find(name);
-    return *out ? RELUME_OK : unknown_name("material", name, names);
-}
-
 // Directions of a file that a material can be measured from: the file is at fault, not the usage.
 static relume_status read_directions(struct relume_vec3 **out, int *n, const char *file,
                                      const struct synth_options *o)
@@ -186,7 +176,7 @@ static relume_status synth_btf(const struct synth_options *o)
     struct relume_vec3 *directions = NULL;
     relume_btf *btf = NULL;
     int n = 0;
-    relume_status status = choose_material(&material, o->btf);
+    relume_status status = btf_find_material(&material, o->btf);
     if (!status)
         status = choose_directions(&directions, &n, o);
     if (!status)
@@ -240,6 +230,9 @@ static relume_status run(const struct args *args)
     };
     if (!o->output)
         return usage_error("synth: expected -o DIR");
+    const relume_status refused = relume_folder_check(o->output, p.force, p.log);
+    if (refused)
+        return refused;
     if (o->btf)
         return o->args.inputs ? usage_error("synth: expected a scene or --btf; found both")
                               : synth_btf(o);

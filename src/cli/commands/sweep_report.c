@@ -285,10 +285,11 @@ static void describe(const struct sweep *sweep, char *text, size_t size)
     bool one = true;
     for (int i = 0; i < sweep->rows; i++)
         one &= sweep->row[i].store.storage == sweep->row[0].store.storage;
-    int n = snprintf(text, size, "%d lights, %d x %d pixels; ", sweep->lights, sweep->width,
-                     sweep->height);
+    int n = snprintf(text, size, "%d light%s, %d x %d pixels; ", sweep->lights,
+                     relume_plural(sweep->lights), sweep->width, sweep->height);
     if (sweep->test)
-        n += snprintf(text + n, size - (size_t)n, "measured on %d others", sweep->judged);
+        n += snprintf(text + n, size - (size_t)n, "measured on %d other%s", sweep->judged,
+                      relume_plural(sweep->judged));
     else
         n += snprintf(text + n, size - (size_t)n, "%d left out at a time", sweep->leave_out);
     if (one)

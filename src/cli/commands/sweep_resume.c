@@ -136,9 +136,7 @@ static void find_row(const sweep_resume *r, struct sweep *sweep, const struct ke
 
 static void warn(const sweep_resume *r, const char *what)
 {
-    char text[1024];
-    snprintf(text, sizeof text, "%s: %s", r->path, what);
-    r->sweep->args->log->message(r->sweep->args->log->user, RELUME_WARNING, text);
+    say(r->sweep->args, RELUME_WARNING, "%s: %s", r->path, what);
 }
 
 // False when another program wrote the file.
@@ -166,9 +164,7 @@ static bool read_rows(const sweep_resume *r, struct sweep *sweep)
 
 static relume_status cannot_write(const sweep_resume *r)
 {
-    char text[1024];
-    snprintf(text, sizeof text, "%s: cannot be written; %s", r->path, strerror(errno));
-    r->sweep->args->log->message(r->sweep->args->log->user, RELUME_ERROR, text);
+    say(r->sweep->args, RELUME_ERROR, "%s: cannot be written; %s", r->path, strerror(errno));
     return RELUME_EIO;
 }
 

@@ -2,6 +2,7 @@
 #include "panel/panel_parts.h"
 
 #include <imgui_internal.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <cstring>
@@ -36,10 +37,18 @@ static bool is_font(const unsigned char *file, size_t size)
     return tables > 0;
 }
 
+// Dear ImGui would take all memory for a folder, and wait for a pipe.
+static void *load(const char *path, size_t *size)
+{
+    struct stat about;
+    const bool fits = !stat(path, &about) && S_ISREG(about.st_mode) && about.st_size < 64 << 20;
+    return fits ? ImFileLoadToMemory(path, "rb", size) : nullptr;
+}
+
 bool panel_add_font(const char *path, float scale)
 {
     size_t size = 0;
-    void *file = ImFileLoadToMemory(path, "rb", &size);
+    void *file = load(path, &size);
     if (!file || !is_font((const unsigned char *)file, size)) {
         ImGui::MemFree(file);
         return false;

@@ -18,7 +18,7 @@ bad() { # name, pattern, input
 }
 bad 'nothing there' 'no such file' nothing.ptm
 bad 'another kind of file' 'this format cannot be imported' dome/dirs.lp
-bad 'a folder without info.json' 'info.json: cannot be opened' dome
+bad 'a folder without info.json' 'dome: a folder without info.json, so no web folder' dome
 size=$(wc -c <ptm.ptm)
 head -c $((size / 2)) ptm.ptm >cut.ptm
 bad '.ptm cut in half' 'cut.ptm: truncated; expected 28800 bytes of pixels, found [0-9]+' cut.ptm

@@ -172,7 +172,7 @@ static void test_inputs(void **state)
     assert_non_null(strstr(log.text, "hard: is read here"));
     assert_int_equal(outfile_open(&f, path, NULL, &log.log), RELUME_EINVAL);
     assert_int_equal(relume_file_check(hard, &log.log), RELUME_EINVAL);
-    CHECK_OK(relume_file_check(folder, &log.log));
+    assert_int_equal(relume_file_check(folder, &log.log), RELUME_EIO);
     char nowhere[128];
     snprintf(nowhere, sizeof nowhere, "%s/new", folder);
     CHECK_OK(relume_file_check(nowhere, &log.log));

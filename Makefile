@@ -81,7 +81,7 @@ GL_C     := $(wildcard tests/gl/*.c)
 BENCH_C  := $(wildcard tests/bench/*.c)
 FUZZ_C   := $(wildcard tests/fuzz/*.c)
 TOOLS_C  := $(wildcard tests/tools/*.c)
-# minimal.c and memory.c are built against the installed library instead (tests/cli/test_install.sh)
+# minimal.c, memory.c, batch.c and viewer.c are built against the installed library instead (tests/cli/test_install.sh)
 SAMPLES_C := samples/sphere.c samples/figures.c samples/mirrorball.c
 
 LIB_O    := $(LIB_C:%.c=$B/obj/%.o) $B/obj/src/math/lsq_eigen.o $B/obj/src/math/lsq_eigen_avx2.o

@@ -74,7 +74,7 @@ jpeglib:src/image/jpeg.c tests/unit/test_picture.c
 png:src/image/png.c
 lcms2:src/image/profile.c tests/unit/test_photograph.c
 cairo:src/cli/plot.c
-GLFW:viewer/window/context_glfw.c
+GLFW:viewer/window/context_glfw.c samples/viewer.c
 imgui:viewer/panel/panel_parts.h viewer/panel/panel.cpp viewer/panel/panel_font.cpp
 panel/panel_parts:$(echo viewer/panel/panel*.cpp)
 GL/osmesa:viewer/window/context_osmesa.c

@@ -13,6 +13,13 @@ extern "C" {
 // The version of these headers: major.minor.patch.
 #define RELUME_VERSION "0.1.0"
 
+// The same in numbers; NUMBER orders versions, as in #if RELUME_VERSION_NUMBER >= 10200.
+#define RELUME_VERSION_MAJOR 0
+#define RELUME_VERSION_MINOR 1
+#define RELUME_VERSION_PATCH 0
+#define RELUME_VERSION_NUMBER                                                                      \
+    (RELUME_VERSION_MAJOR * 10000 + RELUME_VERSION_MINOR * 100 + RELUME_VERSION_PATCH)
+
 // An exported declaration.
 #define RELUME_API __attribute__((visibility("default")))
 // An exported function whose status must be looked at.
@@ -32,6 +39,9 @@ typedef enum relume_status {
 // Params structs begin with their size, which the macro of the same name fills: a library that
 // knows more fields than its caller takes the default for them. A size of 0 stands for all fields.
 #define RELUME_SIZED(type) .struct_size = sizeof(struct type)
+
+// The RELUME_VERSION_NUMBER of the library that is linked, which may be newer than the headers.
+RELUME_API int relume_version(void);
 
 // A fixed English text for `status`, never NULL.
 RELUME_API const char *relume_status_text(relume_status status);

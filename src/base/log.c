@@ -41,6 +41,11 @@ bool log_progress(const struct relume_log *log, const char *what, double done)
     return !log || !log->progress || log->progress(log->user, what, done);
 }
 
+int relume_version(void)
+{
+    return RELUME_VERSION_NUMBER;
+}
+
 const char *relume_status_text(relume_status status)
 {
     switch (status) {

@@ -79,7 +79,7 @@ struct command {
     const char *example;  // complete command line
     int min_inputs, max_inputs;
     const struct option *options;        // common options are added
-    const char *groups;            // help shows these groups only; NULL: all
+    const char *groups;                  // help shows these groups only; NULL: all
     size_t size;                         // of the struct that they fill
     const void *defaults;                // such a struct; NULL: zeros
     const struct command *const *tasks;  // instead of all that: what its next word names

@@ -72,6 +72,31 @@ else
     not_ok "memory.c builds" "$why"
 fi
 
+sample() { # name, libraries
+    if why=$($CC -std=c11 -Wall -Wextra -Werror $sanitizer "$TOP/samples/$1.c" \
+        $(pkg-config --cflags --libs relume) ${2:-} -o "$1" 2>&1); then ok "$1.c builds"; else not_ok "$1.c builds" "$why"; fi
+}
+sample batch
+cp box.exr second.exr
+check "batch.c relights every file" env LD_LIBRARY_PATH="$prefix/lib" ./batch lit 1 0.5 1 box.exr second.exr
+same "batch.c does what relight does" second-lit.png tool.png
+says() { # name, status, words, command...: a sample ends so and says so
+    name=$1 status=$2 words=$3
+    shift 3
+    LD_LIBRARY_PATH="$prefix/lib" "$@" >said.txt 2>&1 && got=0 || got=$?
+    if [ $got = "$status" ] && grep -q "$words" said.txt; then ok "$name"; else not_ok "$name" "status $got, $(cat said.txt)"; fi
+}
+says "batch.c goes on after a file that is none" 1 'box-lit.png' ./batch lit 1 0.5 1 none.exr box.exr
+says "batch.c says which file is none" 1 'none.exr: no such file' ./batch lit 1 0.5 1 none.exr box.exr
+if pkg-config --exists glfw3 gl; then
+    sample viewer "$(pkg-config --libs glfw3 gl) -lm"
+    if [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
+        says "viewer.c without a display says so" 3 'no window can be opened' ./viewer box.exr
+    fi
+else
+    echo "skipped: viewer.c (no GLFW or OpenGL)"
+fi
+
 # ---------------------------------------------------------------- the helper, and none
 printf 'P6 2 2 255 abcdefabcdef' >small.ppm
 check "the installed tool finds its helper" "$prefix/bin/relume" compare small.ppm small.ppm

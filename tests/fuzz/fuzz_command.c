@@ -174,18 +174,29 @@ static void put(const char *path, const char *t)
     fuzz_store(path, (struct bytes){(uint8_t *)(uintptr_t)t, strlen(t)});
 }
 
+static size_t add_options(size_t n, const struct option *options)
+{
+    for (const struct option *o = options; o && o->name && n < MOST_WORDS - 32; o++)
+        words[n++] = o->name;
+    return n;
+}
+
+static size_t add_commands(size_t n, const struct command *const *list)
+{
+    for (const struct command *const *c = list; c && *c && n < MOST_WORDS - 32; c++) {
+        words[n++] = (*c)->name;
+        n = add_options(n, (*c)->options);
+        n = add_commands(n, (*c)->tasks);
+    }
+    return n;
+}
+
 static void add_words(void)
 {
     size_t n = 0;
     while (words[n])
         n++;
-    for (const struct option *o = common; o->name; o++)
-        words[n++] = o->name;
-    for (const struct command *const *c = commands; *c; c++) {
-        words[n++] = (*c)->name;
-        for (const struct option *o = (*c)->options; o->name && n < MOST_WORDS - 32; o++)
-            words[n++] = o->name;
-    }
+    (void)add_commands(add_options(n, common), commands);
 }
 
 static void must(const char *line)

@@ -52,6 +52,16 @@ static void test_printable(void **state)
     }
 }
 
+static void one_version(void **state)
+{
+    (void)state;
+    char text[32];
+    snprintf(text, sizeof text, "%d.%d.%d", RELUME_VERSION_MAJOR, RELUME_VERSION_MINOR,
+             RELUME_VERSION_PATCH);
+    assert_string_equal(text, RELUME_VERSION);
+    assert_int_equal(relume_version(), RELUME_VERSION_NUMBER);
+}
+
 // A caller's struct may end sooner or later than ours.
 static void params_of_other_versions(void **state)
 {
@@ -88,6 +98,7 @@ static void params_of_other_versions(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_version),
         cmocka_unit_test(params_of_other_versions),
         cmocka_unit_test(test_whole),
         cmocka_unit_test(test_printable),

@@ -27,8 +27,8 @@ static struct relume_light light_of_mouse(GLFWwindow *window)
     return (struct relume_light){.direction = {x, y, z}, .rgb = {1, 1, 1}};
 }
 
-static relume_status draw(GLFWwindow *window, relume_renderer *renderer,
-                          struct relume_target *target)
+static relume_status draw(GLFWwindow *window, relume_renderer *renderer, const void *pixels,
+                          const struct relume_target *target)
 {
     const struct relume_light light = light_of_mouse(window);
     relume_status status = relume_renderer_set_lights(renderer, &light, 1);
@@ -37,7 +37,7 @@ static relume_status draw(GLFWwindow *window, relume_renderer *renderer,
     if (status)
         return status;
     glRasterPos2f(-1.0f, -1.0f);
-    glDrawPixels(target->width, target->height, GL_RGBA, GL_UNSIGNED_BYTE, target->data);
+    glDrawPixels(target->width, target->height, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
     glfwSwapBuffers(window);
     return RELUME_OK;
 }
@@ -64,13 +64,13 @@ int main(int argc, char **argv)
         return fprintf(stderr, "viewer: no window can be opened; is there a display?\n"), 3;
     glfwMakeContextCurrent(window);
     // OpenGL begins with the lowest row: the rows go upwards from the last.
-    struct relume_target target = {.data = pixels + (size_t)row * (size_t)(height - 1),
-                                   .format = RELUME_TARGET_RGBA8,
-                                   .width = width,
-                                   .height = height,
-                                   .stride = -row};
+    const struct relume_target target = {.data = pixels + (size_t)row * (size_t)(height - 1),
+                                         .format = RELUME_TARGET_RGBA8,
+                                         .width = width,
+                                         .height = height,
+                                         .stride = -row};
     for (; !status && !glfwWindowShouldClose(window); glfwWaitEvents())
-        status = draw(window, renderer, &target);
+        status = draw(window, renderer, pixels, &target);
     glfwTerminate();
     free(pixels);
     relume_renderer_destroy(&renderer);

@@ -13,10 +13,10 @@ extern "C" {
 // The version of these headers: major.minor.patch.
 #define RELUME_VERSION "0.1.0"
 
-// The same in numbers; NUMBER orders versions, as in #if RELUME_VERSION_NUMBER >= 10200.
-#define RELUME_VERSION_MAJOR 0
-#define RELUME_VERSION_MINOR 1
-#define RELUME_VERSION_PATCH 0
+#define RELUME_VERSION_MAJOR 0  // a program must be changed for another one
+#define RELUME_VERSION_MINOR 1  // something was added
+#define RELUME_VERSION_PATCH 0  // something was mended
+// The three as one number that grows: 10200 is version 1.2.0.
 #define RELUME_VERSION_NUMBER                                                                      \
     (RELUME_VERSION_MAJOR * 10000 + RELUME_VERSION_MINOR * 100 + RELUME_VERSION_PATCH)
 

@@ -59,6 +59,7 @@ struct relume_photographs_params {
 RELUME_RESULT relume_status relume_photographs_list(struct relume_photographs *out,
                                                     const char *const *paths, int n,
                                                     const struct relume_photographs_params *params);
+// Free what relume_photographs_list has put into `list`, which is empty afterwards.
 RELUME_API void relume_photographs_free(struct relume_photographs *list);
 
 // Photographs of one scene that follow each other: group[i] counts from 0 in the order of time (of

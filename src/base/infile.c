@@ -21,6 +21,8 @@ const char *infile_name(const char *path)
 // ---------------------------------------------------------------- descriptors of files
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static pthread_cond_t one_is_free = PTHREAD_COND_INITIALIZER;
+static int held;  // descriptors that are being read
 static struct infile *newest, *oldest;
 static int open_files;
 
@@ -101,8 +103,13 @@ static int hold(struct infile *s)
         unlink_one(s);
         link_newest(s);
     }
-    const bool good = s->file >= 0 || open_again(s);
+    bool good = s->file >= 0 || open_again(s);
+    while (!good && held && (errno == EMFILE || errno == ENFILE)) {  // another thread is soon done
+        pthread_cond_wait(&one_is_free, &lock);
+        good = s->file >= 0 || open_again(s);
+    }
     s->users += good;
+    held += good;
     pthread_mutex_unlock(&lock);
     return good ? s->file : -1;
 }
@@ -111,6 +118,8 @@ static void let_go(struct infile *s)
 {
     pthread_mutex_lock(&lock);
     s->users--;
+    held--;
+    pthread_cond_broadcast(&one_is_free);
     pthread_mutex_unlock(&lock);
 }
 

@@ -577,16 +577,18 @@ static const char *moved_option(const struct command **to, int argc, char **argv
     return NULL;
 }
 
-// The task of a command is its first word that names one; options may stand before it.
+// The task of a command is its first word that names one; options and their values may stand before
+// it.
 static relume_status choose_task(struct parsed *p, int *argc, char **argv)
 {
     const struct command *const *tasks = p->command->tasks;
+    const struct command *task = NULL;
     int i = 0;
-    while (i < *argc && argv[i][0] == '-')
+    while (i < *argc && !(task = find_command(tasks, argv[i])) &&
+           (argv[i][0] == '-' || (i > 0 && argv[i - 1][0] == '-')))  // that may be its value
         i++;
     if (i == *argc)
         return RELUME_OK;
-    const struct command *task = find_command(tasks, argv[i]);
     if (!task)
         return unknown_command("task", tasks, argv[i]);
     p->command = task;

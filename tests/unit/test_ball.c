@@ -255,7 +255,7 @@ static void no_ball(void **state)
     assert_int_equal(
         relume_ball_find(&ball, 1, &mean, &camera, relume_ball_params(.log = &log.log)),
         RELUME_EDATA);
-    assert_non_null(strstr(log.text, "0 of 1 balls"));
+    assert_non_null(strstr(log.text, "0 of 1 ball found"));
     relume_image_destroy(&photo);
     relume_image_destroy(&mean);
 }

@@ -5,9 +5,9 @@
 // are followed at the level where they measure some 40 pixels, and the very best at full size.
 #include "acquire/ball.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "math/sort.h"
 
 #include <stdio.h>

@@ -9,8 +9,8 @@
 // are known; else 0.
 #include <relume/photometric.h>
 
-#include "base/params.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "math/fft.h"
 
 #include <math.h>

@@ -1,9 +1,9 @@
 // photometric.c - normals and albedo from the photographs of a view, band by band
 #include <relume/photometric.h>
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "capture/near.h"
 #include "math/lambert.h"

@@ -9,9 +9,9 @@
 #include <relume/acquire.h>
 
 #include "acquire/integrable.h"
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "math/lambert.h"
 #include "math/lsq.h"

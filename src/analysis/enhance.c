@@ -7,9 +7,9 @@
 // coin or a raking light but black: what is kept is chosen from the picture (enhance_range.c).
 #include <relume/enhance.h>
 
-#include "base/params.h"
 #include "base/memory.h"
 #include "base/names.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "math/luminance.h"
 #include "math/vec.h"

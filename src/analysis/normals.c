@@ -5,9 +5,9 @@
 #include <relume/normals.h>
 #include <relume/relight.h>
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "math/lambert.h"
 #include "math/luminance.h"

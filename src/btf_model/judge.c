@@ -1,7 +1,7 @@
 // judge.c - how far a model is from what was measured
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "btf_model/model.h"
 
 #include <string.h>

@@ -1,9 +1,9 @@
 // model.c - what a model of a BTF is: some arrays, a way to fill them, a way to read a value back
 #include "btf_model/model.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "image/half.h"
 
 #include <string.h>

@@ -6,9 +6,9 @@
 // which it leaves out, are the mean over the lobe here, in a table: exact under a uniform sky.
 #include "btf_model/ambient.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "math/luminance.h"
 

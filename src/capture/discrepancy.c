@@ -2,8 +2,8 @@
 //
 // For a centre c, sort the directions by their cosine to c; between two of them the share of
 // directions in the cap stays and its area grows, so the extremes lie just at the directions.
-#include "base/params.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "math/vec.h"
 
 #include <relume/directions.h>

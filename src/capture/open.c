@@ -1,7 +1,7 @@
 // open.c - a capture is opened: every promise of the manifest checked against the files
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/tree.h"
 #include "capture/near.h"
 #include "image/picture_kind.h"

@@ -2,8 +2,8 @@
 //
 // Every pattern fills the unit square (phi / 2 pi, t) with t the height along the pole: Archimedes'
 // cylinder map keeps areas, so what is even in the square is even on the sphere.
-#include "base/params.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "math/random.h"
 #include "math/vec.h"
 

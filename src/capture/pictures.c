@@ -1,7 +1,7 @@
 // pictures.c - a capture whose pictures lie in memory and whose manifest a program fills in
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "capture/capture.h"
 
 #include <relume/response.h>

@@ -1,7 +1,7 @@
 // table.c - all images of a view read side by side, so that memory does not grow with their height
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "capture/capture.h"
 #include "capture/distant.h"

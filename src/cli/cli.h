@@ -111,6 +111,10 @@ relume_status unknown_name(const char *what, const char *given, const char *cons
 bool parse_numbers(const char *text, double *out, int count);
 // "x,y,z" of an option; RELUME_EINVAL with a sentence.
 relume_status args_vec3(struct relume_vec3 *out, const char *option, const char *text);
+// NULL, an option that was not given, leaves `*out` as it is.
+relume_status args_transfer(struct relume_transfer *out, const char *option, const char *text);
+// "auto", "linear" or "display", of --domain.
+relume_status args_domain(enum relume_domain *out, const char *text);
 
 // What a PSNR means for who looks at the pictures: "differences not visible".
 const char *judgement(double psnr_db);

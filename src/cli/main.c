@@ -311,6 +311,24 @@ relume_status args_vec3(struct relume_vec3 *out, const char *option, const char 
     return RELUME_OK;
 }
 
+relume_status args_transfer(struct relume_transfer *out, const char *option, const char *text)
+{
+    if (!text || !relume_transfer_parse(out, text))
+        return RELUME_OK;
+    return usage_error("%s: expected linear, srgb or gamma:G; found '%s'", option, text);
+}
+
+relume_status args_domain(enum relume_domain *out, const char *text)
+{
+    static const char *const names[] = {"auto", "linear", "display", NULL};
+    for (int i = 0; names[i]; i++)
+        if (!strcmp(text, names[i])) {
+            *out = (enum relume_domain)i;
+            return RELUME_OK;
+        }
+    return unknown_name("--domain", text, names);
+}
+
 static relume_status check_value(struct given *g)
 {
     const struct option *o = g->option;

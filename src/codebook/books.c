@@ -4,9 +4,9 @@
 // they are stored, so that a later book mends the rounding of an earlier one as well.
 #include "codebook/books.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "coder/basis.h"
 #include "coder/coefficients.h"

@@ -1,9 +1,9 @@
 // books_assign.c - every pixel of a view becomes one index per book
 #include "codebook/books.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "codebook/dither.h"
 #include "coder/basis.h"

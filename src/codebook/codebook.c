@@ -5,9 +5,9 @@
 // precision (nearest.c), so that books do not depend on the CPU either.
 #include "codebook/codebook.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "math/random.h"
 

@@ -1,9 +1,9 @@
 // coder.c - a basis prepared for the lights of one capture: made, asked for weights, destroyed
 #include "coder/basis.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "coder/interpolant.h"
 #include "coder/zone.h"
 #include "math/lsq.h"

@@ -1,9 +1,9 @@
 // coefficients.c - coefficient planes that wait in a scratch file until their ranges are known
 #include "coder/coefficients.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/scratch.h"
 #include "coder/codes.h"
 #include "image/half.h"

@@ -3,9 +3,9 @@
 // The images are read in bands of rows, whose pixels become coefficients chunk by chunk (apply.c).
 // Ranges for quantising are known only after the last band, so coefficients wait in a scratch file
 // (coefficients.h).
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/scratch.h"
 #include "base/thread.h"
 #include "coder/basis.h"

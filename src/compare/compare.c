@@ -2,8 +2,8 @@
 // Simoncelli 2004: luma, 11 x 11 Gaussian window, sigma 1.5), CIEDE2000 (Sharma, Wu, Dalal 2005)
 #include <relume/image.h>
 
-#include "base/params.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "compare/ciede2000.h"
 #include "compare/ssim.h"

@@ -1,8 +1,8 @@
 // export.c - a view of a relume file in another format
 #include "exchange/export.h"
 
-#include "base/params.h"
 #include "base/log.h"
+#include "base/params.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,9 +5,9 @@
 #include "exchange/rti.h"
 #include "exchange/web.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "math/vec.h"
 
 #include <relume/directions.h>

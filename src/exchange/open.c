@@ -2,9 +2,9 @@
 // name
 #include <relume/exchange.h>
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/scratch.h"
 #include "base/tree.h"
 #include "exchange/still.h"

@@ -2,10 +2,10 @@
 #include <relume/evaluate.h>
 #include <relume/renderer.h>
 
-#include "base/params.h"
 #include "base/inputs.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "math/vec.h"
 

@@ -1,9 +1,9 @@
 // renderer.c - a file under lights: what frames share, and how long it is kept
 #include "frame/renderer.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "frame/passes.h"
 
 #include <stdarg.h>

@@ -8,9 +8,9 @@
 // below a pixel by a parabola.
 #include <relume/align.h>
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "hdr/align_guess.h"
 #include "hdr/blocks.h"

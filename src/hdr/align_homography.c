@@ -8,9 +8,9 @@
 // longer side, to those of the image; so its entries mean the same on every level.
 #include <relume/align.h>
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "hdr/pyramid.h"
 #include "hdr/structure.h"

@@ -11,9 +11,9 @@
 // saturated pixels of a place that something covered.
 #include <relume/align.h>
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "hdr/tones.h"
 

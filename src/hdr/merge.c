@@ -4,10 +4,10 @@
 // weights that leave both ends of the code range with value and slope 0.
 #include <relume/response.h>
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/names.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "hdr/agreement.h"
 

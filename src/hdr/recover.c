@@ -6,9 +6,9 @@
 // unknowns of g however many samples there are.
 #include <relume/response.h>
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "math/lsq.h"
 
 #include <math.h>

@@ -1,10 +1,10 @@
 // image.c - images made and destroyed, and code values as linear light, whole and as streams
 #include "image/image.h"
 
-#include "base/params.h"
 #include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "image/exr.h"
 #include "image/half.h"
 #include "image/picture_kind.h"

@@ -1,9 +1,9 @@
 // photograph.c - one photograph: what the camera noted, its pixels turned upright and linearised
 #include "image/photograph.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "image/image.h"
 #include "image/picture.h"
 #include "image/profile.h"

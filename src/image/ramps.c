@@ -1,8 +1,8 @@
 // ramps.c - how much of a smooth slope is left between contours
 #include <relume/image.h>
 
-#include "base/params.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 
 #include <math.h>

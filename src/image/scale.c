@@ -4,9 +4,9 @@
 // the range of its four texels so that light does not become negative beside an edge.
 #include <relume/image.h>
 
-#include "base/params.h"
 #include "base/memory.h"
 #include "base/names.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "image/footprint.h"
 

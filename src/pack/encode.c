@@ -1,8 +1,8 @@
 // encode.c - from a capture to a file in one call
 #include <relume/pack.h>
 
-#include "base/params.h"
 #include "base/memory.h"
+#include "base/params.h"
 
 #include <math.h>
 

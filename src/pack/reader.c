@@ -1,11 +1,11 @@
 // reader.c - a relume file, of which nothing is believed before it has been checked
 #include <relume/pack.h>
 
-#include "base/params.h"
 #include "base/arena.h"
 #include "base/infile.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "image/half.h"
 #include "pack/format.h"
 #include "pack/reader.h"

@@ -1,11 +1,11 @@
 // writer.c - coefficients become a relume file
 #include <relume/pack.h>
 
-#include "base/params.h"
 #include "base/arena.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/names.h"
+#include "base/params.h"
 #include "image/curve.h"
 #include "image/exr.h"
 #include "image/half.h"

@@ -1,10 +1,10 @@
 // glare.c - a frame as an eye sees it
 #include "post/glare.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/names.h"
+#include "base/params.h"
 #include "math/luminance.h"
 
 #include <math.h>

@@ -4,9 +4,9 @@
 // the angle -lambda f, so coefficient k of the transform is stored at -k.
 #include <relume/psf.h>
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "math/fft2d.h"
 #include "post/aperture.h"

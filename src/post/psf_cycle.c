@@ -4,9 +4,9 @@
 // eye shows after the loop's end. Patterns are light, and a mean of two of them is one.
 #include <relume/psf.h>
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "image/half.h"
 #include "post/psf.h"

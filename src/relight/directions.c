@@ -9,8 +9,8 @@
 // at the lights (triangles.c).
 #include <relume/relight.h>
 
-#include "base/params.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "math/vec.h"
 #include "relight/cells.h"

@@ -3,9 +3,9 @@
 #include <relume/light.h>
 #include <relume/relight.h>
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "math/luminance.h"
 #include "math/random.h"
 #include "math/vec.h"

@@ -5,9 +5,9 @@
 // that a bilinear value is continuous over the edges and needs no neighbour.
 #include <relume/light.h>
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "math/vec.h"
 
 #include <string.h>

@@ -5,9 +5,9 @@
 // it was captured from, in linear light, and `pca` learns that.
 #include <relume/relight.h>
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "image/half.h"
 #include "relight/grid.h"
 

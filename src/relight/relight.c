@@ -5,9 +5,9 @@
 // made linear, then added.
 #include <relume/relight.h>
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "image/curve.h"
 #include "math/luminance.h"

@@ -1,8 +1,8 @@
 // relighter.c - views relit again and again: grids, refits and pictures that are kept
 #include <relume/relighter.h>
 
-#include "base/params.h"
 #include "base/memory.h"
+#include "base/params.h"
 
 #include <relume/relight.h>
 #include <string.h>

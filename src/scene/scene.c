@@ -1,9 +1,9 @@
 // scene.c - the inside of a relume_scene
 #include "scene/scene.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 
 #include <string.h>
 

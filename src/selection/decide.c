@@ -7,9 +7,9 @@
 // of dark pixels count, and not so much those of lamps. Then components are added, as many as the
 // quality takes; at last, where the lights could not be met for smoothing, the smoothing goes.
 // Unseen lights are watched by leaving each captured one out (choose.c).
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "coder/basis.h"
 #include "coder/coefficients.h"

@@ -4,9 +4,9 @@
 // out follow chunk by chunk, as they are and as they come back from each way of storing them.
 #include "selection/heldout.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "coder/basis.h"
 #include "coder/coefficients.h"

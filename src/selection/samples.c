@@ -1,7 +1,7 @@
 // samples.c - pixels of a capture from which a learned basis learns
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "coder/coefficients.h"
 #include "math/random.h"

@@ -1,7 +1,7 @@
 // surface_draw.c - pictures of a surface that lies on z = 0
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 #include "surface/surface.h"
 

@@ -7,9 +7,9 @@
 #include "surface/patch.h"
 #include "surface/surface.h"
 
-#include "base/params.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "math/random.h"
 
 #include <string.h>

@@ -5,8 +5,8 @@
 // abruptly where another one goes on; through a lens, the mean of that over its pinholes.
 #include "view/slabs.h"
 
-#include "base/params.h"
 #include "base/memory.h"
+#include "base/params.h"
 #include "base/thread.h"
 
 #include <string.h>

@@ -8,8 +8,8 @@ relume_status ingest_params(struct relume_ingest_params *out, struct relume_vec3
     *lights = NULL;
     *out = (struct relume_ingest_params){
         .log = args->log, .force = o->force, .threads = args->threads};
-    if (o->transfer && relume_transfer_parse(&out->transfer, o->transfer))
-        return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", o->transfer);
+    if (args_transfer(&out->transfer, "--transfer", o->transfer))
+        return RELUME_EINVAL;
     const relume_status status =
         o->lights ? relume_captured_lights_read(lights, &out->light_count, o->lights, args->log)
                   : RELUME_OK;

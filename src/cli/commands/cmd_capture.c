@@ -206,8 +206,6 @@ static relume_status check_options(const struct capture_options *o)
 
 static relume_status read_options(const struct capture_options *o, struct job *job)
 {
-    const char *transfer = o->transfer;
-    const char *of_balls = o->ball_transfer;
     job->p = (struct relume_acquire_params){
         .log = o->args.log,
         .mask = (o->mask ? o->mask : job->photos.mask),
@@ -232,12 +230,11 @@ static relume_status read_options(const struct capture_options *o, struct job *j
         .force = o->force,
         .threads = o->args.threads,
     };
-    if (transfer && relume_transfer_parse(&job->p.transfer, transfer))
-        return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", transfer);
-    if (of_balls && relume_transfer_parse(&job->p.ball_transfer, of_balls))
-        return usage_error("--ball-transfer: expected linear, srgb or gamma:G; found '%s'",
-                           of_balls);
-    relume_status status = read_outlines(o, job);
+    relume_status status = args_transfer(&job->p.transfer, "--transfer", o->transfer);
+    if (!status)
+        status = args_transfer(&job->p.ball_transfer, "--ball-transfer", o->ball_transfer);
+    if (!status)
+        status = read_outlines(o, job);
     if (!status)
         status = read_white(o, job);
     return status ? status : read_align(o, job);

@@ -99,29 +99,11 @@ static relume_status parse_choice(const char *option, const char *text, const ch
     return unknown_name(option, text, names);
 }
 
-static relume_status parse_domain(const char *text, enum relume_domain *out)
-{
-    static const char *const names[] = {"auto", "linear", "display", NULL};
-    for (int i = 0; names[i]; i++)
-        if (!strcmp(text, names[i])) {
-            *out = (enum relume_domain)i;
-            return RELUME_OK;
-        }
-    return unknown_name("--domain", text, names);
-}
-
 static relume_status parse_compression(const char *text, enum relume_compression *out)
 {
     static const char *const names[] = {"none", "rle", "zip", "piz", NULL};
     return relume_compression_parse(out, text) ? unknown_name("--compression", text, names)
                                                : RELUME_OK;
-}
-
-static relume_status parse_transfer(const char *text, struct relume_transfer *out)
-{
-    if (!text || !relume_transfer_parse(out, text))
-        return RELUME_OK;
-    return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", text);
 }
 
 struct request {
@@ -318,11 +300,11 @@ static relume_status parse(const struct encode_options *o, struct request *r)
     if (!status)
         status = parse_choice("--colour", o->colour, colours, &colour);
     if (!status)
-        status = parse_domain(o->domain, &r->pack.domain);
+        status = args_domain(&r->pack.domain, o->domain);
     if (!status)
         status = parse_compression(o->compression, &r->pack.compression);
     if (!status)
-        status = parse_transfer(o->transfer, &r->open.transfer);
+        status = args_transfer(&r->open.transfer, "--transfer", o->transfer);
     const bool books = o->books.codes > 0;
     if (!status)
         status = parse_books(&o->args, &o->books, books, &r->books);

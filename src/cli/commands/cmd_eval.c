@@ -89,9 +89,8 @@ static relume_status run(const struct args *args)
 {
     const struct eval_options *o = (const void *)args;
     struct relume_transfer transfer = {.curve = RELUME_CURVE_AUTO};
-    const char *text = o->transfer;
-    if (text && relume_transfer_parse(&transfer, text))
-        return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", text);
+    if (args_transfer(&transfer, "--transfer", o->transfer))
+        return RELUME_EINVAL;
     relume_pack *pack = NULL;
     relume_capture *capture = NULL;
     struct relume_evaluation evaluation = {0};

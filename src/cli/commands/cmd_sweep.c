@@ -558,24 +558,12 @@ static relume_status open_capture(const struct sweep_options *o, const char *pat
                                   relume_capture **out)
 {
     struct relume_transfer transfer = {.curve = RELUME_CURVE_AUTO};
-    const char *text = o->transfer;
-    if (text && relume_transfer_parse(&transfer, text))
-        return usage_error("--transfer: expected linear, srgb or gamma:G; found '%s'", text);
+    if (args_transfer(&transfer, "--transfer", o->transfer))
+        return RELUME_EINVAL;
     return relume_capture_open(out, path,
                                relume_capture_params(.log = o->args.log, .transfer = transfer,
                                                      .skip_missing = o->skip_missing,
                                                      .allow_outside = o->allow_outside));
-}
-
-static relume_status parse_domain(const char *text, enum relume_domain *out)
-{
-    static const char *const names[] = {"auto", "linear", "display", NULL};
-    for (int i = 0; names[i]; i++)
-        if (!strcmp(text, names[i])) {
-            *out = (enum relume_domain)i;
-            return RELUME_OK;
-        }
-    return unknown_name("--domain", text, names);
 }
 
 static relume_status check_options(const struct sweep_options *o)
@@ -603,7 +591,7 @@ static relume_status run(const struct args *args)
     if (!status)
         status = parse_grid(o, grid);
     if (!status)
-        status = parse_domain(o->domain, &sweep.domain);
+        status = args_domain(&sweep.domain, o->domain);
     if (!status)
         status = open_capture(o, sweep.capture, &capture);
     if (!status && sweep.test)

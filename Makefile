@@ -59,8 +59,8 @@ CLI_LIBS = $(call once,CLI_LIBS,pkg-config --libs cairo)
 GL_LIBS  = $(call once,GL_LIBS,pkg-config --libs glfw3 osmesa egl imgui)
 CMOCKA   = $(call once,CMOCKA,pkg-config --libs cmocka)
 
-# Every folder of src is a room of the library, but for the tool and the helper.
-LIB_C    := $(filter-out src/cli/% src/helper/% src/mesh/mesh_assimp.c,$(wildcard src/*/*.c))
+# Every folder of src is a room of the library, but for the programs.
+LIB_C    := $(filter-out src/cli/% src/helper/% src/program/% src/mesh/mesh_assimp.c,$(wildcard src/*/*.c))
 LIB_C    := $(filter-out $(if $(filter kiss,$(FFT)),%/fft.c,%/fft_kiss.c),$(LIB_C))
 # The module that is loaded when the first image needs it (src/image/picture.h)
 MODULE_CXX := src/image/oiio.cpp
@@ -71,8 +71,9 @@ OPENCV   := $(firstword $(wildcard $(addsuffix /opencv4,/usr/include /usr/local/
 STITCH_CXX := $(if $(wildcard $(OPENCV)/opencv2/stitching/detail/matchers.hpp),src/multiview/stitch.cpp)
 # The program in which foreign files are read (src/base/helper.h); it lies beside the modules
 HELPER_C := $(wildcard src/helper/*.c)
-CLI_C    := $(wildcard src/cli/*.c src/cli/*/*.c)
-VIEWER_C := $(wildcard viewer/*/*.c)
+# src/program is what the tool and the viewer share.
+CLI_C    := $(wildcard src/program/*.c src/cli/*.c src/cli/*/*.c)
+VIEWER_C := $(wildcard src/program/*.c viewer/*/*.c)
 VIEWER_CXX := $(wildcard viewer/*/*.cpp)
 SHADERS  := $(wildcard viewer/shaders/*.glsl viewer/shaders/*/*.glsl)
 HEADERS  := $(wildcard include/relume/*.h)
@@ -96,7 +97,7 @@ GL       := $(GL_C:%.c=$B/%)
 BENCH    := $(BENCH_C:%.c=$B/%)
 FUZZ     := $(FUZZ_C:%.c=$B/%)
 TOOLS    := $(TOOLS_C:%.c=$B/%) $(SAMPLES_C:%.c=$B/%)
-VIEWER   := $(if $(VIEWER_C),$B/relume-view)
+VIEWER   := $B/relume-view
 
 .PHONY: all lib cli viewer samples deps deps-web deps-stitch deps-python demo tour tutorials figures golden test check check-threads compile-tests bench fuzz fuzzers replay headers layers metrics lint format install \
         clean
@@ -138,8 +139,8 @@ $B/obj/src/math/lsq_eigen.o: own_flags = $(call eigen_flags,plain)
 $B/obj/src/math/lsq_eigen_avx2.o: own_flags = $(call eigen_flags,avx2) -mavx2 -mfma
 $B/obj/src/%.o:               own_include = -Isrc
 $B/obj/src/cli/plot.o: own_flags = $(CAIRO)
-$B/obj/src/cli/%.o:           own_include = -Isrc/cli
-$B/obj/viewer/%.o:            own_include = -Iviewer
+$B/obj/src/cli/%.o:           own_include = -Isrc/cli -Isrc
+$B/obj/viewer/%.o:            own_include = -Iviewer -Isrc
 $B/obj/viewer/window/context_glfw.o: own_flags = $(GLFW)
 $(VIEWER_CXX:%.cpp=$B/obj/%.o): own_flags = $(IMGUI) -Wno-shadow
 $B/obj/tests/tools/decode.o: own_flags = $(EXR)

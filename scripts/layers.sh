@@ -35,8 +35,9 @@ mesh:base math geometry:base object
 scene:base math image geometry mesh:base image directions capture btf scene
 object:base math mesh:base image capture light relight view slab_set pack frame viewport btf btf_environment surface object renderer
 helper:base image mesh:base
-cli::*
-cli/commands:commands:*
+program::base image
+cli:program:*
+cli/commands:commands program:*
 viewer/common::base
 viewer/app:common:*
 viewer/gl:common:base image
@@ -45,7 +46,7 @@ viewer/glare:common app gl:base image eye psf glare
 viewer/draw:common app gl relit glare:*
 viewer/panel:common app gl:*
 viewer/window:common app gl:base
-viewer/session:common app gl relit glare draw panel window:*
+viewer/session:common app gl relit glare draw panel window program:*
 samples::*"
 
 if [ "${1:-}" = --table ]; then

@@ -1,14 +1,13 @@
 // main.c - the relume tool: finds the command, parses its options, turns statuses into exit codes
 #include "cli.h"
 #include "output_name.h"
+#include "program/stopping.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <malloc.h>
 #include <math.h>
-#include <pthread.h>
-#include <semaphore.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -67,40 +66,8 @@ struct parsed {
 
 // ---------------------------------------------------------------- messages and progress
 
-static FILE *people;                       // standard error
-static volatile sig_atomic_t interrupted;  // the signal that asked to stop, 0: none
-static bool bar_drawn;
-
-// Most phases ask every few milliseconds whether to stop, and clean up. A library's loop asks
-// nobody: when work goes on for so long after that, a thread cleans up and ends the program.
-static const struct timespec PATIENCE = {.tv_nsec = 800000000};
-static sem_t asked_to_stop;
-
-static void on_interrupt(int signal_number)
-{
-    interrupted = signal_number;
-    sem_post(&asked_to_stop);
-}
-
-// By the signal itself, so that shells and scripts see what ended the program.
-static int die_of(int signal_number)
-{
-    signal(signal_number, SIG_DFL);
-    raise(signal_number);
-    return 128 + signal_number;
-}
-
-static void *end_late(void *unused)
-{
-    static const char line[] = "\nrelume: interrupted\n";
-    while (sem_wait(&asked_to_stop))
-        ;
-    nanosleep(&PATIENCE, NULL);
-    relume_files_abandon();
-    (void)!write(STDERR_FILENO, line + !bar_drawn, sizeof line - 1 - !bar_drawn);
-    die_of(interrupted);
-    return unused;
-}
+static FILE *people;  // standard error
+static volatile bool bar_drawn;
 
 static void clear_bar(void)
 {
@@ -185,7 +152,7 @@ static bool on_progress(void *user, const char *what, double done)
     const struct parsed *p = user;
     if (!p->args->quiet && isatty(STDERR_FILENO))
         draw_bar(what, done);
-    return !interrupted;
+    return !stopping_asked();
 }
 
 static void say_error(const char *format, va_list list)
@@ -536,7 +503,7 @@ static int exit_code(relume_status status)
     case RELUME_ESYSTEM: return 3;
     case RELUME_ECANCEL:
         fputs("relume: interrupted; nothing was written\n", people);
-        return die_of(interrupted ? interrupted : SIGINT);
+        return stopping_die();
     }
     return 3;
 }
@@ -692,25 +659,6 @@ static void keep_freed_memory(void)
 #endif
 }
 
-// Each asks to stop and clean up; a second one of its kind stops at once. nohup's choice is kept.
-static void listen_to_signals(void)
-{
-    const struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = SA_RESETHAND};
-    struct sigaction before;
-    pthread_t watcher;
-    pthread_attr_t small;
-    sem_init(&asked_to_stop, 0, 0);
-    pthread_attr_init(&small);
-    pthread_attr_setstacksize(&small, 1 << 18);
-    if (!pthread_create(&watcher, &small, end_late, NULL))
-        pthread_detach(watcher);
-    pthread_attr_destroy(&small);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    if (!sigaction(SIGHUP, NULL, &before) && before.sa_handler != SIG_IGN)
-        sigaction(SIGHUP, &action, NULL);
-}
-
 // "relume -q info x" is "relume info -q x". The place of the command's name; 1 where there is none.
 static int command_at(int argc, char **argv)
 {
@@ -741,7 +689,7 @@ int main(int argc, char **argv)
     occupy_standard_streams();
     keep_stderr_for_people();
     allow_many_files();
-    listen_to_signals();
+    stopping_listen("relume", &bar_drawn);
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);  // a file size limit is a write error, not a death
 

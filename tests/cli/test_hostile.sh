@@ -172,10 +172,13 @@ fi
 
 # ---------------------------------------------------------------- work that asks nobody
 # A helper that never answers stands for any loop of a library: SIGTERM must do, without SIGKILL.
-mkdir stuck && cp "$RELUME" stuck/
+mkdir stuck && cp "$RELUME" "$VIEWER" stuck/
 printf '#!/bin/sh\nexec sleep 20\n' >stuck/relume-helper
 chmod +x stuck/relume-helper
 timeout --foreground -k 10 1 stuck/relume compare good.tif good.tif >out.txt 2>err.txt
 check "SIGTERM ends what waits for ever" test $? = 124
 check "it says so" grep -qx 'relume: interrupted' err.txt
+timeout --foreground -k 10 1 stuck/relume-view good.tif --offscreen out.png >out.txt 2>err.txt
+check "SIGTERM ends a viewer that waits for ever" test $? = 124
+check "the viewer says so" grep -qx 'relume-view: interrupted' err.txt
 finish

@@ -108,6 +108,19 @@ sleep 0.3
 xdotool key Return
 quits 'Esc and Enter quit'
 
+# a signal ends it in the middle of a recording, and nothing is left of that
+printf 'key k\nwait 30\n' >record.txt
+"$VIEWER" ball.exr --size 512x512 --no-config --script record.txt --window >view.txt 2>&1 &
+viewer=$!
+tries=0
+until [ "$(leftovers)" ] || [ $tries -eq 100 ]; do sleep 0.1; tries=$((tries + 1)); done
+kill -TERM $viewer
+if left; then ok 'a signal ends a window'; else not_ok 'a signal ends a window' 'it is still there'; fi
+wait $viewer
+check 'by that signal' test $? -eq 143
+viewer=
+check 'and leaves nothing of its recording' test $tries -lt 100 -a -z "$(leftovers)"
+
 # a screen with twice the pixels: the panel is twice as large, and its ball takes the pointer there
 if command -v xprop >/dev/null 2>&1; then
     xprop -root -f RESOURCE_MANAGER 8s -set RESOURCE_MANAGER 'Xft.dpi: 192'

@@ -94,9 +94,17 @@ static void restore(void)
 
 static struct parsed parsed;
 
+static volatile sig_atomic_t stopped;
+
 static void stop(int signal_number)
 {
-    interrupted = signal_number;
+    stopped = signal_number;
+}
+
+static bool go_on(void *user, const char *what, double done)
+{
+    (void)user, (void)what, (void)done;
+    return !stopped;
 }
 
 // `line` begins with the command.
@@ -107,9 +115,9 @@ static relume_status run(int count, char **line, bool patiently)
     FILE *const out = stdout;
     parsed.given_count = parsed.input_count = parsed.listed = 0;
     parsed.log = (struct relume_log){
-        .message = on_message, .progress = on_progress, .user = &parsed, .limits = &parsed.limits};
+        .message = on_message, .progress = go_on, .user = &parsed, .limits = &parsed.limits};
     parsed.limits = (struct relume_limits){.max_memory = 64 << 20, .max_pixels = 1 << 16};
-    interrupted = 0;
+    stopped = 0;
     parsed.command = find_command(commands, line[0]);
     stdout = people;
     setitimer(ITIMER_PROF, &once, NULL);

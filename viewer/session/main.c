@@ -2,6 +2,7 @@
 #include "app/events.h"
 #include "app/script.h"
 #include "common/say.h"
+#include "program/stopping.h"
 #include "session/options.h"
 #include "session/session.h"
 #include "session/settings.h"
@@ -32,29 +33,10 @@ static void on_message(void *user, enum relume_level level, const char *text)
             relume_printable(line));
 }
 
-static volatile sig_atomic_t stopped;  // the signal that asked to stop, 0: none
-
-static void on_signal(int number)
-{
-    stopped = number;
-}
-
 static bool on_progress(void *user, const char *what, double done)
 {
     (void)user, (void)what, (void)done;
-    return !stopped;
-}
-
-// Without a window nobody else asks it to stop, and what is unfinished is to be removed. A second
-// signal of its kind stops at once; nohup's choice is kept.
-static void listen_to_signals(void)
-{
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
-    const struct sigaction action = {.sa_handler = on_signal, .sa_flags = SA_RESETHAND};
-    struct sigaction before;
-    for (int i = 0; i < 3; i++)
-        if (!sigaction(numbers[i], NULL, &before) && before.sa_handler != SIG_IGN)
-            sigaction(numbers[i], &action, NULL);
+    return !stopping_asked();
 }
 
 static int exit_code(relume_status status)
@@ -65,10 +47,8 @@ static int exit_code(relume_status status)
     case RELUME_EINVAL: return 2;
     case RELUME_ENOMEM: fputs("relume-view: out of memory\n", stderr); return 3;
     case RELUME_ECANCEL:
-        fputs("relume-view: interrupted; nothing was written\n", stderr);
-        signal(stopped, SIG_DFL);
-        raise(stopped);
-        return 128 + stopped;
+        fputs("relume-view: interrupted; what was unfinished is removed\n", stderr);
+        return stopping_die();
     default: return 3;
     }
 }
@@ -178,12 +158,6 @@ static struct script_host host_of(struct session *s)
 
 // ---------------------------------------------------------------- without a window
 
-// A film of a script shows what a window would.
-static relume_status begin_film(struct session *s, const struct options *o)
-{
-    return record_open(&s->film, o->output, s->log);
-}
-
 static relume_status run_offscreen(struct session *s, struct options *o)
 {
     const struct script_host host = host_of(s);
@@ -202,14 +176,14 @@ static relume_status run_offscreen(struct session *s, struct options *o)
     s->app.dock = o->dock;
     s->app.keep_lights = o->keep_lights;
     app_arrange(&s->app);
-    if (!status && film)
-        status = begin_film(s, o);
+    if (!status && film)  // shows what a window would
+        status = film_open(&s->film, o->output, RECORD_RATE, false, s->log);
     if (!status && o->script)
         status = script_play(o->script, &host);
     while (!status && session_is_busy(s))  // with what the script began
         status = session_draw(s);
     if (!status && film)
-        status = record_commit(&s->film);
+        status = film_close(&s->film, true);
     else if (!status && o->record)
         status = session_record(s, o->kind, o->output, o->frames);
     if (!status && o->offscreen)
@@ -253,12 +227,17 @@ static double time_passed(double *then_ms)
     return 1e-3 * (*then_ms - then);
 }
 
+static bool is_over(const struct session *s)
+{
+    return s->app.quit || stopping_asked();
+}
+
 static relume_status take_events(struct session *s, bool *changed, double *time_ms)
 {
     relume_status status = RELUME_OK;
     struct context_event event;
     *changed |= session_pass(s, time_passed(time_ms));
-    while (!status && !s->app.quit &&
+    while (!status && !is_over(s) &&
            s->backend->next(s->context, &event, *changed ? 0 : app_steady_s(&s->app))) {
         *changed |= session_pass(s, time_passed(time_ms));
         status = take_event(s, &event, changed);
@@ -272,7 +251,7 @@ static relume_status live(struct session *s, struct script *script)
     bool more = script != NULL;
     bool changed = true;
     double time_ms = now_ms();
-    while (!status && !s->app.quit) {
+    while (!status && !is_over(s)) {
         if (more)
             status = script_step(script, &more);
         if (script && !more && script_leaves(script))
@@ -280,12 +259,12 @@ static relume_status live(struct session *s, struct script *script)
         changed |= more;
         if (!status)
             status = take_events(s, &changed, &time_ms);
-        if (!status && changed && !s->app.quit)
+        if (!status && changed && !is_over(s))
             status = show_frame(s);
         changed = !status && (renderer_is_pending(&s->renderer) || session_is_busy(s) ||
                               observer_lives(&s->app.now.observer));
     }
-    return status;
+    return status || !stopping_asked() ? status : RELUME_ECANCEL;
 }
 
 static bool has_near_light(const relume_rig *rig)
@@ -387,6 +366,7 @@ int main(int argc, char **argv)
                              .user = &session,
                              .limits = &options.limits};
     session.log = &log;
+    stopping_listen("relume-view", NULL);
     signal(SIGXFSZ, SIG_IGN);  // a file size limit is a write error, not a death
     signal(SIGPIPE, SIG_IGN);
     relume_status status = relume_inputs_create(&log.inputs);
@@ -402,8 +382,6 @@ int main(int argc, char **argv)
     session.vram_bytes = (size_t)(options.vram_mb * 1048576.0);
     const bool offscreen =
         options.offscreen || options.record || (options.script && !options.window);
-    if (offscreen)
-        listen_to_signals();
     if (!status && options.help)
         options_help();
     else if (!status)

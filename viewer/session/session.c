@@ -386,7 +386,7 @@ relume_status session_show(struct session *s, const char *path)
 void session_close(struct session *s)
 {
     session_record_stop(s);
-    record_abort(&s->film);
+    (void)!film_close(&s->film, false);
     if (s->screen.texture)
         target_destroy(&s->screen, &s->gl);
     maps_destroy(&s->maps);

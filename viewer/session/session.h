@@ -7,6 +7,7 @@
 #include "relit/pack_source.h"
 #include "session/inspect.h"
 #include "session/maps.h"
+#include "program/film.h"
 #include "session/record.h"
 #include "window/context.h"
 
@@ -21,7 +22,7 @@ enum session_relight { SESSION_AUTO, SESSION_PASSES, SESSION_LIBRARY };
 
 // Pictures that are being recorded, one a frame.
 struct recording {
-    struct record *record;  // NULL: none
+    struct film *film;  // NULL: none
     enum record_kind kind;
     int frame, frames;
     int posed;  // the frame that was drawn last: a picture that is drawn again is no later
@@ -59,7 +60,7 @@ struct session {
     struct browser browser;      // the folder that was listed last
     struct inspector inspector;  // made when first asked for
     struct recording recording;
-    struct record *film;   // of a script as it is played, or NULL
+    struct film *film;     // of a script as it is played, or NULL
     struct target screen;  // of shots without a window
     float histogram[256][3];
     char name[SESSION_TEXT];                   // of the file, for the title
@@ -153,16 +154,18 @@ relume_status session_read(struct relume_image *image, struct session *s, bool l
 
 // Record a round of `frames` pictures: session_draw draws and adds one at a time, and the app is as
 // before afterwards. Until then events wait, but for Esc and a new size of the frame, which end the
-// recording with what there is of it. Errors of record.h.
+// recording with what there is of it. Errors of film.h.
 relume_status session_record_begin(struct session *s, enum record_kind kind, const char *path,
                                    int frames);
+// A picture into a film. Destroys it; RELUME_ECANCEL: somebody asked to stop.
+relume_status session_film_add(struct session *s, struct film *film, struct relume_image *image);
 bool session_records(const struct session *s);
 // A picture of the screen into s->film.
 relume_status session_film(struct session *s);
 // The next picture. On failure nothing is recorded any more, and nothing is left of it.
 relume_status session_record_step(struct session *s);
 void session_record_stop(struct session *s);
-// All of it at once. Errors of record.h and session_draw.
+// All of it at once. Errors of film.h and session_draw.
 relume_status session_record(struct session *s, enum record_kind kind, const char *path,
                              int frames);
 

@@ -95,10 +95,6 @@ relume_status session_shot(struct session *s, const char *path)
 relume_status session_film(struct session *s)
 {
     struct relume_image image;
-    relume_status status = read_screen(&image, s);
-    if (status)
-        return status;
-    status = record_add(s->film, &image);
-    relume_image_destroy(&image);
-    return status;
+    const relume_status status = read_screen(&image, s);
+    return status ? status : session_film_add(s, s->film, &image);
 }

@@ -6,9 +6,17 @@
 
 #include <stdio.h>
 
+relume_status session_film_add(struct session *s, struct film *film, struct relume_image *image)
+{
+    const bool go_on = s->log->progress(s->log->user, "recording", 0);
+    const relume_status status = go_on ? film_add(film, image) : RELUME_ECANCEL;
+    relume_image_destroy(image);
+    return status;
+}
+
 bool session_records(const struct session *s)
 {
-    return s->recording.record != NULL;
+    return s->recording.film != NULL;
 }
 
 relume_status session_record_begin(struct session *s, enum record_kind kind, const char *path,
@@ -18,7 +26,7 @@ relume_status session_record_begin(struct session *s, enum record_kind kind, con
     struct recording made = {.kind = kind, .frames = frames};
     if (!lamps_copy(&made.before, &s->app.now))
         return RELUME_ENOMEM;
-    const relume_status status = record_open(&made.record, path, s->log);
+    const relume_status status = film_open(&made.film, path, RECORD_RATE, false, s->log);
     if (status) {
         lamps_release(&made.before);
         return status;
@@ -35,18 +43,14 @@ static void put_back(struct session *s)
     lamps_release(&s->app.now);
     s->app.now = s->recording.before;
     s->app.recording = false;
-    s->recording = (struct recording){.record = NULL};
+    s->recording = (struct recording){.film = NULL};
 }
 
 // What was recorded so far becomes the recording; none is left when that is nothing.
 static relume_status finish(struct session *s)
 {
     struct recording *r = &s->recording;
-    relume_status status = RELUME_OK;
-    if (r->frame > 0)
-        status = record_commit(&r->record);
-    else
-        record_abort(&r->record);
+    const relume_status status = film_close(&r->film, r->frame > 0);
     if (r->frame && !status)
         session_say(s, "recorded %.200s, %d picture%s", r->path, r->frame, relume_plural(r->frame));
     else
@@ -64,7 +68,7 @@ void session_record_stop(struct session *s)
 static relume_status fail(struct session *s, relume_status status)
 {
     struct recording *r = &s->recording;
-    record_abort(&r->record);
+    (void)!film_close(&r->film, false);
     session_say(s, "%.200s was not recorded", r->path);
     put_back(s);
     return status;
@@ -85,8 +89,7 @@ relume_status session_record_step(struct session *s)
     if (!status)
         status = session_read(&image, s, false);
     if (!status)
-        status = record_add(r->record, &image);
-    relume_image_destroy(&image);
+        status = session_film_add(s, r->film, &image);
     if (status)
         return fail(s, status);
     r->frame++;

@@ -2,9 +2,9 @@
 #include "cli.h"
 #include "commands/glare_pattern.h"
 #include "develop.h"
-#include "film.h"
 #include "glare_options.h"
 #include "output_name.h"
+#include "program/film.h"
 
 #include <math.h>
 #include <string.h>
@@ -205,7 +205,7 @@ static relume_status save_many(struct viewer_eye *e, const struct relume_image *
     struct film *film = NULL;
     relume_status status = make_cycle(&cycle, e, o, fps);
     if (!status)
-        status = film_open(&film, o->output, fps, o->args.log);
+        status = film_open(&film, o->output, fps, true, o->args.log);
     for (int i = 0; !status && i < frames; i++) {
         struct relume_image out = {0};
         if (!go_on(o, (double)i / frames))

@@ -1,12 +1,11 @@
 // film.c - pictures one after the other: numbered files, a folder or a film
-#include "film.h"
-
-#include "cli.h"
+#include "program/film.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -25,7 +24,8 @@ struct film {
     const char *after;
     double fps;
     int pictures;
-    pid_t ffmpeg;
+    int width, height;  // of the first
+    pid_t ffmpeg;       // 0: not started
     int pipe;
 };
 
@@ -83,7 +83,7 @@ const char *film_name(struct film *f)
     return f->name;
 }
 
-relume_status film_open(struct film **out, const char *path, double fps,
+relume_status film_open(struct film **out, const char *path, double fps, bool numbers,
                         const struct relume_log *log)
 {
     struct film *const f = *out = calloc(1, sizeof *f);
@@ -94,9 +94,9 @@ relume_status film_open(struct film **out, const char *path, double fps,
     snprintf(f->path, sizeof f->path, "%s", path);
     for (size_t n = strlen(f->path); n > 1 && f->path[n - 1] == '/'; n--)
         f->path[n - 1] = '\0';
-    f->kind = is_film(path)                                             ? FILM
-              : find_number(f->path, &f->before, &f->digits, &f->after) ? NUMBERED
-                                                                        : FOLDER;
+    f->kind = is_film(path)                                                        ? FILM
+              : numbers && find_number(f->path, &f->before, &f->digits, &f->after) ? NUMBERED
+                                                                                   : FOLDER;
     relume_status status = RELUME_OK;
     if (strlen(path) > 4000)
         status = fail(f, RELUME_EINVAL, "-o: expected a shorter name");
@@ -115,11 +115,11 @@ relume_status film_open(struct film **out, const char *path, double fps,
 
 // In the child: names are arguments of their own, never words of a shell; "file:" keeps ffmpeg from
 // reading them as anything else.
-static void become_ffmpeg(const struct film *f, const struct relume_image *image, int input)
+static void become_ffmpeg(const struct film *f, int input)
 {
     char size[32], rate[32], to[PATH + 8];
     snprintf(rate, sizeof rate, "%g", f->fps);
-    snprintf(size, sizeof size, "%dx%d", image->width, image->height);
+    snprintf(size, sizeof size, "%dx%d", f->width, f->height);
     snprintf(to, sizeof to, "file:%.4000s", relume_making_path(f->making));
     const char *const format = !strcmp(strrchr(f->path, '.'), ".mp4") ? "mp4" : "matroska";
     const char *const arguments[] = {
@@ -134,7 +134,7 @@ static void become_ffmpeg(const struct film *f, const struct relume_image *image
     _exit(127);
 }
 
-static relume_status start_ffmpeg(struct film *f, const struct relume_image *image)
+static relume_status start_ffmpeg(struct film *f)
 {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC))
@@ -142,7 +142,7 @@ static relume_status start_ffmpeg(struct film *f, const struct relume_image *ima
                     strerror(errno));
     f->ffmpeg = fork();
     if (f->ffmpeg == 0)
-        become_ffmpeg(f, image, ends[0]);
+        become_ffmpeg(f, ends[0]);
     (void)close(ends[0]);
     f->pipe = ends[1];
     if (f->ffmpeg > 0)
@@ -165,8 +165,8 @@ static relume_status end_ffmpeg(struct film *f)
         return RELUME_OK;
     if (WIFEXITED(state) && WEXITSTATUS(state) == 127)
         return fail(f, RELUME_ESYSTEM,
-                    "%s: ffmpeg is not installed, which films need; install it, or save pictures "
-                    "with a name like frame.%%04d.png",
+                    "%s: ffmpeg is not installed, which films need; install it, or give the name "
+                    "of a folder",
                     f->path);
     return fail(f, RELUME_ESYSTEM, "%s: ffmpeg could not write the film", f->path);
 }
@@ -196,7 +196,7 @@ static relume_status add_to_film(struct film *f, const struct relume_image *imag
     unsigned char *const bytes = malloc(samples);
     relume_status status = bytes ? RELUME_OK : RELUME_ENOMEM;
     if (!status && !f->ffmpeg)
-        status = start_ffmpeg(f, image);
+        status = start_ffmpeg(f);
     for (size_t i = 0; !status && i < samples; i++) {
         const float code = 255.0f * relume_transfer_encode(srgb, image->data[i]) + 0.5f;
         bytes[i] = (unsigned char)fminf(fmaxf(code, 0.0f), 255.0f);
@@ -211,6 +211,15 @@ static relume_status add_to_film(struct film *f, const struct relume_image *imag
 
 relume_status film_add(struct film *f, const struct relume_image *image)
 {
+    if (!f->pictures) {
+        f->width = image->width;
+        f->height = image->height;
+    }
+    if (image->width != f->width || image->height != f->height)
+        return fail(f, RELUME_EINVAL,
+                    "%s: the pictures changed size, from %d x %d to %d x %d; record again without "
+                    "resizing the window",
+                    f->path, f->width, f->height, image->width, image->height);
     const relume_status status =
         f->kind == FILM
             ? add_to_film(f, image)

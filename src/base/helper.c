@@ -255,8 +255,40 @@ relume_status helper_start(struct helper_job *job, enum helper_kind kind, const 
                     what[kind], reply.why);
 }
 
-// It has closed its channel, so it ends, or has.
-static void find_out(struct helper_process *p, const char *path)
+static double now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+// Where processor time is limited (ulimit -t), patience is too.
+static double patience_s(const struct helper_job *job)
+{
+    struct rlimit l;
+    double processor_s = job->processor_s;
+    if (!getrlimit(RLIMIT_CPU, &l) && l.rlim_cur < processor_s)
+        processor_s = (double)l.rlim_cur;
+    return 10 * processor_s;
+}
+
+// By the clock, in steps: time in which this process was stopped counts as one of them.
+static bool answer_comes(struct helper_process *p, struct helper_job *job)
+{
+    static const double step_s = 1;
+    struct pollfd answer = {.fd = p->channel, .events = POLLIN};
+    while (job->waited_s < patience_s(job)) {
+        const double start = now_s();
+        if (poll(&answer, 1, (int)(1e3 * step_s)) > 0)
+            return true;
+        const double step = now_s() - start;
+        job->waited_s += step < step_s ? step : step_s;
+    }
+    return false;
+}
+
+// It has closed its channel, so it ends, or has; or it has not answered and is made to.
+static void find_out(struct helper_process *p, const char *path, bool late)
 {
     const struct helper_order order = {.version = RELUME_VERSION, .ended = p->id};
     struct helper_reply reply;
@@ -265,7 +297,12 @@ static void find_out(struct helper_process *p, const char *path)
     p->blamed = mem_text(path);
     const int how = ask_in_turn(&reply, &order, -1) ? reply.how : 0;
     const int number = WIFSIGNALED(how) ? WTERMSIG(how) : 0;
-    if (number == SIGXCPU)
+    if (late)
+        snprintf(
+            p->how, HELPER_WHY,
+            "its reader does not answer; it is damaged, made to keep programs waiting, or on a "
+            "disk that does not answer");
+    else if (number == SIGXCPU)
         snprintf(p->how, HELPER_WHY,
                  "reading it takes too long; it is damaged, or made to keep machines busy");
     else if (number == SIGKILL)
@@ -280,11 +317,12 @@ static relume_status ask_process(struct helper_process *p, struct helper_job *jo
                                  size_t answer_size)
 {
     const bool lost = atomic_load(&p->ended);
-    if (!lost && channel_send(p->channel, message, size, file) &&
+    bool late = false;
+    if (!lost && channel_send(p->channel, message, size, file) && !(late = !answer_comes(p, job)) &&
         channel_receive(p->channel, answer, answer_size, NULL))
         return RELUME_OK;
     if (!lost)
-        find_out(p, job->path);
+        find_out(p, job->path, late);
     if (!lost || (p->blamed && !strcmp(p->blamed, job->path)))
         snprintf(job->why, HELPER_WHY, "%s", p->how);
     else

@@ -28,13 +28,18 @@ struct helper_job {
     struct helper_process *process;
     char *path;
     char why[HELPER_WHY];  // what went wrong last, for a sentence; "" when nothing did
+    // What its answers may cost of a processor; ten times of it they may take by the clock. One
+    // that is a disk's or a busy machine's fault takes a part of that, one that sleeps takes it
+    // all.
+    double processor_s, waited_s;
 };
 
-// A place for the file `path`. RELUME_ESYSTEM with a sentence, RELUME_ENOMEM.
+// A place for the file `path`, whose `processor_s` is to be set. RELUME_ESYSTEM with a sentence,
+// RELUME_ENOMEM.
 relume_status helper_start(struct helper_job *job, enum helper_kind kind, const char *path,
                            const struct relume_log *log);
 // Sends a message, with `file` unless it is -1, and waits for the answer. RELUME_EDATA: the process
-// has ended, `why` says how.
+// has ended, or has not answered in time and is ended; `why` says how.
 relume_status helper_ask(struct helper_job *job, const void *message, size_t size, int file,
                          void *answer, size_t answer_size);
 // The place is free; what was open there has been closed. A zeroed or ended job is fine.

@@ -18,6 +18,7 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 static const struct {
@@ -44,13 +45,21 @@ static void note_end(pid_t process, int how)
     }
 }
 
+// One that goes on without a channel for two seconds is ended.
 static int how_ended(pid_t process)
 {
-    int how;
+    static const struct timespec moment = {.tv_nsec = 10000000};
+    int how = 0;
     for (int i = 0; i < 256; i++)
         if (crashed[i].process == process)
             return crashed[i].how;
-    return waitpid(process, &how, 0) == process ? how : 0;
+    for (int i = 0; i < 200; i++, nanosleep(&moment, NULL)) {
+        const pid_t ended = waitpid(process, &how, WNOHANG);
+        if (ended)
+            return ended == process ? how : 0;
+    }
+    kill(process, SIGKILL);
+    return 0;
 }
 
 // A process that reads. It has nothing of the others: no channel to the program that starts

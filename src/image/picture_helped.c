@@ -91,6 +91,7 @@ static relume_status make_band(struct helped *h)
                                              : fit < MOST_BAND_ROWS ? (int)fit
                                                                     : MOST_BAND_ROWS};
     relume_status status;
+    h->job.processor_s += picture_read_s(&h->reader.info);
     h->band_bytes = (size_t)what.rows * row;
     h->band = share(h, h->band_bytes, what, &status);
     return status;
@@ -204,6 +205,7 @@ static relume_status open_there(struct helped *h, int file, const char *path,
         .what = PICTURE_OPEN, .limits = limits_or_default(limits), .file_bytes = file_bytes};
     snprintf(what.format, sizeof what.format, "%s", kind->reader);
     snprintf(what.name, sizeof what.name, "%s", slash ? slash + 1 : path);
+    h->job.processor_s = picture_open_s(file_bytes);
     const relume_status status = ask(h, &answer, what, file);
     if (status)
         return status;

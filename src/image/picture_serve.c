@@ -40,6 +40,28 @@ size_t picture_row_bytes(const struct picture_info *info, bool floats)
     return (size_t)info->width * (size_t)info->channels * (floats ? sizeof(float) : 1);
 }
 
+enum { FIRST_SECONDS = 10, BYTES_A_SECOND = 4 << 20, SAMPLES_A_SECOND = 1000000 };
+
+static uint64_t least(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+double picture_open_s(uint64_t file_bytes)
+{
+    return FIRST_SECONDS + (double)file_bytes / BYTES_A_SECOND;
+}
+
+static uint64_t samples_of(const struct picture_info *info)
+{
+    return (uint64_t)info->height * picture_row_bytes(info, false);
+}
+
+double picture_read_s(const struct picture_info *info)
+{
+    return 2 * FIRST_SECONDS + (double)least(samples_of(info) / SAMPLES_A_SECOND, 100000);
+}
+
 static void hear_why(void *user, enum relume_level level, const char *text)
 {
     struct picture_answer *answer = user;
@@ -50,11 +72,6 @@ static void hear_why(void *user, enum relume_level level, const char *text)
 // A header takes little; what pixels take is known once it is read. Decoders hold the picture up to
 // six times: as it is coded, as planes, as floats.
 static const uint64_t HEADER_MEMORY = 256 << 20;
-
-static uint64_t least(uint64_t a, uint64_t b)
-{
-    return a < b ? a : b;
-}
 
 // What `p` may take, beside what the others may.
 static void allow(struct serving *s, struct place *p, uint64_t memory, double seconds)
@@ -99,9 +116,8 @@ static void open_file(struct serving *s, struct place *p)
 {
     const struct picture_ask *ask = &s->ask;
     const struct relume_log log = {.message = hear_why, .user = &s->answer};
-    enum { FIRST_SECONDS = 10, BYTES_A_SECOND = 4 << 20, SAMPLES_A_SECOND = 1000000 };
     const uint64_t first = HEADER_MEMORY + 64 * ask->file_bytes;
-    allow(s, p, first, FIRST_SECONDS + (double)ask->file_bytes / BYTES_A_SECOND);
+    allow(s, p, first, picture_open_s(ask->file_bytes));
     sandbox_close();
     s->answer.status =
         s->bridge->open(&p->reader, s->file, ask->format, ask->name, &ask->limits, &log);
@@ -114,10 +130,7 @@ static void open_file(struct serving *s, struct place *p)
     size_t profile;
     (void)p->reader->format->profile(p->reader, &profile);
     s->answer.profile_bytes = profile;
-    const uint64_t samples =
-        (uint64_t)p->reader->info.height * picture_row_bytes(&p->reader->info, false);
-    allow(s, p, first + 24 * samples,
-          2 * FIRST_SECONDS + (double)least(samples / SAMPLES_A_SECOND, 100000));
+    allow(s, p, first + 24 * samples_of(&p->reader->info), picture_read_s(&p->reader->info));
 }
 
 static void hand_profile(struct serving *s, struct place *p)

@@ -31,6 +31,9 @@ struct picture_answer {
     uint64_t profile_bytes;
 };
 
+// What the process may take of a processor to open a picture and to read it all.
+double picture_open_s(uint64_t file_bytes);
+double picture_read_s(const struct picture_info *info);
 // Bytes of a row as READs deliver it.
 size_t picture_row_bytes(const struct picture_info *info, bool floats);
 

@@ -164,6 +164,7 @@ static relume_status read_there(struct mesh_file *out, struct helper_job *job, c
     struct mesh_ask what = {
         .what = MESH_OPEN, .file_bytes = file_bytes, .max_memory = limits.max_memory};
     strncpy(what.name, slash ? slash + 1 : path, sizeof what.name - 1);
+    job->processor_s = mesh_read_s(file_bytes);
     relume_status status = have_read(job, &answer, path, file, &what, log);
     if (status)
         return log_fail(log, status, "%s: cannot be read as a 3D model; %s", path, job->why);

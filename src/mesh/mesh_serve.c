@@ -55,15 +55,21 @@ static struct mesh_answer answer_of(const struct mesh_file *m)
                                 .names_bytes = names_bytes(m)};
 }
 
+double mesh_read_s(uint64_t file_bytes)
+{
+    enum { SECONDS = 20, BYTES_A_SECOND = 1 << 19 };
+    return SECONDS + (double)file_bytes / BYTES_A_SECOND;
+}
+
 // Assimp holds texts many times their size, and a vertex as two hundred bytes.
 static enum helper_short enter_sandbox(const struct mesh_ask *ask)
 {
     static const uint64_t always = 512 << 20;
-    enum { TIMES = 256, SECONDS = 20, BYTES_A_SECOND = 1 << 19 };
+    enum { TIMES = 256 };
     const uint64_t fit = always + TIMES * ask->file_bytes;
     const bool limited = ask->max_memory < fit;
     const bool fits = sandbox_memory(limited ? ask->max_memory : fit);
-    sandbox_time(SECONDS + (unsigned)(ask->file_bytes / BYTES_A_SECOND));
+    sandbox_time(mesh_read_s(ask->file_bytes));
     sandbox_close();
     return !fits ? HELPER_SHORT_MACHINE : limited ? HELPER_SHORT_LIMIT : HELPER_SHORT_FILE;
 }

@@ -25,6 +25,9 @@ struct mesh_answer {
     char text[1024];  // the file that is needed, or why it failed
 };
 
+// What it may take of a processor for a model.
+double mesh_read_s(uint64_t file_bytes);
+
 // What the process does until its channel is closed; `bridge` is the module's.
 void mesh_serve(int channel, const void *bridge);
 

@@ -1,3 +1,4 @@
+// stopping.c - how the programs end when they are asked to
 #include "program/stopping.h"
 
 #include <pthread.h>

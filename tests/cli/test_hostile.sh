@@ -128,7 +128,7 @@ check "helpers end with the tool" test "$(helpers_of_mark)" = 0
 # that are open beside them, and blame goes to the right one. Time: ulimit -t bounds what the helper
 # allows itself, which would be ten seconds.
 mkdir odd odd/lib && cp good.tif odd/good.tif
-for name in loop rows crash memory; do cp good.tif odd/$name.tif; done
+for name in loop rows sleep nap hide crash memory; do cp good.tif odd/$name.tif; done
 if why=$(${CC:-gcc} -std=c11 -shared -fPIC -I"$TOP/include" -I"$TOP/src" -o odd/lib/librelume-oiio.so.0 \
     "$TOP/tests/tools/preload/odd_reader.c" 2>&1); then
     odd() { # status, pattern, command...
@@ -137,6 +137,19 @@ if why=$(${CC:-gcc} -std=c11 -shared -fPIC -I"$TOP/include" -I"$TOP/src" -o odd/
         expect_fail "odd reader: $pattern" "$status" "$pattern" out.bad \
             env LD_LIBRARY_PATH="$PWD/odd/lib" timeout -k 1 20 "$@"
     }
+    # By the clock nobody waits longer than ten times the processor time that there is.
+    asleep() { # name
+        status=0
+        { LD_LIBRARY_PATH="$PWD/odd/lib" timeout -k 1 50 \
+            sh -c 'ulimit -t 1; exec "$@"' sh "$RELUME" compare odd/good.tif odd/$1.tif || status=$?; } >$1.txt 2>&1
+        echo $status >>$1.txt
+    }
+    case $BUILD in
+    *asan* | *tsan*) skip 'readers that sleep' 'sanitizers take time of their own' ;;
+    *)
+        for name in sleep nap hide; do asleep $name & done
+        ;;
+    esac
     expect_ok "the odd reader reads" - env LD_LIBRARY_PATH="$PWD/odd/lib" \
         "$RELUME" compare odd/good.tif odd/good.tif
     odd 1 'odd/crash.tif: its reader crashed' "$RELUME" compare odd/good.tif odd/crash.tif
@@ -164,6 +177,11 @@ if why=$(${CC:-gcc} -std=c11 -shared -fPIC -I"$TOP/include" -I"$TOP/src" -o odd/
             "$RELUME" compare odd/memory.tif odd/good.tif --max-memory 64M
         odd 3 'out of memory' \
             sh -c "ulimit -v 300000; exec \"\$@\"" sh "$RELUME" compare odd/memory.tif odd/good.tif
+        wait
+        for name in sleep nap hide; do
+            case $name in hide) why='reader crashed (no answer)' ;; *) why='reader does not answer' ;; esac
+            check "odd reader: $name" test "$(grep -c "odd/$name.tif: .*its $why" $name.txt) $(cat $name.txt | wc -l) $(tail -n 1 $name.txt)" = '1 2 1'
+        done
         ;;
     esac
 else

@@ -1,6 +1,7 @@
 // odd_reader.c - in place of librelume-oiio.so: a reader of pictures of 8 x 8 pixels that does what
 // the file's name begins with, as readers of hostile files do. loop: the header takes for ever;
-// rows: so do the rows; crash: the rows crash; memory: the header takes a gigabyte.
+// rows: so do the rows; sleep, nap: the same without work; hide: the reader closes its channel and
+// sleeps; crash: the rows crash; memory: the header takes a gigabyte.
 #include "image/picture_format.h"
 
 #include <signal.h>
@@ -25,6 +26,8 @@ static relume_status read_bytes(picture_reader *reader, int row, int rows, uint8
     (void)row;
     while (is((struct odd *)reader, "rows") && for_ever)
         ;
+    while (is((struct odd *)reader, "nap") && for_ever)
+        sleep(1);
     if (is((struct odd *)reader, "crash"))
         raise(SIGSEGV);
     memset(out, 128, (size_t)rows * 8 * 3);
@@ -72,6 +75,10 @@ static relume_status open_odd(picture_reader **out, int file, const char *kind, 
     strncpy(o->name, name, sizeof o->name - 1);
     while (is(o, "loop") && for_ever)
         ;
+    if (is(o, "hide"))
+        close(3);
+    while ((is(o, "sleep") || is(o, "hide")) && for_ever)
+        sleep(1);
     if (is(o, "memory"))
         for (int i = 0; i < 1024; i++) {
             void *more = malloc(1 << 20);

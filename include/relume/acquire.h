@@ -87,7 +87,7 @@ struct relume_acquisition {
     int warnings;
 };
 
-// Make the folder `dir`, whole or not at all. On failure `out` is empty. RELUME_EDATA,
+// Make the folder `dir`, whole or not at all. On failure `out` is empty. An input status,
 // RELUME_EINVAL (the folder exists; counts do not match), RELUME_EIO, RELUME_ENOMEM,
 // RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_acquire(struct relume_acquisition *out, const char *dir,
@@ -116,8 +116,8 @@ struct relume_acquire_refine_params {
 // direction[lights] are replaced; intensity[lights] gets relative brightness, mean 1; *residual the
 // median miss / albedo before and after. Where the surface does not determine lights better than
 // they are (it faces one way, or gloss passes for light: halves of it disagree), they stay,
-// intensities are 1, both residuals are equal and curl is 0, with a warning. RELUME_EDATA where the
-// lights do not span space or there are fewer than 6, RELUME_ENOMEM.
+// intensities are 1, both residuals are equal and curl is 0, with a warning. RELUME_EUNFIT where
+// the lights do not span space or there are fewer than 6, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_acquire_refine(
     struct relume_vec3 *direction, double *intensity, double residual[2],
     const relume_capture *capture, const struct relume_acquire_refine_params *params);

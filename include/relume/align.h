@@ -54,7 +54,7 @@ struct relume_homography {
 };
 // One homography for static scenes, also under changing light: enhanced correlation (Evangelidis,
 // Psarakis 2008, Eq. 20) of gradient magnitudes that are normalised by their surroundings, coarse
-// to fine. RELUME_EINVAL for wrong sizes, RELUME_EDATA when the picture has no detail,
+// to fine. RELUME_EINVAL for wrong sizes, RELUME_EUNFIT when the picture has no detail,
 // RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_align_homography(struct relume_homography *out,
                                                     const struct relume_image *anchor,

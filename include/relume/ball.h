@@ -47,7 +47,7 @@ RELUME_API struct relume_ball relume_ball_outlined(double x, double y, double ra
 // Find `count` balls in `mean`, the geometric mean of photographs under all lights (linear,
 // one channel: highlights, which move, hardly show in it),
 // from left to right: circles of edges (Hough 1962, voted along the gradient), each refined by a
-// robust fit to the edge along its radii. With a mask its border is fitted instead. RELUME_EDATA
+// robust fit to the edge along its radii. With a mask its border is fitted instead. RELUME_EUNFIT
 // with a sentence where fewer can be seen, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_ball_find(struct relume_ball *out, int count,
                                              const struct relume_image *mean,
@@ -101,7 +101,7 @@ RELUME_API struct relume_vec3 relume_ball_ray(const struct relume_ball_camera *c
                                               double y);
 
 // The point nearest to `n` lines from `origin` along unit `direction`, by least squares, and its
-// standard error. RELUME_EDATA when the lines are too parallel to meet or fewer than 2.
+// standard error. RELUME_EUNFIT when the lines are too parallel to meet or fewer than 2.
 RELUME_RESULT relume_status relume_light_triangulate(struct relume_vec3 *position, double *sigma,
                                                      const struct relume_vec3 *origin,
                                                      const struct relume_vec3 *direction, int n);

@@ -25,15 +25,21 @@ extern "C" {
 // An exported function whose status must be looked at.
 #define RELUME_RESULT RELUME_API __attribute__((warn_unused_result))
 
-// How a call ended. On failure outputs are NULL or empty and the log has the sentence.
+// How a call ended. On failure outputs are NULL or empty and the log has the sentence. Comments
+// call those from ENOTFOUND to EUNFIT an input status: which one it is depends on the file.
 typedef enum relume_status {
     RELUME_OK = 0,
-    RELUME_EINVAL,   // an argument or option is unknown or out of range
-    RELUME_EDATA,    // an input file is missing, broken, foreign, or over the limits
-    RELUME_ENOMEM,   // out of memory
-    RELUME_EIO,      // an output cannot be written
-    RELUME_ESYSTEM,  // the machine lacks something: threads, a GL context
-    RELUME_ECANCEL,  // the progress callback asked to stop
+    RELUME_ENOTFOUND,     // an input is not there, or cannot be opened or read
+    RELUME_EFORMAT,       // it is something else than what is expected here, or breaks its grammar
+    RELUME_EDAMAGED,      // it is of that format, but cut short, or its values are broken
+    RELUME_ELIMIT,        // it is larger than the limits, or than what the format or method holds
+    RELUME_EUNSUPPORTED,  // it is sound, but of a kind or version that this library does not do
+    RELUME_EUNFIT,        // it is sound, but does not do here: sizes differ, lights are too few
+    RELUME_EINVAL,        // usage: an argument or option is unknown or out of range
+    RELUME_ENOMEM,        // out of memory
+    RELUME_EIO,           // an output cannot be written
+    RELUME_ESYSTEM,       // the machine lacks something: threads, a module, a GL context
+    RELUME_ECANCEL,       // the progress callback asked to stop
 } relume_status;
 
 // Params structs begin with their size, which the macro of the same name fills: a library that
@@ -43,8 +49,17 @@ typedef enum relume_status {
 // The RELUME_VERSION_NUMBER of the library that is linked, which may be newer than the headers.
 RELUME_API int relume_version(void);
 
-// A fixed English text for `status`, never NULL.
+// A fixed English text for `status`, never NULL; its name in one word ("not-found", "limit"); and
+// how a program that it ended should exit: 0 done, 1 the input, 2 usage, 3 the machine, 130
+// stopped.
 RELUME_API const char *relume_status_text(relume_status status);
+RELUME_API const char *relume_status_name(relume_status status);
+RELUME_API int relume_status_exit(relume_status status);
+// Whether the input was at fault.
+static inline bool relume_status_is_input(relume_status status)
+{
+    return status >= RELUME_ENOTFOUND && status <= RELUME_EUNFIT;
+}
 
 struct relume_limits;
 // How much a sentence of the log matters.
@@ -81,8 +96,8 @@ struct relume_log {
 };
 
 // "PATH: WHAT; why" and the status for an input that cannot be opened or read, `error` being the
-// errno: RELUME_EDATA, but RELUME_ESYSTEM for too many open files, and RELUME_ENOMEM without a
-// sentence. `log` may be NULL.
+// errno: RELUME_ENOTFOUND, but RELUME_EFORMAT for a folder, RELUME_ESYSTEM for too many open files,
+// and RELUME_ENOMEM without a sentence. `log` may be NULL.
 RELUME_RESULT relume_status relume_input_fail(const struct relume_log *log, const char *path,
                                               const char *what, int error);
 

@@ -40,7 +40,7 @@ RELUME_API void relume_btf_set_directions(const struct relume_btf_set *set,
 
 // Directions triangulated over the hemisphere. Never changes. Thread-safety: safe.
 typedef struct relume_direction_mesh relume_direction_mesh;
-// At least 3 unit directions with z > 0, not all on one great circle. RELUME_EDATA, RELUME_ENOMEM.
+// At least 3 unit directions with z > 0, not all on one great circle. RELUME_EUNFIT, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_direction_mesh_create(relume_direction_mesh **out,
                                                          const struct relume_vec3 *directions,
                                                          int n, const struct relume_log *log);
@@ -109,7 +109,7 @@ RELUME_RESULT relume_status relume_btf_create(relume_btf **out, const struct rel
 // under distant lights (the window is the sample); or pictures whose names hold the angles
 // in degrees, tl (light elevation from the pole), pl (light azimuth), tv, pv in any order, like
 // tl030_pl120_tv045_pv020.png, there or one level below. Or a .btf file of the University of Bonn,
-// whose values are multiplied out into temporary data. Returns RELUME_EDATA, RELUME_ENOMEM,
+// whose values are multiplied out into temporary data. Returns an input status, RELUME_ENOMEM,
 // RELUME_ECANCEL, RELUME_ESYSTEM without room for temporary data, RELUME_EINVAL for a part that is
 // not there.
 RELUME_RESULT relume_status relume_btf_open(relume_btf **out, const char *path,
@@ -128,7 +128,7 @@ RELUME_API const uint16_t *relume_btf_picture(const relume_btf *btf, int view, i
 // Replace one picture of a created BTF; values are clipped to what a half holds.
 RELUME_API void relume_btf_store(relume_btf *btf, int view, int light, const float *rgb);
 
-// Some views and lights of a BTF, which must outlive the part. RELUME_EDATA when too few are left
+// Some views and lights of a BTF, which must outlive the part. RELUME_EUNFIT when too few are left
 // to interpolate, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_part(relume_btf **out, const relume_btf *whole,
                                             const int *views, int view_count, const int *lights,
@@ -183,17 +183,17 @@ struct relume_btf_fit_params {  // zero in a field means its default
 // A fitted model. Never changes. Thread-safety: safe.
 typedef struct relume_btf_fitted relume_btf_fitted;
 
-// Returns RELUME_EINVAL for parameters out of range, RELUME_EDATA for values that are not finite,
-// RELUME_ENOMEM, RELUME_ECANCEL.
+// Returns RELUME_EINVAL for parameters out of range, RELUME_EDAMAGED for values that are not
+// finite, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_btf_fit(relume_btf_fitted **out, const relume_btf *btf,
                                            const struct relume_btf_model *model,
                                            const struct relume_btf_fit_params *params);
 // A folder with model.json and one .npy file for each array (docs/btf.md). RELUME_EINVAL,
-// RELUME_EIO; RELUME_EDATA.
+// RELUME_EIO; an input status.
 RELUME_RESULT relume_status relume_btf_fitted_save(const relume_btf_fitted *fitted,
                                                    const char *path,
                                                    const struct relume_btf_params *params);
-// The folder again; the caller destroys `*out`. RELUME_EDATA with a sentence, RELUME_ENOMEM.
+// The folder again; the caller destroys `*out`. An input status with a sentence, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_fitted_open(relume_btf_fitted **out, const char *path,
                                                    const struct relume_btf_params *params);
 RELUME_API void relume_btf_fitted_destroy(relume_btf_fitted **fitted);
@@ -224,7 +224,8 @@ struct relume_btf_cost {
 RELUME_API struct relume_btf_cost relume_btf_fitted_cost(const relume_btf_fitted *fitted);
 
 // The measured values as a model that is exact, for what takes models. Nothing is copied: the BTF
-// must outlive it; it cannot be saved. RELUME_EDATA for values that are not finite, RELUME_ENOMEM.
+// must outlive it; it cannot be saved. RELUME_EDAMAGED for values that are not finite,
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_as_model(relume_btf_fitted **out, const relume_btf *btf,
                                                 const struct relume_log *log);
 

@@ -133,7 +133,7 @@ struct relume_capture_params {
     (&(const struct relume_capture_params){RELUME_SIZED(relume_capture_params), __VA_ARGS__})
 
 // Open capture.json, a folder that holds one, or a .lp file; every image's header is checked: it
-// exists, can be read and has the common size. Returns RELUME_EDATA, RELUME_ENOMEM.
+// exists, can be read and has the common size. Returns an input status, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_capture_open(relume_capture **out, const char *path,
                                                 const struct relume_capture_params *params);
 RELUME_API void relume_capture_destroy(relume_capture **capture);
@@ -160,8 +160,8 @@ struct relume_pictures {
 // or `positions`. Its names of files are not looked at. `view` may be NULL and `views` 0: one view.
 // `geometry`: begin with relume_geometry_default; all zero is a planar picture. Of `params`,
 // skip_missing, allow_outside and keep_bytes do not count. Messages begin with "memory".
-// RELUME_EDATA as for relume_capture_open, RELUME_EINVAL for samples, sizes or channels that cannot
-// be, RELUME_ENOMEM.
+// An input status as for relume_capture_open, RELUME_EINVAL for samples, sizes or channels that
+// cannot be, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_capture_create(relume_capture **out,
                                                   const struct relume_manifest *manifest,
                                                   const struct relume_pictures *pictures,
@@ -185,7 +185,7 @@ RELUME_API void relume_capture_white(const relume_capture *capture, int light, f
 
 // One image, linear, light intensity divided out, three channels; so is the fall-off of near
 // lights (positions): as if the light reached every pixel as strongly as the world's origin.
-// NaN and infinity are RELUME_EDATA.
+// NaN and infinity are RELUME_EDAMAGED.
 RELUME_RESULT relume_status relume_capture_image(struct relume_image *out,
                                                  const relume_capture *capture, int view, int light,
                                                  const struct relume_log *log);
@@ -193,7 +193,7 @@ RELUME_RESULT relume_status relume_capture_image(struct relume_image *out,
 RELUME_RESULT relume_status relume_capture_depth(struct relume_image *out,
                                                  const relume_capture *capture, int view,
                                                  const struct relume_log *log);
-// The mask likewise: above 0.5 where the object is. RELUME_EDATA, RELUME_ENOMEM.
+// The mask likewise: above 0.5 where the object is. An input status, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_capture_mask(struct relume_image *out,
                                                 const relume_capture *capture, int view,
                                                 const struct relume_log *log);
@@ -212,7 +212,7 @@ struct relume_table_params {
 #define relume_table_params(...)                                                                   \
     (&(const struct relume_table_params){RELUME_SIZED(relume_table_params), __VA_ARGS__})
 
-// `capture` must outlive the table. Returns RELUME_EDATA, RELUME_ENOMEM.
+// `capture` must outlive the table. Returns an input status, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_table_open(relume_table **out, const relume_capture *capture,
                                               int view, const struct relume_table_params *params);
 // The next `rows` rows of every light: out[light][row][x][rgb], light intensity divided out. Where
@@ -233,7 +233,7 @@ RELUME_API void relume_table_directions(const relume_table *table, double x, dou
 // The next `rows` rows, at most RELUME_TABLE_ROWS, kept inside the table, 8-bit photographs as they
 // are: relume_table_planes then gives what relume_table_read would.
 enum { RELUME_TABLE_ROWS = 16 };
-// RELUME_EDATA when an image is broken, RELUME_ENOMEM.
+// An input status when an image is broken, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_table_fetch(relume_table *table, int rows);
 // `count` pixels from `first` on of the rows fetched last, under one light:
 // out[channel * stride + pixel]. Thread-safety: any number of threads between fetches.

@@ -140,7 +140,7 @@ typedef struct relume_books relume_books;
 
 // Learn from the coefficients of `n` views by one coder, all of one storage, in which the numbers
 // will be stored. Stages and splits multiply to at most RELUME_MOST_BOOKS books. Returns
-// RELUME_EINVAL (params; several books for a luminance coder), RELUME_EDATA (more codes than
+// RELUME_EINVAL (params; several books for a luminance coder), RELUME_EUNFIT (more codes than
 // pixels), RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_books_train(relume_books **out,
                                                const relume_coefficients *const *views, int n,

@@ -116,7 +116,8 @@ struct relume_coder_params {
     (&(const struct relume_coder_params){RELUME_SIZED(relume_coder_params), __VA_ARGS__})
 
 // Prepare `basis` for `n` unit directions `lights`. Returns RELUME_EINVAL when the basis has no
-// such K, RELUME_EDATA when the lights cannot determine it (too few, or degenerate), RELUME_ENOMEM.
+// such K, RELUME_EUNFIT when the lights cannot determine it (too few, or degenerate),
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_coder_create(relume_coder **out,
                                                 const struct relume_basis *basis,
                                                 const struct relume_vec3 *lights, int n,
@@ -273,7 +274,7 @@ RELUME_API struct relume_transfer relume_encode_display(const relume_capture *ca
 
 // At most `pixels` (default 65536) pixels of all views, spread evenly and by no regular pattern;
 // masked ones are left out. The caller destroys `out`. `params` as for relume_encode (log, domain,
-// threads). Returns RELUME_EDATA, RELUME_ENOMEM, RELUME_ECANCEL.
+// threads). Returns an input status, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_samples_read(struct relume_samples *out,
                                                 const relume_capture *capture, size_t pixels,
                                                 const struct relume_encode_params *params);
@@ -308,7 +309,7 @@ RELUME_RESULT relume_status relume_coder_decide(relume_coder **out,
                                                 const struct relume_encode_params *encode);
 
 // Run `coder` over one view of `capture`. Pixels outside the view's mask become 0.
-// Returns RELUME_EDATA, RELUME_EIO (temporary file), RELUME_ENOMEM, RELUME_ECANCEL.
+// Returns an input status, RELUME_EIO (temporary file), RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_encode(relume_coefficients **out, const relume_coder *coder,
                                           const relume_capture *capture, int view,
                                           const struct relume_encode_params *params);

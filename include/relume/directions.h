@@ -60,7 +60,7 @@ struct relume_captured_lights {
 // `[name] x y z` ('#' starts a comment, a lone count may come first). With `positions` the vectors
 // of lines and .lp files are positions in world units, and a file that gives none is an error.
 // Images that a file names need not exist. The caller destroys `out`, which is empty on failure.
-// RELUME_EDATA, RELUME_ENOMEM.
+// An input status, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_captured_lights_load(struct relume_captured_lights *out,
                                                         const char *path, bool positions,
                                                         const struct relume_log *log);

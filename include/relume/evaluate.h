@@ -44,7 +44,7 @@ struct relume_evaluate_params {
 // Slab views are matched by slab and place on the uv plane, or rendered at that eye through that
 // slab's window where the file has none there; near lights of the capture are evaluated as point
 // lights that do not fall off.
-// `*out` is empty on failure. Returns RELUME_EDATA (sizes, projections or slabs differ, an image
+// `*out` is empty on failure. Returns an input status (sizes, projections or slabs differ, an image
 // is broken), RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_evaluate(struct relume_evaluation *out, relume_pack *pack,
                                             const relume_capture *capture,

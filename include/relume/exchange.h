@@ -22,7 +22,7 @@ struct relume_import_params {
 
 // Turn `path` (.ptm, .rti, .hsh, a relight folder or its info.json) into the relume file `out` that
 // relights as the format says. Codes stay as they are, but for those in YCC, which become 16-bit
-// RGB. Returns RELUME_EDATA, RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
+// RGB. Returns an input status, RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_import(const char *path, const char *out,
                                           const struct relume_import_params *params);
 
@@ -54,7 +54,7 @@ struct relume_open_params {
 // reads; captures, encoded by the defaults; a picture of linear light (floats), which looks the
 // same under any light. What is made on the way is a file without a name in $TMPDIR or /tmp.
 // Photographs and other folders are refused with a sentence that says what to do. Returns
-// RELUME_EDATA, RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
+// An input status, RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_open(relume_pack **out, const char *path,
                                         const struct relume_open_params *params);
 
@@ -114,7 +114,7 @@ struct relume_export_report {
 };
 
 // Write view `params->view` of `pack` as a file or folder `path`, whole or not at all; `report` may
-// be NULL. Returns RELUME_EINVAL, RELUME_EDATA (panoramas; a target that cannot be reached),
+// be NULL. Returns RELUME_EINVAL, RELUME_EUNFIT (panoramas; a target that cannot be reached),
 // RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_export(relume_pack *pack, const char *path,
                                           enum relume_exchange format,

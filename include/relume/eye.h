@@ -78,7 +78,7 @@ struct relume_subject {
 // A healthy adult.
 RELUME_API struct relume_subject relume_subject_default(void);
 // A JSON file of such fields (docs/glare.md) over the defaults; a picture is looked for from the
-// file's folder. RELUME_EDATA with a sentence that
+// file's folder. An input status with a sentence that
 // names line, field and range; RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_subject_load(struct relume_subject *out, const char *path,
                                                 const struct relume_log *log);
@@ -144,7 +144,8 @@ struct relume_eye_state {
 };
 
 // An eye at time 0, adapted to `luminance` cd/m^2. `subject` NULL: the default. RELUME_EINVAL for a
-// field out of its range, RELUME_EDATA for a picture of lashes that cannot be read, RELUME_ENOMEM.
+// field out of its range, an input status for a picture of lashes that cannot be read,
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_eye_create(relume_eye **out,
                                               const struct relume_subject *subject,
                                               double luminance);

@@ -77,7 +77,7 @@ struct relume_frame_params {
 
 // Create `*out`, linear, three channels; relume_camera_rect says where in it the picture is and a
 // note in the log that there is something beside it. Only the views that the frame touches are read
-// and relit. Returns RELUME_EINVAL (camera does not fit the file, a light is wrong), RELUME_EDATA
+// and relit. Returns RELUME_EINVAL (camera does not fit the file, a light is wrong), RELUME_EUNFIT
 // (also: near lights and no depth), RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_frame(struct relume_image *out, relume_pack *pack,
                                          const struct relume_camera *camera,
@@ -85,7 +85,7 @@ RELUME_RESULT relume_status relume_frame(struct relume_image *out, relume_pack *
                                          const struct relume_frame_params *params);
 
 // The value seen from `eye` along `direction` (into the scene): the plenoptic-illumination function
-// (Wong 1998, 6.4). RELUME_EDATA when the file holds no such ray.
+// (Wong 1998, 6.4). RELUME_EUNFIT when the file holds no such ray.
 RELUME_RESULT relume_status relume_query(float rgb[3], relume_pack *pack, struct relume_vec3 eye,
                                          struct relume_vec3 direction,
                                          const struct relume_light *lights, int n,
@@ -96,7 +96,7 @@ struct relume_ray {
     struct relume_vec3 eye, direction;  // of any length, into the scene
 };
 // The same for many rays, whose views are relit once: what lies in memory is every view that a ray
-// needs. Rays that the file does not hold give NaN, a single one RELUME_EDATA with a sentence.
+// needs. Rays that the file does not hold give NaN, a single one RELUME_EUNFIT with a sentence.
 RELUME_RESULT relume_status relume_query_rays(float (*rgb)[3], relume_pack *pack,
                                               const struct relume_ray *rays, int n,
                                               const struct relume_light *lights, int light_count,

@@ -33,7 +33,7 @@ struct relume_heldout_params {
     (&(const struct relume_heldout_params){RELUME_SIZED(relume_heldout_params), __VA_ARGS__})
 
 // `capture` and `test` must outlive the object. Returns RELUME_EINVAL (leave_out leaves fewer than
-// one light), RELUME_EDATA (an image is broken, `test` does not fit), RELUME_ENOMEM,
+// one light), an input status (an image is broken, `test` does not fit), RELUME_ENOMEM,
 // RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_heldout_open(relume_heldout **out, const relume_capture *capture,
                                                 const struct relume_heldout_params *params);

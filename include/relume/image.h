@@ -64,7 +64,8 @@ struct relume_image_params {
 #define relume_image_params(...)                                                                   \
     (&(const struct relume_image_params){RELUME_SIZED(relume_image_params), __VA_ARGS__})
 
-// Read `path` (any format OpenImageIO knows) as linear light. Returns RELUME_EDATA, RELUME_ENOMEM.
+// Read `path` (any format OpenImageIO knows) as linear light. Returns an input status,
+// RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_image_load(struct relume_image *out, const char *path,
                                               const struct relume_image_params *params);
 // Write linear `image` in the format of the file name's extension: EXR, HDR, PFM linear, every

@@ -59,7 +59,7 @@ struct relume_slab_ingest_params {
 // shows by what hides what, which is looked at and mentioned, no more.
 // No photograph shows whether rows are as far apart as columns; the log says that it is assumed.
 // The scale of depth follows from baseline and distance, which no photograph shows.
-// RELUME_EINVAL (params), RELUME_EDATA (names that do not match, a camera missing, two for one
+// RELUME_EINVAL (params), an input status (names that do not match, a camera missing, two for one
 // place, sizes that differ), RELUME_EIO, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_slab_ingest(const char *dir, const char *const *photos, int n,
                                                const struct relume_slab_ingest_params *slab,
@@ -84,7 +84,7 @@ struct relume_posed_params {
 // al. 2001 with a plane for geometry): what lies off that plane is blurred by the spacing of the
 // photographs, and what none of them saw is black. Camera models: SIMPLE_PINHOLE, PINHOLE,
 // SIMPLE_RADIAL, RADIAL, OPENCV. World units are those of the model, scaled so that the distance is
-// 3. RELUME_EDATA names what is not understood.
+// 3. An input status names what is not understood.
 RELUME_RESULT relume_status relume_posed_ingest(const char *dir, const char *model,
                                                 const char *photos,
                                                 const struct relume_posed_params *posed,
@@ -117,8 +117,8 @@ struct relume_panorama_params {
 // name says so they come in the order +x -x +y -y +z -z. Each face as conventions.md states it.
 // Stitched photographs turn about one point; poses, seams and gains are found in the mean over
 // lights, and every light is warped and blended by bands alike (Burt, Adelson 1983). Needs the
-// module librelume-stitch (OpenCV); without it RELUME_EIO says so. RELUME_EDATA names a photograph
-// that overlaps none.
+// module librelume-stitch (OpenCV); without it RELUME_EIO says so. An input status names a
+// photograph that overlaps none.
 RELUME_RESULT relume_status relume_panorama_ingest(const char *dir, const char *const *photos,
                                                    int n, enum relume_panorama_source source,
                                                    const struct relume_panorama_params *panorama,

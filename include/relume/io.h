@@ -24,7 +24,7 @@ extern "C" {
 // once.
 struct relume_reader {
     // Copy `size` bytes from `offset` on into `bytes`; the range always lies within `size`.
-    // False with errno set: the input cannot be read, RELUME_EDATA.
+    // False with errno set: the input cannot be read, an input status.
     bool (*read)(void *user, void *bytes, size_t size, uint64_t offset);
     void *user;
     uint64_t size;  // of all of it, bytes

@@ -106,7 +106,7 @@ RELUME_API double relume_area_distance(const struct relume_light *area,
 
 // ------------------------------------------------------------------ ies
 // Read an IES LM-63 file (1986, 1991, 1995, 2002; type C photometry). `*out` is NULL on failure.
-// Returns RELUME_EDATA with a sentence, RELUME_ENOMEM. Never changes afterwards. Thread-safety:
+// Returns an input status with a sentence, RELUME_ENOMEM. Never changes afterwards. Thread-safety:
 // safe.
 RELUME_RESULT relume_status relume_ies_load(relume_ies **out, const char *path,
                                             const struct relume_log *log);
@@ -139,7 +139,7 @@ struct relume_gonio_params {
 // RELUME_ENOMEM. Never changes. Thread-safety: safe.
 RELUME_RESULT relume_status relume_gonio_create(relume_gonio **out, const struct relume_image *map,
                                                 const struct relume_gonio_params *params);
-// The same from a file that relume_image_load reads. RELUME_EDATA, RELUME_ENOMEM.
+// The same from a file that relume_image_load reads. An input status, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_gonio_load(relume_gonio **out, const char *path,
                                               const struct relume_log *log);
 RELUME_API void relume_gonio_destroy(relume_gonio **gonio);
@@ -168,7 +168,7 @@ struct relume_environment_params {
 RELUME_RESULT relume_status
 relume_environment_create(relume_environment **out, const struct relume_image *map,
                           const struct relume_environment_params *params);
-// The same from a file that relume_image_load reads. Also RELUME_EDATA.
+// The same from a file that relume_image_load reads. Also an input status.
 RELUME_RESULT relume_status relume_environment_load(relume_environment **out, const char *path,
                                                     const struct relume_log *log);
 RELUME_API void relume_environment_destroy(relume_environment **environment);

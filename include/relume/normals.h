@@ -30,7 +30,7 @@ struct relume_normals_params {
 #define relume_normals_params(...)                                                                 \
     (&(const struct relume_normals_params){RELUME_SIZED(relume_normals_params), __VA_ARGS__})
 
-// Fit every pixel of `codes`; the caller destroys `out`, which is empty on failure. RELUME_EDATA
+// Fit every pixel of `codes`; the caller destroys `out`, which is empty on failure. RELUME_EUNFIT
 // when the captured directions do not span space, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_normals_fit(struct relume_normals *out,
                                                const struct relume_codes *codes,

@@ -43,7 +43,7 @@ struct relume_objects_params {
 
 // Read a description (docs/objects.md). Meshes are OBJ, PLY or what Assimp reads, such as glTF;
 // materials are folders of BTFs, of fitted models or of surfaces. What a mesh lacks is made, with a
-// warning: normals, texture coordinates (from the three axes). RELUME_EDATA with a sentence,
+// warning: normals, texture coordinates (from the three axes). An input status with a sentence,
 // RELUME_ENOMEM, RELUME_ESYSTEM when Embree or the reader of a format is missing.
 RELUME_RESULT relume_status relume_objects_open(relume_objects **out, const char *path,
                                                 const struct relume_objects_params *params);
@@ -157,7 +157,7 @@ RELUME_RESULT relume_status relume_objects_render(struct relume_image *out,
 // they stand before what the file's depth says, under the renderer's lights, and with their shadows
 // on the scene: each lamp is relit alone and reaches a point of the scene when no object lies
 // between. Scenes throw no shadows on objects. A pass shows the scene alone: leave it at colour.
-// `*out` is created. RELUME_EDATA (also: a file without depth), and as relume_renderer_frame.
+// `*out` is created. RELUME_EUNFIT (also: a file without depth), and as relume_renderer_frame.
 RELUME_RESULT relume_status relume_objects_frame(struct relume_image *out,
                                                  const relume_objects *objects,
                                                  relume_renderer *renderer,

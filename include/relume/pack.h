@@ -89,7 +89,8 @@ struct relume_pack_encode_params {
 #define relume_pack_encode_params(...)                                                             \
     (&(const struct relume_pack_encode_params){RELUME_SIZED(relume_pack_encode_params),            \
                                                __VA_ARGS__})
-// The whole way from a capture to a file. RELUME_EDATA, RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
+// The whole way from a capture to a file. An input status, RELUME_EIO, RELUME_ENOMEM,
+// RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,
                                                const relume_coder *coder, const char *path,
                                                struct relume_encode_report *report,
@@ -100,7 +101,7 @@ RELUME_RESULT relume_status relume_pack_encode(const relume_capture *capture,
 typedef struct relume_pack relume_pack;
 
 // Everything in a file is checked before it is used. The pack keeps the log and its limits, which
-// must outlive it. Returns RELUME_EDATA, RELUME_ENOMEM; RELUME_EINVAL without path and reader.
+// must outlive it. Returns an input status, RELUME_ENOMEM; RELUME_EINVAL without path and reader.
 RELUME_RESULT relume_status relume_pack_open(relume_pack **out, const char *path,
                                              const struct relume_pack_params *params);
 RELUME_API void relume_pack_destroy(relume_pack **pack);
@@ -146,7 +147,7 @@ RELUME_RESULT relume_status relume_pack_depth(struct relume_image *out, relume_p
 RELUME_RESULT relume_status relume_pack_mask(struct relume_image *out, relume_pack *pack, int view);
 
 // Read all of a file and call `found` for each run of rows of a part that is missing or cannot be
-// decoded, rows from the top of the part. Returns RELUME_OK when the file is whole; RELUME_EDATA
+// decoded, rows from the top of the part. Returns RELUME_OK when the file is whole; an input status
 // when it is not, with a sentence where it is more than those rows: a header, a value out of range.
 // What PIZ and no compression decode in spite of damage to single bits is not noticed.
 struct relume_pack_check_params {
@@ -160,7 +161,7 @@ struct relume_pack_check_params {
 };
 #define relume_pack_check_params(...)                                                              \
     (&(const struct relume_pack_check_params){RELUME_SIZED(relume_pack_check_params), __VA_ARGS__})
-// RELUME_EDATA when anything is damaged, RELUME_ENOMEM, RELUME_ECANCEL.
+// An input status when anything is damaged, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_pack_check(const char *path,
                                               const struct relume_pack_check_params *params);
 

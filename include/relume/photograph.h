@@ -26,7 +26,7 @@ struct relume_exif {
     char camera[64];     // maker and model
 };
 
-// Read only the header. Returns RELUME_EDATA, RELUME_ENOMEM.
+// Read only the header. Returns an input status, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_exif_read(struct relume_exif *out, const char *path,
                                              const struct relume_log *log);
 // How much light the sensor counted, for comparison between photographs of one scene: shutter time
@@ -55,7 +55,7 @@ struct relume_photographs_params {
 // What `n` paths name: files, and what folders hold in the order of names. Left out, and named in
 // one note, is what both first bytes and name say is no photograph (texts, archives, videos), what
 // relume wrote, and beside other pictures those named as their mask, depth, normals, disparity or
-// albedo. RELUME_EDATA where a path does not exist or no photograph is left, RELUME_ENOMEM.
+// albedo. An input status where a path does not exist or no photograph is left, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_photographs_list(struct relume_photographs *out,
                                                     const char *const *paths, int n,
                                                     const struct relume_photographs_params *params);
@@ -84,7 +84,7 @@ struct relume_photograph_params {
 // Read a photograph (JPEG, PNG, TIFF, EXR, HDR, camera RAW where the installed OpenImageIO reads
 // it), three channels, turned upright, linear with sRGB primaries: an embedded matrix ICC profile
 // is followed (ICC.1:2010 with Bradford adaptation), others are named in a warning and treated as
-// sRGB. `notes` may be NULL. RELUME_EDATA (also for NaN and infinity), RELUME_ENOMEM.
+// sRGB. `notes` may be NULL. An input status (also for NaN and infinity), RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_photograph_load(struct relume_image *out,
                                                    struct relume_exif *notes, const char *path,
                                                    const struct relume_photograph_params *params);
@@ -92,7 +92,7 @@ RELUME_RESULT relume_status relume_photograph_load(struct relume_image *out,
 // ---- the light's colour, and its fall-off across the picture; all in place, on linear images
 
 // Gains for red, green and blue that make the mean of a rectangle grey and keep its luminance
-// (BT.709). RELUME_EINVAL when it does not lie inside, RELUME_EDATA when a channel is black there
+// (BT.709). RELUME_EINVAL when it does not lie inside, RELUME_EUNFIT when a channel is black there
 // or more than a tenth of it clips at 1.
 RELUME_RESULT relume_status relume_white_measure(float gain[3], const struct relume_image *image,
                                                  int x, int y, int width, int height,
@@ -108,7 +108,7 @@ struct relume_falloff {
     double center[2];  // pixels
     double k[3];       // the coefficients
 };
-// Least squares on the luminance of a photograph of an evenly lit surface. RELUME_EDATA when it is
+// Least squares on the luminance of a photograph of an evenly lit surface. RELUME_EUNFIT when it is
 // black or the fit falls below 0.05 inside the picture, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_falloff_fit(struct relume_falloff *out,
                                                const struct relume_image *flat,
@@ -117,7 +117,7 @@ RELUME_RESULT relume_status relume_falloff_fit(struct relume_falloff *out,
 RELUME_API void relume_falloff_divide(struct relume_image *image,
                                       const struct relume_falloff *falloff);
 // The same per pixel: divide by the flat field, smoothed over 1/64 of the width against its noise
-// and scaled to a mean of 1 per channel. RELUME_EINVAL for other sizes, RELUME_EDATA where it is
+// and scaled to a mean of 1 per channel. RELUME_EINVAL for other sizes, RELUME_EUNFIT where it is
 // black, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_flat_divide(struct relume_image *image,
                                                const struct relume_image *flat,

@@ -37,7 +37,7 @@ struct relume_photometric_params {
                                                __VA_ARGS__})
 
 // Fit every pixel of one view that its mask shows; the caller destroys `out`, which is empty on
-// failure. RELUME_EDATA when the lights do not span space, RELUME_ENOMEM, RELUME_ECANCEL.
+// failure. RELUME_EUNFIT when the lights do not span space, RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_photometric_fit(struct relume_photometric *out,
                                                    const relume_capture *capture, int view,
                                                    const struct relume_photometric_params *params);

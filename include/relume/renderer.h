@@ -89,7 +89,7 @@ RELUME_RESULT relume_status relume_renderer_rays(float (*rgb)[3], relume_rendere
 
 // The value along the ray of one place of a frame of the camera's size; pixel centres are at +0.5.
 // It is that pixel of relume_renderer_frame wherever a pixel is no mean of several texels.
-// RELUME_EDATA when the file holds no such ray.
+// RELUME_EUNFIT when the file holds no such ray.
 RELUME_RESULT relume_status relume_renderer_pixel(float rgb[3], relume_renderer *renderer,
                                                   const struct relume_camera *camera, double x,
                                                   double y);

@@ -31,7 +31,7 @@ RELUME_API float relume_response_encode(const struct relume_response *response, 
 RELUME_API void relume_response_of(struct relume_response *out, struct relume_transfer transfer);
 
 // A text file: the line "relume-response 1", then 256 lines "code red green blue". Lines that begin
-// with # are skipped. Returns RELUME_EDATA (not such a file, negative, falling, not finite) and
+// with # are skipped. Returns an input status (not such a file, negative, falling, not finite) and
 // RELUME_EIO.
 RELUME_RESULT relume_status relume_response_load(struct relume_response *out, const char *path,
                                                  const struct relume_log *log);
@@ -54,7 +54,7 @@ struct relume_recover_params {
 // The response from a bracket (Debevec, Malik 1997, Eq. 3: least squares of
 // g(z_ij) - ln E_i - ln t_j with a smooth g), made monotone by pooling. Samples lie where the
 // picture is locally even, spread over all code values. Scaled so that the green of full code is 1.
-// RELUME_EINVAL for wrong sizes; RELUME_EDATA when fewer than two different exposures are given,
+// RELUME_EINVAL for wrong sizes; RELUME_EUNFIT when fewer than two different exposures are given,
 // all is saturated or black, or a channel shows too few code values.
 RELUME_RESULT relume_status relume_response_recover(struct relume_response *out,
                                                     const struct relume_image *codes,
@@ -104,7 +104,7 @@ struct relume_merge_params {
 // half of full scale and than that end: there something else happened. Radiance in units of the
 // response's exposure / those of `exposures`. A pixel that no exposure resolves takes the longest
 // exposure's value where that is dark, the shortest's where it is bright. `report` [n] may be NULL.
-// RELUME_EINVAL for wrong sizes, RELUME_EDATA when no pixel of any exposure is resolved,
+// RELUME_EINVAL for wrong sizes, RELUME_EUNFIT when no pixel of any exposure is resolved,
 // RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_merge(struct relume_image *out,
                                          struct relume_exposure_report *report,

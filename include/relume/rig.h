@@ -43,8 +43,8 @@ RELUME_RESULT relume_status relume_rig_create(relume_rig **out);
 RELUME_API void relume_rig_destroy(relume_rig **rig);
 
 // Append a light. File names are relative to `folder` (NULL: the working folder). RELUME_EINVAL for
-// words that are no SPEC, RELUME_EDATA for its file, each with a sentence; RELUME_ENOMEM. The rig
-// is unchanged on failure.
+// words that are no SPEC, an input status for its file, each with a sentence; RELUME_ENOMEM. The
+// rig is unchanged on failure.
 RELUME_RESULT relume_status relume_rig_add(relume_rig *rig, const char *spec, const char *folder,
                                            const struct relume_log *log);
 // RELUME_EINVAL when there is no such entry.
@@ -67,7 +67,7 @@ RELUME_RESULT relume_status relume_rig_lights(const struct relume_light **out, i
                                               relume_rig *rig);
 
 // JSON (docs/lights.md). Every field is checked; sentences name the line or the entry. Files inside
-// are relative to the rig's own folder. RELUME_EDATA, RELUME_ENOMEM.
+// are relative to the rig's own folder. An input status, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_rig_load(relume_rig **out, const char *path,
                                             const struct relume_log *log);
 // The file appears whole or not at all. RELUME_EIO, RELUME_ENOMEM.

@@ -36,7 +36,7 @@ struct relume_scene_params {
 #define relume_scene_params(...)                                                                   \
     (&(const struct relume_scene_params){RELUME_SIZED(relume_scene_params), __VA_ARGS__})
 
-// Returns RELUME_EDATA for a mesh that cannot be used, RELUME_EINVAL for a mesh where none is
+// Returns an input status for a mesh that cannot be used, RELUME_EINVAL for a mesh where none is
 // taken, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_scene_create(relume_scene **out,
                                                 const struct relume_scene_kind *kind,

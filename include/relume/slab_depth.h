@@ -45,8 +45,8 @@ struct relume_slab_depth_report {
 // 2008) in eight directions; a parabola between planes; what the neighbours contradict takes the
 // depth of the farther trusted pixel beside it. Depth is found everywhere: background without
 // texture is guessed; only a view's mask (below 0.5) makes it infinite. Equal input gives equal
-// bytes for any number of threads. RELUME_EINVAL (not a slab of two views, params), RELUME_EDATA,
-// RELUME_EIO, RELUME_ENOMEM.
+// bytes for any number of threads. RELUME_EINVAL (not a slab of two views, params), an input
+// status, RELUME_EIO, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_slab_depth(struct relume_slab_depth_report *report,
                                               const relume_capture *capture, const char *dir,
                                               const struct relume_slab_depth_params *params);

@@ -32,14 +32,14 @@ struct relume_btf_map_info {
     const uint16_t *matrix;           // [rows][columns]: a tile
 };
 
-// Copies what `info` points to. RELUME_EDATA for texels and tiles that are not there and for sizes
+// Copies what `info` points to. RELUME_ELIMIT for texels and tiles that are not there and for sizes
 // over the limits, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_map_create(relume_btf_map **out,
                                                   const struct relume_btf_map_info *info,
                                                   const struct relume_log *log);
 // An index map of a sample of that size: a NumPy array [height][width] of uint16 or uint32, the
 // numbers y * sample_width + x; or a picture whose red and green are the place in the sample, from
-// 0 at its left (top) to 1 at its right (bottom), taken as they stand in the file. RELUME_EDATA,
+// 0 at its left (top) to 1 at its right (bottom), taken as they stand in the file. An input status,
 // RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_map_open(relume_btf_map **out, const char *path,
                                                 int sample_width, int sample_height,
@@ -63,7 +63,7 @@ struct relume_btf_tiles_params {  // zero in a field means its default
 // Tiles from patches of a sample of at least 16 x 16 texels, joined along minimum cuts. All tiles
 // have the border of one that repeats, so that they fit in any order; the matrix has no equal
 // neighbours where there are tiles enough. Patches keep to the grid of three levels of detail.
-// RELUME_EINVAL (parameters), RELUME_EDATA (a smaller sample), RELUME_ENOMEM, RELUME_ECANCEL.
+// RELUME_EINVAL (parameters), RELUME_EUNFIT (a smaller sample), RELUME_ENOMEM, RELUME_ECANCEL.
 RELUME_RESULT relume_status relume_btf_map_tiles(relume_btf_map **out,
                                                  const relume_btf_fitted *sample,
                                                  const struct relume_btf_tiles_params *params);
@@ -94,11 +94,11 @@ RELUME_RESULT relume_status relume_btf_surface_create(relume_btf_surface **out,
                                                       const relume_btf_map *map,
                                                       const struct relume_log *log);
 // A folder with surface.json, texel.npy, matrix.npy and the model (docs/surfaces.md).
-// RELUME_EINVAL, RELUME_EIO; RELUME_EDATA, RELUME_ENOMEM.
+// RELUME_EINVAL, RELUME_EIO; an input status, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_surface_save(const relume_btf_surface *surface,
                                                     const char *path,
                                                     const struct relume_btf_params *params);
-// The folder again; the caller destroys `*out`. RELUME_EDATA with a sentence, RELUME_ENOMEM.
+// The folder again; the caller destroys `*out`. An input status with a sentence, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_btf_surface_open(relume_btf_surface **out, const char *path,
                                                     const struct relume_btf_params *params);
 RELUME_API void relume_btf_surface_destroy(relume_btf_surface **surface);

@@ -84,7 +84,7 @@ RELUME_API void relume_visible_lights_draw(struct relume_image *frame,
 
 // Add to `frame`, as relume_renderer_frame made it of the same camera, the renderer's lamps in
 // view. The scene hides them where the file has depth. Returns how many sources were drawn in
-// `*seen` (may be NULL). RELUME_EINVAL, RELUME_EDATA, RELUME_ENOMEM.
+// `*seen` (may be NULL). RELUME_EINVAL, RELUME_EUNFIT, RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_frame_visible_lights(struct relume_image *frame, int *seen,
                                                         relume_renderer *renderer,
                                                         const struct relume_camera *camera);

@@ -29,11 +29,39 @@ class UsageError(Error, ValueError):
 
 
 class InputError(Error):
-    """An input is missing, broken, of another kind, or over the limits."""
+    """An input is at fault; what is raised is one of the six below."""
+
+
+class NotFoundError(InputError, FileNotFoundError):
+    """An input is not there, or cannot be opened or read."""
+
+
+class FormatError(InputError):
+    """An input is something else than what is expected."""
+
+
+class DamagedError(InputError):
+    """An input is cut short, or its values are broken."""
+
+
+class LimitError(InputError):
+    """An input is larger than the limits."""
+
+
+class UnsupportedError(InputError):
+    """An input is sound, but of a kind or version that this library does not do."""
+
+
+class UnfitError(InputError):
+    """An input is sound, but does not do here: sizes differ, lights are too few."""
 
 
 class OutputError(Error, OSError):
     """An output cannot be written."""
+
+
+class MachineError(Error, OSError):
+    """The machine lacks something: threads, a module."""
 
 
 class Cancelled(Error):
@@ -69,9 +97,15 @@ def _load() -> ctypes.CDLL:
 lib = _load()
 
 _EXCEPTIONS = {
+    CONSTANTS["RELUME_ENOTFOUND"]: NotFoundError,
+    CONSTANTS["RELUME_EFORMAT"]: FormatError,
+    CONSTANTS["RELUME_EDAMAGED"]: DamagedError,
+    CONSTANTS["RELUME_ELIMIT"]: LimitError,
+    CONSTANTS["RELUME_EUNSUPPORTED"]: UnsupportedError,
+    CONSTANTS["RELUME_EUNFIT"]: UnfitError,
     CONSTANTS["RELUME_EINVAL"]: UsageError,
-    CONSTANTS["RELUME_EDATA"]: InputError,
     CONSTANTS["RELUME_EIO"]: OutputError,
+    CONSTANTS["RELUME_ESYSTEM"]: MachineError,
     CONSTANTS["RELUME_ECANCEL"]: Cancelled,
 }
 _MESSAGE = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p)

@@ -188,17 +188,17 @@ class Captures(Fixture):
 class Errors(Fixture):
     def test_sentences(self):
         for work, kind, sentence in (
-            (lambda: relume.open("/nothing.exr"), relume.InputError, "/nothing.exr: no such file"),
-            (lambda: relume.open(self.data[:900]), relume.InputError, "memory: "),
-            (lambda: relume.open(b""), relume.InputError, "memory: "),
+            (lambda: relume.open("/nothing.exr"), FileNotFoundError, "/nothing.exr: no such file"),
+            (lambda: relume.open(self.data[:900]), relume.DamagedError, "memory: "),
+            (lambda: relume.open(b""), relume.DamagedError, "memory: "),
             (lambda: relume.encode(self.pictures, self.lights[:3]), relume.UsageError, "3 lights"),
             (lambda: relume.encode(self.pictures, self.lights, basis="ssh"), ValueError, "ssh"),
             (lambda: relume.encode(self.pictures, self.lights, bits="9"), ValueError, "bits '9'"),
-            (lambda: relume.encode(self.pictures, 0 * self.lights), relume.InputError,
+            (lambda: relume.encode(self.pictures, 0 * self.lights), relume.FormatError,
              "lights.directions[0]; expected a direction"),
             (lambda: relume.encode(self.pictures, self.lights, "/nowhere/x.exr"), OSError,
              "/nowhere"),
-            (lambda: relume.load_image(b"GIF89a..."), relume.InputError, "memory: "),
+            (lambda: relume.load_image(b"GIF89a..."), relume.UnsupportedError, "memory: "),
             (lambda: relume.image_bytes(self.pictures[0], ".xyz"), relume.UsageError, "ending"),
             (lambda: relume.open(self.data).relight("sun 1 2 3"), relume.UsageError, "sun"),
             (lambda: relume.open(self.data).weights((0, 0, 0)), relume.UsageError, "not all 0"),
@@ -210,7 +210,7 @@ class Errors(Fixture):
     def test_not_finite(self):
         pictures = self.pictures.copy()
         pictures[3, 2, 1, 0] = np.nan
-        with self.assertRaisesRegex(relume.InputError, "light 3.*NaN"):
+        with self.assertRaisesRegex(relume.DamagedError, "light 3.*NaN"):
             relume.encode(pictures, self.lights, basis="sh", coefficients=4)
 
     def test_closed(self):

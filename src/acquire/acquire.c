@@ -38,7 +38,7 @@ relume_status shoot_drop(struct shoot *s, int i, const char *format, ...)
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
     if (!s->p.skip_bad)
-        return log_fail(s->p.log, RELUME_EDATA, "%s", text);
+        return log_fail(s->p.log, RELUME_EUNFIT, "%s", text);
     char *image = mem_format("%s/%s", outdir_path(s->dir), s->shot[i].name);
     if (!image)
         return RELUME_ENOMEM;
@@ -47,7 +47,7 @@ relume_status shoot_drop(struct shoot *s, int i, const char *format, ...)
     const relume_status status = shoot_warn(s, "%s: left out: %s", s->shot[i].path, text);
     forget(s, i);
     if (!status && s->shots < 3)
-        return log_fail(s->p.log, RELUME_EDATA, "fewer than 3 photographs are left");
+        return log_fail(s->p.log, RELUME_EUNFIT, "fewer than 3 photographs are left");
     return status;
 }
 
@@ -177,8 +177,8 @@ static relume_status copy_mask(const struct shoot *s, const char *path)
         &mask, s->p.mask,
         relume_image_params(.log = s->p.log, .channels = 1, .transfer = as_stored));
     if (!status && (mask.width != s->width || mask.height != s->height))
-        status = log_fail(s->p.log, RELUME_EDATA, "%s: %d x %d pixels; expected %d x %d", s->p.mask,
-                          mask.width, mask.height, s->width, s->height);
+        status = log_fail(s->p.log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d",
+                          s->p.mask, mask.width, mask.height, s->width, s->height);
     if (!status)
         status = relume_image_save(&mask, path, relume_image_params(.log = s->p.log, .half = true));
     relume_image_destroy(&mask);
@@ -274,7 +274,7 @@ static relume_status fit(struct shoot *s, const relume_capture *capture)
     relume_status status =
         relume_photometric_fit(&out->photometric, capture, 0,
                                relume_photometric_params(.log = s->p.log, .threads = s->p.threads));
-    if (status == RELUME_EDATA)  // the lights do not allow it; that has been said
+    if (status == RELUME_EUNFIT)  // the lights do not allow it; that has been said
         return RELUME_OK;
     if (!status)
         status = name_outliers(s);
@@ -368,11 +368,11 @@ static relume_status check_balls(const struct relume_acquire_params *p)
                            : odd_one(p->photographs, objects, p->ball_photographs, balls);
     const char *what = more ? "photograph of the object" : "photograph of the ball";
     if (odd)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EUNFIT,
                         "%s: there is no %s with this number; expected one for each; found %d of "
                         "the ball, %d of the object",
                         odd, what, balls, objects);
-    return log_fail(p->log, RELUME_EDATA,
+    return log_fail(p->log, RELUME_EUNFIT,
                     "%d photograph%s of the ball; expected %d, one for each of the object", balls,
                     relume_plural(balls), objects);
 }
@@ -380,13 +380,13 @@ static relume_status check_balls(const struct relume_acquire_params *p)
 static relume_status check_params(const struct relume_acquire_params *p)
 {
     if (p->photograph_count < 3)
-        return log_fail(p->log, RELUME_EDATA, "%d photograph%s; expected at least 3",
+        return log_fail(p->log, RELUME_EUNFIT, "%d photograph%s; expected at least 3",
                         p->photograph_count, relume_plural(p->photograph_count));
     const relume_status status = check_balls(p);
     if (status)
         return status;
     if (p->flat_count > 1 && p->flat_count != p->photograph_count)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EUNFIT,
                         "%d flat fields; expected 1, or %d as photographs, each under its light",
                         p->flat_count, p->photograph_count);
     if (p->white[2] && p->matte && !p->lights)

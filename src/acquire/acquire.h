@@ -75,11 +75,11 @@ __attribute__((format(printf, 3, 4))) relume_status shoot_drop(struct shoot *s, 
                                                                const char *format, ...);
 const char *shoot_base_name(const char *path);
 
-// Read all photographs into the folder; RELUME_EDATA.
+// Read all photographs into the folder; an input status.
 relume_status shoot_read(struct shoot *s);
 relume_status shoot_check_size(const struct shoot *s, const struct relume_image *image,
                                const char *path, int width, int height);
-// Multiply a photograph by what its flat field says. RELUME_EDATA.
+// Multiply a photograph by what its flat field says. RELUME_EUNFIT.
 relume_status shoot_flatten(struct shoot *s, const struct shot *shot, struct relume_image *image);
 // Remember the grey region of a photograph; make its mean the colour of all lights.
 relume_status shoot_add_grey(struct shoot *s, const struct relume_image *image);

@@ -84,7 +84,7 @@ relume_status shoot_check_pictures(struct shoot *s)
             status = shoot_warn_alike(s, ALIKE_BLACK, 0.0, "%s: black", shot->path);
     }
     if (!status && full == s->shots)
-        status = log_fail(s->p.log, RELUME_EDATA,
+        status = log_fail(s->p.log, RELUME_EUNFIT,
                           "all %d photographs are overexposed; expected shorter exposures", full);
     return status;
 }

@@ -30,7 +30,7 @@ static relume_status make_gain(const struct shoot *s, struct relume_image *gain,
     } else if (!status) {
         status = relume_flat_divide(gain, &flat, NULL);
     }
-    if (status == RELUME_EDATA && gain->data)
+    if (status == RELUME_EUNFIT && gain->data)
         (void)log_fail(s->p.log, status, "%s: %s; expected an evenly lit surface", path,
                        s->p.radial ? "black, or its corners nearly so" : "black somewhere");
     relume_image_destroy(&flat);
@@ -83,7 +83,7 @@ relume_status shoot_whiten(struct shoot *s)
     if (!s->p.white[2])
         return RELUME_OK;
     if (relume_white_measure(gain, &s->grey, 0, 0, s->grey.width, s->grey.height, NULL))
-        return log_fail(s->p.log, RELUME_EDATA,
+        return log_fail(s->p.log, RELUME_EUNFIT,
                         "white region %d,%d of %d x %d is black or saturated in all photographs; "
                         "expected a grey that is lit",
                         s->p.white[0], s->p.white[1], s->p.white[2], s->p.white[3]);

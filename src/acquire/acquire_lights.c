@@ -26,8 +26,8 @@ static relume_status load_mask(const struct shoot *s, struct relume_image *out)
         relume_image_load(out, s->p.ball_mask, relume_image_params(.log = s->p.log, .channels = 1));
     if (!status && (out->width != s->camera.width || out->height != s->camera.height)) {
         status =
-            log_fail(s->p.log, RELUME_EDATA, "%s: %d x %d pixels; expected %d x %d", s->p.ball_mask,
-                     out->width, out->height, s->camera.width, s->camera.height);
+            log_fail(s->p.log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d",
+                     s->p.ball_mask, out->width, out->height, s->camera.width, s->camera.height);
         relume_image_destroy(out);
     }
     return status;
@@ -183,7 +183,7 @@ static relume_status find_telling(struct shoot *s, const struct relume_ball_para
             status = seek_tables(s, &bad);
     }
     if (!status && isinf(bad))
-        return RELUME_EDATA;
+        return RELUME_EUNFIT;
     ball_sort(out->ball, out->balls);
     return status;
 }
@@ -194,7 +194,7 @@ static relume_status no_ball(const struct shoot *s)
     char what[48] = "no";
     if (n > 1)
         snprintf(what, sizeof what, "fewer than %d", n);
-    return log_fail(s->p.log, RELUME_EDATA,
+    return log_fail(s->p.log, RELUME_EUNFIT,
                     "%s: %s %s ball%s found; give --lights FILE, or --ball x,y,r where one is%s",
                     ball_photo(&s->shot[0]), what, s->p.matte ? "matte" : "mirror",
                     relume_plural(n), s->p.matte ? "" : ", or --matte for a white ball");
@@ -221,7 +221,7 @@ static relume_status find_balls(struct shoot *s)
     relume_status status = mask.data
                                ? relume_ball_find(out->ball, out->balls, &s->mean, &s->camera, &p)
                                : find_telling(s, &p);
-    if (status == RELUME_EDATA)
+    if (status == RELUME_EUNFIT)
         status = no_ball(s);
     relume_image_destroy(&mask);
     return status;
@@ -338,7 +338,7 @@ static relume_status locate(struct shoot *s, int i, const struct sights *seen, d
         return RELUME_OK;
     if (relume_light_triangulate(&shot->position, &shot->position_sigma, seen->origin,
                                  seen->direction, seen->n))
-        return log_fail(s->p.log, RELUME_EDATA,
+        return log_fail(s->p.log, RELUME_EUNFIT,
                         "%s: the directions from %d balls do not cross at a lamp; expected two "
                         "balls or more that show it, and a lamp near enough to measure",
                         shot->path, seen->n);
@@ -417,7 +417,7 @@ static relume_status locate_all(struct shoot *s, const struct relume_ball_light 
             status = locate(s, i++, &seen, &disagree);
     }
     if (!status && !s->shots)
-        status = log_fail(s->p.log, RELUME_EDATA, "no photograph shows the lamp in the ball");
+        status = log_fail(s->p.log, RELUME_EUNFIT, "no photograph shows the lamp in the ball");
     if (!status)
         status = warn_below(s);
     if (!status && !s->p.near && disagree > DISAGREE)
@@ -487,7 +487,7 @@ static relume_status match_names(struct shoot *s, int *order, bool *matched)
     for (int i = 0; !*matched && i < s->shots; i++)
         order[i] = s->shot[i].number;
     if (!status && *matched && missing)
-        status = log_fail(s->p.log, RELUME_EDATA,
+        status = log_fail(s->p.log, RELUME_EUNFIT,
                           "%s: does not list '%s'; expected a line for every photograph",
                           s->p.lights, shoot_base_name(missing));
     return status;
@@ -521,7 +521,7 @@ static relume_status lights_from_file(struct shoot *s)
         status = match_names(s, order, &matched);
     if (!status && !matched && list.count != s->p.photograph_count)
         status =
-            log_fail(s->p.log, RELUME_EDATA, "%s: %d light%s; expected %d as photographs",
+            log_fail(s->p.log, RELUME_EUNFIT, "%s: %d light%s; expected %d as photographs",
                      s->p.lights, list.count, relume_plural(list.count), s->p.photograph_count);
     if (!status)
         take_lights(s, &list, order);

@@ -73,12 +73,12 @@ static relume_status tell_apart(const struct shoot *s, const struct posed_model 
     }
     if (!*object)
         return log_fail(
-            s->p.log, RELUME_EDATA,
+            s->p.log, RELUME_EUNFIT,
             "%s: has a pose for none of the photographs; expected '%s' or another of them",
             s->p.lights, shoot_base_name(s->p.photographs[0]));
     if (lamps == s->p.photograph_count)
         return RELUME_OK;
-    return log_fail(s->p.log, RELUME_EDATA,
+    return log_fail(s->p.log, RELUME_EUNFIT,
                     "%s: poses of %d photograph%s from the lamp; expected %d, one for each of the "
                     "object",
                     s->p.lights, lamps, relume_plural(lamps), s->p.photograph_count);
@@ -110,7 +110,7 @@ relume_status shoot_lights_from_poses(struct shoot *s)
     if (!status)
         status = find_distance(&distance, &model, object);
     if (!status && !(distance > 0.0))
-        status = log_fail(s->p.log, RELUME_EDATA,
+        status = log_fail(s->p.log, RELUME_EUNFIT,
                           "%s: no points that '%s' sees; expected some on the object, to know its "
                           "distance",
                           s->p.lights, object->name);

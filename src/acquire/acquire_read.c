@@ -120,7 +120,7 @@ relume_status shoot_check_size(const struct shoot *s, const struct relume_image 
 {
     if (!width || (image->width == width && image->height == height))
         return RELUME_OK;
-    return log_fail(s->p.log, RELUME_EDATA, "%s: %d x %d pixels; expected %d x %d as before it",
+    return log_fail(s->p.log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d as before it",
                     path, image->width, image->height, width, height);
 }
 
@@ -174,7 +174,7 @@ relume_status shoot_read(struct shoot *s)
         if (!status)
             status = take(s, i, &image);
         relume_image_destroy(&image);
-        if (status == RELUME_EDATA && s->p.skip_bad)
+        if (relume_status_is_input(status) && s->p.skip_bad)
             status = shoot_drop(s, i, "cannot be used");
         else
             i++;
@@ -186,6 +186,6 @@ relume_status shoot_read(struct shoot *s)
         s->change.data[i] = sqrtf(s->change.data[i] / (float)s->summed);
     }
     if (!status && s->shots < 3)
-        status = log_fail(s->p.log, RELUME_EDATA, "%d photographs; expected at least 3", s->shots);
+        status = log_fail(s->p.log, RELUME_EUNFIT, "%d photographs; expected at least 3", s->shots);
     return status;
 }

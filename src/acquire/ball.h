@@ -25,8 +25,8 @@ bool ball_normal(vec3 *normal, vec3 *to_eye, const struct relume_ball *ball,
                  const struct relume_ball_camera *camera, double x, double y);
 
 // Follow the outline in `edges` (one channel) along `angles` radii from the guess in `*ball`, at
-// first up to `reach` times its radius away: fits it and sets sigma and coverage. RELUME_EDATA when
-// it is lost, RELUME_ENOMEM.
+// first up to `reach` times its radius away: fits it and sets sigma and coverage. RELUME_EUNFIT
+// when it is lost, RELUME_ENOMEM.
 relume_status ball_follow(struct relume_ball *ball, const struct relume_ball_camera *camera,
                           const struct relume_image *edges, int angles, double reach);
 

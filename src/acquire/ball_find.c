@@ -408,7 +408,7 @@ relume_status relume_ball_find(struct relume_ball *out, int count, const struct 
     const relume_status status = relume_ball_candidates(out, count, &found, mean, camera, params);
     ball_sort(out, found);
     if (!status && found < count)
-        return log_fail(params ? params->log : NULL, RELUME_EDATA,
+        return log_fail(params ? params->log : NULL, RELUME_EUNFIT,
                         "%d of %d ball%s found; expected round outlines against the background, "
                         "or --ball x,y,r",
                         found, count, relume_plural(count));

@@ -160,7 +160,7 @@ relume_status ball_follow(struct relume_ball *ball, const struct relume_ball_cam
     };
     relume_status status = f.point && f.change && f.scratch ? RELUME_OK : RELUME_ENOMEM;
     if (!status && !follow(&f, reach * ball->radius))
-        status = RELUME_EDATA;
+        status = RELUME_EUNFIT;
     free(f.point);
     free(f.change);
     free(f.scratch);

@@ -282,7 +282,7 @@ relume_status relume_photometric_fit(struct relume_photometric *out, const relum
     if (view < 0 || view >= m->views)
         return RELUME_EINVAL;
     if (m->lights < 3 || !lambert_spans(m->directions, m->lights))
-        return log_fail(f.params.log, RELUME_EDATA,
+        return log_fail(f.params.log, RELUME_EUNFIT,
                         "normals cannot be computed; expected three lights or more that do not lie "
                         "in one plane; found %d",
                         m->lights);

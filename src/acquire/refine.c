@@ -379,7 +379,7 @@ static relume_status integrate(struct refiner *r, double curl[2], const struct r
         return RELUME_ENOMEM;
     if (!integrable_map(a, curl, &lattice)) {
         free(moved);
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_EUNFIT,
                         "lights cannot be made to fit a surface of heights: too little of it is "
                         "connected");
     }
@@ -470,7 +470,7 @@ relume_status relume_acquire_refine(struct relume_vec3 *direction, double *inten
         .given = m->directions,
     };
     if (m->lights < LEAST_LIGHTS || m->positions || !lambert_spans(m->directions, m->lights))
-        return log_fail(p.log, RELUME_EDATA,
+        return log_fail(p.log, RELUME_EUNFIT,
                         "lights cannot be refined: expected %d distant ones or more, in different "
                         "planes; found %d",
                         (int)LEAST_LIGHTS, m->lights);
@@ -487,7 +487,7 @@ relume_status relume_acquire_refine(struct relume_vec3 *direction, double *inten
     if (!status)
         status = read_pixels(&r, p.log);
     if (!status && r.pixels < 200)
-        status = log_fail(p.log, RELUME_EDATA,
+        status = log_fail(p.log, RELUME_EUNFIT,
                           "lights cannot be refined: %zu pixels are lit by half of the lights; "
                           "expected some hundred",
                           r.pixels);

@@ -29,7 +29,7 @@ relume_status relume_light_triangulate(struct relume_vec3 *position, double *sig
         copy[j] = m[j];
     if (n < 2 || !lsq_eigenvalues(copy, 3, values) || values[0] < n * LEAST_ANGLE * LEAST_ANGLE ||
         lsq_invert(m, 3))
-        return RELUME_EDATA;
+        return RELUME_EUNFIT;
     *position =
         vec3_of(m[0] * b[0] + m[1] * b[1] + m[2] * b[2], m[3] * b[0] + m[4] * b[1] + m[5] * b[2],
                 m[6] * b[0] + m[7] * b[1] + m[8] * b[2]);
@@ -38,7 +38,7 @@ relume_status relume_light_triangulate(struct relume_vec3 *position, double *sig
         const vec3 to = vec3_sub(*position, origin[i]);
         const double along = vec3_dot(to, direction[i]);
         if (along <= 0.0)  // the lines meet behind the balls
-            return RELUME_EDATA;
+            return RELUME_EUNFIT;
         squares += vec3_dot(to, to) - along * along;
     }
     const double freedom = n > 1 ? 2.0 * n - 3.0 : 1.0;

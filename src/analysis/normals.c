@@ -154,7 +154,7 @@ relume_status relume_normals_fit(struct relume_normals *out, const struct relume
     };
     *out = (struct relume_normals){0};
     if (f.lights < 3 || !lambert_spans(f.direction, f.lights))
-        return log_fail(f.params.log, RELUME_EDATA,
+        return log_fail(f.params.log, RELUME_EUNFIT,
                         "normals cannot be computed; expected three lights or more that do not lie "
                         "in one plane; found %d",
                         f.lights);

@@ -328,7 +328,7 @@ static relume_status ask_process(struct helper_process *p, struct helper_job *jo
     else
         snprintf(job->why, HELPER_WHY, "was read beside %.200s: %.150s",
                  p->blamed ? p->blamed : "another", p->how);
-    return RELUME_EDATA;
+    return RELUME_EDAMAGED;
 }
 
 relume_status helper_ask(struct helper_job *job, const void *message, size_t size, int file,
@@ -336,7 +336,7 @@ relume_status helper_ask(struct helper_job *job, const void *message, size_t siz
 {
     struct helper_process *p = job->process;
     if (!p)
-        return RELUME_EDATA;
+        return RELUME_EDAMAGED;
     pthread_mutex_lock(&p->lock);
     const relume_status status = ask_process(p, job, message, size, file, answer, answer_size);
     pthread_mutex_unlock(&p->lock);

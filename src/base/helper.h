@@ -38,8 +38,8 @@ struct helper_job {
 // RELUME_ENOMEM.
 relume_status helper_start(struct helper_job *job, enum helper_kind kind, const char *path,
                            const struct relume_log *log);
-// Sends a message, with `file` unless it is -1, and waits for the answer. RELUME_EDATA: the process
-// has ended, or has not answered in time and is ended; `why` says how.
+// Sends a message, with `file` unless it is -1, and waits for the answer. RELUME_EDAMAGED: the
+// process has ended, or has not answered in time and is ended; `why` says how.
 relume_status helper_ask(struct helper_job *job, const void *message, size_t size, int file,
                          void *answer, size_t answer_size);
 // The place is free; what was open there has been closed. A zeroed or ended job is fine.

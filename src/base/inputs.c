@@ -117,7 +117,8 @@ relume_status relume_input_fail(const struct relume_log *log, const char *path, 
     if (error == EMFILE || error == ENFILE)
         return log_fail(log, RELUME_ESYSTEM,
                         "%s: %s; too many files are open; raise the limit (ulimit -n)", path, what);
-    return log_fail(log, RELUME_EDATA, "%s: %s; %s", path, what, strerror(error));
+    return log_fail(log, error == EISDIR ? RELUME_EFORMAT : RELUME_ENOTFOUND, "%s: %s; %s", path,
+                    what, strerror(error));
 }
 
 static bool holds(relume_inputs *i, const struct stat *s)

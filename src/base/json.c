@@ -23,7 +23,7 @@ relume_status jvalue_load(jvalue **root, const char *path, const struct relume_l
         return RELUME_OK;
     if (json_error_code(&error) == json_error_out_of_memory)
         return RELUME_ENOMEM;
-    return log_fail(log, RELUME_EDATA, "%s: line %d, column %d; expected JSON, %s", path,
+    return log_fail(log, RELUME_EFORMAT, "%s: line %d, column %d; expected JSON, %s", path,
                     error.line, error.column, error.text);
 }
 
@@ -39,10 +39,10 @@ relume_status jvalue_check_format(const jvalue *root, const char *path, const ch
     const char *found = jvalue_text(jvalue_member(root, "format"));
     long long number = 0;
     if (!found || strcmp(found, format))
-        return log_fail(log, RELUME_EDATA, "%s: expected \"format\": \"%s\"", path, format);
+        return log_fail(log, RELUME_EFORMAT, "%s: expected \"format\": \"%s\"", path, format);
     if (!jvalue_integer(jvalue_member(root, "version"), &number) || number != version)
-        return log_fail(log, RELUME_EDATA, "%s: expected version %d; found %lld", path, version,
-                        number);
+        return log_fail(log, number > version ? RELUME_EUNSUPPORTED : RELUME_EFORMAT,
+                        "%s: expected version %d; found %lld", path, version, number);
     return RELUME_OK;
 }
 

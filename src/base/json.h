@@ -7,10 +7,10 @@
 // A value inside a tree; belongs to the root. Every function takes NULL for "absent".
 typedef struct json_t jvalue;
 
-// The whole file; members that come twice are an error. RELUME_EDATA with a sentence.
+// The whole file; members that come twice are an error. RELUME_EFORMAT with a sentence.
 relume_status jvalue_load(jvalue **root, const char *path, const struct relume_log *log);
 void jvalue_free(jvalue **root);
-// Whether members "format" and "version" of the file's root are these; RELUME_EDATA with a
+// Whether members "format" and "version" of the file's root are these; RELUME_EFORMAT with a
 // sentence.
 relume_status jvalue_check_format(const jvalue *root, const char *path, const char *format,
                                   int version, const struct relume_log *log);

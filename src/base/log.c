@@ -46,16 +46,41 @@ int relume_version(void)
     return RELUME_VERSION_NUMBER;
 }
 
+// What the three functions below say of a status.
+static const struct {
+    const char *name, *text;
+    int exit;
+} statuses[] = {
+    [RELUME_OK] = {"ok", "no error", 0},
+    [RELUME_ENOTFOUND] = {"not-found", "input not found or not readable", 1},
+    [RELUME_EFORMAT] = {"format", "input of another format than expected", 1},
+    [RELUME_EDAMAGED] = {"damaged", "damaged input", 1},
+    [RELUME_ELIMIT] = {"limit", "input over the limits", 1},
+    [RELUME_EUNSUPPORTED] = {"unsupported", "input of a kind that is not supported", 1},
+    [RELUME_EUNFIT] = {"unfit", "input that does not do here", 1},
+    [RELUME_EINVAL] = {"usage", "invalid argument", 2},
+    [RELUME_ENOMEM] = {"memory", "out of memory", 3},
+    [RELUME_EIO] = {"output", "output cannot be written", 3},
+    [RELUME_ESYSTEM] = {"system", "the machine lacks something that is needed", 3},
+    [RELUME_ECANCEL] = {"cancelled", "stopped on request", 130},
+};
+
+static bool is_known(relume_status status)
+{
+    return (unsigned)status < sizeof statuses / sizeof *statuses;
+}
+
 const char *relume_status_text(relume_status status)
 {
-    switch (status) {
-    case RELUME_OK: return "no error";
-    case RELUME_EINVAL: return "invalid argument";
-    case RELUME_EDATA: return "unusable input";
-    case RELUME_ENOMEM: return "out of memory";
-    case RELUME_EIO: return "output cannot be written";
-    case RELUME_ESYSTEM: return "the machine lacks something that is needed";
-    case RELUME_ECANCEL: return "stopped on request";
-    }
-    return "unknown status";
+    return is_known(status) ? statuses[status].text : "unknown status";
+}
+
+const char *relume_status_name(relume_status status)
+{
+    return is_known(status) ? statuses[status].name : "unknown";
+}
+
+int relume_status_exit(relume_status status)
+{
+    return is_known(status) ? statuses[status].exit : 3;
 }

@@ -8,7 +8,7 @@
 __attribute__((format(printf, 3, 4))) void log_line(const struct relume_log *log,
                                                     enum relume_level level, const char *format,
                                                     ...);
-// Says why and hands the status back: `return log_fail(log, RELUME_EDATA, "%s: ...", path)`.
+// Says why and hands the status back: `return log_fail(log, RELUME_EFORMAT, "%s: ...", path)`.
 __attribute__((format(printf, 3, 4))) relume_status log_fail(const struct relume_log *log,
                                                              relume_status status,
                                                              const char *format, ...);

@@ -35,10 +35,10 @@ static relume_status check(const struct relume_btf_info *info, const char *path,
     const char *colon = path ? ": " : "";
     path = path ? path : "";
     if (!limits_allow(&limits, info->width, info->height))
-        return log_fail(log, RELUME_EDATA, "%s%stexels: expected 1 to 65536 a side; found %d x %d",
+        return log_fail(log, RELUME_ELIMIT, "%s%stexels: expected 1 to 65536 a side; found %d x %d",
                         path, colon, info->width, info->height);
     if (info->views > limits.max_views || info->lights > limits.max_lights)
-        return log_fail(log, RELUME_EDATA, "%s%sdirections: expected at most %d; found %d x %d",
+        return log_fail(log, RELUME_ELIMIT, "%s%sdirections: expected at most %d; found %d x %d",
                         path, colon, limits.max_views, info->views, info->lights);
     return RELUME_OK;
 }
@@ -143,7 +143,7 @@ relume_status relume_btf_create(relume_btf **out, const struct relume_btf_info *
         status = btf_make_room(*out, params);
     if (status && *out)
         relume_btf_destroy(out);
-    return status == RELUME_EDATA ? RELUME_EINVAL : status;
+    return relume_status_is_input(status) ? RELUME_EINVAL : status;
 }
 
 void relume_btf_destroy(relume_btf **btf)

@@ -30,7 +30,7 @@ static inline const char *btf_name(const relume_btf *btf)
     return btf->path ? btf->path : btf->info.name;
 }
 
-// Everything of a BTF but its values; `path` is where it comes from, or NULL. RELUME_EDATA for
+// Everything of a BTF but its values; `path` is where it comes from, or NULL. An input status for
 // directions that cannot be used.
 relume_status btf_start(relume_btf **out, const struct relume_btf_info *info, const char *path,
                         const struct relume_log *log);

@@ -24,11 +24,11 @@ static relume_status check(const struct captured *c, const char *path, const str
 {
     if (c->m->geometry.projection != RELUME_SLAB || c->m->slabs)
         return log_fail(
-            log, RELUME_EDATA,
+            log, RELUME_EUNFIT,
             "%s: a BTF needs the views of one slab; expected a capture with projection \"slab\"",
             path);
     if (c->m->positions)
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_EUNFIT,
                         "%s: a BTF needs distant lights; expected a capture with light directions, "
                         "not positions",
                         path);

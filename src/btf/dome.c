@@ -24,10 +24,10 @@ enum { CELLS = 16, MOST_STEPS = 24 };
 static relume_status check(const struct relume_vec3 *d, int n, const struct relume_log *log)
 {
     if (n < 3)
-        return log_fail(log, RELUME_EDATA, "directions: expected 3 or more; found %d", n);
+        return log_fail(log, RELUME_EUNFIT, "directions: expected 3 or more; found %d", n);
     for (int i = 0; i < n; i++)
         if (!(d[i].z >= LOWEST) || !(fabs(vec3_length(d[i]) - 1.0) < 1e-6))
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_EUNFIT,
                             "direction %d: expected a unit vector with z > 0; found %g, %g, %g", i,
                             d[i].x, d[i].y, d[i].z);
     return RELUME_OK;
@@ -151,7 +151,7 @@ relume_status relume_direction_mesh_create(relume_direction_mesh **out,
         return RELUME_ENOMEM;
     d->n = n;
     status = triangulate(d, directions);
-    if (status == RELUME_EDATA)
+    if (status == RELUME_EUNFIT)
         log_fail(log, status, "directions: expected some not on one great circle");
     if (!status)
         status = prepare_find(d);

@@ -21,14 +21,14 @@ relume_status btf_read_directions(const jvalue *array, const char *path, const c
     const size_t n = jvalue_count(array);
     *out = NULL;
     if (n < 3 || n > (size_t)limits->max_lights)
-        return log_fail(log, RELUME_EDATA, "%s: %s; expected 3 to %d directions [x, y, z]", path,
+        return log_fail(log, RELUME_EFORMAT, "%s: %s; expected 3 to %d directions [x, y, z]", path,
                         what, limits->max_lights);
     if (!(*out = mem_array(n, sizeof **out)))
         return RELUME_ENOMEM;
     for (size_t i = 0; i < n; i++) {
         double d[3];
         if (!jvalue_numbers(jvalue_item(array, i), d, 3) || !(d[2] > 0.0))
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_EFORMAT,
                             "%s: %s[%zu]; expected three numbers, the last above 0", path, what, i);
         (*out)[i] = vec3_unit(vec3_of(d[0], d[1], d[2]));
     }
@@ -54,7 +54,7 @@ static relume_status open_values(relume_btf *btf, const struct folder *f)
         (n->kind != NPY_HALF || n->dims != 5 || n->shape[0] != (size_t)btf->info.views ||
          n->shape[1] != (size_t)btf->info.lights || n->shape[2] != (size_t)btf->info.height ||
          n->shape[3] != (size_t)btf->info.width || n->shape[4] != 3))
-        status = log_fail(f->log, RELUME_EDATA,
+        status = log_fail(f->log, RELUME_EFORMAT,
                           "%s: expected halfs [%d][%d][%d][%d][3] as btf.json says", path,
                           btf->info.views, btf->info.lights, btf->info.height, btf->info.width);
     btf->values = btf->file.data;
@@ -78,7 +78,7 @@ static relume_status open_truth(struct relume_image *out, const jvalue *root, co
         relume_image_params(.log = f->log, .channels = channels, .limits = &f->limits,
                             .transfer = {.curve = RELUME_CURVE_LINEAR}));
     if (!status && (out->width != info->width || out->height != info->height))
-        status = log_fail(f->log, RELUME_EDATA, "%s: %d x %d pixels; expected %d x %d", path,
+        status = log_fail(f->log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d", path,
                           out->width, out->height, info->width, info->height);
     free(path);
     return status;
@@ -94,10 +94,10 @@ static relume_status read_info(struct relume_btf_info *info, vec3 **view, vec3 *
     if (!jvalue_integer(jvalue_member(root, "width"), &side[0]) ||
         !jvalue_integer(jvalue_member(root, "height"), &side[1]) ||
         !limits_allow(&f->limits, side[0], side[1]))
-        return log_fail(f->log, RELUME_EDATA,
+        return log_fail(f->log, RELUME_ELIMIT,
                         "%s: width, height; expected texels within the limits", f->json);
     if (flag && !jvalue_truth(flag, &cosine))
-        return log_fail(f->log, RELUME_EDATA, "%s: includes_cosine; expected true or false",
+        return log_fail(f->log, RELUME_EFORMAT, "%s: includes_cosine; expected true or false",
                         f->json);
     info->width = (int)side[0], info->height = (int)side[1];
     info->without_cosine = !cosine;

@@ -115,7 +115,7 @@ static relume_status map_file(struct npy_file *f, const char *path, const struct
     void *map = f->map_size ? mmap(NULL, f->map_size, PROT_READ, MAP_SHARED, fd, 0) : MAP_FAILED;
     close(fd);
     if (map == MAP_FAILED)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be read; expected a NumPy array", path);
+        return log_fail(log, RELUME_EFORMAT, "%s: cannot be read; expected a NumPy array", path);
     f->map = map;
     return RELUME_OK;
 }
@@ -126,12 +126,12 @@ relume_status npy_open(struct npy_file *file, const char *path, const struct rel
     size_t offset = 0;
     relume_status status = map_file(file, path, log);
     if (!status && !read_header(file, &offset))
-        status = log_fail(log, RELUME_EDATA,
+        status = log_fail(log, RELUME_EUNSUPPORTED,
                           "%s: this kind of array cannot be read; expected NumPy format 1.0, rows "
                           "first, of half, float, uint8, uint16 or uint32",
                           path);
     if (!status && file->map_size - offset != npy_bytes(&file->npy))
-        status = log_fail(log, RELUME_EDATA, "%s: expected %zu bytes of values; found %zu", path,
+        status = log_fail(log, RELUME_EDAMAGED, "%s: expected %zu bytes of values; found %zu", path,
                           npy_bytes(&file->npy), file->map_size - offset);
     if (status)
         npy_close(file);

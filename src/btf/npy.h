@@ -27,7 +27,7 @@ struct npy_file {
     void *map;
     size_t map_size;
 };
-// RELUME_EDATA with a sentence: missing, foreign, another kind of array, not as long as it says.
+// An input status with a sentence: missing, foreign, another kind of array, not as long as it says.
 relume_status npy_open(struct npy_file *file, const char *path, const struct relume_log *log);
 void npy_close(struct npy_file *file);
 

@@ -105,7 +105,7 @@ static relume_status add(struct pictures *p, const char *name)
     if (!kind)
         return RELUME_OK;
     if (kind < 0)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EFORMAT,
                         "%s/%s: angles; expected tl and tv from 0 to below 90, pl and pv from 0 "
                         "to 360, all four",
                         p->path, name);
@@ -170,7 +170,7 @@ static relume_status list(struct pictures *p)
 {
     const relume_status status = list_folder(p, "");
     if (!status && !p->count)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EFORMAT,
                         "%s: expected btf.json, or pictures named like tl030_pl120_tv045_pv020.png",
                         p->path);
     if (p->count)
@@ -207,7 +207,7 @@ static int find(const struct angles *a, int n, struct angles which)
 static relume_status missing(const struct pictures *p, int view, int light)
 {
     const struct angles v = p->views[view], l = p->lights[light];
-    return log_fail(p->log, RELUME_EDATA,
+    return log_fail(p->log, RELUME_ENOTFOUND,
                     "%s: no picture for tl%03g_pl%03g_tv%03g_pv%03g; expected one of every light "
                     "and view, or --fill to interpolate",
                     p->path, l.theta_deg, l.phi_deg, v.theta_deg, v.phi_deg);
@@ -243,7 +243,7 @@ static relume_status find_strays_of(const struct pictures *p, bool view)
         const int count = count_of(p, view, i, &first);
         const struct angles a = view ? p->views[i] : p->lights[i];
         if (count * FEW < most)
-            return log_fail(p->log, RELUME_EDATA,
+            return log_fail(p->log, RELUME_EUNFIT,
                             "%s/%s: the angles seem wrong; expected pictures of t%c%03g_p%c%03g "
                             "for %d %s, as of others; found %d",
                             p->path, first->name, view ? 'v' : 'l', a.theta_deg, view ? 'v' : 'l',
@@ -267,7 +267,7 @@ static relume_status place(struct pictures *p)
         const struct picture **cell =
             &p->grid[(size_t)one->at[0] * (size_t)p->light_count + (size_t)one->at[1]];
         if (*cell)
-            return log_fail(p->log, RELUME_EDATA, "%s/%s: the same angles as %s", p->path,
+            return log_fail(p->log, RELUME_EUNFIT, "%s/%s: the same angles as %s", p->path,
                             one->name, (*cell)->name);
         *cell = one;
     }
@@ -356,11 +356,11 @@ static relume_status store(const struct pictures *p, relume_btf *btf, size_t ind
     struct relume_image image = {0};
     relume_status status = load(p, index, &image, log);
     if (!status && (image.width != btf->info.width || image.height != btf->info.height))
-        status = log_fail(log, RELUME_EDATA, "%s/%s: %d x %d pixels; expected %d x %d as in %s",
+        status = log_fail(log, RELUME_EUNFIT, "%s/%s: %d x %d pixels; expected %d x %d as in %s",
                           p->path, one->name, image.width, image.height, btf->info.width,
                           btf->info.height, p->all[0].name);
     if (!status && !is_finite(&image))
-        status = log_fail(log, RELUME_EDATA, "%s/%s: NaN or infinity; expected finite values",
+        status = log_fail(log, RELUME_EDAMAGED, "%s/%s: NaN or infinity; expected finite values",
                           p->path, one->name);
     if (!status) {
         one->saturated = saturated(&image);

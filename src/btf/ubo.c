@@ -1,7 +1,7 @@
 // ubo.c - .btf files of the University of Bonn's data base (UBO2014): what they hold, and where
 //
-// Bonn has published no description; docs/btf-bonn.md says what is known, from which programs, and what
-// is assumed. Little endian throughout, nothing is aligned.
+// Bonn has published no description; docs/btf-bonn.md says what is known, from which programs, and
+// what is assumed. Little endian throughout, nothing is aligned.
 #include "btf/ubo.h"
 
 #include "base/inputs.h"
@@ -23,14 +23,15 @@ static const double ALIKE = 1e-3;   // radians between directions that are the s
 // ---------------------------------------------------------------- bytes
 
 // What follows finds u->status set.
-__attribute__((format(printf, 2, 3))) static void fail(struct ubo *u, const char *format, ...)
+__attribute__((format(printf, 3, 4))) static void fail(struct ubo *u, relume_status status,
+                                                       const char *format, ...)
 {
     char text[256];
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    u->status = log_fail(&u->log, RELUME_EDATA, "%s", text);
+    u->status = log_fail(&u->log, status, "%s", text);
 }
 
 // The next `n` bytes; NULL when the file ends before.
@@ -39,8 +40,8 @@ static const uint8_t *take(struct ubo *u, uint64_t n, const char *what)
     if (u->status)
         return NULL;
     if (n > u->size - u->at) {
-        fail(u, "ends within %s; expected %llu bytes more; found %zu", what, (unsigned long long)n,
-             u->size - u->at);
+        fail(u, RELUME_EDAMAGED, "ends within %s; expected %llu bytes more; found %zu", what,
+             (unsigned long long)n, u->size - u->at);
         return NULL;
     }
     const uint8_t *bytes = u->bytes + u->at;
@@ -107,11 +108,13 @@ static void read_signature(struct ubo *u)
         u->rotated = has_rotations(u);
         u->at += u->rotated;
         if (s->refused)
-            fail(u, "%s are not read; expected !DFMF08FCR, !FMF12FCER or !FMF06FC", s->refused);
+            fail(u, RELUME_EUNSUPPORTED,
+                 "%s are not read; expected !DFMF08FCR, !FMF12FCER or !FMF06FC", s->refused);
         return;
     }
-    fail(u, "not a BTF of Bonn; expected a folder, or a file that begins with !DFMF08FCR, "
-            "!FMF12FCER or !FMF06FC");
+    fail(u, RELUME_EFORMAT,
+         "not a BTF of Bonn; expected a folder, or a file that begins with !DFMF08FCR, "
+         "!FMF12FCER or !FMF06FC");
 }
 
 // Names and the measurement's own description are passed over.
@@ -120,19 +123,19 @@ static void read_head(struct ubo *u)
     const size_t start = u->at;
     const uint32_t size = word(u, "its header"), version = word(u, "its header");
     if (!u->status && (version < 1 || version > VERSIONS))
-        fail(u, "header of version %u; expected 1 to %d", version, VERSIONS);
+        fail(u, RELUME_EUNSUPPORTED, "header of version %u; expected 1 to %d", version, VERSIONS);
     take(u, 3 * 80 + 4 * 4, "its header");  // set-up, sensor, lamp; pixels a mm, scale of colours
     u->cosine = version > 1 && word(u, "its header");
     if (version > 2)
         take(u, word(u, "its header"), "its description");
     const uint32_t colours = version > 3 ? word(u, "its header") : UBO_COLOURS;
     if (!u->status && colours != UBO_COLOURS)
-        fail(u, "expected 3 colours; found %u", colours);
+        fail(u, RELUME_EUNSUPPORTED, "expected 3 colours; found %u", colours);
     for (int i = 0; version > 3 && i < UBO_COLOURS && !u->status; i++)
         take(u, word(u, "the names of its colours"), "the names of its colours");
     if (!u->status && u->at - start != size)
-        fail(u, "header of %u bytes; what its version %u has takes %zu", size, version,
-             u->at - start);
+        fail(u, RELUME_EDAMAGED, "header of %u bytes; what its version %u has takes %zu", size,
+             version, u->at - start);
 }
 
 // ---------------------------------------------------------------- directions
@@ -149,9 +152,10 @@ static vec3 direction(struct ubo *u, int view, int light)
     if (u->status)
         return d;
     if (!(fabs(theta) <= M_PI) || !(fabs(phi) <= 7.0))
-        fail(u, "%s: expected radians; found %g, %g", name, theta, phi);
+        fail(u, RELUME_EDAMAGED, "%s: expected radians; found %g, %g", name, theta, phi);
     else if (!(d.z >= LOWEST))
-        fail(u, "%s: %g degrees from the pole; expected less than 90", name, theta * 180.0 / M_PI);
+        fail(u, RELUME_EDAMAGED, "%s: %g degrees from the pole; expected less than 90", name,
+             theta * 180.0 / M_PI);
     return d;
 }
 
@@ -161,9 +165,11 @@ static void count_lights(struct ubo *u, int view)
     if (u->status)
         return;
     if (view && n != (uint32_t)u->lights)
-        fail(u, "view %d has %u lights; expected %d as of view 0", view, n, u->lights);
+        fail(u, RELUME_EDAMAGED, "view %d has %u lights; expected %d as of view 0", view, n,
+             u->lights);
     else if (!view && (n < 3 || n > (uint32_t)u->limits.max_lights || n > u->size / 8))
-        fail(u, "expected 3 to %d lights; found %u", u->limits.max_lights, n);
+        fail(u, n < 3 ? RELUME_EDAMAGED : RELUME_ELIMIT, "expected 3 to %d lights; found %u",
+             u->limits.max_lights, n);
     else if (!view && !(u->light = mem_array(n, sizeof *u->light)))
         u->status = RELUME_ENOMEM;
     u->lights = (int)n;
@@ -190,7 +196,7 @@ static void check_lights(struct ubo *u)
                  "all",
                  u->odd_light, u->odd_view);
     else
-        fail(u,
+        fail(u, RELUME_EUNFIT,
              "light %d of view %d is not that of view 0; expected the same for all (or fill, which "
              "takes these)",
              u->odd_light, u->odd_view);
@@ -201,7 +207,8 @@ static void read_directions(struct ubo *u)
     const uint32_t n = word(u, "its views");
     u->odd_view = -1;
     if (!u->status && (n < 3 || n > (uint32_t)u->limits.max_views || n > u->size / 12))
-        fail(u, "expected 3 to %d views; found %u", u->limits.max_views, n);
+        fail(u, n < 3 ? RELUME_EDAMAGED : RELUME_ELIMIT, "expected 3 to %d views; found %u",
+             u->limits.max_views, n);
     if (!u->status && !(u->view = mem_array(n, sizeof *u->view)))
         u->status = RELUME_ENOMEM;
     u->views = (int)n;
@@ -233,8 +240,8 @@ static void read_texels(struct ubo *u)
 {
     const uint32_t width = word(u, "its size"), height = word(u, "its size");
     if (!u->status && !limits_allow(&u->limits, width, height))
-        fail(u, "%u x %u texels; expected 1 to %d a side, %llu in all", width, height,
-             u->limits.max_side, (unsigned long long)u->limits.max_pixels);
+        fail(u, RELUME_ELIMIT, "%u x %u texels; expected 1 to %d a side, %llu in all", width,
+             height, u->limits.max_side, (unsigned long long)u->limits.max_pixels);
     if (u->status)
         return;
     u->width = (int)width, u->height = (int)height;
@@ -264,12 +271,12 @@ static void read_factors(struct ubo *u, struct ubo_plane *p, size_t each)
         return;
     const bool by_pair = left == each * pairs && right == texels;
     if (p->scalar != 2 && p->scalar != 4 && p->scalar != 8)
-        fail(u, "numbers of %d bytes; expected 2, 4 or 8", p->scalar);
+        fail(u, RELUME_EUNSUPPORTED, "numbers of %d bytes; expected 2, 4 or 8", p->scalar);
     else if (rank < 1 || rank > UBO_MOST_RANK)
-        fail(u, "%u components; expected 1 to %d", rank, UBO_MOST_RANK);
+        fail(u, RELUME_EUNSUPPORTED, "%u components; expected 1 to %d", rank, UBO_MOST_RANK);
     else if (!by_pair && !(left == each * texels && right == pairs))
-        fail(u, "factors of %u and %u rows; expected %zu and %zu or %zu and %zu", left, right,
-             each * pairs, texels, each * texels, pairs);
+        fail(u, RELUME_EDAMAGED, "factors of %u and %u rows; expected %zu and %zu or %zu and %zu",
+             left, right, each * pairs, texels, each * texels, pairs);
     if (u->status)
         return;
     p->rank = (int)rank;
@@ -291,7 +298,7 @@ static void read_decorrelated(struct ubo *u)
         u->matrix[i] = number(u, "its colours");
     u->colours = ubo_colours_find(colours);
     if (!u->status && !u->colours)
-        fail(u, "colours of kind %d; expected 0, 1, 3, 4 or 9 to 12", colours);
+        fail(u, RELUME_EUNSUPPORTED, "colours of kind %d; expected 0, 1, 3, 4 or 9 to 12", colours);
     for (int c = 0; c < UBO_COLOURS && !u->status; c++)
         read_factors(u, &u->plane[c], 1);
 }
@@ -301,7 +308,7 @@ static bool read_extension(struct ubo *u)
 {
     const uint8_t *version = take(u, 1, "its extension");
     if (version && *version > 2)
-        fail(u, "extension of version %d; expected 0 to 2", *version);
+        fail(u, RELUME_EUNSUPPORTED, "extension of version %d; expected 0 to 2", *version);
     if (u->status)
         return false;
     const bool logarithm = *version > 0 && word(u, "its extension");
@@ -349,7 +356,8 @@ static relume_status read_all(struct ubo *u)
     else if (!u->status)
         read_together(u);
     if (!u->status && u->at != u->size)
-        fail(u, "expected its end after %zu bytes; found %zu more", u->at, u->size - u->at);
+        fail(u, RELUME_EDAMAGED, "expected its end after %zu bytes; found %zu more", u->at,
+             u->size - u->at);
     return u->status;
 }
 
@@ -368,7 +376,7 @@ static relume_status map_file(struct ubo *u)
     void *map = u->size ? mmap(NULL, u->size, PROT_READ, MAP_SHARED, fd, 0) : MAP_FAILED;
     close(fd);
     if (map == MAP_FAILED)
-        return log_fail(&u->log, RELUME_EDATA, "cannot be read; expected a BTF of Bonn; found %s",
+        return log_fail(&u->log, RELUME_EFORMAT, "cannot be read; expected a BTF of Bonn; found %s",
                         u->size ? "it cannot be mapped into memory" : "an empty file");
     u->bytes = map;
     return RELUME_OK;

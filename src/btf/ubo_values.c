@@ -258,7 +258,7 @@ static relume_status check_batch(const struct storing *s, size_t n)
     const struct ubo *u = s->ubo;
     for (size_t i = 0; i < n; i++)
         if (s->bad[i] != SIZE_MAX)
-            return log_fail(&u->log, RELUME_EDATA,
+            return log_fail(&u->log, RELUME_EDAMAGED,
                             "view %zu, light %zu: NaN or infinity; expected finite values",
                             s->bad[i] / (size_t)u->lights, s->bad[i] % (size_t)u->lights);
     return RELUME_OK;

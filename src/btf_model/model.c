@@ -126,7 +126,7 @@ static relume_status check_values(const relume_btf *btf, const struct relume_log
             for (size_t i = 0; i < n; i++)
                 broken |= (p[i] & 0x7c00u) == 0x7c00u;
             if (broken)
-                return log_fail(log, RELUME_EDATA,
+                return log_fail(log, RELUME_EDAMAGED,
                                 "%s: view %d, light %d: NaN or infinity; expected finite values",
                                 btf_name(btf), v, l);
         }

@@ -97,7 +97,7 @@ struct reader {
 
 static relume_status wrong(const struct reader *r, const char *what, const char *expected)
 {
-    return log_fail(r->log, RELUME_EDATA, "%s: %s; expected %s", r->json, what, expected);
+    return log_fail(r->log, RELUME_EFORMAT, "%s: %s; expected %s", r->json, what, expected);
 }
 
 static relume_status read_model(relume_btf_fitted *m, const jvalue *root, const struct reader *r)
@@ -207,9 +207,10 @@ static relume_status read_array(struct model_array *a, const struct reader *r)
     relume_status status = npy_open(&a->file, path, r->log);
     a->data = (void *)a->file.data;
     if (!status && !same_shape(&a->file.npy, &a->npy))
-        status = log_fail(r->log, RELUME_EDATA, "%s: not the array that model.json implies", path);
+        status =
+            log_fail(r->log, RELUME_EDAMAGED, "%s: not the array that model.json implies", path);
     if (!status && !values_are_good(a))
-        status = log_fail(r->log, RELUME_EDATA,
+        status = log_fail(r->log, RELUME_EDAMAGED,
                           "%s: expected finite values, and clusters that exist", path);
     free(path);
     return status;
@@ -269,7 +270,7 @@ static relume_status open_half(relume_btf_fitted *m, const char *folder, int lev
     char *path = level_folder(folder, level);
     relume_status status = path ? open_level(&m->half, path, &ignored, params) : RELUME_ENOMEM;
     if (!status && !is_half_of(m, m->half))
-        status = log_fail(params ? params->log : NULL, RELUME_EDATA,
+        status = log_fail(params ? params->log : NULL, RELUME_EUNFIT,
                           "%s: %s of %d x %d texels; expected %s of %d x %d and as many directions",
                           path, m->half->model->name, m->half->width, m->half->height,
                           m->model->name, btf_half_side(m->width), btf_half_side(m->height));

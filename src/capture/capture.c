@@ -87,7 +87,7 @@ relume_status capture_stream(struct image_stream *out, const relume_capture *cap
     const struct picture_info *info = picture_info_of(reader);
     if (info->width != capture->width || info->height != capture->height) {
         picture_close(&reader);
-        return log_fail(log, RELUME_EDATA, "%s: changed while it was being read", path);
+        return log_fail(log, RELUME_EUNFIT, "%s: changed while it was being read", path);
     }
     const relume_status opened =
         image_stream_open(out, reader, 3, image_transfer(capture->stated, info), to,
@@ -133,7 +133,7 @@ static relume_status load_plane(struct relume_image *out, const relume_capture *
         return status;
     const int width = out->width, height = out->height;
     relume_image_destroy(out);
-    return log_fail(log, RELUME_EDATA, "%s: %d x %d pixels; expected %d x %d as in the images",
+    return log_fail(log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d as in the images",
                     path, width, height, capture->width, capture->height);
 }
 
@@ -149,7 +149,7 @@ relume_status relume_capture_depth(struct relume_image *out, const relume_captur
         if (!(out->data[i] >= 0.0f)) {
             const float found = out->data[i];
             relume_image_destroy(out);
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_EDAMAGED,
                             "%s: depth %g at pixel (%zu, %zu); expected 0 or more", path,
                             (double)found, i % (size_t)capture->width, i / (size_t)capture->width);
         }

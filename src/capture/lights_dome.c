@@ -28,7 +28,7 @@ bool is_dome(const jvalue *root)
 static relume_status wrong(const char *path, const char *where, const char *expected,
                            const struct relume_log *log)
 {
-    return log_fail(log, RELUME_EDATA, "%s: %s; expected %s", path, where, expected);
+    return log_fail(log, RELUME_EFORMAT, "%s: %s; expected %s", path, where, expected);
 }
 
 // {"x":..., "y":..., "z":...} or [x, y, z].

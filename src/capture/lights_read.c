@@ -47,7 +47,7 @@ static relume_status look(enum kind *kind, const char *path, const struct relume
     }
     fclose(file);
     if (!some)
-        return log_fail(log, RELUME_EDATA, "%s: no light directions; expected lines x y z", path);
+        return log_fail(log, RELUME_EFORMAT, "%s: no light directions; expected lines x y z", path);
     return RELUME_OK;
 }
 
@@ -116,11 +116,11 @@ static relume_status read_lines(struct relume_captured_lights *out, FILE *file, 
             continue;
         struct relume_vec3 unit = v;
         if (found < 0 || !direction_normalise(&unit))
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_EFORMAT,
                             "%s: line %d; expected three numbers x y z, not all 0; found '%.40s'",
                             path, number, line);
         if (out->count == most)
-            return log_fail(log, RELUME_EDATA, "%s: too many lights; expected at most %d", path,
+            return log_fail(log, RELUME_ELIMIT, "%s: too many lights; expected at most %d", path,
                             most);
         out->direction[out->count] = unit;
         out->position[out->count++] = v;
@@ -129,9 +129,9 @@ static relume_status read_lines(struct relume_captured_lights *out, FILE *file, 
         log_line(log, RELUME_WARNING,
                  "%s: its first line promises %g lights; found %d, which are used", path, stated,
                  out->count);
-    return out->count
-               ? RELUME_OK
-               : log_fail(log, RELUME_EDATA, "%s: no light directions; expected lines x y z", path);
+    return out->count ? RELUME_OK
+                      : log_fail(log, RELUME_EFORMAT,
+                                 "%s: no light directions; expected lines x y z", path);
 }
 
 static relume_status from_lines(struct relume_captured_lights *out, const char *path,
@@ -172,7 +172,7 @@ relume_status relume_captured_lights_load(struct relume_captured_lights *out, co
         out->position = NULL;
     }
     if (!status && positions && !out->position)
-        status = log_fail(log, RELUME_EDATA,
+        status = log_fail(log, RELUME_EUNFIT,
                           "%s: holds directions only; expected positions of near lights", path);
     if (status)
         relume_captured_lights_destroy(out);

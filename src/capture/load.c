@@ -29,7 +29,7 @@ relume_status relume_capture_image(struct relume_image *out, const relume_captur
     status = relume_image_create(out, capture->width, capture->height, 3);
     if (!status)
         status = image_stream_read(&stream, 0, capture->height, out->data);
-    if (status == RELUME_EDATA)
+    if (relume_status_is_input(status))
         (void)log_fail(log, status, "%s: %s", capture->draft.m.view[view].images[light],
                        image_stream_error(&stream));
     if (!status)

@@ -104,9 +104,9 @@ static relume_status read_text(char **out, const char *path, const struct relume
     }
     relume_status status = RELUME_OK;
     if (failed)
-        status = log_fail(log, RELUME_EDATA, "%s: cannot be read; expected a text file", path);
+        status = log_fail(log, RELUME_ENOTFOUND, "%s: cannot be read; expected a text file", path);
     else if (size >= MOST || memchr(text, '\0', size))
-        status = log_fail(log, RELUME_EDATA, "%s: not a text file; expected a .lp file", path);
+        status = log_fail(log, RELUME_EFORMAT, "%s: not a text file; expected a .lp file", path);
     if (status) {
         free(text);
         return status;
@@ -143,7 +143,7 @@ static relume_status parse_lines(struct draft *d, char *text, const char *path,
             char *end;
             stated = strtol(line, &end, 10);
             if (end == line || *end || stated < 1)
-                return log_fail(log, RELUME_EDATA,
+                return log_fail(log, RELUME_EFORMAT,
                                 "%s: line %d; expected the number of lights, found '%.60s'", path,
                                 number, line);
             continue;
@@ -153,11 +153,11 @@ static relume_status parse_lines(struct draft *d, char *text, const char *path,
         char shown[64];
         snprintf(shown, sizeof shown, "%s", line);
         if (!parse_light(line, &name, &v))
-            return log_fail(log, RELUME_EDATA, "%s: line %d; expected 'image x y z', found '%s'",
+            return log_fail(log, RELUME_EFORMAT, "%s: line %d; expected 'image x y z', found '%s'",
                             path, number, shown);
         d->positions[n] = v;
         if (!direction_normalise(&v))
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_EFORMAT,
                             "%s: line %d; expected a light direction, found '%s' (zero or not a "
                             "number)",
                             path, number, shown);
@@ -167,10 +167,10 @@ static relume_status parse_lines(struct draft *d, char *text, const char *path,
             return RELUME_ENOMEM;
     }
     if (n == 0)
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_EFORMAT,
                         "%s: no lights; expected a count and 'image x y z' lines", path);
     if (n > limits_or_default(limits).max_lights)
-        return log_fail(log, RELUME_EDATA, "%s: %d lights; expected at most %d", path, n,
+        return log_fail(log, RELUME_ELIMIT, "%s: %d lights; expected at most %d", path, n,
                         limits_or_default(limits).max_lights);
     if (stated != n)
         log_line(log, RELUME_WARNING,
@@ -267,7 +267,7 @@ static relume_status resolve(struct draft *d, const char *path, const char *fold
         if (!images[i])
             return RELUME_ENOMEM;
         if (refused)
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_ELIMIT,
                             "%s: names '%.200s', outside its folder; expected the image beside the "
                             ".lp file; if you trust it, --allow-outside",
                             path, listed);
@@ -283,7 +283,7 @@ static relume_status resolve(struct draft *d, const char *path, const char *fold
             if (!(images[i] = arena_format(&d->arena, "%s/%s", folder, files[i]->d_name)))
                 return RELUME_ENOMEM;
     } else if (missing && !p->skip_missing) {
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_ENOTFOUND,
                         "%s: image '%.200s' does not exist; %d of %d images %s missing; "
                         "--skip-missing continues without %s",
                         path, first, missing, d->m.lights, missing == 1 ? "is" : "are",

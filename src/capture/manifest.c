@@ -67,7 +67,7 @@ static relume_status get_path(const struct parser *p, const jvalue *value, const
     if (!text || !*text)
         return wrong(p, where, "a file name");
     if (!p->allow_outside && leaves_folder(text))
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_ELIMIT,
                         "%s: %s names '%.200s', outside its folder; expected a file inside; if you "
                         "trust it, --allow-outside",
                         p->path, where, text);
@@ -316,8 +316,9 @@ static relume_status read_view(const struct parser *p, const jvalue *object, int
     if (!jvalue_is_array(images))
         return wrong(p, where, "an array of file names");
     if (jvalue_count(images) != (size_t)d->m.lights)
-        return log_fail(p->log, RELUME_EDATA, "%s: %s; expected %d images for %d lights, found %zu",
-                        p->path, where, d->m.lights, d->m.lights, jvalue_count(images));
+        return log_fail(p->log, RELUME_EFORMAT,
+                        "%s: %s; expected %d images for %d lights, found %zu", p->path, where,
+                        d->m.lights, d->m.lights, jvalue_count(images));
     v->images = arena_array(&d->arena, (size_t)d->m.lights, sizeof *v->images);
     if (!v->images)
         return RELUME_ENOMEM;
@@ -360,7 +361,7 @@ static relume_status read_transfer(const struct parser *p, const jvalue *value)
     const char *text = jvalue_text(value), *path = NULL;
     if (!value || jvalue_is_null(value) || (text && !relume_transfer_parse(&d->m.transfer, text)))
         return RELUME_OK;
-    const relume_status status = text ? get_path(p, value, "transfer", &path) : RELUME_EDATA;
+    const relume_status status = text ? get_path(p, value, "transfer", &path) : RELUME_EFORMAT;
     if (status == RELUME_ENOMEM)
         return status;
     if (status || access(path, F_OK))
@@ -381,7 +382,7 @@ static relume_status read_root(const struct parser *p, const jvalue *root)
     if (!jvalue_integer(jvalue_member(root, "version"), &version) || version < 1)
         return wrong(p, "version", "1");
     if (version > MANIFEST_VERSION)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EUNSUPPORTED,
                         "%s: version %lld is newer than this program; expected %d", p->path,
                         version, MANIFEST_VERSION);
     struct draft *d = p->d;
@@ -419,7 +420,7 @@ relume_status manifest_read(struct draft *out, const char *path,
     *out = (struct draft){0};
     jvalue *root;
     if (is_picture(path, params->log))
-        return log_fail(params->log, RELUME_EDATA,
+        return log_fail(params->log, RELUME_EFORMAT,
                         "%s: this is a photograph; give the .lp file, or use 'relume capture'",
                         path);
     relume_status status = jvalue_load(&root, path, params->log);

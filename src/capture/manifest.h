@@ -37,7 +37,7 @@ relume_status manifest_read(struct draft *out, const char *path,
                             const struct relume_capture_params *params);
 
 // What a draft says, whoever wrote it, is in range; vectors become what the manifest promises, and
-// directions follow from positions where there are none. RELUME_EDATA with a sentence,
+// directions follow from positions where there are none. An input status with a sentence,
 // RELUME_ENOMEM (manifest_check.c).
 relume_status draft_check_lights(struct draft *d, const char *path, const struct relume_log *log);
 relume_status draft_check_geometry(struct draft *d, const char *path, const struct relume_log *log);
@@ -46,7 +46,7 @@ relume_status draft_check_views(const struct draft *d, const char *path,
 // The draft's arrays are those of its manifest from now on.
 void draft_publish(struct draft *d);
 
-// "PATH: WHERE; expected ..." as RELUME_EDATA.
+// "PATH: WHERE; expected ..." as an input status.
 relume_status manifest_wrong(const char *path, const char *where, const char *expected,
                              const struct relume_log *log);
 #define MANIFEST_INTENSITIES "three numbers from 1e-30 to 1e30 for every light"

@@ -8,7 +8,7 @@
 relume_status manifest_wrong(const char *path, const char *where, const char *expected,
                              const struct relume_log *log)
 {
-    return log_fail(log, RELUME_EDATA, "%s: %s; expected %s", path, where, expected);
+    return log_fail(log, RELUME_EFORMAT, "%s: %s; expected %s", path, where, expected);
 }
 
 void draft_publish(struct draft *d)

@@ -22,7 +22,7 @@ static relume_status find_description(char **out, const char *folder, const stru
     *out = tree_only(folder, ".lp");
     if (*out)
         return RELUME_OK;
-    return log_fail(log, RELUME_EDATA,
+    return log_fail(log, RELUME_EFORMAT,
                     "%s: no capture.json and no single .lp file in this folder; give the .lp file, "
                     "or make a capture of photographs first: relume capture %s -o DIR",
                     folder, folder);
@@ -85,7 +85,7 @@ static relume_status skip_missing(relume_capture *c, const struct relume_log *lo
     keep_lights(d, keep);
     free(keep);
     if (d->m.lights == 0)
-        return log_fail(log, RELUME_EDATA, "%s: no image exists; expected %d", c->path, before);
+        return log_fail(log, RELUME_ENOTFOUND, "%s: no image exists; expected %d", c->path, before);
     return RELUME_OK;
 }
 
@@ -102,7 +102,7 @@ static relume_status count_missing(const relume_capture *c, const struct relume_
     if (!missing)
         return RELUME_OK;
     return log_fail(
-        log, RELUME_EDATA,
+        log, RELUME_ENOTFOUND,
         "%s: no such file; %d of %d images %s missing; --skip-missing continues without "
         "%s",
         first, missing, m->views * m->lights, missing == 1 ? "is" : "are",
@@ -134,11 +134,11 @@ static relume_status check_image(relume_capture *c, int view, int light,
         return RELUME_OK;
     }
     if (info.width != c->width || info.height != c->height)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EUNFIT,
                         "%s: %d x %d pixels; expected %d x %d as in the other images", path,
                         info.width, info.height, c->width, c->height);
     if (info.x != c->x || info.y != c->y)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EUNFIT,
                         "%s: its data window begins at (%d, %d); expected (%d, %d) as in the other "
                         "images",
                         path, info.x, info.y, c->x, c->y);
@@ -164,7 +164,7 @@ static relume_status check_discs(const relume_capture *c, const struct relume_lo
     const struct relume_geometry *g = &c->draft.m.geometry;
     if (relume_geometry_fits(g, c->width, c->height))
         return RELUME_OK;
-    return log_fail(log, RELUME_EDATA,
+    return log_fail(log, RELUME_EFORMAT,
                     "%s: panorama.discs; expected at most half of the %d columns and fewer than "
                     "the %d rows; found %d",
                     c->path, c->width, c->height, g->disc);

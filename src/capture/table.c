@@ -225,7 +225,7 @@ static relume_status refuse_broken(relume_table *t, int first)
     if (others)
         snprintf(more, sizeof more, ", and some of %d more image%s", others, relume_plural(others));
     const size_t n = t->broken[first];
-    return log_fail(t->log, RELUME_EDATA,
+    return log_fail(t->log, RELUME_EDAMAGED,
                     "%s: %zu pixel%s NaN or infinite%s; expected finite radiance, or --repair",
                     m->view[t->view].images[first], n, n == 1 ? " is" : "s are", more);
 }
@@ -233,10 +233,10 @@ static relume_status refuse_broken(relume_table *t, int first)
 static relume_status check_lights(relume_table *table)
 {
     for (int i = 0; i < table->capture->draft.m.lights; i++) {
-        if (table->status[i] == RELUME_EDATA && image_stream_is_broken(&table->stream[i]))
+        if (relume_status_is_input(table->status[i]) && image_stream_is_broken(&table->stream[i]))
             return refuse_broken(table, i);
-        if (table->status[i] == RELUME_EDATA)
-            return log_fail(table->log, RELUME_EDATA, "%s: %s",
+        if (relume_status_is_input(table->status[i]))
+            return log_fail(table->log, table->status[i], "%s: %s",
                             table->capture->draft.m.view[table->view].images[i],
                             image_stream_error(&table->stream[i]));
         if (table->status[i])

@@ -103,7 +103,7 @@ __attribute__((format(printf, 3, 4))) void say(const struct args *args, enum rel
                                                const char *format, ...);
 // "relume: ..." on stderr; returns RELUME_EINVAL, so that a command may return it.
 __attribute__((format(printf, 1, 2))) relume_status usage_error(const char *format, ...);
-// The same for inputs at fault: RELUME_EDATA.
+// The same for inputs at fault: RELUME_EUNFIT.
 __attribute__((format(printf, 1, 2))) relume_status data_error(const char *format, ...);
 // RELUME_EINVAL and "unknown WHAT 'given'; did you mean ...? Expected one of ...".
 relume_status unknown_name(const char *what, const char *given, const char *const *names);

@@ -187,7 +187,7 @@ relume_status data_error(const char *format, ...)
     va_start(list, format);
     say_error(format, list);
     va_end(list);
-    return RELUME_EDATA;
+    return RELUME_EUNFIT;
 }
 
 // ---------------------------------------------------------------- names
@@ -494,18 +494,13 @@ static relume_status unknown_command(const char *what, const struct command *con
 
 static int exit_code(relume_status status)
 {
-    switch (status) {
-    case RELUME_OK: return 0;
-    case RELUME_EDATA: return 1;
-    case RELUME_EINVAL: return 2;
-    case RELUME_ENOMEM: fputs("relume: out of memory\n", people); return 3;
-    case RELUME_EIO:
-    case RELUME_ESYSTEM: return 3;
-    case RELUME_ECANCEL:
+    if (status == RELUME_ENOMEM)
+        fputs("relume: out of memory\n", people);
+    if (status == RELUME_ECANCEL) {
         fputs("relume: interrupted; nothing was written\n", people);
         return stopping_die();
     }
-    return 3;
+    return relume_status_exit(status);
 }
 
 // A folder that is there may be one that a command fills or replaces.

@@ -27,7 +27,7 @@ __attribute__((format(printf, 3, 4))) static relume_status fail(const struct rel
     vsnprintf(text + n, sizeof text - (size_t)n, format, arguments);
     va_end(arguments);
     log->message(log->user, RELUME_ERROR, text);
-    return RELUME_EDATA;
+    return RELUME_EFORMAT;
 }
 
 static bool add(struct list *list, const double v[6])

@@ -261,7 +261,7 @@ static relume_status check(const struct relume_coder_info *coder,
         return log_fail(p->log, RELUME_EINVAL, "%d groups of %d coefficients; expected at most %d",
                         parts, coder->coefficients, coder->coefficients);
     if ((size_t)codes > pixels)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EUNFIT,
                         "a codebook of %d codes for %zu pixels; expected at most as many codes as "
                         "pixels",
                         codes, pixels);

@@ -69,16 +69,16 @@ static relume_status choose_count(const struct relume_basis *basis, int lights,
         *count = want;
     }
     if (want && *count < want && !basis->interpolates)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EUNFIT,
                         "%d coefficient%s of basis %s need at least %d light%s; found %d", want,
                         relume_plural(want), basis->name, want, relume_plural(want), lights);
     if (want && *count != want)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EUNFIT,
                         "basis %s takes %s%d coefficient%s for %d light%s; found %d", basis->name,
                         basis->learned ? "at most " : "", *count, relume_plural(*count), lights,
                         relume_plural(lights), want);
     if (*count < 1)
-        return log_fail(p->log, RELUME_EDATA, "basis %s cannot be fitted to %d light%s",
+        return log_fail(p->log, RELUME_EUNFIT, "basis %s cannot be fitted to %d light%s",
                         basis->name, lights, relume_plural(lights));
     return RELUME_OK;
 }
@@ -188,7 +188,7 @@ static relume_status prepare_interpolant(relume_coder *c, const struct relume_co
                                     p->threads);
     for (int k = 0; !status && k < 4; k++)
         if (!(c->info.parameter[k] >= 0.0) || isinf(c->info.parameter[k]))
-            status = log_fail(p->log, RELUME_EDATA,
+            status = log_fail(p->log, RELUME_EUNFIT,
                               "parameter %d of interpolant %s: expected 0 or more, found %g", k + 1,
                               i->name, c->info.parameter[k]);
     if (!status)
@@ -211,16 +211,16 @@ relume_status relume_coder_create(relume_coder **out, const struct relume_basis 
                         "basis %s cannot be fitted to luminance only; leave out --colour luminance",
                         basis->name);
     if (basis->interpolates && n > RELUME_MOST_COEFFICIENTS)
-        return log_fail(p.log, RELUME_EDATA, "basis %s takes at most %d lights; found %d",
+        return log_fail(p.log, RELUME_EUNFIT, "basis %s takes at most %d lights; found %d",
                         basis->name, RELUME_MOST_COEFFICIENTS, n);
     if (p.robust && !basis->fits)
         return log_fail(p.log, RELUME_EINVAL,
                         "basis %s has no robust fit; use another basis, or leave out --robust",
                         basis->name);
     if (basis->learned && p.decode && !p.transform)
-        return log_fail(p.log, RELUME_EDATA, "basis %s without its functions", basis->name);
+        return log_fail(p.log, RELUME_EUNFIT, "basis %s without its functions", basis->name);
     if (basis->upper_only && !p.hemispherical)
-        return log_fail(p.log, RELUME_EDATA,
+        return log_fail(p.log, RELUME_EUNFIT,
                         "basis %s covers one hemisphere of lights; found lights on both sides",
                         basis->name);
     int count = 0;

@@ -212,7 +212,7 @@ static relume_status check_size(const struct encoding *e, const struct relume_en
         fits &= r[i].min >= -most && r[i].min <= r[i].max && r[i].max <= most;
     if (fits)
         return RELUME_OK;
-    return log_fail(p->log, RELUME_EDATA,
+    return log_fail(p->log, RELUME_ELIMIT,
                     "%s: rows %d to %d are too bright to be stored; expected values of at most %g: "
                     "lower the exposure",
                     e->images[0], e->row, e->row + e->rows - 1, (double)most);

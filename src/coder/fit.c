@@ -80,7 +80,7 @@ static relume_status refuse_rank(const struct system *s, const struct relume_bas
     if (most)
         snprintf(instead, sizeof instead, ", or at most %d coefficient%s", most,
                  relume_plural(most));
-    return log_fail(log, RELUME_EDATA,
+    return log_fail(log, RELUME_EUNFIT,
                     "the %d light directions determine only %d of %d coefficients; expected lights "
                     "spread in both angles%s",
                     s->n, rank, s->k, instead);
@@ -171,7 +171,7 @@ static relume_status finish(struct system *s, relume_coder *coder, const struct 
 {
     const size_t n = (size_t)s->n, k = (size_t)s->k;
     if (!lsq_cholesky(s->h, s->k) || !lsq_invert_lower(s->h, s->k))
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_EUNFIT,
                         "the light directions are too few or too much alike for %d coefficients of "
                         "basis %s; use fewer coefficients",
                         s->k, coder->info.basis->name);

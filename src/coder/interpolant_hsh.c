@@ -56,7 +56,7 @@ static relume_status prepare(void **data, const struct relume_vec3 *lights, int 
         lowest = fmin(lowest, lights[i].z);
     if (lowest < -0.1)
         return log_fail(
-            log, RELUME_EDATA,
+            log, RELUME_EUNFIT,
             "interpolant hsh covers one hemisphere of lights; found lights on both sides");
     struct trend *t = *data = mem_zeroed(1, sizeof *t);
     if (!t)

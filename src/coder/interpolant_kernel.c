@@ -138,7 +138,7 @@ static relume_status prepare(void **data, struct kernel kind, double least,
         status = invert(k, least);
     if (!status)
         transpose(k->inverse, size);
-    if (status == RELUME_EDATA)
+    if (status == RELUME_EUNFIT)
         (void)log_fail(
             log, status,
             "the %d light directions are too few or too much alike to interpolate between", n);
@@ -209,7 +209,7 @@ static relume_status prepare_chord(void **data, const struct relume_vec3 *lights
     if (!(kind.parameter[STRETCH] > 0.0))
         kind.parameter[STRETCH] = spans_both(lights, n) ? 1.0 : 1.5;
     if (kind.parameter[POWER] >= 2.0 || kind.parameter[STRETCH] > 100.0)
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_EUNFIT,
                         "interpolant chord: expected a power below 2 and a stretch of at most 100, "
                         "found %g and %g",
                         kind.parameter[POWER], kind.parameter[STRETCH]);

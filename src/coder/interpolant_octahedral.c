@@ -40,7 +40,7 @@ static relume_status prepare(void **data, const struct relume_vec3 *lights, int 
     const double wanted = parameter[0] > 0.0 ? parameter[0] : sqrt(n);
     const struct grid grid = {n, wanted < 1024.0 ? (int)lround(wanted) : 0};
     if (grid.side < 2 || grid.side * grid.side != n || !holds(&grid, lights))
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_EUNFIT,
                         "interpolant octahedral needs lights exactly on the nodes of its grid; "
                         "found %d elsewhere",
                         n);

@@ -20,7 +20,7 @@ relume_status bytes_load(struct bytes *out, const char *path, const struct relum
         return relume_input_fail(log, path, "cannot be opened", errno);
     relume_status status = RELUME_OK;
     if (fstat(fileno(f), &st) || !S_ISREG(st.st_mode))
-        status = log_fail(log, RELUME_EDATA, "%s: not a file", path);
+        status = log_fail(log, RELUME_EFORMAT, "%s: not a file", path);
     else if (!(out->data = mem_array((size_t)st.st_size, 1)))
         status = RELUME_ENOMEM;
     else if (fread(out->data, 1, (size_t)st.st_size, f) != (size_t)st.st_size)

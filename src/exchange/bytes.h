@@ -9,7 +9,7 @@ struct bytes {
     size_t size, at;
 };
 
-// The whole file. RELUME_EDATA with a sentence when it cannot be read.
+// The whole file. An input status with a sentence when it cannot be read.
 relume_status bytes_load(struct bytes *out, const char *path, const struct relume_log *log);
 void bytes_free(struct bytes *b);
 

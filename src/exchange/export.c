@@ -50,11 +50,11 @@ static relume_status check(const relume_pack *pack, const char *path,
     const struct relume_pack_info *info = relume_pack_info(pack);
     if (info->geometry.projection >= RELUME_CYLINDRICAL)
         return log_fail(
-            p->log, RELUME_EDATA,
+            p->log, RELUME_EUNSUPPORTED,
             "%s: panoramas cannot be exported to this format; expected a planar file or a slab",
             path);
     if (info->slabs)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EUNSUPPORTED,
                         "%s: slabs around an object cannot be exported to this format; expected a "
                         "planar file or one slab",
                         path);

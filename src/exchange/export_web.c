@@ -120,7 +120,7 @@ static relume_status encode_whole(struct maker *m, struct web_folder *w)
             break;
         m->step = fmin(m->step * pow(found / target, 1.3) * 1.002, MOST_STEP);
     }
-    return log_fail(m->e->log, RELUME_EDATA,
+    return log_fail(m->e->log, RELUME_EUNFIT,
                     "%s: %g bytes a pixel is too small; the smallest possible is %.3f", m->path,
                     target, (double)w->bytes / pixels_of(&m->planes));
 }
@@ -169,13 +169,14 @@ static relume_status make_folder(struct maker *m, const char *path,
             return status;
         aim += target - report->psnr_db + 0.01;
     }
-    return log_fail(m->e->log, RELUME_EDATA,
+    return log_fail(m->e->log, RELUME_EUNFIT,
                     "%s: %g dB cannot be reached in this format; the best is %.2f dB", m->path,
                     target, report->psnr_db);
 }
 
 // Finer than the lights by half again, for the grid lies across them; 15 does well for domes of
-// some fifty lights, where 9 to 13 lose detail and finer ones gain nothing (docs/measurements/compression.md).
+// some fifty lights, where 9 to 13 lose detail and finer ones gain nothing
+// (docs/measurements/compression.md).
 static int default_resolution(int lights)
 {
     const int side = (int)(1.5 * sqrt(lights)) | 1;

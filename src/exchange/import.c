@@ -33,9 +33,9 @@ static relume_status read_any(struct foreign *f, const char *path,
     const struct relume_limits *limits = limits_of(p->limits, p->log);
     struct stat st;
     if (stat(path, &st))
-        return log_fail(p->log, RELUME_EDATA, "%s: no such file or folder", path);
+        return log_fail(p->log, RELUME_ENOTFOUND, "%s: no such file or folder", path);
     if (S_ISDIR(st.st_mode) && relume_kind_of(path) != RELUME_KIND_FOREIGN)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EFORMAT,
                         "%s: a folder without info.json, so no web folder; expected one as relight "
                         "and OpenLIME read it, or a .ptm, .rti or .hsh file%s",
                         path,
@@ -49,7 +49,7 @@ static relume_status read_any(struct foreign *f, const char *path,
     if (ends_with(path, ".rti") || ends_with(path, ".hsh"))
         return rti_read(f, path, ends_with(path, ".hsh"), limits, p->log);
     return log_fail(
-        p->log, RELUME_EDATA,
+        p->log, RELUME_EFORMAT,
         "%s: this format cannot be imported; expected .ptm, .rti, .hsh or a folder with info.json",
         path);
 }
@@ -240,8 +240,9 @@ static relume_status make_coder(struct material *m, const char *path,
         .parameter = {grid ? f->functions.resolution : f->functions.sigma},
     };
     if (joint && f->terms > 3 * m->lights)
-        return log_fail(p->log, RELUME_EDATA, "%s: %d planes; expected at most three per light, %d",
-                        path, f->terms, 3 * m->lights);
+        return log_fail(p->log, RELUME_ELIMIT,
+                        "%s: %d planes; expected at most three per light, %d", path, f->terms,
+                        3 * m->lights);
     relume_status status = joint ? copy_functions(m) : match_functions(m, &params);
     params.transform = m->transform;
     params.mean = m->mean;

@@ -50,10 +50,10 @@ static relume_status out_of_reach(const struct trial *t, const struct export *e,
 {
     const struct relume_export_params *p = e->params;
     if (p->psnr_db > 0.0)
-        return log_fail(e->log, RELUME_EDATA,
+        return log_fail(e->log, RELUME_EUNFIT,
                         "%s: %g dB cannot be reached in this format; the best is %.2f dB", path,
                         p->psnr_db, t->psnr_db);
-    return log_fail(e->log, RELUME_EDATA,
+    return log_fail(e->log, RELUME_EUNFIT,
                     "%s: %g bytes a pixel is too small; the smallest possible is %.3f", path,
                     p->bytes_per_pixel, t->bytes_per_pixel);
 }
@@ -107,7 +107,7 @@ relume_status legacy_check_jpeg(const struct export *e, const char *path,
     if (format == RELUME_EXCHANGE_RTI)
         return log_fail(e->log, RELUME_EINVAL, "quality: .rti cannot hold JPEG; use ptm or lptm");
     if (codes->width > JPEG_MOST_SIDE || codes->height > JPEG_MOST_SIDE)
-        return log_fail(e->log, RELUME_EDATA, "%s: %d x %d pixels; expected at most %d for JPEG",
+        return log_fail(e->log, RELUME_ELIMIT, "%s: %d x %d pixels; expected at most %d for JPEG",
                         path, codes->width, codes->height, JPEG_MOST_SIDE);
     return RELUME_OK;
 }

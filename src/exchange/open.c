@@ -135,7 +135,7 @@ static relume_status picture(const char *path, const char *out, const struct rel
     if (status)
         return status;
     if (!notes.floats)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EFORMAT,
                         "%s: one photograph under one light cannot be relit; expected the .lp file "
                         "or the folder of all of them, or 'relume capture PHOTO... -o DIR' first",
                         path);
@@ -146,14 +146,14 @@ static relume_status unknown(const char *path, const struct relume_open_params *
 {
     struct stat s;
     if (stat(path, &s))
-        return log_fail(p->log, RELUME_EDATA, "%s: no such file; expected a relume file", path);
+        return log_fail(p->log, RELUME_ENOTFOUND, "%s: no such file; expected a relume file", path);
     if (!S_ISDIR(s.st_mode))
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EFORMAT,
                         "%s: relume cannot open this; expected a relume file (.exr), .ptm, .rti, "
                         ".hsh, a web folder, a capture (.lp, capture.json) or an HDR picture",
                         path);
     return log_fail(
-        p->log, RELUME_EDATA,
+        p->log, RELUME_EFORMAT,
         "%s: a folder without capture.json, info.json or a single .lp file; if it holds "
         "photographs, make a capture of them first: relume capture %s -o DIR",
         path, path);

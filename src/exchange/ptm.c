@@ -13,7 +13,7 @@ const int ptm_term_of_place[PTM_TERMS] = {3, 5, 4, 1, 2, 0};
 
 relume_status ptm_wrong(const struct ptm_header *h, const char *what, const char *expected)
 {
-    return log_fail(h->log, RELUME_EDATA, "%s: %s; expected %s", h->path, what, expected);
+    return log_fail(h->log, RELUME_EFORMAT, "%s: %s; expected %s", h->path, what, expected);
 }
 
 static relume_status read_format(struct ptm_header *h, struct bytes *b)
@@ -41,7 +41,7 @@ static relume_status read_format(struct ptm_header *h, struct bytes *b)
             h->jpeg = formats[i].jpeg;
             return RELUME_OK;
         }
-    return log_fail(h->log, RELUME_EDATA,
+    return log_fail(h->log, RELUME_EUNSUPPORTED,
                     "%s: format %.40s is not supported; expected PTM_FORMAT_RGB, LRGB, JPEG_RGB or "
                     "JPEG_LRGB",
                     h->path, word);
@@ -125,13 +125,13 @@ static relume_status read_raw(struct foreign *f, const struct ptm_header *h, str
     if (!bytes_line_end(b))
         return ptm_wrong(h, "bias", "six whole numbers and the end of the line");
     if (!limits_allow(h->limits, h->width, h->height))
-        return log_fail(h->log, RELUME_EDATA,
+        return log_fail(h->log, RELUME_ELIMIT,
                         "%s: claims %ld x %ld pixels; expected sizes from 1 within the limits",
                         h->path, h->width, h->height);
     const size_t need =
         (size_t)h->width * (size_t)h->height * (h->luminance ? PTM_TERMS + 3 : 3 * PTM_TERMS);
     if (b->size - b->at < need)
-        return log_fail(h->log, RELUME_EDATA,
+        return log_fail(h->log, RELUME_EDAMAGED,
                         "%s: truncated; expected %zu bytes of pixels, found %zu", h->path, need,
                         b->size - b->at);
     const relume_status status = ptm_create(f, h);

@@ -4,7 +4,7 @@
 
 #include "foreign/foreign.h"
 
-// PTM_FORMAT_RGB, LRGB, JPEG_RGB and JPEG_LRGB. RELUME_EDATA with a sentence.
+// PTM_FORMAT_RGB, LRGB, JPEG_RGB and JPEG_LRGB. An input status with a sentence.
 relume_status ptm_read(struct foreign *out, const char *path, const struct relume_limits *limits,
                        const struct relume_log *log);
 

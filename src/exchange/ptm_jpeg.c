@@ -63,8 +63,8 @@ static relume_status read_jpeg_table(const struct ptm_header *h, struct bytes *b
         j->bytes[i] = bytes_take(b, (size_t)j->field[PTM_BYTES][i]);
         j->side[i] = j->bytes[i] ? bytes_take(b, (size_t)j->field[PTM_SIDE_BYTES][i]) : NULL;
         if (!j->side[i])
-            return log_fail(h->log, RELUME_EDATA, "%s: truncated in plane %d of %d", h->path, i + 1,
-                            j->count);
+            return log_fail(h->log, RELUME_EDAMAGED, "%s: truncated in plane %d of %d", h->path,
+                            i + 1, j->count);
     }
     return RELUME_OK;
 }
@@ -110,7 +110,7 @@ static relume_status read_jpeg_plane(const struct foreign *f, const struct ptm_h
     const int plane = ptm_plane(h->luminance, i);
     const long r = j->field[PTM_REFERENCE][i];
     if (codes.planes != 1 || codes.width != f->width || codes.height != f->height)
-        status = log_fail(h->log, RELUME_EDATA,
+        status = log_fail(h->log, RELUME_EDAMAGED,
                           "%s: %d x %d pixels, %d components; expected %d x %d and 1", name,
                           codes.width, codes.height, codes.planes, f->width, f->height);
     for (int y = 0; !status && y < f->height; y++) {

@@ -23,7 +23,7 @@ struct ptm_header {
     long bias[PTM_TERMS];
 };
 
-// RELUME_EDATA and "PATH: what; expected ...".
+// An input status and "PATH: what; expected ...".
 relume_status ptm_wrong(const struct ptm_header *h, const char *what, const char *expected);
 // Space for the header's picture, with its scales and offsets.
 relume_status ptm_create(struct foreign *f, const struct ptm_header *h);

@@ -23,7 +23,7 @@ struct header {
 
 static relume_status wrong(const struct header *h, const char *what, const char *expected)
 {
-    return log_fail(h->log, RELUME_EDATA, "%s: %s; expected %s", h->path, what, expected);
+    return log_fail(h->log, RELUME_EFORMAT, "%s: %s; expected %s", h->path, what, expected);
 }
 
 static relume_status read_text(struct header *h, struct bytes *b)
@@ -33,7 +33,7 @@ static relume_status read_text(struct header *h, struct bytes *b)
     if (!bytes_integer(b, &kind))
         return wrong(h, "not a relightable image", "comments, then 3 for HSH");
     if (kind != KIND_HSH)
-        return log_fail(h->log, RELUME_EDATA,
+        return log_fail(h->log, RELUME_EUNSUPPORTED,
                         "%s: kind %ld is not supported; expected 3, hemispherical harmonics",
                         h->path, kind);
     if (!bytes_integer(b, &h->width) || !bytes_integer(b, &h->height) ||
@@ -44,8 +44,8 @@ static relume_status read_text(struct header *h, struct bytes *b)
     if (channels != 3 || colour != COLOUR_RGB || size != 1)
         return wrong(h, "layout", "3 channels, colour type 2, elements of 1 byte");
     if (terms < 1 || terms > MOST_TERMS || !functions_has_count(FUNCTIONS_HSH, (int)terms))
-        return log_fail(h->log, RELUME_EDATA, "%s: %ld terms; expected 1, 4, 9 or 16", h->path,
-                        terms);
+        return log_fail(h->log, RELUME_EUNSUPPORTED, "%s: %ld terms; expected 1, 4, 9 or 16",
+                        h->path, terms);
     h->terms = (int)terms;
     return bytes_line_end(b) ? RELUME_OK : wrong(h, "layout", "the end of the line");
 }
@@ -73,14 +73,14 @@ static relume_status read_ranges(struct header *h, struct bytes *b, bool old)
 static relume_status read_codes(struct foreign *f, const struct header *h, struct bytes *b)
 {
     if (!limits_allow(h->limits, h->width, h->height))
-        return log_fail(h->log, RELUME_EDATA,
+        return log_fail(h->log, RELUME_ELIMIT,
                         "%s: claims %ld x %ld pixels; expected sizes from 1 within the limits",
                         h->path, h->width, h->height);
     const size_t terms = (size_t)h->terms;
     const size_t pixels = (size_t)h->width * (size_t)h->height, need = pixels * 3 * terms;
     const uint8_t *from = bytes_take(b, need);
     if (!from)
-        return log_fail(h->log, RELUME_EDATA,
+        return log_fail(h->log, RELUME_EDAMAGED,
                         "%s: truncated; expected %zu bytes of pixels, found %zu", h->path, need,
                         b->size - b->at);
     f->form = FOREIGN_CHANNELS;

@@ -4,7 +4,7 @@
 
 #include "foreign/foreign.h"
 
-// RELUME_EDATA with a sentence. `old`: the header's numbers are (min, max), not (scale, min).
+// An input status with a sentence. `old`: the header's numbers are (min, max), not (scale, min).
 relume_status rti_read(struct foreign *out, const char *path, bool old,
                        const struct relume_limits *limits, const struct relume_log *log);
 

@@ -101,7 +101,7 @@ relume_status still_write(const char *path, const char *out,
         &image, NULL, path, relume_photograph_params(.log = params->log, .limits = params->limits));
     if (!status && params->sphere && image.width != 2 * image.height)
         status =
-            log_fail(params->log, RELUME_EDATA,
+            log_fail(params->log, RELUME_EUNFIT,
                      "%s: %d x %d pixels; a picture of all directions is twice as wide as high",
                      path, image.width, image.height);
     if (!status)

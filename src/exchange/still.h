@@ -4,7 +4,7 @@
 
 #include <relume/exchange.h>
 
-// `path`, a float picture, as one view under one light into the relume file `out`. RELUME_EDATA
+// `path`, a float picture, as one view under one light into the relume file `out`. An input status
 // with a sentence, also for a picture that is no sphere where `params` want one.
 relume_status still_write(const char *path, const char *out,
                           const struct relume_open_params *params);

@@ -11,7 +11,7 @@ relume_status tiles_write(const struct web_folder *w, double step, const char *p
                           const struct relume_log *log);
 
 // Put plane `image` of such a folder together again from the tiles of its finest level. Pyramids
-// that begin with one pixel are read as well. RELUME_EDATA with a sentence, RELUME_ENOMEM.
+// that begin with one pixel are read as well. An input status with a sentence, RELUME_ENOMEM.
 relume_status tiles_read(struct jpeg_codes *out, const char *folder, int image,
                          const struct relume_limits *limits, const struct relume_log *log);
 

@@ -68,15 +68,16 @@ static relume_status parse(struct pyramid *p, const char *path, const char *text
         !get_whole(text, "Overlap", 0, p->tile, &p->overlap) ||
         !get_whole(text, "Width", 1, 1 << 20, &p->width) ||
         !get_whole(text, "Height", 1, 1 << 20, &p->height))
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EFORMAT,
                         "%s: not a DeepZoom description; expected TileSize, Overlap, Width and "
                         "Height",
                         path);
     if (!get_attribute(text, "Format", p->suffix) ||
         (strcmp(p->suffix, "jpg") && strcmp(p->suffix, "jpeg")))
-        return log_fail(p->log, RELUME_EDATA, "%s: tiles of another format; expected jpg", path);
+        return log_fail(p->log, RELUME_EUNSUPPORTED, "%s: tiles of another format; expected jpg",
+                        path);
     if (!limits_allow(p->limits, p->width, p->height))
-        return log_fail(p->log, RELUME_EDATA, "%s: %d x %d pixels are over the limits", path,
+        return log_fail(p->log, RELUME_ELIMIT, "%s: %d x %d pixels are over the limits", path,
                         p->width, p->height);
     return RELUME_OK;
 }
@@ -87,7 +88,7 @@ static relume_status read_description(struct pyramid *p)
     char *path = mem_format("%s/plane_%d.dzi", p->folder, p->image);
     relume_status status = path ? bytes_load(&b, path, p->log) : RELUME_ENOMEM;
     if (!status && b.size > MOST_DZI)
-        status = log_fail(p->log, RELUME_EDATA, "%s: too long for a DeepZoom description", path);
+        status = log_fail(p->log, RELUME_EFORMAT, "%s: too long for a DeepZoom description", path);
     char *text = status ? NULL : mem_format("%.*s", (int)b.size, (const char *)b.data);
     if (!status)
         status = text ? parse(p, path, text) : RELUME_ENOMEM;
@@ -135,7 +136,7 @@ static relume_status find_tiles(struct pyramid *p)
             continue;
         char *path = there < 0 ? NULL : tile_path(p, p->level, i % columns, i / columns);
         const relume_status status =
-            path ? log_fail(p->log, RELUME_EDATA, "%s: no such tile; expected %d x %d of them",
+            path ? log_fail(p->log, RELUME_ENOTFOUND, "%s: no such tile; expected %d x %d of them",
                             path, columns, rows)
                  : RELUME_ENOMEM;
         free(path);
@@ -154,7 +155,7 @@ static relume_status place_tile(const struct pyramid *p, int column, int row,
     const int width = least(right + p->overlap, p->width) - left;
     const int height = least(bottom + p->overlap, p->height) - top;
     if (tile->width != width || tile->height != height || tile->planes != 3)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EDAMAGED,
                         "%s: %d x %d pixels, %d components; expected %d x %d and 3", path,
                         tile->width, tile->height, tile->planes, width, height);
     for (size_t c = 0; c < 3; c++)

@@ -36,7 +36,7 @@ struct folder {
 
 static relume_status wrong(const struct folder *w, const char *what, const char *expected)
 {
-    return log_fail(w->log, RELUME_EDATA, "%s: %s; expected %s", w->info, what, expected);
+    return log_fail(w->log, RELUME_EFORMAT, "%s: %s; expected %s", w->info, what, expected);
 }
 
 static bool find_name(const char *name, const char *const *names, int count, int *index)
@@ -220,7 +220,8 @@ static relume_status read_basis_file(struct folder *w, size_t size)
     if (!status)
         status = bytes_load(&b, path, w->log);
     if (!status && b.size != size)
-        status = log_fail(w->log, RELUME_EDATA, "%s: %zu bytes; expected %zu", path, b.size, size);
+        status =
+            log_fail(w->log, RELUME_EDAMAGED, "%s: %zu bytes; expected %zu", path, b.size, size);
     for (size_t i = 0; !status && i < size; i++)
         w->basis[i] = b.data[i];
     bytes_free(&b);
@@ -239,8 +240,8 @@ static relume_status read_basis(struct folder *w)
     if (!basis)
         return read_basis_file(w, size);
     if (!counted || !jvalue_numbers(basis, w->basis, size))
-        return log_fail(w->log, RELUME_EDATA, "%s: basis; expected %zu numbers, found %zu", w->info,
-                        size, jvalue_count(basis));
+        return log_fail(w->log, RELUME_EFORMAT, "%s: basis; expected %zu numbers, found %zu",
+                        w->info, size, jvalue_count(basis));
     for (size_t i = 0; i < size; i++)
         if (w->basis[i] < 0.0 || w->basis[i] > 255.0)
             return wrong(w, "basis", "numbers from 0 to 255");
@@ -356,7 +357,7 @@ static relume_status read_jpeg(struct folder *w, int image, struct jpeg_codes *c
                                               : jpeg_read(codes, path, w->limits, w->log);
     if (!status &&
         (codes->width != w->f->width || codes->height != w->f->height || codes->planes != 3))
-        status = log_fail(w->log, RELUME_EDATA,
+        status = log_fail(w->log, RELUME_EDAMAGED,
                           "%s: %d x %d pixels, %d components; expected %d x %d and 3", path,
                           codes->width, codes->height, codes->planes, w->f->width, w->f->height);
     free(path);

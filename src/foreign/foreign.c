@@ -12,7 +12,7 @@ relume_status foreign_create(struct foreign *f, const char *path, long width, lo
                              const struct relume_log *log)
 {
     if (!limits_allow(limits, width, height))
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_ELIMIT,
                         "%s: claims %ld x %ld pixels; expected sizes from 1 within the limits",
                         path, width, height);
     f->width = (int)width;

@@ -31,7 +31,7 @@ struct foreign {
     float *scale, *offset;  // [planes]: C = code * scale + offset, 1 is white
 };
 
-// Space for `planes` planes. RELUME_EDATA with a sentence when the size is over the limits.
+// Space for `planes` planes. RELUME_ELIMIT with a sentence when the size is over the limits.
 relume_status foreign_create(struct foreign *f, const char *path, long width, long height,
                              int planes, const struct relume_limits *limits,
                              const struct relume_log *log);

@@ -123,12 +123,12 @@ static relume_status check_slabs(const struct evaluator *e)
 {
     const struct relume_manifest *m = e->manifest;
     if (m->slabs != e->info->slabs)
-        return log_fail(e->params.log, RELUME_EDATA, "%s: %d slabs; expected %d as in the file",
+        return log_fail(e->params.log, RELUME_EUNFIT, "%s: %d slabs; expected %d as in the file",
                         e->params.capture, m->slabs ? m->slabs : 1,
                         e->info->slabs ? e->info->slabs : 1);
     for (int i = 0; i < m->slabs; i++)
         if (!same_slab(&m->slab[i], &e->info->slab[i]))
-            return log_fail(e->params.log, RELUME_EDATA,
+            return log_fail(e->params.log, RELUME_EUNFIT,
                             "%s: slab %d is at another place than in the file; expected the same "
                             "planes and pose",
                             e->params.capture, i);
@@ -167,7 +167,7 @@ static relume_status load_ahead(struct evaluator *e, int count)
     thread_for(e->params.threads, (size_t)count, load_image, e);
     for (int i = 0; i < count; i++) {
         relume_status status = e->status[i];
-        if (status == RELUME_EDATA)
+        if (relume_status_is_input(status))
             status = relume_capture_image(&e->image[i], e->capture, e->view, e->first + i,
                                           e->params.log);
         if (status)
@@ -265,14 +265,14 @@ static relume_status check_fit(const struct evaluator *e)
     const struct relume_log *log = e->params.log;
     const char *name = e->params.capture;
     if (width != e->info->width || height != e->info->height)
-        return log_fail(log, RELUME_EDATA, "%s: %d x %d pixels; expected %d x %d as in the file",
+        return log_fail(log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d as in the file",
                         name, width, height, e->info->width, e->info->height);
     if (theirs != ours)
-        return log_fail(log, RELUME_EDATA, "%s: a %s capture; expected %s as in the file", name,
+        return log_fail(log, RELUME_EUNFIT, "%s: a %s capture; expected %s as in the file", name,
                         relume_projection_name(theirs), relume_projection_name(ours));
     if (ours != RELUME_SLAB && e->manifest->views > e->info->views)
-        return log_fail(log, RELUME_EDATA, "%s: %d views; expected at most %d as in the file", name,
-                        e->manifest->views, e->info->views);
+        return log_fail(log, RELUME_EUNFIT, "%s: %d views; expected at most %d as in the file",
+                        name, e->manifest->views, e->info->views);
     return ours == RELUME_SLAB ? check_slabs(e) : RELUME_OK;
 }
 

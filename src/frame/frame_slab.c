@@ -35,7 +35,7 @@ static relume_status draw(relume_renderer *r, const struct relume_camera *camera
         camera->framing == RELUME_FRAME_EYE ? camera->eye : relume_slab_middle(r->slab);
     const bool by_depth = renderer_takes_depth(r);
     if (relume_slab_needs(r->needed, r->slab, eye, &r->view) == 0)
-        return log_fail(r->params.log, RELUME_EDATA,
+        return log_fail(r->params.log, RELUME_EUNFIT,
                         "the eye (%g, %g, %g) sees nothing of the slab; move it so that it looks "
                         "at the object through the camera grid",
                         eye.x, eye.y, eye.z);

@@ -47,7 +47,7 @@ relume_status frame_around(relume_renderer *r, const struct relume_camera *camer
     if (status)
         return status;
     if (relume_slab_set_needs(r->needed, r->slabs, &window, camera->width, &r->view) == 0)
-        return log_fail(r->params.log, RELUME_EDATA,
+        return log_fail(r->params.log, RELUME_EUNFIT,
                         "the eye (%g, %g, %g) sees nothing of the slabs; move it so that it "
                         "looks at the object through a camera grid",
                         window.eye.x, window.eye.y, window.eye.z);

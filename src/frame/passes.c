@@ -70,7 +70,7 @@ static relume_status find_photograph(struct relume_image *out, const struct relu
                         "the pass difference needs --capture and exactly one directional light");
     if (relume_capture_width(capture) != info->width ||
         relume_capture_height(capture) != info->height)
-        return log_fail(params->log, RELUME_EDATA,
+        return log_fail(params->log, RELUME_EUNFIT,
                         "the capture's images are %d x %d; expected %d x %d",
                         relume_capture_width(capture), relume_capture_height(capture), info->width,
                         info->height);

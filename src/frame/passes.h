@@ -5,7 +5,7 @@
 #include <relume/frame.h>
 
 // Replace `image`, view number `view` of `pack` relit by `lights`, by what params->pass shows of
-// it. RELUME_EINVAL, RELUME_EDATA with a sentence, RELUME_ENOMEM, RELUME_ECANCEL.
+// it. RELUME_EINVAL, RELUME_EUNFIT with a sentence, RELUME_ENOMEM, RELUME_ECANCEL.
 relume_status passes_apply(struct relume_image *image, relume_pack *pack, int view,
                            const struct relume_codes *codes, const struct relume_light *lights,
                            int n, const struct relume_frame_params *params);

@@ -195,7 +195,7 @@ relume_status relume_renderer_rays(float (*rgb)[3], relume_renderer *r,
             status = r->texels;
         if (!status && q.none && n == 1)
             status =
-                log_fail(r->params.log, RELUME_EDATA, "this ray is not in the file; %s", q.none);
+                log_fail(r->params.log, RELUME_EUNFIT, "this ray is not in the file; %s", q.none);
         else if (!status && q.none)
             rgb[i][0] = rgb[i][1] = rgb[i][2] = NAN;
         if (!status && i % 4096 == 4095 && !log_progress(r->params.log, "looking", (double)i / n))

@@ -232,7 +232,7 @@ relume_status relume_renderer_set_rig(relume_renderer *r, relume_rig *rig)
 relume_status renderer_check_depth(const relume_renderer *r)
 {
     if (r->view.interpolation == RELUME_INTERPOLATE_DEPTH && !r->info->has_depth)
-        return log_fail(r->params.log, RELUME_EDATA,
+        return log_fail(r->params.log, RELUME_EUNFIT,
                         "interpolation by depth needs a file with depth; use --interpolate linear");
     return RELUME_OK;
 }
@@ -251,9 +251,9 @@ bool renderer_takes_depth(const relume_renderer *r)
 
 static relume_status no_grid(const relume_renderer *r, relume_status status, const char *slab)
 {
-    return status == RELUME_EINVAL
-               ? log_fail(r->params.log, RELUME_EDATA, "the cameras of %s do not form a grid", slab)
-               : status;
+    return status == RELUME_EINVAL ? log_fail(r->params.log, RELUME_EUNFIT,
+                                              "the cameras of %s do not form a grid", slab)
+                                   : status;
 }
 
 relume_status renderer_need_slab(relume_renderer *r)
@@ -316,7 +316,7 @@ static relume_status find_positions(relume_renderer *r, int view, bool backgroun
         status = relume_view_positions(out, relume_pack_geometry(r->pack, view), r->info->uv[view],
                                        depth.data ? &depth : NULL, r->info->width, r->info->height);
     if (status == RELUME_EINVAL)
-        status = log_fail(r->params.log, RELUME_EDATA,
+        status = log_fail(r->params.log, RELUME_EUNFIT,
                           "%s; use a file with depth, or "
                           "--assume-depth D",
                           asks);
@@ -359,7 +359,7 @@ relume_status renderer_need_disparity(relume_renderer *r, int view)
     if (!status)
         status = relume_slab_disparity(&r->disparity[view], slab, r->info->uv[view], &depth);
     if (status == RELUME_EINVAL)
-        status = log_fail(r->params.log, RELUME_EDATA,
+        status = log_fail(r->params.log, RELUME_EUNFIT,
                           "view %d has no depth; expected depth in all views or in none", view);
     relume_image_destroy(&depth);
     return status;

@@ -141,7 +141,7 @@ relume_status agreement(struct relume_exposure_report *report, const struct relu
     free(t);
     free(s);
     return status || resolved ? status
-                              : log_fail(params->log, RELUME_EDATA,
+                              : log_fail(params->log, RELUME_EUNFIT,
                                          "no exposure shows anything but black and saturated "
                                          "pixels; expected a picture");
 }

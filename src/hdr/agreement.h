@@ -4,7 +4,7 @@
 
 #include <relume/response.h>
 
-// Fills report[n] (or NULL). RELUME_EDATA when no exposure resolves any pixel, RELUME_ENOMEM.
+// Fills report[n] (or NULL). RELUME_EUNFIT when no exposure resolves any pixel, RELUME_ENOMEM.
 relume_status agreement(struct relume_exposure_report *report, const struct relume_image *codes,
                         const double *exposures, int n, const struct relume_response *response,
                         const struct relume_merge_params *params);

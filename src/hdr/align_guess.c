@@ -56,7 +56,7 @@ relume_status align_guess(struct relume_homography *out, const struct relume_ima
     if (!status) {
         status = relume_align_homography(out, &small[0], &small[1],
                                          relume_align_params(.threads = threads));
-        if (status == RELUME_EDATA || status == RELUME_EINVAL) {  // nothing to see, or too small
+        if (status == RELUME_EUNFIT || status == RELUME_EINVAL) {  // nothing to see, or too small
             out->correlation = 0.0;
             status = RELUME_OK;
         }

@@ -329,7 +329,7 @@ relume_status relume_align_homography(struct relume_homography *out,
     pyramid_free(&a);
     pyramid_free(&b);
     if (!status && !(out->correlation > least_correlation))
-        status = log_fail(p.log, RELUME_EDATA,
+        status = log_fail(p.log, RELUME_EUNFIT,
                           "alignment: the pictures have nothing in common (correlation %.2f)",
                           out->correlation);
     if (!status)

@@ -250,14 +250,14 @@ static relume_status solve(double *g, const struct channel *ch, double smoothnes
         seen += e.has[z];
     relume_status status = RELUME_OK;
     if (seen < LEAST_CODES)
-        status = log_fail(log, RELUME_EDATA,
+        status = log_fail(log, RELUME_EUNFIT,
                           "the %s channel shows %d code values in two exposures at once; expected "
                           "%d or more: is all saturated, or are the exposures too far apart?",
                           names[ch->c], seen, LEAST_CODES);
     if (!status) {
         add_smoothness(&e, ch, smoothness * sqrt(e.rows / rows_of_paper));
         if (!lsq_solve(e.matrix, N, g, 1))
-            status = log_fail(log, RELUME_EDATA,
+            status = log_fail(log, RELUME_EUNFIT,
                               "the %s response is not determined; expected "
                               "exposures that overlap",
                               names[ch->c]);
@@ -354,7 +354,7 @@ static relume_status check(const struct relume_image *codes, const double *expos
     if (codes->width < 8 || codes->height < 8)
         return log_fail(log, RELUME_EINVAL, "a response needs pictures of 8 x 8 pixels or more");
     if (high < same_exposure * low)
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_EUNFIT,
                         "all %d exposures are of %g; expected at least two different ones", n,
                         high);
     return RELUME_OK;

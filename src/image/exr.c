@@ -328,13 +328,13 @@ static relume_status check_bytes(const exr_file *file, const struct relume_limit
         const uint64_t planes = (uint64_t)part.channels;
         const uint64_t bytes = (uint64_t)part.width * (uint64_t)part.height * planes * 4;
         if (bytes > always && bytes / ratio > size)
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_EDAMAGED,
                             "%s: part %d claims %d x %d pixels of %d channels in %llu bytes; "
                             "damaged, or made to fill memory",
                             file->path, i, part.width, part.height, part.channels,
                             (unsigned long long)size);
         if (bytes > most)
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_ELIMIT,
                             "%s: part %d of %d x %d pixels and %d channels takes %llu MB; expected "
                             "at most %llu MB (--max-memory)",
                             file->path, i, part.width, part.height, part.channels,
@@ -349,22 +349,22 @@ static relume_status check_parts(const exr_file *file, const struct relume_limit
 {
     const int count = exr_part_count(file);
     if (count < 1)
-        return log_fail(log, RELUME_EDATA, "%s: no parts; expected an EXR image", file->path);
+        return log_fail(log, RELUME_EFORMAT, "%s: no parts; expected an EXR image", file->path);
     for (int i = 0; i < count; i++) {
         exr_storage_t storage;
         const exr_attr_chlist_t *channels;
         exr_attr_box2i_t box;
         if (exr_get_storage(file->exr, i, &storage) || storage != EXR_STORAGE_SCANLINE)
-            return log_fail(log, RELUME_EDATA, "%s: part %d is tiled or deep; expected scanlines",
-                            file->path, i);
+            return log_fail(log, RELUME_EUNSUPPORTED,
+                            "%s: part %d is tiled or deep; expected scanlines", file->path, i);
         if (exr_get_channels(file->exr, i, &channels) || channels->num_channels < 1)
-            return log_fail(log, RELUME_EDATA, "%s: part %d has no channels", file->path, i);
+            return log_fail(log, RELUME_EDAMAGED, "%s: part %d has no channels", file->path, i);
         if (exr_get_data_window(file->exr, i, &box))
-            return log_fail(log, RELUME_EDATA, "%s: part %d has no data window", file->path, i);
+            return log_fail(log, RELUME_EDAMAGED, "%s: part %d has no data window", file->path, i);
         const int64_t width = (int64_t)box.max.x - box.min.x + 1;
         const int64_t height = (int64_t)box.max.y - box.min.y + 1;
         if (!limits_allow(limits, width, height))
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_ELIMIT,
                             "%s: part %d is %lld x %lld pixels; expected sizes within the limits",
                             file->path, i, (long long)width, (long long)height);
     }
@@ -382,7 +382,7 @@ static relume_status check_ends(const exr_file *file, const struct relume_log *l
         if (exr_get_data_window(file->exr, i, &box) ||
             exr_read_scanline_chunk_info(file->exr, i, box.max.y, &last) ||
             last.data_offset > size || last.packed_size > size - last.data_offset)
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_EDAMAGED,
                             "%s: truncated or damaged in part %d; expected %d rows", file->path, i,
                             box.max.y - box.min.y + 1);
     }
@@ -392,11 +392,8 @@ static relume_status check_ends(const exr_file *file, const struct relume_log *l
 static relume_status start_read(exr_file *file, const struct relume_limits *limits,
                                 const struct relume_log *log)
 {
-    const struct relume_limits l = limits_or_default(limits);
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn = ignore_error;
-    init.max_image_width = l.max_side;
-    init.max_image_height = l.max_side;
     init.user_data = file;
     init.read_fn = read_stream;
     init.size_fn = stream_size;
@@ -404,7 +401,8 @@ static relume_status start_read(exr_file *file, const struct relume_limits *limi
     if (r == EXR_ERR_OUT_OF_MEMORY)
         return RELUME_ENOMEM;
     if (r)
-        return log_fail(log, RELUME_EDATA, "%s: cannot be read as OpenEXR; %s", file->path,
+        return log_fail(log, r == EXR_ERR_FILE_BAD_HEADER ? RELUME_EFORMAT : RELUME_EDAMAGED,
+                        "%s: cannot be read as OpenEXR; %s", file->path,
                         exr_get_default_error_message(r));
     return check_parts(file, limits, log);
 }
@@ -592,7 +590,7 @@ static bool find_layout(struct layout *out, const exr_file *file, int part)
     return true;
 }
 
-// The block of number `item`. RELUME_EDATA: truncated or damaged; RELUME_ENOMEM.
+// The block of number `item`. RELUME_EDAMAGED: truncated or damaged; RELUME_ENOMEM.
 static relume_status decode(struct block *out, const struct layout *l,
                             exr_decode_pipeline_t *pipeline, size_t item)
 {
@@ -612,7 +610,7 @@ static relume_status decode(struct block *out, const struct layout *l,
     if (!e)
         e = exr_decoding_run(exr, l->part, pipeline);
     if (e)
-        return e == EXR_ERR_OUT_OF_MEMORY ? RELUME_ENOMEM : RELUME_EDATA;
+        return e == EXR_ERR_OUT_OF_MEMORY ? RELUME_ENOMEM : RELUME_EDAMAGED;
     out->row = chunk.start_y - l->first_row;
     out->rows = chunk.height;
     return RELUME_OK;
@@ -646,7 +644,7 @@ relume_status exr_read(const exr_file *file, int part, int threads,
     threads = thread_count(threads);
     struct reading r = {.sink = sink, .context = context};
     if (!find_layout(&r.layout, file, part))
-        return log_fail(log, RELUME_EDATA, "%s: part %d is broken", file->path, part);
+        return log_fail(log, RELUME_EDAMAGED, "%s: part %d is broken", file->path, part);
     r.pipelines = mem_zeroed((size_t)threads, sizeof *r.pipelines);
     if (!r.pipelines)
         return RELUME_ENOMEM;
@@ -656,8 +654,8 @@ relume_status exr_read(const exr_file *file, int part, int threads,
         exr_decoding_destroy(file->exr, &r.pipelines[i]);
     free(r.pipelines);
     const relume_status status = (relume_status)atomic_load(&r.status);
-    if (status == RELUME_EDATA)
-        return log_fail(log, RELUME_EDATA,
+    if (status == RELUME_EDAMAGED)
+        return log_fail(log, RELUME_EDAMAGED,
                         "%s: truncated or damaged in part '%s'; expected %d rows", file->path,
                         exr_part_info(file, part).name, r.layout.height);
     return status;
@@ -675,7 +673,7 @@ static void try_block(void *context, size_t item, int worker)
     struct finding *f = context;
     struct block block = {0};
     const relume_status status = decode(&block, &f->layout, &f->pipelines[worker], item);
-    f->damaged[item] = status == RELUME_EDATA;
+    f->damaged[item] = status == RELUME_EDAMAGED;
     if (status == RELUME_ENOMEM)
         atomic_store(&f->short_of_memory, true);
 }
@@ -700,7 +698,7 @@ relume_status exr_find_damage(const exr_file *file, int part, int threads,
     threads = thread_count(threads);
     struct finding f = {0};
     if (!find_layout(&f.layout, file, part))
-        return log_fail(log, RELUME_EDATA, "%s: part %d is broken", file->path, part);
+        return log_fail(log, RELUME_EDAMAGED, "%s: part %d is broken", file->path, part);
     const size_t height = (size_t)f.layout.height, rows = (size_t)f.layout.block_rows;
     const size_t blocks = (height + rows - 1) / rows;
     f.pipelines = mem_zeroed((size_t)threads, sizeof *f.pipelines);
@@ -731,7 +729,7 @@ relume_status exr_blocks_open(exr_blocks **out, const exr_file *file, int part)
         return RELUME_ENOMEM;
     if (!find_layout(&b->layout, file, part)) {
         free(b);
-        return RELUME_EDATA;
+        return RELUME_EDAMAGED;
     }
     *out = b;
     return RELUME_OK;

@@ -44,8 +44,8 @@ relume_status exr_write(const char *path, const struct relume_writer *writer,
 // An open file. Thread-safety: reading is safe.
 typedef struct exr_file exr_file;
 
-// The file `path`, or what `from` reads (infile.h). RELUME_EDATA with a sentence when it is not a
-// readable scanline EXR within the limits.
+// The file `path`, or what `from` reads (infile.h). An input status with a sentence when it is not
+// a readable scanline EXR within the limits.
 relume_status exr_open(exr_file **out, const char *path, const struct relume_reader *from,
                        const struct relume_limits *limits, const struct relume_log *log);
 // The same for those who look for damage: blocks may be missing.
@@ -76,7 +76,7 @@ const char *exr_get_text(const exr_file *file, int part, const char *name);
 const float *exr_get_floats(const exr_file *file, int part, const char *name, int *count);
 
 // Hand every block of rows of a part to `sink` (from several threads, any order).
-// RELUME_EDATA when the file is truncated or broken.
+// An input status when the file is truncated or broken.
 relume_status exr_read(const exr_file *file, int part, int threads,
                        void (*sink)(void *context, int row, int rows, const void *samples),
                        void *context, const struct relume_log *log);
@@ -91,7 +91,7 @@ relume_status exr_find_damage(const exr_file *file, int part, int threads,
 typedef struct exr_blocks exr_blocks;
 // `file` must outlive it. RELUME_ENOMEM.
 relume_status exr_blocks_open(exr_blocks **out, const exr_file *file, int part);
-// samples[channel][x] of a row, until the next call. RELUME_EDATA where the file is truncated or
+// samples[channel][x] of a row, until the next call. An input status where the file is truncated or
 // damaged, RELUME_ENOMEM.
 relume_status exr_blocks_row(exr_blocks *blocks, int row, const void **samples);
 void exr_blocks_close(exr_blocks **blocks);

@@ -41,13 +41,13 @@ relume_status relume_falloff_fit(struct relume_falloff *out, const struct relume
             }
         }
     if (!lsq_solve(gram, 4, b, 1) || !(b[0] > 0.0))
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_EUNFIT,
                         "the flat field is black or too small; expected an evenly lit surface");
     for (int i = 0; i < 3; i++)
         out->k[i] = b[i + 1] / b[0];
     for (int i = 0; i <= 100; i++)
         if (!(polynomial(out->k, i / 100.0) >= least))
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_EUNFIT,
                             "the flat field falls below %g of its centre; expected an evenly lit "
                             "surface",
                             least);
@@ -125,7 +125,7 @@ relume_status relume_flat_divide(struct relume_image *image, const struct relume
         image->data[i] *= (float)(mean[i % 3] / (double)even.data[i]);
     relume_image_destroy(&even);
     return lowest > 0.0f ? RELUME_OK
-                         : log_fail(log, RELUME_EDATA,
+                         : log_fail(log, RELUME_EUNFIT,
                                     "the flat field is black somewhere; expected an evenly lit "
                                     "surface");
 }

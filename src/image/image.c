@@ -183,7 +183,7 @@ static relume_status read_floats(const struct image_stream *s, const struct pict
     if (status)
         return status;
     const bool finite = convert_floats(s, info, (size_t)rows * (size_t)info->width, out);
-    return finite || !s->finite_only ? RELUME_OK : RELUME_EDATA;
+    return finite || !s->finite_only ? RELUME_OK : RELUME_EDAMAGED;
 }
 
 relume_status image_stream_read(struct image_stream *stream, int row, int rows, float *out)
@@ -243,7 +243,7 @@ relume_status relume_image_load(struct relume_image *out, const char *path,
     status = relume_image_create(out, info.width, info.height, channels);
     if (!status)
         status = image_stream_read(&stream, 0, info.height, out->data);
-    if (status == RELUME_EDATA)
+    if (relume_status_is_input(status))
         (void)log_fail(p.log, status, "%s: %s", path, image_stream_error(&stream));
     if (status)
         relume_image_destroy(out);

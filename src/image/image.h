@@ -33,7 +33,7 @@ struct image_stream {
 relume_status image_stream_open(struct image_stream *stream, picture_reader *reader, int channels,
                                 struct relume_transfer from, struct relume_transfer to,
                                 const float gain[3]);
-// out[row][x][channel]; rows must be asked for from the top on. RELUME_EDATA: the error tells.
+// out[row][x][channel]; rows must be asked for from the top on. An input status: the error tells.
 relume_status image_stream_read(struct image_stream *stream, int row, int rows, float *out);
 // 8-bit files: the same rows, at most IMAGE_STREAM_ROWS, as they are in the file, until the next
 // call.

@@ -31,7 +31,7 @@ static void on_error(j_common_ptr info)
 {
     struct trap *trap = (struct trap *)info->err;
     trap->manager.format_message(info, trap->text);
-    trap->status = trap->manager.msg_code == JERR_OUT_OF_MEMORY ? RELUME_ENOMEM : RELUME_EDATA;
+    trap->status = trap->manager.msg_code == JERR_OUT_OF_MEMORY ? RELUME_ENOMEM : RELUME_EDAMAGED;
     longjmp(trap->jump, 1);
 }
 
@@ -182,12 +182,12 @@ relume_status jpeg_picture_open(picture_reader **out, const char *path,
     if (!p->file)
         status = relume_input_fail(log, path, "cannot be opened", errno);
     else if (!read_header(p))
-        status =
-            p->trap.status == RELUME_ENOMEM
-                ? RELUME_ENOMEM
-                : log_fail(log, RELUME_EDATA, "%s: not a readable image; %s", path, p->trap.text);
+        status = p->trap.status == RELUME_ENOMEM
+                     ? RELUME_ENOMEM
+                     : log_fail(log, RELUME_EDAMAGED, "%s: not a readable image; %s", path,
+                                p->trap.text);
     else if (!limits_allow(limits, info->width, info->height))
-        status = log_fail(log, RELUME_EDATA, "%s: size %d x %d; expected sizes within the limits",
+        status = log_fail(log, RELUME_ELIMIT, "%s: size %d x %d; expected sizes within the limits",
                           path, info->width, info->height);
     else if (p->info.num_components == 4 && !(p->cmyk = mem_array((size_t)info->width, 4)))
         status = RELUME_ENOMEM;
@@ -274,7 +274,7 @@ relume_status jpeg_decode(struct jpeg_codes *out, const void *bytes, size_t size
 {
     *out = (struct jpeg_codes){0};
     if (size == 0)
-        return log_fail(log, RELUME_EDATA, "%s: empty; expected a JPEG file", name);
+        return log_fail(log, RELUME_EFORMAT, "%s: empty; expected a JPEG file", name);
     struct reader *r = mem_zeroed(1, sizeof *r);
     if (!r)
         return RELUME_ENOMEM;
@@ -288,7 +288,7 @@ relume_status jpeg_decode(struct jpeg_codes *out, const void *bytes, size_t size
     if (!good) {
         jpeg_codes_free(out);
         status = r->why[0]
-                     ? log_fail(log, RELUME_EDATA,
+                     ? log_fail(log, RELUME_EDAMAGED,
                                 "%s: not a whole JPEG file of 1 or 3 components; %s", name, r->why)
                      : RELUME_ENOMEM;
     }
@@ -306,12 +306,12 @@ static relume_status load(uint8_t **out, size_t *size, const char *path,
         return relume_input_fail(log, path, "cannot be opened", errno);
     relume_status status = RELUME_OK;
     if (fstat(fileno(f), &st) || !S_ISREG(st.st_mode))
-        status = log_fail(log, RELUME_EDATA, "%s: not a file; expected a JPEG file", path);
+        status = log_fail(log, RELUME_EFORMAT, "%s: not a file; expected a JPEG file", path);
     *size = status ? 0 : (size_t)st.st_size;
     if (!status && !(*out = mem_array(*size, 1)))
         status = RELUME_ENOMEM;
     if (!status && fread(*out, 1, *size, f) != *size)
-        status = log_fail(log, RELUME_EDATA, "%s: cannot be read", path);
+        status = log_fail(log, RELUME_ENOTFOUND, "%s: cannot be read", path);
     fclose(f);
     return status;
 }

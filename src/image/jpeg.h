@@ -12,7 +12,7 @@ struct jpeg_codes {
     uint8_t *data;  // [planes][height][width], from malloc
 };
 
-// RELUME_EDATA with a sentence about `name` when it is no whole JPEG file within the limits.
+// An input status with a sentence about `name` when it is no whole JPEG file within the limits.
 relume_status jpeg_read(struct jpeg_codes *out, const char *path,
                         const struct relume_limits *limits, const struct relume_log *log);
 relume_status jpeg_decode(struct jpeg_codes *out, const void *bytes, size_t size, const char *name,

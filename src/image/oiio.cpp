@@ -99,10 +99,11 @@ std::string one_line(std::string text)
     return text.empty() ? "unknown error" : text;
 }
 
-relume_status broken(oiio_reader *r, const std::string &what)
+relume_status broken(oiio_reader *r, const std::string &what,
+                     relume_status status = RELUME_EDAMAGED)
 {
     r->error = one_line(what);
-    return RELUME_EDATA;
+    return status;
 }
 
 // Some formats leave their channels without names.
@@ -214,17 +215,22 @@ relume_status open_input(oiio_reader *r, const std::string &format, const relume
     const bool opened = format.empty() ? try_all(r, hints) : try_format(r, format, hints);
     const std::string why = one_line(r->error.empty() ? OIIO::geterror() : r->error);
     if (!opened && format == "raw")
-        return broken(r, "a RAW photograph that the installed OpenImageIO cannot read; expected a "
-                         "build with LibRaw that knows this camera, or TIFF; " +
-                             why);
+        return broken(r,
+                      "a RAW photograph that the installed OpenImageIO cannot read; expected a "
+                      "build with LibRaw that knows this camera, or TIFF; " +
+                          why,
+                      RELUME_EUNSUPPORTED);
     if (!opened)
-        return broken(r, "not a readable image; " + why);
+        return broken(r, "not a readable image; " + why,
+                      format.empty() ? RELUME_EFORMAT : RELUME_EDAMAGED);
     const ImageSpec &spec = r->input->spec();
     if (spec.depth > 1 || spec.deep || spec.nchannels < 1)
-        return broken(r, "expected a flat image with colour channels");
+        return broken(r, "expected a flat image with colour channels", RELUME_EUNSUPPORTED);
     if (!limits_allow(limits, spec.width, spec.height))
-        return broken(r, "size " + std::to_string(spec.width) + " x " +
-                             std::to_string(spec.height) + "; expected sizes within the limits");
+        return broken(r,
+                      "size " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
+                          "; expected sizes within the limits",
+                      RELUME_ELIMIT);
     r->info.width = spec.width;
     r->info.height = spec.height;
     r->info.x = spec.x;
@@ -438,7 +444,7 @@ relume_status bridge_open(picture_reader **out, int file, const char *format_nam
     } catch (const std::bad_alloc &) {
         return RELUME_ENOMEM;
     } catch (const std::exception &e) {
-        return log_fail(log, RELUME_EDATA, "not a readable image; %s", e.what());
+        return log_fail(log, RELUME_EDAMAGED, "not a readable image; %s", e.what());
     }
 }
 

@@ -122,7 +122,7 @@ static relume_status read_pixels(struct relume_image *out, const char *path, pic
     status = relume_image_create(out, info.width, info.height, 3);
     if (!status)
         status = image_stream_read(&stream, 0, info.height, out->data);
-    if (status == RELUME_EDATA)
+    if (relume_status_is_input(status))
         (void)log_fail(log, status, "%s: %s", path, image_stream_error(&stream));
     image_stream_close(&stream);
     return status;

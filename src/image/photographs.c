@@ -168,7 +168,7 @@ static relume_status add_named(struct gathering *g, const char *path, bool alone
 {
     struct stat s;
     if (stat(path, &s))
-        return log_fail(g->p->log, RELUME_EDATA,
+        return log_fail(g->p->log, RELUME_ENOTFOUND,
                         "%s: %s; expected a photograph, or a folder of them", path,
                         errno == ENOENT ? "no such file" : strerror(errno));
     if (S_ISDIR(s.st_mode) && (alone || !g->p->folders))
@@ -223,8 +223,8 @@ relume_status relume_photographs_list(struct relume_photographs *out, const char
         out->lights = NULL;
     }
     if (!status && n && !out->count)
-        status = log_fail(g.p->log, RELUME_EDATA, "%s: no photographs%s%s; expected some", paths[0],
-                          g.skipped ? "; found " : "", g.names);
+        status = log_fail(g.p->log, RELUME_ENOTFOUND, "%s: no photographs%s%s; expected some",
+                          paths[0], g.skipped ? "; found " : "", g.names);
     else if (!status && n)
         say_left_out(&g, paths[0]);
     if (status)

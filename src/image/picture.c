@@ -53,11 +53,12 @@ static relume_status look(struct opening *s, const struct relume_log *log)
 {
     if (!infile_open(&s->in, s->path, s->from, log))
         return errno == ENOENT
-                   ? log_fail(log, RELUME_EDATA, "%s: no such file; expected an image", s->path)
+                   ? log_fail(log, RELUME_ENOTFOUND, "%s: no such file; expected an image", s->path)
                    : relume_input_fail(log, s->path, "cannot be opened", errno);
     const uint64_t size = s->in.size;
     if (!s->in.regular || size == 0)
-        return log_fail(log, RELUME_EDATA, "%s: empty file or folder; expected an image", s->path);
+        return log_fail(log, RELUME_EFORMAT, "%s: empty file or folder; expected an image",
+                        s->path);
     s->look.bytes = size;
     const uint64_t foot = size > PICTURE_FOOT ? size - PICTURE_FOOT : 0;
     if (infile_read(&s->in, s->look.head, PICTURE_HEAD, 0) < 0 ||
@@ -107,7 +108,8 @@ static relume_status open_helped(picture_reader **out, struct opening *s,
     static const char expected[] = "a photograph (JPEG, PNG, TIFF, EXR, HDR, RAW ...)";
     const struct picture_kind *k = s->kind;
     if (!k->listed && !(k->reader && limits && limits->any_format))
-        return log_fail(log, RELUME_EDATA, "%s: not a readable image%s%s; expected %s; %s", s->path,
+        return log_fail(log, k->what ? RELUME_EUNSUPPORTED : RELUME_EFORMAT,
+                        "%s: not a readable image%s%s; expected %s; %s", s->path,
                         k->what ? " but " : "", k->what ? k->what : "", expected, k->advice);
     const int file = infile_descriptor(&s->in);
     if (file < 0)
@@ -128,12 +130,12 @@ static relume_status check_size(const picture_reader *reader, const struct openi
     const struct relume_limits most = limits_or_default(limits);
     if (!picture_kind_is_likely(s->kind, s->look.bytes, bytes))
         return log_fail(
-            log, RELUME_EDATA,
+            log, RELUME_EDAMAGED,
             "%s: claims %d x %d pixels of %d channels in %llu bytes; damaged, or made to "
             "fill memory",
             s->path, i->width, i->height, i->channels, (unsigned long long)s->look.bytes);
     if (bytes > most.max_memory)
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_ELIMIT,
                         "%s: %d x %d pixels of %d channels are %llu MB; expected at most %llu MB "
                         "(--max-memory)",
                         s->path, i->width, i->height, i->channels,
@@ -226,8 +228,9 @@ relume_status picture_need_colour(const picture_reader *reader, const char *path
     const struct picture_info *info = picture_info_of(reader);
     if (!info->other[0])
         return RELUME_OK;
-    return log_fail(log, RELUME_EDATA, "%s: has no colour channels, only %s; expected R, G, B or Y",
-                    path, info->other);
+    return log_fail(log, RELUME_EUNSUPPORTED,
+                    "%s: has no colour channels, only %s; expected R, G, B or Y", path,
+                    info->other);
 }
 
 const char *picture_error(const picture_reader *reader)

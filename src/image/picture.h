@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-// The file `path`, or what `from` reads (base/infile.h). RELUME_EDATA with a sentence that names
+// The file `path`, or what `from` reads (base/infile.h). An input status with a sentence that names
 // the file.
 relume_status picture_open(picture_reader **out, const char *path, const struct relume_reader *from,
                            const struct relume_limits *limits, const struct relume_log *log);
@@ -43,7 +43,7 @@ relume_status picture_notes(const picture_reader *reader, struct relume_exif *ou
                             const struct relume_log *log);
 // The ICC profile, NULL when there is none; belongs to the reader.
 const void *picture_profile(const picture_reader *reader, size_t *size);
-// RELUME_EDATA with a sentence that names the channels, when none of them is colour.
+// An input status with a sentence that names the channels, when none of them is colour.
 relume_status picture_need_colour(const picture_reader *reader, const char *path,
                                   const struct relume_log *log);
 // Which of `info->channels` are colour, by their names: red, green and blue, else luminance, else

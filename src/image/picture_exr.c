@@ -24,7 +24,7 @@ static relume_status read_floats(picture_reader *reader, int row, int rows, floa
     for (int y = row; y < row + rows; y++) {
         const void *from;
         const relume_status status = exr_blocks_row(p->blocks, y, &from);
-        p->failed |= status == RELUME_EDATA;
+        p->failed |= relume_status_is_input(status);
         if (status)
             return status;
         for (size_t c = 0; c < n; c++)
@@ -86,7 +86,7 @@ static relume_status refuse_subsampled(const exr_file *file, const char *path,
     if (!info.subsampled)
         return RELUME_OK;
     return log_fail(
-        log, RELUME_EDATA,
+        log, RELUME_EUNSUPPORTED,
         "%s: its channels (%s, ...) differ in resolution, as luminance with coarser colour (Y, "
         "RY, BY); convert it to RGB first, with ImageMagick: convert %s rgb.exr",
         path, exr_channel_name(file, 0, 0), path);

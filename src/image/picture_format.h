@@ -46,13 +46,13 @@ relume_status exr_picture_open(picture_reader **out, const char *path,
 relume_status png_picture_open(picture_reader **out, const char *path,
                                const struct relume_reader *from, const struct relume_limits *limits,
                                const struct relume_log *log);
-// JPEG files of all kinds. RELUME_EDATA with a sentence, RELUME_ENOMEM.
+// JPEG files of all kinds. An input status with a sentence, RELUME_ENOMEM.
 relume_status jpeg_picture_open(picture_reader **out, const char *path,
                                 const struct relume_reader *from,
                                 const struct relume_limits *limits, const struct relume_log *log);
 
 // Files of `kind`, by OpenImageIO in the helper; `file` is open for reading, `path` for sentences.
-// RELUME_EDATA with a sentence, RELUME_ENOMEM, RELUME_ESYSTEM.
+// An input status with a sentence, RELUME_ENOMEM, RELUME_ESYSTEM.
 relume_status helped_picture_open(picture_reader **out, int file, const char *path,
                                   const struct picture_kind *kind, uint64_t file_bytes,
                                   const struct relume_limits *limits, const struct relume_log *log);

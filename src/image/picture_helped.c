@@ -43,7 +43,8 @@ static relume_status ask(struct helped *h, struct picture_answer *answer, struct
         !(why = helper_short_of(answer->memory, h->limit_is_set)))
         return RELUME_ENOMEM;
     snprintf(h->why, sizeof h->why, "%s", why);
-    return answer->status ? RELUME_EDATA : RELUME_OK;
+    const bool said = relume_status_is_input(answer->status);
+    return !answer->status || said ? answer->status : RELUME_EDAMAGED;
 }
 
 // Memory of both processes, which the other one is told of.
@@ -217,7 +218,7 @@ static relume_status open_there(struct helped *h, int file, const char *path,
         return fetch_profile(h, answer.profile_bytes);
     snprintf(h->why, sizeof h->why,
              "its reader gave an answer that makes no sense; the file is probably damaged");
-    return RELUME_EDATA;
+    return RELUME_EDAMAGED;
 }
 
 relume_status helped_picture_open(picture_reader **out, int file, const char *path,

@@ -142,7 +142,7 @@ static void hand_profile(struct serving *s, struct place *p)
         memcpy(to, profile, size);
         munmap(to, size);
     }
-    s->answer.status = to ? RELUME_OK : RELUME_EDATA;
+    s->answer.status = to ? RELUME_OK : RELUME_EDAMAGED;
 }
 
 static void take_band(struct serving *s, struct place *p)

@@ -131,7 +131,7 @@ static relume_status read_bytes(picture_reader *reader, int row, int rows, uint8
     (void)row;
     if (setjmp(p->trap.jump)) {
         snprintf(p->why, sizeof p->why, "truncated or damaged; %s", p->trap.text);
-        return p->trap.short_of_memory ? RELUME_ENOMEM : RELUME_EDATA;
+        return p->trap.short_of_memory ? RELUME_ENOMEM : RELUME_EDAMAGED;
     }
     for (int y = 0; y < rows; y++)
         png_read_row(p->png, out + (size_t)y * width, NULL);

@@ -92,15 +92,15 @@ relume_status relume_response_load(struct relume_response *out, const char *path
                 break;
     fclose(f);
     if (i < 0)
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_EFORMAT,
                         "%s: not a response-curve file; expected 'relume-response %d' at its head",
                         path, version);
     if (i < RELUME_CODES)
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_EFORMAT,
                         "%s: entry %d; expected '%d RED GREEN BLUE' that never falls", path, i, i);
     for (int c = 0; c < 3; c++)
         if (!(out->exposure[c][RELUME_CODES - 1] > 0.0f))
-            return log_fail(log, RELUME_EDATA, "%s: a channel is zero; expected a curve", path);
+            return log_fail(log, RELUME_EFORMAT, "%s: a channel is zero; expected a curve", path);
     return RELUME_OK;
 }
 

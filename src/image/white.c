@@ -41,7 +41,7 @@ relume_status relume_white_measure(float gain[3], const struct relume_image *ima
         grey += luminance[c] * mean[c];
     if (!(mean[0] > 0.0 && mean[1] > 0.0 && mean[2] > 0.0) ||
         (double)clipped > most_clipped * count)
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_EUNFIT,
                         "white region %d,%d of %d x %d is %s; expected a grey that is lit", x, y,
                         width, height, clipped ? "saturated" : "black");
     for (int c = 0; c < 3; c++)

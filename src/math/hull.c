@@ -145,7 +145,7 @@ static relume_status build(struct builder *b)
 {
     int s[4];
     if (!find_seed(b, s))
-        return RELUME_EDATA;
+        return RELUME_EUNFIT;
     if (volume(b, s, b->p[s[3]]) > 0.0) {  // the fourth point must lie behind the first face
         const int swap = s[1];
         s[1] = s[2];
@@ -173,7 +173,7 @@ relume_status hull_build(const struct relume_vec3 *points, int n, struct hull_tr
         return RELUME_ENOMEM;
     for (int i = 0; i < n; i++)
         b.p[i] = shifted(points[i], i);
-    relume_status status = n < 4 ? RELUME_EDATA : build(&b);
+    relume_status status = n < 4 ? RELUME_EUNFIT : build(&b);
     if (!status && !(*triangles = mem_array((size_t)b.count, sizeof **triangles)))
         status = RELUME_ENOMEM;
     for (int f = 0; !status && f < b.count; f++)

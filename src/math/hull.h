@@ -10,7 +10,7 @@ struct hull_triangle {
 };
 
 // The hull of `n` >= 4 unit vectors that do not all lie in one plane. `*triangles` is to be freed.
-// Points equal to an earlier one are left out. RELUME_EDATA when the points are coplanar,
+// Points equal to an earlier one are left out. RELUME_EUNFIT when the points are coplanar,
 // RELUME_ENOMEM.
 relume_status hull_build(const struct relume_vec3 *points, int n, struct hull_triangle **triangles,
                          int *count);

@@ -118,7 +118,7 @@ relume_status lsq_invert(double *matrix, int n)
     bool singular = false;
     if (!kernels()->invert(matrix, n, &singular))
         return RELUME_ENOMEM;
-    return singular ? RELUME_EDATA : RELUME_OK;
+    return singular ? RELUME_EUNFIT : RELUME_OK;
 }
 
 void lsq_add_gram(double *gram, int n, const double *rows, int count)

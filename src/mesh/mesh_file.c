@@ -60,7 +60,7 @@ relume_status mesh_load_text(char **out, size_t *size, const char *path,
     }
     if (!S_ISREG(s.st_mode) || s.st_size > MAX_BYTES) {
         fclose(file);
-        return log_fail(log, RELUME_EDATA, "%s: expected a regular file of at most 2 GiB", path);
+        return log_fail(log, RELUME_EFORMAT, "%s: expected a regular file of at most 2 GiB", path);
     }
     char *text = mem_array((size_t)s.st_size + 1, 1);
     if (text) {

@@ -51,7 +51,7 @@ static relume_status push(struct list *list, vec3 v)
 
 static relume_status bad_line(const struct obj *o, const char *expected)
 {
-    return log_fail(o->log, RELUME_EDATA, "%s: line %d: expected %s", o->path, o->line, expected);
+    return log_fail(o->log, RELUME_EFORMAT, "%s: line %d: expected %s", o->path, o->line, expected);
 }
 
 static relume_status read_vector(const struct obj *o, struct list *list, char *text, int least)
@@ -254,7 +254,7 @@ relume_status mesh_read_obj(struct mesh_file *out, const char *text, size_t size
                             const struct relume_log *log)
 {
     if (memchr(text, '\0', size))
-        return log_fail(log, RELUME_EDATA, "%s: not a text file; expected an OBJ model", path);
+        return log_fail(log, RELUME_EFORMAT, "%s: not a text file; expected an OBJ model", path);
     struct obj o = {.out = out, .path = path, .log = log, .own_normals = true};
     char *copy = mem_copy(text, size + 1, 1);
     relume_status status = copy ? read_lines(&o, copy, size) : RELUME_ENOMEM;

@@ -16,23 +16,23 @@
 #include <unistd.h>
 
 // Pipes are not waited for. The log has heard why, if there is one.
-static int open_regular(const char *path, uint64_t *bytes, const struct relume_log *log)
+static relume_status open_regular(int *file, const char *path, uint64_t *bytes,
+                                  const struct relume_log *log)
 {
     static const off_t MAX_BYTES = (off_t)1 << 31;
     struct stat s;
     input_note(log, path);
-    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (file < 0 || fstat(file, &s)) {
-        (void)!relume_input_fail(log, path, "cannot be opened", errno);
-        return -1;
-    }
+    *file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (*file < 0 || fstat(*file, &s))
+        return relume_input_fail(log, path, "cannot be opened", errno);
     if (S_ISREG(s.st_mode) && s.st_size <= MAX_BYTES) {
         *bytes = (uint64_t)s.st_size;
-        return file;
+        return RELUME_OK;
     }
-    (void)log_fail(log, RELUME_EDATA, "%s: expected a regular file of at most 2 GiB", path);
-    close(file);
-    return -1;
+    close(*file);
+    *file = -1;
+    return log_fail(log, S_ISREG(s.st_mode) ? RELUME_ELIMIT : RELUME_EFORMAT,
+                    "%s: expected a regular file of at most 2 GiB", path);
 }
 
 // Models name files below their own folder, nothing else.
@@ -47,8 +47,8 @@ static int open_beside(const char *path, const char *name, const struct relume_l
 {
     uint64_t bytes;
     char *beside = stays_below(name) ? mesh_beside(path, name) : NULL;
-    const int file = beside ? open_regular(beside, &bytes, NULL) : -1;
-    if (file >= 0)
+    int file = -1;
+    if (beside && !open_regular(&file, beside, &bytes, NULL))
         input_note(log, beside);
     free(beside);
     return file;
@@ -111,7 +111,7 @@ static relume_status copy(struct mesh_file *out, const char *map, const struct m
     const char *const from = map + vertices * sizeof *m->vertices;
     const char *name = from + triangles * sizeof *m->triangles;
     if (!names_are_whole(name, a))
-        return RELUME_EDATA;
+        return RELUME_EDAMAGED;
     m->vertices = mem_copy(map, vertices, sizeof *m->vertices);
     m->triangles = mem_copy(from, triangles, sizeof *m->triangles);
     if (!m->vertices || !m->triangles)
@@ -122,8 +122,8 @@ static relume_status copy(struct mesh_file *out, const char *map, const struct m
     out->made_normals = a->made_normals;
     for (uint64_t i = 0; i < a->parts; i++, name += strlen(name) + 1)
         if (mesh_file_part(out, name) != (int)i)
-            return RELUME_EDATA;
-    return triangles_are_sound(m, a->parts) ? RELUME_OK : RELUME_EDATA;
+            return RELUME_EDAMAGED;
+    return triangles_are_sound(m, a->parts) ? RELUME_OK : RELUME_EDAMAGED;
 }
 
 // Bytes of the model, 0 where the numbers make no sense or exceed `most`.
@@ -172,13 +172,16 @@ static relume_status read_there(struct mesh_file *out, struct helper_job *job, c
         const char *why = answer.text[0]
                               ? answer.text
                               : helper_short_of(answer.memory, given && given->max_memory);
-        return why ? log_fail(log, RELUME_EDATA, "%s: cannot be read as a 3D model; %s", path, why)
+        return why ? log_fail(log, RELUME_EDAMAGED, "%s: cannot be read as a 3D model; %s", path,
+                              why)
                    : RELUME_ENOMEM;
     }
     const size_t bytes = model_bytes(&answer, limits.max_memory);
-    status = !answer.triangles ? RELUME_OK : bytes ? fetch(out, job, &answer, bytes) : RELUME_EDATA;
-    if (status == RELUME_EDATA)
-        return log_fail(log, status,
+    status = !answer.triangles ? RELUME_OK
+             : bytes           ? fetch(out, job, &answer, bytes)
+                               : RELUME_EDAMAGED;
+    if (status == RELUME_EDAMAGED)
+        return log_fail(log, RELUME_ELIMIT,
                         "%s: a model of %llu vertices and %llu triangles; expected one that fits "
                         "%llu MB (--max-memory)",
                         path, (unsigned long long)answer.vertices,
@@ -191,10 +194,11 @@ relume_status mesh_read_other(struct mesh_file *out, const char *path, const str
 {
     struct helper_job job;
     uint64_t bytes = 0;
-    const int file = open_regular(path, &bytes, log);
-    if (file < 0)
-        return RELUME_EDATA;
-    relume_status status = helper_start(&job, HELPER_MESH, path, log);
+    int file;
+    relume_status status = open_regular(&file, path, &bytes, log);
+    if (status)
+        return status;
+    status = helper_start(&job, HELPER_MESH, path, log);
     if (!status)
         status = read_there(out, &job, path, file, bytes, log);
     helper_end(&job);

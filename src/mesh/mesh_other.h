@@ -8,9 +8,9 @@
 
 #include "mesh/mesh_file.h"
 
-// Triangles of all that the file shows, where it stands; parts are its materials. RELUME_EDATA with
-// a sentence, RELUME_ENOMEM; RELUME_ESYSTEM when the module cannot be loaded. `log` says how much
-// memory a model may take.
+// Triangles of all that the file shows, where it stands; parts are its materials. An input status
+// with a sentence, RELUME_ENOMEM; RELUME_ESYSTEM when the module cannot be loaded. `log` says how
+// much memory a model may take.
 relume_status mesh_read_other(struct mesh_file *out, const char *path,
                               const struct relume_log *log);
 

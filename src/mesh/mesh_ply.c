@@ -41,7 +41,7 @@ struct ply {
 
 static relume_status bad(const struct ply *p, const char *what)
 {
-    return log_fail(p->log, RELUME_EDATA, "%s: %s", p->path, what);
+    return log_fail(p->log, RELUME_EFORMAT, "%s: %s", p->path, what);
 }
 
 // ---------------------------------------------------------------- header

@@ -40,12 +40,13 @@ static relume_status check(struct mesh_file *out, const char *path, const struct
     if (out->mesh.failed)
         return RELUME_ENOMEM;
     if (!out->mesh.triangle_count)
-        return log_fail(log, RELUME_EDATA, "%s: no faces; expected a surface model", path);
+        return log_fail(log, RELUME_EFORMAT, "%s: no faces; expected a surface model", path);
     if (!is_sane(&out->mesh))
-        return log_fail(log, RELUME_EDATA, "%s: a vertex is not a finite number below 1e18", path);
+        return log_fail(log, RELUME_EDAMAGED, "%s: a vertex is not a finite number below 1e18",
+                        path);
     const struct bounds b = mesh_bounds(&out->mesh);
     if (!(vec3_length(vec3_sub(b.max, b.min)) > 0.0))
-        return log_fail(log, RELUME_EDATA, "%s: all vertices are one point", path);
+        return log_fail(log, RELUME_EUNFIT, "%s: all vertices are one point", path);
     return RELUME_OK;
 }
 

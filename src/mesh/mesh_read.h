@@ -6,7 +6,7 @@
 
 // Chosen by the extension. Polygons are triangulated as fans, missing normals are made smooth, the
 // picture is what the model names, else the PNG or JPEG of the same base name beside it.
-// Returns RELUME_EDATA with a sentence, RELUME_ENOMEM.
+// Returns an input status with a sentence, RELUME_ENOMEM.
 relume_status mesh_read(struct mesh_file *out, const char *path, const struct relume_log *log);
 
 #endif

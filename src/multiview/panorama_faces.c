@@ -44,7 +44,7 @@ static relume_status order_faces(int camera[FACES], const struct photo_set *set,
                                  const struct relume_log *log)
 {
     if (set->count != FACES)
-        return log_fail(log, RELUME_EDATA, "%s: one of %d picture%s; expected six faces of a cube",
+        return log_fail(log, RELUME_EUNFIT, "%s: one of %d picture%s; expected six faces of a cube",
                         set->camera[0].name, set->count, relume_plural(set->count));
     for (int f = 0; f < FACES; f++)
         camera[f] = -1;
@@ -54,12 +54,12 @@ static relume_status order_faces(int camera[FACES], const struct photo_set *set,
     for (int i = 0; i < FACES; i++) {
         const int f = named ? face_named(set->camera[i].name) : i;
         if (f == FACES)
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_EUNFIT,
                             "%s: no face in the name; expected px nx py ny pz nz, posx ..., or "
                             "right left top bottom back front at its end, as in the others",
                             set->camera[i].name);
         if (camera[f] >= 0)
-            return log_fail(log, RELUME_EDATA, "%s: the same face as %s", set->camera[i].name,
+            return log_fail(log, RELUME_EUNFIT, "%s: the same face as %s", set->camera[i].name,
                             set->camera[camera[f]].name);
         camera[f] = i;
     }
@@ -146,7 +146,7 @@ relume_status panorama_from_cube(struct panorama_job *job)
     int camera[FACES];
     relume_status status = order_faces(camera, &job->set, job->common->log);
     if (!status && job->set.width != job->set.height)
-        status = log_fail(job->common->log, RELUME_EDATA,
+        status = log_fail(job->common->log, RELUME_EUNFIT,
                           "%s: %d x %d pixels; expected square faces of a cube",
                           job->set.camera[0].name, job->set.width, job->set.height);
     if (!status)

@@ -39,7 +39,7 @@ static relume_status one_picture(struct panorama_job *job)
 {
     const struct camera_photos *c = &job->set.camera[0];
     if (job->set.count != 1)
-        return log_fail(job->common->log, RELUME_EDATA,
+        return log_fail(job->common->log, RELUME_EUNFIT,
                         "%s: one of %d pictures; expected one picture of all directions", c->name,
                         job->set.count);
     job->width = job->set.width;

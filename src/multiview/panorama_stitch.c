@@ -94,7 +94,7 @@ static relume_status find_poses(struct stitching *s)
     int stray = -1;
     const struct relume_log *log = s->job->common->log;
     const relume_status status = stitch_find(s->pose, &stray, why, s->picture, s->n, log);
-    if (status == RELUME_EDATA)
+    if (status == RELUME_EUNFIT)
         return log_fail(log, status, "%s: %s", s->job->set.camera[stray > 0 ? stray : 0].name, why);
     if (!status)
         face_ahead(s);
@@ -358,10 +358,10 @@ relume_status panorama_from_stitch(struct panorama_job *job)
         return log_fail(job->common->log, RELUME_EINVAL,
                         "blending: expected 1 to %d bands; found %d", BLEND_BANDS, job->p->bands);
     if (n > BLEND_PICTURES)
-        return log_fail(job->common->log, RELUME_EDATA, "%zu photographs; expected at most %d", n,
+        return log_fail(job->common->log, RELUME_ELIMIT, "%zu photographs; expected at most %d", n,
                         BLEND_PICTURES);
     if (n < 2)
-        return log_fail(job->common->log, RELUME_EDATA,
+        return log_fail(job->common->log, RELUME_EUNFIT,
                         "%s: a single photograph; expected two or more that overlap",
                         job->set.camera[0].name);
     relume_status status = mean_pictures(&s);

@@ -54,7 +54,7 @@ static relume_status choose_axes(struct posed *s)
     }
     const vec3 across = vec3_cross(down, ahead);
     if (vec3_length(ahead) < 0.5 * s->model.count || vec3_length(across) < 1e-6)
-        return log_fail(s->common->log, RELUME_EDATA,
+        return log_fail(s->common->log, RELUME_EUNFIT,
                         "%s: the cameras look in too many directions for one slab; expected them "
                         "to look the same way",
                         s->photos);
@@ -115,7 +115,7 @@ static relume_status choose_world(struct posed *s)
     if (distance <= 0.0)
         distance = distance_of_axes(s, middle);
     if (!(distance > 0.0))
-        return log_fail(s->common->log, RELUME_EDATA,
+        return log_fail(s->common->log, RELUME_EUNFIT,
                         "%s: the distance of the scene is unknown (no points3D.txt, parallel "
                         "cameras); expected --distance in units of the model",
                         s->photos);
@@ -303,7 +303,7 @@ static relume_status load_photo(struct relume_image *out, const struct posed *s,
                                                      .transfer = s->common->transfer))
              : RELUME_ENOMEM;
     if (!status && (out->width != c->width || out->height != c->height)) {
-        status = log_fail(s->common->log, RELUME_EDATA,
+        status = log_fail(s->common->log, RELUME_EUNFIT,
                           "%s: %d x %d pixels; expected %d x %d as in cameras.txt", path,
                           out->width, out->height, c->width, c->height);
         relume_image_destroy(out);

@@ -27,7 +27,7 @@ struct slab_depth {
     double trusted;
 };
 
-// Load all views. RELUME_EDATA, RELUME_ENOMEM.
+// Load all views. An input status, RELUME_ENOMEM.
 relume_status slab_depth_load(struct slab_depth *d, const char *near);
 // Choose planes by `range`, or by looking at some rows of the middle view.
 relume_status slab_depth_planes(struct slab_depth *d);

@@ -117,7 +117,7 @@ static relume_status place_cameras(struct slab *s, const int *rows, const int *c
         int *at = &s->camera[index_of(rows, s->place[i].row) * s->columns +
                              index_of(columns, s->place[i].column)];
         if (*at >= 0)
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_EUNFIT,
                             "%s: is at row %d, column %d; expected one camera there; found %s",
                             s->set.camera[i].name, s->place[i].row, s->place[i].column,
                             s->set.camera[*at].name);
@@ -154,7 +154,7 @@ static relume_status fill_grid(struct slab *s, const int *rows, const int *colum
                 continue;
             *at = nearest_camera(s, found, r, c);
             if (!s->p->fill)
-                status = log_fail(log, RELUME_EDATA,
+                status = log_fail(log, RELUME_ENOTFOUND,
                                   "no photograph of row %d, column %d; expected a whole grid of "
                                   "%d x %d, or --fill; found %d photograph%s",
                                   rows[r], columns[c], s->rows, s->columns, s->set.count,
@@ -183,7 +183,7 @@ static relume_status make_grid(struct slab *s)
     s->columns = distinct(columns, s, false);
     const double cells = (double)s->rows * s->columns;
     if (cells > 65536.0)
-        return log_fail(s->common->log, RELUME_EDATA,
+        return log_fail(s->common->log, RELUME_ELIMIT,
                         "%d rows and %d columns of cameras; expected a grid of at most 65536",
                         s->rows, s->columns);
     s->camera = arena_array(a, (size_t)cells, sizeof *s->camera);

@@ -32,7 +32,7 @@ const size_t text_size = 300;
 relume_status refuse(char *why, const char *text)
 {
     std::snprintf(why, text_size, "%s", text);
-    return RELUME_EDATA;
+    return RELUME_EUNFIT;
 }
 
 std::vector<ImageFeatures> find_features(const stitch_picture *pictures, int n, double scale)

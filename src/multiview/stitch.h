@@ -26,7 +26,7 @@ struct stitch_pose {
 };
 
 // Up and ahead of the world are those of the cameras together; `*stray` is the first picture that
-// overlaps none of the others, or -1. RELUME_EDATA with a text in why[300].
+// overlaps none of the others, or -1. RELUME_EUNFIT with a text in why[300].
 typedef relume_status stitch_function(struct stitch_pose *poses, int *stray, char *why,
                                       const struct stitch_picture *pictures, int n);
 

@@ -23,12 +23,12 @@ struct photo_set {
     const struct relume_vec3 *directions;  // [lights]
 };
 
-// A single folder stands for what it holds. Sizes and counts of lights must agree. RELUME_EDATA.
+// A single folder stands for what it holds. Sizes and counts of lights must agree. An input status.
 relume_status photo_set_open(struct photo_set *out, const char *const *photos, int n,
                              const struct relume_ingest_params *p);
 void photo_set_free(struct photo_set *set);
 
-// One photograph, upright and linear, three channels. RELUME_EDATA, RELUME_ENOMEM.
+// One photograph, upright and linear, three channels. An input status, RELUME_ENOMEM.
 relume_status photo_load(struct relume_image *out, const struct photo_set *set, int camera,
                          int light, const struct relume_ingest_params *p);
 
@@ -43,7 +43,7 @@ struct view_place {
     bool has_uv;
     double u, v;  // as written
 };
-// places[set->count]; `names` as relume_slab_ingest_params. RELUME_EINVAL, RELUME_EDATA.
+// places[set->count]; `names` as relume_slab_ingest_params. RELUME_EINVAL, an input status.
 relume_status view_places(struct view_place *places, const struct photo_set *set, const char *names,
                           const struct relume_log *log);
 

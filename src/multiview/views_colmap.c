@@ -76,7 +76,7 @@ static bool text_next(struct text *t)
 
 static relume_status not_understood(const struct text *t, const char *expected)
 {
-    return log_fail(t->log, RELUME_EDATA, "%s: line %d is not understood; expected %s", t->path,
+    return log_fail(t->log, RELUME_EFORMAT, "%s: line %d is not understood; expected %s", t->path,
                     t->line, expected);
 }
 
@@ -97,7 +97,7 @@ static relume_status read_lens(struct lens *out, const struct text *t)
     while (m < MODELS && strcmp(models[m].name, name))
         m++;
     if (m == MODELS)
-        return log_fail(t->log, RELUME_EDATA,
+        return log_fail(t->log, RELUME_EUNSUPPORTED,
                         "%s: line %d: camera model %s; expected SIMPLE_PINHOLE, PINHOLE, "
                         "SIMPLE_RADIAL, RADIAL or OPENCV (undistort the photographs)",
                         t->path, t->line, name);
@@ -209,7 +209,7 @@ static relume_status read_poses(struct posed_model *m, const char *folder, const
             text_next(&t);
     }
     if (!status && m->count < 2)
-        status = log_fail(log, RELUME_EDATA, "%s: %d photograph%s; expected two or more", t.path,
+        status = log_fail(log, RELUME_EUNFIT, "%s: %d photograph%s; expected two or more", t.path,
                           m->count, relume_plural(m->count));
     if (!status) {
         qsort(all, (size_t)m->count, sizeof *all, by_name);

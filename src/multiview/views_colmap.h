@@ -24,7 +24,7 @@ struct posed_model {
     size_t points;
 };
 
-// RELUME_EDATA names the file and the line that is not understood.
+// An input status names the file and the line that is not understood.
 relume_status posed_model_read(struct posed_model *out, const char *folder,
                                const struct relume_log *log);
 void posed_model_free(struct posed_model *model);

@@ -126,7 +126,7 @@ static relume_status varying_numbers(int which[2], int *count, const struct phot
     const int n = whole_numbers(first, base_name(set->camera[0].name));
     for (int i = 1; i < set->count; i++) {
         if (whole_numbers(other, base_name(set->camera[i].name)) != n)
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_EUNFIT,
                             "%s: the name does not match; expected the pattern of %s, or --names",
                             set->camera[i].name, set->camera[0].name);
         for (int k = 0; k < n; k++) {
@@ -140,7 +140,7 @@ static relume_status varying_numbers(int which[2], int *count, const struct phot
             which[*count - 1] = k;
     if (*count == 1 || *count == 2)
         return RELUME_OK;
-    return log_fail(log, RELUME_EDATA,
+    return log_fail(log, RELUME_EUNFIT,
                     "%s: expected names in which one or two numbers differ (row and column), or "
                     "--names; found %d",
                     set->camera[0].name, *count);
@@ -171,7 +171,7 @@ static relume_status wrap_numbers(struct view_place *places, const struct photo_
     const double span = (double)most - least + 1.0;
     const int side = (int)lround(sqrt(span));
     if ((double)side * side != span)
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_EUNFIT,
                         "%s: numbers from %d to %d; expected a square grid, row by row, or --names "
                         "with {row} and {column}",
                         set->camera[0].name, least, most);
@@ -190,7 +190,7 @@ static relume_status by_pattern(struct view_place *places, const struct photo_se
 {
     int bad = 0;
     if (!all_match(places, set, names, &bad))
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_EUNFIT,
                         "%s: the name does not match '%s'; expected {row} and {column}, {n}, or "
                         "{u} and {v} in it",
                         set->camera[bad].name, names);
@@ -219,7 +219,7 @@ relume_status view_places(struct view_place *places, const struct photo_set *set
         if (all_match(places, set, archive[i], &bad))
             return RELUME_OK;
     if (set->count == 1)
-        return log_fail(log, RELUME_EDATA, "%s: a single camera; expected two or more for a slab",
+        return log_fail(log, RELUME_EUNFIT, "%s: a single camera; expected two or more for a slab",
                         set->camera[0].name);
     return by_numbers(places, set, log);
 }

@@ -68,7 +68,7 @@ static relume_status list_lights(struct photo_set *set, int index, const char *n
         set->lights = n;
     if (n == set->lights)
         return RELUME_OK;
-    return log_fail(log, RELUME_EDATA, "%s: %d photograph%s; expected %d, one a light, as in %s",
+    return log_fail(log, RELUME_EUNFIT, "%s: %d photograph%s; expected %d, one a light, as in %s",
                     name, n, relume_plural(n), set->lights, set->camera[0].name);
 }
 
@@ -86,7 +86,7 @@ static relume_status check_size(struct photo_set *set, const char *path,
     }
     if (notes.width == set->width && notes.height == set->height)
         return RELUME_OK;
-    return log_fail(p->log, RELUME_EDATA,
+    return log_fail(p->log, RELUME_EUNFIT,
                     "%s: %d x %d pixels; expected %d x %d as in the other photographs", path,
                     notes.width, notes.height, set->width, set->height);
 }
@@ -111,7 +111,7 @@ static relume_status check_lights(struct photo_set *set, const struct relume_ing
     const int known = p->lights ? p->light_count : 1;
     if (known == set->lights)
         return RELUME_OK;
-    return log_fail(p->log, p->lights ? RELUME_EDATA : RELUME_EINVAL,
+    return log_fail(p->log, p->lights ? RELUME_EUNFIT : RELUME_EINVAL,
                     "%s: %d photograph%s of this camera; expected %d, one for every known light%s",
                     set->camera[0].name, set->lights, relume_plural(set->lights), known,
                     p->lights ? "" : " (--lights says where lights are)");

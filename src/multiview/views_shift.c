@@ -74,7 +74,7 @@ static relume_status measure(struct shifting *s, const struct photo_set *set,
     s->height = set->height - 2 * relume_whole(fmin(s->margin[1], set->height));
     if (s->width >= 2 && s->height >= 2)
         return RELUME_OK;
-    return log_fail(p->log, RELUME_EDATA,
+    return log_fail(p->log, RELUME_EUNFIT,
                     "%s: a focus disparity of %g pixels a camera leaves nothing that all %d x %d "
                     "cameras see; expected less",
                     set->camera[0].name, disparity, g->columns, g->rows);

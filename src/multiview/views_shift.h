@@ -7,7 +7,8 @@
 
 // Save every camera's pictures, moved by `disparity` pixels for each step of the grid from its
 // middle and cropped to what all show, as linear half EXR files inside `folder`, and name them in
-// view[rows * columns]. The size they have in common comes back. RELUME_EDATA when nothing is left.
+// view[rows * columns]. The size they have in common comes back. RELUME_EUNFIT when nothing is
+// left.
 relume_status save_shifted(struct relume_manifest_view *view, int *width, int *height,
                            const outdir *folder, struct photo_set *set,
                            const struct camera_grid *grid, double disparity,

@@ -126,7 +126,7 @@ static relume_status add_part(relume_objects *o, const struct mesh_file *file, i
 {
     const struct covering *c = covering_of(s, file->part[number]);
     if (!c)
-        return log_fail(log, RELUME_EDATA, "%s: part '%s' has no material", path,
+        return log_fail(log, RELUME_EUNFIT, "%s: part '%s' has no material", path,
                         file->part[number]);
     char *name = mem_text(file->part[number]);
     struct relume_object_part *part =
@@ -215,7 +215,7 @@ relume_status objects_add(relume_objects *o, const char *path, struct standing *
         status = add_parts(o, &file, standing, path, log);
     for (int i = 0; i < standing->coverings && !status; i++)
         if (standing->covering[i].part && !standing->covering[i].used)
-            status = log_fail(log, RELUME_EDATA, "%s: no part '%s'; its first is '%s'", path,
+            status = log_fail(log, RELUME_EUNFIT, "%s: no part '%s'; its first is '%s'", path,
                               standing->covering[i].part, file.part[0]);
     mesh_file_free(&file);
     return status;
@@ -226,7 +226,7 @@ relume_status objects_finish(relume_objects *o, const struct relume_objects_para
     const struct relume_log *log = params ? params->log : NULL;
     struct tangents t;
     if (!o->mesh.triangle_count)
-        return log_fail(log, RELUME_EDATA, "the objects have no surface");
+        return log_fail(log, RELUME_EUNFIT, "the objects have no surface");
     relume_status status = tangents_make(&t, &o->mesh);
     o->vertices = t.vertices, o->triangles = t.triangles;
     if (status)

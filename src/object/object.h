@@ -17,7 +17,7 @@ struct relume_objects {
     char **folder;  // [materials]: as it was opened
 };
 
-// The part's material, opened when it is not there yet; its number. RELUME_EDATA, RELUME_ENOMEM.
+// The part's material, opened when it is not there yet; its number. An input status, RELUME_ENOMEM.
 relume_status objects_material(relume_objects *o, const char *folder, int *number,
                                const struct relume_objects_params *params);
 
@@ -34,7 +34,7 @@ struct standing {
     struct covering *covering;
     int coverings;
 };
-// Add a mesh file. RELUME_EDATA, RELUME_ENOMEM.
+// Add a mesh file. An input status, RELUME_ENOMEM.
 relume_status objects_add(relume_objects *o, const char *path, struct standing *standing,
                           const struct relume_objects_params *params);
 // Tangents, and what rays need. RELUME_ENOMEM, RELUME_ESYSTEM.

@@ -184,7 +184,7 @@ relume_status objects_material(relume_objects *o, const char *folder, int *numbe
         if (!strcmp(o->folder[*number], folder))
             return RELUME_OK;
     if (o->info.materials == MOST_MATERIALS)
-        return log_fail(log, RELUME_EDATA, "%s: expected at most %d materials", folder,
+        return log_fail(log, RELUME_ELIMIT, "%s: expected at most %d materials", folder,
                         MOST_MATERIALS);
     relume_status status = grow_materials(o);
     if (status)
@@ -215,7 +215,7 @@ __attribute__((format(printf, 2, 3))) static relume_status wrong(const struct re
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    return log_fail(r->log, RELUME_EDATA, "%s: object %zu: %s", r->path, r->object, text);
+    return log_fail(r->log, RELUME_EFORMAT, "%s: object %zu: %s", r->path, r->object, text);
 }
 
 static relume_status know(const struct reader *r, const jvalue *object, const char *const *known)
@@ -370,16 +370,16 @@ static relume_status read_all(struct reader *r, const jvalue *root)
     const jvalue *list = jvalue_member(root, "objects");
     long long version = 0;
     if (!format || strcmp(format, "relume-objects"))
-        return log_fail(r->log, RELUME_EDATA, "%s: format: expected \"relume-objects\"", r->path);
+        return log_fail(r->log, RELUME_EFORMAT, "%s: format: expected \"relume-objects\"", r->path);
     if (!jvalue_integer(jvalue_member(root, "version"), &version) || version != VERSION)
-        return log_fail(r->log, RELUME_EDATA, "%s: expected version %d; found %lld", r->path,
+        return log_fail(r->log, RELUME_EUNSUPPORTED, "%s: expected version %d; found %lld", r->path,
                         VERSION, version);
     if (jvalue_unknown(root, known))
-        return log_fail(r->log, RELUME_EDATA, "%s: unknown member '%s'", r->path,
+        return log_fail(r->log, RELUME_EFORMAT, "%s: unknown member '%s'", r->path,
                         jvalue_unknown(root, known));
     const size_t n = jvalue_is_array(list) ? jvalue_count(list) : 0;
     if (n < 1 || n > MOST_OBJECTS)
-        return log_fail(r->log, RELUME_EDATA, "%s: objects: expected a list of 1 to %d", r->path,
+        return log_fail(r->log, RELUME_EFORMAT, "%s: objects: expected a list of 1 to %d", r->path,
                         MOST_OBJECTS);
     relume_status status = RELUME_OK;
     for (r->object = 0; r->object < n && !status; r->object++)

@@ -69,5 +69,5 @@ relume_status relume_pack_check(const char *path, const struct relume_pack_check
     const relume_status status = check_blocks(&c, path);
     if (status)
         return status;
-    return c.damaged ? RELUME_EDATA : check_values(c.p, path);
+    return c.damaged ? RELUME_EDAMAGED : check_values(c.p, path);
 }

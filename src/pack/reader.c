@@ -19,7 +19,7 @@ enum { NOT_A_CODE = 0xffff };
 
 relume_status reader_bad(const relume_pack *p, const char *what, const char *expected)
 {
-    return log_fail(p->log, RELUME_EDATA, "%s: %s; expected %s", p->path, what, expected);
+    return log_fail(p->log, RELUME_EDAMAGED, "%s: %s; expected %s", p->path, what, expected);
 }
 
 static bool all_finite(const float *v, int n)
@@ -52,14 +52,14 @@ static relume_status check_format(relume_pack *p)
 {
     const char *format = exr_get_text(p->file, 0, ATTR_FORMAT);
     if (!format || strcmp(format, FORMAT_NAME))
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EFORMAT,
                         "%s: an OpenEXR file, but not a relume file; expected one made by 'relume "
                         "encode'",
                         p->path);
     if (!exr_get_int(p->file, 0, ATTR_VERSION, &p->info.version) || p->info.version < 1)
         return reader_bad(p, "no version", "1");
     if (p->info.version > FORMAT_VERSION)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EUNSUPPORTED,
                         "%s: version %d of the format is newer than this program, which reads up "
                         "to %d; update relume",
                         p->path, p->info.version, FORMAT_VERSION);
@@ -171,7 +171,7 @@ static relume_status read_coder(relume_pack *p)
     const struct relume_basis *basis = name ? relume_basis_find(name) : NULL;
     int k, hemispherical, n = 0;
     if (!basis)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EUNSUPPORTED,
                         "%s: unknown basis '%.40s'; expected one of this "
                         "program's",
                         p->path, name ? name : "");
@@ -228,7 +228,7 @@ static relume_status read_coder(relume_pack *p)
     p->info.coder = p->coder;
     p->info.coefficients = k;
     p->info.planes = status ? 0 : relume_coder_info(p->coder)->planes;
-    return status == RELUME_EINVAL ? RELUME_EDATA : status;
+    return status == RELUME_EINVAL ? RELUME_EDAMAGED : status;
 }
 
 // ---------------------------------------------------------------- parts
@@ -362,8 +362,11 @@ relume_status relume_pack_open(relume_pack **out, const char *path,
     p->path = mem_text(infile_name(path));
     relume_status status = p->path ? RELUME_OK : RELUME_ENOMEM;
     struct stat s;
-    if (!status && !params_.reader && (stat(path, &s) || !S_ISREG(s.st_mode)))
-        status = log_fail(p->log, RELUME_EDATA, "%s: no such file; expected a relume file", path);
+    if (!status && !params_.reader && stat(path, &s))
+        status =
+            log_fail(p->log, RELUME_ENOTFOUND, "%s: no such file; expected a relume file", path);
+    else if (!status && !params_.reader && !S_ISREG(s.st_mode))
+        status = log_fail(p->log, RELUME_EFORMAT, "%s: not a file; expected a relume file", path);
     if (!status)
         status = exr_open(&p->file, path, params_.reader, &p->limits, p->log);
     if (!status) {

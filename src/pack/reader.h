@@ -52,7 +52,7 @@ struct loading {
     atomic_bool wrong;
 };
 
-// "PATH: what; expected ..." as RELUME_EDATA.
+// "PATH: what; expected ..." as an input status.
 relume_status reader_bad(const relume_pack *p, const char *what, const char *expected);
 // `count` finite numbers of an attribute, or NULL.
 const float *reader_floats(const relume_pack *p, int part, const char *name, int count);

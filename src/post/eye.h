@@ -59,7 +59,7 @@ struct lashes {
     struct lash_piece *piece;  // NULL: they are drawn
     int count;
 };
-// Of a picture, see relume_subject. RELUME_EDATA with a sentence, RELUME_ENOMEM.
+// Of a picture, see relume_subject. An input status with a sentence, RELUME_ENOMEM.
 relume_status lashes_load(struct lashes *out, const char *path, const struct relume_log *log);
 void lashes_destroy(struct lashes *lashes);
 

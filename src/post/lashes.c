@@ -88,12 +88,12 @@ static relume_status make_pieces(struct lashes *out, struct row row[2],
                                  const struct relume_log *log)
 {
     if (image->width > MOST_SIDE || image->height > MOST_SIDE)
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_ELIMIT,
                         "%s: lashes of %d x %d pixels; expected at most %d a side", path,
                         image->width, image->height, MOST_SIDE);
     const int64_t count = find_pieces(NULL, row, image);
     if (count < 1 || count > MOST_PIECES)
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_EUNFIT,
                         "%s: no lashes; expected dark strokes on white, in 1 to %d pieces; found "
                         "%lld",
                         path, MOST_PIECES, (long long)count);

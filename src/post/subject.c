@@ -173,7 +173,7 @@ __attribute__((format(printf, 4, 5))) static relume_status wrong(const struct re
     va_start(arguments, format);
     vsnprintf(sentence, sizeof sentence, format, arguments);
     va_end(arguments);
-    return log_fail(r->log, RELUME_EDATA, "%s: line %d; %s%s%s; %s", r->path,
+    return log_fail(r->log, RELUME_EFORMAT, "%s: line %d; %s%s%s; %s", r->path,
                     line_of(r, group, name), group ? group : "", group ? "." : "", name, sentence);
 }
 
@@ -286,10 +286,10 @@ static relume_status check_head(const struct reading *r, const jvalue *root)
     const char *const format = jvalue_text(jvalue_member(root, "format"));
     long long version;
     if (!format || strcmp(format, "relume-subject"))
-        return log_fail(r->log, RELUME_EDATA,
+        return log_fail(r->log, RELUME_EFORMAT,
                         "%s: no subject; expected \"format\": \"relume-subject\"", r->path);
     if (!jvalue_integer(jvalue_member(root, "version"), &version) || version != 1)
-        return log_fail(r->log, RELUME_EDATA, "%s: unknown version; expected \"version\": 1",
+        return log_fail(r->log, RELUME_EUNSUPPORTED, "%s: unknown version; expected \"version\": 1",
                         r->path);
     return RELUME_OK;
 }

@@ -203,7 +203,7 @@ relume_status relume_gonio_load(relume_gonio **out, const char *path, const stru
         return status;
     status = relume_gonio_create(out, &map, relume_gonio_params(.log = log, .name = path));
     relume_image_destroy(&map);
-    return status == RELUME_EINVAL ? RELUME_EDATA : status;
+    return status == RELUME_EINVAL ? RELUME_EUNFIT : status;
 }
 
 void relume_gonio_destroy(relume_gonio **gonio)

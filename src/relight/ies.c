@@ -55,10 +55,10 @@ static relume_status take(struct reader *r, double *out, const char *what)
     r->at += strspn(r->at, " \t\r\n\f\v,");
     *out = strtod(r->at, &end);
     if (end == r->at)
-        return log_fail(r->log, RELUME_EDATA, "%s: %s; expected a number, found %s%.12s", r->name,
+        return log_fail(r->log, RELUME_EFORMAT, "%s: %s; expected a number, found %s%.12s", r->name,
                         what, *r->at ? "" : "the end of the file", r->at);
     if (!isfinite(*out))
-        return log_fail(r->log, RELUME_EDATA, "%s: %s; expected a finite number, found %.12s",
+        return log_fail(r->log, RELUME_EFORMAT, "%s: %s; expected a finite number, found %.12s",
                         r->name, what, r->at);
     r->at = end;
     return RELUME_OK;
@@ -71,8 +71,8 @@ static relume_status take_count(struct reader *r, int *out, int least, int most,
     if (status)
         return status;
     if (n != floor(n) || n < least || n > most)
-        return log_fail(r->log, RELUME_EDATA, "%s: %s; expected %d to %d, found %g", r->name, what,
-                        least, most, n);
+        return log_fail(r->log, RELUME_EFORMAT, "%s: %s; expected %d to %d, found %g", r->name,
+                        what, least, most, n);
     *out = relume_whole(n);
     return RELUME_OK;
 }
@@ -94,7 +94,7 @@ static relume_status take_angles(struct reader *r, double *out, int count, doubl
         if (status)
             return status;
         if (out[i] < 0.0 || out[i] > most || (i && out[i] <= out[i - 1]))
-            return log_fail(r->log, RELUME_EDATA,
+            return log_fail(r->log, RELUME_EFORMAT,
                             "%s: %s; expected ascending angles in 0 to %g, found %g", r->name, what,
                             most, out[i]);
     }
@@ -115,7 +115,7 @@ static relume_status find_tilt(struct reader *r)
     while (*r->at && strncmp(r->at, "TILT=", 5))
         r->at = next_line(r->at);
     if (!*r->at)
-        return log_fail(r->log, RELUME_EDATA,
+        return log_fail(r->log, RELUME_EFORMAT,
                         "%s: no line TILT=; expected a photometric file (IES LM-63)", r->name);
     r->at += 5;
     return RELUME_OK;
@@ -137,7 +137,8 @@ static relume_status skip_tilt(struct reader *r)
     if (take_word(r, "NONE"))
         return RELUME_OK;
     if (!take_word(r, "INCLUDE"))
-        return log_fail(r->log, RELUME_EDATA, "%s: TILT=%.*s; expected NONE or INCLUDE", r->name,
+        return log_fail(r->log, RELUME_EUNSUPPORTED, "%s: TILT=%.*s; expected NONE or INCLUDE",
+                        r->name,
                         (int)strcspn(r->at, "\r\n") < 40 ? (int)strcspn(r->at, "\r\n") : 40, r->at);
     relume_status status = take_count(r, &geometry, 1, 3, "lamp geometry");
     if (!status)
@@ -151,8 +152,8 @@ static relume_status check_type(struct reader *r)
     const relume_status status = take_count(r, &type, 1, 3, "photometric type");
     if (status || type == 1)
         return status;
-    return log_fail(r->log, RELUME_EDATA, "%s: photometry of type %c; expected type C (1)", r->name,
-                    type == 2 ? 'B' : 'A');
+    return log_fail(r->log, RELUME_EUNSUPPORTED, "%s: photometry of type %c; expected type C (1)",
+                    r->name, type == 2 ? 'B' : 'A');
 }
 
 static relume_status take_header(struct reader *r, relume_ies *ies, double *factor)
@@ -178,7 +179,7 @@ static relume_status take_header(struct reader *r, relume_ies *ies, double *fact
         status = skip(r, 2, "ballast-lamp factor and watts");
     *factor *= ballast;
     if (!status && !(*factor > 0.0 && isfinite(*factor)))
-        status = log_fail(r->log, RELUME_EDATA,
+        status = log_fail(r->log, RELUME_EFORMAT,
                           "%s: candela multiplier times ballast factor; expected more than 0, "
                           "found %g",
                           r->name, *factor);
@@ -190,7 +191,7 @@ static relume_status create_table(struct reader *r, relume_ies *ies)
 {
     const size_t n = (size_t)ies->verticals * (size_t)ies->horizontals;
     if (2 * n > strlen(r->at) + 1)
-        return log_fail(r->log, RELUME_EDATA,
+        return log_fail(r->log, RELUME_EDAMAGED,
                         "%s: %d x %d candela values; expected as many numbers, the file is shorter",
                         r->name, ies->verticals, ies->horizontals);
     ies->vertical = mem_array((size_t)ies->verticals, sizeof *ies->vertical);
@@ -214,7 +215,7 @@ static relume_status find_fold(struct reader *r, relume_ies *ies)
             ies->fold = known[i].fold;
             return RELUME_OK;
         }
-    return log_fail(r->log, RELUME_EDATA,
+    return log_fail(r->log, RELUME_EFORMAT,
                     "%s: horizontal angles %g to %g; expected 0, 0 to 90, 0 to 180, 90 to 270 or "
                     "0 to 360",
                     r->name, first, last);
@@ -230,13 +231,13 @@ static relume_status take_candela(struct reader *r, relume_ies *ies, double fact
         if (status)
             return status;
         if (candela < 0.0 || candela > 1e30)
-            return log_fail(r->log, RELUME_EDATA, "%s: candela; expected 0 or more, found %g",
+            return log_fail(r->log, RELUME_EFORMAT, "%s: candela; expected 0 or more, found %g",
                             r->name, candela);
         ies->value[i] = (float)candela;
         most = fmax(most, (double)ies->value[i]);
     }
     if (!(most > 0.0))
-        return log_fail(r->log, RELUME_EDATA, "%s: all candela values are 0; expected light",
+        return log_fail(r->log, RELUME_EFORMAT, "%s: all candela values are 0; expected light",
                         r->name);
     for (size_t i = 0; i < n; i++)
         ies->value[i] = (float)((double)ies->value[i] / most);
@@ -250,7 +251,7 @@ static relume_status check_end(struct reader *r)
     struct reader quiet = {r->at, r->name, NULL};
     if (take(&quiet, &more, ""))
         return RELUME_OK;
-    return log_fail(r->log, RELUME_EDATA,
+    return log_fail(r->log, RELUME_EFORMAT,
                     "%s: holds more numbers than its counts promise; expected the end of the file",
                     r->name);
 }
@@ -305,7 +306,7 @@ relume_status relume_ies_load(relume_ies **out, const char *path, const struct r
     if (ferror(file))
         status = relume_input_fail(log, path, "cannot be read", errno);
     else if (size > MOST_BYTES)
-        status = log_fail(log, RELUME_EDATA, "%s: too long; expected a photometric file", path);
+        status = log_fail(log, RELUME_EFORMAT, "%s: too long; expected a photometric file", path);
     else if (!status)
         status = relume_ies_parse(out, text, size, path, log);
     free(text);

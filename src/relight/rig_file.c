@@ -39,7 +39,7 @@ static void say_about(void *user, enum relume_level level, const char *text)
 static relume_status wrong(struct about *a, const char *member, const char *expected)
 {
     a->member = member;
-    return log_fail(&a->log, RELUME_EDATA, "%s; expected %s", member, expected);
+    return log_fail(&a->log, RELUME_EFORMAT, "%s; expected %s", member, expected);
 }
 
 static relume_status take_truth(struct about *a, const jvalue *object, const char *member,
@@ -72,7 +72,7 @@ static relume_status take_light(relume_rig *rig, const jvalue *object, const cha
 {
     static const char *const members[] = {"name", "light", "rgb", "intensity", "on", "solo", NULL};
     if (!jvalue_is_object(object))
-        return log_fail(&a->log, RELUME_EDATA, "expected an object");
+        return log_fail(&a->log, RELUME_EFORMAT, "expected an object");
     const char *unknown = jvalue_unknown(object, members);
     if (unknown)
         return wrong(a, unknown, "name, light, rgb, intensity, on or solo");
@@ -83,13 +83,13 @@ static relume_status take_light(relume_rig *rig, const jvalue *object, const cha
     relume_status status = relume_rig_add(rig, spec, folder, &a->log);
     a->member = NULL;
     if (status)
-        return status == RELUME_EINVAL ? RELUME_EDATA : status;
+        return status == RELUME_EINVAL ? RELUME_EFORMAT : status;
     const int index = relume_rig_count(rig) - 1;
     struct relume_rig_entry entry = *relume_rig_entry(rig, index);
     status = take_values(a, object, &entry);
     if (!status)
         status = relume_rig_set(rig, index, &entry, &a->log);
-    return status == RELUME_EINVAL ? RELUME_EDATA : status;
+    return status == RELUME_EINVAL ? RELUME_EFORMAT : status;
 }
 
 // `member` of the file itself, absent ones at its beginning.
@@ -98,7 +98,7 @@ static relume_status wrong_head(const char *path, const char *member, const char
 {
     int at[2] = {1, 1};
     (void)jvalue_place(at, path, NULL, 0, member);
-    return log_fail(log, RELUME_EDATA, "%s: line %d, column %d; %s; expected %s", path, at[0],
+    return log_fail(log, RELUME_EFORMAT, "%s: line %d, column %d; %s; expected %s", path, at[0],
                     at[1], member, expected);
 }
 

@@ -572,7 +572,7 @@ relume_status relume_coder_decide(relume_coder **out, struct relume_decision *de
         status =
             relume_samples_read(&job.all, capture, samples_enough(job.manifest->lights), encode);
     if (!status && !job.all.pixels)
-        status = log_fail(job.params.log, RELUME_EDATA,
+        status = log_fail(job.params.log, RELUME_EUNFIT,
                           "the masks are black everywhere; expected white where the object is");
     if (!status)
         status = take_some(&job);

@@ -579,11 +579,11 @@ static relume_status check_test(const relume_heldout *h)
     const struct relume_manifest *ours = relume_capture_manifest(h->capture);
     const struct relume_manifest *theirs = relume_capture_manifest(t);
     if (relume_capture_width(t) != h->width || relume_capture_height(t) != h->height)
-        return log_fail(h->params.log, RELUME_EDATA,
+        return log_fail(h->params.log, RELUME_EUNFIT,
                         "the second capture has %d x %d pixels; expected %d x %d as the first",
                         relume_capture_width(t), relume_capture_height(t), h->width, h->height);
     if (theirs->views != h->views || theirs->geometry.projection != ours->geometry.projection)
-        return log_fail(h->params.log, RELUME_EDATA,
+        return log_fail(h->params.log, RELUME_EUNFIT,
                         "the second capture has %d %s views; expected %d %s ones as the first",
                         theirs->views, relume_projection_name(theirs->geometry.projection),
                         h->views, relume_projection_name(ours->geometry.projection));

@@ -16,12 +16,12 @@ relume_status map_start(relume_btf_map **out, const struct relume_btf_map_info *
     if (!limits_allow(&limits, s->sample_width, s->sample_height) ||
         !limits_allow(&limits, s->width, s->height) || s->tiles < 1 || s->tiles > 65536 ||
         (int64_t)s->tiles * s->width * s->height > MOST_TEXELS)
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_ELIMIT,
                         "map: expected sizes within the limits; found %d tiles of %d x %d texels",
                         s->tiles, s->width, s->height);
     if (!limits_allow(&limits, s->columns, s->rows) || (int64_t)s->columns * s->width > MOST_SIDE ||
         (int64_t)s->rows * s->height > MOST_SIDE)
-        return log_fail(log, RELUME_EDATA,
+        return log_fail(log, RELUME_ELIMIT,
                         "map: expected a matrix within the limits; found %d x %d tiles of %d x %d",
                         s->columns, s->rows, s->width, s->height);
     relume_btf_map *m = mem_zeroed(1, sizeof *m);
@@ -45,13 +45,13 @@ relume_status map_check(const struct relume_btf_map_info *i, const char *name,
     const size_t across = (size_t)i->width, all = map_texels(i);
     for (size_t t = 0; t < all; t++)
         if (i->texel[t] >= sample)
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_EDAMAGED,
                             "%s: row %zu, column %zu: expected a texel of %d x %d; found number %u",
                             name, t / across, t % across, i->sample_width, i->sample_height,
                             i->texel[t]);
     for (size_t t = 0; t < (size_t)i->columns * (size_t)i->rows; t++)
         if (i->matrix[t] >= i->tiles)
-            return log_fail(log, RELUME_EDATA,
+            return log_fail(log, RELUME_EDAMAGED,
                             "%s: matrix: row %zu, column %zu: expected one of %d tiles; found %u",
                             name, t / (size_t)i->columns, t % (size_t)i->columns, i->tiles,
                             i->matrix[t]);

@@ -33,7 +33,8 @@ static relume_status open_numbers(relume_btf_map **out, const char *path, int sa
     relume_status status = npy_open(&file, path, log);
     const struct npy *n = &file.npy;
     if (!status && (n->dims != 2 || (n->kind != NPY_U16 && n->kind != NPY_U32)))
-        status = log_fail(log, RELUME_EDATA, "%s: expected uint16 or uint32 [height][width]", path);
+        status =
+            log_fail(log, RELUME_EFORMAT, "%s: expected uint16 or uint32 [height][width]", path);
     if (!status) {
         const struct relume_btf_map_info s =
             sizes(n->shape[1], n->shape[0], sample_width, sample_height);
@@ -75,7 +76,7 @@ static relume_status open_picture(relume_btf_map **out, const char *path, int sa
         if (place(&x, p[0], sample_width) && place(&y, p[1], sample_height))
             (*out)->texel[i] = y * (uint32_t)sample_width + x;
         else
-            status = log_fail(log, RELUME_EDATA,
+            status = log_fail(log, RELUME_EDAMAGED,
                               "%s: row %zu, column %zu: expected a place from 0 to 1 in red and "
                               "green; found %g, %g",
                               path, i / (size_t)s.width, i % (size_t)s.width, (double)p[0],

@@ -14,7 +14,7 @@ struct relume_btf_map {
     uint16_t *matrix;
 };
 
-// A map whose texels and matrix are still to be filled. RELUME_EDATA for sizes over the limits,
+// A map whose texels and matrix are still to be filled. An input status for sizes over the limits,
 // RELUME_ENOMEM.
 relume_status map_start(relume_btf_map **out, const struct relume_btf_map_info *sizes,
                         const struct relume_log *log);

@@ -125,7 +125,7 @@ static relume_status read_sizes(struct relume_btf_map_info *s, const jvalue *roo
         !read_count(root, "tile_height", r->limits.max_side, &s->height) ||
         !read_count(root, "columns", r->limits.max_side, &s->columns) ||
         !read_count(root, "rows", r->limits.max_side, &s->rows))
-        return log_fail(r->log, RELUME_EDATA,
+        return log_fail(r->log, RELUME_ELIMIT,
                         "%s: tiles, tile_width, tile_height, columns, rows; expected counts within "
                         "the limits",
                         r->json);
@@ -150,7 +150,7 @@ static relume_status read_array(const char *name, const struct npy *want, void *
     }
     if (!status && !same)
         status =
-            log_fail(r->log, RELUME_EDATA, "%s: not the array that surface.json implies", path);
+            log_fail(r->log, RELUME_EDAMAGED, "%s: not the array that surface.json implies", path);
     if (!status && file.npy.kind == want->kind)
         memcpy(out, file.data, count * npy_item(want->kind));
     for (size_t i = 0; !status && file.npy.kind != want->kind && i < count; i++)

@@ -125,7 +125,7 @@ static relume_status check(struct relume_btf_tiles_params *p, const relume_btf_f
 {
     const int side = sample->width < sample->height ? sample->width : sample->height;
     if (side < LEAST_SAMPLE)
-        return log_fail(p->log, RELUME_EDATA,
+        return log_fail(p->log, RELUME_EUNFIT,
                         "tiles: expected a sample of at least %d x %d texels; found %d x %d",
                         LEAST_SAMPLE, LEAST_SAMPLE, sample->width, sample->height);
     p->tiles = p->tiles ? p->tiles : 10;

@@ -41,7 +41,7 @@ fi
 for change in 's/float gamma; void \*response/void *response; float gamma/' \
     's/bool whole; }/int whole; }/' 's/int codes; bool shared;/bool shared; int codes;/' \
     's/relume_pack_drop(relume_pack \*pack, int view)/relume_pack_drop(relume_pack *pack)/' \
-    's/"RELUME_EIO": 4/"RELUME_EIO": 5/'; do
+    's/"RELUME_EIO": 9/"RELUME_EIO": 8/'; do
     mkdir -p ../wrong/relume && sed "$change" relume/_abi.py >../wrong/relume/_abi.py
     if (cd ../wrong && "$python" relume/_abi.py >w.c && "$python" relume/_abi.py layout >here.txt &&
         ${CC:-gcc} -std=c11 -I"$TOP/include" w.c -o w 2>/dev/null && ./w | cmp -s - here.txt); then

@@ -42,13 +42,13 @@ relume_status helper_start(struct helper_job *job, enum helper_kind kind, const 
 {
     (void)kind, (void)path, (void)log;
     *job = (struct helper_job){.why = "not in this target"};
-    return RELUME_EDATA;
+    return RELUME_EDAMAGED;
 }
 relume_status helper_ask(struct helper_job *job, const void *message, size_t size, int file,
                          void *answer, size_t answer_size)
 {
     (void)job, (void)message, (void)size, (void)file, (void)answer, (void)answer_size;
-    return RELUME_EDATA;
+    return RELUME_EDAMAGED;
 }
 void helper_end(struct helper_job *job)
 {

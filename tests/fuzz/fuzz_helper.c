@@ -46,7 +46,7 @@ relume_status helper_ask(struct helper_job *job, const void *message, size_t siz
     }
     if (!said.size) {
         snprintf(job->why, sizeof job->why, "no answer");
-        return RELUME_EDATA;
+        return RELUME_EDAMAGED;
     }
     memset(answer, 0, answer_size);
     take(answer, answer_size);

@@ -39,7 +39,7 @@ static relume_status host_light(void *user, const char *spec, bool replace,
 static relume_status host_file(void *user, const char *path, const struct relume_log *log)
 {
     (void)user, (void)log;
-    return path[0] ? RELUME_OK : RELUME_EDATA;
+    return path[0] ? RELUME_OK : RELUME_ENOTFOUND;
 }
 
 static relume_status host_wait(void *user, double seconds)
@@ -52,13 +52,13 @@ static relume_status host_wait(void *user, double seconds)
 static relume_status host_frame(void *user, const char *path)
 {
     (void)user;
-    return path[0] ? RELUME_OK : RELUME_EDATA;
+    return path[0] ? RELUME_OK : RELUME_ENOTFOUND;
 }
 
 static relume_status host_glare(void *user, const char *text, const char **expected)
 {
     struct app *app = user;
-    return observer_say(&app->now.observer, text, expected) ? RELUME_OK : RELUME_EDATA;
+    return observer_say(&app->now.observer, text, expected) ? RELUME_OK : RELUME_EFORMAT;
 }
 
 // The first byte chooses what is shown.

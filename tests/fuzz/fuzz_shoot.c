@@ -101,7 +101,7 @@ static bool try_poses(const struct fuzz *f, struct bytes b)
 relume_status data_error(const char *format, ...)
 {
     (void)format;
-    return RELUME_EDATA;
+    return RELUME_EDAMAGED;
 }
 
 const char *base_name(const char *path)

@@ -718,7 +718,8 @@ static relume_status host_rig(void *user, const char *path, const struct relume_
 static relume_status host_open(void *user, const char *path, const struct relume_log *log)
 {
     (void)user, (void)log;
-    return strcmp(path, "none.exr") ? RELUME_OK : say(log, RELUME_EDATA, "none.exr: no such file");
+    return strcmp(path, "none.exr") ? RELUME_OK
+                                    : say(log, RELUME_ENOTFOUND, "none.exr: no such file");
 }
 
 static relume_status host_wait(void *user, double seconds)
@@ -743,7 +744,7 @@ static relume_status host_frame(void *user, const char *path)
 static relume_status host_glare(void *user, const char *words, const char **expected)
 {
     struct app *app = ((struct frames *)user)->app;
-    return observer_say(&app->now.observer, words, expected) ? RELUME_OK : RELUME_EDATA;
+    return observer_say(&app->now.observer, words, expected) ? RELUME_OK : RELUME_EFORMAT;
 }
 
 static struct script_host host_of(struct frames *frames)
@@ -782,8 +783,8 @@ static void scripts_let_an_eye_live(void **state)
     assert_true(frames.at[0].now.observer.on && frames.at[0].now.observer.squint == 0.3);
     app_reset(&app);
     assert_false(app.now.observer.on);
-    assert_int_equal(play(&app, &frames, "glare\n"), RELUME_EDATA);
-    assert_int_equal(play(&app, &frames, "\nglare squint 2\n"), RELUME_EDATA);
+    assert_int_equal(play(&app, &frames, "glare\n"), RELUME_EFORMAT);
+    assert_int_equal(play(&app, &frames, "\nglare squint 2\n"), RELUME_EFORMAT);
     assert_non_null(strstr(said, "line 2, column 7; expected how far"));
 }
 
@@ -861,7 +862,7 @@ static void scripts_set_numbers(void **state)
     assert_true(frames.at[0].now.camera.look.pan_deg == 30 && frames.at[0].now.zoom == 1);
     assert_true(frames.at[0].now.camera.look.tilt_deg == -9 &&
                 frames.at[0].now.camera.look.zoom == 3);
-    assert_int_equal(play(&look, &frames, "set aperture 1\n"), RELUME_EDATA);
+    assert_int_equal(play(&look, &frames, "set aperture 1\n"), RELUME_EFORMAT);
     assert_non_null(strstr(said, "line 1, column 5; expected aperture A, of a slab"));
     assert_true(look.now.aperture == 0);
 }
@@ -990,15 +991,15 @@ static void broken_scripts_name_the_line(void **state)
         OWNED_APP app = make_app(RELUME_PLANAR, false);
         snprintf(text, sizeof text, "size 8 8\n%s\n", wrong[i].line);
         snprintf(place, sizeof place, "line 2, column %d; ", wrong[i].column);
-        assert_int_equal(play(&app, &frames, text), RELUME_EDATA);
+        assert_true(relume_status_is_input(play(&app, &frames, text)));
         if (!strstr(said, place))
             fail_msg("'%s' said '%s'", wrong[i].line, said);
     }
     OWNED_APP app = make_app(RELUME_PLANAR, false);
     frames.app = &app;
     const struct script_host host = host_of(&frames);
-    assert_int_equal(script_play("/nonexistent/script", &host), RELUME_EDATA);
-    assert_int_equal(script_play("/tmp", &host), RELUME_EDATA);
+    assert_int_equal(script_play("/nonexistent/script", &host), RELUME_ENOTFOUND);
+    assert_int_equal(script_play("/tmp", &host), RELUME_ENOTFOUND);
 }
 
 static void long_lines_are_refused(void **state)
@@ -1008,7 +1009,7 @@ static void long_lines_are_refused(void **state)
     static struct frames frames;
     OWNED_APP app = make_app(RELUME_PLANAR, false);
     memset(text, ' ', sizeof text - 1);
-    assert_int_equal(play(&app, &frames, text), RELUME_EDATA);
+    assert_int_equal(play(&app, &frames, text), RELUME_EFORMAT);
     assert_non_null(strstr(said, "longer"));
 }
 

@@ -393,7 +393,7 @@ static void cameras_without_a_grid_are_refused(void **state)
     const struct relume_geometry g = slab_geometry();
     const struct code_source source = {fixture_fetch, NULL, NULL, NULL};
     struct renderer r;
-    assert_int_equal(renderer_create(&r, &fixture_gl, &source, &g, uv, 2, NULL), RELUME_EDATA);
+    assert_int_equal(renderer_create(&r, &fixture_gl, &source, &g, uv, 2, NULL), RELUME_EUNFIT);
 }
 
 // ---------------------------------------------------------------- panorama

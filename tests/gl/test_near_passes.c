@@ -289,7 +289,7 @@ static void without_a_surface(void **state)
     const struct target *target;
     assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
     assert_int_equal(relighter_begin(&r, &light, 1), RELUME_OK);
-    assert_int_equal(relighter_view(&target, &r, 0), RELUME_EDATA);
+    assert_int_equal(relighter_view(&target, &r, 0), RELUME_EUNFIT);
     assert_null(target);
     relighter_destroy(&r);
     fixture_free(&f);
@@ -367,7 +367,7 @@ static relume_status refuse(const struct relume_codes **out, void *user, int vie
 {
     (void)user, (void)view;
     *out = NULL;
-    return RELUME_EDATA;
+    return RELUME_EDAMAGED;
 }
 
 static void a_broken_view_is_heard_of(void **state)
@@ -380,7 +380,7 @@ static void a_broken_view_is_heard_of(void **state)
     assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
     assert_int_equal(relighter_stream(&r), RELUME_OK);
     assert_int_equal(relighter_begin(&r, &light, 1), RELUME_OK);
-    assert_int_equal(relighter_wait(&target, &r, 0), RELUME_EDATA);
+    assert_int_equal(relighter_wait(&target, &r, 0), RELUME_EDAMAGED);
     assert_null(target);
     relighter_destroy(&r);
 }

@@ -211,7 +211,7 @@ static relume_status refuse(const struct relume_codes **out, void *user, int vie
 {
     (void)user, (void)view;
     *out = NULL;
-    return RELUME_EDATA;
+    return RELUME_EDAMAGED;
 }
 
 static void a_broken_source_is_passed_on(void **state)
@@ -222,7 +222,7 @@ static void a_broken_source_is_passed_on(void **state)
     const struct target *target;
     assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
     assert_int_equal(relighter_begin(&r, lights, 1), RELUME_OK);
-    assert_int_equal(relighter_view(&target, &r, 0), RELUME_EDATA);
+    assert_int_equal(relighter_view(&target, &r, 0), RELUME_EDAMAGED);
     assert_null(target);
     relighter_destroy(&r);
 }

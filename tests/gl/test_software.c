@@ -206,7 +206,7 @@ static void without_a_surface(void **state)
     assert_int_equal(relighter_create(&r, &fixture_gl, &source, 1, &fixture_log), RELUME_OK);
     r.by_library = true;
     assert_int_equal(relighter_begin(&r, &light, 1), RELUME_OK);
-    assert_int_equal(relighter_view(&target, &r, 0), RELUME_EDATA);
+    assert_int_equal(relighter_view(&target, &r, 0), RELUME_EUNFIT);
     assert_null(target);
     relighter_destroy(&r);
     free_lender(&l);
@@ -215,7 +215,9 @@ static void without_a_surface(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(codes_are_given_back), cmocka_unit_test(near_lights_on_many_planes),
+        cmocka_unit_test(codes_are_given_back),
+        cmocka_unit_test(near_lights_on_many_planes),
+        cmocka_unit_test(same_as_relight),
         cmocka_unit_test(without_a_surface),
     };
     return cmocka_run_group_tests(tests, open_all, close_all);

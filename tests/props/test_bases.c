@@ -335,13 +335,13 @@ static void test_count_must_fit(void **state)
     assert_int_equal(relume_coder_create(&c, &relume_basis_table, lights, LIGHTS,
                                          relume_coder_params(.coefficients = 2, .decode = true,
                                                              .transform = transform)),
-                     RELUME_EDATA);
+                     RELUME_EUNFIT);
     assert_null(c);
     struct test_log log;
     test_log_init(&log);
     assert_int_equal(relume_coder_create(&c, &relume_basis_sh, lights, 8,
                                          relume_coder_params(.log = &log.log, .coefficients = 9)),
-                     RELUME_EDATA);
+                     RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "at least 9 lights; found 8"));
     assert_int_equal(relume_coder_create(&c, &relume_basis_sh, lights, LIGHTS,
                                          relume_coder_params(.log = &log.log, .coefficients = 10)),

@@ -291,7 +291,7 @@ static void test_octahedral_grid(void **state)
     o->release(data);
     const double parameter[4] = {0};
     s.light[7] = vec3_of(0.0, 0.0, 1.0);
-    assert_int_equal(o->prepare(&data, s.light, s.n, parameter, NULL), RELUME_EDATA);
+    assert_int_equal(o->prepare(&data, s.light, s.n, parameter, NULL), RELUME_EUNFIT);
     assert_null(data);
 }
 
@@ -309,7 +309,7 @@ static void test_parameters_are_bounded(void **state)
         p.interpolant = relume_interpolant_find("chord");
         relume_coder *coder;
         assert_int_equal(relume_coder_create(&coder, &relume_basis_table, s.light, s.n, &p),
-                         RELUME_EDATA);
+                         RELUME_EUNFIT);
         assert_null(coder);
     }
 }

@@ -171,9 +171,9 @@ static void lines_that_do_not_meet(void **state)
     const struct relume_vec3 meeting[2] = {{0.6, 0, 0.8}, {-0.6, 0, 0.8}};
     struct relume_vec3 p;
     double sigma;
-    assert_int_equal(relume_light_triangulate(&p, &sigma, origin, parallel, 2), RELUME_EDATA);
-    assert_int_equal(relume_light_triangulate(&p, &sigma, origin, apart, 2), RELUME_EDATA);
-    assert_int_equal(relume_light_triangulate(&p, &sigma, origin, meeting, 1), RELUME_EDATA);
+    assert_int_equal(relume_light_triangulate(&p, &sigma, origin, parallel, 2), RELUME_EUNFIT);
+    assert_int_equal(relume_light_triangulate(&p, &sigma, origin, apart, 2), RELUME_EUNFIT);
+    assert_int_equal(relume_light_triangulate(&p, &sigma, origin, meeting, 1), RELUME_EUNFIT);
     CHECK_OK(relume_light_triangulate(&p, &sigma, origin, meeting, 2));
     CHECK_NEAR(p.x, 0.5, 1e-12);
     CHECK_NEAR(p.z, 2.0 / 3.0, 1e-12);
@@ -254,7 +254,7 @@ static void no_ball(void **state)
         mean.data[k] = photo.data[3 * k];
     assert_int_equal(
         relume_ball_find(&ball, 1, &mean, &camera, relume_ball_params(.log = &log.log)),
-        RELUME_EDATA);
+        RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "0 of 1 ball found"));
     relume_image_destroy(&photo);
     relume_image_destroy(&mean);

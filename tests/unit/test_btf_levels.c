@@ -137,14 +137,14 @@ static void test_broken(void **state)
     relume_btf_fitted_destroy(&m);
     snprintf(path, sizeof path, "%s/m", folder);
     assert_int_equal(relume_btf_fitted_open(&m, path, relume_btf_params(.log = &log.log)),
-                     RELUME_EDATA);
+                     RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "level1: rfp of 7 x 4 texels; expected rfp of 3 x 2"));
     assert_null(m);
     snprintf(path, sizeof path, "%s/m/level1/model.json", folder);
     assert_int_equal(unlink(path), 0);
     snprintf(path, sizeof path, "%s/m", folder);
     assert_int_equal(relume_btf_fitted_open(&m, path, relume_btf_params(.log = &log.log)),
-                     RELUME_EDATA);
+                     RELUME_ENOTFOUND);
     assert_non_null(strstr(log.text, "level1/model.json"));
     relume_btf_destroy(&btf);
     test_folder_remove(folder);

@@ -450,11 +450,11 @@ static void test_files(void **state)
     assert_int_equal(fclose(f), 0);
     snprintf(path, sizeof path, "%s/qmf", folder);
     assert_int_equal(relume_btf_fitted_open(&m, path, relume_btf_params(.log = &log.log)),
-                     RELUME_EDATA);
+                     RELUME_EFORMAT);
     assert_non_null(strstr(log.text, "arrays do not fit together"));
     snprintf(path, sizeof path, "%s/lpca", folder);
     assert_int_equal(relume_btf_fitted_open(&m, path, relume_btf_params(.log = &log.log)),
-                     RELUME_EDATA);
+                     RELUME_EDAMAGED);
     assert_non_null(strstr(log.text, "clusters that exist"));
     assert_null(m);
     assert_int_equal(relume_btf_fit(&m, btf, named("rfnlc"),
@@ -463,7 +463,7 @@ static void test_files(void **state)
     assert_non_null(strstr(log.text, "1 to 12 clusters; found 13"));
     btf->own[7] = 0x7e00;  // NaN
     assert_int_equal(relume_btf_fit(&m, btf, named("rfp"), relume_btf_fit_params(.log = &log.log)),
-                     RELUME_EDATA);
+                     RELUME_EDAMAGED);
     relume_btf_destroy(&btf);
     test_folder_remove(folder);
 }

@@ -115,7 +115,7 @@ static void test_no_ridge(void **state)
     relume_coder_destroy(&coder);
     struct relume_coder_params bare = ring;
     bare.no_ridge = true;
-    assert_int_equal(relume_coder_create(&coder, &relume_basis_sh, light, N, &bare), RELUME_EDATA);
+    assert_int_equal(relume_coder_create(&coder, &relume_basis_sh, light, N, &bare), RELUME_EUNFIT);
     bare.ridge = 0.1;
     assert_int_equal(relume_coder_create(&coder, &relume_basis_sh, light, N, &bare), RELUME_EINVAL);
 }

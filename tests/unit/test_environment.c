@@ -112,7 +112,7 @@ static void test_oddities(void **state)
     assert_null(e);
     map.channels = 3;
     relume_image_destroy(&map);
-    assert_int_equal(relume_environment_load(&e, "/nonexistent.hdr", NULL), RELUME_EDATA);
+    assert_int_equal(relume_environment_load(&e, "/nonexistent.hdr", NULL), RELUME_ENOTFOUND);
     map = map_of(4, 2, 0);  // a black map is fine and gives nothing
     e = create(&map);
     struct relume_light out[3];

@@ -92,7 +92,7 @@ static void test_refusals(void **state)
     assert_int_equal(rename(path, kept), 0);
     test_write(path, "x", 1);
     assert_int_equal(relume_evaluate(&e, pack, capture, relume_evaluate_params(.log = &log.log)),
-                     RELUME_EDATA);
+                     RELUME_EFORMAT);
     assert_non_null(strstr(log.text, "v1-5.exr"));
     assert_int_equal(log.lines, 1);
     assert_null(e.light);
@@ -105,7 +105,7 @@ static void test_refusals(void **state)
     CHECK_OK(relume_capture_open(&capture, small, NULL));
     assert_int_equal(relume_evaluate(&e, pack, capture,
                                      relume_evaluate_params(.log = &log.log, .capture = "small")),
-                     RELUME_EDATA);
+                     RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "small: 8 x 8"));
     relume_capture_destroy(&capture);
     relume_pack_destroy(&pack);

@@ -314,7 +314,7 @@ static void bad_jpeg_tables_are_errors(void **state)
             assert_int_equal(truncate(path, 4000), 0);
         }
         test_log_init(&log);
-        assert_int_equal(ptm_read(&f, path, NULL, &log.log), RELUME_EDATA);
+        assert_true(relume_status_is_input(ptm_read(&f, path, NULL, &log.log)));
         if (!strstr(log.text, cases[i].says))
             print_error("case %zu: %s\n", i, log.text);
         assert_non_null(strstr(log.text, cases[i].says));

@@ -140,7 +140,7 @@ static relume_status refuse(void *context, int row, int rows, void *samples)
 {
     (void)context, (void)samples, (void)rows;
     memset(samples, 0, 4 * (size_t)rows);
-    return row >= 32 ? RELUME_EDATA : RELUME_OK;
+    return row >= 32 ? RELUME_EDAMAGED : RELUME_OK;
 }
 
 static void test_failing_source(void **state)
@@ -156,7 +156,7 @@ static void test_failing_source(void **state)
                                   .rows = refuse};
     unlink(path);
     for (int threads = 1; threads <= 4; threads += 3) {
-        assert_int_equal(exr_write(path, NULL, &part, 1, threads, NULL), RELUME_EDATA);
+        assert_int_equal(exr_write(path, NULL, &part, 1, threads, NULL), RELUME_EDAMAGED);
         assert_int_not_equal(access(path, F_OK), 0);
     }
 }
@@ -175,7 +175,7 @@ static void test_every_cut_is_noticed(void **state)
         struct test_log log;
         test_log_init(&log);
         test_write(path, bytes, n);
-        assert_int_equal(exr_open(&file, path, NULL, NULL, &log.log), RELUME_EDATA);
+        assert_true(relume_status_is_input(exr_open(&file, path, NULL, NULL, &log.log)));
         assert_null(file);
         assert_int_equal(log.lines, 1);
         assert_non_null(strstr(log.text, path));
@@ -185,7 +185,7 @@ static void test_every_cut_is_noticed(void **state)
     CHECK_OK(exr_open(&file, path, NULL, NULL, NULL));
     exr_close(&file);
     const struct relume_limits small = {.max_side = 39};
-    assert_int_equal(exr_open(&file, path, NULL, &small, NULL), RELUME_EDATA);
+    assert_int_equal(exr_open(&file, path, NULL, &small, NULL), RELUME_ELIMIT);
 }
 
 int main(void)

@@ -220,7 +220,7 @@ static void test_bad_maps(void **state)
     relume_image_destroy(&map);
     relume_gonio_destroy(&g);
     relume_gonio_destroy(&g);
-    assert_int_equal(relume_gonio_load(&g, "/nowhere/faces.exr", NULL), RELUME_EDATA);
+    assert_int_equal(relume_gonio_load(&g, "/nowhere/faces.exr", NULL), RELUME_ENOTFOUND);
 }
 
 int main(void)

@@ -253,14 +253,14 @@ static void test_refusals(void **state)
     CHECK_OK(relume_capture_open(&part, small, NULL));
     assert_int_equal(
         relume_heldout_open(&h, capture, relume_heldout_params(.log = &log.log, .test = part)),
-        RELUME_EDATA);
+        RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "8 x 8"));
     // a fold that has too few lights says so, and leaves the object as it was
     CHECK_OK(relume_heldout_open(&h, part, relume_heldout_params(.leave_out = 2)));
     assert_int_equal(relume_heldout_measure(h, &relume_basis_sh,
                                             relume_coder_params(.log = &log.log, .coefficients = 4),
                                             NULL, 0, &before, NULL),
-                     RELUME_EDATA);
+                     RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "4 coefficients"));
     CHECK_OK(relume_heldout_measure(h, &relume_basis_sh, relume_coder_params(.coefficients = 1),
                                     NULL, 0, &before, NULL));

@@ -121,10 +121,10 @@ static void test_flat(void **state)
         ring[i] = vec3_of(cos(i * M_PI / 6), sin(i * M_PI / 6), 0.0);
     for (int i = 0; i < 5; i++)
         one[i] = vec3_of(0, 0, 1);
-    assert_int_equal(hull_build(ring, 12, &t, &count), RELUME_EDATA);
+    assert_int_equal(hull_build(ring, 12, &t, &count), RELUME_EUNFIT);
     assert_null(t);
-    assert_int_equal(hull_build(one, 5, &t, &count), RELUME_EDATA);
-    assert_int_equal(hull_build(one, 1, &t, &count), RELUME_EDATA);
+    assert_int_equal(hull_build(one, 5, &t, &count), RELUME_EUNFIT);
+    assert_int_equal(hull_build(one, 1, &t, &count), RELUME_EUNFIT);
     assert_int_equal(count, 0);
 }
 

@@ -97,7 +97,7 @@ static void test_bad(void **state)
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         struct draft d;
         struct test_log log;
-        assert_int_equal(read_text(&d, rows[i].text, &log), RELUME_EDATA);
+        assert_int_equal(read_text(&d, rows[i].text, &log), RELUME_EFORMAT);
         assert_int_equal(log.lines, 1);
         if (!strstr(log.text, rows[i].said) || !strstr(log.text, path))
             fail_msg("'%s': found '%s', expected '%s'", rows[i].text, log.text, rows[i].said);
@@ -107,13 +107,13 @@ static void test_bad(void **state)
     struct test_log log;
     test_log_init(&log);
     test_write(path, "1\na\0b 0 0 1\n", 12);
-    assert_int_equal(lp_read(&d, path, NULL, &log.log), RELUME_EDATA);
+    assert_int_equal(lp_read(&d, path, NULL, &log.log), RELUME_EFORMAT);
     assert_non_null(strstr(log.text, "not a text file"));
     const struct relume_limits two = {.max_lights = 2};
     test_write(path, "3\na 0 0 1\na 0 0 1\na 0 0 1\n", 26);
-    assert_int_equal(lp_read(&d, path, &two, &log.log), RELUME_EDATA);
+    assert_int_equal(lp_read(&d, path, &two, &log.log), RELUME_ELIMIT);
     assert_non_null(strstr(log.text, "3 lights; expected at most 2"));
-    assert_int_equal(lp_read(&d, folder, NULL, &log.log), RELUME_EDATA);
+    assert_int_equal(lp_read(&d, folder, NULL, &log.log), RELUME_ENOTFOUND);
 }
 
 int main(void)

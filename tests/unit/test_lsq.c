@@ -130,7 +130,7 @@ static void test_invert(void **state)
             CHECK_NEAR(sum, i == j, 1e-11);
         }
     double singular[4] = {1.0, 2.0, 2.0, 4.0};
-    assert_int_equal(lsq_invert(singular, 2), RELUME_EDATA);
+    assert_int_equal(lsq_invert(singular, 2), RELUME_EUNFIT);
 }
 
 static void test_add_gram(void **state)

@@ -213,7 +213,7 @@ static void lights_in_a_plane_are_refused(void **state)
                                  relume_coder_params(.hemispherical = true)));
     const struct relume_codes codes = {.coder = coder, .width = 4, .height = 4};
     assert_int_equal(relume_normals_fit(&n, &codes, relume_normals_params(.log = &log.log)),
-                     RELUME_EDATA);
+                     RELUME_EUNFIT);
     assert_int_equal(log.lines, 1);
     assert_null(n.normal.data);
     relume_coder_destroy(&coder);

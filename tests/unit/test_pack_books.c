@@ -224,7 +224,7 @@ static void test_bad_params(void **state)
 {
     (void)state;
     fixture_write(&planar, folder);
-    expect(relume_books_params(.codes = PIXELS + 1), RELUME_EDATA, "407 pixels");
+    expect(relume_books_params(.codes = PIXELS + 1), RELUME_EUNFIT, "407 pixels");
     expect(relume_books_params(.codes = 2, .stages = 9), RELUME_EINVAL, "at most 8");
     expect(relume_books_params(.codes = 2, .stages = 5, .split = RELUME_SPLIT_LUMA), RELUME_EINVAL,
            "at most 8");

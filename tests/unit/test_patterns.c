@@ -209,13 +209,13 @@ static void broken_direction_files_are_refused(void **state)
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         vec3 *v;
         int n;
-        assert_int_equal(read_text(texts[i], &v, &n), RELUME_EDATA);
+        assert_int_equal(read_text(texts[i], &v, &n), RELUME_EFORMAT);
         assert_null(v);
         assert_int_equal(n, 0);
     }
     vec3 *v;
     int n;
-    assert_int_equal(relume_captured_lights_read(&v, &n, "/nowhere/at/all", NULL), RELUME_EDATA);
+    assert_int_equal(relume_captured_lights_read(&v, &n, "/nowhere/at/all", NULL), RELUME_ENOTFOUND);
 }
 
 static relume_status load_text(struct relume_captured_lights *out, const char *text, bool positions)
@@ -266,7 +266,7 @@ static void vectors_are_positions_when_asked(void **state)
     assert_int_equal(load_text(&list, texts[0], false), RELUME_OK);
     assert_null(list.position);
     relume_captured_lights_destroy(&list);
-    assert_int_equal(load_text(&list, "{\"directions\":[[0,0,1]]}", true), RELUME_EDATA);
+    assert_int_equal(load_text(&list, "{\"directions\":[[0,0,1]]}", true), RELUME_EUNFIT);
     assert_null(list.direction);
 }
 

@@ -297,7 +297,7 @@ static void test_needs_samples(void **state)
     assert_non_null(strstr(log.text, "samples"));
     assert_int_equal(relume_coder_create(&c, &relume_basis_pca, lights, LIGHTS,
                                          relume_coder_params(.coefficients = 9, .decode = true)),
-                     RELUME_EDATA);
+                     RELUME_EUNFIT);
     assert_null(c);
 }
 

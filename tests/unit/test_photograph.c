@@ -121,17 +121,17 @@ static void test_bad_files(void **state)
     const struct relume_photograph_params *p = relume_photograph_params(.log = &log.log);
     snprintf(path, sizeof path, "%s/a.dng", folder);
     test_write(path, "not a RAW file", 14);
-    assert_int_equal(relume_photograph_load(&image, NULL, path, p), RELUME_EDATA);
+    assert_int_equal(relume_photograph_load(&image, NULL, path, p), RELUME_EUNSUPPORTED);
     assert_non_null(strstr(log.text, "RAW"));
     snprintf(path, sizeof path, "%s/a.exr", folder);
     CHECK_OK(relume_image_create(&image, 4, 4, 3));
     image.data[7] = NAN;
     CHECK_OK(relume_image_save(&image, path, NULL));
     relume_image_destroy(&image);
-    assert_int_equal(relume_photograph_load(&image, NULL, path, p), RELUME_EDATA);
+    assert_int_equal(relume_photograph_load(&image, NULL, path, p), RELUME_EDAMAGED);
     assert_non_null(strstr(log.text, "NaN"));
     assert_null(image.data);
-    assert_int_equal(relume_photograph_load(&image, NULL, "nowhere.jpg", p), RELUME_EDATA);
+    assert_int_equal(relume_photograph_load(&image, NULL, "nowhere.jpg", p), RELUME_ENOTFOUND);
     test_folder_remove(folder);
 }
 
@@ -178,10 +178,10 @@ static void test_white(void **state)
     assert_int_equal(relume_white_measure(gain, &image, 4, 4, 5, 2, NULL), RELUME_EINVAL);
     for (int i = 0; i < 3 * 64; i++)
         image.data[i] = 1.0f;
-    assert_int_equal(relume_white_measure(gain, &image, 0, 0, 8, 8, NULL), RELUME_EDATA);
+    assert_int_equal(relume_white_measure(gain, &image, 0, 0, 8, 8, NULL), RELUME_EUNFIT);
     for (int i = 0; i < 3 * 64; i++)
         image.data[i] = 0.0f;
-    assert_int_equal(relume_white_measure(gain, &image, 0, 0, 8, 8, NULL), RELUME_EDATA);
+    assert_int_equal(relume_white_measure(gain, &image, 0, 0, 8, 8, NULL), RELUME_EUNFIT);
     relume_image_destroy(&image);
 }
 
@@ -212,7 +212,7 @@ static void test_falloff(void **state)
         CHECK_NEAR(image.data[3 * i], image.data[0], 2e-3);
     CHECK_OK(relume_image_create(&even, 95, 64, 3));
     assert_int_equal(relume_flat_divide(&image, &even, NULL), RELUME_EINVAL);
-    assert_int_equal(relume_falloff_fit(&f, &even, NULL), RELUME_EDATA);  // black
+    assert_int_equal(relume_falloff_fit(&f, &even, NULL), RELUME_EUNFIT);  // black
     relume_image_destroy(&flat);
     relume_image_destroy(&even);
     relume_image_destroy(&image);
@@ -251,7 +251,7 @@ static void test_raw(void **state)
     dng_write(path, 0.5, 100);
     assert_int_equal(
         relume_photograph_load(&image, &notes, path, relume_photograph_params(.log = &log.log)),
-        RELUME_EDATA);
+        RELUME_EUNSUPPORTED);
     assert_non_null(strstr(log.text, "a.dng"));
     test_folder_remove(folder);
 }

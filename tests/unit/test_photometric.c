@@ -80,7 +80,7 @@ static void too_few_lights(void **state)
     test_log_init(&log);
     assert_int_equal(
         relume_photometric_fit(&p, capture, 0, relume_photometric_params(.log = &log.log)),
-        RELUME_EDATA);
+        RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "in one plane; found"));
     assert_null(p.normal.data);
     bump_close(&capture, folder);

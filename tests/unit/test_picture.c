@@ -355,8 +355,9 @@ static void jpeg_that_is_not_whole(void **state)
         size_t padding;
         relume_status status;
     } ends[] = {
-        {0, true, 0, RELUME_OK},      {0, false, 0, RELUME_EDATA}, {9, false, 0, RELUME_EDATA},
-        {100, true, 0, RELUME_EDATA}, {0, true, 50, RELUME_OK},  // padded, as some cameras do
+        {0, true, 0, RELUME_OK},        {0, false, 0, RELUME_EDAMAGED},
+        {9, false, 0, RELUME_EDAMAGED}, {100, true, 0, RELUME_EDAMAGED},
+        {0, true, 50, RELUME_OK},  // padded, as some cameras do
     };
     static const struct kind kinds[] = {{3, false, false, false}, {3, true, true, false}};
     uint8_t samples[MOST * MOST * 3];
@@ -392,7 +393,7 @@ static void damaged_rows(void **state)
         for (int y = 0; y < MOST && !status; y++)
             status = k == 1 ? picture_read_floats(r, y, 1, out)
                             : picture_read_bytes(r, y, 1, (uint8_t *)out);
-        assert_int_equal(status, RELUME_EDATA);
+        assert_int_equal(status, RELUME_EDAMAGED);
         assert_non_null(strstr(picture_error(r), "truncated or damaged"));
         picture_close(&r);
     }

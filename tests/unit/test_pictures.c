@@ -262,7 +262,7 @@ static void check_refused(const struct relume_manifest *m, const char *sentence)
     relume_capture *c = (void *)1;
     test_log_init(&log);
     assert_int_equal(relume_capture_create(&c, m, &floats, relume_capture_params(.log = &log.log)),
-                     RELUME_EDATA);
+                     RELUME_EFORMAT);
     assert_null(c);
     assert_string_equal(log.text, sentence);
 }
@@ -325,7 +325,7 @@ static void test_values_that_are_not_finite(void **state)
     test_log_init(&log);
     CHECK_OK(relume_capture_create(&c, &m, &floats, NULL));
     values[0][4][7] = NAN;
-    assert_int_equal(relume_capture_image(&image, c, 0, 4, &log.log), RELUME_EDATA);
+    assert_int_equal(relume_capture_image(&image, c, 0, 4, &log.log), RELUME_EDAMAGED);
     assert_string_equal(log.text, "memory (view 0, light 4): holds NaN or infinite values; "
                                   "expected finite radiance");
     values[0][4][7] = kept;

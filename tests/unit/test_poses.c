@@ -120,7 +120,7 @@ static void wrong_manifests_are_refused(void **state)
         test_log_init(&log);
         write_json(wrong[i].slabs, wrong[i].views);
         assert_int_equal(manifest_read(&d, json, relume_capture_params(.log = &log.log)),
-                         RELUME_EDATA);
+                         RELUME_EFORMAT);
         if (log.lines != 1 || !strstr(log.text, wrong[i].says))
             fail_msg("%zu says '%s'; expected '%s'", i, log.text, wrong[i].says);
     }
@@ -288,7 +288,7 @@ static void wrong_files_are_refused(void **state)
         CHECK_OK(relume_pack_write(&contents, path, NULL));
         const relume_status status =
             relume_pack_open(&pack, path, relume_pack_params(.log = &log.log));
-        if (status != (how < WAYS ? RELUME_EDATA : RELUME_OK) || log.lines != (how < WAYS))
+        if (status != (how < WAYS ? RELUME_EDAMAGED : RELUME_OK) || log.lines != (how < WAYS))
             fail_msg("way %d: %s, '%s'", how, relume_status_text(status), log.text);
         relume_pack_destroy(&pack);
     }

@@ -56,7 +56,7 @@ static void test_files(void **state)
                                       "relume-response 1\n0 1 1 1\n1 0.5 1 1\n"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         test_write(path, bad[i], strlen(bad[i]));
-        assert_int_equal(relume_response_load(&b, path, &log.log), RELUME_EDATA);
+        assert_int_equal(relume_response_load(&b, path, &log.log), RELUME_EFORMAT);
         assert_int_equal(log.lines, (int)i + 1);
     }
     test_folder_remove(folder);
@@ -337,10 +337,10 @@ static void test_bad_input(void **state)
     test_log_init(&log);
     const struct relume_recover_params *p = relume_recover_params(.log = &log.log);
     const double equal[2] = {0.5, 0.5}, good[2] = {0.5, 0.25}, none[2] = {0.0, 1.0};
-    assert_int_equal(relume_response_recover(&r, codes, equal, 2, p), RELUME_EDATA);
+    assert_int_equal(relume_response_recover(&r, codes, equal, 2, p), RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "two different"));
     assert_int_equal(relume_response_recover(&r, codes, none, 2, p), RELUME_EINVAL);
-    assert_int_equal(relume_response_recover(&r, codes, good, 2, p), RELUME_EDATA);
+    assert_int_equal(relume_response_recover(&r, codes, good, 2, p), RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "code values"));
     for (int i = 0; i < 2; i++)
         for (int k = 0; k < 3 * 16 * 16; k++)
@@ -348,7 +348,7 @@ static void test_bad_input(void **state)
     relume_response_of(&r, linear);
     assert_int_equal(
         relume_merge(&out, NULL, codes, good, 2, &r, relume_merge_params(.log = &log.log)),
-        RELUME_EDATA);
+        RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "saturated"));
     assert_null(out.data);
     relume_image_destroy(&codes[1]);

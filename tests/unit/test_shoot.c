@@ -209,7 +209,7 @@ static void a_dark_photograph(void **state)
     struct relume_acquire_params params = params_of(&p);
     test_log_init(&log);
     params.log = &log.log;
-    assert_int_equal(relume_acquire(&shoot, p.out, &params), RELUME_EDATA);
+    assert_int_equal(relume_acquire(&shoot, p.out, &params), RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "p2.png"));
     assert_null(shoot.photo);
     assert_int_equal(access(p.out, F_OK), -1);
@@ -352,7 +352,7 @@ static void a_camera_on_the_lamp(void **state)
     params.lights = p.folder;
     params.near = true;
     write_model(p.folder, LAMPS - 1);
-    assert_int_equal(relume_acquire(&shoot, p.out, &params), RELUME_EDATA);
+    assert_int_equal(relume_acquire(&shoot, p.out, &params), RELUME_EUNFIT);
     assert_non_null(strstr(log.text, "3 photographs from the lamp; expected 4"));
     write_model(p.folder, LAMPS);
     CHECK_OK(relume_acquire(&shoot, p.out, &params));

@@ -36,7 +36,7 @@ static void save(const struct photographs *p, int i, struct relume_image *image)
 static void expect_refused(struct photographs *p, const char *sentence)
 {
     struct relume_acquisition shoot;
-    assert_int_equal(relume_acquire(&shoot, p->out, &p->params), RELUME_EDATA);
+    assert_int_equal(relume_acquire(&shoot, p->out, &p->params), RELUME_EUNFIT);
     if (!strstr(p->log.text, sentence))
         fail_msg("expected '%s', found '%s'", sentence, p->log.text);
     assert_int_equal(access(p->out, F_OK), -1);

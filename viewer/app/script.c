@@ -38,7 +38,7 @@ static bool at_end(struct script *s)
 static relume_status wrong(struct script *s, const char *expected)
 {
     skip_blanks(s);
-    return say(s->host.log, RELUME_EDATA, "%s: line %d, column %d; expected %s; found '%s'",
+    return say(s->host.log, RELUME_EFORMAT, "%s: line %d, column %d; expected %s; found '%s'",
                s->path, s->line, (int)(s->at - s->text) + 1, expected,
                *s->at ? s->at : "end of line");
 }
@@ -283,7 +283,7 @@ static void say_place(void *user, enum relume_level level, const char *text)
 static relume_status blame_script(struct script *s, relume_status status)
 {
     s->at += strlen(s->at);
-    return status == RELUME_EINVAL ? RELUME_EDATA : status;
+    return status == RELUME_EINVAL ? RELUME_EFORMAT : status;
 }
 
 static relume_status set_light(struct script *s, bool replace)
@@ -459,20 +459,21 @@ relume_status script_open(struct script **out, const char *path, const struct sc
         return RELUME_OK;
     const int why = errno;
     script_close(out);
-    return say(host->log, RELUME_EDATA, "%s: cannot be read; %s", path, strerror(why));
+    return say(host->log, RELUME_ENOTFOUND, "%s: cannot be read; %s", path, strerror(why));
 }
 
 relume_status script_step(struct script *s, bool *more)
 {
     *more = fgets(s->text, sizeof s->text, s->file) != NULL;
     if (ferror(s->file))
-        return say(s->host.log, RELUME_EDATA, "%s: cannot be read; %s", s->path, strerror(errno));
+        return say(s->host.log, RELUME_ENOTFOUND, "%s: cannot be read; %s", s->path,
+                   strerror(errno));
     if (!*more)
         return RELUME_OK;
     s->line++;
     if (!strchr(s->text, '\n') && !feof(s->file))
         return say(
-            s->host.log, RELUME_EDATA,
+            s->host.log, RELUME_EFORMAT,
             "%s: line %d, column %d; expected lines of at most %d characters; found a longer one",
             s->path, s->line, LINE - 1, LINE - 2);
     return play_line(s);

@@ -22,17 +22,17 @@ struct script_host {
     relume_status (*frame)(void *user, const char *path);  // the picture alone
     relume_status (*shot)(void *user, const char *path);   // with all that is drawn over it
     const struct relume_log *log;
-    // What an eye shall do (observer_say); what is wrong is RELUME_EDATA with what was expected.
+    // What an eye shall do (observer_say); what is wrong is an input status with what was expected.
     relume_status (*glare)(void *user, const char *words, const char **expected);
 };
 
 // An open script. Thread-safety: one thread at a time.
 struct script;
 
-// RELUME_EDATA, RELUME_ENOMEM.
+// An input status, RELUME_ENOMEM.
 relume_status script_open(struct script **out, const char *path, const struct script_host *host);
-// Play one line; `*more` is false behind the last. RELUME_EDATA names the line and column that are
-// wrong.
+// Play one line; `*more` is false behind the last. An input status names the line and column that
+// are wrong.
 relume_status script_step(struct script *script, bool *more);
 // Whether the last event was Esc: a script that ends so leaves the window.
 bool script_leaves(const struct script *script);

@@ -63,7 +63,7 @@ relume_status renderer_create(struct renderer *r, const struct gl *gl,
     if (!status && geometry->projection == RELUME_SLAB && uv) {
         status = relume_slab_create(&r->grid, geometry, uv, views);
         if (status == RELUME_EINVAL)
-            status = say(log, RELUME_EDATA, "the slab's cameras do not stand on a grid");
+            status = say(log, RELUME_EUNFIT, "the slab's cameras do not stand on a grid");
     }
     if (status)
         renderer_destroy(r);

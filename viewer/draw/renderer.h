@@ -5,7 +5,7 @@
 #include "draw/renderer_state.h"
 
 // `uv` [views] places the cameras of a slab; NULL: there is none, or renderer_use_slabs tells.
-// RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EDATA.
+// RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EUNFIT.
 relume_status renderer_create(struct renderer *renderer, const struct gl *gl,
                               const struct code_source *source,
                               const struct relume_geometry *geometry, const double (*uv)[2],

@@ -234,7 +234,7 @@ static relume_status find_photograph(struct enhancer *e, int view, const struct 
     const int light = nearest_light(m, lights[0].direction);
     if (relume_capture_width(e->capture) != relit->width ||
         relume_capture_height(e->capture) != relit->height)
-        return say(e->log, RELUME_EDATA, "the capture's images are %d x %d; expected %d x %d",
+        return say(e->log, RELUME_EUNFIT, "the capture's images are %d x %d; expected %d x %d",
                    relume_capture_width(e->capture), relume_capture_height(e->capture),
                    relit->width, relit->height);
     if (v->reference && v->light == light)

@@ -52,7 +52,7 @@ void enhancer_use_slabs(struct enhancer *enhancer, const relume_slab_set *slabs,
 void enhancer_destroy(struct enhancer *enhancer);
 
 // What `pass` shows of `relit`, view number `view` under `n` lights; valid until the next call for
-// that view. The first call for a view may take seconds. RELUME_EDATA, RELUME_ENOMEM,
+// that view. The first call for a view may take seconds. An input status, RELUME_ENOMEM,
 // RELUME_ESYSTEM.
 relume_status enhancer_view(const struct target **out, struct enhancer *enhancer, int view,
                             const struct target *relit, enum relume_pass pass,

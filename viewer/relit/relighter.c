@@ -122,7 +122,7 @@ static relume_status find_surface(struct relume_image *surface, const struct rel
         r->source.surface ? r->source.surface(surface, r->source.user, view) : RELUME_EINVAL;
     return status != RELUME_EINVAL
                ? status
-               : say(r->log, RELUME_EDATA,
+               : say(r->log, RELUME_EUNFIT,
                      "a near light needs to know how far the surface is; use a file with depth");
 }
 

@@ -43,7 +43,7 @@ void inspect_destroy(struct inspector *inspector);
 bool inspect_pick(int *view, int pixel[2], const struct app *app, const relume_slab *grid, double x,
                   double y);
 
-// Plot the pixel under the app's cursor. False when there is none. RELUME_EDATA, RELUME_ENOMEM.
+// Plot the pixel under the app's cursor. False when there is none. An input status, RELUME_ENOMEM.
 relume_status inspect_update(struct inspector *inspector, const struct app *app, bool *shown);
 
 // What the pixel of `codes` shows under a light of 1, given basis weights and constants as

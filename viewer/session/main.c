@@ -41,16 +41,13 @@ static bool on_progress(void *user, const char *what, double done)
 
 static int exit_code(relume_status status)
 {
-    switch (status) {
-    case RELUME_OK: return 0;
-    case RELUME_EDATA: return 1;
-    case RELUME_EINVAL: return 2;
-    case RELUME_ENOMEM: fputs("relume-view: out of memory\n", stderr); return 3;
-    case RELUME_ECANCEL:
+    if (status == RELUME_ENOMEM)
+        fputs("relume-view: out of memory\n", stderr);
+    if (status == RELUME_ECANCEL) {
         fputs("relume-view: interrupted; what was unfinished is removed\n", stderr);
         return stopping_die();
-    default: return 3;
     }
+    return relume_status_exit(status);
 }
 
 // ---------------------------------------------------------------- frames
@@ -115,7 +112,7 @@ static relume_status host_open(void *user, const char *path, const struct relume
 static relume_status host_glare(void *user, const char *words, const char **expected)
 {
     struct session *s = user;
-    return observer_say(&s->app.now.observer, words, expected) ? RELUME_OK : RELUME_EDATA;
+    return observer_say(&s->app.now.observer, words, expected) ? RELUME_OK : RELUME_EFORMAT;
 }
 
 static const double frame_s = 1.0 / 60;  // between frames when time is played

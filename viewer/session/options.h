@@ -39,7 +39,7 @@ struct options {
     struct relume_subject subject;
 };
 
-// RELUME_EINVAL with a sentence in `log`: unknown options, wrong values, no FILE. RELUME_EDATA,
+// RELUME_EINVAL with a sentence in `log`: unknown options, wrong values, no FILE. An input status,
 // RELUME_ENOMEM: a file that a light needs. In every case options_release comes after it.
 relume_status options_parse(struct options *options, int argc, char **argv,
                             const struct relume_log *log);

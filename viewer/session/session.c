@@ -55,7 +55,7 @@ static relume_status find_slabs(relume_slab_set **around, const relume_pack *pac
         relume_slab_set_create(around, info->slabs ? info->slab : &info->geometry,
                                info->slabs ? info->slabs : 1, info->uv, info->slab_of, info->views);
     if (status == RELUME_EINVAL)
-        return say(log, RELUME_EDATA, "the cameras of a slab do not stand on a grid");
+        return say(log, RELUME_EUNFIT, "the cameras of a slab do not stand on a grid");
     return status;
 }
 
@@ -131,11 +131,11 @@ static relume_status check_depth(const relume_pack *pack, const struct app_state
                                  const relume_objects *objects, const struct relume_log *log)
 {
     if (objects && !has_surface(pack))
-        return say(log, RELUME_EDATA,
+        return say(log, RELUME_EUNFIT,
                    "objects need to know how far the scene is; open a file with depth");
     if (start->interpolation != RELUME_INTERPOLATE_DEPTH || relume_pack_info(pack)->has_depth)
         return RELUME_OK;
-    return say(log, RELUME_EDATA,
+    return say(log, RELUME_EUNFIT,
                "interpolation by depth needs a file with depth; use --interpolate linear");
 }
 
@@ -380,7 +380,7 @@ relume_status session_show(struct session *s, const char *path)
 {
     bool opened;
     const relume_status status = replace(s, path, &opened);
-    return status || opened ? status : RELUME_EDATA;
+    return status || opened ? status : RELUME_EUNFIT;
 }
 
 void session_close(struct session *s)

@@ -93,7 +93,7 @@ void session_say(struct session *s, const char *format, ...) __attribute__((form
 // start the app; the session is untouched when that fails.
 relume_status session_open(struct session *s, const char *path, const struct app_state *start,
                            bool look_ahead);
-// A capture to compare the file with, before session_open. RELUME_EDATA, RELUME_ENOMEM.
+// A capture to compare the file with, before session_open. An input status, RELUME_ENOMEM.
 relume_status session_compare(struct session *s, const char *capture);
 // Objects to show, before session_open: in the scene of the file, or alone when its path is NULL.
 // What relume_objects_open says.
@@ -111,7 +111,7 @@ relume_status session_open_stage(struct session *s, const struct app_state *star
 // The renderer of a stage, and objects in the renderer of a file. RELUME_ESYSTEM, RELUME_ENOMEM.
 relume_status session_make_stage(struct session *s);
 relume_status session_add_objects(struct session *s);
-// Get OpenGL and make what draws. RELUME_ESYSTEM, RELUME_ENOMEM, RELUME_EDATA.
+// Get OpenGL and make what draws. RELUME_ESYSTEM, RELUME_ENOMEM, an input status.
 relume_status session_start(struct session *s, const struct context_backend *backend, int width,
                             int height);
 // Letters and margins of the panel for another screen: `scale` as context_backend.scale.
@@ -119,12 +119,12 @@ relume_status session_start(struct session *s, const struct context_backend *bac
 relume_status session_scale(struct session *s, double scale);
 // Show another file in the same window; one that cannot be opened is only complained about.
 relume_status session_drop(struct session *s, const char *path);
-// The same, and then RELUME_EDATA.
+// The same, and then an input status.
 relume_status session_show(struct session *s, const char *path);
 void session_close(struct session *s);
 
 // The panel as its events have changed the app, with the histogram of the last frame or without;
-// the same once more, with it, where the panel shows one. RELUME_ENOMEM, RELUME_EDATA.
+// the same once more, with it, where the panel shows one. RELUME_ENOMEM, an input status.
 relume_status session_build_panel(struct session *s, bool histogram);
 relume_status session_add_histogram(struct session *s);
 // Hand an event to the panel, else to the app; returns whether something may look different.
@@ -149,7 +149,7 @@ bool session_pass(struct session *s, double seconds);
 relume_status session_frame(struct session *s, const char *path);
 relume_status session_shot(struct session *s, const char *path);
 
-// The last frame; `linear` or by the app's tone. RELUME_EDATA when the eye sees nothing.
+// The last frame; `linear` or by the app's tone. RELUME_EUNFIT when the eye sees nothing.
 relume_status session_read(struct relume_image *image, struct session *s, bool linear);
 
 // Record a round of `frames` pictures: session_draw draws and adds one at a time, and the app is as
@@ -173,7 +173,8 @@ relume_status session_record(struct session *s, enum record_kind kind, const cha
 // RELUME_ENOMEM.
 relume_status session_browse(struct session *s, const char *folder);
 
-// A light from words, in place of all or beside them. RELUME_EINVAL, RELUME_EDATA with a sentence.
+// A light from words, in place of all or beside them. RELUME_EINVAL, an input status with a
+// sentence.
 relume_status session_light(struct session *s, const char *spec, bool replace);
 // The environment map `path` in place of the selected light's, else as one more light. The same.
 relume_status session_map(struct session *s, const char *path);

@@ -46,7 +46,7 @@ static relume_status check_near(const struct session *s, int first)
 {
     for (int i = first; i < relume_rig_count(s->rig); i++)
         if (!s->app.near_lights && relume_light_is_near(relume_rig_entry(s->rig, i)->light.kind))
-            return say(s->log, RELUME_EDATA,
+            return say(s->log, RELUME_EUNFIT,
                        "light '%s': near lights need to know how far the surface is; use a file "
                        "with depth",
                        relume_rig_entry(s->rig, i)->spec);

@@ -49,7 +49,7 @@ relume_status session_open_objects(struct session *s, const char *path,
         status =
             relume_objects_of_mesh(&objects, s->wanted.mesh, &path, 1, s->wanted.repeat, &params);
     else
-        return say(s->log, RELUME_EDATA,
+        return say(s->log, RELUME_EFORMAT,
                    "%s: this is a material; use 'relume-view %s --mesh FILE' to see it on a mesh",
                    path, path);
     if (status)

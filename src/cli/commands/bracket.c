@@ -61,7 +61,7 @@ static relume_status check_size(const struct bracket *b, int i, const struct rel
     snprintf(text, sizeof text, "%s: %d x %d pixels; expected %d x %d as in %s", b->path[i],
              image->width, image->height, first->width, first->height, b->path[0]);
     log->message(log->user, RELUME_ERROR, text);
-    return RELUME_EDATA;
+    return RELUME_EUNFIT;
 }
 
 relume_status bracket_load(struct bracket *b, const struct hdr_options *o)
@@ -79,7 +79,7 @@ relume_status bracket_load(struct bracket *b, const struct hdr_options *o)
         b->notes[i].iso = noted.iso;
         if (!status)
             status = check_size(b, i, log);
-        if (status == RELUME_EDATA && skip)
+        if (relume_status_is_input(status) && skip)
             bracket_drop(b, i);
         else if (status)
             return status;
@@ -162,7 +162,7 @@ relume_status bracket_align(struct bracket *b, enum align_mode mode, const struc
             align_one(b, i, mode,
                       relume_align_params(.log = prefix_log(&about, log, b->path[i]),
                                           .threads = o->args.threads));
-        if (status == RELUME_EDATA && skip)
+        if (relume_status_is_input(status) && skip)
             bracket_drop(b, i--);
         else if (status)
             return status;

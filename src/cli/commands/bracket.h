@@ -39,7 +39,7 @@ relume_status bracket_check(struct bracket *b, const struct hdr_options *o);
 relume_status bracket_align(struct bracket *b, enum align_mode mode, const struct hdr_options *o);
 relume_status bracket_merge(struct bracket *b, enum relume_merge_weights weights,
                             const struct hdr_options *o);
-// Leave photograph i out; RELUME_EDATA with a sentence when none remains.
+// Leave photograph i out; RELUME_EUNFIT with a sentence when none remains.
 void bracket_drop(struct bracket *b, int i);
 relume_status bracket_remains(const struct bracket *b);
 void bracket_free(struct bracket *b);

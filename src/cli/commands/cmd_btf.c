@@ -298,7 +298,7 @@ static relume_status eval(const struct args *args)
     relume_btf_fitted_destroy(&fitted);
     relume_btf_destroy(&btf);
     // sizes that differ are the inputs' fault here
-    return status == RELUME_EINVAL ? RELUME_EDATA : status;
+    return status == RELUME_EINVAL ? RELUME_EUNFIT : status;
 }
 
 // ---------------------------------------------------------------- info

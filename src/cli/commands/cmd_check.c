@@ -49,7 +49,7 @@ static relume_status check_file(const struct check_options *o, const char *path)
         printf("], \"whole\": %s}", status ? "false" : "true");
     else if (!status)
         printf("%s: whole\n", shown(&name, path));
-    else if (f.count && status == RELUME_EDATA)
+    else if (f.count && relume_status_is_input(status))
         (void)data_error("%s: damaged; encode it again or take it from a copy", path);
     return status;
 }

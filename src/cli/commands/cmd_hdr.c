@@ -156,7 +156,7 @@ static relume_status divide_flat(struct bracket *b, const char *flat, const stru
         status = relume_flat_divide(&b->out, &image, prefix_log(&log, o->args.log, flat));
     }
     relume_image_destroy(&image);
-    return status == RELUME_EINVAL ? RELUME_EDATA : status;
+    return status == RELUME_EINVAL ? RELUME_EUNFIT : status;
 }
 
 static relume_status whiten(struct bracket *b, const struct choices *c, const struct hdr_options *o)
@@ -212,7 +212,7 @@ static relume_status read_notes(struct relume_exif *notes, struct relume_photogr
     for (int i = 0; i < list->count; i++) {
         const relume_status status =
             relume_exif_read(&notes[i], list->path[i], skip ? &silent : o->args.log);
-        if (status && !(skip && status == RELUME_EDATA))
+        if (status && !(skip && relume_status_is_input(status)))
             return status;
     }
     const char *times = o->times;

@@ -401,7 +401,7 @@ static relume_status encode_row(struct work *w, struct sweep_row *row, const str
 // What one row's data or coder forbid leaves that row out; all else ends the sweep.
 static bool is_skipped(relume_status status)
 {
-    return status == RELUME_EDATA || status == RELUME_EINVAL;
+    return relume_status_is_input(status) || status == RELUME_EINVAL;
 }
 
 static void skip_row(struct sweep_row *row, const struct listener *l, relume_status status)

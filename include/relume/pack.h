@@ -48,7 +48,18 @@ struct relume_pack_contents {
     int views;
     const struct relume_pack_view *view;  // [views]
     struct relume_encode_report report;   // over all views; NaN: not known
+    // The picture of the first part, for ordinary EXR viewers, of the views' size: fill linear
+    // rgb[rows][width][3] from `row` on, and return what failed. Called from several threads. NULL:
+    // black. relume_pack_preview makes one.
+    relume_status (*preview)(void *user, int row, int rows, float *rgb);
+    void *preview_user;
 };
+
+// The middle view relit from the front, panoramas from above: hand it in as `preview`, the contents
+// themselves (struct relume_pack_contents) as its user. Always in plain C, so that files do not
+// depend on the processor. RELUME_EIO, RELUME_ENOMEM.
+RELUME_RESULT relume_status relume_pack_preview(void *contents, int row, int rows, float *rgb);
+
 struct relume_pack_params {
     size_t struct_size;  // filled by the macro (base.h)
     const struct relume_log *log;
@@ -63,8 +74,8 @@ struct relume_pack_params {
 #define relume_pack_params(...)                                                                    \
     (&(const struct relume_pack_params){RELUME_SIZED(relume_pack_params), __VA_ARGS__})
 
-// Write `path` whole or not at all; the first part is a preview of the middle view, relit from the
-// front, for ordinary EXR viewers. Returns RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL.
+// Write `path` whole or not at all. Returns RELUME_EIO, RELUME_ENOMEM, RELUME_ECANCEL or what
+// `preview` returned.
 RELUME_RESULT relume_status relume_pack_write(const struct relume_pack_contents *contents,
                                               const char *path,
                                               const struct relume_pack_params *params);

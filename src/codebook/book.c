@@ -3,8 +3,6 @@
 #include "coder/codes.h"
 #include "coder/coefficients.h"
 
-#include "image/half.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -94,21 +92,14 @@ static void choose_step(const float *vectors, int codes, int dim, int d,
 void book_store(void *numbers, float *scale, float *offset, const float *vectors, int codes,
                 int dim, enum relume_storage storage)
 {
-    const int top = relume_storage_top(storage);
+    const float top = (float)relume_storage_top(storage);
     for (int d = 0; d < dim; d++) {
         choose_step(vectors, codes, dim, d, storage, &scale[d], &offset[d]);
         for (int c = 0; c < codes; c++) {
-            const size_t at = (size_t)d * (size_t)codes + (size_t)c;
             const float v = vectors[(size_t)c * (size_t)dim + (size_t)d];
-            const float code = rintf((v - offset[d]) / scale[d]);
-            const float kept = code > 0.0f ? fminf(code, (float)top) : 0.0f;
-            if (storage == RELUME_STORE_8)
-                ((uint8_t *)numbers)[at] = (uint8_t)kept;
-            else if (storage == RELUME_STORE_FLOAT)
-                ((float *)numbers)[at] = v;
-            else
-                ((uint16_t *)numbers)[at] =
-                    storage == RELUME_STORE_HALF ? half_from_float(v / scale[d]) : (uint16_t)kept;
+            const float number = (v - offset[d]) / scale[d];
+            const float kept = top > 0.0f ? fminf(fmaxf(rintf(number), 0.0f), top) : number;
+            (void)codes_keep(numbers, storage, (size_t)d * (size_t)codes + (size_t)c, &kept, 1);
         }
     }
 }

@@ -6,16 +6,21 @@
 #include "coder/codes.h"
 #include "image/half.h"
 
+#include <math.h>
 #include <string.h>
 
 static const struct {
     const char *name;
     int top;
+    enum exr_sample sample;
 } kinds[] = {
-    [RELUME_STORE_8] = {"8", 255},     [RELUME_STORE_10] = {"10", 1023},
-    [RELUME_STORE_12] = {"12", 4095},  [RELUME_STORE_16] = {"16", 65535},
-    [RELUME_STORE_HALF] = {"half", 0}, [RELUME_STORE_FLOAT] = {"float", 0},
-    [RELUME_STORE_LOG] = {"log", 0},
+    [RELUME_STORE_8] = {"8", 255, EXR_SAMPLE_HALF},
+    [RELUME_STORE_10] = {"10", 1023, EXR_SAMPLE_HALF},
+    [RELUME_STORE_12] = {"12", 4095, EXR_SAMPLE_UINT},
+    [RELUME_STORE_16] = {"16", 65535, EXR_SAMPLE_UINT},
+    [RELUME_STORE_HALF] = {"half", 0, EXR_SAMPLE_HALF},
+    [RELUME_STORE_FLOAT] = {"float", 0, EXR_SAMPLE_FLOAT},
+    [RELUME_STORE_LOG] = {"log", 0, EXR_SAMPLE_HALF},
 };
 
 const char *relume_storage_name(enum relume_storage storage)
@@ -38,25 +43,101 @@ relume_status relume_storage_parse(enum relume_storage *out, const char *name)
     return RELUME_EINVAL;
 }
 
-void codes_restore(float *out, enum relume_storage storage, const void *codes, size_t first,
-                   size_t n, float scale, float offset)
+enum exr_sample codes_sample(enum relume_storage storage)
+{
+    return kinds[storage].sample;
+}
+
+// The code of a number, which it is when nothing is wrong.
+static unsigned whole_code(float number, float top, bool *wrong)
+{
+    const float v = number >= 0.0f && number <= top ? number : 0.0f;
+    const unsigned code = (unsigned)(int)v;
+    *wrong |= (float)code != number;
+    return code;
+}
+
+bool codes_keep(void *codes, enum relume_storage storage, size_t first, const float *numbers,
+                size_t n)
+{
+    const float top = (float)relume_storage_top(storage);
+    uint8_t *bytes = (uint8_t *)codes + first;
+    uint16_t *words = (uint16_t *)codes + first;
+    bool wrong = false;
+    switch (storage) {
+    case RELUME_STORE_8:
+        for (size_t i = 0; i < n; i++)
+            bytes[i] = (uint8_t)whole_code(numbers[i], top, &wrong);
+        break;
+    case RELUME_STORE_HALF:
+        for (size_t i = 0; i < n; i++) {
+            words[i] = half_from_float(numbers[i]);
+            wrong |= (words[i] & 0x7c00) == 0x7c00;
+        }
+        break;
+    case RELUME_STORE_FLOAT:
+        memcpy((float *)codes + first, numbers, n * sizeof *numbers);
+        for (size_t i = 0; i < n; i++)
+            wrong |= !isfinite(numbers[i]);
+        break;
+    default:
+        for (size_t i = 0; i < n; i++)
+            words[i] = (uint16_t)whole_code(numbers[i], top, &wrong);
+    }
+    return !wrong;
+}
+
+static void numbers_of(float *out, enum relume_storage storage, const void *codes, size_t first,
+                       size_t n)
 {
     const uint8_t *bytes = (const uint8_t *)codes + first;
     const uint16_t *words = (const uint16_t *)codes + first;
-    const float *floats = (const float *)codes + first;
-    if (storage == RELUME_STORE_8)
+    switch (storage) {
+    case RELUME_STORE_8:
         for (size_t i = 0; i < n; i++)
             out[i] = bytes[i];
-    else if (storage == RELUME_STORE_HALF)
-        for (size_t i = 0; i < n; i++)
-            out[i] = float_from_half(words[i]);
-    else if (storage == RELUME_STORE_FLOAT)
-        memcpy(out, floats, n * sizeof *out);
-    else
+        break;
+    case RELUME_STORE_HALF: exr_to_floats(out, EXR_SAMPLE_HALF, words, n); break;
+    case RELUME_STORE_FLOAT: memcpy(out, (const float *)codes + first, n * sizeof *out); break;
+    default:
         for (size_t i = 0; i < n; i++)
             out[i] = words[i];
+    }
+}
+
+void codes_restore(float *out, enum relume_storage storage, const void *codes, size_t first,
+                   size_t n, float scale, float offset)
+{
+    numbers_of(out, storage, codes, first, n);
     for (size_t i = 0; i < n; i++)
         out[i] = out[i] * scale + offset;
+}
+
+enum { RUN = 1024 };  // numbers between codes and samples: they stay in the cache
+
+void codes_to_samples(void *samples, enum relume_storage storage, const void *codes, size_t n)
+{
+    float numbers[RUN];
+    const enum exr_sample sample = codes_sample(storage);
+    for (size_t at = 0; at < n; at += RUN) {
+        const size_t count = n - at < RUN ? n - at : RUN;
+        numbers_of(numbers, storage, codes, at, count);
+        exr_from_floats((char *)samples + at * exr_sample_bytes(sample), sample, numbers, count);
+    }
+}
+
+bool codes_from_samples(void *codes, enum relume_storage storage, const void *samples, size_t n)
+{
+    float numbers[RUN];
+    bool good = true;
+    const enum exr_sample sample = codes_sample(storage);
+    for (size_t at = 0; at < n; at += RUN) {
+        const size_t count = n - at < RUN ? n - at : RUN;
+        exr_to_floats(numbers, sample, (const char *)samples + at * exr_sample_bytes(sample),
+                      count);
+        good &= codes_keep(codes, storage, at, numbers, count);
+    }
+    return good;
 }
 
 void relume_codes_plane(const struct relume_codes *codes, int plane, size_t first, size_t n,

@@ -2,7 +2,20 @@
 #ifndef CODER_CODES_H
 #define CODER_CODES_H
 
+#include "image/exr.h"
+
 #include <relume/coder.h>
+
+// What a file holds codes as: halves where these hold all of them.
+enum exr_sample codes_sample(enum relume_storage storage);
+
+// Numbers become the `n` codes from `first` on: whole ones in range, or any where the codes are
+// halves or floats. False where a number is none that a file may hold.
+bool codes_keep(void *codes, enum relume_storage storage, size_t first, const float *numbers,
+                size_t n);
+// `n` codes as samples of that kind; and back, false where a sample is no code.
+void codes_to_samples(void *samples, enum relume_storage storage, const void *codes, size_t n);
+bool codes_from_samples(void *codes, enum relume_storage storage, const void *samples, size_t n);
 
 // code * scale + offset of the `n` codes from `first` on.
 void codes_restore(float *out, enum relume_storage storage, const void *codes, size_t first,

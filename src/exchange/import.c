@@ -283,7 +283,7 @@ static relume_status write_pack(const struct material *m, const char *out,
                                 const struct relume_import_params *p)
 {
     const struct relume_pack_view view = {.coefficients = m->coefficients};
-    const struct relume_pack_contents contents = {
+    struct relume_pack_contents contents = {
         .coder = m->coder,
         .domain = m->f->linear ? RELUME_DOMAIN_LINEAR : RELUME_DOMAIN_DISPLAY,
         .display = {.curve = RELUME_CURVE_SRGB},
@@ -291,6 +291,8 @@ static relume_status write_pack(const struct material *m, const char *out,
         .views = 1,
         .view = &view,
         .report = {(double)NAN, (double)NAN},
+        .preview = relume_pack_preview,
+        .preview_user = &contents,
     };
     return relume_pack_write(
         &contents, out,

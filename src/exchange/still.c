@@ -40,7 +40,7 @@ static relume_status write(const struct relume_codes *codes, bool sphere, const 
     relume_status status = relume_coefficients_keep(
         &coefficients, codes, relume_encode_params(.log = p->log, .scratch = out));
     const struct relume_pack_view view = {.coefficients = coefficients};
-    const struct relume_pack_contents contents = {
+    struct relume_pack_contents contents = {
         .coder = codes->coder,
         .domain = RELUME_DOMAIN_LINEAR,
         .display = {.curve = RELUME_CURVE_SRGB},
@@ -49,6 +49,8 @@ static relume_status write(const struct relume_codes *codes, bool sphere, const 
         .views = 1,
         .view = &view,
         .report = {(double)NAN, (double)NAN},
+        .preview = relume_pack_preview,
+        .preview_user = &contents,
     };
     if (!status)
         status = relume_pack_write(&contents, out,

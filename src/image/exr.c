@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/outfile.h"
 #include "base/thread.h"
+#include "image/half.h"
 
 #include <errno.h>
 #include <openexr.h>
@@ -19,6 +20,30 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "EXR samples are littl
 size_t exr_sample_bytes(enum exr_sample sample)
 {
     return sample == EXR_SAMPLE_HALF ? 2 : 4;
+}
+
+void exr_to_floats(float *out, enum exr_sample sample, const void *samples, size_t n)
+{
+    const uint16_t *halves = samples;
+    const uint32_t *uints = samples;
+    if (sample == EXR_SAMPLE_FLOAT)
+        memcpy(out, samples, n * sizeof *out);
+    for (size_t i = 0; sample == EXR_SAMPLE_HALF && i < n; i++)
+        out[i] = float_from_half(halves[i]);
+    for (size_t i = 0; sample == EXR_SAMPLE_UINT && i < n; i++)
+        out[i] = (float)uints[i];
+}
+
+void exr_from_floats(void *samples, enum exr_sample sample, const float *numbers, size_t n)
+{
+    uint16_t *halves = samples;
+    uint32_t *uints = samples;
+    if (sample == EXR_SAMPLE_FLOAT)
+        memcpy(samples, numbers, n * sizeof *numbers);
+    for (size_t i = 0; sample == EXR_SAMPLE_HALF && i < n; i++)
+        halves[i] = half_from_float(numbers[i]);
+    for (size_t i = 0; sample == EXR_SAMPLE_UINT && i < n; i++)
+        uints[i] = (uint32_t)numbers[i];
 }
 
 static const struct {

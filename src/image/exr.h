@@ -11,6 +11,9 @@ enum exr_sample { EXR_SAMPLE_UINT, EXR_SAMPLE_HALF, EXR_SAMPLE_FLOAT };  // as i
 enum exr_codec { EXR_CODEC_NONE, EXR_CODEC_RLE, EXR_CODEC_ZIP, EXR_CODEC_PIZ };
 
 size_t exr_sample_bytes(enum exr_sample sample);
+// `n` samples as numbers, and numbers that are such samples back.
+void exr_to_floats(float *out, enum exr_sample sample, const void *samples, size_t n);
+void exr_from_floats(void *samples, enum exr_sample sample, const float *numbers, size_t n);
 
 struct exr_attribute {
     const char *name;  // at most 31 characters

@@ -2,6 +2,8 @@
 #ifndef PACK_FORMAT_H
 #define PACK_FORMAT_H
 
+#include <relume/codebook.h>
+
 #define FORMAT_NAME "relume"
 
 // Several slabs are version 2, cylinders with discs 3; everything else stays what readers of
@@ -47,5 +49,12 @@ enum { FORMAT_VERSION = 3, FORMAT_DISCS = 3, FORMAT_SLABS = 2, FORMAT_PLAIN = 1 
 #define ATTR_BOOK  "relume.book"
 #define ATTR_FIRST "relume.first"
 #define ATTR_LAST  "relume.last"
+
+// How its values are written: by enum relume_book_kind.
+extern const char *const format_book_kinds[3];
+
+// Planes are in the order R, G, B; the file sorts channels by name, B, G, R. Which plane a channel
+// is, and which channel a plane.
+int format_plane(const struct relume_coder_info *info, int channel);
 
 #endif

@@ -2,17 +2,13 @@
 #include "pack/reader.h"
 
 #include "base/memory.h"
+#include "base/names.h"
+#include "coder/codes.h"
 #include "pack/format.h"
 
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
-
-enum exr_sample reader_sample(const relume_pack *p)
-{
-    return p->info.storage == RELUME_STORE_FLOAT        ? EXR_SAMPLE_FLOAT
-           : relume_storage_top(p->info.storage) > 2047 ? EXR_SAMPLE_UINT
-                                                        : EXR_SAMPLE_HALF;
-}
 
 static void book_name(char name[48], int view, int book)
 {
@@ -22,23 +18,14 @@ static void book_name(char name[48], int view, int book)
         snprintf(name, 48, "view%04d.book%d", view, book);
 }
 
-static bool parse_kind(const char *text, enum relume_book_kind *kind)
-{
-    static const char *const names[] = {"planes", "luma", "chroma"};
-    for (int i = 0; text && i < 3; i++)
-        if (!strcmp(text, names[i])) {
-            *kind = (enum relume_book_kind)i;
-            return true;
-        }
-    return false;
-}
-
 static relume_status check_book(relume_pack *p, int part, const char *name, struct relume_book *b)
 {
     const struct relume_coder_info *coder = relume_coder_info(p->coder);
     const struct exr_part_info i = exr_part_info(p->file, part);
-    if (!parse_kind(exr_get_text(p->file, part, ATTR_BOOK), &b->kind) ||
-        !exr_get_int(p->file, part, ATTR_FIRST, &b->first) ||
+    const char *text = exr_get_text(p->file, part, ATTR_BOOK);
+    const int kind = text ? name_find(text, format_book_kinds, 3) : -1;
+    b->kind = (enum relume_book_kind)kind;
+    if (kind < 0 || !exr_get_int(p->file, part, ATTR_FIRST, &b->first) ||
         !exr_get_int(p->file, part, ATTR_LAST, &b->last) || b->last > coder->planes)
         return reader_bad(p, name, "planes, luma or chroma, and a range of planes");
     b->dim = relume_book_dim(b->kind, b->first, b->last);
@@ -49,7 +36,7 @@ static relume_status check_book(relume_pack *p, int part, const char *name, stru
     if (i.height != 1 || i.width > 65536 ||
         (uint64_t)i.width * (uint64_t)coder->planes > p->limits.max_pixels)
         return reader_bad(p, name, "one row of at most 65536 vectors, within the limits");
-    if (i.channels != b->dim || !i.uniform || i.sample != reader_sample(p))
+    if (i.channels != b->dim || !i.uniform || i.sample != codes_sample(p->info.storage))
         return reader_bad(p, name, "one channel of the stored type for every number of a vector");
     b->scale = reader_floats(p, part, ATTR_SCALE, b->dim);
     b->offset = reader_floats(p, part, ATTR_OFFSET, b->dim);
@@ -84,15 +71,6 @@ relume_status reader_find_books(relume_pack *p, int view, int *part)
     return RELUME_OK;
 }
 
-// Which number of a vector each channel is; the file sorts B, G, R.
-static size_t number_of_channel(const relume_pack *p, const struct relume_book *b, size_t channel)
-{
-    if (b->kind != RELUME_BOOK_PLANES)
-        return channel;
-    const size_t first = (size_t)b->first;
-    return reader_plane(relume_coder_info(p->coder), first + channel) - first;
-}
-
 // The mean belongs to the vectors of the first book, and to none of them that are nothing.
 static void add_mean(const relume_pack *p, float *vectors, size_t codes)
 {
@@ -105,29 +83,24 @@ static relume_status load_book(relume_pack *p, int part, const struct relume_boo
                                float **vectors)
 {
     struct relume_book book = *b;
+    const struct relume_coder_info *coder = relume_coder_info(p->coder);
     const size_t dim = (size_t)b->dim, codes = (size_t)b->codes;
-    const int planes = relume_coder_info(p->coder)->planes;
     void *numbers = mem_array(dim * codes, relume_storage_bytes(b->storage));
-    size_t *place = mem_array(dim, sizeof *place);
-    float *out = mem_zeroed((codes + 1) * (size_t)planes, sizeof *out);
-    relume_status status = numbers && place && out ? RELUME_OK : RELUME_ENOMEM;
-    bool valid = true;
-    for (size_t c = 0; !status && c < dim; c++) {
-        place[c] = number_of_channel(p, b, c);
-        valid &= place[c] < dim;
-    }
-    if (!valid)
-        status = reader_bad(p, "a codebook", "whole coefficients");
+    float *out = mem_zeroed((codes + 1) * (size_t)coder->planes, sizeof *out);
+    relume_status status = numbers && out ? RELUME_OK : RELUME_ENOMEM;
+    const bool of_planes = b->kind == RELUME_BOOK_PLANES;
+    for (int d = b->first; !status && of_planes && d < b->last; d++)
+        if (format_plane(coder, d) < b->first || format_plane(coder, d) >= b->last)
+            status = reader_bad(p, "a codebook", "whole coefficients");
     if (!status)
-        status = reader_load(p, part, numbers, dim, place);
+        status = reader_load(p, part, numbers, b->dim, of_planes ? b->first : -1);
     if (!status) {
         book.numbers = numbers;
-        relume_book_expand(out, &book, planes);
+        relume_book_expand(out, &book, coder->planes);
         *vectors = out;
         out = NULL;
     }
     free(numbers);
-    free(place);
     free(out);
     return status;
 }

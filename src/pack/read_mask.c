@@ -4,25 +4,17 @@
 // `pca`. So in files with masks the mean is one more function (relume_coder_append_mean), whose
 // coefficient is the mask: all who relight see ordinary codes, and nothing is left outside.
 // Code vectors need not hold 0 at all: there masked pixels point to one more vector, of nothing.
+#include "coder/codes.h"
 #include "pack/reader.h"
-
-#include "image/half.h"
 
 relume_status reader_mask_plane(relume_pack *p, int view, void *plane)
 {
     const size_t pixels = (size_t)p->info.width * (size_t)p->info.height;
-    const bool half = p->info.storage == RELUME_STORE_HALF;
-    const uint16_t one = half ? half_from_float(1.0f) : 1;
     struct relume_image mask;
     const relume_status status = relume_pack_mask(&mask, p, view);
     for (size_t i = 0; !status && i < pixels; i++) {
-        const bool inside = !mask.data || mask.data[i] > 0.5f;
-        if (p->info.storage == RELUME_STORE_8)
-            ((uint8_t *)plane)[i] = inside;
-        else if (p->info.storage == RELUME_STORE_FLOAT)
-            ((float *)plane)[i] = inside;
-        else
-            ((uint16_t *)plane)[i] = inside ? one : 0;
+        const float inside = !mask.data || mask.data[i] > 0.5f;
+        (void)codes_keep(plane, p->info.storage, i, &inside, 1);
     }
     relume_image_destroy(&mask);
     return status;

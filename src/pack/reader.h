@@ -7,7 +7,6 @@
 
 #include <relume/codebook.h>
 #include <relume/pack.h>
-#include <stdatomic.h>
 
 struct loaded {
     struct relume_codes codes;
@@ -37,31 +36,27 @@ struct relume_pack {
     struct view_parts *parts;  // [views]
     struct loaded *loaded;     // [views]
     struct read_books *books;  // [views]; shared ones in the first
-    uint16_t *code_of_half;    // [65536], NOT_A_CODE where a half is no code
     int threads;
     const struct relume_log *log;
     struct relume_limits limits;
 };
 
-// A part of numbers on its way into memory.
-struct loading {
-    const relume_pack *pack;
-    const size_t *place;  // [planes]: which plane each channel is
-    void *data;           // [planes][height][width]
-    size_t width, height, planes;
-    atomic_bool wrong;
-};
-
 // "PATH: what; expected ..." as an input status.
 relume_status reader_bad(const relume_pack *p, const char *what, const char *expected);
-// `count` finite numbers of an attribute, or NULL.
+// Finite numbers of an attribute, *count of them; or NULL. And as many as expected.
+const float *reader_any_floats(const relume_pack *p, int part, const char *name, int *count);
 const float *reader_floats(const relume_pack *p, int part, const char *name, int count);
-// The type in which the file's numbers are stored.
-enum exr_sample reader_sample(const relume_pack *p);
-// The plane of a channel, in the order in which the file sorts all of them.
-size_t reader_plane(const struct relume_coder_info *info, size_t channel);
-// Numbers of the file's storage: data[planes][height][width], checked.
-relume_status reader_load(relume_pack *p, int part, void *data, size_t planes, const size_t *place);
+
+// Everything of the first part, into the info and the coder (read_header.c); then which part is
+// which (read_parts.c).
+relume_status reader_read_header(relume_pack *p);
+relume_status reader_find_parts(relume_pack *p);
+
+// Numbers of the file's storage: data[planes][height][width], checked. They are the planes from
+// `first` on, in the order in which the file sorts them, or in that of `data` where it is negative
+// (read_view.c).
+relume_status reader_load(relume_pack *p, int part, void *data, int planes, int first);
+relume_status reader_load_planes(relume_pack *p, int view);
 
 // What a mask leaves out is black, whatever the file's constant is (read_mask.c): the plane of the
 // mean, 1 inside and 0 outside; and the code vectors of nothing.

@@ -2,6 +2,8 @@
 #include "test.h"
 
 #include "capture_fixture.h"
+#include "image/exr.h"
+#include "image/half.h"
 
 static char folder[64], path[96];
 
@@ -114,6 +116,124 @@ static void test_round_trips(void **state)
     }
 }
 
+// The first part: halves [row][B, G, R][x].
+static void keep_rows(void *context, int row, int rows, const void *samples)
+{
+    struct relume_image *image = context;
+    const size_t width = (size_t)image->width;
+    const uint16_t *halves = samples;
+    for (size_t i = 0; i < (size_t)rows * 3 * width; i++)
+        image->data[3 * ((size_t)row * width + i / (3 * width) * width + i % width) +
+                    (2 - i / width % 3)] = float_from_half(halves[i]);
+}
+
+static void read_preview(struct relume_image *out)
+{
+    exr_file *file;
+    CHECK_OK(exr_open(&file, path, NULL, NULL, NULL));
+    const struct exr_part_info info = exr_part_info(file, 0);
+    assert_string_equal(info.name, "preview");
+    CHECK_OK(relume_image_create(out, info.width, info.height, 3));
+    CHECK_OK(exr_read(file, 0, 1, keep_rows, out, NULL));
+    exr_close(&file);
+}
+
+// What the preview must show: the file's own middle view from the front, but for its mask.
+static void check_preview(enum relume_domain domain, const struct relume_books_params *books,
+                          enum relume_compression compression)
+{
+    struct relume_image want = {0}, found;
+    const struct relume_codes *codes;
+    relume_pack *pack;
+    CHECK_OK(fixture_encode(folder, path, &relume_basis_pca, 4,
+                            relume_pack_encode_params(.domain = domain, .books = books,
+                                                      .compression = compression, .threads = 3)));
+    CHECK_OK(relume_pack_open(&pack, path, NULL));
+    CHECK_OK(relume_pack_codes(&codes, pack, relume_pack_info(pack)->views / 2));
+    const struct relume_light light = {.direction = {0, 0, 1}, .rgb = {1, 1, 1}};
+    CHECK_OK(relume_relight(&want, codes, &light, 1, NULL));
+    read_preview(&found);
+    for (int i = 0; i < 3 * want.width * want.height; i++)
+        // half floats: 2^-11 relative, 2^-25 below 2^-14; kernels round their sums differently
+        CHECK_NEAR(found.data[i], want.data[i], 0x1p-11 * fabs((double)want.data[i]) + 2e-6);
+    relume_image_destroy(&want);
+    relume_image_destroy(&found);
+    relume_pack_destroy(&pack);
+}
+
+static void test_preview(void **state)
+{
+    (void)state;
+    static const struct relume_books_params books = {
+        .struct_size = sizeof books, .codes = 16, .stages = 2};
+    fixture_write(
+        &(struct fixture){.width = 9, .height = 67, .lights = 9, .views = 3, .mask = true}, folder);
+    for (int c = RELUME_COMPRESS_NONE; c <= RELUME_COMPRESS_PIZ; c += 3)
+        for (int domain = RELUME_DOMAIN_LINEAR; domain <= RELUME_DOMAIN_DISPLAY; domain++) {
+            check_preview((enum relume_domain)domain, NULL, (enum relume_compression)c);
+            check_preview((enum relume_domain)domain, &books, (enum relume_compression)c);
+        }
+}
+
+static relume_status stripes(void *user, int row, int rows, float *rgb)
+{
+    const int width = *(const int *)user;
+    for (int i = 0; i < 3 * rows * width; i++)
+        rgb[i] = i % 3 == 1 ? 1e6f : (float)(row + i / (3 * width));  // half floats end at 65504
+    return row < 64 ? RELUME_OK : RELUME_ESYSTEM;
+}
+
+// Any picture can be handed in; none is black; what fails there ends the writing.
+static void test_own_preview(void **state)
+{
+    (void)state;
+    relume_coder *coder;
+    relume_coefficients *coefficients;
+    const struct relume_vec3 front = {0, 0, 1};
+    int width = 2;
+    for (int height = 40; height <= 70; height += 30) {
+        const void *const planes[3] = {(char[140]){0}, (char[140]){0}, (char[140]){0}};
+        CHECK_OK(relume_coder_create(&coder, &relume_basis_table, &front, 1, NULL));
+        const struct relume_codes codes = {.coder = coder,
+                                           .width = width,
+                                           .height = height,
+                                           .planes = 3,
+                                           .storage = RELUME_STORE_8,
+                                           .plane = planes,
+                                           .scale = (float[]){1, 1, 1},
+                                           .offset = (float[]){0, 0, 0}};
+        CHECK_OK(
+            relume_coefficients_keep(&coefficients, &codes, relume_encode_params(.scratch = path)));
+        const struct relume_pack_view view = {.coefficients = coefficients};
+        struct relume_pack_contents contents = {
+            .coder = coder,
+            .domain = RELUME_DOMAIN_LINEAR,
+            .display = {.curve = RELUME_CURVE_SRGB},
+            .geometry = relume_geometry_default(RELUME_PLANAR, width, height),
+            .views = 1,
+            .view = &view,
+        };
+        struct relume_image found;
+        CHECK_OK(relume_pack_write(&contents, path, NULL));
+        read_preview(&found);
+        for (int i = 0; i < 3 * width * height; i++)
+            assert_true(found.data[i] == 0.0f);
+        relume_image_destroy(&found);
+        contents.preview = stripes;
+        contents.preview_user = &width;
+        const relume_status status = relume_pack_write(&contents, path, NULL);
+        assert_int_equal(status, height > 64 ? RELUME_ESYSTEM : RELUME_OK);
+        if (!status) {
+            read_preview(&found);
+            for (int i = 0; i < 3 * width * height; i++)
+                assert_true(found.data[i] == (i % 3 == 1 ? 65504.0f : (float)(i / (3 * width))));
+            relume_image_destroy(&found);
+        }
+        relume_coefficients_destroy(&coefficients);
+        relume_coder_destroy(&coder);
+    }
+}
+
 static void test_limits(void **state)
 {
     (void)state;
@@ -163,8 +283,8 @@ static void test_cancel(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trips),
-        cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_round_trips), cmocka_unit_test(test_preview),
+        cmocka_unit_test(test_own_preview), cmocka_unit_test(test_limits),
         cmocka_unit_test(test_cancel),
     };
     return cmocka_run_group_tests(tests, setup, teardown);

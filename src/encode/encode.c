@@ -173,7 +173,7 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
     if (!status && p.books)
         status = make_books(&m, &p, &total.store_rms);
     if (!status) {
-        const struct relume_pack_contents contents = {
+        struct relume_pack_contents contents = {
             .coder = coder,
             .domain = encode.domain,
             .display = relume_encode_display(capture),
@@ -183,6 +183,8 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
             .views = manifest->views,
             .view = m.view,
             .report = total,
+            .preview = relume_pack_preview,
+            .preview_user = &contents,
         };
         if (report)
             *report = contents.report;

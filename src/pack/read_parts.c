@@ -1,0 +1,85 @@
+// read_parts.c - which parts of a relume file belong to which view
+#include "coder/codes.h"
+#include "pack/format.h"
+#include "pack/reader.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static relume_status check_view_part(relume_pack *p, int part, int view)
+{
+    const struct exr_part_info i = exr_part_info(p->file, part);
+    const int planes = relume_coder_info(p->coder)->planes;
+    char where[32];
+    snprintf(where, sizeof where, "view %d", view);
+    if (i.width != p->info.width || i.height != p->info.height)
+        return reader_bad(p, where, "the size of the other parts");
+    if (p->info.books) {
+        if (i.channels != p->info.books || !i.uniform || i.sample != EXR_SAMPLE_UINT)
+            return reader_bad(p, where, "one channel of whole numbers for every codebook");
+        return RELUME_OK;
+    }
+    if (i.channels != planes || !i.uniform || i.sample != codes_sample(p->info.storage))
+        return reader_bad(p, where, "one channel of the stored type for every plane");
+    if (!reader_floats(p, part, ATTR_SCALE, planes) || !reader_floats(p, part, ATTR_OFFSET, planes))
+        return reader_bad(p, where, "a finite scale and offset for every plane");
+    return RELUME_OK;
+}
+
+static bool is_plane(const relume_pack *p, int part, enum exr_sample sample)
+{
+    const struct exr_part_info i = exr_part_info(p->file, part);
+    return i.width == p->info.width && i.height == p->info.height && i.channels == 1 && i.uniform &&
+           i.sample == sample;
+}
+
+// Whether the next part is that one, as "view0000" with `what` behind it.
+static bool is_next(const relume_pack *p, int part, char name[48], int view, const char *what)
+{
+    snprintf(name, 48, "view%04d%s", view, what);
+    return part < exr_part_count(p->file) && !strcmp(exr_part_info(p->file, part).name, name);
+}
+
+static relume_status find_view(relume_pack *p, int view, int *part)
+{
+    char name[48];
+    struct view_parts *parts = &p->parts[view];
+    *parts = (struct view_parts){-1, -1, -1};
+    if (!is_next(p, *part, name, view, ""))
+        return reader_bad(p, name, "a part of that name");
+    relume_status status = check_view_part(p, *part, view);
+    parts->codes = (*part)++;
+    if (!status && !p->info.shared)
+        status = reader_find_books(p, view, part);
+    if (!status && is_next(p, *part, name, view, ".depth")) {
+        if (!is_plane(p, *part, EXR_SAMPLE_FLOAT))
+            return reader_bad(p, name, "one float channel of the views' size");
+        parts->depth = (*part)++;
+        p->info.has_depth = true;
+    }
+    if (!status && is_next(p, *part, name, view, ".mask")) {
+        if (!is_plane(p, *part, EXR_SAMPLE_HALF))
+            return reader_bad(p, name, "one half channel of the views' size");
+        parts->mask = (*part)++;
+        p->info.has_mask = true;
+    }
+    return status;
+}
+
+relume_status reader_find_parts(relume_pack *p)
+{
+    const size_t views = (size_t)p->info.views;
+    p->parts = arena_array(&p->arena, views, sizeof *p->parts);
+    p->loaded = arena_array(&p->arena, views, sizeof *p->loaded);
+    p->books = arena_array(&p->arena, views, sizeof *p->books);
+    if (!p->parts || !p->loaded || !p->books)
+        return RELUME_ENOMEM;
+    int part = 1;
+    relume_status status = reader_find_books(p, -1, &part);
+    for (int v = 0; !status && v < p->info.views; v++)
+        status = find_view(p, v, &part);
+    if (status)
+        return status;
+    p->info.compression = exr_part_info(p->file, p->parts[0].codes).codec;
+    return reader_read_members(p);
+}

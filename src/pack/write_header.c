@@ -1,0 +1,134 @@
+// write_header.c - the first part of a relume file: the preview, and what all of the file is
+#include "base/memory.h"
+#include "image/half.h"
+#include "pack/format.h"
+#include "pack/writer.h"
+
+#include <math.h>
+
+// B, G, R as halves, none of which is infinite.
+static relume_status preview_rows(void *context, int row, int rows, void *samples)
+{
+    const struct relume_pack_contents *c = context;
+    const size_t width = (size_t)relume_coefficients_info(c->view[0].coefficients)->width;
+    float *rgb = mem_zeroed((size_t)rows * width, 3 * sizeof *rgb);
+    uint16_t *out = samples;
+    if (!rgb)
+        return RELUME_ENOMEM;
+    const relume_status status =
+        c->preview ? c->preview(c->preview_user, row, rows, rgb) : RELUME_OK;
+    for (size_t y = 0; !status && y < (size_t)rows; y++)
+        for (size_t channel = 3; channel-- > 0;)
+            for (size_t x = 0; x < width; x++)
+                *out++ = half_from_float(fminf(rgb[3 * (y * width + x) + channel], 65504.0f));
+    free(rgb);
+    return status;
+}
+
+static void put_planes(float to[6], const struct relume_geometry *g)
+{
+    const double slab[] = {g->uv_z,      g->st_z,      g->st_min[0],
+                           g->st_min[1], g->st_max[0], g->st_max[1]};
+    for (int i = 0; i < 6; i++)
+        to[i] = (float)slab[i];
+}
+
+static void put_pose(float to[12], const struct relume_pose *pose)
+{
+    const struct relume_vec3 v[] = {pose->origin, pose->axis[0], pose->axis[1], pose->axis[2]};
+    for (int i = 0; i < 4; i++) {
+        to[3 * i] = (float)v[i].x;
+        to[3 * i + 1] = (float)v[i].y;
+        to[3 * i + 2] = (float)v[i].z;
+    }
+}
+
+static void describe_slabs(struct writer *w, struct exr_part *part)
+{
+    const struct relume_pack_contents *c = w->contents;
+    const int slabs = c->slabs ? c->slabs : 1;
+    float *planes = arena_array(&w->arena, 6 * (size_t)slabs, sizeof *planes);
+    float *pose = c->slabs ? arena_array(&w->arena, 12 * (size_t)slabs, sizeof *pose) : NULL;
+    float *uv = arena_array(&w->arena, 2 * (size_t)c->views, sizeof *uv);
+    for (int i = 0; planes && i < slabs; i++)
+        put_planes(planes + 6 * i, c->slabs ? &c->slab[i] : &c->geometry);
+    for (int i = 0; pose && i < c->slabs; i++)
+        put_pose(pose + 12 * i, &c->slab[i].pose);
+    for (int i = 0; uv && i < 2 * c->views; i++)
+        uv[i] = (float)c->view[i / 2].uv[i % 2];
+    writer_floats(w, part, ATTR_SLAB, planes, 6 * slabs);
+    if (c->slabs)
+        writer_floats(w, part, ATTR_POSE, pose, 12 * slabs);
+    writer_floats(w, part, ATTR_UV, uv, 2 * c->views);
+}
+
+static void describe_geometry(struct writer *w, struct exr_part *part)
+{
+    const struct relume_geometry *g = &w->contents->geometry;
+    writer_text(part, ATTR_PROJECTION, relume_projection_name(g->projection));
+    if (g->projection == RELUME_PLANAR) {
+        const double window[] = {g->window_min[0], g->window_min[1], g->window_max[0],
+                                 g->window_max[1], g->camera_z};
+        writer_doubles(w, part, ATTR_WINDOW, window, 5);
+        writer_text(part, ATTR_CAMERA, g->perspective ? "perspective" : "orthographic");
+    } else if (g->projection == RELUME_SLAB) {
+        describe_slabs(w, part);
+    } else {
+        const double panorama[] = {g->v_min,    g->v_max,    g->center.x,
+                                   g->center.y, g->center.z, g->disc};
+        writer_doubles(w, part, ATTR_PANORAMA, panorama, g->disc ? 6 : 5);
+    }
+}
+
+static void describe_coder(struct writer *w, struct exr_part *part)
+{
+    const struct relume_coder_info *info = w->coder;
+    writer_text(part, ATTR_BASIS, info->basis->name);
+    writer_int(part, ATTR_COEFFICIENTS, info->coefficients);
+    writer_text(part, ATTR_POLE, info->pole_y ? "y" : "z");
+    writer_int(part, ATTR_HEMISPHERICAL, info->hemispherical);
+    writer_doubles(w, part, ATTR_RIDGE, &info->ridge, 1);
+    writer_doubles(w, part, ATTR_LIGHTS, &info->directions->x, 3 * info->lights);
+    if (info->transform)
+        writer_floats(w, part, ATTR_TRANSFORM, info->transform,
+                      (info->basis->learned ? 3 : 1) * info->coefficients * info->functions);
+    if (info->mean)
+        writer_floats(w, part, ATTR_MEAN, info->mean, 3 * info->functions);
+    if (info->luminance)
+        writer_text(part, ATTR_COLOUR, "luminance");
+    if (info->interpolant) {
+        writer_text(part, ATTR_INTERPOLANT, info->interpolant->name);
+        writer_doubles(w, part, ATTR_PARAMETER, info->parameter, 4);
+    }
+}
+
+void writer_add_header(struct writer *w)
+{
+    static const char *const channels[] = {"B", "G", "R"};
+    const struct relume_pack_contents *c = w->contents;
+    const struct relume_coefficients_info *info = relume_coefficients_info(c->view->coefficients);
+    const double report[] = {c->report.fit_rms, c->report.store_rms};
+    struct exr_part *part = writer_part(w, "preview", info->width, info->height);
+    part->sample = EXR_SAMPLE_HALF;
+    part->channels = 3;
+    part->channel = channels;
+    part->rows = preview_rows;
+    part->context = (void *)(uintptr_t)c;
+    relume_transfer_text(c->display, w->display, sizeof w->display);
+    writer_text(part, ATTR_FORMAT, FORMAT_NAME);
+    writer_int(part, ATTR_VERSION,
+               c->slabs           ? FORMAT_SLABS
+               : c->geometry.disc ? FORMAT_DISCS
+                                  : FORMAT_PLAIN);
+    writer_text(part, ATTR_CREATOR, "relume " RELUME_VERSION);
+    writer_text(part, ATTR_DOMAIN, c->domain == RELUME_DOMAIN_DISPLAY ? "display" : "linear");
+    writer_text(part, ATTR_DISPLAY, w->display);
+    writer_text(part, ATTR_STORAGE, relume_storage_name(info->storage));
+    writer_int(part, ATTR_VIEWS, c->views);
+    if (isfinite(report[0]) && isfinite(report[1]))
+        writer_doubles(w, part, ATTR_REPORT, report, 2);
+    if (c->view->books)
+        writer_int(part, ATTR_BOOKS, relume_books_info(c->view->books)->books);
+    describe_coder(w, part);
+    describe_geometry(w, part);
+}

@@ -1,0 +1,96 @@
+// write_view.c - the parts of one view: its coefficients, depth and mask
+#include "base/memory.h"
+#include "coder/codes.h"
+#include "image/half.h"
+#include "pack/format.h"
+#include "pack/writer.h"
+
+#include <string.h>
+
+static relume_status code_rows(void *context, int row, int rows, void *samples)
+{
+    const relume_coefficients *coefficients = context;
+    const struct relume_coefficients_info *info = relume_coefficients_info(coefficients);
+    const struct relume_coder_info *coder = relume_coder_info(info->coder);
+    const size_t width = (size_t)info->width, planes = (size_t)info->planes;
+    const size_t code = width * relume_storage_bytes(info->storage);
+    const size_t sample = width * exr_sample_bytes(codes_sample(info->storage));
+    char *codes = mem_array(planes, code), *to = samples;  // a row stays in the cache
+    relume_status status = codes ? RELUME_OK : RELUME_ENOMEM;
+    for (int y = row; !status && y < row + rows; y++, to += planes * sample) {
+        status = relume_coefficients_read(coefficients, y, 1, codes);
+        for (size_t p = 0; !status && p < planes; p++)
+            codes_to_samples(to + (size_t)format_plane(coder, (int)p) * sample, info->storage,
+                             codes + p * code, width);
+    }
+    free(codes);
+    return status;
+}
+
+static relume_status depth_rows(void *context, int row, int rows, void *samples)
+{
+    const struct relume_image *image = context;
+    const size_t width = (size_t)image->width;
+    memcpy(samples, image->data + (size_t)row * width, (size_t)rows * width * sizeof(float));
+    return RELUME_OK;
+}
+
+static relume_status mask_rows(void *context, int row, int rows, void *samples)
+{
+    const struct relume_image *image = context;
+    const size_t width = (size_t)image->width;
+    const float *mask = image->data + (size_t)row * width;
+    uint16_t *halves = samples;
+    for (size_t i = 0; i < (size_t)rows * width; i++)
+        halves[i] = half_from_float(mask[i] > 0.5f ? 1.0f : 0.0f);
+    return RELUME_OK;
+}
+
+static void add_plane(struct writer *w, const char *name, int view,
+                      const struct relume_image *image, const char *const *channel,
+                      enum exr_sample sample, relume_status (*rows)(void *, int, int, void *))
+{
+    if (!image)
+        return;
+    struct exr_part *part = writer_part(w, arena_format(&w->arena, "view%04d.%s", view, name),
+                                        image->width, image->height);
+    part->codec = EXR_CODEC_ZIP;
+    part->sample = sample;
+    part->channels = 1;
+    part->channel = channel;
+    part->rows = rows;
+    part->context = (void *)(uintptr_t)image;
+}
+
+static void fill_with_planes(struct writer *w, struct exr_part *part,
+                             const struct relume_pack_view *view)
+{
+    const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
+    part->sample = codes_sample(info->storage);
+    part->channels = info->planes;
+    part->channel = w->channels;
+    part->rows = code_rows;
+    part->context = (void *)(uintptr_t)view->coefficients;
+    writer_floats(w, part, ATTR_SCALE, info->scale, info->planes);
+    writer_floats(w, part, ATTR_OFFSET, info->offset, info->planes);
+}
+
+void writer_add_view(struct writer *w, int index, bool shared)
+{
+    static const char *const depth_channel[] = {"Z"}, *const mask_channel[] = {"A"};
+    const struct relume_pack_view *view = &w->contents->view[index];
+    const struct relume_coefficients_info *info = relume_coefficients_info(view->coefficients);
+    struct exr_part *part =
+        writer_part(w, arena_format(&w->arena, "view%04d", index), info->width, info->height);
+    writer_int(part, ATTR_VIEW, index);
+    if (w->contents->slabs)
+        writer_int(part, ATTR_MEMBER, view->slab);
+    if (view->books)
+        writer_fill_indices(part, view);
+    else
+        fill_with_planes(w, part, view);
+    if (view->books && !shared)
+        writer_add_books(w, view->books, index);
+    add_plane(w, "depth", index, view->depth, depth_channel, EXR_SAMPLE_FLOAT, depth_rows);
+    add_plane(w, "mask", index, view->mask, mask_channel, EXR_SAMPLE_HALF, mask_rows);
+}

@@ -1,0 +1,42 @@
+// writer.h - the parts of a relume file as they come together, shared by the files that make them
+#ifndef PACK_WRITER_H
+#define PACK_WRITER_H
+
+#include "base/arena.h"
+#include "image/exr.h"
+
+#include <relume/pack.h>
+
+struct writer {
+    struct arena arena;
+    const struct relume_pack_contents *contents;
+    const struct relume_coder_info *coder;
+    enum exr_codec codec;
+    struct exr_part *parts;
+    int count;
+    const char **channels;  // [planes], as the file sorts them
+    char display[32];       // the curve, as text
+    bool failed;            // memory is short: what was made is not to be used
+};
+
+// The next part of the file, of the writer's codec and without channels. `name` NULL: it failed.
+struct exr_part *writer_part(struct writer *w, const char *name, int width, int height);
+// Attributes. Texts and floats must live as long as the writer; floats that are NULL fail.
+void writer_int(struct exr_part *part, const char *name, int value);
+void writer_text(struct exr_part *part, const char *name, const char *text);
+void writer_floats(struct writer *w, struct exr_part *part, const char *name, const float *floats,
+                   int count);
+// As single precision, copied.
+void writer_doubles(struct writer *w, struct exr_part *part, const char *name, const double *from,
+                    int count);
+
+// The first part: the preview, and what all of the file is (write_header.c).
+void writer_add_header(struct writer *w);
+// The parts of a view: its planes, or indices into codebooks and these unless they are `shared`;
+// its depth and mask (write_view.c).
+void writer_add_view(struct writer *w, int view, bool shared);
+// The parts of the codebooks of a view, or of all of them (-1); and the indices into them.
+void writer_add_books(struct writer *w, const relume_books *books, int view);
+void writer_fill_indices(struct exr_part *part, const struct relume_pack_view *view);
+
+#endif

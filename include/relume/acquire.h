@@ -53,6 +53,8 @@ struct relume_acquire_params {
     bool radial;   // `flats` as a polynomial
     int white[4];  // x, y, width, height of a region that is grey, which gives the lamps' colour;
                    // width 0: none
+    const char *likely_lights;  // a file that may be meant as `lights`: where no ball is found the
+                                // sentence names it; or NULL
 };
 
 // One photograph that was used.

@@ -38,7 +38,8 @@ struct relume_photographs {
     int count;
     char **path;   // [count]
     char *mask;    // the last that its name calls a mask, else NULL
-    char *lights;  // the only .lp file beside them, else NULL
+    char *lights;  // the only .lp file beside them, else the only text that by its name is a list
+                   // of light directions (light_directions.txt, lights.txt ...); NULL: none
 };
 struct relume_photographs_params {
     size_t struct_size;  // filled by the macro (base.h)
@@ -47,6 +48,9 @@ struct relume_photographs_params {
     bool by_products;  // keep pictures whatever their names say
     bool quiet;        // no note
     bool companions;   // `mask` and `lights` are used: the note does not call them left out
+    int least;         // fewer than these are none where a folder below has more; 0: 1
+    const char *command;  // what a sentence that names a folder says before it and "-o DIR"; NULL:
+                          // "give"
 };
 #define relume_photographs_params(...)                                                             \
     (&(const struct relume_photographs_params){RELUME_SIZED(relume_photographs_params),            \
@@ -55,7 +59,8 @@ struct relume_photographs_params {
 // What `n` paths name: files, and what folders hold in the order of names. Left out, and named in
 // one note, is what both first bytes and name say is no photograph (texts, archives, videos), what
 // relume wrote, and beside other pictures those named as their mask, depth, normals, disparity or
-// albedo. An input status where a path does not exist or no photograph is left, RELUME_ENOMEM.
+// albedo. RELUME_ENOTFOUND where a path does not exist or no photograph is left; the sentence names
+// the folders below that have some. RELUME_ENOMEM.
 RELUME_RESULT relume_status relume_photographs_list(struct relume_photographs *out,
                                                     const char *const *paths, int n,
                                                     const struct relume_photographs_params *params);

@@ -195,9 +195,10 @@ static relume_status no_ball(const struct shoot *s)
     if (n > 1)
         snprintf(what, sizeof what, "fewer than %d", n);
     return log_fail(s->p.log, RELUME_EUNFIT,
-                    "%s: %s %s ball%s found; give --lights FILE, or --ball x,y,r where one is%s",
+                    "%s: %s %s ball%s found; give --lights %s, or --ball x,y,r where one is%s",
                     ball_photo(&s->shot[0]), what, s->p.matte ? "matte" : "mirror",
-                    relume_plural(n), s->p.matte ? "" : ", or --matte for a white ball");
+                    relume_plural(n), s->p.likely_lights ? s->p.likely_lights : "FILE",
+                    s->p.matte ? "" : ", or --matte for a white ball");
 }
 
 static relume_status find_balls(struct shoot *s)

@@ -18,7 +18,8 @@
 struct gathering {
     struct relume_photographs *list;
     const struct relume_photographs_params *p;
-    int skipped, lp;
+    int skipped, lp, tables;
+    char *table;      // of lights, the first
     char names[160];  // of the first that were left out
 };
 
@@ -82,17 +83,25 @@ static void leave_out(struct gathering *g, const char *path, const char *why)
                  *why ? " (" : "", why, *why ? ")" : "");
 }
 
-// Of several masks the last, of several .lp files none.
+// A list of light directions by its name.
+static bool is_table(const char *path)
+{
+    return picture_has_extension(path, ".txt") && !is_named(path, "intens") &&
+           !is_named(path, "pos") && (is_named(path, "light") || is_named(path, "direction"));
+}
+
+// Of several masks the last, of several lists of lights none (choose_lights).
 static void keep_beside(struct gathering *g, char *path, const char *why)
 {
-    const bool lp = picture_has_extension(path, ".lp"), mask = is_named(path, "mask");
-    if (!g->p->companions || (!lp && !mask))
+    const bool lp = picture_has_extension(path, ".lp"), mask = !lp && is_named(path, "mask");
+    const bool table = !mask && is_table(path);
+    const bool used = mask || (lp && g->lp++ == 0) || (table && g->tables++ == 0);
+    char **const place = lp ? &g->list->lights : table ? &g->table : &g->list->mask;
+    if (!g->p->companions || !used)
         leave_out(g, path, why);
-    if (mask && !lp) {
-        free(g->list->mask);
-        g->list->mask = path;
-    } else if (lp && g->lp++ == 0) {
-        g->list->lights = path;
+    if (used) {
+        free(*place);
+        *place = path;
     } else {
         free(path);
     }
@@ -197,6 +206,111 @@ static void set_aside(struct gathering *g)
     list->count = n;
 }
 
+static void put_back(struct gathering *g, char **path)
+{
+    if (*path && g->p->companions)
+        leave_out(g, *path, "");
+    free(*path);
+    *path = NULL;
+}
+
+// Of several that could be meant none is.
+static void choose_lights(struct gathering *g)
+{
+    char **lights = &g->list->lights;
+    if (g->lp > 1)
+        put_back(g, lights);
+    if (g->lp == 0 && g->tables == 1) {
+        *lights = g->table;
+        g->table = NULL;
+    }
+    put_back(g, &g->table);
+}
+
+// ---------------------------------------------------------------- folders below
+
+struct below {
+    int folders, most;  // that have photographs; in the one that has the most
+    char *folder, names[200];
+};
+
+static int photographs_in(const char *folder, const struct relume_log *log)
+{
+    struct dirent **entry;
+    const int n = scandir(folder, &entry, is_seen, NULL);
+    int count = 0;
+    for (int i = 0; i < n; i++) {
+        char *path = mem_format("%s/%s", folder, entry[i]->d_name);
+        count += path && !is_folder(path) && !by_product(path) && !why_none(path, log);
+        free(path);
+        free(entry[i]);
+    }
+    if (n >= 0)
+        free(entry);
+    return count;
+}
+
+static void look_below(struct below *b, const char *folder, const struct relume_log *log)
+{
+    struct dirent **entry;
+    const int n = scandir(folder, &entry, is_seen, alphasort);
+    for (int i = 0; i < n; i++) {
+        char *path = mem_format("%s/%s", folder, entry[i]->d_name);
+        const int count = path && is_folder(path) ? photographs_in(path, log) : 0;
+        const size_t used = strlen(b->names);
+        if (count && b->folders++ < 3)
+            snprintf(b->names + used, sizeof b->names - used, "%s%.40s (%d)", used ? ", " : "",
+                     entry[i]->d_name, count);
+        free(entry[i]);
+        if (count > b->most) {
+            b->most = count;
+            free(b->folder);
+            b->folder = path;
+        } else {
+            free(path);
+        }
+    }
+    if (n >= 0)
+        free(entry);
+}
+
+// What stands in quotes on a command line.
+static const char *quote(const char *path)
+{
+    static const char plain[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789/._-+,:@%";
+    return path[strspn(path, plain)] ? "'" : "";
+}
+
+// Some that only have names of masks and normals are none here either.
+static relume_status check_below(const struct gathering *g, const char *folder)
+{
+    const struct relume_photographs *list = g->list;
+    const struct relume_photographs_params *p = g->p;
+    struct below b = {0};
+    int count = 0;
+    for (int i = 0; i < list->count; i++)
+        count += is_folder(list->path[i]) || !by_product(list->path[i]);
+    if (count >= (p->least ? p->least : 1) || !is_folder(folder))
+        return RELUME_OK;
+    look_below(&b, folder, p->log);
+    relume_status status = RELUME_OK;
+    if (b.most > count) {
+        const char *q = quote(b.folder), *lights = p->command && list->lights ? list->lights : "";
+        char here[32] = "no photographs", more[32] = "";
+        if (count)
+            snprintf(here, sizeof here, "%d photograph%s", count, relume_plural(count));
+        if (b.folders > 3)
+            snprintf(more, sizeof more, " and %d more", b.folders - 3);
+        status = log_fail(
+            p->log, RELUME_ENOTFOUND, "%s: %s; folders below have %s: %s%s; %s %s%s%s%s%s%s",
+            folder, here, count ? "more" : "some", b.names, more, p->command ? p->command : "give",
+            q, b.folder, q, *lights ? " --lights " : "", lights, p->command ? " -o DIR" : "");
+    }
+    free(b.folder);
+    return status;
+}
+
 void relume_photographs_free(struct relume_photographs *list)
 {
     for (int i = 0; i < list->count; i++)
@@ -218,10 +332,9 @@ relume_status relume_photographs_list(struct relume_photographs *out, const char
         status = add_named(&g, paths[i], n == 1);
     if (!status && !g.p->by_products)
         set_aside(&g);
-    if (g.lp > 1) {
-        free(out->lights);
-        out->lights = NULL;
-    }
+    choose_lights(&g);
+    if (!status && n == 1)
+        status = check_below(&g, paths[0]);
     if (!status && n && !out->count)
         status = log_fail(g.p->log, RELUME_ENOTFOUND, "%s: no photographs%s%s; expected some",
                           paths[0], g.skipped ? "; found " : "", g.names);

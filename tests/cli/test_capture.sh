@@ -72,7 +72,7 @@ bad() { # name, pattern, options...
     shift 2
     expect_fail "$name" 1 "$pattern" out "$RELUME" capture "$@" -o out
 }
-bad 'a matte sphere is no mirror' 'photos/.*: no mirror ball found; give --lights FILE' photos
+bad 'a matte sphere is no mirror' 'photos/.*: no mirror ball found; give --lights lights.txt' photos
 bad 'highlight off the ball' 'light.*0000.*ball at 15' photos --ball 15,15,8
 head -n 11 lights.txt >few.txt
 bad 'too few lights' 'few.txt: 11 lights; expected 12' photos --lights few.txt

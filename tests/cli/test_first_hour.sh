@@ -27,6 +27,38 @@ mkdir texts && cp photos/LICENSE photos/old.exr texts
 expect_fail 'nothing is left' 1 'texts: no photographs; found LICENSE, old.exr \(a relume file\); expected some' out \
     "$RELUME" capture texts -o out
 
+# ---- photographs one folder below, as data sets of several objects have them
+mkdir -p set/statue set/coin set/empty && cp photos/light*.png set/statue && cp photos/light000[0-5].png set/coin
+cp photos/light0000.png set/mask.png
+expect_fail 'photographs in folders below' 1 \
+    'set: no photographs; folders below have some: coin \(6\), statue \(9\); try: relume capture set/statue -o DIR$' out \
+    "$RELUME" capture set -q -o out
+awk 'NF == 4 { print $2, $3, $4 }' photos/second.lp >set/light_directions.txt
+cp photos/light0001.png set/one.png
+mv set/statue "set/a statue"
+expect_fail 'and their lights beside them' 1 \
+    "set: 1 photograph; folders below have more: a statue \(9\), coin \(6\); try: relume capture 'set/a statue' --lights set/light_directions.txt -o DIR\$" out \
+    "$RELUME" capture set -q -o out
+expect_fail 'a list of lights above is named' 1 'no mirror ball found; give --lights set/light_directions.txt,' out \
+    "$RELUME" capture 'set/a statue' -q -o out
+rm set/one.png set/mask.png
+expect_fail 'other commands name the folder' 1 "set: no photographs; folders below have some: .*; give 'set/a statue'\$" out.exr \
+    "$RELUME" hdr set -q -o out.exr
+
+# ---- a list of lights that is no .lp file
+mv set/light_directions.txt 'set/a statue/'
+expect_ok 'a list of lights beside the photographs is used, and said' \
+    'a statue/light_directions.txt: light directions are taken from this file' "$RELUME" capture 'set/a statue' -o named
+same 'it is that of the .lp file' cap/lights.lp named/lights.lp
+cp "set/a statue/light_directions.txt" "set/a statue/lights.txt"
+"$RELUME" capture 'set/a statue' -o out 2>err.txt
+check 'of two none is, and said' grep -q 'a statue: left out, no photographs: lights.txt, light_directions.txt$' err.txt
+rm "set/a statue/lights.txt" && sed -i 1d "set/a statue/light_directions.txt"
+"$RELUME" capture 'set/a statue' -o out 2>err.txt
+check 'nor one that does not fit' grep -q 'a statue/light_directions.txt: is not read; as light directions it would have a line x y z for each of the 9 photographs' err.txt
+"$RELUME" capture photos -o out 2>err.txt
+check 'two .lp files: both are named' grep -q 'photos: left out.* and 2 more$' err.txt
+
 # ---- grids and panoramas
 mkdir grid && for i in 0 1 2 3; do cp photos/light000$i.png grid/cam_$i.png; done
 for other in depth.png cam_mask.png gt_normal.png; do cp grid/cam_0.png grid/$other; done

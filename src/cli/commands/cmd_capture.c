@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 struct capture_options {
     struct args args;
@@ -75,6 +76,7 @@ static const struct option options[] = {
 struct job {
     struct relume_photographs photos, balls, flats;
     double (*outline)[3];
+    char above[4096];  // a list of lights there
     struct relume_acquire_params p;
     struct relume_acquisition shoot;
 };
@@ -103,10 +105,12 @@ static void put_in_order(struct relume_photographs *list)
 }
 
 static relume_status list(struct relume_photographs *out, const char *const *paths, int n,
-                          const struct capture_options *o)
+                          int least, const struct capture_options *o)
 {
     const relume_status status = relume_photographs_list(
-        out, paths, n, relume_photographs_params(.log = o->args.log, .companions = true));
+        out, paths, n,
+        relume_photographs_params(.log = o->args.log, .companions = true, .least = least,
+                                  .command = least ? "try: relume capture" : NULL));
     if (!status)
         put_in_order(out);
     return status;
@@ -114,26 +118,66 @@ static relume_status list(struct relume_photographs *out, const char *const *pat
 
 static relume_status gather(const struct capture_options *o, struct job *job)
 {
-    relume_status status = list(&job->photos, o->args.input, o->args.inputs, o);
+    relume_status status = list(&job->photos, o->args.input, o->args.inputs, 3, o);
     if (!status && o->ball_photos.count)
-        status = list(&job->balls, o->ball_photos.text, o->ball_photos.count, o);
+        status = list(&job->balls, o->ball_photos.text, o->ball_photos.count, 0, o);
     if (!status && o->flat.count)
-        status = list(&job->flats, o->flat.text, o->flat.count, o);
+        status = list(&job->flats, o->flat.text, o->flat.count, 0, o);
     return status;
 }
 
-// --lights, or the .lp file that lies with the photographs unless a ball is to tell.
+// A list that nobody named counts where it has a light for every photograph.
+static bool fits(const char *path, const struct job *job)
+{
+    struct relume_captured_lights list;
+    const bool good = !relume_captured_lights_load(&list, path, false, NULL);
+    const bool fits = good && list.count == job->photos.count;
+    relume_captured_lights_destroy(&list);
+    return fits;
+}
+
+// Data sets of several objects keep one list above their folders.
+static void find_lights_above(struct job *job)
+{
+    static const char *const names[] = {"light_directions.txt", "lights.txt", "lights.lp",
+                                        "dirs.lp"};
+    const char *const first = job->photos.path[0], *slash = strrchr(first, '/');
+    if (!slash)
+        return;
+    const char *above = slash;
+    while (above > first && above[-1] != '/')
+        above--;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        snprintf(job->above, sizeof job->above, "%.*s%s", (int)(above - first), first, names[i]);
+        if (fits(job->above, job)) {
+            job->p.likely_lights = job->above;
+            return;
+        }
+    }
+}
+
+// --lights, or the file of lights that lies with the photographs unless a ball is to tell.
 static const char *lights_file(const struct capture_options *o, const struct job *job)
 {
+    const char *beside = job->photos.lights;
+    const char *dot = beside ? strrchr(beside, '.') : NULL;
     if (o->lights || o->ball.count || o->ball_photos.count || args_given(&o->args, &o->balls) ||
         o->ball_mask || o->matte)
         return o->lights;
-    if (job->photos.lights)
+    if (!beside)
+        return NULL;
+    if (!strcasecmp(dot, ".txt") && !fits(beside, job)) {
         say(&o->args, RELUME_NOTE,
-            "%s: light directions are taken from this file; --ball or --ball-photos take "
-            "them from a mirror ball instead",
-            job->photos.lights);
-    return job->photos.lights;
+            "%s: is not read; as light directions it would have a line x y z for each of the %d "
+            "photographs",
+            beside, job->photos.count);
+        return NULL;
+    }
+    say(&o->args, RELUME_NOTE,
+        "%s: light directions are taken from this file; --ball or --ball-photos take them from a "
+        "mirror ball instead",
+        beside);
+    return beside;
 }
 
 // ---------------------------------------------------------------- options
@@ -230,6 +274,8 @@ static relume_status read_options(const struct capture_options *o, struct job *j
         .force = o->force,
         .threads = o->args.threads,
     };
+    if (!job->p.lights)
+        find_lights_above(job);
     relume_status status = args_transfer(&job->p.transfer, "--transfer", o->transfer);
     if (!status)
         status = args_transfer(&job->p.ball_transfer, "--ball-transfer", o->ball_transfer);

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/params.h"
 #include "base/thread.h"
+#include "math/bilinear.h"
 #include "math/luminance.h"
 
 #include <string.h>
@@ -282,22 +283,15 @@ struct relume_prefiltered_info relume_prefiltered_info(const relume_prefiltered 
 
 // ---------------------------------------------------------------- lookups
 
-// Bilinear; columns repeat, rows end at the poles.
+// Columns repeat, rows end at the poles.
 static void add_map(const relume_prefiltered *p, const float *map, const double at[2], float weight,
                     float rgb[3])
 {
-    const double u = at[0] * p->width - 0.5, v = fmax(at[1] * p->height - 0.5, 0.0);
-    const double left = floor(u);
-    const int top = relume_whole(v), x = (relume_whole(left) + p->width) % p->width;
-    const float right = (float)(u - left), below = top + 1 < p->height ? (float)(v - top) : 0.0f;
-    for (int i = 0; i < 4; i++) {
-        const float w = weight * (i % 2 ? right : 1.0f - right) * (i / 2 ? below : 1.0f - below);
-        if (!(w > 0.0f))
-            continue;
-        const size_t row = (size_t)(top + i / 2), column = (size_t)((x + i % 2) % p->width);
+    const struct bilinear b = bilinear_at(at[0] * p->width - 0.5, at[1] * p->height - 0.5, p->width,
+                                          p->height, EDGE_WRAPPED);
+    for (int k = 0; k < 4; k++)
         for (size_t c = 0; c < 3; c++)
-            rgb[c] += w * map[3 * (row * (size_t)p->width + column) + c];
-    }
+            rgb[c] += bilinear_sharef(&b, k, weight) * map[3 * b.at[k] + c];
 }
 
 // Between which exponents, and how far.

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "coder/basis.h"
 #include "coder/interpolant.h"
+#include "math/bilinear.h"
 
 #include <string.h>
 
@@ -51,17 +52,10 @@ static relume_status prepare(void **data, const struct relume_vec3 *lights, int 
 static void evaluate(const void *data, struct relume_vec3 light, double *weights)
 {
     const struct grid *g = data;
-    const int last = g->side - 1;
     double u, v;
     place(g, light, &u, &v);
-    const int x = (int)fmin(fmax(floor(u), 0.0), last - 1);
-    const int y = (int)fmin(fmax(floor(v), 0.0), last - 1);
     memset(weights, 0, (size_t)g->lights * sizeof *weights);
-    double *at = weights + x + (size_t)y * (size_t)g->side;
-    at[0] = (1.0 - (u - x)) * (1.0 - (v - y));
-    at[1] = (u - x) * (1.0 - (v - y));
-    at[g->side] = (1.0 - (u - x)) * (v - y);
-    at[g->side + 1] = (u - x) * (v - y);
+    bilinear_spread(weights, g->side, u, v);
 }
 
 const struct relume_interpolant interpolant_octahedral = {

@@ -1,6 +1,7 @@
 // functions.c - the functions of the light that other formats are written in
 #include "foreign/functions.h"
 
+#include "math/bilinear.h"
 #include "math/vec.h"
 
 #include <string.h>
@@ -94,19 +95,11 @@ static void grid(int side, vec3 l, double *v)
     const double s = fabs(l.x) + fabs(l.y) + fabs(l.z);
     const double u = ((l.x + l.y) / s + 1.0) / 2.0 * (side - 1);
     const double w = ((l.y - l.x) / s + 1.0) / 2.0 * (side - 1);
-    const int x = (int)fmax(0.0, fmin(floor(u), side - 2));
-    const int y = (int)fmax(0.0, fmin(floor(w), side - 2));
-    const double a = u - x, b = w - y;
     memset(v, 0, (size_t)(side * side) * sizeof *v);
-    if (side == 1) {
+    if (side == 1)
         v[0] = 1.0;
-        return;
-    }
-    double *at = v + x + side * y;
-    at[0] = (1.0 - a) * (1.0 - b);
-    at[1] = a * (1.0 - b);
-    at[side] = (1.0 - a) * b;
-    at[side + 1] = a * b;
+    else
+        bilinear_spread(v, side, u, w);
 }
 
 void functions_at(const struct functions *f, struct relume_vec3 light, double *values)

@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "frame/renderer.h"
+#include "math/bilinear.h"
 
 static const double far_away = 1e6;  // of directional lights, in widths of the picture
 enum { FACETS = 8 };                 // of an area light, along one side
@@ -104,16 +105,11 @@ struct scene {
     struct relume_image places;
 };
 
-static int clamp_index(double x, int n)
-{
-    const int i = relume_whole(x);
-    return i < 0 ? 0 : i < n ? i : n - 1;
-}
-
 static bool hidden(void *user, const double xy[2], vec3 point)
 {
     const struct scene *s = user;
-    const int x = clamp_index(xy[0], s->places.width), y = clamp_index(xy[1], s->places.height);
+    const int x = index_clamped(relume_whole(xy[0]), s->places.width);
+    const int y = index_clamped(relume_whole(xy[1]), s->places.height);
     const float *const at = s->places.data + 3 * ((size_t)y * (size_t)s->places.width + (size_t)x);
     const vec3 surface = vec3_of((double)at[0], (double)at[1], (double)at[2]);
     return !isnan(surface.x) && relume_viewport_hides(s->sight, surface, point);

@@ -1,21 +1,14 @@
 // ray.c - a single ray and the planes that it meets
 #include "frame/renderer.h"
 
+#include "math/bilinear.h"
+
 void ray_sample(float rgb[3], const struct relume_image *image, double x, double y)
 {
-    const double cx = fmin(fmax(x - 0.5, 0.0), image->width - 1.0);
-    const double cy = fmin(fmax(y - 0.5, 0.0), image->height - 1.0);
-    const int x0 = relume_whole(cx), y0 = relume_whole(cy);
-    const int x1 = x0 + 1 < image->width ? x0 + 1 : x0, y1 = y0 + 1 < image->height ? y0 + 1 : y0;
-    const double fx = cx - x0, fy = cy - y0;
-    const size_t width = (size_t)image->width;
-    const float *top = image->data + (size_t)y0 * width * 3;
-    const float *low = image->data + (size_t)y1 * width * 3;
-    for (int c = 0; c < 3; c++) {
-        const double t = top[3 * x0 + c] * (1.0 - fx) + top[3 * x1 + c] * fx;
-        const double l = low[3 * x0 + c] * (1.0 - fx) + low[3 * x1 + c] * fx;
-        rgb[c] = (float)(t * (1.0 - fy) + l * fy);
-    }
+    const struct bilinear b =
+        bilinear_at(x - 0.5, y - 0.5, image->width, image->height, EDGE_CLAMPED);
+    for (size_t c = 0; c < 3; c++)
+        rgb[c] = (float)bilinear_value(&b, image->data, 3, c);
 }
 
 bool ray_meets_plane(vec3 eye, vec3 direction, double z, double xy[2])

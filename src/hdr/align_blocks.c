@@ -17,6 +17,7 @@
 #include "hdr/correlate.h"
 #include "hdr/pyramid.h"
 #include "hdr/tones.h"
+#include "math/bilinear.h"
 
 #include <math.h>
 
@@ -125,11 +126,6 @@ static void refine(const struct search *s, const struct block *b, const struct g
     d[1] += top(score(s, b, g->x, g->y - 1), g->score, score(s, b, g->x, g->y + 1));
 }
 
-static int clamp(int i, int n)
-{
-    return i < 0 ? 0 : i >= n ? n - 1 : i;
-}
-
 static void start_of(const struct search *s, int column, int row, double d[2], double *above)
 {
     d[0] = d[1] = *above = 0.0;
@@ -152,8 +148,8 @@ static struct guess search_block(const struct search *s, const struct block *b, 
     for (int k = 0; k < 9; k++) {
         double d[2], above;
         const int at = (k + 4) % 9;  // its own first
-        start_of(s, clamp(column + at % 3 - 1, s->grid->count),
-                 clamp(row + at / 3 - 1, s->grid->count), d, &above);
+        start_of(s, index_clamped(column + at % 3 - 1, s->grid->count),
+                 index_clamped(row + at / 3 - 1, s->grid->count), d, &above);
         const int x = (int)lround(d[0] / s->scale), y = (int)lround(d[1] / s->scale);
         int same = 0;
         while (same < tries && (tried[same].x != x || tried[same].y != y))
@@ -430,13 +426,11 @@ void relume_displacements_at(const struct relume_displacements *displacements, d
 {
     const struct relume_displacements *f = displacements;
     const double u = (x - f->origin[0]) / f->step, v = (y - f->origin[1]) / f->step;
-    const int i = relume_whole(floor(u)), j = relume_whole(floor(v));
-    const double s = u - i, t = v - j;
+    const struct bilinear b = bilinear_at(u, v, f->columns, f->rows, EDGE_CLAMPED);
     d[0] = d[1] = 0.0;
     for (int k = 0; k < 4; k++) {
-        const int column = clamp(i + (k & 1), f->columns), row = clamp(j + k / 2, f->rows);
-        const float *n = f->d[(size_t)row * (size_t)f->columns + (size_t)column];
-        const double w = (k & 1 ? s : 1.0 - s) * (k / 2 ? t : 1.0 - t);
+        const float *n = f->d[b.at[k]];
+        const double w = bilinear_share(&b, k, 1.0);
         d[0] += w * (double)n[0];
         d[1] += w * (double)n[1];
     }

@@ -3,16 +3,12 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/bilinear.h"
 #include "math/lsq.h"
 
 #include <math.h>
 
 enum { LEAST_TRUSTED = 6 };
-
-static int clamp(int i, int n)
-{
-    return i < 0 ? 0 : i >= n ? n - 1 : i;
-}
 
 struct node *grid_node(const struct grid *grid, int column, int row)
 {
@@ -23,13 +19,11 @@ void grid_interpolate(const struct grid *grid, double x, double y, double d[2], 
 {
     const double u = (x - grid->origin[0]) / grid->side - 0.5;
     const double v = (y - grid->origin[1]) / grid->side - 0.5;
-    const int i = relume_whole(floor(u)), j = relume_whole(floor(v));
-    const double s = u - i, t = v - j;
+    const struct bilinear b = bilinear_at(u, v, grid->count, grid->count, EDGE_CLAMPED);
     d[0] = d[1] = *score = 0.0;
     for (int k = 0; k < 4; k++) {
-        const struct node *n =
-            grid_node(grid, clamp(i + (k & 1), grid->count), clamp(j + k / 2, grid->count));
-        const double w = (k & 1 ? s : 1.0 - s) * (k / 2 ? t : 1.0 - t);
+        const struct node *n = &grid->node[b.at[k]];
+        const double w = bilinear_share(&b, k, 1.0);
         d[0] += w * n->d[0];
         d[1] += w * n->d[1];
         *score += w * n->score;
@@ -140,8 +134,9 @@ bool grid_median(struct grid *grid)
         for (int k = 0; k < 2; k++) {
             double v[9];
             for (int j = 0; j < 9; j++)
-                v[j] =
-                    grid_node(grid, clamp(i % n + j % 3 - 1, n), clamp(i / n + j / 3 - 1, n))->d[k];
+                v[j] = grid_node(grid, index_clamped(i % n + j % 3 - 1, n),
+                                 index_clamped(i / n + j / 3 - 1, n))
+                           ->d[k];
             out[i].d[k] = median(v, 9);
         }
     if (out) {

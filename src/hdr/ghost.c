@@ -16,6 +16,7 @@
 #include "base/params.h"
 #include "base/thread.h"
 #include "hdr/tones.h"
+#include "math/bilinear.h"
 
 #include <math.h>
 
@@ -34,11 +35,6 @@ struct ghosts {
     double threshold, black, white;
     struct relume_image *mask;
 };
-
-static int clamp(int i, int n)
-{
-    return i < 0 ? 0 : i >= n ? n - 1 : i;
-}
 
 static const struct relume_image *on_the_way(const struct ghosts *g, int step)
 {
@@ -74,12 +70,12 @@ static void sum_row(void *context, size_t row, int worker)
     const size_t first = row * (size_t)width;
     double sum[4] = {0.0, 0.0, 0.0, 0.0};
     for (int x = -HALF; x < HALF; x++)
-        add_products(g, first + (size_t)clamp(x, width), 1.0, sum);
+        add_products(g, first + (size_t)index_clamped(x, width), 1.0, sum);
     for (int x = 0; x < width; x++) {
-        add_products(g, first + (size_t)clamp(x + HALF, width), 1.0, sum);
+        add_products(g, first + (size_t)index_clamped(x + HALF, width), 1.0, sum);
         for (int k = 0; k < 4; k++)
             g->rows[first + (size_t)x][k] = (float)sum[k];
-        add_products(g, first + (size_t)clamp(x - HALF, width), -1.0, sum);
+        add_products(g, first + (size_t)index_clamped(x - HALF, width), -1.0, sum);
     }
 }
 
@@ -100,7 +96,7 @@ static bool is_alike(const struct ghosts *g, size_t row, size_t x, double part)
     const size_t width = (size_t)g->mask->width;
     double sum[4] = {0.0, 0.0, 0.0, 0.0};
     for (int k = -HALF; k <= HALF; k++) {
-        const float *s = g->rows[(size_t)clamp((int)row + k, g->mask->height) * width + x];
+        const float *s = g->rows[(size_t)index_clamped((int)row + k, g->mask->height) * width + x];
         for (int j = 0; j < 4; j++)
             sum[j] += (double)s[j];
     }

@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/thread.h"
+#include "math/bilinear.h"
 
 #include <math.h>
 
@@ -47,11 +48,6 @@ struct edges {
     double floor;
 };
 
-static int clamp(int i, int n)
-{
-    return i < 0 ? 0 : i >= n ? n - 1 : i;
-}
-
 // Sobel.
 static void magnitude_row(void *context, size_t row, int worker)
 {
@@ -59,11 +55,11 @@ static void magnitude_row(void *context, size_t row, int worker)
     (void)worker;
     const int width = e->luma->width, height = e->luma->height, y = (int)row;
     const size_t stride = (size_t)width;
-    const float *a = e->luma->data + (size_t)clamp(y - 1, height) * stride;
+    const float *a = e->luma->data + (size_t)index_clamped(y - 1, height) * stride;
     const float *b = e->luma->data + row * stride;
-    const float *c = e->luma->data + (size_t)clamp(y + 1, height) * stride;
+    const float *c = e->luma->data + (size_t)index_clamped(y + 1, height) * stride;
     for (int x = 0; x < width; x++) {
-        const int l = clamp(x - 1, width), r = clamp(x + 1, width);
+        const int l = index_clamped(x - 1, width), r = index_clamped(x + 1, width);
         const float gx = a[r] - a[l] + 2.0f * (b[r] - b[l]) + c[r] - c[l];
         const float gy = c[l] - a[l] + 2.0f * (c[x] - a[x]) + c[r] - a[r];
         e->magnitude.data[row * stride + (size_t)x] = sqrtf(gx * gx + gy * gy);
@@ -79,13 +75,13 @@ static void sum_row(void *context, size_t row, int worker)
     const float *m = e->magnitude.data + row * (size_t)width;
     double sum = 0.0, squares = 0.0;
     for (int x = -HALF; x < HALF; x++) {
-        const double v = (double)m[clamp(x, width)];
+        const double v = (double)m[index_clamped(x, width)];
         sum += v;
         squares += v * v;
     }
     for (int x = 0; x < width; x++) {
-        const double in = (double)m[clamp(x + HALF, width)],
-                     out = (double)m[clamp(x - HALF, width)];
+        const double in = (double)m[index_clamped(x + HALF, width)],
+                     out = (double)m[index_clamped(x - HALF, width)];
         sum += in;
         squares += in * in;
         e->mean.data[row * (size_t)width + (size_t)x] = (float)sum;
@@ -104,7 +100,7 @@ static void normalise_row(void *context, size_t row, int worker)
     for (size_t x = 0; x < width; x++) {
         double sum = 0.0, squares = 0.0;
         for (int k = -HALF; k <= HALF; k++) {
-            const size_t i = (size_t)clamp((int)row + k, e->luma->height) * width + x;
+            const size_t i = (size_t)index_clamped((int)row + k, e->luma->height) * width + x;
             sum += (double)e->mean.data[i];
             squares += (double)e->squares.data[i];
         }

@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "base/thread.h"
+#include "math/bilinear.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,22 +31,16 @@ static void place(const struct warp *w, double x, double y, double at[2])
     at[1] = (m[1][0] * x + m[1][1] * y + m[1][2]) / z;
 }
 
-static double clamp(double v, double most)
-{
-    return v > 0.0 ? fmin(v, most) : 0.0;
-}
-
 static void sample(const struct relume_image *image, double x, double y, float *out)
 {
-    const double u = clamp(x - 0.5, image->width - 1), v = clamp(y - 0.5, image->height - 1);
-    const int i = relume_whole(u), j = relume_whole(v);
-    const float s = (float)(u - i), t = (float)(v - j);
-    const size_t n = (size_t)image->channels, stride = n * (size_t)image->width;
-    const float *a = image->data + (size_t)j * stride + (size_t)i * n;
-    const size_t right = i + 1 < image->width ? n : 0, down = j + 1 < image->height ? stride : 0;
-    for (size_t c = 0; c < n; c++) {
-        const float top = a[c] + s * (a[right + c] - a[c]);
-        const float bottom = a[down + c] + s * (a[down + right + c] - a[down + c]);
+    const double u = fmin(fmax(x - 0.5, 0.0), image->width - 1);
+    const double v = fmin(fmax(y - 0.5, 0.0), image->height - 1);
+    const struct bilinear b = bilinear_at(u, v, image->width, image->height, EDGE_CLAMPED);
+    const size_t n = (size_t)image->channels;
+    const float s = (float)b.across, t = (float)b.down, *a = image->data;
+    for (size_t c = 0; c < n; c++, a++) {
+        const float top = a[n * b.at[0]] + s * (a[n * b.at[1]] - a[n * b.at[0]]);
+        const float bottom = a[n * b.at[2]] + s * (a[n * b.at[3]] - a[n * b.at[2]]);
         out[c] = top + t * (bottom - top);
     }
 }

@@ -1,4 +1,5 @@
 // panorama_ingest.c - relume_panorama_ingest: pictures of all directions become a capture
+#include "math/bilinear.h"
 #include "multiview/panorama.h"
 
 #include "base/log.h"
@@ -86,22 +87,12 @@ static relume_status from_cylinder(struct panorama_job *job)
 
 // ---------------------------------------------------------------- depth
 
-static float at(const struct relume_image *image, int x, int y)
-{
-    x = (x % image->width + image->width) % image->width;
-    y = y < 0 ? 0 : y >= image->height ? image->height - 1 : y;
-    return image->data[(size_t)y * (size_t)image->width + (size_t)x];
-}
-
-// Bilinear, across the wrap; beside infinity the nearest.
+// Across the wrap; beside infinity the nearest.
 static float resampled(const struct relume_image *image, double x, double y)
 {
-    const int left = relume_whole(floor(x)), top = relume_whole(floor(y));
-    const float fx = (float)(x - left), fy = (float)(y - top);
-    const float a = at(image, left, top), b = at(image, left + 1, top);
-    const float c = at(image, left, top + 1), d = at(image, left + 1, top + 1);
-    const float mean = (a * (1.0f - fx) + b * fx) * (1.0f - fy) + (c * (1.0f - fx) + d * fx) * fy;
-    return isfinite(mean) ? mean : at(image, (int)lround(x), (int)lround(y));
+    const struct bilinear b = bilinear_at(x, y, image->width, image->height, EDGE_WRAPPED);
+    const float mean = bilinear_valuef(&b, image->data, 1, 0);
+    return isfinite(mean) ? mean : image->data[b.at[(b.across >= 0.5) + 2 * (b.down >= 0.5)]];
 }
 
 // Grey to distances: white and black are the ends of the range.

@@ -3,6 +3,7 @@
 // Poses and gains come from the mean over lights (stitch.h). A direction belongs to the photograph
 // that shows it farthest from its rim; every light is then warped alike and blended by bands
 // (blend.h), in linear light, so that sums of lights stay sums.
+#include "math/bilinear.h"
 #include "multiview/panorama.h"
 
 #include "base/log.h"
@@ -220,17 +221,6 @@ static void find_owners(void *context, size_t item, int worker)
     }
 }
 
-static float bilinear(const struct relume_image *image, const double xy[2], size_t c)
-{
-    const int x = relume_whole(xy[0]), y = relume_whole(xy[1]);
-    const size_t right = x + 1 < image->width ? 3 : 0;
-    const size_t below = y + 1 < image->height ? 3 * (size_t)image->width : 0;
-    const float fx = (float)(xy[0] - x), fy = (float)(xy[1] - y);
-    const float *p = image->data + 3 * ((size_t)y * (size_t)image->width + (size_t)x) + c;
-    return (p[0] * (1.0f - fx) + p[right] * fx) * (1.0f - fy) +
-           (p[below] * (1.0f - fx) + p[below + right] * fx) * fy;
-}
-
 static void fetch(float *rgba, const void *context, int camera, int x, int y, int n)
 {
     const struct stitching *s = context;
@@ -241,8 +231,10 @@ static void fetch(float *rgba, const void *context, int camera, int x, int y, in
         look(xy, s, camera, direction(s, (x + i) % s->blend.width, elevation));
         xy[0] = fmin(fmax(xy[0], 0.0), s->image->width - 1);
         xy[1] = fmin(fmax(xy[1], 0.0), s->image->height - 1);
+        const struct bilinear b =
+            bilinear_at(xy[0], xy[1], s->image->width, s->image->height, EDGE_CLAMPED);
         for (size_t c = 0; c < 3; c++)
-            rgba[4 * i + (int)c] = gain * bilinear(s->image, xy, c);
+            rgba[4 * i + (int)c] = gain * bilinear_valuef(&b, s->image->data, 3, c);
     }
 }
 

@@ -2,6 +2,7 @@
 //
 // The world of the slab: the st plane through the middle of what the cameras look at, across their
 // mean direction, the cameras' middle 3 above it.
+#include "math/bilinear.h"
 #include "multiview/views.h"
 
 #include "base/log.h"
@@ -248,20 +249,6 @@ struct blending {
     float *sum, *total;
 };
 
-static float photo_value(const struct relume_image *image, double x, double y, size_t c)
-{
-    const int left = relume_whole(floor(x)), top = relume_whole(floor(y));
-    const int x0 = left < 0 ? 0 : left, y0 = top < 0 ? 0 : top;
-    const int x1 = left + 1 < image->width ? left + 1 : image->width - 1;
-    const int y1 = top + 1 < image->height ? top + 1 : image->height - 1;
-    const float fx = (float)(x - left), fy = (float)(y - top);
-    const float *d = image->data + c;
-    const size_t w = (size_t)image->width;
-    const float a = d[3 * ((size_t)y0 * w + (size_t)x0)], b = d[3 * ((size_t)y0 * w + (size_t)x1)];
-    const float e = d[3 * ((size_t)y1 * w + (size_t)x0)], f = d[3 * ((size_t)y1 * w + (size_t)x1)];
-    return (a * (1.0f - fx) + b * fx) * (1.0f - fy) + (e * (1.0f - fx) + f * fx) * fy;
-}
-
 // The weight of a photograph falls over the outermost twentieth of it.
 static double rim(double at, int size)
 {
@@ -286,8 +273,10 @@ static void blend_row(void *context, size_t item, int worker)
         const size_t i = item * (size_t)s->width + (size_t)x;
         const float w =
             (float)(b->weight * rim(xy[0], b->photo->width) * rim(xy[1], b->photo->height));
+        const struct bilinear texels =
+            bilinear_at(xy[0] - 0.5, xy[1] - 0.5, b->photo->width, b->photo->height, EDGE_CLAMPED);
         for (size_t c = 0; c < 3; c++)
-            b->sum[3 * i + c] += w * photo_value(b->photo, xy[0] - 0.5, xy[1] - 0.5, c);
+            b->sum[3 * i + c] += w * bilinear_valuef(&texels, b->photo->data, 3, c);
         b->total[i] += w;
     }
 }

@@ -3,6 +3,7 @@
 
 #include "base/log.h"
 #include "base/outdir.h"
+#include "math/bilinear.h"
 
 #include <math.h>
 
@@ -25,23 +26,6 @@ static double reach(const double *values, int n)
     return most;
 }
 
-static float pixel(const struct relume_image *image, int x, int y, int c)
-{
-    x = x < 0 ? 0 : x >= image->width ? image->width - 1 : x;
-    y = y < 0 ? 0 : y >= image->height ? image->height - 1 : y;
-    return image->data[((size_t)y * (size_t)image->width + (size_t)x) * 3 + (size_t)c];
-}
-
-static float bilinear(const struct relume_image *image, double x, double y, int c)
-{
-    const int left = relume_whole(floor(x)), top = relume_whole(floor(y));
-    const float fx = (float)(x - left), fy = (float)(y - top);
-    const float a = pixel(image, left, top, c) * (1.0f - fx) + pixel(image, left + 1, top, c) * fx;
-    const float b =
-        pixel(image, left, top + 1, c) * (1.0f - fx) + pixel(image, left + 1, top + 1, c) * fx;
-    return a * (1.0f - fy) + b * fy;
-}
-
 static relume_status save_one(const struct shifting *s, const struct photo_set *set, int camera,
                               int light, const char *name, const double move[2],
                               const outdir *folder, const struct relume_ingest_params *p)
@@ -51,10 +35,14 @@ static relume_status save_one(const struct shifting *s, const struct photo_set *
     if (!status)
         status = relume_image_create(&out, s->width, s->height, 3);
     for (int y = 0; y < s->height && !status; y++)
-        for (int x = 0; x < s->width; x++)
-            for (int c = 0; c < 3; c++)
-                out.data[((size_t)y * (size_t)s->width + (size_t)x) * 3 + (size_t)c] =
-                    bilinear(&in, x + s->margin[0] + move[0], y + s->margin[1] + move[1], c);
+        for (int x = 0; x < s->width; x++) {
+            const struct bilinear b =
+                bilinear_at(x + s->margin[0] + move[0], y + s->margin[1] + move[1], in.width,
+                            in.height, EDGE_CLAMPED);
+            for (size_t c = 0; c < 3; c++)
+                out.data[((size_t)y * (size_t)s->width + (size_t)x) * 3 + c] =
+                    bilinear_valuef(&b, in.data, 3, c);
+        }
     if (!status)
         status = save_inside(folder, name, &out, true, p->log);
     relume_image_destroy(&in);

@@ -1,5 +1,6 @@
 // glare_veil.c - glare of what does not shine, coarsely: the light of a dim pixel that falls far
 // from it is smooth when it arrives
+#include "math/bilinear.h"
 #include "post/glare.h"
 
 #include "base/memory.h"
@@ -39,11 +40,6 @@ static void shrink_row(void *context, size_t item, int worker)
     }
 }
 
-static int clamp_index(int i, int n)
-{
-    return i < 0 ? 0 : i >= n ? n - 1 : i;
-}
-
 // Cell by cell between the middles of two cells: what stands left and right is mixed from the rows
 // above and below once for its pixels.
 static void enlarge_row(void *context, size_t item, int worker)
@@ -52,15 +48,15 @@ static void enlarge_row(void *context, size_t item, int worker)
     const double v = ((double)item + 0.5) / COARSE - 0.5;
     const int j = relume_whole(floor(v));
     const float ty = (float)(v - j);
-    const float *const a = s->in + 3 * (size_t)clamp_index(j, s->rows) * (size_t)s->columns;
-    const float *const b = s->in + 3 * (size_t)clamp_index(j + 1, s->rows) * (size_t)s->columns;
+    const float *const a = s->in + 3 * (size_t)index_clamped(j, s->rows) * (size_t)s->columns;
+    const float *const b = s->in + 3 * (size_t)index_clamped(j + 1, s->rows) * (size_t)s->columns;
     float *const out = s->out + 3 * item * (size_t)s->width;
     float left[3], right[3];
     (void)worker;
     for (int c = 0; c < 3; c++)
         right[c] = a[c] + ty * (b[c] - a[c]);
     for (int cell = 0; cell <= s->columns; cell++) {
-        const int at = 3 * clamp_index(cell, s->columns), first = cell * COARSE - COARSE / 2;
+        const int at = 3 * index_clamped(cell, s->columns), first = cell * COARSE - COARSE / 2;
         for (int c = 0; c < 3; c++) {
             left[c] = right[c];
             right[c] = a[at + c] + ty * (b[at + c] - a[at + c]);

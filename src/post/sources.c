@@ -1,4 +1,5 @@
 // sources.c - bright pixels as sources of their own, each drawn as one picture of the pattern
+#include "math/bilinear.h"
 #include "post/glare.h"
 
 #include "base/memory.h"
@@ -195,10 +196,11 @@ static void add_source_row(float *const row[3], const struct splat *s, const str
     const struct kernel *const kernel = s->kernel;
     const float fx = source->x - 0.5f, fy = source->y - 0.5f;
     const int ix = relume_whole(floorf(fx)), iy = relume_whole(floorf(fy));
-    const float tx = fx - (float)ix, ty = fy - (float)iy;
+    const struct bilinear b = {.across = (double)(fx - (float)ix),
+                               .down = (double)(fy - (float)iy)};
     const size_t side = 2 * (size_t)kernel->reach + 1;
     for (int k = 0; k < 4; k++) {
-        const float w = (k % 2 ? tx : 1.0f - tx) * (k / 2 ? ty : 1.0f - ty);
+        const float w = bilinear_sharef(&b, k, 1.0f);
         const int line = y - (iy + k / 2) + kernel->reach;
         if (w == 0.0f || line < 0 || line >= (int)side)
             continue;

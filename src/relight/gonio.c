@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "base/params.h"
+#include "math/bilinear.h"
 #include "math/vec.h"
 
 #include <string.h>
@@ -115,26 +116,14 @@ static void fill_from_cube(const struct relume_gonio *g, const struct relume_ima
 
 // ---------------------------------------------------------------- from a sphere
 
-static const float *sphere_texel(const struct relume_image *map, int x, int y)
-{
-    const int w = map->width, row = y < 0 ? 0 : y < map->height ? y : map->height - 1;
-    return map->data + 3 * ((size_t)row * (size_t)w + (size_t)((x % w + w) % w));
-}
-
 static void sphere_value(float rgb[3], const struct relume_image *map, vec3 d)
 {
     const double height = d.y / vec3_length(d);
     const double x = (atan2(d.x, -d.z) / (2.0 * M_PI) + 0.5) * map->width - 0.5;
     const double y = acos(height) / M_PI * map->height - 0.5;
-    const int x0 = relume_whole(floor(x)), y0 = relume_whole(floor(y));
-    const float fx = (float)(x - x0), fy = (float)(y - y0);
-    for (int c = 0; c < 3; c++) {
-        const float top =
-            sphere_texel(map, x0, y0)[c] * (1.0f - fx) + sphere_texel(map, x0 + 1, y0)[c] * fx;
-        const float low = sphere_texel(map, x0, y0 + 1)[c] * (1.0f - fx) +
-                          sphere_texel(map, x0 + 1, y0 + 1)[c] * fx;
-        rgb[c] = top * (1.0f - fy) + low * fy;
-    }
+    const struct bilinear b = bilinear_at(x, y, map->width, map->height, EDGE_WRAPPED);
+    for (size_t c = 0; c < 3; c++)
+        rgb[c] = bilinear_valuef(&b, map->data, 3, c);
 }
 
 static void fill_from_sphere(const struct relume_gonio *g, const struct relume_image *map)
@@ -226,13 +215,13 @@ void relume_gonio_value(float rgb[3], const relume_gonio *g, struct relume_vec3 
     const int face = place(xy, g->side, direction);
     const double x = fmin(fmax(xy[0], 0.0), g->side) - 0.5;
     const double y = fmin(fmax(xy[1], 0.0), g->side) - 0.5;
-    const int x0 = relume_whole(floor(x)), y0 = relume_whole(floor(y));
-    const float fx = (float)(x - x0), fy = (float)(y - y0);
-    for (int c = 0; c < 3; c++) {
-        const float top =
-            texel(g, face, x0, y0)[c] * (1.0f - fx) + texel(g, face, x0 + 1, y0)[c] * fx;
-        const float low =
-            texel(g, face, x0, y0 + 1)[c] * (1.0f - fx) + texel(g, face, x0 + 1, y0 + 1)[c] * fx;
-        rgb[c] = top * (1.0f - fy) + low * fy;
-    }
+    const double left = floor(x), top = floor(y);
+    const float *data = g->atlas.data;
+    struct bilinear b = {.across = x - left, .down = y - top};
+    for (int k = 0; k < 4; k++)
+        b.at[k] =
+            (size_t)(texel(g, face, relume_whole(left) + k % 2, relume_whole(top) + k / 2) - data) /
+            3;
+    for (size_t c = 0; c < 3; c++)
+        rgb[c] = bilinear_valuef(&b, data, 3, c);
 }

@@ -2,6 +2,7 @@
 #include "relight/light.h"
 
 #include "base/log.h"
+#include "math/bilinear.h"
 #include "math/vec.h"
 
 static const char *const kind_names[] = {
@@ -148,27 +149,9 @@ static bool spot_factor(float rgb[3], const struct relume_light *l, vec3 ray)
     return f > 0.0f;
 }
 
-// Bilinear with the border clamped; pixel centres are at +0.5.
-static void picture_at(float rgb[3], const struct relume_image *image, double x, double y)
-{
-    const double cx = fmin(fmax(x - 0.5, 0.0), image->width - 1.0);
-    const double cy = fmin(fmax(y - 0.5, 0.0), image->height - 1.0);
-    const int x0 = relume_whole(cx), y0 = relume_whole(cy);
-    const int x1 = x0 + (x0 + 1 < image->width), y1 = y0 + (y0 + 1 < image->height);
-    const float fx = (float)(cx - x0), fy = (float)(cy - y0);
-    const float *top = image->data + (size_t)y0 * (size_t)image->width * 3;
-    const float *low = image->data + (size_t)y1 * (size_t)image->width * 3;
-    for (int c = 0; c < 3; c++) {
-        const float t = top[3 * x0 + c] * (1.0f - fx) + top[3 * x1 + c] * fx;
-        const float l = low[3 * x0 + c] * (1.0f - fx) + low[3 * x1 + c] * fx;
-        rgb[c] = t * (1.0f - fy) + l * fy;
-    }
-}
-
 static bool slide_factor(float rgb[3], const struct relume_light *l, vec3 ray)
 {
     vec3 right, up;
-    float texel[3];
     relume_light_frame(&right, &up, l->direction);
     const double forward = vec3_dot(ray, vec3_unit(l->direction));
     if (!(forward > 0.0))
@@ -178,9 +161,10 @@ static bool slide_factor(float rgb[3], const struct relume_light *l, vec3 ray)
     const double y = 0.5 * l->image->height - scale * vec3_dot(ray, up);
     if (!(x >= 0.0 && x <= l->image->width && y >= 0.0 && y <= l->image->height))
         return false;
-    picture_at(texel, l->image, x, y);
-    for (int c = 0; c < 3; c++)
-        rgb[c] *= texel[c];
+    const struct bilinear b =
+        bilinear_at(x - 0.5, y - 0.5, l->image->width, l->image->height, EDGE_CLAMPED);
+    for (size_t c = 0; c < 3; c++)
+        rgb[c] *= bilinear_valuef(&b, l->image->data, 3, c);
     return true;
 }
 

@@ -4,6 +4,7 @@
 // turbulence (Ebert et al. 1994). Lattice gradients come from a hash, so there is no table.
 #include "scene/texture.h"
 
+#include "math/bilinear.h"
 #include "math/random.h"
 
 #include <math.h>
@@ -140,8 +141,8 @@ void texture_bricks(const struct texture *t, const float at[3], float out[3])
 
 static const float *texel(const struct relume_image *image, int x, int y)
 {
-    x = (x % image->width + image->width) % image->width;
-    y = (y % image->height + image->height) % image->height;
+    x = index_wrapped(x, image->width);
+    y = index_wrapped(y, image->height);
     return image->data + ((size_t)y * (size_t)image->width + (size_t)x) * (size_t)image->channels;
 }
 

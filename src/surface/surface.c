@@ -4,6 +4,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "math/bilinear.h"
 
 // Footprints rounder than 1.06 count as round: their middle is enough. Longer ones than 7 to 1 take
 // a coarser level.
@@ -200,9 +201,9 @@ static void add_level(const struct surface_level *level, const struct relume_btf
     const double u = x * level->map.width / finest->width - 0.5;
     const double v = y * level->map.height / finest->height - 0.5;
     const double left = floor(u), top = floor(v);
-    const float right = (float)(u - left), below = (float)(v - top);
+    const struct bilinear b = {.across = u - left, .down = v - top};
     for (int i = 0; i < 4; i++) {
-        const float w = weight * (i % 2 ? right : 1.0f - right) * (i / 2 ? below : 1.0f - below);
+        const float w = bilinear_sharef(&b, i, weight);
         float value[3];
         if (!(w > 0.0f))
             continue;

@@ -11,6 +11,7 @@
 #include "base/params.h"
 #include "base/thread.h"
 #include "image/footprint.h"
+#include "math/bilinear.h"
 #include "view/panorama.h"
 
 #include <string.h>
@@ -52,21 +53,18 @@ void panorama_fetch(float rgb[3], const struct panorama *p, int x, int y)
 void panorama_bilinear(float rgb[3], const struct panorama *p, panorama_texel *texel, int face,
                        double x, double y)
 {
-    const int left = relume_whole(floor(x));
-    const int top = relume_whole(floor(y));
+    const int left = relume_whole(floor(x)), top = relume_whole(floor(y));
+    const struct bilinear b = {.across = x - left, .down = y - top};
     rgb[0] = rgb[1] = rgb[2] = 0.0f;
-    for (int j = 0; j < 2; j++)
-        for (int i = 0; i < 2; i++) {
-            const double wx = i ? x - left : 1.0 - (x - left);
-            const double wy = j ? y - top : 1.0 - (y - top);
-            const float w = (float)(wx * wy);
-            float t[3];
-            if (w == 0.0f)
-                continue;
-            texel(t, p, face, left + i, top + j);
-            for (int c = 0; c < 3; c++)
-                rgb[c] += w * t[c];
-        }
+    for (int k = 0; k < 4; k++) {
+        const float w = (float)bilinear_share(&b, k, 1.0);
+        float t[3];
+        if (w == 0.0f)
+            continue;
+        texel(t, p, face, left + k % 2, top + k / 2);
+        for (int c = 0; c < 3; c++)
+            rgb[c] += w * t[c];
+    }
 }
 
 static void cubic(float rgb[3], const struct panorama *p, panorama_texel *texel, int face, double x,
@@ -101,16 +99,6 @@ static void between(float rgb[3], const struct panorama *p, panorama_texel *texe
         cubic(rgb, p, texel, face, x, y);
     else
         panorama_bilinear(rgb, p, texel, face, x, y);
-}
-
-static int clamp_index(int i, int n)
-{
-    return i < 0 ? 0 : i >= n ? n - 1 : i;
-}
-
-static int wrap_index(int i, int n)
-{
-    return ((i % n) + n) % n;
 }
 
 static vec3 azimuth_ray(const struct panorama *p, double x, double across, double up)
@@ -156,10 +144,10 @@ static bool cylinder_pixel(double xy[2], const struct panorama *p, vec3 d)
     return shown;
 }
 
-static void cylinder_texel(float rgb[3], const struct panorama *p, int face, int x, int y)
+void panorama_cylinder_texel(float rgb[3], const struct panorama *p, int face, int x, int y)
 {
     (void)face;
-    panorama_fetch(rgb, p, wrap_index(x, p->width), clamp_index(y, panorama_rows(p)));
+    panorama_fetch(rgb, p, index_wrapped(x, p->width), index_clamped(y, panorama_rows(p)));
 }
 
 static double cylinder_texels(const struct panorama *p, vec3 d, vec3 step)
@@ -195,13 +183,13 @@ static void sphere_texel(float rgb[3], const struct panorama *p, int face, int x
 {
     (void)face;
     if (y >= 0 && y < p->height) {
-        panorama_fetch(rgb, p, wrap_index(x, p->width), y);
+        panorama_fetch(rgb, p, index_wrapped(x, p->width), y);
         return;
     }
-    const int row = clamp_index(y < 0 ? -1 - y : 2 * p->height - 1 - y, p->height);
+    const int row = index_clamped(y < 0 ? -1 - y : 2 * p->height - 1 - y, p->height);
     float other[3];
-    panorama_fetch(rgb, p, wrap_index(x + p->width / 2, p->width), row);
-    panorama_fetch(other, p, wrap_index(x + (p->width + 1) / 2, p->width), row);
+    panorama_fetch(rgb, p, index_wrapped(x + p->width / 2, p->width), row);
+    panorama_fetch(other, p, index_wrapped(x + (p->width + 1) / 2, p->width), row);
     for (int c = 0; c < 3; c++)
         rgb[c] = 0.5f * (rgb[c] + other[c]);
 }
@@ -238,7 +226,7 @@ static vec3 face_ray(const struct panorama *p, int face, double x, double y)
 static vec3 cube_ray(const struct panorama *p, double x, double y)
 {
     const int side = p->width / 6;
-    const int face = clamp_index(relume_whole(floor(x / side)), 6);
+    const int face = index_clamped(relume_whole(floor(x / side)), 6);
     return vec3_unit(face_ray(p, face, x - face * side, y));
 }
 
@@ -260,7 +248,7 @@ static void across_edge(float rgb[3], const struct panorama *p, int face, int x,
 {
     double xy[2];
     cube_pixel(xy, p, face_ray(p, face, x + 0.5, y + 0.5));
-    panorama_fetch(rgb, p, relume_whole(xy[0]), clamp_index(relume_whole(xy[1]), p->height));
+    panorama_fetch(rgb, p, relume_whole(xy[0]), index_clamped(relume_whole(xy[1]), p->height));
 }
 
 // At a corner three faces meet: the missing fourth texel is the mean of their corner texels, which
@@ -268,8 +256,8 @@ static void across_edge(float rgb[3], const struct panorama *p, int face, int x,
 static void cube_texel(float rgb[3], const struct panorama *p, int face, int x, int y)
 {
     const int side = p->width / 6;
-    const int inner_x = clamp_index(x, side);
-    const int inner_y = clamp_index(y, p->height);
+    const int inner_x = index_clamped(x, side);
+    const int inner_y = index_clamped(y, p->height);
     if (x == inner_x && y == inner_y) {
         panorama_fetch(rgb, p, face * side + x, y);
         return;
@@ -298,7 +286,7 @@ static double cube_texels(const struct panorama *p, vec3 d, vec3 step)
 // ---------------------------------------------------------------- public
 
 static const struct layout layouts[] = {
-    [RELUME_CYLINDRICAL] = {cylinder_ray, cylinder_pixel, cylinder_texel, cylinder_texels},
+    [RELUME_CYLINDRICAL] = {cylinder_ray, cylinder_pixel, panorama_cylinder_texel, cylinder_texels},
     [RELUME_SPHERICAL] = {sphere_ray, sphere_pixel, sphere_texel, sphere_texels},
     [RELUME_CUBE] = {cube_ray, cube_pixel, cube_texel, cube_texels},
 };
@@ -391,11 +379,11 @@ static bool sample(float rgb[3], const struct panorama *p, const struct layout *
     if (!has_direction(direction) || !layout->pixel(xy, p, direction))
         return false;
     if (p->geometry->disc) {
-        disc_sample(rgb, p, layout->texel, xy);
+        disc_sample(rgb, p, xy);
         return true;
     }
     const int side = p->geometry->projection == RELUME_CUBE ? p->width / 6 : p->width;
-    const int face = clamp_index(relume_whole(xy[0] / side), 6);
+    const int face = index_clamped(relume_whole(xy[0] / side), 6);
     between(rgb, p, layout->texel, face, xy[0] - face * side - 0.5, xy[1] - 0.5);
     return true;
 }

@@ -25,6 +25,9 @@ void panorama_fetch(float rgb[3], const struct panorama *p, int x, int y);
 // A texel of a layout: what it is of beyond a border is its own to say.
 typedef void panorama_texel(float rgb[3], const struct panorama *p, int face, int x, int y);
 
+// Of the rows of a cylinder: the first and the last are repeated.
+panorama_texel panorama_cylinder_texel;
+
 // Between four texels; (x, y) counts from the centre of the first one.
 void panorama_bilinear(float rgb[3], const struct panorama *p, panorama_texel *texel, int face,
                        double x, double y);
@@ -37,9 +40,7 @@ vec3 disc_ray(const struct panorama *p, double x, double y);
 void disc_pixel(double xy[2], const struct panorama *p, vec3 d);
 // How many texels further on a disc a direction comes to lie that moves by `step`.
 double disc_texels(const struct panorama *p, vec3 d, vec3 step);
-// Bilinear value at a position of the image that shows something; `cylinder` makes texels of the
-// rows above the discs and repeats its first and last one.
-void disc_sample(float rgb[3], const struct panorama *p, panorama_texel *cylinder,
-                 const double xy[2]);
+// Bilinear value at a position of the image that shows something.
+void disc_sample(float rgb[3], const struct panorama *p, const double xy[2]);
 
 #endif

@@ -57,60 +57,46 @@ double disc_texels(const struct panorama *p, vec3 d, vec3 step)
 }
 
 // In the rows; h is within the cylinder.
-static void cylinder_value(float rgb[3], const struct panorama *p, panorama_texel *cylinder, vec3 d)
+static void cylinder_value(float rgb[3], const struct panorama *p, vec3 d)
 {
     const struct relume_geometry *g = p->geometry;
     const double h = d.y / hypot(d.x, d.z);
     const double x = (atan2(d.x, -d.z) + M_PI) / (2.0 * M_PI) * p->width;
     const double y = (g->v_max - h) / (g->v_max - g->v_min) * panorama_rows(p);
-    panorama_bilinear(rgb, p, cylinder, 0, x - 0.5, y - 0.5);
+    panorama_bilinear(rgb, p, panorama_cylinder_texel, 0, x - 0.5, y - 0.5);
 }
 
-static void disc_texel(float rgb[3], const struct panorama *p, panorama_texel *cylinder, bool lower,
-                       int x, int y)
+static void disc_texel(float rgb[3], const struct panorama *p, int lower, int x, int y)
 {
     const int side = p->geometry->disc;
     const vec3 d = square_ray(p, lower, x + 0.5, y + 0.5);
     if (d.x * d.x + d.z * d.z > 1.0)
-        cylinder_value(rgb, p, cylinder, d);
+        cylinder_value(rgb, p, d);
     else
         panorama_fetch(rgb, p, lower ? side + x : x, panorama_rows(p) + y);
 }
 
 // At (x, y) in pixels from the corner of the square.
-static void disc_value(float rgb[3], const struct panorama *p, panorama_texel *cylinder, bool lower,
-                       const double xy[2])
+static void disc_value(float rgb[3], const struct panorama *p, bool lower, const double xy[2])
 {
-    const double x = xy[0] - 0.5, y = xy[1] - 0.5;
-    const int left = relume_whole(floor(x)), top = relume_whole(floor(y));
-    rgb[0] = rgb[1] = rgb[2] = 0.0f;
-    for (int i = 0; i < 4; i++) {
-        const double wx = i & 1 ? x - left : 1.0 - (x - left);
-        const double wy = i & 2 ? y - top : 1.0 - (y - top);
-        float t[3];
-        disc_texel(t, p, cylinder, lower, left + (i & 1), top + (i >> 1));
-        for (int c = 0; c < 3; c++)
-            rgb[c] += (float)(wx * wy) * t[c];
-    }
+    panorama_bilinear(rgb, p, disc_texel, lower, xy[0] - 0.5, xy[1] - 0.5);
 }
 
 // Of the cylinder's outermost half row, `part` of which lies between the rim and the position.
-static void rim_sample(float rgb[3], const struct panorama *p, panorama_texel *cylinder, double x,
-                       bool lower, double part)
+static void rim_sample(float rgb[3], const struct panorama *p, double x, bool lower, double part)
 {
     const double phi = x / p->width * 2.0 * M_PI - M_PI;
     const int row = lower ? panorama_rows(p) - 1 : 0;
     double xy[2];
     float rim[3];
     square_pixel(xy, p, lower, vec3_of(sin(phi), height_of(p, lower), -cos(phi)));
-    disc_value(rim, p, cylinder, lower, xy);
-    panorama_bilinear(rgb, p, cylinder, 0, x - 0.5, row);
+    disc_value(rim, p, lower, xy);
+    panorama_bilinear(rgb, p, panorama_cylinder_texel, 0, x - 0.5, row);
     for (int c = 0; c < 3; c++)
         rgb[c] = rim[c] + (float)part * (rgb[c] - rim[c]);
 }
 
-void disc_sample(float rgb[3], const struct panorama *p, panorama_texel *cylinder,
-                 const double xy[2])
+void disc_sample(float rgb[3], const struct panorama *p, const double xy[2])
 {
     const double side = p->geometry->disc;
     const int rows = panorama_rows(p);
@@ -118,10 +104,10 @@ void disc_sample(float rgb[3], const struct panorama *p, panorama_texel *cylinde
     if (xy[1] >= rows) {
         const bool lower = xy[0] >= side;
         const double in_square[2] = {lower ? xy[0] - side : xy[0], xy[1] - rows};
-        disc_value(rgb, p, cylinder, lower, in_square);
+        disc_value(rgb, p, lower, in_square);
     } else if (from_rim < 0.5) {
-        rim_sample(rgb, p, cylinder, xy[0], xy[1] > 0.5 * rows, 2.0 * from_rim);
+        rim_sample(rgb, p, xy[0], xy[1] > 0.5 * rows, 2.0 * from_rim);
     } else {
-        panorama_bilinear(rgb, p, cylinder, 0, xy[0] - 0.5, xy[1] - 0.5);
+        panorama_bilinear(rgb, p, panorama_cylinder_texel, 0, xy[0] - 0.5, xy[1] - 0.5);
     }
 }

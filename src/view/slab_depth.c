@@ -7,6 +7,7 @@
 // walks at has found the surface that the ray meets first. Every texel then counts as far as its
 // own disparity says that it shows this surface, so that neither a camera to which the point is
 // hidden nor a texel beyond a silhouette has a say.
+#include "math/bilinear.h"
 #include "view/slab.h"
 
 #include "base/thread.h"
@@ -58,15 +59,6 @@ static bool within(const struct around *a, const double at[2])
     return at[0] >= 0.0 && at[0] <= a->frame->width && at[1] >= 0.0 && at[1] <= a->frame->height;
 }
 
-static size_t texel_index(const struct around *a, int x, int y)
-{
-    const int width = a->frame->width;
-    const int height = a->frame->height;
-    const int column = x < 0 ? 0 : x >= width ? width - 1 : x;
-    const int row = y < 0 ? 0 : y >= height ? height - 1 : y;
-    return (size_t)row * (size_t)width + (size_t)column;
-}
-
 // What the camera sees nearest to where it would see the ray's point of disparity `q`.
 static double disparity_at(const struct around *a, const struct camera *c, double q)
 {
@@ -74,8 +66,10 @@ static double disparity_at(const struct around *a, const struct camera *c, doubl
     place_at(at, a, c, q);
     if (!within(a, at))
         return (double)RELUME_SLAB_BACKGROUND;
-    return (double)
-        c->disparity[texel_index(a, relume_whole(floor(at[0])), relume_whole(floor(at[1])))];
+    const int width = a->frame->width, height = a->frame->height;
+    const int x = index_clamped(relume_whole(at[0]), width);
+    const int y = index_clamped(relume_whole(at[1]), height);
+    return (double)c->disparity[(size_t)y * (size_t)width + (size_t)x];
 }
 
 // 1 while taking one disparity for the other is wrong by a texel, 0 from two texels on.
@@ -93,21 +87,18 @@ static void gather(double sum[5], const struct around *a, const struct camera *c
     place_at(at, a, c, q);
     if (!within(a, at))
         return;
-    const int left = relume_whole(floor(at[0] - 0.5));
-    const int top = relume_whole(floor(at[1] - 0.5));
-    slab_need(a->frame, c->view, left, top);
-    for (int j = 0; j < 2; j++)
-        for (int i = 0; i < 2; i++) {
-            const size_t texel = texel_index(a, left + i, top + j);
-            const double across = 1.0 - fabs(at[0] - 0.5 - (left + i));
-            const double down = 1.0 - fabs(at[1] - 0.5 - (top + j));
-            const double found = (double)c->disparity[texel];
-            const double w = c->weight * across * down * agreement(c->speed, surface, found);
-            for (int k = 0; k < 3; k++)
-                sum[k] += w * (double)c->rgb[3 * texel + (size_t)k];
-            sum[3] += w * found;
-            sum[4] += w;
-        }
+    slab_need(a->frame, c->view, relume_whole(floor(at[0] - 0.5)),
+              relume_whole(floor(at[1] - 0.5)));
+    const struct bilinear b =
+        bilinear_at(at[0] - 0.5, at[1] - 0.5, a->frame->width, a->frame->height, EDGE_CLAMPED);
+    for (int k = 0; k < 4; k++) {
+        const double found = (double)c->disparity[b.at[k]];
+        const double w = bilinear_share(&b, k, c->weight) * agreement(c->speed, surface, found);
+        for (size_t i = 0; i < 3; i++)
+            sum[i] += w * (double)c->rgb[3 * b.at[k] + i];
+        sum[3] += w * found;
+        sum[4] += w;
+    }
 }
 
 // ---------------------------------------------------------------- one ray

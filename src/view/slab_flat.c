@@ -1,28 +1,19 @@
 // slab_flat.c - one ray of a slab without depth, between texels wherever it falls
 #include "view/slab.h"
 
+#include "math/bilinear.h"
+
 #include <math.h>
 
-static int within(int i, int n)
-{
-    return i < 0 ? 0 : i >= n ? n - 1 : i;
-}
-
-// Bilinear with the border clamped; texel centres are at +0.5.
+// The border is clamped; texel centres are at +0.5.
 static void add_sample(double sum[3], const struct relume_image *image, const double at[2],
                        double weight)
 {
-    const double left = floor(at[0] - 0.5), top = floor(at[1] - 0.5);
-    const double part[2] = {at[0] - 0.5 - left, at[1] - 0.5 - top};
-    for (int j = 0; j < 2; j++)
-        for (int i = 0; i < 2; i++) {
-            const size_t x = (size_t)within(relume_whole(left) + i, image->width);
-            const size_t y = (size_t)within(relume_whole(top) + j, image->height);
-            const float *rgb = image->data + 3 * (y * (size_t)image->width + x);
-            const double w = weight * (i ? part[0] : 1.0 - part[0]) * (j ? part[1] : 1.0 - part[1]);
-            for (int c = 0; c < 3; c++)
-                sum[c] += w * (double)rgb[c];
-        }
+    const struct bilinear b =
+        bilinear_at(at[0] - 0.5, at[1] - 0.5, image->width, image->height, EDGE_CLAMPED);
+    for (int k = 0; k < 4; k++)
+        for (size_t c = 0; c < 3; c++)
+            sum[c] += bilinear_share(&b, k, weight) * (double)image->data[3 * b.at[k] + c];
 }
 
 void slab_flat_shade(float rgb[3], const struct slab_frame *frame, const struct slab_ray *ray)

@@ -6,6 +6,7 @@
 // point of the aperture nearest to it: whole within the aperture, falling to nothing over one step
 // of the grid beside it. So a pinhole is the quadralinear basis with another plane in focus, and a
 // frame changes smoothly with the aperture and the eye.
+#include "math/bilinear.h"
 #include "view/slab.h"
 
 #include "base/memory.h"
@@ -65,19 +66,10 @@ static bool add_sample(double sum[3], const struct slab_frame *f, const float *r
 {
     if (!(at[0] >= 0.0 && at[0] <= f->width && at[1] >= 0.0 && at[1] <= f->height))
         return false;
-    const double x = fmin(fmax(at[0] - 0.5, 0.0), f->width - 1.0);
-    const double y = fmin(fmax(at[1] - 0.5, 0.0), f->height - 1.0);
-    const int left = relume_whole(x), top = relume_whole(y);
-    const int right = left + 1 < f->width ? left + 1 : left;
-    const int low = top + 1 < f->height ? top + 1 : top;
-    const double across = x - left, down = y - top;
-    const float *a = rgb + 3 * (size_t)top * (size_t)f->width;
-    const float *b = rgb + 3 * (size_t)low * (size_t)f->width;
-    for (int k = 0; k < 3; k++) {
-        const double upper = a[3 * left + k] * (1.0 - across) + a[3 * right + k] * across;
-        const double lower = b[3 * left + k] * (1.0 - across) + b[3 * right + k] * across;
-        sum[k] += weight * (upper * (1.0 - down) + lower * down);
-    }
+    const struct bilinear b =
+        bilinear_at(at[0] - 0.5, at[1] - 0.5, f->width, f->height, EDGE_CLAMPED);
+    for (size_t k = 0; k < 3; k++)
+        sum[k] += weight * bilinear_value(&b, rgb, 3, k);
     return true;
 }
 

@@ -221,7 +221,7 @@ $(filter-out $(GL_BENCH),$(BENCH)) $(FUZZ): $B/tests/%: $B/obj/tests/%.o $B/libr
 # The tool without its main
 $B/tests/fuzz/fuzz_command: $(filter-out %/main.o,$(CLI_O))
 # The viewer without its window
-$B/tests/fuzz/fuzz_script: $(filter $B/obj/viewer/app/% $B/obj/viewer/common/%,$(VIEWER_O))
+$B/tests/fuzz/fuzz_script: $(filter $B/obj/viewer/app/% $B/obj/viewer/common/% $B/obj/src/program/%,$(VIEWER_O))
 $(TOOLS): $B/%: $B/obj/%.o $B/librelume.a
 	@mkdir -p $(@D)
 	$(call say,LD)

@@ -40,14 +40,14 @@ program::base image
 cli:program:*
 cli/commands:commands program:*
 viewer/common::base
-viewer/app:common:*
-viewer/gl:common:base image
-viewer/relit:common app gl:*
-viewer/glare:common app gl:base image eye psf glare
-viewer/draw:common app gl relit glare:*
-viewer/panel:common app gl:*
-viewer/window:common app gl:base
-viewer/session:common app gl relit glare draw panel window program:*
+viewer/app:common program:*
+viewer/gl:common program:base image
+viewer/relit:common program app gl:*
+viewer/glare:common program app gl:base image eye psf glare
+viewer/draw:common program app gl relit glare:*
+viewer/panel:common program app gl:*
+viewer/window:common program app gl:base
+viewer/session:common program app gl relit glare draw panel window:*
 samples::*"
 
 if [ "${1:-}" = --table ]; then

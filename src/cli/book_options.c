@@ -3,60 +3,58 @@
 
 #include <string.h>
 
-static relume_status parse_split(const char *text, struct relume_books_params *out)
+relume_status take_bits(void *storage, const struct option *o, const char *text,
+                        const struct relume_log *log)
 {
+    static const char *const names[] = {"8", "10", "12", "16", "half", "log", "float", NULL};
+    return relume_storage_parse(storage, text) ? unknown_word(log, o->name, text, names)
+                                               : RELUME_OK;
+}
+
+relume_status take_split(void *split, const struct option *o, const char *text,
+                         const struct relume_log *log)
+{
+    struct book_split *const s = split;
     char rest;
+    *s = (struct book_split){0};
     if (!strcmp(text, "none"))
         return RELUME_OK;
     if (!strcmp(text, "luma")) {
-        out->split = RELUME_SPLIT_LUMA;
+        s->kind = RELUME_SPLIT_LUMA;
         return RELUME_OK;
     }
-    if (sscanf(text, "product:%d%c", &out->groups, &rest) == 1 && out->groups >= 1 &&
-        out->groups <= RELUME_MOST_BOOKS) {
-        out->split = RELUME_SPLIT_PRODUCT;
+    s->kind = RELUME_SPLIT_PRODUCT;
+    if (sscanf(text, "product:%d%c", &s->groups, &rest) == 1 && s->groups >= 1 &&
+        s->groups <= RELUME_MOST_BOOKS)
         return RELUME_OK;
-    }
-    return usage_error("--split: expected none, luma or product:G with G from 1 to %d; found '%s'",
-                       RELUME_MOST_BOOKS, text);
-}
-
-static relume_status parse_start(const char *text, enum relume_codebook_start *out)
-{
-    static const char *const names[] = {"random", "split", NULL};
-    for (int i = 0; names[i]; i++)
-        if (!strcmp(text, names[i])) {
-            *out = (enum relume_codebook_start)i;
-            return RELUME_OK;
-        }
-    return unknown_name("--codebook-start", text, names);
+    return say(log, RELUME_EINVAL,
+               "%s: expected none, luma or product:G with G from 1 to %d; found '%s'", o->name,
+               RELUME_MOST_BOOKS, text);
 }
 
 relume_status parse_books(const struct args *args, const struct book_options *b, bool wanted,
                           struct relume_books_params *out)
 {
-    const struct {
-        const void *member;
-        const char *name;
-    } need[] = {{&b->share, "--share"},          {&b->stages, "--stages"}, {&b->split, "--split"},
-                {&b->start, "--codebook-start"}, {&b->dither, "--dither"}, {&b->seed, "--seed"}};
+    const size_t from = (size_t)((const char *)b - (const char *)args);
     *out = (struct relume_books_params){
         .codes = b->codes,
         .stages = b->stages ? b->stages : 1,
         .seed = (uint64_t)b->seed,
         .dither = (float)b->dither,
+        .split = b->split.kind,
+        .groups = b->split.groups,
+        .start = given(args, &b->start) ? b->start : RELUME_START_SPLIT,
     };
-    for (size_t i = 0; i < sizeof need / sizeof *need && !wanted; i++)
-        if (args_given(args, need[i].member))
-            return usage_error("%s: expected together with --codebook N", need[i].name);
-    relume_status status = parse_split(b->split ? b->split : "none", out);
-    if (!status)
-        status = parse_start(b->start ? b->start : "split", &out->start);
+    for (int i = 0; !wanted && i < args->line->given_count; i++) {
+        const struct option *o = args->line->given[i].option;
+        if (o->offset >= from && o->offset < from + sizeof *b)
+            return usage_error("%s: expected together with --codebook N", o->name);
+    }
     const int parts = out->split == RELUME_SPLIT_LUMA      ? 2
                       : out->split == RELUME_SPLIT_PRODUCT ? out->groups
                                                            : 1;
-    if (!status && parts * out->stages > RELUME_MOST_BOOKS)
+    if (parts * out->stages > RELUME_MOST_BOOKS)
         return usage_error("--stages %d of %d codebooks; expected at most %d together", out->stages,
                            parts, RELUME_MOST_BOOKS);
-    return status;
+    return RELUME_OK;
 }

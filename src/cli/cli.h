@@ -2,73 +2,28 @@
 #ifndef CLI_H
 #define CLI_H
 
+#include "program/options.h"
+#include "program/output_name.h"
+#include "program/say.h"
+
 #include <relume/relume.h>
 #include <stddef.h>
 #include <stdio.h>
 
-// OPTION_OUTPUT and those behind it are text that names what is written; any other text, and any
-// input, that names a file or folder is taken as read: no output replaces it. The endings of the
-// last three are looked at before a command runs.
-enum option_kind {
-    OPTION_FLAG,
-    OPTION_INT,
-    OPTION_NUMBER,
-    OPTION_TEXT,
-    OPTION_TEXTS,  // may be repeated
-    OPTION_OUTPUT,
-    OPTION_PICTURE,  // a picture of any format
-    OPTION_FLOATS,   // a picture of values that are no light
-    OPTION_RELUME,   // a relume file
-};
-
-struct option {
-    const char *name;  // "--size" or "-o"
-    enum option_kind kind;
-    size_t offset;         // of the member of the command's struct that holds its value
-    const char *group;     // where help lists it
-    const char *argument;  // how help calls the value: "N"
-    const char *help;
-    double min, max;  // range of numbers; both 0: any
-};
-
-// Rows of a table. OPTIONS is the struct that they fill; its first member is `struct args args`.
-// clang-format off
-#define OPTION_AT(type, member) \
-    _Generic(((OPTIONS *)NULL)->member, type: offsetof(OPTIONS, member))
-#define FLAG(name, member, group, help) \
-    {name, OPTION_FLAG, OPTION_AT(bool, member), group, NULL, help, 0, 0}
-#define INT(name, member, group, argument, help, min, max) \
-    {name, OPTION_INT, OPTION_AT(int, member), group, argument, help, min, max}
-#define NUMBER(name, member, group, argument, help, min, max) \
-    {name, OPTION_NUMBER, OPTION_AT(double, member), group, argument, help, min, max}
-#define TEXTS(name, member, group, argument, help) \
-    {name, OPTION_TEXTS, OPTION_AT(struct texts, member), group, argument, help, 0, 0}
-#define TEXT(name, member, group, argument, help) \
-    TEXT_AS(OPTION_TEXT, name, member, group, argument, help)
-#define TEXT_AS(kind, name, member, group, argument, help) \
-    {name, kind, OPTION_AT(const char *, member), group, argument, help, 0, 0}
-// clang-format on
-
-// Of an option that may be repeated.
-struct texts {
-    int count;
-    const char *const *text;
-};
-
 // Of every command that reads captures.
 #define ALLOW_OUTSIDE_OPTION                                                                       \
-    FLAG("--allow-outside", allow_outside, "input",                                                \
+    FLAG("--allow-outside", allow_outside,                                                         \
          "files that the capture names may lie outside its folder")
 
-// What every command gets; the options of its own follow in its struct.
+// What every command gets; the options of its own follow in its struct, whose first member it is.
 struct args {
     const struct relume_log *log;  // messages and progress to stderr
     int threads;                   // 0: all
     int inputs;
     const char *const *input;
-    bool quiet, help, any_format;
-    const char *max_memory, *max_pixels;
-    const struct parsed *parsed;
+    bool quiet, help;
+    struct relume_limits limits;
+    const struct command_line *line;
 };
 
 // One command, one cmd_*.c file, one entry in commands[] (main.c). Help is made from it.
@@ -87,8 +42,9 @@ struct command {
 };
 extern const struct command *const commands[];
 
-// Whether the option was given that fills `member` of the struct of `args`.
-bool args_given(const struct args *args, const void *member);
+// Whether the option was given that fills `member` of the struct of a command's options.
+bool given(const void *options, const void *member);
+
 // A log that says which file its sentences are about: "PREFIX: ...".
 struct prefix_log {
     struct relume_log log;
@@ -99,22 +55,13 @@ const struct relume_log *prefix_log(struct prefix_log *p, const struct relume_lo
                                     const char *prefix);
 
 // A sentence to the log.
-__attribute__((format(printf, 3, 4))) void say(const struct args *args, enum relume_level level,
-                                               const char *format, ...);
+__attribute__((format(printf, 3, 4))) void announce(const struct args *args,
+                                                    enum relume_level level, const char *format,
+                                                    ...);
 // "relume: ..." on stderr; returns RELUME_EINVAL, so that a command may return it.
 __attribute__((format(printf, 1, 2))) relume_status usage_error(const char *format, ...);
 // The same for inputs at fault: RELUME_EUNFIT.
 __attribute__((format(printf, 1, 2))) relume_status data_error(const char *format, ...);
-// RELUME_EINVAL and "unknown WHAT 'given'; did you mean ...? Expected one of ...".
-relume_status unknown_name(const char *what, const char *given, const char *const *names);
-// `count` numbers separated by commas or blanks, nothing else.
-bool parse_numbers(const char *text, double *out, int count);
-// "x,y,z" of an option; RELUME_EINVAL with a sentence.
-relume_status args_vec3(struct relume_vec3 *out, const char *option, const char *text);
-// NULL, an option that was not given, leaves `*out` as it is.
-relume_status args_transfer(struct relume_transfer *out, const char *option, const char *text);
-// "auto", "linear" or "display", of --domain.
-relume_status args_domain(enum relume_domain *out, const char *text);
 
 // What a PSNR means for who looks at the pictures: "differences not visible".
 const char *judgement(double psnr_db);

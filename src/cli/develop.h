@@ -5,26 +5,23 @@
 #include "cli.h"
 
 struct develop_options {
-    const char *exposure, *tone;
-    double white;
+    double exposure, white;          // stops, NaN: by the picture; 0: the tone's own
+    const struct relume_tone *tone;  // NULL: linear
 };
 // Table rows for a command's options; `develop` in its struct.
 #define DEVELOP_OPTIONS                                                                            \
-    TEXT("--exposure", develop.exposure, "picture", "EV",                                          \
-         "brighter by EV stops (times 2^EV), or auto: mid grey; default: 0"),                      \
-        TEXT(                                                                                      \
-            "--tone", develop.tone, "picture", "T",                                                \
-            "linear (clip, default), reinhard, filmic or gamma; .exr, .hdr and .pfm stay linear"), \
-        NUMBER("--white", develop.white, "picture", "L",                                           \
+    DEVELOP_ROWS("brighter by EV stops (times 2^EV), or auto: mid grey; default: 0",               \
+                 "linear (clip, default), reinhard, filmic or gamma; .exr, .hdr and .pfm stay "    \
+                 "linear")
+#define DEVELOP_ROWS(exposure_help, tone_help)                                                     \
+    {ROW("--exposure", OPTION_NUMBER, OPTION_AT(double, develop.exposure), "EV", exposure_help),   \
+     .min = -100, .max = 100, .names = NAMES("auto")},                                             \
+        ENTRY("--tone", develop.tone, "T", tone_help, relume_tones, NULL),                         \
+        NUMBER("--white", develop.white, "L",                                                      \
                "reinhard: the luminance shown as white; default: 4", 1e-3, 1e6)
 
-struct developing {
-    struct relume_tone_params tone;
-    bool automatic;
-};
-// RELUME_EINVAL with a sentence.
-relume_status parse_developing(const struct develop_options *options, struct developing *d);
 // In place, for a file of that name: linear formats stay linear.
-relume_status develop(struct relume_image *frame, struct developing d, const char *path);
+relume_status develop(struct relume_image *frame, const struct develop_options *options,
+                      const char *path);
 
 #endif

@@ -2,17 +2,6 @@
 // seen
 #include "glare_options.h"
 
-static relume_status parse_names(struct relume_glare_params *p, const struct eye_options *o)
-{
-    const char *const mode = o->mode ? o->mode : relume_glare_mode_names()[0];
-    const char *const border = o->border ? o->border : relume_glare_border_names()[0];
-    if (relume_glare_mode_parse(&p->mode, mode))
-        return unknown_name("--mode", mode, relume_glare_mode_names());
-    if (relume_glare_border_parse(&p->border, border))
-        return unknown_name("--border", border, relume_glare_border_names());
-    return RELUME_OK;
-}
-
 relume_status open_viewer_eye(struct viewer_eye *out, const struct args *args,
                               const struct eye_options *o, double luminance,
                               const struct relume_psf_params *psf)
@@ -20,11 +9,14 @@ relume_status open_viewer_eye(struct viewer_eye *out, const struct args *args,
     struct relume_subject subject = relume_subject_default();
     *out = (struct viewer_eye){
         .luminance = luminance,
-        .params = {.log = args->log, .threads = args->threads, .magnify = o->magnify},
+        .params = {.log = args->log,
+                   .threads = args->threads,
+                   .magnify = o->magnify,
+                   .mode = o->mode,
+                   .border = o->border},
     };
-    relume_status status = parse_names(&out->params, o);
-    if (!status && o->subject)
-        status = relume_subject_load(&subject, o->subject, args->log);
+    relume_status status =
+        o->subject ? relume_subject_load(&subject, o->subject, args->log) : RELUME_OK;
     if (!status)
         status = relume_eye_create(&out->eye, &subject, luminance);
     if (!status)

@@ -6,26 +6,25 @@
 #include "cli.h"
 
 struct eye_options {
-    const char *subject, *mode, *border;
+    const char *subject;
+    enum relume_glare_mode mode;
+    enum relume_glare_border border;
     double time, nits, magnify;
 };
 // Table rows for a command's options; `glare` in its struct, from GLARE_DEFAULTS.
+// clang-format off
 #define GLARE_OPTIONS                                                                              \
-    TEXT("--subject", glare.subject, "glare", "FILE",                                              \
-         "glare: the viewer's eye (JSON, docs/glare.md)"),                                         \
-        NUMBER("--time", glare.time, "glare", "T",                                                 \
-               "glare: seconds since the eye opened; default: 1", 0, 1e6),                         \
-        NUMBER("--nits", glare.nits, "glare", "L",                                                 \
-               "glare: cd/m^2 of the value 1, sets the pupil; default: 100", 0, 1e9),              \
-        NUMBER("--magnify", glare.magnify, "glare", "M", "glare: enlarge the halos; default: 1",   \
-               0.01, 1000),                                                                        \
-        TEXT("--mode", glare.mode, "glare", "M", "glare: fft (default), billboard or hybrid"),     \
-        TEXT("--border", glare.border, "glare", "B", "glare: zero (default), clamp or periodic")
-
-#define GLARE_DEFAULTS                                                                             \
-    {                                                                                              \
-        .time = 1.0, .nits = 100.0                                                                 \
-    }
+    TEXT("--subject", glare.subject, "FILE", "glare: the viewer's eye (JSON, docs/glare.md)"),     \
+    NUMBER("--time", glare.time, "T", "glare: seconds since the eye opened; default: 1", 0, 1e6),  \
+    NUMBER("--nits", glare.nits, "L", "glare: cd/m^2 of the value 1, sets the pupil; default: 100",\
+           0, 1e9),                                                                                \
+    NUMBER("--magnify", glare.magnify, "M", "glare: enlarge the halos; default: 1", 0.01, 1000),   \
+    NAME("--mode", glare.mode, "M", "glare: fft (default), billboard or hybrid",                   \
+         RELUME_GLARE_FFT, "fft", "billboard", "hybrid"),                                          \
+    NAME("--border", glare.border, "B", "glare: zero (default), clamp or periodic",                \
+         RELUME_GLARE_ZERO, "zero", "clamp", "periodic")
+#define GLARE_DEFAULTS {.time = 1.0, .nits = 100.0}
+// clang-format on
 
 // An eye that looks at a picture, ready to see it.
 struct viewer_eye {

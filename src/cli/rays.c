@@ -5,7 +5,6 @@
 
 #include <errno.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,20 +14,6 @@ struct list {
     struct relume_ray *ray;
     int count, room;
 };
-
-__attribute__((format(printf, 3, 4))) static relume_status fail(const struct relume_log *log,
-                                                                const char *path,
-                                                                const char *format, ...)
-{
-    char text[400];
-    va_list arguments;
-    const int n = snprintf(text, sizeof text, "%.200s: ", strcmp(path, "-") ? path : "stdin");
-    va_start(arguments, format);
-    vsnprintf(text + n, sizeof text - (size_t)n, format, arguments);
-    va_end(arguments);
-    log->message(log->user, RELUME_ERROR, text);
-    return RELUME_EFORMAT;
-}
 
 static bool add(struct list *list, const double v[6])
 {
@@ -60,7 +45,7 @@ static int numbers_of(double v[6], const char *text)
     }
 }
 
-static relume_status read_line(struct list *list, char *line, int number, const char *path,
+static relume_status read_line(struct list *list, char *line, int number, const char *name,
                                const struct relume_log *log)
 {
     double v[6];
@@ -69,15 +54,17 @@ static relume_status read_line(struct list *list, char *line, int number, const 
     if (n == 0)
         return RELUME_OK;
     if (n != 6)
-        return fail(log, path,
-                    "line %d: expected six numbers, x y z of the eye and of the direction; found "
-                    "'%.60s'",
-                    number, line);
+        return say(log, RELUME_EFORMAT,
+                   "%s: line %d: expected six numbers, x y z of the eye and of the direction; "
+                   "found '%.60s'",
+                   name, number, line);
     if (v[3] == 0.0 && v[4] == 0.0 && v[5] == 0.0)
-        return fail(log, path, "line %d: the direction is 0 0 0; expected where the ray goes",
-                    number);
+        return say(log, RELUME_EFORMAT,
+                   "%s: line %d: the direction is 0 0 0; expected where the ray goes", name,
+                   number);
     if (list->count == MOST)
-        return fail(log, path, "line %d: expected at most %d rays", number, MOST);
+        return say(log, RELUME_EFORMAT, "%s: line %d: expected at most %d rays", name, number,
+                   MOST);
     return add(list, v) ? RELUME_OK : RELUME_ENOMEM;
 }
 
@@ -89,17 +76,18 @@ relume_status rays_read(struct relume_ray **out, int *count, const char *path,
     size_t room = 0;
     relume_status status = RELUME_OK;
     const bool stream = !strcmp(path, "-");
+    const char *const name = stream ? "stdin" : path;
     FILE *file = stream ? stdin : fopen(path, "re");
     *out = NULL;
     if (!file)
-        return relume_input_fail(log, stream ? "stdin" : path, "cannot be read", errno);
+        return relume_input_fail(log, name, "cannot be read", errno);
     errno = 0;
     for (int number = 1; !status && getline(&line, &room, file) >= 0; number++)
-        status = read_line(&list, line, number, path, log);
+        status = read_line(&list, line, number, name, log);
     if (!status && ferror(file))
-        status = relume_input_fail(log, stream ? "stdin" : path, "cannot be read", errno);
+        status = relume_input_fail(log, name, "cannot be read", errno);
     if (!status && !list.count)
-        status = fail(log, path, "holds no rays; expected six numbers per line");
+        status = say(log, RELUME_EFORMAT, "%s: holds no rays; expected six numbers per line", name);
     if (!stream)
         (void)fclose(file);
     free(line);

@@ -1,10 +1,12 @@
 // film.c - pictures one after the other: numbered files, a folder or a film
 #include "program/film.h"
 
+#include "program/output_name.h"
+#include "program/say.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,20 +30,6 @@ struct film {
     pid_t ffmpeg;       // 0: not started
     int pipe;
 };
-
-__attribute__((format(printf, 3, 4))) static relume_status fail(const struct film *f,
-                                                                relume_status status,
-                                                                const char *format, ...)
-{
-    char text[PATH + 200];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    if (f->log && f->log->message)
-        f->log->message(f->log->user, RELUME_ERROR, text);
-    return status;
-}
 
 // ---------------------------------------------------------------- names
 
@@ -68,8 +56,8 @@ bool film_is(const char *path)
     size_t before;
     int digits;
     const char *after;
-    const char *const base = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
-    return is_film(path) || find_number(path, &before, &digits, &after) || !strchr(base, '.');
+    return is_film(path) || find_number(path, &before, &digits, &after) ||
+           !strchr(base_name(path), '.');
 }
 
 const char *film_name(struct film *f)
@@ -99,7 +87,7 @@ relume_status film_open(struct film **out, const char *path, double fps, bool nu
                                                                                    : FOLDER;
     relume_status status = RELUME_OK;
     if (strlen(path) > 4000)
-        status = fail(f, RELUME_EINVAL, "-o: expected a shorter name");
+        status = say(f->log, RELUME_EINVAL, "-o: expected a shorter name");
     else if (f->kind != NUMBERED)
         status =
             relume_making_open(&f->making, f->path,
@@ -138,8 +126,8 @@ static relume_status start_ffmpeg(struct film *f)
 {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC))
-        return fail(f, RELUME_ESYSTEM, "%s: cannot send pictures to ffmpeg; %s", f->path,
-                    strerror(errno));
+        return say(f->log, RELUME_ESYSTEM, "%s: cannot send pictures to ffmpeg; %s", f->path,
+                   strerror(errno));
     f->ffmpeg = fork();
     if (f->ffmpeg == 0)
         become_ffmpeg(f, ends[0]);
@@ -149,7 +137,8 @@ static relume_status start_ffmpeg(struct film *f)
         return RELUME_OK;
     (void)close(f->pipe);
     f->ffmpeg = 0;
-    return fail(f, RELUME_ESYSTEM, "%s: ffmpeg cannot be started; %s", f->path, strerror(errno));
+    return say(f->log, RELUME_ESYSTEM, "%s: ffmpeg cannot be started; %s", f->path,
+               strerror(errno));
 }
 
 static relume_status end_ffmpeg(struct film *f)
@@ -164,11 +153,11 @@ static relume_status end_ffmpeg(struct film *f)
     if (WIFEXITED(state) && WEXITSTATUS(state) == 0)
         return RELUME_OK;
     if (WIFEXITED(state) && WEXITSTATUS(state) == 127)
-        return fail(f, RELUME_ESYSTEM,
-                    "%s: ffmpeg is not installed, which films need; install it, or give the name "
-                    "of a folder",
-                    f->path);
-    return fail(f, RELUME_ESYSTEM, "%s: ffmpeg could not write the film", f->path);
+        return say(f->log, RELUME_ESYSTEM,
+                   "%s: ffmpeg is not installed, which films need; install it, or give the name "
+                   "of a folder",
+                   f->path);
+    return say(f->log, RELUME_ESYSTEM, "%s: ffmpeg could not write the film", f->path);
 }
 
 static relume_status write_picture(struct film *f, const unsigned char *bytes, size_t n)
@@ -180,8 +169,8 @@ static relume_status write_picture(struct film *f, const unsigned char *bytes, s
         if (wrote < 0) {
             const relume_status status = end_ffmpeg(f);  // says why it went away
             return status ? status
-                          : fail(f, RELUME_ESYSTEM,
-                                 "%s: ffmpeg stopped before the film was complete", f->path);
+                          : say(f->log, RELUME_ESYSTEM,
+                                "%s: ffmpeg stopped before the film was complete", f->path);
         }
         bytes += wrote;
         n -= (size_t)wrote;
@@ -216,10 +205,10 @@ relume_status film_add(struct film *f, const struct relume_image *image)
         f->height = image->height;
     }
     if (image->width != f->width || image->height != f->height)
-        return fail(f, RELUME_EINVAL,
-                    "%s: the pictures changed size, from %d x %d to %d x %d; record again without "
-                    "resizing the window",
-                    f->path, f->width, f->height, image->width, image->height);
+        return say(f->log, RELUME_EINVAL,
+                   "%s: the pictures changed size, from %d x %d to %d x %d; record again without "
+                   "resizing the window",
+                   f->path, f->width, f->height, image->width, image->height);
     const relume_status status =
         f->kind == FILM
             ? add_to_film(f, image)

@@ -130,7 +130,7 @@ expect_fail 'compare of two sizes' 1 'light0000.exr: 128 x 128' - "$RELUME" comp
 # ---- options
 usage() { expect_fail "$1" 2 "$2" u.exr "$RELUME" $3; }
 usage 'unknown command' "did you mean 'relight'" relihgt
-usage 'unknown basis' "unknown basis 'shh'; did you mean 'sh'" 'encode good -o u.exr --basis shh'
+usage 'unknown basis' "unknown --basis 'shh'; did you mean 'sh'" 'encode good -o u.exr --basis shh'
 usage 'unknown option' "did you mean '--coefficients'" 'encode good -o u.exr --coeficients 9'
 usage 'unknown short option' "encode: unknown option '-z'" 'encode good -o u.exr -z'
 usage 'count that sh has not' 'the nearest number is 9' 'encode good -o u.exr --basis sh --coefficients 10'

@@ -156,7 +156,7 @@ below 'fitted well' "$(field rms out.txt)" 0.001
 expect_ok 'compared' - "$RELUME" btf compare bump.btf --models rfnl,vpca --pictures 0 --json -q
 expect_fail 'no room' 3 'bump.btf: no room for 0.00029 GiB of temporary data in /nowhere' x.exr env TMPDIR=/nowhere "$RELUME" btf render bump.btf -o x.exr
 expect_fail 'a part outside' 2 'bump.btf: a part of 5 x 3 texels at 8, 1; expected one of 12 x 12' - "$RELUME" btf info bump.btf --crop 8,1,5,3
-expect_fail 'a part of nothing' 2 "crop: expected x,y,w,h in texels; found '1,2,3'" - "$RELUME" btf info bump.btf --crop 1,2,3
+expect_fail 'a part of nothing' 2 "crop: expected four numbers x,y,w,h; found '1,2,3'" - "$RELUME" btf info bump.btf --crop 1,2,3
 expect_fail 'a part of a folder' 2 'paper: expected a .btf file to take a part of' - "$RELUME" btf info paper --crop 0,0,1,1
 expect_fail 'a part of a material' 2 "crop: expected a .btf file; found 'stone'" - "$RELUME" btf info stone --crop 0,0,1,1
 head -c 9000 bump.btf >short.btf
@@ -182,7 +182,7 @@ printf '0 0 1\n0.6 0 -0.8\n0 0.6 0.8\n-0.6 0 0.8\n' >below.txt
 expect_fail 'a direction from below' 1 'below.txt: direction 1: expected a unit vector with z > 0' x "$RELUME" synth --btf stone --directions below.txt -o x
 expect_fail 'two directions' 1 'two.txt: directions: expected 3 or more' x sh -c 'head -1 below.txt >two.txt; sed -n 3p below.txt >>two.txt; exec "$0" synth --btf stone --directions two.txt -o x' "$RELUME"
 expect_fail 'scene and material' 2 'found both' x "$RELUME" synth box --btf stone -o x
-expect_fail 'unknown model' 2 "unknown model 'rfnk'" - "$RELUME" btf compare paper --models rfnk
+expect_fail 'unknown model' 2 "unknown --models 'rfnk'" - "$RELUME" btf compare paper --models rfnk
 expect_fail 'no model' 2 '--models: expected a value .*found an empty one' - "$RELUME" btf compare paper --models ''
 expect_fail 'unknown task' 2 "unknown task 'fitt'; did you mean 'fit'" - "$RELUME" btf fitt paper
 expect_fail 'too many clusters' 2 'expected 1 to 64 clusters; found 65' x "$RELUME" btf fit paper --model rfnlc --clusters 65 -o x

@@ -90,7 +90,7 @@ bad 'no output' 2 'expected -o OUT, --psf OUT' in.exr
 bad 'no picture' 2 'expected a picture IN' -o out.png
 bad 'two pictures' 2 'found 2 inputs' in.exr in.exr -o out.png
 bad 'no such file' 1 'nowhere.exr' nowhere.exr -o out.png
-bad 'fov 0' 2 '--fov: expected a number from 0.01 to 170; found 0' in.exr -o out.png --fov 0
+bad 'fov 0' 2 '--fov: expected a number from 0.01 to 170; found .0.' in.exr -o out.png --fov 0
 bad 'fov 171' 2 '--fov: expected' in.exr -o out.png --fov 171
 bad 'an unknown mode' 2 "unknown --mode 'hybird'; did you mean 'hybrid'" --psf out.png --mode hybird
 bad 'an unknown border' 2 'unknown --border' --psf out.png --border mirror

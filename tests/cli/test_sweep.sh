@@ -104,7 +104,7 @@ bad() { # name, pattern, options...
     shift 2
     expect_fail "$name" 2 "$pattern" no.csv "$RELUME" sweep cap -o no "$@"
 }
-bad 'unknown basis' "unknown basis 'pcb'; did you mean 'pca'" --basis sh,pcb
+bad 'unknown basis' "unknown --basis 'pcb'; did you mean 'pca'" --basis sh,pcb
 bad 'unknown bits' "unknown --bits '9'" --bits 9
 bad 'unknown step' "unknown --step 'plain'; did you mean 'plane'" --step plain
 bad 'unknown colour' "unknown --colour" --colour cmyk

@@ -280,7 +280,7 @@ refuse 'no such file' 1 'none.exr: no such file' "$VIEWER" none.exr --offscreen 
 refuse 'unknown option' 2 "did you mean '--offscreen'" "$VIEWER" teapot.exr --offscren none.png
 refuse 'no depth' 1 'file with depth' "$VIEWER" bare.exr --interpolate depth --offscreen none.png
 refuse 'a focus behind the cameras' 2 'focus: expected' "$VIEWER" teapot.exr --focus 3 --offscreen none.png
-refuse 'unknown source of GL' 2 'auto, osmesa or egl; found .vulkan' "$VIEWER" teapot.exr --offscreen none.png --gl vulkan
+refuse 'unknown source of GL' 2 'unknown --gl .vulkan.; expected one of: auto osmesa egl' "$VIEWER" teapot.exr --offscreen none.png --gl vulkan
 refuse 'unwritable picture' 3 'nowhere/x.png' "$VIEWER" teapot.exr --offscreen nowhere/x.png
 refuse 'a script with a mistake' 1 'bad.txt: line 2, column 9; expected size W H; found' \
     sh -c 'printf "key b\nsize 800\n" >bad.txt; "$VIEWER" teapot.exr --script bad.txt'

@@ -136,7 +136,7 @@ relume relight slab.exr -o fitted.exr --size 48x96 --light "$light"
 is 'a slab is not stretched' "$("$mkimage" read fitted.exr 20 10)" "$("$mkimage" read fitted.exr 20 90)"
 rm -f x.png
 for bad in 0 0x10 10x0 x 12x12x 1e3 -5x5 70000 99999999999999999999; do
-    expect_fail "--size=$bad" 2 'expected WIDTHxHEIGHT, WIDTH or xHEIGHT' x.png \
+    expect_fail "--size=$bad" 2 'expected WxH, W or xH' x.png \
         "$RELUME" relight flat.exr -o x.png "--size=$bad"
 done
 expect_fail 'a size that no memory holds' 2 'too large' x.png \

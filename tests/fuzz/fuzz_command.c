@@ -113,16 +113,15 @@ static relume_status run(int count, char **line, bool patiently)
     static const struct itimerval never = {{0, 0}, {0, 0}};
     const struct itimerval once = {{0, 0}, patiently ? never.it_value : PATIENT};
     FILE *const out = stdout;
-    parsed.given_count = parsed.input_count = parsed.listed = 0;
-    parsed.log = (struct relume_log){
-        .message = on_message, .progress = go_on, .user = &parsed, .limits = &parsed.limits};
+    parsed.log = (struct relume_log){.message = on_message, .progress = go_on};
     parsed.limits = (struct relume_limits){.max_memory = 64 << 20, .max_pixels = 1 << 16};
     stopped = 0;
     parsed.command = find_command(commands, line[0]);
     stdout = people;
     setitimer(ITIMER_PROF, &once, NULL);
-    const relume_status status = parsed.command ? run_command(&parsed, count - 1, line + 1)
-                                                : unknown_command("command", commands, line[0]);
+    const relume_status status = parsed.command
+                                     ? run_command(&parsed, count - 1, line + 1)
+                                     : unknown_command(&parsed.log, "command", commands, line[0]);
     setitimer(ITIMER_PROF, &never, NULL);
     stdout = out;
     relume_inputs_destroy(&parsed.log.inputs);
@@ -184,9 +183,7 @@ static void put(const char *path, const char *t)
 
 static size_t add_options(size_t n, const struct option *options)
 {
-    for (const struct option *o = options; o && o->name && n < MOST_WORDS - 32; o++)
-        words[n++] = o->name;
-    return n;
+    return (size_t)option_names(words, (int)n, MOST_WORDS - 32, options);
 }
 
 static size_t add_commands(size_t n, const struct command *const *list)

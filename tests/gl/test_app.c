@@ -6,7 +6,7 @@
 #include "app/keys.h"
 #include "app/lamps.h"
 #include "app/script.h"
-#include "common/say.h"
+#include "program/say.h"
 #include "draw/lamps_seen.h"
 #include "owned.h"
 #include "session/options.h"
@@ -634,7 +634,7 @@ static void wrong_options_are_refused(void **state)
     static const char *const wrong[][2] = {
         {"--offscreen b.png", "expected 'relume-view FILE'"},
         {"--record sweep -o b", "expected 'relume-view FILE'"},
-        {"a.exr --dock top", "found 'top'"},
+        {"a.exr --dock top", "unknown --dock 'top'"},
         {"a.exr b.exr", "expected one FILE"},
         {"a.exr --exposrue 1", "did you mean '--exposure'"},
         {"a.exr --zzzzzzzzzzzz", "--help"},
@@ -658,7 +658,7 @@ static void wrong_options_are_refused(void **state)
         {"a.exr --white 0", "from"},
         {"a.exr --projection flat", "planet"},
         {"a.exr --projection planet --eye 0,0,3", "found two"},
-        {"a.exr --interpolate cubic", "constant, linear or depth"},
+        {"a.exr --interpolate cubic", "constant linear depth"},
         {"a.exr --aperture -1", "from"},
         {"a.exr --glare-magnify 0", "from 0.01 to 1000"},
         {"a.exr --nits nan", "found 'nan'"},

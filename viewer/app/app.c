@@ -3,7 +3,7 @@
 
 #include "app/lamps.h"
 #include "app/orbit.h"
-#include "common/say.h"
+#include "program/say.h"
 #include "common/vec.h"
 
 #include <relume/tone.h>

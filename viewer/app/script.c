@@ -2,7 +2,7 @@
 #include "app/script.h"
 
 #include "app/adjust.h"
-#include "common/say.h"
+#include "program/say.h"
 
 #include <errno.h>
 #include <math.h>

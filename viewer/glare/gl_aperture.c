@@ -2,7 +2,7 @@
 // multiplies
 #include "glare/gl_aperture.h"
 
-#include "common/say.h"
+#include "program/say.h"
 #include "gl/target.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 // textures
 #include "relit/light_uniforms.h"
 
-#include "common/say.h"
+#include "program/say.h"
 #include "common/vec.h"
 #include "gl/target.h"
 

@@ -2,7 +2,7 @@
 // pixel's own direction
 #include "relit/nearby.h"
 
-#include "common/say.h"
+#include "program/say.h"
 #include "relit/weights.h"
 
 #include <math.h>

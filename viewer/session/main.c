@@ -1,7 +1,7 @@
 // main.c - relume-view: a file in a window, or in pictures written without one
 #include "app/events.h"
 #include "app/script.h"
-#include "common/say.h"
+#include "program/say.h"
 #include "program/stopping.h"
 #include "session/options.h"
 #include "session/session.h"
@@ -313,11 +313,11 @@ static relume_status open_window(struct session *s, struct options *o,
         status = session_open(s, o->file, &o->start, true);
     if (status)
         return status;
-    if (settings->width && !o->sized) {
+    if (settings->width && !(o->size[0] || o->size[1])) {
         s->app.width = settings->width;
         s->app.height = settings->height;
     } else {
-        choose_size(&s->app, o->sized);
+        choose_size(&s->app, o->size[0] || o->size[1]);
     }
     s->app.panel = o->panel || settings->panel;
     s->app.dock = o->docked ? o->dock : (enum app_dock)settings->dock;

@@ -3,7 +3,8 @@
 
 #include "app/keys.h"
 #include "app/lamps.h"
-#include "common/say.h"
+#include "program/options.h"
+#include "program/say.h"
 
 #include <relume/tone.h>
 
@@ -12,605 +13,172 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct option {
-    const char *name;
-    const char *argument;  // NULL: takes none
-    const char *help;
-    relume_status (*take)(struct options *o, const char *name, const char *text,
-                          const struct relume_log *log);
-};
-
 // ---------------------------------------------------------------- values
 
-bool options_numbers(const char *text, double *out, int count)
-{
-    for (int i = 0; i < count; i++) {
-        text += strspn(text, i ? ", \t" : " \t");
-        char *end;
-        out[i] = strtod(text, &end);
-        if (end == text || !isfinite(out[i]))
-            return false;
-        text = end;
-    }
-    return text[strspn(text, " \t\r\n")] == '\0';
-}
-
-static relume_status take_number(double *out, const char *name, const char *text, double least,
-                                 double most, const struct relume_log *log)
-{
-    if (options_numbers(text, out, 1) && *out >= least && *out <= most)
-        return RELUME_OK;
-    return say(log, RELUME_EINVAL, "%s: expected a number from %g to %g; found '%s'", name, least,
-               most, text);
-}
-
-static relume_status take_framing(struct options *o, const char *name, enum relume_framing framing,
-                                  const struct relume_log *log)
-{
-    struct relume_camera *camera = &o->start.camera;
-    if (camera->framing != RELUME_FRAME_DEFAULT && camera->framing != framing)
-        return say(log, RELUME_EINVAL,
-                   "%s: expected one of --view, --eye or --pan/--tilt/--zoom; found two", name);
-    camera->framing = framing;
-    return RELUME_OK;
-}
-
-static relume_status have_rig(struct options *o)
-{
-    return o->rig ? RELUME_OK : relume_rig_create(&o->rig);
-}
-
-static relume_status take_light(struct options *o, const char *name, const char *text,
+static relume_status take_light(void *rig, const struct option *o, const char *text,
                                 const struct relume_log *log)
 {
-    (void)name;
-    const relume_status status = have_rig(o);
-    return status ? status : relume_rig_add(o->rig, text, NULL, log);
+    relume_rig **const r = rig;
+    (void)o;
+    const relume_status status = *r ? RELUME_OK : relume_rig_create(r);
+    return status ? status : relume_rig_add(*r, text, NULL, log);
 }
 
-static relume_status take_rig(struct options *o, const char *name, const char *text,
+static relume_status take_rig(void *rig, const struct option *o, const char *text,
                               const struct relume_log *log)
 {
-    if (o->rig)
-        return say(log, RELUME_EINVAL, "%s: expected it once and before --light", name);
+    relume_rig **const r = rig;
+    if (*r)
+        return say(log, RELUME_EINVAL, "%s: expected it once and before --light", o->name);
     struct relume_log saves = *log;
     saves.inputs = NULL;  // lights may be saved where they came from
-    return relume_rig_load(&o->rig, text, &saves);
+    return relume_rig_load(r, text, &saves);
 }
 
-static relume_status take_view(struct options *o, const char *name, const char *text,
-                               const struct relume_log *log)
-{
-    double n;
-    const relume_status status = take_number(&n, name, text, 0, 65535, log);
-    if (status || n != floor(n))
-        return status
-                   ? status
-                   : say(log, RELUME_EINVAL, "--view: expected a whole number; found '%s'", text);
-    o->start.camera.view = (int)n;
-    return take_framing(o, name, RELUME_FRAME_VIEW, log);
-}
-
-static relume_status take_point(struct relume_vec3 *out, const char *name, const char *text,
-                                const struct relume_log *log)
-{
-    double v[3];
-    if (!options_numbers(text, v, 3))
-        return say(log, RELUME_EINVAL, "%s: expected three numbers x,y,z; found '%s'", name, text);
-    *out = (struct relume_vec3){v[0], v[1], v[2]};
-    return RELUME_OK;
-}
-
-static relume_status take_eye(struct options *o, const char *name, const char *text,
-                              const struct relume_log *log)
-{
-    const relume_status status = take_point(&o->start.camera.eye, name, text, log);
-    return status ? status : take_framing(o, name, RELUME_FRAME_EYE, log);
-}
-
-static relume_status take_look_at(struct options *o, const char *name, const char *text,
+static relume_status take_subject(void *subject, const struct option *o, const char *text,
                                   const struct relume_log *log)
 {
-    o->start.camera.aim.aimed = true;
-    return take_point(&o->start.camera.aim.at, name, text, log);
-}
-
-static relume_status take_up(struct options *o, const char *name, const char *text,
-                             const struct relume_log *log)
-{
-    return take_point(&o->start.camera.aim.up, name, text, log);
-}
-
-static relume_status take_fov(struct options *o, const char *name, const char *text,
-                              const struct relume_log *log)
-{
-    return take_number(&o->start.camera.aim.field_of_view_deg, name, text, 0.01, 179, log);
-}
-
-static relume_status take_pan(struct options *o, const char *name, const char *text,
-                              const struct relume_log *log)
-{
-    const relume_status status =
-        take_number(&o->start.camera.look.pan_deg, name, text, -36000, 36000, log);
-    return status ? status : take_framing(o, name, RELUME_FRAME_LOOK, log);
-}
-
-static relume_status take_tilt(struct options *o, const char *name, const char *text,
-                               const struct relume_log *log)
-{
-    const relume_status status =
-        take_number(&o->start.camera.look.tilt_deg, name, text, -90, 90, log);
-    return status ? status : take_framing(o, name, RELUME_FRAME_LOOK, log);
-}
-
-static relume_status take_zoom(struct options *o, const char *name, const char *text,
-                               const struct relume_log *log)
-{
-    const relume_status status =
-        take_number(&o->start.camera.look.zoom, name, text, 0.01, 1000, log);
-    return status ? status : take_framing(o, name, RELUME_FRAME_LOOK, log);
-}
-
-static relume_status take_projection(struct options *o, const char *name, const char *text,
-                                     const struct relume_log *log)
-{
-    struct relume_pan_tilt *look = &o->start.camera.look;
-    const bool planet = !strcmp(text, "planet");
-    if (strcmp(text, "perspective") && strcmp(text, "stereographic") && !planet)
-        return say(log, RELUME_EINVAL,
-                   "%s: expected perspective, stereographic or planet; found '%s'", name, text);
-    look->stereographic = strcmp(text, "perspective") != 0;
-    if (planet && look->tilt_deg == 0.0)
-        look->tilt_deg = -90.0;
-    if (planet && look->zoom == 0.0)
-        look->zoom = 0.5;
-    return take_framing(o, name, RELUME_FRAME_LOOK, log);
-}
-
-static relume_status take_interpolation(struct options *o, const char *name, const char *text,
-                                        const struct relume_log *log)
-{
-    if (!relume_interpolation_parse(&o->start.interpolation, text))
-        return RELUME_OK;
-    return say(log, RELUME_EINVAL, "%s: expected constant, linear or depth; found '%s'", name,
-               text);
-}
-
-static relume_status take_aperture(struct options *o, const char *name, const char *text,
-                                   const struct relume_log *log)
-{
-    return take_number(&o->start.aperture, name, text, 0, 1e9, log);
-}
-
-static relume_status take_focus(struct options *o, const char *name, const char *text,
-                                const struct relume_log *log)
-{
-    o->start.focused = true;
-    return take_number(&o->start.focus_z, name, text, -1e9, 1e9, log);
-}
-
-// 1 to 99999, and moves on; 0 where there is none.
-static int take_side(const char **text)
-{
-    const size_t digits = strspn(*text, "0123456789");
-    const int side = digits <= 5 ? atoi(*text) : 0;
-    *text += side ? digits : 0;
-    return side;
-}
-
-static relume_status take_size(struct options *o, const char *name, const char *text,
-                               const struct relume_log *log)
-{
-    const char *rest = text;
-    struct relume_camera *camera = &o->start.camera;
-    (void)name;
-    camera->width = take_side(&rest);
-    const bool both = *rest == 'x';
-    rest += both;
-    camera->height = both ? take_side(&rest) : 0;
-    if (*rest || !(camera->width || camera->height))
-        return say(log, RELUME_EINVAL, "--size: expected WxH, W or xH, as in 800x600; found '%s'",
-                   text);
-    o->sized = true;
-    return RELUME_OK;
-}
-
-static relume_status take_bytes(uint64_t *out, const char *name, const char *text,
-                                const struct relume_log *log)
-{
-    if (!relume_size_parse(out, text))
-        return RELUME_OK;
-    return say(log, RELUME_EINVAL, "%s: expected a size like 500M or 4G; found '%s'", name, text);
-}
-
-static relume_status take_max_memory(struct options *o, const char *name, const char *text,
-                                     const struct relume_log *log)
-{
-    return take_bytes(&o->limits.max_memory, name, text, log);
-}
-
-static relume_status take_max_pixels(struct options *o, const char *name, const char *text,
-                                     const struct relume_log *log)
-{
-    return take_bytes(&o->limits.max_pixels, name, text, log);
-}
-
-static relume_status take_any_format(struct options *o, const char *name, const char *text,
-                                     const struct relume_log *log)
-{
-    (void)name, (void)text, (void)log;
-    o->limits.any_format = true;
-    return RELUME_OK;
-}
-
-static relume_status take_threads(struct options *o, const char *name, const char *text,
-                                  const struct relume_log *log)
-{
-    double n;
-    const relume_status status = take_number(&n, name, text, 0, 256, log);
-    o->threads = status ? 0 : (int)n;
-    return status;
-}
-
-static relume_status take_vram(struct options *o, const char *name, const char *text,
-                               const struct relume_log *log)
-{
-    return take_number(&o->vram_mb, name, text, 1, 1e6, log);
-}
-
-static relume_status take_who(enum session_relight *out, const char *name, const char *text,
-                              const struct relume_log *log)
-{
-    static const char *const names[] = {
-        [SESSION_AUTO] = "auto", [SESSION_PASSES] = "passes", [SESSION_LIBRARY] = "library"};
-    for (int i = 0; i < (int)(sizeof names / sizeof *names); i++)
-        if (!strcmp(names[i], text)) {
-            *out = (enum session_relight)i;
-            return RELUME_OK;
-        }
-    return say(log, RELUME_EINVAL, "%s: expected auto, passes or library; found '%s'", name, text);
-}
-
-static relume_status take_relight(struct options *o, const char *name, const char *text,
-                                  const struct relume_log *log)
-{
-    return take_who(&o->relight, name, text, log);
-}
-
-// ---------------------------------------------------------------- glare
-
-static relume_status take_glare(struct options *o, const char *name, const char *text,
-                                const struct relume_log *log)
-{
-    (void)name, (void)text, (void)log;
-    o->start.observer.on = true;
-    return RELUME_OK;
-}
-
-static relume_status take_sources(struct options *o, const char *name, const char *text,
-                                  const struct relume_log *log)
-{
-    (void)name, (void)text, (void)log;
-    o->start.observer.sources = true;
-    return RELUME_OK;
-}
-
-static relume_status take_subject(struct options *o, const char *name, const char *text,
-                                  const struct relume_log *log)
-{
-    (void)name;
-    return relume_subject_load(&o->subject, text, log);
-}
-
-static relume_status take_glare_by(struct options *o, const char *name, const char *text,
-                                   const struct relume_log *log)
-{
-    return take_who(&o->glare, name, text, log);
-}
-
-static relume_status take_glare_size(struct options *o, const char *name, const char *text,
-                                     const struct relume_log *log)
-{
-    double n;
-    const relume_status status = take_number(&n, name, text, 128, 4096, log);
-    if (status)
-        return status;
-    o->glare_size = (int)n;
-    if (n != o->glare_size || o->glare_size % 2)
-        return say(log, RELUME_EINVAL, "%s: expected an even number from 128 to 4096; found '%s'",
-                   name, text);
-    return RELUME_OK;
+    (void)o;
+    return relume_subject_load(subject, text, log);
 }
 
 // As a script says it: the option's name without what stands before its last word.
-static relume_status take_sight(struct options *o, const char *name, const char *text,
-                                const struct relume_log *log)
+static relume_status take_observer(void *observer, const struct option *o, const char *text,
+                                   const struct relume_log *log)
 {
     const char *expected;
     char words[80];
-    snprintf(words, sizeof words, "%s %.60s", strrchr(name, '-') + 1, text);
-    if (observer_say(&o->start.observer, words, &expected))
+    snprintf(words, sizeof words, "%s %.60s", strrchr(o->name, '-') + 1, text);
+    if (observer_say(observer, words, &expected))
         return RELUME_OK;
-    return say(log, RELUME_EINVAL, "%s: expected %s; found '%s'", name, expected, text);
+    return say(log, RELUME_EINVAL, "%s: expected %s; found '%s'", o->name, expected, text);
 }
 
-static relume_status take_exposure(struct options *o, const char *name, const char *text,
+static relume_status take_material(void *objects, const struct option *o, const char *text,
                                    const struct relume_log *log)
 {
-    o->start.auto_exposure = !strcmp(text, "auto");
-    if (o->start.auto_exposure)
-        return RELUME_OK;
-    return take_number(&o->start.exposure_ev, name, text, -100, 100, log);
-}
-
-static relume_status take_tone(struct options *o, const char *name, const char *text,
-                               const struct relume_log *log)
-{
-    for (int i = 0; relume_tones[i]; i++)
-        if (!strcmp(relume_tones[i]->name, text)) {
-            o->start.tone = i;
-            return RELUME_OK;
-        }
-    return say(log, RELUME_EINVAL, "%s: expected linear, reinhard, filmic or gamma; found '%s'",
-               name, text);
-}
-
-static relume_status take_white(struct options *o, const char *name, const char *text,
-                                const struct relume_log *log)
-{
-    return take_number(&o->start.white, name, text, 1e-3, 1e6, log);
-}
-
-static relume_status take_offscreen(struct options *o, const char *name, const char *text,
-                                    const struct relume_log *log)
-{
-    o->offscreen = text;
-    if (relume_image_can_save(text))
-        return RELUME_OK;
-    return say(log, RELUME_EINVAL,
-               "%s: %s: no picture format for this ending; expected .png, .jpg, .exr, ...", name,
-               text);
-}
-
-static relume_status take_script(struct options *o, const char *name, const char *text,
-                                 const struct relume_log *log)
-{
-    (void)name, (void)log;
-    o->script = text;
+    struct session_objects *const w = objects;
+    if (w->materials == SESSION_MATERIALS)
+        return say(log, RELUME_EINVAL, "%s: expected at most %d", o->name, SESSION_MATERIALS);
+    w->material[w->materials++] = text;
     return RELUME_OK;
 }
 
-static relume_status take_gl(struct options *o, const char *name, const char *text,
-                             const struct relume_log *log)
-{
-    o->gl = text;
-    if (!strcmp(text, "auto") || !strcmp(text, "osmesa") || !strcmp(text, "egl"))
-        return RELUME_OK;
-    return say(log, RELUME_EINVAL, "%s: expected auto, osmesa or egl; found '%s'", name, text);
-}
+enum { PERSPECTIVE, STEREOGRAPHIC, PLANET };
+static const char *const backends[] = {"auto", "osmesa", "egl", NULL};
+#define PLACES "auto", "passes", "library"
 
-static relume_status take_capture(struct options *o, const char *name, const char *text,
-                                  const struct relume_log *log)
-{
-    (void)name, (void)log;
-    o->capture = text;
-    return RELUME_OK;
-}
-
-static relume_status take_pass(struct options *o, const char *name, const char *text,
-                               const struct relume_log *log)
-{
-    const char *names[RELUME_PASSES + 1] = {NULL};
-    if (!relume_pass_parse(&o->start.pass, text))
-        return RELUME_OK;
-    for (int i = 0; i < RELUME_PASSES; i++)
-        names[i] = relume_pass_name((enum relume_pass)i);
-    const char *near = relume_name_nearest(text, names);
-    return say(log, RELUME_EINVAL, "%s: expected a view; found '%s'; did you mean '%s'?", name,
-               text, near ? near : names[0]);
-}
-
-static relume_status take_record(struct options *o, const char *name, const char *text,
-                                 const struct relume_log *log)
-{
-    o->record = true;
-    if (!record_parse(&o->kind, text))
-        return RELUME_OK;
-    return say(log, RELUME_EINVAL, "%s: expected sweep, turntable or script; found '%s'", name,
-               text);
-}
-
-static relume_status take_output(struct options *o, const char *name, const char *text,
-                                 const struct relume_log *log)
-{
-    (void)name, (void)log;
-    o->output = text;
-    return RELUME_OK;
-}
-
-static relume_status take_frames(struct options *o, const char *name, const char *text,
-                                 const struct relume_log *log)
-{
-    double n;
-    const relume_status status = take_number(&n, name, text, 1, 10000, log);
-    o->frames = status ? 0 : (int)n;
-    return status;
-}
-
-static relume_status take_objects(struct options *o, const char *name, const char *text,
-                                  const struct relume_log *log)
-{
-    (void)name, (void)log;
-    o->objects.description = text;
-    return RELUME_OK;
-}
-
-static relume_status take_mesh(struct options *o, const char *name, const char *text,
-                               const struct relume_log *log)
-{
-    (void)name, (void)log;
-    o->objects.mesh = text;
-    return RELUME_OK;
-}
-
-static relume_status take_material(struct options *o, const char *name, const char *text,
-                                   const struct relume_log *log)
-{
-    if (o->objects.materials == SESSION_MATERIALS)
-        return say(log, RELUME_EINVAL, "%s: expected at most %d", name, SESSION_MATERIALS);
-    o->objects.material[o->objects.materials++] = text;
-    return RELUME_OK;
-}
-
-static relume_status take_repeat(struct options *o, const char *name, const char *text,
-                                 const struct relume_log *log)
-{
-    return take_number(&o->objects.repeat, name, text, 0.001, 10000, log);
-}
-
-static relume_status take_no_config(struct options *o, const char *name, const char *text,
-                                    const struct relume_log *log)
-{
-    (void)name, (void)text, (void)log;
-    o->no_config = true;
-    return RELUME_OK;
-}
-
-static relume_status take_ball(struct options *o, const char *name, const char *text,
-                               const struct relume_log *log)
-{
-    (void)name, (void)text, (void)log;
-    o->start.ball = true;
-    return RELUME_OK;
-}
-
-static relume_status take_panel(struct options *o, const char *name, const char *text,
-                                const struct relume_log *log)
-{
-    (void)name, (void)text, (void)log;
-    o->panel = true;
-    return RELUME_OK;
-}
-
-static relume_status take_keep_lights(struct options *o, const char *name, const char *text,
-                                      const struct relume_log *log)
-{
-    (void)name, (void)text, (void)log;
-    o->keep_lights = true;
-    return RELUME_OK;
-}
-
-static relume_status take_dock(struct options *o, const char *name, const char *text,
-                               const struct relume_log *log)
-{
-    o->docked = o->panel = true;
-    for (int i = 0; i < APP_DOCKS; i++)
-        if (!strcmp(text, app_dock_names[i])) {
-            o->dock = (enum app_dock)i;
-            return RELUME_OK;
-        }
-    return say(log, RELUME_EINVAL, "%s: expected over, left or right; found '%s'", name, text);
-}
-
-static relume_status take_ui_scale(struct options *o, const char *name, const char *text,
-                                   const struct relume_log *log)
-{
-    return take_number(&o->ui_scale, name, text, PANEL_SCALE_LEAST, PANEL_SCALE_MOST, log);
-}
-
-static relume_status take_window(struct options *o, const char *name, const char *text,
-                                 const struct relume_log *log)
-{
-    (void)name, (void)text, (void)log;
-    o->window = true;
-    return RELUME_OK;
-}
-
+#define OPTIONS struct options
 static const struct option options[] = {
-    {"--rig", "FILE", "lights of a rig (JSON)", take_rig},
-    {"--light", "SPEC", "a light, \"dir x y z [rgb r g b]\"; repeat for more; default dir 0 0 1",
-     take_light},
-    {"--view", "N", "the captured view N itself (panoramas: unfolded)", take_view},
-    {"--eye", "x,y,z", "slab: look from there; default the middle of the cameras", take_eye},
-    {"--look-at", "x,y,z", "--eye: where it looks; default the middle of the object", take_look_at},
-    {"--up", "x,y,z", "--eye: what is up in the picture; default 0,1,0", take_up},
-    {"--fov", "DEG",
-     "--eye: horizontal field of view; default the slabs' windows, of objects alone all of them",
-     take_fov},
-    {"--pan", "DEG", "panorama: turn right", take_pan},
-    {"--tilt", "DEG", "panorama: look up", take_tilt},
-    {"--zoom", "F", "panorama: 1 shows 90 degrees", take_zoom},
-    {"--projection", "P", "panorama: perspective, stereographic or planet", take_projection},
-    {"--interpolate", "I", "slab: constant, linear or depth; default: depth if there is any",
-     take_interpolation},
-    {"--aperture", "A", "slab: diameter of the lens, which blurs what is out of focus; default 0",
-     take_aperture},
-    {"--focus", "Z",
-     "slab: the plane at z = Z is sharp; free camera: distance from the middle to it", take_focus},
-    {"--size", "WxH", "pixels of the window or picture; W or xH alone keeps the proportions",
-     take_size},
-    {"--exposure", "EV", "brighter by 2^EV, or auto", take_exposure},
-    {"--tone", "T", "linear, reinhard, filmic or gamma; .exr, .hdr and .pfm stay linear",
-     take_tone},
-    {"--white", "L", "reinhard: the luminance shown as white; default: 4", take_white},
-    {"--pass", "NAME", "colour, normals, specular, diffuse-gain, unsharp, luminance, ...",
-     take_pass},
-    {"--objects", "FILE", "objects covered with BTFs (docs/objects.md), in the scene or alone",
-     take_objects},
-    {"--mesh", "FILE", "the same for one mesh: .obj, .ply, .gltf, .glb, ...", take_mesh},
-    {"--material", "DIR", "--mesh: a BTF or a model of one; repeat for more to choose from",
-     take_material},
-    {"--repeat", "N", "--mesh: repeat the material N times across its texture; default 1",
-     take_repeat},
-    {"--capture", "CAPTURE", "the photographs, for --pass difference", take_capture},
-    {"--threads", "N", "threads that read files; default: all cores", take_threads},
-    {"--max-memory", "SIZE",
-     "most memory for one picture, view or model; default: half of the machine's", take_max_memory},
-    {"--max-pixels", "N", "most pixels in one picture, as 200M; default: 1G", take_max_pixels},
-    {"--any-format", NULL, "read pictures of every format that OpenImageIO reads", take_any_format},
-    {"--vram", "MB",
-     "graphics memory for views; those not used for longest are dropped; default: 1024", take_vram},
-    {"--relight", "BY",
-     "where to compute: passes (the graphics card), library (the processor) or auto; default auto",
-     take_relight},
-    {"--glare", NULL, "show the picture as a human eye sees it, with halos around lights",
-     take_glare},
-    {"--subject", "FILE", "--glare: the viewer's eye (JSON, docs/glare.md)", take_subject},
-    {"--glare-magnify", "X", "--glare: enlarge the halos; default 1", take_sight},
-    {"--nits", "N", "--glare: cd/m^2 of a pixel of value 1; default 100", take_sight},
-    {"--squint", "S", "--glare: how far the lids are closed, 0 (open) to 0.95", take_sight},
-    {"--glare-cycle", "S",
-     "--glare: the library computes S seconds of the eye once and shows them in a loop; up to 10",
-     take_sight},
-    {"--glare-mode", "M", "--glare: auto, fft, billboard or hybrid; default auto", take_sight},
-    {"--glare-size", "N",
-     "--glare: texels of the pattern; default 1536 by passes, 512 by the library", take_glare_size},
-    {"--glare-by", "BY", "--glare: where to compute, as --relight; passes need OpenGL 4.3",
-     take_glare_by},
-    {"--sources", NULL, "draw the lights that are in view as small bright points", take_sources},
-    {"--offscreen", "OUT", "write the picture (png, exr, ...) without a window or display",
-     take_offscreen},
-    {"--script", "EVENTS", "play a text file of events without a window", take_script},
-    {"--gl", "NAME",
-     "offscreen by osmesa, egl, or auto: a graphics card, else osmesa; default auto", take_gl},
-    {"--record", "KIND", "record a light sweep, a turntable or --script without a window",
-     take_record},
-    {"-o", "OUT", "--record: a folder of PNG files, or FILE.mp4 (by ffmpeg)", take_output},
-    {"--frames", "N", "--record: pictures in one full turn; default 72", take_frames},
-    {"--no-config", NULL, "do not read or save the window's settings", take_no_config},
-    {"--window", NULL, "play --script in a window, which then stays open", take_window},
-    {"--panel", NULL, "start with the panel open; offscreen: draw it as well", take_panel},
-    {"--keep-lights", NULL, "start with the last lights, and keep them when another file is opened",
-     take_keep_lights},
-    {"--dock", "SIDE", "start with the panel at the left or right of the picture, or over it",
-     take_dock},
-    {"--ui-scale", "F", "size of the panel and its letters, 0.5 to 4; default: the desktop's scale",
-     take_ui_scale},
-    {"--ball", NULL, "offscreen: draw the ball that shows the light, as the window does",
-     take_ball},
-    {"--help", NULL, "this text", NULL},
+    OWN("--rig", rig, "FILE", "lights of a rig (JSON)", take_rig),
+    OWN("--light", rig, "SPEC",
+        "a light, \"dir x y z [rgb r g b]\"; repeat for more; default dir 0 0 1", take_light),
+    INT("--view", start.camera.view, "N", "the captured view N itself (panoramas: unfolded)", 0,
+        65535),
+    POINT("--eye", start.camera.eye, "x,y,z",
+          "slab: look from there; default the middle of the cameras"),
+    POINT("--look-at", start.camera.aim.at, "x,y,z",
+          "--eye: where it looks; default the middle of the object"),
+    POINT("--up", start.camera.aim.up, "x,y,z", "--eye: what is up in the picture; default 0,1,0"),
+    NUMBER(
+        "--fov", start.camera.aim.field_of_view_deg, "DEG",
+        "--eye: horizontal field of view; default the slabs' windows, of objects alone all of them",
+        0.01, 179),
+    NUMBER("--pan", start.camera.look.pan_deg, "DEG", "panorama: turn right", -36000, 36000),
+    NUMBER("--tilt", start.camera.look.tilt_deg, "DEG", "panorama: look up", -90, 90),
+    NUMBER("--zoom", start.camera.look.zoom, "F", "panorama: 1 shows 90 degrees", 0.01, 1000),
+    NAME("--projection", projection, "P", "panorama: perspective, stereographic or planet",
+         PERSPECTIVE, "perspective", "stereographic", "planet"),
+    NAME("--interpolate", start.interpolation, "I",
+         "slab: constant, linear or depth; default: depth if there is any",
+         RELUME_INTERPOLATE_CONSTANT, "constant", "linear", "depth"),
+    NUMBER("--aperture", start.aperture, "A",
+           "slab: diameter of the lens, which blurs what is out of focus; default 0", 0, 1e9),
+    NUMBER("--focus", start.focus_z, "Z",
+           "slab: the plane at z = Z is sharp; free camera: distance from the middle to it", -1e9,
+           1e9),
+    SIZE("--size", size, "WxH",
+         "pixels of the window or picture; W or xH alone keeps the proportions", 0, 65536),
+    {ROW("--exposure", OPTION_NUMBER, OPTION_AT(double, start.exposure_ev), "EV",
+         "brighter by 2^EV, or auto"),
+     .min = -100, .max = 100, .names = NAMES("auto")},
+    ENTRY("--tone", tone, "T", "linear, reinhard, filmic or gamma; .exr, .hdr and .pfm stay linear",
+          relume_tones, NULL),
+    NUMBER("--white", start.white, "L", "reinhard: the luminance shown as white; default: 4", 1e-3,
+           1e6),
+    NAME("--pass", start.pass, "NAME",
+         "colour, normals, specular, diffuse-gain, unsharp, luminance, ...", RELUME_PASS_COLOUR,
+         "colour", "normals", "specular", "diffuse-gain", "unsharp", "luminance", "false-colour",
+         "difference"),
+    TEXT("--objects", objects.description, "FILE",
+         "objects covered with BTFs (docs/objects.md), in the scene or alone"),
+    TEXT("--mesh", objects.mesh, "FILE", "the same for one mesh: .obj, .ply, .gltf, .glb, ..."),
+    OWN("--material", objects, "DIR",
+        "--mesh: a BTF or a model of one; repeat for more to choose from", take_material),
+    NUMBER("--repeat", objects.repeat, "N",
+           "--mesh: repeat the material N times across its texture; default 1", 0.001, 10000),
+    TEXT("--capture", capture, "CAPTURE", "the photographs, for --pass difference"),
+    INT("--threads", threads, "N", "threads that read files; default: all cores", 0, 256),
+    BYTES("--max-memory", limits.max_memory, "SIZE",
+          "most memory for one picture, view or model; default: half of the machine's"),
+    BYTES("--max-pixels", limits.max_pixels, "N",
+          "most pixels in one picture, as 200M; default: 1G"),
+    FLAG("--any-format", limits.any_format, "read pictures of every format that OpenImageIO reads"),
+    NUMBER("--vram", vram_mb, "MB",
+           "graphics memory for views; those not used for longest are dropped; default: 1024", 1,
+           1e6),
+    NAME("--relight", relight, "BY",
+         "where to compute: passes (the graphics card), library (the processor) or auto; default "
+         "auto",
+         SESSION_AUTO, PLACES),
+    FLAG("--glare", start.observer.on,
+         "show the picture as a human eye sees it, with halos around lights"),
+    OWN("--subject", subject, "FILE", "--glare: the viewer's eye (JSON, docs/glare.md)",
+        take_subject),
+    OWN("--glare-magnify", start.observer, "X", "--glare: enlarge the halos; default 1",
+        take_observer),
+    OWN("--nits", start.observer, "N", "--glare: cd/m^2 of a pixel of value 1; default 100",
+        take_observer),
+    OWN("--squint", start.observer, "S", "--glare: how far the lids are closed, 0 (open) to 0.95",
+        take_observer),
+    OWN("--glare-cycle", start.observer, "S",
+        "--glare: the library computes S seconds of the eye once and shows them in a loop; up to "
+        "10",
+        take_observer),
+    OWN("--glare-mode", start.observer, "M",
+        "--glare: auto, fft, billboard or hybrid; default auto", take_observer),
+    INT("--glare-size", glare_size, "N",
+        "--glare: texels of the pattern; default 1536 by passes, 512 by the library", 128, 4096),
+    NAME("--glare-by", glare, "BY",
+         "--glare: where to compute, as --relight; passes need OpenGL 4.3", SESSION_AUTO, PLACES),
+    FLAG("--sources", start.observer.sources,
+         "draw the lights that are in view as small bright points"),
+    TEXT_AS(OPTION_PICTURE, "--offscreen", offscreen, "OUT",
+            "write the picture (png, exr, ...) without a window or display"),
+    TEXT("--script", script, "EVENTS", "play a text file of events without a window"),
+    {ROW("--gl", OPTION_NAME, OPTION_WORD(backend), "NAME",
+         "offscreen by osmesa, egl, or auto: a graphics card, else osmesa; default auto"),
+     .names = backends},
+    NAME("--record", kind, "KIND", "record a light sweep, a turntable or --script without a window",
+         RECORD_SWEEP, "sweep", "turntable", "script"),
+    TEXT_AS(OPTION_OUTPUT, "-o", output, "OUT",
+            "--record: a folder of PNG files, or FILE.mp4 (by ffmpeg)"),
+    INT("--frames", frames, "N", "--record: pictures in one full turn; default 72", 1, 10000),
+    FLAG("--no-config", no_config, "do not read or save the window's settings"),
+    FLAG("--window", window, "play --script in a window, which then stays open"),
+    FLAG("--panel", panel, "start with the panel open; offscreen: draw it as well"),
+    FLAG("--keep-lights", keep_lights,
+         "start with the last lights, and keep them when another file is opened"),
+    {ROW("--dock", OPTION_NAME, OPTION_WORD(dock), "SIDE",
+         "start with the panel at the left or right of the picture, or over it"),
+     .names = app_dock_names},
+    NUMBER("--ui-scale", ui_scale, "F",
+           "size of the panel and its letters, 0.5 to 4; default: the desktop's scale",
+           PANEL_SCALE_LEAST, PANEL_SCALE_MOST),
+    FLAG("--ball", start.ball, "offscreen: draw the ball that shows the light, as the window does"),
+    FLAG("--help", help, "this text"),
+    {0},
 };
-enum { OPTIONS = sizeof options / sizeof *options };
 
 void options_help(void)
 {
@@ -619,12 +187,7 @@ void options_help(void)
          "FILE\n"
          "the window says how to open one.\n\n"
          "options:");
-    for (int i = 0; i < OPTIONS; i++) {
-        char left[40];
-        snprintf(left, sizeof left, "%s%s%s", options[i].name, options[i].argument ? " " : "",
-                 options[i].argument ? options[i].argument : "");
-        printf("  %-22s %s\n", left, options[i].help);
-    }
+    options_print(options, NULL, 22);
     puts("\n"
          "mouse:  drag         slab: turn; panorama: look around; picture: move\n"
          "        wheel        zoom; several slabs: nearer, farther\n"
@@ -661,42 +224,6 @@ void options_help(void)
 }
 
 // ---------------------------------------------------------------- parsing
-
-static relume_status unknown(const char *given, const struct relume_log *log)
-{
-    const char *names[OPTIONS + 1] = {NULL};
-    for (int i = 0; i < OPTIONS; i++)
-        names[i] = options[i].name;
-    const char *near = relume_name_nearest(given, names);
-    if (near)
-        return say(log, RELUME_EINVAL, "unknown option '%s'; did you mean '%s'?", given, near);
-    return say(log, RELUME_EINVAL, "unknown option '%s'; see 'relume-view --help'", given);
-}
-
-static relume_status take_option(struct options *o, int *i, int argc, char **argv,
-                                 const struct relume_log *log)
-{
-    const char *const given = argv[*i];
-    const char *equals = strchr(given, '=');
-    const size_t length = equals ? (size_t)(equals - given) : strlen(given);
-    for (int k = 0; k < OPTIONS; k++) {
-        const struct option *option = &options[k];
-        if (strlen(option->name) != length || strncmp(option->name, given, length))
-            continue;
-        if (!option->argument && equals)
-            return say(log, RELUME_EINVAL, "%s: takes no value; found '%s'", option->name,
-                       equals + 1);
-        if (option->argument && !equals && *i + 1 >= argc)
-            return say(log, RELUME_EINVAL, "%s: expected %s after it; found none", option->name,
-                       option->argument);
-        const char *text = !option->argument ? NULL : equals ? equals + 1 : argv[++*i];
-        if (text && !*text)
-            return say(log, RELUME_EINVAL, "%s: expected %s; found an empty one", option->name,
-                       option->argument);
-        return option->take(o, option->name, text, log);
-    }
-    return unknown(given, log);
-}
 
 static bool asks_for_help(int argc, char **argv)
 {
@@ -746,37 +273,82 @@ static bool needs_file(const struct options *o)
     return o->offscreen || o->record || (!o->script && !display);
 }
 
-relume_status options_parse(struct options *o, int argc, char **argv, const struct relume_log *log)
+// What several options say together.
+static relume_status choose_camera(struct options *o, const struct command_line *line,
+                                   const struct relume_log *log)
 {
-    *o = (struct options){.gl = "auto", .vram_mb = 1024, .subject = relume_subject_default()};
-    if (asks_for_help(argc, argv)) {
-        o->help = true;
-        return RELUME_OK;
-    }
-    for (int i = 1; i < argc; i++) {
-        relume_status status = RELUME_OK;
-        if (argv[i][0] == '-' && argv[i][1])
-            status = take_option(o, &i, argc, argv, log);
-        else if (o->file)
-            status =
-                say(log, RELUME_EINVAL, "expected one FILE; found '%s' and '%s'", o->file, argv[i]);
-        else
-            o->file = argv[i];
-        if (status)
-            return status;
-    }
-    if (relume_look_at_given(&o->start.camera.aim) && o->start.camera.framing != RELUME_FRAME_EYE)
+    struct relume_camera *const camera = &o->start.camera;
+    struct relume_pan_tilt *const look = &camera->look;
+    const bool view = option_given(line, &camera->view), eye = option_given(line, &camera->eye);
+    const bool projection = option_given(line, &o->projection);
+    const bool tilt = option_given(line, &look->tilt_deg), zoom = option_given(line, &look->zoom);
+    const bool looks = projection || tilt || zoom || option_given(line, &look->pan_deg);
+    if (view + eye + looks > 1)
+        return say(log, RELUME_EINVAL,
+                   "expected one of --view, --eye or --pan/--tilt/--zoom; found two");
+    camera->framing = view    ? RELUME_FRAME_VIEW
+                      : eye   ? RELUME_FRAME_EYE
+                      : looks ? RELUME_FRAME_LOOK
+                              : RELUME_FRAME_DEFAULT;
+    camera->aim.aimed = option_given(line, &camera->aim.at);
+    camera->width = o->size[0];
+    camera->height = o->size[1];
+    look->stereographic = o->projection != PERSPECTIVE;
+    look->tilt_deg = o->projection == PLANET && !tilt ? -90.0 : look->tilt_deg;
+    look->zoom = o->projection == PLANET && !zoom ? 0.5 : look->zoom;
+    if (relume_look_at_given(&camera->aim) && !eye)
         return say(log, RELUME_EINVAL, "--look-at, --up and --fov need --eye");
+    return RELUME_OK;
+}
+
+static relume_status choose(struct options *o, const struct command_line *line,
+                            const struct relume_log *log)
+{
+    const relume_status status = choose_camera(o, line, log);
+    if (status)
+        return status;
+    o->file = line->input[0];
+    o->gl = backends[o->backend];
+    o->docked = option_given(line, &o->dock);
+    o->panel |= o->docked;
+    o->record = option_given(line, &o->kind);
+    o->start.focused = option_given(line, &o->start.focus_z);
+    o->start.auto_exposure = isnan(o->start.exposure_ev);
+    if (o->start.auto_exposure)
+        o->start.exposure_ev = 0.0;
+    for (int i = 0; o->tone && relume_tones[i]; i++)
+        o->start.tone = relume_tones[i] == o->tone ? i : o->start.tone;
+    if (line->input_count > 1)
+        return say(log, RELUME_EINVAL, "expected one FILE; found '%s' and '%s'", line->input[0],
+                   line->input[1]);
+    if (o->glare_size % 2)
+        return say(log, RELUME_EINVAL, "--glare-size: expected an even number; found '%d'",
+                   o->glare_size);
     if (o->record != (o->output != NULL))
         return say(log, RELUME_EINVAL, "expected --record KIND and -o OUT together");
     if (o->record && o->kind == RECORD_SCRIPT && !o->script)
         return say(log, RELUME_EINVAL, "--record script: expected --script EVENTS as well");
-    if (!o->frames)
-        o->frames = RECORD_FRAMES;
-    const relume_status status = choose_objects(o, log);
-    if (status || o->stage)
-        return status;
-    if (!o->file && needs_file(o))
+    return choose_objects(o, log);
+}
+
+relume_status options_parse(struct options *o, int argc, char **argv, const struct relume_log *log)
+{
+    *o = (struct options){
+        .vram_mb = 1024, .frames = RECORD_FRAMES, .subject = relume_subject_default()};
+    o->help = asks_for_help(argc, argv);
+    if (o->help)
+        return RELUME_OK;
+    struct command_line *line = calloc(1, sizeof *line);
+    if (!line)
+        return RELUME_ENOMEM;
+    line->tables[0] = options;
+    line->values = o;
+    line->log = log;
+    relume_status status = command_line_parse(line, argc - 1, argv + 1);
+    if (!status)
+        status = choose(o, line, log);
+    free(line);
+    if (!status && !o->stage && !o->file && needs_file(o))
         return say(log, RELUME_EINVAL, "expected 'relume-view FILE'; see 'relume-view --help'");
-    return RELUME_OK;
+    return status;
 }

@@ -7,6 +7,7 @@
 #include "session/session.h"
 
 #include <relume/rig.h>
+#include <relume/tone.h>
 
 struct options {
     bool help;         // was asked for, and nothing else is known
@@ -29,9 +30,12 @@ struct options {
     double ui_scale;  // of the panel; 0: the desktop's
     struct app_state start;
     relume_rig *rig;  // of --rig and --light, NULL without either
-    bool sized;       // --size was given
-    const char *gl;   // what offscreen frames are drawn by: a name that context_offscreen knows
-    int threads;      // that read files; 0: all cores
+    int size[2];      // of --size, 0: not given
+    const struct relume_tone *tone;
+    int projection;  // of a look into a panorama
+    int backend;
+    const char *gl;  // what offscreen frames are drawn by: a name that context_offscreen knows
+    int threads;     // that read files; 0: all cores
     struct relume_limits limits;
     double vram_mb;  // graphics memory for views
     enum session_relight relight, glare;
@@ -45,8 +49,5 @@ relume_status options_parse(struct options *options, int argc, char **argv,
                             const struct relume_log *log);
 void options_release(struct options *options);
 void options_help(void);
-
-// "x,y,z": `count` numbers separated by commas or blanks and nothing else.
-bool options_numbers(const char *text, double *out, int count);
 
 #endif

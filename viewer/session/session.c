@@ -3,7 +3,7 @@
 
 #include "app/events.h"
 #include "app/lamps.h"
-#include "common/say.h"
+#include "program/say.h"
 
 #include <math.h>
 #include <relume/exchange.h>

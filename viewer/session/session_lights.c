@@ -3,7 +3,7 @@
 #include "session/session.h"
 
 #include "app/lamps.h"
-#include "common/say.h"
+#include "program/say.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 
 #include "common/vec.h"
 
-#include "common/say.h"
+#include "program/say.h"
 
 #include <stdio.h>
 #include <relume/exchange.h>

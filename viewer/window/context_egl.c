@@ -2,7 +2,7 @@
 // last; the only file that knows EGL
 #include "window/context_offscreen.h"
 
-#include "common/say.h"
+#include "program/say.h"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

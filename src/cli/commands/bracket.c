@@ -1,8 +1,6 @@
 // bracket.c - the photographs of one radiance map on their way through `relume hdr`
 #include "commands/bracket.h"
 
-#include "output_name.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -148,18 +146,18 @@ static relume_status align_one(struct bracket *b, int i, enum align_mode mode,
     return status;
 }
 
-relume_status bracket_align(struct bracket *b, enum align_mode mode, const struct hdr_options *o)
+relume_status bracket_align(struct bracket *b, const struct hdr_options *o)
 {
     const bool skip = o->skip_bad;
     const struct relume_log soft = softly(o), *log = skip ? &soft : o->args.log;
     b->anchor = relume_align_anchor(b->codes, b->n);
-    b->aligned = mode != ALIGN_NONE;
+    b->aligned = o->align != ALIGN_NONE;
     for (int i = 0; b->aligned && i < b->n; i++) {
         struct prefix_log about;
         if (i == b->anchor)
             continue;
         const relume_status status =
-            align_one(b, i, mode,
+            align_one(b, i, o->align,
                       relume_align_params(.log = prefix_log(&about, log, b->path[i]),
                                           .threads = o->args.threads));
         if (relume_status_is_input(status) && skip)
@@ -184,20 +182,18 @@ static bool all_linear(const struct bracket *b)
 
 static relume_status find_response(struct bracket *b, const struct hdr_options *o)
 {
-    const char *file = o->response;
-    const char *transfer = o->transfer;
-    struct relume_transfer known = {.curve = RELUME_CURVE_LINEAR};
+    const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
+    const bool known = given(o, &o->transfer);
     struct prefix_log log;
-    if (file) {
-        b->response_source = file;
-        return relume_response_load(&b->response, file, o->args.log);
+    if (o->response) {
+        b->response_source = o->response;
+        return relume_response_load(&b->response, o->response, o->args.log);
     }
-    if (transfer && relume_transfer_parse(&known, transfer))
-        return usage_error("--transfer: expected linear, srgb or gamma:NUMBER; found '%s'",
-                           transfer);
-    if (transfer || all_linear(b)) {
-        b->response_source = transfer ? transfer : "linear";
-        relume_response_of(&b->response, known);
+    if (known || all_linear(b)) {
+        relume_transfer_text(known ? o->transfer : linear, b->response_name,
+                             sizeof b->response_name);
+        b->response_source = b->response_name;
+        relume_response_of(&b->response, known ? o->transfer : linear);
         return RELUME_OK;
     }
     b->response_source = "recovered";
@@ -274,10 +270,10 @@ static void report_bias(const struct bracket *b, const struct hdr_options *o)
     if (!wrong)
         return;
     const double time_s = b->notes[worst].time_s;
-    say(&o->args, RELUME_WARNING,
-        "%s: its exposure time is given as %.4g s; its brightness fits %.4g s%s", b->path[worst],
-        time_s, time_s * exp2(b->report[worst].bias_ev),
-        wrong > 1 ? "; other times are wrong as well, by less" : "");
+    announce(&o->args, RELUME_WARNING,
+             "%s: its exposure time is given as %.4g s; its brightness fits %.4g s%s",
+             b->path[worst], time_s, time_s * exp2(b->report[worst].bias_ev),
+             wrong > 1 ? "; other times are wrong as well, by less" : "");
 }
 
 // Numbers of a float file do not end at 1: nothing is saturated there, and above 1, where the merge
@@ -301,8 +297,7 @@ static void continue_floats(struct bracket *b)
             b->out.data[i] = (float)((double)codes->data[i] / b->exposure[shortest]);
 }
 
-relume_status bracket_merge(struct bracket *b, enum relume_merge_weights weights,
-                            const struct hdr_options *o)
+relume_status bracket_merge(struct bracket *b, const struct hdr_options *o)
 {
     struct prefix_log log;
     const char *save = o->save_response;
@@ -312,7 +307,7 @@ relume_status bracket_merge(struct bracket *b, enum relume_merge_weights weights
     if (!status)
         status = relume_merge(&b->out, b->report, b->codes, b->exposure, b->n, &b->response,
                               relume_merge_params(.log = prefix_log(&log, o->args.log, b->path[0]),
-                                                  .weights = weights, .masks = b->masks,
+                                                  .weights = o->weights, .masks = b->masks,
                                                   .threads = o->args.threads));
     if (status)
         return status;

@@ -1,6 +1,5 @@
 // bracket_check.c - whether the exposures show one scene, and times fit their brightness
 #include "commands/bracket.h"
-#include "output_name.h"
 
 #include <math.h>
 
@@ -93,9 +92,9 @@ static relume_status check_scene(struct bracket *b, const int *order, const bool
             "%s: shows another scene than the other exposures, or the camera moved (similarity "
             "%.2f; expected %.2f or more); leave it out, or try --align or --skip-bad",
             path, likeness[foreign], least_likeness);
-    say(&o->args, RELUME_WARNING,
-        "%s: shows another scene than the other exposures (similarity %.2f); left out", path,
-        likeness[foreign]);
+    announce(&o->args, RELUME_WARNING,
+             "%s: shows another scene than the other exposures (similarity %.2f); left out", path,
+             likeness[foreign]);
     bracket_drop(b, order[foreign]);
     if (!b->aligned)
         b->anchor = relume_align_anchor(b->codes, b->n);

@@ -2,6 +2,7 @@
 #include "commands/btf_inputs.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -32,12 +33,13 @@ static void list_materials(const char *names[16])
     names[n] = NULL;
 }
 
-relume_status btf_find_material(const struct relume_btf_material **out, const char *name)
+relume_status btf_find_material(const struct relume_btf_material **out, const char *name,
+                                const struct relume_log *log)
 {
     const char *names[16];
     list_materials(names);
     *out = relume_btf_material_find(name);
-    return *out ? RELUME_OK : unknown_name("material", name, names);
+    return *out ? RELUME_OK : unknown_word(log, "material", name, names);
 }
 
 static relume_status nothing_there(const char *name)
@@ -55,11 +57,7 @@ static relume_status nothing_there(const char *name)
 static relume_status synth_material(relume_btf **out, const struct relume_btf_material *material,
                                     const struct btf_options *o)
 {
-    const char *name = o->directions;
-    const struct relume_btf_set *set = relume_btf_set_find(name);
-    const char *const names[] = {"bonn", "dome", "coarse", NULL};
-    if (!set)
-        return unknown_name("set of directions", name, names);
+    const struct relume_btf_set *set = o->directions ? o->directions : relume_btf_set_find("bonn");
     struct relume_vec3 *d = malloc((size_t)set->count * sizeof *d);
     if (!d)
         return RELUME_ENOMEM;
@@ -73,16 +71,15 @@ static relume_status synth_material(relume_btf **out, const struct relume_btf_ma
     return status;
 }
 
-static relume_status parse_crop(int out[4], const struct btf_options *o)
+// In whole texels, some of them.
+static relume_status read_crop(int out[4], const struct btf_options *o)
 {
-    const char *text = o->crop, *at = text;
-    for (int i = 0; text && i < 4; i++) {
-        char *end;
-        const long n = strtol(at, &end, 10);
-        if (end == at || *end != (i < 3 ? ',' : '\0') || n < (i > 1) || n > 65536)
-            return usage_error("--crop: expected x,y,w,h in texels; found '%s'", text);
+    for (int i = 0; given(o, &o->crop) && i < 4; i++) {
+        const double n = o->crop[i];
+        if (n != floor(n) || n < (i > 1) || n > 65536)
+            return usage_error("--crop: expected x,y,w,h in texels; found '%g,%g,%g,%g'",
+                               o->crop[0], o->crop[1], o->crop[2], o->crop[3]);
         out[i] = (int)n;
-        at = end + 1;
     }
     return RELUME_OK;
 }
@@ -95,11 +92,11 @@ static relume_status open_btf(relume_btf **out, const char *name, bool outline,
         .log = o->args.log, .threads = o->args.threads, .fill = o->fill, .outline = outline};
     *out = NULL;
     if (material && !exists(name))
-        return o->crop ? usage_error("--crop: expected a .btf file; found '%s'", name)
-                       : synth_material(out, material, o);
+        return given(o, &o->crop) ? usage_error("--crop: expected a .btf file; found '%s'", name)
+                                  : synth_material(out, material, o);
     if (!exists(name) && errno == ENOENT)
         return nothing_there(name);
-    const relume_status status = parse_crop(params.crop, o);
+    const relume_status status = read_crop(params.crop, o);
     return status ? status : relume_btf_open(out, name, &params);
 }
 

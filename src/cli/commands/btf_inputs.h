@@ -6,17 +6,21 @@
 
 struct btf_options {
     struct args args;
-    const char *output, *model, *models, *eye, *camera, *look_at, *up, *picture, *mesh, *matrix,
-        *map, *directions, *crop;
+    const char *output, *mesh, *map;
+    const struct relume_btf_model *model;
+    const struct relume_btf_set *directions;
+    struct ints models;  // places in relume_btf_models
+    struct relume_vec3 eye, camera, look_at, up;
     int clusters, components, ratio, lobes, levels, leave_out, pictures, samples, tiles, tile, size,
-        seed;
+        seed, picture[2], matrix[2];
+    double fov, repeat, crop[4];
     bool unseen, no_shadows, fill, force, json;
-    double fov, repeat;
     struct light_options lighting;
 };
 
 // A built-in material; RELUME_EINVAL with a sentence that lists them.
-relume_status btf_find_material(const struct relume_btf_material **out, const char *name);
+relume_status btf_find_material(const struct relume_btf_material **out, const char *name,
+                                const struct relume_log *log);
 
 // Whether the folder holds a fitted model.
 bool btf_is_model(const char *path);
@@ -42,9 +46,6 @@ void btf_close_sample(struct btf_sample *sample);
 // given.
 relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, int levels,
                       const struct btf_options *o);
-
-// "WxH" of an option; what is not given stays. RELUME_EINVAL with a sentence.
-relume_status btf_pair(int out[2], const char *option, const char *text, int most);
 
 // What a surface is; `seams` may be NULL.
 void btf_say_surface(const struct relume_btf_surface_info *info,

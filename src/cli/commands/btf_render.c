@@ -1,44 +1,27 @@
 // btf_render.c - relume btf render
 #include "commands/btf_inputs.h"
-#include "output_name.h"
 
-#include <math.h>
-
-static relume_status parse_pair(int out[2], const char *option, const char *text, int most)
-{
-    char rest;
-    if (sscanf(text, "%6dx%6d%c", &out[0], &out[1], &rest) == 2 && out[0] >= 1 && out[1] >= 1 &&
-        out[0] <= most && out[1] <= most)
-        return RELUME_OK;
-    return usage_error("%s: expected WxH, 1 to %d; found '%s'", option, most, text);
-}
-
-relume_status btf_pair(int out[2], const char *option, const char *text, int most)
-{
-    return text ? parse_pair(out, option, text, most) : RELUME_OK;
-}
+#include <string.h>
 
 // Rectified from --eye, or a perspective view from --camera.
 static relume_status parse_camera(struct relume_btf_camera *camera, const struct btf_options *o)
 {
-    const char *eye = o->eye, *place = o->camera;
-    const char *at = o->look_at;
-    *camera = (struct relume_btf_camera){.eye = {0.0, 0.0, 1.0},
-                                         .perspective = place != NULL,
+    const bool eye = given(o, &o->eye), place = given(o, &o->camera);
+    const struct relume_vec3 in_front = {0.0, 0.0, 1.0};
+    *camera = (struct relume_btf_camera){.eye = place ? o->camera
+                                                : eye ? o->eye
+                                                      : in_front,
+                                         .at = o->look_at,
+                                         .perspective = place,
                                          .fov_deg = o->fov > 0.0 ? o->fov : 40.0};
     if (eye && place)
         return usage_error("btf render: expected --eye or --camera; found both");
-    if (at && !place)
+    if (given(o, &o->look_at) && !place)
         return usage_error("--look-at: works only with --camera; add --camera x,y,z");
-    relume_status status = RELUME_OK;
-    if (eye || place)
-        status = args_vec3(&camera->eye, eye ? "--eye" : "--camera", eye ? eye : place);
-    if (!status && at)
-        status = args_vec3(&camera->at, "--look-at", at);
-    if (!status && !(camera->eye.z > 0.0))
-        status = usage_error("%s: expected z > 0; found '%s'", eye ? "--eye" : "--camera",
-                             eye ? eye : place);
-    return status;
+    if (!(camera->eye.z > 0.0))
+        return usage_error("%s: expected z > 0; found %g", place ? "--camera" : "--eye",
+                           camera->eye.z);
+    return RELUME_OK;
 }
 
 static relume_status draw(const relume_btf_surface *surface, const struct btf_options *o)
@@ -51,16 +34,10 @@ static relume_status draw(const relume_btf_surface *surface, const struct btf_op
     int n = 0;
     relume_status status = parse_camera(&camera, o);
     int size[2] = {camera.perspective ? 640 : info.width, camera.perspective ? 400 : info.height};
+    if (o->picture[0])
+        memcpy(size, o->picture, sizeof size);
     if (!status)
-        status = btf_pair(size, "--picture", o->picture, 65536);
-    if (!status)
-        status = relume_rig_create(&rig);
-    const int count = o->lighting.light.count;
-    for (int i = 0; i < (count ? count : 1) && !status; i++)
-        status =
-            relume_rig_add(rig, count ? o->lighting.light.text[i] : "dir 0 0 1", NULL, o->args.log);
-    if (!status)
-        status = relume_rig_lights(&lights, &n, rig);
+        status = parse_lights(&o->args, &o->lighting, &rig, &lights, &n);
     if (!status)
         status = relume_image_create(&image, size[0], size[1], 3);
     if (!status)
@@ -77,26 +54,19 @@ static relume_status draw(const relume_btf_surface *surface, const struct btf_op
 relume_status btf_render(const struct args *args)
 {
     const struct btf_options *o = (const void *)args;
-    struct btf_sample sample;
+    const char *input = args->input[0];
+    struct btf_sample sample = {.btf = NULL};
     relume_btf_surface *surface = NULL;
-    if (btf_is_objects(o))
+    relume_status status = picture_name(args->log, "-o", o->output);
+    if (!status && btf_is_objects(o))
         return btf_render_objects(o);
-    if (!o->output)
-        return usage_error("btf render: expected -o FILE");
-    relume_status status = picture_name("-o", o->output);
-    if (status)
-        return status;
-    if (btf_is_surface(o->args.input[0])) {
-        status = relume_btf_surface_open(&surface, o->args.input[0],
-                                         relume_btf_params(.log = o->args.log));
+    if (!status && btf_is_surface(input)) {
+        status = relume_btf_surface_open(&surface, input, relume_btf_params(.log = args->log));
+    } else if (!status) {
+        status = btf_open_sample(&sample, input, o);
         if (!status)
-            status = draw(surface, o);
-        relume_btf_surface_destroy(&surface);
-        return status;
+            status = relume_btf_surface_create(&surface, sample.model, NULL, args->log);
     }
-    status = btf_open_sample(&sample, o->args.input[0], o);
-    if (!status)
-        status = relume_btf_surface_create(&surface, sample.model, NULL, o->args.log);
     if (!status)
         status = draw(surface, o);
     relume_btf_surface_destroy(&surface);

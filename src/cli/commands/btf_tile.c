@@ -18,19 +18,14 @@ static relume_status make_map(relume_btf_map **out, const relume_btf_fitted *sam
                               const struct btf_options *o)
 {
     const struct relume_btf_fitted_info info = relume_btf_fitted_info(sample);
-    const char *map = o->map;
-    int matrix[2] = {16, 16};
-    const relume_status status = btf_pair(matrix, "--matrix", o->matrix, 4096);
-    if (status)
-        return status;
-    if (map)
-        return relume_btf_map_open(out, map, info.width, info.height,
+    if (o->map)
+        return relume_btf_map_open(out, o->map, info.width, info.height,
                                    relume_btf_params(.log = o->args.log));
     return relume_btf_map_tiles(
         out, sample,
         relume_btf_tiles_params(.log = o->args.log, .tiles = o->tiles, .side = o->tile,
-                                .columns = matrix[0], .rows = matrix[1], .seed = (uint64_t)o->seed,
-                                .threads = o->args.threads));
+                                .columns = o->matrix[0], .rows = o->matrix[1],
+                                .seed = (uint64_t)o->seed, .threads = o->args.threads));
 }
 
 void btf_say_surface(const struct relume_btf_surface_info *i, const struct relume_btf_seams *s,
@@ -86,8 +81,6 @@ relume_status btf_tile(const struct args *args)
     const relume_btf_fitted *model = NULL;
     relume_btf_fitted *own = NULL;
     relume_btf_map *map = NULL;
-    if (!o->output)
-        return usage_error("btf tile: expected -o DIR");
     relume_status status = relume_folder_check(o->output, o->force, o->args.log);
     if (status)
         return status;

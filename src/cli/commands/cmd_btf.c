@@ -8,109 +8,129 @@
 
 #define OPTIONS struct btf_options
 
-static const struct option options[] = {
-    TEXT_AS(OPTION_OUTPUT, "-o", output, "output", "DIR",
-            "fit, tile: the folder to make; render: the picture"),
-    TEXT("--model", model, "model", "NAME",
-         "fit, tile: rfp, rfnl, rfnlc, vpca, lpca, ...; default rfnlc"),
-    TEXT("--models", models, "measurements", "A,B,...", "compare: only these models; default: all"),
-    INT("--clusters", clusters, "model", "N", "lpca: default 32; cmf: 512; rfnlc: 1024", 1, 65536),
-    INT("--components", components, "model", "N",
-        "vpca: default 4; lpca: 8; fmf: 100; qmf: at most, 512", 1, 1024),
-    INT("--ratio", ratio, "model", "R", "qmf: compress the measured values N times; default 200", 1,
-        1000000),
-    INT("--lobes", lobes, "model", "N", "rfnl, rfnlc, laf, slaf: default 2", 1, 4),
-    INT("--levels", levels, "levels of detail", "N",
-        "fit, tile: levels of detail, each half as wide; -1: all; default: fit 1, tile all", -1,
-        17),
-    INT("--leave-out", leave_out, "model", "K",
-        "compare: also fit without every K-th view and light and measure the error on those; fit: "
-        "leave them out",
-        2, 64),
-    FLAG("--unseen", unseen, "measurements",
-         "eval: only views and lights that were left out of the fit"),
-    INT("--pictures", pictures, "measurements", "N",
-        "compare, eval: pictures compared by CIEDE2000 and SSIM; default 25", 0, 65536),
-    TEXT("--eye", eye, "camera", "x,y,z",
-         "render: the direction towards the eye; default 0,0,1; for objects: where the eye is"),
-    TEXT("--camera", camera, "camera", "x,y,z",
-         "render a surface in perspective, from this point; its width is -1 to 1"),
-    TEXT("--look-at", look_at, "camera", "x,y,z",
-         "render: the point looked at; default: the objects' middle, with --camera 0,0,0"),
-    TEXT("--up", up, "camera", "x,y,z", "render objects: up in the picture; default 0,1,0"),
-    NUMBER("--fov", fov, "camera", "DEG",
-           "render: horizontal field of view; default: shows all objects, with --camera 40", 0.01,
-           179),
-    TEXT("--picture", picture, "picture", "WxH",
-         "render: size in pixels; default: one pixel per texel, objects 512x512, with --camera "
-         "640x400"),
-    TEXTS("--light", lighting.light, "lights", "SPEC",
-          "render: dir, env, point, spot, ... (docs/lights.md), area on objects only; may be "
-          "repeated"),
-    TEXT("--rig", lighting.rig, "lights", "FILE",
-         "render objects: lights of a rig, before --light"),
-    TEXT_AS(OPTION_OUTPUT, "--save-rig", lighting.save_rig, "lights", "FILE",
-            "render objects: write all lights as a rig"),
-    TEXT("--mesh", mesh, "objects", "FILE",
-         "render: an object of it: .obj, .ply, .gltf, .glb, ..."),
-    NUMBER("--repeat", repeat, "objects", "N",
-           "--mesh: repeat the material N times across its texture; default 1", 0.001, 10000),
-    INT("--samples", samples, "objects", "N", "render objects: N x N rays a pixel; default 3", 1,
-        16),
-    FLAG("--no-shadows", no_shadows, "objects", "render objects: without shadows"),
-    INT("--tiles", tiles, "tiles", "N", "tile: how many; default 10", 1, 256),
-    INT("--tile", tile, "tiles", "TEXELS", "tile: a side, a multiple of 8; default half the sample",
-        16, 4096),
-    TEXT("--matrix", matrix, "tiles", "WxH", "tile: how they are laid out; default 16x16"),
-    TEXT("--map", map, "tiles", "FILE",
-         "tile: use this index map (.npy or picture) instead of tiles"),
-    INT("--size", size, "material", "N", "of a built-in material, texels; default 64", 1, 1024),
-    TEXT("--directions", directions, "material", "SET",
-         "of a built-in material: bonn (default), dome, coarse"),
-    FLAG("--fill", fill, "material", "interpolate pictures that are missing in a folder"),
-    TEXT("--crop", crop, "material", "x,y,w,h",
-         "of a .btf file: read only these texels, counted from the upper left"),
-    INT("--seed", seed, "material", "S",
-        "seed of the random choices in materials, clusters and tiles; default 0", 0, 2147483647),
-    FLAG("--force", force, "output", "fit, tile: replace a folder that relume made"),
-    FLAG("--json", json, "report", "one JSON object"),
-    {0},
-};
-
-// ---------------------------------------------------------------- names
-
-static relume_status find_model(const struct relume_btf_model **out, const char *name)
+// The place of a model in relume_btf_models.
+static relume_status take_models(void *place, const struct option *o, const char *text,
+                                 const struct relume_log *log)
 {
     const char *names[32];
     int n = 0;
-    for (const struct relume_btf_model *const *m = relume_btf_models; *m && n < 31; m++)
-        names[n++] = relume_btf_model_name(*m);
+    for (; relume_btf_models[n] && n < 31; n++) {
+        names[n] = relume_btf_model_name(relume_btf_models[n]);
+        if (!strcmp(names[n], text)) {
+            *(int *)place = n;
+            return RELUME_OK;
+        }
+    }
     names[n] = NULL;
-    *out = relume_btf_model_find(name);
-    return *out ? RELUME_OK : unknown_name("model", name, names);
+    return unknown_word(log, o->name, text, names);
 }
 
-enum { MOST_MODELS = 32 };
+static relume_status take_model(void *model, const struct option *o, const char *text,
+                                const struct relume_log *log)
+{
+    int place = 0;
+    const relume_status status = take_models(&place, o, text, log);
+    *(const struct relume_btf_model **)model = relume_btf_models[place];
+    return status;
+}
+
+static relume_status take_set(void *set, const struct option *o, const char *text,
+                              const struct relume_log *log)
+{
+    const struct relume_btf_set *found = relume_btf_set_find(text);
+    *(const struct relume_btf_set **)set = found;
+    return found
+               ? RELUME_OK
+               : unknown_word(log, o->name, text, (const char *[]){"bonn", "dome", "coarse", NULL});
+}
+
+static const struct option options[] = {
+    GROUP("output"),
+    OUTPUT(OPTION_OUTPUT, output, "DIR", "fit, tile: the folder to make; render: the picture"),
+    FLAG("--force", force, "fit, tile: replace a folder that relume made"),
+    GROUP("model"),
+    OWN("--model", model, "NAME", "fit, tile: rfp, rfnl, rfnlc, vpca, lpca, ...; default rfnlc",
+        take_model),
+    INT("--clusters", clusters, "N", "lpca: default 32; cmf: 512; rfnlc: 1024", 1, 65536),
+    INT("--components", components, "N", "vpca: default 4; lpca: 8; fmf: 100; qmf: at most, 512", 1,
+        1024),
+    INT("--ratio", ratio, "R", "qmf: compress the measured values N times; default 200", 1,
+        1000000),
+    INT("--lobes", lobes, "N", "rfnl, rfnlc, laf, slaf: default 2", 1, 4),
+    INT("--leave-out", leave_out, "K",
+        "compare: also fit without every K-th view and light and measure the error on those; fit: "
+        "leave them out",
+        2, 64),
+    GROUP("measurements"),
+    WORDS("--models", models, "A,B,...", "compare: only these models; default: all", OPTION_OWN,
+          .take = take_models),
+    FLAG("--unseen", unseen, "eval: only views and lights that were left out of the fit"),
+    INT("--pictures", pictures, "N",
+        "compare, eval: pictures compared by CIEDE2000 and SSIM; default 25", 0, 65536),
+    GROUP("levels of detail"),
+    INT("--levels", levels, "N",
+        "fit, tile: levels of detail, each half as wide; -1: all; default: fit 1, tile all", -1,
+        17),
+    GROUP("camera"),
+    POINT("--eye", eye, "x,y,z",
+          "render: the direction towards the eye; default 0,0,1; for objects: where the eye is"),
+    POINT("--camera", camera, "x,y,z",
+          "render a surface in perspective, from this point; its width is -1 to 1"),
+    POINT("--look-at", look_at, "x,y,z",
+          "render: the point looked at; default: the objects' middle, with --camera 0,0,0"),
+    POINT("--up", up, "x,y,z", "render objects: up in the picture; default 0,1,0"),
+    NUMBER("--fov", fov, "DEG",
+           "render: horizontal field of view; default: shows all objects, with --camera 40", 0.01,
+           179),
+    GROUP("picture"),
+    SIZE("--picture", picture, "WxH",
+         "render: size in pixels; default: one pixel per texel, objects 512x512, with --camera "
+         "640x400",
+         1, 65536),
+    GROUP("lights"),
+    TEXTS("--light", lighting.light, "SPEC",
+          "render: dir, env, point, spot, ... (docs/lights.md), area on objects only; may be "
+          "repeated"),
+    TEXT("--rig", lighting.rig, "FILE", "render objects: lights of a rig, before --light"),
+    TEXT_AS(OPTION_OUTPUT, "--save-rig", lighting.save_rig, "FILE",
+            "render objects: write all lights as a rig"),
+    GROUP("objects"),
+    TEXT("--mesh", mesh, "FILE", "render: an object of it: .obj, .ply, .gltf, .glb, ..."),
+    NUMBER("--repeat", repeat, "N",
+           "--mesh: repeat the material N times across its texture; default 1", 0.001, 10000),
+    INT("--samples", samples, "N", "render objects: N x N rays a pixel; default 3", 1, 16),
+    FLAG("--no-shadows", no_shadows, "render objects: without shadows"),
+    GROUP("tiles"),
+    INT("--tiles", tiles, "N", "tile: how many; default 10", 1, 256),
+    INT("--tile", tile, "TEXELS", "tile: a side, a multiple of 8; default half the sample", 16,
+        4096),
+    SIZE("--matrix", matrix, "WxH", "tile: how they are laid out; default 16x16", 1, 4096),
+    TEXT("--map", map, "FILE", "tile: use this index map (.npy or picture) instead of tiles"),
+    GROUP("material"),
+    INT("--size", size, "N", "of a built-in material, texels; default 64", 1, 1024),
+    OWN("--directions", directions, "SET", "of a built-in material: bonn (default), dome, coarse",
+        take_set),
+    FLAG("--fill", fill, "interpolate pictures that are missing in a folder"),
+    NUMBERS("--crop", crop, "x,y,w,h",
+            "of a .btf file: read only these texels, counted from the upper left", 4),
+    INT("--seed", seed, "S",
+        "seed of the random choices in materials, clusters and tiles; default 0", 0, 2147483647),
+    GROUP("report"),
+    FLAG("--json", json, "one JSON object"),
+    {0},
+};
 
 // Those of --models, or all; NULL-terminated.
-static relume_status choose_models(const struct relume_btf_model *out[MOST_MODELS],
-                                   const struct btf_options *o)
+static void choose_models(const struct relume_btf_model *out[MOST_ITEMS + 1],
+                          const struct btf_options *o)
 {
-    const char *list = o->models;
     int n = 0;
-    for (int i = 0; !list && relume_btf_models[i]; i++)
-        out[n++] = relume_btf_models[i];
-    while (list && *list && n + 1 < MOST_MODELS) {
-        char name[32];
-        const size_t length = strcspn(list, ",");
-        snprintf(name, sizeof name, "%.*s", (int)length, list);
-        const relume_status status = find_model(&out[n++], name);
-        if (status)
-            return status;
-        list += length + (list[length] == ',');
-    }
-    out[n] = NULL;
-    return n ? RELUME_OK : usage_error("--models: expected names of models; found none");
+    for (; n < o->models.count; n++)
+        out[n] = relume_btf_models[o->models.item[n]];
+    for (int i = 0; !n && i < MOST_ITEMS && (out[i] = relume_btf_models[i]); i++)
+        ;
+    if (n)
+        out[n] = NULL;
 }
 
 static struct relume_btf_fit_params fit_params(const struct btf_options *o)
@@ -220,11 +240,10 @@ static relume_status compare(const struct args *args)
 {
     const struct btf_options *o = (const void *)args;
     const bool json = o->json;
-    const struct relume_btf_model *models[MOST_MODELS];
+    const struct relume_btf_model *models[MOST_ITEMS + 1];
     relume_btf *btf = NULL, *part = NULL;
-    relume_status status = choose_models(models, o);
-    if (!status)
-        status = btf_open(&btf, o->args.input[0], o);
+    choose_models(models, o);
+    relume_status status = btf_open(&btf, o->args.input[0], o);
     if (!status)
         status = make_part(&part, btf, o);
     if (!status && !json)
@@ -244,11 +263,9 @@ relume_status btf_fit(relume_btf_fitted **out, const relume_btf *btf, int levels
                       const struct btf_options *o)
 {
     struct relume_btf_fit_params p = fit_params(o);
-    p.levels = (args_given(&o->args, &o->levels) ? o->levels : levels);
-    const struct relume_btf_model *model;
+    p.levels = (given(o, &o->levels) ? o->levels : levels);
     *out = NULL;
-    const relume_status status = find_model(&model, o->model);
-    return status ? status : relume_btf_fit(out, btf, model, &p);
+    return relume_btf_fit(out, btf, o->model ? o->model : relume_btf_model_find("rfnlc"), &p);
 }
 
 static relume_status fit(const struct args *args)
@@ -256,8 +273,6 @@ static relume_status fit(const struct args *args)
     const struct btf_options *o = (const void *)args;
     relume_btf *btf = NULL, *part = NULL;
     relume_btf_fitted *fitted = NULL;
-    if (!o->output)
-        return usage_error("btf fit: expected -o DIR");
     relume_status status = relume_folder_check(o->output, o->force, o->args.log);
     if (!status)
         status = btf_open(&btf, o->args.input[0], o);
@@ -373,13 +388,8 @@ static relume_status info(const struct args *args)
 
 // ---------------------------------------------------------------- the command
 
-static const struct btf_options defaults = {.model = "rfnlc",
-                                            .pictures = 25,
-                                            .samples = 3,
-                                            .repeat = 1.0,
-                                            .tiles = 10,
-                                            .size = 64,
-                                            .directions = "bonn"};
+static const struct btf_options defaults = {
+    .pictures = 25, .samples = 3, .repeat = 1.0, .tiles = 10, .size = 64, .matrix = {16, 16}};
 
 // Options of the other tasks are taken and change nothing; help shows `what` these groups are.
 #define TASK(task, function, asks, does, shows, count, what)                                       \

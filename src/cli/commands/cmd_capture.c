@@ -8,10 +8,13 @@
 
 struct capture_options {
     struct args args;
-    const char *output, *transfer, *mask, *ball_transfer, *ball_mask, *lights, *white, *align,
-        *normals, *albedo, *height, *encode, *relight;
+    const char *output, *mask, *ball_mask, *lights, *normals, *albedo, *height, *encode, *relight;
+    struct relume_transfer transfer, ball_transfer;
+    double white[4];
+    enum { ALIGN_NONE, ALIGN_HOMOGRAPHY } align;
     bool force, json, skip_bad, matte, near, refine_lights, refine_brightness, integrable, radial;
-    struct texts ball, ball_photos, flat;
+    struct points ball;
+    struct texts ball_photos, flat;
     int balls;
     double ball_z, fov, focal;
     struct light_options lighting;
@@ -20,62 +23,62 @@ struct capture_options {
 #define OPTIONS struct capture_options
 
 static const struct option options[] = {
-    TEXT_AS(OPTION_OUTPUT, "-o", output, "output", "DIR", "the capture folder to make"),
-    FLAG("--force", force, "output", "replace a folder that relume made"),
-    FLAG("--json", json, "output", "print one JSON object"),
-    TEXT("--transfer", transfer, "input", "T", "linear, srgb or gamma:G; default: by file"),
-    TEXT("--mask", mask, "input", "FILE", "a mask: white where the object is"),
-    FLAG("--skip-bad", skip_bad, "input", "leave out photographs that cannot be read or used"),
-    TEXTS("--ball", ball, "finding the lights", "x,y,r",
-          "outline of a mirror ball, pixels from the top left; may be repeated; default: found"),
-    INT("--balls", balls, "finding the lights", "N", "how many balls are to be found; default 1", 1,
-        16),
-    TEXTS("--ball-photos", ball_photos, "finding the lights", "PATH",
+    GROUP("output"),
+    OUTPUT(OPTION_OUTPUT, output, "DIR", "the capture folder to make"),
+    FLAG("--force", force, "replace a folder that relume made"),
+    FLAG("--json", json, "print one JSON object"),
+    GROUP("input"),
+    TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; default: by file"),
+    TEXT("--mask", mask, "FILE", "a mask: white where the object is"),
+    FLAG("--skip-bad", skip_bad, "leave out photographs that cannot be read or used"),
+    GROUP("finding the lights"),
+    POINTS("--ball", ball, "x,y,r",
+           "outline of a mirror ball, pixels from the top left; may be repeated; default: found"),
+    INT("--balls", balls, "N", "how many balls are to be found; default 1", 1, 16),
+    TEXTS("--ball-photos", ball_photos, "PATH",
           "the ball was photographed separately: a folder, or a file (then repeated)"),
-    TEXT("--ball-transfer", ball_transfer, "finding the lights", "T",
-         "--ball-photos: linear, srgb or gamma:G; default: as --transfer, else by file"),
-    TEXT("--ball-mask", ball_mask, "finding the lights", "FILE", "a mask: white where the ball is"),
-    FLAG("--matte", matte, "finding the lights", "the ball is matte white, not a mirror"),
-    TEXT("--lights", lights, "finding the lights", "FILE",
+    TRANSFER("--ball-transfer", ball_transfer,
+             "--ball-photos: linear, srgb or gamma:G; default: as --transfer, else by file"),
+    TEXT("--ball-mask", ball_mask, "FILE", "a mask: white where the ball is"),
+    FLAG("--matte", matte, "the ball is matte white, not a mirror"),
+    TEXT("--lights", lights, "FILE",
          "the lights are known: a .lp, .dome or capture.json file, lines x y z, or COLMAP poses of "
          "a camera on the lamp"),
-    FLAG("--near", near, "finding the lights",
+    FLAG("--near", near,
          "lights stand near: positions from two balls or more, or those of --lights"),
-    NUMBER("--ball-z", ball_z, "finding the lights", "Z",
+    NUMBER("--ball-z", ball_z, "Z",
            "height of the balls' middle over the plane z = 0, world units; default 0", -1000, 1000),
-    NUMBER("--fov", fov, "finding the lights", "DEG",
-           "horizontal field of view; default: orthographic", 0.1, 170),
-    NUMBER("--focal", focal, "finding the lights", "MM",
-           "the same as a focal length for 36 mm wide film", 5, 5000),
-    FLAG("--refine-lights", refine_lights, "finding the lights",
+    NUMBER("--fov", fov, "DEG", "horizontal field of view; default: orthographic", 0.1, 170),
+    NUMBER("--focal", focal, "MM", "the same as a focal length for 36 mm wide film", 5, 5000),
+    FLAG("--refine-lights", refine_lights,
          "improve directions and intensities from the photographs themselves"),
-    FLAG("--refine-brightness", refine_brightness, "finding the lights",
+    FLAG("--refine-brightness", refine_brightness,
          "estimate each lamp's brightness from the photographs; directions stay"),
-    FLAG("--integrable", integrable, "finding the lights",
-         "--refine-lights: keep the surface physically continuous"),
-    TEXT("--white", white, "corrections", "x,y,w,h",
-         "a region that is grey: the lamps' colour is divided out"),
-    TEXTS("--flat", flat, "corrections", "PATH",
+    FLAG("--integrable", integrable, "--refine-lights: keep the surface physically continuous"),
+    GROUP("corrections"),
+    NUMBERS("--white", white, "x,y,w,h", "a region that is grey: the lamps' colour is divided out",
+            4),
+    TEXTS("--flat", flat, "PATH",
           "photograph of an even surface, divided out; one, or one under each light"),
-    FLAG("--radial", radial, "corrections",
-         "--flat: as a polynomial of the distance from the middle"),
-    TEXT("--align", align, "corrections", "A", "none, blocks or homography; default: none"),
-    TEXT_AS(OPTION_FLOATS, "--normals", normals, "surface", "FILE.exr", "write surface normals"),
-    TEXT_AS(OPTION_PICTURE, "--albedo", albedo, "surface", "FILE.exr",
-            "write the surface's colour (albedo)"),
-    TEXT_AS(OPTION_FLOATS, "--height", height, "surface", "FILE.exr",
+    FLAG("--radial", radial, "--flat: as a polynomial of the distance from the middle"),
+    NAME("--align", align, "A", "none, blocks or homography; default: none", ALIGN_NONE, "none",
+         "homography"),
+    GROUP("surface"),
+    TEXT_AS(OPTION_FLOATS, "--normals", normals, "FILE.exr", "write surface normals"),
+    TEXT_AS(OPTION_PICTURE, "--albedo", albedo, "FILE.exr", "write the surface's colour (albedo)"),
+    TEXT_AS(OPTION_FLOATS, "--height", height, "FILE.exr",
             "write the surface's height, world units"),
-    TEXT_AS(OPTION_RELUME, "--encode", encode, "surface", "FILE.exr", "encode the capture as well"),
-    TEXT_AS(OPTION_PICTURE, "--relight", relight, "surface", "PICTURE",
-            "and relight that by --light"),
+    TEXT_AS(OPTION_RELUME, "--encode", encode, "FILE.exr", "encode the capture as well"),
+    TEXT_AS(OPTION_PICTURE, "--relight", relight, "PICTURE", "and relight that by --light"),
+    GROUP("lights"),
     LIGHT_OPTIONS,
+    GROUP("machine"),
     CPU_OPTION,
     {0},
 };
 
 struct job {
     struct relume_photographs photos, balls, flats;
-    double (*outline)[3];
     char above[4096];  // a list of lights there
     struct relume_acquire_params p;
     struct relume_acquisition shoot;
@@ -86,7 +89,6 @@ static void free_job(struct job *job)
     relume_photographs_free(&job->photos);
     relume_photographs_free(&job->balls);
     relume_photographs_free(&job->flats);
-    free(job->outline);
     relume_acquisition_destroy(&job->shoot);
 }
 
@@ -161,19 +163,21 @@ static const char *lights_file(const struct capture_options *o, const struct job
 {
     const char *beside = job->photos.lights;
     const char *dot = beside ? strrchr(beside, '.') : NULL;
-    if (o->lights || o->ball.count || o->ball_photos.count || args_given(&o->args, &o->balls) ||
-        o->ball_mask || o->matte)
+    if (o->lights || o->ball.count || o->ball_photos.count || given(o, &o->balls) || o->ball_mask ||
+        o->matte)
         return o->lights;
     if (!beside)
         return NULL;
     if (!strcasecmp(dot, ".txt") && !fits(beside, job)) {
-        say(&o->args, RELUME_NOTE,
+        announce(
+            &o->args, RELUME_NOTE,
             "%s: is not read; as light directions it would have a line x y z for each of the %d "
             "photographs",
             beside, job->photos.count);
         return NULL;
     }
-    say(&o->args, RELUME_NOTE,
+    announce(
+        &o->args, RELUME_NOTE,
         "%s: light directions are taken from this file; --ball or --ball-photos take them from a "
         "mirror ball instead",
         beside);
@@ -182,73 +186,36 @@ static const char *lights_file(const struct capture_options *o, const struct job
 
 // ---------------------------------------------------------------- options
 
-static relume_status read_outlines(const struct capture_options *o, struct job *job)
-{
-    const int n = o->ball.count;
-    if (!n)
-        return RELUME_OK;
-    job->outline = malloc((size_t)n * sizeof *job->outline);
-    if (!job->outline)
-        return RELUME_ENOMEM;
-    for (int i = 0; i < n; i++)
-        if (!parse_numbers(o->ball.text[i], job->outline[i], 3))
-            return usage_error("--ball: expected x,y,r in pixels; found '%s'", o->ball.text[i]);
-    job->p.ball = (const double(*)[3])job->outline;
-    job->p.balls = n;
-    return RELUME_OK;
-}
-
-static relume_status read_white(const struct capture_options *o, struct job *job)
-{
-    const char *text = o->white;
-    double region[4];
-    if (!text)
-        return RELUME_OK;
-    if (!parse_numbers(text, region, 4) || !(region[2] >= 1.0 && region[3] >= 1.0))
-        return usage_error("--white: expected x,y,width,height; found '%s'", text);
-    for (int i = 0; i < 4; i++)
-        job->p.white[i] = region[i] > -1e6 && region[i] < 1e6 ? (int)region[i] : -1;
-    return RELUME_OK;
-}
-
-static relume_status read_align(const struct capture_options *o, struct job *job)
-{
-    static const char *const names[] = {"none", "homography", NULL};
-    const char *align = o->align;
-    job->p.align = !strcmp(align, "homography");
-    return job->p.align || !strcmp(align, "none") ? RELUME_OK
-                                                  : unknown_name("--align", align, names);
-}
-
 static double field_of_view(const struct capture_options *o)
 {
-    if (args_given(&o->args, &o->focal))
+    if (given(o, &o->focal))
         return 2.0 * atan(18.0 / o->focal) * 180.0 / M_PI;
     return o->fov;
 }
 
 static relume_status check_options(const struct capture_options *o)
 {
-    if (!o->output)
-        return usage_error("capture: expected -o DIR");
-    if (args_given(&o->args, &o->fov) && args_given(&o->args, &o->focal))
+    if (given(o, &o->fov) && given(o, &o->focal))
         return usage_error("capture: expected one of --fov and --focal");
     if (o->refine_brightness && o->refine_lights)
         return usage_error("capture: expected one of --refine-lights, which refines brightness as "
                            "well, and --refine-brightness");
-    if (o->ball_transfer && !o->ball_photos.count)
+    if (given(o, &o->ball_transfer) && !o->ball_photos.count)
         return usage_error("capture: --ball-transfer needs --ball-photos; for the photographs "
                            "themselves use --transfer");
     if (o->integrable && !o->refine_lights)
         return usage_error("capture: --integrable needs --refine-lights");
     if (o->radial && !o->flat.count)
         return usage_error("capture: --radial needs --flat FILE");
+    if (given(o, &o->white) && !(o->white[2] >= 1.0 && o->white[3] >= 1.0))
+        return usage_error("--white: expected a width and height of 1 or more; found %g and %g",
+                           o->white[2], o->white[3]);
     if (o->relight && !o->encode)
         return usage_error("capture: --relight needs --encode FILE.exr");
     return RELUME_OK;
 }
 
-static relume_status read_options(const struct capture_options *o, struct job *job)
+static void read_options(const struct capture_options *o, struct job *job)
 {
     job->p = (struct relume_acquire_params){
         .log = o->args.log,
@@ -258,7 +225,11 @@ static relume_status read_options(const struct capture_options *o, struct job *j
         .photograph_count = job->photos.count,
         .ball_photographs = (const char *const *)job->balls.path,
         .ball_photograph_count = job->balls.count,
-        .balls = o->balls,
+        .transfer = o->transfer,
+        .ball_transfer = o->ball_transfer,
+        .ball = (const double(*)[3])o->ball.point,
+        .balls = o->ball.count ? o->ball.count : o->balls,
+        .align = o->align == ALIGN_HOMOGRAPHY,
         .matte = o->matte,
         .fov_deg = field_of_view(o),
         .ball_z = o->ball_z,
@@ -276,14 +247,8 @@ static relume_status read_options(const struct capture_options *o, struct job *j
     };
     if (!job->p.lights)
         find_lights_above(job);
-    relume_status status = args_transfer(&job->p.transfer, "--transfer", o->transfer);
-    if (!status)
-        status = args_transfer(&job->p.ball_transfer, "--ball-transfer", o->ball_transfer);
-    if (!status)
-        status = read_outlines(o, job);
-    if (!status)
-        status = read_white(o, job);
-    return status ? status : read_align(o, job);
+    for (int i = 0; i < 4; i++)
+        job->p.white[i] = fabs(o->white[i]) < 1e6 ? (int)o->white[i] : -1;
 }
 
 // ---------------------------------------------------------------- by-products
@@ -403,8 +368,8 @@ static void say_made(const struct capture_options *o, const struct relume_acquis
                  100.0 * s->position_error);
     if (!o->encode)
         snprintf(next, sizeof next, "; next: relume encode %.100s -o FILE.exr", o->output);
-    say(&o->args, RELUME_NOTE, "%s: %d lights%s%s; see report.html there%s", o->output, s->lights,
-        directions, positions, next);
+    announce(&o->args, RELUME_NOTE, "%s: %d lights%s%s; see report.html there%s", o->output,
+             s->lights, directions, positions, next);
 }
 
 static relume_status make(const struct capture_options *o, struct job *job)
@@ -436,10 +401,10 @@ static relume_status run(const struct args *args)
     relume_status status = check_options(o);
     if (!status)
         status = gather(o, &job);
-    if (!status)
-        status = read_options(o, &job);
-    if (!status)
+    if (!status) {
+        read_options(o, &job);
         status = make(o, &job);
+    }
     free_job(&job);
     return status;
 }
@@ -453,7 +418,6 @@ const struct command command_capture = {
     .max_inputs = 4096,
     .options = options,
     .size = sizeof(struct capture_options),
-    .defaults =
-        &(const struct capture_options){.balls = 1, .align = "none", .cpu_mask = ALL_KERNELS},
+    .defaults = &(const struct capture_options){.balls = 1, .cpu_mask = ALL_KERNELS},
     .run = run,
 };

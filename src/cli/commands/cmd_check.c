@@ -8,7 +8,8 @@ struct check_options {
 #define OPTIONS struct check_options
 
 static const struct option options[] = {
-    FLAG("--json", json, "output", "one JSON object"),
+    GROUP("output"),
+    FLAG("--json", json, "one JSON object"),
     {0},
 };
 

@@ -11,10 +11,11 @@ struct compare_options {
 #define OPTIONS struct compare_options
 
 static const struct option options[] = {
-    TEXT_AS(OPTION_PICTURE, "-o", output, "output", "OUT",
+    GROUP("output"),
+    TEXT_AS(OPTION_PICTURE, "-o", output, "OUT",
             "write the difference |A - B| as a picture in linear light"),
-    FLAG("--ramps", ramps, "output", "also measure banding: how well B keeps smooth gradients"),
-    FLAG("--json", json, "output", "one JSON object"),
+    FLAG("--ramps", ramps, "also measure banding: how well B keeps smooth gradients"),
+    FLAG("--json", json, "one JSON object"),
     {0},
 };
 

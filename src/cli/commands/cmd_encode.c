@@ -2,109 +2,77 @@
 #include "book_options.h"
 #include "cli.h"
 
-#include <string.h>
 #include <sys/stat.h>
 
 struct encode_options {
     struct args args;
-    const char *output, *basis, *interpolant, *colour, *bits, *step, *domain, *compression,
-        *transfer;
+    const char *output;
+    const struct relume_basis *basis;  // NULL: auto
+    const struct relume_interpolant *interpolant;
     int coefficients;
+    enum relume_storage bits;
+    enum relume_step step;
+    enum relume_domain domain;
+    enum relume_compression compression;
+    struct relume_transfer transfer;
     double quality, ridge, assume_depth;
-    bool robust, force, no_depth, skip_missing, repair;
+    unsigned luminance;
+    bool robust, force, no_depth, skip_missing, repair, allow_outside;
     struct book_options books;
-    bool allow_outside;
 };
 #define OPTIONS struct encode_options
 
 static const struct option options[] = {
-    TEXT_AS(OPTION_RELUME, "-o", output, "output", "FILE.exr", "the relume file to write"),
-    TEXT("--basis", basis, "model", "NAME", "auto, pca, table, sh, hsh, ptm, dct, dct-resampled"),
-    INT("--coefficients", coefficients, "model", "K",
+    GROUP("output"),
+    OUTPUT(OPTION_RELUME, output, "FILE.exr", "the relume file to write"),
+    FLAG("--force", force, "allow more coefficients than the lights determine"),
+    NAME("--compression", compression, "C", "none, rle, zip or piz (all lossless); default: piz",
+         RELUME_COMPRESS_NONE, "none", "rle", "zip", "piz"),
+    GROUP("model"),
+    ENTRY("--basis", basis, "NAME", "auto, pca, table, sh, hsh, ptm, dct, dct-resampled",
+          relume_bases, NAMES("auto")),
+    INT("--coefficients", coefficients, "K",
         "coefficients per colour channel (pca: for all three); default: auto: as --quality asks, "
         "at least 27; others: by the basis",
         1, 4096),
-    NUMBER("--quality", quality, "model", "DB",
+    NUMBER("--quality", quality, "DB",
            "auto: as few coefficients as reproduce the photographs at this PSNR; default: 38, at "
            "most 128 of them",
            10, 60),
-    TEXT("--interpolant", interpolant, "model", "NAME",
-         "pca, table: auto, chord, angular, tps, rbf, natural, hsh, delaunay"),
-    TEXT("--colour", colour, "model", "C",
-         "rgb, or luminance: one set of coefficients and a colour per pixel; default: rgb"),
-    TEXT("--bits", bits, "model", "B",
-         "8, 10, 12, 16, half, log (half, coarser and smaller) or float; default: auto: the least "
-         "that adds nothing visible; others: 8, half for high dynamic range"),
-    TEXT("--step", step, "model", "S",
-         "plane: each its own range; common: one step; default: plane"),
-    FLAG("--robust", robust, "model",
-         "shadows, highlights and stray values weigh less in the fit; slower"),
-    FLAG("--force", force, "output", "allow more coefficients than the lights determine"),
-    TEXT("--domain", domain, "model", "D",
+    ENTRY("--interpolant", interpolant, "NAME",
+          "pca, table: auto, chord, angular, tps, rbf, natural, hsh, delaunay", relume_interpolants,
+          NAMES("auto")),
+    NAME("--colour", luminance, "C",
+         "rgb, or luminance: one set of coefficients and a colour per pixel; default: rgb", 0,
+         "rgb", "luminance"),
+    OWN("--bits", bits, "B",
+        "8, 10, 12, 16, half, log (half, coarser and smaller) or float; default: auto: the least "
+        "that adds nothing visible; others: 8, half for high dynamic range",
+        take_bits),
+    NAME("--step", step, "S", "plane: each its own range; common: one step; default: plane",
+         RELUME_STEP_PLANE, "plane", "common"),
+    FLAG("--robust", robust, "shadows, highlights and stray values weigh less in the fit; slower"),
+    NAME("--domain", domain, "D",
          "auto, linear or display; default: auto, by the capture's transfer, and by error where "
-         "the basis is auto"),
-    TEXT("--compression", compression, "output", "C",
-         "none, rle, zip or piz (all lossless); default: piz"),
-    TEXT("--transfer", transfer, "input", "T", "linear, srgb or gamma:G; overrides the capture's"),
-    NUMBER("--ridge", ridge, "model", "R", "smoothing of the fit, 0 (none) to 1; default: 1e-6", 0,
-           1),
-    BOOK_OPTIONS,
-    FLAG("--no-depth", no_depth, "model",
+         "the basis is auto",
+         RELUME_DOMAIN_AUTO, "auto", "linear", "display"),
+    NUMBER("--ridge", ridge, "R", "smoothing of the fit, 0 (none) to 1; default: 1e-6", 0, 1),
+    FLAG("--no-depth", no_depth,
          "leave depth out: smaller file, but no near lights and no views corrected by depth"),
-    NUMBER("--assume-depth", assume_depth, "lights", "D",
+    GROUP("input"),
+    TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; overrides the capture's"),
+    FLAG("--skip-missing", skip_missing, "leave out lights whose image does not exist"),
+    ALLOW_OUTSIDE_OPTION,
+    FLAG("--repair", repair,
+         "replace pixels that are NaN or infinite by those under the nearest lights"),
+    GROUP("codebooks"),
+    BOOK_OPTIONS,
+    GROUP("lights"),
+    NUMBER("--assume-depth", assume_depth, "D",
            "near lights, capture without depth: assume the surface this far from the eye", 1e-6,
            1e9),
-    FLAG("--skip-missing", skip_missing, "input", "leave out lights whose image does not exist"),
-    ALLOW_OUTSIDE_OPTION,
-    FLAG("--repair", repair, "input",
-         "replace pixels that are NaN or infinite by those under the nearest lights"),
     {0},
 };
-
-static relume_status parse_basis(const char *name, const struct relume_basis **out)
-{
-    const char *names[32] = {"auto"};
-    int n = 1;
-    for (const struct relume_basis *const *b = relume_bases; *b; b++)
-        names[n++] = (*b)->name;
-    *out = strcmp(name, "auto") ? relume_basis_find(name) : &relume_basis_pca;
-    return *out ? RELUME_OK : unknown_name("basis", name, names);
-}
-
-static relume_status parse_interpolant(const char *name, struct relume_coder_params *p)
-{
-    const char *names[32] = {"auto"};
-    int n = 1;
-    for (const struct relume_interpolant *const *i = relume_interpolants; *i; i++)
-        names[n++] = (*i)->name;
-    p->choose = name && !strcmp(name, "auto");
-    p->interpolant = name ? relume_interpolant_find(name) : NULL;
-    return !name || p->choose || p->interpolant ? RELUME_OK
-                                                : unknown_name("--interpolant", name, names);
-}
-
-static relume_status parse_bits(const char *text, enum relume_storage *out)
-{
-    static const char *const names[] = {"8", "10", "12", "16", "half", "log", "float", NULL};
-    return relume_storage_parse(out, text) ? unknown_name("--bits", text, names) : RELUME_OK;
-}
-
-// One of a NULL-terminated list of names; *out is its place.
-static relume_status parse_choice(const char *option, const char *text, const char *const *names,
-                                  int *out)
-{
-    for (*out = 0; names[*out]; ++*out)
-        if (!strcmp(text, names[*out]))
-            return RELUME_OK;
-    return unknown_name(option, text, names);
-}
-
-static relume_status parse_compression(const char *text, enum relume_compression *out)
-{
-    static const char *const names[] = {"none", "rle", "zip", "piz", NULL};
-    return relume_compression_parse(out, text) ? unknown_name("--compression", text, names)
-                                               : RELUME_OK;
-}
 
 struct request {
     const char *input, *output;
@@ -155,13 +123,13 @@ static void say_result(const struct args *args, const relume_capture *capture,
     if (short_of && !one && !r->coder.coefficients)
         snprintf(more, sizeof more, "; %g dB is more than %d coefficients reach", r->quality,
                  info->coefficients);
-    say(args, RELUME_NOTE,
-        "%s: reproduces your photograph%s at %.1f dB PSNR (differences %s) with %d "
-        "coefficient%s%s, "
-        "%s%s%s%s",
-        r->output, one ? "" : "s", report->psnr_db, judgement(report->psnr_db), info->coefficients,
-        relume_plural(info->coefficients), info->joint ? "" : " a colour",
-        storage_words(r->pack.storage), bytes, unseen, more);
+    announce(args, RELUME_NOTE,
+             "%s: reproduces your photograph%s at %.1f dB PSNR (differences %s) with %d "
+             "coefficient%s%s, "
+             "%s%s%s%s",
+             r->output, one ? "" : "s", report->psnr_db, judgement(report->psnr_db),
+             info->coefficients, relume_plural(info->coefficients), info->joint ? "" : " a colour",
+             storage_words(r->pack.storage), bytes, unseen, more);
 }
 
 // Codes are even steps up to the brightest value: a lamp in the picture of HDR radiance leaves the
@@ -177,9 +145,9 @@ static void say_coarse(const struct args *args, const struct relume_encode_repor
                        const struct request *r)
 {
     if (r->bits && is_coarse(report))
-        say(args, RELUME_WARNING,
-            "%s: very bright highlights: %s will ruin the picture; use --bits half", r->output,
-            storage_words(r->pack.storage));
+        announce(args, RELUME_WARNING,
+                 "%s: very bright highlights: %s will ruin the picture; use --bits half", r->output,
+                 storage_words(r->pack.storage));
 }
 
 // What in the capture says little: black and clipped pixels, black images.
@@ -187,15 +155,16 @@ static void say_census(const struct args *args, const struct request *r,
                        const struct relume_encode_census *c, bool hemispherical)
 {
     if (c->black)
-        say(args, c->black == c->pixels ? RELUME_WARNING : RELUME_NOTE,
-            "%s: %zu of %zu pixels are black under every light", r->input, c->black, c->pixels);
+        announce(args, c->black == c->pixels ? RELUME_WARNING : RELUME_NOTE,
+                 "%s: %zu of %zu pixels are black under every light", r->input, c->black,
+                 c->pixels);
     if (c->clipped)
-        say(args, c->always_clipped == c->pixels ? RELUME_WARNING : RELUME_NOTE,
-            "%s: %zu of %zu pixels are overexposed in at least one photograph, %zu in all",
-            r->input, c->clipped, c->pixels, c->always_clipped);
+        announce(args, c->always_clipped == c->pixels ? RELUME_WARNING : RELUME_NOTE,
+                 "%s: %zu of %zu pixels are overexposed in at least one photograph, %zu in all",
+                 r->input, c->clipped, c->pixels, c->always_clipped);
     if (c->black_images && hemispherical)
-        say(args, RELUME_WARNING, "%s: %d image%s black", r->input, c->black_images,
-            c->black_images > 1 ? "s are" : " is");
+        announce(args, RELUME_WARNING, "%s: %d image%s black", r->input, c->black_images,
+                 c->black_images > 1 ? "s are" : " is");
 }
 
 // Near lights are resampled where the places of the pixels are known (capture.h).
@@ -265,67 +234,46 @@ static relume_status encode(const struct args *args, struct request *r)
     return status;
 }
 
-static relume_status parse(const struct encode_options *o, struct request *r)
+static relume_status run(const struct args *args)
 {
-    static const char *const steps[] = {"plane", "common", NULL};
-    static const char *const colours[] = {"rgb", "luminance", NULL};
-    int step = 0, colour = 0;
-    *r = (struct request){
-        .input = o->args.input[0],
+    const struct encode_options *o = (const void *)args;
+    const bool books = o->books.codes > 0;
+    const bool choose = given(o, &o->interpolant) ? !o->interpolant : !o->basis;
+    struct request r = {
+        .input = args->input[0],
         .output = o->output,
-        .bits = o->bits != NULL,
-        .open = {.log = o->args.log,
+        .bits = o->bits,
+        .open = {.log = args->log,
+                 .transfer = o->transfer,
                  .skip_missing = o->skip_missing,
                  .allow_outside = o->allow_outside,
                  .assume_depth = o->assume_depth,
                  .repair = o->repair},
+        .basis = o->basis ? o->basis : &relume_basis_pca,
         .coder = {.coefficients = o->coefficients,
                   .ridge = o->ridge,
-                  .no_ridge = args_given(&o->args, &o->ridge) && o->ridge == 0.0,
+                  .no_ridge = given(o, &o->ridge) && o->ridge == 0.0,
+                  .choose = choose,
+                  .interpolant = o->interpolant,
+                  .luminance = o->luminance,
                   .robust = o->robust,
                   .force = o->force},
-        .pack = {.log = o->args.log, .threads = o->args.threads},
+        .pack = {.log = args->log,
+                 .domain = o->domain,
+                 .storage = o->bits,
+                 .step = o->step,
+                 .compression = o->compression,
+                 .no_depth = o->no_depth,
+                 .share = o->books.share,
+                 .threads = args->threads},
+        .decide = !o->basis && !books && !o->robust && !o->luminance,
+        .quality = o->quality,
     };
-    if (!r->output)
-        return usage_error("encode: expected -o FILE.exr");
-    const char *basis = o->basis;
-    relume_status status = parse_basis(basis, &r->basis);
-    if (!status)
-        status = parse_interpolant(
-            o->interpolant || strcmp(o->basis, "auto") ? o->interpolant : "auto", &r->coder);
-    if (!status)
-        status = o->bits ? parse_bits(o->bits, &r->pack.storage) : RELUME_OK;
-    if (!status)
-        status = parse_choice("--step", o->step, steps, &step);
-    if (!status)
-        status = parse_choice("--colour", o->colour, colours, &colour);
-    if (!status)
-        status = args_domain(&r->pack.domain, o->domain);
-    if (!status)
-        status = parse_compression(o->compression, &r->pack.compression);
-    if (!status)
-        status = args_transfer(&r->open.transfer, "--transfer", o->transfer);
-    const bool books = o->books.codes > 0;
-    if (!status)
-        status = parse_books(&o->args, &o->books, books, &r->books);
-    r->pack.books = books ? &r->books : NULL;
-    r->pack.no_depth = o->no_depth;
-    r->pack.share = o->books.share;
-    r->pack.step = step ? RELUME_STEP_COMMON : RELUME_STEP_PLANE;
-    r->coder.luminance = colour;
-    r->decide = !strcmp(basis, "auto") && !books && !r->coder.robust && !colour;
-    r->quality = o->quality;
-    if (!status && r->quality > 0.0 && (!r->decide || r->coder.coefficients))
+    if (r.quality > 0.0 && (!r.decide || o->coefficients))
         return usage_error("--quality chooses the coefficients of basis auto; expected without "
                            "--basis, --coefficients, --codebook and --robust");
-    return status;
-}
-
-static relume_status run(const struct args *args)
-{
-    const struct encode_options *o = (const void *)args;
-    struct request r;
-    const relume_status status = parse(o, &r);
+    const relume_status status = parse_books(args, &o->books, books, &r.books);
+    r.pack.books = books ? &r.books : NULL;
     return status ? status : encode(args, &r);
 }
 
@@ -352,10 +300,5 @@ const struct command command_encode = {
     .max_inputs = 1,
     .options = options,
     .size = sizeof(struct encode_options),
-    .defaults = &(const struct encode_options){.basis = "auto",
-                                               .step = "plane",
-                                               .colour = "rgb",
-                                               .domain = "auto",
-                                               .compression = "piz"},
     .run = run,
 };

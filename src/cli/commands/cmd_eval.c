@@ -5,21 +5,23 @@
 
 struct eval_options {
     struct args args;
-    const char *transfer;
+    struct relume_transfer transfer;
     double assume_depth;
-    bool skip_missing, json;
-    bool allow_outside;
+    bool skip_missing, json, allow_outside;
 };
 #define OPTIONS struct eval_options
 
 static const struct option options[] = {
-    TEXT("--transfer", transfer, "input", "T", "linear, srgb or gamma:G; overrides the capture's"),
-    NUMBER("--assume-depth", assume_depth, "lights", "D",
+    GROUP("input"),
+    TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; overrides the capture's"),
+    FLAG("--skip-missing", skip_missing, "leave out lights whose image does not exist"),
+    ALLOW_OUTSIDE_OPTION,
+    GROUP("lights"),
+    NUMBER("--assume-depth", assume_depth, "D",
            "near lights, capture without depth: assume the surface this far from the eye", 1e-6,
            1e9),
-    FLAG("--skip-missing", skip_missing, "input", "leave out lights whose image does not exist"),
-    ALLOW_OUTSIDE_OPTION,
-    FLAG("--json", json, "output", "one JSON object"),
+    GROUP("output"),
+    FLAG("--json", json, "one JSON object"),
     {0},
 };
 
@@ -88,9 +90,6 @@ static void print_text(const struct relume_evaluation *e)
 static relume_status run(const struct args *args)
 {
     const struct eval_options *o = (const void *)args;
-    struct relume_transfer transfer = {.curve = RELUME_CURVE_AUTO};
-    if (args_transfer(&transfer, "--transfer", o->transfer))
-        return RELUME_EINVAL;
     relume_pack *pack = NULL;
     relume_capture *capture = NULL;
     struct relume_evaluation evaluation = {0};
@@ -98,11 +97,12 @@ static relume_status run(const struct args *args)
         relume_pack_open(&pack, o->args.input[0],
                          relume_pack_params(.log = o->args.log, .threads = o->args.threads));
     if (!status)
-        status = relume_capture_open(&capture, o->args.input[1],
-                                     relume_capture_params(.log = o->args.log, .transfer = transfer,
-                                                           .skip_missing = o->skip_missing,
-                                                           .allow_outside = o->allow_outside,
-                                                           .assume_depth = o->assume_depth));
+        status =
+            relume_capture_open(&capture, o->args.input[1],
+                                relume_capture_params(.log = o->args.log, .transfer = o->transfer,
+                                                      .skip_missing = o->skip_missing,
+                                                      .allow_outside = o->allow_outside,
+                                                      .assume_depth = o->assume_depth));
     if (!status)
         status = relume_evaluate(
             &evaluation, pack, capture,

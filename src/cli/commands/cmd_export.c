@@ -1,46 +1,55 @@
 // cmd_export.c - relume export: a relume file for other programs
 #include "cli.h"
-#include "output_name.h"
 
 #include <string.h>
 #include <strings.h>
 
 struct export_options {
     struct args args;
-    const char *output, *to, *type, *colorspace;
+    const char *output;
+    enum relume_exchange to;
+    enum relume_web_type type;
+    enum { RGB, YCC, MYCC } colorspace;
     int coefficients, quality, resolution, view;
     double bytes_per_pixel, psnr;
-    bool force;
-    bool allow_outside;
+    bool force, allow_outside;
 };
 #define OPTIONS struct export_options
+#define FORMATS "relight", "ptm", "lptm", "rti", "deepzoom"
 
 static const struct option options[] = {
-    TEXT_AS(OPTION_OUTPUT, "-o", output, "output", "OUT",
-            "the file (.ptm, .rti) or folder to write"),
-    TEXT("--to", to, "model", "FORMAT",
+    GROUP("output"),
+    OUTPUT(OPTION_OUTPUT, output, "OUT", "the file (.ptm, .rti) or folder to write"),
+    FLAG("--force", force, "replace a folder that relume made"),
+    GROUP("model"),
+    NAME("--to", to, "FORMAT",
          "relight, ptm, lptm, rti or deepzoom; default: by OUT's ending (.ptm, .lptm, .rti), else "
-         "relight"),
-    TEXT("--type", type, "model", "T", "relight, deepzoom: bilinear, rbf, ptm, lptm, hsh or sh"),
-    TEXT("--colorspace", colorspace, "model", "C",
+         "relight",
+         RELUME_EXCHANGE_RELIGHT, FORMATS),
+    NAME("--type", type, "T", "relight, deepzoom: bilinear, rbf, ptm, lptm, hsh or sh",
+         RELUME_WEB_BILINEAR, "bilinear", "rbf", "ptm", "lptm", "hsh", "sh"),
+    NAME("--colorspace", colorspace, "C",
          "rgb, ycc (ptm, hsh, sh: only the luminance changes with the light) or mycc (bilinear, "
-         "rbf: separate planes for luminance and chroma); default: rgb"),
-    INT("--coefficients", coefficients, "model", "K",
+         "rbf: separate planes for luminance and chroma); default: rgb",
+         RGB, "rgb", "ycc", "mycc"),
+    INT("--coefficients", coefficients, "K",
         "planes (bilinear, rbf; default: up to 27) or terms of the type", 1, 45),
-    NUMBER("--bytes-per-pixel", bytes_per_pixel, "model", "B",
+    NUMBER("--bytes-per-pixel", bytes_per_pixel, "B",
            "size of all plane JPEGs (ptm, lptm: of the file), not exceeded", 0.001, 100),
-    NUMBER("--psnr", psnr, "model", "DB", "at least this PSNR against the original", 1, 100),
-    INT("--quality", quality, "model", "Q",
+    NUMBER("--psnr", psnr, "DB", "at least this PSNR against the original", 1, 100),
+    INT("--quality", quality, "Q",
         "10 less doubles the quantiser step; default: 95 or more, so that no blocks are seen (ptm, "
         "lptm: raw planes)",
         1, 100),
-    INT("--resolution", resolution, "model", "R",
+    INT("--resolution", resolution, "R",
         "bilinear: side of the grid of lights; default: 15 to 33, by the lights", 3, 33),
-    INT("--view", view, "input", "N", "which view of a slab; default: 0", 0, 65535),
-    FLAG("--force", force, "output", "replace a folder that relume made"),
+    GROUP("input"),
+    INT("--view", view, "N", "which view of a slab; default: 0", 0, 65535),
     ALLOW_OUTSIDE_OPTION,
     {0},
 };
+
+static const char *const formats[] = {FORMATS};
 
 static void say_result(const struct export_options *o, const struct relume_export_report *r)
 {
@@ -48,26 +57,25 @@ static void say_result(const struct export_options *o, const struct relume_expor
     char quality[64] = "";
     if (r->quality)
         snprintf(quality, sizeof quality, "quality %d%s, ", r->quality,
-                 args_given(&o->args, &o->quality) ? "" : " (chosen)");
+                 given(o, &o->quality) ? "" : " (chosen)");
     if (r->exact)
-        say(&o->args, RELUME_NOTE, "%s: %d plane%s, copied unchanged: nothing is lost", out,
-            r->planes, relume_plural(r->planes));
+        announce(&o->args, RELUME_NOTE, "%s: %d plane%s, copied unchanged: nothing is lost", out,
+                 r->planes, relume_plural(r->planes));
     else
-        say(&o->args, RELUME_NOTE,
-            "%s: %s%d plane%s, %.3f bytes per pixel; the export differs from the original by "
-            "%.2f dB (%s)",
-            out, quality, r->planes, relume_plural(r->planes), r->bytes_per_pixel, r->psnr_db,
-            judgement(r->psnr_db));
+        announce(&o->args, RELUME_NOTE,
+                 "%s: %s%d plane%s, %.3f bytes per pixel; the export differs from the original by "
+                 "%.2f dB (%s)",
+                 out, quality, r->planes, relume_plural(r->planes), r->bytes_per_pixel, r->psnr_db,
+                 judgement(r->psnr_db));
 }
 
-// What a name's ending means; NULL: nothing, or nothing that export writes.
-static const char *format_of_ending(const char *ending)
+// What a name's ending means; RELIGHT: nothing, or nothing that export writes.
+static enum relume_exchange format_of_ending(const char *ending)
 {
-    static const char *const formats[] = {"ptm", "lptm", "rti"};
-    for (size_t i = 0; *ending && i < sizeof formats / sizeof *formats; i++)
+    for (int i = RELUME_EXCHANGE_PTM; *ending && i <= RELUME_EXCHANGE_RTI; i++)
         if (!strcasecmp(ending + 1, formats[i]))
-            return formats[i];
-    return NULL;
+            return (enum relume_exchange)i;
+    return RELUME_EXCHANGE_RELIGHT;
 }
 
 // Files of the field that a folder should not be called by.
@@ -81,12 +89,11 @@ static bool is_no_folder(const char *ending)
 }
 
 // --to, or what the ending of OUT says; both must not contradict each other.
-static relume_status choose_format(enum relume_exchange *format, const struct export_options *o)
+static relume_status choose_format(enum relume_exchange *to, const struct export_options *o)
 {
-    static const char *const formats[] = {"relight", "ptm", "lptm", "rti", "deepzoom", NULL};
     const char *out = o->output, *ending = name_ending(out);
-    const char *said = format_of_ending(ending);
-    const char *to = o->to ? o->to : said ? said : "relight";
+    const enum relume_exchange said = format_of_ending(ending);
+    *to = given(o, &o->to) ? o->to : said;
     if (*ending && relume_image_can_save(out))
         return usage_error(
             "-o: %s: export writes no pictures; expected .ptm, .rti or the name of a "
@@ -96,56 +103,35 @@ static relume_status choose_format(enum relume_exchange *format, const struct ex
         return usage_error(
             "-o: %s: export cannot write this ending; expected .ptm, .rti or the name of a folder",
             out);
-    if (relume_exchange_parse(format, to))
-        return unknown_name("--to", to, formats);
-    if (said && strcmp(said, to) && (strcmp(said, "ptm") || strcmp(to, "lptm")))
-        return usage_error("-o: %s: --to %s writes %s; expected another name, or --to %s", out, to,
-                           strstr(to, "ptm")   ? "a .ptm file"
-                           : strcmp(to, "rti") ? "a folder"
-                                               : "an .rti file",
-                           said);
-    return RELUME_OK;
+    if (!said || said == *to || (said == RELUME_EXCHANGE_PTM && *to == RELUME_EXCHANGE_LPTM))
+        return RELUME_OK;
+    return usage_error("-o: %s: --to %s writes %s; expected another name, or --to %s", out,
+                       formats[*to],
+                       *to == RELUME_EXCHANGE_RTI    ? "an .rti file"
+                       : strstr(formats[*to], "ptm") ? "a .ptm file"
+                                                     : "a folder",
+                       formats[said]);
 }
 
-static relume_status parse(const struct export_options *o, enum relume_exchange *format,
-                           struct relume_export_params *p)
+static relume_status check(const struct export_options *o, enum relume_exchange to)
 {
-    static const char *const types[] = {"bilinear", "rbf", "ptm", "lptm", "hsh", "sh", NULL};
-    static const char *const spaces[] = {"rgb", "ycc", "mycc", NULL};
-    const char *type = o->type;
-    const char *space = o->colorspace ? o->colorspace : "rgb";
-    if (!o->output)
-        return usage_error("export: expected -o OUT");
-    const relume_status status = choose_format(format, o);
-    if (status)
-        return status;
-    if (type && relume_web_type_parse(&p->type, type))
-        return unknown_name("--type", type, types);
-    if (strcmp(space, "rgb") && strcmp(space, "ycc") && strcmp(space, "mycc"))
-        return unknown_name("--colorspace", space, spaces);
-    p->ycc = strcmp(space, "rgb");
-    if (!strcmp(space, "mycc") && p->type > RELUME_WEB_RBF)
+    const bool folder = to == RELUME_EXCHANGE_RELIGHT || to == RELUME_EXCHANGE_DEEPZOOM;
+    const bool bytes = given(o, &o->bytes_per_pixel), psnr = given(o, &o->psnr);
+    const char *only_folders = given(o, &o->type)         ? "--type"
+                               : given(o, &o->colorspace) ? "--colorspace"
+                               : given(o, &o->resolution) ? "--resolution"
+                                                          : NULL;
+    const char *jpeg = o->quality ? "--quality" : bytes ? "--bytes-per-pixel" : "--psnr";
+    if (o->colorspace == MYCC && o->type > RELUME_WEB_RBF)
         return usage_error("--colorspace mycc: works only with --type bilinear and rbf");
-    const bool folder = *format == RELUME_EXCHANGE_RELIGHT || *format == RELUME_EXCHANGE_DEEPZOOM;
-    const char *only_folders = o->type                                ? "--type"
-                               : o->colorspace                        ? "--colorspace"
-                               : args_given(&o->args, &o->resolution) ? "--resolution"
-                                                                      : NULL;
-    const char *jpeg = args_given(&o->args, &o->quality)           ? "--quality"
-                       : args_given(&o->args, &o->bytes_per_pixel) ? "--bytes-per-pixel"
-                       : args_given(&o->args, &o->psnr)            ? "--psnr"
-                                                                   : NULL;
     if (!folder && only_folders)
         return usage_error("%s: works only with --to relight and deepzoom", only_folders);
-    if ((*format == RELUME_EXCHANGE_PTM || *format == RELUME_EXCHANGE_LPTM) &&
-        args_given(&o->args, &o->coefficients))
+    if ((to == RELUME_EXCHANGE_PTM || to == RELUME_EXCHANGE_LPTM) && o->coefficients)
         return usage_error(
             "--coefficients: .ptm always has 6; leave it out, or choose another --to");
-    if (*format == RELUME_EXCHANGE_RTI && jpeg)
+    if (to == RELUME_EXCHANGE_RTI && (o->quality || bytes || psnr))
         return usage_error("%s: .rti cannot hold JPEG; use --to ptm or lptm", jpeg);
-    if (args_given(&o->args, &o->bytes_per_pixel) + args_given(&o->args, &o->psnr) +
-            args_given(&o->args, &o->quality) >
-        1)
+    if (bytes + psnr + (o->quality > 0) > 1)
         return usage_error("export: expected one of --bytes-per-pixel, --psnr and --quality");
     return RELUME_OK;
 }
@@ -153,10 +139,12 @@ static relume_status parse(const struct export_options *o, enum relume_exchange 
 static relume_status run(const struct args *args)
 {
     const struct export_options *o = (const void *)args;
-    enum relume_exchange format;
-    struct relume_export_params p = {
+    enum relume_exchange to;
+    const struct relume_export_params p = {
         .log = o->args.log,
         .view = o->view,
+        .type = o->type,
+        .ycc = o->colorspace != RGB,
         .coefficients = o->coefficients,
         .resolution = o->resolution,
         .bytes_per_pixel = o->bytes_per_pixel,
@@ -165,7 +153,9 @@ static relume_status run(const struct args *args)
         .force = o->force,
         .threads = o->args.threads,
     };
-    relume_status status = parse(o, &format, &p);
+    relume_status status = choose_format(&to, o);
+    if (!status)
+        status = check(o, to);
     if (status)
         return status;
     relume_pack *pack;
@@ -174,7 +164,7 @@ static relume_status run(const struct args *args)
         &pack, o->args.input[0],
         relume_open_params(.log = p.log, .threads = p.threads, .allow_outside = o->allow_outside));
     if (!status)
-        status = relume_export(pack, o->output, format, &report, &p);
+        status = relume_export(pack, o->output, to, &report, &p);
     relume_pack_destroy(&pack);
     if (!status)
         say_result(o, &report);

@@ -2,77 +2,45 @@
 #include "commands/bracket.h"
 #include "commands/capture_times.h"
 #include "fill.h"
-#include "output_name.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define OPTIONS struct hdr_options
 
 static const struct option options[] = {
-    TEXT_AS(OPTION_OUTPUT, "-o", output, "output", "OUT",
-            "the picture to write; for several brackets the folder of their pictures"),
-    FLAG("--json", json, "output", "print one JSON object"),
-    TEXT("--transfer", transfer, "input", "T", "linear, srgb or gamma:G; default: by file"),
-    FLAG("--skip-bad", skip_bad, "input", "leave out photographs that cannot be read or used"),
-    TEXT("--times", times, "exposures", "FILE", "exposure times, lines 'name seconds'"),
-    TEXT("--response", response, "exposures", "FILE", "use this response curve of the camera"),
-    TEXT_AS(OPTION_OUTPUT, "--save-response", save_response, "exposures", "FILE",
+    GROUP("output"),
+    OUTPUT(OPTION_OUTPUT, output, "OUT",
+           "the picture to write; for several brackets the folder of their pictures"),
+    FLAG("--json", json, "print one JSON object"),
+    GROUP("input"),
+    TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; default: by file"),
+    FLAG("--skip-bad", skip_bad, "leave out photographs that cannot be read or used"),
+    FLAG("--hdr", old, NULL),  // of relume capture
+    GROUP("exposures"),
+    TEXT("--times", times, "FILE", "exposure times, lines 'name seconds'"),
+    TEXT("--response", response, "FILE", "use this response curve of the camera"),
+    TEXT_AS(OPTION_OUTPUT, "--save-response", save_response, "FILE",
             "write the response that was found"),
-    TEXT("--weights", weights, "exposures", "W", "spline (default), hat or gaussian"),
-    TEXT("--align", align, "exposures", "A", "none, blocks or homography; default: none"),
-    FLAG("--ghosts", ghosts, "exposures", "leave out what moved between exposures"),
-    TEXT("--white", white, "corrections", "x,y,w,h",
-         "a region that is grey: the lamps' colour is divided out"),
-    TEXT("--flat", flat, "corrections", "PATH",
+    NAME("--weights", weights, "W", "spline (default), hat or gaussian", RELUME_MERGE_SPLINE,
+         "spline", "hat", "gaussian"),
+    NAME("--align", align, "A", "none, blocks or homography; default: none", ALIGN_NONE, "none",
+         "blocks", "homography"),
+    FLAG("--ghosts", ghosts, "leave out what moved between exposures"),
+    GROUP("corrections"),
+    NUMBERS("--white", white, "x,y,w,h", "a region that is grey: the lamps' colour is divided out",
+            4),
+    TEXT("--flat", flat, "PATH",
          "photograph of an even surface, divided out; one, or one under each light"),
-    FLAG("--radial", radial, "corrections",
-         "--flat: as a polynomial of the distance from the middle"),
-    FLAG("--hdr", old, "input", NULL),  // of relume capture
+    FLAG("--radial", radial, "--flat: as a polynomial of the distance from the middle"),
     {0},
 };
 
-struct choices {
-    enum relume_merge_weights weights;
-    enum align_mode align;
-    bool is_file;  // -o names one picture: all photographs are one bracket
-    int white[4];
-    bool has_white;
-};
-
-// ---------------------------------------------------------------- options
-
-static relume_status parse_choices(struct choices *out, const struct hdr_options *o)
+// -o names one picture: all photographs are one bracket.
+static bool is_file(const char *output)
 {
-    static const char *const modes[] = {"none", "blocks", "homography", NULL};
-    const char *names[8] = {NULL};
-    const char *weights = o->weights;
-    const char *align = o->align;
-    const char *output = o->output;
-    const char *white = o->white;
-    double region[4];
-    int mode = 0;
-    *out = (struct choices){0};
-    if (!output)
-        return usage_error("hdr: expected -o OUT.exr, or a folder for several brackets");
-    out->is_file = strchr(base_name(output), '.') || relume_image_saves_linear(output);
-    if (out->is_file && picture_name("-o", output))
-        return RELUME_EINVAL;
-    for (int i = 0; relume_merge_weights_name((enum relume_merge_weights)i); i++)
-        names[i] = relume_merge_weights_name((enum relume_merge_weights)i);
-    if (relume_merge_weights_parse(&out->weights, weights))
-        return unknown_name("--weights", weights, names);
-    while (modes[mode] && strcmp(modes[mode], align))
-        mode++;
-    if (!modes[mode])
-        return unknown_name("--align", align, modes);
-    out->align = (enum align_mode)mode;
-    out->has_white = white != NULL;
-    if (white && !parse_numbers(white, region, 4))
-        return usage_error("--white: expected x,y,width,height; found '%s'", white);
-    for (int i = 0; white && i < 4; i++)
-        out->white[i] = region[i] > -1e6 && region[i] < 1e6 ? (int)region[i] : -1;
-    return RELUME_OK;
+    return strchr(base_name(output), '.') || relume_image_saves_linear(output);
 }
 
 // ---------------------------------------------------------------- report
@@ -159,34 +127,34 @@ static relume_status divide_flat(struct bracket *b, const char *flat, const stru
     return status == RELUME_EINVAL ? RELUME_EUNFIT : status;
 }
 
-static relume_status whiten(struct bracket *b, const struct choices *c, const struct hdr_options *o)
+static relume_status whiten(struct bracket *b, const struct hdr_options *o)
 {
     float gain[3];
+    int w[4];
     struct prefix_log log;
-    const relume_status status =
-        relume_white_measure(gain, &b->out, c->white[0], c->white[1], c->white[2], c->white[3],
-                             prefix_log(&log, o->args.log, "--white"));
+    for (int i = 0; i < 4; i++)
+        w[i] = fabs(o->white[i]) < 1e6 ? (int)o->white[i] : -1;
+    const relume_status status = relume_white_measure(gain, &b->out, w[0], w[1], w[2], w[3],
+                                                      prefix_log(&log, o->args.log, "--white"));
     if (!status)
         relume_white_apply(&b->out, gain);
     return status;
 }
 
-static relume_status run_bracket(struct bracket *b, const struct choices *c, const char *output,
-                                 const char *to, int index, FILE *report,
-                                 const struct hdr_options *o)
+static relume_status run_bracket(struct bracket *b, const char *output, const char *to, int index,
+                                 FILE *report, const struct hdr_options *o)
 {
-    const char *flat = o->flat;
     relume_status status = bracket_load(b, o);
     if (!status)
-        status = bracket_align(b, c->align, o);
+        status = bracket_align(b, o);
     if (!status)
         status = bracket_check(b, o);
     if (!status)
-        status = bracket_merge(b, c->weights, o);
-    if (!status && flat)
-        status = divide_flat(b, flat, o);
-    if (!status && c->has_white)
-        status = whiten(b, c, o);
+        status = bracket_merge(b, o);
+    if (!status && o->flat)
+        status = divide_flat(b, o->flat, o);
+    if (!status && given(o, &o->white))
+        status = whiten(b, o);
     if (!status)
         status = relume_image_save(
             &b->out, to,
@@ -237,19 +205,18 @@ static int photos_of(struct bracket *b, const struct relume_photographs *list,
     return n;
 }
 
-static void output_name(char *out, size_t size, const struct choices *c, const struct bracket *b,
-                        const char *output)
+// Of a bracket into `to`, a file or a folder.
+static void output_name(char *out, size_t size, const struct bracket *b, const char *to, bool file)
 {
     const char *name = base_name(b->path[0]);
     const char *dot = strrchr(name, '.');
-    const int length = dot ? (int)(dot - name) : (int)strlen(name);
-    if (c->is_file)
-        snprintf(out, size, "%s", output);
+    if (file)
+        snprintf(out, size, "%s", to);
     else
-        snprintf(out, size, "%s/%.*s.exr", output, length, name);
+        snprintf(out, size, "%s/%.*s.exr", to, dot ? (int)(dot - name) : (int)strlen(name), name);
 }
 
-static relume_status run_group(const struct choices *c, const struct relume_photographs *list,
+static relume_status run_group(const struct relume_photographs *list,
                                const struct relume_exif *notes, const int *group, int which,
                                const char *to, FILE *report, const struct hdr_options *o)
 {
@@ -258,32 +225,31 @@ static relume_status run_group(const struct choices *c, const struct relume_phot
     if (!b)
         return RELUME_ENOMEM;
     const int n = photos_of(b, list, notes, group, which);
-    output_name(output, sizeof output, c, b, o->output);
-    output_name(written, sizeof written, c, b, to);
+    output_name(output, sizeof output, b, o->output, is_file(o->output));
+    output_name(written, sizeof written, b, to, is_file(o->output));
     const relume_status status =
         n > MAX_BRACKET ? data_error("%s: %d photographs in one bracket; expected at most %d",
                                      list->path[0], n, MAX_BRACKET)
-                        : run_bracket(b, c, output, written, which, report, o);
+                        : run_bracket(b, output, written, which, report, o);
     bracket_free(b);
     free(b);
     return status;
 }
 
-static relume_status run_groups(const struct choices *c, struct relume_photographs *list,
-                                struct relume_exif *notes, int *group, FILE *report,
-                                const struct hdr_options *o)
+static relume_status run_groups(struct relume_photographs *list, struct relume_exif *notes,
+                                int *group, FILE *report, const struct hdr_options *o)
 {
     const bool json = o->json;
     int groups = 1;
     struct fill folder = {.path = o->output};
     relume_status status = read_notes(notes, list, o);
-    if (!status && !c->is_file) {
+    if (!status && !is_file(o->output)) {
         groups = relume_exif_brackets(group, notes, list->count, 0.0);
         status = groups > 0 ? fill_open(&folder, folder.path, o->args.log) : RELUME_ENOMEM;
     }
     fputs(json ? "{\"brackets\": [" : "", report);
     for (int i = 0; !status && i < groups; i++)
-        status = run_group(c, list, notes, group, i, folder.path, report, o);
+        status = run_group(list, notes, group, i, folder.path, report, o);
     fputs(json ? "]}\n" : "", report);
     return fill_end(&folder, status);
 }
@@ -292,11 +258,11 @@ static relume_status run_groups(const struct choices *c, struct relume_photograp
 static relume_status run(const struct args *args)
 {
     const struct hdr_options *o = (const void *)args;
-    struct choices choices;
     struct relume_photographs list;
     char *text = NULL;
     size_t size = 0;
-    relume_status status = parse_choices(&choices, o);
+    relume_status status =
+        is_file(o->output) ? picture_name(args->log, "-o", o->output) : RELUME_OK;
     if (!status)
         status = relume_photographs_list(
             &list, o->args.input, o->args.inputs,
@@ -306,8 +272,7 @@ static relume_status run(const struct args *args)
     struct relume_exif *notes = calloc((size_t)list.count, sizeof *notes);
     int *group = calloc((size_t)list.count, sizeof *group);
     FILE *report = open_memstream(&text, &size);
-    status = notes && group && report ? run_groups(&choices, &list, notes, group, report, o)
-                                      : RELUME_ENOMEM;
+    status = notes && group && report ? run_groups(&list, notes, group, report, o) : RELUME_ENOMEM;
     if (report && fclose(report) && !status)
         status = RELUME_ENOMEM;
     if (!status)
@@ -328,6 +293,5 @@ const struct command command_hdr = {
     .max_inputs = 4096,
     .options = options,
     .size = sizeof(struct hdr_options),
-    .defaults = &(const struct hdr_options){.weights = "spline", .align = "none"},
     .run = run,
 };

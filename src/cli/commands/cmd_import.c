@@ -3,28 +3,25 @@
 
 struct import_options {
     struct args args;
-    const char *output, *compression;
+    const char *output;
+    enum relume_compression compression;
 };
 #define OPTIONS struct import_options
 
 static const struct option options[] = {
-    TEXT_AS(OPTION_RELUME, "-o", output, "output", "FILE.exr", "the relume file to write"),
-    TEXT("--compression", compression, "output", "C",
-         "none, rle, zip or piz (all lossless); default: piz"),
+    GROUP("output"),
+    OUTPUT(OPTION_RELUME, output, "FILE.exr", "the relume file to write"),
+    NAME("--compression", compression, "C", "none, rle, zip or piz (all lossless); default: piz",
+         RELUME_COMPRESS_NONE, "none", "rle", "zip", "piz"),
     {0},
 };
 
 static relume_status run(const struct args *args)
 {
     const struct import_options *o = (const void *)args;
-    static const char *const names[] = {"none", "rle", "zip", "piz", NULL};
-    struct relume_import_params p = {.log = o->args.log, .threads = o->args.threads};
-    const char *compression = o->compression;
-    if (!o->output)
-        return usage_error("import: expected -o FILE.exr");
-    if (relume_compression_parse(&p.compression, compression))
-        return unknown_name("--compression", compression, names);
-    return relume_import(o->args.input[0], o->output, &p);
+    return relume_import(args->input[0], o->output,
+                         relume_import_params(.log = args->log, .threads = args->threads,
+                                              .compression = o->compression));
 }
 
 const struct command command_import = {
@@ -36,6 +33,5 @@ const struct command command_import = {
     .max_inputs = 1,
     .options = options,
     .size = sizeof(struct import_options),
-    .defaults = &(const struct import_options){.compression = "piz"},
     .run = run,
 };

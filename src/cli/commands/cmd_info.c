@@ -11,7 +11,9 @@ struct info_options {
 #define OPTIONS struct info_options
 
 static const struct option options[] = {
-    FLAG("--json", json, "output", "one JSON object"),
+    GROUP("output"),
+    FLAG("--json", json, "one JSON object"),
+    GROUP("input"),
     ALLOW_OUTSIDE_OPTION,
     {0},
 };

@@ -7,48 +7,51 @@
 struct lightfield_options {
     struct args args;
     struct views_options views;
-    const char *names, *colmap, *grid;
+    const char *names, *colmap;
     bool slab, json, fill, turn, keep_order, depth_from_views;
     double baseline, baseline_v, distance, st_z, window, focus_disparity;
-    int width;
+    int width, grid[2];
 };
 #define OPTIONS struct lightfield_options
 
 static const struct option options[] = {
     VIEWS_OPTIONS,
-    FLAG("--json", json, "output", "print one JSON object"),
-    TEXT("--names", names, "grid of cameras", "PATTERN",
+    GROUP("output"),
+    FLAG("--json", json, "print one JSON object"),
+    GROUP("grid of cameras"),
+    TEXT("--names", names, "PATTERN",
          "places in the names, with {row}, {column}, {n}, {u}, {v}, *; default: found"),
-    FLAG("--fill", fill, "grid of cameras", "a missing camera is filled by the nearest"),
-    FLAG("--turn", turn, "grid of cameras", "columns run to the left and rows upwards"),
-    FLAG("--keep-order", keep_order, "grid of cameras",
+    FLAG("--fill", fill, "a missing camera is filled by the nearest"),
+    FLAG("--turn", turn, "columns run to the left and rows upwards"),
+    FLAG("--keep-order", keep_order,
          "keep the order of the names even if the photographs suggest another"),
-    NUMBER("--baseline", baseline, "grid of cameras", "W",
+    NUMBER("--baseline", baseline, "W",
            "world units from the first to the last column of cameras; default 1", 1e-6, 1e6),
-    NUMBER("--baseline-v", baseline_v, "grid of cameras", "H",
+    NUMBER("--baseline-v", baseline_v, "H",
            "world units from the first to the last row; default: by positions in the names, else "
            "rows are as far apart as columns",
            1e-6, 1e6),
-    NUMBER("--distance", distance, "grid of cameras", "D",
+    NUMBER("--distance", distance, "D",
            "world units from the cameras to the st plane, default 3; --colmap: units of the model",
            1e-6, 1e6),
-    NUMBER("--st-z", st_z, "grid of cameras", "Z", "height of the st plane; default 0", -1e6, 1e6),
-    NUMBER("--window", window, "grid of cameras", "W", "width of the st window; default 2", 1e-6,
-           1e6),
-    NUMBER("--focus-disparity", focus_disparity, "grid of cameras", "PX",
+    NUMBER("--st-z", st_z, "Z", "height of the st plane; default 0", -1e6, 1e6),
+    NUMBER("--window", window, "W", "width of the st window; default 2", 1e-6, 1e6),
+    NUMBER("--focus-disparity", focus_disparity, "PX",
            "pixels by which a point on the st (focus) plane moves from one camera to the next; "
            "default 0",
            -4096, 4096),
-    TEXT("--colmap", colmap, "cameras with known poses", "DIR",
+    GROUP("cameras with known poses"),
+    TEXT("--colmap", colmap, "DIR",
          "poses of the photographs (cameras.txt, images.txt): resampled to a slab"),
-    TEXT("--views", grid, "cameras with known poses", "GxG",
-         "--colmap: grid of cameras to make; default 5x5"),
-    INT("--width", width, "cameras with known poses", "N", "--colmap: width of a view", 1, 65536),
-    FLAG("--depth-from-views", depth_from_views, "depth",
+    SIZE("--views", grid, "GxG", "--colmap: grid of cameras to make; default 5x5", 1, 9999),
+    INT("--width", width, "N", "--colmap: width of a view", 1, 65536),
+    GROUP("depth"),
+    FLAG("--depth-from-views", depth_from_views,
          "estimate the depth of a light field's views; its capture is the input"),
-    TEXT("--depth-range", views.depth_range, "depth", "A,B",
-         "nearest and farthest distance from the camera plane"),
-    FLAG("--slab", slab, "input", NULL),  // of relume capture
+    NUMBERS("--depth-range", views.depth_range, "A,B",
+            "nearest and farthest distance from the camera plane", 2),
+    GROUP("input"),
+    FLAG("--slab", slab, NULL),  // of relume capture
     {0},
 };
 
@@ -67,14 +70,11 @@ static relume_status slab(const struct lightfield_options *o, const struct relum
 static relume_status posed(const struct lightfield_options *o, const char *photos,
                            const struct relume_ingest_params *p)
 {
-    struct relume_posed_params posed = {
+    const struct relume_posed_params posed = {
         .width = o->width,
         .distance = o->distance,
+        .grid = {o->grid[0], o->grid[1]},
     };
-    char rest;
-    const char *grid = o->grid;
-    if (grid && sscanf(grid, "%4dx%4d%c", &posed.grid[0], &posed.grid[1], &rest) != 2)
-        return usage_error("--views: expected a grid like 5x5; found '%s'", grid);
     if (o->args.inputs != 1)
         return usage_error("--colmap: expected the folder of the photographs; found %d input%s",
                            o->args.inputs, relume_plural(o->args.inputs));
@@ -113,14 +113,13 @@ static relume_status depth_of(const struct lightfield_options *o)
     struct relume_slab_depth_params p = {
         .log = o->args.log,
         .force = o->views.force,
+        .range = {o->views.depth_range[0], o->views.depth_range[1]},
         .threads = o->args.threads,
     };
     if (o->args.inputs != 1)
         return usage_error("--depth-from-views: expected one capture; found %d", o->args.inputs);
-    relume_status status = parse_depth_range(p.range, &o->views);
-    if (status)
-        return status;
-    status = relume_capture_open(&c, o->args.input[0], relume_capture_params(.log = p.log));
+    relume_status status =
+        relume_capture_open(&c, o->args.input[0], relume_capture_params(.log = p.log));
     if (!status)
         status = relume_slab_depth(&report, c, o->views.output, &p);
     if (!status && (o->json || !o->args.quiet))
@@ -136,8 +135,6 @@ static relume_status run(const struct args *args)
     const struct lightfield_options *o = (const void *)args;
     struct relume_vec3 *lights = NULL;
     struct relume_ingest_params p;
-    if (!o->views.output)
-        return usage_error("lightfield: expected -o DIR");
     if ((o->colmap != NULL) + o->depth_from_views + o->slab > 1)
         return usage_error("lightfield: expected one of --colmap and --depth-from-views; compute "
                            "depth in a second run");

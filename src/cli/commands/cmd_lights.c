@@ -1,34 +1,30 @@
 // cmd_lights.c - relume lights: a pattern of directions and how even it is
-#include "pattern_option.h"
+#include "cli.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 struct lights_options {
     struct args args;
     int count, seed;
+    enum { POLE_Z, POLE_Y } pole;
     bool hemisphere, json;
-    const char *pole;
-    const char *pattern;
+    const struct relume_pattern *pattern;
 };
 #define OPTIONS struct lights_options
 
 static const struct option options[] = {
-    PATTERN_OPTION,
-    INT("-n", count, "lights", "N", "number of directions; default 100", 1, 65536),
-    FLAG("--hemisphere", hemisphere, "lights", "only directions on the pole's side"),
-    TEXT("--pole", pole, "lights", "z|y", "the pole: z (planar, slab; default) or y (panoramas)"),
-    INT("--seed", seed, "lights", "S", "seed of the random patterns; default 0", 0, 2147483647),
-    FLAG("--json", json, "output", "print one JSON object"),
+    GROUP("lights"),
+    ENTRY("--pattern", pattern, "P",
+          "hammersley (default), grid, random, jittered, poisson, spiral", relume_patterns, NULL),
+    INT("-n", count, "N", "number of directions; default 100", 1, 65536),
+    FLAG("--hemisphere", hemisphere, "only directions on the pole's side"),
+    NAME("--pole", pole, "z|y", "the pole: z (planar, slab; default) or y (panoramas)", POLE_Z, "z",
+         "y"),
+    INT("--seed", seed, "S", "seed of the random patterns; default 0", 0, 2147483647),
+    GROUP("output"),
+    FLAG("--json", json, "print one JSON object"),
     {0},
 };
-
-static relume_status choose_pole(bool *pole_y, const char *name)
-{
-    static const char *const names[] = {"z", "y", NULL};
-    *pole_y = !strcmp(name, "y");
-    return *pole_y || !strcmp(name, "z") ? RELUME_OK : unknown_name("pole", name, names);
-}
 
 static void print_json(const struct relume_pattern *pattern, bool hemisphere,
                        const struct relume_vec3 *v, int n, double discrepancy)
@@ -52,21 +48,17 @@ static void print_lines(const struct relume_vec3 *v, int n, double discrepancy)
 static relume_status run(const struct args *args)
 {
     const struct lights_options *o = (const void *)args;
-    const struct relume_pattern *pattern;
     struct relume_directions_params params = {
         .log = o->args.log,
         .seed = (uint64_t)o->seed,
         .hemisphere = o->hemisphere,
+        .pole_y = o->pole == POLE_Y,
     };
-    relume_status status = choose_pattern(&pattern, o->pattern);
-    if (!status)
-        status = choose_pole(&params.pole_y, o->pole);
-    if (status)
-        return status;
+    const struct relume_pattern *pattern = o->pattern ? o->pattern : relume_patterns[0];
     const int n = o->count;
     struct relume_vec3 *v = malloc((size_t)n * sizeof *v);
     double discrepancy = 0.0;
-    status = v ? relume_directions_make(v, n, pattern, &params) : RELUME_ENOMEM;
+    relume_status status = v ? relume_directions_make(v, n, pattern, &params) : RELUME_ENOMEM;
     if (!status)
         status = relume_directions_discrepancy(&discrepancy, v, n, &params);
     if (!status && o->json)
@@ -86,6 +78,6 @@ const struct command command_lights = {
     .max_inputs = 0,
     .options = options,
     .size = sizeof(struct lights_options),
-    .defaults = &(const struct lights_options){.pole = "z", .count = 100},
+    .defaults = &(const struct lights_options){.count = 100},
     .run = run,
 };

@@ -8,24 +8,29 @@
 
 struct query_options {
     struct args args;
-    const char *eye, *direction, *rays;
-    bool json;
+    struct relume_ray ray;
+    const char *rays;
+    bool json, nearest, allow_outside;
+    enum relume_interpolation interpolation;
     struct light_options lighting;
-    struct interpolate_options interpolation;
     int cpu_mask;
-    bool allow_outside;
 };
 #define OPTIONS struct query_options
 
 static const struct option options[] = {
-    TEXT("--eye", eye, "camera", "x,y,z", "where the ray starts"),
-    TEXT("--direction", direction, "camera", "x,y,z", "where it goes, into the scene"),
-    TEXT("--rays", rays, "camera", "FILE",
+    GROUP("camera"),
+    POINT("--eye", ray.eye, "x,y,z", "where the ray starts"),
+    POINT("--direction", ray.direction, "x,y,z", "where it goes, into the scene"),
+    TEXT("--rays", rays, "FILE",
          "many rays instead, one per line: eye and direction, six numbers; - reads standard input"),
-    LIGHT_OPTIONS,
     INTERPOLATE_OPTIONS,
+    GROUP("lights"),
+    LIGHT_OPTIONS,
+    GROUP("machine"),
     CPU_OPTION,
-    FLAG("--json", json, "output", "one JSON object"),
+    GROUP("output"),
+    FLAG("--json", json, "one JSON object"),
+    GROUP("input"),
     ALLOW_OUTSIDE_OPTION,
     {0},
 };
@@ -75,9 +80,9 @@ static void count_none(const struct query_options *o, const float (*rgb)[3], int
         none += isnan(rgb[i][0]);
     if (!none)
         return;
-    say(&o->args, RELUME_WARNING,
-        "%d of %d rays are not in the file (they miss its window or its cameras): %s", none, n,
-        o->json ? "null" : "none");
+    announce(&o->args, RELUME_WARNING,
+             "%d of %d rays are not in the file (they miss its window or its cameras): %s", none, n,
+             o->json ? "null" : "none");
 }
 
 static relume_status query(const struct query_options *o, const struct relume_ray *rays, int n,
@@ -86,16 +91,15 @@ static relume_status query(const struct query_options *o, const struct relume_ra
     relume_pack *pack;
     struct prefix_log about;
     struct relume_frame_params params = parse_frame(&o->args, &o->lighting, o->cpu_mask);
-    relume_status status = parse_interpolation(&o->interpolation, &params);
-    if (status)
-        return status;
     float(*rgb)[3] = malloc((size_t)(n ? n : 1) * sizeof *rgb);
     if (!rgb)
         return RELUME_ENOMEM;
-    status = relume_open(&pack, o->args.input[0],
-                         relume_open_params(.log = o->args.log, .threads = o->args.threads,
-                                            .allow_outside = o->allow_outside));
+    relume_status status =
+        relume_open(&pack, o->args.input[0],
+                    relume_open_params(.log = o->args.log, .threads = o->args.threads,
+                                       .allow_outside = o->allow_outside));
     params.log = prefix_log(&about, o->args.log, o->args.input[0]);
+    params.interpolation = o->nearest ? RELUME_INTERPOLATE_CONSTANT : o->interpolation;
     if (!status)
         status = relume_query_rays(rgb, pack, rays, n, lights, count, &params);
     if (!status)
@@ -107,39 +111,23 @@ static relume_status query(const struct query_options *o, const struct relume_ra
     return status;
 }
 
-static relume_status take_rays(const struct query_options *o, struct relume_ray **rays, int *n)
-{
-    const char *path = o->rays;
-    struct relume_ray ray = {0};
-    *rays = NULL;
-    if (path)
-        return rays_read(rays, n, path, o->args.log);
-    relume_status status = args_vec3(&ray.eye, "--eye", o->eye);
-    if (!status)
-        status = args_vec3(&ray.direction, "--direction", o->direction);
-    if (!status && !(*rays = malloc(sizeof **rays)))
-        status = RELUME_ENOMEM;
-    if (!status)
-        **rays = ray;
-    *n = 1;
-    return status;
-}
-
 static relume_status run(const struct args *args)
 {
     const struct query_options *o = (const void *)args;
+    const bool eye = given(o, &o->ray.eye), direction = given(o, &o->ray.direction);
     relume_rig *rig = NULL;
-    struct relume_ray *rays;
+    struct relume_ray *rays = NULL;
     const struct relume_light *lights;
-    int count, n;
-    const bool one = o->eye || o->direction;
-    if (o->rays ? one : !o->eye || !o->direction)
+    int count, n = 1;
+    if (o->rays ? eye || direction : !eye || !direction)
         return usage_error("query: expected --eye x,y,z and --direction x,y,z, or --rays FILE");
-    relume_status status = take_rays(o, &rays, &n);
+    if (o->nearest && o->interpolation)
+        return usage_error("expected one of --interpolate and --nearest");
+    relume_status status = o->rays ? rays_read(&rays, &n, o->rays, args->log) : RELUME_OK;
     if (!status)
         status = parse_lights(args, &o->lighting, &rig, &lights, &count);
     if (!status)
-        status = query(o, rays, n, lights, count);
+        status = query(o, rays ? rays : &o->ray, n, lights, count);
     relume_rig_destroy(&rig);
     free(rays);
     return status;

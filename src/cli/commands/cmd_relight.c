@@ -8,190 +8,147 @@
 #include <math.h>
 #include <string.h>
 
+enum { GLARE_PASS = RELUME_PASSES };  // of the frame, not of its views
+
 struct relight_options {
     struct args args;
-    const char *output, *eye, *look_at, *up, *projection, *size, *filter, *pass, *objects, *capture,
-        *range;
-    int view, samples, radius;
-    double fov, pan, tilt, zoom, aperture, focus, gain, highlight, exponent;
-    bool alpha;
+    const char *output, *objects, *capture;
+    int size[2], view, samples, radius, cpu_mask;
+    struct relume_vec3 eye, look_at, up;
+    double fov, pan, tilt, zoom, aperture, focus, gain, highlight, exponent, range[2];
+    enum { PERSPECTIVE, STEREOGRAPHIC, PLANET } projection;
+    enum relume_filter filter;
+    enum relume_interpolation interpolation;
+    unsigned pass;
+    bool nearest, alpha, allow_outside;
     struct light_options lighting;
-    struct interpolate_options interpolation;
     struct develop_options develop;
     struct eye_options glare;
-    bool allow_outside;
-    int cpu_mask;
 };
 #define OPTIONS struct relight_options
 
 static const struct option options[] = {
-    TEXT_AS(OPTION_PICTURE, "-o", output, "output", "OUT",
-            "picture to write: .exr (linear), .png, .jpg, .tif, .hdr, ..."),
+    GROUP("output"),
+    OUTPUT(OPTION_PICTURE, output, "OUT",
+           "picture to write: .exr (linear), .png, .jpg, .tif, .hdr, ..."),
+    GROUP("lights"),
     LIGHT_OPTIONS,
-    INT("--view", view, "camera", "N", "a captured view at its own size (panoramas: unfolded)", 0,
-        65535),
-    TEXT("--eye", eye, "camera", "x,y,z",
-         "slab: look at the window from this point; default: the middle of the cameras"),
-    TEXT("--look-at", look_at, "camera", "x,y,z",
-         "--eye: where it looks; default: the middle of the object"),
-    TEXT("--up", up, "camera", "x,y,z",
-         "--eye: the direction that is up in the picture; default: 0,1,0"),
-    NUMBER("--fov", fov, "camera", "DEG",
+    GROUP("camera"),
+    INT("--view", view, "N", "a captured view at its own size (panoramas: unfolded)", 0, 65535),
+    POINT("--eye", eye, "x,y,z",
+          "slab: look at the window from this point; default: the middle of the cameras"),
+    POINT("--look-at", look_at, "x,y,z",
+          "--eye: where it looks; default: the middle of the object"),
+    POINT("--up", up, "x,y,z", "--eye: the direction that is up in the picture; default: 0,1,0"),
+    NUMBER("--fov", fov, "DEG",
            "--eye: horizontal field of view; default: the slabs' windows; --pass glare: of a "
            "planar file",
            0.01, 179),
-    NUMBER("--pan", pan, "camera", "A", "panorama: degrees to the right", 0, 0),
-    NUMBER("--tilt", tilt, "camera", "A", "panorama: degrees up", 0, 0),
-    NUMBER("--zoom", zoom, "camera", "F", "panorama: 1 shows 90 degrees; default: 1", 0.01, 1000),
-    TEXT("--projection", projection, "camera", "P",
+    NUMBER("--pan", pan, "A", "panorama: degrees to the right", 0, 0),
+    NUMBER("--tilt", tilt, "A", "panorama: degrees up", 0, 0),
+    NUMBER("--zoom", zoom, "F", "panorama: 1 shows 90 degrees; default: 1", 0.01, 1000),
+    NAME("--projection", projection, "P",
          "panorama: perspective (default), stereographic, planet (seen from above, as a small "
-         "globe)"),
-    TEXT("--size", size, "picture", "WxH", SIZE_HELP),
-    TEXT("--filter", filter, "picture", "F",
-         "resampling: linear (auto), cubic or nearest to enlarge; all but nearest average to "
-         "reduce"),
+         "globe)",
+         PERSPECTIVE, "perspective", "stereographic", "planet"),
     INTERPOLATE_OPTIONS,
-    NUMBER("--aperture", aperture, "camera", "A",
+    NUMBER("--aperture", aperture, "A",
            "slab: diameter of the lens, which blurs what is out of focus; default: 0 (all sharp)",
            0, 1e9),
-    NUMBER("--focus", focus, "camera", "Z",
+    NUMBER("--focus", focus, "Z",
            "slab: the plane at z = Z is sharp; free camera: distance from the look-at point to the "
            "plane in focus; default: the st plane, the look-at point",
            0, 0),
+    GROUP("picture"),
+    SIZE("--size", size, "WxH",
+         "size of the picture: WxH, W (or Wx) or xH; one alone keeps the proportions, both add "
+         "black borders if the proportions differ",
+         0, 65536),
+    NAME("--filter", filter, "F",
+         "resampling: linear (auto), cubic or nearest to enlarge; all but nearest average to "
+         "reduce",
+         RELUME_FILTER_DEFAULT, "auto", "nearest", "linear", "cubic"),
     DEVELOP_OPTIONS,
-    TEXT("--pass", pass, "picture", "NAME",
+    NAME("--pass", pass, "NAME",
          "colour, normals, specular, diffuse-gain, unsharp, luminance, false-colour, difference, "
-         "glare"),
-    NUMBER("--gain", gain, "picture", "G",
+         "glare",
+         RELUME_PASS_COLOUR, "colour", "normals", "specular", "diffuse-gain", "unsharp",
+         "luminance", "false-colour", "difference", "glare"),
+    NUMBER("--gain", gain, "G",
            "--pass diffuse-gain, unsharp: how strongly relief is exaggerated; default: 2", 1, 20),
-    NUMBER("--highlight", highlight, "picture", "H",
+    NUMBER("--highlight", highlight, "H",
            "--pass specular: brightness against the brightest parts of the picture; default: 0.6",
            0.01, 10),
-    NUMBER("--exponent", exponent, "picture", "E",
+    NUMBER("--exponent", exponent, "E",
            "--pass specular: how narrow the highlight is, 1 matt to 1000 like a mirror; default: "
            "40",
            1, 1000),
-    INT("--radius", radius, "picture", "PX",
-        "--pass unsharp: sharpen detail finer than this; default: 4", 1, 64),
-    TEXT("--range", range, "picture", "LOW,HIGH",
-         "--pass false-colour: linear luminance of dark blue and of yellow; default: the "
-         "picture's"),
-    GLARE_OPTIONS,
-    FLAG("--alpha", alpha, "picture",
+    INT("--radius", radius, "PX", "--pass unsharp: sharpen detail finer than this; default: 4", 1,
+        64),
+    NUMBERS("--range", range, "LOW,HIGH",
+            "--pass false-colour: linear luminance of dark blue and of yellow; default: the "
+            "picture's",
+            2),
+    FLAG("--alpha", alpha,
          "make the background transparent where the capture has a mask: .png and .exr of a "
          "captured view"),
-    TEXT("--objects", objects, "objects", "FILE",
+    TEXT("--capture", capture, "CAPTURE", "--pass difference: the photographs"),
+    GROUP("glare"),
+    GLARE_OPTIONS,
+    GROUP("objects"),
+    TEXT("--objects", objects, "FILE",
          "objects covered with BTFs, in the scene (docs/objects.md); needs a file with depth"),
-    INT("--samples", samples, "objects", "N", "--objects: N x N rays a pixel; default 3", 1, 16),
-    TEXT("--capture", capture, "picture", "CAPTURE", "--pass difference: the photographs"),
+    INT("--samples", samples, "N", "--objects: N x N rays a pixel; default 3", 1, 16),
+    GROUP("input"),
     ALLOW_OUTSIDE_OPTION,
+    GROUP("machine"),
     CPU_OPTION,
     {0},
 };
 
-static bool wants_glare(const struct relight_options *o)
+static struct relume_pan_tilt pan_tilt(const struct relight_options *o)
 {
-    return !strcmp(o->pass, "glare");
-}
-
-static relume_status parse_filter(const struct relight_options *o,
-                                  struct relume_frame_params *params)
-{
-    static const char *const names[] = {"auto", "nearest", "linear", "cubic", NULL};
-    const char *name = o->filter;
-    return relume_filter_parse(&params->filter, name) ? unknown_name("--filter", name, names)
-                                                      : RELUME_OK;
-}
-
-static relume_status parse_look(const struct relight_options *o, struct relume_pan_tilt *look)
-{
-    static const char *const names[] = {"perspective", "stereographic", "planet", NULL};
-    const char *name = o->projection ? o->projection : names[0];
-    int which = 0;
-    while (names[which] && strcmp(names[which], name))
-        which++;
-    if (!names[which])
-        return unknown_name("--projection", name, names);
-    const bool planet = which == 2;
-    look->stereographic = which > 0;
-    look->pan_deg = o->pan;
-    look->tilt_deg = planet && !args_given(&o->args, &o->tilt) ? -90.0 : o->tilt;
-    look->zoom = o->zoom > 0.0 ? o->zoom : planet ? 0.5 : 1.0;
-    return RELUME_OK;
-}
-
-static relume_status parse_vector(const char *name, const char *text, struct relume_vec3 *out)
-{
-    return text ? args_vec3(out, name, text) : RELUME_OK;
-}
-
-static relume_status parse_eye(const struct relight_options *o, struct relume_camera *camera)
-{
-    camera->framing = RELUME_FRAME_EYE;
-    camera->aim.aimed = o->look_at;
-    camera->aim.field_of_view_deg = o->fov;
-    relume_status status = parse_vector("--eye", o->eye, &camera->eye);
-    if (!status)
-        status = parse_vector("--look-at", o->look_at, &camera->aim.at);
-    if (!status)
-        status = parse_vector("--up", o->up, &camera->aim.up);
-    return status;
+    const bool planet = o->projection == PLANET;
+    return (struct relume_pan_tilt){
+        .stereographic = o->projection != PERSPECTIVE,
+        .pan_deg = o->pan,
+        .tilt_deg = planet && !given(o, &o->tilt) ? -90.0 : o->tilt,
+        .zoom = o->zoom > 0.0 ? o->zoom
+                : planet      ? 0.5
+                              : 1.0,
+    };
 }
 
 static relume_status parse_camera(const struct relight_options *o, struct relume_camera *camera)
 {
-    const bool look = args_given(&o->args, &o->pan) || args_given(&o->args, &o->tilt) ||
-                      args_given(&o->args, &o->zoom) || o->projection;
-    relume_status status = RELUME_OK;
-    *camera = (struct relume_camera){0};
-    if (args_given(&o->args, &o->view) + (o->eye != NULL) + look > 1)
+    const bool eye = given(o, &o->eye), view = given(o, &o->view);
+    const bool look =
+        given(o, &o->pan) || given(o, &o->tilt) || given(o, &o->zoom) || given(o, &o->projection);
+    if (view + eye + look > 1)
         return usage_error(
             "relight: expected one of --view, --eye, --pan/--tilt/--zoom/--projection");
-    if (!o->eye && (o->look_at || o->up || (args_given(&o->args, &o->fov) && !wants_glare(o))))
+    if (!eye &&
+        (given(o, &o->look_at) || given(o, &o->up) || (given(o, &o->fov) && o->pass != GLARE_PASS)))
         return usage_error("relight: --look-at, --up and --fov need --eye");
-    if (args_given(&o->args, &o->view)) {
-        camera->framing = RELUME_FRAME_VIEW;
-        camera->view = o->view;
-    } else if (o->eye) {
-        status = parse_eye(o, camera);
-    } else if (look) {
-        camera->framing = RELUME_FRAME_LOOK;
-        status = parse_look(o, &camera->look);
-    }
-    return status ? status : parse_size(o->size, &camera->width, &camera->height);
-}
-
-static relume_status parse_slab(const struct relight_options *o, struct relume_frame_params *params)
-{
-    const bool nearest = o->interpolation.nearest;
-    const bool named = o->interpolation.name != NULL;
-    const bool lens = args_given(&o->args, &o->aperture) || args_given(&o->args, &o->focus);
-    if (nearest + named + lens > 1)
-        return usage_error("relight: expected one of --interpolate, --nearest, --aperture/--focus");
-    params->aperture = o->aperture;
-    return parse_interpolation(&o->interpolation, params);
-}
-
-static relume_status parse_pass(const struct relight_options *o, struct relume_frame_params *params)
-{
-    const char *name = o->pass;
-    const char *names[RELUME_PASSES + 2] = {NULL};
-    for (int i = 0; i < RELUME_PASSES; i++)
-        names[i] = relume_pass_name((enum relume_pass)i);
-    names[RELUME_PASSES] = "glare";  // of the frame, not of its views
-    if (!wants_glare(o) && relume_pass_parse(&params->pass, name))
-        return unknown_name("--pass", name, names);
-    if (params->pass != RELUME_PASS_COLOUR && o->objects)
-        return usage_error("objects can be shown in colour only; leave out --pass");
-    const bool difference = params->pass == RELUME_PASS_DIFFERENCE;
-    if (difference != (o->capture != NULL))
-        return usage_error("relight: --pass difference and --capture work only together");
+    *camera = (struct relume_camera){
+        .framing = view   ? RELUME_FRAME_VIEW
+                   : eye  ? RELUME_FRAME_EYE
+                   : look ? RELUME_FRAME_LOOK
+                          : RELUME_FRAME_DEFAULT,
+        .view = o->view,
+        .eye = o->eye,
+        .width = o->size[0],
+        .height = o->size[1],
+    };
+    if (eye)
+        camera->aim = (struct relume_look_at){given(o, &o->look_at), o->look_at, o->up, o->fov};
+    if (look)
+        camera->look = pan_tilt(o);
     return RELUME_OK;
 }
 
 // As the viewer's sliders. Each belongs to a pass or two.
-static relume_status parse_strength(const struct relight_options *o, struct relume_pass_params *out,
-                                    enum relume_pass pass)
+static relume_status check_pass(const struct relight_options *o)
 {
     const struct {
         const char *option;
@@ -203,25 +160,21 @@ static relume_status parse_strength(const struct relight_options *o, struct relu
         {"--exponent", &o->exponent, RELUME_PASS_SPECULAR, RELUME_PASS_SPECULAR},
         {"--radius", &o->radius, RELUME_PASS_UNSHARP, RELUME_PASS_UNSHARP},
         {"--range", &o->range, RELUME_PASS_FALSE_COLOUR, RELUME_PASS_FALSE_COLOUR},
+        {"--capture", &o->capture, RELUME_PASS_DIFFERENCE, RELUME_PASS_DIFFERENCE},
     };
-    double ends[2] = {0.0, 0.0};
     for (size_t i = 0; i < sizeof belongs / sizeof *belongs; i++)
-        if (args_given(&o->args, belongs[i].member) && pass != belongs[i].pass &&
-            pass != belongs[i].other)
+        if (given(o, belongs[i].member) && o->pass != belongs[i].pass &&
+            o->pass != belongs[i].other)
             return usage_error("relight: %s works only with --pass %s", belongs[i].option,
                                relume_pass_name(belongs[i].pass));
-    if (o->range && (!parse_numbers(o->range, ends, 2) || !(ends[0] >= 0.0 && ends[0] < ends[1])))
-        return usage_error(
-            "--range: expected two luminances LOW,HIGH, the first one smaller; found '%s'",
-            o->range);
-    *out = (struct relume_pass_params){
-        .gain = (float)o->gain,
-        .specular = (float)o->highlight,
-        .exponent = (float)o->exponent,
-        .radius = o->radius,
-        .low = (float)ends[0],
-        .top = (float)ends[1],
-    };
+    if (o->pass == RELUME_PASS_DIFFERENCE && !o->capture)
+        return usage_error("relight: --pass difference needs --capture");
+    if (o->pass != RELUME_PASS_COLOUR && o->pass != GLARE_PASS && o->objects)
+        return usage_error("objects can be shown in colour only; leave out --pass");
+    if (given(o, &o->range) && !(o->range[0] >= 0.0 && o->range[0] < o->range[1]))
+        return usage_error("--range: expected two luminances LOW,HIGH, the first one smaller; "
+                           "found '%g,%g'",
+                           o->range[0], o->range[1]);
     return RELUME_OK;
 }
 
@@ -351,15 +304,15 @@ static relume_status add_alpha(struct relume_image *frame, relume_pack *pack,
 }
 
 static relume_status render(const struct relight_options *o, const struct relume_camera *camera,
-                            struct relume_frame_params params, struct developing developing,
-                            const struct relume_light *lights, int count)
+                            struct relume_frame_params params, const struct relume_light *lights,
+                            int count)
 {
     relume_pack *pack;
     relume_renderer *renderer = NULL;
     relume_capture *capture = NULL;
     struct prefix_log about;
     struct relume_image frame = {0};
-    const char *output = o->output;
+    const bool lens = given(o, &o->aperture) || given(o, &o->focus);
     relume_status status =
         relume_open(&pack, o->args.input[0],
                     relume_open_params(.log = o->args.log, .threads = o->args.threads,
@@ -371,8 +324,8 @@ static relume_status render(const struct relight_options *o, const struct relume
     const bool free_eye = info->slabs || relume_look_at_given(&camera->aim);
     const double plane_z = free_eye ? 0.0 : info->geometry.st_z;
     params.log = prefix_log(&about, o->args.log, o->args.input[0]);
-    params.focus = args_given(&o->args, &o->focus) ? o->focus - plane_z : 0.0;
-    if (!free_eye && (args_given(&o->args, &o->aperture) || args_given(&o->args, &o->focus)))
+    params.focus = given(o, &o->focus) ? o->focus - plane_z : 0.0;
+    if (!free_eye && lens)
         params.interpolation = RELUME_INTERPOLATE_LINEAR;
     status = open_capture(o, &capture);
     params.capture = capture;
@@ -382,16 +335,16 @@ static relume_status render(const struct relight_options *o, const struct relume
         status = relume_renderer_set_lights(renderer, lights, count);
     if (!status)
         status = make_frame(&frame, renderer, o, camera);
-    if (!status && wants_glare(o))
+    if (!status && o->pass == GLARE_PASS)
         status = add_glare(&frame, renderer, o, camera);
-    if (!status && params.pass == RELUME_PASS_NORMALS)
-        show_normals(&frame, output);
+    if (!status && o->pass == RELUME_PASS_NORMALS)
+        show_normals(&frame, o->output);
     else if (!status)
-        status = develop(&frame, developing, output);
+        status = develop(&frame, &o->develop, o->output);
     if (!status && o->alpha)
         status = add_alpha(&frame, pack, camera);
     if (!status)
-        status = relume_image_save(&frame, output, relume_image_params(.log = o->args.log));
+        status = relume_image_save(&frame, o->output, relume_image_params(.log = o->args.log));
     relume_image_destroy(&frame);
     relume_renderer_destroy(&renderer);
     relume_capture_destroy(&capture);
@@ -402,34 +355,36 @@ static relume_status render(const struct relight_options *o, const struct relume
 static relume_status run(const struct args *args)
 {
     const struct relight_options *o = (const void *)args;
-    struct relume_camera camera;
+    const struct relume_pass_params strength = {
+        .gain = (float)o->gain,
+        .specular = (float)o->highlight,
+        .exponent = (float)o->exponent,
+        .radius = o->radius,
+        .low = (float)o->range[0],
+        .top = (float)o->range[1],
+    };
     struct relume_frame_params params = parse_frame(args, &o->lighting, o->cpu_mask);
-    struct relume_pass_params strength = {0};
-    struct developing developing = {0};
+    struct relume_camera camera;
     relume_rig *rig = NULL;
     const struct relume_light *lights;
     int count;
-    if (!o->output)
-        return usage_error("relight: expected -o OUT");
     if (o->alpha && !relume_image_saves_alpha(o->output))
         return usage_error("--alpha: expected an output that ends in .png or .exr; found '%s'",
                            o->output);
+    if (o->nearest + (o->interpolation > 0) + (given(o, &o->aperture) || given(o, &o->focus)) > 1)
+        return usage_error("relight: expected one of --interpolate, --nearest, --aperture/--focus");
+    params.aperture = o->aperture;
+    params.interpolation = o->nearest ? RELUME_INTERPOLATE_CONSTANT : o->interpolation;
+    params.filter = o->filter;
+    params.pass = o->pass == GLARE_PASS ? RELUME_PASS_COLOUR : o->pass;
+    params.strength = &strength;
     relume_status status = parse_camera(o, &camera);
     if (!status)
-        status = parse_slab(o, &params);
-    if (!status)
-        status = parse_filter(o, &params);
-    if (!status)
-        status = parse_pass(o, &params);
-    if (!status)
-        status = parse_strength(o, &strength, params.pass);
-    params.strength = &strength;
-    if (!status)
-        status = parse_developing(&o->develop, &developing);
+        status = check_pass(o);
     if (!status)
         status = parse_lights(args, &o->lighting, &rig, &lights, &count);
     if (!status)
-        status = render(o, &camera, params, developing, lights, count);
+        status = render(o, &camera, params, lights, count);
     relume_rig_destroy(&rig);
     return status;
 }
@@ -443,9 +398,7 @@ const struct command command_relight = {
     .max_inputs = 1,
     .options = options,
     .size = sizeof(struct relight_options),
-    .defaults = &(const struct relight_options){.filter = "auto",
-                                                .pass = "colour",
-                                                .samples = 3,
+    .defaults = &(const struct relight_options){.samples = 3,
                                                 .cpu_mask = ALL_KERNELS,
                                                 .glare = GLARE_DEFAULTS},
     .run = run,

@@ -10,238 +10,111 @@
 
 struct sweep_options {
     struct args args;
-    const char *output, *basis, *coefficients, *interpolant, *colour, *bits, *step, *codebook,
-        *test, *domain, *transfer;
+    const char *output, *test;
+    struct entries basis, interpolant;  // NULL: auto
+    struct ints coefficients, luminance, bits, step, codebook;
+    enum relume_domain domain;
+    struct relume_transfer transfer;
     int leave_out, memory;
-    bool skip_missing, json, csv;
+    bool skip_missing, json, csv, allow_outside;
     struct book_options books;
-    bool allow_outside;
 };
 #define OPTIONS struct sweep_options
 
 static const struct option options[] = {
-    TEXT_AS(OPTION_OUTPUT, "-o", output, "output", "OUT",
+    GROUP("output"),
+    TEXT_AS(OPTION_OUTPUT, "-o", output, "OUT",
             "write OUT.csv, OUT.json, OUT.svg, OUT.png; keep OUT.resume"),
-    TEXT("--basis", basis, "model", "LIST", "bases, separated by commas; default: all"),
-    TEXT("--coefficients", coefficients, "model", "LIST",
-         "sizes; default: those natural to each basis"),
-    TEXT("--interpolant", interpolant, "model", "LIST",
-         "of pca and table, also auto; default: their own"),
-    TEXT("--colour", colour, "model", "LIST", "rgb, luminance; default: rgb"),
-    TEXT("--bits", bits, "model", "LIST", "8, 10, 12, 16, half; default: 8"),
-    TEXT("--step", step, "model", "LIST", "plane, common; default: plane"),
-    TEXT("--codebook", codebook, "model", "LIST", "code vectors, 0: planes; default: 0"),
+    FLAG("--json", json, "print one JSON object"),
+    FLAG("--csv", csv, "print comma-separated values"),
+    GROUP("model"),
+    ENTRIES("--basis", basis, "LIST", "bases, separated by commas; default: all", relume_bases,
+            NAMES("auto")),
+    WORDS("--coefficients", coefficients, "LIST", "sizes; default: those natural to each basis",
+          OPTION_INT, .min = 1, .max = 4096),
+    ENTRIES("--interpolant", interpolant, "LIST", "of pca and table, also auto; default: their own",
+            relume_interpolants, NAMES("auto")),
+    WORDS("--colour", luminance, "LIST", "rgb, luminance; default: rgb", OPTION_NAME,
+          .names = NAMES("rgb", "luminance")),
+    WORDS("--bits", bits, "LIST", "8, 10, 12, 16, half; default: 8", OPTION_OWN, .take = take_bits),
+    WORDS("--step", step, "LIST", "plane, common; default: plane", OPTION_NAME,
+          .min = RELUME_STEP_PLANE, .names = NAMES("plane", "common")),
+    WORDS("--codebook", codebook, "LIST", "code vectors, 0: planes; default: 0", OPTION_INT,
+          .max = 65536),
+    INT("--leave-out", leave_out, "K", "lights left out at a time; default: 1", 1, 65535),
+    TEXT("--test", test, "CAPTURE", "measure on the lights of another capture instead"),
+    NAME("--domain", domain, "D", "auto, linear or display; default: as encode", RELUME_DOMAIN_AUTO,
+         "auto", "linear", "display"),
+    GROUP("codebooks"),
     BOOK_FORM_OPTIONS,
-    INT("--leave-out", leave_out, "model", "K", "lights left out at a time; default: 1", 1, 65535),
-    TEXT("--test", test, "model", "CAPTURE", "measure on the lights of another capture instead"),
-    TEXT("--domain", domain, "model", "D", "auto, linear or display; default: as encode"),
-    INT("--memory", memory, "machine", "MB",
-        "for samples; more than fit are thinned out; default: 1024", 1, 1048576),
-    TEXT("--transfer", transfer, "input", "T", "linear, srgb or gamma:G; overrides the capture's"),
-    FLAG("--skip-missing", skip_missing, "input", "leave out lights whose image does not exist"),
+    GROUP("machine"),
+    INT("--memory", memory, "MB", "for samples; more than fit are thinned out; default: 1024", 1,
+        1048576),
+    GROUP("input"),
+    TRANSFER("--transfer", transfer, "linear, srgb or gamma:G; overrides the capture's"),
+    FLAG("--skip-missing", skip_missing, "leave out lights whose image does not exist"),
     ALLOW_OUTSIDE_OPTION,
-    FLAG("--json", json, "output", "print one JSON object"),
-    FLAG("--csv", csv, "output", "print comma-separated values"),
     {0},
 };
 
-enum { MOST = 64, MOST_ROWS = 4096, MOST_COEFFICIENTS = 4096 };
+enum { MOST_ROWS = 4096 };
 
 // ---------------------------------------------------------------- the grid
 
-struct grid {
-    const struct relume_basis *basis[MOST];
-    bool automatic[MOST];  // the basis is called auto: components with the interpolant chosen
-    const struct relume_interpolant *interpolant[MOST];  // NULL: chosen
-    int size[MOST], codes[MOST];
-    struct relume_books_params books;
-    bool share;
-    bool luminance[MOST];
-    enum relume_storage storage[MOST];
-    enum relume_step step[MOST];
-    int bases, interpolants, sizes, colours, storages, steps, books_count;
-};
-
-// The words of a comma-separated list, each given to `accept`.
-static relume_status parse_list(const char *option, const char *text, int *count, struct grid *grid,
-                                relume_status (*accept)(struct grid *, int, const char *))
+// Each way of storing. Halves and codebooks have no step.
+static void add_rows(struct sweep *sweep, struct sweep_row row)
 {
-    *count = 0;
-    while (*text) {
-        const size_t n = strcspn(text, ",");
-        char word[64];
-        if (n == 0 || n >= sizeof word)
-            return usage_error("%s: expected words separated by commas; found '%s'", option, text);
-        if (*count == MOST)
-            return usage_error("%s: expected at most %d words", option, MOST);
-        snprintf(word, sizeof word, "%.*s", (int)n, text);
-        const relume_status status = accept(grid, (*count)++, word);
-        if (status)
-            return status;
-        text += n;
-        if (*text == ',' && !*++text)
-            return usage_error("%s: expected a word after the last comma", option);
-    }
-    return *count ? RELUME_OK : usage_error("%s: expected a list; found nothing", option);
-}
-
-static relume_status accept_basis(struct grid *grid, int i, const char *word)
-{
-    const char *names[MOST] = {"auto"};
-    for (int n = 0; relume_bases[n]; n++)
-        names[n + 1] = relume_bases[n]->name;
-    grid->automatic[i] = !strcmp(word, "auto");
-    grid->basis[i] = grid->automatic[i] ? &relume_basis_pca : relume_basis_find(word);
-    return grid->basis[i] ? RELUME_OK : unknown_name("basis", word, names);
-}
-
-static relume_status accept_interpolant(struct grid *grid, int i, const char *word)
-{
-    const char *names[MOST] = {"auto"};
-    for (int n = 0; relume_interpolants[n]; n++)
-        names[n + 1] = relume_interpolants[n]->name;
-    grid->interpolant[i] = relume_interpolant_find(word);
-    return grid->interpolant[i] || !strcmp(word, "auto")
-               ? RELUME_OK
-               : unknown_name("--interpolant", word, names);
-}
-
-static bool parse_whole(const char *word, long least, long most, int *out)
-{
-    char *end;
-    const long number = strtol(word, &end, 10);
-    *out = (int)number;
-    return end != word && !*end && number >= least && number <= most;
-}
-
-static relume_status accept_size(struct grid *grid, int i, const char *word)
-{
-    if (parse_whole(word, 1, MOST_COEFFICIENTS, &grid->size[i]))
-        return RELUME_OK;
-    return usage_error("--coefficients: expected whole numbers from 1 to %d; found '%s'",
-                       MOST_COEFFICIENTS, word);
-}
-
-static relume_status accept_codes(struct grid *grid, int i, const char *word)
-{
-    if (parse_whole(word, 0, 65536, &grid->codes[i]))
-        return RELUME_OK;
-    return usage_error("--codebook: expected whole numbers from 0 to 65536; found '%s'", word);
-}
-
-static relume_status accept_colour(struct grid *grid, int i, const char *word)
-{
-    static const char *const names[] = {"rgb", "luminance", NULL};
-    grid->luminance[i] = !strcmp(word, names[1]);
-    return grid->luminance[i] || !strcmp(word, names[0]) ? RELUME_OK
-                                                         : unknown_name("--colour", word, names);
-}
-
-static relume_status accept_storage(struct grid *grid, int i, const char *word)
-{
-    static const char *const names[] = {"8", "10", "12", "16", "half", "log", "float", NULL};
-    return relume_storage_parse(&grid->storage[i], word) ? unknown_name("--bits", word, names)
-                                                         : RELUME_OK;
-}
-
-static relume_status accept_step(struct grid *grid, int i, const char *word)
-{
-    static const char *const names[] = {"plane", "common", NULL};
-    grid->step[i] = !strcmp(word, names[1]) ? RELUME_STEP_COMMON : RELUME_STEP_PLANE;
-    return grid->step[i] == RELUME_STEP_COMMON || !strcmp(word, names[0])
-               ? RELUME_OK
-               : unknown_name("--step", word, names);
-}
-
-static relume_status parse_grid(const struct sweep_options *o, struct grid *g)
-{
-    const char *bases = o->basis;
-    const char *sizes = o->coefficients;
-    const char *interpolants = o->interpolant;
-    *g = (struct grid){0};
-    relume_status status = RELUME_OK;
-    if (bases)
-        status = parse_list("--basis", bases, &g->bases, g, accept_basis);
-    if (!bases)
-        status = accept_basis(g, g->bases++, "auto");
-    for (int i = 0; !bases && relume_bases[i]; i++)
-        g->basis[g->bases++] = relume_bases[i];
-    if (!status && sizes)
-        status = parse_list("--coefficients", sizes, &g->sizes, g, accept_size);
-    if (!status && interpolants)
-        status = parse_list("--interpolant", interpolants, &g->interpolants, g, accept_interpolant);
-    if (!status)
-        status = parse_list("--colour", o->colour, &g->colours, g, accept_colour);
-    if (!status)
-        status = parse_list("--bits", o->bits, &g->storages, g, accept_storage);
-    if (!status)
-        status = parse_list("--step", o->step, &g->steps, g, accept_step);
-    if (!status)
-        status = parse_list("--codebook", o->codebook ? o->codebook : "0", &g->books_count, g,
-                            accept_codes);
-    if (!status)
-        status = parse_books(&o->args, &o->books, o->codebook != NULL, &g->books);
-    g->share = o->books.share;
-    return status;
-}
-
-static void add_row(struct sweep *sweep, const struct grid *g, struct sweep_row row, int codes)
-{
-    if (sweep->rows == MOST_ROWS)
-        return;
-    if (codes) {
-        row.books = g->books;
-        row.books.codes = codes;
-        row.store.share = g->share;
-    }
-    sweep->row[sweep->rows++] = row;
-}
-
-// Halves and codebooks have no step.
-static void add_rows(struct sweep *sweep, const struct grid *g, struct sweep_row row)
-{
-    for (int i = 0; i < g->storages; i++)
-        for (int j = 0; j < g->steps; j++)
-            for (int k = 0; k < g->books_count; k++) {
-                const bool stepless = g->codes[k] || !relume_storage_top(g->storage[i]);
+    const struct sweep_options *o = sweep->options;
+    for (int i = 0; i < o->bits.count; i++)
+        for (int j = 0; j < o->step.count; j++)
+            for (int k = 0; k < o->codebook.count && sweep->rows < MOST_ROWS; k++) {
+                const enum relume_storage storage = (enum relume_storage)o->bits.item[i];
+                const int codes = o->codebook.item[k];
+                const bool stepless = codes || !relume_storage_top(storage);
                 if (stepless && j > 0)
                     continue;
                 row.store = (struct relume_heldout_store){
-                    .storage = g->storage[i], .step = stepless ? RELUME_STEP_PLANE : g->step[j]};
-                add_row(sweep, g, row, g->codes[k]);
+                    .storage = storage,
+                    .step = stepless ? RELUME_STEP_PLANE : (enum relume_step)o->step.item[j],
+                    .share = codes && o->books.share};
+                row.books = codes ? sweep->books : (struct relume_books_params){0};
+                row.books.codes = codes;
+                sweep->row[sweep->rows++] = row;
             }
 }
 
-static void add_forms(struct sweep *sweep, const struct grid *g, int number, int size)
+// NULL is the basis that is called auto: components with the interpolant chosen.
+static void add_forms(struct sweep *sweep, const struct relume_basis *asked, int size)
 {
-    const struct relume_basis *basis = g->basis[number];
-    const bool interpolates = basis->interpolates && g->interpolants && !g->automatic[number];
-    for (int i = 0; i < (interpolates ? g->interpolants : 1); i++)
-        for (int j = 0; j < g->colours; j++)
-            if (!g->luminance[j] || !basis->learned)
-                add_rows(sweep, g,
-                         (struct sweep_row){
-                             .basis = basis,
-                             .interpolant = interpolates ? g->interpolant[i] : NULL,
-                             .choose = g->automatic[number] || (interpolates && !g->interpolant[i]),
-                             .luminance = g->luminance[j],
-                             .wanted = size,
-                             .coefficients = size ? size : sweep->lights,
-                         });
+    const struct sweep_options *o = sweep->options;
+    const struct relume_basis *basis = asked ? asked : &relume_basis_pca;
+    const int listed = asked && basis->interpolates ? o->interpolant.count : 0;
+    for (int i = 0; i < (listed ? listed : 1); i++)
+        for (int j = 0; j < o->luminance.count; j++)
+            if (!o->luminance.item[j] || !basis->learned)
+                add_rows(sweep, (struct sweep_row){
+                                    .basis = basis,
+                                    .interpolant = listed ? o->interpolant.item[i] : NULL,
+                                    .choose = !asked || (listed && !o->interpolant.item[i]),
+                                    .luminance = o->luminance.item[j],
+                                    .wanted = size,
+                                    .coefficients = size ? size : sweep->lights,
+                                });
 }
 
 // "ptm has 6 coefficients" and what other sizes up to 36 the bases have.
-static relume_status no_such_size(const struct grid *g)
+static relume_status no_such_size(const struct entries *bases)
 {
     char text[1024];
     size_t at = 0;
-    for (int b = 0; b < g->bases && at < sizeof text; b++) {
-        if (g->automatic[b])
+    for (int b = 0; b < bases->count && at < sizeof text; b++) {
+        const struct relume_basis *basis = bases->item[b];
+        if (!basis)
             continue;
-        at += (size_t)snprintf(text + at, sizeof text - at, "%s%s has", at ? "; " : "",
-                               g->basis[b]->name);
+        at +=
+            (size_t)snprintf(text + at, sizeof text - at, "%s%s has", at ? "; " : "", basis->name);
         for (int k = 1; k <= 36 && at < sizeof text; k++)
-            if (g->basis[b]->has_count(k))
+            if (basis->has_count(k))
                 at += (size_t)snprintf(text + at, sizeof text - at, " %d", k);
     }
     return usage_error("--coefficients: none of the bases has that many; up to 36, %s", text);
@@ -249,31 +122,40 @@ static relume_status no_such_size(const struct grid *g)
 
 // A basis that keeps every light has one size. The others have a row for each that is asked for,
 // which says why where it cannot be, or of the usual ones those that the lights determine.
-static relume_status make_rows(struct sweep *sweep, const struct grid *g)
+static bool add_sizes(struct sweep *sweep, const struct relume_basis *asked)
 {
     static const int usual[] = {1, 4, 6, 9, 16, 18, 25, 27, 36, 49};
+    const struct ints *sizes = &sweep->options->coefficients;
+    const struct relume_basis *basis = asked ? asked : &relume_basis_pca;
+    bool possible = !sizes->count;
+    if (basis->interpolates && !basis->learned) {
+        add_forms(sweep, asked, 0);
+        return true;
+    }
+    for (int i = 0; i < sizes->count; i++) {
+        add_forms(sweep, asked, sizes->item[i]);
+        possible |= basis->has_count(sizes->item[i]);
+    }
+    for (size_t i = 0; !sizes->count && i < sizeof usual / sizeof *usual; i++)
+        if (basis->has_count(usual[i]) && basis->fit_count(usual[i], sweep->lights) == usual[i])
+            add_forms(sweep, asked, usual[i]);
+    return possible;
+}
+
+static relume_status make_rows(struct sweep *sweep)
+{
+    struct entries bases = sweep->options->basis;
+    bool possible = false;
     sweep->row = calloc(MOST_ROWS, sizeof *sweep->row);
     if (!sweep->row)
         return RELUME_ENOMEM;
-    bool possible = !g->sizes;
-    for (int b = 0; b < g->bases; b++) {
-        const struct relume_basis *basis = g->basis[b];
-        if (basis->interpolates && !basis->learned) {
-            add_forms(sweep, g, b, 0);
-            possible = true;
-            continue;
-        }
-        for (int i = 0; i < g->sizes; i++) {
-            add_forms(sweep, g, b, g->size[i]);
-            possible |= basis->has_count(g->size[i]);
-        }
-        for (size_t i = 0; !g->sizes && i < sizeof usual / sizeof *usual; i++)
-            if (basis->has_count(usual[i]) && basis->fit_count(usual[i], sweep->lights) == usual[i])
-                add_forms(sweep, g, b, usual[i]);
-    }
+    for (int i = 0; !sweep->options->basis.count && (!i || relume_bases[i - 1]); i++)
+        bases.item[bases.count++] = i ? relume_bases[i - 1] : NULL;
+    for (int b = 0; b < bases.count; b++)
+        possible |= add_sizes(sweep, bases.item[b]);
     if (sweep->rows == MOST_ROWS)
         return usage_error("sweep: expected a grid of fewer than %d rows", MOST_ROWS);
-    return possible ? RELUME_OK : no_such_size(g);
+    return possible ? RELUME_OK : no_such_size(&bases);
 }
 
 // ---------------------------------------------------------------- one group of rows
@@ -503,9 +385,9 @@ static relume_status measure_all(struct work *w, const relume_capture *test)
         status = relume_making_open(&w->folder, NULL, RELUME_MADE_FOLDER, false, s->args->log);
     }
     if (!status && s->measured < 1.0)
-        say(s->args, RELUME_NOTE,
-            "measured on %.0f %% of the picture's rows; give more --memory to use more",
-            100.0 * s->measured);
+        announce(s->args, RELUME_NOTE,
+                 "measured on %.0f %% of the picture's rows; give more --memory to use more",
+                 100.0 * s->measured);
     for (int first = 0, end; !status && first < s->rows; first = end) {
         end = group_end(s, first);
         status = measure_group(w, first, end);
@@ -546,8 +428,8 @@ static relume_status sweep_captures(struct sweep *sweep, relume_capture *capture
     if (!status && !all_known(sweep))
         status = measure_all(&w, test);
     if (status == RELUME_ECANCEL && sweep->out)
-        say(sweep->args, RELUME_NOTE,
-            "finished rows are kept; run the same command again to continue");
+        announce(sweep->args, RELUME_NOTE,
+                 "finished rows are kept; run the same command again to continue");
     if (!status)
         status = finish(sweep, w.resume);
     sweep_resume_close(&w.resume);
@@ -557,28 +439,15 @@ static relume_status sweep_captures(struct sweep *sweep, relume_capture *capture
 static relume_status open_capture(const struct sweep_options *o, const char *path,
                                   relume_capture **out)
 {
-    struct relume_transfer transfer = {.curve = RELUME_CURVE_AUTO};
-    if (args_transfer(&transfer, "--transfer", o->transfer))
-        return RELUME_EINVAL;
     return relume_capture_open(out, path,
-                               relume_capture_params(.log = o->args.log, .transfer = transfer,
+                               relume_capture_params(.log = o->args.log, .transfer = o->transfer,
                                                      .skip_missing = o->skip_missing,
                                                      .allow_outside = o->allow_outside));
-}
-
-static relume_status check_options(const struct sweep_options *o)
-{
-    if (o->test && args_given(&o->args, &o->leave_out))
-        return usage_error("sweep: expected --leave-out or --test; found both");
-    if (o->json && o->csv)
-        return usage_error("sweep: expected --json or --csv; found both");
-    return RELUME_OK;
 }
 
 static relume_status run(const struct args *args)
 {
     const struct sweep_options *o = (const void *)args;
-    struct grid *grid = calloc(1, sizeof *grid);
     relume_capture *capture = NULL, *test = NULL;
     struct sweep sweep = {.args = args,
                           .options = o,
@@ -587,31 +456,30 @@ static relume_status run(const struct args *args)
                           .out = o->output,
                           .leave_out = o->leave_out,
                           .measured = 1.0};
-    relume_status status = grid ? check_options(o) : RELUME_ENOMEM;
-    if (!status)
-        status = parse_grid(o, grid);
-    if (!status)
-        status = args_domain(&sweep.domain, o->domain);
+    if (o->test && given(o, &o->leave_out))
+        return usage_error("sweep: expected --leave-out or --test; found both");
+    if (o->json && o->csv)
+        return usage_error("sweep: expected --json or --csv; found both");
+    relume_status status = parse_books(args, &o->books, given(o, &o->codebook), &sweep.books);
     if (!status)
         status = open_capture(o, sweep.capture, &capture);
     if (!status && sweep.test)
         status = open_capture(o, sweep.test, &test);
     if (!status) {
         const struct relume_manifest *m = relume_capture_manifest(capture);
-        sweep.domain = relume_encode_domain(capture, sweep.domain);
+        sweep.domain = relume_encode_domain(capture, o->domain);
         sweep.views = m->views;
         sweep.lights = m->lights;
         sweep.judged = test ? relume_capture_manifest(test)->lights : m->lights;
         sweep.width = relume_capture_width(capture);
         sweep.height = relume_capture_height(capture);
-        status = make_rows(&sweep, grid);
+        status = make_rows(&sweep);
     }
     if (!status)
         status = sweep_captures(&sweep, capture, test);
     relume_capture_destroy(&capture);
     relume_capture_destroy(&test);
     free(sweep.row);
-    free(grid);
     return status;
 }
 
@@ -624,11 +492,11 @@ const struct command command_sweep = {
     .max_inputs = 1,
     .options = options,
     .size = sizeof(struct sweep_options),
-    .defaults = &(const struct sweep_options){.colour = "rgb",
-                                              .bits = "8",
-                                              .step = "plane",
+    .defaults = &(const struct sweep_options){.luminance = {1, {0}},
+                                              .bits = {1, {RELUME_STORE_8}},
+                                              .step = {1, {RELUME_STEP_PLANE}},
+                                              .codebook = {1, {0}},
                                               .leave_out = 1,
-                                              .domain = "auto",
                                               .memory = 1024},
     .run = run,
 };

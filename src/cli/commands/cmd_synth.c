@@ -1,58 +1,67 @@
 // cmd_synth.c - relume synth: a built-in scene on the virtual light stage
 #include "commands/btf_inputs.h"
-#include "pattern_option.h"
 
 #include <stdlib.h>
 
 struct synth_options {
     struct args args;
-    const char *output, *views, *slabs, *lights_from, *projection, *mesh, *btf, *directions;
-    int size, lights, samples, bounces, seed, extent;
+    const char *output, *lights_from, *mesh, *btf, *directions;
+    const struct relume_pattern *pattern;
+    int size, lights, samples, bounces, seed, extent, views[2];
+    enum relume_projection projection;
+    enum relume_ring ring;
     double spread;
     bool hemisphere, discs, force;
-    struct texts eye;
-    const char *pattern;
+    struct points eye;
 };
 #define OPTIONS struct synth_options
 
 static const struct option options[] = {
-    TEXT_AS(OPTION_OUTPUT, "-o", output, "output", "DIR", "the capture folder to make"),
-    INT("--size", size, "scene", "N",
-        "width (planar, slab, cube face) or height (panoramas); default 256", 1, 65536),
-    TEXT("--views", views, "camera", "GxG", "slab: grid of cameras; default 5x5"),
-    NUMBER("--spread", spread, "camera", "S",
+    GROUP("output"),
+    OUTPUT(OPTION_OUTPUT, output, "DIR", "the capture folder to make"),
+    FLAG("--force", force, "replace a folder that relume made"),
+    GROUP("scene"),
+    INT("--size", size, "N", "width (planar, slab, cube face) or height (panoramas); default 256",
+        1, 65536),
+    TEXT("--mesh", mesh, "FILE", "bust: an OBJ or PLY model"),
+    GROUP("camera"),
+    SIZE("--views", views, "GxG", "slab: grid of cameras; default 5x5", 1, 9999),
+    NUMBER("--spread", spread, "S",
            "slab: cameras reach from -S to S; default 0.5, with --slabs wide enough to overlap",
            0.001, 1000),
-    TEXT("--slabs", slabs, "camera", "N",
+    NAME("--slabs", ring, "N",
          "slab: number of slabs: 4, 6 or 8 around the object, or cube: 4 and one from above; "
-         "default: one"),
-    INT("--lights", lights, "lights", "N", "number of light directions; default 100", 1, 65536),
-    PATTERN_OPTION,
-    FLAG("--hemisphere", hemisphere, "lights",
+         "default: one",
+         RELUME_RING_4, "4", "6", "8", "cube"),
+    NAME("--projection", projection, "P",
+         "planar, slab, cylindrical, spherical, cube; default: the scene's own", RELUME_PLANAR,
+         "planar", "slab", "cylindrical", "spherical", "cube"),
+    FLAG("--discs", discs, "cylindrical: add the end discs, so that it sees up and down as well"),
+    POINTS("--eye", eye, "x,y,z", "where the eye is; may be repeated for a slab"),
+    GROUP("lights"),
+    INT("--lights", lights, "N", "number of light directions; default 100", 1, 65536),
+    ENTRY("--pattern", pattern, "P",
+          "hammersley (default), grid, random, jittered, poisson, spiral", relume_patterns, NULL),
+    FLAG("--hemisphere", hemisphere,
          "lights on the viewer's (panoramas, --slabs: upper) side only"),
-    TEXT("--lights-from", lights_from, "lights", "FILE",
+    TEXT("--lights-from", lights_from, "FILE",
          "directions of a capture.json, a .lp file or lines x y z"),
-    TEXT("--projection", projection, "camera", "P",
-         "planar, slab, cylindrical, spherical, cube; default: the scene's own"),
-    FLAG("--discs", discs, "camera",
-         "cylindrical: add the end discs, so that it sees up and down as well"),
-    TEXTS("--eye", eye, "camera", "x,y,z", "where the eye is; may be repeated for a slab"),
-    INT("--samples", samples, "rendering", "N", "camera rays per pixel; default 16", 1, 65536),
-    INT("--bounces", bounces, "rendering", "N", "bounces of indirect light; default 0", 0, 64),
-    TEXT("--mesh", mesh, "scene", "FILE", "bust: an OBJ or PLY model"),
-    INT("--seed", seed, "rendering", "S", "of random patterns and sampling; default 0", 0,
-        2147483647),
-    TEXT("--btf", btf, "material", "MATERIAL",
+    GROUP("rendering"),
+    INT("--samples", samples, "N", "camera rays per pixel; default 16", 1, 65536),
+    INT("--bounces", bounces, "N", "bounces of indirect light; default 0", 0, 64),
+    INT("--seed", seed, "S", "of random patterns and sampling; default 0", 0, 2147483647),
+    GROUP("material"),
+    TEXT("--btf", btf, "MATERIAL",
          "render a built-in material as a BTF; --size in texels, default 64"),
-    INT("--extent", extent, "material", "N",
-        "material: N times as many stones, threads, ... along a side", 1, 16),
-    TEXT("--directions", directions, "material", "SET",
+    INT("--extent", extent, "N", "material: N times as many stones, threads, ... along a side", 1,
+        16),
+    TEXT("--directions", directions, "SET",
          "BTF: of views and lights: bonn (default), dome, coarse, or a file of directions"),
-    FLAG("--force", force, "output", "replace a folder that relume made"),
     {0},
 };
 
-static relume_status choose_scene(const struct relume_scene_kind **out, const char *name)
+static relume_status choose_scene(const struct relume_scene_kind **out, const char *name,
+                                  const struct relume_log *log)
 {
     const char *names[16];
     int n = 0;
@@ -60,58 +69,24 @@ static relume_status choose_scene(const struct relume_scene_kind **out, const ch
         names[n++] = (*k)->name;
     names[n] = NULL;
     *out = relume_scene_find(name);
-    return *out ? RELUME_OK : unknown_name("scene", name, names);
-}
-
-static relume_status choose_projection(struct relume_synth_params *p, const char *name)
-{
-    static const char *const names[] = {"planar", "slab", "cylindrical", "spherical", "cube", NULL};
-    p->projection_set = name != NULL;
-    if (!name || !relume_projection_parse(&p->projection, name))
-        return RELUME_OK;
-    return unknown_name("projection", name, names);
+    return *out ? RELUME_OK : unknown_word(log, "scene", name, names);
 }
 
 // A scene that is planar by itself becomes a slab by being asked for views.
 static relume_status choose_views(struct relume_synth_params *p, enum relume_projection own,
-                                  const char *text)
+                                  const struct synth_options *o)
 {
-    char rest;
-    if (!text)
-        return RELUME_OK;
-    if (sscanf(text, "%4dx%4d%c", &p->grid[0], &p->grid[1], &rest) != 2 || p->grid[0] < 1 ||
-        p->grid[1] < 1)
-        return usage_error("--views: expected a grid like 5x5; found '%s'", text);
-    if (!p->projection_set && own == RELUME_PLANAR) {
+    p->projection = o->projection;
+    p->projection_set = given(o, &o->projection);
+    p->grid[0] = o->views[0];
+    p->grid[1] = o->views[1];
+    if (o->views[0] && !p->projection_set && own == RELUME_PLANAR) {
         p->projection = RELUME_SLAB;
         p->projection_set = true;
     }
-    if ((p->projection_set ? p->projection : own) == RELUME_SLAB)
+    if (!o->views[0] || (p->projection_set ? p->projection : own) == RELUME_SLAB)
         return RELUME_OK;
     return usage_error("--views: expected --projection slab, which has views");
-}
-
-static relume_status choose_ring(struct relume_synth_params *p, const char *name)
-{
-    static const char *const names[] = {"4", "6", "8", "cube", NULL};
-    if (!name || !relume_ring_parse(&p->ring, name))
-        return RELUME_OK;
-    return unknown_name("--slabs", name, names);
-}
-
-static relume_status choose_eyes(struct relume_vec3 **eyes, int *count,
-                                 const struct synth_options *o)
-{
-    relume_status status = RELUME_OK;
-    *count = o->eye.count;
-    if (!*count)
-        return RELUME_OK;
-    *eyes = malloc((size_t)*count * sizeof **eyes);
-    if (!*eyes)
-        return RELUME_ENOMEM;
-    for (int i = 0; i < *count && !status; i++)
-        status = args_vec3(&(*eyes)[i], "--eye", o->eye.text[i]);
-    return status;
 }
 
 static bool is_panorama(enum relume_projection projection)
@@ -125,16 +100,12 @@ static relume_status make_lights(struct relume_vec3 **out, int *n, bool pole_y,
     const char *file = o->lights_from;
     if (file)
         return relume_captured_lights_read(out, n, file, o->args.log);
-    const struct relume_pattern *pattern;
-    const relume_status status = choose_pattern(&pattern, o->pattern);
-    if (status)
-        return status;
     *n = o->lights;
     *out = malloc((size_t)*n * sizeof **out);
     if (!*out)
         return RELUME_ENOMEM;
     return relume_directions_make(
-        *out, *n, pattern,
+        *out, *n, o->pattern ? o->pattern : relume_patterns[0],
         relume_directions_params(.log = o->args.log, .seed = (uint64_t)o->seed,
                                  .hemisphere = o->hemisphere, .pole_y = pole_y));
 }
@@ -176,7 +147,7 @@ static relume_status synth_btf(const struct synth_options *o)
     struct relume_vec3 *directions = NULL;
     relume_btf *btf = NULL;
     int n = 0;
-    relume_status status = btf_find_material(&material, o->btf);
+    relume_status status = btf_find_material(&material, o->btf, o->args.log);
     if (!status)
         status = choose_directions(&directions, &n, o);
     if (!status)
@@ -185,9 +156,8 @@ static relume_status synth_btf(const struct synth_options *o)
             relume_btf_synth_params(.log = o->args.log, .size = o->size, .extent = o->extent,
                                     .view = directions, .views = n, .light = directions,
                                     .lights = n, .samples = o->samples,
-                                    .bounces = args_given(&o->args, &o->bounces) && !o->bounces
-                                                   ? -1
-                                                   : o->bounces,
+                                    .bounces =
+                                        given(o, &o->bounces) && !o->bounces ? -1 : o->bounces,
                                     .seed = (uint64_t)o->seed, .threads = o->args.threads));
     if (!status)
         status = relume_btf_save(btf, o->output,
@@ -216,7 +186,7 @@ static relume_status run(const struct args *args)
 {
     const struct synth_options *o = (const void *)args;
     const struct relume_scene_kind *kind;
-    struct relume_vec3 *lights = NULL, *eyes = NULL;
+    struct relume_vec3 *lights = NULL;
     struct relume_synth_params p = {
         .log = o->args.log,
         .size = o->size,
@@ -225,11 +195,12 @@ static relume_status run(const struct args *args)
         .spread = o->spread,
         .seed = (uint64_t)o->seed,
         .threads = o->args.threads,
+        .ring = o->ring,
+        .eyes = o->eye.point,
+        .eye_count = o->eye.count,
         .discs = o->discs,
         .force = o->force,
     };
-    if (!o->output)
-        return usage_error("synth: expected -o DIR");
     const relume_status refused = relume_folder_check(o->output, p.force, p.log);
     if (refused)
         return refused;
@@ -238,25 +209,17 @@ static relume_status run(const struct args *args)
                               : synth_btf(o);
     if (!o->args.inputs)
         return usage_error("synth: expected a scene, or --btf MATERIAL");
-    relume_status status = choose_scene(&kind, o->args.input[0]);
+    relume_status status = choose_scene(&kind, o->args.input[0], args->log);
     if (!status)
-        status = choose_projection(&p, o->projection);
-    if (!status)
-        status = choose_views(&p, kind->projection, o->views);
-    if (!status)
-        status = choose_ring(&p, o->slabs);
-    if (!status)
-        status = choose_eyes(&eyes, &p.eye_count, o);
+        status = choose_views(&p, kind->projection, o);
     if (!status)
         status = make_lights(
             &lights, &p.light_count,
             p.ring || is_panorama(p.projection_set ? p.projection : kind->projection), o);
     p.lights = lights;
-    p.eyes = eyes;
     if (!status)
         status = capture(kind, &p, o);
     free(lights);
-    free(eyes);
     return status;
 }
 

@@ -33,6 +33,7 @@ struct sweep {
     const char *capture, *test;  // paths; `test` may be NULL
     const char *out;             // stem of the outputs, or NULL
     int leave_out;
+    struct relume_books_params books;  // of rows with codebooks
     enum relume_domain domain;
     double measured;  // part of the pixels that was looked at
     int views, lights, judged, width, height;

@@ -136,7 +136,7 @@ static void find_row(const sweep_resume *r, struct sweep *sweep, const struct ke
 
 static void warn(const sweep_resume *r, const char *what)
 {
-    say(r->sweep->args, RELUME_WARNING, "%s: %s", r->path, what);
+    announce(r->sweep->args, RELUME_WARNING, "%s: %s", r->path, what);
 }
 
 // False when another program wrote the file.
@@ -164,7 +164,7 @@ static bool read_rows(const sweep_resume *r, struct sweep *sweep)
 
 static relume_status cannot_write(const sweep_resume *r)
 {
-    say(r->sweep->args, RELUME_ERROR, "%s: cannot be written; %s", r->path, strerror(errno));
+    announce(r->sweep->args, RELUME_ERROR, "%s: cannot be written; %s", r->path, strerror(errno));
     return RELUME_EIO;
 }
 

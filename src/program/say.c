@@ -1,12 +1,12 @@
-// say.c - sentences for people; the library's own helper is private to it
-#include "common/say.h"
+// say.c - a sentence for people
+#include "program/say.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 
 relume_status say(const struct relume_log *log, relume_status status, const char *format, ...)
 {
-    char text[1024];
+    char text[4400];
     va_list list;
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);

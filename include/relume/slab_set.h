@@ -92,10 +92,17 @@ RELUME_API int relume_slab_set_needs(bool *needed, const relume_slab_set *slabs,
                                      const struct relume_window *window, int width,
                                      const struct relume_view_params *params);
 
+// Whether the ray through (x, y) of the window passes the camera grid of a slab. By depth a frame
+// shows rays that pass none as the cameras see the surface that look most as the eye does, without
+// depth the st plane.
+RELUME_API bool relume_slab_set_passes(const relume_slab_set *slabs,
+                                       const struct relume_window *window, double x, double y);
+
 // Every pixel is the weighted mean of what the slabs show in its ray (relume_slab_weight), by depth
 // where disparities are given, times the share of the cameras around the ray that see the surface;
-// black where no slab has any weight. With an aperture or a focus (relume_lens_window) the mean of
-// what the pinholes of that lens show, each as above, of those that show anything. `views` and
+// where it passes none as relume_slab_set_passes says, params->nothing where no slab has any
+// weight or no camera sees what is there. With an aperture or a focus (relume_lens_window) the mean
+// of what the pinholes of that lens show, each as above, of those that show anything. `views` and
 // disparities are by view number, read where needed; `out` has the wanted size already.
 // RELUME_EINVAL for a needed view or disparity that is missing or of another size, for a lens that
 // does not fit, and when nothing is to be seen; RELUME_ENOMEM.

@@ -4,6 +4,8 @@
 
 #include <relume/slab_set.h>
 
+#include <math.h>
+
 static relume_status choose_window(struct relume_window *window, const relume_renderer *r,
                                    const struct relume_camera *camera)
 {
@@ -35,6 +37,52 @@ static relume_status check_lens(const relume_renderer *r, const struct relume_wi
                     away, v->focus);
 }
 
+static relume_status sees_nothing(const relume_renderer *r, vec3 eye)
+{
+    return log_fail(r->params.log, RELUME_EUNFIT,
+                    "the eye (%g, %g, %g) sees nothing of the slabs; move it so that it "
+                    "looks at the object through a camera grid",
+                    eye.x, eye.y, eye.z);
+}
+
+// Pixels that hold no number become black; returns how many of them pass no slab's cameras.
+static size_t blacken(struct relume_image *image, const relume_slab_set *slabs,
+                      const struct relume_window *window)
+{
+    size_t n = 0;
+    float *rgb = image->data;
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x++, rgb += 3) {
+            if (!isnan(rgb[0]))
+                continue;
+            rgb[0] = rgb[1] = rgb[2] = 0.0f;
+            n += !relume_slab_set_passes(slabs, window, (x + 0.5) / image->width,
+                                         (y + 0.5) / image->height);
+        }
+    return n;
+}
+
+static relume_status draw(relume_renderer *r, const struct relume_window *window,
+                          struct relume_image *out)
+{
+    struct relume_view_params params = r->view;
+    const size_t pixels = (size_t)out->width * (size_t)out->height;
+    params.nothing = NAN;
+    const relume_status status =
+        relume_slab_set_frame(out, r->slabs, window, r->image[r->shown], &params);
+    if (status || r->shown == SHOWN_PLACES)
+        return status;
+    const size_t black = blacken(out, r->slabs, window);
+    if (black == pixels)
+        return sees_nothing(r, window->eye);
+    if ((double)black > 0.005 * (double)pixels && !*r->note[NOTE_BESIDE])
+        renderer_note(r, NOTE_BESIDE,
+                      "%.0f %% of the picture is black: no camera sees what is there%s",
+                      100.0 * (double)black / (double)pixels,
+                      renderer_may_take_depth(r) ? "" : "; a file with depth shows more");
+    return RELUME_OK;
+}
+
 relume_status frame_around(relume_renderer *r, const struct relume_camera *camera,
                            struct relume_image *out)
 {
@@ -47,13 +95,9 @@ relume_status frame_around(relume_renderer *r, const struct relume_camera *camer
     if (status)
         return status;
     if (relume_slab_set_needs(r->needed, r->slabs, &window, camera->width, &r->view) == 0)
-        return log_fail(r->params.log, RELUME_EUNFIT,
-                        "the eye (%g, %g, %g) sees nothing of the slabs; move it so that it "
-                        "looks at the object through a camera grid",
-                        window.eye.x, window.eye.y, window.eye.z);
+        return sees_nothing(r, window.eye);
     status = renderer_need_all(r, renderer_may_take_depth(r));
     if (!status)
         status = relume_image_create(out, camera->width, camera->height, 3);
-    return status ? status
-                  : relume_slab_set_frame(out, r->slabs, &window, r->image[r->shown], &r->view);
+    return status ? status : draw(r, &window, out);
 }

@@ -76,6 +76,11 @@ struct slab_ray;
 // where what is there is only guessed.
 double slab_depth_shade(float rgb[3], const struct slab_frame *frame, const struct slab_ray *ray,
                         const double range[2]);
+// A ray beside the grid, of slab_ray_beside, by depth, `away` from the cameras or towards them;
+// `range` is of all their disparities. 0 where none of the cameras sees what it
+// meets, nor that it meets nothing.
+double slab_depth_beside(float rgb[3], const struct slab_frame *frame, const struct slab_ray *ray,
+                         const double range[2], bool away);
 // A ray by the quadralinear basis, or of the nearest camera.
 void slab_flat_shade(float rgb[3], const struct slab_frame *frame, const struct slab_ray *ray);
 
@@ -119,6 +124,10 @@ struct slab_ray {
 // At (x, y) of the frame, pixel centres at +0.5.
 struct slab_ray slab_ray_of(const struct slab_frame *frame, double x, double y);
 struct slab_ray slab_ray_at(const struct slab_frame *frame, const double st[2]);
+// Of the line from the eye along `direction`, wherever the eye stands: `at` is where cameras see it
+// most from its own side. Returns from how far aside, as an angle; pi where they see nothing of it.
+double slab_ray_beside(struct slab_ray *ray, const struct slab_frame *frame,
+                       struct relume_vec3 direction);
 // The mean of what a pixel covers: a shader adds to r, g, b and weight what a ray sees.
 typedef void slab_shader(double sum[4], const void *context, const struct slab_ray *ray);
 void slab_pixel(float rgb[3], const struct slab_frame *frame, int column, int row,

@@ -30,13 +30,16 @@ struct camera {
     const float *disparity;  // [height][width]
     double weight;
     double shift[2];  // texels per unit of disparity
-    double speed;     // length of shift
+    double speed;     // length of shift, as far as it tells one disparity from another
+    double pace;      // length of shift
 };
 
 // A ray and its cameras.
 struct around {
     const struct slab_frame *frame;
     double texel[2];
+    int rounds;    // that place the surface between texels
+    double slope;  // most by which disparities of one surface differ within a step; 0: a step
     int count;
     struct camera camera[4];
 };
@@ -103,37 +106,54 @@ static void gather(double sum[5], const struct around *a, const struct camera *c
 
 // ---------------------------------------------------------------- one ray
 
+// Where the ray passes through a surface between two steps: from before what the camera sees to
+// behind it.
+static bool pass(double *q, const struct around *a, const struct camera *c, double found,
+                 double step)
+{
+    const double from = *q + step, before = disparity_at(a, c, from);
+    const double ahead = from - before, behind = found - *q;
+    if (!(before > (double)RELUME_SLAB_BACKGROUND && ahead > 0.0 && behind > 0.0 &&
+          fabs(found - before) <= a->slope))
+        return false;
+    *q += step * behind / (ahead + behind);
+    return true;
+}
+
 // Adds the camera's disparity and its weight where it sees what is walked at.
 static void meet(double sum[2], const struct around *a, const struct camera *c, double q,
                  double step)
 {
-    const double found = disparity_at(a, c, q);
-    if (c->weight > negligible && found > (double)RELUME_SLAB_BACKGROUND &&
-        fabs(found - q) <= step) {
-        sum[0] += c->weight * found;
-        sum[1] += c->weight;
+    double found = disparity_at(a, c, q);
+    if (!(c->weight > negligible && found > (double)RELUME_SLAB_BACKGROUND))
+        return;
+    if (fabs(found - q) > step) {
+        if (!(a->slope > 0.0 && pass(&q, a, c, found, step)))
+            return;
+        found = q;
     }
+    sum[0] += c->weight * found;
+    sum[1] += c->weight;
 }
 
-static double walking_speed(const struct camera *c)
+static int count_steps(const struct around *a, double from, double to)
 {
-    return c->weight > negligible ? c->speed : 0.0;
-}
-
-// The first disparity, from near to far, at which a camera sees what it walks at.
-static bool walk(double *q, const struct around *a, double nearest, double farthest)
-{
-    double speed = 0.0;
-    if (!(nearest >= farthest))
-        return false;
+    double pace = 0.0;
     for (int i = 0; i < a->count; i++)
-        speed = fmax(speed, walking_speed(&a->camera[i]));
-    const int steps = relume_whole(fmin(fmax(ceil((nearest - farthest) * speed), 1.0), most_steps));
-    const double step = (nearest - farthest) / steps;
+        if (a->camera[i].weight > negligible)
+            pace = fmax(pace, a->camera[i].pace);
+    return relume_whole(fmin(fmax(ceil(fabs(from - to) * pace), 1.0), most_steps));
+}
+
+// The first disparity, on the way from the eye, at which a camera sees what it walks at.
+static bool walk(double *q, const struct around *a, double from, double to)
+{
+    const int steps = count_steps(a, from, to);
+    const double step = (from - to) / steps;
     for (int k = 0; k <= steps; k++) {
         double sum[2] = {0.0, 0.0};
         for (int i = 0; i < a->count; i++)
-            meet(sum, a, &a->camera[i], nearest - k * step, step);
+            meet(sum, a, &a->camera[i], from - k * step, step);
         if (sum[1] > 0.0) {
             *q = sum[0] / sum[1];
             return true;
@@ -151,16 +171,22 @@ static bool gather_all(double sum[5], const struct around *a, double q, double s
     return sum[4] > 1e-6;
 }
 
+// The surface that the ray meets first.
+static bool gather_surface(double sum[5], const struct around *a, double from, double to)
+{
+    double q;
+    if (!walk(&q, a, from, to))
+        return false;
+    for (int round = 0; round < a->rounds && gather_all(sum, a, q, q); round++)
+        q = sum[3] / sum[4];
+    return gather_all(sum, a, q, q);
+}
+
 // Background is taken where the st plane is; so is what no camera sees as it should be.
 static double shade(float rgb[3], const struct around *a, double nearest, double farthest)
 {
-    double q, sum[5];
-    bool seen = false;
-    if (walk(&q, a, nearest, farthest)) {
-        for (int round = 0; round < 2 && gather_all(sum, a, q, q); round++)
-            q = sum[3] / sum[4];
-        seen = gather_all(sum, a, q, q);
-    }
+    double sum[5];
+    bool seen = nearest >= farthest && gather_surface(sum, a, nearest, farthest);
     if (!seen)
         seen = gather_all(sum, a, 0.0, (double)RELUME_SLAB_BACKGROUND);
     if (!seen) {
@@ -178,18 +204,20 @@ static void find_cameras(struct around *a, const struct slab_frame *f, const str
 {
     const struct neighbours across = slab_columns_at(f->slab, false, ray->at[0]);
     const struct neighbours down = slab_rows_at(f->slab, false, ray->at[1]);
-    *a = (struct around){.frame = f, .texel = {ray->texel[0], ray->texel[1]}};
+    *a = (struct around){.frame = f, .texel = {ray->texel[0], ray->texel[1]}, .rounds = 2};
     for (int j = 0; j < down.count; j++)
         for (int i = 0; i < across.count; i++) {
-            struct camera *c = &a->camera[a->count++];
             const int view = f->slab->view[(size_t)down.index[j] * (size_t)f->slab->columns +
                                            (size_t)across.index[i]];
+            if (!f->needed[view])
+                continue;
+            struct camera *c = &a->camera[a->count++];
             c->view = view;
             c->rgb = f->views[view].data;
             c->disparity = f->params.disparity[view].data;
             c->weight = across.weight[i] * down.weight[j];
             slab_shift(c->shift, f, ray, f->slab->u[across.index[i]], f->slab->v[down.index[j]]);
-            c->speed = hypot(c->shift[0], c->shift[1]);
+            c->speed = c->pace = hypot(c->shift[0], c->shift[1]);
         }
 }
 
@@ -200,6 +228,117 @@ double slab_depth_shade(float rgb[3], const struct slab_frame *frame, const stru
     find_cameras(&a, frame, ray);
     return shade(rgb, &a, range[1], range[0]);
 }
+
+// ---------------------------------------------------------------- one ray beside the grid
+
+// Cut to the disparities at which a camera has the ray's points in its picture.
+static void clip(double part[2], const struct around *a, const struct camera *c)
+{
+    const int size[2] = {a->frame->width, a->frame->height};
+    for (int axis = 0; axis < 2; axis++) {
+        const double first = -a->texel[axis] / c->shift[axis];
+        const double last = (size[axis] - a->texel[axis]) / c->shift[axis];
+        if (!isfinite(first) || !isfinite(last))
+            continue;
+        part[0] = fmax(part[0], fmin(first, last));
+        part[1] = fmin(part[1], fmax(first, last));
+    }
+}
+
+// A part of a ray, from the eye on; false when no camera has any of it in its picture.
+struct stretch {
+    double from, to;
+};
+
+static bool stretch_of(struct stretch *out, const struct around *a, double least, double most,
+                       bool away)
+{
+    double all[2] = {(double)INFINITY, -(double)INFINITY};
+    for (int i = 0; i < a->count; i++) {
+        double own[2] = {least, most};
+        clip(own, a, &a->camera[i]);
+        if (own[0] > own[1])
+            continue;
+        all[0] = fmin(all[0], own[0]);
+        all[1] = fmax(all[1], own[1]);
+    }
+    *out = (struct stretch){all[away], all[!away]};
+    return all[0] <= all[1];
+}
+
+// Whether a camera sees through all of it: nowhere does the ray pass behind what it sees.
+static bool is_clear(const struct around *a, const struct camera *c, const struct stretch *s)
+{
+    const int steps = count_steps(a, s->from, s->to);
+    for (int k = 0; k <= steps; k++) {
+        const double q = s->from + k * (s->to - s->from) / steps;
+        if (disparity_at(a, c, q) > q + a->slope)
+            return false;
+    }
+    return true;
+}
+
+static bool gather_clear(double sum[5], const struct around *a, const struct stretch *s)
+{
+    bool clear = false;
+    for (int i = 0; i < a->count && !clear; i++)
+        clear = is_clear(a, &a->camera[i], s);
+    return clear && (gather_all(sum, a, 0.0, (double)RELUME_SLAB_BACKGROUND) ||
+                     gather_all(sum, a, s->to, (double)RELUME_SLAB_BACKGROUND));
+}
+
+// Of a surface that leans up to so many times as much as the cameras stand apart ...
+static const double most_slope = 4.0;
+// Points so far away are as good as at infinity.
+static const double endless = -0.98;
+
+// Seen from far aside a surface of any slope moves by many texels between disparities: what is one
+// surface is told as by cameras as far apart as those of the grid.
+static void look_from_aside(struct around *a)
+{
+    const relume_slab *slab = a->frame->slab;
+    const struct slab_ray corner = {.uv = {slab->u[slab->columns - 1], slab->v[slab->rows - 1]}};
+    double across[2];
+    slab_shift(across, a->frame, &corner, slab->u[0], slab->v[0]);
+    const double most = fmax(hypot(across[0], across[1]), 1.0);
+    a->slope = most_slope / most;
+    for (int i = 0; i < a->count; i++) {
+        a->camera[i].speed = fmin(a->camera[i].pace, most);
+        if (a->camera[i].pace > most)
+            a->rounds = 0;
+    }
+}
+
+// The disparity of the eye; of one on or behind the cameras endless.
+static double disparity_of_eye(const struct slab_frame *f)
+{
+    const struct relume_geometry *g = &f->slab->geometry;
+    const bool before = (g->uv_z - f->eye.z) * (g->uv_z - g->st_z) > 0.0;
+    return before ? relume_slab_plane_disparity(f->slab, f->eye.z) : (double)INFINITY;
+}
+
+double slab_depth_beside(float rgb[3], const struct slab_frame *frame, const struct slab_ray *ray,
+                         const double range[2], bool away)
+{
+    const double eye = disparity_of_eye(frame);
+    struct around a;
+    struct stretch whole, surfaces;
+    double sum[5];
+    find_cameras(&a, frame, ray);
+    look_from_aside(&a);
+    const double nearest = away ? fmin(range[1], eye) : range[1];
+    const double farthest = away ? range[0] : fmax(range[0], eye);
+    const bool met = stretch_of(&surfaces, &a, farthest, nearest, away) &&
+                     gather_surface(sum, &a, surfaces.from, surfaces.to);
+    if (!met && !(stretch_of(&whole, &a, away ? endless : eye, nearest, away) &&
+                  gather_clear(sum, &a, &whole)))
+        return 0.0;
+    for (int k = 0; k < 3; k++)
+        rgb[k] = (float)(sum[k] / sum[4]);
+    return sum[4];
+}
+
+// ---------------------------------------------------------------- pixels
 
 static void shade_ray(double sum[4], const void *context, const struct slab_ray *ray)
 {

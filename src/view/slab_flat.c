@@ -21,12 +21,17 @@ void slab_flat_shade(float rgb[3], const struct slab_frame *frame, const struct 
     int view[4];
     double weight[4];
     double sum[3] = {0.0, 0.0, 0.0};
-    const int count = relume_slab_blend(view, weight, frame->slab, ray->uv, &frame->params);
+    const int count = relume_slab_blend(view, weight, frame->slab, ray->at, &frame->params);
+    double here = 1.0;
     for (int i = 0; i < count; i++) {
+        if (!frame->needed[view[i]]) {
+            here -= weight[i];
+            continue;
+        }
         slab_need(frame, view[i], relume_whole(floor(ray->texel[0] - 0.5)),
                   relume_whole(floor(ray->texel[1] - 0.5)));
         add_sample(sum, &frame->views[view[i]], ray->texel, weight[i]);
     }
     for (int c = 0; c < 3; c++)
-        rgb[c] = (float)sum[c];
+        rgb[c] = (float)(sum[c] / fmax(here, 1e-6));
 }

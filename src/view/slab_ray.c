@@ -1,6 +1,8 @@
 // slab_ray.c - the rays of a pixel in a slab's frame
 #include "view/slab.h"
 
+#include "math/vec.h"
+
 static struct slab_ray ray_from(const struct slab_frame *f, double s, double t)
 {
     const relume_slab *slab = f->slab;
@@ -9,6 +11,13 @@ static struct slab_ray ray_from(const struct slab_frame *f, double s, double t)
         .uv = {u, v},
         .at = {slab_nearest(slab->u, slab->columns, u), slab_nearest(slab->v, slab->rows, v)},
     };
+}
+
+static void place_in_views(struct slab_ray *ray, const struct slab_frame *f, double s, double t)
+{
+    const struct relume_geometry *g = &f->slab->geometry;
+    ray->texel[0] = (s - g->st_min[0]) / (g->st_max[0] - g->st_min[0]) * f->width;
+    ray->texel[1] = (g->st_max[1] - t) / (g->st_max[1] - g->st_min[1]) * f->height;
 }
 
 struct slab_ray slab_ray_of(const struct slab_frame *frame, double x, double y)
@@ -21,11 +30,40 @@ struct slab_ray slab_ray_of(const struct slab_frame *frame, double x, double y)
 
 struct slab_ray slab_ray_at(const struct slab_frame *f, const double st[2])
 {
-    const struct relume_geometry *g = &f->slab->geometry;
     struct slab_ray ray = ray_from(f, st[0], st[1]);
-    ray.texel[0] = (st[0] - g->st_min[0]) / (g->st_max[0] - g->st_min[0]) * f->width;
-    ray.texel[1] = (g->st_max[1] - st[1]) / (g->st_max[1] - g->st_min[1]) * f->height;
+    place_in_views(&ray, f, st[0], st[1]);
     return ray;
+}
+
+// Lines that rise less than so much over the planes cross them too far away.
+static const double flattest = 1e-3;
+
+// Where a grid's cameras stand that look at `middle` most as the eye does along `way`: nearest to
+// where the line from there back to the eye meets their plane; past the horizon as far that way.
+static void nearest_cameras(double at[2], const relume_slab *slab, vec3 middle, vec3 way)
+{
+    const double up = (slab->geometry.uv_z - middle.z) / fabs(way.z);
+    at[0] = slab_nearest(slab->u, slab->columns, middle.x - fabs(up) * way.x);
+    at[1] = slab_nearest(slab->v, slab->rows, middle.y - fabs(up) * way.y);
+}
+
+double slab_ray_beside(struct slab_ray *ray, const struct slab_frame *f, vec3 direction)
+{
+    const struct relume_geometry *g = &f->slab->geometry;
+    const vec3 way = vec3_unit(direction);
+    const double to_uv = (g->uv_z - f->eye.z) / way.z, to_st = (g->st_z - f->eye.z) / way.z;
+    if (!(fabs(way.z) > flattest) || (way.z * (g->uv_z - g->st_z) > 0.0 && to_uv <= 0.0))
+        return M_PI;
+    const vec3 window =
+        vec3_of(0.5 * (g->st_min[0] + g->st_max[0]), 0.5 * (g->st_min[1] + g->st_max[1]), g->st_z);
+    const vec3 middle = vec3_add(f->eye, vec3_scale(way, vec3_dot(vec3_sub(window, f->eye), way)));
+    *ray = (struct slab_ray){
+        .uv = {f->eye.x + to_uv * way.x, f->eye.y + to_uv * way.y},
+    };
+    nearest_cameras(ray->at, f->slab, middle, way);
+    place_in_views(ray, f, f->eye.x + to_st * way.x, f->eye.y + to_st * way.y);
+    const vec3 camera = vec3_of(ray->at[0], ray->at[1], g->uv_z);
+    return vec3_angle(vec3_unit(vec3_sub(middle, camera)), way);
 }
 
 void slab_pixel(float rgb[3], const struct slab_frame *f, int column, int row, slab_shader *shade,

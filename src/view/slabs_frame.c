@@ -15,8 +15,10 @@
 struct seen {
     struct slab_frame frame;
     vec3 corner, right, down;  // from the eye
-    double range[2];           // of disparities
+    double range[2];           // of disparities, ...
+    double extent[2];          // ... also of what lies behind the eye
     bool any;                  // views are needed
+    bool beside;               // ... for rays that pass no slab's cameras
 };
 
 struct picture {
@@ -27,7 +29,15 @@ struct picture {
     bool by_depth;
     const struct relume_view_params *params;
     double pixel[2];  // of the window; 0 for a ray
+    bool fill;        // also rays that pass no slab's cameras
 };
+
+// From how far aside cameras still see something of a ray.
+static const double most_aside = 100.0 * M_PI / 180.0;
+// Without depth: less than that, from 44 degrees on, the st plane does not stand for the scene.
+static const double least_flat = 1.4;
+// Rays are looked at so far apart to learn which cameras those beside all grids need.
+enum { SAMPLES = 32 };
 
 bool slabs_ray(double uv[2], double st[2], const relume_slab *slab, vec3 eye, vec3 direction)
 {
@@ -41,6 +51,11 @@ bool slabs_ray(double uv[2], double st[2], const relume_slab *slab, vec3 eye, ve
 }
 
 // ---------------------------------------------------------------- which views
+
+static vec3 way_to(const struct seen *s, double x, double y)
+{
+    return vec3_add(s->corner, vec3_add(vec3_scale(s->right, x), vec3_scale(s->down, y)));
+}
 
 // Where the rays of a window meet the st plane of a slab, as a rectangle. The window's corners
 // bound it unless some of them look away from the plane: then it may be anywhere.
@@ -98,6 +113,68 @@ static int mark(bool *needed, struct seen *s, const struct relume_view_params *p
     return n;
 }
 
+// What a slab has to say of a ray beside its grid: endless at its border, nothing from far aside.
+static double beside_weight(struct slab_ray *ray, const struct seen *s, vec3 way)
+{
+    const double aside = slab_ray_beside(ray, &s->frame, way);
+    return aside < most_aside ? 1.0 / fmax(aside * aside, 1e-12) - 1.0 / (most_aside * most_aside)
+                              : 0.0;
+}
+
+static bool passes(const struct seen *s, double x, double y)
+{
+    double uv[2], st[2], weight[4];
+    int view[4];
+    return slabs_ray(uv, st, s->frame.slab, s->frame.eye, way_to(s, x, y)) &&
+           relume_slab_blend(view, weight, s->frame.slab, uv, NULL) > 0;
+}
+
+static bool passes_any(const struct seen *seen, int slabs, double x, double y)
+{
+    bool any = false;
+    for (int i = 0; i < slabs && !any; i++)
+        any = passes(&seen[i], x, y);
+    return any;
+}
+
+// The cameras nearest to a ray that passes those of no slab.
+static int mark_beside(bool *needed, struct seen *seen, int slabs, double x, double y)
+{
+    int n = 0;
+    if (passes_any(seen, slabs, x, y))
+        return 0;
+    for (int i = 0; i < slabs; i++) {
+        struct slab_ray ray;
+        double weight[4];
+        int view[4];
+        if (!(beside_weight(&ray, &seen[i], way_to(&seen[i], x, y)) > 0.0))
+            continue;
+        const int around = relume_slab_blend(view, weight, seen[i].frame.slab, ray.at, NULL);
+        for (int k = 0; k < around; k++)
+            needed[view[k]] = true;
+        seen[i].beside = true;
+        n += around;
+    }
+    return n;
+}
+
+static double sample_place(int i)
+{
+    return (i + 0.5) / SAMPLES;
+}
+
+// Of all slabs from one pinhole; returns how many.
+static int mark_all(bool *needed, struct seen *seen, int slabs,
+                    const struct relume_view_params *params, bool fill)
+{
+    int n = 0;
+    for (int i = 0; i < slabs; i++)
+        n += mark(needed, &seen[i], params);
+    for (int k = 0; fill && k < SAMPLES * SAMPLES; k++)
+        n += mark_beside(needed, seen, slabs, sample_place(k % SAMPLES), sample_place(k / SAMPLES));
+    return n;
+}
+
 static struct relume_window pinhole_of(const struct relume_window *window,
                                        const struct relume_view_params *params, int i, int n)
 {
@@ -116,6 +193,23 @@ static int count_pinholes(const struct relume_window *window, int width,
                : 0;
 }
 
+// A single ray that no slab knows stays unknown.
+static bool has_extent(const struct relume_window *w)
+{
+    return vec3_length(w->right) > 0.0 || vec3_length(w->down) > 0.0;
+}
+
+bool relume_slab_set_passes(const relume_slab_set *slabs, const struct relume_window *window,
+                            double x, double y)
+{
+    bool any = false;
+    for (int i = 0; i < slabs->count && !any; i++) {
+        const struct seen s = see(slabs->slab[i], window);
+        any = passes(&s, x, y);
+    }
+    return any;
+}
+
 int relume_slab_set_needs(bool *needed, const relume_slab_set *slabs,
                           const struct relume_window *window, int width,
                           const struct relume_view_params *params)
@@ -126,10 +220,10 @@ int relume_slab_set_needs(bool *needed, const relume_slab_set *slabs,
     memset(needed, 0, (size_t)slabs->views * sizeof *needed);
     for (int k = 0; k < pinholes; k++) {
         const struct relume_window from = pinhole_of(window, &p, k, pinholes);
-        for (int i = 0; i < slabs->count; i++) {
-            struct seen s = see(slabs->slab[i], &from);
-            mark(needed, &s, &p);
-        }
+        struct seen seen[RELUME_MOST_SLABS];
+        for (int i = 0; i < slabs->count; i++)
+            seen[i] = see(slabs->slab[i], &from);
+        mark_all(needed, seen, slabs->count, &p, has_extent(window));
     }
     for (int i = 0; i < slabs->views; i++)
         n += needed[i];
@@ -138,14 +232,12 @@ int relume_slab_set_needs(bool *needed, const relume_slab_set *slabs,
 
 // ---------------------------------------------------------------- one pixel
 
-static vec3 way_to(const struct seen *s, double x, double y)
-{
-    return vec3_add(s->corner, vec3_add(vec3_scale(s->right, x), vec3_scale(s->down, y)));
-}
-
 // Adds what a slab says of a ray, times its weight: r, g, b, weight. False without weight.
-static bool add_ray(double sum[4], const struct picture *p, const struct seen *s, double x,
-                    double y)
+typedef bool ray_adder(double sum[4], const struct picture *p, const struct seen *s, double x,
+                       double y);
+
+static bool add_passing(double sum[4], const struct picture *p, const struct seen *s, double x,
+                        double y)
 {
     double uv[2], st[2];
     if (!slabs_ray(uv, st, s->frame.slab, s->frame.eye, way_to(s, x, y)))
@@ -165,6 +257,43 @@ static bool add_ray(double sum[4], const struct picture *p, const struct seen *s
     return true;
 }
 
+static bool leads_away(const struct seen *s, vec3 way)
+{
+    const struct relume_geometry *g = &s->frame.slab->geometry;
+    return way.z * (g->uv_z - g->st_z) < 0.0;
+}
+
+// Whether the ray goes through the st window.
+static bool in_window(const struct seen *s, const struct slab_ray *ray)
+{
+    double reach;
+    return slab_reach(&reach, s->frame.slab, s->frame.eye) && ray->texel[0] >= 0.0 &&
+           ray->texel[0] <= s->frame.width && ray->texel[1] >= 0.0 &&
+           ray->texel[1] <= s->frame.height;
+}
+
+// The same of a ray that passes the cameras of no slab, as those nearest to it see it.
+static bool add_beside(double sum[4], const struct picture *p, const struct seen *s, double x,
+                       double y)
+{
+    struct slab_ray ray;
+    const vec3 way = way_to(s, x, y);
+    double weight = beside_weight(&ray, s, way);
+    float rgb[3] = {0.0f, 0.0f, 0.0f};
+    if (!(weight > 0.0))
+        return false;
+    if (p->by_depth)
+        weight *= slab_depth_beside(rgb, &s->frame, &ray, s->extent, leads_away(s, way));
+    else if (leads_away(s, way) && in_window(s, &ray) && weight > least_flat)
+        slab_flat_shade(rgb, &s->frame, &ray);
+    else
+        return false;
+    for (int c = 0; c < 3; c++)
+        sum[c] += weight * (double)rgb[c];
+    sum[3] += weight;
+    return weight > 0.0;
+}
+
 // Texels of a slab's view between the places of two rays.
 static double texels_between(const struct seen *s, vec3 a, vec3 b)
 {
@@ -177,17 +306,35 @@ static double texels_between(const struct seen *s, vec3 a, vec3 b)
                  (to[1] - from[1]) / (g->st_max[1] - g->st_min[1]) * s->frame.height);
 }
 
-// The mean over what a pixel at (x, y) covers, where the slab knows its middle.
-static void add(double sum[4], const struct picture *p, const struct seen *s, double x, double y)
+// Texels as large as a pixel of the window: from far aside the places of its rays on the st plane
+// are as far apart as one likes.
+static double texels_as_large(const struct seen *s, vec3 pixel)
+{
+    const struct relume_geometry *g = &s->frame.slab->geometry;
+    return vec3_length(pixel) / (g->st_max[0] - g->st_min[0]) * s->frame.width;
+}
+
+// Of a ray that passes the slab's cameras, or one beside them, what it covers to both sides.
+static void find_footprint(struct footprint side[2], const struct picture *p, const struct seen *s,
+                           double x, double y, bool beside)
 {
     const double dx = p->pixel[0], dy = p->pixel[1];
     const vec3 way = way_to(s, x, y);
-    if (!s->any)
-        return;
-    const struct footprint across =
-        slab_footprint(p->params, texels_between(s, way, way_to(s, x + dx, y)));
-    const struct footprint down =
-        slab_footprint(p->params, texels_between(s, way, way_to(s, x, y + dy)));
+    side[0] = slab_footprint(p->params, beside ? texels_as_large(s, vec3_scale(s->right, dx))
+                                               : texels_between(s, way, way_to(s, x + dx, y)));
+    side[1] = slab_footprint(p->params, beside ? texels_as_large(s, vec3_scale(s->down, dy))
+                                               : texels_between(s, way, way_to(s, x, y + dy)));
+}
+
+// The mean over what a pixel at (x, y) covers, where the slab knows its middle.
+static void add(double sum[4], const struct picture *p, const struct seen *s, double x, double y,
+                bool beside)
+{
+    const double dx = p->pixel[0], dy = p->pixel[1];
+    ray_adder *const add_ray = beside ? add_beside : add_passing;
+    struct footprint side[2];
+    find_footprint(side, p, s, x, y, beside);
+    const struct footprint across = side[0], down = side[1];
     const int n = across.count * down.count;
     double own[4] = {0.0, 0.0, 0.0, 0.0};
     if (n == 1) {
@@ -212,8 +359,14 @@ static bool shade(float rgb[3], const struct picture *p, double x, double y)
     int n = 0;
     for (int k = 0; k < p->pinholes; k++) {
         double sum[4] = {0.0, 0.0, 0.0, 0.0};
+        const struct seen *seen = &p->seen[k * p->slabs->count];
         for (int i = 0; i < p->slabs->count; i++)
-            add(sum, p, &p->seen[k * p->slabs->count + i], x, y);
+            if (seen[i].any)
+                add(sum, p, &seen[i], x, y, false);
+        const bool empty = p->fill && !(sum[3] > 0.0) && !passes_any(seen, p->slabs->count, x, y);
+        for (int i = 0; empty && i < p->slabs->count; i++)
+            if (seen[i].beside)
+                add(sum, p, &seen[i], x, y, true);
         for (int c = 0; c < 3 && sum[3] > 0.0; c++)
             mean[c] += sum[c] / sum[3];
         n += sum[3] > 0.0;
@@ -260,13 +413,15 @@ static void prepare_slab(struct job *job, int i, const struct slab_frame *common
         s->frame.slab = own.slab;
         s->frame.eye = own.eye;
         s->frame.reach = own.reach;
-        if (!p->by_depth || !s->any)
+        if (!p->by_depth || !(s->any || s->beside))
             continue;
         if (!known)
             slab_depth_extent(range, &s->frame);
         known = true;
         s->range[0] = range[0];
         s->range[1] = fmin(range[1], relume_slab_eye_disparity(own.slab, own.eye));
+        s->extent[0] = range[0];
+        s->extent[1] = range[1];
     }
 }
 
@@ -280,10 +435,9 @@ static relume_status prepare(struct job *job, const struct relume_window *window
     int n = 0;
     for (int k = 0; k < p->pinholes; k++) {
         const struct relume_window from = pinhole_of(window, &job->params, k, p->pinholes);
-        for (int i = 0; i < slabs; i++) {
+        for (int i = 0; i < slabs; i++)
             p->seen[k * slabs + i] = see(p->slabs->slab[i], &from);
-            n += mark(job->needed, &p->seen[k * slabs + i], &job->params);
-        }
+        n += mark_all(job->needed, &p->seen[k * slabs], slabs, &job->params, p->fill);
     }
     if (n == 0 || !slab_views_fit(&common.width, &common.height, job->needed, views,
                                   p->by_depth ? job->params.disparity : NULL, p->slabs->views))
@@ -303,6 +457,7 @@ static relume_status begin(struct job *job, const relume_slab_set *slabs,
         job->params = *params;
     struct picture *p = &job->picture;
     p->by_depth = takes_depth(&job->params);
+    p->fill = has_extent(window);
     p->pinholes = count_pinholes(window, width, &job->params);
     if (p->pinholes == 0 ||
         (job->params.interpolation == RELUME_INTERPOLATE_DEPTH && !job->params.disparity))

@@ -63,6 +63,8 @@ struct slabs_seen {
     const struct target *const *views;  // relit, by view number; NULL where they have no weight
     const GLuint *disparity;            // by depth: textures by view number, else NULL ...
     const double (*range)[2];           // ... and the least and the greatest value of each
+    bool others;                        // there are rays that pass the cameras of no slab ...
+    const struct target *passed;        // ... which are drawn where this has none; NULL: the rest
 };
 // Both add weighted values and their weights (alpha) to a black target, which draw_mean then
 // divides.

@@ -22,6 +22,7 @@ enum {
     LINEAR_COUNT,
     DISPARITY_00 = COMMON,
     RANGE = DISPARITY_00 + 4,
+    HERE,
     DEPTH_COUNT,
 };
 #define COMMON_UNIFORMS                                                                            \
@@ -29,7 +30,7 @@ enum {
         "eye", "exposure"
 static const char *const linear_uniforms[] = {COMMON_UNIFORMS, "nearest"};
 static const char *const depth_uniforms[] = {
-    COMMON_UNIFORMS, "disparity00", "disparity10", "disparity01", "disparity11", "range",
+    COMMON_UNIFORMS, "disparity00", "disparity10", "disparity01", "disparity11", "range", "here",
 };
 
 relume_status draw_slab_create(struct program *program, const struct gl *gl,
@@ -183,5 +184,6 @@ void draw_slab_depth(const struct program *program, const struct gl *gl, const s
     for (int i = 0; i < 4; i++)
         gl->Uniform1i(program->at[DISPARITY_00 + i], 4 + i);
     gl->Uniform2f(program->at[RANGE], (float)range[0], (float)nearest);
+    gl->Uniform4f(program->at[HERE], 1, 1, 1, 1);
     draw_cells(&cells);
 }

@@ -18,19 +18,24 @@ enum {
     SLACK,
     ST,
     CELL,
+    BESIDE,
+    PASSED,
     COMMON,
     NEAREST = COMMON,
     FLAT_COUNT,
     DISPARITY_00 = COMMON,
     RANGE = DISPARITY_00 + 4,
+    EXTENT,
+    HERE,
     DEPTH_COUNT,
 };
 #define COMMON_UNIFORMS                                                                            \
     "rectangle", "frame_size", "view00", "view10", "view01", "view11", "picture", "eye", "corner", \
-        "right", "down", "planes", "grid", "slack", "st", "cell"
+        "right", "down", "planes", "grid", "slack", "st", "cell", "beside", "passed"
 static const char *const flat_uniforms[] = {COMMON_UNIFORMS, "nearest"};
 static const char *const depth_uniforms[] = {
-    COMMON_UNIFORMS, "disparity00", "disparity10", "disparity01", "disparity11", "range",
+    COMMON_UNIFORMS, "disparity00", "disparity10", "disparity01",
+    "disparity11",   "range",       "extent",      "here",
 };
 
 relume_status draw_slabs_create(struct program *program, const struct gl *gl,
@@ -142,8 +147,9 @@ static bool find_rectangle(struct app_rectangle *out, const struct turned *t, co
     const struct app_rectangle *p = &t->place->picture;
     const double width = p->right - p->left, height = p->bottom - p->top;
     struct part part = {{0, 0}, {1, 1}};
-    bound(&part, t, g->st_min, g->st_max, g->st_z);
-    if (fabs(t->eye.z - g->uv_z) > 1e-3 * fabs(g->uv_z - g->st_z))
+    if (!t->seen->others)
+        bound(&part, t, g->st_min, g->st_max, g->st_z);
+    if (!t->seen->passed && fabs(t->eye.z - g->uv_z) > 1e-3 * fabs(g->uv_z - g->st_z))
         bound(&part, t, low, high, g->uv_z);
     *out = (struct app_rectangle){
         .left = fmax(p->left, p->left + part.min[0] * width - 1),
@@ -155,6 +161,14 @@ static bool find_rectangle(struct app_rectangle *out, const struct turned *t, co
 }
 
 // ---------------------------------------------------------------- drawing
+
+static void set_here(const struct turned *t, const int cell[4])
+{
+    float here[4];
+    for (int i = 0; i < 4; i++)
+        here[i] = t->seen->views[cell[i]] ? 1 : 0;
+    t->gl->Uniform4f(t->program->at[HERE], here[0], here[1], here[2], here[3]);
+}
 
 static void draw_cell(const struct turned *t, int column, int row)
 {
@@ -170,6 +184,8 @@ static void draw_cell(const struct turned *t, int column, int row)
     if (!draw_use_cell(t->gl, t->seen->views, t->seen->disparity, cell) ||
         !find_rectangle(&rectangle, t, low, high))
         return;
+    if (t->seen->disparity)
+        set_here(t, cell);
     t->gl->Uniform4f(t->program->at[CELL], (float)grid->u[column], (float)grid->v[row],
                      (float)grid->u[right], (float)grid->v[below]);
     draw_rectangle(t->gl, t->program, t->place, rectangle);
@@ -201,7 +217,8 @@ static void draw_slab_cells(const struct turned *t)
             draw_cell(t, column, row);
 }
 
-static void begin(const struct program *program, const struct gl *gl, const struct place *place)
+static void begin(const struct program *program, const struct gl *gl, const struct place *place,
+                  const struct slabs_seen *seen)
 {
     const struct app_rectangle *p = &place->picture;
     gl->UseProgram(program->id);
@@ -209,6 +226,10 @@ static void begin(const struct program *program, const struct gl *gl, const stru
         gl->Uniform1i(program->at[VIEW_00 + i], i);
     gl->Uniform4f(program->at[PICTURE], (float)p->left, (float)p->top, (float)p->right,
                   (float)p->bottom);
+    gl->Uniform1i(program->at[BESIDE], seen->passed != NULL);
+    gl->Uniform1i(program->at[PASSED], 8);
+    if (seen->passed)
+        texture_use(gl, 8, GL_TEXTURE_2D, seen->passed->texture);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
 }
@@ -216,7 +237,7 @@ static void begin(const struct program *program, const struct gl *gl, const stru
 void draw_slabs(const struct program *program, const struct gl *gl, const struct place *place,
                 const struct slabs_seen *seen, bool nearest)
 {
-    begin(program, gl, place);
+    begin(program, gl, place, seen);
     gl->Uniform1i(program->at[NEAREST], nearest);
     for (int i = 0; i < relume_slab_set_count(seen->slabs); i++) {
         const struct turned t = turn(program, gl, place, seen, i);
@@ -236,6 +257,7 @@ static void set_range(const struct turned *t)
         farthest = fmin(farthest, t->seen->range[view][0]);
         nearest = fmax(nearest, t->seen->range[view][1]);
     }
+    t->gl->Uniform2f(t->program->at[EXTENT], (float)farthest, (float)nearest);
     nearest = fmin(nearest, relume_slab_eye_disparity(t->slab, t->eye));
     t->gl->Uniform2f(t->program->at[RANGE], (float)farthest, (float)nearest);
 }
@@ -243,7 +265,7 @@ static void set_range(const struct turned *t)
 void draw_slabs_depth(const struct program *program, const struct gl *gl, const struct place *place,
                       const struct slabs_seen *seen)
 {
-    begin(program, gl, place);
+    begin(program, gl, place, seen);
     for (int i = 0; i < 4; i++)
         gl->Uniform1i(program->at[DISPARITY_00 + i], 4 + i);
     for (int i = 0; i < relume_slab_set_count(seen->slabs); i++) {

@@ -109,6 +109,7 @@ void renderer_destroy(struct renderer *r)
     target_destroy(&r->frame, r->gl);
     target_destroy(&r->small, r->gl);
     target_destroy(&r->sum, r->gl);
+    target_destroy(&r->beside, r->gl);
     target_destroy(&r->pinholes, r->gl);
     renderer_objects_destroy(r);
     if (r->depths.views)
@@ -202,27 +203,55 @@ static relume_status draw_lens(struct renderer *r, const struct frame_request *q
     return RELUME_OK;
 }
 
-// The mean of all slabs through one window, added to what `onto` holds.
-static void add_around(struct renderer *r, const struct frame_request *q, const struct place *place,
-                       const struct target *onto, const struct relume_window *window, bool by_depth)
+// The mean of `seen`, by way of `sum`, added to what `onto` holds.
+static void add_mean(struct renderer *r, const struct frame_request *q, const struct place *place,
+                     const struct target *onto, const struct slabs_seen *seen,
+                     const struct target *sum)
 {
-    const struct slabs_seen seen = {
+    target_begin(sum, r->gl);
+    if (seen->disparity)
+        draw_slabs_depth(&r->slabs_depth, r->gl, place, seen);
+    else
+        draw_slabs(&r->slabs, r->gl, place, seen,
+                   q->view.interpolation == RELUME_INTERPOLATE_CONSTANT);
+    target_resume(onto, r->gl);
+    r->gl->Enable(GL_BLEND);
+    draw_mean(&r->mean, r->gl, place, sum);
+    r->gl->Disable(GL_BLEND);
+}
+
+// Whether there are rays that pass the cameras of no slab, looked for at places so far apart.
+static bool has_others(const struct renderer *r, const struct relume_window *window)
+{
+    enum { PLACES = 32 };
+    for (int i = 0; i < PLACES * PLACES; i++)
+        if (!relume_slab_set_passes(r->around, window, (i % PLACES + 0.5) / PLACES,
+                                    (i / PLACES + 0.5) / PLACES))
+            return true;
+    return false;
+}
+
+// All slabs through one window, added to what `onto` holds.
+static relume_status add_around(struct renderer *r, const struct frame_request *q,
+                                const struct place *place, const struct target *onto,
+                                const struct relume_window *window, bool by_depth)
+{
+    struct slabs_seen seen = {
         .slabs = r->around,
         .window = window,
         .views = r->relit,
         .disparity = by_depth ? r->depths.texture : NULL,
         .range = (const double(*)[2])r->depths.range,
     };
-    target_begin(&r->sum, r->gl);
-    if (by_depth)
-        draw_slabs_depth(&r->slabs_depth, r->gl, place, &seen);
-    else
-        draw_slabs(&r->slabs, r->gl, place, &seen,
-                   q->view.interpolation == RELUME_INTERPOLATE_CONSTANT);
-    target_resume(onto, r->gl);
-    r->gl->Enable(GL_BLEND);
-    draw_mean(&r->mean, r->gl, place, &r->sum);
-    r->gl->Disable(GL_BLEND);
+    seen.others = has_others(r, window);
+    add_mean(r, q, place, onto, &seen, &r->sum);
+    if (!seen.others)
+        return RELUME_OK;
+    const relume_status status = renderer_prepare(&r->beside, r, place->width, place->height);
+    seen.passed = &r->sum;
+    if (!status)
+        add_mean(r, q, place, onto, &seen, &r->beside);
+    return status;
 }
 
 // Twin of relume_slab_set_frame: the mean over the pinholes that show anything.
@@ -233,20 +262,20 @@ static relume_status draw_around_lens(struct renderer *r, const struct frame_req
     const double aperture = q->view.aperture, focus = q->view.focus;
     const int width = picture_width(q);
     struct place plain = *place;
-    const relume_status status = renderer_prepare(&r->pinholes, r, place->width, place->height);
+    relume_status status = renderer_prepare(&r->pinholes, r, place->width, place->height);
     if (status || !relume_lens_fits(window, aperture, focus))
         return status;
     plain.exposure = 1;
     target_begin(&r->pinholes, r->gl);
     const int all = relume_lens_points(window, aperture, focus, width);
     const int n = q->moves ? (all + MOVING_SHARE - 1) / MOVING_SHARE : all;
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; !status && i < n; i++) {
         const struct relume_window from = relume_lens_window(window, aperture, focus, i, n);
-        add_around(r, q, &plain, &r->pinholes, &from, by_depth);
+        status = add_around(r, q, &plain, &r->pinholes, &from, by_depth);
     }
     target_resume(&r->frame, r->gl);
     draw_mean(&r->mean, r->gl, place, &r->pinholes);
-    return RELUME_OK;
+    return status;
 }
 
 static relume_status draw_around(struct renderer *r, const struct frame_request *q,
@@ -261,8 +290,7 @@ static relume_status draw_around(struct renderer *r, const struct frame_request 
         return status;
     if (takes_lens(q))
         return draw_around_lens(r, q, place, &q->window, by_depth);
-    add_around(r, q, place, &r->frame, &q->window, by_depth);
-    return RELUME_OK;
+    return add_around(r, q, place, &r->frame, &q->window, by_depth);
 }
 
 static relume_status draw_framed_eye(struct renderer *r, const struct frame_request *q,

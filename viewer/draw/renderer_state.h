@@ -23,6 +23,7 @@ struct renderer {
     const struct target *shown;  // `frame`, or what an eye sees of it; NULL: nothing drawn yet
     struct target small;         // of the frame, to meter
     struct target sum;       // of an aperture's cameras, of several slabs; made when first needed
+    struct target beside;    // of several slabs, of rays that pass none's cameras; likewise
     struct target pinholes;  // of a lens before several slabs, their sum; likewise
     relume_slab *grid;       // NULL: not a slab, or several
     const relume_slab_set *around;  // several; else NULL

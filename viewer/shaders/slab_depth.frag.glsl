@@ -23,7 +23,8 @@ void main()
         for (int i = 0; i < across.count; i++) {
             vec2 within = vec2(footprint_place(across, i), footprint_place(down, j));
             vec2 at = (gl_FragCoord.xy + within - picture.xy) / (picture.zw - picture.xy);
-            find_cameras(slab_uv(eye, mix(st.x, st.z, at.x), mix(st.w, st.y, at.y)), at);
+            vec2 uv = slab_uv(eye, mix(st.x, st.z, at.x), mix(st.w, st.y, at.y));
+            find_cameras(uv, uv, at);
             sum += shade(range.y, range.x).rgb;
         }
     color = vec4(exposure * sum / float(across.count * down.count), 1.0);

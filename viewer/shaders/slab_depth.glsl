@@ -10,6 +10,7 @@ uniform sampler2D disparity01;
 uniform sampler2D disparity11;
 uniform vec4 st;    // st_min, st_max
 uniform vec4 cell;  // low u, low v, high u, high v
+uniform vec4 here;  // 1 for each camera whose view is there, in the order above, else 0
 
 const float BACKGROUND = -1.0;
 const int MOST_STEPS = 256;
@@ -19,9 +20,11 @@ const float GUESSED = 1e-3;
 struct Camera {
     float weight;
     vec2 shift;  // texels per unit of disparity
-    float speed;
+    float speed, pace;
 };
 vec2 texel;  // where the ray's point on the st plane lies in a view
+int rounds;
+float slope;
 Camera camera00, camera10, camera01, camera11;
 
 // ---------------------------------------------------------------- one camera
@@ -80,28 +83,47 @@ void gather(inout Sum sum, sampler2D view, sampler2D disparity, Camera c, float 
 
 // ---------------------------------------------------------------- one ray
 
+bool pass(inout float q, sampler2D disparity, Camera c, float found, float step)
+{
+    float from = q + step, before = disparity_at(disparity, c, from);
+    float ahead = from - before, behind = found - q;
+    if (!(before > BACKGROUND && ahead > 0.0 && behind > 0.0 && abs(found - before) <= slope))
+        return false;
+    q += step * behind / (ahead + behind);
+    return true;
+}
+
 void meet(inout vec2 sum, sampler2D disparity, Camera c, float q, float step)
 {
     float found = disparity_at(disparity, c, q);
-    if (c.weight > NEGLIGIBLE && found > BACKGROUND && abs(found - q) <= step)
-        sum += c.weight * vec2(found, 1.0);
+    if (!(c.weight > NEGLIGIBLE && found > BACKGROUND))
+        return;
+    if (abs(found - q) > step) {
+        if (!(slope > 0.0 && pass(q, disparity, c, found, step)))
+            return;
+        found = q;
+    }
+    sum += c.weight * vec2(found, 1.0);
 }
 
-float walking_speed(Camera c)
+float walking_pace(Camera c)
 {
-    return c.weight > NEGLIGIBLE ? c.speed : 0.0;
+    return c.weight > NEGLIGIBLE ? c.pace : 0.0;
 }
 
-bool walk(out float q, float nearest, float farthest)
+int count_steps(float from, float to)
 {
-    if (!(nearest >= farthest))
-        return false;
-    float speed = max(max(walking_speed(camera00), walking_speed(camera10)),
-                      max(walking_speed(camera01), walking_speed(camera11)));
-    int steps = clamp(int(ceil((nearest - farthest) * speed)), 1, MOST_STEPS);
-    float step = (nearest - farthest) / float(steps);
+    float pace = max(max(walking_pace(camera00), walking_pace(camera10)),
+                     max(walking_pace(camera01), walking_pace(camera11)));
+    return clamp(int(ceil(abs(from - to) * pace)), 1, MOST_STEPS);
+}
+
+bool walk(out float q, float from, float to)
+{
+    int steps = count_steps(from, to);
+    float step = (from - to) / float(steps);
     for (int k = 0; k <= steps; k++) {
-        float at = nearest - float(k) * step;
+        float at = from - float(k) * step;
         vec2 sum = vec2(0.0);
         meet(sum, disparity00, camera00, at, step);
         meet(sum, disparity10, camera10, at, step);
@@ -125,16 +147,20 @@ bool gather_all(out Sum sum, float q, float surface)
     return sum.weight > 1e-6;
 }
 
-vec4 shade(float nearest, float farthest)
+bool gather_surface(out Sum sum, float from, float to)
 {
     float q;
+    if (!walk(q, from, to))
+        return false;
+    for (int round = 0; round < rounds && gather_all(sum, q, q); round++)
+        q = sum.disparity / sum.weight;
+    return gather_all(sum, q, q);
+}
+
+vec4 shade(float nearest, float farthest)
+{
     Sum sum;
-    bool seen = false;
-    if (walk(q, nearest, farthest)) {
-        for (int round = 0; round < 2 && gather_all(sum, q, q); round++)
-            q = sum.disparity / sum.weight;
-        seen = gather_all(sum, q, q);
-    }
+    bool seen = nearest >= farthest && gather_surface(sum, nearest, farthest);
     if (!seen)
         seen = gather_all(sum, 0.0, BACKGROUND);
     if (!seen) {
@@ -145,21 +171,24 @@ vec4 shade(float nearest, float farthest)
     return vec4(rgb, seen ? sum.weight : GUESSED * sum.weight);
 }
 
-Camera find_camera(vec2 uv, vec2 at, vec2 part)
+Camera find_camera(vec2 uv, vec2 at, vec2 part, float present)
 {
     vec2 per_st = vec2(textureSize(view00, 0)) / (st.zw - st.xy);
     vec2 shift = (uv - at) * per_st * vec2(1.0, -1.0);
-    return Camera(part.x * part.y, shift, length(shift));
+    return Camera(present * part.x * part.y, shift, length(shift), length(shift));
 }
 
-// The cameras of the cell around the ray that passes `uv`; `at` is its place in the window.
-void find_cameras(vec2 uv, vec2 at)
+// The cameras of the cell around `nearest`, of a ray that passes `uv`; `at` is its place in the
+// window.
+void find_cameras(vec2 uv, vec2 nearest, vec2 at)
 {
     vec2 size = max(cell.zw - cell.xy, vec2(1e-30));  // one row or column has cells of no width
-    vec2 part = clamp((uv - cell.xy) / size, 0.0, 1.0);
+    vec2 part = clamp((nearest - cell.xy) / size, 0.0, 1.0);
     texel = at * vec2(textureSize(view00, 0));
-    camera00 = find_camera(uv, cell.xy, 1.0 - part);
-    camera10 = find_camera(uv, cell.zy, vec2(part.x, 1.0 - part.y));
-    camera01 = find_camera(uv, cell.xw, vec2(1.0 - part.x, part.y));
-    camera11 = find_camera(uv, cell.zw, part);
+    rounds = 2;
+    slope = 0.0;
+    camera00 = find_camera(uv, cell.xy, 1.0 - part, here.x);
+    camera10 = find_camera(uv, cell.zy, vec2(part.x, 1.0 - part.y), here.y);
+    camera01 = find_camera(uv, cell.xw, vec2(1.0 - part.x, part.y), here.z);
+    camera11 = find_camera(uv, cell.zw, part, here.w);
 }

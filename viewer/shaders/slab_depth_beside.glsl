@@ -1,0 +1,101 @@
+// A ray beside the grid by depth, after slab_depth.glsl and slabs_ray.glsl; twin of
+// src/view/slab_depth.c.
+const float MOST_SLOPE = 4.0;
+const float ENDLESS = -0.98;
+const float FAR = 1e30;  // no bound
+
+void clip(inout vec2 part, Camera c)
+{
+    vec2 size = vec2(textureSize(view00, 0));
+    for (int axis = 0; axis < 2; axis++) {
+        if (c.shift[axis] == 0.0)
+            continue;
+        float first = -texel[axis] / c.shift[axis];
+        float last = (size[axis] - texel[axis]) / c.shift[axis];
+        part = vec2(max(part.x, min(first, last)), min(part.y, max(first, last)));
+    }
+}
+
+void stretch_one(inout vec2 all, Camera c, vec2 own)
+{
+    clip(own, c);
+    if (c.weight > 0.0 && own.x <= own.y)
+        all = vec2(min(all.x, own.x), max(all.y, own.y));
+}
+
+// From where to where, from the eye on.
+bool stretch_of(out vec2 stretch, float least, float most, bool away)
+{
+    vec2 all = vec2(FAR, -FAR), own = vec2(least, most);
+    stretch_one(all, camera00, own);
+    stretch_one(all, camera10, own);
+    stretch_one(all, camera01, own);
+    stretch_one(all, camera11, own);
+    stretch = away ? all.yx : all;
+    return all.x <= all.y;
+}
+
+bool is_clear(sampler2D disparity, Camera c, vec2 stretch)
+{
+    int steps = count_steps(stretch.x, stretch.y);
+    if (c.weight <= 0.0)
+        return false;
+    for (int k = 0; k <= steps; k++) {
+        float q = stretch.x + float(k) * (stretch.y - stretch.x) / float(steps);
+        if (disparity_at(disparity, c, q) > q + slope)
+            return false;
+    }
+    return true;
+}
+
+bool gather_clear(out Sum sum, vec2 stretch)
+{
+    bool clear = is_clear(disparity00, camera00, stretch) ||
+                 is_clear(disparity10, camera10, stretch) ||
+                 is_clear(disparity01, camera01, stretch) ||
+                 is_clear(disparity11, camera11, stretch);
+    return clear &&
+           (gather_all(sum, 0.0, BACKGROUND) || gather_all(sum, stretch.y, BACKGROUND));
+}
+
+void slow_down(inout Camera c, float most)
+{
+    c.speed = min(c.pace, most);
+    if (c.weight > 0.0 && c.pace > most)
+        rounds = 0;
+}
+
+void look_from_aside()
+{
+    vec2 across = (grid.zw - grid.xy) * vec2(textureSize(view00, 0)) / (st.zw - st.xy);
+    float most = max(length(across), 1.0);
+    slope = MOST_SLOPE / most;
+    slow_down(camera00, most);
+    slow_down(camera10, most);
+    slow_down(camera01, most);
+    slow_down(camera11, most);
+}
+
+float disparity_of_eye()
+{
+    bool before = (planes.x - eye.z) * (planes.x - planes.y) > 0.0;
+    return before ? (eye.z - planes.y) / (planes.x - eye.z) : FAR;
+}
+
+// And how sure it is: 0 is not at all.
+vec4 slab_depth_beside(Beside ray, vec2 extent)
+{
+    vec2 place = (ray.hit - st.xy) / (st.zw - st.xy), stretch;
+    float from_eye = disparity_of_eye();
+    find_cameras(ray.uv, ray.at, vec2(place.x, 1.0 - place.y));
+    look_from_aside();
+    float nearest = ray.away ? min(extent.y, from_eye) : extent.y;
+    float farthest = ray.away ? extent.x : max(extent.x, from_eye);
+    Sum sum;
+    bool met = stretch_of(stretch, farthest, nearest, ray.away) &&
+               gather_surface(sum, stretch.x, stretch.y);
+    if (!met && !(stretch_of(stretch, ray.away ? ENDLESS : from_eye, nearest, ray.away) &&
+                  gather_clear(sum, stretch)))
+        return vec4(0.0);
+    return vec4(sum.rgb / sum.weight, sum.weight);
+}

@@ -20,7 +20,7 @@ acquire:base math image capture multiview:base image directions capture ball pho
 coder:base math image:base image capture coder
 codebook:base math image coder:base coder codebook
 selection:base math image coder compare:base image capture coder codebook heldout
-encode:base:base image capture codebook coder light relight pack
+encode:base coder codebook:base image capture codebook coder light relight pack
 pack:base image coder:base image capture codebook coder pack
 foreign:base math image:base image directions coder relight
 exchange:base math image foreign:base image photograph directions codebook coder capture pack relight exchange

@@ -331,7 +331,8 @@ struct relume_encode_report {
     double fit_rms;    // captured samples against unquantised coefficients
     double store_rms;  // unquantised against stored coefficients
     double steps_rms;  // the same before a codebook; 0 from a file
-    double psnr_db;    // of display values, as `relume eval` measures it; 0 from a file
+    double psnr_db;    // of display values, as `relume eval` measures it, with a codebook what that
+                       // leaves; 0 from a file
     double typical;    // captured sample above 0: squared mean of the roots; 0 from a file
     struct relume_encode_census census;  // zeros where it is read from a file
 };

@@ -16,6 +16,10 @@ void book_store(void *numbers, float *scale, float *offset, const float *vectors
 // Reorder vectors[codes][dim] so that neighbours are alike: images of indices then compress better.
 relume_status book_sort(float *vectors, int codes, int dim);
 
+// What the indices of row `y` of a view say: planes[plane * stride + x].
+void books_row(float *planes, size_t stride, const relume_books *books, uint16_t *const *index,
+               size_t width, size_t y);
+
 struct relume_books {
     struct relume_books_info info;
     struct relume_book book[RELUME_MOST_BOOKS];

@@ -108,20 +108,28 @@ static void find_codes(const struct assignment *a, struct work *w, int y)
     }
 }
 
+void books_row(float *out, size_t stride, const relume_books *books, uint16_t *const *index,
+               size_t width, size_t y)
+{
+    const size_t planes = (size_t)books->info.planes;
+    for (size_t p = 0; p < planes; p++)
+        memset(out + p * stride, 0, width * sizeof *out);
+    for (int b = 0; b < books->info.books; b++)
+        for (size_t x = 0; x < width; x++) {
+            const float *v = books->vectors[b] + index[b][y * width + x] * planes;
+            for (size_t p = 0; p < planes; p++)
+                out[p * stride + x] += v[p];
+        }
+}
+
 // What the row's indices say instead of its coefficients, over the captured lights.
 static double measure_row(const struct assignment *a, struct work *w, int y)
 {
-    const size_t width = (size_t)a->view->info.width, planes = (size_t)a->books->info.planes;
+    const size_t width = (size_t)a->view->info.width;
     const relume_coder *coder = a->view->info.coder;
     const size_t n = (size_t)relume_coder_info(coder)->lights * width;
     float *kept = w->part;
-    memset(kept, 0, width * planes * sizeof *kept);
-    for (int b = 0; b < a->books->info.books; b++)
-        for (size_t x = 0; x < width; x++) {
-            const size_t code = a->index[b][(size_t)y * width + x];
-            for (size_t p = 0; p < planes; p++)
-                kept[p * width + x] += a->books->vectors[b][code * planes + p];
-        }
+    books_row(kept, width, a->books, a->index, width, (size_t)y);
     double sum = 0.0;
     for (int c = 0; c < 3; c++) {
         captured_predict(&a->captured, coder, c, w->row, width, width, w->wanted);

@@ -60,4 +60,15 @@ void coefficients_restore(const relume_coefficients *c, int plane, int row, cons
 // RELUME_EIO.
 relume_status coefficients_values(const relume_coefficients *c, int row, void *waiting, float *out);
 
+// Coefficients in place of a view's own: planes[plane * stride + x] of a row.
+struct encode_values {
+    void (*row)(const void *user, int row, float *planes, size_t stride);
+    const void *user;
+};
+// The `psnr_db` of a report for them, on the same rows. The images are read again. An input status,
+// RELUME_ENOMEM, RELUME_ECANCEL.
+relume_status encode_judge(double *psnr_db, relume_coefficients *c, const relume_capture *capture,
+                           int view, const struct encode_values *values,
+                           const struct relume_encode_params *p);
+
 #endif

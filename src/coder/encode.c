@@ -40,13 +40,14 @@ struct encoding {
     size_t write_bytes;
     off_t write_at;
     int write_error;  // errno of a write that failed
-    const struct relume_image *mask;
+    struct relume_image mask;
     const char *const *images;  // [lights], for messages
     struct range *total;        // [planes], masked pixels being 0
     struct captured captured;
     struct census census;
     size_t repaired;
     double error_sum, root_sum;
+    struct relume_transfer display;  // of the samples
     struct encoder *screen;  // the display's coding of linear coefficients, or NULL: they are coded
     double *shown_error;     // [lights]: squared, of display values, by the basis
     double stored_error;     // mean square of them by storing
@@ -64,8 +65,8 @@ static void apply_mask(const struct encoding *e, size_t first, size_t n)
 {
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
     const size_t at = (size_t)e->row * (size_t)e->width;
-    for (size_t x = first; e->mask->data && x < first + n; x++)
-        if (!is_inside(e->mask, at + x))
+    for (size_t x = first; e->mask.data && x < first + n; x++)
+        if (!is_inside(&e->mask, at + x))
             for (size_t p = 0; p < (size_t)e->planes; p++)
                 e->values[p * pixels + x] = 0.0f;
 }
@@ -98,7 +99,7 @@ static void apply_chunk(void *context, size_t item, int worker)
     const size_t at = (size_t)e->row * (size_t)e->width + first;
     float *work = e->work + (size_t)worker * coder_work(e->coder);
     gather(e, first, n, work);
-    census_add(&e->census, worker, work, n, e->mask->data ? e->mask->data + at : NULL);
+    census_add(&e->census, worker, work, n, e->mask.data ? e->mask.data + at : NULL);
     if (!e->seen)
         coder_apply_separated(e->coder, n, e->values + first, pixels, work);
     apply_mask(e, first, n);
@@ -164,7 +165,7 @@ static relume_status measure_fit(struct encoding *e, int row)
                          again);
         for (size_t i = 0; i < (size_t)e->lights; i++)
             for (size_t x = 0; x < width; x++)
-                if (is_inside(e->mask, (size_t)(e->row + row) * width + x)) {
+                if (is_inside(&e->mask, (size_t)(e->row + row) * width + x)) {
                     const double sample = (double)seen[(size_t)c * size + i * width + x];
                     const double d = sample - (double)again[i * width + x];
                     e->error_sum += d * d;
@@ -186,7 +187,7 @@ static relume_status measure_seen(struct encoding *e, int row)
         return RELUME_ENOMEM;
     for (size_t x = 0; x < width; x += 8) {
         const size_t at = (size_t)row * width + x;
-        if (!is_inside(e->mask, (size_t)e->row * width + at))
+        if (!is_inside(&e->mask, (size_t)e->row * width + at))
             continue;
         seen_predict(e->seen, (int)x, e->row + row, e->values + at, pixels, again);
         for (size_t i = 0; i < 3 * (size_t)e->lights; i++) {
@@ -249,11 +250,17 @@ static relume_status write_band(struct encoding *e, size_t pixels,
     return RELUME_OK;
 }
 
+static relume_status read_band(struct encoding *e)
+{
+    e->rows = e->height - e->row < BAND_ROWS ? e->height - e->row : BAND_ROWS;
+    return e->seen ? relume_table_read_seen(e->table, e->rows, e->samples, e->own)
+                   : relume_table_fetch(e->table, e->rows);
+}
+
 static relume_status encode_band(struct encoding *e, const struct relume_encode_params *p)
 {
+    relume_status status = read_band(e);
     const size_t pixels = (size_t)e->rows * (size_t)e->width;
-    relume_status status = e->seen ? relume_table_read_seen(e->table, e->rows, e->samples, e->own)
-                                   : relume_table_fetch(e->table, e->rows);
     if (!status && e->seen)
         status = seen_apply(e->seen, e->row, e->rows, e->own, e->samples, e->values);
     if (status)
@@ -289,21 +296,29 @@ static relume_status see_near(struct encoding *e)
     return seen_create(&e->seen, e->coder, e->table, e->width, e->height, e->threads);
 }
 
+static relume_status open_table(struct encoding *e, const relume_capture *capture, int view,
+                                const struct relume_encode_params *p)
+{
+    const relume_status status = relume_table_open(
+        &e->table, capture, view,
+        relume_table_params(.log = p->log, .display = e->display, .threads = p->threads));
+    return !status && relume_table_is_near(e->table) && seen_suits(e->coder) ? see_near(e) : status;
+}
+
+static bool say_done(const struct encoding *e, const relume_capture *capture, int view,
+                     const char *what, const struct relume_log *log)
+{
+    const int views = relume_capture_manifest(capture)->views;
+    return log_progress(log, what, (view + (e->row + e->rows) / (double)e->height) / views);
+}
+
 static relume_status encode_bands(struct encoding *e, const relume_capture *capture, int view,
-                                  struct relume_transfer display,
                                   const struct relume_encode_params *p)
 {
-    relume_status status = relume_table_open(
-        &e->table, capture, view,
-        relume_table_params(.log = p->log, .display = display, .threads = p->threads));
-    if (!status && relume_table_is_near(e->table) && seen_suits(e->coder))
-        status = see_near(e);
+    relume_status status = open_table(e, capture, view, p);
     for (e->row = 0; !status && e->row < e->height; e->row += BAND_ROWS) {
-        e->rows = e->height - e->row < BAND_ROWS ? e->height - e->row : BAND_ROWS;
         status = encode_band(e, p);
-        const int views = relume_capture_manifest(capture)->views;
-        const double done = (view + (e->row + e->rows) / (double)e->height) / views;
-        if (!status && !log_progress(p->log, "encoding", done))
+        if (!status && !say_done(e, capture, view, "encoding", p->log))
             status = RELUME_ECANCEL;
     }
     for (int i = 0; !status && i < e->lights; i++)
@@ -352,7 +367,7 @@ static relume_status measure_storage(relume_coefficients *c, struct encoding *e)
             captured_predict(&e->captured, e->coder, channel, before, width, width, wanted);
             captured_predict(&e->captured, e->coder, channel, after, width, width, stored);
             for (size_t i = 0; i < size; i++)
-                if (is_inside(e->mask, (size_t)row * width + i % width)) {
+                if (is_inside(&e->mask, (size_t)row * width + i % width)) {
                     const double d = (double)wanted[i] - (double)stored[i];
                     sum += d * d;
                     e->stored_error += shown_difference(e, wanted[i], stored[i]);
@@ -396,7 +411,7 @@ static double shown_psnr(const struct encoding *e)
     return sum;
 }
 
-static relume_status alloc_encoder(struct encoding *e)
+static relume_status alloc_encoder(struct encoding *e, const relume_capture *capture)
 {
     const size_t band = (size_t)BAND_ROWS * (size_t)e->width, planes = (size_t)e->planes;
     e->values = mem_array(planes * band, sizeof *e->values);
@@ -411,6 +426,12 @@ static relume_status alloc_encoder(struct encoding *e)
         return RELUME_ENOMEM;
     for (size_t p = 0; p < planes; p++)
         e->total[p] = (struct range){FLT_MAX, -FLT_MAX};
+    if (e->display.curve == RELUME_CURVE_LINEAR) {
+        e->screen = mem_array(1, sizeof *e->screen);
+        if (!e->screen)
+            return RELUME_ENOMEM;
+        encoder_init(e->screen, relume_encode_display(capture));
+    }
     return captured_create(&e->captured, e->coder, e->coder->world, e->lights);
 }
 
@@ -428,6 +449,28 @@ static void free_encoder(struct encoding *e)
     free(e->screen);
     captured_destroy(&e->captured);
     census_destroy(&e->census);
+    relume_image_destroy(&e->mask);
+}
+
+// Without memory so far, but for the mask.
+static relume_status begin(struct encoding *e, const relume_coder *coder,
+                           const relume_capture *capture, int view,
+                           const struct relume_encode_params *p)
+{
+    const struct relume_manifest *m = relume_capture_manifest(capture);
+    *e = (struct encoding){
+        .coder = coder,
+        .lights = m->lights,
+        .width = relume_capture_width(capture),
+        .height = relume_capture_height(capture),
+        .planes = coder->info.planes,
+        .images = m->view[view].images,
+        .display = {.curve = RELUME_CURVE_LINEAR},
+        .threads = p->threads,
+    };
+    if (relume_encode_domain(capture, p->domain) == RELUME_DOMAIN_DISPLAY)
+        e->display = relume_encode_display(capture);
+    return relume_capture_mask(&e->mask, capture, view, p->log);
 }
 
 relume_status relume_encode(relume_coefficients **out, const relume_coder *coder,
@@ -440,54 +483,69 @@ relume_status relume_encode(relume_coefficients **out, const relume_coder *coder
     if (!coder->map || m->lights != coder->info.lights || view < 0 || view >= m->views)
         return RELUME_EINVAL;
 
-    struct relume_image mask;
-    relume_status status = relume_capture_mask(&mask, capture, view, p.log);
-    if (status)
-        return status;
     relume_coefficients *c = NULL;
-    struct encoding e = {
-        .coder = coder,
-        .lights = m->lights,
-        .width = relume_capture_width(capture),
-        .height = relume_capture_height(capture),
-        .planes = coder->info.planes,
-        .mask = &mask,
-        .images = m->view[view].images,
-        .threads = p.threads,
-    };
-    struct relume_transfer display = {.curve = RELUME_CURVE_LINEAR};
-    if (relume_encode_domain(capture, p.domain) == RELUME_DOMAIN_DISPLAY)
-        display = relume_encode_display(capture);
-    status = coefficients_create(&c, coder, relume_capture_width(capture),
-                                 relume_capture_height(capture), &p);
+    struct encoding e;
+    relume_status status = begin(&e, coder, capture, view, &p);
+    if (!status)
+        status = coefficients_create(&c, coder, e.width, e.height, &p);
     e.out = c;
     if (!status)
-        status = alloc_encoder(&e);
-    if (!status && display.curve == RELUME_CURVE_LINEAR) {
-        e.screen = mem_array(1, sizeof *e.screen);
-        status = e.screen ? RELUME_OK : RELUME_ENOMEM;
-        if (e.screen)
-            encoder_init(e.screen, relume_encode_display(capture));
-    }
+        status = alloc_encoder(&e, capture);
     if (!status)
-        status = census_create(&e.census, capture, display, thread_count(p.threads));
+        status = census_create(&e.census, capture, e.display, thread_count(p.threads));
     if (!status)
-        status = encode_bands(&e, capture, view, display, &p);
+        status = encode_bands(&e, capture, view, &p);
     if (!status) {
         c->report.census = census_result(&e.census);
         c->report.census.repaired = e.repaired;
         c->report.fit_rms = e.error_count ? sqrt(e.error_sum / (double)e.error_count) : 0.0;
         const double root = e.lit_count ? e.root_sum / (double)e.lit_count : 0.0;
         c->report.typical = root * root;
-        coefficients_choose_steps(c, e.total, mask.data != NULL, p.step);
+        coefficients_choose_steps(c, e.total, e.mask.data != NULL, p.step);
         if (relume_storage_top(c->info.storage))
             status = measure_storage(c, &e);
         c->report.psnr_db = shown_psnr(&e);
     }
     free_encoder(&e);
-    relume_image_destroy(&mask);
     if (status)
         relume_coefficients_destroy(&c);
     *out = c;
+    return status;
+}
+
+// ---------------------------------------------------------------- other coefficients
+
+static relume_status judge_band(struct encoding *e, const struct encode_values *values)
+{
+    relume_status status = read_band(e);
+    const size_t pixels = (size_t)e->rows * (size_t)e->width;
+    for (int y = 0; !status && y < e->rows; y++)
+        if (is_measured(e->out, e->row + y)) {
+            values->row(values->user, e->row + y, e->values + (size_t)y * (size_t)e->width, pixels);
+            status = e->seen ? measure_seen(e, y) : measure_fit(e, y);
+        }
+    return status;
+}
+
+relume_status encode_judge(double *psnr_db, relume_coefficients *c, const relume_capture *capture,
+                           int view, const struct encode_values *values,
+                           const struct relume_encode_params *p)
+{
+    struct encoding e;
+    relume_status status = begin(&e, c->info.coder, capture, view, p);
+    e.out = c;
+    if (!status)
+        status = alloc_encoder(&e, capture);
+    if (!status)
+        status = open_table(&e, capture, view, p);
+    for (e.row = 0; !status && e.row < e.height; e.row += BAND_ROWS) {
+        status = judge_band(&e, values);
+        if (!status && !say_done(&e, capture, view, "measuring", p->log))
+            status = RELUME_ECANCEL;
+    }
+    *psnr_db = shown_psnr(&e);
+    seen_destroy(&e.seen);
+    relume_table_destroy(&e.table);
+    free_encoder(&e);
     return status;
 }

@@ -3,6 +3,8 @@
 
 #include "base/memory.h"
 #include "base/params.h"
+#include "codebook/books.h"
+#include "coder/coefficients.h"
 
 #include <math.h>
 
@@ -125,6 +127,37 @@ static int most_codes(const struct material *m)
     return 65536;
 }
 
+struct shelf {
+    const relume_books *books;
+    uint16_t *const *index;
+    size_t width;
+};
+
+static void shelf_row(const void *user, int row, float *planes, size_t stride)
+{
+    const struct shelf *s = user;
+    books_row(planes, stride, s->books, s->index, s->width, (size_t)row);
+}
+
+// What relighting reproduces, which was measured before there were books.
+static relume_status judge_books(const struct material *m, double *psnr_db,
+                                 const relume_capture *capture,
+                                 const struct relume_encode_params *p)
+{
+    relume_status status = RELUME_OK;
+    double sum = 0.0;
+    for (int i = 0; !status && i < m->views; i++) {
+        double psnr = 0.0;
+        const struct shelf shelf = {m->view[i].books, m->index + i * RELUME_MOST_BOOKS,
+                                    (size_t)relume_capture_width(capture)};
+        status = encode_judge(&psnr, m->coefficients[i], capture, i,
+                              &(const struct encode_values){shelf_row, &shelf}, p);
+        sum += psnr / m->views;
+    }
+    *psnr_db = sum;
+    return status;
+}
+
 static relume_status make_books(struct material *m, const struct relume_pack_encode_params *p,
                                 double *store_rms)
 {
@@ -172,6 +205,8 @@ relume_status relume_pack_encode(const relume_capture *capture, const relume_cod
         total = mean_report(&m);
     if (!status && p.books)
         status = make_books(&m, &p, &total.store_rms);
+    if (!status && p.books && report)
+        status = judge_books(&m, &total.psnr_db, capture, &encode);
     if (!status) {
         struct relume_pack_contents contents = {
             .coder = coder,

@@ -53,6 +53,21 @@ below 'more codes are better' "$(eval_field more.exr dome rms)" "$(awk -v r="$fe
 below 'more stages are better' "$(eval_field stages.exr dome rms)" "$(awk -v r="$few" 'BEGIN { print .9 * r }')"
 below 'a code for every pixel loses nothing' "$(eval_field all.exr dome rms)" "$(awk -v r="$planes" 'BEGIN { print r + 1e-4 }')"
 
+# ---- what encode says is what the file does: measured on two rows of 16, hence half a decibel
+as_said() { # name, capture, option...
+    name=$1 from=$2
+    shift 2
+    "$RELUME" encode "$from" -o said.exr "$@" 2>err.txt || not_ok "$name" "$(cat err.txt)"
+    said=$(sed -n 's/.*reproduces your photographs at \([-0-9.]*\) dB.*/\1/p' err.txt)
+    found=$("$RELUME" eval said.exr "$from" | awk '$1 == "PSNR" { print $2 }')
+    below "$name: $said dB" "$(awk -v a="${said:-99}" -v b="$found" 'BEGIN { print (a > b ? a - b : b - a) }')" 0.5
+}
+"$sphere" round --size 96 --lights 16 --hemisphere
+as_said 'eight vectors' round --basis pca --coefficients 12 --codebook 8
+as_said 'two stages in linear light' round --basis pca --coefficients 12 --codebook 32 --stages 2 --domain linear
+"$RELUME" synth box -o wide --size 96 --views 2x1 --lights-from round/dirs.lp --samples 1 -q
+as_said 'vectors for all views' wide --basis pca --coefficients 9 --codebook 12 --share
+
 # ---- the same bytes for any number of threads; another seed, other bytes
 for n in 1 2 7; do
     relume encode dome -o "e$n.exr" --codebook 20 --codebook-start random --seed 3 --dither 1 --threads $n

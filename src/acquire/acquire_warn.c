@@ -10,10 +10,8 @@
 static relume_status keep(struct shoot *s, const char *text)
 {
     struct relume_acquisition *out = s->out;
-    char **grown = mem_resize(out->warning, (size_t)out->warnings + 1, sizeof *grown);
-    if (!grown)
+    if (!mem_grow(&out->warning, (size_t)out->warnings, sizeof *out->warning))
         return RELUME_ENOMEM;
-    out->warning = grown;
     out->warning[out->warnings] = mem_text(text);
     return out->warning[out->warnings++] ? RELUME_OK : RELUME_ENOMEM;
 }

@@ -52,6 +52,19 @@ void *mem_resize(void *old, size_t count, size_t size)
     return realloc(old, bytes ? bytes : 1);
 }
 
+bool mem_grow(void *array, size_t count, size_t size)
+{
+    enum { LEAST = 16 };
+    void *items;
+    if ((count && count < LEAST) || count & (count - 1))
+        return true;
+    memcpy(&items, array, sizeof items);
+    items = mem_resize(items, count ? 2 * count : LEAST, size);
+    if (items)
+        memcpy(array, &items, sizeof items);
+    return items;
+}
+
 void *mem_copy(const void *from, size_t count, size_t size)
 {
     void *copy = mem_array(count, size);

@@ -95,15 +95,8 @@ char *tree_resolve(const char *path)
 
 static struct tree_entry *more(struct tree_list *list)
 {
-    if (list->count == list->room) {
-        const size_t room = list->room ? 2 * list->room : 64;
-        struct tree_entry *item = mem_resize(list->item, room, sizeof *item);
-        if (!item)
-            return NULL;
-        list->item = item;
-        list->room = room;
-    }
-    return &list->item[list->count++];
+    const bool room = mem_grow(&list->item, list->count, sizeof *list->item);
+    return room ? &list->item[list->count++] : NULL;
 }
 
 // `within` is "" or ends in a slash.

@@ -28,7 +28,7 @@ struct tree_entry {
 };
 struct tree_list {
     struct tree_entry *item;
-    size_t count, room;
+    size_t count;
 };
 // All that is in `path`, sorted by name. False with errno; to be freed in either case.
 bool tree_list(struct tree_list *out, const char *path);

@@ -28,7 +28,7 @@ struct pictures {
     const struct relume_btf_params *params;
     const struct relume_log *log;
     struct picture *all;
-    size_t count, room;
+    size_t count;
     struct angles *views, *lights;
     int view_count, light_count;
     const struct picture **grid;  // [view][light], NULL: missing
@@ -85,19 +85,6 @@ static int parse(struct picture *p, const char *name)
     return a[0] < 90.0 && a[2] < 90.0 && a[1] <= 360.0 && a[3] <= 360.0 ? 1 : -1;
 }
 
-static bool grow(struct pictures *p)
-{
-    if (p->count < p->room)
-        return true;
-    const size_t room = p->room ? 2 * p->room : 256;
-    struct picture *more = mem_resize(p->all, room, sizeof *more);
-    if (!more)
-        return false;
-    p->all = more;
-    p->room = room;
-    return true;
-}
-
 static relume_status add(struct pictures *p, const char *name)
 {
     struct picture one = {.name = NULL};
@@ -110,7 +97,7 @@ static relume_status add(struct pictures *p, const char *name)
                         "to 360, all four",
                         p->path, name);
     one.name = mem_text(name);
-    if (!one.name || !grow(p)) {
+    if (!one.name || !mem_grow(&p->all, p->count, sizeof *p->all)) {
         free(one.name);
         return RELUME_ENOMEM;
     }

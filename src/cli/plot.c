@@ -4,6 +4,7 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 #include <math.h>
+#include <relume/io.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -433,29 +434,15 @@ static void draw_page(struct drawing *d, const struct plot_point *const *sorted)
     draw_legend(d);
 }
 
-struct stream {
-    char *bytes;
-    size_t size, room;
-};
-
 static cairo_status_t add_bytes(void *closure, const unsigned char *data, unsigned length)
 {
-    struct stream *s = closure;
-    if (s->size + length > s->room) {
-        const size_t room = 2 * (s->size + length);
-        char *bytes = realloc(s->bytes, room);
-        if (!bytes)
-            return CAIRO_STATUS_NO_MEMORY;
-        s->bytes = bytes;
-        s->room = room;
-    }
-    memcpy(s->bytes + s->size, data, length);
-    s->size += length;
-    return CAIRO_STATUS_SUCCESS;
+    struct relume_buffer *s = closure;
+    const struct relume_writer to = relume_buffer_writer(s);
+    return to.write(s, data, length, s->size) ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_NO_MEMORY;
 }
 
 static bool draw_to_stream(struct drawing *d, const struct plot_point *const *sorted,
-                           enum plot_format format, struct stream *s)
+                           enum plot_format format, struct relume_buffer *s)
 {
     const bool png = format == PLOT_PNG;
     cairo_surface_t *surface =
@@ -490,7 +477,7 @@ relume_status plot_draw(const struct plot *plot, enum plot_format format, char *
         .line = calloc((size_t)plot->points, sizeof *d.line),
     };
     const struct plot_point **sorted = calloc((size_t)plot->points, sizeof *sorted);
-    struct stream s = {0};
+    struct relume_buffer s = {0};
     bool good = d.taken && d.line && sorted;
     if (good) {
         for (int i = 0; i < plot->points; i++)
@@ -503,10 +490,10 @@ relume_status plot_draw(const struct plot *plot, enum plot_format format, char *
     free(d.line);
     free(sorted);
     if (!good) {
-        free(s.bytes);
+        relume_buffer_destroy(&s);
         return RELUME_ENOMEM;
     }
-    *bytes = s.bytes;
+    *bytes = (char *)s.data;
     *size = s.size;
     return RELUME_OK;
 }

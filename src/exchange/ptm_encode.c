@@ -29,7 +29,7 @@ static const double moment[PTM_TERMS][PTM_TERMS] = {
 
 struct plane {
     uint8_t *bytes, *side;
-    size_t size, records, room;
+    size_t size, records;
     relume_status status;
 };
 
@@ -119,17 +119,8 @@ static void find_residual(const struct coder *c, int i, float *out)
 
 static bool add_record(struct plane *p, size_t pixel, uint8_t code)
 {
-    if (p->records == p->room) {
-        const size_t room = p->room ? 2 * p->room : 256;
-        uint8_t *side = mem_array(room, PTM_RECORD);
-        if (!side)
-            return false;
-        if (p->records)
-            memcpy(side, p->side, p->records * PTM_RECORD);
-        free(p->side);
-        p->side = side;
-        p->room = room;
-    }
+    if (!mem_grow(&p->side, p->records, PTM_RECORD))
+        return false;
     uint8_t *to = p->side + p->records++ * PTM_RECORD;
     for (int k = 0; k < 4; k++)
         to[k] = (uint8_t)(pixel >> (24 - 8 * k));

@@ -366,12 +366,9 @@ static void grow(j_compress_ptr info)
 {
     struct writer *w = info->client_data;
     const size_t room = w->room ? 2 * w->room : 1 << 16;
-    uint8_t *out = mem_array(room, 1);
+    uint8_t *out = mem_resize(w->out, room, 1);
     if (!out)
         longjmp(w->trap.jump, 1);
-    if (w->room)
-        memcpy(out, w->out, w->room);
-    free(w->out);
     w->destination.next_output_byte = out + w->room;
     w->destination.free_in_buffer = room - w->room;
     w->out = out;

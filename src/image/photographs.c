@@ -125,12 +125,10 @@ static void say_left_out(const struct gathering *g, const char *first)
 static relume_status add(struct gathering *g, char *path)
 {
     struct relume_photographs *list = g->list;
-    char **grown = path ? mem_resize(list->path, (size_t)list->count + 1, sizeof *grown) : NULL;
-    if (!grown) {
+    if (!path || !mem_grow(&list->path, (size_t)list->count, sizeof *list->path)) {
         free(path);
         return RELUME_ENOMEM;
     }
-    list->path = grown;
     list->path[list->count++] = path;
     return RELUME_OK;
 }

@@ -208,25 +208,17 @@ struct writer {
     png_structp png;
     png_infop info;
     struct trap trap;
-    uint8_t *bytes;
-    size_t size, room;
+    struct relume_buffer out;
 };
 
 static void append(png_structp png, png_bytep bytes, size_t n)
 {
     struct writer *w = png_get_io_ptr(png);
-    if (w->room - w->size < n) {
-        const size_t room = 2 * (w->size + n);
-        uint8_t *more = mem_resize(w->bytes, room, 1);
-        if (!more) {
-            w->trap.short_of_memory = true;
-            png_error(png, "");
-        }
-        w->bytes = more;
-        w->room = room;
+    const struct relume_writer to = relume_buffer_writer(&w->out);
+    if (!to.write(to.user, bytes, n, w->out.size)) {
+        w->trap.short_of_memory = true;
+        png_error(png, "");
     }
-    memcpy(w->bytes + w->size, bytes, n);
-    w->size += n;
 }
 
 static void no_flush(png_structp png)
@@ -268,10 +260,11 @@ relume_status png_write(const char *path, const struct relume_writer *writer, in
                      ? RELUME_ENOMEM
                      : log_fail(log, RELUME_EIO, "%s: cannot be written; %s", path, w->trap.text);
     if (!status)
-        status = outfile_save_to(path, writer, w->bytes, w->size, log);
+        status = outfile_save_to(path, writer, w->out.data, w->out.size, log);
     if (w && w->png)
         png_destroy_write_struct(&w->png, &w->info);
-    free(w ? w->bytes : NULL);
+    if (w)
+        relume_buffer_destroy(&w->out);
     free(w);
     return status;
 }

@@ -18,11 +18,11 @@ struct builder {
     vec3 *p;  // shifted
     int n;
     struct face *faces;
-    int count, capacity;
+    int count;
     struct edge {
         int from, to;
     } * horizon;
-    int horizon_count, horizon_capacity;
+    int horizon_count;
 };
 
 // Distinct shifts of about 1e-7: far above rounding, far below any angle between lights.
@@ -38,22 +38,9 @@ static double volume(const struct builder *b, const int c[3], vec3 d)
     return vec3_dot(vec3_cross(e1, e2), vec3_sub(d, b->p[c[0]]));
 }
 
-static bool grow(void **array, int *capacity, int needed, size_t size)
-{
-    if (needed <= *capacity)
-        return true;
-    const int larger = needed * 2 + 16;
-    void *moved = mem_resize(*array, (size_t)larger, size);
-    if (!moved)
-        return false;
-    *array = moved;
-    *capacity = larger;
-    return true;
-}
-
 static bool add_face(struct builder *b, int i, int j, int k)
 {
-    if (!grow((void **)&b->faces, &b->capacity, b->count + 1, sizeof *b->faces))
+    if (!mem_grow(&b->faces, (size_t)b->count, sizeof *b->faces))
         return false;
     b->faces[b->count++] = (struct face){{i, j, k}, true};
     return true;
@@ -67,7 +54,7 @@ static bool toggle_edge(struct builder *b, int from, int to)
             b->horizon[i] = b->horizon[--b->horizon_count];
             return true;
         }
-    if (!grow((void **)&b->horizon, &b->horizon_capacity, b->horizon_count + 1, sizeof *b->horizon))
+    if (!mem_grow(&b->horizon, (size_t)b->horizon_count, sizeof *b->horizon))
         return false;
     b->horizon[b->horizon_count++] = (struct edge){from, to};
     return true;

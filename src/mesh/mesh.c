@@ -12,22 +12,6 @@ void mesh_free(struct mesh *mesh)
     *mesh = (struct mesh){0};
 }
 
-// `array` with room for one more element of `size` bytes, or NULL with the old one untouched.
-static void *grown(void *array, size_t *room, size_t count, size_t size)
-{
-    if (count < *room)
-        return array;
-    const size_t more = *room ? 2 * *room : 256;
-    void *bigger = mem_array(more, size);
-    if (!bigger)
-        return NULL;
-    if (count)
-        memcpy(bigger, array, count * size);
-    free(array);
-    *room = more;
-    return bigger;
-}
-
 static void put(float out[3], vec3 v)
 {
     out[0] = (float)v.x;
@@ -37,16 +21,11 @@ static void put(float out[3], vec3 v)
 
 uint32_t mesh_vertex(struct mesh *mesh, vec3 position, vec3 normal, vec3 texture)
 {
-    struct vertex *v =
-        mesh->failed || mesh->vertex_count >= UINT32_MAX
-            ? NULL
-            : grown(mesh->vertices, &mesh->vertex_room, mesh->vertex_count, sizeof *v);
-    if (!v) {
-        mesh->failed = true;
+    mesh->failed = mesh->failed || mesh->vertex_count >= UINT32_MAX ||
+                   !mem_grow(&mesh->vertices, mesh->vertex_count, sizeof *mesh->vertices);
+    if (mesh->failed)
         return 0;
-    }
-    mesh->vertices = v;
-    v += mesh->vertex_count;
+    struct vertex *v = mesh->vertices + mesh->vertex_count;
     put(v->position, position);
     put(v->normal, normal);
     put(v->texture, texture);
@@ -55,16 +34,10 @@ uint32_t mesh_vertex(struct mesh *mesh, vec3 position, vec3 normal, vec3 texture
 
 void mesh_triangle(struct mesh *mesh, uint32_t a, uint32_t b, uint32_t c, uint32_t material)
 {
-    struct triangle *t =
-        mesh->failed || mesh->triangle_count >= UINT32_MAX
-            ? NULL
-            : grown(mesh->triangles, &mesh->triangle_room, mesh->triangle_count, sizeof *t);
-    if (!t) {
-        mesh->failed = true;
-        return;
-    }
-    mesh->triangles = t;
-    t[mesh->triangle_count++] = (struct triangle){{a, b, c}, material};
+    mesh->failed = mesh->failed || mesh->triangle_count >= UINT32_MAX ||
+                   !mem_grow(&mesh->triangles, mesh->triangle_count, sizeof *mesh->triangles);
+    if (!mesh->failed)
+        mesh->triangles[mesh->triangle_count++] = (struct triangle){{a, b, c}, material};
 }
 
 void mesh_append(struct mesh *mesh, const struct mesh *part, const struct frame *frame,

@@ -20,8 +20,7 @@ struct triangle {
 struct mesh {
     struct vertex *vertices;
     struct triangle *triangles;
-    size_t vertex_count, vertex_room;
-    size_t triangle_count, triangle_room;
+    size_t vertex_count, triangle_count;
     bool failed;
 };
 

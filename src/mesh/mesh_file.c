@@ -28,14 +28,11 @@ int mesh_file_part(struct mesh_file *file, const char *name)
     for (int i = 0; i < file->parts; i++)
         if (!strcmp(file->part[i], name))
             return i;
-    char **part = file->parts < MOST_PARTS
-                      ? mem_resize(file->part, (size_t)file->parts + 1, sizeof *part)
-                      : NULL;
-    if (!part)
+    if (file->parts == MOST_PARTS ||
+        !mem_grow(&file->part, (size_t)file->parts, sizeof *file->part))
         return -1;
-    file->part = part;
-    part[file->parts] = mem_text(name);
-    return part[file->parts] ? file->parts++ : -1;
+    file->part[file->parts] = mem_text(name);
+    return file->part[file->parts] ? file->parts++ : -1;
 }
 
 char *mesh_beside(const char *path, const char *name)

@@ -12,7 +12,7 @@
 // One of the file's three lists of vectors.
 struct list {
     vec3 *at;
-    size_t count, room;
+    size_t count;
 };
 
 struct corner {
@@ -27,24 +27,14 @@ struct obj {
     int line;
     bool own_normals;     // every corner so far has a normal
     uint32_t *smooth_of;  // vertex -> position number, while normals are to be made
-    size_t smooth_room;
-    bool has_materials;  // parts go by usemtl, else by g
+    bool has_materials;   // parts go by usemtl, else by g
     uint32_t part;
 };
 
 static relume_status push(struct list *list, vec3 v)
 {
-    if (list->count == list->room) {
-        const size_t room = list->room ? 2 * list->room : 1024;
-        vec3 *at = mem_array(room, sizeof *at);
-        if (!at)
-            return RELUME_ENOMEM;
-        if (list->count)
-            memcpy(at, list->at, list->count * sizeof *at);
-        free(list->at);
-        list->at = at;
-        list->room = room;
-    }
+    if (!mem_grow(&list->at, list->count, sizeof *list->at))
+        return RELUME_ENOMEM;
     list->at[list->count++] = v;
     return RELUME_OK;
 }
@@ -116,15 +106,7 @@ static uint32_t add_corner(struct obj *o, struct corner c)
     const uint32_t vertex =
         mesh_vertex(mesh, o->v.at[c.v - 1], vec3_length(normal) > 0.0 ? vec3_unit(normal) : normal,
                     c.vt ? o->vt.at[c.vt - 1] : zero);
-    if (mesh->vertex_room > o->smooth_room) {
-        uint32_t *bigger = mem_resize(o->smooth_of, mesh->vertex_room, sizeof *bigger);
-        if (!bigger) {
-            mesh->failed = true;
-            return 0;
-        }
-        o->smooth_of = bigger;
-        o->smooth_room = mesh->vertex_room;
-    }
+    mesh->failed = mesh->failed || !mem_grow(&o->smooth_of, vertex, sizeof *o->smooth_of);
     if (!mesh->failed)
         o->smooth_of[vertex] = (uint32_t)(c.v - 1);
     return vertex;

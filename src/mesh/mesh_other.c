@@ -116,8 +116,8 @@ static relume_status copy(struct mesh_file *out, const char *map, const struct m
     m->triangles = mem_copy(from, triangles, sizeof *m->triangles);
     if (!m->vertices || !m->triangles)
         return RELUME_ENOMEM;
-    m->vertex_count = m->vertex_room = vertices;
-    m->triangle_count = m->triangle_room = triangles;
+    m->vertex_count = vertices;
+    m->triangle_count = triangles;
     out->has_uv = a->has_uv;
     out->made_normals = a->made_normals;
     for (uint64_t i = 0; i < a->parts; i++, name += strlen(name) + 1)

@@ -127,14 +127,8 @@ static relume_status read_lenses(struct lens **out, int *count, const char *fold
     while (!status && text_next(&t)) {
         if (is_blank(t.buffer))
             continue;
-        struct lens *more =
-            *count < MOST_CAMERAS ? mem_resize(*out, (size_t)*count + 1, sizeof **out) : NULL;
-        if (!more) {
-            status = RELUME_ENOMEM;
-            break;
-        }
-        *out = more;
-        status = read_lens(&more[(*count)++], &t);
+        const bool room = *count < MOST_CAMERAS && mem_grow(out, (size_t)*count, sizeof **out);
+        status = room ? read_lens(&(*out)[(*count)++], &t) : RELUME_ENOMEM;
     }
     text_close(&t);
     return status;
@@ -197,14 +191,8 @@ static relume_status read_poses(struct posed_model *m, const char *folder, const
     while (!status && text_next(&t)) {
         if (is_blank(t.buffer))
             continue;
-        struct posed_camera *more =
-            m->count < MOST_CAMERAS ? mem_resize(all, (size_t)m->count + 1, sizeof *all) : NULL;
-        if (!more) {
-            status = RELUME_ENOMEM;
-            break;
-        }
-        all = more;
-        status = read_pose(&all[m->count++], &m->arena, &t, lens, lenses);
+        const bool room = m->count < MOST_CAMERAS && mem_grow(&all, (size_t)m->count, sizeof *all);
+        status = room ? read_pose(&all[m->count++], &m->arena, &t, lens, lenses) : RELUME_ENOMEM;
         if (!status)
             text_next(&t);
     }
@@ -227,7 +215,6 @@ static relume_status read_poses(struct posed_model *m, const char *folder, const
 static relume_status read_points(struct posed_model *m, const char *folder)
 {
     struct text t;
-    size_t room = 0;
     struct relume_vec3 p;
     long long id;
     relume_status status = RELUME_OK;
@@ -236,16 +223,10 @@ static relume_status read_points(struct posed_model *m, const char *folder)
     while (t.file && !status && text_next(&t)) {
         if (sscanf(t.buffer, "%lld %lf %lf %lf", &id, &p.x, &p.y, &p.z) != 4)
             continue;
-        if (m->points == room) {
-            room = room ? 2 * room : 1024;
-            struct relume_vec3 *more = mem_resize(m->point, room, sizeof *more);
-            if (!more) {
-                status = RELUME_ENOMEM;
-                break;
-            }
-            m->point = more;
-        }
-        m->point[m->points++] = p;
+        if (mem_grow(&m->point, (size_t)m->points, sizeof *m->point))
+            m->point[m->points++] = p;
+        else
+            status = RELUME_ENOMEM;
     }
     text_close(&t);
     return status;

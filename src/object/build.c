@@ -129,15 +129,11 @@ static relume_status add_part(relume_objects *o, const struct mesh_file *file, i
         return log_fail(log, RELUME_EUNFIT, "%s: part '%s' has no material", path,
                         file->part[number]);
     char *name = mem_text(file->part[number]);
-    struct relume_object_part *part =
-        mem_resize(o->part, (size_t)o->info.parts + 1, sizeof *o->part);
-    if (part)
-        o->part = part;
-    if (!part || !name) {
+    if (!name || !mem_grow(&o->part, (size_t)o->info.parts, sizeof *o->part)) {
         free(name);
         return RELUME_ENOMEM;
     }
-    part[o->info.parts++] = (struct relume_object_part){
+    o->part[o->info.parts++] = (struct relume_object_part){
         .name = name,
         .material = c->material,
         .bilinear = !c->nearest,

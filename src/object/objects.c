@@ -164,18 +164,6 @@ static relume_status open_material(struct relume_object_material *m, const char 
     return holds(folder, "model.json") ? open_model(m, folder, &p) : open_measured(m, folder, &p);
 }
 
-static relume_status grow_materials(relume_objects *o)
-{
-    const size_t n = (size_t)o->info.materials + 1;
-    struct relume_object_material *material = mem_resize(o->material, n, sizeof *material);
-    if (material)
-        o->material = material;
-    char **folder = mem_resize(o->folder, n, sizeof *folder);
-    if (folder)
-        o->folder = folder;
-    return material && folder ? RELUME_OK : RELUME_ENOMEM;
-}
-
 relume_status objects_material(relume_objects *o, const char *folder, int *number,
                                const struct relume_objects_params *params)
 {
@@ -186,11 +174,12 @@ relume_status objects_material(relume_objects *o, const char *folder, int *numbe
     if (o->info.materials == MOST_MATERIALS)
         return log_fail(log, RELUME_ELIMIT, "%s: expected at most %d materials", folder,
                         MOST_MATERIALS);
-    relume_status status = grow_materials(o);
-    if (status)
-        return status;
+    const size_t count = (size_t)o->info.materials;
+    if (!mem_grow(&o->material, count, sizeof *o->material) ||
+        !mem_grow(&o->folder, count, sizeof *o->folder))
+        return RELUME_ENOMEM;
     o->folder[*number] = mem_text(folder);
-    status = open_material(&o->material[*number], folder, params);
+    relume_status status = open_material(&o->material[*number], folder, params);
     if (!status && !o->folder[*number])
         status = RELUME_ENOMEM;
     o->info.materials++;  // destroyed with the others, also when it is broken

@@ -47,23 +47,13 @@ struct finding {
     struct sources *out;
     float *rest;
     int width, height;
-    int room, room_open;  // of `out` and of a spot's open pixels
     float threshold;
 };
 
-static bool add_source(struct sources *s, int *room, struct source source)
+static bool add_source(struct sources *s, struct source source)
 {
-    if (s->count == *room) {
-        const int more = *room ? 2 * *room : 256;
-        struct source *const grown = mem_array((size_t)more, sizeof *grown);
-        if (!grown)
-            return false;
-        if (s->count)
-            memcpy(grown, s->source, (size_t)s->count * sizeof *grown);
-        free(s->source);
-        s->source = grown;
-        *room = more;
-    }
+    if (!mem_grow(&s->source, (size_t)s->count, sizeof *s->source))
+        return false;
     s->source[s->count++] = source;
     return true;
 }
@@ -91,8 +81,7 @@ static bool take_pixels(struct finding *f)
     struct source source;
     for (int y = 0; y < f->height; y++)
         for (int x = 0; x < f->width; x++)
-            if (shines(f, x, y) && take_pixel(f, x, y, &source) &&
-                !add_source(f->out, &f->room, source))
+            if (shines(f, x, y) && take_pixel(f, x, y, &source) && !add_source(f->out, source))
                 return false;
     return true;
 }
@@ -117,7 +106,7 @@ static bool grow_spot(struct finding *f, struct spot *spot, int x, int y)
     spot->weight += w;
     for (int c = 0; c < 3; c++)
         spot->rgb[c] += one.rgb[c];
-    return add_source(&spot->open, &f->room_open, one);
+    return add_source(&spot->open, one);
 }
 
 static bool take_spot(struct finding *f, struct spot *spot, int x, int y)
@@ -138,7 +127,7 @@ static bool take_spot(struct finding *f, struct spot *spot, int x, int y)
     const struct source source = {(float)(spot->x / spot->weight),
                                   (float)(spot->y / spot->weight),
                                   {spot->rgb[0], spot->rgb[1], spot->rgb[2]}};
-    return add_source(f->out, &f->room, source);
+    return add_source(f->out, source);
 }
 
 static bool take_spots(struct finding *f)
@@ -155,7 +144,7 @@ static bool take_spots(struct finding *f)
 relume_status sources_find(struct sources *out, float *rest, int width, int height,
                            double threshold, bool spots)
 {
-    struct finding f = {out, rest, width, height, 0, 0, (float)threshold};
+    struct finding f = {out, rest, width, height, (float)threshold};
     *out = (struct sources){0};
     if (spots ? take_spots(&f) : take_pixels(&f))
         return RELUME_OK;

@@ -25,9 +25,8 @@ struct look {
 struct search {
     const struct cells_params *p;
     struct cells *cells;
-    struct look *queue;  // [room], used from `next` on
-    size_t next, queued, room;
-    int tiles_room;
+    struct look *queue;  // [queued], used from `next` on
+    size_t next, queued;
     bool *seen;    // cells of the grid
     double *work;  // [AT_ONCE][NODES][values]
     double off[AT_ONCE];
@@ -93,22 +92,10 @@ static void look_at(void *context, size_t item, int worker)
 
 // ---------------------------------------------------------------- the search
 
-static bool grow(void *array, size_t count, size_t size)
-{
-    void *larger = mem_resize(*(void **)array, count, size);
-    if (larger)
-        *(void **)array = larger;
-    return larger;
-}
-
 static relume_status ask(struct search *s, struct look look)
 {
-    if (s->queued == s->room) {
-        const size_t room = s->room ? 2 * s->room : 1024;
-        if (!grow(&s->queue, room, sizeof *s->queue))
-            return RELUME_ENOMEM;
-        s->room = room;
-    }
+    if (!mem_grow(&s->queue, s->queued, sizeof *s->queue))
+        return RELUME_ENOMEM;
     s->queue[s->queued++] = look;
     return RELUME_OK;
 }
@@ -139,14 +126,10 @@ static relume_status divide(struct search *s, struct look look, size_t item)
     const double *value = s->work + item * NODES * (size_t)s->p->values;
     struct cells *c = s->cells;
     const size_t values = NODES * (size_t)s->p->values;
-    if (c->count == s->tiles_room) {
-        const int room = s->tiles_room ? 2 * s->tiles_room : 256;
-        if (!grow(&c->tile, (size_t)room, sizeof *c->tile) ||
-            !grow(&c->child, (size_t)room, sizeof *c->child) ||
-            !grow(&c->value, (size_t)room, values * sizeof *c->value))
-            return RELUME_ENOMEM;
-        s->tiles_room = room;
-    }
+    if (!mem_grow(&c->tile, (size_t)c->count, sizeof *c->tile) ||
+        !mem_grow(&c->child, (size_t)c->count, sizeof *c->child) ||
+        !mem_grow(&c->value, (size_t)c->count, values * sizeof *c->value))
+        return RELUME_ENOMEM;
     const int tile = c->count++;
     c->tile[tile] = look.cell;
     memcpy(c->value + (size_t)tile * values, value, values * sizeof *value);

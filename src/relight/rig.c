@@ -20,9 +20,9 @@ struct resource {
 };
 
 struct relume_rig {
-    int count, room;
-    struct relume_rig_entry **entry;  // [room], strings are owned
-    int resources, resource_room;
+    int count;
+    struct relume_rig_entry **entry;  // [count], strings are owned
+    int resources;
     struct resource **resource;
     struct relume_light *shining;
 };
@@ -49,24 +49,6 @@ static void resource_free(struct resource *r)
     relume_gonio_destroy(&r->gonio);
     free(r->path);
     free(r);
-}
-
-// Room for one pointer more.
-static bool grow(void *list, int count, int *room)
-{
-    void **old = *(void ***)list;
-    if (count < *room)
-        return true;
-    const int more = *room ? 2 * *room : 16;
-    void **larger = mem_array((size_t)more, sizeof *larger);
-    if (!larger)
-        return false;
-    if (count)
-        memcpy(larger, old, (size_t)count * sizeof *larger);
-    free(old);
-    *(void ***)list = larger;
-    *room = more;
-    return true;
 }
 
 relume_status relume_rig_create(relume_rig **out)
@@ -135,7 +117,7 @@ static relume_status find_resource(struct resource **out, relume_rig *rig,
             return RELUME_OK;
     }
     struct resource *r = mem_zeroed(1, sizeof *r);
-    if (!r || !grow(&rig->resource, rig->resources, &rig->resource_room)) {
+    if (!r || !mem_grow(&rig->resource, (size_t)rig->resources, sizeof *rig->resource)) {
         free(r);
         return RELUME_ENOMEM;
     }
@@ -206,7 +188,8 @@ relume_status relume_rig_add(relume_rig *rig, const char *spec, const char *fold
     if (status)
         return status;
     struct relume_rig_entry *e = mem_zeroed(1, sizeof *e);
-    status = e && grow(&rig->entry, rig->count, &rig->room) ? RELUME_OK : RELUME_ENOMEM;
+    status = e && mem_grow(&rig->entry, (size_t)rig->count, sizeof *rig->entry) ? RELUME_OK
+                                                                                : RELUME_ENOMEM;
     if (!status)
         status = make_entry(e, rig, &parsed, folder, log);
     free(parsed.file);

@@ -134,8 +134,8 @@ static bool sort_places(struct scratch *s, const struct bounds *bounds)
     const size_t n = s->places.count;
     if (n > s->key_room) {
         free(s->keys);
-        s->keys = mem_array(s->places.room, sizeof *s->keys);
-        s->key_room = s->keys ? s->places.room : 0;
+        s->keys = mem_array(2 * n, sizeof *s->keys);
+        s->key_room = s->keys ? 2 * n : 0;
         if (!s->keys)
             return false;
     }

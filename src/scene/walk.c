@@ -25,20 +25,8 @@ void places_destroy(struct places *places)
 
 static struct place *new_place(struct places *places)
 {
-    if (places->count == places->room) {
-        const size_t room = places->room ? 2 * places->room : 1024;
-        struct place *at = places->failed ? NULL : mem_array(room, sizeof *at);
-        if (!at) {
-            places->failed = true;
-            return NULL;
-        }
-        if (places->count)
-            memcpy(at, places->at, places->count * sizeof *at);
-        free(places->at);
-        places->at = at;
-        places->room = room;
-    }
-    return &places->at[places->count++];
+    places->failed = places->failed || !mem_grow(&places->at, places->count, sizeof *places->at);
+    return places->failed ? NULL : &places->at[places->count++];
 }
 
 static void flip(float v[3])

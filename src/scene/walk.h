@@ -20,7 +20,7 @@ struct place {
 // Zero-filled is empty. `failed` is set when memory runs out.
 struct places {
     struct place *at;
-    size_t count, room;
+    size_t count;
     bool failed;
 };
 void places_destroy(struct places *places);

@@ -205,14 +205,8 @@ static void run_trial(void *context, size_t item, int worker)
 
 static bool remember(struct canvas *c, const struct patch *p)
 {
-    if (c->used_count == c->used_room) {
-        const int room = 2 * c->used_room + 16;
-        struct patch *more = mem_resize(c->used, (size_t)room, sizeof *more);
-        if (!more)
-            return false;
-        c->used = more;
-        c->used_room = room;
-    }
+    if (!mem_grow(&c->used, (size_t)c->used_count, sizeof *c->used))
+        return false;
     c->used[c->used_count++] = *p;
     return true;
 }

@@ -22,7 +22,7 @@ struct canvas {
     float unit;       // the squared step between neighbours in the sample
     // Patches with a core that are there already, so that tiles differ.
     struct patch *used;
-    int used_count, used_room;
+    int used_count;
 };
 
 // Choose (sx, sy) and paste along the cheapest cut of some places that fit well; `seed` decides

@@ -2,6 +2,7 @@
 // obey
 #include "test.h"
 
+#include "base/memory.h"
 #include "base/params.h"
 
 static void test_whole(void **state)
@@ -95,12 +96,36 @@ static void params_of_other_versions(void **state)
     assert_int_equal(none.a + none.b, 0);
 }
 
+// Room doubles, what is there stays, and where memory is short nothing has changed.
+static void test_growing_array(void **state)
+{
+    (void)state;
+    int *items = NULL, *before = NULL, failures = 0;
+    for (size_t n = 0; n < 1000; n++) {
+        before = items;
+        mem_fail_after(1);
+        if (!mem_grow(&items, n, sizeof *items)) {
+            failures++;
+            assert_ptr_equal(items, before);
+            assert_true(mem_grow(&items, n, sizeof *items));
+        }
+        mem_fail_after(0);
+        items[n] = (int)n;
+    }
+    assert_int_equal(failures, 7);  // at 0, 16, 32, ... 512
+    for (int n = 0; n < 1000; n++)
+        assert_int_equal(items[n], n);
+    before = items;
+    assert_false(mem_grow(&items, (size_t)1 << 62, sizeof *items));
+    assert_ptr_equal(items, before);
+    free(items);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(one_version),
-        cmocka_unit_test(params_of_other_versions),
-        cmocka_unit_test(test_whole),
+        cmocka_unit_test(test_growing_array),       cmocka_unit_test(one_version),
+        cmocka_unit_test(params_of_other_versions), cmocka_unit_test(test_whole),
         cmocka_unit_test(test_printable),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -72,6 +72,12 @@ static const char *last_word(const char *name)
     return blank ? blank + 1 : name;
 }
 
+static void print_commands(const struct command *const *list)
+{
+    for (; list && *list; list++)
+        printf("  %-10s %s\n", last_word((*list)->name), (*list)->summary);
+}
+
 static void print_help(const struct command *command)
 {
     printf("usage: relume %s %s\n\n%s\n\noptions:\n", command->name, command->usage,
@@ -80,18 +86,8 @@ static void print_help(const struct command *command)
     options_print(common, NULL, 28);
     if (command->tasks)
         printf("\ntasks; 'relume %s TASK --help' explains one:\n", command->name);
-    for (const struct command *const *t = command->tasks; t && *t; t++)
-        printf("  %-10s %s\n", last_word((*t)->name), (*t)->summary);
+    print_commands(command->tasks);
     printf("\nexample:\n  %s\n", command->example);
-}
-
-static void print_overview(void)
-{
-    printf("relume %s - image-based relighting\n\nusage: relume COMMAND [OPTION ...]\n\n",
-           RELUME_VERSION);
-    for (const struct command *const *c = commands; *c; c++)
-        printf("  %-10s %s\n", (*c)->name, (*c)->summary);
-    printf("\n'relume COMMAND --help' explains a command and gives an example.\n");
 }
 
 // The command of that name; NULL: there is none.
@@ -353,7 +349,10 @@ int main(int argc, char **argv)
     signal(SIGXFSZ, SIG_IGN);  // a file size limit is a write error, not a death
 
     if (argc < 2 || !strcmp(argv[1], "--help") || !strcmp(argv[1], "help")) {
-        print_overview();
+        printf("relume %s - image-based relighting\n\nusage: relume COMMAND [OPTION ...]\n\n",
+               RELUME_VERSION);
+        print_commands(commands);
+        printf("\n'relume COMMAND --help' explains a command and gives an example.\n");
         return argc < 2 ? 2 : 0;
     }
     if (!strcmp(argv[1], "--version")) {

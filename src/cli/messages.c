@@ -1,11 +1,11 @@
 // messages.c - sentences and progress for people
 #include "messages.h"
 
+#include "program/clock.h"
 #include "program/stopping.h"
 
 #include <stdarg.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 FILE *people;
@@ -53,13 +53,6 @@ const struct relume_log *prefix_log(struct prefix_log *p, const struct relume_lo
     *p = (struct prefix_log){
         {on_prefixed, on_prefixed_progress, p, to->inputs, to->limits}, to, prefix};
     return &p->log;
-}
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 static void draw_bar(const char *what, double done)

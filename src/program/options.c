@@ -200,6 +200,7 @@ static relume_status take_list(void *out, struct command_line *l, const struct o
                                const char *text)
 {
     int *const count = out;
+    const char *const all = text;
     *count = 0;
     relume_status status = RELUME_OK;
     for (const char *end = text; !status && *end; text = end + 1) {
@@ -208,7 +209,7 @@ static relume_status take_list(void *out, struct command_line *l, const struct o
         end = text + n;
         snprintf(word, sizeof word, "%.*s", (int)n, text);
         if (*count == MOST_ITEMS || n == 0 || n >= sizeof word)
-            status = expected(l, o, text, "words separated by commas, at most 64");
+            status = expected(l, o, all, "words separated by commas, at most 64");
         else if (o->kind == OPTION_ENTRY)
             status = take(&((struct entries *)out)->item[(*count)++], l, o, word);
         else

@@ -1,6 +1,7 @@
 // main.c - relume-view: a file in a window, or in pictures written without one
 #include "app/events.h"
 #include "app/script.h"
+#include "program/clock.h"
 #include "program/say.h"
 #include "program/stopping.h"
 #include "session/options.h"
@@ -12,7 +13,6 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 // A listener may pass on what it is told.
 static void on_message(void *user, enum relume_level level, const char *text)
@@ -52,23 +52,16 @@ static int exit_code(relume_status status)
 
 // ---------------------------------------------------------------- frames
 
-static double now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
-
 static relume_status show_frame(struct session *s)
 {
     char title[640];
-    const double start = now_ms();
+    const double start = 1e3 * now_s();
     const relume_status status = session_draw(s);
     if (status)
         return status;
     session_present(s, 0);
     s->gl.Finish();
-    snprintf(title, sizeof title, "%s - %.1f ms%s%s - relume-view", s->name, now_ms() - start,
+    snprintf(title, sizeof title, "%s - %.1f ms%s%s - relume-view", s->name, 1e3 * now_s() - start,
              s->message[0] ? " - " : "", s->message);
     s->backend->show(s->context, title);
     return RELUME_OK;
@@ -220,7 +213,7 @@ static relume_status take_event(struct session *s, const struct context_event *e
 static double time_passed(double *then_ms)
 {
     const double then = *then_ms;
-    *then_ms = now_ms();
+    *then_ms = 1e3 * now_s();
     return 1e-3 * (*then_ms - then);
 }
 
@@ -247,7 +240,7 @@ static relume_status live(struct session *s, struct script *script)
     relume_status status = RELUME_OK;
     bool more = script != NULL;
     bool changed = true;
-    double time_ms = now_ms();
+    double time_ms = 1e3 * now_s();
     while (!status && !is_over(s)) {
         if (more)
             status = script_step(script, &more);

@@ -17,12 +17,13 @@ static void say_softly(void *user, enum relume_level level, const char *text)
     log->message(log->user, level == RELUME_ERROR ? RELUME_WARNING : level, text);
 }
 
-static struct relume_log softly(const struct hdr_options *o)
+// The log, or with --skip-bad one that says it so, which lives in `soft`.
+static const struct relume_log *softly(struct relume_log *soft, const struct hdr_options *o)
 {
-    struct relume_log soft = *o->args.log;
-    soft.message = say_softly;
-    soft.user = (void *)o->args.log;
-    return soft;
+    *soft = *o->args.log;
+    soft->message = say_softly;
+    soft->user = (void *)o->args.log;
+    return o->skip_bad ? soft : o->args.log;
 }
 
 void bracket_drop(struct bracket *b, int i)
@@ -50,23 +51,11 @@ relume_status bracket_remains(const struct bracket *b)
 
 // ---------------------------------------------------------------- reading
 
-static relume_status check_size(const struct bracket *b, int i, const struct relume_log *log)
-{
-    char text[1024];
-    const struct relume_image *first = &b->codes[0], *image = &b->codes[i];
-    if (image->width == first->width && image->height == first->height)
-        return RELUME_OK;
-    snprintf(text, sizeof text, "%s: %d x %d pixels; expected %d x %d as in %s", b->path[i],
-             image->width, image->height, first->width, first->height, b->path[0]);
-    log->message(log->user, RELUME_ERROR, text);
-    return RELUME_EUNFIT;
-}
-
 relume_status bracket_load(struct bracket *b, const struct hdr_options *o)
 {
-    const bool skip = o->skip_bad;
-    const struct relume_log soft = softly(o);
-    const struct relume_log *log = skip ? &soft : o->args.log;
+    struct relume_log soft;
+    const struct relume_log *log = softly(&soft, o);
+    const struct relume_image *first = &b->codes[0];
     for (int i = 0; i < b->n;) {
         const struct relume_exif noted = b->notes[i];
         relume_status status =
@@ -75,9 +64,12 @@ relume_status bracket_load(struct bracket *b, const struct hdr_options *o)
         b->notes[i].time_s = noted.time_s;
         b->notes[i].f_number = noted.f_number;
         b->notes[i].iso = noted.iso;
-        if (!status)
-            status = check_size(b, i, log);
-        if (relume_status_is_input(status) && skip)
+        const struct relume_image *image = &b->codes[i];
+        if (!status && (image->width != first->width || image->height != first->height))
+            status =
+                say(log, RELUME_EUNFIT, "%s: %d x %d pixels; expected %d x %d as in %s", b->path[i],
+                    image->width, image->height, first->width, first->height, b->path[0]);
+        if (relume_status_is_input(status) && o->skip_bad)
             bracket_drop(b, i);
         else if (status)
             return status;
@@ -148,8 +140,8 @@ static relume_status align_one(struct bracket *b, int i, enum align_mode mode,
 
 relume_status bracket_align(struct bracket *b, const struct hdr_options *o)
 {
-    const bool skip = o->skip_bad;
-    const struct relume_log soft = softly(o), *log = skip ? &soft : o->args.log;
+    struct relume_log soft;
+    const struct relume_log *log = softly(&soft, o);
     b->anchor = relume_align_anchor(b->codes, b->n);
     b->aligned = o->align != ALIGN_NONE;
     for (int i = 0; b->aligned && i < b->n; i++) {
@@ -160,7 +152,7 @@ relume_status bracket_align(struct bracket *b, const struct hdr_options *o)
             align_one(b, i, o->align,
                       relume_align_params(.log = prefix_log(&about, log, b->path[i]),
                                           .threads = o->args.threads));
-        if (relume_status_is_input(status) && skip)
+        if (relume_status_is_input(status) && o->skip_bad)
             bracket_drop(b, i--);
         else if (status)
             return status;
@@ -172,24 +164,19 @@ relume_status bracket_align(struct bracket *b, const struct hdr_options *o)
 
 // ---------------------------------------------------------------- merge
 
-static bool all_linear(const struct bracket *b)
-{
-    for (int i = 0; i < b->n; i++)
-        if (!b->notes[i].linear)
-            return false;
-    return true;
-}
-
 static relume_status find_response(struct bracket *b, const struct hdr_options *o)
 {
     const struct relume_transfer linear = {.curve = RELUME_CURVE_LINEAR};
     const bool known = given(o, &o->transfer);
+    bool all_linear = true;
     struct prefix_log log;
     if (o->response) {
         b->response_source = o->response;
         return relume_response_load(&b->response, o->response, o->args.log);
     }
-    if (known || all_linear(b)) {
+    for (int i = 0; i < b->n; i++)
+        all_linear &= b->notes[i].linear;
+    if (known || all_linear) {
         relume_transfer_text(known ? o->transfer : linear, b->response_name,
                              sizeof b->response_name);
         b->response_source = b->response_name;
@@ -245,9 +232,8 @@ static relume_status leave_out_ghosts(struct bracket *b, double black, const str
 static relume_status find_response_and_ghosts(struct bracket *b, const struct hdr_options *o)
 {
     const double dark = 0.05;
-    const bool ghosts = o->ghosts;
     relume_status status = find_response(b, o);
-    if (status || !ghosts)
+    if (status || !o->ghosts)
         return status;
     status = leave_out_ghosts(b, dark + black_level(&b->response), o);
     return status || strcmp(b->response_source, "recovered") != 0 ? status : find_response(b, o);
@@ -300,10 +286,9 @@ static void continue_floats(struct bracket *b)
 relume_status bracket_merge(struct bracket *b, const struct hdr_options *o)
 {
     struct prefix_log log;
-    const char *save = o->save_response;
     relume_status status = find_response_and_ghosts(b, o);
-    if (!status && save)
-        status = relume_response_save(&b->response, save, o->args.log);
+    if (!status && o->save_response)
+        status = relume_response_save(&b->response, o->save_response, o->args.log);
     if (!status)
         status = relume_merge(&b->out, b->report, b->codes, b->exposure, b->n, &b->response,
                               relume_merge_params(.log = prefix_log(&log, o->args.log, b->path[0]),

@@ -1,15 +1,9 @@
 // btf_report.c - the rows of `relume btf compare` and `eval`
 #include "commands/btf_report.h"
 
-#include <math.h>
-#include <time.h>
+#include "program/clock.h"
 
-double btf_now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
+#include <math.h>
 
 static void member(const char *name, double value)
 {
@@ -38,9 +32,9 @@ double btf_speed(const relume_btf_fitted *fitted)
     enum { BATCH = 256 };
     static const double LONG_ENOUGH_S = 0.1;
     const struct relume_btf_fitted_info info = relume_btf_fitted_info(fitted);
-    const double start = btf_now_s();
+    const double start = now_s();
     double taken = 0.0, count = 0.0;
-    for (uint32_t n = 0; taken < LONG_ENOUGH_S; taken = btf_now_s() - start)
+    for (uint32_t n = 0; taken < LONG_ENOUGH_S; taken = now_s() - start)
         for (int i = 0; i < BATCH; i++, n++, count++) {
             // an even spread of texels and of directions down to 66 degrees from the pole
             const double a = 2.399963 * n, b = 1.7 * n, r = 0.91 * sqrt(n % 97 / 97.0);

@@ -14,9 +14,6 @@ struct btf_row {
     const struct relume_btf_error *held_out;  // NULL: not measured
 };
 
-// Seconds of a clock that only goes on.
-double btf_now_s(void);
-
 // Evaluations a second between measured directions, on this core.
 double btf_speed(const relume_btf_fitted *fitted);
 

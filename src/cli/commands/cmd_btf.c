@@ -1,6 +1,7 @@
 // cmd_btf.c - relume btf: measured materials, the models that compress them, and how good they are
 #include "commands/btf_inputs.h"
 #include "commands/btf_report.h"
+#include "program/clock.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -162,15 +163,15 @@ static relume_status make_part(relume_btf **out, const relume_btf *whole,
                                const struct btf_options *o)
 {
     const struct relume_btf_info *info = relume_btf_info(whole);
-    const int k = o->leave_out;
     *out = NULL;
-    if (!k)
+    if (!o->leave_out)
         return RELUME_OK;
     int *views = malloc((size_t)info->views * sizeof *views);
     int *lights = malloc((size_t)info->lights * sizeof *lights);
     relume_status status = RELUME_ENOMEM;
     if (views && lights) {
-        const int v = thin(views, info->views, k), l = thin(lights, info->lights, k);
+        const int v = thin(views, info->views, o->leave_out),
+                  l = thin(lights, info->lights, o->leave_out);
         status = relume_btf_part(out, whole, views, v, lights, l, o->args.log);
     }
     free(views);
@@ -217,9 +218,9 @@ static relume_status compare_one(const relume_btf *btf, const relume_btf *part,
     struct btf_row row = {.held_out = NULL};
     struct relume_btf_error held_out;
     relume_btf_fitted *fitted;
-    const double start = btf_now_s();
+    const double start = now_s();
     relume_status status = relume_btf_fit(&fitted, btf, model, &p);
-    row.fit_s = btf_now_s() - start;
+    row.fit_s = now_s() - start;
     if (!status)
         status = judge(&row, fitted, btf, o);
     if (!status && part) {
@@ -239,18 +240,17 @@ static relume_status compare_one(const relume_btf *btf, const relume_btf *part,
 static relume_status compare(const struct args *args)
 {
     const struct btf_options *o = (const void *)args;
-    const bool json = o->json;
     const struct relume_btf_model *models[MOST_ITEMS + 1];
     relume_btf *btf = NULL, *part = NULL;
     choose_models(models, o);
     relume_status status = btf_open(&btf, o->args.input[0], o);
     if (!status)
         status = make_part(&part, btf, o);
-    if (!status && !json)
+    if (!status && !o->json)
         btf_heading(part != NULL);
     for (int i = 0; !status && models[i]; i++)
         status = compare_one(btf, part, models[i], i ? ",\n" : "{\"models\":[", o);
-    if (!status && json)
+    if (!status && o->json)
         puts("]}");
     relume_btf_destroy(&part);
     relume_btf_destroy(&btf);

@@ -84,26 +84,11 @@ struct job {
     struct relume_acquisition shoot;
 };
 
-static void free_job(struct job *job)
-{
-    relume_photographs_free(&job->photos);
-    relume_photographs_free(&job->balls);
-    relume_photographs_free(&job->flats);
-    relume_acquisition_destroy(&job->shoot);
-}
-
 // ---------------------------------------------------------------- photographs
 
 static int by_number(const void *a, const void *b)
 {
     return strverscmp(*(char *const *)a, *(char *const *)b);
-}
-
-// img2 comes before img10, whatever the shell says.
-static void put_in_order(struct relume_photographs *list)
-{
-    if (list->count)
-        qsort(list->path, (size_t)list->count, sizeof *list->path, by_number);
 }
 
 static relume_status list(struct relume_photographs *out, const char *const *paths, int n,
@@ -113,8 +98,8 @@ static relume_status list(struct relume_photographs *out, const char *const *pat
         out, paths, n,
         relume_photographs_params(.log = o->args.log, .companions = true, .least = least,
                                   .command = least ? "try: relume capture" : NULL));
-    if (!status)
-        put_in_order(out);
+    if (!status && out->count)  // img2 comes before img10, whatever the shell says
+        qsort(out->path, (size_t)out->count, sizeof *out->path, by_number);
     return status;
 }
 
@@ -186,13 +171,6 @@ static const char *lights_file(const struct capture_options *o, const struct job
 
 // ---------------------------------------------------------------- options
 
-static double field_of_view(const struct capture_options *o)
-{
-    if (given(o, &o->focal))
-        return 2.0 * atan(18.0 / o->focal) * 180.0 / M_PI;
-    return o->fov;
-}
-
 static relume_status check_options(const struct capture_options *o)
 {
     if (given(o, &o->fov) && given(o, &o->focal))
@@ -231,7 +209,7 @@ static void read_options(const struct capture_options *o, struct job *job)
         .balls = o->ball.count ? o->ball.count : o->balls,
         .align = o->align == ALIGN_HOMOGRAPHY,
         .matte = o->matte,
-        .fov_deg = field_of_view(o),
+        .fov_deg = o->focal > 0.0 ? 2.0 * atan(18.0 / o->focal) * 180.0 / M_PI : o->fov,
         .ball_z = o->ball_z,
         .lights = lights_file(o, job),
         .flats = (const char *const *)job->flats.path,
@@ -374,7 +352,6 @@ static void say_made(const struct capture_options *o, const struct relume_acquis
 
 static relume_status make(const struct capture_options *o, struct job *job)
 {
-    const char *file = o->encode;
     relume_status status = relume_acquire(&job->shoot, o->output, &job->p);
     if (status)
         return status;
@@ -383,10 +360,10 @@ static relume_status make(const struct capture_options *o, struct job *job)
         status = save(o, o->albedo, &job->shoot.photometric.albedo);
     if (!status)
         status = save_height(o, &job->shoot);
-    if (!status && file)
-        status = encode_as_usual(&o->args, o->output, file);
+    if (!status && o->encode)
+        status = encode_as_usual(&o->args, o->output, o->encode);
     if (!status && o->relight)
-        status = relight(o, file);
+        status = relight(o, o->encode);
     if (!status && o->json)
         print_json(&job->shoot);
     else if (!status)
@@ -405,19 +382,16 @@ static relume_status run(const struct args *args)
         read_options(o, &job);
         status = make(o, &job);
     }
-    free_job(&job);
+    relume_photographs_free(&job.photos);
+    relume_photographs_free(&job.balls);
+    relume_photographs_free(&job.flats);
+    relume_acquisition_destroy(&job.shoot);
     return status;
 }
 
 const struct command command_capture = {
-    .name = "capture",
-    .usage = "PHOTO... -o DIR [OPTION ...]",
-    .summary = "turn photographs under one light each into a capture, and find their lights",
-    .example = "relume capture statue/*.jpg --ball-photos ball -o statue_capture",
-    .min_inputs = 1,
-    .max_inputs = 4096,
-    .options = options,
-    .size = sizeof(struct capture_options),
-    .defaults = &(const struct capture_options){.balls = 1, .cpu_mask = ALL_KERNELS},
-    .run = run,
+    COMMAND("capture", "PHOTO... -o DIR [OPTION ...]",
+            "turn photographs under one light each into a capture, and find their lights",
+            "relume capture statue/*.jpg --ball-photos ball -o statue_capture", 1, 4096),
+    .defaults = &(const OPTIONS){.balls = 1, .cpu_mask = ALL_KERNELS},
 };

@@ -59,29 +59,22 @@ static relume_status check_file(const struct check_options *o, const char *path)
 static relume_status run(const struct args *args)
 {
     const struct check_options *o = (const void *)args;
-    const bool json = o->json;
     relume_status worst = RELUME_OK;
-    if (json)
+    if (o->json)
         printf("{\"files\": [");
     for (int i = 0; i < o->args.inputs && worst != RELUME_ECANCEL; i++) {
-        if (json && i)
+        if (o->json && i)
             printf(", ");
         const relume_status status = check_file(o, o->args.input[i]);
         worst = status && worst != RELUME_ENOMEM ? status : worst;
     }
-    if (json)
+    if (o->json)
         printf("]}\n");
     return worst;
 }
 
 const struct command command_check = {
-    .name = "check",
-    .usage = "FILE... [--json]",
-    .summary = "read all of a relume file and say what is damaged, and where",
-    .example = "relume check archive/*.exr",
-    .min_inputs = 1,
-    .max_inputs = 4096,
-    .options = options,
-    .size = sizeof(struct check_options),
-    .run = run,
+    COMMAND("check", "FILE... [--json]",
+            "read all of a relume file and say what is damaged, and where",
+            "relume check archive/*.exr", 1, 4096),
 };

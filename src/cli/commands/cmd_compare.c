@@ -33,29 +33,18 @@ static void print(const struct compare_options *o, const struct relume_differenc
         {"max_abs", d->max_abs},
         {"ramp_error", ramps->slope > 0.0 ? sqrt(ramps->error / ramps->slope) : (double)NAN}};
     const size_t count = sizeof rows / sizeof *rows - !o->ramps;
-    const bool json = o->json;
     for (size_t i = 0; i < count; i++) {
-        if (!json && isfinite(rows[i].value))
+        if (!o->json && isfinite(rows[i].value))
             printf("%-8s %.6g\n", rows[i].name, rows[i].value);
-        else if (!json)
+        else if (!o->json)
             printf("%-8s -\n", rows[i].name);
-        if (!json)
+        if (!o->json)
             continue;
         printf("%s\"%s\": ", i ? ", " : "{", rows[i].name);
         json_number(stdout, rows[i].value);
     }
-    if (json)
+    if (o->json)
         puts("}");
-}
-
-// Of equal sizes; in place of `a`.
-static relume_status save_difference(const struct compare_options *o, struct relume_image *a,
-                                     const struct relume_image *b)
-{
-    const size_t samples = 3 * (size_t)a->width * (size_t)a->height;
-    for (size_t i = 0; i < samples; i++)
-        a->data[i] = fabsf(a->data[i] - b->data[i]);
-    return relume_image_save(a, o->output, relume_image_params(.log = o->args.log));
 }
 
 static relume_status run(const struct args *args)
@@ -77,8 +66,10 @@ static relume_status run(const struct args *args)
     if (!status && o->ramps)
         status =
             relume_image_ramps(&ramps, &a, &b, relume_compare_params(.threads = o->args.threads));
+    for (size_t i = 0; !status && i < 3 * (size_t)a.width * (size_t)a.height; i++)
+        a.data[i] = fabsf(a.data[i] - b.data[i]);
     if (!status && o->output)
-        status = save_difference(o, &a, &b);
+        status = relume_image_save(&a, o->output, load);
     if (!status)
         print(o, &difference, &ramps);
     relume_image_destroy(&a);
@@ -87,13 +78,6 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_compare = {
-    .name = "compare",
-    .usage = "A B [-o OUT] [--ramps] [--json]",
-    .summary = "measure how different two pictures are",
-    .example = "relume compare relit.exr photograph.jpg --json",
-    .min_inputs = 2,
-    .max_inputs = 2,
-    .options = options,
-    .size = sizeof(struct compare_options),
-    .run = run,
+    COMMAND("compare", "A B [-o OUT] [--ramps] [--json]", "measure how different two pictures are",
+            "relume compare relit.exr photograph.jpg --json", 2, 2),
 };

@@ -141,15 +141,6 @@ static bool is_coarse(const struct relume_encode_report *report)
     return lost >= COARSE && report->steps_rms >= report->fit_rms;
 }
 
-static void say_coarse(const struct args *args, const struct relume_encode_report *report,
-                       const struct request *r)
-{
-    if (r->bits && is_coarse(report))
-        announce(args, RELUME_WARNING,
-                 "%s: very bright highlights: %s will ruin the picture; use --bits half", r->output,
-                 storage_words(r->pack.storage));
-}
-
 // What in the capture says little: black and clipped pixels, black images.
 static void say_census(const struct args *args, const struct request *r,
                        const struct relume_encode_census *c, bool hemispherical)
@@ -227,7 +218,10 @@ static relume_status encode(const struct args *args, struct request *r)
     if (!status) {
         say_census(args, r, &report.census, relume_capture_hemispherical(capture));
         say_result(args, capture, coder, &report, r);
-        say_coarse(args, &report, r);
+        if (r->bits && is_coarse(&report))
+            announce(args, RELUME_WARNING,
+                     "%s: very bright highlights: %s will ruin the picture; use --bits half",
+                     r->output, storage_words(r->pack.storage));
     }
     relume_coder_destroy(&coder);
     relume_capture_destroy(&capture);
@@ -292,13 +286,7 @@ relume_status encode_as_usual(const struct args *args, const char *capture, cons
 }
 
 const struct command command_encode = {
-    .name = "encode",
-    .usage = "CAPTURE -o FILE.exr [OPTION ...]",
-    .summary = "compress a capture (capture.json, its folder, or a .lp file) into one relume file",
-    .example = "relume encode photos/dirs.lp -o statue.exr --basis sh --coefficients 16",
-    .min_inputs = 1,
-    .max_inputs = 1,
-    .options = options,
-    .size = sizeof(struct encode_options),
-    .run = run,
+    COMMAND("encode", "CAPTURE -o FILE.exr [OPTION ...]",
+            "compress a capture (capture.json, its folder, or a .lp file) into one relume file",
+            "relume encode photos/dirs.lp -o statue.exr --basis sh --coefficients 16", 1, 1),
 };

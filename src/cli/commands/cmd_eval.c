@@ -25,15 +25,6 @@ static const struct option options[] = {
     {0},
 };
 
-// Bytes as they are, measures as far as they are known.
-static void print_number(double value)
-{
-    if (value == floor(value))
-        printf("%.0f", value);
-    else
-        json_number(stdout, value);
-}
-
 static void print_json(const struct relume_evaluation *e)
 {
     const struct {
@@ -54,7 +45,10 @@ static void print_json(const struct relume_evaluation *e)
            e->width, e->height);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         printf(", \"%s\": ", rows[i].name);
-        print_number(rows[i].value);
+        if (rows[i].value == floor(rows[i].value))  // bytes as they are
+            printf("%.0f", rows[i].value);
+        else
+            json_number(stdout, rows[i].value);
     }
     printf(", \"per_light\": [");
     for (int i = 0; i < e->lights; i++) {
@@ -117,13 +111,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_eval = {
-    .name = "eval",
-    .usage = "FILE CAPTURE [--json]",
-    .summary = "relight with every light of a capture and compare with its images",
-    .example = "relume eval statue.exr photos/heldout.lp --json",
-    .min_inputs = 2,
-    .max_inputs = 2,
-    .options = options,
-    .size = sizeof(struct eval_options),
-    .run = run,
+    COMMAND("eval", "FILE CAPTURE [--json]",
+            "relight with every light of a capture and compare with its images",
+            "relume eval statue.exr photos/heldout.lp --json", 2, 2),
 };

@@ -172,13 +172,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_export = {
-    .name = "export",
-    .usage = "FILE -o OUT [OPTION ...]",
-    .summary = "write a relume file as .ptm, .rti or a folder that web viewers show",
-    .example = "relume export statue.exr --to relight -o web/statue --bytes-per-pixel 1",
-    .min_inputs = 1,
-    .max_inputs = 1,
-    .options = options,
-    .size = sizeof(struct export_options),
-    .run = run,
+    COMMAND("export", "FILE -o OUT [OPTION ...]",
+            "write a relume file as .ptm, .rti or a folder that web viewers show",
+            "relume export statue.exr --to relight -o web/statue --bytes-per-pixel 1", 1, 1),
 };

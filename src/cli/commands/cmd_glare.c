@@ -138,12 +138,6 @@ static relume_status save_one(struct viewer_eye *e, const struct relume_image *f
     return status;
 }
 
-static bool go_on(const struct glare_options *o, double done)
-{
-    const struct relume_log *const log = o->args.log;
-    return !log->progress || log->progress(log->user, "glare", done);
-}
-
 // Picture i of a film: of the loop, or of an eye that lives on.
 static relume_status see_next(struct relume_image *out, struct viewer_eye *e,
                               const relume_psf_cycle *cycle, const struct relume_image *frame,
@@ -159,34 +153,26 @@ static relume_status see_next(struct relume_image *out, struct viewer_eye *e,
     return status ? status : relume_glare_apply(out, e->glare, frame, i > 0, e->psf, &e->params);
 }
 
-static relume_status make_cycle(relume_psf_cycle **cycle, struct viewer_eye *e,
-                                const struct glare_options *o, double fps)
-{
-    const double seconds = o->cycle;
-    *cycle = NULL;
-    return seconds > 0.0 ? relume_psf_cycle_create(
-                               cycle, e->psf, e->eye,
-                               relume_psf_cycle_params(.log = o->args.log, .seconds = seconds,
-                                                       .fps = fps, .luminance = e->luminance))
-                         : RELUME_OK;
-}
-
 static relume_status save_many(struct viewer_eye *e, const struct relume_image *frame,
                                const struct glare_options *o)
 {
-    const int frames = o->frames;
-    const double fps = o->fps;
-    relume_psf_cycle *cycle;
+    const struct relume_log *const log = o->args.log;
+    relume_psf_cycle *cycle = NULL;
     struct film *film = NULL;
-    relume_status status = make_cycle(&cycle, e, o, fps);
+    relume_status status = RELUME_OK;
+    if (o->cycle > 0.0)
+        status = relume_psf_cycle_create(&cycle, e->psf, e->eye,
+                                         relume_psf_cycle_params(.log = log, .seconds = o->cycle,
+                                                                 .fps = o->fps,
+                                                                 .luminance = e->luminance));
     if (!status)
-        status = film_open(&film, o->output, fps, true, o->args.log);
-    for (int i = 0; !status && i < frames; i++) {
+        status = film_open(&film, o->output, o->fps, true, log);
+    for (int i = 0; !status && i < o->frames; i++) {
         struct relume_image out = {0};
-        if (!go_on(o, (double)i / frames))
+        if (!log->progress(log->user, "glare", (double)i / o->frames))
             status = RELUME_ECANCEL;
         if (!status)
-            status = see_next(&out, e, cycle, frame, i, fps);
+            status = see_next(&out, e, cycle, frame, i, o->fps);
         if (!status)
             status = develop(&out, &o->develop, film_name(film));
         if (!status)
@@ -250,20 +236,14 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_glare = {
-    .name = "glare",
-    .usage = "[IN] -o OUT [OPTION ...]",
-    .summary = "show a picture as a human eye sees it, with halos around bright lights",
-    .example = "relume glare candle.exr -o seen.png --fov 20 --magnify 2",
-    .min_inputs = 0,
-    .max_inputs = 1,
-    .options = options,
-    .size = sizeof(struct glare_options),
-    .defaults = &(const struct glare_options){.picture = {1280, 720},
-                                              .size = GLARE_SIZE,
-                                              .field = GLARE_FIELD_DEG,
-                                              .frames = 1,
-                                              .fps = 30.0,
-                                              .luminance = 1.0,
-                                              .glare = GLARE_DEFAULTS},
-    .run = run,
+    COMMAND("glare", "[IN] -o OUT [OPTION ...]",
+            "show a picture as a human eye sees it, with halos around bright lights",
+            "relume glare candle.exr -o seen.png --fov 20 --magnify 2", 0, 1),
+    .defaults = &(const OPTIONS){.picture = {1280, 720},
+                                 .size = GLARE_SIZE,
+                                 .field = GLARE_FIELD_DEG,
+                                 .frames = 1,
+                                 .fps = 30.0,
+                                 .luminance = 1.0,
+                                 .glare = GLARE_DEFAULTS},
 };

@@ -141,9 +141,11 @@ static relume_status whiten(struct bracket *b, const struct hdr_options *o)
     return status;
 }
 
+// Into the file `to`, which will be called `output`.
 static relume_status run_bracket(struct bracket *b, const char *output, const char *to, int index,
                                  FILE *report, const struct hdr_options *o)
 {
+    const int threads = o->args.threads > 0 ? o->args.threads : relume_cpu_count();
     relume_status status = bracket_load(b, o);
     if (!status)
         status = bracket_align(b, o);
@@ -156,18 +158,13 @@ static relume_status run_bracket(struct bracket *b, const char *output, const ch
     if (!status && given(o, &o->white))
         status = whiten(b, o);
     if (!status)
-        status = relume_image_save(
-            &b->out, to,
-            relume_image_params(.log = o->args.log, .threads = o->args.threads > 0
-                                                                   ? o->args.threads
-                                                                   : relume_cpu_count()));
-    if (status)
-        return status;
-    if (o->json)
+        status = relume_image_save(&b->out, to,
+                                   relume_image_params(.log = o->args.log, .threads = threads));
+    if (!status && o->json)
         print_json(report, b, output, index);
-    else
+    else if (!status)
         print_table(report, b, output);
-    return RELUME_OK;
+    return status;
 }
 
 // ---------------------------------------------------------------- all of them
@@ -176,33 +173,19 @@ static relume_status read_notes(struct relume_exif *notes, struct relume_photogr
                                 const struct hdr_options *o)
 {
     const struct relume_log silent = {.inputs = o->args.log->inputs, .limits = o->args.log->limits};
-    const bool skip = o->skip_bad;
-    for (int i = 0; i < list->count; i++) {
-        const relume_status status =
-            relume_exif_read(&notes[i], list->path[i], skip ? &silent : o->args.log);
-        if (status && !(skip && relume_status_is_input(status)))
-            return status;
+    relume_status status = RELUME_OK;
+    for (int i = 0; !status && i < list->count; i++) {
+        status = relume_exif_read(&notes[i], list->path[i], o->skip_bad ? &silent : o->args.log);
+        if (o->skip_bad && relume_status_is_input(status))
+            status = RELUME_OK;
     }
-    const char *times = o->times;
-    const relume_status status = times ? read_times(times, list, notes, o->args.log) : RELUME_OK;
+    if (!status && o->times)
+        status = read_times(o->times, list, notes, o->args.log);
     for (int i = 0; !status && i < list->count; i++)
         if (!(notes[i].time_s > 0.0) && notes[i].width > 0)
             return data_error("%s: no exposure time in its EXIF; expected --times FILE",
                               list->path[i]);
     return status;
-}
-
-static int photos_of(struct bracket *b, const struct relume_photographs *list,
-                     const struct relume_exif *notes, const int *group, int which)
-{
-    int n = 0;
-    for (int i = 0; i < list->count; i++)
-        if (group[i] == which && n++ < MAX_BRACKET) {
-            b->path[n - 1] = list->path[i];
-            b->notes[n - 1] = notes[i];
-        }
-    b->n = n < MAX_BRACKET ? n : MAX_BRACKET;
-    return n;
 }
 
 // Of a bracket into `to`, a file or a folder.
@@ -224,7 +207,12 @@ static relume_status run_group(const struct relume_photographs *list,
     struct bracket *b = calloc(1, sizeof *b);
     if (!b)
         return RELUME_ENOMEM;
-    const int n = photos_of(b, list, notes, group, which);
+    int n = 0;
+    for (int i = 0; i < list->count; i++)
+        if (group[i] == which && n++ < MAX_BRACKET) {
+            b->path[b->n] = list->path[i];
+            b->notes[b->n++] = notes[i];
+        }
     output_name(output, sizeof output, b, o->output, is_file(o->output));
     output_name(written, sizeof written, b, to, is_file(o->output));
     const relume_status status =
@@ -239,7 +227,6 @@ static relume_status run_group(const struct relume_photographs *list,
 static relume_status run_groups(struct relume_photographs *list, struct relume_exif *notes,
                                 int *group, FILE *report, const struct hdr_options *o)
 {
-    const bool json = o->json;
     int groups = 1;
     struct fill folder = {.path = o->output};
     relume_status status = read_notes(notes, list, o);
@@ -247,10 +234,10 @@ static relume_status run_groups(struct relume_photographs *list, struct relume_e
         groups = relume_exif_brackets(group, notes, list->count, 0.0);
         status = groups > 0 ? fill_open(&folder, folder.path, o->args.log) : RELUME_ENOMEM;
     }
-    fputs(json ? "{\"brackets\": [" : "", report);
+    fputs(o->json ? "{\"brackets\": [" : "", report);
     for (int i = 0; !status && i < groups; i++)
         status = run_group(list, notes, group, i, folder.path, report, o);
-    fputs(json ? "]}\n" : "", report);
+    fputs(o->json ? "]}\n" : "", report);
     return fill_end(&folder, status);
 }
 
@@ -285,13 +272,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_hdr = {
-    .name = "hdr",
-    .usage = "PHOTO... -o OUT.exr|DIR [OPTION ...]",
-    .summary = "merge exposures of one picture into an HDR picture",
-    .example = "relume hdr church/*.jpg --align blocks -o church.exr",
-    .min_inputs = 1,
-    .max_inputs = 4096,
-    .options = options,
-    .size = sizeof(struct hdr_options),
-    .run = run,
+    COMMAND("hdr", "PHOTO... -o OUT.exr|DIR [OPTION ...]",
+            "merge exposures of one picture into an HDR picture",
+            "relume hdr church/*.jpg --align blocks -o church.exr", 1, 4096),
 };

@@ -25,13 +25,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_import = {
-    .name = "import",
-    .usage = "IN -o FILE.exr [OPTION ...]",
-    .summary = "turn a .ptm, .rti, .hsh or a relight web folder into a relume file",
-    .example = "relume import coin.ptm -o coin.exr",
-    .min_inputs = 1,
-    .max_inputs = 1,
-    .options = options,
-    .size = sizeof(struct import_options),
-    .run = run,
+    COMMAND("import", "IN -o FILE.exr [OPTION ...]",
+            "turn a .ptm, .rti, .hsh or a relight web folder into a relume file",
+            "relume import coin.ptm -o coin.exr", 1, 1),
 };

@@ -63,17 +63,10 @@ static const char *percent(char text[24], double share)
     return text;
 }
 
-static void print_error(double model, double rounding)
-{
-    char a[24], b[24];
-    printf(
-        "error         %s of white from the model, %s from rounding (RMS over the photographs)\n",
-        percent(a, model), percent(b, rounding));
-}
-
 static void print_text(const struct relume_pack_info *i, const struct relume_coder_info *c,
                        const char *display, enum relume_kind kind)
 {
+    char model[24], rounding[24];
     if (kind != RELUME_KIND_RELUME)
         printf("source        %s; the lines below describe it as relume reads it\n",
                relume_kind_name(kind));
@@ -101,7 +94,9 @@ static void print_text(const struct relume_pack_info *i, const struct relume_cod
         printf("codebooks     %d of %d vector%s, %s\n", i->books, i->codes, relume_plural(i->codes),
                i->shared ? "for all views" : "for each view");
     if (isfinite(i->report.fit_rms))
-        print_error(i->report.fit_rms, i->report.store_rms);
+        printf("error         %s of white from the model, %s from rounding (RMS over the "
+               "photographs)\n",
+               percent(model, i->report.fit_rms), percent(rounding, i->report.store_rms));
     printf("extras        %s%s%s\n", i->has_depth ? "depth" : "",
            i->has_depth && i->has_mask ? ", " : "",
            i->has_mask    ? "mask"
@@ -130,14 +125,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_info = {
-    .name = "info",
-    .usage = "FILE [--json]",
-    .summary =
-        "show what a file holds: a relume file, .ptm, .rti, web folder, capture, HDR picture",
-    .example = "relume info statue.exr --json",
-    .min_inputs = 1,
-    .max_inputs = 1,
-    .options = options,
-    .size = sizeof(struct info_options),
-    .run = run,
+    COMMAND("info", "FILE [--json]",
+            "show what a file holds: a relume file, .ptm, .rti, web folder, capture, HDR picture",
+            "relume info statue.exr --json", 1, 1),
 };

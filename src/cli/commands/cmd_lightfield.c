@@ -150,13 +150,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_lightfield = {
-    .name = "lightfield",
-    .usage = "PHOTO...|FOLDER|CAPTURE -o DIR [OPTION ...]",
-    .summary = "turn photographs of many cameras into a light field, and estimate its depth",
-    .example = "relume lightfield chess/view_*.jpg -o chess_slab",
-    .min_inputs = 1,
-    .max_inputs = 4096,
-    .options = options,
-    .size = sizeof(struct lightfield_options),
-    .run = run,
+    COMMAND("lightfield", "PHOTO...|FOLDER|CAPTURE -o DIR [OPTION ...]",
+            "turn photographs of many cameras into a light field, and estimate its depth",
+            "relume lightfield chess/view_*.jpg -o chess_slab", 1, 4096),
 };

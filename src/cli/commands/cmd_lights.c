@@ -38,13 +38,6 @@ static void print_json(const struct relume_pattern *pattern, bool hemisphere,
     puts("}");
 }
 
-static void print_lines(const struct relume_vec3 *v, int n, double discrepancy)
-{
-    for (int i = 0; i < n; i++)
-        printf("%.9g %.9g %.9g\n", v[i].x, v[i].y, v[i].z);
-    printf("# %d direction%s, spherical cap discrepancy %.6g\n", n, relume_plural(n), discrepancy);
-}
-
 static relume_status run(const struct args *args)
 {
     const struct lights_options *o = (const void *)args;
@@ -61,23 +54,20 @@ static relume_status run(const struct args *args)
     relume_status status = v ? relume_directions_make(v, n, pattern, &params) : RELUME_ENOMEM;
     if (!status)
         status = relume_directions_discrepancy(&discrepancy, v, n, &params);
+    for (int i = 0; !status && !o->json && i < n; i++)
+        printf("%.9g %.9g %.9g\n", v[i].x, v[i].y, v[i].z);
     if (!status && o->json)
         print_json(pattern, params.hemisphere, v, n, discrepancy);
     else if (!status)
-        print_lines(v, n, discrepancy);
+        printf("# %d direction%s, spherical cap discrepancy %.6g\n", n, relume_plural(n),
+               discrepancy);
     free(v);
     return status;
 }
 
 const struct command command_lights = {
-    .name = "lights",
-    .usage = "[--pattern P] [-n N]",
-    .summary = "print a pattern of light directions and how evenly it covers the sphere",
-    .example = "relume lights --pattern hammersley -n 100 --hemisphere",
-    .min_inputs = 0,
-    .max_inputs = 0,
-    .options = options,
-    .size = sizeof(struct lights_options),
-    .defaults = &(const struct lights_options){.count = 100},
-    .run = run,
+    COMMAND("lights", "[--pattern P] [-n N]",
+            "print a pattern of light directions and how evenly it covers the sphere",
+            "relume lights --pattern hammersley -n 100 --hemisphere", 0, 0),
+    .defaults = &(const OPTIONS){.count = 100},
 };

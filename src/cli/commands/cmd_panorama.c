@@ -58,13 +58,7 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_panorama = {
-    .name = "panorama",
-    .usage = "PHOTO... -o DIR [OPTION ...]",
-    .summary = "stitch photographs to a panorama, or turn a finished one into a capture",
-    .example = "relume panorama shot*.jpg -o forest",
-    .min_inputs = 1,
-    .max_inputs = 4096,
-    .options = options,
-    .size = sizeof(struct panorama_options),
-    .run = run,
+    COMMAND("panorama", "PHOTO... -o DIR [OPTION ...]",
+            "stitch photographs to a panorama, or turn a finished one into a capture",
+            "relume panorama shot*.jpg -o forest", 1, 4096),
 };

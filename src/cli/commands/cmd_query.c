@@ -48,29 +48,23 @@ static void print_json(const float rgb[3])
     }
 }
 
-static void print_line(const float rgb[3])
-{
-    if (isnan(rgb[0]))
-        puts("none");
-    else
-        printf("%.9g %.9g %.9g\n", (double)rgb[0], (double)rgb[1], (double)rgb[2]);
-}
-
 // A list where a list was asked for.
 static void print(const struct query_options *o, const float (*rgb)[3], int n)
 {
-    const bool list = o->rays;
     if (!o->json) {
         for (int i = 0; i < n; i++)
-            print_line(rgb[i]);
+            if (isnan(rgb[i][0]))
+                puts("none");
+            else
+                printf("%.9g %.9g %.9g\n", (double)rgb[i][0], (double)rgb[i][1], (double)rgb[i][2]);
         return;
     }
-    fputs(list ? "{\"rgb\": [" : "{\"rgb\": ", stdout);
+    fputs(o->rays ? "{\"rgb\": [" : "{\"rgb\": ", stdout);
     for (int i = 0; i < n; i++) {
         fputs(i ? ", " : "", stdout);
         print_json(rgb[i]);
     }
-    fputs(list ? "]}\n" : "}\n", stdout);
+    fputs(o->rays ? "]}\n" : "}\n", stdout);
 }
 
 static void count_none(const struct query_options *o, const float (*rgb)[3], int n)
@@ -134,14 +128,8 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_query = {
-    .name = "query",
-    .usage = "FILE --eye x,y,z --direction x,y,z | --rays FILE [OPTION ...]",
-    .summary = "print the linear r g b that a ray sees, or many rays",
-    .example = "relume query teapot.exr --eye 0,0,3 --direction 0,0,-1 --light \"dir 1 1 1\"",
-    .min_inputs = 1,
-    .max_inputs = 1,
-    .options = options,
-    .size = sizeof(struct query_options),
-    .defaults = &(const struct query_options){.cpu_mask = ALL_KERNELS},
-    .run = run,
+    COMMAND("query", "FILE --eye x,y,z --direction x,y,z | --rays FILE [OPTION ...]",
+            "print the linear r g b that a ray sees, or many rays",
+            "relume query teapot.exr --eye 0,0,3 --direction 0,0,-1 --light \"dir 1 1 1\"", 1, 1),
+    .defaults = &(const OPTIONS){.cpu_mask = ALL_KERNELS},
 };

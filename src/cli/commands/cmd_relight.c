@@ -178,15 +178,6 @@ static relume_status check_pass(const struct relight_options *o)
     return RELUME_OK;
 }
 
-static relume_status open_capture(const struct relight_options *o, relume_capture **capture)
-{
-    const char *path = o->capture;
-    return path ? relume_capture_open(
-                      capture, path,
-                      relume_capture_params(.log = o->args.log, .allow_outside = o->allow_outside))
-                : RELUME_OK;
-}
-
 // Linear pictures hold the vectors; others the codes (n + 1) / 2, as normal maps do, and black
 // where there is none.
 static void show_normals(struct relume_image *frame, const char *path)
@@ -204,11 +195,10 @@ static void show_normals(struct relume_image *frame, const char *path)
 static relume_status make_frame(struct relume_image *frame, relume_renderer *renderer,
                                 const struct relight_options *o, const struct relume_camera *camera)
 {
-    const char *path = o->objects;
     relume_objects *objects;
-    if (!path)
+    if (!o->objects)
         return relume_renderer_frame(frame, renderer, camera);
-    relume_status status = objects_open(&objects, path, &o->args);
+    relume_status status = objects_open(&objects, o->objects, &o->args);
     if (!status)
         status =
             relume_objects_frame(frame, objects, renderer, camera,
@@ -327,7 +317,10 @@ static relume_status render(const struct relight_options *o, const struct relume
     params.focus = given(o, &o->focus) ? o->focus - plane_z : 0.0;
     if (!free_eye && lens)
         params.interpolation = RELUME_INTERPOLATE_LINEAR;
-    status = open_capture(o, &capture);
+    if (o->capture)
+        status = relume_capture_open(
+            &capture, o->capture,
+            relume_capture_params(.log = o->args.log, .allow_outside = o->allow_outside));
     params.capture = capture;
     if (!status)
         status = relume_renderer_create(&renderer, pack, &params);
@@ -390,16 +383,8 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_relight = {
-    .name = "relight",
-    .usage = "FILE -o OUT [OPTION ...]",
-    .summary = "show a relume file under any lights, from any eye, as a picture",
-    .example = "relume relight statue.exr -o raking.png --light \"dir 1 0 0.2 rgb 1 .9 .8\"",
-    .min_inputs = 1,
-    .max_inputs = 1,
-    .options = options,
-    .size = sizeof(struct relight_options),
-    .defaults = &(const struct relight_options){.samples = 3,
-                                                .cpu_mask = ALL_KERNELS,
-                                                .glare = GLARE_DEFAULTS},
-    .run = run,
+    COMMAND("relight", "FILE -o OUT [OPTION ...]",
+            "show a relume file under any lights, from any eye, as a picture",
+            "relume relight statue.exr -o raking.png --light \"dir 1 0 0.2 rgb 1 .9 .8\"", 1, 1),
+    .defaults = &(const OPTIONS){.samples = 3, .cpu_mask = ALL_KERNELS, .glare = GLARE_DEFAULTS},
 };

@@ -1,11 +1,11 @@
 // cmd_sweep.c - relume sweep: every coder of a grid judged by lights that it has not seen
 #include "book_options.h"
 #include "commands/sweep.h"
+#include "program/clock.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 struct sweep_options {
@@ -237,13 +237,6 @@ static struct relume_coder_params coder_params(const struct sweep_row *row,
                                         .luminance = row->luminance};
 }
 
-static double seconds_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 // The real file of all lights, for its size.
 static relume_status encode_row(struct work *w, struct sweep_row *row, const struct relume_log *log)
 {
@@ -253,7 +246,7 @@ static relume_status encode_row(struct work *w, struct sweep_row *row, const str
     snprintf(path, sizeof path, "%s/row.exr", relume_making_path(w->folder));
     relume_coder *coder = NULL;
     relume_pack *pack = NULL;
-    const double start = seconds_now();
+    const double start = now_s();
     relume_status status = relume_coder_learn(
         &coder, row->basis, w->capture, &params,
         relume_encode_params(.log = log, .domain = w->sweep->domain, .threads = args->threads));
@@ -264,7 +257,7 @@ static relume_status encode_row(struct work *w, struct sweep_row *row, const str
                                       .storage = row->store.storage, .step = row->store.step,
                                       .books = row->books.codes ? &row->books : NULL,
                                       .share = row->store.share, .threads = args->threads));
-    row->seconds = seconds_now() - start;
+    row->seconds = now_s() - start;
     if (!status)
         status = relume_pack_open(&pack, path, relume_pack_params(.log = log));
     if (!status) {
@@ -363,14 +356,6 @@ static relume_status measure_group(struct work *w, int first, int end)
 
 // ---------------------------------------------------------------- the whole
 
-static bool all_known(const struct sweep *sweep)
-{
-    for (int i = 0; i < sweep->rows; i++)
-        if (!sweep->row[i].known)
-            return false;
-    return true;
-}
-
 static relume_status measure_all(struct work *w, const relume_capture *test)
 {
     struct sweep *s = w->sweep;
@@ -425,7 +410,10 @@ static relume_status sweep_captures(struct sweep *sweep, relume_capture *capture
     relume_status status = sweep->out ? sweep_check(sweep) : RELUME_OK;
     if (!status)
         status = sweep_resume_open(&w.resume, sweep, both, memory);
-    if (!status && !all_known(sweep))
+    int unknown = 0;
+    for (int i = 0; i < sweep->rows; i++)
+        unknown += !sweep->row[i].known;
+    if (!status && unknown)
         status = measure_all(&w, test);
     if (status == RELUME_ECANCEL && sweep->out)
         announce(sweep->args, RELUME_NOTE,
@@ -484,19 +472,14 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_sweep = {
-    .name = "sweep",
-    .usage = "CAPTURE [--leave-out K | --test CAPTURE2] [-o OUT] [--json | --csv] [OPTION ...]",
-    .summary = "compare file size and quality of coders on lights left out",
-    .example = "relume sweep photos/dirs.lp --basis pca,hsh,ptm --leave-out 5 -o statue",
-    .min_inputs = 1,
-    .max_inputs = 1,
-    .options = options,
-    .size = sizeof(struct sweep_options),
-    .defaults = &(const struct sweep_options){.luminance = {1, {0}},
-                                              .bits = {1, {RELUME_STORE_8}},
-                                              .step = {1, {RELUME_STEP_PLANE}},
-                                              .codebook = {1, {0}},
-                                              .leave_out = 1,
-                                              .memory = 1024},
-    .run = run,
+    COMMAND("sweep",
+            "CAPTURE [--leave-out K | --test CAPTURE2] [-o OUT] [--json | --csv] [OPTION ...]",
+            "compare file size and quality of coders on lights left out",
+            "relume sweep photos/dirs.lp --basis pca,hsh,ptm --leave-out 5 -o statue", 1, 1),
+    .defaults = &(const OPTIONS){.luminance = {1, {0}},
+                                 .bits = {1, {RELUME_STORE_8}},
+                                 .step = {1, {RELUME_STEP_PLANE}},
+                                 .codebook = {1, {0}},
+                                 .leave_out = 1,
+                                 .memory = 1024},
 };

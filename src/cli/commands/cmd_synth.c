@@ -89,17 +89,11 @@ static relume_status choose_views(struct relume_synth_params *p, enum relume_pro
     return usage_error("--views: expected --projection slab, which has views");
 }
 
-static bool is_panorama(enum relume_projection projection)
-{
-    return projection != RELUME_PLANAR && projection != RELUME_SLAB;
-}
-
 static relume_status make_lights(struct relume_vec3 **out, int *n, bool pole_y,
                                  const struct synth_options *o)
 {
-    const char *file = o->lights_from;
-    if (file)
-        return relume_captured_lights_read(out, n, file, o->args.log);
+    if (o->lights_from)
+        return relume_captured_lights_read(out, n, o->lights_from, o->args.log);
     *n = o->lights;
     *out = malloc((size_t)*n * sizeof **out);
     if (!*out)
@@ -129,10 +123,9 @@ static relume_status read_directions(struct relume_vec3 **out, int *n, const cha
 static relume_status choose_directions(struct relume_vec3 **out, int *n,
                                        const struct synth_options *o)
 {
-    const char *name = o->directions;
-    const struct relume_btf_set *set = relume_btf_set_find(name);
+    const struct relume_btf_set *set = relume_btf_set_find(o->directions);
     if (!set)
-        return read_directions(out, n, name, o);
+        return read_directions(out, n, o->directions, o);
     *n = set->count;
     *out = malloc((size_t)*n * sizeof **out);
     if (!*out)
@@ -215,7 +208,7 @@ static relume_status run(const struct args *args)
     if (!status)
         status = make_lights(
             &lights, &p.light_count,
-            p.ring || is_panorama(p.projection_set ? p.projection : kind->projection), o);
+            p.ring || (p.projection_set ? p.projection : kind->projection) > RELUME_SLAB, o);
     p.lights = lights;
     if (!status)
         status = capture(kind, &p, o);
@@ -224,14 +217,8 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_synth = {
-    .name = "synth",
-    .usage = "SCENE|--btf MATERIAL -o DIR",
-    .summary = "render a built-in scene (box, teapot, bust, attic, chessboard) under many lights",
-    .example = "relume synth teapot -o teapot --views 5x5 --lights 100",
-    .min_inputs = 0,
-    .max_inputs = 1,
-    .options = options,
-    .size = sizeof(struct synth_options),
-    .defaults = &(const struct synth_options){.lights = 100, .directions = "bonn"},
-    .run = run,
+    COMMAND("synth", "SCENE|--btf MATERIAL -o DIR",
+            "render a built-in scene (box, teapot, bust, attic, chessboard) under many lights",
+            "relume synth teapot -o teapot --views 5x5 --lights 100", 0, 1),
+    .defaults = &(const OPTIONS){.lights = 100, .directions = "bonn"},
 };

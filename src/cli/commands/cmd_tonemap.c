@@ -35,15 +35,9 @@ static relume_status run(const struct args *args)
 }
 
 const struct command command_tonemap = {
-    .name = "tonemap",
-    .usage = "IN -o OUT [OPTION ...]",
-    .summary = "turn an HDR picture into one for the screen: exposure and tone curve",
-    .example = "relume tonemap church.hdr -o church.png --exposure -1",
-    .min_inputs = 1,
-    .max_inputs = 1,
-    .options = options,
-    .size = sizeof(struct tonemap_options),
-    .defaults = &(const struct tonemap_options){.develop = {.exposure = (double)NAN,
-                                                            .tone = &relume_tone_reinhard}},
-    .run = run,
+    COMMAND("tonemap", "IN -o OUT [OPTION ...]",
+            "turn an HDR picture into one for the screen: exposure and tone curve",
+            "relume tonemap church.hdr -o church.png --exposure -1", 1, 1),
+    .defaults =
+        &(const OPTIONS){.develop = {.exposure = (double)NAN, .tone = &relume_tone_reinhard}},
 };

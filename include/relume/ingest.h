@@ -34,7 +34,7 @@ struct relume_slab_ingest_params {
     const char *names;
     double baseline;         // world units from the leftmost to the rightmost camera; default 1
     double baseline_v;       // from the highest to the lowest; default: where names hold positions
-                             // by these, else rows are as far apart as columns
+                             // by these, else what the photographs tell
     double distance;         // from the st plane to the cameras; default 3
     double st_z;             // height of the st plane; default 0
     double window;           // width of the st window; default 2
@@ -57,7 +57,8 @@ struct relume_slab_ingest_params {
 // other way: the first is checked, and the log told; the second, a world turned inside out (what
 // is near, below, to the left of a camera moves up and right where it should hide what is behind),
 // shows by what hides what, which is looked at and mentioned, no more.
-// No photograph shows whether rows are as far apart as columns; the log says that it is assumed.
+// Where neither names nor `baseline_v` say how far apart rows are, the photographs are asked: the
+// log tells what they say, or that rows are assumed to be as far apart as columns.
 // The scale of depth follows from baseline and distance, which no photograph shows.
 // RELUME_EINVAL (params), an input status (names that do not match, a camera missing, two for one
 // place, sizes that differ), RELUME_EIO, RELUME_ENOMEM.

@@ -1,10 +1,13 @@
-// views_order.c - which way the rows and columns of cameras run
+// views_order.c - which way the rows and columns of cameras run, and how far apart they stand
 //
 // A point's parallax over columns and over rows is one number: with one of the two turned round the
 // cameras agree on no depth. With both turned they agree on a world turned inside out, near for
 // far; then what occludes gives it away: a pixel that some cameras do not see lies behind its
 // surroundings, so its disparity must be the smaller one there. Where many depths fit equally well
 // nothing is concluded.
+//
+// How far a point moves from row to row is to how far it moves from column to column as the rows'
+// spacing is to the columns': the ratio on which most pixels of the middle picture agree.
 #include "multiview/views_order.h"
 
 #include "base/log.h"
@@ -67,12 +70,14 @@ static relume_status load(struct orders *o, const char *path, const struct relum
     return picture ? RELUME_OK : RELUME_ENOMEM;
 }
 
-// The middle camera comes first.
+// The middle camera comes first; `across` and `down`: of how many columns and rows.
 static relume_status load_around(struct orders *o, const struct photo_set *set,
-                                 const struct camera_grid *g, const struct relume_ingest_params *p)
+                                 const struct camera_grid *g, int across, int down,
+                                 const struct relume_ingest_params *p)
 {
     int columns[3], rows[3];
-    const int across = three_of(columns, g->columns), down = three_of(rows, g->rows);
+    across = across < three_of(columns, g->columns) ? across : three_of(columns, g->columns);
+    down = down < three_of(rows, g->rows) ? down : three_of(rows, g->rows);
     relume_status status = RELUME_OK;
     for (int j = 0; j < down; j++)
         for (int i = 0; i < across && !status; i++) {
@@ -227,7 +232,7 @@ relume_status grid_order(struct grid_order *out, const struct photo_set *set,
 {
     struct orders o = {.planes = 0};
     struct findings f[2] = {{NULL, NULL, 0.0}, {NULL, NULL, 0.0}};
-    relume_status status = load_around(&o, set, grid, p);
+    relume_status status = load_around(&o, set, grid, 3, 3, p);
     float *room = NULL;
     const size_t n = (size_t)o.sweep.width * (size_t)o.sweep.height;
     if (!status && !(room = mem_array(4 * n, sizeof *room)))
@@ -243,5 +248,148 @@ relume_status grid_order(struct grid_order *out, const struct photo_set *set,
     free(room);
     for (int i = 0; i < o.sweep.views; i++)
         free(o.picture[i]);
+    return status;
+}
+
+// ---------------------------------------------------------------- spacing
+
+enum { PARTS = 4, RATIOS = 277 };  // the picture in PARTS x PARTS, ratios from 1/4 to 4 by 1 %
+static const double least_ratio = 0.25;
+static const double telling = 2.0;  // texels that a point moves by
+static const size_t few_pixels = 150;
+static const double least_share = 0.4, most_error = 0.1;
+
+// The disparities of the middle camera by the others in its row or in its column, in texels of the
+// outermost of them, which is `way` units from the middle.
+struct moves {
+    float *plane;
+    double middle, way;
+    int width, height;
+};
+
+static relume_status find_moves(struct moves *m, const struct photo_set *set,
+                                const struct camera_grid *grid, bool rows,
+                                const struct relume_ingest_params *p)
+{
+    struct orders o = {.planes = 0};
+    struct findings f = {.cost = 0.0};
+    relume_status status = load_around(&o, set, grid, rows ? 1 : 3, rows ? 3 : 1, p);
+    const size_t n = (size_t)o.sweep.width * (size_t)o.sweep.height;
+    for (int i = 0; i < o.sweep.views; i++)
+        m->way = fmax(m->way, fabs(o.at[i][rows]));
+    if (!status && !(f.plane = mem_array(2 * n, sizeof *f.plane)))
+        status = RELUME_ENOMEM;
+    if (!status) {
+        f.hidden = f.plane + n;
+        scale(&o);
+        status = sweep_middle(&f, &o);
+    }
+    m->plane = f.plane;
+    m->middle = (o.planes - 1) / 2;
+    m->width = o.sweep.width;
+    m->height = o.sweep.height;
+    for (int i = 0; i < o.sweep.views; i++)
+        free(o.picture[i]);
+    return status;
+}
+
+// By how much a point moves over columns and over rows.
+struct told {
+    float across, down;
+    int part;
+};
+
+static size_t collect(struct told *told, const struct moves m[2])
+{
+    size_t n = 0;
+    const int width = m[0].width, height = m[0].height;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const float *a = &m[0].plane[y * width + x], *b = &m[1].plane[y * width + x];
+            const double across = (double)*a - m[0].middle, down = (double)*b - m[1].middle;
+            if (*a >= 0.0f && *b >= 0.0f && hypot(across, down) >= telling)
+                told[n++] = (struct told){(float)across, (float)down,
+                                          y * PARTS / height * PARTS + x * PARTS / width};
+        }
+    return n;
+}
+
+static double ratio_of(int i)
+{
+    return least_ratio * pow(1.0 / (least_ratio * least_ratio), i / (RATIOS - 1.0));
+}
+
+// How many of a part's pixels (-1: of all) move down by `ratio` times as much as across, either
+// way, to a texel.
+static double agree(const struct told *told, size_t n, int part, double ratio)
+{
+    double sum[2] = {0.0, 0.0};
+    const double scale = 1.0 / hypot(1.0, ratio);
+    for (size_t i = 0; i < n; i++)
+        for (int way = 0; way < 2 && (part < 0 || told[i].part == part); way++) {
+            const double expected = (way ? -ratio : ratio) * (double)told[i].across;
+            const double off = scale * ((double)told[i].down - expected);
+            sum[way] += fmax(1.0 - off * off, 0.0);
+        }
+    return fmax(sum[0], sum[1]);
+}
+
+static double best_ratio(const struct told *told, size_t n, int part)
+{
+    double most = -1.0, best = 0.0;
+    for (int i = 0; i < RATIOS; i++) {
+        const double sum = agree(told, n, part, ratio_of(i));
+        best = sum > most ? ratio_of(i) : best;
+        most = fmax(most, sum);
+    }
+    return best;
+}
+
+// The error of the mean of what parts of the picture tell by themselves.
+static double disagreement(const struct told *told, size_t n, double ratio)
+{
+    double square = 0.0;
+    int parts = 0;
+    for (int part = 0; part < PARTS * PARTS; part++) {
+        size_t own = 0;
+        for (size_t i = 0; i < n; i++)
+            own += told[i].part == part;
+        if (own < few_pixels / 4)
+            continue;
+        square += pow(log(best_ratio(told, n, part) / ratio), 2.0);
+        parts++;
+    }
+    return parts > 1 ? sqrt(square / (parts - 1) / parts) : 1.0;
+}
+
+static void judge(struct grid_spacing *out, const struct told *told, size_t n,
+                  const struct moves m[2])
+{
+    if (n < few_pixels)
+        return;
+    const double ratio = best_ratio(told, n, -1);
+    out->share = agree(told, n, -1, ratio) / (double)n;
+    out->error = disagreement(told, n, ratio);
+    const bool inside = ratio > ratio_of(1) && ratio < ratio_of(RATIOS - 2);
+    if (inside && out->share >= least_share && out->error <= most_error)
+        out->ratio = ratio * m[0].way / m[1].way;
+}
+
+relume_status grid_spacing(struct grid_spacing *out, const struct photo_set *set,
+                           const struct camera_grid *grid, const struct relume_ingest_params *p)
+{
+    struct moves m[2] = {{.way = 0.0}, {.way = 0.0}};
+    *out = (struct grid_spacing){.ratio = 0.0};
+    relume_status status = find_moves(&m[0], set, grid, false, p);
+    if (!status)
+        status = find_moves(&m[1], set, grid, true, p);
+    struct told *told = NULL;
+    if (!status && !(told = mem_array((size_t)m[0].width * (size_t)m[0].height, sizeof *told)))
+        status = RELUME_ENOMEM;
+    if (!status)
+        judge(out, told, collect(told, m), m);
+    free(told);
+    free(m[0].plane);
+    free(m[1].plane);
     return status;
 }

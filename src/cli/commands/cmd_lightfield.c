@@ -29,7 +29,7 @@ static const struct option options[] = {
            "world units from the first to the last column of cameras; default 1", 1e-6, 1e6),
     NUMBER("--baseline-v", baseline_v, "H",
            "world units from the first to the last row; default: by positions in the names, else "
-           "rows are as far apart as columns",
+           "by the photographs",
            1e-6, 1e6),
     NUMBER("--distance", distance, "D",
            "world units from the cameras to the st plane, default 3; --colmap: units of the model",
